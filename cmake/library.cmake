@@ -1,0 +1,35 @@
+# The library oktett::oktett. Sources are found by folder: a new file needs no edit here.
+file(GLOB OKTETT_SOURCES CONFIGURE_DEPENDS
+  core/*.cpp kernels/*.cpp kernels/*/*.cpp accel/*.cpp render/*.cpp io/*.cpp)
+
+# One translation unit per instruction set holds every instantiation of the hot code for it; the rest of the library is
+# compiled for the baseline, so one binary runs everywhere. Fused multiply-adds happen only where the code asks for them.
+file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp)
+
+add_library(oktett ${OKTETT_SOURCES} ${OKTETT_ISA_SOURCES})
+add_library(oktett::oktett ALIAS oktett)
+target_compile_features(oktett PUBLIC cxx_std_20)
+target_compile_options(oktett PRIVATE -ffp-contract=off)
+oktett_target_warnings(oktett)
+set_target_properties(oktett PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+target_include_directories(oktett PUBLIC
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_PREFIX}/include/oktett>)
+target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
+target_link_libraries(oktett
+  PUBLIC TBB::tbb Threads::Threads
+  PRIVATE OpenImageIO::OpenImageIO yaml-cpp fmt::fmt)
+target_include_directories(oktett SYSTEM PUBLIC $<BUILD_INTERFACE:${xsimd_INCLUDE_DIRS}>)
+
+function(oktett_isa_flags file)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/isa/${file} PROPERTIES
+    COMPILE_OPTIONS "-O3;${ARGN}")
+endfunction()
+oktett_isa_flags(scalar.cpp -fno-tree-vectorize)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  oktett_isa_flags(sse42.cpp -msse4.2)
+  oktett_isa_flags(avx2.cpp -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
+  oktett_isa_flags(avx512.cpp
+    -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c
+    -mprefer-vector-width=512)
+endif()

@@ -1,0 +1,47 @@
+#pragma once
+/// \file Axis-aligned boxes.
+
+#include <limits>
+
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// Axis-aligned box [lo, hi]. The default box is empty: lo = +inf, hi = -inf.
+struct Box {
+  Vec3f lo{kInf, kInf, kInf};
+  Vec3f hi{-kInf, -kInf, -kInf};
+
+  constexpr bool operator==(const Box&) const = default;
+
+  constexpr bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+  constexpr void grow(const Vec3f& p) { lo = min(p, lo), hi = max(p, hi); }
+  constexpr void grow(const Box& b) { lo = min(b.lo, lo), hi = max(b.hi, hi); }
+  constexpr Vec3f center() const { return lo * 0.5f + hi * 0.5f; }
+  constexpr Vec3f extent() const { return empty() ? Vec3f{} : hi - lo; }
+  constexpr bool contains(const Vec3f& p) const {
+    return lo.x <= p.x && p.x <= hi.x && lo.y <= p.y && p.y <= hi.y && lo.z <= p.z && p.z <= hi.z;
+  }
+  constexpr bool contains(const Box& b) const { return contains(b.lo) && contains(b.hi); }
+
+  /// Half of the surface area; 0 for an empty box.
+  constexpr float half_area() const {
+    const Vec3f e = extent();
+    return e.x * e.y + e.y * e.z + e.z * e.x;
+  }
+
+ private:
+  static constexpr float kInf = std::numeric_limits<float>::infinity();
+};
+
+/// The smallest float at or above `v`, resp. the largest at or below it: how bounds computed in double become a Box.
+inline float round_up(double v) {
+  const float f = static_cast<float>(v);
+  return static_cast<double>(f) >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+inline float round_down(double v) { return -round_up(-v); }
+
+inline Vec3f round_up(const Vec3d& v) { return {round_up(v.x), round_up(v.y), round_up(v.z)}; }
+inline Vec3f round_down(const Vec3d& v) { return {round_down(v.x), round_down(v.y), round_down(v.z)}; }
+
+}  // namespace oktett

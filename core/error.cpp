@@ -1,0 +1,59 @@
+#include "core/error.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace oktett {
+
+std::string to_string(const Location& where) {
+  std::string s = where.file;
+  if (where.line > 0) s += ":" + std::to_string(where.line);
+  if (where.line > 0 && where.column > 0) s += ":" + std::to_string(where.column);
+  return s;
+}
+
+static std::string place_first(const Location& where, const std::string& message) {
+  return where.file.empty() ? message : to_string(where) + ": " + message;
+}
+
+Error::Error(const std::string& message, ErrorKind kind) : std::runtime_error(message), kind_(kind) {}
+
+Error::Error(Location where, const std::string& message, ErrorKind kind)
+    : std::runtime_error(place_first(where, message)), where_(std::move(where)), kind_(kind) {}
+
+std::string to_string(const Warning& warning) {
+  return place_first(warning.where, "warning: " + warning.message);
+}
+
+static std::size_t edit_distance(const std::string& a, const char* b) {
+  const std::size_t n = std::strlen(b);
+  std::vector<std::size_t> row(n + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= n; ++j) {
+      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row[n];
+}
+
+std::string nearest_name(const std::string& name, const char* const* known, std::size_t known_count) {
+  // A name of thousands of characters is no typing error, and its distance would cost quadratic time.
+  if (name.size() > 64) return {};
+  std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
+  std::string nearest;
+  for (std::size_t i = 0; i < known_count; ++i) {
+    const std::size_t d = edit_distance(name, known[i]);
+    if (d < best) best = d, nearest = known[i];
+  }
+  return nearest;
+}
+
+}  // namespace oktett

@@ -1,0 +1,50 @@
+#pragma once
+/// \file Errors that a user can act on: what is wrong, where, and what was expected. Hot code never throws.
+
+#include <stdexcept>
+#include <string>
+
+namespace oktett {
+
+/// A place in a text file. Lines and columns count from 1; 0 means unknown and is left out of the message.
+struct Location {
+  std::string file;
+  int line = 0;
+  int column = 0;
+
+  bool operator==(const Location&) const = default;
+};
+
+/// `file`, `file:line` or `file:line:column`.
+std::string to_string(const Location& where);
+
+/// What went wrong, which decides the exit status of the command: bad input 2, input/output 1.
+enum class ErrorKind { bad_input, io };
+
+/// `what()` is one line: `FILE:LINE:COLUMN: message`, or just the message if there is no file.
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& message, ErrorKind kind = ErrorKind::bad_input);
+  Error(Location where, const std::string& message, ErrorKind kind = ErrorKind::bad_input);
+
+  const Location& where() const { return where_; }
+  ErrorKind kind() const { return kind_; }
+
+ private:
+  Location where_;
+  ErrorKind kind_;
+};
+
+/// A problem that does not stop the work: the thing at `where` was skipped or given a default.
+struct Warning {
+  Location where;
+  std::string message;
+};
+
+/// `FILE:LINE:COLUMN: warning: message`.
+std::string to_string(const Warning& warning);
+
+/// The name in `known` nearest to `name` by edit distance, for "did you mean"; empty if none is near.
+std::string nearest_name(const std::string& name, const char* const* known, std::size_t known_count);
+
+}  // namespace oktett

@@ -1,0 +1,46 @@
+#pragma once
+/// \file Affine transforms of points, directions and normals, in double.
+
+#include <array>
+
+#include "core/box.h"
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// The affine map p -> M p + t, stored as the row-major 3x4 matrix [M | t].
+struct Affine {
+  std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+  bool operator==(const Affine&) const = default;
+
+  static Affine translation(const Vec3d& t);
+  static Affine scaling(const Vec3d& s);
+  /// Rotation about the x, then the y, then the z axis; angles in degrees, right-handed.
+  static Affine rotation(const Vec3d& degrees);
+  /// Rotation by `degrees` about `axis`, which need not be of unit length but must not be zero.
+  static Affine rotation(const Vec3d& axis, double degrees);
+
+  Vec3d point(const Vec3d& p) const;
+  Vec3d vector(const Vec3d& v) const;
+  /// Maps a normal, given that *this* is the inverse of the map that moves the surface: M^T n. Not normalised.
+  Vec3d normal_by_inverse(const Vec3d& n) const;
+
+  /// Determinant of the linear part; negative for a mirror.
+  double determinant() const;
+  /// The inverse map. For a singular map the result holds non-finite numbers: ask `is_invertible` first.
+  Affine inverse() const;
+  /// True if all entries are finite and the map has a finite inverse.
+  bool is_invertible() const;
+  bool is_identity() const { return *this == Affine{}; }
+  /// If the map is a uniform scale, possibly with rotation, mirror and translation, its scale factor; else 0.
+  double uniform_scale() const;
+
+  /// (a * b)(p) = a(b(p)).
+  friend Affine operator*(const Affine& a, const Affine& b);
+};
+
+/// The bounds of the image of `box`, rounded outwards.
+Box transform_bounds(const Affine& map, const Box& box);
+
+}  // namespace oktett

@@ -1,0 +1,111 @@
+#pragma once
+/// \file Plain vectors for points, directions, normals and colours. Scalar code only; packets keep one column per component.
+
+#include <cmath>
+
+namespace oktett {
+
+template <class T>
+struct Vec3 {
+  T x{}, y{}, z{};
+
+  constexpr T operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+  constexpr T& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  constexpr bool operator==(const Vec3&) const = default;
+
+  /// Converts component by component, e.g. `Vec3d(v)` from a Vec3f.
+  template <class U>
+  explicit constexpr operator Vec3<U>() const {
+    return {static_cast<U>(x), static_cast<U>(y), static_cast<U>(z)};
+  }
+
+  constexpr Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
+  constexpr Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
+  constexpr Vec3& operator*=(T s) { return *this = *this * s; }
+
+  friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+  friend constexpr Vec3 operator*(const Vec3& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend constexpr Vec3 operator*(T s, const Vec3& a) { return a * s; }
+  /// Component-wise product, for colours.
+  friend constexpr Vec3 operator*(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+  friend constexpr Vec3 operator/(const Vec3& a, T s) { return {a.x / s, a.y / s, a.z / s}; }
+};
+
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+/// Linear Rec.709 colour.
+using Color = Vec3<float>;
+
+struct Vec2f {
+  float x{}, y{};
+  constexpr bool operator==(const Vec2f&) const = default;
+};
+
+template <class T>
+constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <class T>
+constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+template <class T>
+T length(const Vec3<T>& a) {
+  return std::sqrt(dot(a, a));
+}
+
+/// Unit vector along `a`; NaN for the zero vector.
+template <class T>
+Vec3<T> normalize(const Vec3<T>& a) {
+  return a / length(a);
+}
+
+template <class T>
+constexpr Vec3<T> min(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
+}
+
+template <class T>
+constexpr Vec3<T> max(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
+}
+
+template <class T>
+Vec3<T> abs(const Vec3<T>& a) {
+  return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};
+}
+
+template <class T>
+constexpr T max_component(const Vec3<T>& a) {
+  const T xy = a.x > a.y ? a.x : a.y;
+  return xy > a.z ? xy : a.z;
+}
+
+template <class T>
+bool is_finite(const Vec3<T>& a) {
+  return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
+/// Index of the component of greatest magnitude; the lowest index wins ties.
+template <class T>
+int dominant_axis(const Vec3<T>& a) {
+  const Vec3<T> m = abs(a);
+  if (m.x >= m.y && m.x >= m.z) return 0;
+  return m.y >= m.z ? 1 : 2;
+}
+
+/// Two unit vectors that with the unit vector `n` form a right-handed basis (Duff et al. 2017, JCGT 6(1)).
+template <class T>
+void make_basis(const Vec3<T>& n, Vec3<T>& tangent, Vec3<T>& bitangent) {
+  const T sign = std::copysign(T(1), n.z);
+  const T a = T(-1) / (sign + n.z);
+  const T b = n.x * n.y * a;
+  tangent = {T(1) + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+}  // namespace oktett
