@@ -1,0 +1,22 @@
+#pragma once
+/// \file What the renderer asks of textures; io/ implements it on top of an image library.
+
+#include <cstdint>
+
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// Looks up the textures of a scene. Implementations are safe to call from many threads, and a lookup depends on its
+/// arguments alone.
+class TextureSampler {
+ public:
+  virtual ~TextureSampler() = default;
+  /// Filtered linear Rec.709 colour of texture `index` (into Scene::textures) at `uv`; (0,0) is the lower left corner.
+  /// `dx` and `dy` are the changes of uv from this pixel to its neighbours, zero when unknown.
+  virtual Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
+  /// The same for data that carries no colour space (opacity, height): the first channel as stored.
+  virtual float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
+};
+
+}  // namespace oktett
