@@ -1,0 +1,42 @@
+#pragma once
+/// \file What an image file says about how it was made.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "render/scene.h"
+
+namespace oktett {
+
+/// A 4x4 matrix, row-major, for row vectors: p' = [x y z 1] M, the translation stands in the last row. This
+/// is the convention of RenderMan and OpenEXR.
+using Matrix4 = std::array<float, 16>;
+
+/// Where the camera stood, as OpenEXR's standard attributes of the same names state it.
+struct CameraMatrices {
+  /// World to camera space: left-handed, origin at the camera, x to the right, y up, z the viewing direction.
+  Matrix4 world_to_camera{};
+  /// World to normalised device coordinates: after division by w, (0, 0) is the upper left and (1, 1) the
+  /// lower right corner of the full frame. z is to be discarded: it is 1 - 1 / depth for perspective, depth
+  /// for orthographic.
+  Matrix4 world_to_ndc{};
+};
+
+/// The matrices of a camera that fills a frame of `width` x `height` pixels; nothing if the camera is
+/// degenerate.
+std::optional<CameraMatrices> camera_matrices(const Camera& camera, std::uint32_t width,
+                                              std::uint32_t height);
+
+/// Empty and zero members are left out of the file. All are written to EXR; PNG and TIFF take the texts.
+struct ImageMetadata {
+  std::string software;       ///< "oktett 1.2.3"; attribute `Software`
+  std::string command_line;   ///< attribute `commandLine`
+  std::string scene;          ///< path as the user gave it; attribute `scene`
+  std::uint32_t samples = 0;  ///< per pixel; attribute `samples`
+  double render_seconds = 0;  ///< attribute `renderSeconds`
+  std::optional<CameraMatrices> camera;
+};
+
+}  // namespace oktett

@@ -1,0 +1,412 @@
+#include "io/image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "io/image_color.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TempDir;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+Plane float_plane(const char* name, PlaneType type, std::size_t pixels, float first, float step) {
+  Plane plane{name, type, Column<float>(pixels), {}};
+  for (std::size_t i = 0; i < pixels; ++i) plane.values[i] = first + step * static_cast<float>(i);
+  return plane;
+}
+
+/// A picture of the given size with R, G, B, A that fills its frame.
+Picture color_picture(std::uint32_t width, std::uint32_t height, float r, float g, float b, float a) {
+  Picture picture;
+  picture.width = picture.full_width = width;
+  picture.height = picture.full_height = height;
+  const std::size_t pixels = std::size_t{width} * height;
+  const float values[4] = {r, g, b, a};
+  const char* names[4] = {"R", "G", "B", "A"};
+  for (int c = 0; c < 4; ++c)
+    picture.planes.push_back({names[c], PlaneType::half_float, Column<float>(pixels, values[c]), {}});
+  return picture;
+}
+
+std::size_t file_count(const fs::path& directory) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));
+}
+
+std::string content(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The bytes of an 8-bit image as they stand in the file.
+std::vector<std::uint8_t> raw_bytes(const std::string& path) {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  auto input = OIIO::ImageInput::open(path, &config);
+  EXPECT_TRUE(input) << OIIO::geterror();
+  if (!input) return {};
+  std::vector<std::uint8_t> bytes(input->spec().image_pixels() *
+                                  static_cast<std::size_t>(input->spec().nchannels));
+  EXPECT_TRUE(input->read_image(0, 0, 0, input->spec().nchannels, OIIO::TypeDesc::UINT8, bytes.data()));
+  return bytes;
+}
+
+ErrorKind kind_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.kind();
+  }
+  ADD_FAILURE() << "no Error was thrown";
+  return ErrorKind::bad_input;
+}
+
+// All planes come back under their names with their types; halves, floats and ids exactly.
+TEST(Exr, RoundTripKeepsTypesAndNumbers) {
+  const TempDir dir;
+  Picture picture = color_picture(7, 5, 0.25f, 0.5f, 2, 1);
+  picture.planes.push_back(float_plane("Z", PlaneType::single_float, 35, 1.1f, 0.3f));
+  picture.planes.push_back(float_plane("N.X", PlaneType::single_float, 35, -0.7f, 0.01f));
+  Plane ids{"primID.I", PlaneType::unsigned_int, {}, Column<std::uint32_t>(35)};
+  for (std::uint32_t i = 0; i < 35; ++i) ids.ids[i] = 0xffffffffu - i * 0x1234567u;
+  picture.planes.push_back(ids);
+  write_image(dir.file("a.exr"), picture);
+
+  const Picture back = read_image(dir.file("a.exr"));
+  EXPECT_EQ(back.width, 7u);
+  EXPECT_EQ(back.height, 5u);
+  ASSERT_EQ(back.planes.size(), picture.planes.size());
+  for (const Plane& plane : picture.planes) {
+    const Plane* read = back.find(plane.name);
+    ASSERT_NE(read, nullptr) << plane.name;
+    EXPECT_EQ(read->type == PlaneType::unsigned_int, plane.type == PlaneType::unsigned_int);
+    for (std::size_t i = 0; i < 35; ++i) {
+      if (plane.type == PlaneType::unsigned_int) {
+        EXPECT_EQ(read->ids[i], plane.ids[i]);
+      } else {
+        EXPECT_EQ(read->values[i], plane.values[i]) << plane.name << " " << i;
+      }
+    }
+  }
+  auto input = OIIO::ImageInput::open(dir.file("a.exr"));
+  const OIIO::ImageSpec& spec = input->spec();
+  EXPECT_EQ(spec.channelformat(spec.channelindex("R")), OIIO::TypeHalf);
+  EXPECT_EQ(spec.channelformat(spec.channelindex("A")), OIIO::TypeHalf);
+  EXPECT_EQ(spec.channelformat(spec.channelindex("Z")), OIIO::TypeFloat);
+  EXPECT_EQ(spec.channelformat(spec.channelindex("primID.I")), OIIO::TypeUInt32);
+  EXPECT_EQ(spec.get_string_attribute("compression"), "zip");
+}
+
+// Pictures taller than one batch of rows are whole, at heights around the batch.
+TEST(Exr, RowsAreCompleteAtAnyHeight) {
+  const TempDir dir;
+  for (const std::uint32_t height : {1u, 63u, 64u, 65u, 130u}) {
+    Picture picture = color_picture(3, height, 0, 0, 0, 1);
+    picture.planes[1] = float_plane("G", PlaneType::single_float, 3 * height, 0, 1);
+    write_image(dir.file("a.exr"), picture);
+    const Picture back = read_image(dir.file("a.exr"));
+    const Plane* green = back.find("G");
+    ASSERT_NE(green, nullptr);
+    for (std::size_t i = 0; i < 3 * height; ++i) ASSERT_EQ(green->values[i], static_cast<float>(i));
+  }
+}
+
+TEST(Exr, CropKeepsItsPlaceInTheFrame) {
+  const TempDir dir;
+  Picture picture = color_picture(4, 3, 1, 1, 1, 1);
+  picture.x = 10, picture.y = 20, picture.full_width = 64, picture.full_height = 48;
+  write_image(dir.file("a.exr"), picture);
+  const Picture back = read_image(dir.file("a.exr"));
+  EXPECT_EQ(back.x, 10u);
+  EXPECT_EQ(back.y, 20u);
+  EXPECT_EQ(back.width, 4u);
+  EXPECT_EQ(back.height, 3u);
+  EXPECT_EQ(back.full_width, 64u);
+  EXPECT_EQ(back.full_height, 48u);
+}
+
+TEST(Exr, NonFiniteNumbersAreKeptAndLargeOnesStayFinite) {
+  const TempDir dir;
+  Picture picture = color_picture(4, 1, 0, 0, 0, 1);
+  picture.planes[0].values[0] = kNaN;
+  picture.planes[0].values[1] = kInf;
+  picture.planes[0].values[2] = -kInf;
+  picture.planes[0].values[3] = 1e9f;
+  write_image(dir.file("a.exr"), picture);
+  const Picture back = read_image(dir.file("a.exr"));
+  const Plane& red = *back.find("R");
+  EXPECT_TRUE(std::isnan(red.values[0]));
+  EXPECT_EQ(red.values[1], kInf);
+  EXPECT_EQ(red.values[2], -kInf);
+  EXPECT_EQ(red.values[3], 65504.0f);
+}
+
+TEST(Exr, MetadataIsWritten) {
+  const TempDir dir;
+  ImageMetadata metadata;
+  metadata.software = "oktett 1.2.3";
+  metadata.command_line = "oktett render a.yaml";
+  metadata.scene = "a.yaml";
+  metadata.samples = 16;
+  metadata.render_seconds = 1.5;
+  metadata.camera = camera_matrices(Camera{}, 20, 10);
+  write_image(dir.file("a.exr"), color_picture(2, 2, 1, 1, 1, 1), metadata);
+  const OIIO::ImageSpec spec = OIIO::ImageInput::open(dir.file("a.exr"))->spec();
+  EXPECT_EQ(spec.get_string_attribute("Software"), metadata.software);
+  EXPECT_EQ(spec.get_string_attribute("commandLine"), metadata.command_line);
+  EXPECT_EQ(spec.get_string_attribute("scene"), "a.yaml");
+  EXPECT_EQ(spec.get_int_attribute("samples"), 16);
+  EXPECT_EQ(spec.get_float_attribute("renderSeconds"), 1.5f);
+  const std::pair<const char*, const Matrix4*> matrices[] = {
+      {"worldToCamera", &metadata.camera->world_to_camera}, {"worldToNDC", &metadata.camera->world_to_ndc}};
+  for (const auto& [name, expected] : matrices) {
+    const auto* attribute = spec.find_attribute(name, OIIO::TypeMatrix);
+    ASSERT_NE(attribute, nullptr) << name;
+    for (std::size_t i = 0; i < 16; ++i)
+      EXPECT_EQ(static_cast<const float*>(attribute->data())[i], (*expected)[i]);
+  }
+}
+
+/// p' = [p 1] M, divided by w.
+Vec3d project(const Matrix4& m, const Vec3d& p) {
+  double v[4];
+  for (int j = 0; j < 4; ++j) v[j] = p.x * m[j] + p.y * m[4 + j] + p.z * m[8 + j] + m[12 + j];
+  return Vec3d{v[0], v[1], v[2]} / v[3];
+}
+
+// The corners of what the camera sees are the corners of the unit square, upper left first.
+TEST(CameraMatrices, MapTheFrustumToTheUnitSquare) {
+  Camera camera;
+  camera.from = {1, 2, 8};
+  camera.at = {1, 2, 3};
+  camera.fov = 90;
+  const auto m = camera_matrices(camera, 200, 100);
+  ASSERT_TRUE(m);
+  const Vec3d in_camera = project(m->world_to_camera, {2, 4, 5});
+  EXPECT_NEAR(in_camera.x, 1, 1e-6);
+  EXPECT_NEAR(in_camera.y, 2, 1e-6);
+  EXPECT_NEAR(in_camera.z, 3, 1e-6);
+  const Vec3d upper_left = project(m->world_to_ndc, {1 - 10, 2 + 5, 3});
+  EXPECT_NEAR(upper_left.x, 0, 1e-6);
+  EXPECT_NEAR(upper_left.y, 0, 1e-6);
+  const Vec3d lower_right = project(m->world_to_ndc, {1 + 10, 2 - 5, 3});
+  EXPECT_NEAR(lower_right.x, 1, 1e-6);
+  EXPECT_NEAR(lower_right.y, 1, 1e-6);
+
+  camera.projection = Projection::orthographic;
+  camera.height = 4;
+  const auto orthographic = camera_matrices(camera, 200, 100);
+  ASSERT_TRUE(orthographic);
+  const Vec3d corner = project(orthographic->world_to_ndc, {1 - 4, 2 + 2, -70});
+  EXPECT_NEAR(corner.x, 0, 1e-6);
+  EXPECT_NEAR(corner.y, 0, 1e-6);
+}
+
+TEST(CameraMatrices, DegenerateCamerasGiveNoneOrAnyRoll) {
+  Camera camera;
+  camera.at = camera.from;
+  EXPECT_FALSE(camera_matrices(camera, 2, 2));
+  camera = Camera{};
+  camera.up = {0, 0, 1};
+  EXPECT_TRUE(camera_matrices(camera, 2, 2));
+  EXPECT_FALSE(camera_matrices(camera, 0, 2));
+}
+
+// Every 8-bit value that sRGB can name survives linear light and back.
+TEST(Srgb, EightBitValuesSurviveTheRoundTrip) {
+  for (int v = 0; v < 256; ++v) EXPECT_EQ(linear_to_srgb8(srgb_to_linear(static_cast<float>(v) / 255)), v);
+  EXPECT_NEAR(linear_to_srgb(0.18f), 0.46135613f, 1e-6f);
+  EXPECT_NEAR(srgb_to_linear(0.5f), 0.21404114f, 1e-6f);
+}
+
+TEST(Png, HoldsSrgbDividedByAlpha) {
+  const TempDir dir;
+  write_image(dir.file("a.png"), color_picture(2, 1, 0.18f, 0.09f, 0.5f, 0.5f));
+  const std::vector<std::uint8_t> bytes = raw_bytes(dir.file("a.png"));
+  const auto encoded = [](double v) { return std::lround(255 * (1.055 * std::pow(v, 1 / 2.4) - 0.055)); };
+  ASSERT_EQ(bytes.size(), 8u);
+  for (std::size_t pixel = 0; pixel < 2; ++pixel) {
+    EXPECT_EQ(bytes[pixel * 4], encoded(0.36));
+    EXPECT_EQ(bytes[pixel * 4 + 1], encoded(0.18));
+    EXPECT_EQ(bytes[pixel * 4 + 2], 255);
+    EXPECT_EQ(bytes[pixel * 4 + 3], 128);
+  }
+}
+
+TEST(Png, NonFiniteNumbersBecomeZero) {
+  const TempDir dir;
+  Picture picture = color_picture(1, 1, kNaN, kInf, -1, 1);
+  write_image(dir.file("a.png"), picture);
+  EXPECT_EQ(raw_bytes(dir.file("a.png")), (std::vector<std::uint8_t>{0, 0, 0, 255}));
+  picture = color_picture(1, 1, 1, 1, 1, kNaN);
+  write_image(dir.file("a.png"), picture);
+  EXPECT_EQ(raw_bytes(dir.file("a.png"))[3], 0);
+}
+
+TEST(Png, ReadsBackAsLinearPremultipliedLight) {
+  const TempDir dir;
+  write_image(dir.file("a.png"), color_picture(3, 2, 0.2f, 0.4f, 0.1f, 0.5f));
+  const Picture back = read_image(dir.file("a.png"));
+  EXPECT_NEAR(back.find("R")->values[4], 0.2f, 0.003f);
+  EXPECT_NEAR(back.find("G")->values[4], 0.4f, 0.003f);
+  EXPECT_NEAR(back.find("A")->values[4], 0.5f, 0.003f);
+}
+
+TEST(WriteImage, DropsPlanesAndAlphaThatAFormatCannotHold) {
+  const TempDir dir;
+  Picture picture = color_picture(4, 4, 0.5f, 0.25f, 0.125f, 1);
+  picture.planes.push_back(float_plane("Z", PlaneType::single_float, 16, 0, 1));
+  for (const char* name : {"a.png", "a.jpg", "a.tif", "a.hdr", "a.bmp", "a.tga", "A.PNG"}) {
+    check_output(dir.file(name));
+    EXPECT_FALSE(keeps_all_planes(name));
+    write_image(dir.file(name), picture);
+    const Picture back = read_image(dir.file(name));
+    EXPECT_LE(back.planes.size(), 4u) << name;
+    EXPECT_NEAR(back.find("R")->values[5], 0.5f, 0.02f) << name;
+    EXPECT_NEAR(back.find("B")->values[5], 0.125f, 0.02f) << name;
+  }
+  EXPECT_TRUE(keeps_all_planes("a.exr"));
+}
+
+TEST(CheckOutput, RefusesWhatCannotBeWritten) {
+  const TempDir dir;
+  const std::string plain = dir.write("plain", "x");
+  const auto kind = [](const std::string& path) { return kind_of([&] { check_output(path); }); };
+  EXPECT_EQ(kind(""), ErrorKind::bad_input);
+  EXPECT_EQ(kind("-"), ErrorKind::bad_input);
+  EXPECT_EQ(kind(dir.file("a")), ErrorKind::bad_input);
+  EXPECT_EQ(kind(dir.file("a.xyz")), ErrorKind::bad_input);
+  EXPECT_EQ(kind(dir.file("a.null")), ErrorKind::bad_input);
+  EXPECT_EQ(kind(dir.file("missing/a.png")), ErrorKind::io);
+  EXPECT_EQ(kind(plain + "/a.png"), ErrorKind::io);
+  EXPECT_EQ(kind("/proc/a.png"), ErrorKind::io);
+  EXPECT_EQ(kind(dir.path().string()), ErrorKind::io);
+  EXPECT_EQ(kind(dir.path().string() + "/"), ErrorKind::io);
+  fs::create_directory(dir.path() / "directory.png");
+  EXPECT_EQ(kind(dir.file("directory.png")), ErrorKind::io);
+  EXPECT_EQ(file_count(dir.path()), 2u);
+}
+
+TEST(CheckOutput, NamesKnownFormats) {
+  try {
+    check_output("a.xyz");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(".exr"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find(".png"), std::string::npos);
+  }
+}
+
+TEST(CheckOutput, LeavesAnExistingFileAlone) {
+  const TempDir dir;
+  const std::string path = dir.write("a.png", "old");
+  check_output(path);
+  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(file_count(dir.path()), 1u);
+}
+
+// A failure after writing began: the format cannot hold the picture.
+TEST(WriteImage, FailureLeavesTheOldFileAndNoTemporary) {
+  const TempDir dir;
+  const std::string path = dir.write("a.ico", "old");
+  EXPECT_EQ(kind_of([&] { write_image(path, color_picture(1000, 1, 1, 1, 1, 1)); }), ErrorKind::io);
+  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(file_count(dir.path()), 1u);
+  EXPECT_EQ(kind_of([&] { write_image(dir.file("missing/a.png"), color_picture(1, 1, 1, 1, 1, 1)); }),
+            ErrorKind::io);
+}
+
+TEST(WriteImage, FollowsSymbolicLinks) {
+  const TempDir dir;
+  fs::create_directory(dir.path() / "real");
+  fs::create_symlink("real/a.png", dir.path() / "a.png");
+  write_image(dir.file("a.png"), color_picture(1, 1, 1, 1, 1, 1));
+  EXPECT_TRUE(fs::is_symlink(dir.path() / "a.png"));
+  EXPECT_TRUE(fs::is_regular_file(dir.path() / "real" / "a.png"));
+}
+
+TEST(WriteImage, RefusesPlanesOfWrongSize) {
+  const TempDir dir;
+  Picture picture = color_picture(2, 2, 1, 1, 1, 1);
+  picture.planes[1].values.resize_uninitialized(3);
+  EXPECT_THROW(write_image(dir.file("a.exr"), picture), Error);
+  EXPECT_THROW(write_image(dir.file("a.exr"), Picture{}), Error);
+  EXPECT_EQ(file_count(dir.path()), 0u);
+}
+
+TEST(ReadImage, GreyGivesThreeColours) {
+  const TempDir dir;
+  OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeUInt8);
+  const std::uint8_t bytes[2] = {0, 128};
+  auto output = OIIO::ImageOutput::create("a.png");
+  ASSERT_TRUE(output->open(dir.file("a.png"), spec) && output->write_image(OIIO::TypeUInt8, bytes) &&
+              output->close());
+  const Picture picture = read_image(dir.file("a.png"));
+  ASSERT_EQ(picture.planes.size(), 3u);
+  for (const char* name : {"R", "G", "B"}) EXPECT_NEAR(picture.find(name)->values[1], 0.2158605f, 1e-6f);
+}
+
+TEST(ReadImage, MissingOrForeignFilesAreErrors) {
+  const TempDir dir;
+  EXPECT_EQ(kind_of([&] { read_image(dir.file("missing.png")); }), ErrorKind::io);
+  EXPECT_EQ(kind_of([&] { read_image(dir.path().string()); }), ErrorKind::io);
+  EXPECT_EQ(kind_of([&] { read_image("/dev/null"); }), ErrorKind::io);
+  for (const char* name : {"a.png", "a.exr", "a.jpg", "a.tif", "a.hdr", "a.bmp", "a.txt"}) {
+    EXPECT_EQ(kind_of([&] { read_image(dir.write(name, "this is no image")); }), ErrorKind::io) << name;
+    EXPECT_EQ(kind_of([&] { read_image(dir.write(name, "")); }), ErrorKind::io) << name;
+  }
+}
+
+// Files cut off anywhere, or with a byte changed, either read as something or throw Error; nothing else
+// happens.
+TEST(ReadImage, DamagedFilesAreErrorsOrPictures) {
+  const TempDir dir;
+  Picture picture = color_picture(16, 16, 0, 0.5f, 0.25f, 1);
+  picture.planes[0] = float_plane("R", PlaneType::half_float, 256, 0, 0.003f);
+  for (const char* name : {"a.exr", "a.png", "a.hdr", "a.tga", "a.bmp"}) {
+    write_image(dir.file(name), picture);
+    const std::string whole = content(dir.file(name));
+    std::size_t refused = 0;
+    for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 40) {
+      try {
+        read_image(dir.write(std::string("cut-") + name, whole.substr(0, length)));
+      } catch (const Error&) {
+        ++refused;
+      }
+      std::string changed = whole;
+      changed[length] = static_cast<char>(changed[length] ^ 0x55);
+      try {
+        read_image(dir.write(std::string("changed-") + name, changed));
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, 20u) << name;
+  }
+}
+
+// A header of a few bytes must not make the reader reserve memory for what it claims.
+TEST(ReadImage, ClaimedSizesAreBounded) {
+  const TempDir dir;
+  const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n";
+  EXPECT_EQ(kind_of([&] { read_image(dir.write("a.hdr", header)); }), ErrorKind::io);
+}
+
+}  // namespace
+}  // namespace oktett
