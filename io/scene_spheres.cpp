@@ -1,0 +1,155 @@
+#include "io/scene_spheres.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace oktett {
+namespace {
+
+void count_spheres(SceneLoad& load, std::size_t count, const Location& place) {
+  load.spheres += count;
+  if (load.spheres > kMaxSpheres)
+    throw Error(place, "the scene has more than " + std::to_string(kMaxSpheres) + " spheres in lists");
+}
+
+void warn_zero_radius(SceneLoad& load, const Location& first, std::size_t count) {
+  if (count == 0) return;
+  load.warn(first, count == 1 ? "the radius is zero; the sphere is skipped"
+                              : "the radius is zero; this and " + std::to_string(count - 1) +
+                                    " other spheres are skipped");
+}
+
+/// Adds the spheres that have a radius and warns once of the others.
+class SphereList {
+ public:
+  explicit SphereList(SceneLoad& load) : load_(load) {}
+  void add(const SphereShape& sphere, const Location& place) {
+    if (sphere.radius > 0) return shape_.spheres.push_back(sphere);
+    if (skipped_++ == 0) first_skipped_ = place;
+  }
+  SpheresShape finish() {
+    warn_zero_radius(load_, first_skipped_, skipped_);
+    return std::move(shape_);
+  }
+
+ private:
+  SceneLoad& load_;
+  SpheresShape shape_;
+  Location first_skipped_;
+  std::size_t skipped_ = 0;
+};
+
+/// The numbers of one line of a sphere file.
+class SphereLine {
+ public:
+  SphereLine(std::string_view line, const Location& place) : line_(line), place_(place) { skip_space(); }
+
+  bool empty() const { return at_ == line_.size() || line_[at_] == '#'; }
+
+  double number() {
+    if (empty()) fail("expected 4 numbers (x y z radius), found fewer");
+    double value = 0;
+    const std::size_t begin = at_ + (line_[at_] == '+' ? 1 : 0);
+    const auto [end, error] = std::from_chars(line_.data() + begin, line_.data() + line_.size(), value);
+    const auto stop = static_cast<std::size_t>(end - line_.data());
+    const bool ends_word = stop == line_.size() || is_space(line_[stop]) || line_[stop] == '#';
+    if (error == std::errc::invalid_argument || !ends_word) fail("expected a number");
+    if (error != std::errc() || !(std::abs(value) <= kMaxCoordinate))
+      fail("number not finite or out of range");
+    previous_ = at_;
+    at_ = stop;
+    skip_space();
+    return value;
+  }
+
+  SphereShape sphere() {
+    SphereShape s;
+    for (int axis = 0; axis < 3; ++axis) s.center[axis] = number();
+    s.radius = number();
+    if (s.radius < 0) at_ = previous_, fail("expected a radius of at least 0");
+    if (!empty()) fail("expected 4 numbers (x y z radius), found more");
+    return s;
+  }
+
+ private:
+  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+  void skip_space() {
+    while (at_ < line_.size() && is_space(line_[at_])) ++at_;
+  }
+  [[noreturn]] void fail(const std::string& message) const {
+    Location place = place_;
+    place.column = static_cast<int>(at_) + 1;
+    throw Error(place, message);
+  }
+
+  std::string_view line_;
+  const Location& place_;
+  std::size_t at_ = 0, previous_ = 0;
+};
+
+SpheresShape read_sphere_file(SceneLoad& load, const YamlNode& node) {
+  const std::string path = load.values.existing_file(node);
+  const std::string text = read_text_file(path, kMaxSphereFileBytes);
+  load.sphere_file_bytes += text.size();
+  if (load.sphere_file_bytes > kMaxSphereFileBytes)
+    throw Error(node.where(), "the sphere files are larger than " +
+                                  std::to_string(kMaxSphereFileBytes >> 20) + " MiB in all");
+  SphereList list(load);
+  Location place{path, 0, 1};
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    ++place.line;
+    SphereLine line(std::string_view(text).substr(begin, end - begin), place);
+    if (!line.empty()) {
+      count_spheres(load, 1, place);
+      list.add(line.sphere(), place);
+    }
+    begin = end + 1;
+  }
+  return list.finish();
+}
+
+SpheresShape read_centers(SceneLoad& load, const Fields& fields) {
+  double radius = 1;
+  load.values.read(fields["radius"], radius, kNonNegative);
+  SphereList list(load);
+  for (const YamlNode* center : list_items(fields.require("centers"), "centers")) {
+    count_spheres(load, 1, center->where());
+    list.add({load.values.vector(*center), radius}, center->where());
+  }
+  return list.finish();
+}
+
+}  // namespace
+
+SphereShape read_sphere(SceneValues& values, const YamlNode& node) {
+  const Fields fields(node, "sphere", {"center", "radius"});
+  SphereShape sphere;
+  values.read(fields["center"], sphere.center);
+  values.read(fields["radius"], sphere.radius, kNonNegative);
+  return sphere;
+}
+
+SpheresShape read_spheres(SceneLoad& load, const YamlNode& node) {
+  if (node.kind == YamlKind::sequence) {
+    SphereList list(load);
+    for (const YamlNode* item : node.items) {
+      count_spheres(load, 1, item->where());
+      list.add(read_sphere(load.values, *item), item->where());
+    }
+    return list.finish();
+  }
+  const Fields fields(node, "spheres", {"centers", "radius", "file"});
+  const YamlNode* file = fields["file"];
+  if (!file) return read_centers(load, fields);
+  for (const char* other : {"centers", "radius"})
+    if (const YamlNode* value = fields[other])
+      throw Error(value->where(), std::string("spheres from a file have no '") + other + "'");
+  return read_sphere_file(load, *file);
+}
+
+}  // namespace oktett
