@@ -1,0 +1,60 @@
+#pragma once
+/// \file Loading scenes from text, for the tests of scene files.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+#include "io/scene_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett::test {
+
+/// A directory with files for one test.
+class SceneFiles {
+ public:
+  /// Writes `text` as scene.yaml and loads it.
+  Scene load(const std::string& text, const Definitions& definitions = {}) const {
+    return load_scene_file(dir.write("scene.yaml", text), definitions);
+  }
+  /// The same with the version line in front.
+  Scene load_v1(const std::string& text, const Definitions& definitions = {}) const {
+    return load("oktett: 1\n" + text, definitions);
+  }
+
+  /// The error message without the directory's path, or "no error".
+  std::string error(const std::string& text, const Definitions& definitions = {}) const {
+    try {
+      load(text, definitions);
+    } catch (const Error& e) {
+      return without_directory(e.what());
+    }
+    return "no error";
+  }
+  /// The same with the version line in front, so that `text` begins in line 2.
+  std::string error_v1(const std::string& text, const Definitions& definitions = {}) const {
+    return error("oktett: 1\n" + text, definitions);
+  }
+
+  std::string without_directory(std::string message) const {
+    const std::string prefix = dir.path().string() + "/";
+    for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
+    return message;
+  }
+
+  TempDir dir;
+};
+
+/// `part` stands at the start of `message`.
+inline void expect_starts(const std::string& message, const std::string& part) {
+  EXPECT_EQ(message.substr(0, part.size()), part) << "the whole: " << message;
+}
+
+/// The shape of object i, which must be a T.
+template <class T>
+const T& shape_of(const Scene& scene, std::size_t i = 0) {
+  return std::get<T>(scene.objects.at(i).shape);
+}
+
+}  // namespace oktett::test
