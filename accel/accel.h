@@ -32,57 +32,61 @@ struct InstanceGeometry {
   std::shared_ptr<const Accel> child;
 };
 
-/// One thing to trace. `transform` maps it to the space of the structure. `user` is handed back with each hit; an instance
-/// whose `user` is not kNoId overrides those of the geometries below it.
+/// One thing to trace. `transform` maps it to the space of the structure. `user` is handed back with each
+/// hit; an instance whose `user` is not kNoId overrides those of the geometries below it.
 struct Geometry {
-  std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, InstanceGeometry> shape;
+  std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, InstanceGeometry>
+      shape;
   Affine transform;
   std::uint32_t user = kNoId;
 };
 
 /// How hard the builder tries.
 struct BuildOptions {
-  int bins = 16;                 ///< candidate planes per axis, [2, 32]
-  float node_cost = 1.0f;        ///< cost of visiting a node relative to testing one block of triangles
-  bool parallel = true;          ///< use TBB tasks
+  int bins = 16;           ///< candidate planes per axis, [2, 32]
+  float node_cost = 1.0f;  ///< cost of visiting a node relative to testing one block of triangles
+  bool parallel = true;    ///< use TBB tasks
 };
 
 /// Sizes and quality of a built structure.
 struct AccelStats {
-  std::size_t items = 0;            ///< primitives, instances counted as one each
+  std::size_t items = 0;  ///< primitives, instances counted as one each
   std::size_t triangles = 0;
-  std::size_t unbounded = 0;        ///< of the items: those in the list beside the tree
+  std::size_t unbounded = 0;  ///< of the items: those in the list beside the tree
   std::size_t nodes = 0, leaves = 0;
   std::size_t node_bytes = 0, leaf_bytes = 0, other_bytes = 0;
-  double sah_cost = 0;              ///< expected node visits + leaf visits of a random ray that meets the bounds
+  double sah_cost = 0;  ///< expected node visits + leaf visits of a random ray that meets the bounds
   int depth = 0;
   std::size_t bytes() const { return node_bytes + leaf_bytes + other_bytes; }
 };
 
-/// Geometry i of `geometries` keeps its index. Shapes that are degenerate (zero area or size, non-finite numbers, singular
-/// transform) are left out. Throws Error if there are more than 2^32 - 2 primitives or instance paths.
+/// Geometry i of `geometries` keeps its index. Shapes that are degenerate (zero area or size, non-finite
+/// numbers, singular transform) are left out. Throws Error if there are more than 2^32 - 2 primitives or
+/// instance paths.
 std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options = {});
 
 AccelStats stats(const Accel& accel);
 /// Bounds of all that is bounded; empty if there is nothing.
 Box bounds(const Accel& accel);
 
-/// For each ray the nearest hit; at equal distance the one with the lowest (instance, item). Bit-identical for every
-/// instruction set, thread count and order of rays. Uses TBB tasks for large batches. `hits.size` >= `rays.size`.
+/// For each ray the nearest hit; at equal distance the one with the lowest (instance, item). Bit-identical
+/// for every instruction set, thread count and order of rays. Uses TBB tasks for large batches. `hits.size`
+/// >= `rays.size`.
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa);
 
 /// occluded[i] = 1 if ray i hits anything, else 0.
 void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa);
 
-/// Every hit of one ray, nearest first, ties by (instance, item). A closed mesh contributes each crossing exactly once,
-/// also at shared edges and vertices.
+/// Every hit of one ray, nearest first, ties by (instance, item). A closed mesh contributes each crossing
+/// exactly once, also at shared edges and vertices.
 void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa);
 
 /// Shading data of a hit that `ray` had with `accel`.
 Surface surface(const Accel& accel, const Ray& ray, const Hit& hit);
 
-/// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the hit, so that the
-/// surface neither shadows itself nor is passed through (Pharr, Jakob, Humphreys 2016, section 3.9).
+/// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the
+/// hit, so that the surface neither shadows itself nor is passed through (Pharr, Jakob, Humphreys 2016,
+/// section 3.9).
 Vec3f offset_origin(const Surface& s, const Vec3f& direction);
 
 }  // namespace oktett

@@ -10,8 +10,8 @@ namespace oktett {
 
 std::string to_string(const Location& where) {
   std::string s = where.file;
-  if (where.line > 0) s += ":" + std::to_string(where.line);
-  if (where.line > 0 && where.column > 0) s += ":" + std::to_string(where.column);
+  for (const int number : {where.line, where.line > 0 ? where.column : 0})
+    if (number > 0) s.append(1, ':').append(std::to_string(number));
   return s;
 }
 

@@ -11,8 +11,8 @@
 
 namespace oktett {
 
-/// The points origin + t * direction with tmin < t <= tmax. The direction need not be of unit length; t counts in its
-/// length. 0 <= tmin. A ray with a NaN anywhere, a zero direction or tmax <= tmin hits nothing.
+/// The points origin + t * direction with tmin < t <= tmax. The direction need not be of unit length; t
+/// counts in its length. 0 <= tmin. A ray with a NaN anywhere, a zero direction or tmax <= tmin hits nothing.
 struct Ray {
   Vec3f origin;
   float tmin = 0;
@@ -20,9 +20,10 @@ struct Ray {
   float tmax = std::numeric_limits<float>::infinity();
 };
 
-/// Where a ray meets a shape. `item` is the primitive's index in the acceleration structure that holds it, counted through
-/// all geometries in order; `instance` numbers the chain of instances that leads there (kNoId = none). `u`, `v` are the
-/// shape's own parameters (barycentric coordinates of the triangle's second and third corner). item == kNoId is a miss.
+/// Where a ray meets a shape. `item` is the primitive's index in the acceleration structure that holds it,
+/// counted through all geometries in order; `instance` numbers the chain of instances that leads there (kNoId
+/// = none). `u`, `v` are the shape's own parameters (barycentric coordinates of the triangle's second and
+/// third corner). item == kNoId is a miss.
 struct Hit {
   float t = std::numeric_limits<float>::infinity();
   float u = 0, v = 0;
@@ -42,8 +43,10 @@ struct RaySpan {
   std::size_t size = 0;
 
   Ray operator[](std::size_t i) const {
-    return {{origin[0][i], origin[1][i], origin[2][i]}, tmin[i],
-            {direction[0][i], direction[1][i], direction[2][i]}, tmax[i]};
+    return {{origin[0][i], origin[1][i], origin[2][i]},
+            tmin[i],
+            {direction[0][i], direction[1][i], direction[2][i]},
+            tmax[i]};
   }
   RaySpan part(std::size_t begin, std::size_t count) const {
     RaySpan s = *this;

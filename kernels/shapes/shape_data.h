@@ -1,7 +1,9 @@
 #pragma once
-/// \file What describes one shape, as a caller or a scene file states it, in the shape's own space. Each shape's pool and
-/// kernel are in its own file; here is only data, in double, that the builder turns into pools.
+/// \file What describes one shape, as a caller or a scene file states it, in the shape's own space. Each
+/// shape's pool and kernel are in its own file; here is only data, in double, that the builder turns into
+/// pools.
 
+#include <cstdint>
 #include <vector>
 
 #include "core/vec3.h"
@@ -9,8 +11,9 @@
 namespace oktett {
 
 /// How a ray is tested against a triangle. All but `watertight` may miss or double a hit on a shared edge.
-enum class TriangleTest {
-  watertight,       ///< Woop, Benthin and Wald 2013 with exact signs: each point of a closed mesh is hit exactly once
+enum class TriangleTest : std::uint8_t {
+  watertight,  ///< Woop, Benthin and Wald 2013 with exact signs: each point of a closed mesh is hit exactly
+               ///< once
   moller_trumbore,  ///< Möller and Trumbore 1997
   badouel,          ///< Badouel 1990: plane, then barycentric coordinates in the dominant plane
   segura_feito,     ///< Segura and Feito 2001: signs of volumes
@@ -31,8 +34,8 @@ struct SpheresShape {
   std::vector<SphereShape> spheres;
 };
 
-/// The points p with dot(normal, p) = offset. Unbounded. `normal` need not be of unit length; it is normalised together
-/// with `offset`'s meaning unchanged: the plane lies `offset` along the unit normal.
+/// The points p with dot(normal, p) = offset. Unbounded. `normal` need not be of unit length; it is
+/// normalised together with `offset`'s meaning unchanged: the plane lies `offset` along the unit normal.
 struct PlaneShape {
   Vec3d normal{0, 1, 0};
   double offset = 0;

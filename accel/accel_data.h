@@ -1,0 +1,53 @@
+#pragma once
+/// \file What an acceleration structure consists of. Data only; accel/build*.cpp makes it, accel/traverse_*.h
+/// walk it.
+
+#include <memory>
+#include <vector>
+
+#include "accel/accel.h"
+#include "accel/layout.h"
+#include "core/virtual_array.h"
+
+namespace oktett {
+
+/// An instance in the tree: world to child, the child, its item number, and its place in the numbering of
+/// instance paths.
+struct InstanceItem {
+  double to_child[12];  ///< row-major 3x4
+  const Accel* child;
+  std::uint32_t item;
+  std::uint32_t first_path;  ///< paths through this instance are first_path + 1 + (path inside the child + 1)
+};
+
+/// The tree over `geometries` and the pools that its leaves point to.
+///
+/// Instance paths: within one structure, "no instance" is path kNoId, and a hit below instance item k with
+/// path p inside the child (kNoId or a number) has path first_path + (p + 1) mod 2^32. Thus every chain of
+/// instances has one number, chains order as their items do, and no hit stores more than 32 bits however deep
+/// the nesting.
+class Accel {
+ public:
+  std::vector<Geometry> geometries;
+  std::vector<std::uint32_t> first_item;  ///< per geometry, plus the total at the end
+
+  NodeRef root = NodeRef::none();
+  Box bounds;
+  VirtualArray<BvhNode> nodes;
+  VirtualArray<TriangleBlock> blocks;
+  std::vector<LeafEntry> leaves;
+  ShapePools pools;
+  std::vector<InstanceItem> instances;
+  std::vector<LeafEntry> unbounded;  ///< tested against every ray
+  std::uint32_t path_count = 0;      ///< number of instance paths in here
+  std::vector<std::uint8_t> kinds;   ///< Kind of each geometry
+  /// Per closed-form kind: pool indices ordered by item, to find the primitive of a hit.
+  std::vector<std::uint32_t> pool_by_item[kClosedFormKinds];
+  std::vector<std::uint32_t> instances_by_path;  ///< indices into `instances`, ordered by first_path
+  AccelStats stats;
+
+  /// Index of the geometry that item belongs to.
+  std::uint32_t geometry_of(std::uint32_t item) const;
+};
+
+}  // namespace oktett

@@ -1,0 +1,103 @@
+#pragma once
+/// \file Every crossing of one ray, in order.
+
+#include "accel/hit_list.h"
+#include "accel/traverse_single.h"
+
+namespace oktett {
+
+/// Collects all hits of ray 0 of `r` with a block's triangles.
+template <class A>
+void collect_triangles(const TriangleBlock& block, int count, TriangleTest test, const RayState<1, A>& r,
+                       HitList& hits) {
+  constexpr int N = TriangleBlock::kSize;
+  using F = Simd<float, N, A>;
+  const auto ray = broadcast_ray<N>(r, 0);
+  HitLanes<F> h;
+  unsigned lanes = (1u << count) - 1;
+  if (test == TriangleTest::watertight) {
+    lanes &= bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(load_triangles<F>(block))));
+    if (lanes == 0) return;
+    lanes &= bits(decide_watertight(broadcast_shear<N>(r, 0), load_triangles<F>(block, 0, r.z_axis_of(0)),
+                                    ray.tmin, ray.tmax, h));
+  } else {
+    lanes &= bits(textbook_test(test, ray, load_triangles<F>(block), h));
+  }
+  if (lanes == 0) return;
+  alignas(64) float t[N], u[N], v[N];
+  h.t.store(t), h.u.store(u), h.v.store(v);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    hits.push({t[k], u[k], v[k], block.item[k], kNoId});
+  }
+}
+
+/// Collects all roots of a closed-form shape inside the ray's range.
+template <class S, class A>
+void collect_shape(const typename S::Pool& pool, const LeafEntry& leaf, const RayState<1, A>& r,
+                   HitList& hits) {
+  using D = Simd<double, 1, A>;
+  const auto ray = to_double(broadcast_ray<1>(r, 0));
+  for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
+    D t[S::kRoots];
+    if (none(S::roots(ray, S::template broadcast<D>(pool, k), t))) continue;
+    for (int j = 0; j < S::kRoots; ++j) {
+      double td;
+      t[j].store(&td);
+      const float tf = static_cast<float>(td);
+      if (r.tmin[0] < tf && tf <= r.tmax[0] && tf <= std::numeric_limits<float>::max())
+        hits.push({tf, 0, 0, pool.item[k], kNoId});
+    }
+  }
+}
+
+template <class A>
+void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
+
+template <class A>
+void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A>& r, HitList& hits) {
+  if (leaf.kind == Kind::triangle) {
+    collect_triangles(accel.blocks[leaf.begin], leaf.count, leaf.test, r, hits);
+  } else if (leaf.kind == Kind::instance) {
+    for (std::uint32_t k = 0; k < leaf.count; ++k) {
+      const InstanceItem& instance = accel.instances[leaf.begin + k];
+      const auto outer = broadcast_ray<1>(r, 0);
+      Vec3<Simd<float, 1, A>> o, d;
+      transform_rays(instance, outer, o, d);
+      RayState<1, A> child;
+      if (child.set(o, d, outer.tmin, outer.tmax, instance.child->bounds) == 0) continue;
+      const std::size_t before = hits.size();
+      collect(*instance.child, child, hits);
+      for (std::size_t j = before; j < hits.size(); ++j)
+        hits[j].instance = outer_path(instance, hits[j].instance);
+    }
+  } else {
+    visit_pool(leaf.kind, accel.pools,
+               [&](auto shape, const auto& pool) { collect_shape<decltype(shape)>(pool, leaf, r, hits); });
+  }
+}
+
+/// Appends all hits of ray 0 of `r`, unsorted.
+template <class A>
+void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
+  for (const LeafEntry& leaf : accel.unbounded) collect_leaf(accel, leaf, r, hits);
+  if (accel.root.is_none()) return;
+  NodeRef stack[kStackSize];
+  int size = 0;
+  stack[size++] = accel.root;
+  alignas(64) float near[BvhNode::kWidth];
+  while (size > 0) {
+    const NodeRef ref = stack[--size];
+    if (ref.is_triangles()) {
+      collect_triangles(accel.blocks[ref.block()], ref.triangle_count(), TriangleTest::watertight, r, hits);
+    } else if (ref.is_leaf()) {
+      collect_leaf(accel, accel.leaves[ref.table_index()], r, hits);
+    } else {
+      const BvhNode& node = accel.nodes[ref.node_index()];
+      for (unsigned hit = node_single(node, r, 0, near); hit != 0; hit &= hit - 1)
+        stack[size++] = node.child[__builtin_ctz(hit)];
+    }
+  }
+}
+
+}  // namespace oktett

@@ -1,0 +1,360 @@
+/// \file From geometries to a tree: numbers the items, drops degenerate ones, lays out the pools.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "accel/build_tree.h"
+#include "core/error.h"
+
+namespace oktett {
+namespace {
+
+/// The list of kinds is short; order[k] collects the items of kind k in leaf order.
+using ItemOrder = std::vector<std::uint32_t>[8];
+
+std::size_t item_count(const Geometry& g) {
+  if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) return mesh->mesh->triangle_count();
+  if (const auto* spheres = std::get_if<SpheresShape>(&g.shape)) return spheres->spheres.size();
+  return 1;
+}
+
+/// Finds the corners of mesh triangles by item number, moved to the structure's space.
+class MeshCorners final : public TriangleSource {
+ public:
+  explicit MeshCorners(const Accel& accel) : accel_(accel) {
+    for (const Geometry& g : accel.geometries) plain_.push_back(g.transform.is_identity());
+  }
+  void corners(std::uint32_t item, Vec3f (&v)[3]) const override {
+    corners(accel_.geometry_of(item), item, v);
+  }
+  void corners(std::uint32_t geometry, std::uint32_t item, Vec3f (&v)[3]) const {
+    const Geometry& g = accel_.geometries[geometry];
+    const TriangleMesh& mesh = *std::get<MeshGeometry>(g.shape).mesh;
+    const std::uint32_t* index = &mesh.indices[3 * std::size_t{item - accel_.first_item[geometry]}];
+    for (int k = 0; k < 3; ++k) {
+      v[k] = mesh.positions[index[k]];
+      if (!plain_[geometry]) v[k] = Vec3f(g.transform.point(Vec3d(v[k])));
+    }
+  }
+
+ private:
+  const Accel& accel_;
+  std::vector<char> plain_;
+};
+
+bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite(b.hi); }
+
+PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind, TriangleTest test = TriangleTest::watertight) {
+  return {{-b.lo.x, -b.lo.y, -b.lo.z},
+          item,
+          {b.hi.x, b.hi.y, b.hi.z},
+          static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(test) << 8};
+}
+
+/// References of all triangles of one mesh, appended; degenerate ones are dropped.
+void add_mesh(const Accel& accel, std::uint32_t geometry, const MeshCorners& source,
+              std::vector<PrimRef>& refs, bool parallel) {
+  const MeshGeometry& mesh = std::get<MeshGeometry>(accel.geometries[geometry].shape);
+  const std::uint32_t first = accel.first_item[geometry];
+  const std::size_t count = mesh.mesh->triangle_count(), base = refs.size();
+  refs.resize(base + count);
+  const auto fill = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t item = first + static_cast<std::uint32_t>(i);
+      Vec3f v[3];
+      source.corners(geometry, item, v);
+      Box box;
+      for (const Vec3f& p : v) box.grow(p);
+      const bool distinct = v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+      const bool usable = is_finite(v[0]) && is_finite(v[1]) && is_finite(v[2]) && distinct;
+      refs[base + i] = make_ref(box, usable ? item : kNoId, Kind::triangle, mesh.test);
+    }
+  };
+  constexpr std::size_t kGrain = 1u << 14;
+  if (parallel && count > kGrain) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& r) { fill(r.begin(), r.end()); });
+  } else {
+    fill(0, count);
+  }
+  refs.erase(std::remove_if(refs.begin() + static_cast<std::ptrdiff_t>(base), refs.end(),
+                            [](const PrimRef& r) { return r.item == kNoId; }),
+             refs.end());
+}
+
+SphereShape moved_sphere(const SphereShape& s, const Affine& m) {
+  return {m.point(s.center), s.radius * m.uniform_scale()};
+}
+
+/// A plane, disk or polygon under an affine map is one again (a disk only under a similarity).
+PlaneShape moved_plane(const PlaneShape& s, const Affine& m) {
+  const Vec3d n = normalize(s.normal);
+  const Vec3d p = m.point(n * s.offset);
+  const Vec3d q = normalize(m.inverse().normal_by_inverse(n));
+  return {q, dot(q, p)};
+}
+
+/// Fills the pools in the order in which the leaves refer to them.
+class PoolFiller {
+ public:
+  PoolFiller(Accel& accel, const ItemOrder& order) : accel_(accel), order_(order) {}
+
+  void run() {
+    each(
+        Kind::sphere,
+        [&](auto& pool, const Geometry& g, std::uint32_t local, std::uint32_t item) {
+          Sphere::add(pool, moved_sphere(std::get<SpheresShape>(g.shape).spheres[local], g.transform), item);
+        },
+        std::get<Sphere::Pool>(accel_.pools));
+    each(
+        Kind::disk,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          const DiskShape& s = std::get<DiskShape>(g.shape);
+          const Vec3d n = g.transform.inverse().normal_by_inverse(s.normal);
+          Disk::add(pool, {g.transform.point(s.center), n, s.radius * g.transform.uniform_scale()}, item);
+        },
+        std::get<Disk::Pool>(accel_.pools));
+    each(
+        Kind::box,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          BoxSolid::add(pool, std::get<BoxShape>(g.shape), g.transform, item);
+        },
+        std::get<BoxSolid::Pool>(accel_.pools));
+    each(
+        Kind::polygon,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          PolygonShape s = std::get<PolygonShape>(g.shape);
+          for (Vec3d& v : s.vertices) v = g.transform.point(v);
+          if (g.transform.determinant() < 0) std::reverse(s.vertices.begin(), s.vertices.end());
+          Polygon::add(pool, s, item);
+        },
+        std::get<Polygon::Pool>(accel_.pools));
+    each(
+        Kind::plane,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          Plane::add(pool, moved_plane(std::get<PlaneShape>(g.shape), g.transform), item);
+        },
+        std::get<Plane::Pool>(accel_.pools));
+    fill_instances();
+  }
+
+ private:
+  template <class Add, class Pool>
+  void each(Kind kind, Add&& add, Pool& pool) {
+    for (std::uint32_t item : order_[static_cast<int>(kind)]) {
+      const std::uint32_t g = accel_.geometry_of(item);
+      add(pool, accel_.geometries[g], item - accel_.first_item[g], item);
+    }
+    auto& by_item = accel_.pool_by_item[static_cast<int>(kind)];
+    for (std::uint32_t i = 0; i < pool.item.size(); ++i) by_item.push_back(i);
+    std::sort(by_item.begin(), by_item.end(), [&](auto x, auto y) { return pool.item[x] < pool.item[y]; });
+    finish(pool);
+    accel_.stats.other_bytes += pool.bytes();
+  }
+  template <class Pool>
+  static void finish(Pool& pool) {
+    std::apply([&](auto... shape) { (finish_if<decltype(shape)>(pool), ...); }, ClosedFormShapes{});
+  }
+  template <class S, class Pool>
+  static void finish_if(Pool& pool) {
+    if constexpr (std::is_same_v<Pool, typename S::Pool>) S::finish(pool);
+  }
+
+  void fill_instances() {
+    // Paths are numbered in the order of items, so that hits at equal distance keep the order of the scene.
+    std::vector<std::uint32_t> sorted = order_[static_cast<int>(Kind::instance)];
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::uint32_t> first_path(sorted.size());
+    std::uint64_t paths = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      first_path[i] = static_cast<std::uint32_t>(paths);
+      const Geometry& g = accel_.geometries[accel_.geometry_of(sorted[i])];
+      paths += 1 + std::uint64_t{std::get<InstanceGeometry>(g.shape).child->path_count};
+      if (paths >= kNoId) throw Error("more than 2^32 - 2 nested instances");
+    }
+    accel_.path_count = static_cast<std::uint32_t>(paths);
+    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
+      const Geometry& g = accel_.geometries[accel_.geometry_of(item)];
+      InstanceItem instance{};
+      const Affine inverse = g.transform.inverse();
+      for (int k = 0; k < 12; ++k) instance.to_child[k] = inverse.m[k / 4][k % 4];
+      instance.child = std::get<InstanceGeometry>(g.shape).child.get();
+      instance.item = item;
+      instance.first_path = first_path[std::lower_bound(sorted.begin(), sorted.end(), item) - sorted.begin()];
+      accel_.instances.push_back(instance);
+    }
+    for (std::uint32_t i = 0; i < accel_.instances.size(); ++i) accel_.instances_by_path.push_back(i);
+    std::sort(accel_.instances_by_path.begin(), accel_.instances_by_path.end(), [&](auto x, auto y) {
+      return accel_.instances[x].first_path < accel_.instances[y].first_path;
+    });
+    accel_.stats.other_bytes += accel_.instances.size() * sizeof(InstanceItem);
+  }
+
+  Accel& accel_;
+  const ItemOrder& order_;
+};
+
+/// A shape of its own structure, seen through an instance: for maps under which its kind is not closed (an
+/// ellipsoid).
+Geometry as_instance(Geometry g) {
+  Geometry inner = g;
+  inner.transform = Affine{};
+  g.shape = InstanceGeometry{build_accel({std::move(inner)}, {})};
+  return g;
+}
+
+void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
+  for (Geometry& g : geometries) {
+    const bool needs_similarity =
+        std::holds_alternative<SpheresShape>(g.shape) || std::holds_alternative<DiskShape>(g.shape);
+    if (needs_similarity && g.transform.is_invertible() && g.transform.uniform_scale() == 0)
+      g = as_instance(std::move(g));
+  }
+}
+
+/// Bounds of one closed-form item, or an empty box if it is degenerate.
+Box shape_bounds(const Geometry& g, std::size_t local) {
+  const Affine& m = g.transform;
+  if (const auto* s = std::get_if<SpheresShape>(&g.shape)) {
+    const SphereShape moved = moved_sphere(s->spheres[local], m);
+    if (!(moved.radius > 0) || !is_finite(moved.center)) return {};
+    Sphere::Pool p;
+    Sphere::add(p, moved, 0);
+    return Sphere::bounds(p, 0);
+  }
+  if (const auto* s = std::get_if<DiskShape>(&g.shape)) {
+    if (!(s->radius > 0) || !(length(s->normal) > 0)) return {};
+    Disk::Pool p;
+    Disk::add(
+        p, {m.point(s->center), m.inverse().normal_by_inverse(s->normal), s->radius * m.uniform_scale()}, 0);
+    return Disk::bounds(p, 0);
+  }
+  if (const auto* s = std::get_if<BoxShape>(&g.shape)) {
+    if (!(s->min.x < s->max.x && s->min.y < s->max.y && s->min.z < s->max.z)) return {};
+    BoxSolid::Pool p;
+    BoxSolid::add(p, *s, m, 0);
+    return BoxSolid::bounds(p, 0);
+  }
+  if (const auto* s = std::get_if<PolygonShape>(&g.shape)) {
+    if (s->vertices.size() < 3 || !(length(Polygon::area_normal(s->vertices)) > 0)) return {};
+    PolygonShape moved = *s;
+    for (Vec3d& v : moved.vertices) v = m.point(v);
+    Polygon::Pool p;
+    Polygon::add(p, moved, 0);
+    return Polygon::bounds(p, 0);
+  }
+  return {};
+}
+
+/// The image of the child's bounds, grown by what rounding the transformed ray to float may displace.
+Box instance_bounds(const Geometry& g) {
+  Box b = transform_bounds(g.transform, bounds(*std::get<InstanceGeometry>(g.shape).child));
+  if (b.empty()) return b;
+  const Vec3f e = b.extent();
+  const float pad = 0x1p-20f * std::max({e.x, e.y, e.z, max_component(abs(b.lo)), max_component(abs(b.hi))});
+  b.lo -= Vec3f{pad, pad, pad}, b.hi += Vec3f{pad, pad, pad};
+  return b;
+}
+
+Kind kind_of(const Geometry& g) {
+  if (std::holds_alternative<MeshGeometry>(g.shape)) return Kind::triangle;
+  if (std::holds_alternative<SpheresShape>(g.shape)) return Kind::sphere;
+  if (std::holds_alternative<PlaneShape>(g.shape)) return Kind::plane;
+  if (std::holds_alternative<DiskShape>(g.shape)) return Kind::disk;
+  if (std::holds_alternative<BoxShape>(g.shape)) return Kind::box;
+  if (std::holds_alternative<PolygonShape>(g.shape)) return Kind::polygon;
+  return Kind::instance;
+}
+
+/// An infinite plane, or an instance of something that holds one.
+bool is_unbounded(const Geometry& g) {
+  if (const auto* i = std::get_if<InstanceGeometry>(&g.shape)) return !i->child->unbounded.empty();
+  return std::holds_alternative<PlaneShape>(g.shape);
+}
+
+void add_references(Accel& accel, const MeshCorners& corners, std::vector<PrimRef>& refs, ItemOrder& order,
+                    bool parallel) {
+  for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
+    const Geometry& geometry = accel.geometries[g];
+    const Kind kind = kind_of(geometry);
+    const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
+    if (!geometry.transform.is_invertible()) continue;
+    if (kind == Kind::triangle) {
+      add_mesh(accel, g, corners, refs, parallel);
+      continue;
+    }
+    for (std::uint32_t item = first; item < end; ++item) {
+      if (is_unbounded(geometry)) {
+        if (kind == Kind::plane && !(length(std::get<PlaneShape>(geometry.shape).normal) > 0)) continue;
+        std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
+        accel.unbounded.push_back(
+            {static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
+        list.push_back(item);
+        continue;
+      }
+      const Box box =
+          kind == Kind::instance ? instance_bounds(geometry) : shape_bounds(geometry, item - first);
+      if (is_usable(box)) refs.push_back(make_ref(box, item, kind));
+    }
+  }
+}
+
+/// Expected node and leaf visits of a random ray that meets the root's box (MacDonald and Booth 1990).
+double sah_cost(const Accel& accel) {
+  if (accel.root.is_leaf()) return accel.root.is_none() ? 0 : 1;
+  const double root = accel.bounds.half_area();
+  double area = root;
+  for (std::size_t n = 0; n < accel.stats.nodes; ++n) {
+    const BvhNode& node = accel.nodes[n];
+    for (int i = 0; i < BvhNode::kWidth; ++i) {
+      if (node.child[i].is_none()) continue;
+      const double x = double(node.plane[1][i]) - node.plane[0][i],
+                   y = double(node.plane[3][i]) - node.plane[2][i],
+                   z = double(node.plane[5][i]) - node.plane[4][i];
+      area += x * y + y * z + z * x;
+    }
+  }
+  return root > 0 ? area / root : 0;
+}
+
+}  // namespace
+
+std::uint32_t Accel::geometry_of(std::uint32_t item) const {
+  return static_cast<std::uint32_t>(std::upper_bound(first_item.begin(), first_item.end(), item) -
+                                    first_item.begin() - 1);
+}
+
+std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options) {
+  auto accel = std::make_shared<Accel>();
+  wrap_sheared_shapes(geometries);
+  accel->geometries = std::move(geometries);
+  std::uint64_t items = 0;
+  for (const Geometry& g : accel->geometries) {
+    accel->first_item.push_back(static_cast<std::uint32_t>(items));
+    items += item_count(g);
+    accel->kinds.push_back(static_cast<std::uint8_t>(kind_of(g)));
+    if (std::holds_alternative<MeshGeometry>(g.shape)) accel->stats.triangles += item_count(g);
+    if (items >= kNoId) throw Error("more than 2^32 - 2 primitives in one structure");
+  }
+  accel->first_item.push_back(static_cast<std::uint32_t>(items));
+  accel->stats.items = items;
+
+  std::vector<PrimRef> refs;
+  ItemOrder order;
+  const MeshCorners corners(*accel);
+  add_references(*accel, corners, refs, order, options.parallel);
+  const IsaTable* isa = isa_table(available_isas().back());
+  build_tree(*accel, refs, corners, order, options, *isa);
+  PoolFiller(*accel, order).run();
+  accel->stats.unbounded = accel->unbounded.size();
+  accel->stats.sah_cost = sah_cost(*accel);
+  return accel;
+}
+
+AccelStats stats(const Accel& accel) { return accel.stats; }
+Box bounds(const Accel& accel) { return accel.bounds; }
+
+}  // namespace oktett

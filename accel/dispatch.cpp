@@ -1,0 +1,81 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "accel/accel_data.h"
+#include "accel/dispatch.h"
+#include "accel/hit_list.h"
+#include "accel/isa/table.h"
+
+namespace oktett {
+
+void HitList::push(const Hit& hit) { hits_.push_back(hit); }
+std::size_t HitList::size() const { return hits_.size(); }
+Hit& HitList::operator[](std::size_t i) { return hits_[i]; }
+
+const IsaTable* isa_table(Isa isa) {
+  switch (isa) {
+    case Isa::scalar:
+      return scalar_table();
+#if defined(__x86_64__)
+    case Isa::sse42:
+      return sse42_table();
+    case Isa::avx2:
+      return avx2_table();
+    case Isa::avx512:
+      return avx512_table();
+#else
+    default:
+      return nullptr;
+#endif
+  }
+  return nullptr;
+}
+
+/// Batches above this size are shared out in pieces of it.
+static constexpr std::size_t kGrain = 4096;
+
+template <class Trace>
+static void for_each_piece(std::size_t size, Trace&& trace) {
+  if (size <= kGrain) return trace(std::size_t{0}, size);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (size + kGrain - 1) / kGrain), [&](const auto& r) {
+    for (std::size_t k = r.begin(); k < r.end(); ++k) trace(k * kGrain, std::min(kGrain, size - k * kGrain));
+  });
+}
+
+void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode) {
+  const IsaTable& table = *isa_table(isa);
+  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
+    table.closest_hit(accel, rays.part(begin, count), hits.part(begin, count), mode);
+  });
+}
+
+void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa, TraceMode mode) {
+  const IsaTable& table = *isa_table(isa);
+  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
+    table.any_hit(accel, rays.part(begin, count), occluded + begin, mode);
+  });
+}
+
+void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa) {
+  closest_hit(accel, rays, hits, isa, TraceMode::automatic);
+}
+
+void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa) {
+  any_hit(accel, rays, occluded, isa, TraceMode::automatic);
+}
+
+void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {
+  hits.clear();
+  HitList list(hits);
+  isa_table(isa)->all_hits(accel, ray, list);
+  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    if (a.t != b.t) return a.t < b.t;
+    // Adding one puts "no instance" first.
+    if (a.instance != b.instance) return a.instance + 1 < b.instance + 1;
+    return a.item < b.item;
+  });
+}
+
+}  // namespace oktett

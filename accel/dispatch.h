@@ -1,0 +1,13 @@
+#pragma once
+/// \file The queries of accel/accel.h with the way through the tree prescribed, for verification and
+/// benchmarks.
+
+#include "accel/accel.h"
+#include "accel/trace_mode.h"
+
+namespace oktett {
+
+void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode);
+void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa, TraceMode mode);
+
+}  // namespace oktett

@@ -1,0 +1,23 @@
+#pragma once
+/// \file A growing list of hits for code that is compiled per instruction set: it calls out to grow, so that
+/// no template of the standard library is instantiated there with instructions that the baseline lacks.
+
+#include <cstddef>
+#include <vector>
+
+#include "core/ray.h"
+
+namespace oktett {
+
+class HitList {
+ public:
+  explicit HitList(std::vector<Hit>& hits) : hits_(hits) {}
+  void push(const Hit& hit);
+  std::size_t size() const;
+  Hit& operator[](std::size_t i);
+
+ private:
+  std::vector<Hit>& hits_;
+};
+
+}  // namespace oktett

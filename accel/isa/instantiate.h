@@ -1,0 +1,139 @@
+#pragma once
+/// \file Fills an IsaTable for one instruction set: the streams over batches, and single kernels for
+/// verification.
+
+#include "accel/all_hits.h"
+#include "accel/build_sah.h"
+#include "accel/isa/table.h"
+#include "accel/traverse_packet.h"
+
+namespace oktett {
+
+/// W rays from column position `b`; lanes past the end repeat the last ray.
+template <class F>
+OKTETT_INLINE RayLanes<F> load_span(const RaySpan& rays, std::size_t b) {
+  constexpr int W = F::kWidth;
+  if (OKTETT_LIKELY(b + W <= rays.size)) {
+    return {{F::load(rays.origin[0] + b), F::load(rays.origin[1] + b), F::load(rays.origin[2] + b)},
+            {F::load(rays.direction[0] + b), F::load(rays.direction[1] + b), F::load(rays.direction[2] + b)},
+            F::load(rays.tmin + b),
+            F::load(rays.tmax + b)};
+  }
+  const auto load_tail = [&](const float* column) {
+    float tail[W];
+    for (int i = 0; i < W; ++i) tail[i] = column[b + i < rays.size ? b + i : rays.size - 1];
+    return F::load(tail);
+  };
+  return {{load_tail(rays.origin[0]), load_tail(rays.origin[1]), load_tail(rays.origin[2])},
+          {load_tail(rays.direction[0]), load_tail(rays.direction[1]), load_tail(rays.direction[2])},
+          load_tail(rays.tmin),
+          load_tail(rays.tmax)};
+}
+
+/// Rays run together if all of them keep within about 25 degrees of the first.
+template <int W, class A>
+OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, unsigned lanes) {
+  using F = Simd<float, W, A>;
+  const Vec3<F> d = r.d;
+  alignas(64) float x[W], y[W], z[W];
+  d.x.store(x), d.y.store(y), d.z.store(z);
+  const int first = __builtin_ctz(lanes);
+  const Vec3<F> axis{F(x[first]), F(y[first]), F(z[first])};
+  const F along = fast_dot(d, axis), square = fast_dot(d, d) * fast_dot(axis, axis);
+  return (lanes & ~bits((F(0.0f) < along) & (F(0.8f) * square <= along * along))) == 0;
+}
+
+template <Query Q, int W, class A>
+OKTETT_INLINE void trace_lanes(const Accel& accel, RayState<W, A>& state,
+                               const RayLanes<Simd<float, W, A>>& rays, unsigned lanes, TraceMode mode) {
+  if (lanes == 0) return;
+  if (mode == TraceMode::single || W == 1 || (mode == TraceMode::automatic && !is_coherent(rays, lanes))) {
+    for (; lanes != 0; lanes &= lanes - 1) trace_single<Q>(accel, state, __builtin_ctz(lanes));
+  } else {
+    trace_packet<Q>(accel, state, lanes);
+  }
+}
+
+template <int W, class A>
+void closest_hit_stream(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
+  using F = Simd<float, W, A>;
+  RayState<W, A> state;
+  for (std::size_t b = 0; b < rays.size; b += W) {
+    const RayLanes<F> r = load_span<F>(rays, b);
+    const unsigned valid = rays.size - b >= W ? ~0u : (1u << (rays.size - b)) - 1;
+    trace_lanes<Query::closest>(accel, state, r, state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & valid,
+                                mode);
+    const int count = rays.size - b >= W ? W : static_cast<int>(rays.size - b);
+    for (int i = 0; i < count; ++i) {
+      const bool hit = state.item[i] != kNoId;
+      hits.t[b + i] = hit ? state.tmax[i] : std::numeric_limits<float>::infinity();
+      hits.u[b + i] = state.u[i], hits.v[b + i] = state.v[i];
+      hits.item[b + i] = state.item[i], hits.instance[b + i] = state.path[i];
+    }
+  }
+}
+
+template <int W, class A>
+void any_hit_stream(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
+  using F = Simd<float, W, A>;
+  RayState<W, A> state;
+  for (std::size_t b = 0; b < rays.size; b += W) {
+    const RayLanes<F> r = load_span<F>(rays, b);
+    const unsigned valid = rays.size - b >= W ? ~0u : (1u << (rays.size - b)) - 1;
+    trace_lanes<Query::any>(accel, state, r, state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & valid, mode);
+    const int count = rays.size - b >= W ? W : static_cast<int>(rays.size - b);
+    for (int i = 0; i < count; ++i) occluded[b + i] = state.item[i] != kNoId;
+  }
+}
+
+template <class A>
+struct IsaCode {
+  static void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
+    if (mode == TraceMode::packet4) return closest_hit_stream<4, A>(accel, rays, hits, mode);
+    if (mode == TraceMode::packet16) return closest_hit_stream<16, A>(accel, rays, hits, mode);
+    if (mode == TraceMode::single) return closest_hit_stream<1, A>(accel, rays, hits, mode);
+    closest_hit_stream<8, A>(accel, rays, hits, mode);
+  }
+  static void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
+    if (mode == TraceMode::packet4) return any_hit_stream<4, A>(accel, rays, occluded, mode);
+    if (mode == TraceMode::packet16) return any_hit_stream<16, A>(accel, rays, occluded, mode);
+    if (mode == TraceMode::single) return any_hit_stream<1, A>(accel, rays, occluded, mode);
+    any_hit_stream<8, A>(accel, rays, occluded, mode);
+  }
+  static void all_hits(const Accel& accel, const Ray& ray, HitList& hits) {
+    using F = Simd<float, 1, A>;
+    RayState<1, A> state;
+    if (state.set(broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax),
+                  accel.bounds) != 0)
+      collect(accel, state, hits);
+  }
+  static void bin(const BinJob& job) {
+    using B = Simd<float, 8, A>;
+    for (std::size_t i = job.begin; i < job.end; ++i) {
+      const PrimRef& r = job.refs[i];
+      const B box = B::load(r.negative_lo);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int b = bin_of(r, axis, job.origin[axis], job.scale[axis], job.bins);
+        float* bin = job.out->box[axis][b].v;
+        max(box, B::load(bin)).store(bin);
+        ++job.out->count[axis][b];
+      }
+    }
+  }
+  static void run_kernel(KernelId id, int width, const KernelRun& run);
+};
+
+}  // namespace oktett
+
+#include "accel/isa/run_kernel.h"
+
+namespace oktett {
+
+template <class A>
+const IsaTable& make_table() {
+  static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit, IsaCode<A>::all_hits,
+                                     IsaCode<A>::run_kernel, IsaCode<A>::bin};
+  return table;
+}
+
+}  // namespace oktett

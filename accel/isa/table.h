@@ -1,0 +1,58 @@
+#pragma once
+/// \file The hot code of one instruction set, as functions. One translation unit per set instantiates it.
+
+#include "accel/accel.h"
+#include "accel/hit_list.h"
+#include "accel/trace_mode.h"
+#include "core/isa.h"
+
+namespace oktett {
+
+/// A kernel to be run by itself on `count` pairs of a ray and a shape, for verification and benchmarks. All
+/// columns hold `count` elements; hit[i] becomes 1 or 0, and t, u, v are defined where it is 1.
+struct KernelRun {
+  std::size_t count = 0;
+  RaySpan rays;
+  const float* corner[3][3] = {};  ///< triangles: [corner][axis]
+  const double* shape[12] = {};    ///< other shapes: the columns of their pool, in its order
+  float* t = nullptr;
+  float* u = nullptr;
+  float* v = nullptr;
+  std::uint8_t* hit = nullptr;
+};
+
+/// The kernels that can be run by themselves.
+enum class KernelId : std::uint8_t {
+  triangle_watertight,
+  triangle_moller_trumbore,
+  triangle_badouel,
+  triangle_segura_feito,
+  sphere_geometric,
+  sphere_algebraic,
+  plane,
+  disk,
+  box,
+  slab,
+};
+
+/// For the tree builder: bins primitives by their centres.
+struct BinJob;
+
+struct IsaTable {
+  void (*closest_hit)(const Accel&, const RaySpan&, const HitSpan&, TraceMode);
+  void (*any_hit)(const Accel&, const RaySpan&, std::uint8_t*, TraceMode);
+  void (*all_hits)(const Accel&, const Ray&, HitList&);
+  /// `width` is 1, 4, 8 or 16.
+  void (*run_kernel)(KernelId, int width, const KernelRun&);
+  void (*bin)(const BinJob&);
+};
+
+/// Null if this build holds no code for `isa`.
+const IsaTable* isa_table(Isa isa);
+
+const IsaTable* scalar_table();
+const IsaTable* sse42_table();
+const IsaTable* avx2_table();
+const IsaTable* avx512_table();
+
+}  // namespace oktett

@@ -1,0 +1,99 @@
+#pragma once
+/// \file Rays on their way through a tree: what is computed once per ray and what is found so far.
+
+#include "accel/accel_data.h"
+#include "core/ray.h"
+#include "kernels/lanes.h"
+#include "kernels/slab.h"
+
+namespace oktett {
+
+/// What is kept of W rays, in columns; a single ray is the case W = 1. `tmax` shrinks to the nearest hit so
+/// far; `item`, `path`, `u`, `v` describe it (item = kNoId: none yet). Masks have bit i for lane i.
+template <int W, class A>
+struct alignas(64) RayState {
+  using F = Simd<float, W, A>;
+  using D = Simd<double, W, A>;
+
+  float o[3][W], d[3][W], inv[3][W];
+  float tmin[W], tmax[W];
+  float slack[W];
+  float d_max[W];
+  double shear_x[W], shear_y[W];
+  float u[W], v[W];
+  std::uint32_t item[W], path[W];
+  unsigned negative[3];  ///< lanes whose direction component is negative
+  unsigned z_axis[3];    ///< lanes whose direction is greatest along the axis
+
+  /// Index of the axis along which ray i's direction is greatest.
+  OKTETT_INLINE int z_axis_of(int i) const { return z_axis[0] >> i & 1 ? 0 : z_axis[1] >> i & 1 ? 1 : 2; }
+
+  /// Sets all lanes and returns those that can hit anything at all: finite, with a direction and a non-empty
+  /// range (see Ray).
+  OKTETT_INLINE unsigned set(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1,
+                             const Box& box) {
+    const F zero(0.0f), big(std::numeric_limits<float>::max());
+    // -0 becomes +0, so that the sign of the reciprocal agrees with the comparison with zero.
+    direction = {direction.x + zero, direction.y + zero, direction.z + zero};
+    const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
+    const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
+    const F dm = max(az, max(ay, ax));
+    const F om = max(abs(origin.z), max(abs(origin.y), abs(origin.x)));
+    store(origin, o), store(direction, d);
+    store({F(1.0f) / direction.x, F(1.0f) / direction.y, F(1.0f) / direction.z}, inv);
+    t0.store(tmin), t1.store(tmax), dm.store(d_max);
+
+    const auto pick = [&](const F& x, const F& y, const F& z) { return select(zx, x, select(zy, y, z)); };
+    const D dz = to_double(pick(direction.x, direction.y, direction.z));
+    (to_double(pick(direction.y, direction.z, direction.x)) / dz).store(shear_x);
+    (to_double(pick(direction.z, direction.x, direction.y)) / dz).store(shear_y);
+    const float extent = box_extent(box);
+    ((om + F(extent)) / dm * F(kSlabAbsoluteSlack) + F(kSlabUnderflow)).store(slack);
+
+    zero.store(u), zero.store(v);
+    for (int i = 0; i < W; ++i) item[i] = path[i] = kNoId;
+    negative[0] = bits(direction.x < zero), negative[1] = bits(direction.y < zero),
+    negative[2] = bits(direction.z < zero);
+    z_axis[0] = bits(zx), z_axis[1] = bits(zy), z_axis[2] = bits(~(zx | zy));
+    // Each comparison is false on NaN, and max() may drop one, so every component is asked.
+    return bits((ax <= big) & (ay <= big) & (az <= big) & (abs(origin.x) <= big) & (abs(origin.y) <= big) &
+                (abs(origin.z) <= big) & (zero < dm) & (zero <= t0) & (t0 < t1));
+  }
+
+  OKTETT_INLINE Hit hit(int i) const {
+    Hit h;
+    if (item[i] != kNoId) h = {tmax[i], u[i], v[i], item[i], path[i]};
+    return h;
+  }
+
+ private:
+  OKTETT_INLINE static void store(const Vec3<F>& v, float (&columns)[3][W]) {
+    v.x.store(columns[0]), v.y.store(columns[1]), v.z.store(columns[2]);
+  }
+  OKTETT_INLINE static float box_extent(const Box& b) {
+    float e = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float lo = __builtin_fabsf(b.lo[k]), hi = __builtin_fabsf(b.hi[k]);
+      e = lo > e ? lo : e, e = hi > e ? hi : e;
+    }
+    return e;
+  }
+};
+
+/// True if (path, item) comes before (path_b, item_b): no instance (kNoId) first.
+OKTETT_INLINE bool id_before(std::uint32_t path, std::uint32_t item, std::uint32_t path_b,
+                             std::uint32_t item_b) {
+  const std::uint32_t p = path + 1, q = path_b + 1;
+  return p != q ? p < q : item < item_b;
+}
+
+/// Lane `i` has met `item` at distance t: kept if it is nearer, or as near and first in order.
+template <int W, class A>
+OKTETT_INLINE void accept_hit(RayState<W, A>& r, int i, float t, float u, float v, std::uint32_t item,
+                              std::uint32_t path) {
+  if (t > r.tmax[i]) return;
+  if (t == r.tmax[i] && r.item[i] != kNoId && !id_before(path, item, r.path[i], r.item[i])) return;
+  r.tmax[i] = t, r.u[i] = u, r.v[i] = v, r.item[i] = item, r.path[i] = path;
+}
+
+}  // namespace oktett

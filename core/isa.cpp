@@ -1,0 +1,86 @@
+#include "core/isa.h"
+
+#include <cstdlib>
+
+#include "core/error.h"
+
+namespace oktett {
+
+static constexpr Isa kAll[] = {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512};
+
+const char* to_string(Isa isa) {
+  switch (isa) {
+    case Isa::scalar:
+      return "scalar";
+    case Isa::sse42:
+      return "sse4.2";
+    case Isa::avx2:
+      return "avx2";
+    case Isa::avx512:
+      return "avx512";
+  }
+  return "?";
+}
+
+std::optional<Isa> parse_isa(std::string_view name) {
+  for (Isa isa : kAll)
+    if (name == to_string(isa)) return isa;
+  return std::nullopt;
+}
+
+static bool processor_has(Isa isa) {
+#if defined(__x86_64__)
+  switch (isa) {
+    case Isa::scalar:
+      return true;
+    case Isa::sse42:
+      return __builtin_cpu_supports("sse4.2");
+    case Isa::avx2:
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+             __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+             __builtin_cpu_supports("popcnt");
+    case Isa::avx512:
+      return processor_has(Isa::avx2) && __builtin_cpu_supports("avx512f") &&
+             __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  }
+  return false;
+#else
+  return isa == Isa::scalar;
+#endif
+}
+
+std::vector<Isa> available_isas() {
+  std::vector<Isa> isas;
+  for (Isa isa : kAll)
+    if (processor_has(isa)) isas.push_back(isa);
+  return isas;
+}
+
+static std::string available_names() {
+  std::string names;
+  for (Isa isa : available_isas()) names += std::string(names.empty() ? "" : ", ") + to_string(isa);
+  return names;
+}
+
+static Isa require(const std::string& name, const std::string& source) {
+  const std::optional<Isa> isa = parse_isa(name);
+  if (!isa)
+    throw Error(source + ": unknown instruction set '" + name + "'; this machine has " + available_names());
+  if (!processor_has(*isa))
+    throw Error(source + ": this machine does not have '" + name + "'; it has " + available_names());
+  return *isa;
+}
+
+Isa default_isa() {
+  const char* variable = std::getenv("OKTETT_ISA");
+  if (variable != nullptr && *variable != 0 && std::string_view(variable) != "auto")
+    return require(variable, "OKTETT_ISA");
+  return available_isas().back();
+}
+
+Isa choose_isa(const std::string& name) {
+  return name.empty() || name == "auto" ? default_isa() : require(name, "--isa");
+}
+
+}  // namespace oktett

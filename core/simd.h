@@ -1,0 +1,251 @@
+#pragma once
+/// \file Vectors of W lanes for any instruction set, over xsimd: one source for widths 1, 4, 8 and 16.
+///
+/// All operations are exactly the IEEE operation on each lane, in every width and instruction set; only
+/// `fast_fma` may or may not fuse, and serves where any conservative result will do. Comparisons are false on
+/// NaN. `min(a, b)` is a < b ? a : b and `max(a, b)` is a > b ? a : b, hence b if either is NaN: write the
+/// accumulator second and NaN never enters it.
+
+#include <type_traits>
+
+#include "core/simd_native.h"
+
+namespace oktett {
+
+/// W booleans that go with lanes of T.
+template <class T, int W, class A>
+struct Mask {
+  using B = typename native::Choose<T, W, A>::mask;
+  static constexpr int kLanesPerPart = native::Choose<T, W, A>::type::size;
+  static constexpr int kParts = W / kLanesPerPart;
+  B part[kParts];
+
+  OKTETT_INLINE Mask() = default;
+  /// Lane i is bit i of `lanes`.
+  OKTETT_INLINE static Mask from_bits(unsigned lanes) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) native::from_bits(m.part[i], lanes >> (i * kLanesPerPart));
+    return m;
+  }
+  OKTETT_INLINE static Mask all_true() { return from_bits((W < 32 ? 1u << W : 0u) - 1u); }
+
+  OKTETT_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = a.part[i] & b.part[i];
+    return m;
+  }
+  OKTETT_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = a.part[i] | b.part[i];
+    return m;
+  }
+  OKTETT_INLINE friend Mask operator~(const Mask& a) {
+    Mask m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = ~a.part[i];
+    return m;
+  }
+};
+
+/// Bit i is lane i.
+template <class T, int W, class A>
+OKTETT_INLINE unsigned bits(const Mask<T, W, A>& m) {
+  unsigned b = 0;
+  for (int i = 0; i < m.kParts; ++i) b |= native::bits(m.part[i]) << (i * m.kLanesPerPart);
+  return b;
+}
+template <class T, int W, class A>
+OKTETT_INLINE bool any(const Mask<T, W, A>& m) {
+  return bits(m) != 0;
+}
+template <class T, int W, class A>
+OKTETT_INLINE bool none(const Mask<T, W, A>& m) {
+  return bits(m) == 0;
+}
+
+/// W lanes of float, double or int32 for instruction set A.
+template <class T, int W, class A>
+struct Simd {
+  using Element = T;
+  using Isa = A;
+  using M = Mask<T, W, A>;
+  using B = typename native::Choose<T, W, A>::type;
+  static constexpr int kWidth = W;
+  static constexpr int kLanesPerPart = B::size;
+  static constexpr int kParts = W / kLanesPerPart;
+  B part[kParts];
+
+  OKTETT_INLINE Simd() = default;
+  OKTETT_INLINE Simd(T x) {
+    for (int i = 0; i < kParts; ++i) part[i] = B(x);
+  }
+  /// W consecutive elements; no alignment is needed.
+  OKTETT_INLINE static Simd load(const T* p) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i) native::load(r.part[i], p + i * kLanesPerPart);
+    return r;
+  }
+  OKTETT_INLINE void store(T* p) const {
+    for (int i = 0; i < kParts; ++i) native::store(p + i * kLanesPerPart, part[i]);
+  }
+
+  OKTETT_INLINE friend Simd operator+(const Simd& a, const Simd& b) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] + b.part[i];
+    return r;
+  }
+  OKTETT_INLINE friend Simd operator-(const Simd& a, const Simd& b) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] - b.part[i];
+    return r;
+  }
+  OKTETT_INLINE friend Simd operator*(const Simd& a, const Simd& b) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] * b.part[i];
+    return r;
+  }
+  OKTETT_INLINE friend Simd operator/(const Simd& a, const Simd& b) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] / b.part[i];
+    return r;
+  }
+  OKTETT_INLINE friend Simd operator-(const Simd& a) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i) r.part[i] = -a.part[i];
+    return r;
+  }
+  OKTETT_INLINE friend M operator<(const Simd& a, const Simd& b) {
+    M m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = a.part[i] < b.part[i];
+    return m;
+  }
+  OKTETT_INLINE friend M operator<=(const Simd& a, const Simd& b) {
+    M m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = a.part[i] <= b.part[i];
+    return m;
+  }
+  OKTETT_INLINE friend M operator>(const Simd& a, const Simd& b) { return b < a; }
+  OKTETT_INLINE friend M operator>=(const Simd& a, const Simd& b) { return b <= a; }
+  OKTETT_INLINE friend M operator==(const Simd& a, const Simd& b) {
+    M m;
+    for (int i = 0; i < kParts; ++i) m.part[i] = a.part[i] == b.part[i];
+    return m;
+  }
+};
+
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> select(const Mask<T, W, A>& m, const Simd<T, W, A>& a, const Simd<T, W, A>& b) {
+  Simd<T, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::select(m.part[i], a.part[i], b.part[i]);
+  return r;
+}
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> min(const Simd<T, W, A>& a, const Simd<T, W, A>& b) {
+  Simd<T, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::min(a.part[i], b.part[i]);
+  return r;
+}
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> max(const Simd<T, W, A>& a, const Simd<T, W, A>& b) {
+  Simd<T, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::max(a.part[i], b.part[i]);
+  return r;
+}
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> abs(const Simd<T, W, A>& a) {
+  Simd<T, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::abs(a.part[i]);
+  return r;
+}
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> sqrt(const Simd<T, W, A>& a) {
+  Simd<T, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::sqrt(a.part[i]);
+  return r;
+}
+
+/// True where the instruction set has a fused multiply-add, in every width.
+template <class A>
+inline constexpr bool kHasFma = std::is_same_v<A, Avx2Isa> || std::is_same_v<A, Avx512Isa>;
+
+/// a * b + c, fused where that is fast: the last bit may differ between instruction sets.
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> fast_fma(const Simd<T, W, A>& a, const Simd<T, W, A>& b, const Simd<T, W, A>& c) {
+  if constexpr (kHasFma<A> && W > 1) {
+    Simd<T, W, A> r;
+    for (int i = 0; i < r.kParts; ++i) r.part[i] = native::fma(a.part[i], b.part[i], c.part[i]);
+    return r;
+  } else {
+    return a * b + c;
+  }
+}
+
+/// The rounding error of p = a * b, so that a * b = p + error exactly: by a fused multiply-add, or by
+/// Dekker's splitting (1971) with the same result as long as nothing overflows or underflows.
+template <int W, class A>
+OKTETT_INLINE Simd<double, W, A> product_error(const Simd<double, W, A>& a, const Simd<double, W, A>& b,
+                                               const Simd<double, W, A>& p) {
+  if constexpr (kHasFma<A> && W > 1) {
+    return fast_fma(a, b, -p);
+  } else {
+    using D = Simd<double, W, A>;
+    const D splitter(134217729.0);  // 2^27 + 1
+    const D ca = splitter * a, cb = splitter * b;
+    const D ah = ca - (ca - a), bh = cb - (cb - b);
+    const D al = a - ah, bl = b - bh;
+    return al * bl - (((p - ah * bh) - al * bh) - ah * bl);
+  }
+}
+
+/// Each lane as a double, exactly.
+template <int W, class A>
+OKTETT_INLINE Simd<double, W, A> to_double(const Simd<float, W, A>& a) {
+  using F = Simd<float, W, A>;
+  using D = Simd<double, W, A>;
+  D r;
+  if constexpr (F::kLanesPerPart == 1) {
+    for (int i = 0; i < W; ++i) r.part[i].v = a.part[i].v;
+  } else if constexpr (F::kLanesPerPart == D::kLanesPerPart) {
+    for (int i = 0; i < F::kParts; ++i) native::widen(a.part[i], r.part[i]);
+  } else {
+    for (int i = 0; i < F::kParts; ++i) native::widen(a.part[i], r.part[2 * i], r.part[2 * i + 1]);
+  }
+  return r;
+}
+
+/// Each lane rounded to the nearest float.
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> to_float(const Simd<double, W, A>& a) {
+  using F = Simd<float, W, A>;
+  using D = Simd<double, W, A>;
+  F r;
+  if constexpr (F::kLanesPerPart == 1) {
+    for (int i = 0; i < W; ++i) r.part[i].v = static_cast<float>(a.part[i].v);
+  } else if constexpr (F::kLanesPerPart == D::kLanesPerPart) {
+    for (int i = 0; i < F::kParts; ++i) r.part[i] = native::narrow(a.part[i]);
+  } else {
+    for (int i = 0; i < F::kParts; ++i) r.part[i] = native::narrow(a.part[2 * i], a.part[2 * i + 1]);
+  }
+  return r;
+}
+
+/// The same lanes as a mask of another element type.
+template <class To, class From, int W, class A>
+OKTETT_INLINE Mask<To, W, A> mask_cast(const Mask<From, W, A>& m) {
+  return Mask<To, W, A>::from_bits(bits(m));
+}
+
+/// Least and greatest lane; NaN lanes count only if they stand last.
+template <int W, class A>
+OKTETT_INLINE float horizontal_min(const Simd<float, W, A>& a) {
+  alignas(64) float lanes[W];
+  a.store(lanes);
+  float r = lanes[0];
+  for (int i = 1; i < W; ++i) r = lanes[i] < r ? lanes[i] : r;
+  return r;
+}
+template <int W, class A>
+OKTETT_INLINE float horizontal_max(const Simd<float, W, A>& a) {
+  return -horizontal_min(-a);
+}
+
+}  // namespace oktett

@@ -1,0 +1,223 @@
+#pragma once
+/// \file What the SIMD layer needs of one register: xsimd batches, plus the few operations that xsimd does
+/// not offer or whose treatment of NaN differs between its versions. A lone lane is a batch too, so that
+/// width 1 is the same source.
+
+#include <cmath>
+#include <cstdint>
+#include <xsimd/xsimd.hpp>
+
+#include "core/platform.h"
+#if defined(OKTETT_COMPILED_SSE42)
+#include <immintrin.h>
+#endif
+
+namespace oktett {
+
+/// Tags that name the instruction set in every template of the hot code, so that no two sets share an
+/// instantiation.
+struct ScalarIsa {};
+struct Sse42Isa {};
+struct Avx2Isa {};
+struct Avx512Isa {};
+
+namespace native {
+
+/// One lane in a general register. `A` keeps instantiations of different instruction sets apart.
+template <class T, class A>
+struct Lane {
+  static constexpr int size = 1;
+  T v;
+  OKTETT_INLINE Lane() = default;
+  OKTETT_INLINE Lane(T x) : v(x) {}
+};
+
+template <class T, class A>
+struct LaneBool {
+  bool v;
+};
+
+/// How a batch type is called for: element, lanes wanted, instruction set. `type` has at most that many
+/// lanes.
+template <class T, int W, class A>
+struct Choose {
+  using type = Lane<T, A>;
+  using mask = LaneBool<T, A>;
+};
+
+// Each choice names an xsimd architecture; several lines share one.
+#define OKTETT_CHOOSE(T, W, A, ARCH)         \
+  template <>                                \
+  struct Choose<T, W, A> {                   \
+    using type = xsimd::batch<T, ARCH>;      \
+    using mask = xsimd::batch_bool<T, ARCH>; \
+  };
+
+#if defined(OKTETT_COMPILED_SSE42)
+OKTETT_CHOOSE(float, 4, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(float, 8, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(float, 16, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(double, 4, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(double, 8, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(double, 16, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(std::int32_t, 4, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(std::int32_t, 8, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(std::int32_t, 16, Sse42Isa, xsimd::sse4_2)
+#endif
+#if defined(OKTETT_COMPILED_AVX2)
+using XsimdAvx2 = xsimd::fma3<xsimd::avx2>;
+OKTETT_CHOOSE(float, 4, Avx2Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(float, 8, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE(float, 16, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE(double, 4, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE(double, 8, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE(double, 16, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE(std::int32_t, 4, Avx2Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(std::int32_t, 8, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE(std::int32_t, 16, Avx2Isa, XsimdAvx2)
+#endif
+#if defined(OKTETT_COMPILED_AVX512)
+OKTETT_CHOOSE(float, 4, Avx512Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(float, 8, Avx512Isa, XsimdAvx2)
+OKTETT_CHOOSE(float, 16, Avx512Isa, xsimd::avx512bw)
+OKTETT_CHOOSE(double, 4, Avx512Isa, XsimdAvx2)
+OKTETT_CHOOSE(double, 8, Avx512Isa, xsimd::avx512bw)
+OKTETT_CHOOSE(double, 16, Avx512Isa, xsimd::avx512bw)
+OKTETT_CHOOSE(std::int32_t, 4, Avx512Isa, xsimd::sse4_2)
+OKTETT_CHOOSE(std::int32_t, 8, Avx512Isa, XsimdAvx2)
+OKTETT_CHOOSE(std::int32_t, 16, Avx512Isa, xsimd::avx512bw)
+#endif
+#undef OKTETT_CHOOSE
+
+// --- one lane
+// -------------------------------------------------------------------------------------------------------
+
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> operator+(Lane<T, A> a, Lane<T, A> b) {
+  return a.v + b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> operator-(Lane<T, A> a, Lane<T, A> b) {
+  return a.v - b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> operator*(Lane<T, A> a, Lane<T, A> b) {
+  return a.v * b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> operator/(Lane<T, A> a, Lane<T, A> b) {
+  return a.v / b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> operator-(Lane<T, A> a) {
+  return -a.v;
+}
+template <class T, class A>
+OKTETT_INLINE LaneBool<T, A> operator<(Lane<T, A> a, Lane<T, A> b) {
+  return {a.v < b.v};
+}
+template <class T, class A>
+OKTETT_INLINE LaneBool<T, A> operator<=(Lane<T, A> a, Lane<T, A> b) {
+  return {a.v <= b.v};
+}
+template <class T, class A>
+OKTETT_INLINE LaneBool<T, A> operator==(Lane<T, A> a, Lane<T, A> b) {
+  return {a.v == b.v};
+}
+template <class T, class A>
+OKTETT_INLINE LaneBool<T, A> operator&(LaneBool<T, A> a, LaneBool<T, A> b) {
+  return {a.v && b.v};
+}
+template <class T, class A>
+OKTETT_INLINE LaneBool<T, A> operator|(LaneBool<T, A> a, LaneBool<T, A> b) {
+  return {a.v || b.v};
+}
+template <class T, class A>
+OKTETT_INLINE LaneBool<T, A> operator~(LaneBool<T, A> a) {
+  return {!a.v};
+}
+
+template <class T, class A>
+OKTETT_INLINE void load(Lane<T, A>& r, const T* p) {
+  r.v = *p;
+}
+template <class T, class A>
+OKTETT_INLINE void store(T* p, Lane<T, A> a) {
+  *p = a.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> select(LaneBool<T, A> m, Lane<T, A> a, Lane<T, A> b) {
+  return m.v ? a.v : b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> min(Lane<T, A> a, Lane<T, A> b) {
+  return a.v < b.v ? a.v : b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> max(Lane<T, A> a, Lane<T, A> b) {
+  return a.v > b.v ? a.v : b.v;
+}
+template <class T, class A>
+OKTETT_INLINE Lane<T, A> abs(Lane<T, A> a) {
+  return __builtin_fabs(a.v);
+}
+template <class A>
+OKTETT_INLINE Lane<float, A> abs(Lane<float, A> a) {
+  return __builtin_fabsf(a.v);
+}
+template <class A>
+OKTETT_INLINE Lane<float, A> sqrt(Lane<float, A> a) {
+  return __builtin_sqrtf(a.v);
+}
+template <class A>
+OKTETT_INLINE Lane<double, A> sqrt(Lane<double, A> a) {
+  return __builtin_sqrt(a.v);
+}
+template <class T, class A>
+OKTETT_INLINE unsigned bits(LaneBool<T, A> m) {
+  return m.v;
+}
+template <class T, class A>
+OKTETT_INLINE void from_bits(LaneBool<T, A>& m, unsigned b) {
+  m.v = b & 1;
+}
+
+// --- xsimd batches: the plain operations
+// ----------------------------------------------------------------------------
+
+template <class T, class X>
+OKTETT_INLINE void load(xsimd::batch<T, X>& r, const T* p) {
+  r = xsimd::batch<T, X>::load_unaligned(p);
+}
+template <class T, class X>
+OKTETT_INLINE void store(T* p, xsimd::batch<T, X> a) {
+  a.store_unaligned(p);
+}
+template <class T, class X>
+OKTETT_INLINE xsimd::batch<T, X> select(xsimd::batch_bool<T, X> m, xsimd::batch<T, X> a,
+                                        xsimd::batch<T, X> b) {
+  return xsimd::select(m, a, b);
+}
+template <class T, class X>
+OKTETT_INLINE xsimd::batch<T, X> abs(xsimd::batch<T, X> a) {
+  return xsimd::abs(a);
+}
+template <class T, class X>
+OKTETT_INLINE xsimd::batch<T, X> sqrt(xsimd::batch<T, X> a) {
+  return xsimd::sqrt(a);
+}
+
+// Named here so that templates may mention them; instruction sets that have them overload them.
+template <class B>
+B fma(B, B, B) = delete;
+template <class... B>
+void widen(B&&...) = delete;
+template <class... B>
+float narrow(B&&...) = delete;
+
+}  // namespace native
+}  // namespace oktett
+
+#if defined(OKTETT_COMPILED_SSE42)
+#include "core/simd_x86.h"
+#endif

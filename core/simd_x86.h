@@ -1,0 +1,146 @@
+#pragma once
+/// \file x86 operations on single registers for core/simd_native.h: minimum and maximum with a fixed NaN
+/// rule, fused multiply-add, masks as bits, conversions, gathers. Included by core/simd_native.h alone.
+
+#include <immintrin.h>
+
+namespace oktett::native {
+
+using xsimd::batch;
+using xsimd::batch_bool;
+using Sse = xsimd::sse4_2;
+
+// min(a, b) is a < b ? a : b and max(a, b) is a > b ? a : b, hence b if either is NaN: the accumulator stands
+// second.
+OKTETT_INLINE batch<float, Sse> min(batch<float, Sse> a, batch<float, Sse> b) { return _mm_min_ps(a, b); }
+OKTETT_INLINE batch<float, Sse> max(batch<float, Sse> a, batch<float, Sse> b) { return _mm_max_ps(a, b); }
+OKTETT_INLINE batch<double, Sse> min(batch<double, Sse> a, batch<double, Sse> b) { return _mm_min_pd(a, b); }
+OKTETT_INLINE batch<double, Sse> max(batch<double, Sse> a, batch<double, Sse> b) { return _mm_max_pd(a, b); }
+
+OKTETT_INLINE unsigned bits(batch_bool<float, Sse> m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
+OKTETT_INLINE unsigned bits(batch_bool<double, Sse> m) { return static_cast<unsigned>(_mm_movemask_pd(m)); }
+OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Sse> m) {
+  return static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(m)));
+}
+OKTETT_INLINE __m128i expand_bits4(unsigned b) {
+  const __m128i lane = _mm_setr_epi32(1, 2, 4, 8);
+  return _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(b)), lane), lane);
+}
+OKTETT_INLINE void from_bits(batch_bool<float, Sse>& m, unsigned b) { m = _mm_castsi128_ps(expand_bits4(b)); }
+OKTETT_INLINE void from_bits(batch_bool<std::int32_t, Sse>& m, unsigned b) { m = expand_bits4(b); }
+OKTETT_INLINE void from_bits(batch_bool<double, Sse>& m, unsigned b) {
+  const __m128i lane = _mm_set_epi64x(2, 1);
+  m = _mm_castsi128_pd(_mm_cmpeq_epi64(_mm_and_si128(_mm_set1_epi64x(b), lane), lane));
+}
+
+/// Four floats to two registers of two doubles, and back.
+OKTETT_INLINE void widen(batch<float, Sse> a, batch<double, Sse>& lo, batch<double, Sse>& hi) {
+  lo = _mm_cvtps_pd(a), hi = _mm_cvtps_pd(_mm_movehl_ps(a, a));
+}
+OKTETT_INLINE batch<float, Sse> narrow(batch<double, Sse> lo, batch<double, Sse> hi) {
+  return _mm_movelh_ps(_mm_cvtpd_ps(lo), _mm_cvtpd_ps(hi));
+}
+OKTETT_INLINE batch<std::int32_t, Sse> truncate(batch<float, Sse> a) { return _mm_cvttps_epi32(a); }
+OKTETT_INLINE batch<float, Sse> bit_cast_float(batch<std::int32_t, Sse> a) { return _mm_castsi128_ps(a); }
+OKTETT_INLINE batch<std::int32_t, Sse> bit_cast_int(batch<float, Sse> a) { return _mm_castps_si128(a); }
+
+#if defined(OKTETT_COMPILED_AVX2)
+using Avx = XsimdAvx2;
+OKTETT_INLINE batch<float, Avx> min(batch<float, Avx> a, batch<float, Avx> b) { return _mm256_min_ps(a, b); }
+OKTETT_INLINE batch<float, Avx> max(batch<float, Avx> a, batch<float, Avx> b) { return _mm256_max_ps(a, b); }
+OKTETT_INLINE batch<double, Avx> min(batch<double, Avx> a, batch<double, Avx> b) {
+  return _mm256_min_pd(a, b);
+}
+OKTETT_INLINE batch<double, Avx> max(batch<double, Avx> a, batch<double, Avx> b) {
+  return _mm256_max_pd(a, b);
+}
+
+OKTETT_INLINE batch<float, Sse> fma(batch<float, Sse> a, batch<float, Sse> b, batch<float, Sse> c) {
+  return _mm_fmadd_ps(a, b, c);
+}
+OKTETT_INLINE batch<float, Avx> fma(batch<float, Avx> a, batch<float, Avx> b, batch<float, Avx> c) {
+  return _mm256_fmadd_ps(a, b, c);
+}
+OKTETT_INLINE batch<double, Sse> fma(batch<double, Sse> a, batch<double, Sse> b, batch<double, Sse> c) {
+  return _mm_fmadd_pd(a, b, c);
+}
+OKTETT_INLINE batch<double, Avx> fma(batch<double, Avx> a, batch<double, Avx> b, batch<double, Avx> c) {
+  return _mm256_fmadd_pd(a, b, c);
+}
+
+OKTETT_INLINE unsigned bits(batch_bool<float, Avx> m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
+OKTETT_INLINE unsigned bits(batch_bool<double, Avx> m) {
+  return static_cast<unsigned>(_mm256_movemask_pd(m));
+}
+OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Avx> m) {
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(m)));
+}
+OKTETT_INLINE __m256i expand_bits8(unsigned b) {
+  const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(b)), lane), lane);
+}
+OKTETT_INLINE void from_bits(batch_bool<float, Avx>& m, unsigned b) {
+  m = _mm256_castsi256_ps(expand_bits8(b));
+}
+OKTETT_INLINE void from_bits(batch_bool<std::int32_t, Avx>& m, unsigned b) { m = expand_bits8(b); }
+OKTETT_INLINE void from_bits(batch_bool<double, Avx>& m, unsigned b) {
+  const __m256i lane = _mm256_set_epi64x(8, 4, 2, 1);
+  m = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(b), lane), lane));
+}
+
+OKTETT_INLINE void widen(batch<float, Sse> a, batch<double, Avx>& r) { r = _mm256_cvtps_pd(a); }
+OKTETT_INLINE batch<float, Sse> narrow(batch<double, Avx> a) { return _mm256_cvtpd_ps(a); }
+OKTETT_INLINE void widen(batch<float, Avx> a, batch<double, Avx>& lo, batch<double, Avx>& hi) {
+  lo = _mm256_cvtps_pd(_mm256_castps256_ps128(a)), hi = _mm256_cvtps_pd(_mm256_extractf128_ps(a, 1));
+}
+OKTETT_INLINE batch<float, Avx> narrow(batch<double, Avx> lo, batch<double, Avx> hi) {
+  return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(lo)), _mm256_cvtpd_ps(hi), 1);
+}
+OKTETT_INLINE batch<std::int32_t, Avx> truncate(batch<float, Avx> a) { return _mm256_cvttps_epi32(a); }
+OKTETT_INLINE batch<float, Avx> bit_cast_float(batch<std::int32_t, Avx> a) { return _mm256_castsi256_ps(a); }
+OKTETT_INLINE batch<std::int32_t, Avx> bit_cast_int(batch<float, Avx> a) { return _mm256_castps_si256(a); }
+#endif
+
+#if defined(OKTETT_COMPILED_AVX512)
+using Avx5 = xsimd::avx512bw;
+OKTETT_INLINE batch<float, Avx5> min(batch<float, Avx5> a, batch<float, Avx5> b) {
+  return _mm512_min_ps(a, b);
+}
+OKTETT_INLINE batch<float, Avx5> max(batch<float, Avx5> a, batch<float, Avx5> b) {
+  return _mm512_max_ps(a, b);
+}
+OKTETT_INLINE batch<double, Avx5> min(batch<double, Avx5> a, batch<double, Avx5> b) {
+  return _mm512_min_pd(a, b);
+}
+OKTETT_INLINE batch<double, Avx5> max(batch<double, Avx5> a, batch<double, Avx5> b) {
+  return _mm512_max_pd(a, b);
+}
+OKTETT_INLINE batch<float, Avx5> fma(batch<float, Avx5> a, batch<float, Avx5> b, batch<float, Avx5> c) {
+  return _mm512_fmadd_ps(a, b, c);
+}
+OKTETT_INLINE batch<double, Avx5> fma(batch<double, Avx5> a, batch<double, Avx5> b, batch<double, Avx5> c) {
+  return _mm512_fmadd_pd(a, b, c);
+}
+OKTETT_INLINE unsigned bits(batch_bool<float, Avx5> m) { return m.data; }
+OKTETT_INLINE unsigned bits(batch_bool<double, Avx5> m) { return m.data; }
+OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Avx5> m) { return m.data; }
+OKTETT_INLINE void from_bits(batch_bool<float, Avx5>& m, unsigned b) { m = static_cast<__mmask16>(b); }
+OKTETT_INLINE void from_bits(batch_bool<double, Avx5>& m, unsigned b) { m = static_cast<__mmask8>(b); }
+OKTETT_INLINE void from_bits(batch_bool<std::int32_t, Avx5>& m, unsigned b) { m = static_cast<__mmask16>(b); }
+
+OKTETT_INLINE void widen(batch<float, Avx> a, batch<double, Avx5>& r) { r = _mm512_cvtps_pd(a); }
+OKTETT_INLINE batch<float, Avx> narrow(batch<double, Avx5> a) { return _mm512_cvtpd_ps(a); }
+OKTETT_INLINE void widen(batch<float, Avx5> a, batch<double, Avx5>& lo, batch<double, Avx5>& hi) {
+  lo = _mm512_cvtps_pd(_mm512_castps512_ps256(a)), hi = _mm512_cvtps_pd(_mm512_extractf32x8_ps(a, 1));
+}
+OKTETT_INLINE batch<float, Avx5> narrow(batch<double, Avx5> lo, batch<double, Avx5> hi) {
+  return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(lo)), _mm512_cvtpd_ps(hi), 1);
+}
+OKTETT_INLINE batch<std::int32_t, Avx5> truncate(batch<float, Avx5> a) { return _mm512_cvttps_epi32(a); }
+OKTETT_INLINE batch<float, Avx5> bit_cast_float(batch<std::int32_t, Avx5> a) {
+  return _mm512_castsi512_ps(a);
+}
+OKTETT_INLINE batch<std::int32_t, Avx5> bit_cast_int(batch<float, Avx5> a) { return _mm512_castps_si512(a); }
+#endif
+
+}  // namespace oktett::native

@@ -1,0 +1,62 @@
+#pragma once
+/// \file Large arrays that are filled by many threads before their size is known.
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace oktett {
+
+/// Reserves address space for `capacity` elements; pages become memory when first written. `truncate` gives
+/// the rest back, so neither growing nor shrinking copies anything. Fresh elements read as zero bytes.
+template <class T>
+class VirtualArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  VirtualArray() = default;
+  explicit VirtualArray(std::size_t capacity) : bytes_(rounded(capacity * sizeof(T))) {
+    if (bytes_ == 0) return;
+    void* p =
+        mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (p == MAP_FAILED) throw std::bad_alloc();
+    data_ = static_cast<T*>(p);
+  }
+  VirtualArray(VirtualArray&& other) noexcept { swap(other); }
+  VirtualArray& operator=(VirtualArray&& other) noexcept {
+    VirtualArray(std::move(other)).swap(*this);
+    return *this;
+  }
+  VirtualArray(const VirtualArray&) = delete;
+  VirtualArray& operator=(const VirtualArray&) = delete;
+  ~VirtualArray() {
+    if (data_ != nullptr) munmap(data_, bytes_);
+  }
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+
+  /// Keeps the first `size` elements and their memory only.
+  void truncate(std::size_t size) {
+    const std::size_t keep = rounded(size * sizeof(T));
+    if (keep >= bytes_) return;
+    munmap(reinterpret_cast<char*>(data_) + keep, bytes_ - keep);
+    bytes_ = keep;
+    if (keep == 0) data_ = nullptr;
+  }
+
+ private:
+  static constexpr std::size_t kPage = 4096;
+  static std::size_t rounded(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
+  void swap(VirtualArray& other) noexcept { std::swap(data_, other.data_), std::swap(bytes_, other.bytes_); }
+
+  T* data_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace oktett

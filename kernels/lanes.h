@@ -1,0 +1,73 @@
+#pragma once
+/// \file Rays and hits spread over lanes. A kernel pairs lane i of the rays with lane i of the shapes; either
+/// side may be one thing broadcast to all lanes, so the same kernel serves a packet against one shape and one
+/// ray against many.
+
+#include "core/simd.h"
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// Rays in lanes of F, a Simd of float or double. A hit counts if tmin < t <= tmax.
+template <class F>
+struct RayLanes {
+  Vec3<F> o, d;
+  F tmin, tmax;
+};
+
+/// What a kernel finds in each lane; defined only where the returned mask is set.
+template <class F>
+struct HitLanes {
+  F t, u, v;
+};
+
+template <int W, class A>
+OKTETT_INLINE Vec3<Simd<double, W, A>> to_double(const Vec3<Simd<float, W, A>>& v) {
+  return {to_double(v.x), to_double(v.y), to_double(v.z)};
+}
+
+/// The same rays in double, exactly.
+template <int W, class A>
+OKTETT_INLINE RayLanes<Simd<double, W, A>> to_double(const RayLanes<Simd<float, W, A>>& r) {
+  return {to_double(r.o), to_double(r.d), to_double(r.tmin), to_double(r.tmax)};
+}
+
+/// One vector in all lanes.
+template <class F, class T>
+OKTETT_INLINE Vec3<F> broadcast(const Vec3<T>& v) {
+  return {F(static_cast<typename F::Element>(v.x)), F(static_cast<typename F::Element>(v.y)),
+          F(static_cast<typename F::Element>(v.z))};
+}
+
+/// dot and cross with a fixed order of operations and no fusing: the same bits in every width and instruction
+/// set.
+template <class F>
+OKTETT_INLINE F dot_lanes(const Vec3<F>& a, const Vec3<F>& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+template <class F>
+OKTETT_INLINE Vec3<F> cross_lanes(const Vec3<F>& a, const Vec3<F>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class F>
+OKTETT_INLINE Vec3<F> sub_lanes(const Vec3<F>& a, const Vec3<F>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+/// dot and cross for filters, where any rounding will do.
+template <class F>
+OKTETT_INLINE F fast_dot(const Vec3<F>& a, const Vec3<F>& b) {
+  return fast_fma(a.x, b.x, fast_fma(a.y, b.y, a.z * b.z));
+}
+template <class F>
+OKTETT_INLINE Vec3<F> fast_cross(const Vec3<F>& a, const Vec3<F>& b) {
+  return {fast_fma(a.y, b.z, -(a.z * b.y)), fast_fma(a.z, b.x, -(a.x * b.z)),
+          fast_fma(a.x, b.y, -(a.y * b.x))};
+}
+/// |x| + |y| + |z|.
+template <class F>
+OKTETT_INLINE F norm1(const Vec3<F>& a) {
+  return abs(a.x) + abs(a.y) + abs(a.z);
+}
+
+}  // namespace oktett

@@ -1,0 +1,152 @@
+#pragma once
+/// \file The watertight ray-triangle test: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection"
+/// (JCGT 2(1), 2013), made exact.
+///
+/// The vertices are moved to the ray's origin and sheared so that the ray becomes the z axis; the triangle is
+/// hit if the origin of the xy plane lies inside its projection. Departures from the paper:
+/// - The shear is done in double, so a vertex is displaced by some 2^-52 of its distance instead of 2^-23.
+/// - The signs of the three edge functions are exact for the sheared vertices: two products are compared, and
+/// where they round
+///   to the same number, their rounding errors are. The weights are corrected by the same errors, so t, u and
+///   v are accurate on slivers seen edge-on.
+/// - If an edge function is exactly zero, the query point is moved by (e, e^2) with infinitesimal e. Hence
+/// each point of the
+///   plane belongs to exactly one triangle around any edge or vertex, and a closed mesh is crossed exactly
+///   once there.
+/// A sheared vertex depends on the ray and the vertex alone, so neighbours agree about it and no gap can
+/// open.
+///
+/// `filter_*` reject most triangles in float and never one that `decide_watertight` would accept; see
+/// docs/numerics.md.
+
+#include "kernels/lanes.h"
+
+namespace oktett {
+
+/// What the decision needs of a ray: the axis of greatest |d| becomes z, the next two in cyclic order x and
+/// y. `shear_x` = dx/dz and `shear_y` = dy/dz in double.
+template <class D>
+struct ShearLanes {
+  Vec3<D> o;  ///< permuted
+  D dz, shear_x, shear_y;
+};
+
+template <class F>
+struct TriangleLanes {
+  Vec3<F> a, b, c;
+};
+
+/// (x, y, z) -> (x, y, z) permuted so that `axis` comes last.
+template <class F>
+OKTETT_INLINE Vec3<F> permute_to_z(const Vec3<F>& v, int axis) {
+  return axis == 2 ? v : axis == 0 ? Vec3<F>{v.y, v.z, v.x} : Vec3<F>{v.z, v.x, v.y};
+}
+
+/// An edge function p x q in the sheared plane: its value, and its sign after the tie rule.
+template <class D>
+struct EdgeFunction {
+  D value;
+  typename D::M positive, negative;
+};
+
+/// p x q = px * qy - py * qx, the weight of the corner opposite the edge from p to q (Woop et al. 2013).
+template <class D>
+OKTETT_INLINE EdgeFunction<D> edge_function(const D& px, const D& py, const D& qx, const D& qy) {
+  const D m = px * qy, n = py * qx;
+  const D em = product_error(px, qy, m), en = product_error(py, qx, n);
+  EdgeFunction<D> e;
+  e.value = (m - n) + (em - en);
+  const auto equal = m == n;
+  e.positive = (m > n) | (equal & (em > en));
+  e.negative = (m < n) | (equal & (em < en));
+  const auto tie = equal & (em == en);
+  if (OKTETT_UNLIKELY(any(tie))) {
+    const auto same_y = py == qy;
+    e.positive = e.positive | (tie & ((py > qy) | (same_y & (px < qx))));
+    e.negative = e.negative | (tie & ((py < qy) | (same_y & (px > qx))));
+  }
+  return e;
+}
+
+/// The decision, bit-identical in every width and instruction set. `tri` is permuted like the ray. Lanes must
+/// hold finite numbers. u and v are the weights of b and c.
+template <int W, class A>
+OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, W, A>>& ray,
+                                                  const TriangleLanes<Simd<float, W, A>>& tri,
+                                                  const Simd<float, W, A>& tmin,
+                                                  const Simd<float, W, A>& tmax,
+                                                  HitLanes<Simd<float, W, A>>& hit) {
+  using F = Simd<float, W, A>;
+  using D = Simd<double, W, A>;
+  const Vec3<D> a = sub_lanes(to_double(tri.a), ray.o);
+  const Vec3<D> b = sub_lanes(to_double(tri.b), ray.o);
+  const Vec3<D> c = sub_lanes(to_double(tri.c), ray.o);
+  const D ax = a.x - ray.shear_x * a.z, ay = a.y - ray.shear_y * a.z;
+  const D bx = b.x - ray.shear_x * b.z, by = b.y - ray.shear_y * b.z;
+  const D cx = c.x - ray.shear_x * c.z, cy = c.y - ray.shear_y * c.z;
+
+  const EdgeFunction<D> u = edge_function(cx, cy, bx, by);
+  const EdgeFunction<D> v = edge_function(ax, ay, cx, cy);
+  const EdgeFunction<D> w = edge_function(bx, by, ax, ay);
+  const auto inside = (u.positive & v.positive & w.positive) | (u.negative & v.negative & w.negative);
+  if (none(inside)) return mask_cast<float>(inside);
+
+  const D det = (u.value + v.value) + w.value;
+  const D t = ((u.value * a.z + v.value * b.z) + w.value * c.z) / (det * ray.dz);
+  hit.t = to_float(t);
+  hit.u = to_float(v.value / det);
+  hit.v = to_float(w.value / det);
+  return mask_cast<float>(inside) & (tmin < hit.t) & (hit.t <= tmax) & (hit.t <= F(3.402823466e38f));
+}
+
+/// A triangle made ready for the filter: edges from a, their cross product and their greatest size.
+template <class F>
+struct FilterTriangle {
+  Vec3<F> a, e1, e2, n;
+  F size;  ///< |e1|_1 + |e2|_1
+};
+
+template <class F>
+OKTETT_INLINE FilterTriangle<F> filter_triangle(const TriangleLanes<F>& t) {
+  FilterTriangle<F> f;
+  f.a = t.a, f.e1 = sub_lanes(t.b, t.a), f.e2 = sub_lanes(t.c, t.a);
+  f.n = fast_cross(f.e1, f.e2);
+  f.size = norm1(f.e1) + norm1(f.e2);
+  return f;
+}
+
+/// Rounding errors of the filter in units of the products' magnitudes: about 12 roundings of 2^-24, and a
+/// factor for a determinant whose sign is in doubt.
+inline constexpr float kFilterError = 0x1p-18f;
+
+/// Lanes that `decide_watertight` might accept, from the scaled barycentric coordinates u, v, the determinant
+/// and the scaled distance (as in Möller and Trumbore 1997, but with either sign of det). NaN and overflow
+/// keep a lane.
+template <class F>
+OKTETT_INLINE typename F::M filter_decide(const F& det, const F& u, const F& v, const F& t, const F& error,
+                                          const F& t_error, const F& tmax) {
+  using M = typename F::M;
+  const F zero(0.0f);
+  const M flip = det < zero;
+  const F det_abs = abs(det);
+  const F us = select(flip, -u, u), vs = select(flip, -v, v), ts = select(flip, -t, t);
+  const M reject = (us < -error) | (vs < -error) | (us + vs > det_abs + error) | (ts < -t_error) |
+                   (ts > fast_fma(tmax, det_abs + error, t_error));
+  return ~reject;
+}
+
+/// The filter for any lanes. `d_max` = greatest |component| of the ray's direction.
+template <class F>
+OKTETT_INLINE typename F::M filter_watertight(const RayLanes<F>& ray, const F& d_max,
+                                              const FilterTriangle<F>& tri) {
+  const Vec3<F> c = sub_lanes(tri.a, ray.o);
+  const Vec3<F> r = fast_cross(c, ray.d);
+  const F det = fast_dot(tri.n, ray.d);
+  const F u = fast_dot(r, tri.e2), v = -fast_dot(r, tri.e1), t = fast_dot(tri.n, c);
+  const F reach = norm1(c);
+  const F scale = F(kFilterError) * tri.size;
+  const F error = scale * (reach + tri.size) * d_max;
+  return filter_decide(det, u, v, t, error, scale * tri.size * reach, ray.tmax);
+}
+
+}  // namespace oktett
