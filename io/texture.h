@@ -1,0 +1,45 @@
+#pragma once
+/// \file The textures of a scene, read from image files.
+
+#include <memory>
+#include <vector>
+
+#include "core/error.h"
+#include "render/material.h"
+#include "render/texture_sampler.h"
+
+namespace oktett {
+
+/// Looks up image files through OpenImageIO's texture system: bilinear within a MIP level, trilinear and
+/// anisotropic across levels when the footprint is known.
+///
+/// Colours are made linear before they are filtered: 8-bit images count as sRGB unless the file says
+/// otherwise. `value` gives the first channel as stored. Unassociated alpha is ignored. uv is multiplied by
+/// `scale`, moved by `offset`, then repeated or clamped; (0, 0) is the lower left corner of the image. The
+/// result is base + gain * texel.
+///
+/// A lookup depends on its arguments alone: every level is computed from the image by a fixed rule (each from
+/// the one above), whoever asks first, and a level that was dropped from memory is computed again to the same
+/// numbers.
+class ImageTextures : public TextureSampler {
+ public:
+  /// Reads all images, in parallel. One that is missing or damaged gives a warning and is white (value 1)
+  /// everywhere.
+  explicit ImageTextures(std::vector<Texture> textures);
+  ~ImageTextures() override;
+  ImageTextures(const ImageTextures&) = delete;
+  ImageTextures& operator=(const ImageTextures&) = delete;
+
+  /// One per file that could not be used.
+  const std::vector<Warning>& warnings() const;
+
+  /// An index beyond the textures gives white. Non-finite uv count as 0.
+  Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
+  float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace oktett

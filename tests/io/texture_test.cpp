@@ -1,0 +1,207 @@
+#include "io/texture.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "io/image_color.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+using test::TempDir;
+
+constexpr Vec2f kNoChange{0, 0};
+
+/// Writes 8-bit or float pixels, row by row from the top.
+template <class T>
+std::string write_pixels(const std::string& path, int width, int height, int channels,
+                         const std::vector<T>& pixels) {
+  const OIIO::TypeDesc type = sizeof(T) == 1 ? OIIO::TypeUInt8 : OIIO::TypeFloat;
+  OIIO::ImageSpec spec(width, height, channels, type);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  auto output = OIIO::ImageOutput::create(path);
+  EXPECT_TRUE(output && output->open(path, spec) && output->write_image(type, pixels.data()) &&
+              output->close());
+  return path;
+}
+
+using Bytes = std::vector<std::uint8_t>;
+
+Texture texture_of(const std::string& path) {
+  Texture texture;
+  texture.path = path;
+  return texture;
+}
+
+std::string checkers(const TempDir& dir) {
+  // Upper row red, green; lower row blue, white.
+  return write_pixels(dir.file("checkers.png"), 2, 2, 3,
+                      Bytes{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255});
+}
+
+TEST(ImageTextures, OriginIsTheLowerLeftCorner) {
+  const TempDir dir;
+  const ImageTextures textures({texture_of(checkers(dir))});
+  EXPECT_TRUE(textures.warnings().empty());
+  EXPECT_EQ(textures.color(0, {0.25f, 0.25f}, kNoChange, kNoChange), (Color{0, 0, 1}));
+  EXPECT_EQ(textures.color(0, {0.75f, 0.25f}, kNoChange, kNoChange), (Color{1, 1, 1}));
+  EXPECT_EQ(textures.color(0, {0.25f, 0.75f}, kNoChange, kNoChange), (Color{1, 0, 0}));
+  EXPECT_EQ(textures.color(0, {0.75f, 0.75f}, kNoChange, kNoChange), (Color{0, 1, 0}));
+}
+
+TEST(ImageTextures, RepeatAndClampBeyondTheEdge) {
+  const TempDir dir;
+  Texture clamped = texture_of(checkers(dir));
+  clamped.clamp = true;
+  const ImageTextures textures({texture_of(checkers(dir)), clamped});
+  for (const float whole : {-3.0f, -1.0f, 1.0f, 7.0f})
+    EXPECT_EQ(textures.color(0, {0.25f + whole, 0.75f}, kNoChange, kNoChange), (Color{1, 0, 0})) << whole;
+  EXPECT_EQ(textures.color(1, {-5, 9}, kNoChange, kNoChange), (Color{1, 0, 0}));
+  EXPECT_EQ(textures.color(1, {5, -9}, kNoChange, kNoChange), (Color{1, 1, 1}));
+  // Repeating mixes the edges, clamping does not.
+  EXPECT_EQ(textures.color(0, {0, 0.75f}, kNoChange, kNoChange), (Color{0.5f, 0.5f, 0}));
+  EXPECT_EQ(textures.color(1, {0, 0.75f}, kNoChange, kNoChange), (Color{1, 0, 0}));
+}
+
+TEST(ImageTextures, EightBitColoursAreSrgbAndValuesAreRaw) {
+  const TempDir dir;
+  const ImageTextures textures({texture_of(write_pixels(dir.file("a.png"), 1, 1, 3, Bytes{128, 10, 255})),
+                                texture_of(write_pixels(dir.file("a.tif"), 1, 1, 3, Bytes{128, 10, 255})),
+                                texture_of(write_pixels(dir.file("grey.png"), 1, 1, 1, Bytes{128}))});
+  for (const std::uint32_t i : {0u, 1u, 2u}) {
+    EXPECT_NEAR(textures.color(i, {0.3f, 0.6f}, kNoChange, kNoChange).x, srgb_to_linear(128 / 255.0f), 2e-4f);
+    EXPECT_NEAR(textures.value(i, {0.3f, 0.6f}, kNoChange, kNoChange), 128 / 255.0f, 2e-4f);
+  }
+  EXPECT_NEAR(textures.color(0, {0.3f, 0.6f}, kNoChange, kNoChange).y, srgb_to_linear(10 / 255.0f), 1e-5f);
+  EXPECT_EQ(textures.color(2, {0.3f, 0.6f}, kNoChange, kNoChange).x,
+            textures.color(2, {0.3f, 0.6f}, kNoChange, kNoChange).z);
+}
+
+TEST(ImageTextures, FloatsAreTakenAsTheyAre) {
+  const TempDir dir;
+  const ImageTextures textures(
+      {texture_of(write_pixels(dir.file("a.exr"), 1, 1, 3, std::vector<float>{0.123456f, 7.5f, -2}))});
+  EXPECT_EQ(textures.color(0, {0, 0}, kNoChange, kNoChange), (Color{0.123456f, 7.5f, -2}));
+  EXPECT_EQ(textures.value(0, {0, 0}, kNoChange, kNoChange), 0.123456f);
+}
+
+TEST(ImageTextures, AlphaDoesNotDarkenColours) {
+  const TempDir dir;
+  const ImageTextures textures(
+      {texture_of(write_pixels(dir.file("a.png"), 1, 1, 4, Bytes{255, 255, 255, 0}))});
+  EXPECT_EQ(textures.color(0, {0, 0}, kNoChange, kNoChange), (Color{1, 1, 1}));
+}
+
+TEST(ImageTextures, ScaleOffsetGainAndBase) {
+  const TempDir dir;
+  Texture moved = texture_of(checkers(dir));
+  moved.scale = {2, 1, 1};
+  moved.offset = {0.5f, 0, 0};
+  moved.gain = 0.5f;
+  moved.base = 0.25f;
+  const ImageTextures textures({moved});
+  // u = 0.125 looks at 0.75: white in the lower row.
+  EXPECT_EQ(textures.color(0, {0.125f, 0.25f}, kNoChange, kNoChange), (Color{0.75f, 0.75f, 0.75f}));
+  EXPECT_EQ(textures.color(0, {0.375f, 0.25f}, kNoChange, kNoChange), (Color{0.25f, 0.25f, 0.75f}));
+  EXPECT_EQ(textures.value(0, {0.125f, 0.25f}, kNoChange, kNoChange), 0.75f);
+}
+
+// Filtering happens in linear light: a fine black and white pattern averages to one half, not to the light of
+// 128.
+TEST(ImageTextures, WideFootprintsAverageLight) {
+  const TempDir dir;
+  Bytes pixels;
+  for (int i = 0; i < 64 * 64; ++i) pixels.insert(pixels.end(), 3, ((i % 64) + i / 64) % 2 == 0 ? 255 : 0);
+  const ImageTextures textures({texture_of(write_pixels(dir.file("a.png"), 64, 64, 3, pixels))});
+  const Color wide = textures.color(0, {0.4f, 0.6f}, {1, 0}, {0, 1});
+  EXPECT_NEAR(wide.x, 0.5f, 0.01f);
+  EXPECT_NEAR(textures.color(0, {0.4f, 0.6f}, {0.25f, 0}, {0, 0.25f}).y, 0.5f, 0.01f);
+}
+
+TEST(ImageTextures, MissingAndDamagedFilesWarnOnceAndAreWhite) {
+  const TempDir dir;
+  Bytes noise;
+  std::mt19937 random(1);
+  for (int i = 0; i < 64 * 64 * 3; ++i) noise.push_back(static_cast<std::uint8_t>(random()));
+  const std::string cut = write_pixels(dir.file("cut.bmp"), 64, 64, 3, noise);
+  std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
+  Texture missing = texture_of(dir.file("missing.png"));
+  missing.gain = 0.5f;
+  const ImageTextures textures({missing, texture_of(dir.write("garbage.jpg", "no image")), texture_of(cut),
+                                texture_of(checkers(dir)), missing, texture_of(dir.path().string()),
+                                texture_of(dir.write("empty.png", "")), texture_of("")});
+  for (const std::uint32_t i : {0u, 1u, 2u, 4u, 5u, 6u, 7u, 99u, kNoId}) {
+    EXPECT_EQ(textures.color(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Color{1, 1, 1})) << i;
+    EXPECT_EQ(textures.value(i, {0.2f, 0.2f}, kNoChange, kNoChange), 1) << i;
+  }
+  EXPECT_EQ(textures.color(3, {0.25f, 0.25f}, kNoChange, kNoChange), (Color{0, 0, 1}));
+  ASSERT_EQ(textures.warnings().size(), 6u);
+  EXPECT_EQ(textures.warnings()[0].where.file, dir.file("missing.png"));
+  EXPECT_NE(textures.warnings()[0].message.find("no such file"), std::string::npos);
+  for (const Warning& warning : textures.warnings()) EXPECT_EQ(warning.message.find('\n'), std::string::npos);
+}
+
+// Paths hold no patterns: what the texture library reads as a tile set is a plain name here.
+TEST(ImageTextures, PathsAreTakenLiterally) {
+  const TempDir dir;
+  const std::string path = write_pixels(dir.file("a<UDIM>.png"), 1, 1, 3, Bytes{0, 255, 0});
+  const ImageTextures textures({texture_of(path)});
+  EXPECT_TRUE(textures.warnings().empty());
+  EXPECT_EQ(textures.color(0, {0.5f, 0.5f}, kNoChange, kNoChange), (Color{0, 1, 0}));
+}
+
+TEST(ImageTextures, AnyCoordinatesAreSafe) {
+  const TempDir dir;
+  Texture clamped = texture_of(checkers(dir));
+  clamped.clamp = true;
+  const ImageTextures textures({texture_of(checkers(dir)), clamped});
+  const float inf = std::numeric_limits<float>::infinity();
+  const float odd[] = {
+      std::numeric_limits<float>::quiet_NaN(), inf, -inf, 3e38f, -3e38f, 1e-40f, -1e-40f, 16777217.0f};
+  for (const float u : odd)
+    for (const float v : odd)
+      for (const std::uint32_t i : {0u, 1u}) {
+        const Color c = textures.color(i, {u, v}, {v, u}, {u, 0});
+        EXPECT_TRUE(is_finite(c)) << u << " " << v;
+        EXPECT_TRUE(c.x >= 0 && c.x <= 1);
+      }
+}
+
+// The same lookups in another order, from many threads and in a fresh cache, give the same bits.
+TEST(ImageTextures, ResultsDependOnArgumentsAlone) {
+  const TempDir dir;
+  Bytes noise;
+  std::mt19937 random(1);
+  for (int i = 0; i < 67 * 45 * 3; ++i) noise.push_back(static_cast<std::uint8_t>(random()));
+  const std::vector<Texture> list = {texture_of(write_pixels(dir.file("a.png"), 67, 45, 3, noise))};
+  struct Query {
+    Vec2f uv, dx, dy;
+  };
+  std::uniform_real_distribution<float> place(-2, 2);
+  std::vector<Query> queries(4000);
+  for (Query& q : queries) {
+    const float size = std::exp2(4 * place(random) - 4);
+    q = {{place(random), place(random)}, {size, size * place(random)}, {size * place(random), size}};
+  }
+  std::vector<Color> expected(queries.size()), parallel(queries.size()), backwards(queries.size());
+  const ImageTextures first(list), second(list), third(list);
+  const auto ask = [&](const ImageTextures& textures, std::size_t i) {
+    return textures.color(0, queries[i].uv, queries[i].dx, queries[i].dy);
+  };
+  for (std::size_t i = 0; i < queries.size(); ++i) expected[i] = ask(first, i);
+  for (std::size_t i = queries.size(); i-- > 0;) backwards[i] = ask(second, i);
+  tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t i) { parallel[i] = ask(third, i); });
+  EXPECT_EQ(expected, backwards);
+  EXPECT_EQ(expected, parallel);
+}
+
+}  // namespace
+}  // namespace oktett
