@@ -145,7 +145,7 @@ Scene scene_from_mesh(const std::string& path) {
     shape.slot_materials.push_back(static_cast<std::uint32_t>(scene.materials.size() - 1));
   }
   if (shape.mesh->triangle_count() == 0) {
-    scene.warnings.push_back({{path, 0, 0}, "the mesh has no triangles"});
+    scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
     return scene;
   }
   Object object;

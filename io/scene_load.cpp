@@ -30,9 +30,9 @@ void SceneLoad::warn(const Location& place, const std::string& message) {
   constexpr std::size_t kMostWarnings = 1000;
   const std::size_t count = scene.warnings.size();
   if (count < kMostWarnings)
-    scene.warnings.push_back({place, message});
+    scene.warnings.push_back(Warning{place, message});
   else if (count == kMostWarnings)
-    scene.warnings.push_back({{}, "there are more warnings, which are not shown"});
+    scene.warnings.push_back(Warning{Location{}, "there are more warnings, which are not shown"});
 }
 
 }  // namespace oktett

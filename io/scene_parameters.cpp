@@ -81,7 +81,8 @@ std::vector<Warning> SceneParameters::unused() const {
   std::vector<Warning> warnings;
   for (const auto& [name, value] : values_)
     if (value.from_command_line && !value.used)
-      warnings.push_back({{}, "-D " + name + ": the scene has no ${" + name + "}" + suggest(name, known)});
+      warnings.push_back(
+          Warning{Location{}, "-D " + name + ": the scene has no ${" + name + "}" + suggest(name, known)});
   return warnings;
 }
 
