@@ -27,7 +27,7 @@ function(oktett_isa_flags file)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/isa/${file} PROPERTIES
     COMPILE_OPTIONS "-O3;-g0;-Wno-uninitialized;-Wno-maybe-uninitialized;${ARGN}")
 endfunction()
-oktett_isa_flags(scalar.cpp -fno-tree-vectorize)
+oktett_isa_flags(scalar.cpp -O2 -fno-tree-vectorize)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   oktett_isa_flags(sse42.cpp -msse4.2)
   oktett_isa_flags(avx2.cpp -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)

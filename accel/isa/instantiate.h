@@ -86,19 +86,26 @@ void any_hit_stream(const Accel& accel, const RaySpan& rays, std::uint8_t* occlu
   }
 }
 
+/// Calls f<W>() for the packet width that `mode` asks for. Without vector registers every ray goes alone.
+template <class A, class Function>
+OKTETT_INLINE void with_width(TraceMode mode, Function&& f) {
+  if constexpr (std::is_same_v<A, ScalarIsa>) {
+    f.template operator()<1>();
+  } else {
+    if (mode == TraceMode::packet4) return f.template operator()<4>();
+    if (mode == TraceMode::packet16) return f.template operator()<16>();
+    if (mode == TraceMode::single) return f.template operator()<1>();
+    f.template operator()<8>();
+  }
+}
+
 template <class A>
 struct IsaCode {
   static void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
-    if (mode == TraceMode::packet4) return closest_hit_stream<4, A>(accel, rays, hits, mode);
-    if (mode == TraceMode::packet16) return closest_hit_stream<16, A>(accel, rays, hits, mode);
-    if (mode == TraceMode::single) return closest_hit_stream<1, A>(accel, rays, hits, mode);
-    closest_hit_stream<8, A>(accel, rays, hits, mode);
+    with_width<A>(mode, [&]<int W>() { closest_hit_stream<W, A>(accel, rays, hits, mode); });
   }
   static void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
-    if (mode == TraceMode::packet4) return any_hit_stream<4, A>(accel, rays, occluded, mode);
-    if (mode == TraceMode::packet16) return any_hit_stream<16, A>(accel, rays, occluded, mode);
-    if (mode == TraceMode::single) return any_hit_stream<1, A>(accel, rays, occluded, mode);
-    any_hit_stream<8, A>(accel, rays, occluded, mode);
+    with_width<A>(mode, [&]<int W>() { any_hit_stream<W, A>(accel, rays, occluded, mode); });
   }
   static void all_hits(const Accel& accel, const Ray& ray, HitList& hits) {
     using F = Simd<float, 1, A>;
