@@ -36,6 +36,9 @@ fs::path resolve(const std::string& path) {
 
 void check_target(const std::string& path, const fs::path& target) {
   std::error_code error;
+  const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (!fs::is_directory(directory, error))
+    fail(path, "cannot write: no directory '" + directory.string() + "'");
   const fs::file_status status = fs::status(target, error);
   if (fs::is_directory(status)) fail(path, "cannot write: is a directory");
   if (fs::exists(status) && !fs::is_regular_file(status)) fail(path, "cannot write: is not a regular file");

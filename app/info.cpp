@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "app/json.h"
+#include "app/render_options.h"
+#include "app/scene_summary.h"
+#include "app/units.h"
+#include "app/warnings.h"
+#include "io/scene_file.h"
+
+namespace oktett {
+
+namespace {
+
+struct InfoArguments {
+  std::string file;
+  std::vector<std::string> definitions;
+  bool json = false;
+};
+
+std::string closed_text(const SceneSummary& summary) {
+  if (summary.meshes == 0) return "-";
+  return summary.open_edges == 0 ? "closed" : grouped(summary.open_edges) + " open edges";
+}
+
+/// Recursive instances can show more than an integer counts.
+std::string count_text(double count) {
+  return count < 1e15 ? grouped(static_cast<std::uint64_t>(count)) : fmt::format("{:.3g}", count);
+}
+
+std::string bounds_text(const Box& box) {
+  if (box.empty()) return "none";
+  return fmt::format("[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}]", box.lo.x, box.lo.y, box.lo.z, box.hi.x,
+                     box.hi.y, box.hi.z);
+}
+
+void print_text(const Scene& scene, const SceneSummary& summary) {
+  const auto line = [](const char* name, const std::string& value) { fmt::print("{:<18}{}\n", name, value); };
+  line("file", scene.source);
+  line("meshes", grouped(summary.meshes));
+  line("triangles", grouped(summary.triangles));
+  if (summary.instances > 0) line("  with instances", count_text(summary.triangles_shown));
+  line("vertices", grouped(summary.vertices));
+  line("surface", closed_text(summary));
+  line("other shapes", grouped(summary.other_shapes));
+  if (summary.unbounded > 0) line("  unbounded", grouped(summary.unbounded));
+  line("instances", grouped(summary.instances));
+  line("prototypes", grouped(scene.prototypes.size()));
+  line("materials", grouped(scene.materials.size()));
+  line("textures", grouped(scene.textures.size()));
+  line("lights", scene.lights_given ? grouped(scene.lights.size()) : "default");
+  line("camera", scene.camera_given ? "given" : "default");
+  line("bounds", bounds_text(summary.bounds));
+  line("mesh memory", bytes_text(summary.mesh_bytes));
+}
+
+void print_json(const Scene& scene, const SceneSummary& summary) {
+  JsonObject all;
+  all.add("file", scene.source);
+  all.add("meshes", summary.meshes);
+  all.add("triangles", summary.triangles);
+  all.add("triangles_shown", summary.triangles_shown);
+  all.add("vertices", summary.vertices);
+  all.add("open_edges", summary.open_edges);
+  all.add("closed", summary.meshes > 0 && summary.open_edges == 0);
+  all.add("other_shapes", summary.other_shapes);
+  all.add("unbounded", summary.unbounded);
+  all.add("instances", summary.instances);
+  all.add("prototypes", std::uint64_t{scene.prototypes.size()});
+  all.add("materials", std::uint64_t{scene.materials.size()});
+  all.add("textures", std::uint64_t{scene.textures.size()});
+  all.add("lights", std::uint64_t{scene.lights.size()});
+  all.add("camera_given", scene.camera_given);
+  if (!summary.bounds.empty()) {
+    const Box& box = summary.bounds;
+    all.add("bounds_min", std::vector<double>{box.lo.x, box.lo.y, box.lo.z});
+    all.add("bounds_max", std::vector<double>{box.hi.x, box.hi.y, box.hi.z});
+  }
+  all.add("mesh_bytes", summary.mesh_bytes);
+  fmt::print("{}\n", all.text());
+}
+
+int run_info(const InfoArguments& arguments) {
+  const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions));
+  print_warnings(scene.warnings);
+  const SceneSummary summary = summarize(scene);
+  if (arguments.json)
+    print_json(scene, summary);
+  else
+    print_text(scene, summary);
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Command& command) {
+  CLI::App* verb = app.add_subcommand("info", "Print what a scene file or a mesh holds");
+  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+  const auto arguments = std::make_shared<InfoArguments>();
+  verb->add_option("file", arguments->file, "Scene file (.yaml) or mesh (.obj)")
+      ->required()
+      ->type_name("FILE");
+  verb->add_option("-D", arguments->definitions, "Define ${k} of the scene file; may be repeated")
+      ->type_name("k=v")
+      ->allow_extra_args(false);
+  verb->add_flag("--json", arguments->json, "Print one JSON object");
+  verb->callback([&command, arguments] { command.run = [arguments] { return run_info(*arguments); }; });
+}
+
+}  // namespace oktett

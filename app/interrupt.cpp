@@ -1,0 +1,47 @@
+#include "app/interrupt.h"
+
+#include <csignal>
+
+namespace oktett {
+
+namespace {
+
+std::atomic<bool> stop_flag{false};
+std::atomic<int> stop_signal{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+constexpr int kSignals[] = {SIGINT, SIGTERM};
+struct sigaction previous[2];
+
+void on_signal(int number) {
+  if (stop_flag.exchange(true)) {
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+  }
+  stop_signal = number;
+}
+
+}  // namespace
+
+StopOnSignal::StopOnSignal() {
+  stop_flag = false;
+  stop_signal = 0;
+  struct sigaction action {};
+  action.sa_handler = &on_signal;
+  // The second signal may be of the other kind: neither is blocked while the first is handled.
+  action.sa_flags = SA_RESTART | SA_NODEFER;
+  for (int i = 0; i < 2; ++i) {
+    sigaction(kSignals[i], nullptr, &previous[i]);
+    // A parent that made us ignore a signal (nohup, background jobs) means it.
+    if (previous[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
+  }
+}
+
+StopOnSignal::~StopOnSignal() {
+  for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &previous[i], nullptr);
+}
+
+const std::atomic<bool>* StopOnSignal::flag() const { return &stop_flag; }
+int StopOnSignal::signal() const { return stop_signal; }
+
+}  // namespace oktett

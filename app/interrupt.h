@@ -1,0 +1,22 @@
+#pragma once
+/// \file Ending a render early, on the user's demand.
+
+#include <atomic>
+
+namespace oktett {
+
+/// While it lives, the first SIGINT or SIGTERM sets a flag and the second ends the process at once. One at a
+/// time.
+class StopOnSignal {
+ public:
+  StopOnSignal();
+  ~StopOnSignal();
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+  const std::atomic<bool>* flag() const;
+  /// The signal that came, or 0.
+  int signal() const;
+};
+
+}  // namespace oktett

@@ -1,0 +1,56 @@
+#include "app/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "app/units.h"
+
+namespace oktett {
+
+std::string progress_text(const RenderProgress& progress) {
+  const double done = static_cast<double>(progress.pixels_done);
+  const double total = static_cast<double>(progress.pixels_total);
+  const double fraction = total > 0 ? done / total : 1;
+  std::string text = fmt::format("{:5.1f}%  elapsed {}", 100 * fraction, duration_text(progress.seconds));
+  if (done > 0) text += "  remaining " + duration_text(progress.seconds * (total - done) / done);
+  if (progress.seconds > 0)
+    text += "  " + with_prefix(static_cast<double>(progress.rays) / progress.seconds) + "rays/s";
+  return text;
+}
+
+ProgressLine::ProgressLine(Mode mode) : terminal_(isatty(STDERR_FILENO) == 1) {
+  shown_ = mode == Mode::always || (mode == Mode::automatic && terminal_);
+}
+
+void ProgressLine::show(const RenderProgress& progress) {
+  if (!shown_) return;
+  last_ = progress;
+  const auto now = std::chrono::steady_clock::now();
+  held_back_ = !terminal_ && now < next_;
+  if (held_back_) return;
+  next_ = now + std::chrono::seconds(1);
+  print(progress);
+}
+
+void ProgressLine::print(const RenderProgress& progress) {
+  // The escape sequence clears what a longer line before this one left to the right.
+  fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", progress_text(progress), terminal_ ? "\x1b[K" : "\n");
+  std::fflush(stderr);
+  line_open_ = terminal_;
+}
+
+void ProgressLine::clear() {
+  if (line_open_) fmt::print(stderr, "\r\x1b[K");
+  line_open_ = false;
+}
+
+void ProgressLine::finish() {
+  if (held_back_) print(last_);
+  held_back_ = false;
+  if (line_open_) fmt::print(stderr, "\n");
+  line_open_ = false;
+}
+
+}  // namespace oktett

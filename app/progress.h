@@ -1,0 +1,41 @@
+#pragma once
+/// \file The progress line.
+
+#include <chrono>
+#include <string>
+
+#include "render/render.h"
+
+namespace oktett {
+
+/// One line on stderr: percent, elapsed, remaining, rays/s. On a terminal it is rewritten in place;
+/// elsewhere, if asked for, a line is added at most once a second.
+class ProgressLine {
+ public:
+  enum class Mode { automatic, always, never };
+  explicit ProgressLine(Mode mode);
+  ~ProgressLine() { finish(); }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const RenderProgress& progress);
+  /// Leaves room for a message: on a terminal, clears the line.
+  void clear();
+  /// Shows the last state if it was held back, and ends the line.
+  void finish();
+
+ private:
+  void print(const RenderProgress& progress);
+
+  bool shown_ = false;  ///< anything is shown at all
+  bool terminal_ = false;
+  bool line_open_ = false;
+  bool held_back_ = false;
+  RenderProgress last_;
+  std::chrono::steady_clock::time_point next_{};
+};
+
+/// " 42.0%  elapsed 1.2 s  remaining 1.7 s  12.3 Mrays/s".
+std::string progress_text(const RenderProgress& progress);
+
+}  // namespace oktett

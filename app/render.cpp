@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/command.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/render_options.h"
+#include "app/render_report.h"
+#include "app/units.h"
+#include "app/warnings.h"
+#include "core/error.h"
+#include "core/isa.h"
+#include "io/display.h"
+#include "io/image.h"
+#include "io/scene_file.h"
+#include "io/texture.h"
+#include "render/render.h"
+
+namespace oktett {
+
+namespace {
+
+class Stopwatch {
+ public:
+  /// Seconds since construction or the last lap.
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check_stats(const std::string& stats) {
+  if (!stats.empty() && stats != "text" && stats != "json" && stats != "false")
+    throw Error("--stats: unknown format '" + stats + "'; expected --stats or --stats=json");
+}
+
+Scene load(const RenderArguments& arguments) {
+  // A mistyped option should not cost the time to read a large scene.
+  Scene none;
+  override_scene(arguments, none);
+  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
+  override_scene(arguments, scene);
+  return scene;
+}
+
+void print_plan(const Scene& scene, const RenderOptions& options, const std::string& output) {
+  fmt::print(stderr, "{}: {} objects, {} materials, {} lights\n", scene.source, scene.objects.size(),
+             scene.materials.size(), scene.lights.size());
+  fmt::print(stderr, "{} x {} pixels, {} samples each, integrator {}, {}, {} threads, to {}\n",
+             scene.film.width, scene.film.height, scene.integrator.samples, to_string(scene.integrator.kind),
+             to_string(options.isa), options.threads == 0 ? "all" : std::to_string(options.threads), output);
+}
+
+ImageMetadata metadata_of(const Command& command, const RenderArguments& arguments,
+                          const RenderResult& result) {
+  ImageMetadata metadata;
+  metadata.software = program_version();
+  metadata.command_line = command.line;
+  metadata.scene = arguments.scene;
+  metadata.samples = result.scene.integrator.samples;
+  metadata.render_seconds = result.report.render_seconds;
+  metadata.camera =
+      camera_matrices(result.scene.camera, result.picture.full_width, result.picture.full_height);
+  return metadata;
+}
+
+/// What is shown while tracing: the progress line and, if asked for, the live preview.
+class Watch {
+ public:
+  Watch(const RenderArguments& arguments, RenderOptions& options)
+      : line_(arguments.quiet      ? ProgressLine::Mode::never
+              : arguments.progress ? ProgressLine::Mode::always
+                                   : ProgressLine::Mode::automatic) {
+    options.progress = [this](const RenderProgress& progress) {
+      last_ = progress;
+      line_.show(progress);
+    };
+    if (arguments.display_server.empty()) return;
+    const std::string title = std::filesystem::path(arguments.scene).filename().string();
+    display_ = std::make_unique<Display>(arguments.display_server, title);
+    options.tile_finished = [this](const Picture& picture, const FinishedTile& tile) {
+      display_->update(picture, tile);
+      print_display_warning();
+    };
+  }
+
+  void finish() {
+    if (display_) {
+      display_->finish();
+      print_display_warning();
+    }
+    line_.finish();
+  }
+
+  /// Of the pixels asked for, as far as was told.
+  double percent_done() const {
+    if (last_.pixels_total == 0) return 0;
+    return 100 * static_cast<double>(last_.pixels_done) / static_cast<double>(last_.pixels_total);
+  }
+
+ private:
+  void print_display_warning() {
+    const std::string warning = display_->take_warning();
+    if (warning.empty()) return;
+    line_.clear();
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+
+  ProgressLine line_;
+  std::unique_ptr<Display> display_;
+  RenderProgress last_;
+};
+
+void print_summary(const RenderArguments& arguments, const StageTimes& times, const RenderReport& report,
+                   const std::string& output) {
+  const bool json = arguments.stats == "json";
+  if (arguments.stats == "text") fmt::print("{}", stats_text(report));
+  if (json) fmt::print("{}\n", stats_json(times, report, output));
+  // Standard output is all JSON or none.
+  if (!arguments.quiet)
+    fmt::print(json ? stderr : stdout, "{}\nwrote {}\n", times_text(times, report), output);
+  std::fflush(stdout);
+  if (report.bad_samples > 0)
+    fmt::print(stderr, "warning: {} samples were NaN or infinite and were left out\n", report.bad_samples);
+}
+
+int run_render(const Command& command, const RenderArguments& arguments) {
+  check_stats(arguments.stats);
+  const std::string output = output_path(arguments);
+  check_output(output);
+  RenderOptions options;
+  options.isa = choose_isa(arguments.isa);
+  options.threads = arguments.threads;
+  options.data_layers = keeps_all_planes(output);
+
+  Stopwatch watch;
+  StageTimes times;
+  Scene scene = load(arguments);
+  const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
+  print_warnings(scene.warnings, most_warnings);
+  const ImageTextures textures(scene.textures);
+  print_warnings(textures.warnings(), most_warnings);
+  options.textures = &textures;
+  if (arguments.verbose && !arguments.quiet) print_plan(scene, options, output);
+  times.load = watch.lap();
+
+  // A first signal ends the tracing, not the writing.
+  const StopOnSignal interrupt;
+  options.stop = interrupt.flag();
+  Watch shown(arguments, options);
+  const RenderResult result = render(std::move(scene), options);
+  shown.finish();
+  times.build = result.report.build_seconds;
+  times.render = result.report.render_seconds;
+  watch.lap();
+  write_image(output, result.picture, metadata_of(command, arguments, result));
+  times.write = watch.lap();
+  print_summary(arguments, times, result.report, output);
+  if (!result.report.stopped) return 0;
+  fmt::print(stderr, "stopped by {}: {:.1f}% of the picture is finished, the rest is black\n",
+             interrupt.signal() == SIGTERM ? "SIGTERM" : "SIGINT", shown.percent_done());
+  return 128 + interrupt.signal();
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Command& command) {
+  CLI::App* verb = app.add_subcommand("render", "Render a scene file or a mesh to a picture");
+  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+  const auto arguments = std::make_shared<RenderArguments>();
+  add_render_options(*verb, *arguments);
+  verb->callback([&command, arguments] {
+    command.run = [&command, arguments] { return run_render(command, *arguments); };
+  });
+}
+
+}  // namespace oktett

@@ -1,0 +1,48 @@
+#pragma once
+/// \file What the user asks of `oktett render`, and how it changes a scene.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/scene_file.h"
+#include "render/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace oktett {
+
+/// The words of the command line, not yet checked beyond being numbers where numbers belong.
+struct RenderArguments {
+  std::string scene;
+  std::string outfile;
+  unsigned threads = 0;
+  std::optional<std::uint32_t> samples;
+  std::optional<std::uint32_t> seed;
+  std::string size;
+  std::string crop;
+  std::string integrator;
+  std::string isa;
+  std::vector<std::string> definitions;
+  std::string stats;  ///< "", "text" or "json"
+  std::string display_server;
+  bool quiet = false;
+  bool verbose = false;
+  bool progress = false;
+};
+
+void add_render_options(CLI::App& verb, RenderArguments& arguments);
+
+/// Puts what the arguments say in place of what the scene says. Throws Error for words that mean nothing.
+void override_scene(const RenderArguments& arguments, Scene& scene);
+/// Splits `name=value` words; the last of a name counts.
+Definitions parse_definitions(const std::vector<std::string>& words);
+/// `outfile`, or the scene's name with .png in the current directory.
+std::string output_path(const RenderArguments& arguments);
+
+const char* to_string(IntegratorKind kind);
+
+}  // namespace oktett

@@ -1,0 +1,171 @@
+#include "app/scene_summary.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <variant>
+#include <vector>
+
+namespace oktett {
+
+namespace {
+
+void grow(Box& box, const Vec3d& low, const Vec3d& high) { box.grow(Box{round_down(low), round_up(high)}); }
+
+Box sphere_bounds(const SphereShape& sphere) {
+  const Vec3d r{sphere.radius, sphere.radius, sphere.radius};
+  return {round_down(sphere.center - r), round_up(sphere.center + r)};
+}
+
+/// Bounds of one shape in its own space; empty if it is unbounded.
+struct ShapeBounds {
+  const std::vector<Box>& prototypes;
+
+  Box operator()(const MeshShape& shape) const {
+    Box box;
+    if (shape.mesh)
+      for (const Vec3f& p : shape.mesh->positions) box.grow(p);
+    return box;
+  }
+  Box operator()(const SphereShape& shape) const { return sphere_bounds(shape); }
+  Box operator()(const SpheresShape& shape) const {
+    Box box;
+    for (const SphereShape& sphere : shape.spheres) box.grow(sphere_bounds(sphere));
+    return box;
+  }
+  Box operator()(const PlaneShape&) const { return {}; }
+  Box operator()(const DiskShape& shape) const {
+    const Vec3d n = normalize(shape.normal);
+    const auto reach = [&](double c) { return shape.radius * std::sqrt(std::max(0.0, 1 - c * c)); };
+    const Vec3d extent{reach(n.x), reach(n.y), reach(n.z)};
+    return {round_down(shape.center - extent), round_up(shape.center + extent)};
+  }
+  Box operator()(const BoxShape& shape) const { return {round_down(shape.min), round_up(shape.max)}; }
+  Box operator()(const PolygonShape& shape) const {
+    Box box;
+    for (const Vec3d& v : shape.vertices) grow(box, v, v);
+    return box;
+  }
+  Box operator()(const TriangleShape& shape) const {
+    Box box;
+    for (const Vec3d& v : shape.v) grow(box, v, v);
+    return box;
+  }
+  Box operator()(const InstanceShape& shape) const {
+    return shape.prototype < prototypes.size() ? prototypes[shape.prototype] : Box{};
+  }
+};
+
+/// Tight for a mesh, whose box would grow when it is turned.
+Box object_bounds(const Object& object, const std::vector<Box>& prototypes) {
+  const auto* shape = std::get_if<MeshShape>(&object.shape);
+  if (shape == nullptr || object.transform.is_identity()) {
+    const Box box = std::visit(ShapeBounds{prototypes}, object.shape);
+    return box.empty() || object.transform.is_identity() ? box : transform_bounds(object.transform, box);
+  }
+  Box box;
+  for (const Vec3f& p : shape->mesh->positions) {
+    const Vec3d moved = object.transform.point(static_cast<Vec3d>(p));
+    grow(box, moved, moved);
+  }
+  return box;
+}
+
+/// What a list of objects shows, its instances followed.
+struct Shown {
+  Box bounds;
+  double triangles = 0;
+};
+
+class Counter {
+ public:
+  explicit Counter(const Scene& scene) {
+    // A prototype holds instances of those before it only.
+    for (const Prototype& prototype : scene.prototypes) {
+      const Shown shown = count(prototype.objects);
+      prototype_bounds_.push_back(shown.bounds);
+      prototype_triangles_.push_back(shown.triangles);
+    }
+    const Shown shown = count(scene.objects);
+    summary_.bounds = shown.bounds;
+    summary_.triangles_shown = shown.triangles;
+  }
+
+  const SceneSummary& summary() const { return summary_; }
+
+ private:
+  Shown count(const std::vector<Object>& objects) {
+    Shown shown;
+    for (const Object& object : objects) {
+      shown.bounds.grow(object_bounds(object, prototype_bounds_));
+      shown.triangles += count_shape(object.shape);
+    }
+    return shown;
+  }
+
+  /// Returns the triangles that the shape shows.
+  double count_shape(const Shape& shape) {
+    if (const auto* mesh = std::get_if<MeshShape>(&shape)) return count_mesh(*mesh);
+    if (const auto* instance = std::get_if<InstanceShape>(&shape)) {
+      ++summary_.instances;
+      return instance->prototype < prototype_triangles_.size() ? prototype_triangles_[instance->prototype]
+                                                               : 0;
+    }
+    const auto* spheres = std::get_if<SpheresShape>(&shape);
+    summary_.other_shapes += spheres != nullptr ? spheres->spheres.size() : 1;
+    summary_.unbounded += std::holds_alternative<PlaneShape>(shape) ? 1 : 0;
+    return 0;
+  }
+
+  double count_mesh(const MeshShape& shape) {
+    if (!shape.mesh) return 0;
+    const TriangleMesh& mesh = *shape.mesh;
+    if (seen_.insert(&mesh).second) {
+      ++summary_.meshes;
+      summary_.triangles += mesh.triangle_count();
+      summary_.vertices += mesh.positions.size();
+      summary_.mesh_bytes += mesh.bytes();
+      summary_.open_edges += count_open_edges(mesh);
+    }
+    return static_cast<double>(mesh.triangle_count());
+  }
+
+  SceneSummary summary_;
+  std::set<const TriangleMesh*> seen_;
+  std::vector<Box> prototype_bounds_;
+  std::vector<double> prototype_triangles_;
+};
+
+}  // namespace
+
+SceneSummary summarize(const Scene& scene) { return Counter(scene).summary(); }
+
+std::uint64_t count_open_edges(const TriangleMesh& mesh) {
+  // The lower index first, so that both directions of an edge sort together.
+  struct Edge {
+    std::uint32_t low, high;
+    bool backwards;
+    bool operator<(const Edge& b) const { return low != b.low ? low < b.low : high < b.high; }
+  };
+  const std::size_t count = mesh.triangle_count() * 3;
+  std::vector<Edge> edges;
+  edges.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t a = mesh.indices[i];
+    const std::uint32_t b = mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
+    if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a > b});
+  }
+  tbb::parallel_sort(edges.begin(), edges.end());
+  std::uint64_t open = 0;
+  for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
+    std::int64_t balance = 0;
+    for (end = begin; end < edges.size() && !(edges[begin] < edges[end]); ++end)
+      balance += edges[end].backwards ? -1 : 1;
+    open += balance != 0 ? 1 : 0;
+  }
+  return open;
+}
+
+}  // namespace oktett

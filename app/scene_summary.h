@@ -1,0 +1,32 @@
+#pragma once
+/// \file Counting what a scene holds.
+
+#include <cstdint>
+
+#include "core/box.h"
+#include "render/scene.h"
+
+namespace oktett {
+
+/// Unique things count once, however often instances show them, unless said otherwise.
+struct SceneSummary {
+  std::uint64_t meshes = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t vertices = 0;
+  std::uint64_t mesh_bytes = 0;
+  std::uint64_t other_shapes =
+      0;  ///< objects that are neither mesh nor instance; a list of spheres counts each
+  std::uint64_t instances = 0;
+  double triangles_shown = 0;    ///< with all instances multiplied out
+  std::uint64_t unbounded = 0;   ///< infinite planes
+  Box bounds;                    ///< of all that is shown and bounded; empty if nothing is
+  std::uint64_t open_edges = 0;  ///< summed over meshes; see count_open_edges
+};
+
+SceneSummary summarize(const Scene& scene);
+
+/// The edges of `mesh` that keep it from being closed: those whose triangles do not pair up in opposite
+/// directions. Vertices are told apart by index.
+std::uint64_t count_open_edges(const TriangleMesh& mesh);
+
+}  // namespace oktett

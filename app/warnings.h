@@ -1,0 +1,14 @@
+#pragma once
+/// \file Warnings on stderr.
+
+#include <cstddef>
+#include <vector>
+
+#include "core/error.h"
+
+namespace oktett {
+
+/// Prints the first `most` warnings to stderr and how many more there are.
+void print_warnings(const std::vector<Warning>& warnings, std::size_t most = 20);
+
+}  // namespace oktett

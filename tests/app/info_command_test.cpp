@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "tests/app/run_command.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+using test::CommandResult;
+using test::run_command;
+using test::TempDir;
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(InfoCommand, TellsAClosedMeshFromAnOpenOne) {
+  const TempDir dir;
+  dir.write("closed.obj", kTetrahedron);
+  std::string open = kTetrahedron;
+  dir.write("open.obj", open.substr(0, open.rfind("f 1 4 3")));
+  const CommandResult closed = run_command(dir, {"info", "--json", "closed.obj"});
+  EXPECT_EQ(closed.status, 0) << closed.err;
+  EXPECT_TRUE(contains(closed.out, "\"triangles\": 4"));
+  EXPECT_TRUE(contains(closed.out, "\"vertices\": 4"));
+  EXPECT_TRUE(contains(closed.out, "\"closed\": true"));
+  EXPECT_TRUE(contains(closed.out, "\"bounds_max\": [1, 1, 1]"));
+  EXPECT_EQ(std::count(closed.out.begin(), closed.out.end(), '\n'), 1);
+  const CommandResult opened = run_command(dir, {"info", "--json", "open.obj"});
+  EXPECT_TRUE(contains(opened.out, "\"open_edges\": 3")) << opened.out;
+  EXPECT_TRUE(contains(run_command(dir, {"info", "open.obj"}).out, "3 open edges"));
+}
+
+TEST(InfoCommand, CountsThroughInstances) {
+  const TempDir dir;
+  dir.write("tetra.obj", kTetrahedron);
+  const std::string scene = dir.write("scene.yaml",
+                                      "oktett: 1\n"
+                                      "define:\n"
+                                      "  one: {mesh: {file: tetra.obj}}\n"
+                                      "objects:\n"
+                                      "  - instance: one\n"
+                                      "  - instance: one\n"
+                                      "    transform: [{translate: [5, 0, 0]}]\n"
+                                      "  - sphere: {center: [0, -2, 0], radius: 1}\n"
+                                      "  - plane: {}\n");
+  const CommandResult result = run_command(dir, {"info", "--json", scene});
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"\"meshes\": 1", "\"triangles\": 4", "\"triangles_shown\": 8", "\"instances\": 2",
+                           "\"prototypes\": 1", "\"other_shapes\": 2", "\"unbounded\": 1",
+                           "\"bounds_min\": [-1, -3, -1]", "\"bounds_max\": [6.0", "\"camera_given\": false"})
+    EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
+  EXPECT_TRUE(contains(run_command(dir, {"info", scene}).out, "triangles"));
+}
+
+}  // namespace
+}  // namespace oktett

@@ -1,0 +1,193 @@
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_command.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandProcess;
+using test::CommandResult;
+using test::file_content;
+using test::run_command;
+using test::TempDir;
+
+constexpr const char* kScene =
+    "oktett: 1\n"
+    "film: {width: 16, height: 12}\n"
+    "integrator: {samples: 1}\n"
+    "camera: {from: [0, 0, 5], at: [0, 0, 0]}\n"
+    "objects:\n"
+    "  - sphere: {radius: 1}\n";
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::size_t file_count(const TempDir& dir) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator()));
+}
+
+OIIO::ImageSpec header(const std::string& path) {
+  const auto input = OIIO::ImageInput::open(path);
+  EXPECT_TRUE(input) << path << ": " << OIIO::geterror();
+  return input ? input->spec() : OIIO::ImageSpec{};
+}
+
+TEST(RenderCommand, WritesThePictureAndTellsTimes) {
+  const TempDir dir;
+  fs::create_directory(dir.path() / "scenes");
+  dir.write("scenes/ball.yaml", kScene);
+  const CommandResult result = run_command(dir, {"render", "scenes/ball.yaml"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  for (const char* word : {"load", "build", "render", "rays/s", "write", "wrote ball.png"})
+    EXPECT_TRUE(contains(result.out, word)) << word << "\n" << result.out;
+  const OIIO::ImageSpec spec = header(dir.file("ball.png"));
+  EXPECT_EQ(spec.width, 16);
+  EXPECT_EQ(spec.height, 12);
+  EXPECT_EQ(file_count(dir), 2u);
+}
+
+TEST(RenderCommand, OptionsOverrideTheScene) {
+  const TempDir dir;
+  dir.write("ball.yaml", kScene);
+  const CommandResult result = run_command(
+      dir, {"render", "ball.yaml", "--size", "40x20", "--cropwindow", "0.25,0.5,0,0.5", "--spp", "3",
+            "--seed", "7", "--integrator", "normal", "--isa", "scalar", "-t", "1", "-o", "a.exr", "--quiet"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  const OIIO::ImageSpec spec = header(dir.file("a.exr"));
+  EXPECT_EQ(spec.full_width, 40);
+  EXPECT_EQ(spec.full_height, 20);
+  EXPECT_EQ(spec.x, 10);
+  EXPECT_EQ(spec.y, 0);
+  EXPECT_EQ(spec.width, 10);
+  EXPECT_EQ(spec.height, 10);
+  EXPECT_EQ(spec.get_int_attribute("samples"), 3);
+  EXPECT_EQ(spec.get_string_attribute("scene"), "ball.yaml");
+  EXPECT_EQ(spec.get_string_attribute("Software").substr(0, 7), "oktett ");
+  EXPECT_EQ(spec.get_string_attribute("commandLine").substr(0, 23), "oktett render ball.yaml");
+  EXPECT_NE(spec.find_attribute("worldToCamera"), nullptr);
+  EXPECT_GE(spec.channelindex("Z"), 0);
+  EXPECT_GE(spec.channelindex("primID.I"), 0);
+}
+
+TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
+  const TempDir dir;
+  dir.write("ball.yaml", kScene);
+  const CommandResult text = run_command(dir, {"render", "ball.yaml", "--stats"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  for (const char* word : {"camera", "shadow", "bytes per triangle", "sah cost", "bad samples"})
+    EXPECT_TRUE(contains(text.out, word)) << word;
+  const CommandResult json = run_command(dir, {"render", "--stats=json", "ball.yaml"});
+  EXPECT_EQ(json.status, 0) << json.err;
+  EXPECT_EQ(json.out.front(), '{');
+  EXPECT_EQ(json.out.substr(json.out.size() - 2), "}\n");
+  EXPECT_EQ(std::count(json.out.begin(), json.out.end(), '\n'), 1);
+  EXPECT_TRUE(contains(json.out, "\"output\": \"ball.png\""));
+  EXPECT_TRUE(contains(json.err, "wrote ball.png"));
+}
+
+TEST(RenderCommand, ProgressIsShownOnlyOnDemandWithoutATerminal) {
+  const TempDir dir;
+  dir.write("ball.yaml", kScene);
+  EXPECT_EQ(run_command(dir, {"render", "ball.yaml"}).err, "");
+  // A small picture may be done before the first report is due.
+  const CommandResult result = run_command(dir, {"render", "ball.yaml", "--progress", "--size", "800x800"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_FALSE(contains(result.err, "\r"));
+  EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "--progress", "--quiet"}).err, "");
+}
+
+// Outputs that cannot be written are refused before any work: the scene file here does not even exist.
+TEST(RenderCommand, RefusesBadOutputsFirst) {
+  const TempDir dir;
+  dir.write("plain", "x");
+  struct Case {
+    const char* outfile;
+    int status;
+    const char* message;
+  };
+  for (const Case& c : {Case{"-", 2, "standard output"},
+                        {"a.xyz", 2, "known ones are .exr, .png"},
+                        {"a", 2, "unknown"},
+                        {"no/a.png", 1, "no directory 'no'"},
+                        {"plain/a.png", 1, "no directory 'plain'"},
+                        {".", 1, "is a directory"},
+                        {"/proc/a.png", 1, "cannot write"}}) {
+    const CommandResult result = run_command(dir, {"render", "missing.yaml", "-o", c.outfile});
+    EXPECT_EQ(result.status, c.status) << c.outfile;
+    EXPECT_TRUE(contains(result.err, c.message)) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
+  }
+  EXPECT_EQ(file_count(dir), 1u);
+}
+
+TEST(RenderCommand, ABadSceneLeavesTheOldPicture) {
+  const TempDir dir;
+  dir.write("bad.yaml", "oktett: 1\nwidth: 3\n");
+  dir.write("bad.png", "old");
+  EXPECT_EQ(run_command(dir, {"render", "bad.yaml"}).status, 2);
+  EXPECT_EQ(file_content(dir.file("bad.png")), "old");
+  EXPECT_EQ(file_count(dir), 2u);
+}
+
+TEST(RenderCommand, WarningsAreBounded) {
+  const TempDir dir;
+  std::string scene = kScene;
+  for (int i = 0; i < 30; ++i) scene += "  - sphere: {radius: 0}\n";
+  dir.write("many.yaml", scene);
+  const CommandResult bounded = run_command(dir, {"render", "many.yaml"});
+  EXPECT_EQ(bounded.status, 0) << bounded.err;
+  EXPECT_EQ(bounded.err.substr(0, 17), "many.yaml:7:5: wa") << bounded.err;
+  EXPECT_TRUE(contains(bounded.err, "... and 10 more warnings"));
+  EXPECT_EQ(std::count(bounded.err.begin(), bounded.err.end(), '\n'), 21);
+  EXPECT_FALSE(contains(run_command(dir, {"render", "many.yaml", "-v"}).err, "more warnings"));
+}
+
+TEST(RenderCommand, AnAbsentDisplayServerIsAWarning) {
+  const TempDir dir;
+  dir.write("ball.yaml", kScene);
+  const CommandResult result = run_command(dir, {"render", "ball.yaml", "--display-server", "127.0.0.1:1"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(contains(result.err, "warning: no live preview")) << result.err;
+  EXPECT_TRUE(fs::exists(dir.file("ball.png")));
+  EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "--display-server", "a:b"}).status, 2);
+}
+
+/// A render that takes minutes unless it is stopped, in steps much shorter than a second.
+std::vector<std::string> long_render() {
+  return {"render", "ball.yaml", "--size", "2048x2048", "--spp", "256", "--progress", "-o", "long.png"};
+}
+
+TEST(RenderCommand, TheFirstSignalWritesWhatIsFinished) {
+  const TempDir dir;
+  dir.write("ball.yaml", kScene);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    CommandProcess process(dir, long_render());
+    ASSERT_TRUE(process.wait_for_err("%", 60)) << process.err();
+    process.send(signal);
+    EXPECT_EQ(process.wait(), 128 + signal);
+    EXPECT_TRUE(contains(process.err(), signal == SIGINT ? "stopped by SIGINT" : "stopped by SIGTERM"))
+        << process.err();
+    EXPECT_TRUE(contains(process.err(), "% of the picture is finished")) << process.err();
+    EXPECT_TRUE(contains(process.out(), "wrote long.png"));
+    EXPECT_EQ(header(dir.file("long.png")).width, 2048);
+    EXPECT_EQ(file_count(dir), 2u);
+    fs::remove(dir.file("long.png"));
+  }
+}
+
+}  // namespace
+}  // namespace oktett
