@@ -138,23 +138,62 @@ OKTETT_INLINE void leaf_shape_single(const typename S::Pool& pool, std::uint32_t
 // --- a packet
 // -----------------------------------------------------------------------------------------------------------
 
-/// The rays in `lanes` against the triangles of a block, one triangle at a time. All of `lanes` share the
-/// axis `z`.
+/// Decides triangle `k` of a block for the rays in `maybe`, which share the greatest axis `z`.
+template <int W, class A>
+OKTETT_INLINE void decide_packet(const TriangleBlock& block, int k, RayState<W, A>& r, unsigned maybe,
+                                 int z) {
+  using F = Simd<float, W, A>;
+  HitLanes<F> hit;
+  const unsigned hits = maybe & bits(decide_watertight(load_shear(r, z), broadcast_triangle<F>(block, k, z),
+                                                       F::load(r.tmin), F::load(r.tmax), hit));
+  if (hits != 0) accept_packet(r, hits, hit, block.item[k]);
+}
+
+/// The rays in `lanes` against the triangles of a block. All eight triangles are made ready for the filter at
+/// once, then each meets all rays.
 template <int W, class A>
 OKTETT_INLINE void leaf_triangles_packet(const TriangleBlock& block, int count, RayState<W, A>& r,
                                          unsigned lanes, int z) {
   using F = Simd<float, W, A>;
+  using B = Simd<float, TriangleBlock::kSize, A>;
+  alignas(64) float row[13][TriangleBlock::kSize];
+  const FilterTriangle<B> f = filter_triangle(load_triangles<B>(block));
+  const Vec3<B>* vectors[4] = {&f.a, &f.e1, &f.e2, &f.n};
+  for (int i = 0; i < 4; ++i)
+    vectors[i]->x.store(row[3 * i]), vectors[i]->y.store(row[3 * i + 1]), vectors[i]->z.store(row[3 * i + 2]);
+  f.size.store(row[12]);
   const F d_max = F::load(r.d_max);
   for (int k = 0; k < count; ++k) {
-    const auto ray = load_rays(r);
-    const unsigned maybe =
-        bits(filter_watertight(ray, d_max, filter_triangle(broadcast_triangle<F>(block, k)))) & lanes;
-    if (maybe == 0) continue;
-    HitLanes<F> hit;
-    const unsigned hits = bits(decide_watertight(load_shear(r, z), broadcast_triangle<F>(block, k, z),
-                                                 ray.tmin, ray.tmax, hit)) &
-                          maybe;
-    if (hits != 0) accept_packet(r, hits, hit, block.item[k]);
+    const auto vec = [&](int i) {
+      return Vec3<F>{F(row[3 * i][k]), F(row[3 * i + 1][k]), F(row[3 * i + 2][k])};
+    };
+    const FilterTriangle<F> tri{vec(0), vec(1), vec(2), vec(3), F(row[12][k])};
+    const unsigned maybe = bits(filter_watertight(load_rays(r), d_max, tri)) & lanes;
+    if (maybe != 0) decide_packet(block, k, r, maybe, z);
+  }
+}
+
+/// The same for rays that all start at `o`: per ray only three dot products with the direction remain.
+template <int W, class A>
+OKTETT_INLINE void leaf_triangles_origin(const TriangleBlock& block, int count, RayState<W, A>& r,
+                                         unsigned lanes, int z, const Vec3f& o, float d_max) {
+  using F = Simd<float, W, A>;
+  using B = Simd<float, TriangleBlock::kSize, A>;
+  alignas(64) float row[12][TriangleBlock::kSize];
+  const OriginTriangle<B> f =
+      origin_triangle(filter_triangle(load_triangles<B>(block)), broadcast<B>(o), B(d_max));
+  const Vec3<B>* vectors[3] = {&f.u, &f.v, &f.det};
+  for (int i = 0; i < 3; ++i)
+    vectors[i]->x.store(row[3 * i]), vectors[i]->y.store(row[3 * i + 1]), vectors[i]->z.store(row[3 * i + 2]);
+  f.t.store(row[9]), f.error.store(row[10]), f.t_error.store(row[11]);
+  const Vec3<F> d{F::load(r.d[0]), F::load(r.d[1]), F::load(r.d[2])};
+  for (int k = 0; k < count; ++k) {
+    const auto vec = [&](int i) {
+      return Vec3<F>{F(row[3 * i][k]), F(row[3 * i + 1][k]), F(row[3 * i + 2][k])};
+    };
+    const OriginTriangle<F> tri{vec(0), vec(1), vec(2), F(row[9][k]), F(row[10][k]), F(row[11][k])};
+    const unsigned maybe = bits(filter_watertight(d, F::load(r.tmax), tri)) & lanes;
+    if (maybe != 0) decide_packet(block, k, r, maybe, z);
   }
 }
 

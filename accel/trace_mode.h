@@ -7,7 +7,7 @@
 namespace oktett {
 
 enum class TraceMode : std::uint8_t {
-  automatic,  ///< packets of 8 for rays that run together, else one by one
+  automatic,  ///< packets of 8 (of 16 with AVX-512) for rays that run together, else one by one
   single,     ///< one by one
   packet4,
   packet8,

@@ -23,20 +23,23 @@ inline constexpr int kMinPacketRays = W >= 16  ? 4
 struct PacketInterval {
   float near_o[3], far_o[3], near_inv[3], far_inv[3];
   float tmin, slack;
+  float d_max;
   int near_plane[3], far_plane[3];
+  bool one_origin;  ///< all rays start at the same point
 };
 
 template <int W, class A>
 OKTETT_INLINE PacketInterval packet_interval(const RayState<W, A>& r, unsigned lanes) {
   PacketInterval p;
   const int first = __builtin_ctz(lanes);
-  p.tmin = r.tmin[first], p.slack = r.slack[first];
+  p.tmin = r.tmin[first], p.slack = r.slack[first], p.d_max = r.d_max[first];
   float lo_o[3], hi_o[3], lo_i[3], hi_i[3];
   for (int k = 0; k < 3; ++k) lo_o[k] = hi_o[k] = r.o[k][first], lo_i[k] = hi_i[k] = r.inv[k][first];
   for (unsigned rest = lanes & (lanes - 1); rest != 0; rest &= rest - 1) {
     const int i = __builtin_ctz(rest);
     p.tmin = r.tmin[i] < p.tmin ? r.tmin[i] : p.tmin;
     p.slack = r.slack[i] > p.slack ? r.slack[i] : p.slack;
+    p.d_max = r.d_max[i] > p.d_max ? r.d_max[i] : p.d_max;
     for (int k = 0; k < 3; ++k) {
       const float o = r.o[k][i], v = r.inv[k][i];
       lo_o[k] = o < lo_o[k] ? o : lo_o[k], hi_o[k] = o > hi_o[k] ? o : hi_o[k];
@@ -50,6 +53,7 @@ OKTETT_INLINE PacketInterval packet_interval(const RayState<W, A>& r, unsigned l
     // Of the reciprocals the near side takes the least magnitude, the far side the greatest.
     p.near_inv[k] = negative ? hi_i[k] : lo_i[k], p.far_inv[k] = negative ? lo_i[k] : hi_i[k];
   }
+  p.one_origin = lo_o[0] == hi_o[0] && lo_o[1] == hi_o[1] && lo_o[2] == hi_o[2];
   return p;
 }
 
@@ -177,7 +181,12 @@ OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsi
       }
       continue;
     } else if (e.ref.is_triangles()) {
-      leaf_triangles_packet(accel.blocks[e.ref.block()], e.ref.triangle_count(), r, active, z);
+      const TriangleBlock& block = accel.blocks[e.ref.block()];
+      if (interval.one_origin)
+        leaf_triangles_origin(block, e.ref.triangle_count(), r, active, z,
+                              {interval.near_o[0], interval.near_o[1], interval.near_o[2]}, interval.d_max);
+      else
+        leaf_triangles_packet(block, e.ref.triangle_count(), r, active, z);
     } else {
       table_leaf_packet<Q>(accel, accel.leaves[e.ref.table_index()], r, active);
     }

@@ -35,7 +35,9 @@ std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
       i ^= i >> shift;
     }
   } while (i >= n);
-  return i;
+  // A random turn makes every target equally likely for each i, which so few rounds do not for small n.
+  const std::uint64_t turn = (mix_bits(key) >> 32) * n >> 32;
+  return static_cast<std::uint32_t>((i + turn) % n);
 }
 
 }  // namespace oktett

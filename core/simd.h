@@ -163,6 +163,14 @@ OKTETT_INLINE Simd<T, W, A> sqrt(const Simd<T, W, A>& a) {
   return r;
 }
 
+/// `a` with its sign turned where `s` has its sign bit set.
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> flip_sign(const Simd<float, W, A>& a, const Simd<float, W, A>& s) {
+  Simd<float, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::flip_sign(a.part[i], s.part[i]);
+  return r;
+}
+
 /// True where the instruction set has a fused multiply-add, in every width.
 template <class A>
 inline constexpr bool kHasFma = std::is_same_v<A, Avx2Isa> || std::is_same_v<A, Avx512Isa>;

@@ -173,6 +173,10 @@ template <class A>
 OKTETT_INLINE Lane<double, A> sqrt(Lane<double, A> a) {
   return __builtin_sqrt(a.v);
 }
+template <class A>
+OKTETT_INLINE Lane<float, A> flip_sign(Lane<float, A> a, Lane<float, A> s) {
+  return __builtin_signbit(s.v) ? -a.v : a.v;
+}
 template <class T, class A>
 OKTETT_INLINE unsigned bits(LaneBool<T, A> m) {
   return m.v;
@@ -205,6 +209,11 @@ OKTETT_INLINE xsimd::batch<T, X> abs(xsimd::batch<T, X> a) {
 template <class T, class X>
 OKTETT_INLINE xsimd::batch<T, X> sqrt(xsimd::batch<T, X> a) {
   return xsimd::sqrt(a);
+}
+
+template <class X>
+OKTETT_INLINE xsimd::batch<float, X> flip_sign(xsimd::batch<float, X> a, xsimd::batch<float, X> s) {
+  return a ^ (s & xsimd::batch<float, X>(-0.0f));
 }
 
 // Named here so that templates may mention them; instruction sets that have them overload them.

@@ -121,17 +121,15 @@ inline constexpr float kFilterError = 0x1p-18f;
 
 /// Lanes that `decide_watertight` might accept, from the scaled barycentric coordinates u, v, the determinant
 /// and the scaled distance (as in Möller and Trumbore 1997, but with either sign of det). NaN and overflow
-/// keep a lane.
+/// keep a lane: the sum that holds all three is the accumulator of the minimum.
 template <class F>
 OKTETT_INLINE typename F::M filter_decide(const F& det, const F& u, const F& v, const F& t, const F& error,
                                           const F& t_error, const F& tmax) {
   using M = typename F::M;
-  const F zero(0.0f);
-  const M flip = det < zero;
   const F det_abs = abs(det);
-  const F us = select(flip, -u, u), vs = select(flip, -v, v), ts = select(flip, -t, t);
-  const M reject = (us < -error) | (vs < -error) | (us + vs > det_abs + error) | (ts < -t_error) |
-                   (ts > fast_fma(tmax, det_abs + error, t_error));
+  const F us = flip_sign(u, det), vs = flip_sign(v, det), ts = flip_sign(t, det);
+  const F least = min(us, min(vs, det_abs - (us + vs)));
+  const M reject = (least < -error) | (ts < -t_error) | (ts > fast_fma(tmax, det_abs + error, t_error));
   return ~reject;
 }
 
@@ -147,6 +145,34 @@ OKTETT_INLINE typename F::M filter_watertight(const RayLanes<F>& ray, const F& d
   const F scale = F(kFilterError) * tri.size;
   const F error = scale * (reach + tri.size) * d_max;
   return filter_decide(det, u, v, t, error, scale * tri.size * reach, ray.tmax);
+}
+
+/// For rays from one point `o`: what u, v, det and t are as linear functions of the direction, for triangles
+/// in lanes.
+template <class F>
+struct OriginTriangle {
+  Vec3<F> u, v, det;
+  F t, error, t_error;
+};
+
+template <class F>
+OKTETT_INLINE OriginTriangle<F> origin_triangle(const FilterTriangle<F>& tri, const Vec3<F>& o,
+                                                const F& d_max) {
+  const Vec3<F> c = sub_lanes(tri.a, o);
+  OriginTriangle<F> r;
+  r.u = fast_cross(tri.e2, c), r.v = fast_cross(c, tri.e1), r.det = tri.n;
+  r.t = fast_dot(tri.n, c);
+  const F reach = norm1(c), scale = F(kFilterError) * tri.size;
+  r.error = scale * (reach + tri.size) * d_max;
+  r.t_error = scale * tri.size * reach;
+  return r;
+}
+
+/// The filter for rays from the point that `tri` was made for.
+template <class F>
+OKTETT_INLINE typename F::M filter_watertight(const Vec3<F>& d, const F& tmax, const OriginTriangle<F>& tri) {
+  return filter_decide(fast_dot(tri.det, d), fast_dot(tri.u, d), fast_dot(tri.v, d), tri.t, tri.error,
+                       tri.t_error, tmax);
 }
 
 }  // namespace oktett

@@ -1,0 +1,79 @@
+#include "bench/bench_rays.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace oktett::bench {
+namespace {
+
+float radius_of(const Box& b) { return 0.5f * length(b.extent()); }
+
+/// The hit point, a little off the surface on the side of the ray, and the normal on that side.
+Surface lifted_surface(const Accel& accel, const Ray& ray, const Hit& hit, float lift) {
+  Surface s = surface(accel, ray, hit);
+  if (dot(s.geometric_normal, ray.direction) > 0) s.geometric_normal = -s.geometric_normal;
+  s.position += s.geometric_normal * lift;
+  return s;
+}
+
+}  // namespace
+
+RayBatch primary_rays(const Box& bounds, const View& view) {
+  const Vec3f center = bounds.center();
+  const float radius = radius_of(bounds);
+  const Vec3f from = view.inside ? center : center + normalize(Vec3f{0.6f, 0.45f, 1}) * (radius * 2.2f);
+  const Vec3f w = view.inside ? normalize(Vec3f{1, 0.05f, 0.1f}) : normalize(center - from);
+  const Vec3f u = normalize(cross(w, Vec3f{0, 1, 0})), v = cross(u, w);
+  const float f = std::tan(25 * std::numbers::pi_v<float> / 180);
+  const int n = view.resolution;
+  RayBatch rays;
+  rays.resize_uninitialized(static_cast<std::size_t>(n) * n);
+  std::size_t i = 0;
+  for (int tile = 0; tile < (n / 16) * (n / 16); ++tile)
+    for (int k = 0; k < 256; ++k) {
+      // Bits of k from the top: block row, block column, row, column.
+      const int x = tile % (n / 16) * 16 + (k >> 4 & 3) * 4 + (k & 3),
+                y = tile / (n / 16) * 16 + (k >> 6) * 4 + (k >> 2 & 3);
+      const float sx = (2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(n) - 1) * f;
+      const float sy = (1 - 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(n)) * f;
+      rays.set(i++, {from, 0, normalize(w + u * sx + v * sy)});
+    }
+  return rays;
+}
+
+RayBatch shadow_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds,
+                     const View& view) {
+  const float radius = radius_of(bounds);
+  Vec3f light = bounds.center() + normalize(Vec3f{-0.3f, 1, 0.5f}) * (radius * 3);
+  if (view.inside) light = {bounds.center().x, bounds.hi.y * 0.9f, bounds.center().z};
+  RayBatch out;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!hits[i].valid()) continue;
+    const Vec3f p = lifted_surface(accel, rays[i], hits[i], radius * 1e-4f).position;
+    const float distance = length(light - p);
+    out.push_back({p, 0, (light - p) / distance, distance});
+  }
+  return out;
+}
+
+RayBatch diffuse_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds, int count,
+                      float reach) {
+  const float lift = radius_of(bounds) * 1e-4f;
+  RayBatch out;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (!hits[i].valid()) continue;
+    const Surface s = lifted_surface(accel, rays[i], hits[i], lift);
+    Vec3f t, b;
+    make_basis(s.geometric_normal, t, b);
+    for (int k = 0; k < count; ++k) {
+      const std::uint64_t key = pixel_key(0, i);
+      const float a = 2 * std::numbers::pi_v<float> * random_float(key, static_cast<std::uint32_t>(k), 0);
+      const float q = random_float(key, static_cast<std::uint32_t>(k), 1), r = std::sqrt(q);
+      const Vec3f d = t * (r * std::cos(a)) + b * (r * std::sin(a)) + s.geometric_normal * std::sqrt(1 - q);
+      out.push_back({s.position, 0, normalize(d), reach});
+    }
+  }
+  return out;
+}
+
+}  // namespace oktett::bench

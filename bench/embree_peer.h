@@ -1,0 +1,48 @@
+#pragma once
+/// \file Embree 3 or 4 behind the few calls that the comparison needs.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/ray.h"
+
+namespace oktett::bench {
+
+/// How rays are handed to Embree: one, eight or sixteen at a time, with its hint for coherent rays or not.
+struct EmbreeMode {
+  int width = 1;
+  bool coherent = false;
+};
+
+/// All modes that are tried; the best one counts.
+const std::vector<EmbreeMode>& embree_modes();
+
+/// One mesh in one Embree scene.
+class EmbreeScene {
+ public:
+  /// `quality`: 1 = medium, 2 = high. `config` is Embree's device configuration, e.g. "isa=avx2".
+  EmbreeScene(const TriangleMesh& mesh, int quality, int threads, const char* config);
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  double build_seconds() const;
+  /// Bytes that Embree allocated, its copies of vertices and indices included.
+  std::size_t bytes() const;
+
+  /// Rays [begin, begin + count); results as Oktett's own: t = inf and item = kNoId for misses.
+  void closest_hit(const RaySpan& rays, const HitSpan& hits, EmbreeMode mode) const;
+  void any_hit(const RaySpan& rays, std::uint8_t* occluded, EmbreeMode mode) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "3.13.5" or the like.
+const char* embree_version();
+
+}  // namespace oktett::bench
