@@ -32,6 +32,7 @@ TextureSystem& texture_system() {
     (*created)->attribute("automip", 1);
     (*created)->attribute("autotile", 0);
     (*created)->attribute("deduplicate", 0);
+    (*created)->attribute("max_tile_channels", TextureInput::kChannels);
     return created;
   }();
   return **system;
@@ -208,8 +209,14 @@ Color ImageTextures::color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) co
 
 float ImageTextures::value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
   float texel;
-  if (!impl_->look_up(index, uv, dx, dy, TextureInput::kValueChannel, 1, &texel)) return 1;
+  if (!impl_->look_up(index, uv, dx, dy, TextureInput::kStoredChannel, 1, &texel)) return 1;
   return texel * impl_->textures[index].gain + impl_->textures[index].base;
+}
+
+Vec3f ImageTextures::normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
+  float xyz[3];
+  if (!impl_->look_up(index, uv, dx, dy, TextureInput::kStoredChannel, 3, xyz)) return {0.5f, 0.5f, 1};
+  return {xyz[0], xyz[1], xyz[2]};
 }
 
 }  // namespace oktett

@@ -14,9 +14,9 @@ namespace oktett {
 /// anisotropic across levels when the footprint is known.
 ///
 /// Colours are made linear before they are filtered: 8-bit images count as sRGB unless the file says
-/// otherwise. `value` gives the first channel as stored. Unassociated alpha is ignored. uv is multiplied by
-/// `scale`, moved by `offset`, then repeated or clamped; (0, 0) is the lower left corner of the image. The
-/// result is base + gain * texel.
+/// otherwise. `value` gives the first channel as stored, `normal` the first three. Unassociated alpha is
+/// ignored. uv is multiplied by `scale`, moved by `offset`, then repeated or clamped; (0, 0) is the lower
+/// left corner of the image. The result is base + gain * texel.
 ///
 /// A lookup depends on its arguments alone: every level is computed from the image by a fixed rule (each from
 /// the one above), whoever asks first, and a level that was dropped from memory is computed again to the same
@@ -36,6 +36,8 @@ class ImageTextures : public TextureSampler {
   /// An index beyond the textures gives white. Non-finite uv count as 0.
   Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
   float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
+  /// Without gain and base. A texture that could not be used bends nothing.
+  Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
 
  private:
   struct Impl;

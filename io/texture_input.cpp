@@ -66,8 +66,8 @@ void TextureInput::decode_row(int y, float* row) const {
     for (std::size_t c = 0; c < 3; ++c) {
       const float v = in[stored == 3 ? c : 0];
       row[c] = curve_.empty() ? decode(encoding_, v) : curve_[static_cast<std::uint8_t>(v * 255.0f + 0.5f)];
+      row[kStoredChannel + c] = v;
     }
-    row[kValueChannel] = in[0];
   }
 }
 

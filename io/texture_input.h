@@ -16,8 +16,8 @@ namespace oktett {
 /// meaning to the cache.
 class TextureInput : public OIIO::ImageInput {
  public:
-  static constexpr int kChannels = 4;
-  static constexpr int kValueChannel = 3;
+  static constexpr int kChannels = 6;
+  static constexpr int kStoredChannel = 3;  ///< the first of those as stored
 
   /// In the form the cache's add_file wants.
   static OIIO::ImageInput* create() { return new TextureInput; }

@@ -80,6 +80,10 @@ TEST(ImageTextures, EightBitColoursAreSrgbAndValuesAreRaw) {
     EXPECT_NEAR(textures.color(i, {0.3f, 0.6f}, kNoChange, kNoChange).x, srgb_to_linear(128 / 255.0f), 2e-4f);
     EXPECT_NEAR(textures.value(i, {0.3f, 0.6f}, kNoChange, kNoChange), 128 / 255.0f, 2e-4f);
   }
+  const Vec3f normal = textures.normal(0, {0.3f, 0.6f}, kNoChange, kNoChange);
+  EXPECT_NEAR(normal.x, 128 / 255.0f, 2e-4f);
+  EXPECT_NEAR(normal.y, 10 / 255.0f, 2e-4f);
+  EXPECT_EQ(normal.z, 1);
   EXPECT_NEAR(textures.color(0, {0.3f, 0.6f}, kNoChange, kNoChange).y, srgb_to_linear(10 / 255.0f), 1e-5f);
   EXPECT_EQ(textures.color(2, {0.3f, 0.6f}, kNoChange, kNoChange).x,
             textures.color(2, {0.3f, 0.6f}, kNoChange, kNoChange).z);
@@ -141,6 +145,7 @@ TEST(ImageTextures, MissingAndDamagedFilesWarnOnceAndAreWhite) {
   for (const std::uint32_t i : {0u, 1u, 2u, 4u, 5u, 6u, 7u, 99u, kNoId}) {
     EXPECT_EQ(textures.color(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Color{1, 1, 1})) << i;
     EXPECT_EQ(textures.value(i, {0.2f, 0.2f}, kNoChange, kNoChange), 1) << i;
+    EXPECT_EQ(textures.normal(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Vec3f{0.5f, 0.5f, 1})) << i;
   }
   EXPECT_EQ(textures.color(3, {0.25f, 0.25f}, kNoChange, kNoChange), (Color{0, 0, 1}));
   ASSERT_EQ(textures.warnings().size(), 6u);
