@@ -1,0 +1,98 @@
+#include "render/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/math.h"
+
+namespace oktett {
+
+static void crop_axis(std::uint32_t size, double from, double to, std::uint32_t& begin, std::uint32_t& end) {
+  // A hair less than the product, lest rounding in the fraction adds a pixel.
+  const auto pixel = [&](double fraction) {
+    const double at = std::ceil(fraction * size - 1e-6);
+    return static_cast<std::uint32_t>(std::clamp(at, 0.0, static_cast<double>(size)));
+  };
+  begin = std::min(pixel(from), size - 1);
+  end = std::max(pixel(to), begin + 1);
+}
+
+PixelWindow crop_window(const Film& film) {
+  PixelWindow w;
+  crop_axis(std::max(film.width, 1u), film.crop[0], film.crop[1], w.x0, w.x1);
+  crop_axis(std::max(film.height, 1u), film.crop[2], film.crop[3], w.y0, w.y1);
+  return w;
+}
+
+/// An orthonormal frame that looks from `from` to `at`, whatever the camera says.
+static void look_at(const Camera& camera, CameraFrame& frame) {
+  const Vec3d view = camera.at - camera.from;
+  const double distance = length(view);
+  frame.forward = distance > 0 && std::isfinite(distance) ? view / distance : Vec3d{0, 0, -1};
+  const Vec3d right = cross(frame.forward, camera.up);
+  const double size = length(right);
+  if (size > 1e-9 * length(camera.up) && std::isfinite(size)) {
+    frame.right = right / size;
+  } else {
+    Vec3d unused;
+    make_basis(frame.forward, frame.right, unused);
+  }
+  frame.up = cross(frame.right, frame.forward);
+}
+
+CameraFrame camera_frame(const Camera& camera, const Film& film) {
+  CameraFrame frame;
+  frame.projection = camera.projection;
+  frame.origin = camera.from;
+  look_at(camera, frame);
+  const bool perspective = camera.projection == Projection::perspective;
+  const double height =
+      perspective ? 2 * portable::tan(camera.fov * (std::numbers::pi / 360)) : camera.height;
+  const double width_in_pixels = std::max(film.width, 1u), height_in_pixels = std::max(film.height, 1u);
+  frame.pixel_size = height / height_in_pixels;
+  frame.per_pixel_x = frame.right * frame.pixel_size;
+  frame.per_pixel_y = frame.up * -frame.pixel_size;
+  frame.corner = frame.per_pixel_x * (-width_in_pixels / 2) + frame.per_pixel_y * (-height_in_pixels / 2);
+  if (perspective) frame.corner += frame.forward;
+  return frame;
+}
+
+Ray camera_ray(const CameraFrame& camera, double x, double y) {
+  const Vec3d place = camera.corner + camera.per_pixel_x * x + camera.per_pixel_y * y;
+  Ray ray;
+  if (camera.projection == Projection::perspective) {
+    ray.origin = Vec3f(camera.origin);
+    ray.direction = Vec3f(normalize(place));
+  } else {
+    ray.origin = Vec3f(camera.origin + place);
+    ray.direction = Vec3f(camera.forward);
+  }
+  return ray;
+}
+
+double camera_depth(const CameraFrame& camera, const Vec3f& p) {
+  return dot(Vec3d(p) - camera.origin, camera.forward);
+}
+
+void pixel_footprint(const CameraFrame& camera, const Ray& ray, const Vec3f& p, const Vec3f& n, Vec3f& dx,
+                     Vec3f& dy) {
+  const Vec3d origin(ray.origin), direction(ray.direction), normal(n), point(p);
+  const double height = dot(normal, point - origin);
+  const auto meet = [&](const Vec3d& from, const Vec3d& along) {
+    const double t = height - dot(normal, from - origin);
+    const double slope = dot(normal, along);
+    const Vec3f d(from + along * (t / slope) - point);
+    return t / slope > 0 && is_finite(d) ? d : Vec3f{};
+  };
+  if (camera.projection == Projection::perspective) {
+    const Vec3d place = direction / dot(direction, camera.forward);
+    dx = meet(origin, place + camera.per_pixel_x);
+    dy = meet(origin, place + camera.per_pixel_y);
+  } else {
+    dx = meet(origin + camera.per_pixel_x, direction);
+    dy = meet(origin + camera.per_pixel_y, direction);
+  }
+}
+
+}  // namespace oktett

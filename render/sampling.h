@@ -1,0 +1,33 @@
+#pragma once
+/// \file Points that are spread evenly over the unit square, and what they are mapped to.
+
+#include <cstdint>
+
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// A point of the unit square, [0, 1) in both coordinates.
+struct SquareSample {
+  double x = 0, y = 0;
+};
+
+/// Point `sample` of the pattern of `count` points chosen by `key`: correlated multi-jittered sampling
+/// (Kensler 2013).
+///
+/// The pattern has m = floor(sqrt(count)) columns and ceil(count / m) rows. If they multiply to `count`, each
+/// cell of that grid holds exactly one point; and for any count, each of `count` equal intervals of y and at
+/// most one point each of the cells' sub-columns of x. Points come in random order. A single point is the
+/// centre of the square.
+///
+/// Departs from the paper in its hash functions: permutations and jitter are those of core/random.h.
+SquareSample stratified_sample(std::uint32_t sample, std::uint32_t count, std::uint64_t key);
+
+/// The key of the pattern that a pixel uses for its dimension `dimension` (its random numbers' key being
+/// `pixel`).
+std::uint64_t pattern_key(std::uint64_t pixel, std::uint32_t dimension);
+
+/// A unit vector about the unit normal `n` with density cos(angle) / pi.
+Vec3f cosine_direction(const Vec3f& n, const SquareSample& s);
+
+}  // namespace oktett
