@@ -17,6 +17,12 @@ class TextureSampler {
   virtual Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
   /// The same for data that carries no colour space (opacity, height): the first channel as stored.
   virtual float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
+  /// The same for tangent-space normals: the first three channels as stored, (0.5, 0.5, 1) for one that is not bent. A
+  /// sampler that does not know normal maps leaves all normals as they are.
+  virtual Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
+    static_cast<void>(index), static_cast<void>(uv), static_cast<void>(dx), static_cast<void>(dy);
+    return {0.5f, 0.5f, 1};
+  }
 };
 
 }  // namespace oktett

@@ -1,0 +1,44 @@
+#pragma once
+/// \file What is the same for all pixels of a render, prepared once.
+
+#include <vector>
+
+#include "core/isa.h"
+#include "render/camera.h"
+#include "render/geometry.h"
+#include "render/scene.h"
+#include "render/texture_sampler.h"
+
+namespace oktett {
+
+/// A light in the precision of shading.
+struct LightSource {
+  Vec3f place;  ///< position, or the unit vector towards a directional light
+  Color color;
+  bool directional = false;
+  bool falloff = false;
+};
+
+struct RenderContext {
+  const World* world = nullptr;
+  const TextureSampler* textures = nullptr;  ///< null: textures are white
+  Isa isa = Isa::scalar;
+  CameraFrame camera;
+  PixelWindow window;
+  std::uint32_t full_width = 1, full_height = 1;
+  IntegratorSettings settings;
+  std::vector<LightSource> lights;
+  Color background, ambient_light;
+  /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
+  /// transparent.
+  bool opaque_background = false;
+  bool data_layers = true;
+  float ao_radius = 1;                  ///< reach of ambient-occlusion rays
+  float near_depth = 0, far_depth = 1;  ///< what the depth integrator shows as white and black
+  float footprint_scale = 1;            ///< width of a sample's share of the pixel, in pixels
+};
+
+/// `scene` has its camera and lights filled in. `world` and `textures` must outlive the result.
+RenderContext make_context(const Scene& scene, const World& world, const TextureSampler* textures, Isa isa);
+
+}  // namespace oktett

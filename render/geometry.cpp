@@ -1,0 +1,127 @@
+#include "render/geometry.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace oktett {
+namespace {
+
+/// Turns lists of objects into acceleration structures, one list after the other.
+class WorldBuilder {
+ public:
+  WorldBuilder(const Scene& scene, const BuildOptions& options) : scene_(scene), options_(options) {}
+
+  World build() {
+    for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
+    world_.accel = build_list(scene_.objects);
+    world_.bounds = bounds(*world_.accel);
+    world_.sah_cost = stats(*world_.accel).sah_cost;
+    add_materials();
+    return std::move(world_);
+  }
+
+ private:
+  std::shared_ptr<const Accel> build_list(const std::vector<Object>& objects) {
+    std::vector<Geometry> geometries;
+    std::uint64_t instances = 0;
+    for (const Object& object : objects) {
+      const auto id = static_cast<std::uint32_t>(world_.objects.size());
+      world_.objects.push_back({object.material, {}});
+      Geometry geometry;
+      geometry.transform = object.transform;
+      geometry.user = id;
+      if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) continue;
+      const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
+      // An instance without a material of its own shows those of the objects inside.
+      if (instance && object.material == kNoId) geometry.user = kNoId;
+      if (instance && object.transform.is_invertible()) ++instances;
+      geometries.push_back(std::move(geometry));
+    }
+    std::shared_ptr<const Accel> accel = build_accel(std::move(geometries), options_);
+    const AccelStats s = stats(*accel);
+    world_.triangles += s.triangles;
+    world_.primitives += s.items - std::min<std::uint64_t>(s.items, instances);
+    world_.bvh_bytes += s.bytes();
+    return accel;
+  }
+
+  /// For the shapes that the acceleration structure knows as they are.
+  template <class Shape>
+  bool convert(const Shape& shape, Geometry& geometry) {
+    geometry.shape = shape;
+    return true;
+  }
+
+  bool convert(const MeshShape& shape, Geometry& geometry) {
+    if (shape.mesh == nullptr) return false;
+    geometry.shape = MeshGeometry{shape.mesh.get(), shape.smooth, shape.test};
+    world_.objects.back().slots = shape.slot_materials;
+    keep(shape.mesh);
+    return true;
+  }
+
+  bool convert(const SphereShape& shape, Geometry& geometry) {
+    geometry.shape = SpheresShape{{shape}};
+    return true;
+  }
+
+  bool convert(const TriangleShape& shape, Geometry& geometry) {
+    auto mesh = std::make_shared<TriangleMesh>();
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      // Moved in double, so that what is rounded to float is the corner in its final place.
+      mesh->positions.push_back(Vec3f(geometry.transform.point(shape.v[k])));
+      mesh->indices.push_back(k);
+    }
+    // A mirror turns the winding around, but not the front.
+    if (geometry.transform.determinant() < 0) std::swap(mesh->indices[1], mesh->indices[2]);
+    geometry.transform = {};
+    geometry.shape = MeshGeometry{mesh.get(), false, TriangleTest::watertight};
+    keep(mesh);
+    return true;
+  }
+
+  bool convert(const InstanceShape& shape, Geometry& geometry) {
+    if (shape.prototype >= prototypes_.size()) return false;
+    geometry.shape = InstanceGeometry{prototypes_[shape.prototype]};
+    return true;
+  }
+
+  void keep(const std::shared_ptr<const TriangleMesh>& mesh) {
+    if (!seen_.insert(mesh.get()).second) return;
+    world_.meshes.push_back(mesh);
+    world_.geometry_bytes += mesh->bytes();
+  }
+
+  void add_materials() {
+    world_.materials = scene_.materials;
+    world_.materials.emplace_back();
+    for (const Material& m : scene_.materials)
+      if (m.transparency != 0 || m.opacity_texture != kNoId) world_.see_through = true;
+  }
+
+  const Scene& scene_;
+  const BuildOptions& options_;
+  World world_;
+  std::vector<std::shared_ptr<const Accel>> prototypes_;
+  std::set<const TriangleMesh*> seen_;
+};
+
+}  // namespace
+
+World build_world(const Scene& scene, const BuildOptions& options) {
+  return WorldBuilder(scene, options).build();
+}
+
+const Material& material_at(const World& world, const Surface& surface) {
+  std::uint32_t material = kNoId;
+  if (surface.user < world.objects.size()) {
+    const ObjectMaterials& object = world.objects[surface.user];
+    material = object.material;
+    if (material == kNoId && surface.material_slot < object.slots.size())
+      material = object.slots[surface.material_slot];
+  }
+  return material < world.materials.size() ? world.materials[material] : world.materials.back();
+}
+
+}  // namespace oktett

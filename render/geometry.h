@@ -1,0 +1,42 @@
+#pragma once
+/// \file From the scene as data to what rays are traced against.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "accel/accel.h"
+#include "core/box.h"
+#include "render/scene.h"
+
+namespace oktett {
+
+/// What an object of the scene contributes to shading its hits; indexed by Surface::user.
+struct ObjectMaterials {
+  std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
+  std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
+};
+
+/// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's
+/// own; an instance counts as one object.
+struct World {
+  std::shared_ptr<const Accel> accel;
+  std::vector<ObjectMaterials> objects;
+  std::vector<Material> materials;  ///< those of the scene, and the default material at the end
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< kept alive for `accel`
+  Box bounds;                                               ///< of all that is bounded
+  bool see_through = false;  ///< some material lets light pass, so shadow rays must look at what they hit
+
+  std::uint64_t triangles = 0, primitives = 0;  ///< unique, instances not counted
+  std::uint64_t geometry_bytes = 0, bvh_bytes = 0;
+  double sah_cost = 0;  ///< of the top level
+};
+
+/// Each prototype becomes one acceleration structure, shared by its instances. References that lead nowhere
+/// (a missing mesh, a prototype that does not stand earlier in the list) are left out.
+World build_world(const Scene& scene, const BuildOptions& options = {});
+
+/// The material at a hit: that of the object, else of the mesh's slot, else the default material.
+const Material& material_at(const World& world, const Surface& surface);
+
+}  // namespace oktett

@@ -1,0 +1,135 @@
+#include "render/shading_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accel/accel.h"
+
+namespace oktett {
+namespace {
+
+/// Changes of uv across a pixel.
+struct Footprint {
+  Vec2f dx, dy;
+};
+
+bool has_textures(const Material& m) {
+  return m.color_texture != kNoId || m.specular_texture != kNoId || m.emission_texture != kNoId ||
+         m.opacity_texture != kNoId || m.bump_texture != kNoId || m.normal_texture != kNoId;
+}
+
+/// The footprint from vectors on the tangent plane. dp/dv is not known; it is taken to be as long as dp/du
+/// and at right angles to it, which is exact for textures that are laid on without distortion.
+Footprint footprint(const Surface& s, const Vec3f& x, const Vec3f& y, float scale) {
+  const float square = dot(s.tangent, s.tangent);
+  const Vec3f du = s.tangent * (scale / square);
+  const Vec3f dv = cross(s.geometric_normal, du);
+  const Footprint f{{dot(x, du), dot(x, dv)}, {dot(y, du), dot(y, dv)}};
+  const bool known = square > 0 && std::isfinite(f.dx.x) && std::isfinite(f.dx.y) && std::isfinite(f.dy.x) &&
+                     std::isfinite(f.dy.y);
+  return known ? f : Footprint{};
+}
+
+/// Camera rays know their neighbours; other rays are taken for cones that open as wide as a pixel does.
+Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& hit, const Surface& s,
+                            const RayHistory& history) {
+  Vec3f x, y;
+  if (history.from_camera && history.distance == 0) {
+    pixel_footprint(c.camera, ray, s.position, s.geometric_normal, x, y);
+  } else {
+    const bool perspective = c.camera.projection == Projection::perspective;
+    const auto width = static_cast<float>(c.camera.pixel_size * (perspective ? history.distance + hit.t : 1));
+    make_basis(s.geometric_normal, x, y);
+    x *= width, y *= width;
+  }
+  return footprint(s, x, y, c.footprint_scale);
+}
+
+Color textured(const RenderContext& c, const Color& color, std::uint32_t texture, const Vec2f& uv,
+               const Footprint& f) {
+  if (texture == kNoId || c.textures == nullptr) return color;
+  return color * c.textures->color(texture, uv, f.dx, f.dy);
+}
+
+float opacity_at(const RenderContext& c, const Material& m, const Vec2f& uv, const Footprint& f) {
+  if (m.opacity_texture == kNoId || c.textures == nullptr) return 1;
+  return std::clamp(c.textures->value(m.opacity_texture, uv, f.dx, f.dy), 0.0f, 1.0f);
+}
+
+/// The normal of the surface displaced by a height map along `n` (Blinn 1978), dp/dv as in `footprint`.
+Vec3f bumped(const RenderContext& c, const Material& m, const Surface& s, const Vec3f& n,
+             const Footprint& f) {
+  const float size = length(s.tangent);
+  if (!(size > 0)) return n;
+  const Vec3f t = s.tangent / size, b = cross(n, t);
+  const auto step = [](float across, float down) {
+    return std::max(0.5f * (std::abs(across) + std::abs(down)), 0x1p-11f);
+  };
+  const float du = step(f.dx.x, f.dy.x), dv = step(f.dx.y, f.dy.y);
+  const auto height = [&](float u, float v) {
+    return m.bump_scale * c.textures->value(m.bump_texture, {s.uv.x + u, s.uv.y + v}, f.dx, f.dy);
+  };
+  const float here = height(0, 0);
+  const Vec3f bent = n * size - t * ((height(du, 0) - here) / du) - b * ((height(0, dv) - here) / dv);
+  return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
+}
+
+/// The normal that a tangent-space normal map states.
+Vec3f mapped(const RenderContext& c, const Material& m, const Surface& s, const Vec3f& n,
+             const Footprint& f) {
+  const Vec3f flat = s.tangent - n * dot(s.tangent, n);
+  if (!(dot(flat, flat) > 0)) return n;
+  const Vec3f t = normalize(flat), b = cross(n, t);
+  const Vec3f texel = c.textures->normal(m.normal_texture, s.uv, f.dx, f.dy) * 2 - Vec3f{1, 1, 1};
+  const Vec3f bent = t * texel.x + b * texel.y + n * texel.z;
+  return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
+}
+
+/// Turns the normals towards the ray's origin and keeps the shading normal visible from there.
+void face_ray(ShadingPoint& p, Vec3f ns) {
+  const Vec3f& n = p.surface.geometric_normal;
+  p.front = !(dot(p.direction, n) > 0);
+  p.ng = p.front ? n : -n;
+  p.ns = dot(ns, p.ng) < 0 ? -ns : ns;
+  // An interpolated normal may lean away at a silhouette; it is bent back until the ray just sees its front.
+  constexpr float kLeast = 1e-3f;
+  const float away = dot(p.direction, p.ns);
+  if (away > -kLeast) p.ns = normalize(p.ns - p.direction * (away + kLeast));
+}
+
+}  // namespace
+
+ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
+                           const RayHistory& history) {
+  ShadingPoint p;
+  p.surface = surface(*context.world->accel, ray, hit);
+  p.material = &material_at(*context.world, p.surface);
+  p.direction = ray.direction;
+  p.t = hit.t;
+  const Material& m = *p.material;
+  const Surface& s = p.surface;
+  Footprint f;
+  Vec3f ns = s.shading_normal;
+  if (context.textures != nullptr && has_textures(m)) {
+    f = texture_footprint(context, ray, hit, s, history);
+    if (m.bump_texture != kNoId) ns = bumped(context, m, s, ns, f);
+    if (m.normal_texture != kNoId) ns = mapped(context, m, s, ns, f);
+  }
+  p.color = textured(context, m.color, m.color_texture, s.uv, f);
+  p.specular_color = textured(context, m.specular_color, m.specular_texture, s.uv, f);
+  p.emission = textured(context, m.emission, m.emission_texture, s.uv, f);
+  p.opacity = opacity_at(context, m, s.uv, f);
+  face_ray(p, ns);
+  return p;
+}
+
+Color transmittance(const RenderContext& context, const Surface& surface) {
+  const Material& m = material_at(*context.world, surface);
+  const float opacity = opacity_at(context, m, surface.uv, {});
+  const float hole = 1 - opacity;
+  if (m.transparency == 0) return {hole, hole, hole};
+  const Color color = textured(context, m.color, m.color_texture, surface.uv, {});
+  return color * (m.transparency * opacity) + Color{hole, hole, hole};
+}
+
+}  // namespace oktett

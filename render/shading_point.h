@@ -1,0 +1,36 @@
+#pragma once
+/// \file A hit with its material looked up: all that the integrators ask about a surface.
+
+#include "core/ray.h"
+#include "kernels/surface.h"
+#include "render/context.h"
+#include "render/material.h"
+
+namespace oktett {
+
+/// How a ray came to its hit, which decides how finely textures are looked up.
+struct RayHistory {
+  float distance = 0;        ///< length of the path up to the ray's origin
+  bool from_camera = false;  ///< a camera ray, or its straight continuation
+};
+
+struct ShadingPoint {
+  Surface surface;
+  const Material* material = nullptr;
+  Vec3f direction;  ///< unit direction in which the ray travels
+  float t = 0;      ///< distance from the ray's origin
+  Vec3f ng, ns;     ///< geometric and shading normal, turned towards the ray's origin; dot(direction, ns) < 0
+  bool front = true;  ///< the ray comes from the side that the surface's own normal points to
+  Color color, specular_color, emission;  ///< textures included
+  float opacity = 1;                      ///< share of the surface that is there at all; the rest is a hole
+};
+
+/// `ray` is of unit direction and has the valid hit `hit`.
+ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
+                           const RayHistory& history);
+
+/// The fraction of light that passes straight through the surface at a hit of a shadow ray: through holes
+/// unchanged, else material colour * transparency.
+Color transmittance(const RenderContext& context, const Surface& surface);
+
+}  // namespace oktett

@@ -1,0 +1,34 @@
+#include "render/specular.h"
+
+#include "render/optics.h"
+
+namespace oktett {
+
+/// The refracted direction, which must end up below the true surface: if the shading normal bends it back
+/// above, the geometric normal decides.
+static std::optional<Vec3f> refract_below(const ShadingPoint& p, float eta) {
+  const std::optional<Vec3f> direction = refract(p.direction, p.ns, eta);
+  if (direction && dot(*direction, p.ng) >= 0) return refract(p.direction, p.ng, eta);
+  return direction;
+}
+
+SpecularRays specular_rays(const ShadingPoint& p) {
+  const Material& m = *p.material;
+  SpecularRays rays;
+  if (m.reflection == 0 && m.transparency == 0) return rays;
+  rays.mirror_direction = reflect_above(p.direction, p.ns, p.ng);
+  rays.mirror = p.specular_color * m.reflection;
+  if (m.transparency == 0) return rays;
+  const float eta = p.front ? m.ior : 1 / m.ior;
+  const std::optional<Vec3f> refracted = refract_below(p, eta);
+  const float reflectance = refracted ? fresnel(-dot(p.direction, p.ns), eta) : 1;
+  const float mirrored = m.transparency * reflectance;
+  rays.mirror += Color{mirrored, mirrored, mirrored};
+  if (refracted) {
+    rays.refracted_direction = *refracted;
+    rays.refracted = p.color * (m.transparency * (1 - reflectance));
+  }
+  return rays;
+}
+
+}  // namespace oktett
