@@ -32,6 +32,7 @@ struct RenderOptions {
   std::function<void(const RenderProgress&)> progress;  ///< may be empty; called about ten times a second
   /// May be empty; called for each finished tile, one at a time, with the picture as it stands (colour planes only).
   std::function<void(const Picture&, const FinishedTile&)> tile_finished;
+  std::uint32_t tile_size = 16;  ///< pixels along the edge of a tile, [1, 256]; the picture does not depend on it
   bool data_layers = true;      ///< also fill Z, N, P, Albedo, u, v, ids and Variance planes
 };
 

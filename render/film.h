@@ -1,0 +1,49 @@
+#pragma once
+/// \file From samples to pixels.
+
+#include <cstdint>
+#include <vector>
+
+#include "render/picture.h"
+#include "render/wave.h"
+
+namespace oktett {
+
+/// Sums over the samples of one pixel, added in the order of their numbers.
+struct PixelSum {
+  double color[3] = {}, square[3] = {};
+  double alpha = 0;
+  double depth = 0, normal[3] = {}, position[3] = {}, albedo[3] = {}, uv[2] = {};
+  std::uint32_t good = 0;  ///< samples without NaN and infinities; the others are left out
+  std::uint32_t hits = 0;  ///< of the good samples, those that met a surface
+  float nearest = 0;       ///< squared distance from the pixel's centre of the sample that gave the ids
+  bool has_ids = false;
+  std::uint32_t primitive = kNoId, object = kNoId;
+};
+
+/// Adds sample `i`; false if it is left out because it holds NaN or infinity.
+bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
+
+/// The planes of a render, black and transparent, Z at infinity, ids kNoId.
+///
+/// Beauty: R, G, B, A are means over the samples, A the fraction covered: a background that gives light
+/// counts as covering, a black one does not, so colours are always premultiplied by A. Data layers (if
+/// `data_layers`) describe the first surface that each camera ray meets:
+/// - Z is the distance along the view axis (as compositing programs expect, not the length of the ray),
+/// infinite where there is
+///   no surface; P the position in world space, u and v the texture coordinates: means over the samples that
+///   met a surface.
+/// - N is the shading normal in world space, out of solids, and Albedo the base colour: means over all
+/// samples (0 for
+///   those that met nothing), as denoisers expect.
+/// - primID.I and geomID.I are the primitive in its geometry and the object in the scene (as World counts
+/// them), of the
+///   sample nearest to the pixel's centre: never filtered.
+/// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
+Picture make_picture(const RenderContext& context);
+
+/// Writes a finished pixel, (x, y) counted in the picture. Threads may write different pixels at the same
+/// time.
+void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel);
+
+}  // namespace oktett

@@ -1,0 +1,64 @@
+#pragma once
+/// \file Rays on their way, and which sample each of them works for.
+
+#include <cstdint>
+
+#include "core/ray.h"
+#include "core/soa.h"
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// Columns of rays of unit direction with their state. Emptying a queue keeps its storage.
+struct RayQueue {
+  RayBatch rays;
+  Column<std::uint32_t> sample;      ///< index into the wave's samples
+  Column<Color> throughput;          ///< factor on whatever light the ray finds
+  Column<float> distance;            ///< length of the path up to the ray's origin
+  Column<std::uint8_t> bounces;      ///< reflections and refractions so far
+  Column<std::uint8_t> from_camera;  ///< 1 for camera rays and their straight continuations through holes
+
+  std::size_t size() const { return sample.size(); }
+  bool empty() const { return sample.empty(); }
+
+  void clear() {
+    rays.resize_uninitialized(0);
+    sample.resize_uninitialized(0), throughput.resize_uninitialized(0), distance.resize_uninitialized(0);
+    bounces.resize_uninitialized(0), from_camera.resize_uninitialized(0);
+  }
+
+  /// One entry of the columns.
+  struct Entry {
+    Ray ray;
+    std::uint32_t sample = 0;
+    Color throughput{1, 1, 1};
+    float distance = 0;
+    std::uint8_t bounces = 0;
+    bool from_camera = false;
+  };
+  Entry operator[](std::size_t i) const {
+    return {rays[i], sample[i], throughput[i], distance[i], bounces[i], from_camera[i] != 0};
+  }
+  void push_back(const Entry& e) {
+    rays.push_back(e.ray);
+    sample.push_back(e.sample), throughput.push_back(e.throughput), distance.push_back(e.distance);
+    bounces.push_back(e.bounces), from_camera.push_back(e.from_camera ? 1 : 0);
+  }
+};
+
+/// Shadow rays: what each adds to the radiance of its owner, an entry of a RayQueue, if nothing is in the
+/// way.
+struct ShadowQueue {
+  RayBatch rays;
+  Column<std::uint32_t> owner;
+  Column<Color> light;
+
+  std::size_t size() const { return owner.size(); }
+
+  void clear() { rays.resize_uninitialized(0), owner.resize_uninitialized(0), light.resize_uninitialized(0); }
+  void push_back(const Ray& ray, std::uint32_t ray_owner, const Color& color) {
+    rays.push_back(ray), owner.push_back(ray_owner), light.push_back(color);
+  }
+};
+
+}  // namespace oktett

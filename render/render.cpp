@@ -1,0 +1,138 @@
+#include "render/render.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+
+#include "render/context.h"
+#include "render/default_view.h"
+#include "render/film.h"
+#include "render/geometry.h"
+#include "render/tile.h"
+
+namespace oktett {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Collects what tiles report and passes it on to the caller's functions, one thread at a time.
+class Monitor {
+ public:
+  Monitor(const RenderOptions& options, const Picture& picture, Clock::time_point start)
+      : options_(options), picture_(picture), start_(start) {
+    progress_.pixels_total = static_cast<std::uint64_t>(picture.width) * picture.height;
+  }
+
+  bool stop_wanted() const {
+    return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
+  }
+
+  void skip_tile() {
+    const std::lock_guard lock(mutex_);
+    report_.stopped = true;
+  }
+
+  void finish_tile(const FinishedTile& tile, const TileCounts& counts) {
+    const std::lock_guard lock(mutex_);
+    report_.camera_rays += counts.rays.camera, report_.shadow_rays += counts.rays.shadow;
+    report_.reflected_rays += counts.rays.reflected, report_.refracted_rays += counts.rays.refracted;
+    report_.bad_samples += counts.bad_samples;
+    progress_.rays += counts.rays.total();
+    progress_.pixels_done += static_cast<std::uint64_t>(tile.width) * tile.height;
+    if (options_.tile_finished) options_.tile_finished(picture_, tile);
+    if (options_.progress && seconds_since(last_call_) >= 0.1) tell_progress();
+  }
+
+  void tell_progress() {
+    if (!options_.progress) return;
+    progress_.seconds = seconds_since(start_);
+    options_.progress(progress_);
+    last_call_ = Clock::now();
+  }
+
+  const RenderReport& report() const { return report_; }
+
+ private:
+  const RenderOptions& options_;
+  const Picture& picture_;
+  Clock::time_point start_;
+  std::mutex mutex_;
+  RenderProgress progress_;
+  RenderReport report_;
+  Clock::time_point last_call_ = start_;
+};
+
+/// Fills in camera and lights where the scene gives none.
+void complete_scene(Scene& scene, const Box& bounds) {
+  if (!scene.camera_given) scene.camera = frame_bounds(bounds, scene.camera, scene.film);
+  if (!scene.lights_given && scene.lights.empty()) scene.lights = default_lights(scene.camera, scene.film);
+}
+
+void describe_world(const World& world, RenderReport& report) {
+  report.triangles = world.triangles, report.primitives = world.primitives;
+  report.geometry_bytes = world.geometry_bytes, report.bvh_bytes = world.bvh_bytes;
+  report.sah_cost = world.sah_cost;
+}
+
+void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture& picture, Monitor& monitor) {
+  const std::vector<FinishedTile> tiles = cut_tiles(picture.width, picture.height, tile_size);
+  // One tile per task: tiles differ much in cost, and a stop should not wait for a block of them.
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          if (monitor.stop_wanted()) {
+            monitor.skip_tile();
+            continue;
+          }
+          monitor.finish_tile(tiles[i], render_tile(context, tiles[i], picture));
+        }
+      },
+      tbb::simple_partitioner());
+}
+
+RenderResult render_here(Scene scene, const RenderOptions& options) {
+  RenderResult result;
+  const Clock::time_point start = Clock::now();
+  const World world = build_world(scene);
+  complete_scene(scene, world.bounds);
+  const double build_seconds = seconds_since(start);
+
+  RenderContext context = make_context(scene, world, options.textures, options.isa);
+  context.data_layers = options.data_layers;
+  result.picture = make_picture(context);
+  const Clock::time_point tracing = Clock::now();
+  Monitor monitor(options, result.picture, tracing);
+  render_tiles(context, options.tile_size, result.picture, monitor);
+  monitor.tell_progress();
+
+  result.report = monitor.report();
+  result.report.build_seconds = build_seconds;
+  result.report.render_seconds = seconds_since(tracing);
+  describe_world(world, result.report);
+  result.scene = std::move(scene);
+  return result;
+}
+
+}  // namespace
+
+RenderResult render(Scene scene, const RenderOptions& options) {
+  if (options.threads == 0) return render_here(std::move(scene), options);
+  std::optional<tbb::global_control> more;
+  // An arena alone gets no more threads than the machine has.
+  if (static_cast<int>(options.threads) > tbb::info::default_concurrency())
+    more.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+  tbb::task_arena arena(static_cast<int>(options.threads));
+  return arena.execute([&] { return render_here(std::move(scene), options); });
+}
+
+}  // namespace oktett

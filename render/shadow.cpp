@@ -1,0 +1,76 @@
+#include "render/shadow.h"
+
+#include <vector>
+
+#include "accel/accel.h"
+#include "render/shading_point.h"
+
+namespace oktett {
+
+/// Transparent surfaces that a shadow ray may pass before it counts as blocked.
+static constexpr int kMostLayers = 128;
+
+static bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
+/// The rest of a shadow ray behind the surface `s`. It still ends where `ray` does.
+static Ray continue_behind(const Ray& ray, const Surface& s) {
+  Ray rest = ray;
+  rest.origin = offset_origin(s, ray.direction);
+  if (ray.tmax < std::numeric_limits<float>::infinity()) {
+    rest.direction = ray.origin + ray.direction * ray.tmax - rest.origin;
+    rest.tmax = 1 - 0x1p-24f;
+    // The surface may lie so close to the end that the offset passes it.
+    if (!(dot(rest.direction, ray.direction) > 0)) rest.tmax = 0;
+  }
+  return rest;
+}
+
+/// Follows the rays numbered in `left` through transparent surfaces; `passed` holds the fraction of light for
+/// each ray.
+static void follow_through(const RenderContext& context, const ShadowQueue& queue,
+                           std::vector<std::uint32_t> left, std::vector<Color>& passed) {
+  const Accel& accel = *context.world->accel;
+  RayBatch rays, rest;
+  for (const std::uint32_t i : left) rays.push_back(queue.rays[i]);
+  HitBatch hits;
+  for (int layer = 0; layer < kMostLayers && !left.empty(); ++layer) {
+    hits.resize_uninitialized(rays.size());
+    closest_hit(accel, rays.span(), hits.span(), context.isa);
+    rest.resize_uninitialized(0);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      const Hit hit = hits[k];
+      if (!hit.valid()) continue;
+      const Ray ray = rays[k];
+      const Surface s = surface(accel, ray, hit);
+      Color& light = passed[left[k]];
+      light = light * transmittance(context, s);
+      if (is_black(light)) continue;
+      rest.push_back(continue_behind(ray, s));
+      left[kept++] = left[k];
+    }
+    left.resize(kept);
+    std::swap(rays, rest);
+  }
+  for (const std::uint32_t i : left) passed[i] = {0, 0, 0};
+}
+
+void trace_shadows(const RenderContext& context, const ShadowQueue& queue, Column<Color>& radiance) {
+  if (queue.size() == 0) return;
+  std::vector<std::uint8_t> occluded(queue.size());
+  any_hit(*context.world->accel, queue.rays.span(), occluded.data(), context.isa);
+  if (!context.world->see_through) {
+    for (std::size_t i = 0; i < queue.size(); ++i)
+      if (!occluded[i]) radiance[queue.owner[i]] += queue.light[i];
+    return;
+  }
+  std::vector<Color> passed(queue.size(), {1, 1, 1});
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < queue.size(); ++i)
+    if (occluded[i]) left.push_back(i);
+  follow_through(context, queue, std::move(left), passed);
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    if (!is_black(passed[i])) radiance[queue.owner[i]] += queue.light[i] * passed[i];
+}
+
+}  // namespace oktett

@@ -1,0 +1,14 @@
+#pragma once
+/// \file Which lights a point sees.
+
+#include "render/context.h"
+#include "render/ray_queue.h"
+
+namespace oktett {
+
+/// Traces all rays of `queue` and adds to `radiance[owner]` the light that arrives, in the order of the
+/// queue. Opaque materials block it; transparent ones attenuate it by colour * transparency and do not bend
+/// it.
+void trace_shadows(const RenderContext& context, const ShadowQueue& queue, Column<Color>& radiance);
+
+}  // namespace oktett

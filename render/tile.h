@@ -1,0 +1,25 @@
+#pragma once
+/// \file The picture cut into tiles, and the work on one of them.
+
+#include <cstdint>
+#include <vector>
+
+#include "render/context.h"
+#include "render/picture.h"
+#include "render/render.h"
+#include "render/wave.h"
+
+namespace oktett {
+
+/// Cuts a picture of the given size into tiles of at most `tile_size` pixels along an edge, row by row.
+std::vector<FinishedTile> cut_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t tile_size);
+
+struct TileCounts {
+  RayCounts rays;
+  std::uint64_t bad_samples = 0;
+};
+
+/// Renders the pixels of `tile` into `picture` and touches no others.
+TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture);
+
+}  // namespace oktett
