@@ -2,6 +2,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
+target_include_directories(oktett PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/oktett>)
+
 install(TARGETS oktett EXPORT oktett-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -13,12 +16,22 @@ foreach(layer core kernels accel render io)
     FILES_MATCHING PATTERN "*.h")
 endforeach()
 
-install(EXPORT oktett-targets NAMESPACE oktett:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
+install(EXPORT oktett-targets NAMESPACE oktett:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/oktett-config.cmake.in ${PROJECT_BINARY_DIR}/oktett-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
+  INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/oktett-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/oktett-config.cmake ${PROJECT_BINARY_DIR}/oktett-config-version.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
+  DESTINATION ${package_dir})
 
+# The pkg-config file finds its prefix from where it lies, so the whole tree may be moved. Whoever links the static
+# library links what it uses; a shared library brings that itself.
+get_target_property(oktett_type oktett TYPE)
+if(oktett_type STREQUAL "STATIC_LIBRARY")
+  set(OKTETT_PC_REQUIRES "Requires")
+  set(OKTETT_PC_THREADS " -pthread")
+else()
+  set(OKTETT_PC_REQUIRES "Requires.private")
+endif()
+file(RELATIVE_PATH OKTETT_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 configure_file(cmake/oktett.pc.in ${PROJECT_BINARY_DIR}/oktett.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/oktett.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -12,9 +12,7 @@ target_compile_features(oktett PUBLIC cxx_std_20)
 target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
 set_target_properties(oktett PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
-target_include_directories(oktett PUBLIC
-  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-  $<INSTALL_INTERFACE:${CMAKE_INSTALL_PREFIX}/include/oktett>)
+target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
   PUBLIC TBB::tbb Threads::Threads

@@ -1,0 +1,43 @@
+# One step of the installation's test, see install_test.cmake.
+cmake_minimum_required(VERSION 3.25)
+set(prefix ${WORK}/prefix)
+
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# Text without the blanks at the start of lines.
+function(unindented text result)
+  string(REGEX REPLACE "\n +" "\n" text "${text}")
+  set(${result} "${text}" PARENT_SCOPE)
+endfunction()
+
+if(STEP STREQUAL "prefix")
+  file(REMOVE_RECURSE ${prefix})
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+elseif(STEP STREQUAL "cmake_package")
+  file(REMOVE_RECURSE ${WORK}/cmake_package)
+  run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/cmake_package -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}")
+  run(${CMAKE_COMMAND} --build ${WORK}/cmake_package)
+  run(${WORK}/cmake_package/example)
+elseif(STEP STREQUAL "pkg_config")
+  set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
+  execute_process(COMMAND ${PKG_CONFIG} --cflags --libs oktett
+    OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${CXX_FLAGS} ${flags}")
+  run(${CXX} -std=c++20 ${SOURCE}/main.cpp -o ${WORK}/pkg_config_example ${flags} -Wl,-rpath,${prefix}/${LIBDIR})
+  run(${WORK}/pkg_config_example)
+elseif(STEP STREQUAL "readme")
+  file(READ ${SOURCE}/main.cpp program)
+  file(READ ${ROOT}/README.md readme)
+  string(REGEX MATCH "```cpp\n([^`]*)```" block "${readme}")
+  unindented("${CMAKE_MATCH_1}" example)
+  unindented("${program}" program)
+  string(FIND "${program}" "\n// example\n${example}// end of the example\n" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "the first C++ example of README.md differs from the one in tests/install/main.cpp")
+  endif()
+else()
+  message(FATAL_ERROR "no such step: '${STEP}'")
+endif()
