@@ -1,0 +1,118 @@
+#include "render/film.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+TEST(Film, DataLayersDescribeTheNearestSurface) {
+  Scene scene = bare_scene(31);
+  scene.camera.from = {0, 0, 5};
+  add_object(scene, PlaneShape{{0, 0, 1}, -20}, add_material(scene, diffuse({0.1f, 0.2f, 0.3f})));
+  add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, diffuse({0.5f, 0.6f, 0.7f})));
+  const Picture p = run(scene).picture;
+  EXPECT_NEAR(value(p, "Z", 15, 15), 4, 1e-6f);
+  // Depth counts along the view axis, not along the ray: a plane across the view is equally deep everywhere.
+  EXPECT_NEAR(value(p, "Z", 0, 0), 25, 1e-5f);
+  EXPECT_NEAR(value(p, "Z", 30, 7), 25, 1e-5f);
+  EXPECT_NEAR(length(position(p, 15, 15) - Vec3f{0, 0, 1}), 0, 1e-6f);
+  EXPECT_NEAR(value(p, "N.Z", 15, 15), 1, 1e-6f);
+  EXPECT_EQ(value(p, "Albedo.G", 15, 15), 0.6f);
+  EXPECT_EQ(value(p, "Albedo.B", 0, 0), 0.3f);
+  EXPECT_EQ(id(p, "geomID.I", 15, 15), 1u);
+  EXPECT_EQ(id(p, "geomID.I", 0, 0), 0u);
+  EXPECT_EQ(id(p, "primID.I", 15, 15), 0u);
+  EXPECT_EQ(value(p, "Variance.R", 15, 15), 0);
+}
+
+TEST(Film, EmptyPixelsSaySo) {
+  const Picture p = run(bare_scene(3)).picture;
+  EXPECT_EQ(value(p, "Z", 1, 1), kInf);
+  EXPECT_EQ(value(p, "N.X", 1, 1), 0);
+  EXPECT_EQ(value(p, "A", 1, 1), 0);
+  EXPECT_EQ(id(p, "primID.I", 1, 1), kNoId);
+  EXPECT_EQ(id(p, "geomID.I", 1, 1), kNoId);
+}
+
+TEST(Film, PlanesFollowTheConventions) {
+  const Picture all = run(bare_scene(2)).picture;
+  std::vector<std::string> names;
+  for (const Plane& plane : all.planes) {
+    names.push_back(plane.name);
+    const bool is_id = plane.name.ends_with("ID.I"),
+               beauty = plane.name.size() == 1 && plane.name.find_first_of("RGBA") == 0;
+    EXPECT_EQ(plane.type, is_id    ? PlaneType::unsigned_int
+                          : beauty ? PlaneType::half_float
+                                   : PlaneType::single_float);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       "R",   "G",   "B",        "A",        "Z",          "N.X",        "N.Y",
+                       "N.Z", "P.X", "P.Y",      "P.Z",      "Albedo.R",   "Albedo.G",   "Albedo.B",
+                       "u",   "v",   "primID.I", "geomID.I", "Variance.R", "Variance.G", "Variance.B"}));
+  EXPECT_EQ(run(bare_scene(2), [](RenderOptions& o) { o.data_layers = false; }).picture.planes.size(), 4u);
+}
+
+// Half a pixel covered: alpha is the covered fraction over black, and 1 over a background that gives light.
+TEST(Film, AlphaIsCoverage) {
+  Scene scene = bare_scene(1);
+  scene.integrator.samples = 16;
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.height = 1;
+  add_object(scene, BoxShape{{0, -5, -1}, {5, 5, 1}}, add_material(scene, glowing({1, 1, 1})));
+  Picture p = run(scene).picture;
+  EXPECT_EQ(value(p, "A", 0, 0), 0.5f);
+  EXPECT_EQ(value(p, "R", 0, 0), 0.5f);
+  EXPECT_EQ(value(p, "N.Z", 0, 0), 0.5f);
+  EXPECT_EQ(value(p, "P.Z", 0, 0), 1);
+  EXPECT_EQ(value(p, "Z", 0, 0), 4);
+  scene.background = {0.5f, 0, 0};
+  p = run(scene).picture;
+  EXPECT_EQ(value(p, "A", 0, 0), 1);
+  EXPECT_EQ(value(p, "R", 0, 0), 0.75f);
+  // Eight samples of 1 and eight of 0.5: variance of the mean = (1/16) * (16/15) * (1/4)^2.
+  EXPECT_NEAR(value(p, "Variance.R", 0, 0), 1 / 240.0f, 1e-7f);
+}
+
+SampleBatch samples_of(const std::vector<float>& values) {
+  SampleBatch s;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    s.pixel.push_back(0), s.number.push_back(static_cast<std::uint32_t>(i)), s.key.push_back(0);
+    s.offset.push_back({0.4f - 0.1f * static_cast<float>(i), 0}), s.color.push_back({values[i], 0, 0});
+    s.alpha.push_back(1), s.spawned.push_back(0);
+    FirstHit first;
+    first.found = true, first.primitive = static_cast<std::uint32_t>(i), first.object = 7;
+    s.first.push_back(first);
+  }
+  return s;
+}
+
+TEST(Film, BadSamplesAreLeftOutAndReported) {
+  const SampleBatch s = samples_of({1, std::nanf(""), 3, kInf});
+  PixelSum pixel;
+  int bad = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) bad += add_to_pixel(pixel, s, i) ? 0 : 1;
+  EXPECT_EQ(bad, 2);
+  EXPECT_EQ(pixel.good, 2u);
+  EXPECT_EQ(pixel.color[0], 4);
+}
+
+TEST(Film, IdsAreThoseOfTheSampleNearestToTheCentre) {
+  const SampleBatch s = samples_of({1, 1, 1, 1, 1, 1, 1, 1});  // offsets 0.4, 0.3, ..., -0.3
+  PixelSum pixel;
+  for (std::size_t i = 0; i < s.size(); ++i) add_to_pixel(pixel, s, i);
+  EXPECT_EQ(pixel.primitive, 4u);
+  EXPECT_EQ(pixel.object, 7u);
+}
+
+}  // namespace
+}  // namespace oktett

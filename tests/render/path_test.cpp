@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+Scene path_scene(std::uint32_t size, std::uint32_t samples, std::uint32_t depth) {
+  Scene scene = bare_scene(size);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.samples = samples;
+  scene.integrator.depth = depth;
+  return scene;
+}
+
+double mean(const Picture& p, const char* plane) {
+  double sum = 0;
+  for (const float v : p.find(plane)->values) sum += static_cast<double>(v);
+  return sum / static_cast<double>(p.find(plane)->values.size());
+}
+
+// In a closed room whose walls reflect half of the light and emit one half, the light everywhere is emission
+// / (1 - albedo).
+TEST(Path, FurnaceKeepsItsEnergy) {
+  for (const float albedo : {0.0f, 0.2f, 0.5f, 0.8f}) {
+    Scene scene = path_scene(8, 64, 64);
+    scene.camera.from = {0.3, 0.2, 0.5};
+    Material m = diffuse({albedo, albedo, albedo});
+    m.emission = {1 - albedo, 1 - albedo, 1 - albedo};
+    add_object(scene, BoxShape{}, add_material(scene, m));
+    add_object(scene, SphereShape{{-0.4, -0.4, -0.4}, 0.3}, 0);
+    EXPECT_NEAR(mean(run(scene).picture, "R"), 1, 0.02) << albedo;
+  }
+}
+
+// The same with a room of every material: mirrors and glass in it neither add nor lose light.
+TEST(Path, MirrorsAndGlassKeepTheEnergyOfTheFurnace) {
+  Scene scene = path_scene(8, 256, 64);
+  scene.camera.from = {0.3, 0.2, 0.9};
+  Material wall = diffuse({0.5f, 0.5f, 0.5f});
+  wall.emission = {0.5f, 0.5f, 0.5f};
+  add_object(scene, BoxShape{}, add_material(scene, wall));
+  add_object(scene, SphereShape{{-0.4, -0.4, -0.4}, 0.4}, add_material(scene, glass(1.5f)));
+  add_object(scene, SphereShape{{0.4, -0.4, -0.3}, 0.4}, add_material(scene, mirror()));
+  EXPECT_NEAR(mean(run(scene).picture, "R"), 1, 0.02);
+}
+
+// A convex body sees nothing but the void: it shows exactly albedo times background, without any noise in the
+// mean.
+TEST(Path, ConvexBodyInAWhiteVoidShowsItsAlbedo) {
+  Scene scene = path_scene(8, 16, 4);
+  scene.background = {1, 1, 1};
+  add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, diffuse({0.6f, 0.3f, 0.1f})));
+  const Color c = color(run(scene).picture, 4, 4);
+  EXPECT_NEAR(length(c - Color{0.6f, 0.3f, 0.1f}), 0, 1e-5f);
+}
+
+// Without indirect light both integrators show the same.
+TEST(Path, DirectLightAgreesWithWhitted) {
+  Scene scene = path_scene(24, 1, 0);
+  Material m = diffuse({0.7f, 0.5f, 0.3f});
+  m.specular = 0.3f;
+  const std::uint32_t material = add_material(scene, m);
+  add_object(scene, PlaneShape{{0, 1, 0}, -1}, material);
+  add_object(scene, SphereShape{}, material);
+  scene.lights = {PointLight{{2, 4, 3}, {1, 1, 1}, true}, DirectionalLight{{1, -1, -1}, {0.5f, 0.5f, 0.5f}}};
+  const Picture path = run(scene).picture;
+  scene.integrator.kind = IntegratorKind::whitted;
+  EXPECT_TRUE(same_bytes(path, run(scene).picture));
+}
+
+// Light that reaches a floor only by way of a wall: one bounce, computed by quadrature over the wall.
+TEST(Path, IndirectLightMatchesQuadrature) {
+  Scene scene = path_scene(1, 16384, 1);
+  scene.camera.from = {1, 1, 0}, scene.camera.at = {1, 0, 0}, scene.camera.up = {0, 0, 1};
+  scene.camera.fov = 0.01;
+  const std::uint32_t white = add_material(scene, diffuse({1, 1, 1}));
+  // The wall x = 0, 0 < y < 2, |z| < 1 faces the floor y = 0; the light travels along -x, so that the floor
+  // gets none of it.
+  add_object(scene, BoxShape{{-0.1, 0, -1}, {0, 2, 1}}, white);
+  add_object(scene, DiskShape{{1, 0, 0}, {0, 1, 0}, 0.1}, white);
+  scene.lights = {DirectionalLight{{-1, 0, 0}, {1, 1, 1}}};
+  double want = 0;
+  constexpr int kSteps = 200;
+  for (int i = 0; i < kSteps; ++i)
+    for (int k = 0; k < kSteps; ++k) {
+      const Vec3d q{0, 2 * (i + 0.5) / kSteps, 2 * (k + 0.5) / kSteps - 1}, d = q - Vec3d{1, 0, 0};
+      const double r2 = dot(d, d);
+      // The wall shows 1; form factor from the floor point: cos cos / (pi r^2) dA.
+      want += (d.y * -d.x) / (r2 * r2 * std::numbers::pi) * 4 / (kSteps * kSteps);
+    }
+  EXPECT_NEAR(value(run(scene).picture, "R", 0, 0), want, 0.01 * want);
+}
+
+TEST(Path, DepthBoundsThePath) {
+  Scene scene = path_scene(4, 16, 3);
+  Material m = diffuse({0.9f, 0.9f, 0.9f});
+  m.emission = {0.1f, 0.1f, 0.1f};
+  add_object(scene, BoxShape{{-9, -9, -9}, {9, 9, 9}}, add_material(scene, m));
+  const RenderResult r = run(scene);
+  EXPECT_EQ(r.report.reflected_rays, 16u * 16 * 3);
+  EXPECT_NEAR(mean(r.picture, "R"), 0.1 * (1 + 0.9 + 0.81 + 0.729), 1e-5);
+}
+
+TEST(AmbientOcclusion, IsTheOpenFractionOfTheSky) {
+  Scene scene = bare_scene(3);
+  scene.integrator.kind = IntegratorKind::ao;
+  scene.integrator.samples = 1024;
+  scene.camera.from = {0.5, 0.5, 0}, scene.camera.at = {0, 0, 0}, scene.camera.fov = 0.01;
+  add_object(scene, PlaneShape{{0, 1, 0}, 0}, kNoId);
+  scene.integrator.ao_radius = 100;
+  EXPECT_NEAR(value(run(scene).picture, "R", 1, 1), 1, 1e-6f);
+  // A ball of angular radius a right above hides sin^2 a of the cosine-weighted sky.
+  add_object(scene, SphereShape{{0, 2, 0}, 1}, kNoId);
+  EXPECT_NEAR(value(run(scene).picture, "R", 1, 1), 0.75f, 5e-3f);
+  scene.integrator.ao_radius = 0.5;
+  EXPECT_NEAR(value(run(scene).picture, "R", 1, 1), 1, 1e-6f);
+}
+
+TEST(Views, NormalAndDepthShowWhatTheySay) {
+  Scene scene = bare_scene(33);
+  add_object(scene, BoxShape{}, kNoId);
+  scene.background = {0.25f, 0.5f, 0.75f};
+  scene.integrator.kind = IntegratorKind::normal;
+  const Picture normal = run(scene).picture;
+  EXPECT_EQ(color(normal, 16, 16), (Color{0.5f, 0.5f, 1}));
+  EXPECT_EQ(color(normal, 0, 0), scene.background);
+  scene.integrator.kind = IntegratorKind::depth;
+  // The box spans depths 4 to 6; its front is nearest.
+  const Picture depth = run(scene).picture;
+  EXPECT_NEAR(value(depth, "R", 16, 16), 1, 1e-6f);
+  EXPECT_EQ(value(depth, "Z", 16, 16), 4);
+  EXPECT_EQ(color(depth, 0, 0), scene.background);
+}
+
+}  // namespace
+}  // namespace oktett

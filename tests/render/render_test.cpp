@@ -1,0 +1,222 @@
+#include "render/render.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <vector>
+
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+/// Something of everything: mesh, closed-form shapes, instances, mirror, glass, tinted shadows.
+Scene busy_scene(IntegratorKind kind) {
+  Scene scene = bare_scene();
+  scene.film.width = 53, scene.film.height = 37;
+  scene.integrator = {kind, 5, 4, 3, 0};
+  scene.background = {0.1f, 0.2f, 0.3f};
+  scene.ambient_light = {1, 1, 1};
+  scene.camera.from = {2, 2, 6};
+  scene.lights = {PointLight{{4, 6, 5}, {20, 20, 20}, true},
+                  DirectionalLight{{-1, -2, -1}, {0.5f, 0.5f, 0.4f}}};
+  Material shiny = diffuse({0.7f, 0.4f, 0.2f});
+  shiny.specular = 0.5f, shiny.phong = 33.3f, shiny.reflection = 0.3f, shiny.ambient = 0.1f;
+  const std::uint32_t a = add_material(scene, shiny);
+  Material clear = glass(1.5f);
+  clear.color = {0.9f, 1, 0.9f}, clear.specular = 0.5f, clear.transparency = 0.9f;
+  const std::uint32_t b = add_material(scene, clear);
+  add_object(scene, PlaneShape{{0, 1, 0}, -1}, add_material(scene, diffuse({0.5f, 0.5f, 0.5f})));
+  add_object(scene, SphereShape{{-1.2, 0, 0}, 1}, b);
+  add_object(scene, MeshShape{sphere_mesh(10), {}, true, TriangleTest::watertight}, a,
+             Affine::translation({1.2, 0, 0}));
+  Object ball;
+  ball.shape = SphereShape{{0, 0, 0}, 0.4};
+  scene.prototypes.push_back({"ball", {ball}});
+  for (int i = -2; i <= 2; ++i)
+    add_object(scene, InstanceShape{0}, a, Affine::translation({0.9 * i, -0.6, 1.8}));
+  return scene;
+}
+
+constexpr IntegratorKind kAllKinds[] = {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::ao,
+                                        IntegratorKind::normal, IntegratorKind::depth};
+
+TEST(Render, PictureDependsNeitherOnThreadsNorTilesNorInstructionSet) {
+  for (const IntegratorKind kind : kAllKinds) {
+    const Scene scene = busy_scene(kind);
+    const Picture reference = run(scene).picture;
+    for (const unsigned threads : {1u, 2u, 7u})
+      EXPECT_TRUE(same_bytes(reference, run(scene, [&](RenderOptions& o) { o.threads = threads; }).picture))
+          << threads;
+    for (const std::uint32_t tile : {1u, 3u, 8u, 64u})
+      EXPECT_TRUE(same_bytes(reference, run(scene, [&](RenderOptions& o) { o.tile_size = tile; }).picture))
+          << tile;
+    for (const Isa isa : available_isas())
+      EXPECT_TRUE(same_bytes(reference, run(scene, [&](RenderOptions& o) { o.isa = isa; }).picture))
+          << to_string(isa);
+  }
+}
+
+TEST(Render, ManySamplesAreSplitIntoWavesWithoutATrace) {
+  Scene scene = busy_scene(IntegratorKind::path);
+  scene.film.width = 3, scene.film.height = 2;
+  scene.integrator.samples = 5000;
+  const Picture reference = run(scene).picture;
+  EXPECT_TRUE(same_bytes(reference, run(scene, [](RenderOptions& o) { o.tile_size = 1; }).picture));
+}
+
+TEST(Render, CropIsPartOfTheFullPicture) {
+  for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path}) {
+    Scene scene = busy_scene(kind);
+    const Picture full = run(scene).picture;
+    scene.film.crop[0] = 0.3, scene.film.crop[1] = 0.8, scene.film.crop[2] = 0.25, scene.film.crop[3] = 0.6;
+    const Picture part = run(scene).picture;
+    EXPECT_EQ(part.x, 16u);
+    EXPECT_EQ(part.y, 10u);
+    EXPECT_EQ(part.width, 27u);
+    EXPECT_EQ(part.full_width, 53u);
+    for (std::uint32_t y = 0; y < part.height; ++y)
+      for (std::uint32_t x = 0; x < part.width; ++x) {
+        EXPECT_EQ(color(part, x, y), color(full, part.x + x, part.y + y));
+        EXPECT_EQ(value(part, "Z", x, y), value(full, "Z", part.x + x, part.y + y));
+        EXPECT_EQ(id(part, "primID.I", x, y), id(full, "primID.I", part.x + x, part.y + y));
+      }
+  }
+}
+
+TEST(Render, SeedChangesTheNoiseOnly) {
+  Scene scene = busy_scene(IntegratorKind::path);
+  const Picture a = run(scene).picture;
+  scene.integrator.seed = 4;
+  const Picture b = run(scene).picture;
+  EXPECT_FALSE(same_bytes(a, b));
+  double sum_a = 0, sum_b = 0;
+  for (const float v : a.find("G")->values) sum_a += static_cast<double>(v);
+  for (const float v : b.find("G")->values) sum_b += static_cast<double>(v);
+  EXPECT_NEAR(sum_a / sum_b, 1, 0.1);
+}
+
+TEST(Render, EmptySceneShowsTheBackground) {
+  for (const IntegratorKind kind : kAllKinds) {
+    Scene scene;
+    scene.film.width = 20, scene.film.height = 10;
+    scene.background = {0.25f, 0.5f, 1};
+    scene.integrator.kind = kind;
+    const RenderResult r = run(scene);
+    for (std::uint32_t y = 0; y < 10; ++y)
+      for (std::uint32_t x = 0; x < 20; ++x) ASSERT_EQ(color(r.picture, x, y), scene.background);
+    EXPECT_EQ(r.report.camera_rays, 800u);
+    EXPECT_EQ(r.report.shadow_rays, 0u);
+    EXPECT_EQ(r.report.primitives, 0u);
+  }
+}
+
+TEST(Render, MissingCameraAndLightsAreFilledIn) {
+  Scene scene;
+  scene.film.width = 40, scene.film.height = 30;
+  add_object(scene, SphereShape{{100, 20, -7}, 3}, kNoId);
+  add_object(scene, PlaneShape{{0, 1, 0}, -1000}, kNoId);
+  const RenderResult r = run(scene);
+  EXPECT_EQ(r.scene.lights.size(), 2u);
+  EXPECT_NEAR(length(r.scene.camera.at - Vec3d{100, 20, -7}), 0, 1e-4);
+  EXPECT_EQ(id(r.picture, "geomID.I", 20, 15), 0u);
+  EXPECT_GT(color(r.picture, 20, 15).x, 0.3f);
+  for (std::uint32_t x = 0; x < 40; ++x) EXPECT_NE(id(r.picture, "geomID.I", x, 0), 0u);
+}
+
+TEST(Render, StopLeavesTheRestBlackAndTransparent) {
+  const Scene scene = busy_scene(IntegratorKind::whitted);
+  std::atomic<bool> stop{true};
+  const RenderResult none = run(scene, [&](RenderOptions& o) { o.stop = &stop; });
+  EXPECT_TRUE(none.report.stopped);
+  for (const char* plane : {"R", "A", "N.X"})
+    for (const float v : none.picture.find(plane)->values) ASSERT_EQ(v, 0);
+
+  stop = false;
+  const RenderResult some = run(scene, [&](RenderOptions& o) {
+    o.stop = &stop, o.threads = 1, o.tile_size = 8;
+    o.tile_finished = [&](const Picture&, const FinishedTile&) { stop = true; };
+  });
+  EXPECT_TRUE(some.report.stopped);
+  EXPECT_EQ(some.report.camera_rays, 8u * 8 * 5);
+  const Picture full = run(scene).picture;
+  int same = 0;
+  for (std::uint32_t y = 0; y < full.height; ++y)
+    for (std::uint32_t x = 0; x < full.width; ++x)
+      if (value(some.picture, "A", x, y) > 0) {
+        ++same;
+        ASSERT_EQ(color(some.picture, x, y), color(full, x, y));
+      }
+  EXPECT_EQ(same, 64);
+  EXPECT_FALSE(run(scene).report.stopped);
+}
+
+TEST(Render, CallbacksSeeEachTileOnceAndOneAtATime) {
+  const Scene scene = busy_scene(IntegratorKind::whitted);
+  std::vector<int> finished(53 * 37);
+  std::atomic<int> inside{0};
+  std::uint64_t last = 0;
+  const RenderResult r = run(scene, [&](RenderOptions& o) {
+    o.threads = 4, o.tile_size = 5;
+    o.tile_finished = [&](const Picture& p, const FinishedTile& t) {
+      EXPECT_EQ(++inside, 1);
+      for (std::uint32_t y = t.y; y < t.y + t.height; ++y)
+        for (std::uint32_t x = t.x; x < t.x + t.width; ++x) {
+          ++finished[y * p.width + x];
+          EXPECT_EQ(value(p, "A", x, y), 1);
+        }
+      --inside;
+    };
+    o.progress = [&](const RenderProgress& progress) {
+      EXPECT_GE(progress.pixels_done, last);
+      last = progress.pixels_done;
+      EXPECT_EQ(progress.pixels_total, 53u * 37);
+    };
+  });
+  for (const int n : finished) EXPECT_EQ(n, 1);
+  EXPECT_EQ(last, 53u * 37);
+  EXPECT_EQ(r.report.camera_rays, 53u * 37 * 5);
+  EXPECT_GT(r.report.reflected_rays, 0u);
+  EXPECT_GT(r.report.refracted_rays, 0u);
+  EXPECT_GT(r.report.shadow_rays, 0u);
+}
+
+TEST(Render, NumbersThatAreNoneAreCountedAndLeftOut) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  const auto bad_samples = [](const Scene& scene) {
+    const RenderResult r = run(scene);
+    for (const char* plane : {"R", "G", "B", "A", "Variance.R"})
+      for (const float v : r.picture.find(plane)->values) EXPECT_TRUE(std::isfinite(v));
+    return r.report.bad_samples;
+  };
+  Scene scene = bare_scene(8);
+  add_object(scene, PlaneShape{{0, 0, 1}, 0}, add_material(scene, diffuse({1, 1, 1})));
+  scene.lights = {PointLight{{0, 0, 3}, {1, 1, 1}, false}};
+  EXPECT_EQ(bad_samples(scene), 0u);
+  for (const float bad : {nan, inf}) {
+    Scene s = scene;
+    s.materials[0].color.y = bad;
+    EXPECT_EQ(bad_samples(s), 64u);
+    s = scene;
+    s.lights = {PointLight{{0, 0, 3}, {1, bad, 1}, false}};
+    EXPECT_EQ(bad_samples(s), 64u);
+    s = scene;
+    s.background = {bad, 0, 0};
+    s.objects.clear();
+    EXPECT_EQ(bad_samples(s), 64u);
+  }
+  Scene s = scene;
+  s.lights = {PointLight{{static_cast<double>(nan), 0, 3}, {1, 1, 1}, false}};
+  EXPECT_EQ(bad_samples(s), 64u);
+  s = scene;
+  s.materials[0].reflection = nan;
+  EXPECT_EQ(bad_samples(s), 64u);
+}
+
+}  // namespace
+}  // namespace oktett

@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <mutex>
+
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+/// Textures given by functions of uv: 0 = stripes of colour by u, 1 = opaque for u > 0.5, 2 = a slope of
+/// height along u, 3 = a normal leaning towards +u.
+class FunctionTextures : public TextureSampler {
+ public:
+  Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const std::lock_guard lock(mutex_);
+    last_dx = dx, last_dy = dy;
+    return index == 0 ? Color{uv.x, uv.y, 0.5f} : Color{1, 1, 1};
+  }
+  float value(std::uint32_t index, Vec2f uv, Vec2f, Vec2f) const override {
+    return index == 1 ? (uv.x > 0.5f ? 1.0f : 0.0f) : uv.x;
+  }
+  Vec3f normal(std::uint32_t, Vec2f, Vec2f, Vec2f) const override { return {0.5f + 0.3f, 0.5f, 0.5f + 0.4f}; }
+
+  mutable Vec2f last_dx, last_dy;
+
+ private:
+  mutable std::mutex mutex_;
+};
+
+/// A square from -1 to 1 in the plane z = 0 with uv from 0 to 1, facing the camera.
+Scene textured_square(const Material& material, std::uint32_t size = 16) {
+  Scene scene = bare_scene(size);
+  scene.camera.projection = Projection::orthographic;
+  scene.camera.height = 2;
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (int k = 0; k < 4; ++k) {
+    const float u = k & 1 ? 1 : 0, v = k & 2 ? 1 : 0;
+    mesh->positions.push_back({2 * u - 1, 2 * v - 1, 0});
+    mesh->uvs.push_back({u, v});
+  }
+  for (const std::uint32_t i : {0u, 1u, 3u, 0u, 3u, 2u})
+    mesh->indices.push_back(i), mesh->uv_indices.push_back(i);
+  add_object(scene, MeshShape{mesh, {}, true, TriangleTest::watertight}, add_material(scene, material));
+  return scene;
+}
+
+Picture run_textured(const Scene& scene, const FunctionTextures& textures) {
+  return run(scene, [&](RenderOptions& o) { o.textures = &textures; }).picture;
+}
+
+TEST(Texture, MultipliesTheColour) {
+  Material m = diffuse({1, 1, 0.5f});
+  m.color_texture = 0;
+  Scene scene = textured_square(m);
+  scene.lights = {DirectionalLight{{0, 0, -1}, {1, 1, 1}}};
+  const FunctionTextures textures;
+  const Picture p = run_textured(scene, textures);
+  for (std::uint32_t y = 0; y < 16; ++y)
+    for (std::uint32_t x = 0; x < 16; ++x) {
+      const Color want{(static_cast<float>(x) + 0.5f) / 16, (15.5f - static_cast<float>(y)) / 16, 0.25f};
+      EXPECT_NEAR(length(color(p, x, y) - want), 0, 1e-5f);
+      EXPECT_NEAR(value(p, "u", x, y), want.x, 1e-6f);
+      EXPECT_NEAR(value(p, "v", x, y), want.y, 1e-6f);
+    }
+  // Without a sampler textures are white.
+  EXPECT_NEAR(length(color(run(scene).picture, 3, 3) - Color{1, 1, 0.5f}), 0, 1e-6f);
+}
+
+TEST(Texture, FootprintIsTheStepToTheNextPixel) {
+  Material m = glowing({1, 1, 1});
+  m.emission_texture = 0;
+  const FunctionTextures textures;
+  run_textured(textured_square(m, 64), textures);
+  EXPECT_NEAR(textures.last_dx.x, 1 / 64.0f, 1e-5f);
+  EXPECT_NEAR(textures.last_dx.y, 0, 1e-5f);
+  EXPECT_NEAR(textures.last_dy.x, 0, 1e-5f);
+  EXPECT_NEAR(textures.last_dy.y, -1 / 64.0f, 1e-5f);
+}
+
+TEST(Texture, HolesShowAndLightWhatIsBehind) {
+  Material m = glowing({1, 0, 0});
+  m.opacity_texture = 1;
+  Scene scene = textured_square(m);
+  const FunctionTextures textures;
+  Picture p = run_textured(scene, textures);
+  EXPECT_EQ(color(p, 4, 8), (Color{0, 0, 0}));
+  EXPECT_EQ(value(p, "A", 4, 8), 0);
+  EXPECT_EQ(id(p, "geomID.I", 4, 8), kNoId);
+  EXPECT_EQ(color(p, 12, 8), (Color{1, 0, 0}));
+  EXPECT_EQ(value(p, "A", 12, 8), 1);
+  // Seen through the hole: a floor that is lit through it, and in shadow behind the opaque half. Bounces are
+  // not used up.
+  add_object(scene, PlaneShape{{0, 0, 1}, -1}, add_material(scene, diffuse({1, 1, 1})));
+  scene.integrator.depth = 0;
+  scene.lights = {DirectionalLight{{0, 0, -1}, {1, 1, 1}}};
+  for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path}) {
+    scene.integrator.kind = kind;
+    p = run_textured(scene, textures);
+    EXPECT_EQ(color(p, 4, 8), (Color{1, 1, 1}));
+    EXPECT_EQ(value(p, "A", 4, 8), 1);
+    EXPECT_EQ(id(p, "geomID.I", 4, 8), 1u);
+  }
+  scene.lights = {DirectionalLight{{-1, 0, -1}, {1, 1, 1}}};
+  EXPECT_EQ(color(run_textured(scene, textures), 6, 8), (Color{0, 0, 0}));
+}
+
+// The height rises along u by bump_scale per uv unit, that is by half of it per length: the normal leans to
+// -u.
+TEST(Texture, BumpsBendTheNormal) {
+  Material m = diffuse({1, 1, 1});
+  m.bump_texture = 2;
+  m.bump_scale = 2;
+  Scene scene = textured_square(m);
+  scene.lights = {DirectionalLight{{1, 0, -1}, {1, 1, 1}}};
+  const FunctionTextures textures;
+  EXPECT_NEAR(color(run_textured(scene, textures), 8, 4).x, 1, 1e-3f);
+  scene.lights = {DirectionalLight{{0, 0, -1}, {1, 1, 1}}};
+  EXPECT_NEAR(color(run_textured(scene, textures), 8, 4).x, std::sqrt(0.5f), 1e-3f);
+}
+
+TEST(Texture, NormalMapsReplaceTheNormal) {
+  Material m = diffuse({1, 1, 1});
+  m.normal_texture = 3;
+  Scene scene = textured_square(m);
+  scene.lights = {DirectionalLight{{-0.6, 0, -0.8}, {1, 1, 1}}};
+  const FunctionTextures textures;
+  EXPECT_NEAR(color(run_textured(scene, textures), 8, 4).x, 1, 1e-5f);
+}
+
+}  // namespace
+}  // namespace oktett
