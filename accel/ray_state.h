@@ -18,7 +18,7 @@ struct alignas(64) RayState {
   float o[3][W], d[3][W], inv[3][W];
   float tmin[W], tmax[W];
   float slack[W];
-  float d_max[W];
+  float d_max[W];  ///< greatest |component|, see filter_watertight
   double shear_x[W], shear_y[W];
   float u[W], v[W];
   std::uint32_t item[W], path[W];
@@ -33,15 +33,15 @@ struct alignas(64) RayState {
   OKTETT_INLINE unsigned set(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1,
                              const Box& box) {
     const F zero(0.0f), big(std::numeric_limits<float>::max());
-    // -0 becomes +0, so that the sign of the reciprocal agrees with the comparison with zero.
-    direction = {direction.x + zero, direction.y + zero, direction.z + zero};
+    direction = {flush(direction.x), flush(direction.y), flush(direction.z)};
     const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
     const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
     const F dm = max(az, max(ay, ax));
     const F om = max(abs(origin.z), max(abs(origin.y), abs(origin.x)));
     store(origin, o), store(direction, d);
     store({F(1.0f) / direction.x, F(1.0f) / direction.y, F(1.0f) / direction.z}, inv);
-    t0.store(tmin), t1.store(tmax), dm.store(d_max);
+    t0.store(tmin), t1.store(tmax);
+    select(dm <= F(kFilterMaxDirection), dm, F(std::numeric_limits<float>::infinity())).store(d_max);
 
     const auto pick = [&](const F& x, const F& y, const F& z) { return select(zx, x, select(zy, y, z)); };
     const D dz = to_double(pick(direction.x, direction.y, direction.z));
@@ -69,6 +69,11 @@ struct alignas(64) RayState {
  private:
   OKTETT_INLINE static void store(const Vec3<F>& v, float (&columns)[3][W]) {
     v.x.store(columns[0]), v.y.store(columns[1]), v.z.store(columns[2]);
+  }
+  /// A component whose reciprocal would overflow counts as zero: the slab test and the triangle test must see
+  /// the same ray. -0 becomes +0, so that the sign of the reciprocal agrees with the comparison with zero.
+  OKTETT_INLINE static F flush(const F& component) {
+    return select(abs(component) < F(std::numeric_limits<float>::min()), F(0.0f), component);
   }
   OKTETT_INLINE static float box_extent(const Box& b) {
     float e = 0;

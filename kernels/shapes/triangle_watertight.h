@@ -115,9 +115,16 @@ OKTETT_INLINE FilterTriangle<F> filter_triangle(const TriangleLanes<F>& t) {
   return f;
 }
 
-/// Rounding errors of the filter in units of the products' magnitudes: about 12 roundings of 2^-24, and a
+/// Rounding errors of the filter in units of the products' magnitudes: about 16 roundings of 2^-24, and a
 /// factor for a determinant whose sign is in doubt.
 inline constexpr float kFilterError = 0x1p-18f;
+/// What the decision itself may displace a vertex, in units of its distance, relative to kFilterError: counts
+/// where a triangle is tiny against its distance.
+inline constexpr float kFilterShear = 0x1p-30f;
+/// Covers products that underflow.
+inline constexpr float kFilterUnderflow = 1e-37f;
+/// A direction with a greater component lets products overflow that the error bound does not see.
+inline constexpr float kFilterMaxDirection = 0x1p60f;
 
 /// Lanes that `decide_watertight` might accept, from the scaled barycentric coordinates u, v, the determinant
 /// and the scaled distance (as in Möller and Trumbore 1997, but with either sign of det). NaN and overflow
@@ -133,7 +140,23 @@ OKTETT_INLINE typename F::M filter_decide(const F& det, const F& u, const F& v, 
   return ~reject;
 }
 
-/// The filter for any lanes. `d_max` = greatest |component| of the ray's direction.
+/// Bounds on the errors of u, v, det and of t, for a triangle whose first corner is `c` away from the origin of
+/// a ray. `d_max` = greatest |component| of the ray's direction, infinity if that is above
+/// kFilterMaxDirection.
+///
+/// `magnitude` is twice a bound on every partial sum of the products, so that one that overflows makes the
+/// error infinite, which keeps the lane.
+template <class F>
+OKTETT_INLINE void filter_error(const Vec3<F>& c, const F& triangle_size, const F& d_max, F& error,
+                                F& t_error) {
+  const F reach = norm1(c) + triangle_size;
+  const F size = fast_fma(F(kFilterShear), reach, triangle_size);
+  const F magnitude = fast_fma(size, reach + reach, F(kFilterUnderflow));
+  error = fast_fma(magnitude * d_max, F(kFilterError / 2), F(kFilterUnderflow));
+  t_error = fast_fma(magnitude * reach, F(kFilterError / 2), F(kFilterUnderflow));
+}
+
+/// The filter for any lanes; `d_max` as in filter_error.
 template <class F>
 OKTETT_INLINE typename F::M filter_watertight(const RayLanes<F>& ray, const F& d_max,
                                               const FilterTriangle<F>& tri) {
@@ -141,10 +164,9 @@ OKTETT_INLINE typename F::M filter_watertight(const RayLanes<F>& ray, const F& d
   const Vec3<F> r = fast_cross(c, ray.d);
   const F det = fast_dot(tri.n, ray.d);
   const F u = fast_dot(r, tri.e2), v = -fast_dot(r, tri.e1), t = fast_dot(tri.n, c);
-  const F reach = norm1(c);
-  const F scale = F(kFilterError) * tri.size;
-  const F error = scale * (reach + tri.size) * d_max;
-  return filter_decide(det, u, v, t, error, scale * tri.size * reach, ray.tmax);
+  F error, t_error;
+  filter_error(c, tri.size, d_max, error, t_error);
+  return filter_decide(det, u, v, t, error, t_error, ray.tmax);
 }
 
 /// For rays from one point `o`: what u, v, det and t are as linear functions of the direction, for triangles
@@ -155,6 +177,7 @@ struct OriginTriangle {
   F t, error, t_error;
 };
 
+/// `d_max` covers all rays.
 template <class F>
 OKTETT_INLINE OriginTriangle<F> origin_triangle(const FilterTriangle<F>& tri, const Vec3<F>& o,
                                                 const F& d_max) {
@@ -162,9 +185,7 @@ OKTETT_INLINE OriginTriangle<F> origin_triangle(const FilterTriangle<F>& tri, co
   OriginTriangle<F> r;
   r.u = fast_cross(tri.e2, c), r.v = fast_cross(c, tri.e1), r.det = tri.n;
   r.t = fast_dot(tri.n, c);
-  const F reach = norm1(c), scale = F(kFilterError) * tri.size;
-  r.error = scale * (reach + tri.size) * d_max;
-  r.t_error = scale * tri.size * reach;
+  filter_error(c, tri.size, d_max, r.error, r.t_error);
   return r;
 }
 
