@@ -46,6 +46,11 @@ TEST(Path, MirrorsAndGlassKeepTheEnergyOfTheFurnace) {
   add_object(scene, BoxShape{}, add_material(scene, wall));
   add_object(scene, SphereShape{{-0.4, -0.4, -0.4}, 0.4}, add_material(scene, glass(1.5f)));
   add_object(scene, SphereShape{{0.4, -0.4, -0.3}, 0.4}, add_material(scene, mirror()));
+  // All three in one, emitting what it does not pass on.
+  Material mixed = glass(1.5f);
+  mixed.diffuse = 0.3f, mixed.reflection = 0.4f, mixed.transparency = 0.2f,
+  mixed.emission = {0.1f, 0.1f, 0.1f};
+  add_object(scene, SphereShape{{0, 0.5, -0.4}, 0.4}, add_material(scene, mixed));
   EXPECT_NEAR(mean(run(scene).picture, "R"), 1, 0.02);
 }
 
