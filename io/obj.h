@@ -12,14 +12,15 @@ namespace oktett {
 
 /// Everything an OBJ file holds that can be rendered.
 struct ObjFile {
-  TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
-  std::vector<Material> materials;  ///< one per slot, in order of first use; empty if no face names a material
-  std::vector<Texture> textures;    ///< what the materials' texture indices refer to
+  TriangleMesh mesh;  ///< polygons are triangulated; mesh.material_slots indexes `materials`
+  std::vector<Material>
+      materials;                  ///< one per slot, in order of first use; empty if no face names a material
+  std::vector<Texture> textures;  ///< what the materials' texture indices refer to
   std::vector<Warning> warnings;
 };
 
-/// Reads `path`, and the MTL files it names from the same directory. Throws Error with file and line for what the format
-/// does not allow, with ErrorKind::io if the file cannot be read.
+/// Reads `path`, and the MTL files it names from the same directory. Throws Error with file and line for what
+/// the format does not allow, with ErrorKind::io if the file cannot be read.
 ObjFile load_obj(const std::string& path);
 
 /// Reads an MTL file. Texture paths are made relative to its directory.
