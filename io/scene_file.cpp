@@ -14,6 +14,7 @@
 #include "io/scene_settings.h"
 #include "io/scene_utf8.h"
 #include "io/scene_yaml.h"
+#include "render/default_view.h"
 
 namespace oktett {
 namespace {
@@ -148,6 +149,8 @@ Scene scene_from_mesh(const std::string& path) {
     scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
     return scene;
   }
+  scene.camera.up = guess_up(*shape.mesh);
+  scene.background = {0.30f, 0.34f, 0.40f};
   Object object;
   object.shape = std::move(shape);
   object.name = std::filesystem::path(path).stem().string();

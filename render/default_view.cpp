@@ -18,7 +18,8 @@ Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film) {
   Camera camera = given;
   camera.at = center;
   // Right of the front, somewhat from above; `from` serves as a direction until the distance is known.
-  camera.from = center + Vec3d{0.55, 0.45, 1};
+  const Vec3d front = std::abs(camera.up.z) > std::abs(camera.up.y) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
+  camera.from = center + Vec3d{0.55, 0, 0} + camera.up * (0.45 / length(camera.up)) + front;
 
   const CameraFrame frame = camera_frame(camera, film);
   const double half_height = frame.pixel_size * std::max(film.height, 1u) / 2 * (1 - kMargin);
@@ -43,6 +44,31 @@ Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film) {
   if (!(camera.height > 0)) camera.height = 2 * size;
   camera.from = center - frame.forward * distance;
   return camera;
+}
+
+/// Share of the surface that faces down `axis` within the lowest 2 % of it.
+static double base_share(const TriangleMesh& mesh, int axis, double low, double extent) {
+  double base = 0, total = 0;
+  // A hundred thousand triangles are sample enough.
+  const std::size_t stride = 1 + mesh.triangle_count() / 100000;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3 * stride) {
+    const Vec3d a(mesh.positions[mesh.indices[i]]), b(mesh.positions[mesh.indices[i + 1]]),
+        c(mesh.positions[mesh.indices[i + 2]]);
+    const Vec3d n = cross(b - a, c - a);
+    const double area = length(n);
+    total += area;
+    const double top = std::max({a[axis], b[axis], c[axis]});
+    if (top < low + 0.02 * extent && std::abs(n[axis]) > 0.95 * area) base += area;
+  }
+  return total > 0 ? base / total : 0;
+}
+
+Vec3d guess_up(const TriangleMesh& mesh) {
+  Box box;
+  for (const Vec3f& p : mesh.positions) box.grow(p);
+  const Vec3f e = box.extent();
+  const double y = base_share(mesh, 1, box.lo.y, e.y), z = base_share(mesh, 2, box.lo.z, e.z);
+  return z > 0.02 && z > 4 * y ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
 }
 
 std::vector<Light> default_lights(const Camera& camera, const Film& film) {
