@@ -20,6 +20,13 @@ struct InstanceItem {
   std::uint32_t first_path;  ///< paths through this instance are first_path + 1 + (path inside the child + 1)
 };
 
+/// What shading needs of a geometry's transform, computed once.
+struct GeometryFrame {
+  Affine inverse;
+  bool identity = true;
+  bool mirrored = false;
+};
+
 /// The tree over `geometries` and the pools that its leaves point to.
 ///
 /// Instance paths: within one structure, "no instance" is path kNoId, and a hit below instance item k with
@@ -38,9 +45,10 @@ class Accel {
   std::vector<LeafEntry> leaves;
   ShapePools pools;
   std::vector<InstanceItem> instances;
-  std::vector<LeafEntry> unbounded;  ///< tested against every ray
-  std::uint32_t path_count = 0;      ///< number of instance paths in here
-  std::vector<std::uint8_t> kinds;   ///< Kind of each geometry
+  std::vector<LeafEntry> unbounded;   ///< tested against every ray
+  std::uint32_t path_count = 0;       ///< number of instance paths in here
+  std::vector<GeometryFrame> frames;  ///< per geometry
+  std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
   /// Per closed-form kind: pool indices ordered by item, to find the primitive of a hit.
   std::vector<std::uint32_t> pool_by_item[kClosedFormKinds];
   std::vector<std::uint32_t> instances_by_path;  ///< indices into `instances`, ordered by first_path

@@ -335,6 +335,8 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   for (const Geometry& g : accel->geometries) {
     accel->first_item.push_back(static_cast<std::uint32_t>(items));
     items += item_count(g);
+    accel->frames.push_back(
+        {g.transform.inverse(), g.transform.is_identity(), g.transform.determinant() < 0});
     accel->kinds.push_back(static_cast<std::uint8_t>(kind_of(g)));
     if (std::holds_alternative<MeshGeometry>(g.shape)) accel->stats.triangles += item_count(g);
     if (items >= kNoId) throw Error("more than 2^32 - 2 primitives in one structure");

@@ -31,14 +31,14 @@ void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
   if (det != 0) s.tangent = ((p[1] - p[0]) * dv2 - (p[2] - p[0]) * dv1) / det;
 }
 
-Surface mesh_surface(const Geometry& g, const MeshGeometry& shape, std::uint32_t triangle, const Hit& hit) {
+Surface mesh_surface(const Geometry& g, const GeometryFrame& frame, const MeshGeometry& shape,
+                     std::uint32_t triangle, const Hit& hit) {
   const TriangleMesh& mesh = *shape.mesh;
   const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
-  const bool plain = g.transform.is_identity();
   Vec3f p[3];
   for (int k = 0; k < 3; ++k) {
     p[k] = mesh.positions[index[k]];
-    if (!plain) p[k] = Vec3f(g.transform.point(Vec3d(p[k])));
+    if (!frame.identity) p[k] = Vec3f(g.transform.point(Vec3d(p[k])));
   }
   Surface s;
   const float w = 1 - hit.u - hit.v;
@@ -52,11 +52,11 @@ Surface mesh_surface(const Geometry& g, const MeshGeometry& shape, std::uint32_t
   }
   const Vec3d n = cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
   // A mirroring transform turns the winding around, but not the outside.
-  const double side = plain || g.transform.determinant() > 0 ? 1 : -1;
+  const double side = frame.mirrored ? -1 : 1;
   s.geometric_normal = s.shading_normal = Vec3f(normalize(n) * side);
   if (shape.smooth) {
     Vec3d ns = Vec3d(mesh_normal(mesh, triangle, hit.u, hit.v));
-    if (!plain) ns = g.transform.inverse().normal_by_inverse(ns);
+    if (!frame.identity) ns = frame.inverse.normal_by_inverse(ns);
     const double l = length(ns);
     if (l > 0 && std::isfinite(l)) s.shading_normal = Vec3f(ns / l);
   }
@@ -141,7 +141,7 @@ Surface surface(const Accel& accel, const Ray& ray, const Hit& hit) {
   const Ray inner = place.moved ? ray_inside(place, ray) : ray;
   Surface s;
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
-    s = mesh_surface(g, *mesh, local, hit);
+    s = mesh_surface(g, a.frames[geometry], *mesh, local, hit);
   } else {
     const Kind kind = static_cast<Kind>(a.kinds[geometry]);
     visit_pool(kind, a.pools, [&](auto shape, const auto& pool) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "app/units.h"
 #include "app/warnings.h"
 #include "io/scene_file.h"
+#include "render/geometry.h"
 
 namespace oktett {
 
@@ -40,7 +42,22 @@ std::string bounds_text(const Box& box) {
                      box.hi.y, box.hi.z);
 }
 
-void print_text(const Scene& scene, const SceneSummary& summary) {
+/// Figures of the trees, all prototypes' included.
+struct TreeSummary {
+  double build_seconds = 0;
+  std::uint64_t bytes = 0;
+  double sah_cost = 0;
+  std::uint64_t triangles = 0;
+};
+
+TreeSummary build_trees(const Scene& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  const World world = build_world(scene);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return {taken.count(), world.bvh_bytes, world.sah_cost, world.triangles};
+}
+
+void print_text(const Scene& scene, const SceneSummary& summary, const TreeSummary& tree) {
   const auto line = [](const char* name, const std::string& value) { fmt::print("{:<18}{}\n", name, value); };
   line("file", scene.source);
   line("meshes", grouped(summary.meshes));
@@ -58,9 +75,17 @@ void print_text(const Scene& scene, const SceneSummary& summary) {
   line("camera", scene.camera_given ? "given" : "default");
   line("bounds", bounds_text(summary.bounds));
   line("mesh memory", bytes_text(summary.mesh_bytes));
+  line("BVH memory", bytes_text(tree.bytes));
+  if (tree.triangles > 0) {
+    const double all = static_cast<double>(tree.bytes + summary.mesh_bytes);
+    line("  per triangle",
+         fmt::format("{:.1f} bytes with the mesh", all / static_cast<double>(tree.triangles)));
+  }
+  line("BVH cost", fmt::format("{:.2f} (expected nodes and leaves per ray)", tree.sah_cost));
+  line("BVH build", fmt::format("{:.3g} s", tree.build_seconds));
 }
 
-void print_json(const Scene& scene, const SceneSummary& summary) {
+void print_json(const Scene& scene, const SceneSummary& summary, const TreeSummary& tree) {
   JsonObject all;
   all.add("file", scene.source);
   all.add("meshes", summary.meshes);
@@ -83,6 +108,9 @@ void print_json(const Scene& scene, const SceneSummary& summary) {
     all.add("bounds_max", std::vector<double>{box.hi.x, box.hi.y, box.hi.z});
   }
   all.add("mesh_bytes", summary.mesh_bytes);
+  all.add("bvh_bytes", tree.bytes);
+  all.add("sah_cost", tree.sah_cost);
+  all.add("build_seconds", tree.build_seconds);
   fmt::print("{}\n", all.text());
 }
 
@@ -90,10 +118,11 @@ int run_info(const InfoArguments& arguments) {
   const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions));
   print_warnings(scene.warnings);
   const SceneSummary summary = summarize(scene);
+  const TreeSummary tree = build_trees(scene);
   if (arguments.json)
-    print_json(scene, summary);
+    print_json(scene, summary, tree);
   else
-    print_text(scene, summary);
+    print_text(scene, summary, tree);
   return 0;
 }
 

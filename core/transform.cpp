@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/math.h"
+
 namespace oktett {
 
 Affine Affine::translation(const Vec3d& t) {
@@ -17,7 +19,8 @@ Affine Affine::scaling(const Vec3d& s) {
   return a;
 }
 
-/// Sine and cosine of an angle in degrees; exact at multiples of 90, so that quarter turns keep boxes axis-aligned.
+/// Sine and cosine of an angle in degrees; exact at multiples of 90, so that quarter turns keep boxes
+/// axis-aligned.
 static void sin_cos_degrees(double degrees, double& s, double& c) {
   const double quarter = std::remainder(degrees, 360.0) / 90.0;
   if (quarter == std::round(quarter)) {
@@ -26,8 +29,8 @@ static void sin_cos_degrees(double degrees, double& s, double& c) {
     c = k == 0 ? 1 : k == 2 ? -1 : 0;
     return;
   }
-  s = std::sin(degrees * std::numbers::pi / 180);
-  c = std::cos(degrees * std::numbers::pi / 180);
+  s = portable::sin(degrees * std::numbers::pi / 180);
+  c = portable::cos(degrees * std::numbers::pi / 180);
 }
 
 static Affine rotation_about(int axis, double degrees) {
@@ -77,7 +80,9 @@ Vec3d Affine::normal_by_inverse(const Vec3d& n) const {
 
 static Vec3d column(const Affine& a, int j) { return {a.m[0][j], a.m[1][j], a.m[2][j]}; }
 
-double Affine::determinant() const { return dot(column(*this, 0), cross(column(*this, 1), column(*this, 2))); }
+double Affine::determinant() const {
+  return dot(column(*this, 0), cross(column(*this, 1), column(*this, 2)));
+}
 
 Affine Affine::inverse() const {
   const Vec3d c0 = column(*this, 0), c1 = column(*this, 1), c2 = column(*this, 2);
@@ -119,7 +124,8 @@ Affine operator*(const Affine& a, const Affine& b) {
   Affine r;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 4; ++j)
-      r.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + (j == 3 ? a.m[i][3] : 0);
+      r.m[i][j] =
+          a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + (j == 3 ? a.m[i][3] : 0);
   return r;
 }
 

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "core/math.h"
 #include "kernels/shapes/plane.h"
 
 namespace oktett {
@@ -77,7 +78,7 @@ struct Disk {
     Vec3d a, b;
     make_basis(n, a, b);
     const Vec3d q = point - c;
-    s.uv = {static_cast<float>(0.5 + std::atan2(dot(q, b), dot(q, a)) * 0.5 / std::numbers::pi),
+    s.uv = {static_cast<float>(0.5 + portable::atan2(dot(q, b), dot(q, a)) * 0.5 / std::numbers::pi),
             static_cast<float>(length(q) / p.radius[i])};
     s.tangent = Vec3f(cross(n, q) * (2 * std::numbers::pi));
     return s;

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "core/math.h"
 #include "kernels/shapes/contract.h"
 #include "kernels/shapes/shape_data.h"
 
@@ -102,7 +103,7 @@ struct Sphere {
     // Moving the point onto the sphere removes the error along the normal.
     set_position(s, c + n * p.radius[i], ray, t, 0x1p-48 * (length(c) + p.radius[i]));
     s.geometric_normal = s.shading_normal = Vec3f(n);
-    const double phi = std::atan2(n.z, n.x), theta = std::asin(n.y < -1 ? -1 : n.y > 1 ? 1 : n.y);
+    const double phi = portable::atan2(n.z, n.x), theta = portable::asin(n.y < -1 ? -1 : n.y > 1 ? 1 : n.y);
     s.uv = {static_cast<float>(0.5 + phi * 0.5 / std::numbers::pi),
             static_cast<float>(0.5 + theta / std::numbers::pi)};
     s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * p.radius[i]));
