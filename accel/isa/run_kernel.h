@@ -113,7 +113,14 @@ void run_slab(const KernelRun& run) {
   RayState<W, A> state;
   for (std::size_t b = 0; b < run.count; b += W) {
     const RayLanes<F> ray = load_span<F>(run.rays, b);
-    const unsigned valid = state.set(ray.o, ray.d, ray.tmin, ray.tmax, Box{});
+    float extent = 0;
+    for (std::size_t i = b; i < b + W && i < run.count; ++i)
+      for (int k = 0; k < 6; ++k) {
+        const float e = __builtin_fabsf(run.corner[k / 3][k % 3][i]);
+        extent = e > extent ? e : extent;
+      }
+    const Box scene{{-extent, -extent, -extent}, {extent, extent, extent}};
+    const unsigned valid = state.set(ray.o, ray.d, ray.tmin, ray.tmax, scene);
     F near_planes[3], far_planes[3];
     for (int k = 0; k < 3; ++k) {
       const F lo = load_column<F>(run.corner[0][k], b, run.count),

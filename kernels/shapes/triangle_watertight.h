@@ -94,8 +94,9 @@ OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, 
   const D det = (u.value + v.value) + w.value;
   const D t = ((u.value * a.z + v.value * b.z) + w.value * c.z) / (det * ray.dz);
   hit.t = to_float(t);
-  hit.u = to_float(v.value / det);
-  hit.v = to_float(w.value / det);
+  // Adding zero turns -0 into 0: the sign of a zero weight depends on how its rounding error was found.
+  hit.u = to_float(v.value / det) + F(0.0f);
+  hit.v = to_float(w.value / det) + F(0.0f);
   return mask_cast<float>(inside) & (tmin < hit.t) & (hit.t <= tmax) & (hit.t <= F(3.402823466e38f));
 }
 
