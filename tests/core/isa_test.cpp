@@ -1,0 +1,48 @@
+#include "core/isa.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "core/error.h"
+
+namespace oktett {
+namespace {
+
+TEST(Isa, NamesAreReadBack) {
+  for (Isa isa : {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512}) EXPECT_EQ(parse_isa(to_string(isa)), isa);
+  EXPECT_FALSE(parse_isa("avx3"));
+  EXPECT_FALSE(parse_isa(""));
+}
+
+TEST(Isa, ScalarIsAlwaysThereAndTheListIsOrdered) {
+  const std::vector<Isa> isas = available_isas();
+  ASSERT_FALSE(isas.empty());
+  EXPECT_EQ(isas.front(), Isa::scalar);
+  EXPECT_TRUE(std::is_sorted(isas.begin(), isas.end()));
+}
+
+TEST(Isa, EnvironmentChooses) {
+  const char* old = std::getenv("OKTETT_ISA");
+  const std::string saved = old ? old : "";
+  setenv("OKTETT_ISA", "scalar", 1);
+  EXPECT_EQ(default_isa(), Isa::scalar);
+  EXPECT_EQ(choose_isa("auto"), Isa::scalar);
+  setenv("OKTETT_ISA", "mmx", 1);
+  EXPECT_THROW(default_isa(), Error);
+  setenv("OKTETT_ISA", "auto", 1);
+  EXPECT_EQ(default_isa(), available_isas().back());
+  if (old)
+    setenv("OKTETT_ISA", saved.c_str(), 1);
+  else
+    unsetenv("OKTETT_ISA");
+}
+
+TEST(Isa, UnknownNamesAreErrors) {
+  EXPECT_EQ(choose_isa("scalar"), Isa::scalar);
+  EXPECT_THROW(choose_isa("neon"), Error);
+}
+
+}  // namespace
+}  // namespace oktett
