@@ -22,5 +22,6 @@ std::string program_version();
 
 void add_render_command(CLI::App& app, Command& command);
 void add_info_command(CLI::App& app, Command& command);
+void add_verify_command(CLI::App& app, Command& command);
 
 }  // namespace oktett

@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   add_render_command(app, command);
   add_info_command(app, command);
+  add_verify_command(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "app/json.h"
+#include "app/verify_kernels.h"
+#include "app/verify_meshes.h"
+#include "io/obj.h"
+
+namespace oktett {
+
+namespace {
+
+constexpr int kExitFailed = 3;
+
+struct VerifyArguments {
+  std::uint64_t rays = 0;
+  std::vector<std::string> meshes;
+  std::string isa;
+  bool quick = false;
+  bool json = false;
+};
+
+/// What was checked so far: printed as it comes, and gathered for --json.
+class Report {
+ public:
+  explicit Report(bool json) : json_(json) {}
+
+  void heading(const std::string& line) const {
+    if (!json_) fmt::print("{}\n", line);
+  }
+
+  void kernel(KernelId id, CaseClass c, const KernelTally& t) {
+    const bool slab = id == KernelId::slab;
+    if (!json_) {
+      fmt::print("{:<25}{:<8}{:>10}{:>10}{:>10}{:>9}{:>10}{:>10}  {}\n", to_string(id), to_string(c), t.rays,
+                 t.hits, t.undecided, t.wrong, t.differing, t.excess,
+                 t.worst_ulps > 0 ? fmt::format("{:.3f}", t.worst_ulps) : "-");
+      std::fflush(stdout);
+    }
+    JsonObject row;
+    row.add("rays", t.rays), row.add("hits", t.hits), row.add("undecided", t.undecided);
+    row.add("wrong", t.wrong), row.add("differing", t.differing);
+    if (slab) row.add("excess", t.excess);
+    row.add("must_be_right", must_be_right(id, c));
+    row.add("worst_ulps", t.worst_ulps);
+    kernels_.add(fmt::format("{}/{}", to_string(id), to_string(c)), row);
+    rays_ += t.rays;
+    note(fmt::format("{} {} pair {}", to_string(id), to_string(c), t.first_failure), t.failure);
+  }
+
+  void mesh(const std::string& name, const MeshPlacement& p, const MeshTally& t) {
+    const std::string state = t.open_edges == 0 ? "closed" : fmt::format("open: {} edges", t.open_edges);
+    if (!json_) {
+      fmt::print("{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}\n", name, p.name, state, t.rays,
+                 t.hits, t.leaks, t.parity, t.doubled, t.differing, t.inconsistent);
+      std::fflush(stdout);
+    }
+    JsonObject row;
+    row.add("open_edges", t.open_edges), row.add("rays", t.rays), row.add("hits", t.hits);
+    row.add("leaks", t.leaks), row.add("parity", t.parity), row.add("doubled", t.doubled);
+    row.add("differing", t.differing), row.add("inconsistent", t.inconsistent);
+    meshes_.add(fmt::format("{}/{}", name, p.name), row);
+    rays_ += t.rays;
+    note(fmt::format("{} {} ray {}", name, p.name, t.first_failure), t.failure);
+  }
+
+  /// Prints the end of the report; the exit status.
+  int finish(double seconds) const {
+    if (json_) {
+      JsonObject all;
+      all.add("passed", failure_.empty()), all.add("failed_rows", failed_rows_), all.add("rays", rays_);
+      all.add("seconds", seconds), all.add("first_failure", failure_);
+      all.add("kernels", kernels_), all.add("meshes", meshes_);
+      fmt::print("{}\n", all.text());
+    } else {
+      fmt::print("\n{} rays in {:.1f} s: {}\n", rays_, seconds,
+                 failure_.empty() ? "all is well" : fmt::format("{} rows FAILED", failed_rows_));
+      if (!failure_.empty()) fmt::print("first failure: {}\n", failure_);
+    }
+    return failure_.empty() ? 0 : kExitFailed;
+  }
+
+ private:
+  void note(const std::string& place, const std::string& failure) {
+    if (failure.empty()) return;
+    ++failed_rows_;
+    if (failure_.empty()) failure_ = place + ": " + failure;
+  }
+
+  bool json_;
+  JsonObject kernels_, meshes_;
+  std::uint64_t rays_ = 0, failed_rows_ = 0;
+  std::string failure_;
+};
+
+/// The instruction sets to be tried: the one asked for, or all that this machine has.
+std::vector<Isa> chosen_isas(const std::string& name) {
+  if (name.empty() || name == "all") return available_isas();
+  return {choose_isa(name)};
+}
+
+void verify_kernels(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+  report.heading(fmt::format("{:<25}{:<8}{:>10}{:>10}{:>10}{:>9}{:>10}{:>10}  {}", "kernel", "class", "rays",
+                             "hits", "undecided", "wrong", "differing", "excess", "ulps of t"));
+  for (int k = 0; k < kKernels; ++k)
+    for (int c = 0; c < kCaseClasses; ++c) {
+      const KernelId id = static_cast<KernelId>(k);
+      const CaseClass kind = static_cast<CaseClass>(c);
+      report.kernel(id, kind, verify_kernel(id, kind, rays / kCaseClasses, chosen_isas(arguments.isa)));
+    }
+}
+
+void verify_meshes(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+  report.heading(fmt::format("\n{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}", "mesh",
+                             "placement", "", "rays", "hits", "leaks", "parity", "doubled", "differing",
+                             "inconsistent"));
+  std::vector<OracleMesh> meshes = make_closed_meshes();
+  for (const std::string& file : arguments.meshes)
+    meshes.push_back({std::filesystem::path(file).stem().string(), load_obj(file).mesh, false});
+  for (const OracleMesh& mesh : meshes)
+    for (const MeshPlacement& placement : mesh_placements())
+      report.mesh(mesh.name, placement, verify_mesh(mesh, placement, rays, chosen_isas(arguments.isa)));
+}
+
+int run_verify(const VerifyArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::uint64_t rays = arguments.rays > 0 ? arguments.rays : arguments.quick ? 100'000 : 10'000'000;
+  Report report(arguments.json);
+  verify_kernels(arguments, rays, report);
+  verify_meshes(arguments, rays / 100 + 1, report);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  return report.finish(seconds.count());
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app, Command& command) {
+  CLI::App* verb = app.add_subcommand("verify", "Check kernels and tracing against exact arithmetic");
+  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+  const auto arguments = std::make_shared<VerifyArguments>();
+  verb->add_option("--rays", arguments->rays,
+                   "Rays per kernel; a hundredth of it per mesh and placement (default 10 million)")
+      ->type_name("N");
+  verb->add_option("--mesh", arguments->meshes, "Check this mesh too; may be repeated")
+      ->type_name("FILE.obj")
+      ->allow_extra_args(false);
+  verb->add_option("--isa", arguments->isa,
+                   "One instruction set instead of all: scalar, sse4.2, avx2, avx512")
+      ->type_name("NAME");
+  verb->add_flag("--quick", arguments->quick, "100 000 rays per kernel");
+  verb->add_flag("--json", arguments->json, "Print one JSON object");
+  verb->footer("Exits with status 3 if anything is found wrong.");
+  verb->callback([&command, arguments] { command.run = [arguments] { return run_verify(*arguments); }; });
+}
+
+}  // namespace oktett
