@@ -12,10 +12,12 @@ namespace oktett {
 
 /// Everything an OBJ file holds that can be rendered.
 struct ObjFile {
-  TriangleMesh mesh;  ///< polygons are triangulated; mesh.material_slots indexes `materials`
-  std::vector<Material>
-      materials;                  ///< one per slot, in order of first use; empty if no face names a material
-  std::vector<Texture> textures;  ///< what the materials' texture indices refer to
+  /// Polygons are triangulated; mesh.material_slots indexes `materials`.
+  TriangleMesh mesh;
+  /// One per slot, in order of first use; empty if no face names a material.
+  std::vector<Material> materials;
+  /// What the materials' texture indices refer to.
+  std::vector<Texture> textures;
   std::vector<Warning> warnings;
 };
 

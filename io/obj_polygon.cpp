@@ -9,7 +9,7 @@ namespace {
 
 /// Comparisons that one corner may cost on average. Polygons up to about this size are always cut exactly;
 /// larger ones unless they are contrived, because only blockers within an ear's range of x are looked at.
-constexpr std::int64_t kBudgetPerCorner = 4096;
+constexpr std::int64_t kBudgetPerCorner = 1024;
 
 template <class Point>
 double cross(const Point& a, const Point& b, const Point& c) {
@@ -126,6 +126,9 @@ double PolygonTriangulator::turn(std::uint32_t corner) const {
 
 bool PolygonTriangulator::may_cut_off(std::uint32_t corner, Rule rule) {
   --budget_;
+  // An edge without length, or one that is walked back and forth, encloses nothing.
+  const Point& after = points_[next_[corner]];
+  if (points_[corner] == after || points_[previous_[corner]] == after) return true;
   const double turned = turn(corner);
   switch (rule) {
     case Rule::no_contact:

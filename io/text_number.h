@@ -105,7 +105,8 @@ inline const char* scan_float(const char* p, float& value, NumberProblem& proble
     q = power + count;
   }
   float magnitude;
-  if (digits < 1 || digits > 19 || !is_delimiter(q) ||
+  // `1.#INF` looks like a comment behind a number.
+  if (*q == '#' || digits < 1 || digits > 19 || !is_delimiter(q) ||
       !detail::round_to_float(significand, static_cast<int>(exponent), magnitude))
     return scan_float_exactly(p, value, problem);
   value = negative ? -magnitude : magnitude;
