@@ -305,7 +305,9 @@ void add_references(Accel& accel, const MeshCorners& corners, std::vector<PrimRe
 /// Expected node and leaf visits of a random ray that meets the root's box (MacDonald and Booth 1990).
 double sah_cost(const Accel& accel) {
   if (accel.root.is_leaf()) return accel.root.is_none() ? 0 : 1;
-  const double root = accel.bounds.half_area();
+  const auto half_area = [](double x, double y, double z) { return x * y + y * z + z * x; };
+  const Vec3d extent = Vec3d(accel.bounds.hi) - Vec3d(accel.bounds.lo);
+  const double root = half_area(extent.x, extent.y, extent.z);
   double area = root;
   for (std::size_t n = 0; n < accel.stats.nodes; ++n) {
     const BvhNode& node = accel.nodes[n];
@@ -314,7 +316,7 @@ double sah_cost(const Accel& accel) {
       const double x = double(node.plane[1][i]) - node.plane[0][i],
                    y = double(node.plane[3][i]) - node.plane[2][i],
                    z = double(node.plane[5][i]) - node.plane[4][i];
-      area += x * y + y * z + z * x;
+      area += half_area(x, y, z);
     }
   }
   return root > 0 ? area / root : 0;

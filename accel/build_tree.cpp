@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <mutex>
 
@@ -33,11 +34,13 @@ struct Extent {
   }
   float lo(int k) const { return -v[k]; }
   float hi(int k) const { return v[4 + k]; }
-  /// Half the surface, scaled so that huge boxes do not overflow; 0 for an empty one.
-  float half_area() const {
-    const float x = v[4] * 0.5f + v[0] * 0.5f, y = v[5] * 0.5f + v[1] * 0.5f, z = v[6] * 0.5f + v[2] * 0.5f;
+  /// A measure of the surface, 0 for an empty box. `unit` is the scene's (see Builder::unit_).
+  float area(float unit) const {
+    const float x = half(0) * unit, y = half(1) * unit, z = half(2) * unit;
     return x >= 0 ? x * y + y * z + z * x : 0;
   }
+  /// Half the extent, which does not overflow.
+  float half(int k) const { return v[4 + k] * 0.5f + v[k] * 0.5f; }
 };
 
 /// A range of references with the bounds of their boxes and of their centres.
@@ -81,6 +84,9 @@ class Builder {
   void run() {
     Range all{0, count_, {}, {}};
     bound(all);
+    const float size = std::max({all.box.half(0), all.box.half(1), all.box.half(2)});
+    if (size > 0 && std::isfinite(size))
+      unit_ = std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
     // A node has at least two children unless it is the root, a block at least one triangle.
     accel_.nodes = VirtualArray<BvhNode>(count_ + 1);
     accel_.blocks = VirtualArray<TriangleBlock>(count_ + 1);
@@ -186,7 +192,7 @@ class Builder {
       for (int b = n - 1; b > 0; --b) {
         right.grow(bins.box[axis][b].v);
         right_count += bins.count[axis][b];
-        right_cost[b] = right_count > 0 ? right.half_area() * blocks(right_count)
+        right_cost[b] = right_count > 0 ? right.area(unit_) * blocks(right_count)
                                         : std::numeric_limits<float>::infinity();
       }
       Extent left;
@@ -195,7 +201,7 @@ class Builder {
         left.grow(bins.box[axis][b].v);
         left_count += bins.count[axis][b];
         if (left_count == 0) continue;
-        const float cost = left.half_area() * blocks(left_count) + right_cost[b + 1];
+        const float cost = left.area(unit_) * blocks(left_count) + right_cost[b + 1];
         if (cost < best.cost) best = {axis, b, n, job.origin[axis], job.scale[axis], cost};
       }
     }
@@ -327,7 +333,7 @@ class Builder {
       int widest = -1;
       float area = -1;
       for (int i = 0; i < n; ++i) {
-        const float a = child[i].box.half_area();
+        const float a = child[i].box.area(unit_);
         if (!leaf[i] && !(a <= area)) widest = i, area = a;
       }
       if (widest < 0) break;
@@ -379,6 +385,8 @@ class Builder {
   std::vector<std::uint32_t> (&order_)[8];
   BuildOptions options_;
   const IsaTable& isa_;
+  float unit_ =
+      1;  ///< a power of two by which the scene is of size 1, so that areas neither overflow nor vanish
   Column<PrimRef> scratch_;
   std::atomic<std::uint32_t> nodes_{0}, blocks_{0};
   std::atomic<int> depth_{0};
