@@ -1,0 +1,219 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "accel/dispatch.h"
+#include "app/oracle.h"
+#include "app/oracle_mesh.h"
+#include "app/verify_cases.h"
+
+namespace oktett {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single, TraceMode::packet4,
+                                TraceMode::packet8, TraceMode::packet16};
+
+Hit trace(const Accel& accel, const Ray& ray) {
+  RayBatch rays;
+  rays.push_back(ray);
+  HitBatch hits;
+  hits.resize_uninitialized(1);
+  closest_hit(accel, rays.span(), hits.span(), default_isa());
+  return hits[0];
+}
+
+Geometry instance(std::shared_ptr<const Accel> child, const Affine& m, std::uint32_t user = kNoId) {
+  return {InstanceGeometry{std::move(child)}, m, user};
+}
+
+/// All modes and instruction sets give the hits of the scalar code; any_hit and all_hits agree with them.
+int expect_agreement(const Accel& accel, const RayBatch& rays) {
+  HitBatch expected, hits;
+  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  std::vector<Hit> all;
+  closest_hit(accel, rays.span(), expected.span(), Isa::scalar);
+  int count = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
+  for (const Isa isa : available_isas()) {
+    for (const TraceMode mode : kModes) {
+      closest_hit(accel, rays.span(), hits.span(), isa, mode);
+      any_hit(accel, rays.span(), occluded.data(), isa, mode);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_EQ(hits[i], expected[i]) << to_string(isa) << " mode " << int(mode) << " ray " << i;
+        EXPECT_EQ(occluded[i] != 0, expected[i].valid());
+      }
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      all_hits(accel, rays[i], all, isa);
+      EXPECT_EQ(all.empty(), !expected[i].valid());
+      if (!all.empty()) {
+        EXPECT_EQ(all[0], expected[i]) << i;
+      }
+    }
+  }
+  return count;
+}
+
+RayBatch rays_towards_origin(int count, double from, double spread, std::uint64_t seed) {
+  RayBatch rays;
+  CaseRandom r(seed);
+  for (int i = 0; i < count; ++i) {
+    const Vec3f o(r.vector() * from);
+    rays.push_back({o, 0, Vec3f(r.vector() * spread) - o, kInf});
+  }
+  return rays;
+}
+
+/// One of each shape, with a mesh.
+std::vector<Geometry> one_of_each(const TriangleMesh& mesh) {
+  PolygonShape star;
+  for (int i = 0; i < 10; ++i) {
+    const double a = i * 0.628318530717958, s = i % 2 ? 0.4 : 1;
+    star.vertices.push_back({s * std::cos(a) - 2, s * std::sin(a), 0.5});
+  }
+  std::vector<Geometry> g;
+  g.push_back({MeshGeometry{&mesh}, Affine::translation({2, 0, 0}) * Affine::rotation({10, 20, 30}), 1});
+  g.push_back({SpheresShape{{{{0, 2, 0}, 0.7}, {{0, -2, 0}, 0.5}}}, {}, 2});
+  g.push_back({PlaneShape{{0, 1, 0.1}, -3}, {}, 3});
+  g.push_back({DiskShape{{0, 0, 2}, {0.2, 0.3, 1}, 0.8}, {}, 4});
+  g.push_back({BoxShape{{-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}}, Affine::rotation({40, 50, 60}), 5});
+  g.push_back({star, {}, 6});
+  return g;
+}
+
+TEST(Surface, MixedKindsAgreeInAllModes) {
+  const TriangleMesh mesh = make_icosphere(2).mesh;
+  const auto accel = build_accel(one_of_each(mesh));
+  EXPECT_GT(expect_agreement(*accel, rays_towards_origin(3000, 8, 3, 1)), 1500);
+}
+
+TEST(Surface, PolygonAgreesWithTheOracle) {
+  const TriangleMesh mesh = make_cube().mesh;
+  const std::vector<Geometry> all = one_of_each(mesh);
+  const PolygonShape star = std::get<PolygonShape>(all[5].shape);
+  const auto accel = build_accel({all[5]});
+  CaseRandom r(9);
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3f o(r.vector() * 4.0);
+    const Vec3d target = i % 3 == 0 ? star.vertices[r.bits() % 10] : Vec3d{-2, 0, 0.5} + r.vector();
+    const Ray ray{o, 0, Vec3f(target) - o, kInf};
+    const OracleAnswer truth = oracle_polygon(ray, star);
+    if (truth.verdict == OracleVerdict::undecided) continue;
+    const Hit hit = trace(*accel, ray);
+    ASSERT_EQ(hit.valid(), truth.verdict == OracleVerdict::hit) << i;
+    hits += hit.valid();
+    if (hit.valid()) {
+      ASSERT_NEAR(hit.t, truth.t, 1e-7 * truth.t + truth.t_error);
+    }
+  }
+  EXPECT_GT(hits, 3000);
+}
+
+/// The hit point lies within its error bound of the ray, and a ray that leaves from there meets nothing
+/// nearby.
+void expect_good_surfaces(const Accel& accel, const RayBatch& rays) {
+  CaseRandom r(77);
+  int hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray ray = rays[i];
+    const Hit hit = trace(accel, ray);
+    if (!hit.valid()) continue;
+    ++hits;
+    const Surface s = surface(accel, ray, hit);
+    ASSERT_NEAR(length(s.geometric_normal), 1, 1e-5) << i;
+    ASSERT_NEAR(length(s.shading_normal), 1, 1e-5) << i;
+    const double slope = std::abs(dot(s.geometric_normal, ray.direction)) / length(ray.direction);
+    if (slope < 0.01) continue;
+    // Along the normal the point must be right; along the surface it may slide with the rounding of t.
+    const Vec3d off = Vec3d(s.position) - (Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t));
+    const double bound = (length(Vec3d(s.position_error)) + 2e-7 * hit.t * length(ray.direction)) * 2;
+    ASSERT_LE(length(off), bound / slope) << i;
+    const Vec3f n = s.geometric_normal, to_light(r.vector());
+    const float side = dot(n, to_light) > 0 ? 1.0f : -1.0f;
+    // Straight away from the surface nothing may be met within a thousand error bounds.
+    const float clear = 1000 * max_component(s.position_error);
+    const Ray leaving{offset_origin(s, n * side), 0, n * side, clear};
+    const Hit again = trace(accel, leaving);
+    ASSERT_FALSE(again.valid() && again.item == hit.item && again.instance == hit.instance) << i;
+  }
+  EXPECT_GT(hits, static_cast<int>(rays.size() / 3));
+}
+
+TEST(Surface, ShapesNeitherShadowThemselvesNorStray) {
+  const TriangleMesh mesh = make_icosphere(2).mesh;
+  expect_good_surfaces(*build_accel(one_of_each(mesh)), rays_towards_origin(3000, 8, 3, 2));
+}
+
+TEST(Surface, MeshesAtAllScalesNeitherShadowThemselvesNorStray) {
+  for (const double scale : {1e-6, 1.0, 1e6, 1e12}) {
+    const TriangleMesh mesh = placed(make_torus(24, 16).mesh, scale, {0, 0, 0});
+    const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
+    expect_good_surfaces(*accel, rays_towards_origin(1500, 4 * scale, scale, 3));
+  }
+  const TriangleMesh far = placed(make_torus(24, 16).mesh, 100, {148376, 1234, -223423});
+  const auto accel = build_accel({{MeshGeometry{&far}, {}, kNoId}});
+  RayBatch rays = rays_towards_origin(1500, 400, 100, 4), moved;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Ray ray = rays[i];
+    ray.origin += Vec3f{148376, 1234, -223423};
+    moved.push_back(ray);
+  }
+  expect_good_surfaces(*accel, moved);
+}
+
+TEST(Instance, NestedScaledAndMirroredAgreeInAllModes) {
+  const TriangleMesh mesh = make_icosphere(2).mesh;
+  const auto leaf = build_accel(one_of_each(mesh));
+  const auto middle =
+      build_accel({instance(leaf, Affine::scaling({0.3, 0.5, -0.4})),
+                   instance(leaf, Affine::translation({4, 0, 0}) * Affine::rotation({0, 33, 0})),
+                   {SpheresShape{{{{0, 0, 3}, 1}}}, Affine::scaling({1, 2, 0.5}), 9}});
+  const auto top = build_accel(
+      {instance(middle, Affine::rotation({10, 20, 30}), 42), instance(middle, Affine::scaling({1, 0, 1})),
+       instance(middle, Affine::translation({0, 5, 0}) * Affine::scaling({-1, 1, 1}))});
+  const RayBatch rays = rays_towards_origin(1500, 20, 6, 5);
+  EXPECT_GT(expect_agreement(*top, rays), 700);
+  expect_good_surfaces(*top, rays);
+}
+
+TEST(Instance, OutermostUserNumberWins) {
+  const auto leaf = build_accel({{SpheresShape{{{{0, 0, 0}, 1}}}, {}, 7}});
+  const Ray ray{{0, 0, 5}, 0, {0, 0, -1}, kInf};
+  const auto named = build_accel({instance(build_accel({instance(leaf, {}, 8)}), {}, 9)});
+  EXPECT_EQ(surface(*named, ray, trace(*named, ray)).user, 9u);
+  const auto plain = build_accel({instance(build_accel({instance(leaf, {}, 8)}), {})});
+  EXPECT_EQ(surface(*plain, ray, trace(*plain, ray)).user, 8u);
+  const auto bare = build_accel({instance(leaf, {})});
+  EXPECT_EQ(surface(*bare, ray, trace(*bare, ray)).user, 7u);
+}
+
+TEST(Instance, SingularTransformsAreLeftOut) {
+  const auto leaf = build_accel({{SpheresShape{{{{0, 0, 0}, 1}}}, {}, 7}});
+  const auto flat = build_accel({instance(leaf, Affine::scaling({1, 0, 1}))});
+  EXPECT_TRUE(bounds(*flat).empty());
+  EXPECT_FALSE(trace(*flat, {{0, 0, 5}, 0, {0, 0, -1}, kInf}).valid());
+}
+
+// A mirrored mesh still points outwards, and t means the same inside an instance.
+TEST(Instance, NormalsPointOutwardsAndDistancesStay) {
+  const TriangleMesh mesh = make_icosphere(3).mesh;
+  const auto leaf = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
+  const Affine m = Affine::translation({3, 0, 0}) * Affine::scaling({-2, 2, 2});
+  const auto accel =
+      build_accel({instance(leaf, m), {MeshGeometry{&mesh}, Affine::scaling({1, -1, 1}), kNoId}});
+  for (const Ray ray :
+       {Ray{{3.1f, 0.2f, 9}, 0, {0, 0, -0.5f}, kInf}, Ray{{0.1f, 0.2f, 9}, 0, {0, 0, -0.5f}, kInf}}) {
+    const Hit hit = trace(*accel, ray);
+    ASSERT_TRUE(hit.valid());
+    const Surface s = surface(*accel, ray, hit);
+    EXPECT_GT(s.geometric_normal.z, 0.8f);
+    EXPECT_NEAR(ray.origin.z - 0.5f * hit.t, s.position.z, 1e-5f);
+  }
+}
+
+}  // namespace
+}  // namespace oktett
