@@ -86,8 +86,9 @@ class ObjLoad {
   }
 
   std::optional<ObjFailure> first_failure() const {
-    std::optional<ObjFailure> first = find_unpaired_brace(chunks_);
+    std::optional<ObjFailure> first;
     for (const ObjChunk& chunk : chunks_) keep_first(first, chunk.failure);
+    keep_first(first, find_unpaired_brace(chunks_));
     return first;
   }
 

@@ -18,13 +18,17 @@ void note_failure(ObjChunk& chunk, const char* where, std::string message) {
   if (!chunk.failure) chunk.failure = ObjFailure{where, std::move(message)};
 }
 
-void note_brace(ObjChunk& chunk, const char* where, bool open) {
+/// The brace of the statement at `where`; `rest` is what follows it on its line.
+void note_brace(ObjChunk& chunk, const char* where, bool open, const char* rest) {
   const ObjBrace brace{where, open};
   if (chunk.first_brace.where == nullptr)
     chunk.first_brace = brace;
   else if (chunk.last_brace.open == open)
     note_failure(chunk, where, open ? kBraceInBlock : kBraceAlone);
   chunk.last_brace = brace;
+  rest = next_word(rest);
+  if (!is_line_end(*rest))
+    note_failure(chunk, rest, "expected the end of the line, found " + quote_word(rest));
 }
 
 void note_skipped(ObjChunk& chunk, const char* where, std::string_view keyword) {
@@ -46,11 +50,13 @@ void note_statement(ObjChunk& chunk, const char* p) {
   } else if (keyword == "mtllib") {
     chunk.libraries.push_back({p, trimmed(rest, find_joined_line_end(p))});
   } else if (keyword == "{" || keyword == "vertices{" || keyword == "triangles{") {
-    note_brace(chunk, p, true);
+    note_brace(chunk, p, true, rest);
   } else if (keyword == "}") {
-    note_brace(chunk, p, false);
-  } else if (keyword == "vertices" || keyword == "triangles") {
-    if (*next_word(rest) == '{') note_brace(chunk, p, true);
+    note_brace(chunk, p, false, rest);
+  } else if ((keyword == "vertices" || keyword == "triangles") && word_at(next_word(rest)) == "{") {
+    note_brace(chunk, p, true, next_word(rest) + 1);
+  } else if ((keyword == "vertices" || keyword == "triangles") && is_line_end(*next_word(rest))) {
+    // The brace may stand on the next line.
   } else if (keyword != "o" && keyword != "g" && keyword != "s") {
     note_skipped(chunk, p, keyword);
   }

@@ -108,6 +108,8 @@ TEST(ObjError, BracesMustPair) {
       {"triangles {\nf 1 2 3\n", "5:1: a block is not closed; expected '}' before the end of the file"},
       {"}\n", "5:1: '}' without a block before it"},
       {"vertices {\ntriangles {\n}\n}\n", "6:1: a block starts within a block"},
+      {"vertices { v 1 2 3 }\n}\n", "5:12: expected the end of the line, found 'v'"},
+      {"{\n} f 1 2 3\n", "6:3: expected the end of the line, found 'f'"},
       {"vertices {\n}\n}\n", "7:1: '}' without a block before it"},
   });
 }

@@ -1,0 +1,253 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "io/obj.h"
+#include "tests/io/obj_test_support.h"
+
+namespace oktett::test {
+namespace {
+
+/// What one MTL file holds.
+struct Mtl {
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::vector<std::string> warnings;
+};
+
+Mtl load(const std::string& text, const ObjFiles& files = {}) {
+  Mtl mtl;
+  std::vector<Warning> warnings;
+  load_mtl(files.dir.write("m.mtl", text), mtl.materials, mtl.textures, warnings);
+  mtl.warnings = files.as_text(warnings);
+  for (Texture& texture : mtl.textures) texture.path = files.without_directory(texture.path);
+  return mtl;
+}
+
+/// The only material of a file that says nothing but this about it, and gives no warning.
+Material material(const std::string& statements) {
+  const Mtl mtl = load("newmtl a\n" + statements);
+  EXPECT_EQ(mtl.warnings, std::vector<std::string>{}) << statements;
+  EXPECT_EQ(mtl.materials.size(), 1u);
+  return mtl.materials.at(0);
+}
+
+TEST(Mtl, SaysNothingMeansTheDefault) {
+  Material expected;
+  expected.name = "a";
+  EXPECT_EQ(material(""), expected);
+}
+
+TEST(Mtl, ColorsAndWeights) {
+  const Material m = material("Kd 0.1 0.2 0.3\nKs 0.5 0.25 0\nKe 1 2 3\nNs 96.5\nNi 1.33\nPr 0.25\nPm 1\n");
+  EXPECT_EQ(m.color, (Color{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(m.diffuse, 1);
+  EXPECT_EQ(m.ambient, 0.1f);
+  EXPECT_EQ(m.specular_color, (Color{0.5f, 0.25f, 0}));
+  EXPECT_EQ(m.specular, 1);
+  EXPECT_EQ(m.reflection, 0);
+  EXPECT_EQ(m.emission, (Color{1, 2, 3}));
+  EXPECT_EQ(m.phong, 96.5f);
+  EXPECT_EQ(m.ior, 1.33f);
+  EXPECT_EQ(m.roughness, 0.25f);
+  EXPECT_EQ(m.metallic, 1);
+  EXPECT_EQ(material("Kd 0.5\n").color, (Color{0.5f, 0.5f, 0.5f}));
+  EXPECT_EQ(material("Ks 0 0 0\n").specular, 0);
+}
+
+TEST(Mtl, AmbientIsRelativeToTheColor) {
+  EXPECT_FLOAT_EQ(material("Kd 0.5 0.5 0.5\nKa 0.25 0.25 0.25\n").ambient, 0.5f);
+  EXPECT_EQ(material("Kd 0.5 0.5 0.5\nKa 1 1 1\n").ambient, 1);
+  EXPECT_EQ(material("Kd 0.5 0.5 0.5\nKa 0 0 0\n").ambient, 0);
+  EXPECT_EQ(material("Kd 0 0 0\nKa 1 1 1\n").ambient, 0);
+}
+
+TEST(Mtl, TransparencyFromEitherKeyword) {
+  EXPECT_EQ(material("d 0.25\n").transparency, 0.75f);
+  EXPECT_EQ(material("Tr 0.75\n").transparency, 0.75f);
+  EXPECT_EQ(material("d 1\nTr 1\n").transparency, 0);
+  EXPECT_EQ(material("d -halo 0.5\n").transparency, 0.5f);
+  EXPECT_EQ(material("d 7\n").transparency, 0);
+  EXPECT_EQ(material("d -1\n").transparency, 1);
+  // What passes is not scattered.
+  EXPECT_EQ(material("Kd 1 1 1\nd 0.25\n").diffuse, 0.25f);
+}
+
+TEST(Mtl, FilterColorsWhatPasses) {
+  const Material m = material("Kd 0.5 0.5 0.5\nTf 0 1 0\nd 0.5\n");
+  EXPECT_EQ(m.color, (Color{0, 1, 0}));
+  EXPECT_NEAR(m.diffuse, 0.5 * 0.5 / 0.7152, 1e-6);
+  EXPECT_EQ(material("Kd 0.5 0.5 0.5\nTf 0 1 0\n").color, (Color{0.5f, 0.5f, 0.5f}));
+}
+
+TEST(Mtl, IlluminationModelsThatMirror) {
+  for (const char* model : {"3", "5"}) {
+    const Material m = material(std::string("Ks 0.5 0.5 0.5\nillum ") + model + "\n");
+    EXPECT_FLOAT_EQ(m.reflection, 0.5f);
+    EXPECT_EQ(m.specular, 1);
+  }
+  for (const char* model : {"0", "1", "2", "4", "6", "7", "9"})
+    EXPECT_EQ(material(std::string("Ks 0.5 0.5 0.5\nillum ") + model + "\n").reflection, 0);
+  EXPECT_EQ(material("Ks 9 9 9\nillum 3\n").reflection, 1);
+  const Material glass = material("Kd 1 1 1\nKs 0 0 0\nd 0\nNi 1.5\nillum 7\n");
+  EXPECT_EQ(glass.transparency, 1);
+  EXPECT_EQ(glass.ior, 1.5f);
+  EXPECT_EQ(glass.specular_color, (Color{1, 1, 1}));
+}
+
+TEST(Mtl, TexturesOfAllKinds) {
+  const Mtl mtl = load(
+      "newmtl a\nmap_Kd c.png\nmap_Ks s.png\nmap_Ke e.png\nmap_d d.png\nmap_Bump -bm 0.5 b.png\nnorm n.png\n"
+      "map_Ka unused.png\nnewmtl b\nbump b.png\nmap_bump -bm 2 b.png\nmap_Kd c.png\n");
+  ASSERT_EQ(mtl.textures.size(), 6u);
+  const Material& a = mtl.materials.at(0);
+  EXPECT_EQ(mtl.textures.at(a.color_texture).path, "c.png");
+  EXPECT_EQ(mtl.textures.at(a.specular_texture).path, "s.png");
+  EXPECT_EQ(mtl.textures.at(a.emission_texture).path, "e.png");
+  EXPECT_EQ(mtl.textures.at(a.opacity_texture).path, "d.png");
+  EXPECT_EQ(mtl.textures.at(a.bump_texture).path, "b.png");
+  EXPECT_EQ(mtl.textures.at(a.normal_texture).path, "n.png");
+  EXPECT_EQ(a.bump_scale, 0.5f);
+  // Textures without a colour to multiply show as they are.
+  EXPECT_EQ(a.color, (Color{1, 1, 1}));
+  EXPECT_EQ(a.diffuse, 1);
+  EXPECT_EQ(a.specular, 1);
+  EXPECT_EQ(a.emission, (Color{1, 1, 1}));
+  const Material& b = mtl.materials.at(1);
+  EXPECT_EQ(b.bump_scale, 2);
+  EXPECT_EQ(b.color_texture, a.color_texture);
+  EXPECT_EQ(b.bump_texture, a.bump_texture);
+}
+
+TEST(Mtl, TextureOptions) {
+  const Mtl mtl = load(
+      "newmtl a\nmap_Kd -blendu off -blendv on -cc on -clamp on -o 0.5 0.25 -s 2 3 4 -t 1 -mm 0.1 0.9 "
+      "-texres 256 "
+      "-imfchan r -type sphere -boost 1.5 my picture 1.png\n"
+      "map_Ks -s 2 7\nmap_Ke -o 1 2 3 file\nmap_d -clamp off -front.png\nmap_Bump dir\\sub\\b.png\n");
+  EXPECT_EQ(mtl.warnings, std::vector<std::string>{});
+  ASSERT_EQ(mtl.textures.size(), 5u);
+  Texture expected;
+  expected.path = "my picture 1.png";
+  expected.clamp = true;
+  expected.offset = {0.5f, 0.25f, 0};
+  expected.scale = {2, 3, 4};
+  expected.base = 0.1f;
+  expected.gain = 0.9f;
+  EXPECT_EQ(mtl.textures[0], expected);
+  EXPECT_EQ(mtl.textures[1].path, "7");
+  EXPECT_EQ(mtl.textures[1].scale, (Vec3f{2, 1, 1}));
+  EXPECT_EQ(mtl.textures[2].path, "file");
+  EXPECT_EQ(mtl.textures[2].offset, (Vec3f{1, 2, 3}));
+  EXPECT_EQ(mtl.textures[3].path, "-front.png");
+  EXPECT_EQ(mtl.textures[4].path, "dir/sub/b.png");
+}
+
+TEST(Mtl, TexturesWithDifferentOptionsDiffer) {
+  EXPECT_EQ(load("newmtl a\nmap_Kd t.png\nmap_Ks -clamp on t.png\nmap_Ke t.png\n").textures.size(), 2u);
+}
+
+TEST(Mtl, MalformedStatementsWarnAndKeepTheDefault) {
+  const Mtl mtl = load(
+      "newmtl a\nKd 1 x 0\nNs -1\nNi 0\nNs nan\n  d\nillum 2.5\nKs spectral f.rfl 1\nKe xyz 1 2 3\nillum "
+      "99\nPr x\n"
+      "map_Kd\nmap_Ks -clamp on\nmap_Ke -foo t.png\nKa -1 0 0\n");
+  EXPECT_EQ(mtl.warnings,
+            (std::vector<std::string>{
+                "m.mtl:2:6: warning: expected a finite number, found 'x'",
+                "m.mtl:3:6: warning: Ns must not be negative; the default is kept",
+                "m.mtl:4:5: warning: Ni must be greater than 0; the default is kept",
+                "m.mtl:5:4: warning: expected a finite number, found 'nan'",
+                "m.mtl:6:4: warning: expected a number, found the end of the line",
+                "m.mtl:7:10: warning: illum must be a whole number from 0 to 10; the default is kept",
+                "m.mtl:8:4: warning: 'spectral' colours are not supported; the default is kept",
+                "m.mtl:9:4: warning: 'xyz' colours are not supported; the default is kept",
+                "m.mtl:10:9: warning: illum must be a whole number from 0 to 10; the default is kept",
+                "m.mtl:11:4: warning: expected a finite number, found 'x'",
+                "m.mtl:12:7: warning: expected the name of a texture file",
+                "m.mtl:13:17: warning: expected the name of a texture file",
+                "m.mtl:14:13: warning: unknown texture option '-foo'",
+                "m.mtl:15:10: warning: a colour has a negative part; it counts as 0",
+            }));
+  const Material& m = mtl.materials.at(0);
+  Material expected;
+  expected.name = "a";
+  expected.ambient = 0;
+  expected.emission = {1, 1, 1};
+  expected.emission_texture = 0;
+  EXPECT_EQ(m, expected);
+}
+
+TEST(Mtl, UnknownKeywordsAndStrayStatementsAreIgnored) {
+  const Mtl mtl = load("Kd 1 1 1\nnewmtl a\nsharpness 60\nrefl -type sphere x\nfoo bar\n\x01\x02\n");
+  EXPECT_EQ(mtl.warnings, std::vector<std::string>{});
+  EXPECT_EQ(mtl.materials.at(0).diffuse, Material{}.diffuse);
+}
+
+TEST(Mtl, LinesMayEndInAnyWay) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const char c : std::string(
+             "\xef\xbb\xbf# c\n\n \tnewmtl a b\n\tKd 0.5 \\\n1 0 # x\nmap_Kd my \\\n  t#1.png\nnewmtl c"))
+      text += c == '\n' ? end : std::string(1, c);
+    const Mtl mtl = load(text);
+    ASSERT_EQ(mtl.materials.size(), 2u);
+    EXPECT_EQ(mtl.materials[0].name, "a b");
+    EXPECT_EQ(mtl.materials[0].color, (Color{0.5f, 1, 0}));
+    EXPECT_EQ(mtl.textures.at(0).path, "my t#1.png");
+    EXPECT_EQ(mtl.materials[1].name, "c");
+  }
+}
+
+TEST(Mtl, DefinitionsAreAppended) {
+  const ObjFiles files;
+  std::vector<Material> materials(1);
+  std::vector<Texture> textures(1);
+  std::vector<Warning> warnings;
+  textures[0].path = files.dir.file("t.png");
+  load_mtl(files.dir.write("m.mtl", "newmtl a\nmap_Kd t.png\nmap_Ks u.png\n"), materials, textures, warnings);
+  ASSERT_EQ(materials.size(), 2u);
+  EXPECT_EQ(materials[1].color_texture, 0u);
+  EXPECT_EQ(materials[1].specular_texture, 1u);
+  ASSERT_EQ(textures.size(), 2u);
+  EXPECT_THROW(load_mtl(files.dir.file("none.mtl"), materials, textures, warnings), Error);
+}
+
+TEST(Mtl, EmptyAndRepeatedDefinitionsWarn) {
+  EXPECT_EQ(load("# nothing\n").warnings, std::vector<std::string>{"m.mtl: warning: no materials"});
+  EXPECT_EQ(load("newmtl a\nnewmtl a\nnewmtl\n").warnings,
+            (std::vector<std::string>{
+                "m.mtl:2:9: warning: material 'a' is defined again; the first definition counts",
+                "m.mtl:3:7: warning: expected the name of the material"}));
+}
+
+// Whatever stands in it, a damaged MTL file never keeps a mesh from being loaded.
+TEST(Mtl, DamagedFilesLoad) {
+  const std::string base =
+      "newmtl a\nKd 1 0.5 0\nd -halo 0.5\nmap_Kd -o 1 2 -s 2 -mm 0 1 a b.png\nillum 4\nnewmtl b\nNi "
+      "1.5\\\n\n";
+  const ObjFiles files;
+  std::mt19937 random(5);
+  for (int i = 0; i < 2000; ++i) {
+    std::string text = base;
+    for (int k = 0; k < 4; ++k) {
+      const std::size_t at = random() % text.size();
+      if (random() % 2)
+        text[at] = static_cast<char>(random());
+      else
+        text.erase(at, random() % 5);
+    }
+    const Mtl mtl = load(text, files);
+    for (const Material& m : mtl.materials) {
+      ASSERT_TRUE(is_finite(m.color) && m.diffuse >= 0 && m.ior > 0 && m.transparency >= 0 &&
+                  m.transparency <= 1)
+          << text;
+      ASSERT_TRUE(m.color_texture == kNoId || m.color_texture < mtl.textures.size()) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oktett::test
