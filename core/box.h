@@ -34,7 +34,8 @@ struct Box {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 };
 
-/// The smallest float at or above `v`, resp. the largest at or below it: how bounds computed in double become a Box.
+/// The smallest float at or above `v`, resp. the largest at or below it: how bounds computed in double become
+/// a Box.
 inline float round_up(double v) {
   const float f = static_cast<float>(v);
   return static_cast<double>(f) >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());

@@ -11,9 +11,10 @@ namespace oktett {
 /// Marks an absent index or id everywhere in the project.
 inline constexpr std::uint32_t kNoId = 0xffffffffu;
 
-/// An indexed triangle mesh. `indices` holds three position indices per triangle. `normal_indices` and `uv_indices` are
-/// each either empty (no triangle has any) or hold three indices per triangle, kNoId where a corner has none.
-/// `material_slots` is either empty (all triangles use slot 0) or holds one slot per triangle.
+/// An indexed triangle mesh. `indices` holds three position indices per triangle. `normal_indices` and
+/// `uv_indices` are each either empty (no triangle has any) or hold three indices per triangle, kNoId where a
+/// corner has none. `material_slots` is either empty (all triangles use slot 0) or holds one slot per
+/// triangle.
 struct TriangleMesh {
   Column<Vec3f> positions;
   Column<Vec3f> normals;  ///< not necessarily of unit length

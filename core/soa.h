@@ -1,5 +1,6 @@
 #pragma once
-/// \file Storage for structures of arrays: aligned, padded columns that a vector kernel may read past their end.
+/// \file Storage for structures of arrays: aligned, padded columns that a vector kernel may read past their
+/// end.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,9 +16,9 @@ namespace oktett {
 /// Alignment of every column and block, in bytes: one cache line, one 512-bit register.
 inline constexpr std::size_t kAlignment = 64;
 
-/// An owning array of trivially copyable elements. The storage is aligned to and padded up to a multiple of 64 bytes, so
-/// full-width loads that start inside the array never leave it. New elements are not initialised: the pages of a large
-/// column are first touched by the thread that fills it.
+/// An owning array of trivially copyable elements. The storage is aligned to and padded up to a multiple of
+/// 64 bytes, so full-width loads that start inside the array never leave it. New elements are not
+/// initialised: the pages of a large column are first touched by the thread that fills it.
 template <class T>
 class Column {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -81,7 +82,7 @@ class Column {
 
  private:
   struct Free {
-    void operator()(T* p) const { ::operator delete(p, std::align_val_t{kAlignment}); }
+    void operator()(T* p) const { ::operator delete (p, std::align_val_t{kAlignment}); }
   };
 
   static std::size_t padded(std::size_t size) {
@@ -94,7 +95,7 @@ class Column {
     std::unique_ptr<T, Free> grown;
     if (capacity > 0) {
       const std::size_t bytes = (capacity * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
-      grown.reset(static_cast<T*>(::operator new(bytes, std::align_val_t{kAlignment})));
+      grown.reset(static_cast<T*>(::operator new (bytes, std::align_val_t{kAlignment})));
       if (size_ > 0) std::memcpy(grown.get(), data_.get(), (size_ < size ? size_ : size) * sizeof(T));
     }
     data_ = std::move(grown);

@@ -23,7 +23,8 @@ struct Affine {
 
   Vec3d point(const Vec3d& p) const;
   Vec3d vector(const Vec3d& v) const;
-  /// Maps a normal, given that *this* is the inverse of the map that moves the surface: M^T n. Not normalised.
+  /// Maps a normal, given that *this* is the inverse of the map that moves the surface: M^T n. Not
+  /// normalised.
   Vec3d normal_by_inverse(const Vec3d& n) const;
 
   /// Determinant of the linear part; negative for a mirror.

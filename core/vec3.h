@@ -1,5 +1,6 @@
 #pragma once
-/// \file Plain vectors for points, directions, normals and colours. Scalar code only; packets keep one column per component.
+/// \file Plain vectors for points, directions, normals and colours. Scalar code only; packets keep one column
+/// per component.
 
 #include <cmath>
 

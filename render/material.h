@@ -8,41 +8,44 @@
 
 namespace oktett {
 
-/// An image on disk and how it is laid over the uv square. The file is opened by the renderer, not by the parser.
+/// An image on disk and how it is laid over the uv square. The file is opened by the renderer, not by the
+/// parser.
 struct Texture {
   std::string path;
-  bool clamp = false;             ///< clamp to the edge instead of repeating (MTL `-clamp on`)
-  Vec3f offset{0, 0, 0};          ///< added to uv after scaling (MTL `-o`)
-  Vec3f scale{1, 1, 1};           ///< multiplies uv (MTL `-s`)
-  float gain = 1;                 ///< multiplies the texel (MTL `-mm base gain`)
-  float base = 0;                 ///< added to the texel (MTL `-mm base gain`)
+  bool clamp = false;     ///< clamp to the edge instead of repeating (MTL `-clamp on`)
+  Vec3f offset{0, 0, 0};  ///< added to uv after scaling (MTL `-o`)
+  Vec3f scale{1, 1, 1};   ///< multiplies uv (MTL `-s`)
+  float gain = 1;         ///< multiplies the texel (MTL `-mm base gain`)
+  float base = 0;         ///< added to the texel (MTL `-mm base gain`)
   bool operator==(const Texture&) const = default;
 };
 
 /// A material of the Whitted model: light leaving a point is
-/// emission + color * (ambient * ambient light + diffuse * sum over lights) + specular_color * specular * highlights
+/// emission + color * (ambient * ambient light + diffuse * sum over lights) + specular_color * specular *
+/// highlights
 /// + reflection * reflected ray + transparency * (refracted and reflected ray, split by Fresnel's equations).
 struct Material {
   std::string name;
-  Color color{0.8f, 0.8f, 0.8f};   ///< colour of diffuse and ambient light, and of light that passes through
-  Color specular_color{1, 1, 1};   ///< colour of highlights and mirror reflections
+  Color color{0.8f, 0.8f, 0.8f};  ///< colour of diffuse and ambient light, and of light that passes through
+  Color specular_color{1, 1, 1};  ///< colour of highlights and mirror reflections
   Color emission{0, 0, 0};
-  float ambient = 0.1f;            ///< [0, inf)
-  float diffuse = 0.8f;            ///< [0, inf)
-  float specular = 0;              ///< weight of the Phong highlight, [0, inf)
-  float phong = 32;                ///< Phong exponent, [0, inf)
-  float reflection = 0;            ///< weight of the mirror ray, [0, 1]
-  float transparency = 0;          ///< weight of light that passes through, [0, 1]; 0 = opaque
-  float ior = 1.5f;                ///< index of refraction inside relative to outside, > 0
-  float roughness = 0;             ///< PBR `Pr`; kept for integrators that use it
-  float metallic = 0;              ///< PBR `Pm`; kept for integrators that use it
+  float ambient = 0.1f;                    ///< [0, inf)
+  float diffuse = 0.8f;                    ///< [0, inf)
+  float specular = 0;                      ///< weight of the Phong highlight, [0, inf)
+  float phong = 32;                        ///< Phong exponent, [0, inf)
+  float reflection = 0;                    ///< weight of the mirror ray, [0, 1]
+  float transparency = 0;                  ///< weight of light that passes through, [0, 1]; 0 = opaque
+  float ior = 1.5f;                        ///< index of refraction inside relative to outside, > 0
+  float roughness = 0;                     ///< PBR `Pr`; kept for integrators that use it
+  float metallic = 0;                      ///< PBR `Pm`; kept for integrators that use it
   std::uint32_t color_texture = kNoId;     ///< index into Scene::textures; multiplies `color` (map_Kd)
   std::uint32_t specular_texture = kNoId;  ///< multiplies `specular_color` (map_Ks)
   std::uint32_t emission_texture = kNoId;  ///< multiplies `emission` (map_Ke)
-  std::uint32_t opacity_texture = kNoId;   ///< multiplies opacity: 0 in the image means fully see-through (map_d)
-  std::uint32_t bump_texture = kNoId;      ///< height, perturbs the shading normal (map_Bump)
-  std::uint32_t normal_texture = kNoId;    ///< tangent-space normal (norm)
-  float bump_scale = 1;                    ///< MTL `-bm`
+  std::uint32_t opacity_texture =
+      kNoId;                           ///< multiplies opacity: 0 in the image means fully see-through (map_d)
+  std::uint32_t bump_texture = kNoId;  ///< height, perturbs the shading normal (map_Bump)
+  std::uint32_t normal_texture = kNoId;  ///< tangent-space normal (norm)
+  float bump_scale = 1;                  ///< MTL `-bm`
   bool operator==(const Material&) const = default;
 };
 

@@ -12,7 +12,8 @@ namespace oktett {
 /// How a plane is best stored in a file that can choose. Ids are never filtered or converted to float.
 enum class PlaneType { half_float, single_float, unsigned_int };
 
-/// One channel of a picture: `values` (or `ids` for unsigned_int) hold width * height entries, row by row from the top.
+/// One channel of a picture: `values` (or `ids` for unsigned_int) hold width * height entries, row by row
+/// from the top.
 struct Plane {
   std::string name;  ///< EXR channel name: "R", "G", "B", "A", "Z", "N.X", "primID.I", ...
   PlaneType type = PlaneType::half_float;
@@ -20,8 +21,8 @@ struct Plane {
   Column<std::uint32_t> ids;
 };
 
-/// Planes of equal size. `x`, `y` place the data window inside a frame of `full_width` x `full_height` pixels.
-/// "R", "G", "B" are linear Rec.709 premultiplied by "A".
+/// Planes of equal size. `x`, `y` place the data window inside a frame of `full_width` x `full_height`
+/// pixels. "R", "G", "B" are linear Rec.709 premultiplied by "A".
 struct Picture {
   std::uint32_t width = 0, height = 0;
   std::uint32_t x = 0, y = 0;

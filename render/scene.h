@@ -1,5 +1,6 @@
 #pragma once
-/// \file The scene as data only: what the scene file says, resolved to numbers and indices, before anything is built.
+/// \file The scene as data only: what the scene file says, resolved to numbers and indices, before anything
+/// is built.
 
 #include <cstdint>
 #include <memory>
@@ -24,8 +25,8 @@ struct Camera {
   Vec3d from{0, 0, 5};
   Vec3d at{0, 0, 0};
   Vec3d up{0, 1, 0};
-  double fov = 40;     ///< full vertical angle in degrees, (0, 180); perspective only
-  double height = 2;   ///< height of the view volume in world units; orthographic only
+  double fov = 40;    ///< full vertical angle in degrees, (0, 180); perspective only
+  double height = 2;  ///< height of the view volume in world units; orthographic only
   bool operator==(const Camera&) const = default;
 };
 
@@ -41,14 +42,16 @@ enum class IntegratorKind { whitted, path, ao, normal, depth };
 
 struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
-  std::uint32_t samples = 4;   ///< per pixel, [1, 65536]
-  std::uint32_t depth = 6;     ///< greatest number of bounces after the camera ray, [0, 64]
+  std::uint32_t samples = 4;  ///< per pixel, [1, 65536]
+  std::uint32_t depth = 6;    ///< greatest number of bounces after the camera ray, [0, 64]
   std::uint32_t seed = 0;
-  double ao_radius = 0;        ///< reach of ambient-occlusion rays in world units; 0 = a tenth of the scene's diagonal
+  double ao_radius =
+      0;  ///< reach of ambient-occlusion rays in world units; 0 = a tenth of the scene's diagonal
   bool operator==(const IntegratorSettings&) const = default;
 };
 
-/// Emits `color` in all directions. Its light does not fall off with distance unless `falloff` is set (1/r^2).
+/// Emits `color` in all directions. Its light does not fall off with distance unless `falloff` is set
+/// (1/r^2).
 struct PointLight {
   Vec3d position;
   Color color{1, 1, 1};
@@ -66,8 +69,9 @@ using Light = std::variant<PointLight, DirectionalLight>;
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
-  std::vector<std::uint32_t> slot_materials;  ///< index into Scene::materials per slot of the mesh; may be empty
-  bool smooth = true;                         ///< interpolate the mesh's normals; false = flat shading
+  std::vector<std::uint32_t>
+      slot_materials;  ///< index into Scene::materials per slot of the mesh; may be empty
+  bool smooth = true;  ///< interpolate the mesh's normals; false = flat shading
   TriangleTest test = TriangleTest::watertight;
 };
 
@@ -77,19 +81,22 @@ struct InstanceShape {
 };
 
 /// Any shape an object can have. The plain shapes are listed in kernels/shapes/shape_data.h.
-using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape,
-                           TriangleShape, InstanceShape>;
+using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape,
+                           PolygonShape, TriangleShape, InstanceShape>;
 
-/// A thing in the scene: groups are flattened into objects while the file is read, their transforms multiplied out.
+/// A thing in the scene: groups are flattened into objects while the file is read, their transforms
+/// multiplied out.
 struct Object {
   Shape shape;
-  std::uint32_t material = kNoId;  ///< index into Scene::materials; kNoId = the mesh's own, or the default material
-  Affine transform;                ///< object space to the space of the prototype or world
+  std::uint32_t material =
+      kNoId;         ///< index into Scene::materials; kNoId = the mesh's own, or the default material
+  Affine transform;  ///< object space to the space of the prototype or world
   std::string name;
-  Location where;                  ///< where the scene file defines it
+  Location where;  ///< where the scene file defines it
 };
 
-/// Objects that are rendered only through instances. A prototype may hold instances of prototypes before it in the list.
+/// Objects that are rendered only through instances. A prototype may hold instances of prototypes before it
+/// in the list.
 struct Prototype {
   std::string name;
   std::vector<Object> objects;

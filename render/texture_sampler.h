@@ -7,18 +7,18 @@
 
 namespace oktett {
 
-/// Looks up the textures of a scene. Implementations are safe to call from many threads, and a lookup depends on its
-/// arguments alone.
+/// Looks up the textures of a scene. Implementations are safe to call from many threads, and a lookup depends
+/// on its arguments alone.
 class TextureSampler {
  public:
   virtual ~TextureSampler() = default;
-  /// Filtered linear Rec.709 colour of texture `index` (into Scene::textures) at `uv`; (0,0) is the lower left corner.
-  /// `dx` and `dy` are the changes of uv from this pixel to its neighbours, zero when unknown.
+  /// Filtered linear Rec.709 colour of texture `index` (into Scene::textures) at `uv`; (0,0) is the lower
+  /// left corner. `dx` and `dy` are the changes of uv from this pixel to its neighbours, zero when unknown.
   virtual Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
   /// The same for data that carries no colour space (opacity, height): the first channel as stored.
   virtual float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
-  /// The same for tangent-space normals: the first three channels as stored, (0.5, 0.5, 1) for one that is not bent. A
-  /// sampler that does not know normal maps leaves all normals as they are.
+  /// The same for tangent-space normals: the first three channels as stored, (0.5, 0.5, 1) for one that is
+  /// not bent. A sampler that does not know normal maps leaves all normals as they are.
   virtual Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
     static_cast<void>(index), static_cast<void>(uv), static_cast<void>(dx), static_cast<void>(dy);
     return {0.5f, 0.5f, 1};

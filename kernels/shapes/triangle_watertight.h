@@ -141,8 +141,8 @@ OKTETT_INLINE typename F::M filter_decide(const F& det, const F& u, const F& v, 
   return ~reject;
 }
 
-/// Bounds on the errors of u, v, det and of t, for a triangle whose first corner is `c` away from the origin of
-/// a ray. `d_max` = greatest |component| of the ray's direction, infinity if that is above
+/// Bounds on the errors of u, v, det and of t, for a triangle whose first corner is `c` away from the origin
+/// of a ray. `d_max` = greatest |component| of the ray's direction, infinity if that is above
 /// kFilterMaxDirection.
 ///
 /// `magnitude` is twice a bound on every partial sum of the products, so that one that overflows makes the
