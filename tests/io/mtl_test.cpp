@@ -20,7 +20,7 @@ struct Mtl {
 Mtl load(const std::string& text, const ObjFiles& files = {}) {
   Mtl mtl;
   std::vector<Warning> warnings;
-  load_mtl(files.dir.write("m.mtl", text), mtl.materials, mtl.textures, warnings);
+  load_mtl(files.write("m.mtl", text), mtl.materials, mtl.textures, warnings);
   mtl.warnings = files.as_text(warnings);
   for (Texture& texture : mtl.textures) texture.path = files.without_directory(texture.path);
   return mtl;

@@ -251,7 +251,7 @@ TEST(ObjParallel, DamagedFilesLoadOrAreRefused) {
   int loaded = 0, refused = 0;
   for (int i = 0; i < 3000; ++i) {
     const std::string text = mutate(base, random);
-    const std::string path = files.dir.write("mesh.obj", text);
+    const std::string path = files.write("mesh.obj", text);
     std::string whole_error, parts_error;
     ObjFile whole, parts;
     try {

@@ -37,7 +37,8 @@ Vec3d area_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& corner
 std::uint32_t id(int index) { return index < 0 ? kNoId : static_cast<std::uint32_t>(index); }
 
 /// Compares the vertex data bit by bit: both round to the nearest float up to the peer's own error.
-void expect_same_numbers(const std::vector<float>& theirs, const float* ours, std::size_t count) {
+void expect_same_numbers(const std::vector<float>& theirs, const void* data, std::size_t count) {
+  const auto* ours = static_cast<const float*>(data);
   ASSERT_EQ(theirs.size(), count);
   for (std::size_t i = 0; i < count; ++i)
     ASSERT_NEAR(theirs[i], ours[i], 1e-6 * std::abs(theirs[i]) + 1e-30) << "number " << i;
@@ -70,9 +71,9 @@ void expect_same_as_peer(const std::string& path) {
   const ObjFile file = load_obj(path);
   const TriangleMesh& mesh = file.mesh;
   const tinyobj::attrib_t& attributes = peer.GetAttrib();
-  expect_same_numbers(attributes.vertices, &mesh.positions.data()->x, 3 * mesh.positions.size());
-  expect_same_numbers(attributes.normals, &mesh.normals.data()->x, 3 * mesh.normals.size());
-  expect_same_numbers(attributes.texcoords, &mesh.uvs.data()->x, 2 * mesh.uvs.size());
+  expect_same_numbers(attributes.vertices, mesh.positions.data(), 3 * mesh.positions.size());
+  expect_same_numbers(attributes.normals, mesh.normals.data(), 3 * mesh.normals.size());
+  expect_same_numbers(attributes.texcoords, mesh.uvs.data(), 2 * mesh.uvs.size());
   std::size_t triangle = 0;
   for (const tinyobj::shape_t& shape : peer.GetShapes()) {
     std::size_t corner = 0;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,13 @@ class ObjFiles {
  public:
   /// Writes `text` as mesh.obj and loads it.
   ObjFile load(const std::string& text, const ObjOptions& options = {}) const {
-    return load_obj(dir.write("mesh.obj", text), options);
+    return load_obj(write("mesh.obj", text), options);
+  }
+
+  /// Writes a file anew. Some file systems take long to write over one that is there.
+  std::string write(const std::string& name, const std::string& text) const {
+    std::filesystem::remove(dir.file(name));
+    return dir.write(name, text);
   }
 
   /// The error message without the directory's path, or "no error".
