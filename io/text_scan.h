@@ -60,12 +60,11 @@ struct LineShape {
   bool continued() const { return backslash && !hash && end[-1] == '\\' && *end != '\0'; }
 };
 
-/// Number of ones among the lower 16 bits; the baseline has no instruction for it.
-inline std::uint32_t count_bits16(std::uint32_t bits) {
-  bits = (bits & 0x5555u) + ((bits >> 1) & 0x5555u);
-  bits = (bits & 0x3333u) + ((bits >> 2) & 0x3333u);
-  bits = (bits + (bits >> 4)) & 0x0f0fu;
-  return (bits + (bits >> 8)) & 0x1fu;
+/// Number of ones; the baseline has no instruction for it.
+inline std::uint32_t count_bits(std::uint32_t bits) {
+  bits = bits - ((bits >> 1) & 0x55555555u);
+  bits = (bits & 0x33333333u) + ((bits >> 2) & 0x33333333u);
+  return (((bits + (bits >> 4)) & 0x0f0f0f0fu) * 0x01010101u) >> 24;
 }
 
 /// The shape of the physical line from `p` on.
@@ -76,9 +75,9 @@ inline LineShape measure_line(const char* p) {
     const TextBlock block(p);
     const std::uint32_t ends = block.equal('\n') | block.equal('\r') | block.equal('\0');
     // All bits if the line does not end in this block, else those before its end.
-    const std::uint32_t inside = ends ? (ends & (~ends + 1)) - 1 : 0xffffu;
+    const std::uint32_t inside = ends ? (ends & (~ends + 1)) - 1 : ~0u;
     const std::uint32_t blank = block.at_most(' ');
-    words += count_bits16(~blank & (blank << 1 | before_is_blank) & inside);
+    words += count_bits(~blank & (blank << 1 | before_is_blank) & inside);
     before_is_blank = blank >> (TextBlock::size - 1);
     slash |= block.equal('/') & inside;
     hash |= block.equal('#') & inside;
