@@ -28,32 +28,38 @@ std::optional<Isa> parse_isa(std::string_view name) {
   return std::nullopt;
 }
 
-static bool processor_has(Isa isa) {
-#if defined(__x86_64__)
+/// This build holds code for it (see OKTETT_INSTRUCTION_SETS) and this processor runs it.
+static bool is_available(Isa isa) {
   switch (isa) {
     case Isa::scalar:
       return true;
+#if defined(OKTETT_WITH_SSE42)
     case Isa::sse42:
       return __builtin_cpu_supports("sse4.2");
+#endif
+#if defined(OKTETT_WITH_AVX2)
     case Isa::avx2:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
              __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
              __builtin_cpu_supports("popcnt");
+#endif
+#if defined(OKTETT_WITH_AVX512)
     case Isa::avx512:
-      return processor_has(Isa::avx2) && __builtin_cpu_supports("avx512f") &&
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+             __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+             __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("avx512f") &&
              __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
              __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
-  }
-  return false;
-#else
-  return isa == Isa::scalar;
 #endif
+    default:
+      return false;
+  }
 }
 
 std::vector<Isa> available_isas() {
   std::vector<Isa> isas;
   for (Isa isa : kAll)
-    if (processor_has(isa)) isas.push_back(isa);
+    if (is_available(isa)) isas.push_back(isa);
   return isas;
 }
 
@@ -67,7 +73,7 @@ static Isa require(const std::string& name, const std::string& source) {
   const std::optional<Isa> isa = parse_isa(name);
   if (!isa)
     throw Error(source + ": unknown instruction set '" + name + "'; this machine has " + available_names());
-  if (!processor_has(*isa))
+  if (!is_available(*isa))
     throw Error(source + ": this machine does not have '" + name + "'; it has " + available_names());
   return *isa;
 }
