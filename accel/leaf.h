@@ -26,7 +26,7 @@ OKTETT_INLINE ShearLanes<Simd<double, W, A>> load_shear(const RayState<W, A>& r,
   using D = Simd<double, W, A>;
   return {{to_double(F::load(r.o[(z + 1) % 3])), to_double(F::load(r.o[(z + 2) % 3])),
            to_double(F::load(r.o[z]))},
-          to_double(F::load(r.d[z])),
+          D::load(r.inv_dz),
           D::load(r.shear_x),
           D::load(r.shear_y)};
 }
@@ -46,7 +46,7 @@ OKTETT_INLINE ShearLanes<Simd<double, N, A>> broadcast_shear(const RayState<W, A
   using D = Simd<double, N, A>;
   const int z = r.z_axis_of(i);
   return {{D(r.o[(z + 1) % 3][i]), D(r.o[(z + 2) % 3][i]), D(r.o[z][i])},
-          D(r.d[z][i]),
+          D(r.inv_dz[i]),
           D(r.shear_x[i]),
           D(r.shear_y[i])};
 }

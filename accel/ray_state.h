@@ -19,7 +19,7 @@ struct alignas(64) RayState {
   float tmin[W], tmax[W];
   float slack[W];
   float d_max[W];  ///< greatest |component|, see filter_watertight
-  double shear_x[W], shear_y[W];
+  double inv_dz[W], shear_x[W], shear_y[W];  ///< see ShearLanes
   float u[W], v[W];
   std::uint32_t item[W], path[W];
   unsigned negative[3];  ///< lanes whose direction component is negative
@@ -44,9 +44,10 @@ struct alignas(64) RayState {
     select(dm <= F(kFilterMaxDirection), dm, F(std::numeric_limits<float>::infinity())).store(d_max);
 
     const auto pick = [&](const F& x, const F& y, const F& z) { return select(zx, x, select(zy, y, z)); };
-    const D dz = to_double(pick(direction.x, direction.y, direction.z));
-    (to_double(pick(direction.y, direction.z, direction.x)) / dz).store(shear_x);
-    (to_double(pick(direction.z, direction.x, direction.y)) / dz).store(shear_y);
+    const D inverse = D(1.0) / to_double(pick(direction.x, direction.y, direction.z));
+    inverse.store(inv_dz);
+    (to_double(pick(direction.y, direction.z, direction.x)) * inverse).store(shear_x);
+    (to_double(pick(direction.z, direction.x, direction.y)) * inverse).store(shear_y);
     const float extent = box_extent(box);
     ((om + F(extent)) / dm * F(kSlabAbsoluteSlack) + F(kSlabUnderflow)).store(slack);
 

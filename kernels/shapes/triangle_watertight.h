@@ -24,11 +24,11 @@
 namespace oktett {
 
 /// What the decision needs of a ray: the axis of greatest |d| becomes z, the next two in cyclic order x and
-/// y. `shear_x` = dx/dz and `shear_y` = dy/dz in double.
+/// y. `inv_dz` = 1/dz, `shear_x` = dx * inv_dz and `shear_y` = dy * inv_dz in double.
 template <class D>
 struct ShearLanes {
   Vec3<D> o;  ///< permuted
-  D dz, shear_x, shear_y;
+  D inv_dz, shear_x, shear_y;
 };
 
 template <class F>
@@ -91,12 +91,13 @@ OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, 
   const auto inside = (u.positive & v.positive & w.positive) | (u.negative & v.negative & w.negative);
   if (none(inside)) return mask_cast<float>(inside);
 
-  const D det = (u.value + v.value) + w.value;
-  const D t = ((u.value * a.z + v.value * b.z) + w.value * c.z) / (det * ray.dz);
+  // One division serves all three; each result is within two roundings of 2^-53 of its quotient.
+  const D inv_det = D(1.0) / ((u.value + v.value) + w.value);
+  const D t = (((u.value * a.z + v.value * b.z) + w.value * c.z) * inv_det) * ray.inv_dz;
   hit.t = to_float(t);
   // Adding zero turns -0 into 0: the sign of a zero weight depends on how its rounding error was found.
-  hit.u = to_float(v.value / det) + F(0.0f);
-  hit.v = to_float(w.value / det) + F(0.0f);
+  hit.u = to_float(v.value * inv_det) + F(0.0f);
+  hit.v = to_float(w.value * inv_det) + F(0.0f);
   return mask_cast<float>(inside) & (tmin < hit.t) & (hit.t <= tmax) & (hit.t <= F(3.402823466e38f));
 }
 
