@@ -18,7 +18,7 @@ struct alignas(64) RayState {
   float o[3][W], d[3][W], inv[3][W];
   float tmin[W], tmax[W];
   float slack[W];
-  float d_max[W];  ///< greatest |component|, see filter_watertight
+  float d_max[W];                            ///< greatest |component|, see filter_watertight
   double inv_dz[W], shear_x[W], shear_y[W];  ///< see ShearLanes
   float u[W], v[W];
   std::uint32_t item[W], path[W];
