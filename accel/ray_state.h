@@ -8,6 +8,26 @@
 
 namespace oktett {
 
+/// Greatest |coordinate| in the box.
+OKTETT_INLINE float box_extent(const Box& b) {
+  float e = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float lo = __builtin_fabsf(b.lo[k]), hi = __builtin_fabsf(b.hi[k]);
+    e = lo > e ? lo : e, e = hi > e ? hi : e;
+  }
+  return e;
+}
+
+/// A component whose reciprocal would overflow counts as zero: the slab test and the triangle test must see
+/// the same ray. -0 becomes +0, so that the sign of the reciprocal agrees with the comparison with zero.
+template <class F>
+OKTETT_INLINE Vec3<F> flush_direction(const Vec3<F>& d) {
+  const auto flush = [](const F& x) {
+    return select(abs(x) < F(std::numeric_limits<float>::min()), F(0.0f), x);
+  };
+  return {flush(d.x), flush(d.y), flush(d.z)};
+}
+
 /// What is kept of W rays, in columns; a single ray is the case W = 1. `tmax` shrinks to the nearest hit so
 /// far; `item`, `path`, `u`, `v` describe it (item = kNoId: none yet). Masks have bit i for lane i.
 template <int W, class A>
@@ -33,7 +53,7 @@ struct alignas(64) RayState {
   OKTETT_INLINE unsigned set(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1,
                              const Box& box) {
     const F zero(0.0f), big(std::numeric_limits<float>::max());
-    direction = {flush(direction.x), flush(direction.y), flush(direction.z)};
+    direction = flush_direction(direction);
     const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
     const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
     const F dm = max(az, max(ay, ax));
@@ -70,19 +90,6 @@ struct alignas(64) RayState {
  private:
   OKTETT_INLINE static void store(const Vec3<F>& v, float (&columns)[3][W]) {
     v.x.store(columns[0]), v.y.store(columns[1]), v.z.store(columns[2]);
-  }
-  /// A component whose reciprocal would overflow counts as zero: the slab test and the triangle test must see
-  /// the same ray. -0 becomes +0, so that the sign of the reciprocal agrees with the comparison with zero.
-  OKTETT_INLINE static F flush(const F& component) {
-    return select(abs(component) < F(std::numeric_limits<float>::min()), F(0.0f), component);
-  }
-  OKTETT_INLINE static float box_extent(const Box& b) {
-    float e = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float lo = __builtin_fabsf(b.lo[k]), hi = __builtin_fabsf(b.hi[k]);
-      e = lo > e ? lo : e, e = hi > e ? hi : e;
-    }
-    return e;
   }
 };
 

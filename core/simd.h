@@ -242,14 +242,12 @@ OKTETT_INLINE Mask<To, W, A> mask_cast(const Mask<From, W, A>& m) {
   return Mask<To, W, A>::from_bits(bits(m));
 }
 
-/// Least and greatest lane; NaN lanes count only if they stand last.
+/// Least and greatest lane; which lane counts where one is NaN is not defined.
 template <int W, class A>
 OKTETT_INLINE float horizontal_min(const Simd<float, W, A>& a) {
-  alignas(64) float lanes[W];
-  a.store(lanes);
-  float r = lanes[0];
-  for (int i = 1; i < W; ++i) r = lanes[i] < r ? lanes[i] : r;
-  return r;
+  auto least = a.part[0];
+  for (int i = 1; i < a.kParts; ++i) least = native::min(least, a.part[i]);
+  return native::reduce_min(least);
 }
 template <int W, class A>
 OKTETT_INLINE float horizontal_max(const Simd<float, W, A>& a) {

@@ -223,6 +223,10 @@ template <class... B>
 void widen(B&&...) = delete;
 template <class... B>
 float narrow(B&&...) = delete;
+template <class A>
+OKTETT_INLINE float reduce_min(Lane<float, A> a) {
+  return a.v;
+}
 
 }  // namespace native
 }  // namespace oktett

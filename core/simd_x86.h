@@ -40,6 +40,11 @@ OKTETT_INLINE void widen(batch<float, Sse> a, batch<double, Sse>& lo, batch<doub
 OKTETT_INLINE batch<float, Sse> narrow(batch<double, Sse> lo, batch<double, Sse> hi) {
   return _mm_movelh_ps(_mm_cvtpd_ps(lo), _mm_cvtpd_ps(hi));
 }
+/// Least lane.
+OKTETT_INLINE float reduce_min(batch<float, Sse> a) {
+  const __m128 pairs = _mm_min_ps(a, _mm_movehl_ps(a, a));
+  return _mm_cvtss_f32(_mm_min_ss(pairs, _mm_shuffle_ps(pairs, pairs, 1)));
+}
 OKTETT_INLINE batch<std::int32_t, Sse> truncate(batch<float, Sse> a) { return _mm_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Sse> bit_cast_float(batch<std::int32_t, Sse> a) { return _mm_castsi128_ps(a); }
 OKTETT_INLINE batch<std::int32_t, Sse> bit_cast_int(batch<float, Sse> a) { return _mm_castps_si128(a); }
@@ -96,6 +101,9 @@ OKTETT_INLINE void widen(batch<float, Avx> a, batch<double, Avx>& lo, batch<doub
 OKTETT_INLINE batch<float, Avx> narrow(batch<double, Avx> lo, batch<double, Avx> hi) {
   return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(lo)), _mm256_cvtpd_ps(hi), 1);
 }
+OKTETT_INLINE float reduce_min(batch<float, Avx> a) {
+  return reduce_min(batch<float, Sse>(_mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1))));
+}
 OKTETT_INLINE batch<std::int32_t, Avx> truncate(batch<float, Avx> a) { return _mm256_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Avx> bit_cast_float(batch<std::int32_t, Avx> a) { return _mm256_castsi256_ps(a); }
 OKTETT_INLINE batch<std::int32_t, Avx> bit_cast_int(batch<float, Avx> a) { return _mm256_castps_si256(a); }
@@ -135,6 +143,10 @@ OKTETT_INLINE void widen(batch<float, Avx5> a, batch<double, Avx5>& lo, batch<do
 }
 OKTETT_INLINE batch<float, Avx5> narrow(batch<double, Avx5> lo, batch<double, Avx5> hi) {
   return _mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(lo)), _mm512_cvtpd_ps(hi), 1);
+}
+OKTETT_INLINE float reduce_min(batch<float, Avx5> a) {
+  return reduce_min(
+      batch<float, Avx>(_mm256_min_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1))));
 }
 OKTETT_INLINE batch<std::int32_t, Avx5> truncate(batch<float, Avx5> a) { return _mm512_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Avx5> bit_cast_float(batch<std::int32_t, Avx5> a) {

@@ -5,30 +5,9 @@
 #include "accel/all_hits.h"
 #include "accel/build_sah.h"
 #include "accel/isa/table.h"
-#include "accel/traverse_packet.h"
+#include "accel/traverse_tile.h"
 
 namespace oktett {
-
-/// W rays from column position `b`; lanes past the end repeat the last ray.
-template <class F>
-OKTETT_INLINE RayLanes<F> load_span(const RaySpan& rays, std::size_t b) {
-  constexpr int W = F::kWidth;
-  if (OKTETT_LIKELY(b + W <= rays.size)) {
-    return {{F::load(rays.origin[0] + b), F::load(rays.origin[1] + b), F::load(rays.origin[2] + b)},
-            {F::load(rays.direction[0] + b), F::load(rays.direction[1] + b), F::load(rays.direction[2] + b)},
-            F::load(rays.tmin + b),
-            F::load(rays.tmax + b)};
-  }
-  const auto load_tail = [&](const float* column) {
-    float tail[W];
-    for (int i = 0; i < W; ++i) tail[i] = column[b + i < rays.size ? b + i : rays.size - 1];
-    return F::load(tail);
-  };
-  return {{load_tail(rays.origin[0]), load_tail(rays.origin[1]), load_tail(rays.origin[2])},
-          {load_tail(rays.direction[0]), load_tail(rays.direction[1]), load_tail(rays.direction[2])},
-          load_tail(rays.tmin),
-          load_tail(rays.tmax)};
-}
 
 /// Rays run together if all of them keep within about 25 degrees of the first.
 template <int W, class A>
@@ -54,11 +33,45 @@ OKTETT_INLINE void trace_lanes(const Accel& accel, RayState<W, A>& state,
   }
 }
 
+/// Tiles are worth it only with vector registers, in the width that `automatic` takes.
+template <int W, class A>
+inline constexpr bool kUsesTiles = !std::is_same_v<A, ScalarIsa> && W >= 8;
+
+/// Rays [begin, begin + kTileRays) as a tile, if they are one.
+template <Query Q, class A>
+OKTETT_INLINE bool try_tile(const Accel& accel, const RaySpan& rays, std::size_t begin, std::size_t count,
+                            const HitSpan* hits, std::uint8_t* occluded) {
+  const RaySpan part = rays.part(begin, count);
+  const Ray first = part[0], last = part[count - 1];
+  Apex apex{first.origin, false};
+  if (Q == Query::any && first.origin != last.origin) {
+    apex = {first.origin + first.direction * first.tmax, true};
+    const Vec3f end = last.origin + last.direction * last.tmax;
+    const float scale = max_component(abs(apex.point)) + max_component(abs(first.origin));
+    if (!(max_component(abs(end - apex.point)) <= scale * 0x1p-18f)) return false;
+  } else if (first.origin != last.origin) {
+    return false;
+  }
+  if constexpr (Q == Query::closest) {
+    const HitSpan h = hits->part(begin, count);
+    return trace_tile<Q, A>(accel, part, apex, &h, nullptr);
+  } else {
+    return trace_tile<Q, A>(accel, part, apex, nullptr, occluded + begin);
+  }
+}
+
 template <int W, class A>
 void closest_hit_stream(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
   using F = Simd<float, W, A>;
   RayState<W, A> state;
   for (std::size_t b = 0; b < rays.size; b += W) {
+    if (kUsesTiles<W, A> && b % kTileRays == 0 && mode == TraceMode::automatic) {
+      const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
+      if (try_tile<Query::closest, A>(accel, rays, b, count, &hits, nullptr)) {
+        b += kTileRays - W;
+        continue;
+      }
+    }
     const RayLanes<F> r = load_span<F>(rays, b);
     const unsigned valid = rays.size - b >= W ? ~0u : (1u << (rays.size - b)) - 1;
     trace_lanes<Query::closest>(accel, state, r, state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & valid,
@@ -78,6 +91,13 @@ void any_hit_stream(const Accel& accel, const RaySpan& rays, std::uint8_t* occlu
   using F = Simd<float, W, A>;
   RayState<W, A> state;
   for (std::size_t b = 0; b < rays.size; b += W) {
+    if (kUsesTiles<W, A> && b % kTileRays == 0 && mode == TraceMode::automatic) {
+      const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
+      if (try_tile<Query::any, A>(accel, rays, b, count, nullptr, occluded)) {
+        b += kTileRays - W;
+        continue;
+      }
+    }
     const RayLanes<F> r = load_span<F>(rays, b);
     const unsigned valid = rays.size - b >= W ? ~0u : (1u << (rays.size - b)) - 1;
     trace_lanes<Query::any>(accel, state, r, state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & valid, mode);

@@ -1,0 +1,302 @@
+#pragma once
+/// \file A tile: up to 256 rays whose lines pass through one point, seen as points of a plane.
+///
+/// With the apex as origin and z the axis along which the first ray is steepest (mirrored so that the rays go
+/// towards +z), a ray becomes (x, y) = (dx/dz, dy/dz), and a point on it is told by its inverse depth s = 1/z.
+/// A box becomes a rectangle and a greatest s; the barycentric coordinates of a triangle and its s are linear
+/// functions of (x, y). No axis is rotated: a projected coordinate carries two roundings, not those of a
+/// change of basis.
+///
+/// The apex is the common origin of the rays, or the point where all of them end (a point light). In the
+/// second case the lines miss it by rounding; `slip` bounds by how much.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "accel/leaf.h"
+
+namespace oktett {
+
+/// W rays from column position `b`; lanes past the end repeat the last ray.
+template <class F>
+OKTETT_INLINE RayLanes<F> load_span(const RaySpan& rays, std::size_t b) {
+  constexpr int W = F::kWidth;
+  if (OKTETT_LIKELY(b + W <= rays.size)) {
+    return {{F::load(rays.origin[0] + b), F::load(rays.origin[1] + b), F::load(rays.origin[2] + b)},
+            {F::load(rays.direction[0] + b), F::load(rays.direction[1] + b), F::load(rays.direction[2] + b)},
+            F::load(rays.tmin + b),
+            F::load(rays.tmax + b)};
+  }
+  const auto load_tail = [&](const float* column) {
+    float tail[W];
+    for (int i = 0; i < W; ++i) tail[i] = column[b + i < rays.size ? b + i : rays.size - 1];
+    return F::load(tail);
+  };
+  return {{load_tail(rays.origin[0]), load_tail(rays.origin[1]), load_tail(rays.origin[2])},
+          {load_tail(rays.direction[0]), load_tail(rays.direction[1]), load_tail(rays.direction[2])},
+          load_tail(rays.tmin),
+          load_tail(rays.tmax)};
+}
+
+/// Where the lines of a tile meet.
+struct Apex {
+  Vec3f point;
+  bool at_end = false;  ///< the rays end there (at tmax) instead of starting there
+};
+
+inline constexpr int kTileRays = 256;
+inline constexpr int kTileGroup = 16;  ///< rays that are tested against a triangle together
+inline constexpr int kTileGroups = kTileRays / kTileGroup;
+
+/// A parallelogram in the plane of a tile: middle + a * (x1, y1) + b * (x2, y2) with |a|, |b| <= 1.
+struct TilePatch {
+  float x, y;
+  float x1 = 0, y1 = 0, x2 = 0, y2 = 0;
+};
+
+/// The part of the plane that is asked about: a rectangle and a patch that both hold the rays, and the least
+/// inverse depth that is still of interest to any of them.
+struct TileWindow {
+  float x_lo, x_hi, y_lo, y_hi, least;
+  TilePatch patch;
+};
+
+template <class A>
+struct alignas(64) TileRays {
+  using F = Simd<float, kTileGroup, A>;
+
+  float x[kTileRays], y[kTileRays];
+  /// Bounds on the inverse depth of the nearest hit held so far (of the end of the ray's range if there is
+  /// none): whatever is surely below held_lo is of no interest, whatever is surely above held_hi is nearer.
+  float held_lo[kTileRays], held_hi[kTileRays];
+  /// 8 * block + lane of a triangle that the ray surely hits and that is not decided yet, or kNoId.
+  std::uint32_t held[kTileRays];
+  /// Rectangles around the groups, and the least held_lo in each.
+  float x_lo[kTileGroups], x_hi[kTileGroups], y_lo[kTileGroups], y_hi[kTileGroups], least[kTileGroups];
+  /// Middles of the groups. Where `regular`, all have the shape of `shape`; else a group is a rectangle of
+  /// its own half sides.
+  float x_mid[kTileGroups], y_mid[kTileGroups], x_half[kTileGroups], y_half[kTileGroups];
+  bool regular;
+  TilePatch shape;
+  unsigned groups;  ///< groups that hold a ray that can hit anything
+  TileWindow window;
+
+  int axis[3];      ///< which axes of the scene are x, y, z
+  bool mirrored;    ///< z runs against the scene's axis
+  float apex[3];    ///< in the order of `axis`
+  float slip;       ///< how far, in x and y, a line passes from the apex at its depth
+  float behind;     ///< the rays may reach this far beyond the apex
+  float near_s;     ///< hits with an inverse depth above this may lie outside a ray's range
+  float margin;     ///< by how much rounding may displace a vertex in a decision
+  float spread;     ///< max(1, |x|, |y|)
+
+  /// Prepares up to kTileRays rays. False if they are no tile: they do not share the apex, fan out too far, or
+  /// their numbers are so large or small that the bounds here do not hold. `extent` = greatest |coordinate| of
+  /// the scene.
+  bool set(const RaySpan& rays, const Apex& at, float extent);
+
+  OKTETT_INLINE void refresh(int group) {
+    least[group] = horizontal_min(F::load(held_lo + group * kTileGroup));
+  }
+  OKTETT_INLINE void refresh_window() { window.least = horizontal_min(F::load(least)); }
+
+ private:
+  bool set_frame(const RaySpan& rays, const Apex& at, float extent);
+  bool project(const RaySpan& rays, const Apex& at);
+  void bound();
+};
+
+/// Scales between which products of three lengths and their inverses neither overflow nor underflow in float.
+inline constexpr float kTileLeast = 0x1p-40f, kTileMost = 0x1p40f;
+/// Slack for the few roundings of a projected box.
+inline constexpr float kTileSlack = 0x1p-20f;
+/// The same for the inverse depth of one point.
+inline constexpr float kTilePointSlack = 0x1p-22f;
+
+template <class A>
+bool TileRays<A>::set_frame(const RaySpan& rays, const Apex& at, float extent) {
+  const Vec3f p = at.point;
+  const float reach = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), extent});
+  if (!(reach >= kTileLeast && reach <= kTileMost)) return false;
+  margin = reach * 0x1p-46f;
+  const std::size_t middle = rays.size / 2;
+  const float d[3] = {rays.direction[0][middle], rays.direction[1][middle], rays.direction[2][middle]};
+  int z = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::fabs(d[k]) > std::fabs(d[z])) z = k;
+  axis[0] = (z + 1) % 3, axis[1] = (z + 2) % 3, axis[2] = z;
+  mirrored = (d[z] < 0) != at.at_end;
+  for (int k = 0; k < 3; ++k) apex[k] = p[axis[k]];
+  return std::fabs(d[z]) > 0;
+}
+
+/// Fills x, y, held_* and what the ends of the rays say about the apex.
+template <class A>
+bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
+  const F zero(0.0f), one(1.0f), infinity(std::numeric_limits<float>::infinity());
+  const F least_dz(kTileLeast), most_dz(kTileMost), limit(kTileMost), most_s(kTileMost * kTileMost);
+  const F big(std::numeric_limits<float>::max()), slack_lo(1 - kTilePointSlack), slack_hi(1 + kTilePointSlack);
+  const F apex_lanes[3] = {F(at.point.x), F(at.point.y), F(at.point.z)};
+  // Directions from the apex, towards +z.
+  const F turn(at.at_end ? -1.0f : 1.0f), sign(mirrored ? -1.0f : 1.0f), sign_z(mirrored != at.at_end ? -1.0f : 1.0f);
+  F slips = zero, behinds = zero, nears = zero;
+  float first_x = 0, first_y = 0;
+  groups = 0;
+  const int count = static_cast<int>(rays.size);
+  for (int g = 0; g * kTileGroup < count; ++g) {
+    const int base = g * kTileGroup;
+    const RayLanes<F> r = load_span<F>(rays, static_cast<std::size_t>(base));
+    const F* o[3] = {&r.o.x, &r.o.y, &r.o.z};
+    const F* d[3] = {&r.d.x, &r.d.y, &r.d.z};
+    const F dz = *d[axis[2]] * sign_z, dx = *d[axis[0]] * turn, dy = *d[axis[1]] * turn;
+    const F inverse = one / dz;
+    auto usable = (dz >= least_dz) & (dz <= most_dz) & (abs(dx) <= dz + dz) & (abs(dy) <= dz + dz);
+    F s;
+    if (!at.at_end) {
+      usable = usable & (r.o.x == apex_lanes[0]) & (r.o.y == apex_lanes[1]) & (r.o.z == apex_lanes[2]);
+      s = inverse / r.tmax;
+      usable = usable & (s <= most_s);
+      nears = max(r.tmin * dz, nears);
+    } else {
+      // The line at the apex's depth, and how far beyond or short of it the ray ends.
+      const F farthest = max(abs(r.o.x), max(abs(r.o.y), abs(r.o.z)));
+      const F depth = (*o[axis[2]] - F(apex[2])) * sign, along = depth * inverse;
+      const F slip_x = abs((*o[axis[0]] - along * dx) - F(apex[0])),
+              slip_y = abs((*o[axis[1]] - along * dy) - F(apex[1]));
+      const F rounding = (farthest + F(margin * 0x1p46f)) * F(0x1p-21f);
+      s = one / depth;
+      usable = usable & (abs(r.o.x) <= limit) & (abs(r.o.y) <= limit) & (abs(r.o.z) <= limit) & (r.tmin == zero) &
+               (depth > rounding) & (s <= most_s) & (r.tmax <= limit);
+      slips = max(select(usable, max(slip_x, slip_y) + rounding, zero), slips);
+      behinds = max(select(usable, abs(depth - r.tmax * dz) + rounding, zero), behinds);
+    }
+    const unsigned inside = count - base >= kTileGroup ? 0xffffu : (1u << (count - base)) - 1;
+    unsigned valid = inside & bits((zero <= r.tmin) & (r.tmin < r.tmax));
+    if (OKTETT_UNLIKELY((valid & ~bits(usable)) != 0)) {
+      // Rays that hit nothing whatever they meet may stay, others not. False on NaN, so each is asked.
+      const F ex = abs(r.d.x), ey = abs(r.d.y), ez = abs(r.d.z);
+      valid &= bits((abs(r.o.x) <= big) & (abs(r.o.y) <= big) & (abs(r.o.z) <= big) & (ex <= big) & (ey <= big) &
+                    (ez <= big) & (zero < max(ex, max(ey, ez))));
+      if ((valid & ~bits(usable)) != 0) return false;
+    }
+    F px = dx * inverse, py = dy * inverse, lo = s * slack_lo, hi = s * slack_hi;
+    px.store(x + base), py.store(y + base);
+    if (valid != 0) {
+      if (groups == 0) first_x = x[base + __builtin_ctz(valid)], first_y = y[base + __builtin_ctz(valid)];
+      groups |= 1u << g;
+    }
+    if (OKTETT_UNLIKELY(valid != 0xffff)) {
+      const auto m = F::M::from_bits(valid);
+      select(m, px, F(first_x)).store(x + base), select(m, py, F(first_y)).store(y + base);
+      lo = select(m, lo, infinity), hi = select(m, hi, infinity);
+    }
+    lo.store(held_lo + base), hi.store(held_hi + base);
+    std::memset(held + base, 0xff, kTileGroup * sizeof held[0]);
+  }
+  // Lanes and groups without a ray stand at the first ray, so that they widen nothing.
+  const int ends = (count + kTileGroup - 1) / kTileGroup * kTileGroup;
+  for (int i = 0; i < kTileRays; i += kTileGroup) {
+    if (i < ends && (groups & ((2u << i / kTileGroup) - 1)) != 0) continue;
+    F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(held_lo + i);
+  }
+  slip = at.at_end ? horizontal_max(slips) : 0.0f;
+  behind = at.at_end ? horizontal_max(behinds) : 0.0f;
+  const float near = at.at_end ? behind : horizontal_max(nears);
+  near_s = near > kTileLeast * kTileLeast ? (1 - kTileSlack) / near : 1 / (kTileLeast * kTileLeast);
+  // A slip that is no rounding error means that the rays do not meet.
+  return slip + behind <= margin * 0x1p28f;
+}
+
+/// Two directions in which the rays of the first group lie in rows, as the columns of pixels do; the axes if
+/// there are none.
+OKTETT_INLINE void group_axes(const float* x, const float* y, float (&e)[2][2]) {
+  e[0][0] = e[1][1] = 1, e[0][1] = e[1][0] = 0;
+  const float ax = x[1] - x[0], ay = y[1] - y[0], a = std::sqrt(ax * ax + ay * ay);
+  float far = 0, bx = 0, by = 0;
+  for (int i = 2; i < kTileGroup; ++i) {
+    const float dx = x[i] - x[0], dy = y[i] - y[0], distance = std::fabs(ax * dy - ay * dx);
+    if (distance > far * 1.01f) far = distance, bx = dx, by = dy;
+  }
+  const float b = std::sqrt(bx * bx + by * by);
+  // Too near each other, the two say nothing.
+  if (!(a > 0) || !(far > 0.2f * a * b)) return;
+  e[0][0] = ax / a, e[0][1] = ay / a, e[1][0] = bx / b, e[1][1] = by / b;
+}
+
+/// Rectangles and patches around the groups and the whole.
+template <class A>
+void TileRays<A>::bound() {
+  using G = Simd<float, kTileGroups, A>;
+  float e[2][2];
+  group_axes(x, y, e);
+  const float det = e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  // (x, y) = a e[0] + b e[1]
+  const F ax(e[1][1] / det), ay(-e[1][0] / det), bx(-e[0][1] / det), by(e[0][0] / det);
+  window.patch.x = 0.5f * (x[0] + x[kTileRays - 1]), window.patch.y = 0.5f * (y[0] + y[kTileRays - 1]);
+  F ga(0.0f), gb = ga, gx = ga, gy = ga, wa = ga, wb = ga, least_x(x[0]), most_x = least_x, least_y(y[0]),
+    most_y = least_y, any_range(0.0f);
+  for (int g = 0; g < kTileGroups; ++g) {
+    const int base = g * kTileGroup;
+    const F px = F::load(x + base), py = F::load(y + base);
+    x_mid[g] = 0.5f * (x[base] + x[base + kTileGroup - 1]), y_mid[g] = 0.5f * (y[base] + y[base + kTileGroup - 1]);
+    const F dx = px - F(x_mid[g]), dy = py - F(y_mid[g]);
+    ga = max(abs(dx * ax + dy * ay), ga), gb = max(abs(dx * bx + dy * by), gb);
+    gx = max(abs(dx), gx), gy = max(abs(dy), gy);
+    const F ux = px - F(window.patch.x), uy = py - F(window.patch.y);
+    wa = max(abs(ux * ax + uy * ay), wa), wb = max(abs(ux * bx + uy * by), wb);
+    least_x = min(px, least_x), most_x = max(px, most_x), least_y = min(py, least_y), most_y = max(py, most_y);
+    any_range = max(F::load(held_lo + base), any_range);
+  }
+  window.x_lo = horizontal_min(least_x), window.x_hi = horizontal_max(most_x);
+  window.y_lo = horizontal_min(least_y), window.y_hi = horizontal_max(most_y);
+  spread = std::max(
+      {1.0f, std::fabs(window.x_lo), std::fabs(window.x_hi), std::fabs(window.y_lo), std::fabs(window.y_hi)});
+  const auto set_axes = [&](TilePatch& p, float a, float b) {
+    p.x1 = a * e[0][0], p.y1 = a * e[0][1], p.x2 = b * e[1][0], p.y2 = b * e[1][1];
+  };
+  constexpr float kWiden = 1 + 0x1p-10f;
+  const float hx = horizontal_max(gx) * kWiden, hy = horizontal_max(gy) * kWiden;
+  set_axes(shape, horizontal_max(ga) * kWiden, horizontal_max(gb) * kWiden);
+  set_axes(window.patch, horizontal_max(wa) * kWiden, horizontal_max(wb) * kWiden);
+  // Groups that are about a sixteenth of the whole: pixels in blocks or rows.
+  regular = hx * hy * 8 <= (window.x_hi - window.x_lo) * (window.y_hi - window.y_lo);
+  if (regular) {
+    const G xm = G::load(x_mid), ym = G::load(y_mid), pad(spread * 0x1p-22f);
+    (xm - G(hx) - pad).store(x_lo), (xm + G(hx) + pad).store(x_hi);
+    (ym - G(hy) - pad).store(y_lo), (ym + G(hy) + pad).store(y_hi);
+  } else {
+    for (int g = 0; g < kTileGroups; ++g) {
+      const F px = F::load(x + g * kTileGroup), py = F::load(y + g * kTileGroup);
+      x_lo[g] = horizontal_min(px), x_hi[g] = horizontal_max(px);
+      y_lo[g] = horizontal_min(py), y_hi[g] = horizontal_max(py);
+      x_mid[g] = 0.5f * (x_lo[g] + x_hi[g]), y_mid[g] = 0.5f * (y_lo[g] + y_hi[g]);
+      x_half[g] = 0.5f * (x_hi[g] - x_lo[g]), y_half[g] = 0.5f * (y_hi[g] - y_lo[g]);
+    }
+  }
+  if (horizontal_max(any_range) == 0) {
+    G(0.0f).store(least);  // no ray ends
+  } else {
+    for (int g = 0; g < kTileGroups; ++g) refresh(g);
+  }
+  refresh_window();
+}
+
+template <class A>
+bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent) {
+  if (!set_frame(rays, at, extent) || !project(rays, at)) return false;
+  if (groups == 0) return true;
+  bound();
+  return window.x_hi - window.x_lo <= 1 && window.y_hi - window.y_lo <= 1;
+}
+
+/// The window of a single group.
+template <class A>
+OKTETT_INLINE TileWindow group_window(const TileRays<A>& t, int g) {
+  TileWindow w{t.x_lo[g], t.x_hi[g], t.y_lo[g], t.y_hi[g], t.least[g], t.shape};
+  if (!t.regular) w.patch = {0, 0, t.x_half[g], 0, 0, t.y_half[g]};
+  w.patch.x = t.x_mid[g], w.patch.y = t.y_mid[g];
+  return w;
+}
+
+}  // namespace oktett
