@@ -3,9 +3,9 @@
 ///
 /// With c the first corner seen from the apex, e1, e2 the edges and n = e1 x e2, a ray (x, y) has the scaled
 /// weights u = (e2 x c) . (x, y, 1), v = (c x e1) . (x, y, 1) and w = det - u - v with det = n . (x, y, 1)
-/// (Möller and Trumbore 1997, with the products regrouped for a common origin). Divided by t = n . c, which no
-/// ray changes, they keep their signs, a hit has all three positive, and det becomes the inverse depth of the
-/// hit. The bounds are derived in docs/numerics.md.
+/// (Möller and Trumbore 1997, with the products regrouped for a common origin). Divided by t = n . c, which
+/// no ray changes, they keep their signs, a hit has all three positive, and det becomes the inverse depth of
+/// the hit. The bounds are derived in docs/numerics.md.
 
 #include "accel/tile_rays.h"
 
@@ -27,8 +27,8 @@ template <class A>
 struct alignas(64) ProjectedTriangles {
   static constexpr int kSize = TriangleBlock::kSize;
   float c[12][kSize];
-  float group[4][kSize];     ///< c[3 * f] + the most that the function grows from the middle of a regular group
-  float sure[kSize];         ///< a ray surely hits if u, v and w are all above this
+  float group[4][kSize];  ///< c[3 * f] + the most that the function grows from the middle of a regular group
+  float sure[kSize];      ///< a ray surely hits if u, v and w are all above this
   float lower_scale[kSize];  ///< then its inverse depth is at least s * lower_scale - lower_gap
   float lower_gap[kSize];
 };
@@ -41,7 +41,8 @@ struct BlockCandidates {
 
 /// Upper bound of the linear function (a, b, c) in the rectangle around (mx, my) with half sides (hx, hy).
 template <class F>
-OKTETT_INLINE F greatest(const F& a, const F& b, const F& c, const F& mx, const F& my, const F& hx, const F& hy) {
+OKTETT_INLINE F greatest(const F& a, const F& b, const F& c, const F& mx, const F& my, const F& hx,
+                         const F& hy) {
   return fast_fma(abs(b), hx, fast_fma(abs(c), hy, fast_fma(b, mx, fast_fma(c, my, a))));
 }
 
@@ -64,16 +65,18 @@ OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int coun
   const B n1 = norm1(e1), n2 = norm1(e2), size = n1 + n2, reach = norm1(c) + size, area = n1 * n2;
   const B spread(tile.spread), tiny(kTileUnderflow);
   const B farthest = max(abs(c.x), max(abs(c.y), abs(c.z)));
-  const B t_error = fast_fma(area, fast_fma(farthest, B(kTileDepthError), B(2 * (tile.slip + tile.behind)) * spread), tiny);
+  const B t_error =
+      fast_fma(area, fast_fma(farthest, B(kTileDepthError), B(tile.slip + 2 * tile.behind) * spread), tiny);
   const auto projectable = abs(t) > t_error + t_error;
   const B inverse = B(1.0f) / t, scale = abs(inverse);
   const B shear = fast_fma(reach, B(kTileShear), size);
-  const B error = scale * fast_fma(spread, fast_fma(shear * reach, B(kTileError), size * B(4 * tile.slip)), tiny);
+  const B error =
+      scale * fast_fma(spread, fast_fma(shear * reach, B(kTileError), size * B(2 * tile.slip)), tiny);
   const B s_error = scale * fast_fma(area * spread, B(kTileError), tiny);
   const B depth_error = fast_fma(t_error * scale, B(2.0f), B(kTileInverseError));
 
-  const Vec3<B> ui{u.x * inverse, u.y * inverse, u.z * inverse}, vi{v.x * inverse, v.y * inverse, v.z * inverse},
-      si{n.x * inverse, n.y * inverse, n.z * inverse};
+  const Vec3<B> ui{u.x * inverse, u.y * inverse, u.z * inverse},
+      vi{v.x * inverse, v.y * inverse, v.z * inverse}, si{n.x * inverse, n.y * inverse, n.z * inverse};
   const Vec3<B> wi{si.x - (ui.x + vi.x), si.y - (ui.y + vi.y), si.z - (ui.z + vi.z)};
   const B raise = B(1.0f) + depth_error;
   const Vec3<B> f[4] = {{ui.z + error, ui.x, ui.y},
@@ -111,7 +114,8 @@ OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int coun
 
 /// The groups of `groups` in whose rectangle triangle `k` may be hit.
 template <class A>
-OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, const TileRays<A>& tile, unsigned groups) {
+OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, const TileRays<A>& tile,
+                                      unsigned groups) {
   using G = Simd<float, kTileGroups, A>;
   const G zero(0.0f), mx = G::load(tile.x_mid), my = G::load(tile.y_mid);
   const auto top = [&](int f) {
@@ -119,7 +123,8 @@ OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, con
     if (tile.regular) return fast_fma(b, mx, fast_fma(c, my, G(p.group[f][k])));
     return greatest(G(p.c[3 * f][k]), b, c, mx, my, G::load(tile.x_half), G::load(tile.y_half));
   };
-  return groups & ~bits((top(0) < zero) | (top(1) < zero) | (top(2) < zero) | (top(3) <= G::load(tile.least)));
+  return groups &
+         ~bits((top(0) < zero) | (top(1) < zero) | (top(2) < zero) | (top(3) <= G::load(tile.least)));
 }
 
 /// What the filter finds about a group and a triangle. Bit i is ray i of the group.
@@ -131,8 +136,8 @@ struct GroupVerdict {
 /// Triangle `k` against the rays of one group; sure hits are put down as held. For Query::any a ray that
 /// surely hits something needs nothing more.
 template <bool kAny, class A>
-OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std::uint32_t id, TileRays<A>& tile,
-                                      int group) {
+OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std::uint32_t id,
+                                      TileRays<A>& tile, int group) {
   using F = Simd<float, kTileGroup, A>;
   const int base = group * kTileGroup;
   const F x = F::load(tile.x + base), y = F::load(tile.y + base);

@@ -2,10 +2,10 @@
 /// \file A tile: up to 256 rays whose lines pass through one point, seen as points of a plane.
 ///
 /// With the apex as origin and z the axis along which the first ray is steepest (mirrored so that the rays go
-/// towards +z), a ray becomes (x, y) = (dx/dz, dy/dz), and a point on it is told by its inverse depth s = 1/z.
-/// A box becomes a rectangle and a greatest s; the barycentric coordinates of a triangle and its s are linear
-/// functions of (x, y). No axis is rotated: a projected coordinate carries two roundings, not those of a
-/// change of basis.
+/// towards +z), a ray becomes (x, y) = (dx/dz, dy/dz), and a point on it is told by its inverse depth s =
+/// 1/z. A box becomes a rectangle and a greatest s; the barycentric coordinates of a triangle and its s are
+/// linear functions of (x, y). No axis is rotated: a projected coordinate carries two roundings, not those of
+/// a change of basis.
 ///
 /// The apex is the common origin of the rays, or the point where all of them end (a point light). In the
 /// second case the lines miss it by rounding; `slip` bounds by how much.
@@ -82,18 +82,18 @@ struct alignas(64) TileRays {
   unsigned groups;  ///< groups that hold a ray that can hit anything
   TileWindow window;
 
-  int axis[3];      ///< which axes of the scene are x, y, z
-  bool mirrored;    ///< z runs against the scene's axis
-  float apex[3];    ///< in the order of `axis`
-  float slip;       ///< how far, in x and y, a line passes from the apex at its depth
-  float behind;     ///< the rays may reach this far beyond the apex
-  float near_s;     ///< hits with an inverse depth above this may lie outside a ray's range
-  float margin;     ///< by how much rounding may displace a vertex in a decision
-  float spread;     ///< max(1, |x|, |y|)
+  int axis[3];    ///< which axes of the scene are x, y, z
+  bool mirrored;  ///< z runs against the scene's axis
+  float apex[3];  ///< in the order of `axis`
+  float slip;     ///< how far, in x and y, a line passes from the apex at its depth
+  float behind;   ///< the rays may reach this far beyond the apex
+  float near_s;   ///< hits with an inverse depth above this may lie outside a ray's range
+  float margin;   ///< by how much rounding may displace a vertex in a decision
+  float spread;   ///< max(1, |x|, |y|)
 
-  /// Prepares up to kTileRays rays. False if they are no tile: they do not share the apex, fan out too far, or
-  /// their numbers are so large or small that the bounds here do not hold. `extent` = greatest |coordinate| of
-  /// the scene.
+  /// Prepares up to kTileRays rays. False if they are no tile: they do not share the apex, fan out too far,
+  /// or their numbers are so large or small that the bounds here do not hold. `extent` = greatest
+  /// |coordinate| of the scene.
   bool set(const RaySpan& rays, const Apex& at, float extent);
 
   OKTETT_INLINE void refresh(int group) {
@@ -136,10 +136,11 @@ template <class A>
 bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
   const F zero(0.0f), one(1.0f), infinity(std::numeric_limits<float>::infinity());
   const F least_dz(kTileLeast), most_dz(kTileMost), limit(kTileMost), most_s(kTileMost * kTileMost);
-  const F big(std::numeric_limits<float>::max()), slack_lo(1 - kTilePointSlack), slack_hi(1 + kTilePointSlack);
+  const F big(std::numeric_limits<float>::max()), slack_lo(1 - kTilePointSlack),
+      slack_hi(1 + kTilePointSlack);
   const F apex_lanes[3] = {F(at.point.x), F(at.point.y), F(at.point.z)};
   // Directions from the apex, towards +z.
-  const F turn(at.at_end ? -1.0f : 1.0f), sign(mirrored ? -1.0f : 1.0f), sign_z(mirrored != at.at_end ? -1.0f : 1.0f);
+  const F turn(at.at_end ? -1.0f : 1.0f), sign_z(mirrored != at.at_end ? -1.0f : 1.0f);
   F slips = zero, behinds = zero, nears = zero;
   float first_x = 0, first_y = 0;
   groups = 0;
@@ -159,25 +160,28 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
       usable = usable & (s <= most_s);
       nears = max(r.tmin * dz, nears);
     } else {
-      // The line at the apex's depth, and how far beyond or short of it the ray ends.
-      const F farthest = max(abs(r.o.x), max(abs(r.o.y), abs(r.o.z)));
-      const F depth = (*o[axis[2]] - F(apex[2])) * sign, along = depth * inverse;
-      const F slip_x = abs((*o[axis[0]] - along * dx) - F(apex[0])),
-              slip_y = abs((*o[axis[1]] - along * dy) - F(apex[1]));
-      const F rounding = (farthest + F(margin * 0x1p46f)) * F(0x1p-21f);
+      // How far the line passes from the apex at its depth, and how far beyond or short of it the ray ends:
+      // in double, because both are rounding errors of the caller.
+      using D = Simd<double, kTileGroup, A>;
+      const D depth_d = (to_double(*o[axis[2]]) - D(apex[2])) * D(mirrored ? -1.0 : 1.0);
+      const D along = depth_d / to_double(dz);
+      const F slip_x = abs(to_float((to_double(*o[axis[0]]) - along * to_double(dx)) - D(apex[0])));
+      const F slip_y = abs(to_float((to_double(*o[axis[1]]) - along * to_double(dy)) - D(apex[1])));
+      const F over = abs(to_float(depth_d - to_double(r.tmax) * to_double(dz)));
+      const F depth = to_float(depth_d);
       s = one / depth;
-      usable = usable & (abs(r.o.x) <= limit) & (abs(r.o.y) <= limit) & (abs(r.o.z) <= limit) & (r.tmin == zero) &
-               (depth > rounding) & (s <= most_s) & (r.tmax <= limit);
-      slips = max(select(usable, max(slip_x, slip_y) + rounding, zero), slips);
-      behinds = max(select(usable, abs(depth - r.tmax * dz) + rounding, zero), behinds);
+      usable = usable & (abs(r.o.x) <= limit) & (abs(r.o.y) <= limit) & (abs(r.o.z) <= limit) &
+               (r.tmin == zero) & (depth > F(margin * 0x1p26f)) & (s <= most_s) & (r.tmax <= limit);
+      slips = max(select(usable, max(slip_x, slip_y), zero), slips);
+      behinds = max(select(usable, over, zero), behinds);
     }
     const unsigned inside = count - base >= kTileGroup ? 0xffffu : (1u << (count - base)) - 1;
     unsigned valid = inside & bits((zero <= r.tmin) & (r.tmin < r.tmax));
     if (OKTETT_UNLIKELY((valid & ~bits(usable)) != 0)) {
       // Rays that hit nothing whatever they meet may stay, others not. False on NaN, so each is asked.
       const F ex = abs(r.d.x), ey = abs(r.d.y), ez = abs(r.d.z);
-      valid &= bits((abs(r.o.x) <= big) & (abs(r.o.y) <= big) & (abs(r.o.z) <= big) & (ex <= big) & (ey <= big) &
-                    (ez <= big) & (zero < max(ex, max(ey, ez))));
+      valid &= bits((abs(r.o.x) <= big) & (abs(r.o.y) <= big) & (abs(r.o.z) <= big) & (ex <= big) &
+                    (ey <= big) & (ez <= big) & (zero < max(ex, max(ey, ez))));
       if ((valid & ~bits(usable)) != 0) return false;
     }
     F px = dx * inverse, py = dy * inverse, lo = s * slack_lo, hi = s * slack_hi;
@@ -200,8 +204,8 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
     if (i < ends && (groups & ((2u << i / kTileGroup) - 1)) != 0) continue;
     F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(held_lo + i);
   }
-  slip = at.at_end ? horizontal_max(slips) : 0.0f;
-  behind = at.at_end ? horizontal_max(behinds) : 0.0f;
+  slip = at.at_end ? horizontal_max(slips) * (1 + kTileSlack) + margin : 0.0f;
+  behind = at.at_end ? horizontal_max(behinds) * (1 + kTileSlack) + margin : 0.0f;
   const float near = at.at_end ? behind : horizontal_max(nears);
   near_s = near > kTileLeast * kTileLeast ? (1 - kTileSlack) / near : 1 / (kTileLeast * kTileLeast);
   // A slip that is no rounding error means that the rays do not meet.
@@ -235,17 +239,19 @@ void TileRays<A>::bound() {
   const F ax(e[1][1] / det), ay(-e[1][0] / det), bx(-e[0][1] / det), by(e[0][0] / det);
   window.patch.x = 0.5f * (x[0] + x[kTileRays - 1]), window.patch.y = 0.5f * (y[0] + y[kTileRays - 1]);
   F ga(0.0f), gb = ga, gx = ga, gy = ga, wa = ga, wb = ga, least_x(x[0]), most_x = least_x, least_y(y[0]),
-    most_y = least_y, any_range(0.0f);
+              most_y = least_y, any_range(0.0f);
   for (int g = 0; g < kTileGroups; ++g) {
     const int base = g * kTileGroup;
     const F px = F::load(x + base), py = F::load(y + base);
-    x_mid[g] = 0.5f * (x[base] + x[base + kTileGroup - 1]), y_mid[g] = 0.5f * (y[base] + y[base + kTileGroup - 1]);
+    x_mid[g] = 0.5f * (x[base] + x[base + kTileGroup - 1]),
+    y_mid[g] = 0.5f * (y[base] + y[base + kTileGroup - 1]);
     const F dx = px - F(x_mid[g]), dy = py - F(y_mid[g]);
     ga = max(abs(dx * ax + dy * ay), ga), gb = max(abs(dx * bx + dy * by), gb);
     gx = max(abs(dx), gx), gy = max(abs(dy), gy);
     const F ux = px - F(window.patch.x), uy = py - F(window.patch.y);
     wa = max(abs(ux * ax + uy * ay), wa), wb = max(abs(ux * bx + uy * by), wb);
-    least_x = min(px, least_x), most_x = max(px, most_x), least_y = min(py, least_y), most_y = max(py, most_y);
+    least_x = min(px, least_x), most_x = max(px, most_x), least_y = min(py, least_y),
+    most_y = max(py, most_y);
     any_range = max(F::load(held_lo + base), any_range);
   }
   window.x_lo = horizontal_min(least_x), window.x_hi = horizontal_max(most_x);

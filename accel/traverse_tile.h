@@ -26,7 +26,8 @@ struct alignas(32) ChildWindows {
 
 /// Children of `node` whose boxes meet the window.
 template <class A>
-OKTETT_INLINE unsigned node_tile(const BvhNode& node, const TileRays<A>& tile, const TileWindow& w, ChildWindows& out) {
+OKTETT_INLINE unsigned node_tile(const BvhNode& node, const TileRays<A>& tile, const TileWindow& w,
+                                 ChildWindows& out) {
   using B = Simd<float, BvhNode::kWidth, A>;
   const int kx = 2 * tile.axis[0], ky = 2 * tile.axis[1], kz = 2 * tile.axis[2];
   const B ox(tile.apex[0]), oy(tile.apex[1]), oz(tile.apex[2]);
@@ -43,8 +44,8 @@ OKTETT_INLINE unsigned node_tile(const BvhNode& node, const TileRays<A>& tile, c
   const B py_lo = select(front, min(yl * rn, yl * rf) - wide, -infinity);
   const B py_hi = select(front, max(yh * rn, yh * rf) + wide, infinity);
   const B near = select(front, rn, infinity);
-  auto hit = (zn <= zf) & (px_lo <= B(w.x_hi)) & (B(w.x_lo) <= px_hi) & (py_lo <= B(w.y_hi)) & (B(w.y_lo) <= py_hi) &
-             (B(w.least) < near);
+  auto hit = (zn <= zf) & (px_lo <= B(w.x_hi)) & (B(w.x_lo) <= px_hi) & (py_lo <= B(w.y_hi)) &
+             (B(w.y_lo) <= py_hi) & (B(w.least) < near);
   const auto about = hit & ~front;
   if (OKTETT_UNLIKELY(any(about))) {
     // Against the four planes of the window's pyramid, which needs no division.
@@ -52,14 +53,17 @@ OKTETT_INLINE unsigned node_tile(const BvhNode& node, const TileRays<A>& tile, c
     const B zc = max(zn, -behind);
     const auto side = [&](const B& coordinate, float slope) {
       const B bound = B(slope) * (slope > 0 ? zc : zf);
-      return coordinate - bound + (abs(coordinate) + abs(bound)) * B(kTileSlack) + (margin + behind) >= B(0.0f);
+      return coordinate - bound + (abs(coordinate) + abs(bound)) * B(kTileSlack) + (margin + behind) >=
+             B(0.0f);
     };
-    const auto inside = (-behind <= zf) & side(xh, w.x_lo) & side(-xl, -w.x_hi) & side(yh, w.y_lo) & side(-yl, -w.y_hi);
+    const auto inside =
+        (-behind <= zf) & side(xh, w.x_lo) & side(-xl, -w.x_hi) & side(yh, w.y_lo) & side(-yl, -w.y_hi);
     hit = hit & (front | inside);
   }
   const unsigned children = bits(hit);
   if (children != 0)
-    near.store(out.near), px_lo.store(out.x_lo), px_hi.store(out.x_hi), py_lo.store(out.y_lo), py_hi.store(out.y_hi);
+    near.store(out.near), px_lo.store(out.x_lo), px_hi.store(out.x_hi), py_lo.store(out.y_lo),
+        py_hi.store(out.y_hi);
   return children;
 }
 
@@ -95,16 +99,17 @@ template <Query Q, class A>
 struct TileTask {
   const Accel& accel;
   const RaySpan& rays;
-  const HitSpan* hits;      ///< for Query::closest; complete only when the tile is finished
-  std::uint8_t* occluded;   ///< for Query::any
+  const HitSpan* hits;     ///< for Query::closest; complete only when the tile is finished
+  std::uint8_t* occluded;  ///< for Query::any
   TileRays<A> tile;
   UnclearList unclear;
-  bool decided = false;     ///< some hits have been decided and stand in `hits`
+  bool decided = false;  ///< some hits have been decided and stand in `hits`
 };
 
 /// Gathers the triangles `ids` (8 * block + lane) into lanes.
 template <int N, class A>
-OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* blocks, const std::uint32_t* ids) {
+OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* blocks,
+                                                                const std::uint32_t* ids) {
   using F = Simd<float, N, A>;
   constexpr std::uint32_t kSize = TriangleBlock::kSize;
   alignas(64) float v[9][N];
@@ -146,9 +151,11 @@ OKTETT_INLINE unsigned decide_gathered(RayLanes<Simd<float, N, A>> ray, const Tr
 
 /// Lets a decided hit of ray i count.
 template <class A>
-OKTETT_INLINE void accept_tile(const HitSpan& hits, TileRays<A>& tile, float dz, std::size_t i, const Hit& h) {
+OKTETT_INLINE void accept_tile(const HitSpan& hits, TileRays<A>& tile, float dz, std::size_t i,
+                               const Hit& h) {
   if (h.t > hits.t[i]) return;
-  if (h.t == hits.t[i] && hits.item[i] != kNoId && !id_before(h.instance, h.item, hits.instance[i], hits.item[i]))
+  if (h.t == hits.t[i] && hits.item[i] != kNoId &&
+      !id_before(h.instance, h.item, hits.instance[i], hits.item[i]))
     return;
   hits.set(i, h);
   const float s = 1 / (h.t * dz);
@@ -167,21 +174,24 @@ OKTETT_INLINE void begin_decisions(TileTask<Q, A>& task) {
 
 /// Decides `count` (up to 16) pairs.
 template <Query Q, class A>
-OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray, const std::uint32_t* triangle, int count) {
+OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray,
+                                   const std::uint32_t* triangle, int count) {
   using F = Simd<float, kTileGroup, A>;
   alignas(64) float column[8][kTileGroup];
   std::uint32_t ids[kTileGroup];
   for (int i = 0; i < kTileGroup; ++i) {
     const int k = i < count ? i : 0;
     const Ray r = task.rays[ray[k]];
-    const float values[8] = {r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.tmin, r.tmax};
+    const float values[8] = {r.origin.x,    r.origin.y,    r.origin.z, r.direction.x,
+                             r.direction.y, r.direction.z, r.tmin,     r.tmax};
     for (int c = 0; c < 8; ++c) column[c][i] = values[c];
     ids[i] = triangle[k];
   }
   const auto load = [&](int c) { return F::load(column[c]); };
   const RayLanes<F> rays{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
   HitLanes<F> hit;
-  unsigned met = decide_gathered<kTileGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
+  unsigned met =
+      decide_gathered<kTileGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
   if (met == 0) return;
   alignas(64) float t[kTileGroup], u[kTileGroup], v[kTileGroup];
   hit.t.store(t), hit.u.store(u), hit.v.store(v);
@@ -191,7 +201,8 @@ OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray
       task.occluded[ray[i]] = 1;
       task.tile.held_lo[ray[i]] = std::numeric_limits<float>::infinity();
     } else {
-      const std::uint32_t item = task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
+      const std::uint32_t item =
+          task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
       accept_tile(*task.hits, task.tile, __builtin_fabsf(column[3 + task.tile.axis[2]][i]), ray[i],
                   {t[i], u[i], v[i], item, kNoId});
     }
@@ -235,8 +246,8 @@ OKTETT_INLINE void note_unclear(TileTask<Q, A>& task, unsigned rays, int group, 
 template <Query Q, class A>
 OKTETT_NOINLINE void meet_edge_on(TileTask<Q, A>& task, std::uint32_t id, unsigned groups) {
   using F = Simd<float, kTileGroup, A>;
-  const auto tri = filter_triangle(
-      broadcast_triangle<F>(task.accel.blocks[id / TriangleBlock::kSize], static_cast<int>(id % TriangleBlock::kSize)));
+  const auto tri = filter_triangle(broadcast_triangle<F>(task.accel.blocks[id / TriangleBlock::kSize],
+                                                         static_cast<int>(id % TriangleBlock::kSize)));
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
     const RayLanes<F> r = load_span<F>(task.rays, static_cast<std::size_t>(g) * kTileGroup);
@@ -248,7 +259,8 @@ OKTETT_NOINLINE void meet_edge_on(TileTask<Q, A>& task, std::uint32_t id, unsign
 }
 
 template <Query Q, class A>
-OKTETT_INLINE void leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups, const TileWindow& window, unsigned& dirty) {
+OKTETT_INLINE void leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups, const TileWindow& window,
+                             unsigned& dirty) {
   TileRays<A>& tile = task.tile;
   ProjectedTriangles<A> projected;
   const BlockCandidates found =
@@ -259,7 +271,8 @@ OKTETT_INLINE void leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups,
     unsigned met = (groups & (groups - 1)) == 0 ? groups : groups_meeting(projected, k, tile, groups);
     for (; met != 0; met &= met - 1) {
       const int g = __builtin_ctz(met);
-      const GroupVerdict verdict = meet_group<Q == Query::any>(projected, k, base + static_cast<unsigned>(k), tile, g);
+      const GroupVerdict verdict =
+          meet_group<Q == Query::any>(projected, k, base + static_cast<unsigned>(k), tile, g);
       if (verdict.sure != 0) {
         dirty |= 1u << g;
         if (Q == Query::any)
@@ -304,7 +317,9 @@ OKTETT_NOINLINE void table_leaf_tile(TileTask<Q, A>& task, const LeafEntry& leaf
       decide_held(task, g);
       for (int i = 0; i < count; ++i) {
         const Hit h = (*task.hits)[base + i];
-        if (h.valid()) state.tmax[i] = h.t, state.u[i] = h.u, state.v[i] = h.v, state.item[i] = h.item, state.path[i] = h.instance;
+        if (h.valid())
+          state.tmax[i] = h.t, state.u[i] = h.u, state.v[i] = h.v, state.item[i] = h.item,
+          state.path[i] = h.instance;
       }
     } else {
       lanes &= ~found_lanes_before(task, base, count);
@@ -365,7 +380,8 @@ OKTETT_INLINE void finish_group(TileTask<Query::closest, A>& task, std::size_t b
   select(miss, F(std::numeric_limits<float>::infinity()), h.t).store(hits.t + base);
   select(miss, zero, h.u).store(hits.u + base), select(miss, zero, h.v).store(hits.v + base);
   for (int i = 0; i < kTileGroup; ++i) {
-    const std::uint32_t item = task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
+    const std::uint32_t item =
+        task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
     hits.item[base + i] = held[i] == kNoId ? kNoId : item;
   }
   std::memset(hits.instance + base, 0xff, kTileGroup * sizeof(std::uint32_t));
@@ -414,8 +430,10 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
   TileEntry stack[kStackSize];
   int size = 0, leaves = 0;
   unsigned dirty = 0;  // groups whose least[] is out of date, which is harmless
-  stack[size++] = {accel.root, std::numeric_limits<float>::infinity(), tile.window.x_lo, tile.window.x_hi,
-                   tile.window.y_lo, tile.window.y_hi, tile.groups};
+  stack[size++] = {accel.root,       std::numeric_limits<float>::infinity(),
+                   tile.window.x_lo, tile.window.x_hi,
+                   tile.window.y_lo, tile.window.y_hi,
+                   tile.groups};
   ChildWindows children;
   while (size > 0) {
     const TileEntry e = stack[--size];
@@ -455,8 +473,8 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
 /// Up to kTileRays rays that meet in `apex`. False if they are better traced otherwise (nothing has been
 /// written then that another traversal would not overwrite).
 template <Query Q, class A>
-OKTETT_NOINLINE bool trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex, const HitSpan* hits,
-                                std::uint8_t* occluded) {
+OKTETT_NOINLINE bool trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex,
+                                const HitSpan* hits, std::uint8_t* occluded) {
   TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}};
   if (!task.tile.set(rays, apex, box_extent(accel.bounds))) return false;
   if constexpr (Q == Query::any)
