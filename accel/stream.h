@@ -2,7 +2,7 @@
 /// \file Batches of rays through one structure: which traversal takes which rays. The choice changes the
 /// speed, never a hit.
 
-#include "accel/sort_tiles.h"
+#include "accel/traverse_tile.h"
 
 namespace oktett {
 
@@ -62,10 +62,25 @@ void any_hit_stream(const Accel& accel, const RaySpan& rays, std::uint8_t* occlu
   }
 }
 
-/// Fewer rays than this are not worth sorting.
-inline constexpr std::size_t kLeastSorted = 64;
+/// The point that the rays seem to share: where all start, or, for shadow rays, where all end.
+template <Query Q>
+OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
+  const Vec3f first = rays[0].origin;
+  apex = {first, false};
+  if (first == rays[rays.size - 1].origin) return true;
+  if (Q != Query::any) return false;
+  const auto end = [&](std::size_t i) {
+    const Ray r = rays[i];
+    return Vec3d(r.origin) + Vec3d(r.direction) * static_cast<double>(r.tmax);
+  };
+  const Vec3d middle = end(rays.size / 2);
+  const double near = 0x1p-20 * (max_component(abs(middle)) + max_component(abs(Vec3d(first))));
+  apex = {Vec3f(middle), true};
+  return max_component(abs(end(0) - middle)) <= near &&
+         max_component(abs(end(rays.size - 1) - middle)) <= near;
+}
 
-/// How `automatic` traces a batch: rays that start at one point in tiles, the rest as packets.
+/// How `automatic` traces a batch: rays that share a point in tiles, the rest as packets.
 template <int W, class A>
 void closest_hit_automatic(const Accel& accel, const RaySpan& rays, const HitSpan& hits) {
   std::size_t waiting = 0;  // rays before this are traced
@@ -77,62 +92,37 @@ void closest_hit_automatic(const Accel& accel, const RaySpan& rays, const HitSpa
   for (std::size_t b = 0; b < rays.size; b += kTileRays) {
     const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
     const RaySpan part = rays.part(b, count);
-    if (part[0].origin != part[count - 1].origin) continue;
     const HitSpan out = hits.part(b, count);
-    if (!trace_tile<Query::closest, A>(accel, part, {part[0].origin, false}, &out, nullptr)) continue;
+    Apex apex;
+    if (!common_point<Query::closest>(part, apex) ||
+        !trace_tile<Query::closest, A>(accel, part, apex, &out, nullptr))
+      continue;
     catch_up(b);
     waiting = b + count;
   }
   catch_up(rays.size);
 }
 
-/// The same for occlusion; rays that end in one point are sorted first.
+/// The same for occlusion, also for rays that end at one point.
 template <int W, class A>
 void any_hit_automatic(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded) {
   std::size_t waiting = 0;
   const auto catch_up = [&](std::size_t end) {
     if (end > waiting)
-      any_hit_stream<W, A>(accel, rays.part(waiting, end - waiting), occluded + waiting, TraceMode::automatic);
+      any_hit_stream<W, A>(accel, rays.part(waiting, end - waiting), occluded + waiting,
+                           TraceMode::automatic);
   };
   for (std::size_t b = 0; b < rays.size; b += kTileRays) {
     const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
     const RaySpan part = rays.part(b, count);
-    if (part[0].origin != part[count - 1].origin) continue;
-    if (!trace_tile<Query::any, A>(accel, part, {part[0].origin, false}, nullptr, occluded + b)) continue;
+    Apex apex;
+    if (!common_point<Query::any>(part, apex) ||
+        !trace_tile<Query::any, A>(accel, part, apex, nullptr, occluded + b))
+      continue;
     catch_up(b);
     waiting = b + count;
   }
   catch_up(rays.size);
-}
-
-/// Rays that end at the apex, up to kSortedRays.
-template <int W, class A>
-OKTETT_NOINLINE void any_hit_sorted(const Accel& accel, const RaySpan& rays, const Apex& apex, std::uint8_t* occluded) {
-  std::uint16_t order[kSortedRays];
-  std::uint8_t found[kSortedRays];
-  SortedRays columns;
-  sort_by_end<A>(rays, order);
-  columns.gather(rays, order);
-  const RaySpan sorted = columns.span(rays.size);
-  for (std::size_t b = 0; b < rays.size; b += kTileRays) {
-    const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
-    const RaySpan part = sorted.part(b, count);
-    if (!trace_tile<Query::any, A>(accel, part, apex, nullptr, found + b))
-      any_hit_stream<W, A>(accel, part, found + b, TraceMode::automatic);
-  }
-  for (std::size_t i = 0; i < rays.size; ++i) occluded[order[i]] = found[i];
-}
-
-template <int W, class A>
-void any_hit_batch(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded) {
-  for (std::size_t b = 0; b < rays.size; b += kSortedRays) {
-    const RaySpan part = rays.part(b, std::min(kSortedRays, rays.size - b));
-    Apex apex;
-    if (part.size >= kLeastSorted && part[0].origin != part[part.size - 1].origin && common_end(part, apex))
-      any_hit_sorted<W, A>(accel, part, apex, occluded + b);
-    else
-      any_hit_automatic<W, A>(accel, part, occluded + b);
-  }
 }
 
 }  // namespace oktett

@@ -133,8 +133,8 @@ struct GroupVerdict {
   unsigned unclear;  ///< may be hit, and may be nearer: to be decided
 };
 
-/// Triangle `k` against the rays of one group; sure hits are put down as held. For Query::any a ray that
-/// surely hits something needs nothing more.
+/// Triangle `k` against the rays of one group; sure hits are put down as held. For an any-hit query a ray
+/// that surely hits something needs nothing more. Without a branch: which rays hit is hard to foretell.
 template <bool kAny, class A>
 OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std::uint32_t id,
                                       TileRays<A>& tile, int group) {
@@ -145,23 +145,19 @@ OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std
     return fast_fma(F(p.c[3 * f + 1][k]), x, fast_fma(F(p.c[3 * f + 2][k]), y, F(p.c[3 * f][k])));
   };
   const F least = min(value(0), min(value(1), value(2))), s = value(3);
-  const F held = F::load(tile.held_lo + base);
-  const unsigned possible = ~bits((least < F(0.0f)) | (s <= held)) & 0xffff;
-  if (possible == 0) return {0, 0};
+  const F held_lo = F::load(tile.held_lo + base), held_hi = F::load(tile.held_hi + base);
   const F s_lo = fast_fma(s, F(p.lower_scale[k]), F(-p.lower_gap[k]));
-  const auto sure = (F(p.sure[k]) < least) & (F::load(tile.held_hi + base) < s_lo);
-  const unsigned hit = bits(sure) & possible;
-  if (hit != 0) {
-    const auto m = F::M::from_bits(hit);
-    select(m, kAny ? F(std::numeric_limits<float>::infinity()) : s_lo, held).store(tile.held_lo + base);
-    if (!kAny) {
-      select(m, s, F::load(tile.held_hi + base)).store(tile.held_hi + base);
-      using I = Simd<std::int32_t, kTileGroup, A>;
-      std::int32_t* ids = reinterpret_cast<std::int32_t*>(tile.held + base);
-      select(mask_cast<std::int32_t>(m), I(static_cast<std::int32_t>(id)), I::load(ids)).store(ids);
-    }
+  const auto reject = (least < F(0.0f)) | (s <= held_lo);
+  // Where s <= held_lo, s_lo is below held_hi too.
+  const auto sure = (F(p.sure[k]) < least) & (held_hi < s_lo);
+  select(sure, kAny ? F(std::numeric_limits<float>::infinity()) : s_lo, held_lo).store(tile.held_lo + base);
+  if (!kAny) {
+    using I = Simd<std::int32_t, kTileGroup, A>;
+    select(sure, s, held_hi).store(tile.held_hi + base);
+    std::int32_t* ids = reinterpret_cast<std::int32_t*>(tile.held + base);
+    select(mask_cast<std::int32_t>(sure), I(static_cast<std::int32_t>(id)), I::load(ids)).store(ids);
   }
-  return {hit, possible & ~hit};
+  return {bits(sure), bits(~(reject | sure)) & 0xffff};
 }
 
 }  // namespace oktett

@@ -78,7 +78,11 @@ struct alignas(64) TileRays {
   /// its own half sides.
   float x_mid[kTileGroups], y_mid[kTileGroups], x_half[kTileGroups], y_half[kTileGroups];
   bool regular;
+  bool ranged;  ///< some ray ends somewhere
   TilePatch shape;
+  /// Where `sorted`, ray i of the tile is ray order[i] of the batch.
+  bool sorted = false;
+  std::uint8_t order[kTileRays];
   unsigned groups;  ///< groups that hold a ray that can hit anything
   TileWindow window;
 
@@ -94,7 +98,8 @@ struct alignas(64) TileRays {
   /// Prepares up to kTileRays rays. False if they are no tile: they do not share the apex, fan out too far,
   /// or their numbers are so large or small that the bounds here do not hold. `extent` = greatest
   /// |coordinate| of the scene.
-  bool set(const RaySpan& rays, const Apex& at, float extent);
+  /// `may_sort`: put the rays of a whole tile into another order if they stand in none.
+  bool set(const RaySpan& rays, const Apex& at, float extent, bool may_sort);
 
   OKTETT_INLINE void refresh(int group) {
     least[group] = horizontal_min(F::load(held_lo + group * kTileGroup));
@@ -105,6 +110,8 @@ struct alignas(64) TileRays {
   bool set_frame(const RaySpan& rays, const Apex& at, float extent);
   bool project(const RaySpan& rays, const Apex& at);
   void bound();
+  void bound_groups();
+  void sort();
 };
 
 /// Scales between which products of three lengths and their inverses neither overflow nor underflow in float.
@@ -193,7 +200,7 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
     if (OKTETT_UNLIKELY(valid != 0xffff)) {
       const auto m = F::M::from_bits(valid);
       select(m, px, F(first_x)).store(x + base), select(m, py, F(first_y)).store(y + base);
-      lo = select(m, lo, infinity), hi = select(m, hi, infinity);
+      lo = select(m, lo, infinity), hi = select(m, hi, infinity);  // what makes a ray idle
     }
     lo.store(held_lo + base), hi.store(held_hi + base);
     std::memset(held + base, 0xff, kTileGroup * sizeof held[0]);
@@ -202,7 +209,8 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
   const int ends = (count + kTileGroup - 1) / kTileGroup * kTileGroup;
   for (int i = 0; i < kTileRays; i += kTileGroup) {
     if (i < ends && (groups & ((2u << i / kTileGroup) - 1)) != 0) continue;
-    F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(held_lo + i);
+    F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(held_lo + i),
+        infinity.store(held_hi + i);
   }
   slip = at.at_end ? horizontal_max(slips) * (1 + kTileSlack) + margin : 0.0f;
   behind = at.at_end ? horizontal_max(behinds) * (1 + kTileSlack) + margin : 0.0f;
@@ -271,7 +279,14 @@ void TileRays<A>::bound() {
     const G xm = G::load(x_mid), ym = G::load(y_mid), pad(spread * 0x1p-22f);
     (xm - G(hx) - pad).store(x_lo), (xm + G(hx) + pad).store(x_hi);
     (ym - G(hy) - pad).store(y_lo), (ym + G(hy) + pad).store(y_hi);
-  } else {
+  }
+  ranged = horizontal_max(any_range) != 0;
+}
+
+/// Groups of no common shape, and how near each still looks.
+template <class A>
+void TileRays<A>::bound_groups() {
+  if (!regular) {
     for (int g = 0; g < kTileGroups; ++g) {
       const F px = F::load(x + g * kTileGroup), py = F::load(y + g * kTileGroup);
       x_lo[g] = horizontal_min(px), x_hi[g] = horizontal_max(px);
@@ -280,20 +295,76 @@ void TileRays<A>::bound() {
       x_half[g] = 0.5f * (x_hi[g] - x_lo[g]), y_half[g] = 0.5f * (y_hi[g] - y_lo[g]);
     }
   }
-  if (horizontal_max(any_range) == 0) {
-    G(0.0f).store(least);  // no ray ends
-  } else {
+  if (ranged) {
     for (int g = 0; g < kTileGroups; ++g) refresh(g);
+  } else {
+    Simd<float, kTileGroups, A>(0.0f).store(least);
   }
   refresh_window();
 }
 
+/// The bits of a number below 256, spread so that every second bit is free.
+OKTETT_INLINE unsigned spread_bits(unsigned x) {
+  x = (x | x << 4) & 0x0f0f;
+  x = (x | x << 2) & 0x3333;
+  return (x | x << 1) & 0x5555;
+}
+
+/// Along a Morton curve over the window, so that groups become small.
 template <class A>
-bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent) {
+void TileRays<A>::sort() {
+  constexpr int kSide = 32, kCells = kSide * kSide;
+  const float extent = std::max({window.x_hi - window.x_lo, window.y_hi - window.y_lo, 1e-30f});
+  const F scale((static_cast<float>(kSide) - 0.25f) / extent), x0(window.x_lo), y0(window.y_lo);
+  alignas(64) float cx[kTileRays], cy[kTileRays], lo[kTileRays], hi[kTileRays];
+  for (int i = 0; i < kTileRays; i += kTileGroup)
+    ((F::load(x + i) - x0) * scale).store(cx + i), ((F::load(y + i) - y0) * scale).store(cy + i);
+  std::uint16_t key[kTileRays], begin[kCells + 1] = {};
+  for (int i = 0; i < kTileRays; ++i) {
+    key[i] = static_cast<std::uint16_t>(spread_bits(static_cast<unsigned>(static_cast<int>(cx[i]))) |
+                                        spread_bits(static_cast<unsigned>(static_cast<int>(cy[i]))) << 1);
+    ++begin[key[i] + 1];
+  }
+  for (int c = 0; c < kCells; ++c) begin[c + 1] = static_cast<std::uint16_t>(begin[c + 1] + begin[c]);
+  std::memcpy(cx, x, sizeof x), std::memcpy(cy, y, sizeof y);
+  std::memcpy(lo, held_lo, sizeof lo), std::memcpy(hi, held_hi, sizeof hi);
+  for (int i = 0; i < kTileRays; ++i) {
+    const int to = begin[key[i]]++;
+    order[to] = static_cast<std::uint8_t>(i);
+    x[to] = cx[i], y[to] = cy[i], held_lo[to] = lo[i], held_hi[to] = hi[i];
+  }
+  sorted = true;
+  groups = (1u << kTileGroups) - 1;
+}
+
+template <class A>
+bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool may_sort) {
+  sorted = false;
   if (!set_frame(rays, at, extent) || !project(rays, at)) return false;
   if (groups == 0) return true;
   bound();
-  return window.x_hi - window.x_lo <= 1 && window.y_hi - window.y_lo <= 1;
+  if (window.x_hi - window.x_lo > 1 || window.y_hi - window.y_lo > 1) return false;
+  if (!regular && may_sort && rays.size == kTileRays) sort();
+  bound_groups();
+  return true;
+}
+
+/// The rays of one group.
+template <class A>
+OKTETT_INLINE RayLanes<Simd<float, kTileGroup, A>> load_group(const TileRays<A>& tile, const RaySpan& rays,
+                                                              int group) {
+  using F = Simd<float, kTileGroup, A>;
+  const std::size_t base = static_cast<std::size_t>(group) * kTileGroup;
+  if (!tile.sorted) return load_span<F>(rays, base);
+  const auto gather = [&](const float* column) {
+    alignas(64) float lanes[kTileGroup];
+    for (int i = 0; i < kTileGroup; ++i) lanes[i] = column[tile.order[base + i]];
+    return F::load(lanes);
+  };
+  return {{gather(rays.origin[0]), gather(rays.origin[1]), gather(rays.origin[2])},
+          {gather(rays.direction[0]), gather(rays.direction[1]), gather(rays.direction[2])},
+          gather(rays.tmin),
+          gather(rays.tmax)};
 }
 
 /// The window of a single group.

@@ -181,7 +181,7 @@ OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray
   std::uint32_t ids[kTileGroup];
   for (int i = 0; i < kTileGroup; ++i) {
     const int k = i < count ? i : 0;
-    const Ray r = task.rays[ray[k]];
+    const Ray r = task.rays[task.tile.sorted ? task.tile.order[ray[k]] : ray[k]];
     const float values[8] = {r.origin.x,    r.origin.y,    r.origin.z, r.direction.x,
                              r.direction.y, r.direction.z, r.tmin,     r.tmax};
     for (int c = 0; c < 8; ++c) column[c][i] = values[c];
@@ -198,7 +198,6 @@ OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray
   for (; met != 0; met &= met - 1) {
     const int i = __builtin_ctz(met);
     if constexpr (Q == Query::any) {
-      task.occluded[ray[i]] = 1;
       task.tile.held_lo[ray[i]] = std::numeric_limits<float>::infinity();
     } else {
       const std::uint32_t item =
@@ -220,7 +219,7 @@ OKTETT_NOINLINE void decide_unclear(TileTask<Q, A>& task) {
       int kept = 0;
       const int end = std::min(list.size, i + kTileGroup);
       for (int k = i; k < end; ++k) {
-        if (task.occluded[list.ray[k]]) continue;
+        if (task.tile.held_lo[list.ray[k]] == std::numeric_limits<float>::infinity()) continue;
         list.ray[i + kept] = list.ray[k], list.triangle[i + kept] = list.triangle[k], ++kept;
       }
       if (kept > 0) decide_listed(task, list.ray + i, list.triangle + i, kept);
@@ -250,7 +249,7 @@ OKTETT_NOINLINE void meet_edge_on(TileTask<Q, A>& task, std::uint32_t id, unsign
                                                          static_cast<int>(id % TriangleBlock::kSize)));
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
-    const RayLanes<F> r = load_span<F>(task.rays, static_cast<std::size_t>(g) * kTileGroup);
+    const RayLanes<F> r = load_group(task.tile, task.rays, g);
     const F d_max = max(abs(r.d.x), max(abs(r.d.y), abs(r.d.z)));
     const F infinity(std::numeric_limits<float>::infinity());
     const unsigned open = bits(F::load(task.tile.held_lo + g * kTileGroup) < infinity);
@@ -273,13 +272,9 @@ OKTETT_INLINE void leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups,
       const int g = __builtin_ctz(met);
       const GroupVerdict verdict =
           meet_group<Q == Query::any>(projected, k, base + static_cast<unsigned>(k), tile, g);
-      if (verdict.sure != 0) {
-        dirty |= 1u << g;
-        if (Q == Query::any)
-          for (unsigned rays = verdict.sure; rays != 0; rays &= rays - 1)
-            task.occluded[g * kTileGroup + __builtin_ctz(rays)] = 1;
-      }
-      if (verdict.unclear != 0) note_unclear(task, verdict.unclear, g, base + static_cast<unsigned>(k));
+      dirty |= static_cast<unsigned>(verdict.sure != 0) << g;
+      if (OKTETT_UNLIKELY(verdict.unclear != 0))
+        note_unclear(task, verdict.unclear, g, base + static_cast<unsigned>(k));
     }
   }
   for (unsigned rest = found.edge_on; OKTETT_UNLIKELY(rest != 0); rest &= rest - 1)
@@ -309,42 +304,32 @@ OKTETT_NOINLINE void table_leaf_tile(TileTask<Q, A>& task, const LeafEntry& leaf
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
     const std::size_t base = static_cast<std::size_t>(g) * kTileGroup;
-    const int count = static_cast<int>(std::min<std::size_t>(kTileGroup, task.rays.size - base));
-    const RayLanes<F> r = load_span<F>(task.rays, base);
+    const RayLanes<F> r = load_group(tile, task.rays, g);
+    const unsigned open = bits(F::load(tile.held_lo + base) < F(std::numeric_limits<float>::infinity()));
     RayState<kTileGroup, A> state;
-    unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds) & ((1u << count) - 1);
+    const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds) & open;
     if constexpr (Q == Query::closest) {
       decide_held(task, g);
-      for (int i = 0; i < count; ++i) {
-        const Hit h = (*task.hits)[base + i];
+      for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+        const int i = __builtin_ctz(rest);
+        const Hit h = (*task.hits)[base + static_cast<std::size_t>(i)];
         if (h.valid())
           state.tmax[i] = h.t, state.u[i] = h.u, state.v[i] = h.v, state.item[i] = h.item,
           state.path[i] = h.instance;
       }
-    } else {
-      lanes &= ~found_lanes_before(task, base, count);
     }
     table_leaf_packet<Q>(task.accel, leaf, state, lanes);
     for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
       const int i = __builtin_ctz(rest);
       if (state.item[i] == kNoId) continue;
-      if constexpr (Q == Query::any) {
-        task.occluded[base + i] = 1;
-        tile.held_lo[base + i] = std::numeric_limits<float>::infinity();
-      } else {
-        accept_tile(*task.hits, tile, __builtin_fabsf(state.d[tile.axis[2]][i]), base + i, state.hit(i));
-      }
+      if constexpr (Q == Query::any)
+        tile.held_lo[base + static_cast<std::size_t>(i)] = std::numeric_limits<float>::infinity();
+      else
+        accept_tile(*task.hits, tile, __builtin_fabsf(state.d[tile.axis[2]][i]),
+                    base + static_cast<std::size_t>(i), state.hit(i));
     }
     tile.refresh(g);
   }
-}
-
-/// Rays base, base + 1, ... that are known to be occluded.
-template <class A>
-OKTETT_INLINE unsigned found_lanes_before(const TileTask<Query::any, A>& task, std::size_t base, int count) {
-  unsigned found = 0;
-  for (int i = 0; i < count; ++i) found |= static_cast<unsigned>(task.occluded[base + i]) << i;
-  return found;
 }
 
 /// Sixteen misses from position `base`.
@@ -403,6 +388,13 @@ OKTETT_INLINE void finish_tile(TileTask<Query::closest, A>& task) {
 template <class A>
 OKTETT_INLINE void finish_tile(TileTask<Query::any, A>& task) {
   if (task.unclear.size > 0) decide_unclear(task);
+  const TileRays<A>& tile = task.tile;
+  for (std::size_t i = 0; i < task.rays.size; ++i) {
+    // Rays that could not hit anything from the start have no end either.
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    task.occluded[tile.sorted ? tile.order[i] : i] =
+        tile.held_lo[i] == kInfinity && tile.held_hi[i] != kInfinity;
+  }
 }
 
 /// Leaves of which a tile may meet this many; where it would be more, the triangles are smaller than the
@@ -476,9 +468,7 @@ template <Query Q, class A>
 OKTETT_NOINLINE bool trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex,
                                 const HitSpan* hits, std::uint8_t* occluded) {
   TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}};
-  if (!task.tile.set(rays, apex, box_extent(accel.bounds))) return false;
-  if constexpr (Q == Query::any)
-    for (std::size_t i = 0; i < rays.size; ++i) occluded[i] = 0;
+  if (!task.tile.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return false;
   if (task.tile.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded) table_leaf_tile(task, leaf, task.tile.groups);
     if (!accel.root.is_none() && !traverse_tile(task)) return false;

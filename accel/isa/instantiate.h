@@ -35,7 +35,7 @@ struct IsaCode {
   static void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
     with_width<A>(mode, [&]<int W>() {
       if constexpr (W > 1)
-        if (mode == TraceMode::automatic) return any_hit_batch<W, A>(accel, rays, occluded);
+        if (mode == TraceMode::automatic) return any_hit_automatic<W, A>(accel, rays, occluded);
       any_hit_stream<W, A>(accel, rays, occluded, mode);
     });
   }
