@@ -134,7 +134,8 @@ struct GroupVerdict {
 };
 
 /// Triangle `k` against the rays of one group; sure hits are put down as held. For an any-hit query a ray
-/// that surely hits something needs nothing more. Without a branch: which rays hit is hard to foretell.
+/// that surely hits something needs nothing more. Whether a camera ray hits is hard to foretell, so nothing
+/// branches on it; that a shadow ray misses is not.
 template <bool kAny, class A>
 OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std::uint32_t id,
                                       TileRays<A>& tile, int group) {
@@ -145,9 +146,10 @@ OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std
     return fast_fma(F(p.c[3 * f + 1][k]), x, fast_fma(F(p.c[3 * f + 2][k]), y, F(p.c[3 * f][k])));
   };
   const F least = min(value(0), min(value(1), value(2))), s = value(3);
-  const F held_lo = F::load(tile.held_lo + base), held_hi = F::load(tile.held_hi + base);
-  const F s_lo = fast_fma(s, F(p.lower_scale[k]), F(-p.lower_gap[k]));
+  const F held_lo = F::load(tile.held_lo + base);
   const auto reject = (least < F(0.0f)) | (s <= held_lo);
+  if (kAny && (~bits(reject) & 0xffff) == 0) return {0, 0};
+  const F held_hi = F::load(tile.held_hi + base), s_lo = fast_fma(s, F(p.lower_scale[k]), F(-p.lower_gap[k]));
   // Where s <= held_lo, s_lo is below held_hi too.
   const auto sure = (F(p.sure[k]) < least) & (held_hi < s_lo);
   select(sure, kAny ? F(std::numeric_limits<float>::infinity()) : s_lo, held_lo).store(tile.held_lo + base);
