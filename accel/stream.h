@@ -80,47 +80,61 @@ OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
          max_component(abs(end(rays.size - 1) - middle)) <= near;
 }
 
-/// How `automatic` traces a batch: rays that share a point in tiles, the rest as packets.
-template <int W, class A>
-void closest_hit_automatic(const Accel& accel, const RaySpan& rays, const HitSpan& hits) {
-  std::size_t waiting = 0;  // rays before this are traced
-  const auto catch_up = [&](std::size_t end) {
-    if (end > waiting)
-      closest_hit_stream<W, A>(accel, rays.part(waiting, end - waiting), hits.part(waiting, end - waiting),
-                               TraceMode::automatic);
-  };
-  for (std::size_t b = 0; b < rays.size; b += kTileRays) {
-    const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
-    const RaySpan part = rays.part(b, count);
-    const HitSpan out = hits.part(b, count);
-    Apex apex;
-    if (!common_point<Query::closest>(part, apex) ||
-        !trace_tile<Query::closest, A>(accel, part, apex, &out, nullptr))
-      continue;
-    catch_up(b);
-    waiting = b + count;
-  }
-  catch_up(rays.size);
+/// Where the results of a query go.
+template <Query Q>
+struct Results;
+template <>
+struct Results<Query::closest> {
+  HitSpan hits;
+  Results part(std::size_t begin, std::size_t count) const { return {hits.part(begin, count)}; }
+};
+template <>
+struct Results<Query::any> {
+  std::uint8_t* occluded;
+  Results part(std::size_t begin, std::size_t) const { return {occluded + begin}; }
+};
+
+template <Query Q, int W, class A>
+void trace_stream(const Accel& accel, const RaySpan& rays, const Results<Q>& results, TraceMode mode) {
+  if constexpr (Q == Query::closest)
+    closest_hit_stream<W, A>(accel, rays, results.hits, mode);
+  else
+    any_hit_stream<W, A>(accel, rays, results.occluded, mode);
 }
 
-/// The same for occlusion, also for rays that end at one point.
-template <int W, class A>
-void any_hit_automatic(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded) {
-  std::size_t waiting = 0;
+/// True if the rays were a tile and are traced.
+template <Query Q, class A>
+bool try_tile(const Accel& accel, const RaySpan& rays, const Results<Q>& results) {
+  Apex apex;
+  if (!common_point<Q>(rays, apex)) return false;
+  if constexpr (Q == Query::closest)
+    return trace_tile<Q, A>(accel, rays, apex, &results.hits, nullptr);
+  else
+    return trace_tile<Q, A>(accel, rays, apex, nullptr, results.occluded);
+}
+
+/// How `automatic` traces a batch: rays that share a point in tiles, the rest as packets. Where a tile was
+/// given up, its neighbours are not tried: twice as many each time.
+template <Query Q, int W, class A>
+void trace_automatic(const Accel& accel, const RaySpan& rays, const Results<Q>& results) {
+  std::size_t traced = 0;
+  int skip = 0, failures = 0;
   const auto catch_up = [&](std::size_t end) {
-    if (end > waiting)
-      any_hit_stream<W, A>(accel, rays.part(waiting, end - waiting), occluded + waiting,
-                           TraceMode::automatic);
+    if (end > traced)
+      trace_stream<Q, W, A>(accel, rays.part(traced, end - traced), results.part(traced, end - traced),
+                            TraceMode::automatic);
   };
   for (std::size_t b = 0; b < rays.size; b += kTileRays) {
     const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
-    const RaySpan part = rays.part(b, count);
-    Apex apex;
-    if (!common_point<Query::any>(part, apex) ||
-        !trace_tile<Query::any, A>(accel, part, apex, nullptr, occluded + b))
-      continue;
-    catch_up(b);
-    waiting = b + count;
+    if (skip > 0) {
+      --skip;
+    } else if (try_tile<Q, A>(accel, rays.part(b, count), results.part(b, count))) {
+      catch_up(b);
+      traced = b + count;
+      failures = 0;
+    } else {
+      skip = (1 << std::min(failures++, 3)) - 1;
+    }
   }
   catch_up(rays.size);
 }

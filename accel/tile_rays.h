@@ -110,7 +110,7 @@ struct alignas(64) TileRays {
   bool set_frame(const RaySpan& rays, const Apex& at, float extent);
   bool project(const RaySpan& rays, const Apex& at);
   void bound();
-  void bound_groups();
+  float bound_groups();
   void sort();
 };
 
@@ -283,24 +283,23 @@ void TileRays<A>::bound() {
   ranged = horizontal_max(any_range) != 0;
 }
 
-/// Groups of no common shape, and how near each still looks.
+/// Rectangles around groups of no common shape. Returns the sum of their areas.
 template <class A>
-void TileRays<A>::bound_groups() {
-  if (!regular) {
-    for (int g = 0; g < kTileGroups; ++g) {
-      const F px = F::load(x + g * kTileGroup), py = F::load(y + g * kTileGroup);
-      x_lo[g] = horizontal_min(px), x_hi[g] = horizontal_max(px);
-      y_lo[g] = horizontal_min(py), y_hi[g] = horizontal_max(py);
-      x_mid[g] = 0.5f * (x_lo[g] + x_hi[g]), y_mid[g] = 0.5f * (y_lo[g] + y_hi[g]);
-      x_half[g] = 0.5f * (x_hi[g] - x_lo[g]), y_half[g] = 0.5f * (y_hi[g] - y_lo[g]);
-    }
+float TileRays<A>::bound_groups() {
+  using G = Simd<float, kTileGroups, A>;
+  for (int g = 0; g < kTileGroups; ++g) {
+    const F px = F::load(x + g * kTileGroup), py = F::load(y + g * kTileGroup);
+    x_lo[g] = horizontal_min(px), x_hi[g] = horizontal_max(px);
+    y_lo[g] = horizontal_min(py), y_hi[g] = horizontal_max(py);
   }
-  if (ranged) {
-    for (int g = 0; g < kTileGroups; ++g) refresh(g);
-  } else {
-    Simd<float, kTileGroups, A>(0.0f).store(least);
-  }
-  refresh_window();
+  const G half(0.5f), x0 = G::load(x_lo), x1 = G::load(x_hi), y0 = G::load(y_lo), y1 = G::load(y_hi);
+  ((x0 + x1) * half).store(x_mid), ((y0 + y1) * half).store(y_mid);
+  ((x1 - x0) * half).store(x_half), ((y1 - y0) * half).store(y_half);
+  alignas(64) float area[kTileGroups];
+  ((x1 - x0) * (y1 - y0)).store(area);
+  float sum = 0;
+  for (int g = 0; g < kTileGroups; ++g) sum += area[g];
+  return sum;
 }
 
 /// The bits of a number below 256, spread so that every second bit is free.
@@ -344,8 +343,17 @@ bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool ma
   if (groups == 0) return true;
   bound();
   if (window.x_hi - window.x_lo > 1 || window.y_hi - window.y_lo > 1) return false;
-  if (!regular && may_sort && rays.size == kTileRays) sort();
-  bound_groups();
+  if (!regular) {
+    // Sorting costs as much as a few triangles per group.
+    const float area = (window.x_hi - window.x_lo) * (window.y_hi - window.y_lo);
+    if (bound_groups() > 3 * area && may_sort && rays.size == kTileRays) sort(), bound_groups();
+  }
+  if (ranged) {
+    for (int g = 0; g < kTileGroups; ++g) refresh(g);
+  } else {
+    Simd<float, kTileGroups, A>(0.0f).store(least);
+  }
+  refresh_window();
   return true;
 }
 

@@ -389,11 +389,19 @@ template <class A>
 OKTETT_INLINE void finish_tile(TileTask<Query::any, A>& task) {
   if (task.unclear.size > 0) decide_unclear(task);
   const TileRays<A>& tile = task.tile;
-  for (std::size_t i = 0; i < task.rays.size; ++i) {
+  using F = Simd<float, kTileGroup, A>;
+  const F infinity(std::numeric_limits<float>::infinity());
+  std::uint8_t found[kTileRays];
+  for (int base = 0; base < kTileRays; base += kTileGroup) {
     // Rays that could not hit anything from the start have no end either.
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    task.occluded[tile.sorted ? tile.order[i] : i] =
-        tile.held_lo[i] == kInfinity && tile.held_hi[i] != kInfinity;
+    const unsigned done =
+        bits((F::load(tile.held_lo + base) == infinity) & (F::load(tile.held_hi + base) < infinity));
+    for (int i = 0; i < kTileGroup; ++i) found[base + i] = static_cast<std::uint8_t>(done >> i & 1);
+  }
+  if (tile.sorted) {
+    for (int i = 0; i < kTileRays; ++i) task.occluded[tile.order[i]] = found[i];
+  } else {
+    std::memcpy(task.occluded, found, task.rays.size);
   }
 }
 

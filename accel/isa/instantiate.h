@@ -28,14 +28,14 @@ struct IsaCode {
   static void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
     with_width<A>(mode, [&]<int W>() {
       if constexpr (W > 1)
-        if (mode == TraceMode::automatic) return closest_hit_automatic<W, A>(accel, rays, hits);
+        if (mode == TraceMode::automatic) return trace_automatic<Query::closest, W, A>(accel, rays, {hits});
       closest_hit_stream<W, A>(accel, rays, hits, mode);
     });
   }
   static void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
     with_width<A>(mode, [&]<int W>() {
       if constexpr (W > 1)
-        if (mode == TraceMode::automatic) return any_hit_automatic<W, A>(accel, rays, occluded);
+        if (mode == TraceMode::automatic) return trace_automatic<Query::any, W, A>(accel, rays, {occluded});
       any_hit_stream<W, A>(accel, rays, occluded, mode);
     });
   }
