@@ -104,20 +104,22 @@ void trace_stream(const Accel& accel, const RaySpan& rays, const Results<Q>& res
 
 /// True if the rays were a tile and are traced.
 template <Query Q, class A>
-bool try_tile(const Accel& accel, const RaySpan& rays, const Results<Q>& results) {
+bool try_tile(const Accel& accel, const RaySpan& rays, const Results<Q>& results, int max_leaves) {
   Apex apex;
   if (!common_point<Q>(rays, apex)) return false;
   if constexpr (Q == Query::closest)
-    return trace_tile<Q, A>(accel, rays, apex, &results.hits, nullptr);
+    return trace_tile<Q, A>(accel, rays, apex, &results.hits, nullptr, max_leaves);
   else
-    return trace_tile<Q, A>(accel, rays, apex, nullptr, results.occluded);
+    return trace_tile<Q, A>(accel, rays, apex, nullptr, results.occluded, max_leaves);
 }
 
 /// How `automatic` traces a batch: rays that share a point in tiles, the rest as packets. Where a tile was
-/// given up, its neighbours are not tried: twice as many each time.
+/// given up, its neighbours are not tried, twice as many each
+/// time, unless the caller insists.
 template <Query Q, int W, class A>
-void trace_automatic(const Accel& accel, const RaySpan& rays, const Results<Q>& results) {
+void trace_automatic(const Accel& accel, const RaySpan& rays, const Results<Q>& results, bool insist) {
   std::size_t traced = 0;
+  const int max_leaves = insist ? std::numeric_limits<int>::max() : kTileMaxLeaves;
   int skip = 0, failures = 0;
   const auto catch_up = [&](std::size_t end) {
     if (end > traced)
@@ -128,12 +130,12 @@ void trace_automatic(const Accel& accel, const RaySpan& rays, const Results<Q>& 
     const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
     if (skip > 0) {
       --skip;
-    } else if (try_tile<Q, A>(accel, rays.part(b, count), results.part(b, count))) {
+    } else if (try_tile<Q, A>(accel, rays.part(b, count), results.part(b, count), max_leaves)) {
       catch_up(b);
       traced = b + count;
       failures = 0;
     } else {
-      skip = (1 << std::min(failures++, 3)) - 1;
+      skip = insist ? 0 : (1 << std::min(failures++, 3)) - 1;
     }
   }
   catch_up(rays.size);

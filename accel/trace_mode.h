@@ -7,11 +7,12 @@
 namespace oktett {
 
 enum class TraceMode : std::uint8_t {
-  automatic,  ///< packets of 8 (of 16 with AVX-512) for rays that run together, else one by one
+  automatic,  ///< tiles for rays that share a point, packets for those that run together, else one by one
   single,     ///< one by one
   packet4,
   packet8,
   packet16,
+  tile,  ///< as automatic, but no tile is given up, however small the triangles
 };
 
 }  // namespace oktett

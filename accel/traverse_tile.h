@@ -103,6 +103,7 @@ struct TileTask {
   std::uint8_t* occluded;  ///< for Query::any
   TileRays<A> tile;
   UnclearList unclear;
+  int max_leaves;        ///< blocks to meet before the tile is given up
   bool decided = false;  ///< some hits have been decided and stand in `hits`
 };
 
@@ -460,7 +461,7 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
       const unsigned met = node_tile(node, tile, window, children);
       size = push_windows(node, met, children, groups, stack, size);
     } else if (e.ref.is_triangles()) {
-      if (++leaves > kTileMaxLeaves) return false;
+      if (++leaves > task.max_leaves) return false;
       leaf_tile(task, e.ref, groups, window, dirty);
     } else {
       table_leaf_tile(task, accel.leaves[e.ref.table_index()], groups);
@@ -474,8 +475,9 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
 /// written then that another traversal would not overwrite).
 template <Query Q, class A>
 OKTETT_NOINLINE bool trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex,
-                                const HitSpan* hits, std::uint8_t* occluded) {
-  TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}};
+                                const HitSpan* hits, std::uint8_t* occluded,
+                                int max_leaves = kTileMaxLeaves) {
+  TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_leaves};
   if (!task.tile.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return false;
   if (task.tile.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded) table_leaf_tile(task, leaf, task.tile.groups);

@@ -18,7 +18,7 @@ OKTETT_INLINE void with_width(TraceMode mode, Function&& f) {
     if (mode == TraceMode::packet4) return f.template operator()<4>();
     if (mode == TraceMode::packet16) return f.template operator()<16>();
     if (mode == TraceMode::single) return f.template operator()<1>();
-    if (std::is_same_v<A, Avx512Isa> && mode == TraceMode::automatic) return f.template operator()<16>();
+    if (std::is_same_v<A, Avx512Isa>) return f.template operator()<16>();
     f.template operator()<8>();
   }
 }
@@ -28,14 +28,16 @@ struct IsaCode {
   static void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
     with_width<A>(mode, [&]<int W>() {
       if constexpr (W > 1)
-        if (mode == TraceMode::automatic) return trace_automatic<Query::closest, W, A>(accel, rays, {hits});
+        if (mode == TraceMode::automatic || mode == TraceMode::tile)
+          return trace_automatic<Query::closest, W, A>(accel, rays, {hits}, mode == TraceMode::tile);
       closest_hit_stream<W, A>(accel, rays, hits, mode);
     });
   }
   static void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
     with_width<A>(mode, [&]<int W>() {
       if constexpr (W > 1)
-        if (mode == TraceMode::automatic) return trace_automatic<Query::any, W, A>(accel, rays, {occluded});
+        if (mode == TraceMode::automatic || mode == TraceMode::tile)
+          return trace_automatic<Query::any, W, A>(accel, rays, {occluded}, mode == TraceMode::tile);
       any_hit_stream<W, A>(accel, rays, occluded, mode);
     });
   }
