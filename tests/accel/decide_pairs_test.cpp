@@ -1,0 +1,131 @@
+#include "accel/decide_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "core/random.h"
+
+namespace oktett {
+namespace {
+
+/// Random numbers that depend on a counter alone.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : key_(mix_bits(seed)) {}
+  float sign() { return 2 * random_float(key_, 0, next_++) - 1; }
+  Vec3f vector() {
+    const float x = sign(), y = sign(), z = sign();
+    return {x, y, z};
+  }
+  std::uint32_t below(std::uint32_t n) {
+    return static_cast<std::uint32_t>(random_bits(key_, 1, next_++) % n);
+  }
+
+ private:
+  std::uint64_t key_;
+  std::uint32_t next_ = 0;
+};
+
+template <int N>
+struct Pairs {
+  RayState<N, ScalarIsa> rays;
+  std::uint32_t triangle[N];
+  HitLanes<Simd<float, N, ScalarIsa>> hit;
+};
+
+/// Rays towards a point, an edge point or a corner of a triangle of `blocks` each.
+template <int N>
+Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, Random& random, std::vector<Ray>& rays) {
+  using F = Simd<float, N, ScalarIsa>;
+  Pairs<N> p;
+  rays.clear();
+  float column[8][N];
+  for (int i = 0; i < N; ++i) {
+    p.triangle[i] = random.below(static_cast<std::uint32_t>(blocks.size()) * 8);
+    const auto& v = blocks[p.triangle[i] / 8].v;
+    const std::uint32_t lane = p.triangle[i] % 8;
+    const float w[3] = {random.sign(), random.below(2) ? random.sign() : 0, random.below(2) ? 0.5f : 0};
+    const float sum = w[0] + w[1] + w[2];
+    Ray r;
+    r.origin = random.vector() * 3;
+    r.tmin = random.below(4) == 0 ? 0.9f : 0;
+    r.tmax = random.below(4) == 0 ? 1.0f : std::numeric_limits<float>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      const float target = (w[0] * v[0][k][lane] + w[1] * v[1][k][lane] + w[2] * v[2][k][lane]) / sum;
+      r.direction[k] = target - r.origin[k];
+      column[k][i] = r.origin[k], column[3 + k][i] = r.direction[k];
+    }
+    if (random.below(8) == 0) column[3 + random.below(3)][i] = 0;
+    for (int k = 0; k < 3; ++k) r.direction[k] = column[3 + k][i];
+    column[6][i] = r.tmin, column[7][i] = r.tmax;
+    rays.push_back(r);
+  }
+  const auto vec = [&](int k) {
+    return Vec3<F>{F::load(column[k]), F::load(column[k + 1]), F::load(column[k + 2])};
+  };
+  p.rays.set(vec(0), vec(3), F::load(column[6]), F::load(column[7]), Box{});
+  return p;
+}
+
+std::vector<TriangleBlock> random_blocks(Random& random) {
+  std::vector<TriangleBlock> blocks(9);
+  for (TriangleBlock& b : blocks) {
+    for (auto& corner : b.v)
+      for (auto& axis : corner)
+        for (float& x : axis) x = random.sign();
+    // Neighbours share corners, so that rays through edges and corners matter.
+    for (int lane = 1; lane < 8; lane += 2)
+      for (int axis = 0; axis < 3; ++axis)
+        b.v[0][axis][lane] = b.v[1][axis][lane - 1], b.v[1][axis][lane] = b.v[0][axis][lane - 1];
+  }
+  return blocks;
+}
+
+bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+template <int N>
+void expect_same_as_alone() {
+  using One = Simd<float, 1, ScalarIsa>;
+  Random random(static_cast<std::uint64_t>(N));
+  const std::vector<TriangleBlock> blocks = random_blocks(random);
+  int hits = 0, misses = 0, axes[3] = {};
+  std::vector<Ray> rays;
+  for (int repeat = 0; repeat < 20000 / N; ++repeat) {
+    Pairs<N> p = make_pairs<N>(blocks, random, rays);
+    const unsigned met = decide_pairs(p.rays, blocks.data(), p.triangle, p.hit);
+    float t[N], u[N], v[N];
+    p.hit.t.store(t), p.hit.u.store(u), p.hit.v.store(v);
+    for (int i = 0; i < N; ++i) {
+      const Ray& ray = rays[static_cast<std::size_t>(i)];
+      RayState<1, ScalarIsa> alone;
+      if (alone.set(broadcast<One>(ray.origin), broadcast<One>(ray.direction), One(ray.tmin), One(ray.tmax),
+                    Box{}) == 0)
+        continue;
+      const int z = alone.z_axis_of(0);
+      HitLanes<One> h;
+      const bool expected = any(decide_watertight(
+          load_shear(alone, z),
+          broadcast_triangle<One>(blocks[p.triangle[i] / 8], static_cast<int>(p.triangle[i] % 8), z),
+          One(ray.tmin), One(ray.tmax), h));
+      ASSERT_EQ((met >> i & 1) != 0, expected) << repeat << ' ' << i;
+      ++(expected ? hits : misses), ++axes[z];
+      if (!expected) continue;
+      ASSERT_TRUE(same_bits(t[i], h.t.part[0].v) && same_bits(u[i], h.u.part[0].v) &&
+                  same_bits(v[i], h.v.part[0].v));
+    }
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_GT(misses, 3000);
+  for (const int count : axes) EXPECT_GT(count, 3000);
+}
+
+// Rays of all axes side by side get the bits that each gets alone.
+TEST(DecidePairs, SameAsOneRayAndOneTriangle) {
+  expect_same_as_alone<8>();
+  expect_same_as_alone<16>();
+}
+
+}  // namespace
+}  // namespace oktett
