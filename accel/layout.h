@@ -29,6 +29,9 @@ class NodeRef {
   std::uint32_t block() const { return bits_ & (kMaxBlocks - 1); }
   int triangle_count() const { return static_cast<int>(bits_ >> 27 & 7) + 1; }
   std::uint32_t table_index() const { return bits_ & (kTable - 1); }
+  /// The number as it is stored: nodes from 0, blocks from 2^31, the rest from 3 * 2^30.
+  std::uint32_t bits() const { return bits_; }
+  static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
 
  private:
   explicit NodeRef(std::uint32_t bits) : bits_(bits) {}
@@ -43,6 +46,9 @@ struct alignas(64) BvhNode {
   float plane[6][kWidth];
   NodeRef child[kWidth];
   std::uint32_t padding[8];
+
+  /// The children as NodeRef::bits.
+  const std::uint32_t* child_bits() const { return reinterpret_cast<const std::uint32_t*>(child); }
 };
 static_assert(sizeof(BvhNode) == 256);
 

@@ -7,8 +7,10 @@
 namespace oktett {
 
 enum class TraceMode : std::uint8_t {
-  automatic,  ///< tiles for rays that share a point, packets for those that run together, else one by one
-  single,     ///< one by one
+  automatic,    ///< tiles for rays that share a point, packets for those that run together, the others
+                ///< interleaved
+  single,       ///< one by one
+  interleaved,  ///< one by one, many in flight (without vector registers: like `single`)
   packet4,
   packet8,
   packet16,

@@ -63,11 +63,10 @@ void trace(benchmark::State& state, Work work, Isa isa, TraceMode mode) {
 void register_traversals() {
   const std::pair<Work, const char*> works[] = {
       {Work::primary, "primary"}, {Work::shadow, "shadow"}, {Work::diffuse, "diffuse"}};
-  const std::pair<TraceMode, const char*> modes[] = {{TraceMode::automatic, "automatic"},
-                                                     {TraceMode::single, "single"},
-                                                     {TraceMode::packet4, "packet4"},
-                                                     {TraceMode::packet8, "packet8"},
-                                                     {TraceMode::packet16, "packet16"}};
+  const std::pair<TraceMode, const char*> modes[] = {
+      {TraceMode::automatic, "automatic"},     {TraceMode::single, "single"},
+      {TraceMode::interleaved, "interleaved"}, {TraceMode::packet4, "packet4"},
+      {TraceMode::packet8, "packet8"},         {TraceMode::packet16, "packet16"}};
   for (const auto& [work, name] : works)
     for (Isa isa : available_isas())
       for (const auto& [mode, mode_name] : modes) {

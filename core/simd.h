@@ -187,13 +187,25 @@ OKTETT_INLINE Simd<T, W, A> fast_fma(const Simd<T, W, A>& a, const Simd<T, W, A>
   }
 }
 
+/// a * b - c, like fast_fma.
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, W, A> fast_fms(const Simd<T, W, A>& a, const Simd<T, W, A>& b, const Simd<T, W, A>& c) {
+  if constexpr (kHasFma<A> && W > 1) {
+    Simd<T, W, A> r;
+    for (int i = 0; i < r.kParts; ++i) r.part[i] = native::fms(a.part[i], b.part[i], c.part[i]);
+    return r;
+  } else {
+    return a * b - c;
+  }
+}
+
 /// The rounding error of p = a * b, so that a * b = p + error exactly: by a fused multiply-add, or by
 /// Dekker's splitting (1971) with the same result as long as nothing overflows or underflows.
 template <int W, class A>
 OKTETT_INLINE Simd<double, W, A> product_error(const Simd<double, W, A>& a, const Simd<double, W, A>& b,
                                                const Simd<double, W, A>& p) {
   if constexpr (kHasFma<A> && W > 1) {
-    return fast_fma(a, b, -p);
+    return fast_fms(a, b, p);
   } else {
     using D = Simd<double, W, A>;
     const D splitter(134217729.0);  // 2^27 + 1
@@ -232,6 +244,18 @@ OKTETT_INLINE Simd<float, W, A> to_float(const Simd<double, W, A>& a) {
     for (int i = 0; i < F::kParts; ++i) r.part[i] = native::narrow(a.part[i]);
   } else {
     for (int i = 0; i < F::kParts; ++i) r.part[i] = native::narrow(a.part[2 * i], a.part[2 * i + 1]);
+  }
+  return r;
+}
+
+/// `lo` followed by `hi`.
+template <class T, int W, class A>
+OKTETT_INLINE Simd<T, 2 * W, A> concat(const Simd<T, W, A>& lo, const Simd<T, W, A>& hi) {
+  Simd<T, 2 * W, A> r;
+  if constexpr (r.kLanesPerPart == lo.kLanesPerPart) {
+    for (int i = 0; i < lo.kParts; ++i) r.part[i] = lo.part[i], r.part[lo.kParts + i] = hi.part[i];
+  } else {
+    r.part[0] = native::concat(lo.part[0], hi.part[0]);
   }
   return r;
 }

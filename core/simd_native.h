@@ -219,6 +219,10 @@ OKTETT_INLINE xsimd::batch<float, X> flip_sign(xsimd::batch<float, X> a, xsimd::
 // Named here so that templates may mention them; instruction sets that have them overload them.
 template <class B>
 B fma(B, B, B) = delete;
+template <class B>
+B fms(B, B, B) = delete;
+template <class B>
+B concat(B, B) = delete;
 template <class... B>
 void widen(B&&...) = delete;
 template <class... B>

@@ -63,14 +63,26 @@ OKTETT_INLINE batch<double, Avx> max(batch<double, Avx> a, batch<double, Avx> b)
 OKTETT_INLINE batch<float, Sse> fma(batch<float, Sse> a, batch<float, Sse> b, batch<float, Sse> c) {
   return _mm_fmadd_ps(a, b, c);
 }
+OKTETT_INLINE batch<float, Sse> fms(batch<float, Sse> a, batch<float, Sse> b, batch<float, Sse> c) {
+  return _mm_fmsub_ps(a, b, c);
+}
 OKTETT_INLINE batch<float, Avx> fma(batch<float, Avx> a, batch<float, Avx> b, batch<float, Avx> c) {
   return _mm256_fmadd_ps(a, b, c);
+}
+OKTETT_INLINE batch<float, Avx> fms(batch<float, Avx> a, batch<float, Avx> b, batch<float, Avx> c) {
+  return _mm256_fmsub_ps(a, b, c);
 }
 OKTETT_INLINE batch<double, Sse> fma(batch<double, Sse> a, batch<double, Sse> b, batch<double, Sse> c) {
   return _mm_fmadd_pd(a, b, c);
 }
+OKTETT_INLINE batch<double, Sse> fms(batch<double, Sse> a, batch<double, Sse> b, batch<double, Sse> c) {
+  return _mm_fmsub_pd(a, b, c);
+}
 OKTETT_INLINE batch<double, Avx> fma(batch<double, Avx> a, batch<double, Avx> b, batch<double, Avx> c) {
   return _mm256_fmadd_pd(a, b, c);
+}
+OKTETT_INLINE batch<double, Avx> fms(batch<double, Avx> a, batch<double, Avx> b, batch<double, Avx> c) {
+  return _mm256_fmsub_pd(a, b, c);
 }
 
 OKTETT_INLINE unsigned bits(batch_bool<float, Avx> m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
@@ -126,8 +138,14 @@ OKTETT_INLINE batch<double, Avx5> max(batch<double, Avx5> a, batch<double, Avx5>
 OKTETT_INLINE batch<float, Avx5> fma(batch<float, Avx5> a, batch<float, Avx5> b, batch<float, Avx5> c) {
   return _mm512_fmadd_ps(a, b, c);
 }
+OKTETT_INLINE batch<float, Avx5> fms(batch<float, Avx5> a, batch<float, Avx5> b, batch<float, Avx5> c) {
+  return _mm512_fmsub_ps(a, b, c);
+}
 OKTETT_INLINE batch<double, Avx5> fma(batch<double, Avx5> a, batch<double, Avx5> b, batch<double, Avx5> c) {
   return _mm512_fmadd_pd(a, b, c);
+}
+OKTETT_INLINE batch<double, Avx5> fms(batch<double, Avx5> a, batch<double, Avx5> b, batch<double, Avx5> c) {
+  return _mm512_fmsub_pd(a, b, c);
 }
 OKTETT_INLINE unsigned bits(batch_bool<float, Avx5> m) { return m.data; }
 OKTETT_INLINE unsigned bits(batch_bool<double, Avx5> m) { return m.data; }
@@ -147,6 +165,9 @@ OKTETT_INLINE batch<float, Avx5> narrow(batch<double, Avx5> lo, batch<double, Av
 OKTETT_INLINE float reduce_min(batch<float, Avx5> a) {
   return reduce_min(
       batch<float, Avx>(_mm256_min_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1))));
+}
+OKTETT_INLINE batch<float, Avx5> concat(batch<float, Avx> lo, batch<float, Avx> hi) {
+  return _mm512_insertf32x8(_mm512_castps256_ps512(lo), hi, 1);
 }
 OKTETT_INLINE batch<std::int32_t, Avx5> truncate(batch<float, Avx5> a) { return _mm512_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Avx5> bit_cast_float(batch<std::int32_t, Avx5> a) {

@@ -61,8 +61,7 @@ OKTETT_INLINE F fast_dot(const Vec3<F>& a, const Vec3<F>& b) {
 }
 template <class F>
 OKTETT_INLINE Vec3<F> fast_cross(const Vec3<F>& a, const Vec3<F>& b) {
-  return {fast_fma(a.y, b.z, -(a.z * b.y)), fast_fma(a.z, b.x, -(a.x * b.z)),
-          fast_fma(a.x, b.y, -(a.y * b.x))};
+  return {fast_fms(a.y, b.z, a.z * b.y), fast_fms(a.z, b.x, a.x * b.z), fast_fms(a.x, b.y, a.y * b.x)};
 }
 /// |x| + |y| + |z|.
 template <class F>

@@ -25,21 +25,22 @@ OKTETT_INLINE void with_width(TraceMode mode, Function&& f) {
 
 template <class A>
 struct IsaCode {
-  static void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
+  template <Query Q>
+  static void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
+    if constexpr (!std::is_same_v<A, ScalarIsa>)
+      if (mode == TraceMode::interleaved) return trace_interleaved<Q, A>(accel, rays, out);
     with_width<A>(mode, [&]<int W>() {
       if constexpr (W > 1)
         if (mode == TraceMode::automatic || mode == TraceMode::tile)
-          return trace_automatic<Query::closest, W, A>(accel, rays, {hits}, mode == TraceMode::tile);
-      closest_hit_stream<W, A>(accel, rays, hits, mode);
+          return trace_automatic<Q, W, A>(accel, rays, out, mode == TraceMode::tile);
+      trace_stream<Q, W, A>(accel, rays, out, mode);
     });
   }
+  static void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, TraceMode mode) {
+    trace<Query::closest>(accel, rays, hits, mode);
+  }
   static void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
-    with_width<A>(mode, [&]<int W>() {
-      if constexpr (W > 1)
-        if (mode == TraceMode::automatic || mode == TraceMode::tile)
-          return trace_automatic<Query::any, W, A>(accel, rays, {occluded}, mode == TraceMode::tile);
-      any_hit_stream<W, A>(accel, rays, occluded, mode);
-    });
+    trace<Query::any>(accel, rays, occluded, mode);
   }
   static void all_hits(const Accel& accel, const Ray& ray, HitList& hits) {
     using F = Simd<float, 1, A>;

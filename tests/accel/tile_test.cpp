@@ -79,7 +79,8 @@ void finish(Subject& s, std::vector<Geometry> more = {}) {
     geometries.back().shape = MeshGeometry{&m};
     for (const Vec3f& p : m.positions) s.targets.push_back(p);
     for (std::size_t i = 0; i + 2 < m.indices.size(); i += 3) {
-      const Vec3f a = m.positions[m.indices[i]], b = m.positions[m.indices[i + 1]], c = m.positions[m.indices[i + 2]];
+      const Vec3f a = m.positions[m.indices[i]], b = m.positions[m.indices[i + 1]],
+                  c = m.positions[m.indices[i + 2]];
       s.targets.push_back((a + b) * 0.5f), s.targets.push_back((a + b + c) * (1 / 3.0f));
     }
   }
@@ -136,7 +137,8 @@ Subject make_subject(int which, Dice& dice) {
 }
 
 /// Directions of a bundle towards a target: pixels, targets hit exactly, one direction, or a wide cone.
-Vec3f bundle_direction(int kind, int i, const Vec3f& from, const Vec3f& target, const Subject& s, Dice& dice) {
+Vec3f bundle_direction(int kind, int i, const Vec3f& from, const Vec3f& target, const Subject& s,
+                       Dice& dice) {
   const Vec3f to = target - from;
   const float reach = length(to);
   Vec3f u, v;
@@ -181,9 +183,9 @@ void expect_same(const Subject& s, const RayBatch& rays, const std::string& what
       closest_hit(*s.accel, rays.span(), got.span(), isa, mode);
       any_hit(*s.accel, rays.span(), got_dark.data(), isa, mode);
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_TRUE(got[i] == expected[i]) << what << ", " << to_string(isa) << ", ray " << i << ": t " << got[i].t
-                                           << " for " << expected[i].t << ", item " << got[i].item << " for "
-                                           << expected[i].item;
+        ASSERT_TRUE(got[i] == expected[i])
+            << what << ", " << to_string(isa) << ", ray " << i << ": t " << got[i].t << " for "
+            << expected[i].t << ", item " << got[i].item << " for " << expected[i].item;
         ASSERT_EQ(int{got_dark[i]}, int{dark[i]}) << what << ", " << to_string(isa) << ", ray " << i << ", t "
                                                   << expected[i].t << " of " << rays[i].tmax;
         ASSERT_EQ(int{dark[i]}, int{expected[i].valid()});
@@ -199,7 +201,8 @@ Vec3f random_apex(const Subject& s, Dice& dice) {
     case 1:
       return s.center + dice.vec(1) * s.scale;
     case 2:
-      return s.center + Vec3f{dice.range(-1, 1), dice.range(-1, 1), 0} * s.scale;  // in the plane of the flat grid
+      return s.center +
+             Vec3f{dice.range(-1, 1), dice.range(-1, 1), 0} * s.scale;  // in the plane of the flat grid
     case 3:
       return s.center + dice.vec(4) * s.scale;
     default:
@@ -260,7 +263,8 @@ TEST_P(Tiles, CommonEnd) {
       Vec3f from = s.targets[static_cast<std::size_t>(dice.below(static_cast<int>(s.targets.size())))];
       if (kind == 0) from = near + dice.vec(0.05f) * s.scale;
       if (kind == 1) from = near + (from - near) * 0.02f;
-      if (kind == 2) from = near + Vec3f{static_cast<float>(i % 16), static_cast<float>(i / 16), 0} * (0.003f * s.scale);
+      if (kind == 2)
+        from = near + Vec3f{static_cast<float>(i % 16), static_cast<float>(i / 16), 0} * (0.003f * s.scale);
       from += dice.vec(1) * (lift * s.scale);
       const Vec3f to = light - from;
       const float distance = length(to);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "accel/leaf.h"
-#include "core/random.h"
+#include "tests/support/triangle_cases.h"
 
 namespace oktett {
 namespace {
@@ -17,59 +17,6 @@ using D = Simd<double, kLanes, ScalarIsa>;
 using State = RayState<kLanes, ScalarIsa>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Random numbers that depend on a counter alone.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : key_(mix_bits(seed)) {}
-  float unit() { return random_float(key_, 0, next_++); }
-  float sign() { return 2 * unit() - 1; }
-  Vec3f vector() {
-    const float x = sign(), y = sign(), z = sign();
-    return {x, y, z};
-  }
-  std::uint64_t bits() { return random_bits(key_, 1, next_++); }
-
- private:
-  std::uint64_t key_;
-  std::uint32_t next_ = 0;
-};
-
-struct Case {
-  Vec3f corner[3];
-  Ray ray;
-};
-
-/// A triangle of about size `scale`, often a needle or a sliver, and a ray towards a point, an edge point or
-/// a corner of it: from about as far, from near a corner, or from the triangle's own plane.
-Case adversarial_case(Random& r, float scale) {
-  Case c;
-  Vec3f& a = c.corner[0];
-  for (Vec3f& p : c.corner) p = r.vector() * scale;
-  const std::uint64_t choice = r.bits();
-  const auto shrunk = [&](const Vec3f& p) { return a + (p - a) * std::exp2(13 * r.sign() - 13); };
-  if (choice & 1) c.corner[1] = shrunk(c.corner[1]);
-  if (choice & 2) c.corner[2] = shrunk(c.corner[2]);
-  float u = r.unit(), v = r.unit();
-  if (u + v > 1) u = 1 - u, v = 1 - v;
-  if (choice & 4) u = 0;
-  if (choice & 8) v = 0;
-  const Vec3f e1 = c.corner[1] - a, e2 = c.corner[2] - a, target = a + e1 * u + e2 * v;
-  switch (choice >> 4 & 3) {
-    case 0:
-      c.ray.origin = a + r.vector() * (scale * 1e-6f);
-      break;
-    case 1:
-      c.ray.origin = a + e1 * (3 * r.sign()) + e2 * (3 * r.sign());
-      break;
-    default:
-      c.ray.origin = r.vector() * (3 * scale);
-  }
-  c.ray.direction = target - c.ray.origin;
-  const float length = max_component(abs(c.ray.direction));
-  if (choice & 64) c.ray.direction = c.ray.direction / length;
-  return c;
-}
-
 struct Decision {
   bool valid, hit;
   HitLanes<F> lanes;
@@ -77,7 +24,7 @@ struct Decision {
   TriangleLanes<F> triangle;
 };
 
-Decision decide(const Case& c) {
+Decision decide(const TriangleCase& c) {
   Decision r;
   r.valid = r.state.set(broadcast<F>(c.ray.origin), broadcast<F>(c.ray.direction), F(c.ray.tmin),
                         F(c.ray.tmax), Box{}) != 0;
@@ -100,10 +47,10 @@ class FilterScale : public testing::TestWithParam<float> {};
 
 // The filter keeps whatever the decision accepts, also with the range of the ray ending exactly at the hit.
 TEST_P(FilterScale, NeverRejectsWhatTheDecisionAccepts) {
-  Random random(static_cast<std::uint64_t>(std::ilogb(GetParam()) + 1000));
+  TriangleRandom random(static_cast<std::uint64_t>(std::ilogb(GetParam()) + 1000));
   int accepted = 0;
   for (int i = 0; i < 60000; ++i) {
-    const Case c = adversarial_case(random, GetParam());
+    const TriangleCase c = adversarial_case(random, GetParam());
     const Decision d = decide(c);
     if (!d.hit) continue;
     ++accepted;
@@ -125,10 +72,10 @@ INSTANTIATE_TEST_SUITE_P(Scales, FilterScale,
 
 // A triangle far smaller than its distance keeps its hits.
 TEST(Filter, KeepsTinyTrianglesFarAway) {
-  Random random(7);
+  TriangleRandom random(7);
   int accepted = 0;
   for (int i = 0; i < 100000; ++i) {
-    Case c = adversarial_case(random, std::exp2(-20 - 30 * random.unit()));
+    TriangleCase c = adversarial_case(random, std::exp2(-20 - 30 * random.unit()));
     c.ray.origin = random.vector();
     c.ray.direction = c.corner[0] - c.ray.origin;
     const Decision d = decide(c);
@@ -145,7 +92,7 @@ __extension__ typedef __float128 Quad;
 
 // The sign of an edge function is exact: products of doubles fit into 113 bits.
 TEST(EdgeFunction, SignIsExact) {
-  Random random(3);
+  TriangleRandom random(3);
   const auto number = [&] {
     const double m = static_cast<double>(static_cast<std::int64_t>(random.bits()) >> 11);
     return std::ldexp(m, static_cast<int>(random.bits() % 8) - 52);

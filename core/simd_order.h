@@ -1,0 +1,156 @@
+#pragma once
+/// \file Eight lanes put in order or moved together: what a traversal needs to push the children of a node.
+
+#include <cstdint>
+
+#include "core/simd.h"
+
+namespace oktett {
+
+namespace native {
+
+#if defined(OKTETT_COMPILED_AVX2)
+/// Entry m lists the lanes that are set in m, lowest first, a byte each.
+struct CompactTable {
+  std::uint64_t lanes[256] = {};
+  constexpr CompactTable() {
+    for (unsigned m = 0; m < 256; ++m)
+      for (unsigned lane = 0, to = 0; lane < 8; ++lane)
+        if (m >> lane & 1) lanes[m] |= std::uint64_t{lane} << (8 * to++);
+  }
+};
+inline constexpr CompactTable kCompact;
+
+/// The index vector that brings the lanes of `m` to the front.
+OKTETT_INLINE __m256i compact_index(unsigned m) {
+  return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(kCompact.lanes[m])));
+}
+
+/// One layer of a sorting network: lanes meet their partners, the greater goes to the lower lane.
+template <int kUpperLanes>
+OKTETT_INLINE __m256i exchange(__m256i a, __m256i partner) {
+  return _mm256_blend_epi32(_mm256_max_epi32(a, partner), _mm256_min_epi32(a, partner), kUpperLanes);
+}
+
+template <int kUpperLanes>
+OKTETT_INLINE __m128i exchange(__m128i a, __m128i partner) {
+  return _mm_blend_epi32(_mm_max_epi32(a, partner), _mm_min_epi32(a, partner), kUpperLanes);
+}
+
+/// The first three layers of the sort below: greatest of four lanes first.
+OKTETT_INLINE __m128i sort_descending(__m128i a) {
+  a = exchange<0xa>(a, _mm_shuffle_epi32(a, 0xb1));
+  a = exchange<0xc>(a, _mm_shuffle_epi32(a, 0x1b));
+  return exchange<0xa>(a, _mm_shuffle_epi32(a, 0xb1));
+}
+
+/// Batcher's bitonic sort (1968) with all exchanges in one direction: greatest lane first.
+OKTETT_INLINE __m256i sort_descending(__m256i a) {
+  const auto neighbours = [](__m256i v) { return _mm256_shuffle_epi32(v, 0xb1); };
+  const __m256i reverse = _mm256_setr_epi32(7, 6, 5, 4, 3, 2, 1, 0);
+  a = exchange<0xaa>(a, neighbours(a));
+  a = exchange<0xcc>(a, _mm256_shuffle_epi32(a, 0x1b));
+  a = exchange<0xaa>(a, neighbours(a));
+  a = exchange<0xf0>(a, _mm256_permutevar8x32_epi32(a, reverse));
+  a = exchange<0xcc>(a, _mm256_shuffle_epi32(a, 0x4e));
+  return exchange<0xaa>(a, neighbours(a));
+}
+
+/// The first `count` of four lanes, all bits set.
+OKTETT_INLINE __m128i first_lanes(int count) {
+  return _mm_cmpgt_epi32(_mm_set1_epi32(count), _mm_setr_epi32(0, 1, 2, 3));
+}
+
+/// The lanes in `m`, of which there are at most four, in front; 0 behind them.
+template <class A>
+OKTETT_INLINE __m128i front(__m256i a, unsigned m) {
+#if defined(OKTETT_COMPILED_AVX512)
+  if constexpr (std::is_same_v<A, Avx512Isa>)
+    return _mm256_castsi256_si128(_mm256_maskz_compress_epi32(static_cast<__mmask8>(m), a));
+#endif
+  const __m256i moved = _mm256_permutevar8x32_epi32(a, compact_index(m));
+  return _mm_and_si128(_mm256_castsi256_si128(moved), first_lanes(__builtin_popcount(m)));
+}
+#endif
+
+}  // namespace native
+
+/// Lanes with a <= b, as bits.
+template <class A>
+OKTETT_INLINE unsigned less_equal_lanes(const Simd<float, 8, A>& a, const Simd<float, 8, A>& b) {
+#if defined(OKTETT_COMPILED_AVX512)
+  if constexpr (std::is_same_v<A, Avx512Isa>) return _mm256_cmp_ps_mask(a.part[0], b.part[0], _CMP_LE_OQ);
+#endif
+  return bits(a <= b);
+}
+
+/// Writes the `values` of the lanes in `lanes` to `out_values`, greatest key first, and the keys to
+/// `out_keys`; returns their number. Keys are at least 0 and come back up to eight units in the last place
+/// smaller. All eight elements of the outputs may be overwritten.
+template <class A>
+OKTETT_INLINE int store_descending(const Simd<float, 8, A>& keys, unsigned lanes, const std::uint32_t* values,
+                                   std::uint32_t* out_values, float* out_keys) {
+#if defined(OKTETT_COMPILED_AVX2)
+  if constexpr (kHasFma<A>) {
+    // The lane number in the last bits of the key makes it its own permutation.
+    const __m256i low = _mm256_set1_epi32(7);
+    const __m256i key = _mm256_or_si256(_mm256_andnot_si256(low, _mm256_castps_si256(keys.part[0])),
+                                        _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
+    const int count = __builtin_popcount(lanes);
+    if (OKTETT_LIKELY(count <= 4)) {
+      // Moved to the front, four need half a network. What stands behind them is less: 0, or a lane number.
+      const __m128i sorted = native::sort_descending(native::front<A>(key, lanes));
+      const __m256i order = _mm256_castsi128_si256(sorted);
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(out_values),
+                       _mm256_castsi256_si128(_mm256_permutevar8x32_epi32(v, order)));
+      _mm_storeu_ps(out_keys, _mm_castsi128_ps(_mm_andnot_si128(_mm256_castsi256_si128(low), sorted)));
+      return count;
+    }
+    const Mask<std::int32_t, 8, A> met = Mask<std::int32_t, 8, A>::from_bits(lanes);
+    const __m256i idle = _mm256_andnot_si256(met.part[0], _mm256_set1_epi32(INT32_MIN));
+    const __m256i sorted = native::sort_descending(_mm256_or_si256(key, idle));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out_values), _mm256_permutevar8x32_epi32(v, sorted));
+    _mm256_storeu_ps(out_keys, _mm256_castsi256_ps(_mm256_andnot_si256(low, sorted)));
+    return count;
+  }
+#endif
+  alignas(64) float key[8];
+  keys.store(key);
+  int size = 0;
+  for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+    const int k = __builtin_ctz(rest);
+    int at = size++;
+    while (at > 0 && out_keys[at - 1] < key[k])
+      out_keys[at] = out_keys[at - 1], out_values[at] = out_values[at - 1], --at;
+    out_keys[at] = key[k], out_values[at] = values[k];
+  }
+  return size;
+}
+
+/// Writes the `values` of the lanes in `lanes` to `out`, lowest lane first; returns their number. All eight
+/// elements of `out` may be overwritten.
+template <class A>
+OKTETT_INLINE int store_compact(unsigned lanes, const std::uint32_t* values, std::uint32_t* out) {
+#if defined(OKTETT_COMPILED_AVX512)
+  if constexpr (std::is_same_v<A, Avx512Isa>) {
+    const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(lanes), v));
+    return __builtin_popcount(lanes);
+  }
+#endif
+#if defined(OKTETT_COMPILED_AVX2)
+  if constexpr (kHasFma<A>) {
+    const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
+                        _mm256_permutevar8x32_epi32(v, native::compact_index(lanes)));
+    return __builtin_popcount(lanes);
+  }
+#endif
+  int size = 0;
+  for (; lanes != 0; lanes &= lanes - 1) out[size++] = values[__builtin_ctz(lanes)];
+  return size;
+}
+
+}  // namespace oktett

@@ -1,0 +1,149 @@
+#include "kernels/shapes/triangle_classify.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "accel/leaf.h"
+#include "tests/support/triangle_cases.h"
+
+namespace oktett {
+namespace {
+
+using F = Simd<float, 1, ScalarIsa>;
+using State = RayState<1, ScalarIsa>;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Exact {
+  bool valid, hit;
+  float t;
+};
+
+Exact decide(const TriangleCase& c) {
+  State r;
+  if (r.set(broadcast<F>(c.ray.origin), broadcast<F>(c.ray.direction), F(c.ray.tmin), F(c.ray.tmax), Box{}) ==
+      0)
+    return {false, false, 0};
+  const int z = r.z_axis_of(0);
+  const auto corner = [&](int k) { return permute_to_z(broadcast<F>(c.corner[k]), z); };
+  HitLanes<F> h;
+  const bool hit = any(decide_watertight(load_shear(r, z), {corner(0), corner(1), corner(2)}, F(c.ray.tmin),
+                                         F(c.ray.tmax), h));
+  return {true, hit, hit ? h.t.part[0].v : 0};
+}
+
+struct Verdict {
+  bool maybe, sure;
+  float lo, hi;
+};
+
+Verdict classify(const TriangleCase& c) {
+  const float d_max = max_component(abs(c.ray.direction));
+  const auto tri = filter_triangle(
+      TriangleLanes<F>{broadcast<F>(c.corner[0]), broadcast<F>(c.corner[1]), broadcast<F>(c.corner[2])});
+  const auto guess = guess_triangle(broadcast<F>(c.ray.origin), broadcast<F>(c.ray.direction),
+                                    F(d_max * kWeightError), F(d_max * kVolumeError), tri);
+  const auto h = hit_interval(guess, F(c.ray.tmin), F(c.ray.tmax));
+  return {any(maybe_hit(guess, F(c.ray.tmax))), any(h.sure), h.lo.part[0].v, h.hi.part[0].v};
+}
+
+struct Tally {
+  int hits = 0, sure = 0, missed = 0;
+};
+
+/// What is called sure is so, for the ray as it is and for ranges that end at or beside the hit.
+void expect_sure_is_true(TriangleCase c, Tally& tally, int number) {
+  const Exact whole = decide(c);
+  if (!whole.valid) return;
+  tally.hits += whole.hit;
+  const float before = std::nextafter(whole.t, 0.0f), after = std::nextafter(whole.t, kInfinity);
+  const float ranges[][2] = {{0, kInfinity},       {0, whole.t},    {0, before},        {0, after},
+                             {whole.t, kInfinity}, {before, after}, {before, kInfinity}};
+  for (const auto& range : ranges) {
+    c.ray.tmin = range[0], c.ray.tmax = range[1];
+    if (!(c.ray.tmin < c.ray.tmax)) continue;
+    const Exact exact = decide(c);
+    const Verdict v = classify(c);
+    if (exact.hit) {
+      ASSERT_TRUE(v.maybe) << number << " up to " << range[1];
+    }
+    if (v.maybe && v.sure) {
+      ASSERT_TRUE(exact.hit) << number << " from " << range[0] << " up to " << range[1];
+      ASSERT_LE(v.lo, exact.t) << number;
+      ASSERT_GE(v.hi, exact.t) << number;
+      ASSERT_GT(v.lo, range[0]);
+      ASSERT_LE(v.hi, range[1]);
+      tally.sure += &range == &ranges[0];
+    }
+    tally.missed += !v.maybe;
+  }
+}
+
+class ClassifyScale : public testing::TestWithParam<float> {};
+
+TEST_P(ClassifyScale, WhatIsSureIsWhatTheDecisionSays) {
+  TriangleRandom random(static_cast<std::uint64_t>(std::ilogb(GetParam()) + 2000));
+  Tally tally;
+  for (int i = 0; i < 60000; ++i) {
+    expect_sure_is_true(adversarial_case(random, GetParam()), tally, i);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.hits, 6000);
+  EXPECT_GT(tally.missed, 6000);
+  // Where squares of sizes near the smallest numbers, nothing is sure.
+  if (GetParam() > 1e-6f) {
+    EXPECT_GT(tally.sure, 1000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scales, ClassifyScale,
+                         testing::Values(1.0f, 1e-3f, 1e-6f, 1e-9f, 1e3f, 1e6f, 1e9f, 1e10f));
+
+// Small triangles, far away, and rays that pass their edges and corners by a hair.
+TEST(Classify, SmallTrianglesSeenFromAfar) {
+  TriangleRandom random(5);
+  Tally tally;
+  for (int i = 0; i < 100000; ++i) {
+    TriangleCase c = adversarial_case(random, std::exp2(-20 * random.unit()));
+    const Vec3f target = c.ray.origin + c.ray.direction;
+    c.ray.origin = random.vector() * std::exp2(20 * random.unit());
+    c.ray.direction = target - c.ray.origin;
+    expect_sure_is_true(c, tally, i);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.hits, 100);
+  EXPECT_GT(tally.missed, 1000);
+}
+
+// Directions of any length that the bounds allow.
+TEST(Classify, LongAndShortDirections) {
+  TriangleRandom random(6);
+  Tally tally;
+  for (int i = 0; i < 60000; ++i) {
+    TriangleCase c = adversarial_case(random, 1);
+    c.ray.direction = c.ray.direction * std::exp2(38 * random.sign());
+    expect_sure_is_true(c, tally, i);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(tally.sure, 1000);
+}
+
+// The classification is worth its name: ordinary triangles are clear nearly always.
+TEST(Classify, OrdinaryTrianglesAreClear) {
+  TriangleRandom random(9);
+  int hits = 0, sure = 0, unclear = 0;
+  for (int i = 0; i < 20000; ++i) {
+    TriangleCase c;
+    for (Vec3f& p : c.corner) p = random.vector();
+    c.ray.origin = random.vector() * 10;
+    c.ray.direction = random.vector() - c.ray.origin;
+    const Verdict v = classify(c);
+    hits += decide(c).hit, sure += v.maybe && v.sure, unclear += v.maybe && !v.sure;
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(sure, hits * 99 / 100);
+  EXPECT_LT(unclear, hits / 100);
+}
+
+}  // namespace
+}  // namespace oktett
