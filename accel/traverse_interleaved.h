@@ -20,6 +20,8 @@ inline constexpr int kLeafThreshold = 8;
 /// Trees above this size are prefetched; in smaller ones the caches answer faster than asking takes.
 inline constexpr std::size_t kPrefetchBytes = std::size_t{16} << 20;
 
+inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
+
 /// Where results go.
 template <Query Q>
 using HitSink = std::conditional_t<Q == Query::any, std::uint8_t*, HitSpan>;
@@ -341,7 +343,7 @@ OKTETT_NOINLINE void run_interleaved(const Accel& accel, const RaySpan& rays, co
 /// All rays of a span against everything; results in the order of the rays.
 template <Query Q, class A>
 void trace_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  if (accel.stats.node_bytes + accel.stats.leaf_bytes > kPrefetchBytes)
+  if (tree_bytes(accel) > kPrefetchBytes)
     run_interleaved<Q, A, true>(accel, rays, out);
   else
     run_interleaved<Q, A, false>(accel, rays, out);
