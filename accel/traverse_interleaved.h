@@ -18,7 +18,7 @@ inline constexpr int kSlots = 32;
 inline constexpr int kLeafThreshold = 8;
 
 /// Trees above this size are prefetched; in smaller ones the caches answer faster than asking takes.
-inline constexpr std::size_t kPrefetchBytes = std::size_t{16} << 20;
+inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20;
 
 inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
 
