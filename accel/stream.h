@@ -92,47 +92,65 @@ OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
          max_component(abs(end(rays.size - 1) - middle)) <= near;
 }
 
-/// True if the rays were a tile and are traced.
-template <Query Q, class A>
-bool try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int max_leaves) {
-  Apex apex;
-  if (!common_point<Q>(rays, apex)) return false;
-  if constexpr (Q == Query::closest)
-    return trace_tile<Q, A>(accel, rays, apex, &out, nullptr, max_leaves);
-  else
-    return trace_tile<Q, A>(accel, rays, apex, nullptr, out, max_leaves);
+/// Blocks of triangles that a tile may meet. Where it would be more, the triangles are smaller than the rays
+/// are apart, and rays are faster alone; in trees that the caches do not hold, sooner.
+template <Query Q>
+int max_tile_leaves(const Accel& accel) {
+  constexpr std::size_t kCached = std::size_t{64} << 20;
+  if (tree_bytes(accel) > kCached) return 8;
+  return Q == Query::any ? 112 : 192;
 }
 
-/// In trees above this size the ways even of neighbouring rays part early, and what a ray waits for is
-/// memory: all rays go interleaved.
-template <Query Q>
-inline constexpr std::size_t kScatterBytes = std::size_t{Q == Query::any ? 16 : 96} << 20;
+/// How the rays of a block are traced where no mode is asked for.
+enum class Way { tile, packets, interleaved };
+
+/// Traces the rays as a tile if they share a point and meet few leaves for their number; else says what suits
+/// them better.
+template <Query Q, class A>
+Way try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int max_leaves) {
+  Apex apex;
+  if (!common_point<Q>(rays, apex)) return Way::packets;
+  TileOutcome outcome;
+  if constexpr (Q == Query::closest)
+    outcome = trace_tile<Q, A>(accel, rays, apex, &out, nullptr, max_leaves);
+  else
+    outcome = trace_tile<Q, A>(accel, rays, apex, nullptr, out, max_leaves);
+  return outcome == TileOutcome::traced    ? Way::tile
+         : outcome == TileOutcome::no_tile ? Way::packets
+                                           : Way::interleaved;
+}
 
 /// How `automatic` traces a batch: rays that share a point in tiles, others that run together as packets of
-/// W, the rest interleaved. Where a tile was given up, its neighbours are not tried, twice as many each time,
-/// unless the caller insists.
+/// W, the rest interleaved. Where a tile met too many leaves, triangles are smaller than rays are apart; its
+/// rays go interleaved, and so do its neighbours untried, twice as many each time, unless the caller insists.
 template <Query Q, int W, class A>
 void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
-  if (!insist && tree_bytes(accel) > kScatterBytes<Q>) return trace_interleaved<Q, A>(accel, rays, out);
-  std::size_t traced = 0;
-  const int max_leaves = insist ? std::numeric_limits<int>::max() : kTileMaxLeaves;
-  int skip = 0, failures = 0;
+  const int max_leaves = insist ? std::numeric_limits<int>::max() : max_tile_leaves<Q>(accel);
+  std::size_t begin = 0;  // of a run of rays that wait to be traced the same way
+  Way way = Way::packets;
   const auto catch_up = [&](std::size_t end) {
-    if (end > traced)
-      trace_stream<Q, W, A>(accel, rays.part(traced, end - traced), sink_from<Q>(out, traced, end - traced),
-                            TraceMode::automatic);
+    if (end <= begin) return;
+    const RaySpan part = rays.part(begin, end - begin);
+    const HitSink<Q> sink = sink_from<Q>(out, begin, end - begin);
+    if (way == Way::interleaved)
+      trace_interleaved<Q, A>(accel, part, sink);
+    else
+      trace_stream<Q, W, A>(accel, part, sink, TraceMode::automatic);
   };
+  int skip = 0, failures = 0;
   for (std::size_t b = 0; b < rays.size; b += kTileRays) {
     const std::size_t count = std::min<std::size_t>(kTileRays, rays.size - b);
     if (skip > 0) {
       --skip;
-    } else if (try_tile<Q, A>(accel, rays.part(b, count), sink_from<Q>(out, b, count), max_leaves)) {
-      catch_up(b);
-      traced = b + count;
-      failures = 0;
-    } else {
-      skip = insist ? 0 : (1 << std::min(failures++, 3)) - 1;
+      continue;
     }
+    const Way suits = try_tile<Q, A>(accel, rays.part(b, count), sink_from<Q>(out, b, count), max_leaves);
+    failures = suits == Way::interleaved ? failures + 1 : 0;
+    if (suits == Way::interleaved && !insist) skip = (1 << std::min(failures - 1, 3)) - 1;
+    if (suits == way) continue;
+    catch_up(b);
+    begin = suits == Way::tile ? b + count : b;
+    if (suits != Way::tile) way = suits;
   }
   catch_up(rays.size);
 }

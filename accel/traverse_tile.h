@@ -406,10 +406,6 @@ OKTETT_INLINE void finish_tile(TileTask<Query::any, A>& task) {
   }
 }
 
-/// Leaves of which a tile may meet this many; where it would be more, the triangles are smaller than the
-/// rays are apart, and rays are faster alone.
-inline constexpr int kTileMaxLeaves = 128;
-
 /// Children in the order of their distance, the nearest on top.
 OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const ChildWindows& w, unsigned groups,
                                TileEntry* stack, int size) {
@@ -471,20 +467,25 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
   return true;
 }
 
-/// Up to kTileRays rays that meet in `apex`. False if they are better traced otherwise (nothing has been
-/// written then that another traversal would not overwrite).
+enum class TileOutcome {
+  traced,
+  no_tile,   ///< the rays share no point, fan out too far or are out of scale
+  given_up,  ///< they met more leaves than was allowed
+};
+
+/// Up to kTileRays rays that meet in `apex`. Unless they are traced, nothing has been written that another
+/// traversal would not overwrite.
 template <Query Q, class A>
-OKTETT_NOINLINE bool trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex,
-                                const HitSpan* hits, std::uint8_t* occluded,
-                                int max_leaves = kTileMaxLeaves) {
+OKTETT_NOINLINE TileOutcome trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex,
+                                       const HitSpan* hits, std::uint8_t* occluded, int max_leaves) {
   TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_leaves};
-  if (!task.tile.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return false;
+  if (!task.tile.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return TileOutcome::no_tile;
   if (task.tile.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded) table_leaf_tile(task, leaf, task.tile.groups);
-    if (!accel.root.is_none() && !traverse_tile(task)) return false;
+    if (!accel.root.is_none() && !traverse_tile(task)) return TileOutcome::given_up;
   }
   finish_tile(task);
-  return true;
+  return TileOutcome::traced;
 }
 
 }  // namespace oktett

@@ -18,7 +18,7 @@ OKTETT_INLINE void with_width(TraceMode mode, Function&& f) {
     if (mode == TraceMode::packet4) return f.template operator()<4>();
     if (mode == TraceMode::packet16) return f.template operator()<16>();
     if (mode == TraceMode::single) return f.template operator()<1>();
-    if (std::is_same_v<A, Avx512Isa>) return f.template operator()<16>();
+    if (std::is_same_v<A, Avx512Isa> && mode != TraceMode::packet8) return f.template operator()<16>();
     f.template operator()<8>();
   }
 }
