@@ -1,5 +1,5 @@
-/// \file From references to a binary tree, top-down: binned splits of large ranges (Wald 2007), sweeps of small
-/// ones.
+/// \file From references to a binary tree, top-down: binned splits of large ranges (Wald 2007), sweeps of
+/// small ones.
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -15,8 +15,8 @@
 namespace oktett {
 namespace {
 
-/// Ranges below this many references are built by one task; above kParallelSplit, binning and partitioning are
-/// shared out too, in at most kMaxChunks pieces.
+/// Ranges below this many references are built by one task; above kParallelSplit, binning and partitioning
+/// are shared out too, in at most kMaxChunks pieces.
 constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
@@ -225,7 +225,8 @@ class Builder {
       each_chunk(chunks, run);
     const std::size_t middle = r.begin + lefts[chunks.count];
     left = {r.begin, middle, r.to, r.from, {}}, right = {middle, r.end, r.to, r.from, {}};
-    for (const PartitionJob& job : jobs) left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);
+    for (const PartitionJob& job : jobs)
+      left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);
   }
 
   Column<PrimRef>& refs_;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Which binary nodes become wide ones: the choice of least surface-area cost, by dynamic programming
-/// (Ylitie, Karras and Laine 2017, section 3). Leaves are blocks already, so only the places in wide nodes are
-/// shared out. Costs are made bottom-up while the binary tree is built; a node keeps only its choices.
+/// (Ylitie, Karras and Laine 2017, section 3). Leaves are blocks already, so only the places in wide nodes
+/// are shared out. Costs are made bottom-up while the binary tree is built; a node keeps only its choices.
 
 #include "accel/build_sah.h"
 #include "core/platform.h"

@@ -23,9 +23,8 @@ class Sweep {
     else
       for (std::uint32_t i = 0; i < n_; ++i) order_[0][i] = static_cast<std::uint8_t>(i);
     nodes_ = 1;
-    build(0, n_, job_.depth, 0, job_.cost);
+    build(0, n_, job_.depth, 0, 0, job_.cost);
     job_.node_count = nodes_;
-    for (std::uint32_t i = 0; i < n_; ++i) job_.items[i] = job_.refs[order_[0][i]].item;
   }
 
  private:
@@ -39,8 +38,8 @@ class Sweep {
     float v[8];  ///< {-lo.xyz, any, hi.xyz, any}
   };
 
-  /// Boxes halved and scaled to a scene of size 1 (a power of two: exact), and the bounds of centres. The gaps
-  /// become 0: what stands there looks like denormals, which are slow to multiply.
+  /// Boxes halved and scaled to a scene of size 1 (a power of two: exact), and the bounds of centres. The
+  /// gaps become 0: what stands there looks like denormals, which are slow to multiply.
   void load() {
     const B unit(0.5f * job_.unit);
     F lo(Centers::kInf), hi(-Centers::kInf);
@@ -102,15 +101,17 @@ class Sweep {
     return area(select(xyz, negative_lo, zero) * half, select(xyz, hi, zero) * half);
   }
 
-  void build(std::uint32_t begin, std::uint32_t end, int depth, std::uint32_t at, SubtreeCost& cost) {
+  /// Node `at` over the range. A range that is one leaf needs to be in order along `axis` only.
+  void build(std::uint32_t begin, std::uint32_t end, int depth, int axis, std::uint32_t at,
+             SubtreeCost& cost) {
     BinaryNode& node = job_.nodes[at];
-    if (one_leaf(begin, end, order_[0])) return make_leaf(begin, end, node, cost);
-    const std::uint32_t middle = split(begin, end, depth);
+    if (one_leaf(begin, end, order_[axis])) return make_leaf(begin, end, order_[axis], node, cost);
+    const std::uint32_t middle = split(begin, end, depth, axis);
     const std::uint32_t children = nodes_;
     nodes_ += 2;
     SubtreeCost l, r;
-    build(begin, middle, depth + 1, children, l);
-    build(middle, end, depth + 1, children + 1, r);
+    build(begin, middle, depth + 1, axis, children, l);
+    build(middle, end, depth + 1, axis, children + 1, r);
     const BinaryNode &a = job_.nodes[children], &b = job_.nodes[children + 1];
     const F lo = max(F::load(a.negative_lo), F::load(b.negative_lo)), hi = max(F::load(a.hi), F::load(b.hi));
     lo.store(node.negative_lo), hi.store(node.hi);
@@ -118,18 +119,22 @@ class Sweep {
     node.info = collapse(l, r, scaled_area(lo, hi), job_.node_cost, cost);
   }
 
-  void make_leaf(std::uint32_t begin, std::uint32_t end, BinaryNode& node, SubtreeCost& cost) {
-    B box = B::load(job_.refs[order_[0][begin]].negative_lo);
-    for (std::uint32_t i = begin + 1; i < end; ++i)
-      box = max(B::load(job_.refs[order_[0][i]].negative_lo), box);
+  void make_leaf(std::uint32_t begin, std::uint32_t end, const std::uint8_t* order, BinaryNode& node,
+                 SubtreeCost& cost) {
+    B box = B::load(job_.refs[order[begin]].negative_lo);
+    for (std::uint32_t i = begin; i < end; ++i) {
+      box = max(B::load(job_.refs[order[i]].negative_lo), box);
+      job_.items[i] = job_.refs[order[i]].item;
+    }
     box.store(node.negative_lo);
     cost = leaf_cost(scaled_area(F::load(node.negative_lo), F::load(node.hi)));
     node.link = job_.first + begin;
-    node.info = BinaryNode::leaf_info(end - begin, job_.refs[order_[0][begin]].kind);
+    node.info = BinaryNode::leaf_info(end - begin, job_.refs[order[begin]].kind);
   }
 
-  /// Orders the range so that the left part comes first; returns where the right one begins.
-  std::uint32_t split(std::uint32_t begin, std::uint32_t end, int depth) {
+  /// Orders the range so that the left part comes first, at least along `axis`; returns where the right one
+  /// begins.
+  std::uint32_t split(std::uint32_t begin, std::uint32_t end, int depth, int& axis) {
     const std::uint32_t n = end - begin;
     if (n <= TriangleBlock::kSize) {
       const std::uint32_t kind = job_.refs[order_[0][begin]].kind;
@@ -139,49 +144,68 @@ class Sweep {
         same += side_[order_[0][i]];
       }
       if (same < n) {
-        for (int axis = 0; axis < 3; ++axis) divide(axis, begin, end);
+        for (int k = 0; k < 3; ++k) divide(k, begin, end);
         return begin + same;
       }
     }
-    int axis = 0;
+    axis = 0;
     std::uint32_t middle = begin + balanced_half(n);
     if (depth + kLog < kMaxDepth) find(begin, end, axis, middle);
+    if (one_leaf(begin, middle, order_[axis]) && one_leaf(middle, end, order_[axis])) return middle;
     for (std::uint32_t i = begin; i < end; ++i) side_[order_[axis][i]] = i < middle;
     for (int k = 0; k < 3; ++k)
       if (k != axis) divide(k, begin, end);
     return middle;
   }
 
-  /// The split of least cost; of equally good ones the most balanced.
-  void find(std::uint32_t begin, std::uint32_t end, int& best_axis, std::uint32_t& best_middle) {
-    const std::uint32_t n = end - begin, step = n > kEach ? 7 : 0;
-    const bool instances = n <= TriangleBlock::kSize;
+  /// Boxes that grow along the three orders.
+  struct Growing {
     F lo[3], hi[3];
-    for (int axis = 0; axis < 3; ++axis) lo[axis] = hi[axis] = F(-Centers::kInf);
-    for (std::uint32_t p = end; --p > begin;) {
-      const bool wanted = ((end - p) & step) == 0 || ((p - begin) & step) == 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        const float* v = box_[order_[axis][p]].v;
-        lo[axis] = max(F::load(v), lo[axis]), hi[axis] = max(F::load(v + 4), hi[axis]);
-        if (wanted) right_area_[axis][p] = area(lo[axis], hi[axis]);
-      }
+    OKTETT_INLINE Growing() {
+      for (int axis = 0; axis < 3; ++axis) lo[axis] = hi[axis] = F(-Centers::kInf);
     }
-    for (int axis = 0; axis < 3; ++axis) lo[axis] = hi[axis] = F(-Centers::kInf);
-    float best = Centers::kInf;
-    std::uint32_t best_balance = 0;
-    for (std::uint32_t p = begin + 1; p < end; ++p) {
-      const bool wanted = ((end - p) & step) == 0 || ((p - begin) & step) == 0;
-      const std::uint32_t nl = p - begin, nr = end - p, balance = nl < nr ? nl : nr;
-      const float bl = static_cast<float>(instances ? nl : blocks_of(nl));
-      const float br = static_cast<float>(instances ? nr : blocks_of(nr));
-      for (int axis = 0; axis < 3; ++axis) {
-        const float* v = box_[order_[axis][p - 1]].v;
-        lo[axis] = max(F::load(v), lo[axis]), hi[axis] = max(F::load(v + 4), hi[axis]);
-        if (!wanted) continue;
-        const float cost = area(lo[axis], hi[axis]) * bl + right_area_[axis][p] * br;
-        if (cost > best || (cost == best && balance <= best_balance)) continue;
-        best = cost, best_balance = balance, best_axis = axis, best_middle = p;
+    OKTETT_INLINE void grow(int axis, const Box8& b) {
+      lo[axis] = max(F::load(b.v), lo[axis]), hi[axis] = max(F::load(b.v + 4), hi[axis]);
+    }
+    /// In lane k the area of the box of order k.
+    OKTETT_INLINE F areas() const {
+      F x = lo[0] + hi[0], y = lo[1] + hi[1], z = lo[2] + hi[2];
+      transpose3(x, y, z);
+      return x * (y + z) + y * z;
+    }
+  };
+
+  /// The split of least cost; of equally good ones in the first half, the most balanced.
+  void find(std::uint32_t begin, std::uint32_t end, int& best_axis, std::uint32_t& best_middle) {
+    const std::uint32_t n = end - begin, step = n > kEach ? TriangleBlock::kSize - 1 : 0;
+    const bool instances = n <= TriangleBlock::kSize;
+    const auto wanted = [&](std::uint32_t p) { return ((end - p) & step) == 0 || ((p - begin) & step) == 0; };
+    const auto blocks = [&](std::uint32_t k) { return F(static_cast<float>(instances ? k : blocks_of(k))); };
+    Growing right;
+    for (std::uint32_t p = end; --p > begin;) {
+      for (int axis = 0; axis < 3; ++axis) right.grow(axis, box_[order_[axis][p]]);
+      if (wanted(p)) right.areas().store(right_area_[p]);
+    }
+    Growing left;
+    F best(Centers::kInf), place(0.0f);
+    const auto scan = [&](std::uint32_t from, std::uint32_t to, auto&& better) {
+      for (std::uint32_t p = from; p < to; ++p) {
+        for (int axis = 0; axis < 3; ++axis) left.grow(axis, box_[order_[axis][p - 1]]);
+        if (!wanted(p)) continue;
+        const F cost = left.areas() * blocks(p - begin) + F::load(right_area_[p]) * blocks(end - p);
+        const auto take = better(cost, best);
+        best = select(take, cost, best);
+        place = select(take, F(static_cast<float>(p)), place);
       }
+    };
+    const std::uint32_t half = begin + n / 2 + 1;
+    scan(begin + 1, half, [](const F& a, const F& b) { return a <= b; });
+    scan(half, end, [](const F& a, const F& b) { return a < b; });
+    alignas(16) float cost[4], at[4];
+    best.store(cost), place.store(at);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0 && !(cost[axis] < cost[best_axis])) continue;
+      best_axis = axis, best_middle = static_cast<std::uint32_t>(at[axis]);
     }
   }
 
@@ -205,7 +229,7 @@ class Sweep {
   std::uint32_t nodes_ = 0;
   alignas(32) Box8 box_[N];
   alignas(16) float lo_[4], hi_[4];
-  float right_area_[3][N];
+  alignas(16) float right_area_[N][4];  ///< by axis
   std::uint8_t order_[3][N], side_[N], order_start_[TriangleBlock::kSize];
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-/// \file The triangles of meshes, moved to the structure's space: as references for the builder, and as blocks.
+/// \file The triangles of meshes, moved to the structure's space: as references for the builder, and as
+/// blocks.
 
 #include <vector>
 
