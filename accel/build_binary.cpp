@@ -54,19 +54,29 @@ struct Chunks {
       : size(std::max(kMinChunk, (n + kMaxChunks - 1) / kMaxChunks)), count((n + size - 1) / size) {}
 };
 
+Effort effort_of(BuildQuality quality) {
+  if (quality == BuildQuality::fast) return {8, 64, 16};
+  if (quality == BuildQuality::balanced) return {16, 256, 64};
+  return {32, 256, 256};
+}
+
 class Builder {
  public:
-  Builder(Column<PrimRef>& refs, float unit, const BuildOptions& options, const BuildKernels& kernels)
-      : refs_(refs), unit_(unit), options_(options), kernels_(kernels) {
-    options_.bins = std::clamp(options_.bins, 2, kMaxBins);
-  }
+  Builder(Column<PrimRef>& refs, float unit, const BuildOptions& options, bool pieces,
+          const BuildKernels& kernels)
+      : refs_(refs),
+        unit_(unit),
+        effort_(effort_of(options.quality)),
+        pieces_(pieces),
+        parallel_(options.parallel),
+        kernels_(kernels) {}
 
   BinaryTree run() {
     const std::size_t n = refs_.size();
     // A leaf holds at least one item; pages that stay empty cost nothing.
     tree_.nodes = VirtualArray<BinaryNode>(2 * n + 2 * kMaxSweep);
     tree_.items.resize_uninitialized(n);
-    scratch_.resize_uninitialized(n > kMaxSweep ? n : 0);
+    scratch_.resize_uninitialized(n > effort_.sweep ? n : 0);
     nodes_ = 1;
     Range all{0, n, refs_.data(), scratch_.data(), {}};
     bound(all);
@@ -79,14 +89,14 @@ class Builder {
  private:
   template <class Body>
   void each_chunk(const Chunks& chunks, Body&& body) const {
-    if (options_.parallel)
+    if (parallel_)
       tbb::parallel_for(std::size_t{0}, chunks.count, body);
     else
       for (std::size_t c = 0; c < chunks.count; ++c) body(c);
   }
 
   void bound(Range& r) const {
-    if (r.size() <= kMaxSweep) return;
+    if (r.size() <= effort_.sweep) return;
     const Chunks chunks(r.size());
     std::vector<Centers> parts(chunks.count);
     each_chunk(chunks, [&](std::size_t c) {
@@ -97,12 +107,12 @@ class Builder {
   }
 
   void build(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
-    if (r.size() <= kMaxSweep) return sweep(r, depth, at, cost);
+    if (r.size() <= effort_.sweep) return sweep(r, depth, at, cost);
     Range left, right;
     split(r, depth, left, right);
     const std::uint32_t children = nodes_.fetch_add(2);
     SubtreeCost l, rr;
-    if (options_.parallel && r.size() >= kParallelTask) {
+    if (parallel_ && r.size() >= kParallelTask) {
       tbb::parallel_invoke([&] { build(left, depth + 1, children, l); },
                            [&] { build(right, depth + 1, children + 1, rr); });
     } else {
@@ -116,7 +126,7 @@ class Builder {
       node.hi[k] = std::max(a.hi[k], b.hi[k]);
     }
     node.link = children;
-    node.info = collapse(l, rr, half_area(node.negative_lo, node.hi, unit_), options_.node_cost, cost);
+    node.info = collapse(l, rr, half_area(node.negative_lo, node.hi, unit_), cost);
   }
 
   void sweep(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
@@ -128,7 +138,8 @@ class Builder {
     job.items = tree_.items.data() + r.begin;
     job.depth = depth;
     job.unit = unit_;
-    job.node_cost = options_.node_cost;
+    job.effort = effort_;
+    job.pieces = pieces_;
     job.nodes = nodes;
     kernels_.sweep(job);
     cost = job.cost;
@@ -142,7 +153,7 @@ class Builder {
 
   void split(const Range& r, int depth, Range& left, Range& right) {
     Grid grid;
-    grid.bins = options_.bins;
+    grid.bins = effort_.bins;
     for (int k = 0; k < 3; ++k) {
       const float extent = r.centers.hi[k] - r.centers.lo[k];
       const float scale = static_cast<float>(grid.bins) / extent;
@@ -232,7 +243,8 @@ class Builder {
   Column<PrimRef>& refs_;
   Column<PrimRef> scratch_;
   float unit_;
-  BuildOptions options_;
+  const Effort effort_;
+  const bool pieces_, parallel_;
   const BuildKernels& kernels_;
   BinaryTree tree_;
   std::atomic<std::uint32_t> nodes_{0};
@@ -247,9 +259,9 @@ float scene_unit(const Box& bounds) {
   return std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
 }
 
-BinaryTree build_binary(Column<PrimRef>& refs, float unit, const BuildOptions& options,
+BinaryTree build_binary(Column<PrimRef>& refs, float unit, const BuildOptions& options, bool pieces,
                         const BuildKernels& kernels) {
-  return Builder(refs, unit, options, kernels).run();
+  return Builder(refs, unit, options, pieces, kernels).run();
 }
 
 }  // namespace oktett

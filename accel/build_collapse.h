@@ -16,7 +16,7 @@ OKTETT_INLINE SubtreeCost leaf_cost(float area) {
 }
 
 /// Cost of an inner node of area `area` from those of its children; returns BinaryNode::info.
-OKTETT_INLINE std::uint32_t collapse(const SubtreeCost& l, const SubtreeCost& r, float area, float node_cost,
+OKTETT_INLINE std::uint32_t collapse(const SubtreeCost& l, const SubtreeCost& r, float area,
                                      SubtreeCost& out) {
   constexpr int W = BvhNode::kWidth;
   float shared[W + 1];
@@ -32,7 +32,7 @@ OKTETT_INLINE std::uint32_t collapse(const SubtreeCost& l, const SubtreeCost& r,
     shared[slots] = best, left[slots] = best_left;
   }
   std::uint32_t info = BinaryNode::kInner | left[W] << 3 * (W - 2);
-  out.places[0] = area * node_cost + shared[W];
+  out.places[0] = area + shared[W];
   for (int slots = 2; slots < W; ++slots) {
     const bool share = shared[slots] < out.places[slots - 2];
     out.places[slots - 1] = share ? shared[slots] : out.places[slots - 2];

@@ -101,13 +101,22 @@ struct alignas(32) BinaryNode {
 };
 static_assert(sizeof(BinaryNode) == 32);
 
-/// Cost of a subtree if it may fill 1 to 7 places of a wide node. See accel/build_collapse.h.
+/// Cost of a subtree (the areas of its wide nodes and leaves) if it may fill 1 to 7 places of a wide node.
+/// See accel/build_collapse.h.
 struct SubtreeCost {
   float places[7];
 };
 
-/// The largest range that is built by sorting instead of binning.
+/// The largest range that may be built by sorting instead of binning.
 inline constexpr std::uint32_t kMaxSweep = 256;
+
+/// What a BuildQuality means.
+struct Effort {
+  int bins;             ///< candidate intervals per axis, [2, kMaxBins]
+  std::uint32_t sweep;  ///< ranges up to this size are swept, [8, kMaxSweep]
+  std::uint32_t
+      every_place;  ///< of these, ranges up to this size are tried at every place, others at full blocks
+};
 
 /// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].
 struct SweepJob {
@@ -117,7 +126,8 @@ struct SweepJob {
   std::uint32_t* items;  ///< out: the items in the order of the leaves
   int depth;             ///< of the range; the tree stays below kMaxDepth
   float unit;            ///< a power of two by which the scene is of size 1
-  float node_cost;
+  Effort effort;
+  bool pieces;               ///< an item may occur more than once
   BinaryNode* nodes;         ///< out: up to 2 * count - 1, the root first; links to children count from here
   std::uint32_t node_count;  ///< out
   SubtreeCost cost;          ///< out

@@ -31,7 +31,6 @@ class Sweep {
   using F = Simd<float, 4, A>;
   using B = Simd<float, 8, A>;
   using I = Simd<std::int32_t, 16, A>;
-  static constexpr std::uint32_t kEach = 64;  ///< below, every place is tried, above those of full blocks
   static constexpr std::uint32_t N = kMaxSweep;
 
   struct alignas(32) Box8 {
@@ -116,7 +115,7 @@ class Sweep {
     const F lo = max(F::load(a.negative_lo), F::load(b.negative_lo)), hi = max(F::load(a.hi), F::load(b.hi));
     lo.store(node.negative_lo), hi.store(node.hi);
     node.link = children;
-    node.info = collapse(l, r, scaled_area(lo, hi), job_.node_cost, cost);
+    node.info = collapse(l, r, scaled_area(lo, hi), cost);
   }
 
   void make_leaf(std::uint32_t begin, std::uint32_t end, const std::uint8_t* order, BinaryNode& node,
@@ -127,9 +126,21 @@ class Sweep {
       job_.items[i] = job_.refs[order[i]].item;
     }
     box.store(node.negative_lo);
+    const std::uint32_t count = job_.pieces ? distinct(job_.items + begin, end - begin) : end - begin;
     cost = leaf_cost(scaled_area(F::load(node.negative_lo), F::load(node.hi)));
     node.link = job_.first + begin;
-    node.info = BinaryNode::leaf_info(end - begin, job_.refs[order[begin]].kind);
+    node.info = BinaryNode::leaf_info(count, job_.refs[order[begin]].kind);
+  }
+
+  /// Drops repetitions; returns how many items are left.
+  static std::uint32_t distinct(std::uint32_t* items, std::uint32_t count) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      bool seen = false;
+      for (std::uint32_t k = 0; k < kept; ++k) seen |= items[k] == items[i];
+      if (!seen) items[kept++] = items[i];
+    }
+    return kept;
   }
 
   /// Orders the range so that the left part comes first, at least along `axis`; returns where the right one
@@ -177,7 +188,7 @@ class Sweep {
 
   /// The split of least cost; of equally good ones in the first half, the most balanced.
   void find(std::uint32_t begin, std::uint32_t end, int& best_axis, std::uint32_t& best_middle) {
-    const std::uint32_t n = end - begin, step = n > kEach ? TriangleBlock::kSize - 1 : 0;
+    const std::uint32_t n = end - begin, step = n > job_.effort.every_place ? TriangleBlock::kSize - 1 : 0;
     const bool instances = n <= TriangleBlock::kSize;
     const auto wanted = [&](std::uint32_t p) { return ((end - p) & step) == 0 || ((p - begin) & step) == 0; };
     const auto blocks = [&](std::uint32_t k) { return F(static_cast<float>(instances ? k : blocks_of(k))); };

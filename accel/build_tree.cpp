@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "accel/build_pieces.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -202,7 +203,9 @@ void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t
 void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles,
                 std::vector<std::uint32_t> (&order)[8], const BuildOptions& options, const IsaTable& isa) {
   if (refs.empty()) return;
-  const BinaryTree tree = build_binary(refs, scene_unit(accel.bounds), options, isa.build);
+  if (options.quality == BuildQuality::best)
+    accel.pieces = split_large(refs, triangles, accel.bounds, options.parallel);
+  const BinaryTree tree = build_binary(refs, scene_unit(accel.bounds), options, accel.pieces, isa.build);
   refs.clear();
   WideBuilder(accel, tree, triangles, options.parallel).run();
   order_pools(accel, tree, order);

@@ -18,6 +18,7 @@ class TriangleSource {
   virtual void fill(const std::uint32_t* items, int count, TriangleBlock& block) const = 0;
   /// Says that `fill` will soon be asked for these.
   virtual void prefetch(const std::uint32_t* items, int count) const = 0;
+  virtual void corners(std::uint32_t item, Vec3f (&v)[3]) const = 0;
 };
 
 /// A binary tree down to leaves of a block, and the order of the items in them. The root is node 0.
@@ -26,8 +27,9 @@ struct BinaryTree {
   Column<std::uint32_t> items;
 };
 
-/// Builds the binary tree over `refs`, which it uses up. The same tree for any number of threads.
-BinaryTree build_binary(Column<PrimRef>& refs, float unit, const BuildOptions& options,
+/// Builds the binary tree over `refs`, which it uses up. The same tree for any number of threads. `pieces`:
+/// an item may have several references.
+BinaryTree build_binary(Column<PrimRef>& refs, float unit, const BuildOptions& options, bool pieces,
                         const BuildKernels& kernels);
 
 /// The power of two by which a scene with these bounds is of size 1, so that areas neither overflow nor

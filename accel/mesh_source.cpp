@@ -45,6 +45,8 @@ inline const MeshSource::Mesh& MeshSource::mesh_of(std::uint32_t item) const {
   return meshes_.size() == 1 ? meshes_[0] : meshes_[accel_.geometry_of(item)];
 }
 
+void MeshSource::corners(std::uint32_t item, Vec3f (&v)[3]) const { corners(mesh_of(item), item, v); }
+
 Box MeshSource::add_references(std::uint32_t geometry, Column<PrimRef>& refs, bool parallel) const {
   const MeshGeometry& shape = std::get<MeshGeometry>(accel_.geometries[geometry].shape);
   const Mesh& mesh = meshes_[geometry];

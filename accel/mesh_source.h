@@ -18,6 +18,7 @@ class MeshSource final : public TriangleSource {
 
   void fill(const std::uint32_t* items, int count, TriangleBlock& block) const override;
   void prefetch(const std::uint32_t* items, int count) const override;
+  void corners(std::uint32_t item, Vec3f (&v)[3]) const override;
 
  private:
   /// A mesh geometry, ready to be read; others have no mesh.
