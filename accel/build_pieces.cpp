@@ -9,12 +9,13 @@
 namespace oktett {
 namespace {
 
-constexpr double kBudget = 0.5;      ///< references added per reference, at most
-/// A triangle becomes 1 + floor(kAboveMean * its priority / the mean priority) pieces: even meshes stay as they are.
+constexpr double kBudget = 0.5;  ///< references added per reference, at most
+/// A triangle becomes 1 + floor(kAboveMean * its priority / the mean priority) pieces: even meshes stay as
+/// they are.
 constexpr double kAboveMean = 0.4;
-constexpr int kMostPieces = 64;      ///< of one triangle
-constexpr int kLevels = 20;          ///< the grid has 2^20 cells along the longest axis
-constexpr std::size_t kChunk = 4096; ///< references per task
+constexpr int kMostPieces = 64;       ///< of one triangle
+constexpr int kLevels = 20;           ///< the grid has 2^20 cells along the longest axis
+constexpr std::size_t kChunk = 4096;  ///< references per task
 
 /// A plane of the grid that cuts a box: the one that the fewest halvings of the scene lead to.
 struct Cut {
@@ -70,7 +71,8 @@ bool may_cut(const PrimRef& r) {
 double priority(const Cells& cells, const Box& box, const Vec3f (&v)[3]) {
   const Cut cut = cells.find(box);
   if (cut.axis < 0) return 0;
-  const Vec3d e = Vec3d(box.hi) - Vec3d(box.lo), n = cross(Vec3d(v[1]) - Vec3d(v[0]), Vec3d(v[2]) - Vec3d(v[0]));
+  const Vec3d e = Vec3d(box.hi) - Vec3d(box.lo),
+              n = cross(Vec3d(v[1]) - Vec3d(v[0]), Vec3d(v[2]) - Vec3d(v[0]));
   const double surface = 2 * (e.x * e.y + e.y * e.z + e.z * e.x);
   const double least = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   return std::cbrt(std::ldexp(std::max(0.0, surface - least), cut.level - kLevels));

@@ -14,8 +14,8 @@ namespace {
 /// Rays counted by one task.
 constexpr std::size_t kChunk = 1024;
 
-/// One ray, on its way to a hit that is known beforehand: shapes other than triangles are not tested here, but
-/// end the ray when the walk comes to the one that it hits.
+/// One ray, on its way to a hit that is known beforehand: shapes other than triangles are not tested here,
+/// but end the ray when the walk comes to the one that it hits.
 class Walk {
  public:
   Walk(const Vec3d& o, const Vec3d& d, double tmin, double tmax, const Hit& hit, TraceCounts& counts)

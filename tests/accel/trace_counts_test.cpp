@@ -16,8 +16,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 RayBatch random_rays(int count) {
   RayBatch rays;
   CaseRandom r(1);
-  for (int i = 0; i < count; ++i)
-    rays.push_back({Vec3f(r.vector() * 3.0), 0, Vec3f(r.vector()), kInf});
+  for (int i = 0; i < count; ++i) rays.push_back({Vec3f(r.vector() * 3.0), 0, Vec3f(r.vector()), kInf});
   return rays;
 }
 
@@ -90,9 +89,9 @@ TEST(TraceCounts, OtherShapesAndInstancesAreCounted) {
                                   {InstanceGeometry{ball}, Affine::translation({0, 0, 50}), kNoId},
                                   {PlaneShape{{0, 0, 1}, -10}, {}, kNoId}});
   RayBatch rays;
-  rays.push_back({{0, 0, 0}, 0, {0, 0, 1}, kInf});    // stops at the first ball
-  rays.push_back({{0, 0, 0}, 0, {0, 0, -1}, kInf});   // meets the plane
-  rays.push_back({{0, 0, 0}, 0, {0, 0, 0}, kInf});    // no ray at all
+  rays.push_back({{0, 0, 0}, 0, {0, 0, 1}, kInf});   // stops at the first ball
+  rays.push_back({{0, 0, 0}, 0, {0, 0, -1}, kInf});  // meets the plane
+  rays.push_back({{0, 0, 0}, 0, {0, 0, 0}, kInf});   // no ray at all
   const TraceCounts counts = trace_counts(*accel, rays.span());
   EXPECT_EQ(counts.rays, 3u);
   EXPECT_EQ(counts.hits, 2u);
