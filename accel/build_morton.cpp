@@ -38,7 +38,8 @@ struct Chunks {
   }
 };
 
-/// One pass of a stable counting sort: each chunk counts its digits, then moves its keys to places of its own.
+/// One pass of a stable counting sort: each chunk counts its digits, then moves its keys to places of its
+/// own.
 void sort_pass(const Chunks& chunks, const Column<Key>& from, int shift, Column<Key>& to) {
   std::vector<std::uint32_t> next(chunks.count * kDigits, 0);
   const auto digit = [&](const Key& k) { return k.cell >> shift & (kDigits - 1); };
@@ -59,8 +60,8 @@ void sort_pass(const Chunks& chunks, const Column<Key>& from, int shift, Column<
 
 }  // namespace
 
-void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool parallel, Column<PrimRef>& sorted,
-                   Column<std::uint32_t>& cells) {
+void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool parallel,
+                   Column<PrimRef>& sorted, Column<std::uint32_t>& cells) {
   const std::size_t n = refs.size(), size = std::max(kMinChunk, (n + kMaxChunks - 1) / kMaxChunks);
   const Chunks chunks{n, size, (n + size - 1) / size, parallel};
   constexpr float kPerAxis = 1 << kMortonBits / 3;

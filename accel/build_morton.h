@@ -11,7 +11,7 @@ inline constexpr int kMortonBits = 21;
 
 /// Copies `refs` to `sorted` in the order of the cells that their centres lie in, of a cubic grid over
 /// `centers`, and sets `cells`. References of one cell keep their order.
-void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool parallel, Column<PrimRef>& sorted,
-                   Column<std::uint32_t>& cells);
+void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool parallel,
+                   Column<PrimRef>& sorted, Column<std::uint32_t>& cells);
 
 }  // namespace oktett
