@@ -71,7 +71,7 @@ class Walk {
     ++counts_.blocks;
     counts_.triangles += static_cast<std::uint64_t>(count);
     for (int i = 0; i < count; ++i) {
-      const auto corner = [&](int k) { return Vec3d(block.v[k][0][i], block.v[k][1][i], block.v[k][2][i]); };
+      const auto corner = [&](int k) { return Vec3d{block.v[k][0][i], block.v[k][1][i], block.v[k][2][i]}; };
       const Vec3d a = corner(0), e1 = corner(1) - a, e2 = corner(2) - a, s = o_ - a;
       const Vec3d p = cross(d_, e2), q = cross(s, e1);
       const double det = dot(e1, p), u = dot(s, p) / det, v = dot(d_, q) / det, t = dot(e2, q) / det;
