@@ -45,7 +45,7 @@ struct Geometry {
 enum class BuildQuality : std::uint8_t {
   fast,      ///< few candidates for splits
   balanced,  ///< full blocks and an exact search near the leaves
-  best,      ///< also splits large triangles between leaves; takes more memory and several times as long
+  best,      ///< also splits large triangles between leaves: for single rays in scenes of mixed sizes
 };
 
 struct BuildOptions {

@@ -9,6 +9,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/dispatch.h"
+#include "accel/mesh_source.h"
 #include "app/oracle_mesh.h"
 #include "app/verify_cases.h"
 
@@ -233,6 +234,25 @@ TEST(Quality, TreesAreTheSameForAnyNumberOfThreads) {
       EXPECT_TRUE(same_bytes(parallel->nodes, serial->nodes, serial->stats.nodes));
       EXPECT_TRUE(
           same_bytes(parallel->blocks, serial->blocks, serial->stats.leaf_bytes / sizeof(TriangleBlock)));
+    }
+  }
+}
+
+TEST(Quality, TreesAreTheSameForAllInstructionSets) {
+  const TriangleMesh m = mixed_sizes(20000, 15);
+  const auto accel = build(m, BuildQuality::balanced);
+  for (const BuildQuality q : kQualities) {
+    std::vector<BinaryTree> trees;
+    for (const Isa isa : available_isas()) {
+      Column<PrimRef> refs;
+      MeshSource(*accel).add_references(0, refs, false);
+      trees.push_back(
+          build_binary(refs, scene_unit(accel->bounds), {q, false}, false, isa_table(isa)->build));
+      const BinaryTree &first = trees[0], &last = trees.back();
+      ASSERT_EQ(last.items.size(), first.items.size());
+      EXPECT_TRUE(std::equal(last.items.begin(), last.items.end(), first.items.begin()));
+      // However full its leaves are, a tree has this many nodes.
+      EXPECT_TRUE(same_bytes(last.nodes, first.nodes, 2 * (refs.size() / TriangleBlock::kSize) - 1));
     }
   }
 }
