@@ -41,11 +41,16 @@ struct Geometry {
   std::uint32_t user = kNoId;
 };
 
-/// How hard the builder tries.
+/// How hard the builder tries. The hits are the same for each.
+enum class BuildQuality : std::uint8_t {
+  fast,      ///< few candidates for splits
+  balanced,  ///< full blocks and an exact search near the leaves
+  best,      ///< also splits large triangles between leaves: for single rays in scenes of mixed sizes
+};
+
 struct BuildOptions {
-  int bins = 16;           ///< candidate planes per axis, [2, 32]
-  float node_cost = 1.0f;  ///< cost of visiting a node relative to testing one block of triangles
-  bool parallel = true;    ///< use TBB tasks
+  BuildQuality quality = BuildQuality::balanced;
+  bool parallel = true;  ///< use TBB tasks; the structure is the same
 };
 
 /// Sizes and quality of a built structure.

@@ -45,6 +45,7 @@ class Accel {
   std::vector<LeafEntry> leaves;
   ShapePools pools;
   std::vector<InstanceItem> instances;
+  bool pieces = false;                ///< a triangle may stand in more than one block
   std::vector<LeafEntry> unbounded;   ///< tested against every ray
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry

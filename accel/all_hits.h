@@ -77,9 +77,23 @@ void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A
   }
 }
 
+/// Drops repetitions of triangles among the hits from `first` on: those that are not inside an instance.
+OKTETT_INLINE void drop_repeated(const Accel& accel, HitList& hits, std::size_t first) {
+  std::size_t kept = first;
+  for (std::size_t i = first; i < hits.size(); ++i) {
+    bool seen = false;
+    if (hits[i].instance == kNoId && is_triangle(accel, hits[i].item))
+      for (std::size_t k = first; k < kept; ++k)
+        seen |= hits[k].item == hits[i].item && hits[k].instance == kNoId;
+    if (!seen) hits[kept++] = hits[i];
+  }
+  hits.shrink(kept);
+}
+
 /// Appends all hits of ray 0 of `r`, unsorted.
 template <class A>
 void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
+  const std::size_t first = hits.size();
   for (const LeafEntry& leaf : accel.unbounded) collect_leaf(accel, leaf, r, hits);
   if (accel.root.is_none()) return;
   NodeRef stack[kStackSize];
@@ -98,6 +112,7 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
         stack[size++] = node.child[__builtin_ctz(hit)];
     }
   }
+  if (accel.pieces) drop_repeated(accel, hits, first);
 }
 
 }  // namespace oktett

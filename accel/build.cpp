@@ -1,12 +1,10 @@
 /// \file From geometries to a tree: numbers the items, drops degenerate ones, lays out the pools.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "accel/build_tree.h"
+#include "accel/mesh_source.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -21,68 +19,10 @@ std::size_t item_count(const Geometry& g) {
   return 1;
 }
 
-/// Finds the corners of mesh triangles by item number, moved to the structure's space.
-class MeshCorners final : public TriangleSource {
- public:
-  explicit MeshCorners(const Accel& accel) : accel_(accel) {
-    for (const Geometry& g : accel.geometries) plain_.push_back(g.transform.is_identity());
-  }
-  void corners(std::uint32_t item, Vec3f (&v)[3]) const override {
-    corners(accel_.geometry_of(item), item, v);
-  }
-  void corners(std::uint32_t geometry, std::uint32_t item, Vec3f (&v)[3]) const {
-    const Geometry& g = accel_.geometries[geometry];
-    const TriangleMesh& mesh = *std::get<MeshGeometry>(g.shape).mesh;
-    const std::uint32_t* index = &mesh.indices[3 * std::size_t{item - accel_.first_item[geometry]}];
-    for (int k = 0; k < 3; ++k) {
-      v[k] = mesh.positions[index[k]];
-      if (!plain_[geometry]) v[k] = Vec3f(g.transform.point(Vec3d(v[k])));
-    }
-  }
-
- private:
-  const Accel& accel_;
-  std::vector<char> plain_;
-};
-
 bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite(b.hi); }
 
-PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind, TriangleTest test = TriangleTest::watertight) {
-  return {{-b.lo.x, -b.lo.y, -b.lo.z},
-          item,
-          {b.hi.x, b.hi.y, b.hi.z},
-          static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(test) << 8};
-}
-
-/// References of all triangles of one mesh, appended; degenerate ones are dropped.
-void add_mesh(const Accel& accel, std::uint32_t geometry, const MeshCorners& source,
-              std::vector<PrimRef>& refs, bool parallel) {
-  const MeshGeometry& mesh = std::get<MeshGeometry>(accel.geometries[geometry].shape);
-  const std::uint32_t first = accel.first_item[geometry];
-  const std::size_t count = mesh.mesh->triangle_count(), base = refs.size();
-  refs.resize(base + count);
-  const auto fill = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t item = first + static_cast<std::uint32_t>(i);
-      Vec3f v[3];
-      source.corners(geometry, item, v);
-      Box box;
-      for (const Vec3f& p : v) box.grow(p);
-      const bool distinct = v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
-      const bool usable = is_finite(v[0]) && is_finite(v[1]) && is_finite(v[2]) && distinct;
-      refs[base + i] = make_ref(box, usable ? item : kNoId, Kind::triangle, mesh.test);
-    }
-  };
-  constexpr std::size_t kGrain = 1u << 14;
-  if (parallel && count > kGrain) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& r) { fill(r.begin(), r.end()); });
-  } else {
-    fill(0, count);
-  }
-  refs.erase(std::remove_if(refs.begin() + static_cast<std::ptrdiff_t>(base), refs.end(),
-                            [](const PrimRef& r) { return r.item == kNoId; }),
-             refs.end());
+PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind) {
+  return {{-b.lo.x, -b.lo.y, -b.lo.z}, item, {b.hi.x, b.hi.y, b.hi.z}, static_cast<std::uint32_t>(kind)};
 }
 
 SphereShape moved_sphere(const SphereShape& s, const Affine& m) {
@@ -275,7 +215,7 @@ bool is_unbounded(const Geometry& g) {
   return std::holds_alternative<PlaneShape>(g.shape);
 }
 
-void add_references(Accel& accel, const MeshCorners& corners, std::vector<PrimRef>& refs, ItemOrder& order,
+void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& refs, ItemOrder& order,
                     bool parallel) {
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     const Geometry& geometry = accel.geometries[g];
@@ -283,7 +223,7 @@ void add_references(Accel& accel, const MeshCorners& corners, std::vector<PrimRe
     const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
     if (!geometry.transform.is_invertible()) continue;
     if (kind == Kind::triangle) {
-      add_mesh(accel, g, corners, refs, parallel);
+      accel.bounds.grow(meshes.add_references(g, refs, parallel));
       continue;
     }
     for (std::uint32_t item = first; item < end; ++item) {
@@ -297,7 +237,9 @@ void add_references(Accel& accel, const MeshCorners& corners, std::vector<PrimRe
       }
       const Box box =
           kind == Kind::instance ? instance_bounds(geometry) : shape_bounds(geometry, item - first);
-      if (is_usable(box)) refs.push_back(make_ref(box, item, kind));
+      if (!is_usable(box)) continue;
+      refs.push_back(make_ref(box, item, kind));
+      accel.bounds.grow(box);
     }
   }
 }
@@ -346,12 +288,12 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   accel->first_item.push_back(static_cast<std::uint32_t>(items));
   accel->stats.items = items;
 
-  std::vector<PrimRef> refs;
+  Column<PrimRef> refs;
   ItemOrder order;
-  const MeshCorners corners(*accel);
-  add_references(*accel, corners, refs, order, options.parallel);
+  const MeshSource meshes(*accel);
+  add_references(*accel, meshes, refs, order, options.parallel);
   const IsaTable* isa = isa_table(available_isas().back());
-  build_tree(*accel, refs, corners, order, options, *isa);
+  build_tree(*accel, refs, meshes, order, options, *isa);
   PoolFiller(*accel, order).run();
   accel->stats.unbounded = accel->unbounded.size();
   accel->stats.sah_cost = sah_cost(*accel);

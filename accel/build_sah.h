@@ -1,7 +1,10 @@
 #pragma once
-/// \file What the builder works on: primitive references and bins.
+/// \file What the builder works on: primitive references, bins, and the binary tree that comes before the
+/// wide one.
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "accel/layout.h"
 
@@ -29,21 +32,126 @@ struct Bins {
   std::uint32_t count[3][kMaxBins];
 };
 
-/// Bins refs[begin, end) by their centres: bin = floor((centre - origin) * scale), clamped to [0, bins).
-struct BinJob {
-  const PrimRef* refs;
-  std::size_t begin, end;
-  float origin[3], scale[3];
-  int bins;
-  Bins* out;  ///< added to
+/// Bounds of lo + hi, twice the centres of boxes; the fourth component is never read. Beyond 1.7e38 they are
+/// infinite, and such an axis is not split.
+struct alignas(16) Centers {
+  static constexpr float kInf = std::numeric_limits<float>::infinity();
+  float lo[4] = {kInf, kInf, kInf, kInf};
+  float hi[4] = {-kInf, -kInf, -kInf, -kInf};
+
+  void grow(const Centers& c) {
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = c.lo[k] < lo[k] ? c.lo[k] : lo[k];
+      hi[k] = c.hi[k] > hi[k] ? c.hi[k] : hi[k];
+    }
+  }
 };
 
-/// The bin of one reference along one axis. The centre is formed from halves, so that huge boxes do not
-/// overflow.
-inline __attribute__((always_inline)) int bin_of(const PrimRef& r, int axis, float origin, float scale,
-                                                 int bins) {
-  const float c = (r.hi[axis] * 0.5f - r.negative_lo[axis] * 0.5f - origin) * scale;
-  return c >= static_cast<float>(bins - 1) ? bins - 1 : c > 0 ? static_cast<int>(c) : 0;
+/// Which bin a centre falls into: floor((centre - origin) * scale), clamped to [0, bins). The centre is
+/// formed from halves, so that huge boxes do not overflow. Scale 0: all in bin 0.
+struct Grid {
+  float origin[4] = {}, scale[4] = {};
+  int bins = 0;
+};
+
+/// Bins refs[0, count).
+struct BinJob {
+  const PrimRef* refs;
+  std::size_t count;
+  Grid grid;
+  Bins* out;  ///< overwritten
+};
+
+/// A plane between bins `bin` and `bin` + 1 of an axis; axis < 0: none.
+struct Split {
+  int axis = -1, bin = 0;
+  float cost = std::numeric_limits<float>::infinity();
+};
+
+/// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]), by the
+/// side of the plane that their centres are on, and bounds the centres of each side.
+struct PartitionJob {
+  const PrimRef* refs;
+  std::size_t count;
+  PrimRef* left;
+  PrimRef* right;
+  Grid grid;
+  Split split;
+  Centers centers[2];  ///< grown
+};
+
+/// A node of the binary tree: a pair of children, or a leaf. 32 bytes.
+struct alignas(32) BinaryNode {
+  static constexpr std::uint32_t kInner = 1u << 31;
+
+  float negative_lo[3];
+  std::uint32_t link;  ///< the left child, the right one follows; in a leaf the place of the first item
+  float hi[3];
+  std::uint32_t info;  ///< see below
+
+  bool is_leaf() const { return (info & kInner) == 0; }
+  // Leaves: how many items, of which kind.
+  static std::uint32_t leaf_info(std::uint32_t count, std::uint32_t kind) { return count | kind << 8; }
+  int count() const { return static_cast<int>(info & 0xff); }
+  Kind kind() const { return static_cast<Kind>(info >> 8 & 0xff); }
+  TriangleTest test() const { return static_cast<TriangleTest>(info >> 16 & 0xff); }
+  /// Inner nodes: of `slots` places (2 to 8) in a wide node, how many the left child's subtree gets for the
+  /// least cost; 0: a place is better left empty. See accel/build_collapse.h.
+  int left_slots(int slots) const { return static_cast<int>(info >> 3 * (slots - 2) & 7); }
+};
+static_assert(sizeof(BinaryNode) == 32);
+
+/// Cost of a subtree (the areas of its wide nodes and leaves) if it may fill 1 to 7 places of a wide node.
+/// See accel/build_collapse.h.
+struct SubtreeCost {
+  float places[7];
+};
+
+/// The largest range that may be built by sorting instead of binning.
+inline constexpr std::uint32_t kMaxSweep = 256;
+
+/// What a BuildQuality means.
+struct Effort {
+  int bins;             ///< candidate intervals per axis, [2, kMaxBins]
+  std::uint32_t sweep;  ///< ranges up to this size are swept, [8, kMaxSweep]
+  std::uint32_t
+      every_place;  ///< of these, ranges up to this size are tried at every place, others at full blocks
+  bool cells;       ///< larger ranges are divided by a space-filling curve
+};
+
+/// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].
+struct SweepJob {
+  const PrimRef* refs;
+  std::uint32_t count;
+  std::uint32_t first;   ///< place of the range among all items
+  std::uint32_t* items;  ///< out: the items in the order of the leaves
+  int depth;             ///< of the range; the tree stays below kMaxDepth
+  float unit;            ///< a power of two by which the scene is of size 1
+  Effort effort;
+  bool pieces;               ///< an item may occur more than once
+  BinaryNode* nodes;         ///< out: up to 2 * count - 1, the root first; links to children count from here
+  std::uint32_t node_count;  ///< out
+  SubtreeCost cost;          ///< out
+};
+
+/// The parts of the builder that are compiled per instruction set. All sets build the same tree.
+struct BuildKernels {
+  void (*bin)(const BinJob&);
+  void (*bound)(const PrimRef*, std::size_t count, Centers&);  ///< grows bounds of centres
+  void (*partition)(PartitionJob&);
+  void (*sweep)(SweepJob&);
+};
+
+/// Blocks of eight that n primitives fill: what leaves cost, and why splits fall at multiples of eight where
+/// they can.
+constexpr std::uint32_t blocks_of(std::uint32_t n) {
+  return (n + TriangleBlock::kSize - 1) / TriangleBlock::kSize;
+}
+
+/// Half of n, a multiple of eight if that is possible.
+constexpr std::size_t balanced_half(std::size_t n) {
+  constexpr std::size_t size = TriangleBlock::kSize;
+  return n > 2 * size ? n / 2 / size * size : n > size ? size : n / 2;
 }
 
 }  // namespace oktett

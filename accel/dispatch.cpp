@@ -13,6 +13,10 @@ namespace oktett {
 void HitList::push(const Hit& hit) { hits_.push_back(hit); }
 std::size_t HitList::size() const { return hits_.size(); }
 Hit& HitList::operator[](std::size_t i) { return hits_[i]; }
+void HitList::shrink(std::size_t size) { hits_.resize(size); }
+bool is_triangle(const Accel& accel, std::uint32_t item) {
+  return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;
+}
 
 const IsaTable* isa_table(Isa isa) {
   switch (isa) {

@@ -9,12 +9,18 @@
 
 namespace oktett {
 
+class Accel;
+
+/// Whether an item of the structure, not of one inside, is a triangle of a mesh.
+bool is_triangle(const Accel& accel, std::uint32_t item);
+
 class HitList {
  public:
   explicit HitList(std::vector<Hit>& hits) : hits_(hits) {}
   void push(const Hit& hit);
   std::size_t size() const;
   Hit& operator[](std::size_t i);
+  void shrink(std::size_t size);
 
  private:
   std::vector<Hit>& hits_;

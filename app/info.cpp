@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "accel/trace_counts.h"
 #include "app/command.h"
 #include "app/json.h"
 #include "app/render_options.h"
@@ -14,6 +18,8 @@
 #include "app/units.h"
 #include "app/warnings.h"
 #include "io/scene_file.h"
+#include "render/camera.h"
+#include "render/default_view.h"
 #include "render/geometry.h"
 
 namespace oktett {
@@ -23,7 +29,9 @@ namespace {
 struct InfoArguments {
   std::string file;
   std::vector<std::string> definitions;
+  std::string bvh;
   bool json = false;
+  bool trace = false;
 };
 
 std::string closed_text(const SceneSummary& summary) {
@@ -44,17 +52,45 @@ std::string bounds_text(const Box& box) {
 
 /// Figures of the trees, all prototypes' included.
 struct TreeSummary {
+  std::optional<TraceCounts> counts;
   double build_seconds = 0;
   std::uint64_t bytes = 0;
   double sah_cost = 0;
   std::uint64_t triangles = 0;
 };
 
-TreeSummary build_trees(const Scene& scene) {
+/// The rays through the centres of a frame's pixels, at most about a million.
+RayBatch camera_rays(const Scene& scene, const Box& bounds) {
+  Film film = scene.film;
+  constexpr std::uint32_t kMostPixels = 1024;
+  film.width = std::min(film.width, kMostPixels), film.height = std::min(film.height, kMostPixels);
+  const Camera camera = scene.camera_given ? scene.camera : frame_bounds(bounds, scene.camera, film);
+  const CameraFrame frame = camera_frame(camera, film);
+  RayBatch rays;
+  for (std::uint32_t y = 0; y < film.height; ++y)
+    for (std::uint32_t x = 0; x < film.width; ++x) rays.push_back(camera_ray(frame, x + 0.5, y + 0.5));
+  return rays;
+}
+
+TreeSummary build_trees(const Scene& scene, const InfoArguments& arguments) {
+  BuildOptions options;
+  options.quality = parse_quality(arguments.bvh);
   const auto start = std::chrono::steady_clock::now();
-  const World world = build_world(scene);
+  const World world = build_world(scene, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  return {taken.count(), world.bvh_bytes, world.sah_cost, world.triangles};
+  TreeSummary tree{{}, taken.count(), world.bvh_bytes, world.sah_cost, world.triangles};
+  if (arguments.trace) tree.counts = trace_counts(*world.accel, camera_rays(scene, world.bounds).span());
+  return tree;
+}
+
+/// What one ray met on average, in the order in which it is printed.
+std::vector<std::pair<const char*, double>> per_ray(const TraceCounts& c) {
+  const double rays = static_cast<double>(std::max<std::uint64_t>(c.rays, 1));
+  const auto mean = [&](std::uint64_t n) { return static_cast<double>(n) / rays; };
+  return {{"nodes", mean(c.nodes)},   {"boxes", mean(c.boxes)},
+          {"blocks", mean(c.blocks)}, {"triangles", mean(c.triangles)},
+          {"other", mean(c.other)},   {"instances", mean(c.instances)},
+          {"hits", mean(c.hits)}};
 }
 
 void print_text(const Scene& scene, const SceneSummary& summary, const TreeSummary& tree) {
@@ -83,6 +119,10 @@ void print_text(const Scene& scene, const SceneSummary& summary, const TreeSumma
   }
   line("BVH cost", fmt::format("{:.2f} (expected nodes and leaves per ray)", tree.sah_cost));
   line("BVH build", fmt::format("{:.3g} s", tree.build_seconds));
+  if (!tree.counts) return;
+  line("camera rays", grouped(tree.counts->rays));
+  for (const auto& [name, mean] : per_ray(*tree.counts))
+    line(fmt::format("  {}", name).c_str(), fmt::format("{:.3g} per ray", mean));
 }
 
 void print_json(const Scene& scene, const SceneSummary& summary, const TreeSummary& tree) {
@@ -111,6 +151,12 @@ void print_json(const Scene& scene, const SceneSummary& summary, const TreeSumma
   all.add("bvh_bytes", tree.bytes);
   all.add("sah_cost", tree.sah_cost);
   all.add("build_seconds", tree.build_seconds);
+  if (tree.counts) {
+    JsonObject counts;
+    counts.add("rays", tree.counts->rays);
+    for (const auto& [name, mean] : per_ray(*tree.counts)) counts.add(name, mean);
+    all.add("per_camera_ray", counts);
+  }
   fmt::print("{}\n", all.text());
 }
 
@@ -118,7 +164,7 @@ int run_info(const InfoArguments& arguments) {
   const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions));
   print_warnings(scene.warnings);
   const SceneSummary summary = summarize(scene);
-  const TreeSummary tree = build_trees(scene);
+  const TreeSummary tree = build_trees(scene, arguments);
   if (arguments.json)
     print_json(scene, summary, tree);
   else
@@ -138,6 +184,8 @@ void add_info_command(CLI::App& app, Command& command) {
   verb->add_option("-D", arguments->definitions, "Define ${k} of the scene file; may be repeated")
       ->type_name("k=v")
       ->allow_extra_args(false);
+  add_bvh_option(*verb, arguments->bvh);
+  verb->add_flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->callback([&command, arguments] { command.run = [arguments] { return run_info(*arguments); }; });
 }

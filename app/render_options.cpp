@@ -17,6 +17,8 @@ namespace oktett {
 namespace {
 
 constexpr const char* kIntegrators[] = {"whitted", "path", "ao", "normal", "depth"};
+/// In the order of BuildQuality.
+constexpr const char* kQualities[] = {"fast", "balanced", "best"};
 // The same bounds as in a scene file.
 constexpr std::uint32_t kMaxSide = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
@@ -82,6 +84,7 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
   verb.add_option("--seed", a.seed, "Seed of the random numbers")->type_name("N");
   verb.add_option("--integrator", a.integrator, "whitted, path, ao, normal or depth")->type_name("K");
   verb.add_option("--isa", a.isa, "Instruction set: auto, sse4.2, avx2, avx512 or scalar")->type_name("NAME");
+  add_bvh_option(verb, a.bvh);
   verb.add_option("-D", a.definitions, "Define ${k} of the scene file; may be repeated")
       ->type_name("k=v")
       ->allow_extra_args(false);
@@ -91,6 +94,21 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
   verb.add_flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
   verb.add_option("--display-server", a.display_server, "Live preview in a viewer that speaks tev's protocol")
       ->type_name("HOST:PORT");
+}
+
+void add_bvh_option(CLI::App& verb, std::string& text) {
+  verb.add_option("--bvh", text, "How hard to build the tree: fast, balanced or best")->type_name("QUALITY");
+}
+
+BuildQuality parse_quality(const std::string& text) {
+  constexpr std::size_t count = std::size(kQualities);
+  if (text.empty()) return BuildQuality::balanced;
+  for (std::size_t i = 0; i < count; ++i)
+    if (text == kQualities[i]) return static_cast<BuildQuality>(i);
+  const std::string near = nearest_name(text, kQualities, count);
+  throw Error(fmt::format(
+      "--bvh: unknown quality '{}'; {}", text,
+      near.empty() ? "expected fast, balanced or best" : fmt::format("did you mean '{}'?", near)));
 }
 
 void override_scene(const RenderArguments& arguments, Scene& scene) {

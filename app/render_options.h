@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "accel/accel.h"
 #include "io/scene_file.h"
 #include "render/scene.h"
 
@@ -26,6 +27,7 @@ struct RenderArguments {
   std::string crop;
   std::string integrator;
   std::string isa;
+  std::string bvh;
   std::vector<std::string> definitions;
   std::string stats;  ///< "", "text" or "json"
   std::string display_server;
@@ -40,6 +42,9 @@ void add_render_options(CLI::App& verb, RenderArguments& arguments);
 void override_scene(const RenderArguments& arguments, Scene& scene);
 /// Splits `name=value` words; the last of a name counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
+/// The word of --bvh; empty: the default. Throws Error for words that mean nothing.
+BuildQuality parse_quality(const std::string& text);
+void add_bvh_option(CLI::App& verb, std::string& text);
 /// `outfile`, or the scene's name with .png in the current directory.
 std::string output_path(const RenderArguments& arguments);
 

@@ -7,6 +7,7 @@
 /// accumulator second and NaN never enters it.
 
 #include <type_traits>
+#include <utility>
 
 #include "core/simd_native.h"
 
@@ -213,6 +214,17 @@ OKTETT_INLINE Simd<double, W, A> product_error(const Simd<double, W, A>& a, cons
     const D ah = ca - (ca - a), bh = cb - (cb - b);
     const D al = a - ah, bl = b - bh;
     return al * bl - (((p - ah * bh) - al * bh) - ah * bl);
+  }
+}
+
+/// Rows to columns: {a0, a1, a2}, {b0, b1, b2}, {c0, c1, c2} become {a0, b0, c0}, {a1, b1, c1}, {a2, b2, c2};
+/// the fourth lanes are left undefined.
+template <class A>
+OKTETT_INLINE void transpose3(Simd<float, 4, A>& a, Simd<float, 4, A>& b, Simd<float, 4, A>& c) {
+  if constexpr (Simd<float, 4, A>::kParts == 1) {
+    native::transpose3(a.part[0], b.part[0], c.part[0]);
+  } else {
+    std::swap(a.part[1], b.part[0]), std::swap(a.part[2], c.part[0]), std::swap(b.part[2], c.part[1]);
   }
 }
 

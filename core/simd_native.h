@@ -223,6 +223,8 @@ template <class B>
 B fms(B, B, B) = delete;
 template <class B>
 B concat(B, B) = delete;
+template <class B>
+void transpose3(B&, B&, B&) = delete;
 template <class... B>
 void widen(B&&...) = delete;
 template <class... B>

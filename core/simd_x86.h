@@ -33,6 +33,14 @@ OKTETT_INLINE void from_bits(batch_bool<double, Sse>& m, unsigned b) {
   m = _mm_castsi128_pd(_mm_cmpeq_epi64(_mm_and_si128(_mm_set1_epi64x(b), lane), lane));
 }
 
+/// See Simd's transpose3.
+OKTETT_INLINE void transpose3(batch<float, Sse>& a, batch<float, Sse>& b, batch<float, Sse>& c) {
+  const __m128 xy = _mm_unpacklo_ps(a, b), z = _mm_unpackhi_ps(a, b);
+  a = _mm_movelh_ps(xy, c);
+  b = _mm_shuffle_ps(xy, c, _MM_SHUFFLE(1, 1, 3, 2));
+  c = _mm_shuffle_ps(z, c, _MM_SHUFFLE(2, 2, 1, 0));
+}
+
 /// Four floats to two registers of two doubles, and back.
 OKTETT_INLINE void widen(batch<float, Sse> a, batch<double, Sse>& lo, batch<double, Sse>& hi) {
   lo = _mm_cvtps_pd(a), hi = _mm_cvtps_pd(_mm_movehl_ps(a, a));

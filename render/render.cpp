@@ -103,7 +103,7 @@ void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture
 RenderResult render_here(Scene scene, const RenderOptions& options) {
   RenderResult result;
   const Clock::time_point start = Clock::now();
-  const World world = build_world(scene);
+  const World world = build_world(scene, options.build);
   complete_scene(scene, world.bounds);
   const double build_seconds = seconds_since(start);
 

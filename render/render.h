@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "accel/accel.h"
 #include "core/isa.h"
 #include "render/picture.h"
 #include "render/scene.h"
@@ -34,6 +35,7 @@ struct RenderOptions {
   /// May be empty; called for each finished tile, one at a time, with the picture as it stands (colour planes
   /// only).
   std::function<void(const Picture&, const FinishedTile&)> tile_finished;
+  BuildOptions build;  ///< of the acceleration structures; the picture does not depend on it
   std::uint32_t tile_size =
       16;                   ///< pixels along the edge of a tile, [1, 256]; the picture does not depend on it
   bool data_layers = true;  ///< also fill Z, N, P, Albedo, u, v, ids and Variance planes

@@ -3,7 +3,7 @@
 /// verification.
 
 #include "accel/all_hits.h"
-#include "accel/build_sah.h"
+#include "accel/build_kernels.h"
 #include "accel/isa/table.h"
 #include "accel/stream.h"
 
@@ -49,19 +49,6 @@ struct IsaCode {
                   accel.bounds) != 0)
       collect(accel, state, hits);
   }
-  static void bin(const BinJob& job) {
-    using B = Simd<float, 8, A>;
-    for (std::size_t i = job.begin; i < job.end; ++i) {
-      const PrimRef& r = job.refs[i];
-      const B box = B::load(r.negative_lo);
-      for (int axis = 0; axis < 3; ++axis) {
-        const int b = bin_of(r, axis, job.origin[axis], job.scale[axis], job.bins);
-        float* bin = job.out->box[axis][b].v;
-        max(box, B::load(bin)).store(bin);
-        ++job.out->count[axis][b];
-      }
-    }
-  }
   static void run_kernel(KernelId id, int width, const KernelRun& run);
 };
 
@@ -74,7 +61,7 @@ namespace oktett {
 template <class A>
 const IsaTable& make_table() {
   static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit, IsaCode<A>::all_hits,
-                                     IsaCode<A>::run_kernel, IsaCode<A>::bin};
+                                     IsaCode<A>::run_kernel, build_kernels<A>()};
   return table;
 }
 

@@ -2,6 +2,7 @@
 /// \file The hot code of one instruction set, as functions. One translation unit per set instantiates it.
 
 #include "accel/accel.h"
+#include "accel/build_sah.h"
 #include "accel/hit_list.h"
 #include "accel/trace_mode.h"
 #include "core/isa.h"
@@ -35,16 +36,13 @@ enum class KernelId : std::uint8_t {
   slab,
 };
 
-/// For the tree builder: bins primitives by their centres.
-struct BinJob;
-
 struct IsaTable {
   void (*closest_hit)(const Accel&, const RaySpan&, const HitSpan&, TraceMode);
   void (*any_hit)(const Accel&, const RaySpan&, std::uint8_t*, TraceMode);
   void (*all_hits)(const Accel&, const Ray&, HitList&);
   /// `width` is 1, 4, 8 or 16.
   void (*run_kernel)(KernelId, int width, const KernelRun&);
-  void (*bin)(const BinJob&);
+  BuildKernels build;
 };
 
 /// Null if this build holds no code for `isa`.

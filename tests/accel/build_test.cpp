@@ -163,7 +163,7 @@ TEST(Build, HugeCoordinatesStayFinite) {
   expect_whole_tree(*build(m), m.triangle_count());
 }
 
-// Parallel and serial building may differ in the order of nodes, never in a hit.
+// Large enough for every step to be shared out among threads.
 TEST(Build, ParallelAndSerialTreesGiveTheSameHits) {
   const TriangleMesh m = random_triangles(200000, 1, 0.01, 11);
   const auto parallel = build(m), serial = build(m, false);

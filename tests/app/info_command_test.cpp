@@ -37,6 +37,24 @@ TEST(InfoCommand, TellsAClosedMeshFromAnOpenOne) {
   EXPECT_TRUE(contains(run_command(dir, {"info", "open.obj"}).out, "3 open edges"));
 }
 
+TEST(InfoCommand, TraceCountsWhatCameraRaysMeet) {
+  const TempDir dir;
+  dir.write("tetra.obj", kTetrahedron);
+  const CommandResult plain = run_command(dir, {"info", "--json", "tetra.obj"});
+  EXPECT_FALSE(contains(plain.out, "per_camera_ray"));
+  for (const char* quality : {"fast", "balanced", "best"}) {
+    const CommandResult traced =
+        run_command(dir, {"info", "--json", "--trace", "--bvh", quality, "tetra.obj"});
+    EXPECT_EQ(traced.status, 0) << traced.err;
+    EXPECT_TRUE(contains(traced.out, "\"rays\": 518400, \"nodes\": 0,")) << traced.out;
+    EXPECT_FALSE(contains(traced.out, "\"hits\": 0,"));
+  }
+  EXPECT_TRUE(contains(run_command(dir, {"info", "--trace", "tetra.obj"}).out, "per ray"));
+  const CommandResult wrong = run_command(dir, {"info", "--bvh", "bast", "tetra.obj"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(contains(wrong.err, "did you mean")) << wrong.err;
+}
+
 TEST(InfoCommand, CountsThroughInstances) {
   const TempDir dir;
   dir.write("tetra.obj", kTetrahedron);
