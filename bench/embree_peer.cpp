@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstring>
 #include <limits>
-#include <string>
 
 namespace oktett::bench {
 namespace {
@@ -134,10 +133,9 @@ struct EmbreeScene::Impl {
   std::size_t bytes = 0;
 };
 
-EmbreeScene::EmbreeScene(const TriangleMesh& mesh, int quality, int threads, const char* config)
+EmbreeScene::EmbreeScene(const TriangleMesh& mesh, int quality, const char* config)
     : impl_(std::make_unique<Impl>()) {
-  const std::string text = "threads=" + std::to_string(threads) + (*config ? std::string(",") + config : "");
-  impl_->device = rtcNewDevice(text.c_str());
+  impl_->device = rtcNewDevice(config);
   rtcSetDeviceMemoryMonitorFunction(impl_->device, count_memory, nullptr);
   const std::ptrdiff_t before = allocated;
   impl_->scene = rtcNewScene(impl_->device);

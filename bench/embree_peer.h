@@ -24,7 +24,8 @@ const std::vector<EmbreeMode>& embree_modes();
 class EmbreeScene {
  public:
   /// `quality`: 1 = medium, 2 = high. `config` is Embree's device configuration, e.g. "isa=avx2".
-  EmbreeScene(const TriangleMesh& mesh, int quality, int threads, const char* config);
+  /// It builds on as many threads as TBB may use here: a limit in `config` would hold for the whole process.
+  EmbreeScene(const TriangleMesh& mesh, int quality, const char* config);
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;

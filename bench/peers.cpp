@@ -1,274 +1,262 @@
 /// \file Oktett against Embree: the same mesh, the same rays in the same order, runs interleaved, medians of
-/// the ratios.
-///
-///   peers [--resolution N] [--threads N] [--runs N] [--inside] [--isa NAME] [--json FILE] MESH.obj...
+/// the ratios. `peers` without arguments tells the options.
 ///
 /// Embree runs in the best of its modes (1, 8 or 16 rays, coherent or not, medium or high build quality);
-/// denormals are flushed for both. The null tracer copies the rays and stores misses: the bound that no
-/// tracer can pass.
+/// denormals are flushed for both.
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#if defined(__SSE2__)
-#include <pmmintrin.h>
-#endif
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <limits>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "accel/dispatch.h"
+#include "accel/accel.h"
 #include "bench/bench_rays.h"
+#include "bench/build_variants.h"
 #include "bench/embree_peer.h"
+#include "bench/peer_options.h"
+#include "bench/peer_picture.h"
+#include "bench/peer_table.h"
+#include "bench/peer_timing.h"
+#include "bench/peer_trace.h"
 #include "core/error.h"
 #include "io/obj.h"
 
 namespace oktett::bench {
 namespace {
 
-struct Settings {
-  View view;
-  int threads = 1, runs = 9;
-  std::string isa, json;
-  std::vector<std::string> meshes;
+std::string embree_config(Isa isa) {
+  return isa == Isa::avx2 ? "isa=avx2" : isa == Isa::sse42 ? "isa=sse4.2" : "";
+}
+
+Quartiles rates(const std::vector<double>& seconds, double count) {
+  std::vector<double> rates;
+  for (const double s : seconds) rates.push_back(count / s);
+  return quartiles(rates);
+}
+
+/// The seconds that the same thing took the two rivals (and nothing at all), in turn.
+struct Times {
+  std::vector<double> oktett, embree, null, ratio;
+  void add(double ours, double theirs) {
+    oktett.push_back(ours), embree.push_back(theirs), ratio.push_back(theirs / ours);
+  }
 };
 
-/// One line of the table: rates (higher is better) or sizes (lower is better).
-struct Row {
-  std::string mesh, work, unit;
-  double oktett = 0, embree = 0, null = 0, ratio = 0, spread = 0;
-  std::string mode;
-};
-
-double seconds(const std::function<void()>& f) {
-  const auto start = std::chrono::steady_clock::now();
-  f();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v.size() % 2 ? v[v.size() / 2] : 0.5 * (v[v.size() / 2 - 1] + v[v.size() / 2]);
-}
-
-void flush_denormals() {
-#if defined(__SSE2__)
-  _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-  _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-#endif
-}
-
-/// Shares a batch out in equal pieces, the same for every rival.
-void in_pieces(std::size_t size, const std::function<void(std::size_t, std::size_t)>& f) {
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, size, 4096),
-      [&](const tbb::blocked_range<std::size_t>& r) {
-        flush_denormals();
-        f(r.begin(), r.size());
-      },
-      tbb::simple_partitioner());
-}
-
-/// Everything about one mesh.
+/// All rows of one mesh.
 class Comparison {
  public:
-  Comparison(const std::string& path, const Settings& settings, Isa isa) : settings_(settings), isa_(isa) {
-    name_ = path.substr(path.rfind('/') + 1);
-    mesh_ = load_obj(path).mesh;
+  Comparison(std::string path, const PeerOptions& options, Isa isa, PeerReport& report)
+      : path_(std::move(path)), options_(options), isa_(isa), config_(embree_config(isa)), report_(report) {
+    name_ = path_.substr(path_.rfind('/') + 1);
+    mesh_ = load_obj(path_).mesh;
   }
 
-  std::vector<Row> run() {
-    build();
-    const Box box = bounds(*accel_);
-    const RayBatch primary = primary_rays(box, settings_.view);
-    HitBatch hits;
-    hits.resize_uninitialized(primary.size());
-    closest_hit(*accel_, primary.span(), hits.span(), isa_);
-    const float radius = 0.5f * length(box.extent());
-    const float infinity = std::numeric_limits<float>::infinity();
-    trace("primary", primary, false);
-    trace("point-light shadow", shadow_rays(*accel_, primary, hits, box, settings_.view), true);
-    trace("diffuse", diffuse_rays(*accel_, primary, hits, box, 1, infinity), false);
-    trace("ambient occlusion", diffuse_rays(*accel_, primary, hits, box, 4, 0.2f * radius), true);
-    return rows_;
+  void run() {
+    build_rows();
+    if (!options_.wants_tracing()) return;
+    const std::size_t agreed = report_.agreements.size();
+    for (const bool inside : options_.inside)
+      for (const int resolution : options_.resolutions) view_rows({resolution, inside});
+    print_agreement(
+        {report_.agreements.begin() + static_cast<std::ptrdiff_t>(agreed), report_.agreements.end()});
   }
 
  private:
-  void build() {
-    std::vector<double> ours, theirs, ratios;
+  std::shared_ptr<const Accel> build(const BuildVariant& variant) const {
     Geometry g;
     g.shape = MeshGeometry{&mesh_};
-    const char* config = isa_ == Isa::avx2 ? "isa=avx2" : isa_ == Isa::sse42 ? "isa=sse4.2" : "";
-    const int runs = mesh_.triangle_count() > 2000000 ? 3 : settings_.runs;
-    for (int i = 0; i < runs; ++i) {
-      accel_.reset(), medium_.reset();
-      ours.push_back(seconds([&] { accel_ = build_accel({g}); }));
-      medium_ = std::make_unique<EmbreeScene>(mesh_, 1, settings_.threads, config);
-      theirs.push_back(medium_->build_seconds());
-      ratios.push_back(theirs.back() / ours.back());
+    return build_accel({g}, variant.options);
+  }
+  std::unique_ptr<EmbreeScene> embree_build(int quality) const {
+    return std::make_unique<EmbreeScene>(mesh_, quality, config_.c_str());
+  }
+
+  /// Embree's trees; made when they are asked for.
+  const EmbreeScene* medium() { return (medium_ ? medium_ : medium_ = embree_build(1)).get(); }
+  const EmbreeScene* high() { return (high_ ? high_ : high_ = embree_build(2)).get(); }
+  /// Their devices keep TBB from giving out all threads.
+  void forget_embree() { medium_.reset(), high_.reset(); }
+
+  Row row(const View& view, int threads, const std::string& work, const std::string& unit) const {
+    Row row;
+    row.mesh = name_, row.inside = view.inside, row.resolution = view.resolution, row.threads = threads;
+    row.work = work, row.unit = unit;
+    return row;
+  }
+  void add(Row row) {
+    print_row(row);
+    report_.rows.push_back(std::move(row));
+  }
+
+  /// Builds with `variant` and with Embree in turn, and leaves both trees.
+  Times race_build(const BuildVariant& variant, int threads) {
+    Times times;
+    for (Rounds rounds(options_.seconds, 3, options_.runs); rounds.next();) {
+      accel_.reset();
+      forget_embree();
+      on_threads(threads, [&] {
+        const double ours = seconds([&] { accel_ = build(variant); });
+        times.add(ours, medium()->build_seconds());
+      });
     }
-    high_ = std::make_unique<EmbreeScene>(mesh_, 2, settings_.threads, config);
+    return times;
+  }
+
+  void build_rows() {
     const double triangles = static_cast<double>(mesh_.triangle_count());
-    add("build", "Mtris/s", triangles / median(ours) * 1e-6, triangles / median(theirs) * 1e-6, 0, ratios,
-        "medium");
-    const double bytes = static_cast<double>(stats(*accel_).bytes() + mesh_.bytes()) / triangles;
-    const double peer = static_cast<double>(medium_->bytes()) / triangles;
-    rows_.push_back(
-        {name_, "bytes per triangle", "B", bytes, peer, 0, bytes / peer, 0, "medium, with buffers"});
-  }
-
-  /// Traces one batch by Oktett and by the best mode of Embree, in turn.
-  void trace(const std::string& work, const RayBatch& rays, bool any) {
-    const RaySpan span = rays.span();
-    HitBatch hits;
-    hits.resize_uninitialized(rays.size());
-    const HitSpan out = hits.span();
-    std::vector<std::uint8_t> occluded(rays.size());
-    const auto ours = [&] {
-      in_pieces(span.size, [&](std::size_t b, std::size_t n) {
-        if (any)
-          any_hit(*accel_, span.part(b, n), occluded.data() + b, isa_);
-        else
-          closest_hit(*accel_, span.part(b, n), out.part(b, n), isa_);
-      });
-    };
-    const auto peer = [&](const EmbreeScene& scene, EmbreeMode mode) {
-      in_pieces(span.size, [&](std::size_t b, std::size_t n) {
-        if (any)
-          scene.any_hit(span.part(b, n), occluded.data() + b, mode);
-        else
-          scene.closest_hit(span.part(b, n), out.part(b, n), mode);
-      });
-    };
-    const auto null = [&] {
-      in_pieces(span.size, [&](std::size_t b, std::size_t n) {
-        for (std::size_t i = b; i < b + n; ++i) {
-          const Ray r = span[i];
-          if (any)
-            occluded[i] = r.direction.x > 2;
-          else
-            out.set(i, {r.tmax, r.origin.x, r.direction.x, kNoId, kNoId});
-        }
-      });
-    };
-    const EmbreeScene* scene = nullptr;
-    EmbreeMode best_mode;
-    double best = std::numeric_limits<double>::infinity();
-    for (const EmbreeScene* s : {medium_.get(), high_.get()})
-      for (EmbreeMode mode : embree_modes()) {
-        peer(*s, mode);
-        const double t = std::min(seconds([&] { peer(*s, mode); }), seconds([&] { peer(*s, mode); }));
-        if (t < best) best = t, best_mode = mode, scene = s;
-      }
-    std::vector<double> a, b, c, ratios;
-    ours();
-    for (int i = 0; i < settings_.runs; ++i) {
-      a.push_back(seconds(ours));
-      b.push_back(seconds([&] { peer(*scene, best_mode); }));
-      c.push_back(seconds(null));
-      ratios.push_back(b.back() / a.back());
+    const BuildVariant& variant = find_variant(options_.build);
+    const View none{0, false};
+    for (const int threads : options_.threads) {
+      if (!options_.wants(Work::build)) break;
+      const Times t = race_build(variant, threads);
+      Row r = row(none, threads, "build", "Mtri/s");
+      r.oktett = rates(t.oktett, triangles * 1e-6), r.embree = rates(t.embree, triangles * 1e-6);
+      r.ratio = quartiles(t.ratio), r.mode = variant.name + "; medium";
+      add(r);
     }
-    const double n = static_cast<double>(rays.size()) * 1e-6;
-    add(work, "Mrays/s", n / median(a), n / median(b), n / median(c), ratios,
-        fmt::format("{} {}, {}", best_mode.width, best_mode.coherent ? "coherent" : "incoherent",
-                    scene == medium_.get() ? "medium" : "high"));
+    if (accel_ == nullptr) accel_ = build(variant);
+    if (!options_.wants(Work::bytes)) return;
+    const double ours = static_cast<double>(stats(*accel_).bytes() + mesh_.bytes()) / triangles;
+    const double theirs = static_cast<double>(medium()->bytes()) / triangles;
+    Row r = row(none, options_.threads.front(), "bytes per triangle", "B");
+    r.oktett = quartiles({ours}), r.embree = quartiles({theirs}), r.ratio = quartiles({ours / theirs});
+    r.mode = variant.name + "; medium, with buffers";
+    add(r);
   }
 
-  void add(const std::string& work, const std::string& unit, double oktett, double embree, double null,
-           const std::vector<double>& ratios, const std::string& mode) {
-    const auto [lo, hi] = std::minmax_element(ratios.begin(), ratios.end());
-    rows_.push_back({name_, work, unit, oktett, embree, null, median(ratios), *hi - *lo, mode});
+  void view_rows(const View& view) {
+    const std::vector<Workload> works = make_workloads(*accel_, view, options_, isa_);
+    for (const Workload& work : works)
+      if (options_.wants(work.work) && work.rays.size() > 0) trace_rows(view, work);
+    if (options_.wants(Work::equal))
+      for (const int threads : options_.threads) equal_row(view, works, threads);
+    if (options_.wants(Work::picture))
+      for (const int threads : options_.threads) picture_row(view, works.front(), threads);
   }
 
-  const Settings& settings_;
+  /// Traces one batch by Oktett and by the best mode of Embree in turn, on each number of threads.
+  void trace_rows(const View& view, const Workload& work) {
+    const EmbreeChoice choice = fastest_mode({medium(), high()}, work);
+    Answers ours(work), theirs(work), nothing(work);
+    std::map<int, Times> times;
+    trace(*accel_, work, isa_, 1, ours);
+    for (Rounds rounds(options_.seconds, 3, options_.runs); rounds.next();)
+      for (const int threads : options_.threads) {
+        Times& t = times[threads];
+        const double a = seconds([&] { trace(*accel_, work, isa_, threads, ours); });
+        t.add(a, seconds([&] { trace(*choice.scene, choice.mode, work, threads, theirs); }));
+        t.null.push_back(seconds([&] { trace_nothing(work, threads, nothing); }));
+      }
+    const double n = static_cast<double>(work.rays.size()) * 1e-6;
+    for (const int threads : options_.threads) {
+      const Times& t = times[threads];
+      Row r = row(view, threads, work.name, "Mray/s");
+      r.oktett = rates(t.oktett, n), r.embree = rates(t.embree, n), r.null = rates(t.null, n);
+      r.ratio = quartiles(t.ratio);
+      r.mode = to_string(choice.mode) + (choice.scene == medium() ? ", medium" : ", high");
+      add(r);
+    }
+    scaling_rows(view, work, times);
+    Agreement agreement = compare(work, ours, theirs);
+    agreement.mesh = name_, agreement.inside = view.inside, agreement.resolution = view.resolution;
+    report_.agreements.push_back(agreement);
+  }
+
+  /// How much faster each further number of threads is than the first.
+  void scaling_rows(const View& view, const Workload& work, std::map<int, Times>& times) {
+    const int first = options_.threads.front();
+    const auto gain = [](const std::vector<double>& few, const std::vector<double>& many) {
+      std::vector<double> gains;
+      for (std::size_t i = 0; i < many.size(); ++i) gains.push_back(few[i] / many[i]);
+      return quartiles(gains);
+    };
+    for (const int threads : options_.threads) {
+      if (threads == first) continue;
+      const Times &few = times[first], &many = times[threads];
+      Row r = row(view, threads, fmt::format("{} threads over {}", threads, first), "times");
+      r.oktett = r.ratio = gain(few.oktett, many.oktett), r.embree = gain(few.embree, many.embree);
+      r.null = gain(few.null, many.null), r.mode = work.name + "; ratio is Oktett's gain";
+      add(r);
+    }
+  }
+
+  /// Embree's medium build against the fastest of Oktett's builds whose tree is traced at least as fast.
+  void equal_row(const View& view, const std::vector<Workload>& works, int threads) {
+    Row r = row(view, threads, "build to equal trace", "s");
+    r.mode = "no build of Oktett's is traced as fast";
+    double best = std::numeric_limits<double>::infinity();
+    const std::shared_ptr<const Accel> kept = accel_;
+    for (const BuildVariant& variant : build_variants()) {
+      const Times built = race_build(variant, threads), traced = race_traces(works, threads);
+      const Quartiles time = quartiles(built.oktett), trace_ratio = quartiles(traced.ratio);
+      r.parts.emplace_back(variant.name + " build", time.median);
+      r.parts.emplace_back(variant.name + " trace", quartiles(traced.oktett).median);
+      r.parts.emplace_back(variant.name + " trace ratio", trace_ratio.median);
+      r.parts.emplace_back("embree build beside " + variant.name, quartiles(built.embree).median);
+      r.parts.emplace_back("embree trace beside " + variant.name, quartiles(traced.embree).median);
+      if (trace_ratio.median < 1 || time.median >= best) continue;
+      best = time.median;
+      r.oktett = time, r.embree = quartiles(built.embree), r.ratio = quartiles(built.ratio);
+      r.mode = fmt::format("{}; medium (traces {:.2f})", variant.name, trace_ratio.median);
+    }
+    accel_ = kept;
+    add(r);
+  }
+
+  /// Sums of primary, shadow and diffuse rays in the trees at hand.
+  Times race_traces(const std::vector<Workload>& works, int threads) {
+    struct Lane {
+      const Workload* work;
+      EmbreeMode mode;
+      Answers answers;
+    };
+    std::vector<Lane> lanes;
+    for (const Workload& work : works)
+      if (work.work != Work::ambient_occlusion && work.rays.size() > 0)
+        lanes.push_back({&work, fastest_mode({medium()}, work).mode, Answers(work)});
+    Times times;
+    for (Rounds rounds(options_.seconds, 3, options_.runs); rounds.next();) {
+      double ours = 0, theirs = 0;
+      for (Lane& l : lanes) {
+        ours += seconds([&] { trace(*accel_, *l.work, isa_, threads, l.answers); });
+        theirs += seconds([&] { trace(*medium(), l.mode, *l.work, threads, l.answers); });
+      }
+      times.add(ours, theirs);
+    }
+    return times;
+  }
+
+  void picture_row(const View& view, const Workload& primary, int threads) {
+    PictureTask task{path_, view, threads, isa_, find_variant(options_.build).options, {}, config_};
+    task.mode = fastest_mode({medium()}, primary).mode;
+    forget_embree();
+    Row r = row(view, threads, "time to first picture", "s");
+    if (race_to_first_picture(task, options_, r)) add(r);
+  }
+
+  std::string path_, name_;
+  const PeerOptions& options_;
   Isa isa_;
-  std::string name_;
+  std::string config_;
+  PeerReport& report_;
   TriangleMesh mesh_;
   std::shared_ptr<const Accel> accel_;
   std::unique_ptr<EmbreeScene> medium_, high_;
-  std::vector<Row> rows_;
 };
 
-Settings parse(int argc, char** argv) {
-  Settings s;
-  for (int i = 1; i < argc; ++i) {
-    const std::string a = argv[i];
-    const auto value = [&]() -> std::string {
-      if (++i >= argc) throw Error(a + " needs a value");
-      return argv[i];
-    };
-    if (a == "--inside")
-      s.view.inside = true;
-    else if (a == "--resolution")
-      s.view.resolution = std::max(16, std::atoi(value().c_str()) / 16 * 16);
-    else if (a == "--threads")
-      s.threads = std::max(1, std::atoi(value().c_str()));
-    else if (a == "--runs")
-      s.runs = std::max(1, std::atoi(value().c_str()));
-    else if (a == "--isa")
-      s.isa = value();
-    else if (a == "--json")
-      s.json = value();
-    else if (a.starts_with("--"))
-      throw Error("unknown option " + a);
-    else
-      s.meshes.push_back(a);
-  }
-  if (s.meshes.empty())
-    throw Error(
-        "usage: peers [--resolution N] [--threads N] [--runs N] [--inside] [--isa NAME] [--json FILE] "
-        "MESH.obj...");
-  return s;
-}
-
-void write_json(const std::string& path, const std::vector<Row>& rows, const Settings& s, Isa isa) {
-  std::FILE* f = std::fopen(path.c_str(), "w");
-  if (f == nullptr) throw Error({path, 0, 0}, "cannot be written", ErrorKind::io);
-  fmt::print(f,
-             "{{\"threads\": {}, \"isa\": \"{}\", \"resolution\": {}, \"inside\": {}, \"embree\": \"{}\", "
-             "\"rows\": [\n",
-             s.threads, to_string(isa), s.view.resolution, s.view.inside, embree_version());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& r = rows[i];
-    fmt::print(f,
-               "  {{\"mesh\": \"{}\", \"work\": \"{}\", \"unit\": \"{}\", \"oktett\": {}, \"embree\": {}, "
-               "\"null\": {}, "
-               "\"ratio\": {}, \"spread\": {}, \"embree_mode\": \"{}\"}}{}\n",
-               r.mesh, r.work, r.unit, r.oktett, r.embree, r.null, r.ratio, r.spread, r.mode,
-               i + 1 < rows.size() ? "," : "");
-  }
-  fmt::print(f, "]}}\n");
-  std::fclose(f);
-}
-
 int run(int argc, char** argv) {
-  const Settings settings = parse(argc, argv);
-  const Isa isa = choose_isa(settings.isa);
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(settings.threads));
+  const PeerOptions options = parse_peer_options(argc, argv);
+  const Isa isa = choose_isa(options.isa);
   flush_denormals();
-  fmt::print("threads {}, {}, {}x{} rays, Embree {}; ratio > 1: Oktett is faster (bytes: < 1 is smaller)\n",
-             settings.threads, to_string(isa), settings.view.resolution, settings.view.resolution,
-             embree_version());
-  fmt::print("{:<24} {:<19} {:>9} {:>9} {:>7} {:>7} {:>9}  {:<8} {}\n", "mesh", "work", "Oktett", "Embree",
-             "ratio", "spread", "null", "unit", "Embree's best mode");
-  std::vector<Row> rows;
-  for (const std::string& path : settings.meshes) {
-    for (const Row& r : Comparison(path, settings, isa).run()) {
-      fmt::print("{:<24} {:<19} {:>9.2f} {:>9.2f} {:>7.2f} {:>7.2f} {:>9.1f}  {:<8} {}\n", r.mesh, r.work,
-                 r.oktett, r.embree, r.ratio, r.spread, r.null, r.unit, r.mode);
-      std::fflush(stdout);
-      rows.push_back(r);
-    }
-  }
-  if (!settings.json.empty()) write_json(settings.json, rows, settings, isa);
+  print_header(options, to_string(isa));
+  PeerReport report;
+  for (const std::string& path : options.meshes) Comparison(path, options, isa, report).run();
+  if (!options.json.empty()) write_json(options.json, report, to_string(isa));
   return 0;
 }
 

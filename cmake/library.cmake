@@ -21,14 +21,18 @@ target_include_directories(oktett SYSTEM PUBLIC $<BUILD_INTERFACE:${xsimd_INCLUD
 
 # -O3 in every build type, so that no small function of the standard library survives as a call and is shared across sets;
 # instrumented builds, which run on the machine that made them, need not care.
-# GCC 12 sees uninitialised variables in its own intrinsics (bug 105593).
 set(oktett_isa_optimization -O3)
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   set(oktett_isa_optimization -O1)
 endif()
+# GCC 12 sees uninitialised variables in its own intrinsics (bug 105593).
+set(oktett_isa_warnings "")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(oktett_isa_warnings -Wno-uninitialized -Wno-maybe-uninitialized)
+endif()
 function(oktett_isa_flags file)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/isa/${file} PROPERTIES
-    COMPILE_OPTIONS "${oktett_isa_optimization};-g0;-Wno-uninitialized;-Wno-maybe-uninitialized;${ARGN}")
+    COMPILE_OPTIONS "${oktett_isa_optimization};-g0;${oktett_isa_warnings};${ARGN}")
 endfunction()
 oktett_isa_flags(scalar.cpp -O2 -fno-tree-vectorize)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")

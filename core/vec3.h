@@ -12,7 +12,7 @@ struct Vec3 {
 
   constexpr T operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
   constexpr T& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
-  constexpr bool operator==(const Vec3&) const = default;
+  bool operator==(const Vec3&) const = default;
 
   /// Converts component by component, e.g. `Vec3d(v)` from a Vec3f.
   template <class U>

@@ -1,0 +1,36 @@
+#pragma once
+/// \file What the comparison with Embree is asked to do.
+
+#include <string>
+#include <vector>
+
+namespace oktett::bench {
+
+/// Rows of the table, by the names that --works takes.
+enum class Work { build, bytes, primary, shadow, diffuse, ambient_occlusion, equal, picture };
+
+/// "build", "bytes", "primary", "shadow", "diffuse", "ao", "equal", "picture".
+const char* to_string(Work work);
+
+struct PeerOptions {
+  std::vector<int> resolutions = {1024};  ///< edges of the square pictures, multiples of 16
+  std::vector<bool> inside = {false};     ///< cameras: outside the mesh, or in the middle of it
+  std::vector<int> threads = {1};
+  std::vector<Work> works;  ///< empty: all
+  double seconds = 3;       ///< time for measuring a row, beside the search for Embree's best mode
+  int runs = 15;            ///< greatest number of rounds per row
+  std::string build;        ///< which of build_variants() the rows trace; empty: the first
+  std::string isa, json;
+  std::vector<std::string> meshes;
+
+  bool wants(Work work) const;
+  /// Some row needs rays to be traced.
+  bool wants_tracing() const;
+};
+
+/// Throws Error for what cannot be understood.
+PeerOptions parse_peer_options(int argc, char** argv);
+
+extern const char* const kPeerUsage;
+
+}  // namespace oktett::bench

@@ -1,0 +1,103 @@
+#include "bench/peer_table.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "bench/embree_peer.h"
+#include "core/error.h"
+
+namespace oktett::bench {
+
+static std::string number(double x) {
+  if (x == 0) return "-";
+  return x >= 1000  ? fmt::format("{:.0f}", x)
+         : x >= 100 ? fmt::format("{:.1f}", x)
+                    : fmt::format("{:.3g}", x);
+}
+
+static std::string view(bool inside, int resolution) {
+  return resolution == 0 ? "" : fmt::format("{} {}", inside ? "in" : "out", resolution);
+}
+
+void print_header(const PeerOptions& options, const std::string& isa) {
+  fmt::print(
+      "Embree {}, {}, medians of at most {} rounds in {} s; ratio > 1: Oktett is faster (bytes: < 1 is "
+      "smaller);\n"
+      "+-: range between the quarter points of the ratio\n",
+      embree_version(), isa, options.runs, options.seconds);
+  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6} {:>5} {:>8}  {:<7} {}\n", "mesh", "view", "thr",
+             "work", "Oktett", "Embree", "ratio", "+-", "null", "unit", "modes");
+}
+
+void print_row(const Row& r) {
+  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6.2f} {:>5.2f} {:>8}  {:<7} {}\n", r.mesh,
+             view(r.inside, r.resolution), r.threads, r.work, number(r.oktett.median),
+             number(r.embree.median), r.ratio.median, r.ratio.range(), number(r.null.median), r.unit, r.mode);
+  std::fflush(stdout);
+}
+
+void print_agreement(const std::vector<Agreement>& agreements) {
+  if (agreements.empty()) return;
+  std::size_t rays = 0, hit_or_miss = 0, distance = 0;
+  for (const Agreement& a : agreements) rays += a.rays, hit_or_miss += a.hit_or_miss, distance += a.distance;
+  fmt::print(
+      "{:<22} of {} rays, Oktett and Embree disagree on hit or miss for {}, on t by more than 1e-3 for {}\n",
+      agreements.front().mesh, rays, hit_or_miss, distance);
+  std::fflush(stdout);
+}
+
+static std::string json(const Quartiles& q) {
+  return fmt::format("{{\"median\": {}, \"low\": {}, \"high\": {}}}", q.median, q.low, q.high);
+}
+
+/// As a JSON string; the names here are printable.
+static std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+static std::string json(const Row& r) {
+  std::string parts;
+  for (const auto& [name, value] : r.parts)
+    parts += fmt::format("{}{}: {}", parts.empty() ? "" : ", ", quoted(name), value);
+  return fmt::format(
+      "{{\"mesh\": {}, \"view\": \"{}\", \"resolution\": {}, \"threads\": {}, \"work\": {}, \"unit\": {}, "
+      "\"oktett\": {}, \"embree\": {}, \"null\": {}, \"ratio\": {}, \"mode\": {}, \"parts\": {{{}}}}}",
+      quoted(r.mesh), r.inside ? "inside" : "outside", r.resolution, r.threads, quoted(r.work),
+      quoted(r.unit), json(r.oktett), json(r.embree), json(r.null), json(r.ratio), quoted(r.mode), parts);
+}
+
+static std::string json(const Agreement& a) {
+  return fmt::format(
+      "{{\"mesh\": {}, \"view\": \"{}\", \"resolution\": {}, \"work\": {}, \"rays\": {}, \"hit_or_miss\": "
+      "{}, "
+      "\"distance\": {}}}",
+      quoted(a.mesh), a.inside ? "inside" : "outside", a.resolution, quoted(a.work), a.rays, a.hit_or_miss,
+      a.distance);
+}
+
+template <class T>
+static void print_list(std::FILE* file, const char* name, const std::vector<T>& list) {
+  fmt::print(file, "\"{}\": [", name);
+  for (std::size_t i = 0; i < list.size(); ++i) fmt::print(file, "{}\n  {}", i ? "," : "", json(list[i]));
+  fmt::print(file, "\n]");
+}
+
+void write_json(const std::string& path, const PeerReport& report, const std::string& isa) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) throw Error({path, 0, 0}, "cannot be written", ErrorKind::io);
+  fmt::print(file, "{{\"embree\": \"{}\", \"isa\": \"{}\",\n", embree_version(), isa);
+  print_list(file, "rows", report.rows);
+  fmt::print(file, ",\n");
+  print_list(file, "agreement", report.agreements);
+  fmt::print(file, "}}\n");
+  const bool written = std::ferror(file) == 0;
+  if (std::fclose(file) != 0 || !written) throw Error({path, 0, 0}, "cannot be written", ErrorKind::io);
+}
+
+}  // namespace oktett::bench

@@ -1,0 +1,50 @@
+#pragma once
+/// \file The figures of the comparison, as a table for people and as JSON.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/peer_options.h"
+#include "bench/peer_timing.h"
+
+namespace oktett::bench {
+
+/// One line: rates (higher is better), sizes or times (lower is better). Figures that do not apply are zeros.
+struct Row {
+  std::string mesh;
+  bool inside = false;
+  int resolution = 0;  ///< 0: the row does not depend on the picture
+  int threads = 1;
+  std::string work, unit;
+  Quartiles oktett, embree, null;
+  Quartiles ratio;  ///< above 1: Oktett is faster; bytes: Oktett's over Embree's
+  std::string mode;
+  std::vector<std::pair<std::string, double>> parts;  ///< what makes up the figures, in seconds
+};
+
+/// Rays of one work whose answers were compared.
+struct Agreement {
+  std::string mesh;
+  bool inside = false;
+  int resolution = 0;
+  std::string work;
+  std::size_t rays = 0;
+  std::size_t hit_or_miss = 0;  ///< one tracer found a hit, the other none
+  std::size_t distance = 0;     ///< t differs by more than 1e-3 of itself
+};
+
+struct PeerReport {
+  std::vector<Row> rows;
+  std::vector<Agreement> agreements;
+};
+
+void print_header(const PeerOptions& options, const std::string& isa);
+void print_row(const Row& row);
+/// One line for all works of a mesh.
+void print_agreement(const std::vector<Agreement>& agreements);
+
+/// Throws Error if the file cannot be written.
+void write_json(const std::string& path, const PeerReport& report, const std::string& isa);
+
+}  // namespace oktett::bench

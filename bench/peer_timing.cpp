@@ -1,0 +1,75 @@
+#include "bench/peer_timing.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#if defined(__SSE2__)
+#include <pmmintrin.h>
+#endif
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace oktett::bench {
+
+static double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double seconds(const std::function<void()>& f) {
+  const double start = now();
+  f();
+  return now() - start;
+}
+
+Quartiles quartiles(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double fraction) {
+    const double place = fraction * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
+  };
+  return {at(0.25), at(0.5), at(0.75)};
+}
+
+void on_threads(int threads, const std::function<void()>& f) {
+  // The limit holds for rivals that bring an arena of their own, too.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(threads));
+  tbb::task_arena arena(threads);
+  arena.execute(f);
+}
+
+void flush_denormals() {
+#if defined(__SSE2__)
+  _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+  _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+#endif
+}
+
+void in_pieces(int threads, std::size_t size, const std::function<void(std::size_t, std::size_t)>& f) {
+  constexpr std::size_t kPiece = 4096;
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    flush_denormals();
+    for (std::size_t b; (b = next.fetch_add(kPiece)) < size;) f(b, std::min(kPiece, size - b));
+  };
+  std::vector<std::jthread> others;
+  for (int i = 1; i < threads; ++i) others.emplace_back(work);
+  work();
+}
+
+Rounds::Rounds(double budget, int least, int most)
+    : budget_(budget), start_(now()), least_(least), most_(std::max(least, most)) {}
+
+bool Rounds::next() {
+  if (done_ >= most_ || (done_ >= least_ && now() - start_ > budget_)) return false;
+  ++done_;
+  return true;
+}
+
+}  // namespace oktett::bench

@@ -1,0 +1,61 @@
+#pragma once
+/// \file One batch of rays through Oktett, through Embree and through nothing at all.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "accel/accel.h"
+#include "bench/bench_rays.h"
+#include "bench/embree_peer.h"
+#include "bench/peer_options.h"
+#include "bench/peer_table.h"
+
+namespace oktett::bench {
+
+/// Rays to be traced and how.
+struct Workload {
+  Work work = Work::primary;
+  std::string name;
+  RayBatch rays;
+  bool any = false;  ///< occlusion only
+};
+
+/// The primary rays of a view and the rays that leave their hits, for those works that `options` asks for.
+std::vector<Workload> make_workloads(const Accel& accel, const View& view, const PeerOptions& options,
+                                     Isa isa);
+
+/// What a tracer found out: `hits`, or `occluded` if the workload asks for that only.
+struct Answers {
+  explicit Answers(const Workload& work) {
+    if (work.any)
+      occluded.resize(work.rays.size());
+    else
+      hits.resize_uninitialized(work.rays.size());
+  }
+  HitBatch hits;
+  std::vector<std::uint8_t> occluded;
+};
+
+void trace(const Accel& accel, const Workload& work, Isa isa, int threads, Answers& answers);
+void trace(const EmbreeScene& scene, EmbreeMode mode, const Workload& work, int threads, Answers& answers);
+/// Reads the rays and stores misses: the bound that no tracer can pass.
+void trace_nothing(const Workload& work, int threads, Answers& answers);
+
+/// A scene of Embree's and the mode in which it traces a workload fastest.
+struct EmbreeChoice {
+  const EmbreeScene* scene = nullptr;
+  EmbreeMode mode;
+  double seconds = 0;
+};
+
+/// Tries every mode on every eighth piece of the rays, then the best three on all; on one thread.
+EmbreeChoice fastest_mode(const std::vector<const EmbreeScene*>& scenes, const Workload& work);
+
+/// "16 coherent".
+std::string to_string(EmbreeMode mode);
+
+/// Counts where two tracers answered differently. Names of mesh and view are left to the caller.
+Agreement compare(const Workload& work, const Answers& a, const Answers& b);
+
+}  // namespace oktett::bench
