@@ -295,4 +295,18 @@ Roots solve_bernstein(const Normalized& n, int wanted) {
   return out;
 }
 
+int most_roots(const Polynomial& p, double a, double b) {
+  double c[kMaxDegree + 1];
+  int most = 0;
+  if (a < 0) {
+    const double l = std::max(0.0, -b), error = to_bernstein(reflect(p), l, -a - l, c);
+    most += count_changes(c, p.degree, error).most;
+  }
+  if (b > 0) {
+    const double l = std::max(0.0, a), error = to_bernstein(p, l, b - l, c);
+    most += count_changes(c, p.degree, error).most;
+  }
+  return most;
+}
+
 }  // namespace oktett::roots

@@ -15,4 +15,7 @@ namespace oktett::roots {
 /// The roots in [n.a, n.b], at most `wanted` of them, from the least up.
 Roots solve_bernstein(const Normalized& n, int wanted = kMaxDegree);
 
+/// A number that the roots in [a, b], -1 <= a <= b <= 1, with their multiplicities do not exceed; p(0) != 0.
+int most_roots(const Polynomial& p, double a, double b);
+
 }  // namespace oktett::roots

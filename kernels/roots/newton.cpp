@@ -33,7 +33,36 @@ Iterate newton_steps(const Polynomial& p, double y, double& l, double& r, int si
   return at;
 }
 
+/// Bounds above this part of the interval's greater end are worth double-double arithmetic.
+constexpr double kFineEnough = 0x1p-40;
+
 double ulp(double x) { return 0x1p-52 * std::abs(x) + 0x1p-1000; }
+
+/// Goes on where the sign in double was in doubt. The slope in double is good enough for the steps.
+OKTETT_NOINLINE Root refine_accurately(const Polynomial& p, Iterate at, double l, double r, int sign_lo) {
+  double step = r - l;
+  for (int i = 0; i < 60; ++i) {
+    at.value = evaluate_accurately(p, at.y);
+    const double v = at.value.value;
+    if (!(std::abs(v) > at.value.error)) {
+      step = 2 * at.value.error / std::abs(at.slope);
+      break;
+    }
+    ((v > 0) == (sign_lo > 0) ? l : r) = at.y;
+    if (i) evaluate(p, at.y, at.slope);
+    double next = at.y - v / at.slope;
+    if (i % 4 == 3 || !(next > l && next < r)) next = l + 0.5 * (r - l);
+    step = std::abs(next - at.y);
+    if (next <= l || next >= r) break;
+    at.y = next;
+    if (step <= 0x1p-36 * std::abs(next)) {
+      step *= 0x1p-12;
+      break;
+    }
+  }
+  if (!(step <= r - l)) step = r - l;
+  return enclose(p, at.y, step, l, r, sign_lo);
+}
 
 }  // namespace
 
@@ -53,21 +82,8 @@ Root refine_newton(const Polynomial& p, double lo, double hi, int sign_lo, doubl
   if (!(start > lo && start < hi)) start = lo + 0.5 * (hi - lo);
   Iterate at = newton_steps(p, start, l, r, sign_lo);
   double error = 2 * (std::abs(at.value.value) + at.value.error) / std::abs(at.slope);
-  // Where double leaves it vague, double-double has 50 bits to spare.
-  if (!(error <= 0x1p-44 * std::max(std::abs(lo), std::abs(hi)))) {
-    for (int i = 0; i < 60; ++i) {
-      at.value = evaluate_accurately(p, at.y);
-      const double v = at.value.value;
-      if (!(std::abs(v) > at.value.error)) break;
-      ((v > 0) == (sign_lo > 0) ? l : r) = at.y;
-      evaluate(p, at.y, at.slope);
-      double next = at.y - v / at.slope;
-      if (i % 3 == 2 || !(next > l && next < r)) next = l + 0.5 * (r - l);
-      if (next <= l || next >= r) break;
-      if (std::abs(next - at.y) <= 0x1p-52 * std::abs(at.y)) break;
-      at.y = next;
-    }
-    error = 2 * (std::abs(at.value.value) + at.value.error) / std::abs(at.slope);
+  if (OKTETT_UNLIKELY(!(error <= kFineEnough * std::max(std::abs(lo), std::abs(hi))))) {
+    return refine_accurately(p, at, l, r, sign_lo);
   }
   if (!(error <= r - l)) error = r - l;
   return enclose(p, at.y, error, l, r, sign_lo);

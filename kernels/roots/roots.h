@@ -5,6 +5,8 @@
 namespace oktett::roots {
 
 inline constexpr int kMaxDegree = 32;
+/// In answers in lanes, stands for a root that is not there; sorts behind all others.
+inline constexpr double kNoRoot = __builtin_huge_val();
 
 /// c[0] + c[1] x + ... + c[degree] x^degree. A degree of -1 is the zero polynomial.
 struct Polynomial {

@@ -4,16 +4,30 @@
 #include <cmath>
 
 #include "kernels/roots/bernstein.h"
+#include "kernels/roots/bisection.h"
+#include "kernels/roots/closed_solve.h"
+#include "kernels/roots/laguerre.h"
 #include "kernels/roots/newton.h"
+#include "kernels/roots/sturm.h"
 
 namespace oktett::roots {
 namespace {
 
 Roots run(const Normalized& n, Method method, int wanted) {
   switch (method) {
+    case Method::closed: return n.p.degree <= 4 ? solve_closed(n) : solve_bernstein(n, wanted);
+    case Method::sturm: return solve_sturm(n);
+    case Method::laguerre: return solve_laguerre(n);
+    case Method::bisection: return solve_bisection(n);
     case Method::newton: return solve_newton(n);
-    default: return solve_bernstein(n, wanted);
+    case Method::bernstein: return solve_bernstein(n, wanted);
+    case Method::automatic: break;
   }
+  if (n.p.degree <= 2) {
+    const Roots closed = solve_closed(n);
+    if (closed.certified) return closed;
+  }
+  return solve_bernstein(n, wanted);
 }
 
 /// A root in [-1, 1] as one of the problem before it was scaled, moved into [a, b].
