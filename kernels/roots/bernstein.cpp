@@ -29,7 +29,7 @@ struct Pieces {
 
   void add(const Piece& piece) {
     if (count && piece.kind == Piece::doubtful && at[count - 1].kind == Piece::doubtful &&
-        piece.l <= at[count - 1].r) {
+        piece.l <= at[count - 1].r * (1 + 0x1p-50)) {
       at[count - 1].r = std::max(at[count - 1].r, piece.r);
       at[count - 1].reach = std::max(at[count - 1].reach, piece.reach);
     } else if (count < kMaxPieces) {
@@ -125,6 +125,9 @@ inline constexpr double kFinest = 0x1p-40;
 template <>
 inline constexpr double kFinest<DoubleDouble> = 0x1p-54;
 
+/// More than the relative error of `point`.
+constexpr double kSlack = 0x1p-51;
+
 double point(double l, double w, double u) { return l + w * u; }
 
 /// Divides [l, r], 0 <= l <= r <= 1, until each part is free of roots, has one, or is doubtful in arithmetic
@@ -149,8 +152,8 @@ void isolate(const Polynomial& p, double l, double r, int wanted, Pieces& out) {
     if (count.least == 1 && count.most == 1) {
       const double first = to_double(part.b[0]), last = to_double(part.b[n]);
       const double start = from + (to - from) * (first / (first - last));
-      // In double-double the ends are not doubles; the bracket is widened to the next ones.
-      const double slack = kUnit<T> < 0x1p-60 ? 0x1p-52 * to : 0.0;
+      // Rounding the ends to doubles changes no sign that is sure in double. In double-double it may.
+      const double slack = kUnit<T> < 0x1p-60 ? kSlack * to : 0.0;
       out.add({Piece::isolated, from - slack, to + slack, 0, first > 0 ? 1 : -1, start});
       --top;
       if (--wanted <= 0) return;
@@ -198,6 +201,8 @@ bool examine(const Polynomial& p, bool all, const Pieces& in, Pieces& out) {
       const double last = std::abs(p.c[0]);
       l = piece.r;
       while (l > 0x1p-800 && last < 2 * (absolute_sum(p, l) - last)) l *= 0.0625;
+      // What is left then is so small that the last coefficient has underflowed.
+      if (l <= 0x1p-800) out.add({Piece::doubtful, 0, l, l, 0, 0});
       for (; l * 16 < piece.r; l *= 16) isolate<T>(p, l, l * 16, kMaxDegree, out);
     }
     isolate<T>(p, l, piece.r, kMaxDegree, out);
@@ -212,6 +217,8 @@ void settle(const Polynomial& p, Piece piece, double floor, double ceiling, Root
   const int n = p.degree;
   Count count{};
   bool ends = false;
+  piece.l = std::max(0.0, piece.l - kSlack * piece.l);
+  piece.r += kSlack * piece.r;
   for (int i = 0; i < 12; ++i) {
     const double error = to_bernstein(p, DoubleDouble(piece.l), DoubleDouble(piece.r) - DoubleDouble(piece.l), b);
     count = count_changes(b, n, error);

@@ -18,12 +18,20 @@ OKTETT_INLINE D copy_sign(const D& size, const D& sign) {
   return select(sign < D(0.0), -size, size);
 }
 
-/// a b - c d with the rounding errors of the products made good (Kahan's method, here without a fused
-/// multiply-add so that every machine agrees).
+/// The rounding error of p = a b (Dekker). Unlike product_error, the same everywhere even where it overflows.
+template <class D>
+OKTETT_INLINE D rounding_error(const D& a, const D& b, const D& p) {
+  const D ca = D(134217729.0) * a, cb = D(134217729.0) * b;
+  const D ah = ca - (ca - a), bh = cb - (cb - b);
+  const D al = a - ah, bl = b - bh;
+  return al * bl - (((p - ah * bh) - al * bh) - ah * bl);
+}
+
+/// a b - c d with the rounding errors of the products made good (Kahan's method).
 template <class D>
 OKTETT_INLINE D difference_of_products(const D& a, const D& b, const D& c, const D& d) {
   const D p = a * b, q = c * d;
-  return (p - q) + (product_error(a, b, p) - product_error(c, d, q));
+  return (p - q) + (rounding_error(a, b, p) - rounding_error(c, d, q));
 }
 
 template <class D>
