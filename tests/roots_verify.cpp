@@ -1,7 +1,8 @@
-/// \file Root finders against the exact oracle, on as many random polynomials as there is time for. Not a test
-/// of its own: prints a table by method, class and degree (docs/roots.md).
+/// \file Root finders against the exact oracle, on as many random polynomials as there is time for. Not a
+/// test of its own: prints a table by method, class and degree (docs/roots.md).
 ///
-///     roots_verify [--count N] [--degrees FIRST-LAST] [--method NAME]... [--threads N] [--seed N] [--class N]
+///     roots_verify [--count N] [--degrees FIRST-LAST] [--method NAME]... [--threads N] [--seed N] [--class
+///     N]
 
 #include <fmt/format.h>
 
@@ -76,7 +77,8 @@ Tally verify(const Options& o, Method method, RootClass c, int degree) {
         t.worst_error = std::max(t.worst_error, j.worst_error);
         for (int k = 0; k < answers[i].count; ++k) {
           if (answers[i].root[k].multiplicity > 1) continue;
-          t.worst_bound = std::max(t.worst_bound, answers[i].root[k].error / std::max(std::abs(q.a), std::abs(q.b)));
+          t.worst_bound =
+              std::max(t.worst_bound, answers[i].root[k].error / std::max(std::abs(q.a), std::abs(q.b)));
         }
         if (answers[i].certified && j.missed + j.invented) {
           ++t.wrong_certified;
@@ -94,16 +96,17 @@ Tally verify(const Options& o, Method method, RootClass c, int degree) {
 }
 
 void print_row(const std::string& name, const std::string& degree, const Tally& t) {
-  fmt::print("| {} | {} | {} | {:.0f} | {} | {} | {} | {} | {} | {:.1e} | {:.1e} |\n", name, degree, t.problems,
-             1e9 * t.seconds / t.problems, t.missed, t.invented, t.wrong_certified, t.uncertified, t.clusters,
-             t.worst_error, t.worst_bound);
+  fmt::print("| {} | {} | {} | {:.0f} | {} | {} | {} | {} | {} | {:.1e} | {:.1e} |\n", name, degree,
+             t.problems, 1e9 * t.seconds / t.problems, t.missed, t.invented, t.wrong_certified, t.uncertified,
+             t.clusters, t.worst_error, t.worst_bound);
   std::fflush(stdout);
 }
 
 int run(const Options& o) {
   std::uint64_t wrong = 0;
   fmt::print(
-      "| method, class | degree | problems | ns | missed | invented | wrong though certified | not certified | "
+      "| method, class | degree | problems | ns | missed | invented | wrong though certified | not certified "
+      "| "
       "clusters | worst error | worst bound |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Method method : o.methods) {
     Tally by_class[kRootClasses];
@@ -127,8 +130,8 @@ int run(const Options& o) {
                 fmt::format("{}-{}", o.first, o.last), by_class[c]);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print(stderr, "{}: {} problems in {:.1f} s, {:.0f} per second\n", to_string(method), problems, seconds,
-               problems / seconds);
+    fmt::print(stderr, "{}: {} problems in {:.1f} s, {:.0f} per second\n", to_string(method), problems,
+               seconds, problems / seconds);
   }
   return wrong ? 3 : 0;
 }

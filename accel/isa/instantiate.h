@@ -76,8 +76,7 @@ namespace oktett {
 template <class A>
 const IsaTable& make_table() {
   static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit, IsaCode<A>::all_hits,
-                                     IsaCode<A>::run_kernel, IsaCode<A>::bin,
-                                     IsaCode<A>::run_roots};
+                                     IsaCode<A>::run_kernel,  IsaCode<A>::bin,     IsaCode<A>::run_roots};
   return table;
 }
 

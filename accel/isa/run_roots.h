@@ -36,7 +36,8 @@ void run_certified(const RootsRun& run) {
       double x[W], error[W];
       answer.x[k].store(x);
       answer.error[k].store(error);
-      for (int i = 0; i < W && at + i < run.count; ++i) run.x[k][at + i] = x[i], run.error[k][at + i] = error[i];
+      for (int i = 0; i < W && at + i < run.count; ++i)
+        run.x[k][at + i] = x[i], run.error[k][at + i] = error[i];
     }
     for (int i = 0; i < W && at + i < run.count; ++i) run.unsure[at + i] = bits(answer.unsure) >> i & 1;
   }
@@ -46,14 +47,22 @@ template <class A>
 void IsaCode<A>::run_roots(RootsKernel id, const RootsRun& run) {
   using D = Simd<double, std::is_same_v<A, ScalarIsa> ? 1 : 8, A>;
   switch (id) {
-    case RootsKernel::closed2: return run_closed<2, D>(run);
-    case RootsKernel::closed3: return run_closed<3, D>(run);
-    case RootsKernel::closed4: return run_closed<4, D>(run);
-    case RootsKernel::all2: return run_certified<2, 2, D>(run);
-    case RootsKernel::all3: return run_certified<3, 3, D>(run);
-    case RootsKernel::all4: return run_certified<4, 4, D>(run);
-    case RootsKernel::all6: return run_certified<6, 6, D>(run);
-    case RootsKernel::first4: return run_certified<4, 1, D>(run);
+    case RootsKernel::closed2:
+      return run_closed<2, D>(run);
+    case RootsKernel::closed3:
+      return run_closed<3, D>(run);
+    case RootsKernel::closed4:
+      return run_closed<4, D>(run);
+    case RootsKernel::all2:
+      return run_certified<2, 2, D>(run);
+    case RootsKernel::all3:
+      return run_certified<3, 3, D>(run);
+    case RootsKernel::all4:
+      return run_certified<4, 4, D>(run);
+    case RootsKernel::all6:
+      return run_certified<6, 6, D>(run);
+    case RootsKernel::first4:
+      return run_certified<4, 1, D>(run);
   }
 }
 

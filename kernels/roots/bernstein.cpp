@@ -23,7 +23,7 @@ constexpr int kMaxPieces = 8 * kMaxDegree;
 
 /// Pieces from left to right; adjacent doubtful ones become one.
 struct Pieces {
-  int count = 0;
+  int count = 0, isolated = 0;
   bool overflow = false;
   Piece at[kMaxPieces];
 
@@ -34,6 +34,7 @@ struct Pieces {
       at[count - 1].reach = std::max(at[count - 1].reach, piece.reach);
     } else if (count < kMaxPieces) {
       at[count++] = piece;
+      isolated += piece.kind == Piece::isolated;
     } else {
       overflow = true;
     }
@@ -148,7 +149,8 @@ void isolate(const Polynomial& p, double l, double r, int wanted, Pieces& out) {
       --top;
       continue;
     }
-    const double from = point(l, width, part.u), to = part.u + part.h == 1 ? r : point(l, width, part.u + part.h);
+    const double from = point(l, width, part.u),
+                 to = part.u + part.h == 1 ? r : point(l, width, part.u + part.h);
     if (count.least == 1 && count.most == 1) {
       const double first = to_double(part.b[0]), last = to_double(part.b[n]);
       const double start = from + (to - from) * (first / (first - last));
@@ -182,13 +184,13 @@ void isolate(const Polynomial& p, double l, double r, int wanted, Pieces& out) {
 
 /// Examines doubtful pieces once more, in arithmetic of T: all of them if `all`, else those that a fresh
 /// conversion may see clearer because the terms of the polynomial are smaller there than where the pieces
-/// were cut from. True if there was such a one.
+/// were cut from. What lies behind `wanted` isolated roots is dropped. True if there was such a one.
 template <class T>
-bool examine(const Polynomial& p, bool all, const Pieces& in, Pieces& out) {
+bool examine(const Polynomial& p, bool all, int wanted, const Pieces& in, Pieces& out) {
   bool found = false;
-  out.count = 0;
+  out.count = out.isolated = 0;
   out.overflow = in.overflow;
-  for (int i = 0; i < in.count; ++i) {
+  for (int i = 0; i < in.count && out.isolated < wanted; ++i) {
     const Piece& piece = in.at[i];
     if (piece.kind == Piece::isolated || !(all || piece.r * (1 + 2.0 / p.degree) < piece.reach)) {
       out.add(piece);
@@ -203,9 +205,11 @@ bool examine(const Polynomial& p, bool all, const Pieces& in, Pieces& out) {
       while (l > 0x1p-800 && last < 2 * (absolute_sum(p, l) - last)) l *= 0.0625;
       // What is left then is so small that the last coefficient has underflowed.
       if (l <= 0x1p-800) out.add({Piece::doubtful, 0, l, l, 0, 0});
-      for (; l * 16 < piece.r; l *= 16) isolate<T>(p, l, l * 16, kMaxDegree, out);
+      for (; l * 16 < piece.r && out.isolated < wanted; l *= 16) {
+        isolate<T>(p, l, l * 16, wanted - out.isolated, out);
+      }
     }
-    isolate<T>(p, l, piece.r, kMaxDegree, out);
+    if (out.isolated < wanted) isolate<T>(p, l, piece.r, wanted - out.isolated, out);
   }
   return found;
 }
@@ -220,7 +224,8 @@ void settle(const Polynomial& p, Piece piece, double floor, double ceiling, Root
   piece.l = std::max(0.0, piece.l - kSlack * piece.l);
   piece.r += kSlack * piece.r;
   for (int i = 0; i < 12; ++i) {
-    const double error = to_bernstein(p, DoubleDouble(piece.l), DoubleDouble(piece.r) - DoubleDouble(piece.l), b);
+    const double error =
+        to_bernstein(p, DoubleDouble(piece.l), DoubleDouble(piece.r) - DoubleDouble(piece.l), b);
     count = count_changes(b, n, error);
     ends = sign_of(b[0], error) && sign_of(b[n], error);
     if (count.most == 0) return;
@@ -231,7 +236,8 @@ void settle(const Polynomial& p, Piece piece, double floor, double ceiling, Root
     piece.l = l, piece.r = r;
   }
   if (ends && count.most == 1) {
-    out.add(refine_newton(p, piece.l, piece.r, to_double(b[0]) > 0 ? 1 : -1, piece.l + 0.5 * (piece.r - piece.l)));
+    out.add(refine_newton(p, piece.l, piece.r, to_double(b[0]) > 0 ? 1 : -1,
+                          piece.l + 0.5 * (piece.r - piece.l)));
     return;
   }
   if (!ends) {
@@ -245,15 +251,18 @@ void settle(const Polynomial& p, Piece piece, double floor, double ceiling, Root
 }
 
 /// What to do if some of the pieces, from double, are doubtful.
-OKTETT_NOINLINE void resolve(const Polynomial& p, double a, const Pieces& rough, Roots& out, bool& sure) {
+OKTETT_NOINLINE void resolve(const Polynomial& p, double a, int wanted, const Pieces& rough, Roots& out,
+                             bool& sure) {
   constexpr int kRounds = 6;
   Pieces pieces[2];
   int now = 0;
-  examine<double>(p, false, rough, pieces[0]);
-  for (int i = 0; i < kRounds && examine<double>(p, false, pieces[now], pieces[1 - now]); ++i) now = 1 - now;
-  examine<DoubleDouble>(p, true, pieces[now], pieces[1 - now]);
+  examine<double>(p, false, wanted, rough, pieces[0]);
+  for (int i = 0; i < kRounds && examine<double>(p, false, wanted, pieces[now], pieces[1 - now]); ++i)
+    now = 1 - now;
+  examine<DoubleDouble>(p, true, wanted, pieces[now], pieces[1 - now]);
   now = 1 - now;
-  for (int i = 0; i < kRounds && examine<DoubleDouble>(p, false, pieces[now], pieces[1 - now]); ++i) now = 1 - now;
+  for (int i = 0; i < kRounds && examine<DoubleDouble>(p, false, wanted, pieces[now], pieces[1 - now]); ++i)
+    now = 1 - now;
   const Pieces& fine = pieces[now];
   sure &= !fine.overflow;
   for (int i = 0; i < fine.count; ++i) {
@@ -273,7 +282,7 @@ void solve_positive(const Polynomial& p, double a, double b, int wanted, Roots& 
   Pieces pieces;
   isolate<double>(p, a, b, wanted, pieces);
   for (int i = 0; i < pieces.count; ++i) {
-    if (pieces.at[i].kind == Piece::doubtful) return resolve(p, a, pieces, out, sure);
+    if (pieces.at[i].kind == Piece::doubtful) return resolve(p, a, wanted, pieces, out, sure);
   }
   for (int i = 0; i < pieces.count; ++i) {
     const Piece& piece = pieces.at[i];

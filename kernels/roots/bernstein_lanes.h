@@ -167,16 +167,18 @@ OKTETT_INLINE typename D::M refine(const D* c, const Bracket<D>& bracket, const 
 
 }  // namespace lanes
 
-/// The first K roots in [a, b], simple and certified, in lanes of `active`; the others hold nothing valid. Lanes
-/// where double arithmetic cannot tell, those with NaN or infinite numbers, and those with an end above 2^30 are
-/// `unsure`.
+/// The first K roots in [a, b], simple and certified, in lanes of `active`; the others hold nothing valid.
+/// Lanes where double arithmetic cannot tell, those with NaN or infinite numbers, and those with an end above
+/// 2^30 are `unsure`.
 template <int N, int K, class D>
-OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b, const typename D::M& active) {
+OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
+                                             const typename D::M& active) {
   const D w = b - a;
   static_assert(N >= 1 && N <= 8);
   D q[N + 1];
   lanes::shift<N>(c, a, w, q);
-  // One bound for both conversions, of [a, b] here and of its parts below; see to_bernstein in polynomial.cpp.
+  // One bound for both conversions, of [a, b] here and of its parts below; see to_bernstein in
+  // polynomial.cpp.
   const D reach = abs(a) + w;
   const D error = D((6 * N + 12) * 0x1p-53 * (1 + 0x1p-40)) *
                       (lanes::absolute_sum<N>(c, reach) + lanes::absolute_sum<N>(q, D(1.0))) +
@@ -219,17 +221,19 @@ OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
     const auto wanted = active & ~out.unsure & (count > D(k));
     if (none(wanted)) continue;
     D x, bound(0.0);
-    out.unsure = out.unsure | lanes::refine<N>(c, bracket[k], D(0x1p-40) * max(abs(a), abs(b)), wanted, x, bound);
+    out.unsure =
+        out.unsure | lanes::refine<N>(c, bracket[k], D(0x1p-40) * max(abs(a), abs(b)), wanted, x, bound);
     out.x[k] = select(wanted, x, out.x[k]);
     out.error[k] = select(wanted, bound * D(1 + 0x1p-50), out.error[k]);
   }
   return out;
 }
 
-/// As roots_in_lanes, with `solve` for unsure lanes. A cluster is listed once. Lanes that even `solve` does not
-/// certify are still `unsure`, with its best guess.
+/// As roots_in_lanes, with `solve` for unsure lanes. A cluster is listed once. Lanes that even `solve` does
+/// not certify are still `unsure`, with its best guess.
 template <int N, int K, class D>
-OKTETT_INLINE LaneRoots<D, K> certified_roots(const D* c, const D& a, const D& b, const typename D::M& active) {
+OKTETT_INLINE LaneRoots<D, K> certified_roots(const D* c, const D& a, const D& b,
+                                              const typename D::M& active) {
   LaneRoots<D, K> out = roots_in_lanes<N, K>(c, a, b, active);
   const unsigned unsure = bits(out.unsure);
   if (OKTETT_LIKELY(unsure == 0)) return out;

@@ -176,8 +176,7 @@ OKTETT_INLINE void solve_quartic(const D* c, D* x) {
   const D w = sqrt(greatest), middle = D(0.5) * (p + greatest);
   // (y^2 + w y + middle - k) (y^2 - w y + middle + k); for small w, k from k^2 = middle^2 - r.
   const auto thick = greatest > D(0x1p-26) * abs(p);
-  const D k = select(thick, D(0.5) * (q / w),
-                     closed::copy_sign(sqrt(max(middle * middle - r, D(0.0))), q));
+  const D k = select(thick, D(0.5) * (q / w), closed::copy_sign(sqrt(max(middle * middle - r, D(0.0))), q));
   const D first[3] = {middle - k, w, D(1.0)}, second[3] = {middle + k, -w, D(1.0)};
   solve_quadratic(first, x);
   solve_quadratic(second, x + 2);

@@ -15,7 +15,8 @@ using Lane = Simd<double, 1, ScalarIsa>;
 bool prove(const Polynomial& p, double x, Root& out) {
   double slope;
   const Value v = evaluate(p, x, slope);
-  double error = std::min(2 * (std::abs(v.value) + v.error) / std::abs(slope), 0x1p-48) + 0x1p-52 * std::abs(x);
+  double error =
+      std::min(2 * (std::abs(v.value) + v.error) / std::abs(slope), 0x1p-48) + 0x1p-52 * std::abs(x);
   out = {x, error, 1};
   for (; error < 0x1p-20; error *= 16) {
     const double l = x - error, r = x + error;

@@ -90,7 +90,8 @@ Root refine_newton(const Polynomial& p, double lo, double hi, int sign_lo, doubl
 }
 
 Roots solve_newton(const Normalized& n) {
-  // Derivatives of p, then their roots from the lowest degree up: each lot is the critical points of the next.
+  // Derivatives of p, then their roots from the lowest degree up: each lot is the critical points of the
+  // next.
   Polynomial d[kMaxDegree];
   const int degree = n.p.degree;
   d[degree - 1] = n.p;

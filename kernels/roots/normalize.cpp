@@ -18,8 +18,8 @@ int exponent_of(double x) {
 
 double power_of_two(int e) { return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52); }
 
-/// All roots are below 2^(the result) in absolute value: |x| < 2 max |c[n-k] / c[n]|^(1/k) (M. Fujiwara, Tohoku
-/// Math. J. 10, 1916).
+/// All roots are below 2^(the result) in absolute value: |x| < 2 max |c[n-k] / c[n]|^(1/k) (M. Fujiwara,
+/// Tohoku Math. J. 10, 1916).
 int root_exponent(const Polynomial& p) {
   const int top = exponent_of(p.c[p.degree]);
   int bound = -2200;

@@ -15,13 +15,20 @@ namespace {
 
 Roots run(const Normalized& n, Method method, int wanted) {
   switch (method) {
-    case Method::closed: return n.p.degree <= 4 ? solve_closed(n) : solve_bernstein(n, wanted);
-    case Method::sturm: return solve_sturm(n);
-    case Method::laguerre: return solve_laguerre(n);
-    case Method::bisection: return solve_bisection(n);
-    case Method::newton: return solve_newton(n);
-    case Method::bernstein: return solve_bernstein(n, wanted);
-    case Method::automatic: break;
+    case Method::closed:
+      return n.p.degree <= 4 ? solve_closed(n) : solve_bernstein(n, wanted);
+    case Method::sturm:
+      return solve_sturm(n);
+    case Method::laguerre:
+      return solve_laguerre(n);
+    case Method::bisection:
+      return solve_bisection(n);
+    case Method::newton:
+      return solve_newton(n);
+    case Method::bernstein:
+      return solve_bernstein(n, wanted);
+    case Method::automatic:
+      break;
   }
   if (n.p.degree <= 2) {
     const Roots closed = solve_closed(n);
@@ -43,7 +50,8 @@ Root restore(Root r, int shift, double a, double b) {
 }  // namespace
 
 const char* to_string(Method method) {
-  constexpr const char* kNames[] = {"auto", "closed", "bernstein", "sturm", "laguerre", "bisection", "newton"};
+  constexpr const char* kNames[] = {"auto",     "closed",    "bernstein", "sturm",
+                                    "laguerre", "bisection", "newton"};
   return kNames[static_cast<int>(method)];
 }
 

@@ -15,6 +15,7 @@ const char* to_string(Method method);
 /// An interval with a > b is empty. A coefficient that is NaN or infinite, an end that is NaN or a degree
 /// above kMaxDegree gives no roots and is not certified. `automatic` is the fastest of the certified methods
 /// for the degree; `closed` is `bernstein` above degree 4.
-Roots solve(const Polynomial& p, double a, double b, Method method = Method::automatic, int wanted = kMaxDegree);
+Roots solve(const Polynomial& p, double a, double b, Method method = Method::automatic,
+            int wanted = kMaxDegree);
 
 }  // namespace oktett::roots

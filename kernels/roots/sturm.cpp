@@ -34,12 +34,11 @@ Ball operator*(const Ball& a, const Ball& b) {
 Ball operator/(const Ball& a, const Ball& b) {
   const DoubleDouble q = a.x / b.x;
   const double least = std::abs(b.x.hi) * (1 - 0x1p-50) - b.error;
-  return {q, ((a.error + std::abs(q.hi) * b.error) / least + 8 * kUnit<DoubleDouble> * std::abs(q.hi)) * kRoundUp +
+  return {q, ((a.error + std::abs(q.hi) * b.error) / least + 8 * kUnit<DoubleDouble> * std::abs(q.hi)) *
+                     kRoundUp +
                  kUnderflow};
 }
-int sign_of(const Ball& a) {
-  return std::abs(a.x.hi) * (1 - 0x1p-50) > a.error ? (a.x.hi > 0 ? 1 : -1) : 0;
-}
+int sign_of(const Ball& a) { return std::abs(a.x.hi) * (1 - 0x1p-50) > a.error ? (a.x.hi > 0 ? 1 : -1) : 0; }
 
 struct BallPolynomial {
   int degree;
@@ -160,7 +159,8 @@ Roots solve_sturm(const Normalized& n) {
     }
     if (!(width > 0x1p-50) || top + 3 > kDepth) {
       out.certified = false;
-      out.add({middle, 0.5 * width + 0x1p-53, roots > 1 || now.at_l.sign == now.at_r.sign ? std::max(2, roots) : 1});
+      out.add({middle, 0.5 * width + 0x1p-53,
+               roots > 1 || now.at_l.sign == now.at_r.sign ? std::max(2, roots) : 1});
       continue;
     }
     double cut = middle;

@@ -32,8 +32,9 @@ TEST(DoubleDouble, OperationsAreWithinTheirBounds) {
   for (int i = 0; i < 20000; ++i) {
     const double hi = std::ldexp(random.uniform(-1, 1), random.below(60) - 30);
     const DoubleDouble x = two_sum(hi, hi * random.uniform(-1, 1) * 0x1p-53);
-    const double other = random.below(2) ? -hi * (1 + random.uniform(-1, 1) * std::ldexp(1, -random.below(50)))
-                                         : random.uniform(-1, 1);
+    const double other = random.below(2)
+                             ? -hi * (1 + random.uniform(-1, 1) * std::ldexp(1, -random.below(50)))
+                             : random.uniform(-1, 1);
     const DoubleDouble y = two_sum(other, other * random.uniform(-1, 1) * 0x1p-53);
     mpq_set_d(a, x.hi), mpq_set_d(t, x.lo), mpq_add(a, a, t);
     mpq_set_d(b, y.hi), mpq_set_d(t, y.lo), mpq_add(b, b, t);

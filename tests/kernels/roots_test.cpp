@@ -19,7 +19,7 @@ using test::RootProblem;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr Method kMethods[] = {Method::automatic, Method::closed,   Method::bernstein, Method::sturm,
+constexpr Method kMethods[] = {Method::automatic, Method::closed,    Method::bernstein, Method::sturm,
                                Method::laguerre,  Method::bisection, Method::newton};
 
 Polynomial polynomial(std::initializer_list<double> ascending) {
@@ -90,8 +90,8 @@ TEST_P(CertifiedMethod, MissesAndInventsNothing) {
         }
         const Judgement j = judge(q.p, q.a, q.b, answer);
         clusters += j.clusters;
-        EXPECT_EQ(j.missed + j.invented, 0) << to_string(static_cast<RootClass>(c)) << " degree " << degree << " number "
-                                            << i << ": " << j.what;
+        EXPECT_EQ(j.missed + j.invented, 0) << to_string(static_cast<RootClass>(c)) << " degree " << degree
+                                            << " number " << i << ": " << j.what;
         EXPECT_LT(j.worst_error, 1e-6);
       }
     }
@@ -220,7 +220,8 @@ TEST(Roots, EndsOfTheIntervalBelongToIt) {
 
 TEST(Roots, IntervalsMayBeInfinite) {
   const Polynomial p = with_roots({-1e6, -3, 0.001, 7e8});
-  for (const auto& [a, b, count] : {std::tuple{-kInf, kInf, 4}, {0.0, kInf, 2}, {-kInf, 0.0, 2}, {1.0, 1e300, 1}}) {
+  for (const auto& [a, b, count] :
+       {std::tuple{-kInf, kInf, 4}, {0.0, kInf, 2}, {-kInf, 0.0, 2}, {1.0, 1e300, 1}}) {
     const Roots answer = solve(p, a, b);
     EXPECT_TRUE(answer.certified);
     EXPECT_EQ(answer.count, count);

@@ -236,7 +236,8 @@ Judgement judge(const roots::Polynomial& p, double a, double b, const roots::Roo
       if (g.most == 2 && n == 0) fine = exact.nearly_zero(g.x, 80);
       out.clusters += g.most > 1;
       if (!fine) {
-        std::snprintf(line, sizeof line, "[%.17g, %.17g] holds %d roots, reported %d; ", g.lo, g.hi, n, g.most);
+        std::snprintf(line, sizeof line, "[%.17g, %.17g] holds %d roots, reported %d; ", g.lo, g.hi, n,
+                      g.most);
         out.what += line;
         ++out.invented;
       }

@@ -75,8 +75,8 @@ struct Judgement {
   std::string what;
 };
 
-/// Checks an answer for [a, b], finite, by what docs/roots.md promises. Errors below `floor` times the greater
-/// end count as `floor`: for methods that give no sure bound.
+/// Checks an answer for [a, b], finite, by what docs/roots.md promises. Errors below `floor` times the
+/// greater end count as `floor`: for methods that give no sure bound.
 Judgement judge(const roots::Polynomial& p, double a, double b, const roots::Roots& answer, double floor = 0);
 
 }  // namespace oktett::test

@@ -102,7 +102,8 @@ RootProblem torus(Sequence& random) {
   double od = 0, oo = 0;
   for (int k = 0; k < 3; ++k) d[k] /= length, o[k] = at[k] - 3 * d[k], od += o[k] * d[k], oo += o[k] * o[k];
   const double k1 = oo + major * major - minor * minor, f = 4 * major * major;
-  const double xy[3] = {o[0] * o[0] + o[1] * o[1], 2 * (o[0] * d[0] + o[1] * d[1]), d[0] * d[0] + d[1] * d[1]};
+  const double xy[3] = {o[0] * o[0] + o[1] * o[1], 2 * (o[0] * d[0] + o[1] * d[1]),
+                        d[0] * d[0] + d[1] * d[1]};
   RootProblem q;
   q.p.degree = 4;
   q.p.c[4] = 1;
@@ -133,16 +134,26 @@ RootProblem random_problem(RootClass c, int degree, std::uint64_t index) {
   Sequence random(mix_bits(index * 64 + static_cast<std::uint64_t>(degree)) + static_cast<std::uint64_t>(c));
   RootProblem q{one(), 0, 1};
   switch (c) {
-    case RootClass::spread: q.p = spread(random, degree, -0.2, 1.2); break;
+    case RootClass::spread:
+      q.p = spread(random, degree, -0.2, 1.2);
+      break;
     case RootClass::coefficients:
       q.p.degree = degree;
       for (int i = 0; i <= degree; ++i) q.p.c[i] = random.uniform(-1, 1);
       q.a = -1.5, q.b = 1.5;
       break;
-    case RootClass::clustered: q.p = clustered(random, degree); break;
-    case RootClass::near_multiple: q.p = near_multiple(random, degree); break;
-    case RootClass::multiple: q.p = multiple(random, degree); break;
-    case RootClass::tangent: q.p = tangent(random, degree); break;
+    case RootClass::clustered:
+      q.p = clustered(random, degree);
+      break;
+    case RootClass::near_multiple:
+      q.p = near_multiple(random, degree);
+      break;
+    case RootClass::multiple:
+      q.p = multiple(random, degree);
+      break;
+    case RootClass::tangent:
+      q.p = tangent(random, degree);
+      break;
     case RootClass::scaled:
       q.p = spread(random, degree, -1, 1);
       q.a = -1;
