@@ -125,8 +125,9 @@ void scale(Sequence& random, RootProblem& q) {
 }  // namespace
 
 const char* to_string(RootClass c) {
-  constexpr const char* kNames[] = {"spread",  "coefficients", "clustered", "near multiple", "multiple",
-                                    "tangent", "scaled",       "sparse",    "at the ends",   "torus"};
+  constexpr const char* kNames[] = {"spread",      "coefficients", "clustered", "near multiple",
+                                    "multiple",    "tangent",      "scaled",    "sparse",
+                                    "at the ends", "wild",         "torus"};
   return kNames[static_cast<int>(c)];
 }
 
@@ -174,6 +175,15 @@ RootProblem random_problem(RootClass c, int degree, std::uint64_t index) {
         multiply(p, kind == 0 ? q.a : kind == 1 ? q.b : random.uniform(-1.5, 2.5));
       }
       break;
+    }
+    case RootClass::wild: {
+      const int spread = 1 + random.below(80);
+      q.p.degree = degree;
+      for (int i = 0; i <= degree; ++i)
+        q.p.c[i] = std::ldexp(random.uniform(-1, 1), random.below(2 * spread) - spread);
+      q.a = random.below(2) ? 0 : -std::ldexp(random.uniform(), random.below(100) - 50);
+      q.b = std::ldexp(random.uniform(), random.below(100) - 50);
+      return q;
     }
     case RootClass::torus:
       if (degree == 4) return torus(random);

@@ -34,9 +34,10 @@ enum class RootClass {
   scaled,         ///< as `spread`, with variable and values at sizes from 2^-200 to 2^200
   sparse,         ///< zero coefficients, also first and last
   at_ends,        ///< roots at the ends of the interval, most of them exactly
+  wild,           ///< coefficients and ends of very different sizes
   torus,          ///< degree 4 only: rays that graze or cross a torus; else as `spread`
 };
-inline constexpr int kRootClasses = 10;
+inline constexpr int kRootClasses = 11;
 const char* to_string(RootClass c);
 
 /// A polynomial and where its roots are asked for.
