@@ -233,7 +233,7 @@ Judgement judge(const roots::Polynomial& p, double a, double b, const roots::Roo
     if (!fine || g.most > 1) {
       const int n = exact.count(g.lo, g.hi);
       fine = n <= g.most && n % 2 == g.most % 2 && n >= g.odd;
-      if (g.most == 2 && n == 0) fine = exact.nearly_zero(g.x, 80);
+      if (n == 0) fine = fine && exact.nearly_zero(g.x, 80);
       out.clusters += g.most > 1;
       if (!fine) {
         std::snprintf(line, sizeof line, "[%.17g, %.17g] holds %d roots, reported %d; ", g.lo, g.hi, n,
