@@ -197,7 +197,7 @@ OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
     lanes::shift<N>(q, l, h, part);
     lanes::to_bernstein<N>(part);
     const lanes::Finding<D> finding = lanes::examine<N>(part, error);
-    const D r = l + h, from = a + w * l, to = select(r < D(1.0), a + w * r, b);
+    const D r = l + h, from = a + w * l, to = min(a + w * r, b);
     const auto found = open & finding.one, pass = open & (finding.one | finding.none);
     for (int k = 0; k < K; ++k) {
       const auto here = found & (count == D(k));
