@@ -50,18 +50,20 @@ struct IsaCode {
       collect(accel, state, hits);
   }
   static void run_kernel(KernelId id, int width, const KernelRun& run);
+  static void run_roots(RootsKernel id, const RootsRun& run);
 };
 
 }  // namespace oktett
 
 #include "accel/isa/run_kernel.h"
+#include "accel/isa/run_roots.h"
 
 namespace oktett {
 
 template <class A>
 const IsaTable& make_table() {
   static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit, IsaCode<A>::all_hits,
-                                     IsaCode<A>::run_kernel, build_kernels<A>()};
+                                     IsaCode<A>::run_kernel,  build_kernels<A>(),  IsaCode<A>::run_roots};
   return table;
 }
 

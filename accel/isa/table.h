@@ -36,6 +36,22 @@ enum class KernelId : std::uint8_t {
   slab,
 };
 
+/// The root finders in lanes: closed forms, and all or the first of the certified roots.
+enum class RootsKernel : std::uint8_t { closed2, closed3, closed4, all2, all3, all4, all6, first4 };
+
+/// `count` polynomials to be solved in lanes, for verification and benchmarks: coefficients by power, ends of
+/// the interval (not used by closed forms), and the answers by rank.
+struct RootsRun {
+  std::size_t count = 0;
+  const double* c[7] = {};
+  const double* a = nullptr;
+  const double* b = nullptr;
+  double* x[6] = {};
+  double* error[6] = {};
+  /// Where no certificate could be given.
+  std::uint8_t* unsure = nullptr;
+};
+
 struct IsaTable {
   void (*closest_hit)(const Accel&, const RaySpan&, const HitSpan&, TraceMode);
   void (*any_hit)(const Accel&, const RaySpan&, std::uint8_t*, TraceMode);
@@ -43,6 +59,8 @@ struct IsaTable {
   /// `width` is 1, 4, 8 or 16.
   void (*run_kernel)(KernelId, int width, const KernelRun&);
   BuildKernels build;
+  /// Eight lanes; one on the scalar path.
+  void (*run_roots)(RootsKernel, const RootsRun&);
 };
 
 /// Null if this build holds no code for `isa`.

@@ -1,0 +1,14 @@
+#pragma once
+/// \file Laguerre's method with deflation: all roots, complex ones too.
+
+#include "kernels/roots/normalize.h"
+
+namespace oktett::roots {
+
+/// Finds one complex root after another from 0, divides it out, and polishes it against the whole polynomial.
+/// Stops where the value is below the error of its computation (D. A. Adams: A stopping criterion for
+/// polynomial root finding, Comm. ACM 10(10), 1967). Roots of small imaginary part count as real, bounds are
+/// estimates: not certified.
+Roots solve_laguerre(const Normalized& n);
+
+}  // namespace oktett::roots

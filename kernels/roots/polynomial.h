@@ -1,0 +1,54 @@
+#pragma once
+/// \file Polynomials in one variable: values with error bounds, derivatives, changes of variable.
+///
+/// Bounds are running bounds (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition 2002,
+/// section 5.1). All of them take coefficients of at most about 1 and |x| <= 1 for granted, as `normalize`
+/// (normalize.h) provides: then underflow amounts to less than kUnderflow.
+
+#include "core/platform.h"
+#include "kernels/roots/double_double.h"
+#include "kernels/roots/roots.h"
+
+namespace oktett::roots {
+
+/// More than what products that underflow, flushed to zero or not, can do to a value.
+inline constexpr double kUnderflow = 0x1p-900;
+
+/// A computed value and a bound on its error.
+struct Value {
+  double value, error;
+};
+
+/// p(x), by Horner's rule.
+double horner(const Polynomial& p, double x);
+/// p(x) with its error bound.
+Value evaluate(const Polynomial& p, double x);
+/// p(x) with its error bound; also the derivative, without.
+Value evaluate(const Polynomial& p, double x, double& slope);
+/// p(x) in double-double arithmetic with its error bound.
+Value evaluate_accurately(const Polynomial& p, double x);
+/// The sum of |c[i]| x^i for x >= 0, rounded up.
+double absolute_sum(const Polynomial& p, double x);
+
+/// The sign of p(x): -1 or 1 if it is certain, first in double, then in double-double; else 0.
+int sign_at(const Polynomial& p, double x);
+
+/// p'.
+Polynomial derivative(const Polynomial& p);
+/// p(-x), exactly.
+Polynomial reflect(const Polynomial& p);
+/// p / (x - r), the remainder dropped: by synthetic division from the leading coefficient down.
+Polynomial deflate(const Polynomial& p, double r);
+/// p without its last `n` coefficients, which are zero: p / x^n.
+Polynomial divide_by_power(const Polynomial& p, int n);
+
+/// p(l + w x) in the Bernstein basis of degree p.degree: b[0] = p(l), b[degree] = p(l + w). T is double or
+/// DoubleDouble. Returns a bound on the error of each coefficient, for w >= 0 rounded by one unit of T.
+template <class T>
+double to_bernstein(const Polynomial& p, const T& l, const T& w, T* b);
+
+extern template double to_bernstein<double>(const Polynomial&, const double&, const double&, double*);
+extern template double to_bernstein<DoubleDouble>(const Polynomial&, const DoubleDouble&, const DoubleDouble&,
+                                                  DoubleDouble*);
+
+}  // namespace oktett::roots

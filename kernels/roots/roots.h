@@ -1,0 +1,45 @@
+#pragma once
+/// \file Real roots of a polynomial in an interval: what goes in and what comes out. `solve` (solve.h) is the
+/// entrance; docs/roots.md states what "certified" promises and describes the methods.
+
+namespace oktett::roots {
+
+inline constexpr int kMaxDegree = 32;
+/// In answers in lanes, stands for a root that is not there; sorts behind all others.
+inline constexpr double kNoRoot = __builtin_huge_val();
+
+/// c[0] + c[1] x + ... + c[degree] x^degree. A degree of -1 is the zero polynomial.
+struct Polynomial {
+  int degree = -1;
+  double c[kMaxDegree + 1];
+};
+
+/// A root, or several too close to each other to be told apart. All that is meant lies in
+/// [x - error, x + error].
+struct Root {
+  double x;
+  double error;
+  /// 1: exactly one root, simple. m > 1: at most m roots counted with multiplicity, and m minus their number
+  /// is even, so an odd m holds at least one. An even m may hold none: then the polynomial comes as near to
+  /// zero there as docs/roots.md, "Clusters", says.
+  int multiplicity;
+};
+
+enum class Method { automatic, closed, bernstein, sturm, laguerre, bisection, newton };
+
+/// The answer: roots in ascending order. Fixed capacity, nothing is allocated.
+struct Roots {
+  int count = 0;
+  /// Every root in the interval lies in one of the reported intervals, and these hold what `multiplicity`
+  /// says. False where the method cannot prove it, which methods without certificate never can.
+  bool certified = false;
+  /// The polynomial is zero everywhere; no roots are listed.
+  bool everywhere = false;
+  Root root[kMaxDegree];
+
+  void add(const Root& r) {
+    if (count < kMaxDegree) root[count++] = r;
+  }
+};
+
+}  // namespace oktett::roots

@@ -1,0 +1,81 @@
+#include "kernels/roots/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/roots/bernstein.h"
+#include "kernels/roots/bisection.h"
+#include "kernels/roots/closed_solve.h"
+#include "kernels/roots/laguerre.h"
+#include "kernels/roots/newton.h"
+#include "kernels/roots/sturm.h"
+
+namespace oktett::roots {
+namespace {
+
+Roots run(const Normalized& n, Method method, int wanted) {
+  switch (method) {
+    case Method::closed:
+      return n.p.degree <= 4 ? solve_closed(n) : solve_bernstein(n, wanted);
+    case Method::sturm:
+      return solve_sturm(n);
+    case Method::laguerre:
+      return solve_laguerre(n);
+    case Method::bisection:
+      return solve_bisection(n);
+    case Method::newton:
+      return solve_newton(n);
+    case Method::bernstein:
+      return solve_bernstein(n, wanted);
+    case Method::automatic:
+      break;
+  }
+  if (n.p.degree <= 2) {
+    const Roots closed = solve_closed(n);
+    if (closed.certified) return closed;
+  }
+  return solve_bernstein(n, wanted);
+}
+
+/// A root in [-1, 1] as one of the problem before it was scaled, moved into [a, b].
+Root restore(Root r, int shift, double a, double b) {
+  r.x = scale_by_power(r.x, shift);
+  // Rounding of a subnormal is made good by the least of them.
+  r.error = scale_by_power(r.error, shift) + (shift < -900 ? 0x1p-1074 : 0);
+  const double inside = std::clamp(r.x, a, b);
+  if (inside != r.x) r.error = (r.error + std::abs(inside - r.x)) * (1 + 0x1p-50), r.x = inside;
+  return r;
+}
+
+}  // namespace
+
+const char* to_string(Method method) {
+  constexpr const char* kNames[] = {"auto",     "closed",    "bernstein", "sturm",
+                                    "laguerre", "bisection", "newton"};
+  return kNames[static_cast<int>(method)];
+}
+
+Roots solve(const Polynomial& p, double a, double b, Method method, int wanted) {
+  const Normalized n = normalize(p, a, b);
+  Roots out;
+  if (n.state != Normalized::ready && n.state != Normalized::no_root) {
+    out.certified = n.state != Normalized::bad_input;
+    out.everywhere = n.state == Normalized::zero_polynomial;
+    return out;
+  }
+  out.certified = true;
+  if (n.state == Normalized::ready) {
+    out = run(n, method, wanted);
+    for (int i = 0; i < out.count; ++i) out.root[i] = restore(out.root[i], n.shift, a, b);
+  }
+  if (n.zeros && a <= 0 && b >= 0) {
+    out.add({0, 0, n.zeros});
+    for (int i = out.count - 1; i > 0 && out.root[i].x < out.root[i - 1].x; --i) {
+      std::swap(out.root[i], out.root[i - 1]);
+    }
+  }
+  out.count = std::min(out.count, wanted);
+  return out;
+}
+
+}  // namespace oktett::roots
