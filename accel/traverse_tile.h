@@ -419,6 +419,9 @@ OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const Chi
   return size;
 }
 
+/// Of so few groups, each is asked whether one of its rays is in the box at all.
+inline constexpr int kRefinedGroups = 4;
+
 /// False if the tile was given up because it met too many leaves.
 template <Query Q, class A>
 OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
@@ -438,8 +441,15 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
       for (; dirty != 0; dirty &= dirty - 1) tile.refresh(__builtin_ctz(dirty));
       tile.refresh_window();
     }
-    const unsigned groups = entry_groups(e, tile);
+    unsigned groups = entry_groups(e, tile);
     if (groups == 0) continue;
+    if (e.ref.is_triangles() && __builtin_popcount(groups) <= kRefinedGroups) {
+      unsigned kept = 0;
+      for (unsigned rest = groups; rest != 0; rest &= rest - 1)
+        kept |= static_cast<unsigned>(entry_rays(e, tile, __builtin_ctz(rest)) != 0) << __builtin_ctz(rest);
+      groups = kept;
+      if (groups == 0) continue;
+    }
     TileWindow window = tile.window;
     if ((groups & (groups - 1)) == 0) {
       const int g = __builtin_ctz(groups);
