@@ -420,7 +420,7 @@ OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const Chi
 }
 
 /// Of so few groups, each is asked whether one of its rays is in the box at all.
-inline constexpr int kRefinedGroups = 4;
+inline constexpr int kRefinedGroups = 8;
 
 /// False if the tile was given up because it met too many leaves.
 template <Query Q, class A>
