@@ -8,7 +8,8 @@ namespace oktett::bench {
 
 const std::vector<BuildVariant>& build_variants() {
   // New qualities of build are added here and nowhere else.
-  static const std::vector<BuildVariant> variants = {{"default", {}}};
+  static const std::vector<BuildVariant> variants = {
+      {"balanced", {BuildQuality::balanced}}, {"fast", {BuildQuality::fast}}, {"best", {BuildQuality::best}}};
   return variants;
 }
 
