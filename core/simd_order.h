@@ -19,7 +19,8 @@ struct CompactTable {
         if (m >> lane & 1) lanes[m] |= std::uint64_t{lane} << (8 * to++);
   }
 };
-inline constexpr CompactTable kCompact;
+// Not inline: a copy for each instruction set keeps its code to itself.
+constexpr CompactTable kCompact;
 
 /// The index vector that brings the lanes of `m` to the front.
 OKTETT_INLINE __m256i compact_index(unsigned m) {
