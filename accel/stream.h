@@ -2,6 +2,7 @@
 /// \file Batches of rays through one structure: which traversal takes which rays. The choice changes the
 /// speed, never a hit.
 
+#include "accel/trace_mode.h"
 #include "accel/traverse_interleaved.h"
 #include "accel/traverse_tile.h"
 
