@@ -13,6 +13,7 @@
 #include "core/mesh.h"
 #include "core/ray.h"
 #include "core/transform.h"
+#include "kernels/shapes/exact_data.h"
 #include "kernels/shapes/shape_data.h"
 #include "kernels/surface.h"
 
@@ -35,7 +36,8 @@ struct InstanceGeometry {
 /// One thing to trace. `transform` maps it to the space of the structure. `user` is handed back with each
 /// hit; an instance whose `user` is not kNoId overrides those of the geometries below it.
 struct Geometry {
-  std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, InstanceGeometry>
+  std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, ExactShape,
+               InstanceGeometry>
       shape;
   Affine transform;
   std::uint32_t user = kNoId;

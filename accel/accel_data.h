@@ -44,6 +44,7 @@ class Accel {
   VirtualArray<TriangleBlock> blocks;
   std::vector<LeafEntry> leaves;
   ShapePools pools;
+  ExactPools exact;
   std::vector<InstanceItem> instances;
   bool pieces = false;                ///< a triangle may stand in more than one block
   std::vector<LeafEntry> unbounded;   ///< tested against every ray

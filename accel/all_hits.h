@@ -71,6 +71,10 @@ void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A
       for (std::size_t j = before; j < hits.size(); ++j)
         hits[j].instance = outer_path(instance, hits[j].instance);
     }
+  } else if (is_exact(leaf.kind)) {
+    const Ray ray{{r.o[0][0], r.o[1][0], r.o[2][0]}, r.tmin[0], {r.d[0][0], r.d[1][0], r.d[2][0]}, r.tmax[0]};
+    for (std::uint32_t k = 0; k < leaf.count; ++k)
+      ExactCode<A>::all(accel, leaf.kind, leaf.begin + k, ray, hits);
   } else {
     visit_pool(leaf.kind, accel.pools,
                [&](auto shape, const auto& pool) { collect_shape<decltype(shape)>(pool, leaf, r, hits); });

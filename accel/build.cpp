@@ -6,12 +6,13 @@
 #include "accel/build_tree.h"
 #include "accel/mesh_source.h"
 #include "core/error.h"
+#include "kernels/exact_bounds.h"
 
 namespace oktett {
 namespace {
 
-/// The list of kinds is short; order[k] collects the items of kind k in leaf order.
-using ItemOrder = std::vector<std::uint32_t>[8];
+/// order[k] collects the items of kind k in leaf order; for exact kinds, the cells.
+using ItemOrder = std::vector<std::uint32_t>[kKinds];
 
 std::size_t item_count(const Geometry& g) {
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) return mesh->mesh->triangle_count();
@@ -78,6 +79,7 @@ class PoolFiller {
           Plane::add(pool, moved_plane(std::get<PlaneShape>(g.shape), g.transform), item);
         },
         std::get<Plane::Pool>(accel_.pools));
+    std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact);
     fill_instances();
   }
 
@@ -101,6 +103,23 @@ class PoolFiller {
   template <class S, class Pool>
   static void finish_if(Pool& pool) {
     if constexpr (std::is_same_v<Pool, typename S::Pool>) S::finish(pool);
+  }
+
+  /// Brings the cells of an exact kind into leaf order.
+  template <class Pool>
+  void arrange_cells(Pool& pool) {
+    std::vector<ExactCell> cells;
+    for (std::uint32_t cell : order_[kind_of_pool(pool)]) cells.push_back(pool.cells[cell]);
+    pool.cells = std::move(cells);
+    accel_.stats.other_bytes += pool.bytes();
+  }
+  template <class Pool>
+  int kind_of_pool(const Pool& pool) const {
+    int kind = kClosedFormKinds;
+    const auto matches = [&](const auto& other) { return static_cast<const void*>(&other) == &pool; };
+    std::apply([&](const auto&... other) { static_cast<void>(((matches(other) || (++kind, false)) || ...)); },
+               accel_.exact);
+    return kind;
   }
 
   void fill_instances() {
@@ -206,6 +225,7 @@ Kind kind_of(const Geometry& g) {
   if (std::holds_alternative<DiskShape>(g.shape)) return Kind::disk;
   if (std::holds_alternative<BoxShape>(g.shape)) return Kind::box;
   if (std::holds_alternative<PolygonShape>(g.shape)) return Kind::polygon;
+  if (const auto* exact = std::get_if<ExactShape>(&g.shape)) return kind_of(exact->form);
   return Kind::instance;
 }
 
@@ -213,6 +233,29 @@ Kind kind_of(const Geometry& g) {
 bool is_unbounded(const Geometry& g) {
   if (const auto* i = std::get_if<InstanceGeometry>(&g.shape)) return !i->child->unbounded.empty();
   return std::holds_alternative<PlaneShape>(g.shape);
+}
+
+/// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
+void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world, std::uint32_t item,
+               Column<PrimRef>& refs, ItemOrder& order) {
+  visit_exact(kind, accel.exact, [&](auto tag, auto& pool) {
+    using S = decltype(tag);
+    const std::size_t first = pool.cells.size();
+    S::add(pool, shape, to_world, item);
+    for (std::size_t cell = first; cell < pool.cells.size(); ++cell) {
+      const Box box = cell_bounds(pool.frames.back().to_world, pool.cells[cell]);
+      const auto index = static_cast<std::uint32_t>(cell);
+      if (is_usable(box)) {
+        refs.push_back(make_ref(box, index, kind));
+        accel.bounds.grow(box);
+      } else {
+        std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
+        accel.unbounded.push_back(
+            {static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
+        list.push_back(index);
+      }
+    }
+  });
 }
 
 void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& refs, ItemOrder& order,
@@ -224,6 +267,10 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
     if (!geometry.transform.is_invertible()) continue;
     if (kind == Kind::triangle) {
       accel.bounds.grow(meshes.add_references(g, refs, parallel));
+      continue;
+    }
+    if (const auto* exact = std::get_if<ExactShape>(&geometry.shape)) {
+      add_exact(accel, *exact, kind, geometry.transform, first, refs, order);
       continue;
     }
     for (std::uint32_t item = first; item < end; ++item) {

@@ -77,11 +77,11 @@ class Sweep {
     }
   }
 
-  /// Few enough and of one kind. Instances are trees of their own, so each stands alone.
+  /// Few enough and of one kind. What costs more to test than a node does stands alone.
   bool one_leaf(std::uint32_t begin, std::uint32_t end, const std::uint8_t* order) const {
     if (end - begin > TriangleBlock::kSize) return false;
     const std::uint32_t kind = job_.refs[order[begin]].kind;
-    if ((kind & 0xff) == static_cast<std::uint32_t>(Kind::instance)) return end - begin == 1;
+    if (stands_alone(static_cast<Kind>(kind & 0xff))) return end - begin == 1;
     for (std::uint32_t i = begin + 1; i < end; ++i)
       if (job_.refs[order[i]].kind != kind) return false;
     return true;

@@ -188,7 +188,7 @@ class WideBuilder {
 };
 
 /// Entries of shapes other than triangles point to places in tree.items; they get their ranges of the pools.
-void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t> (&order)[8]) {
+void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t> (&order)[kKinds]) {
   for (LeafEntry& leaf : accel.leaves) {
     if (leaf.kind == Kind::triangle) continue;
     std::vector<std::uint32_t>& list = order[static_cast<int>(leaf.kind)];
@@ -201,7 +201,8 @@ void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t
 }  // namespace
 
 void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles,
-                std::vector<std::uint32_t> (&order)[8], const BuildOptions& options, const IsaTable& isa) {
+                std::vector<std::uint32_t> (&order)[kKinds], const BuildOptions& options,
+                const IsaTable& isa) {
   if (refs.empty()) return;
   if (options.quality == BuildQuality::best)
     accel.pieces = split_large(refs, triangles, accel.bounds, options.parallel);

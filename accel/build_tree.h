@@ -40,6 +40,7 @@ float scene_unit(const Box& bounds);
 /// accel.bounds and accel.stats. Leaves of closed-form shapes and instances are given as ranges of `order`:
 /// the caller lays out the pools so that element i of kind k is item order[k][i].
 void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles,
-                std::vector<std::uint32_t> (&order)[8], const BuildOptions& options, const IsaTable& isa);
+                std::vector<std::uint32_t> (&order)[kKinds], const BuildOptions& options,
+                const IsaTable& isa);
 
 }  // namespace oktett

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "accel/accel_data.h"
+#include "kernels/shapes/exact_surface.h"
 
 namespace oktett {
 namespace {
@@ -142,6 +143,9 @@ Surface surface(const Accel& accel, const Ray& ray, const Hit& hit) {
   Surface s;
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
     s = mesh_surface(g, a.frames[geometry], *mesh, local, hit);
+  } else if (std::holds_alternative<ExactShape>(g.shape)) {
+    visit_exact(static_cast<Kind>(a.kinds[geometry]), a.exact,
+                [&](auto shape, const auto& pool) { s = exact_surface<decltype(shape)>(pool, hit, inner); });
   } else {
     const Kind kind = static_cast<Kind>(a.kinds[geometry]);
     visit_pool(kind, a.pools, [&](auto shape, const auto& pool) {

@@ -86,6 +86,13 @@ class Walk {
       return;
     }
     counts_.other += leaf.count;
+    if (is_exact(leaf.kind)) {
+      visit_exact(leaf.kind, accel.exact, [&](auto, const auto& pool) {
+        for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)
+          if (pool.frames[pool.cells[k].element].item == hit_.item) tmax_ = std::min(tmax_, double(hit_.t));
+      });
+      return;
+    }
     visit_pool(leaf.kind, accel.pools, [&](auto, const auto& pool) {
       for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)
         if (pool.item[k] == hit_.item) tmax_ = std::min(tmax_, double(hit_.t));

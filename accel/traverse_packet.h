@@ -133,6 +133,8 @@ OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf
       if (lanes == 0) return;
       instance_packet<Q>(accel.instances[leaf.begin + k], r, lanes);
     }
+  } else if (is_exact(leaf.kind)) {
+    leaf_exact(accel, leaf, r, lanes);
   } else {
     visit_pool(leaf.kind, accel.pools, [&](auto shape, const auto& pool) {
       leaf_shape_packet<decltype(shape)>(pool, leaf.begin, leaf.count, r, lanes);

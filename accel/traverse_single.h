@@ -1,6 +1,7 @@
 #pragma once
 /// \file One ray through the tree: the eight boxes of a node at once, nearest child first.
 
+#include "accel/exact.h"
 #include "accel/leaf.h"
 
 namespace oktett {
@@ -41,6 +42,8 @@ OKTETT_NOINLINE void table_leaf_single(const Accel& accel, const LeafEntry& leaf
       instance_single<Q>(accel.instances[leaf.begin + k], r, i);
       if (Q == Query::any && r.item[i] != kNoId) return;
     }
+  } else if (is_exact(leaf.kind)) {
+    leaf_exact(accel, leaf, r, 1u << i);
   } else {
     visit_pool(leaf.kind, accel.pools, [&](auto shape, const auto& pool) {
       leaf_shape_single<decltype(shape)>(pool, leaf.begin, leaf.count, r, i);

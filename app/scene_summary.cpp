@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "kernels/exact_bounds.h"
+
 namespace oktett {
 
 namespace {
@@ -53,6 +55,7 @@ struct ShapeBounds {
     for (const Vec3d& v : shape.v) grow(box, v, v);
     return box;
   }
+  Box operator()(const ExactShape& shape) const { return exact_bounds(shape, {}); }
   Box operator()(const InstanceShape& shape) const {
     return shape.prototype < prototypes.size() ? prototypes[shape.prototype] : Box{};
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +11,7 @@
 
 #include "app/command.h"
 #include "app/json.h"
+#include "app/verify_exact.h"
 #include "app/verify_kernels.h"
 #include "app/verify_meshes.h"
 #include "io/obj.h"
@@ -23,9 +25,14 @@ constexpr int kExitFailed = 3;
 struct VerifyArguments {
   std::uint64_t rays = 0;
   std::vector<std::string> meshes;
+  std::vector<std::string> surfaces;
   std::string isa;
   bool quick = false;
   bool json = false;
+
+  bool wants(const std::string& surface) const {
+    return surfaces.empty() || std::find(surfaces.begin(), surfaces.end(), surface) != surfaces.end();
+  }
 };
 
 /// What was checked so far: printed as it comes, and gathered for --json.
@@ -56,6 +63,21 @@ class Report {
     note(fmt::format("{} {} pair {}", to_string(id), to_string(c), t.first_failure), t.failure);
   }
 
+  void exact(const std::string& name, const ExactTally& t) {
+    if (!json_) {
+      fmt::print("{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>8}{:>8}{:>11}{:>10.3f}\n", name, t.rays, t.hits,
+                 t.missed, t.invented, t.touched, t.off_surface, t.lists, t.differing, t.worst_residual);
+      std::fflush(stdout);
+    }
+    JsonObject row;
+    row.add("rays", t.rays), row.add("hits", t.hits), row.add("missed", t.missed);
+    row.add("invented", t.invented), row.add("touched", t.touched), row.add("off_surface", t.off_surface);
+    row.add("lists", t.lists), row.add("differing", t.differing), row.add("worst_residual", t.worst_residual);
+    surfaces_.add(name, row);
+    rays_ += t.rays;
+    note(name, t.failure);
+  }
+
   void mesh(const std::string& name, const MeshPlacement& p, const MeshTally& t) {
     const std::string state = t.open_edges == 0 ? "closed" : fmt::format("open: {} edges", t.open_edges);
     if (!json_) {
@@ -78,7 +100,7 @@ class Report {
       JsonObject all;
       all.add("passed", failure_.empty()), all.add("failed_rows", failed_rows_), all.add("rays", rays_);
       all.add("seconds", seconds), all.add("first_failure", failure_);
-      all.add("kernels", kernels_), all.add("meshes", meshes_);
+      all.add("kernels", kernels_), all.add("surfaces", surfaces_), all.add("meshes", meshes_);
       fmt::print("{}\n", all.text());
     } else {
       fmt::print("\n{} rays in {:.1f} s: {}\n", rays_, seconds,
@@ -96,7 +118,7 @@ class Report {
   }
 
   bool json_;
-  JsonObject kernels_, meshes_;
+  JsonObject kernels_, surfaces_, meshes_;
   std::uint64_t rays_ = 0, failed_rows_ = 0;
   std::string failure_;
 };
@@ -118,6 +140,17 @@ void verify_kernels(const VerifyArguments& arguments, std::uint64_t rays, Report
     }
 }
 
+void verify_surfaces(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+  const std::vector<std::string> names = exact_oracle_names();
+  if (names.empty()) return;
+  report.heading(fmt::format("\n{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>8}{:>8}{:>11}{:>10}", "surface", "rays",
+                             "hits", "missed", "invented", "touched", "off", "lists", "differing",
+                             "residual"));
+  for (std::size_t form = 0; form < names.size(); ++form)
+    if (arguments.wants(names[form]))
+      report.exact(names[form], verify_exact(form, rays, chosen_isas(arguments.isa)));
+}
+
 void verify_meshes(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
   report.heading(fmt::format("\n{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}", "mesh",
                              "placement", "", "rays", "hits", "leaks", "parity", "doubled", "differing",
@@ -134,8 +167,9 @@ int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   const std::uint64_t rays = arguments.rays > 0 ? arguments.rays : arguments.quick ? 100'000 : 10'000'000;
   Report report(arguments.json);
-  verify_kernels(arguments, rays, report);
-  verify_meshes(arguments, rays / 100 + 1, report);
+  if (arguments.surfaces.empty()) verify_kernels(arguments, rays, report);
+  verify_surfaces(arguments, rays / 10, report);
+  if (arguments.surfaces.empty()) verify_meshes(arguments, rays / 100 + 1, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
 }
@@ -151,6 +185,10 @@ void add_verify_command(CLI::App& app, Command& command) {
       ->type_name("N");
   verb->add_option("--mesh", arguments->meshes, "Check this mesh too; may be repeated")
       ->type_name("FILE.obj")
+      ->allow_extra_args(false);
+  verb->add_option("--surface", arguments->surfaces,
+                   "Check this exact surface only, on a tenth of the rays; may be repeated")
+      ->type_name("NAME")
       ->allow_extra_args(false);
   verb->add_option("--isa", arguments->isa,
                    "One instruction set instead of all: scalar, sse4.2, avx2, avx512")

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "io/scene_degenerate.h"
+#include "io/scene_exact.h"
 #include "io/scene_spheres.h"
 #include "io/scene_utf8.h"
 
@@ -123,6 +124,7 @@ const std::vector<std::string>& shape_keys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> names;
     for (const Reader& reader : kReaders) names.push_back(reader.key);
+    for (std::string& key : exact_keys()) names.push_back(std::move(key));
     return names;
   }();
   return keys;
@@ -131,6 +133,10 @@ const std::vector<std::string>& shape_keys() {
 std::optional<Shape> read_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
   for (const Reader& reader : kReaders)
     if (key.text == reader.key) return reader.read(load, key, node);
+  bool known = false;
+  const std::optional<ExactShape> exact = read_exact(load, key, node, known);
+  if (exact) return Shape(*exact);
+  if (known) return std::nullopt;
   throw Error(key.where(), "unknown shape " + quote(key.text));
 }
 

@@ -12,6 +12,7 @@
 #include "core/mesh.h"
 #include "core/transform.h"
 #include "core/vec3.h"
+#include "kernels/shapes/exact_data.h"
 #include "kernels/shapes/shape_data.h"
 #include "render/material.h"
 
@@ -82,7 +83,7 @@ struct InstanceShape {
 
 /// Any shape an object can have. The plain shapes are listed in kernels/shapes/shape_data.h.
 using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape,
-                           PolygonShape, TriangleShape, InstanceShape>;
+                           PolygonShape, TriangleShape, ExactShape, InstanceShape>;
 
 /// A thing in the scene: groups are flattened into objects while the file is read, their transforms
 /// multiplied out.

@@ -19,6 +19,10 @@ struct LaneRoots {
   typename D::M unsure;
 };
 
+/// What becomes of clusters of even multiplicity, where the polynomial touches zero or nearly so, and its
+/// sign is the same on both sides.
+enum class Touching { keep, drop };
+
 namespace lanes {
 
 /// Coefficients of p(l + w u), u in [0, 1], in powers of u.
@@ -229,9 +233,9 @@ OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
   return out;
 }
 
-/// As roots_in_lanes, with `solve` for unsure lanes. A cluster is listed once. Lanes that even `solve` does
-/// not certify are still `unsure`, with its best guess.
-template <int N, int K, class D>
+/// As roots_in_lanes, with `solve` for unsure lanes. A cluster is listed once, or not at all if it is even
+/// and so is wished. Lanes that even `solve` does not certify are still `unsure`, with its best guess.
+template <int N, int K, Touching kTouching = Touching::keep, class D>
 OKTETT_INLINE LaneRoots<D, K> certified_roots(const D* c, const D& a, const D& b,
                                               const typename D::M& active) {
   LaneRoots<D, K> out = roots_in_lanes<N, K>(c, a, b, active);
@@ -249,11 +253,15 @@ OKTETT_INLINE LaneRoots<D, K> certified_roots(const D* c, const D& a, const D& b
     Polynomial p;
     p.degree = N;
     for (int i = 0; i <= N; ++i) p.c[i] = coefficient[i][lane];
-    const Roots answer = solve(p, from[lane], to[lane], Method::automatic, K);
-    for (int k = 0; k < K; ++k) {
-      x[k][lane] = k < answer.count ? answer.root[k].x : kNoRoot;
-      error[k][lane] = k < answer.count ? answer.root[k].error : kNoRoot;
+    const bool all = kTouching == Touching::drop;
+    const Roots answer = solve(p, from[lane], to[lane], Method::automatic, all ? N : K);
+    int k = 0;
+    for (int i = 0; i < answer.count && k < K; ++i) {
+      if (all && answer.root[i].multiplicity % 2 == 0) continue;
+      x[k][lane] = answer.root[i].x;
+      error[k++][lane] = answer.root[i].error;
     }
+    for (; k < K; ++k) x[k][lane] = error[k][lane] = kNoRoot;
     if (!answer.certified) left |= 1u << lane;
   }
   for (int k = 0; k < K; ++k) out.x[k] = D::load(x[k]), out.error[k] = D::load(error[k]);

@@ -1,0 +1,67 @@
+#pragma once
+/// \file Rays against cells of exact surfaces. The code is compiled per instruction set in translation units
+/// of its own (accel/isa/exact_*.cpp), so that adding a shape does not recompile the traversals.
+
+#include "accel/hit_list.h"
+#include "accel/ray_state.h"
+
+namespace oktett {
+
+template <class A>
+struct ExactCode {
+  /// Rays that are solved at once.
+  static constexpr int kLanes = std::is_same_v<A, ScalarIsa> ? 1 : 8;
+  using F = Simd<float, kLanes, A>;
+
+  /// The first crossing of each ray in `lanes` with the cell, if it is within the ray's range. Returns the
+  /// lanes that have one. Hits carry the part of the surface in u and the turn in v (see Crossings).
+  static unsigned first(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
+                        unsigned lanes, HitLanes<F>& hits);
+  /// Appends every crossing of one ray with the cell.
+  static void all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits);
+};
+
+/// Item that a cell belongs to.
+OKTETT_INLINE std::uint32_t item_of_cell(const Accel& accel, Kind kind, std::uint32_t cell) {
+  std::uint32_t item = kNoId;
+  visit_exact(kind, accel.exact,
+              [&](auto, const auto& pool) { item = pool.frames[pool.cells[cell].element].item; });
+  return item;
+}
+
+/// The rays in `lanes` of a state against the cells of a leaf.
+template <int W, class A>
+OKTETT_NOINLINE void leaf_exact(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r,
+                                unsigned lanes) {
+  constexpr int N = ExactCode<A>::kLanes;
+  using F = Simd<float, N, A>;
+  for (std::uint32_t cell = leaf.begin; cell < leaf.begin + leaf.count; ++cell) {
+    const std::uint32_t item = item_of_cell(accel, leaf.kind, cell);
+    for (int base = 0; base < W; base += N) {
+      const unsigned part = lanes >> base & ((1u << N) - 1);
+      if (part == 0) continue;
+      // Lanes past the end of a narrow state repeat its first one.
+      const auto load = [&](const float* column) {
+        if constexpr (N <= W) return F::load(column + base);
+        float padded[N];
+        for (int i = 0; i < N; ++i) padded[i] = column[i < W ? i : 0];
+        return F::load(padded);
+      };
+      const RayLanes<F> rays{{load(r.o[0]), load(r.o[1]), load(r.o[2])},
+                             {load(r.d[0]), load(r.d[1]), load(r.d[2])},
+                             load(r.tmin),
+                             load(r.tmax)};
+      HitLanes<F> hits;
+      unsigned met = ExactCode<A>::first(accel, leaf.kind, cell, rays, part, hits);
+      if (met == 0) continue;
+      float t[N], u[N], v[N];
+      hits.t.store(t), hits.u.store(u), hits.v.store(v);
+      for (; met != 0; met &= met - 1) {
+        const int i = __builtin_ctz(met);
+        accept_hit(r, base + i, t[i], u[i], v[i], item, kNoId);
+      }
+    }
+  }
+}
+
+}  // namespace oktett

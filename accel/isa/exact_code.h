@@ -1,0 +1,107 @@
+#pragma once
+/// \file ExactCode for one instruction set. Included by accel/isa/exact_*.cpp.
+
+#include "accel/exact.h"
+
+namespace oktett {
+
+/// The rays in the own space of the cell's element.
+template <class D, class F>
+OKTETT_INLINE Line<D> own_line(const Affine& to_own, const RayLanes<F>& rays) {
+  const Vec3<D> o = to_double(rays.o), d = to_double(rays.d);
+  const auto linear = [&](int k, const Vec3<D>& v) {
+    return (D(to_own.m[k][0]) * v.x + D(to_own.m[k][1]) * v.y) + D(to_own.m[k][2]) * v.z;
+  };
+  const auto point = [&](int k) { return linear(k, o) + D(to_own.m[k][3]); };
+  return {{point(0), point(1), point(2)}, {linear(0, d), linear(1, d), linear(2, d)}};
+}
+
+/// What a ray may hit begins here: a little beyond tmin, so that it does not round to tmin.
+template <class D>
+OKTETT_INLINE D range_begin(const D& tmin) {
+  return tmin * D(1 + 0x1p-24) + D(0x1p-151);
+}
+
+template <class D>
+OKTETT_INLINE void cut_range(LineRange<D>& range, const D& from) {
+  range.enter_face = select(from > range.a, D(0.0), range.enter_face);
+  range.a = max(from, range.a);
+}
+
+template <class S, class F>
+OKTETT_INLINE unsigned first_crossing(const typename S::Pool& pool, std::uint32_t index,
+                                      const RayLanes<F>& rays, unsigned lanes, HitLanes<F>& hits) {
+  using D = Simd<double, F::kWidth, typename F::Isa>;
+  const ExactCell& cell = pool.cells[index];
+  const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
+  LineRange<D> range;
+  auto active = D::M::from_bits(lanes) & clip_line(line, cell.lo, cell.hi, range);
+  cut_range(range, range_begin(to_double(rays.tmin)));
+  // Nothing farther than tmax is of use, yet it must not shorten the range: that would change the roots.
+  active = active & (range.a <= range.b) & (range.a * D(1 - 0x1p-22) <= to_double(rays.tmax));
+  hits.t = hits.u = hits.v = F(0.0f);
+  const F far_limit = min(rays.tmax, F(std::numeric_limits<float>::max()));
+  unsigned met = 0;
+  while (any(active)) {
+    Crossings<1, D> c;
+    S::template crossings<1>(pool, cell, line, range, active, c);
+    active = active & (c.t[0] < D(roots::kNoRoot));
+    const F t = to_float(c.t[0]);
+    const auto found = mask_cast<float>(active);
+    const auto valid = found & (rays.tmin < t) & (t <= far_limit);
+    hits.t = select(valid, t, hits.t);
+    hits.u = select(valid, to_float(c.part[0]), hits.u);
+    hits.v = select(valid, to_float(c.turn[0]), hits.v);
+    met |= bits(valid);
+    // A root so near to the beginning that it rounds to tmin is not the first that counts.
+    active = mask_cast<double>(found & (t <= rays.tmin)) & (range.a < range.b);
+    cut_range(range, max(range.a, c.t[0]) * D(1 + 0x1p-24) + D(0x1p-151));
+    active = active & (range.a <= range.b);
+  }
+  return met;
+}
+
+template <class S, class A>
+void list_crossings(const typename S::Pool& pool, std::uint32_t index, const Ray& ray, HitList& hits) {
+  using F = Simd<float, 1, A>;
+  using D = Simd<double, 1, A>;
+  constexpr int K = S::kMaxCrossings;
+  const ExactCell& cell = pool.cells[index];
+  const RayLanes<F> rays{broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax)};
+  const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
+  LineRange<D> range;
+  auto active = clip_line(line, cell.lo, cell.hi, range);
+  cut_range(range, range_begin(to_double(rays.tmin)));
+  const std::uint32_t item = pool.frames[cell.element].item;
+  for (active = active & (range.a <= range.b); any(active);) {
+    Crossings<K, D> c;
+    S::template crossings<K>(pool, cell, line, range, active, c);
+    for (int k = 0; k < K; ++k) {
+      const float t = static_cast<float>(c.t[k].part[0].v);
+      if (ray.tmin < t && t <= ray.tmax && t <= std::numeric_limits<float>::max())
+        hits.push({t, static_cast<float>(c.part[k].part[0].v), static_cast<float>(c.turn[k].part[0].v), item,
+                   kNoId});
+    }
+    if (!(c.up_to.part[0].v < range.b.part[0].v)) return;
+    cut_range(range, c.up_to);
+  }
+}
+
+template <class A>
+unsigned ExactCode<A>::first(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
+                             unsigned lanes, HitLanes<F>& hits) {
+  unsigned met = 0;
+  visit_exact(kind, accel.exact, [&](auto shape, const auto& pool) {
+    met = first_crossing<decltype(shape)>(pool, cell, rays, lanes, hits);
+  });
+  return met;
+}
+
+template <class A>
+void ExactCode<A>::all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits) {
+  visit_exact(kind, accel.exact, [&](auto shape, const auto& pool) {
+    list_crossings<decltype(shape), A>(pool, cell, ray, hits);
+  });
+}
+
+}  // namespace oktett

@@ -1,0 +1,7 @@
+#include "accel/isa/exact_code.h"
+
+namespace oktett {
+
+template struct ExactCode<ScalarIsa>;
+
+}  // namespace oktett

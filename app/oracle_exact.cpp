@@ -1,0 +1,39 @@
+#include "app/oracle_exact.h"
+
+#include <cmath>
+
+namespace oktett {
+
+namespace {
+
+ExactOracle torus(CaseRandom& random) {
+  const TorusShape s{0.2 + random.unit(), 0.05 + random.unit()};
+  const double r = s.major + s.minor;
+  return {"torus",
+          {s},
+          [s](const Vec3l& p) {
+            const long double d = s.major - std::sqrt(p.x * p.x + p.y * p.y);
+            return d * d + p.z * p.z - static_cast<long double>(s.minor) * s.minor;
+          },
+          {-r, -r, -s.minor},
+          {r, r, s.minor}};
+}
+
+constexpr ExactOracle (*kDraw[])(CaseRandom&) = {torus};
+
+}  // namespace
+
+std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random) {
+  std::vector<ExactOracle> oracles;
+  for (const auto draw : kDraw) oracles.push_back(draw(random));
+  return oracles;
+}
+
+std::vector<std::string> exact_oracle_names() {
+  CaseRandom random(0);
+  std::vector<std::string> names;
+  for (const ExactOracle& oracle : draw_exact_oracles(random)) names.push_back(oracle.name);
+  return names;
+}
+
+}  // namespace oktett

@@ -1,0 +1,31 @@
+#pragma once
+/// \file Independent functions of the exact surfaces, in long double, and what is asked of the tracer by
+/// them: dense sampling along a ray, then bisection.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/verify_cases.h"
+#include "kernels/shapes/exact_data.h"
+
+namespace oktett {
+
+using Vec3l = Vec3<long double>;
+
+/// An exact surface and what it should be.
+struct ExactOracle {
+  std::string name;
+  ExactShape shape;
+  /// Negative inside, positive outside, for points in the space in which the shape is described. Written from
+  /// the source's equation, not from the kernel.
+  std::function<long double(const Vec3l&)> f;
+  Vec3d lo, hi;  ///< the surface lies in this box
+};
+
+/// One of each form, with parameters from `random`. Grows by one line per form.
+std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random);
+/// Names of what draw_exact_oracles draws, in its order.
+std::vector<std::string> exact_oracle_names();
+
+}  // namespace oktett

@@ -1,0 +1,148 @@
+#pragma once
+/// \file What an exact surface is to the tracer: a shape whose crossings with a ray are found by solving an
+/// equation in double, several rays in lanes.
+///
+/// An element lives in its own space, which it chooses so that it is about 1 in size and about the origin,
+/// and is looked for inside of *cells*, boxes of that space: one as a rule, several where that spares work
+/// (then each may point to the parts of the element that matter in it). Cells are what the leaves of the tree
+/// hold. What is found depends on the ray and the cell only, never on how near other hits are, so that every
+/// order of visits finds the same bits.
+///
+/// A shape S (one header and one source file each) has
+/// - `S::Data`: what describes it (exact_data.h);
+/// - `S::Pool`: an ExactPool of its elements; `S::add(pool, data, to_world, item)` appends an element with
+///   its frame and cells, or nothing if the shape is degenerate;
+/// - `S::kMaxCrossings`: room for all crossings with a line, or as many as are listed at a time;
+/// - `S::crossings<K>(pool, cell, line, range, active, out)`: the first K crossings, see Crossings;
+/// - `S::value(pool, i, part, p)` and `S::gradient(pool, i, part, p)`: the function whose zeros the part is,
+///   negative inside, and its gradient;
+/// - `S::inside(pool, i, p)`; `S::uv(pool, i, part, p, surface)` sets uv and tangent in its own space.
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/ray.h"
+#include "core/transform.h"
+#include "kernels/lanes.h"
+#include "kernels/roots/roots.h"
+#include "kernels/shapes/exact_data.h"
+#include "kernels/surface.h"
+
+namespace oktett {
+
+/// Where one element is looked for: a box of its own space, possibly infinite.
+struct ExactCell {
+  Vec3d lo, hi;
+  std::uint32_t element = 0;
+  std::uint32_t begin = 0, count = 0;  ///< for the shape's own use, e.g. what matters in this cell
+};
+
+/// How an element lies in the world.
+struct ExactFrame {
+  Affine to_own, to_world;
+  std::uint32_t item = 0;
+  NormalMethod normals = NormalMethod::gradient;
+};
+
+template <class E>
+struct ExactPool {
+  using Element = E;
+  std::vector<ExactFrame> frames;  ///< per element; their items ascend
+  std::vector<Element> elements;
+  std::vector<ExactCell> cells;
+
+  std::size_t bytes() const {
+    return frames.size() * sizeof(ExactFrame) + elements.size() * sizeof(Element) +
+           cells.size() * sizeof(ExactCell);
+  }
+};
+
+/// Appends an element whose own space the map `to_world` takes to the world.
+template <class Pool>
+void add_element(Pool& pool, const typename Pool::Element& element, const Affine& to_world,
+                 std::uint32_t item, NormalMethod normals) {
+  pool.frames.push_back({to_world.inverse(), to_world, item, normals});
+  pool.elements.push_back(element);
+}
+
+/// Appends a cell of the last element.
+template <class Pool>
+ExactCell& add_cell(Pool& pool, const Vec3d& lo, const Vec3d& hi) {
+  return pool.cells.emplace_back(ExactCell{lo, hi, static_cast<std::uint32_t>(pool.elements.size() - 1)});
+}
+
+/// The points o + t d in an element's own space. d is the ray's direction, not normalised: t means the same
+/// as in the world.
+template <class D>
+struct Line {
+  Vec3<D> o, d;
+};
+
+/// Where on the line to look: a <= t <= b, the part inside the cell. A face is 1 + 2 axis + side (side 1 =
+/// high) where the line enters or leaves the cell at a or b, 0 where the ray itself begins.
+template <class D>
+struct LineRange {
+  D a, b;
+  D enter_face, exit_face;
+};
+
+/// Crossings of a line with the surface in ascending order, kNoRoot where there are no more. `turn` is -1
+/// where the line enters the inside (the function falls) and 1 where it leaves. `part` is what part of the
+/// surface was met: 0 or as the shape says. Only lanes that are asked for hold anything valid.
+template <int K, class D>
+struct Crossings {
+  D t[K], turn[K], part[K];
+  /// All crossings below this are listed; at least b unless K was too few.
+  D up_to;
+
+  OKTETT_INLINE void clear() {
+    for (int k = 0; k < K; ++k) t[k] = D(roots::kNoRoot), turn[k] = part[k] = D(0.0);
+    up_to = D(roots::kNoRoot);
+  }
+};
+
+/// The part of a line that is in a box. A line parallel to a slab lies in it or not: no threshold. The ends
+/// are moved out by a few units in the last place, so that what lies on a face is inside.
+template <class D>
+OKTETT_INLINE typename D::M clip_line(const Line<D>& line, const Vec3d& lo, const Vec3d& hi,
+                                      LineRange<D>& range) {
+  const D inf(std::numeric_limits<double>::infinity());
+  D near = -inf, far = inf, enter(0.0), exit(0.0);
+  auto meets = line.o.x == line.o.x;
+  const D* o[3] = {&line.o.x, &line.o.y, &line.o.z};
+  const D* d[3] = {&line.d.x, &line.d.y, &line.d.z};
+  for (int k = 0; k < 3; ++k) {
+    const D low(lo[k]), high(hi[k]);
+    const auto parallel = *d[k] == D(0.0), back = *d[k] < D(0.0);
+    const D p = (low - *o[k]) / *d[k], q = (high - *o[k]) / *d[k];
+    const D n = select(parallel, -inf, select(back, q, p)), f = select(parallel, inf, select(back, p, q));
+    const D low_face(1.0 + 2 * k), high_face(2.0 + 2 * k);
+    enter = select(n > near, select(back, high_face, low_face), enter);
+    exit = select(f < far, select(back, low_face, high_face), exit);
+    near = max(n, near), far = min(f, far);
+    meets = meets & (~parallel | ((low <= *o[k]) & (*o[k] <= high))) & (*d[k] == *d[k]);
+  }
+  range = {near - abs(near) * D(0x1p-50), far + abs(far) * D(0x1p-50), enter, exit};
+  return meets & (near <= far);
+}
+
+/// A line with its parameter shifted and scaled: s = 0 is the point nearest to the origin, and s counts
+/// lengths of the shape's own space.
+template <class D>
+struct CenteredLine {
+  Vec3<D> p, u;    ///< the point nearest to the origin, and the unit direction
+  D shift, scale;  ///< t = shift + s * scale
+
+  explicit OKTETT_INLINE CenteredLine(const Line<D>& line) {
+    const D dd = dot_lanes(line.d, line.d);
+    scale = D(1.0) / sqrt(dd);
+    shift = -(dot_lanes(line.o, line.d) / dd);
+    p = {line.o.x + shift * line.d.x, line.o.y + shift * line.d.y, line.o.z + shift * line.d.z};
+    u = {line.d.x * scale, line.d.y * scale, line.d.z * scale};
+  }
+  OKTETT_INLINE D to_s(const D& t) const { return (t - shift) / scale; }
+  OKTETT_INLINE D to_t(const D& s) const { return shift + s * scale; }
+};
+
+}  // namespace oktett

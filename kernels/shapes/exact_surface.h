@@ -1,0 +1,78 @@
+#pragma once
+/// \file The surface at a hit of an exact shape.
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/shapes/contract.h"
+#include "kernels/shapes/exact.h"
+
+namespace oktett {
+
+/// The gradient by the method that the element asks for. Differences step by `h` along each axis: forward
+/// ones are off by about h |f''| / 2, central ones by h^2 |f'''| / 6, and both by the rounding of f over h.
+template <class S>
+Vec3d exact_gradient(const typename S::Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  const NormalMethod method = pool.frames[i].normals;
+  if (method == NormalMethod::gradient) return S::gradient(pool, i, part, p);
+  const bool central = method == NormalMethod::central;
+  const double h = central ? 0x1p-17 : 0x1p-26, here = S::value(pool, i, part, p);
+  Vec3d g;
+  for (int k = 0; k < 3; ++k) {
+    Vec3d ahead = p, behind = p;
+    ahead[k] += h, behind[k] -= h;
+    g[k] = central ? (S::value(pool, i, part, ahead) - S::value(pool, i, part, behind)) / (2 * h)
+                   : (S::value(pool, i, part, ahead) - here) / h;
+  }
+  return g;
+}
+
+/// Element of the pool that an item is.
+template <class Pool>
+std::size_t element_of(const Pool& pool, std::uint32_t item) {
+  return static_cast<std::size_t>(
+      std::lower_bound(pool.frames.begin(), pool.frames.end(), item,
+                       [](const ExactFrame& frame, std::uint32_t value) { return frame.item < value; }) -
+      pool.frames.begin());
+}
+
+/// `p`, near the surface, moved onto it along the gradient by Newton's method; no farther than `reach`, where
+/// it stays if the function has no slope to go by.
+template <class S>
+Vec3d settle(const typename S::Pool& pool, std::size_t i, int part, Vec3d p, double reach) {
+  const Vec3d start = p;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d g = S::gradient(pool, i, part, p);
+    const Vec3d q = p - g * (S::value(pool, i, part, p) / dot(g, g));
+    if (!(length(q - start) <= reach)) return start;
+    p = q;
+  }
+  return p;
+}
+
+/// Shading data of a hit that `ray` had with an element of `pool`.
+template <class S>
+Surface exact_surface(const typename S::Pool& pool, const Hit& hit, const Ray& ray) {
+  const std::size_t i = element_of(pool, hit.item);
+  const ExactFrame& frame = pool.frames[i];
+  const int part = static_cast<int>(hit.u);
+  const double t = hit.t;
+  const Vec3d q = frame.to_own.point(point_at(ray, t));
+  // t was rounded to float: so far may the true point be, and twice that may a slanting ray lead to.
+  const double reach = 0x1p-22 * length(frame.to_own.vector(Vec3d(ray.direction))) * t + 0x1p-40;
+  const Vec3d p = settle<S>(pool, i, part, q, reach);
+  Surface s;
+  const Vec3d point = frame.to_world.point(p);
+  const double size = length(point) + length(frame.to_world.vector({1, 1, 1}));
+  set_position(s, point, ray, t, 0x1p-44 * size);
+  Vec3d n = frame.to_own.normal_by_inverse(exact_gradient<S>(pool, i, part, p));
+  double l = length(n);
+  // At a singular point any normal is as good as another.
+  if (!(l > 0 && std::isfinite(l))) n = -Vec3d(ray.direction), l = length(n);
+  s.geometric_normal = s.shading_normal = Vec3f(n / l);
+  S::uv(pool, i, part, p, s);
+  s.tangent = Vec3f(frame.to_world.vector(Vec3d(s.tangent)));
+  return s;
+}
+
+}  // namespace oktett

@@ -1,0 +1,40 @@
+#include "kernels/shapes/torus.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/math.h"
+
+namespace oktett {
+
+void Torus::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const TorusShape& s = std::get<TorusShape>(shape.form);
+  const double size = s.major + s.minor;
+  if (!(s.major >= 0 && s.minor > 0 && std::isfinite(size))) return;
+  const TorusElement e{s.major / size, s.minor / size};
+  add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
+  add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
+}
+
+double Torus::value(const Pool& pool, std::size_t i, int, const Vec3d& p) {
+  const TorusElement& e = pool.elements[i];
+  const double d = std::sqrt(p.x * p.x + p.y * p.y) - e.major;
+  return d * d + p.z * p.z - e.minor * e.minor;
+}
+
+Vec3d Torus::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) {
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y), k = rho > 0 ? pool.elements[i].major / rho : 0;
+  return Vec3d{p.x - k * p.x, p.y - k * p.y, p.z} * 2.0;
+}
+
+bool Torus::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
+
+void Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, Surface& s) {
+  const TorusElement& e = pool.elements[i];
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+  s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
+          static_cast<float>(0.5 + portable::atan2(p.z, rho - e.major) * 0.5 / std::numbers::pi)};
+  s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
+}
+
+}  // namespace oktett
