@@ -11,6 +11,8 @@
 
 namespace oktett {
 
+struct ExactPools;
+
 /// An instance in the tree: world to child, the child, its item number, and its place in the numbering of
 /// instance paths.
 struct InstanceItem {
@@ -35,6 +37,9 @@ struct GeometryFrame {
 /// the nesting.
 class Accel {
  public:
+  Accel();
+  ~Accel();
+
   std::vector<Geometry> geometries;
   std::vector<std::uint32_t> first_item;  ///< per geometry, plus the total at the end
 
@@ -44,7 +49,7 @@ class Accel {
   VirtualArray<TriangleBlock> blocks;
   std::vector<LeafEntry> leaves;
   ShapePools pools;
-  ExactPools exact;
+  std::unique_ptr<ExactPools> exact;  ///< null if there are no exact surfaces
   std::vector<InstanceItem> instances;
   bool pieces = false;                ///< a triangle may stand in more than one block
   std::vector<LeafEntry> unbounded;   ///< tested against every ray

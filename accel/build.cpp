@@ -7,6 +7,7 @@
 #include "accel/mesh_source.h"
 #include "core/error.h"
 #include "kernels/exact_bounds.h"
+#include "kernels/exact_shapes.h"
 
 namespace oktett {
 namespace {
@@ -79,7 +80,7 @@ class PoolFiller {
           Plane::add(pool, moved_plane(std::get<PlaneShape>(g.shape), g.transform), item);
         },
         std::get<Plane::Pool>(accel_.pools));
-    std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact);
+    if (accel_.exact) std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact->pools);
     fill_instances();
   }
 
@@ -118,7 +119,7 @@ class PoolFiller {
     int kind = kClosedFormKinds;
     const auto matches = [&](const auto& other) { return static_cast<const void*>(&other) == &pool; };
     std::apply([&](const auto&... other) { static_cast<void>(((matches(other) || (++kind, false)) || ...)); },
-               accel_.exact);
+               accel_.exact->pools);
     return kind;
   }
 
@@ -238,7 +239,8 @@ bool is_unbounded(const Geometry& g) {
 /// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
 void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world, std::uint32_t item,
                Column<PrimRef>& refs, ItemOrder& order) {
-  visit_exact(kind, accel.exact, [&](auto tag, auto& pool) {
+  if (!accel.exact) accel.exact = std::make_unique<ExactPools>();
+  visit_exact(kind, *accel.exact, [&](auto tag, auto& pool) {
     using S = decltype(tag);
     const std::size_t first = pool.cells.size();
     S::add(pool, shape, to_world, item);
@@ -312,6 +314,9 @@ double sah_cost(const Accel& accel) {
 }
 
 }  // namespace
+
+Accel::Accel() = default;
+Accel::~Accel() = default;
 
 std::uint32_t Accel::geometry_of(std::uint32_t item) const {
   return static_cast<std::uint32_t>(std::upper_bound(first_item.begin(), first_item.end(), item) -

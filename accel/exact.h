@@ -14,20 +14,13 @@ struct ExactCode {
   using F = Simd<float, kLanes, A>;
 
   /// The first crossing of each ray in `lanes` with the cell, if it is within the ray's range. Returns the
-  /// lanes that have one. Hits carry the part of the surface in u and the turn in v (see Crossings).
+  /// lanes that have one, and the item that the cell belongs to. Hits carry the part of the surface in u and
+  /// the turn in v (see Crossings).
   static unsigned first(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
-                        unsigned lanes, HitLanes<F>& hits);
+                        unsigned lanes, HitLanes<F>& hits, std::uint32_t& item);
   /// Appends every crossing of one ray with the cell.
   static void all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits);
 };
-
-/// Item that a cell belongs to.
-OKTETT_INLINE std::uint32_t item_of_cell(const Accel& accel, Kind kind, std::uint32_t cell) {
-  std::uint32_t item = kNoId;
-  visit_exact(kind, accel.exact,
-              [&](auto, const auto& pool) { item = pool.frames[pool.cells[cell].element].item; });
-  return item;
-}
 
 /// The rays in `lanes` of a state against the cells of a leaf.
 template <int W, class A>
@@ -36,7 +29,6 @@ OKTETT_NOINLINE void leaf_exact(const Accel& accel, const LeafEntry& leaf, RaySt
   constexpr int N = ExactCode<A>::kLanes;
   using F = Simd<float, N, A>;
   for (std::uint32_t cell = leaf.begin; cell < leaf.begin + leaf.count; ++cell) {
-    const std::uint32_t item = item_of_cell(accel, leaf.kind, cell);
     for (int base = 0; base < W; base += N) {
       const unsigned part = lanes >> base & ((1u << N) - 1);
       if (part == 0) continue;
@@ -52,7 +44,8 @@ OKTETT_NOINLINE void leaf_exact(const Accel& accel, const LeafEntry& leaf, RaySt
                              load(r.tmin),
                              load(r.tmax)};
       HitLanes<F> hits;
-      unsigned met = ExactCode<A>::first(accel, leaf.kind, cell, rays, part, hits);
+      std::uint32_t item;
+      unsigned met = ExactCode<A>::first(accel, leaf.kind, cell, rays, part, hits, item);
       if (met == 0) continue;
       float t[N], u[N], v[N];
       hits.t.store(t), hits.u.store(u), hits.v.store(v);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "accel/accel_data.h"
+#include "kernels/exact_shapes.h"
 #include "kernels/shapes/exact_surface.h"
 
 namespace oktett {
@@ -144,7 +145,7 @@ Surface surface(const Accel& accel, const Ray& ray, const Hit& hit) {
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
     s = mesh_surface(g, a.frames[geometry], *mesh, local, hit);
   } else if (std::holds_alternative<ExactShape>(g.shape)) {
-    visit_exact(static_cast<Kind>(a.kinds[geometry]), a.exact,
+    visit_exact(static_cast<Kind>(a.kinds[geometry]), *a.exact,
                 [&](auto shape, const auto& pool) { s = exact_surface<decltype(shape)>(pool, hit, inner); });
   } else {
     const Kind kind = static_cast<Kind>(a.kinds[geometry]);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/accel_data.h"
+#include "kernels/exact_shapes.h"
 
 namespace oktett {
 namespace {
@@ -87,7 +88,7 @@ class Walk {
     }
     counts_.other += leaf.count;
     if (is_exact(leaf.kind)) {
-      visit_exact(leaf.kind, accel.exact, [&](auto, const auto& pool) {
+      visit_exact(leaf.kind, *accel.exact, [&](auto, const auto& pool) {
         for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)
           if (pool.frames[pool.cells[k].element].item == hit_.item) tmax_ = std::min(tmax_, double(hit_.t));
       });

@@ -18,8 +18,8 @@ namespace oktett {
 
 namespace {
 
-constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,   TraceMode::interleaved,
-                                TraceMode::packet4,   TraceMode::packet8,  TraceMode::packet16,
+constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,  TraceMode::interleaved,
+                                TraceMode::packet4,   TraceMode::packet8, TraceMode::packet16,
                                 TraceMode::tile};
 /// Rays against one shape: a camera's worth, so that tiles and packets are formed.
 constexpr std::size_t kRaysPerShape = 512;
@@ -81,7 +81,8 @@ class AlongRay {
     const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
     if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
     // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
-    const long double off = 0x1p-14L * size_, rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
+    const long double off = 0x1p-14L * size_,
+                      rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
     return std::abs(here) <= 0x1p-8L * rim ? Crossing::nearly : Crossing::no;
   }
 
@@ -105,18 +106,22 @@ Affine random_place(CaseRandom& random) {
   const double size = random.unit() < 0.5 ? 1 : random.magnitude(-2, 2);
   const double far = random.unit() < 0.25 ? 300 : 1;
   Affine a = Affine::rotation(random.vector() * 180.0);
-  if (random.unit() < 0.5) a = a * Affine::scaling({0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()});
+  if (random.unit() < 0.5)
+    a = a * Affine::scaling({0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()});
   if (random.unit() < 0.2) a = Affine{};
   return Affine::translation(random.vector() * (size * far)) * Affine::scaling({size, size, size}) * a;
 }
 
 /// Rays from a common point or from all around, aimed into the box; some along axes, some from inside.
 void shoot(Trial& trial, CaseRandom& random) {
-  const Vec3d middle = (trial.oracle.lo + trial.oracle.hi) * 0.5, half = (trial.oracle.hi - trial.oracle.lo) * 0.5;
+  const Vec3d middle = (trial.oracle.lo + trial.oracle.hi) * 0.5,
+              half = (trial.oracle.hi - trial.oracle.lo) * 0.5;
   const auto inside = [&] { return trial.to_world.point(middle + half * random.vector()); };
   const bool camera = random.unit() < 0.5;
   const double size = length(trial.to_world.vector(half));
-  const auto outside = [&] { return trial.to_world.point(middle) + normalize(random.vector()) * (size * (1.2 + 3 * random.unit())); };
+  const auto outside = [&] {
+    return trial.to_world.point(middle) + normalize(random.vector()) * (size * (1.2 + 3 * random.unit()));
+  };
   const Vec3d eye = outside();
   while (trial.rays.size() < kRaysPerShape / 2) {
     Vec3d from = camera ? eye : random.unit() < 0.1 ? inside() : outside(), at = inside();
@@ -235,11 +240,13 @@ class Checker {
     const Vec3f out = offset_origin(s, n), in = offset_origin(s, -n);
     const long double here = f(s.position), above = f(out), below = f(in);
     const long double allowed = std::min(std::abs(above - here), std::abs(here - below));
-    if (allowed > 0) tally_.worst_residual = std::max(tally_.worst_residual, static_cast<double>(std::abs(here) / allowed));
+    if (allowed > 0)
+      tally_.worst_residual = std::max(tally_.worst_residual, static_cast<double>(std::abs(here) / allowed));
     if (!(above > 0 && below < 0)) {
       ++tally_.off_surface;
-      fail(ray, fmt::format("at t = {} the position is not off the surface: {}, {}, {}", hit.t,
-                            static_cast<double>(below), static_cast<double>(here), static_cast<double>(above)));
+      fail(ray,
+           fmt::format("at t = {} the position is not off the surface: {}, {}, {}", hit.t,
+                       static_cast<double>(below), static_cast<double>(here), static_cast<double>(above)));
       return;
     }
     if (next == nullptr) return;

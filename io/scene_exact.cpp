@@ -38,7 +38,8 @@ std::vector<std::string> exact_keys() {
   return keys;
 }
 
-std::optional<ExactShape> read_exact(SceneLoad& load, const YamlNode& key, const YamlNode& node, bool& known) {
+std::optional<ExactShape> read_exact(SceneLoad& load, const YamlNode& key, const YamlNode& node,
+                                     bool& known) {
   for (const Reader& reader : kReaders) {
     if (key.text != reader.key) continue;
     known = true;
@@ -49,9 +50,10 @@ std::optional<ExactShape> read_exact(SceneLoad& load, const YamlNode& key, const
       const auto entries = map_entries(node, key.text);
       for (const MapEntry& entry : entries)
         if (entry.key->text == "normals")
-          shape.normals = load.values.choice<NormalMethod>(*entry.value, {{"gradient", NormalMethod::gradient},
-                                                                          {"forward", NormalMethod::forward},
-                                                                          {"central", NormalMethod::central}});
+          shape.normals =
+              load.values.choice<NormalMethod>(*entry.value, {{"gradient", NormalMethod::gradient},
+                                                              {"forward", NormalMethod::forward},
+                                                              {"central", NormalMethod::central}});
     }
     return shape;
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kernels/exact_shapes.h"
+
 namespace oktett {
 
 Box cell_bounds(const Affine& to_world, const ExactCell& cell) {

@@ -2,7 +2,7 @@
 /// \file Bounds of exact surfaces in the world.
 
 #include "core/box.h"
-#include "kernels/primitives.h"
+#include "kernels/shapes/exact.h"
 
 namespace oktett {
 

@@ -2,6 +2,7 @@
 /// \file ExactCode for one instruction set. Included by accel/isa/exact_*.cpp.
 
 #include "accel/exact.h"
+#include "kernels/exact_shapes.h"
 
 namespace oktett {
 
@@ -89,9 +90,10 @@ void list_crossings(const typename S::Pool& pool, std::uint32_t index, const Ray
 
 template <class A>
 unsigned ExactCode<A>::first(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
-                             unsigned lanes, HitLanes<F>& hits) {
+                             unsigned lanes, HitLanes<F>& hits, std::uint32_t& item) {
   unsigned met = 0;
-  visit_exact(kind, accel.exact, [&](auto shape, const auto& pool) {
+  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
+    item = pool.frames[pool.cells[cell].element].item;
     met = first_crossing<decltype(shape)>(pool, cell, rays, lanes, hits);
   });
   return met;
@@ -99,7 +101,7 @@ unsigned ExactCode<A>::first(const Accel& accel, Kind kind, std::uint32_t cell, 
 
 template <class A>
 void ExactCode<A>::all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits) {
-  visit_exact(kind, accel.exact, [&](auto shape, const auto& pool) {
+  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
     list_crossings<decltype(shape), A>(pool, cell, ray, hits);
   });
 }

@@ -102,6 +102,58 @@ struct Crossings {
   }
 };
 
+/// Fills a list of crossings from the front.
+template <int K, class D>
+struct CrossingList {
+  Crossings<K, D>& out;
+  D count = D(0.0);
+
+  explicit OKTETT_INLINE CrossingList(Crossings<K, D>& list) : out(list) { out.clear(); }
+  /// Appends one in the lanes of `where` that have room.
+  OKTETT_INLINE void push(const typename D::M& where, const D& t, const D& turn, const D& part) {
+    for (int k = 0; k < K; ++k) {
+      const auto here = where & (count == D(k));
+      out.t[k] = select(here, t, out.t[k]);
+      out.turn[k] = select(here, turn, out.turn[k]);
+      out.part[k] = select(here, part, out.part[k]);
+    }
+    count = select(where, count + D(1.0), count);
+  }
+  /// All crossings below `up_to` have been pushed; where there was no room for all, the list ends earlier.
+  OKTETT_INLINE void finish(const D& up_to) { out.up_to = select(count > D(K), out.t[K - 1], up_to); }
+};
+
+/// Crossings of what is inside of both a surface and its cell: the faces of the cell close it. `open` are the
+/// crossings of the surface alone, `starts_inside` the lanes in which the function is negative at range.a
+/// (asked only where there is no crossing to tell).
+template <int K, int M, class D>
+OKTETT_INLINE void close_by_cell(const Crossings<M, D>& open, const typename D::M& starts_inside,
+                                 const LineRange<D>& range, const typename D::M& active,
+                                 Crossings<K, D>& out) {
+  CrossingList<K, D> list(out);
+  const auto crosses = open.t[0] < D(roots::kNoRoot);
+  auto inside = active & ((crosses & (open.turn[0] > D(0.0))) | (~crosses & starts_inside));
+  list.push(inside & (range.enter_face > D(0.0)), range.a, D(-1.0), range.enter_face);
+  for (int i = 0; i < M; ++i) {
+    const auto found = active & (open.t[i] < D(roots::kNoRoot));
+    list.push(found, open.t[i], open.turn[i], open.part[i]);
+    inside = (found & (open.turn[i] < D(0.0))) | (~found & inside);
+  }
+  list.push(inside & (open.up_to >= range.b) & (range.exit_face > D(0.0)), range.b, D(1.0), range.exit_face);
+  list.finish(open.up_to);
+}
+
+/// The distance of p from a face of a cell, negative inside; and its gradient.
+inline double face_value(const Vec3d& lo, const Vec3d& hi, int face, const Vec3d& p) {
+  const int axis = (face - 1) / 2;
+  return (face - 1) % 2 == 1 ? p[axis] - hi[axis] : lo[axis] - p[axis];
+}
+inline Vec3d face_gradient(int face) {
+  Vec3d g{0, 0, 0};
+  g[(face - 1) / 2] = (face - 1) % 2 == 1 ? 1 : -1;
+  return g;
+}
+
 /// The part of a line that is in a box. A line parallel to a slab lies in it or not: no threshold. The ends
 /// are moved out by a few units in the last place, so that what lies on a face is inside.
 template <class D>

@@ -36,7 +36,8 @@ struct Torus {
     const auto there = active & (reach2 >= D(0.0)) & (a <= b);
     out.clear();
     if (none(there)) return;
-    if (e.minor <= e.major) return list<K>(roots::certified_roots<4, K, roots::Touching::drop>(c, a, b, there), l, c, there, out);
+    if (e.minor <= e.major)
+      return list<K>(roots::certified_roots<4, K, roots::Touching::drop>(c, a, b, there), l, c, there, out);
     // The quartic is zero, too, on the lemon inside that the square root of the equation leaves out.
     auto all = roots::certified_roots<4, 4, roots::Touching::drop>(c, a, b, there);
     for (int i = 0; i < 4; ++i) {
@@ -56,21 +57,15 @@ struct Torus {
  private:
   /// The first K of the roots that are there, which need not stand side by side.
   template <int K, int N, class D>
-  OKTETT_INLINE static void list(const roots::LaneRoots<D, N>& roots, const CenteredLine<D>& l, const D (&c)[5],
-                                 const typename D::M& there, Crossings<K, D>& out) {
-    D count(0.0);
+  OKTETT_INLINE static void list(const roots::LaneRoots<D, N>& roots, const CenteredLine<D>& l,
+                                 const D (&c)[5], const typename D::M& there, Crossings<K, D>& out) {
+    CrossingList<K, D> list(out);
     for (int i = 0; i < N; ++i) {
       const D s = roots.x[i];
-      const auto found = there & (s < D(roots::kNoRoot));
       const D slope = (D(4.0) * s * s + D(2.0) * c[2]) * s + c[1];
-      for (int k = 0; k < K && k <= i; ++k) {
-        const auto here = found & (count == D(k));
-        out.t[k] = select(here, l.to_t(s), out.t[k]);
-        out.turn[k] = select(here, select(slope < D(0.0), D(-1.0), D(1.0)), out.turn[k]);
-      }
-      count = select(found, count + D(1.0), count);
+      list.push(there & (s < D(roots::kNoRoot)), l.to_t(s), select(slope < D(0.0), D(-1.0), D(1.0)), D(0.0));
     }
-    if constexpr (K < 4) out.up_to = out.t[K - 1];
+    list.finish(K < N || N == 4 ? D(roots::kNoRoot) : out.t[K - 1]);
   }
 };
 

@@ -1,0 +1,43 @@
+#pragma once
+/// \file The exact surfaces and their pools. Traversals know only their kinds (primitives.h), so that a
+/// change to a shape recompiles little.
+
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "kernels/primitives.h"
+#include "kernels/shapes/torus.h"
+
+namespace oktett {
+
+/// In the order of ExactForm.
+using ExactShapes = std::tuple<Torus>;
+
+template <std::size_t... I>
+constexpr bool exact_kinds_agree(std::index_sequence<I...>) {
+  return std::variant_size_v<ExactForm> == sizeof...(I) &&
+         (std::is_same_v<typename std::tuple_element_t<I, ExactShapes>::Data,
+                         std::variant_alternative_t<I, ExactForm>> &&
+          ...);
+}
+static_assert(exact_kinds_agree(std::make_index_sequence<kExactKinds>()));
+
+struct ExactPools {
+  PoolsOf<ExactShapes>::type pools;
+};
+
+/// Calls f(shape tag, pool) for the exact `kind`; `Pools` is ExactPools, const or not.
+template <int K = 0, class Pools, class Function>
+OKTETT_INLINE void visit_exact(Kind kind, Pools& pools, Function&& f) {
+  if constexpr (K < kExactKinds) {
+    if (static_cast<int>(kind) == kClosedFormKinds + K)
+      f(std::tuple_element_t<K, ExactShapes>{}, std::get<K>(pools.pools));
+    else
+      visit_exact<K + 1>(kind, pools, f);
+  }
+}
+
+}  // namespace oktett
