@@ -1,0 +1,286 @@
+/// \file The same fields of exact surfaces traced by Oktett and by POV-Ray 3.7, in turn: trace times, and
+/// whether both see the same objects.
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "bench/peer_timing.h"
+#include "bench/povray_scene.h"
+#include "core/error.h"
+#include "render/camera.h"
+#include "render/geometry.h"
+#include "render/render.h"
+
+namespace fs = std::filesystem;
+
+namespace oktett::bench {
+
+namespace {
+
+constexpr const char* kUsage =
+    "usage: povray_peers [option]... [KIND]...\n"
+    "  KIND               one of the kinds of shape; all\n"
+    "  --size WxH         2048x1536\n"
+    "  --threads N        2\n"
+    "  --runs N           rounds in which both trace in turn; 5\n"
+    "  --json FILE        all figures\n"
+    "  --keep DIR         leave scenes and pictures there";
+
+struct Options {
+  std::uint32_t width = 2048, height = 1536;
+  int threads = 2, runs = 5;
+  std::string json, keep;
+  std::vector<std::string> kinds;
+};
+
+std::string read_text(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw Error({path.string(), 0, 0}, "cannot be read", ErrorKind::io);
+  return text.str();
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text << std::flush;
+  if (!out) throw Error({path.string(), 0, 0}, "cannot be written", ErrorKind::io);
+}
+
+/// Runs POV-Ray on `scene`.pov in `dir`; the seconds that it says it traced. `bounding`: 1 = its tree of
+/// boxes, 2 = its BSP tree.
+double run_povray(const fs::path& dir, const std::string& scene, const Options& o, int bounding) {
+  const std::string log = (dir / (scene + ".log")).string();
+  const std::string command =
+      fmt::format("cd '{}' && povray +I{}.pov +O{}.ppm +FP File_Gamma=1.0 +W{} +H{} -A -D +WT{} +BM{} >{}.log 2>&1",
+                  dir.string(), scene, scene, o.width, o.height, o.threads, bounding, scene);
+  if (std::system(command.c_str()) != 0) throw Error({log, 0, 0}, "POV-Ray failed");
+  const std::string text = read_text(log);
+  const std::size_t line = text.find("Trace Time:"), open = text.find('(', line);
+  if (line == std::string::npos || open == std::string::npos) throw Error({log, 0, 0}, "there is no trace time");
+  return std::strtod(text.c_str() + open + 1, nullptr);
+}
+
+/// The numbers that a picture's colours stand for, row by row, mirrored to Oktett's side.
+std::vector<std::uint32_t> read_ids(const fs::path& path, const Options& o) {
+  const std::string text = read_text(path);
+  const std::size_t size = std::size_t{o.width} * o.height;
+  if (text.size() < 3 * size) throw Error({path.string(), 0, 0}, "the picture is too short");
+  const auto* pixel = reinterpret_cast<const unsigned char*>(text.data()) + (text.size() - 3 * size);
+  std::vector<std::uint32_t> ids(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t from = i - i % o.width + (o.width - 1 - i % o.width);
+    ids[i] = pixel[3 * from] | pixel[3 * from + 1] << 8 | pixel[3 * from + 2] << 16;
+  }
+  return ids;
+}
+
+/// The rays through the centres of the pixels.
+RayBatch pixel_rays(const Field& field) {
+  const CameraFrame camera = camera_frame(field.scene.camera, field.scene.film);
+  RayBatch rays;
+  for (std::uint32_t y = 0; y < field.scene.film.height; ++y)
+    for (std::uint32_t x = 0; x < field.scene.film.width; ++x) rays.push_back(camera_ray(camera, x + 0.5, y + 0.5));
+  return rays;
+}
+
+/// Where the ray first crosses the object by dense sampling and bisection; infinity if nowhere.
+long double first_crossing(const FieldObject& object, const Affine& to_world, const Ray& ray) {
+  const Affine inverse = to_world.inverse();
+  const Vec3l o(inverse.point(Vec3d(ray.origin))), d(inverse.vector(Vec3d(ray.direction)));
+  const long double dd = dot(d, d), middle = -dot(o, d) / dd;
+  const Vec3l nearest = o + d * middle;
+  // Every object of a field lies within a ball of radius 2.
+  const long double h = 4 - dot(nearest, nearest);
+  if (h < 0) return HUGE_VALL;
+  const long double w = std::sqrt(h / dd);
+  constexpr int kSteps = 4096;
+  long double t0 = middle - w, f0 = object.f(o + d * t0);
+  for (int i = 1; i <= kSteps; ++i) {
+    const long double t1 = middle - w + 2 * w * i / kSteps, f1 = object.f(o + d * t1);
+    if ((f0 < 0) != (f1 < 0)) {
+      long double lo = t0, hi = t1;
+      for (int k = 0; k < 64; ++k) {
+        const long double mid = lo + (hi - lo) / 2;
+        (((object.f(o + d * mid) < 0) == (f0 < 0)) ? lo : hi) = mid;
+      }
+      return lo;
+    }
+    t0 = t1, f0 = f1;
+  }
+  return HUGE_VALL;
+}
+
+/// How many pixels show different objects, and whom the oracle sides with there.
+struct Silhouettes {
+  std::uint64_t pixels = 0, differ = 0, ours = 0, theirs = 0, neither = 0;
+};
+
+Silhouettes compare_ids(const Field& field, const std::vector<std::uint32_t>& theirs) {
+  const World world = build_world(field.scene);
+  const RayBatch rays = pixel_rays(field);
+  HitBatch hits;
+  hits.resize_uninitialized(rays.size());
+  closest_hit(*world.accel, rays.span(), hits.span(), default_isa());
+  Silhouettes s;
+  s.pixels = rays.size();
+  const auto floor = static_cast<std::uint32_t>(field.objects.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    // 0 is the background, object k is k + 1.
+    const std::uint32_t ours = hits[i].valid() ? surface(*world.accel, rays[i], hits[i]).user + 1 : 0;
+    if (ours == theirs[i]) continue;
+    ++s.differ;
+    const auto distance = [&](std::uint32_t id) -> long double {
+      if (id == 0 || id > floor + 1) return HUGE_VALL;
+      if (id == floor + 1) {
+        const long double t = -static_cast<long double>(rays[i].origin.y) / rays[i].direction.y;
+        return t > 0 ? t : HUGE_VALL;
+      }
+      return first_crossing(field.objects[id - 1], field.scene.objects[id - 1].transform, rays[i]);
+    };
+    const long double a = distance(ours), b = distance(theirs[i]);
+    if (a < b)
+      ++s.ours;
+    else if (b < a)
+      ++s.theirs;
+    else
+      ++s.neither;
+  }
+  return s;
+}
+
+struct Row {
+  std::string kind;
+  Quartiles ours, theirs, ratio;
+  int bounding = 1;
+  Silhouettes silhouettes;
+};
+
+Row compare(const FieldKind& kind, const Options& o, const fs::path& dir) {
+  const Field field = make_field(kind, o.width, o.height);
+  write_text(dir / (kind.name + ".pov"), field.pov);
+  write_text(dir / (kind.name + "_ids.pov"), field.pov_ids);
+  Row row;
+  row.kind = kind.name;
+  // POV-Ray at the better of its two structures.
+  const double boxes = run_povray(dir, kind.name, o, 1), bsp = run_povray(dir, kind.name, o, 2);
+  row.bounding = bsp < boxes ? 2 : 1;
+  std::vector<double> ours, theirs, ratio;
+  RenderOptions options;
+  options.isa = default_isa();
+  options.threads = static_cast<unsigned>(o.threads);
+  options.data_layers = false;
+  for (int run = 0; run < o.runs; ++run) {
+    ours.push_back(render(field.scene, options).report.render_seconds);
+    theirs.push_back(run_povray(dir, kind.name, o, row.bounding));
+    ratio.push_back(theirs.back() / ours.back());
+  }
+  row.ours = quartiles(ours), row.theirs = quartiles(theirs), row.ratio = quartiles(ratio);
+  run_povray(dir, kind.name + "_ids", o, 1);
+  row.silhouettes = compare_ids(field, read_ids(dir / (kind.name + "_ids.ppm"), o));
+  return row;
+}
+
+std::string json_of(const std::vector<Row>& rows) {
+  std::string text = "[\n";
+  for (const Row& r : rows) {
+    const Silhouettes& s = r.silhouettes;
+    text += fmt::format(
+        "  {{\"kind\": \"{}\", \"oktett_s\": {}, \"povray_s\": {}, \"ratio\": {}, \"ratio_low\": {}, \"ratio_high\": "
+        "{}, \"povray_bounding\": {}, \"pixels\": {}, \"differ\": {}, \"oracle_oktett\": {}, \"oracle_povray\": {}, "
+        "\"oracle_neither\": {}}}{}\n",
+        r.kind, r.ours.median, r.theirs.median, r.ratio.median, r.ratio.low, r.ratio.high, r.bounding, s.pixels,
+        s.differ, s.ours, s.theirs, s.neither, &r == &rows.back() ? "" : ",");
+  }
+  return text + "]\n";
+}
+
+Options parse(int argc, char** argv) {
+  Options o;
+  const auto fail = [](const std::string& why) { throw Error(why + "\n" + kUsage); };
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if (name.rfind("--", 0) != 0) {
+      o.kinds.push_back(name);
+      continue;
+    }
+    if (i + 1 == argc) fail("there is no value after " + name);
+    const std::string value = argv[++i];
+    const auto number = [&] {
+      int n = 0;
+      const auto end = std::from_chars(value.data(), value.data() + value.size(), n);
+      if (end.ec != std::errc() || end.ptr != value.data() + value.size() || n < 1 || n > 1000)
+        fail(name + ": expected a number from 1 to 1000, found '" + value + "'");
+      return n;
+    };
+    if (name == "--size") {
+      char rest;
+      if (std::sscanf(value.c_str(), "%ux%u%c", &o.width, &o.height, &rest) != 2 || o.width < 1 || o.height < 1 ||
+          o.width > 16384 || o.height > 16384)
+        fail("--size: expected WxH, found '" + value + "'");
+    } else if (name == "--threads") {
+      o.threads = number();
+    } else if (name == "--runs") {
+      o.runs = number();
+    } else if (name == "--json") {
+      o.json = value;
+    } else if (name == "--keep") {
+      o.keep = value;
+    } else {
+      fail("unknown option " + name);
+    }
+  }
+  for (const std::string& name : o.kinds) {
+    bool known = false;
+    for (const FieldKind& kind : field_kinds()) known |= kind.name == name;
+    if (!known) fail("unknown kind '" + name + "'");
+  }
+  return o;
+}
+
+int run(int argc, char** argv) {
+  const Options o = parse(argc, argv);
+  const fs::path dir =
+      o.keep.empty() ? fs::temp_directory_path() / fmt::format("oktett-povray-{}", seconds([] {}) * 1e9) : fs::path(o.keep);
+  fs::create_directories(dir);
+  std::vector<Row> rows;
+  fmt::print("{}x{}, {} threads; seconds of tracing, medians of {} rounds in turn\n", o.width, o.height, o.threads, o.runs);
+  fmt::print("{:<16}{:>9}{:>9}{:>8}{:>16}{:>10}{:>10}{:>8}{:>8}{:>9}\n", "kind", "Oktett", "POV-Ray", "ratio", "quarters",
+             "differ", "percent", "ours", "theirs", "neither");
+  for (const FieldKind& kind : field_kinds()) {
+    if (!o.kinds.empty() && std::find(o.kinds.begin(), o.kinds.end(), kind.name) == o.kinds.end()) continue;
+    rows.push_back(compare(kind, o, dir));
+    const Row& r = rows.back();
+    const Silhouettes& s = r.silhouettes;
+    fmt::print("{:<16}{:>9.3f}{:>9.3f}{:>8.2f}{:>16}{:>10}{:>10.4f}{:>8}{:>8}{:>9}\n", r.kind, r.ours.median,
+               r.theirs.median, r.ratio.median, fmt::format("{:.2f} to {:.2f}", r.ratio.low, r.ratio.high), s.differ,
+               100.0 * static_cast<double>(s.differ) / static_cast<double>(s.pixels), s.ours, s.theirs, s.neither);
+    std::fflush(stdout);
+  }
+  if (!o.json.empty()) write_text(o.json, json_of(rows));
+  if (o.keep.empty()) fs::remove_all(dir);
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace oktett::bench
+
+int main(int argc, char** argv) {
+  try {
+    return oktett::bench::run(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s\n", e.what());
+    return 2;
+  }
+}
