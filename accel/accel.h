@@ -91,6 +91,15 @@ void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa is
 /// Shading data of a hit that `ray` had with `accel`.
 Surface surface(const Accel& accel, const Ray& ray, const Hit& hit);
 
+/// Only what names the surface of a hit: geometry, primitive, user and material_slot.
+Surface identify(const Accel& accel, const Hit& hit);
+
+/// The surfaces of hits `which[0]` ... `which[count - 1]` of a batch, with the bits that surface() gives, but
+/// uv and tangent may be missing; for hits of triangle meshes in lanes. For those that need uv, ask
+/// surface().
+void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
+              std::size_t count, Isa isa, Surface* out);
+
 /// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the
 /// hit, so that the surface neither shadows itself nor is passed through (Pharr, Jakob, Humphreys 2016,
 /// section 3.9).

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "accel/accel_data.h"
+#include "accel/hit_place.h"
+#include "accel/offset_origin.h"
 #include "kernels/exact_shapes.h"
 #include "kernels/shapes/exact_surface.h"
 
@@ -63,7 +66,6 @@ Surface mesh_surface(const Geometry& g, const GeometryFrame& frame, const MeshGe
     if (l > 0 && std::isfinite(l)) s.shading_normal = Vec3f(ns / l);
   }
   mesh_uv(mesh, triangle, hit.u, hit.v, p, s);
-  if (!mesh.material_slots.empty()) s.material_slot = mesh.material_slots[triangle];
   return s;
 }
 
@@ -76,102 +78,66 @@ std::size_t pool_index(const Pool& pool, std::uint32_t item, const std::vector<s
   return *at;
 }
 
-/// The structure, geometry chain and transform of a hit.
-struct Place {
-  const Accel* accel;
-  Affine to_world;
-  bool moved = false;
-  std::uint32_t user = kNoId;
-};
-
-/// Follows an instance path to the structure that holds the item.
-Place follow_path(const Accel& accel, std::uint32_t path) {
-  Place place{&accel, {}, false, kNoId};
-  while (path != kNoId) {
-    const auto& by_path = place.accel->instances_by_path;
-    const auto at = std::upper_bound(by_path.begin(), by_path.end(), path,
-                                     [&](std::uint32_t value, std::uint32_t index) {
-                                       return value < place.accel->instances[index].first_path;
-                                     }) -
-                    1;
-    const InstanceItem& instance = place.accel->instances[*at];
-    const Geometry& g = place.accel->geometries[place.accel->geometry_of(instance.item)];
-    place.to_world = place.moved ? place.to_world * g.transform : g.transform;
-    place.moved = true;
-    if (place.user == kNoId) place.user = g.user;
-    path = path - instance.first_path - 1;
-    place.accel = instance.child;
-  }
-  return place;
-}
-
-/// Brings a surface found inside an instance to the world.
-void move_surface(const Place& place, const Ray& ray, float t, Surface& s) {
-  const Affine& m = place.to_world;
-  const Affine inverse = m.inverse();
-  const Vec3d p = m.point(Vec3d(s.position));
-  Vec3f error;
-  for (int k = 0; k < 3; ++k) {
-    double e = 0x1p-22 * std::abs(p[k]) + 0x1p-22 * std::abs(double(t) * ray.direction[k]);
-    for (int j = 0; j < 3; ++j) {
-      e += std::abs(m.m[k][j]) * s.position_error[j];
-      // The ray's origin and direction were rounded to float inside the instance.
-      e += std::abs(m.m[k][j]) * 0x1p-22 * std::abs(s.position[j]);
-    }
-    error[k] = round_up(e);
-  }
-  s.position = Vec3f(p);
-  s.position_error = error;
-  s.geometric_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.geometric_normal))));
-  s.shading_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.shading_normal))));
-  s.tangent = Vec3f(m.vector(Vec3d(s.tangent)));
-}
-
-Ray ray_inside(const Place& place, const Ray& ray) {
-  const Affine inverse = place.to_world.inverse();
-  return {Vec3f(inverse.point(Vec3d(ray.origin))), ray.tmin, Vec3f(inverse.vector(Vec3d(ray.direction))),
-          ray.tmax};
-}
-
 }  // namespace
 
-Surface surface(const Accel& accel, const Ray& ray, const Hit& hit) {
-  const Place place = follow_path(accel, hit.instance);
-  const Accel& a = *place.accel;
-  const std::uint32_t geometry = a.geometry_of(hit.item), local = hit.item - a.first_item[geometry];
-  const Geometry& g = a.geometries[geometry];
-  const Ray inner = place.moved ? ray_inside(place, ray) : ray;
-  Surface s;
+Surface identify(const Accel& accel, const Hit& hit) {
+  return identify_in(follow_path(accel, hit.instance), hit).surface;
+}
+
+/// Makes a surface in its place: a copy would read whole registers of what was just written number by number,
+/// for which processors wait.
+template <class Function>
+static void make_in_place(Surface& s, const Function& make) {
+  ::new (static_cast<void*>(&s)) Surface(make());
+}
+
+/// The surface inside the structure that holds the item; `uv` says whether uv and tangent are wanted.
+static void surface_inside(const NamedHit& named, const Accel& a, const Ray& inner, const Hit& hit, bool uv,
+                           Surface& s) {
+  const Surface names = named.surface;
+  const Geometry& g = *named.geometry;
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
-    s = mesh_surface(g, a.frames[geometry], *mesh, local, hit);
+    s = mesh_surface(g, a.frames[names.geometry], *mesh, names.primitive, hit);
   } else if (std::holds_alternative<ExactShape>(g.shape)) {
-    visit_exact(static_cast<Kind>(a.kinds[geometry]), *a.exact,
+    visit_exact(static_cast<Kind>(a.kinds[names.geometry]), *a.exact,
                 [&](auto shape, const auto& pool) { s = exact_surface<decltype(shape)>(pool, hit, inner); });
   } else {
-    const Kind kind = static_cast<Kind>(a.kinds[geometry]);
+    const Kind kind = static_cast<Kind>(a.kinds[names.geometry]);
     visit_pool(kind, a.pools, [&](auto shape, const auto& pool) {
       using S = decltype(shape);
-      s = S::surface(pool, pool_index(pool, hit.item, a.pool_by_item[static_cast<int>(kind)]), inner, hit.t);
+      const std::size_t i = pool_index(pool, hit.item, a.pool_by_item[static_cast<int>(kind)]);
+      if constexpr (requires { S::surface_without_uv(pool, i, inner, hit.t); }) {
+        if (uv)
+          make_in_place(s, [&] { return S::surface(pool, i, inner, hit.t); });
+        else
+          make_in_place(s, [&] { return S::surface_without_uv(pool, i, inner, hit.t); });
+      } else {
+        make_in_place(s, [&] { return S::surface(pool, i, inner, hit.t); });
+      }
     });
   }
-  s.geometry = geometry, s.primitive = local;
-  s.user = place.user != kNoId ? place.user : g.user;
-  if (place.moved) move_surface(place, ray, hit.t, s);
+  s.geometry = names.geometry, s.primitive = names.primitive, s.user = names.user;
+  s.material_slot = names.material_slot;
+}
+
+void surface_at(const HitPlace& place, const NamedHit& named, const Ray& ray, const Hit& hit, bool uv,
+                Surface& s) {
+  if (!place.moved) return surface_inside(named, *place.accel, ray, hit, uv, s);
+  surface_inside(named, *place.accel, ray_inside(place, ray), hit, uv, s);
+  move_surface(place, ray, hit.t, s);
+}
+
+Surface surface(const Accel& accel, const Ray& ray, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  Surface s;
+  surface_at(place, identify_in(place, hit), ray, hit, true, s);
   return s;
 }
 
 Vec3f offset_origin(const Surface& s, const Vec3f& direction) {
-  const Vec3f n = s.geometric_normal;
-  const float reach = std::abs(n.x) * s.position_error.x + std::abs(n.y) * s.position_error.y +
-                      std::abs(n.z) * s.position_error.z;
-  const Vec3f offset = n * (dot(direction, n) < 0 ? -reach : reach);
-  Vec3f p = s.position + offset;
-  for (int k = 0; k < 3; ++k) {
-    // The sum is rounded away from the surface.
-    if (offset[k] > 0) p[k] = std::nextafter(p[k], std::numeric_limits<float>::infinity());
-    if (offset[k] < 0) p[k] = std::nextafter(p[k], -std::numeric_limits<float>::infinity());
-  }
-  return p;
+  Vec3f origin;
+  offset_origin(s, direction, origin);
+  return origin;
 }
 
 }  // namespace oktett

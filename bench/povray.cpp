@@ -61,13 +61,14 @@ void write_text(const fs::path& path, const std::string& text) {
 /// boxes, 2 = its BSP tree.
 double run_povray(const fs::path& dir, const std::string& scene, const Options& o, int bounding) {
   const std::string log = (dir / (scene + ".log")).string();
-  const std::string command =
-      fmt::format("cd '{}' && povray +I{}.pov +O{}.ppm +FP File_Gamma=1.0 +W{} +H{} -A -D +WT{} +BM{} >{}.log 2>&1",
-                  dir.string(), scene, scene, o.width, o.height, o.threads, bounding, scene);
+  const std::string command = fmt::format(
+      "cd '{}' && povray +I{}.pov +O{}.ppm +FP File_Gamma=1.0 +W{} +H{} -A -D +WT{} +BM{} >{}.log 2>&1",
+      dir.string(), scene, scene, o.width, o.height, o.threads, bounding, scene);
   if (std::system(command.c_str()) != 0) throw Error({log, 0, 0}, "POV-Ray failed");
   const std::string text = read_text(log);
   const std::size_t line = text.find("Trace Time:"), open = text.find('(', line);
-  if (line == std::string::npos || open == std::string::npos) throw Error({log, 0, 0}, "there is no trace time");
+  if (line == std::string::npos || open == std::string::npos)
+    throw Error({log, 0, 0}, "there is no trace time");
   return std::strtod(text.c_str() + open + 1, nullptr);
 }
 
@@ -90,7 +91,8 @@ RayBatch pixel_rays(const Field& field) {
   const CameraFrame camera = camera_frame(field.scene.camera, field.scene.film);
   RayBatch rays;
   for (std::uint32_t y = 0; y < field.scene.film.height; ++y)
-    for (std::uint32_t x = 0; x < field.scene.film.width; ++x) rays.push_back(camera_ray(camera, x + 0.5, y + 0.5));
+    for (std::uint32_t x = 0; x < field.scene.film.width; ++x)
+      rays.push_back(camera_ray(camera, x + 0.5, y + 0.5));
   return rays;
 }
 
@@ -196,11 +198,13 @@ std::string json_of(const std::vector<Row>& rows) {
   for (const Row& r : rows) {
     const Silhouettes& s = r.silhouettes;
     text += fmt::format(
-        "  {{\"kind\": \"{}\", \"oktett_s\": {}, \"povray_s\": {}, \"ratio\": {}, \"ratio_low\": {}, \"ratio_high\": "
-        "{}, \"povray_bounding\": {}, \"pixels\": {}, \"differ\": {}, \"oracle_oktett\": {}, \"oracle_povray\": {}, "
+        "  {{\"kind\": \"{}\", \"oktett_s\": {}, \"povray_s\": {}, \"ratio\": {}, \"ratio_low\": {}, "
+        "\"ratio_high\": "
+        "{}, \"povray_bounding\": {}, \"pixels\": {}, \"differ\": {}, \"oracle_oktett\": {}, "
+        "\"oracle_povray\": {}, "
         "\"oracle_neither\": {}}}{}\n",
-        r.kind, r.ours.median, r.theirs.median, r.ratio.median, r.ratio.low, r.ratio.high, r.bounding, s.pixels,
-        s.differ, s.ours, s.theirs, s.neither, &r == &rows.back() ? "" : ",");
+        r.kind, r.ours.median, r.theirs.median, r.ratio.median, r.ratio.low, r.ratio.high, r.bounding,
+        s.pixels, s.differ, s.ours, s.theirs, s.neither, &r == &rows.back() ? "" : ",");
   }
   return text + "]\n";
 }
@@ -225,8 +229,8 @@ Options parse(int argc, char** argv) {
     };
     if (name == "--size") {
       char rest;
-      if (std::sscanf(value.c_str(), "%ux%u%c", &o.width, &o.height, &rest) != 2 || o.width < 1 || o.height < 1 ||
-          o.width > 16384 || o.height > 16384)
+      if (std::sscanf(value.c_str(), "%ux%u%c", &o.width, &o.height, &rest) != 2 || o.width < 1 ||
+          o.height < 1 || o.width > 16384 || o.height > 16384)
         fail("--size: expected WxH, found '" + value + "'");
     } else if (name == "--threads") {
       o.threads = number();
@@ -250,21 +254,24 @@ Options parse(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   const Options o = parse(argc, argv);
-  const fs::path dir =
-      o.keep.empty() ? fs::temp_directory_path() / fmt::format("oktett-povray-{}", seconds([] {}) * 1e9) : fs::path(o.keep);
+  const fs::path dir = o.keep.empty()
+                           ? fs::temp_directory_path() / fmt::format("oktett-povray-{}", seconds([] {}) * 1e9)
+                           : fs::path(o.keep);
   fs::create_directories(dir);
   std::vector<Row> rows;
-  fmt::print("{}x{}, {} threads; seconds of tracing, medians of {} rounds in turn\n", o.width, o.height, o.threads, o.runs);
-  fmt::print("{:<16}{:>9}{:>9}{:>8}{:>16}{:>10}{:>10}{:>8}{:>8}{:>9}\n", "kind", "Oktett", "POV-Ray", "ratio", "quarters",
-             "differ", "percent", "ours", "theirs", "neither");
+  fmt::print("{}x{}, {} threads; seconds of tracing, medians of {} rounds in turn\n", o.width, o.height,
+             o.threads, o.runs);
+  fmt::print("{:<16}{:>9}{:>9}{:>8}{:>16}{:>10}{:>10}{:>8}{:>8}{:>9}\n", "kind", "Oktett", "POV-Ray", "ratio",
+             "quarters", "differ", "percent", "ours", "theirs", "neither");
   for (const FieldKind& kind : field_kinds()) {
     if (!o.kinds.empty() && std::find(o.kinds.begin(), o.kinds.end(), kind.name) == o.kinds.end()) continue;
     rows.push_back(compare(kind, o, dir));
     const Row& r = rows.back();
     const Silhouettes& s = r.silhouettes;
     fmt::print("{:<16}{:>9.3f}{:>9.3f}{:>8.2f}{:>16}{:>10}{:>10.4f}{:>8}{:>8}{:>9}\n", r.kind, r.ours.median,
-               r.theirs.median, r.ratio.median, fmt::format("{:.2f} to {:.2f}", r.ratio.low, r.ratio.high), s.differ,
-               100.0 * static_cast<double>(s.differ) / static_cast<double>(s.pixels), s.ours, s.theirs, s.neither);
+               r.theirs.median, r.ratio.median, fmt::format("{:.2f} to {:.2f}", r.ratio.low, r.ratio.high),
+               s.differ, 100.0 * static_cast<double>(s.differ) / static_cast<double>(s.pixels), s.ours,
+               s.theirs, s.neither);
     std::fflush(stdout);
   }
   if (!o.json.empty()) write_text(o.json, json_of(rows));

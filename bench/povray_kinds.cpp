@@ -16,7 +16,8 @@ FieldObject torus(const double (&)[6]) {
 }
 
 FieldObject sphere(const double (&)[6]) {
-  return {"sphere { 0, 0.9 }", SphereShape{{0, 0, 0}, 0.9}, [](const Vec3l& p) { return dot(p, p) - 0.9L * 0.9L; }};
+  return {"sphere { 0, 0.9 }", SphereShape{{0, 0, 0}, 0.9},
+          [](const Vec3l& p) { return dot(p, p) - 0.9L * 0.9L; }};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace oktett::bench {
 
 namespace {
 
-constexpr double kEdge = 24;     // of the field
+constexpr double kEdge = 24;        // of the field
 constexpr double kHorizontal = 50;  // degrees of view
 const Vec3d kEye{0, 14, -22}, kTarget{0, 0, -2}, kLight{-20, 40, -20};
 
@@ -22,8 +22,7 @@ std::string head(bool ids) {
       "camera {{ location {} right x*image_width/image_height angle {} look_at {} }}\n{}"
       "background {{ rgb {} }}\n#default {{ finish {{ {} }} }}\n",
       v(kEye), kHorizontal, v(kTarget), ids ? "" : fmt::format("light_source {{ {} rgb 1 }}\n", v(kLight)),
-      ids ? 0 : 0.1,
-      ids ? "ambient 1 diffuse 0" : "ambient 0.1 diffuse 0.7 phong 0.3 phong_size 40");
+      ids ? 0 : 0.1, ids ? "ambient 1 diffuse 0" : "ambient 0.1 diffuse 0.7 phong 0.3 phong_size 40");
 }
 
 /// Object `id` in a colour that says so; 0 is the background.
@@ -73,8 +72,9 @@ Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t heigh
       const Vec3d turn{360 * r[3], 360 * r[4], 360 * r[5]};
       const Vec3d place{(i - side / 2.0 + 0.5) * pitch, size * 1.2, (j - side / 2.0 + 0.5) * pitch};
       const auto text = [&](const std::string& pigment) {
-        return fmt::format("object {{ {} pigment {{ {} }} rotate <{}, {}, {}> scale {} translate <{}, {}, {}> }}\n",
-                           object.pov, pigment, turn.x, turn.y, turn.z, size, place.x, place.y, place.z);
+        return fmt::format(
+            "object {{ {} pigment {{ {} }} rotate <{}, {}, {}> scale {} translate <{}, {}, {}> }}\n",
+            object.pov, pigment, turn.x, turn.y, turn.z, size, place.x, place.y, place.z);
       };
       field.pov += text(fmt::format("rgb <{}, {}, {}>", color.x, color.y, color.z));
       field.pov_ids += text(id_color(id + 1));
@@ -86,7 +86,8 @@ Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t heigh
       field.objects.push_back(std::move(object));
     }
   field.pov += "plane { y, 0 pigment { rgb <.6, .6, .65> } }\n";
-  field.pov_ids += "plane { y, 0 pigment { " + id_color(static_cast<std::uint32_t>(field.objects.size()) + 1) + " } }\n";
+  field.pov_ids +=
+      "plane { y, 0 pigment { " + id_color(static_cast<std::uint32_t>(field.objects.size()) + 1) + " } }\n";
   Object& floor = field.scene.objects.emplace_back();
   floor.shape = PlaneShape{};
   floor.material = static_cast<std::uint32_t>(field.scene.materials.size());

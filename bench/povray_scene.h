@@ -31,8 +31,8 @@ std::vector<FieldKind> field_kinds();
 
 /// A field seen by both. POV-Ray's space is left-handed: its picture is Oktett's mirrored from left to right.
 struct Field {
-  Scene scene;                       ///< for Oktett; objects 0, 1, ... and the floor last
-  std::string pov, pov_ids;          ///< the same for POV-Ray, lit; and each object in a colour that numbers it
+  Scene scene;               ///< for Oktett; objects 0, 1, ... and the floor last
+  std::string pov, pov_ids;  ///< the same for POV-Ray, lit; and each object in a colour that numbers it
   std::vector<FieldObject> objects;  ///< without the floor
 };
 

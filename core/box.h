@@ -1,6 +1,8 @@
 #pragma once
 /// \file Axis-aligned boxes.
 
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 #include "core/vec3.h"
@@ -34,11 +36,21 @@ struct Box {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 };
 
+/// The next float above `f`, which is not NaN; infinity above the greatest. What std::nextafter gives,
+/// without a call.
+inline float next_up(float f) {
+  if (!(f < std::numeric_limits<float>::infinity())) return f;
+  const auto bits = std::bit_cast<std::int32_t>(f);
+  if (f == 0) return std::numeric_limits<float>::denorm_min();
+  return std::bit_cast<float>(bits < 0 ? bits - 1 : bits + 1);
+}
+inline float next_down(float f) { return -next_up(-f); }
+
 /// The smallest float at or above `v`, resp. the largest at or below it: how bounds computed in double become
 /// a Box.
 inline float round_up(double v) {
   const float f = static_cast<float>(v);
-  return static_cast<double>(f) >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+  return static_cast<double>(f) >= v ? f : next_up(f);
 }
 inline float round_down(double v) { return -round_up(-v); }
 

@@ -104,6 +104,13 @@ double pow(double x, double y) {
   return odd ? -magnitude : magnitude;
 }
 
+double whole_power(double x, unsigned n) {
+  double product = 1;
+  for (; n > 1; n >>= 1, x *= x)
+    if (n & 1) product *= x;
+  return n == 1 ? product * x : product;
+}
+
 /// Splits x into quadrant * pi/2 + r with |r| <= pi/4; returns r.
 static double reduce_angle(double x, int& quadrant) {
   // pi/2 in three parts of 33 bits: k times a part is exact for k < 2^20 (Cody and Waite 1980).

@@ -14,17 +14,57 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// 2^64 divided by the golden ratio: multiples of it spread evenly.
+inline constexpr std::uint64_t kGoldenBits = 0x9e3779b97f4a7c15ull;
+
 /// The key of all random numbers of one pixel. `pixel` counts through the full frame, so a crop shows the
 /// same noise.
-std::uint64_t pixel_key(std::uint32_t seed, std::uint64_t pixel);
+inline std::uint64_t pixel_key(std::uint32_t seed, std::uint64_t pixel) {
+  return mix_bits(mix_bits(seed + kGoldenBits) + (pixel + 1) * kGoldenBits);
+}
 
 /// 64 random bits for dimension `dimension` of sample `sample` under `key`.
-std::uint64_t random_bits(std::uint64_t key, std::uint32_t sample, std::uint32_t dimension);
+inline std::uint64_t random_bits(std::uint64_t key, std::uint32_t sample, std::uint32_t dimension) {
+  const std::uint64_t counter = (static_cast<std::uint64_t>(sample) << 32) | dimension;
+  return mix_bits(key + (counter + 1) * kGoldenBits);
+}
 
 /// Uniform in [0, 1): a multiple of 2^-24.
-float random_float(std::uint64_t key, std::uint32_t sample, std::uint32_t dimension);
+inline float random_float(std::uint64_t key, std::uint32_t sample, std::uint32_t dimension) {
+  // In 32 bits signed, which processors convert at once.
+  return static_cast<float>(static_cast<std::int32_t>(random_bits(key, sample, dimension) >> 40)) * 0x1p-24f;
+}
+
+/// A random permutation of 0 ... n-1, chosen by `key`.
+class Permutation {
+ public:
+  Permutation(std::uint32_t n, std::uint64_t key);
+
+  /// Where `i` < n goes.
+  std::uint32_t operator()(std::uint32_t i) const {
+    if (n_ < 2) return 0;
+    // Each step is a bijection on the bits of `mask_`; walking its cycle until it returns to the range
+    // restricts it to n numbers.
+    do {
+      for (const std::uint64_t bits : round_) {
+        i = (i + static_cast<std::uint32_t>(bits)) & mask_;
+        i = (i * (static_cast<std::uint32_t>(bits >> 32) | 1u)) & mask_;
+        i ^= i >> shift_;
+      }
+    } while (i >= n_);
+    const std::uint64_t turned = std::uint64_t{i} + turn_;
+    return static_cast<std::uint32_t>(turned >= n_ ? turned - n_ : turned);
+  }
+
+ private:
+  std::uint32_t n_, mask_ = 0, turn_ = 0;
+  int shift_ = 1;
+  std::uint64_t round_[3] = {};
+};
 
 /// Where a random permutation of 0 ... n-1, chosen by `key`, sends `i`. `i` < `n`.
-std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key);
+inline std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
+  return Permutation(n, key)(i);
+}
 
 }  // namespace oktett

@@ -75,7 +75,7 @@ void add_metadata(ImageSpec& spec, const ImageMetadata& metadata) {
   }
 }
 
-/// Copies rows [y0, y1) of a plane to every `stride` bytes of `out`, in the type the file has.
+/// Copies `count` pixels of a plane to every `stride` bytes of `out`, in the type the file has.
 void pack_plane(const Plane& plane, std::size_t first, std::size_t count, std::byte* out,
                 std::size_t stride) {
   if (plane.type == PlaneType::unsigned_int) {
@@ -95,6 +95,14 @@ void pack_plane(const Plane& plane, std::size_t first, std::size_t count, std::b
   OIIO::convert_pixel_values(TypeDesc::FLOAT, finite.data(), TypeDesc::HALF, halves.data(),
                              static_cast<int>(count));
   for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * stride, &halves[i], 2);
+}
+
+/// All planes of a row, pixel after pixel. A row stays in the cache while plane after plane is added.
+void pack_row(const Picture& picture, std::uint32_t row, std::byte* out, std::size_t pixel_bytes) {
+  for (const Plane& plane : picture.planes) {
+    pack_plane(plane, std::size_t{row} * picture.width, picture.width, out, pixel_bytes);
+    out += file_type(plane.type).size();
+  }
 }
 
 bool write_planes(ImageOutput& output, const std::string& path, const Picture& picture,
@@ -117,7 +125,8 @@ bool write_planes(ImageOutput& output, const std::string& path, const Picture& p
     spec.channelformats.push_back(type);
     pixel_bytes += type.size();
   }
-  spec.attribute("compression", "zip");
+  // Level 2 takes half the time of the default and makes files that are a few percent larger.
+  spec.attribute("compression", "zip:2");
   spec.attribute("oiio:ColorSpace", "Linear");
   add_metadata(spec, metadata);
   if (!output.open(path, spec)) return false;
@@ -125,12 +134,8 @@ bool write_planes(ImageOutput& output, const std::string& path, const Picture& p
   std::vector<std::byte> rows(pixel_bytes * picture.width * std::min(picture.height, kRowsAtOnce));
   for (std::uint32_t y = 0; y < picture.height; y += kRowsAtOnce) {
     const std::uint32_t y_end = std::min(y + kRowsAtOnce, picture.height);
-    std::size_t offset = 0;
-    for (const Plane& plane : picture.planes) {
-      pack_plane(plane, std::size_t{y} * picture.width, std::size_t{y_end - y} * picture.width,
-                 rows.data() + offset, pixel_bytes);
-      offset += file_type(plane.type).size();
-    }
+    for (std::uint32_t row = y; row < y_end; ++row)
+      pack_row(picture, row, rows.data() + std::size_t{row - y} * picture.width * pixel_bytes, pixel_bytes);
     if (!output.write_scanlines(spec.y + static_cast<int>(y), spec.y + static_cast<int>(y_end), 0,
                                 TypeDesc::UNKNOWN, rows.data()))
       return false;

@@ -14,7 +14,7 @@ void shade_ambient_occlusion(const RenderContext& context, Wave& wave, std::size
   const Vec3f direction = cosine_direction(p.ns, at);
   if (dot(direction, p.ng) <= 0) return;
   const Ray probe{offset_origin(p.surface, direction), 0, direction, context.ao_radius};
-  wave.shadows.push_back(probe, static_cast<std::uint32_t>(ray), wave.rays.throughput[ray]);
+  wave.shadows.front().push_back(probe, static_cast<std::uint32_t>(ray), wave.rays.throughput[ray]);
 }
 
 }  // namespace oktett

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "accel/view_rays.h"
 #include "core/math.h"
 
 namespace oktett {
@@ -69,6 +70,25 @@ Ray camera_ray(const CameraFrame& camera, double x, double y) {
     ray.direction = Vec3f(camera.forward);
   }
   return ray;
+}
+
+void camera_rays(const CameraFrame& camera, const FilmPoints& points, Isa isa, RayBatch& rays) {
+  const std::size_t count = rays.size();
+  if (camera.projection != Projection::perspective) {
+    for (std::size_t i = 0; i < count; ++i) rays.set(i, camera_ray(camera, points.x[i], points.y[i]));
+    return;
+  }
+  const Ray like;
+  const Vec3f origin(camera.origin);
+  for (int k = 0; k < 3; ++k) std::fill_n(rays.origin[k].data(), count, origin[k]);
+  std::fill_n(rays.tmin.data(), count, like.tmin);
+  std::fill_n(rays.tmax.data(), count, like.tmax);
+  view_directions({camera.corner, camera.per_pixel_x, camera.per_pixel_y},
+                  {points.x.data(),
+                   points.y.data(),
+                   count,
+                   {rays.direction[0].data(), rays.direction[1].data(), rays.direction[2].data()}},
+                  isa);
 }
 
 double camera_depth(const CameraFrame& camera, const Vec3f& p) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/isa.h"
 #include "core/ray.h"
 #include "core/vec3.h"
 #include "render/scene.h"
@@ -37,6 +38,15 @@ struct CameraFrame {
 /// Any camera gives a frame: an `up` along the view axis or a zero view direction is replaced by some valid
 /// choice.
 CameraFrame camera_frame(const Camera& camera, const Film& film);
+
+/// Film points and the rays through them, in columns of equal length.
+struct FilmPoints {
+  const Column<double>& x;
+  const Column<double>& y;
+};
+
+/// The rays through all `points`, each the same bits as `camera_ray` gives. `rays` has their size.
+void camera_rays(const CameraFrame& camera, const FilmPoints& points, Isa isa, RayBatch& rays);
 
 /// The ray through a film point, of unit direction.
 Ray camera_ray(const CameraFrame& camera, double x, double y);

@@ -2,12 +2,25 @@
 
 #include <algorithm>
 
-#include "accel/accel.h"
+#include "accel/offset_origin.h"
 #include "core/math.h"
+#include "core/platform.h"
 
 namespace oktett {
 
-Color phong(const ShadingPoint& p, const Vec3f& l) {
+/// `cosine`, in [0, 1] or NaN, to the power of a material's exponent.
+static float highlight_power(float cosine, float exponent) {
+  constexpr float kMostBySquaring = 1024;
+  // Exponents of materials mostly are whole.
+  if (exponent <= kMostBySquaring && exponent >= 0) {
+    const auto whole = static_cast<unsigned>(exponent);
+    if (static_cast<float>(whole) == exponent)
+      return static_cast<float>(portable::whole_power(cosine, whole));
+  }
+  return static_cast<float>(portable::pow(cosine, exponent));
+}
+
+static OKTETT_INLINE Color phong_here(const ShadingPoint& p, const Vec3f& l) {
   const Material& m = *p.material;
   const float cosine = dot(p.ns, l);
   // Comparisons are such that NaN goes on to the picture, where it is counted.
@@ -16,41 +29,43 @@ Color phong(const ShadingPoint& p, const Vec3f& l) {
   if (m.specular != 0) {
     const float highlight = dot(l, p.direction) - 2 * cosine * dot(p.ns, p.direction);
     if (!(highlight <= 0)) {
-      const double power = portable::pow(std::min(highlight, 1.0f), m.phong);
-      sum += p.specular_color * (m.specular * static_cast<float>(power));
+      sum += p.specular_color * (m.specular * highlight_power(std::min(highlight, 1.0f), m.phong));
     }
   }
   return sum;
 }
 
+Color phong(const ShadingPoint& p, const Vec3f& l) { return phong_here(p, l); }
+
 /// The ray from `p` to a light and the light that travels along it.
-static Ray light_ray(const ShadingPoint& p, const LightSource& light, Vec3f& l, Color& color) {
+static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& light, Vec3f& l, Color& color) {
   Ray ray;
   color = light.color;
   if (light.directional) {
     l = ray.direction = light.place;
-    ray.origin = offset_origin(p.surface, l);
+    offset_origin(p.surface, l, ray.origin);
     return ray;
   }
   const Vec3d towards = Vec3d(light.place) - Vec3d(p.surface.position);
   const double square = dot(towards, towards);
   l = Vec3f(towards / std::sqrt(square));
   if (light.falloff) color = color * static_cast<float>(1 / square);
-  ray.origin = offset_origin(p.surface, l);
+  offset_origin(p.surface, l, ray.origin);
   ray.direction = light.place - ray.origin;
   ray.tmax = 1 - 0x1p-24f;
   return ray;
 }
 
 void add_direct_light(const RenderContext& context, const ShadingPoint& p, const Color& throughput,
-                      std::uint32_t owner, ShadowQueue& shadows) {
-  for (const LightSource& light : context.lights) {
+                      std::uint32_t owner, std::vector<ShadowQueue>& shadows) {
+  for (std::size_t i = 0; i < context.lights.size(); ++i) {
+    const LightSource& light = context.lights[i];
     Vec3f l;
     Color color;
     const Ray ray = light_ray(p, light, l, color);
-    const Color arriving = throughput * phong(p, l) * color;
+    const Color arriving = throughput * phong_here(p, l) * color;
     if (arriving == Color{0, 0, 0}) continue;
-    shadows.push_back(ray, owner, arriving);
+    shadows[i].push_back(ray, owner, arriving);
   }
 }
 

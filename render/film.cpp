@@ -41,16 +41,19 @@ void add3(double (&sum)[3], const Vec3f& v) {
   for (int k = 0; k < 3; ++k) sum[k] += static_cast<double>(v[k]);
 }
 
-void add_first_hit(PixelSum& pixel, const FirstHit& first, const Vec2f& offset) {
+void add_ids(PixelSum& pixel, const FirstHit& first, const Vec2f& offset) {
   const float distance = offset.x * offset.x + offset.y * offset.y;
   if (!pixel.has_ids || distance < pixel.nearest) {
     pixel.has_ids = true;
     pixel.nearest = distance;
     pixel.primitive = first.primitive, pixel.object = first.object;
   }
+}
+
+void add_first_hit(PixelSum& pixel, const FirstHit& first) {
   const bool finite = std::isfinite(first.depth) && is_finite(first.normal) && is_finite(first.position) &&
                       is_finite(first.albedo) && std::isfinite(first.uv.x) && std::isfinite(first.uv.y);
-  if (!first.found || !finite) return;
+  if (!finite) return;
   ++pixel.hits;
   pixel.depth += static_cast<double>(first.depth);
   add3(pixel.normal, first.normal);
@@ -72,11 +75,17 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
   const Color color = samples.color[i];
   if (!is_finite(color) || !std::isfinite(samples.alpha[i])) return false;
   ++pixel.good;
+  const FirstHit& first = samples.first[i];
+  if (!first.found && color == Color{} && samples.alpha[i] == 0) {
+    add_ids(pixel, first, samples.offset[i]);
+    return true;
+  }
   add3(pixel.color, color);
   for (int k = 0; k < 3; ++k)
     pixel.square[k] += static_cast<double>(color[k]) * static_cast<double>(color[k]);
   pixel.alpha += static_cast<double>(samples.alpha[i]);
-  add_first_hit(pixel, samples.first[i], samples.offset[i]);
+  add_ids(pixel, first, samples.offset[i]);
+  if (first.found) add_first_hit(pixel, first);
   return true;
 }
 
@@ -112,7 +121,9 @@ void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const Pixel
     picture.planes[kPrimId].ids[at] = pixel.primitive;
     picture.planes[kGeomId].ids[at] = pixel.object;
   }
-  if (pixel.good == 0) return;
+  const bool empty = pixel.color[0] == 0 && pixel.color[1] == 0 && pixel.color[2] == 0 && pixel.alpha == 0;
+  // Pixels are empty to begin with.
+  if (pixel.good == 0 || (pixel.hits == 0 && empty)) return;
   for (int k = 0; k < 3; ++k) set(kR + k, pixel.color[k], pixel.good);
   set(kA, pixel.alpha, pixel.good);
   if (!data_layers) return;

@@ -21,10 +21,11 @@ struct RayQueue {
   std::size_t size() const { return sample.size(); }
   bool empty() const { return sample.empty(); }
 
-  void clear() {
-    rays.resize_uninitialized(0);
-    sample.resize_uninitialized(0), throughput.resize_uninitialized(0), distance.resize_uninitialized(0);
-    bounces.resize_uninitialized(0), from_camera.resize_uninitialized(0);
+  void clear() { resize_uninitialized(0); }
+  void resize_uninitialized(std::size_t n) {
+    rays.resize_uninitialized(n);
+    sample.resize_uninitialized(n), throughput.resize_uninitialized(n), distance.resize_uninitialized(n);
+    bounces.resize_uninitialized(n), from_camera.resize_uninitialized(n);
   }
 
   /// One entry of the columns.
@@ -52,6 +53,7 @@ struct ShadowQueue {
   RayBatch rays;
   Column<std::uint32_t> owner;
   Column<Color> light;
+  Column<std::uint8_t> occluded;  ///< for the tracer: what it found
 
   std::size_t size() const { return owner.size(); }
 

@@ -1,5 +1,6 @@
 #include "render/render.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -85,6 +86,7 @@ void describe_world(const World& world, RenderReport& report) {
 
 void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture& picture, Monitor& monitor) {
   const std::vector<FinishedTile> tiles = cut_tiles(picture.width, picture.height, tile_size);
+  tbb::enumerable_thread_specific<TileWorkspace> workspaces;
   // One tile per task: tiles differ much in cost, and a stop should not wait for a block of them.
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
@@ -94,7 +96,7 @@ void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture
             monitor.skip_tile();
             continue;
           }
-          monitor.finish_tile(tiles[i], render_tile(context, tiles[i], picture));
+          monitor.finish_tile(tiles[i], render_tile(context, tiles[i], picture, workspaces.local()));
         }
       },
       tbb::simple_partitioner());

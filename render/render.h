@@ -37,7 +37,7 @@ struct RenderOptions {
   std::function<void(const Picture&, const FinishedTile&)> tile_finished;
   BuildOptions build;  ///< of the acceleration structures; the picture does not depend on it
   std::uint32_t tile_size =
-      16;                   ///< pixels along the edge of a tile, [1, 256]; the picture does not depend on it
+      32;                   ///< pixels along the edge of a tile, [1, 256]; the picture does not depend on it
   bool data_layers = true;  ///< also fill Z, N, P, Albedo, u, v, ids and Variance planes
 };
 

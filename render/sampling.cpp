@@ -5,22 +5,41 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "core/random.h"
 
 namespace oktett {
 
 static constexpr double kBelowOne = 1 - 0x1p-53;
 
-SquareSample stratified_sample(std::uint32_t sample, std::uint32_t count, std::uint64_t key) {
-  if (count <= 1) return {0.5, 0.5};
-  const auto columns = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)));
-  const std::uint32_t rows = (count + columns - 1) / columns;
-  const std::uint32_t s = permute(sample, count, key);
-  const std::uint32_t column = permute(s % columns, columns, key ^ 0x68bc21eb);
-  const std::uint32_t sub_column = permute(s / columns, rows, key ^ 0x02e5be93);
-  const double jitter_x = random_float(key, s, 0), jitter_y = random_float(key, s, 1);
-  return {std::min(kBelowOne, (column + (sub_column + jitter_x) / rows) / columns),
-          std::min(kBelowOne, (s + jitter_y) / count)};
+static std::uint32_t columns_for(std::uint32_t count) {
+  return count <= 1 ? 1 : static_cast<std::uint32_t>(std::sqrt(static_cast<double>(count)));
+}
+
+StratifiedPattern::StratifiedPattern(std::uint32_t count, std::uint64_t key, bool whole)
+    : key_(key),
+      count_(count),
+      columns_(columns_for(count)),
+      rows_((count + columns_ - 1) / columns_),
+      per_row_(1.0 / rows_),
+      per_column_(1.0 / columns_),
+      per_count_(1.0 / std::max(count, 1u)),
+      order_(count, key),
+      column_(columns_, key ^ 0x68bc21eb),
+      sub_column_(rows_, key ^ 0x02e5be93),
+      tabulated_(whole && rows_ <= kTabulated) {
+  if (!tabulated_) return;
+  for (std::uint32_t i = 0; i < columns_; ++i) column_at_[i] = static_cast<std::uint8_t>(column_(i));
+  for (std::uint32_t i = 0; i < rows_; ++i) sub_column_at_[i] = static_cast<std::uint8_t>(sub_column_(i));
+}
+
+SquareSample StratifiedPattern::operator[](std::uint32_t sample) const {
+  if (count_ <= 1) return {0.5, 0.5};
+  const std::uint32_t s = order_(sample);
+  const std::uint32_t cell_row = s / columns_, cell_column = s - cell_row * columns_;
+  const std::uint32_t column = tabulated_ ? column_at_[cell_column] : column_(cell_column);
+  const std::uint32_t sub_column = tabulated_ ? sub_column_at_[cell_row] : sub_column_(cell_row);
+  const double jitter_x = random_float(key_, s, 0), jitter_y = random_float(key_, s, 1);
+  return {std::min(kBelowOne, (column + (sub_column + jitter_x) * per_row_) * per_column_),
+          std::min(kBelowOne, (s + jitter_y) * per_count_)};
 }
 
 std::uint64_t pattern_key(std::uint64_t pixel, std::uint32_t dimension) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/random.h"
 #include "core/vec3.h"
 
 namespace oktett {
@@ -12,8 +13,7 @@ struct SquareSample {
   double x = 0, y = 0;
 };
 
-/// Point `sample` of the pattern of `count` points chosen by `key`: correlated multi-jittered sampling
-/// (Kensler 2013).
+/// A pattern of `count` points chosen by `key`: correlated multi-jittered sampling (Kensler 2013).
 ///
 /// The pattern has m = floor(sqrt(count)) columns and ceil(count / m) rows. If they multiply to `count`, each
 /// cell of that grid holds exactly one point; and for any count, each of `count` equal intervals of y and at
@@ -21,7 +21,29 @@ struct SquareSample {
 /// centre of the square.
 ///
 /// Departs from the paper in its hash functions: permutations and jitter are those of core/random.h.
-SquareSample stratified_sample(std::uint32_t sample, std::uint32_t count, std::uint64_t key);
+class StratifiedPattern {
+ public:
+  /// `whole` prepares for most of the points to be asked for.
+  StratifiedPattern(std::uint32_t count, std::uint64_t key, bool whole = true);
+  /// Point `sample` < count.
+  SquareSample operator[](std::uint32_t sample) const;
+
+ private:
+  static constexpr std::uint32_t kTabulated = 16;
+
+  std::uint64_t key_;
+  std::uint32_t count_, columns_, rows_;
+  double per_row_, per_column_, per_count_;  ///< one over the number
+  Permutation order_, column_, sub_column_;
+  bool tabulated_;
+  /// Where the permutations of few columns and rows lead.
+  std::uint8_t column_at_[kTabulated], sub_column_at_[kTabulated];
+};
+
+/// One point of StratifiedPattern(count, key).
+inline SquareSample stratified_sample(std::uint32_t sample, std::uint32_t count, std::uint64_t key) {
+  return StratifiedPattern(count, key, false)[sample];
+}
 
 /// The key of the pattern that a pixel uses for its dimension `dimension` (its random numbers' key being
 /// `pixel`).

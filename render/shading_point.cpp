@@ -100,17 +100,19 @@ void face_ray(ShadingPoint& p, Vec3f ns) {
 }  // namespace
 
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
-                           const RayHistory& history) {
+                           const RayHistory& history, const Surface& found) {
   ShadingPoint p;
-  p.surface = surface(*context.world->accel, ray, hit);
-  p.material = &material_at(*context.world, p.surface);
+  p.material = &material_at(*context.world, found);
+  const bool textured_here = context.textures != nullptr && has_textures(*p.material);
+  const bool uv_shown = context.data_layers && history.from_camera;
+  p.surface = textured_here || uv_shown ? surface(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;
   const Material& m = *p.material;
   const Surface& s = p.surface;
   Footprint f;
   Vec3f ns = s.shading_normal;
-  if (context.textures != nullptr && has_textures(m)) {
+  if (textured_here) {
     f = texture_footprint(context, ray, hit, s, history);
     if (m.bump_texture != kNoId) ns = bumped(context, m, s, ns, f);
     if (m.normal_texture != kNoId) ns = mapped(context, m, s, ns, f);
@@ -123,12 +125,16 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   return p;
 }
 
-Color transmittance(const RenderContext& context, const Surface& surface) {
-  const Material& m = material_at(*context.world, surface);
-  const float opacity = opacity_at(context, m, surface.uv, {});
+bool is_opaque(const Material& m) { return m.transparency == 0 && m.opacity_texture == kNoId; }
+
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const Surface& s) {
+  const Material& m = material_at(*context.world, s);
+  Vec2f uv;
+  if (context.textures != nullptr && has_textures(m)) uv = surface(*context.world->accel, ray, hit).uv;
+  const float opacity = opacity_at(context, m, uv, {});
   const float hole = 1 - opacity;
   if (m.transparency == 0) return {hole, hole, hole};
-  const Color color = textured(context, m.color, m.color_texture, surface.uv, {});
+  const Color color = textured(context, m.color, m.color_texture, uv, {});
   return color * (m.transparency * opacity) + Color{hole, hole, hole};
 }
 

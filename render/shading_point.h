@@ -25,12 +25,16 @@ struct ShadingPoint {
   float opacity = 1;                      ///< share of the surface that is there at all; the rest is a hole
 };
 
-/// `ray` is of unit direction and has the valid hit `hit`.
+/// `ray` is of unit direction and has the valid hit `hit`, whose surface is `s`; of that, uv and tangent may
+/// be missing: they are found if textures or the picture's data layers ask for them.
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
-                           const RayHistory& history);
+                           const RayHistory& history, const Surface& s);
 
 /// The fraction of light that passes straight through the surface at a hit of a shadow ray: through holes
-/// unchanged, else material colour * transparency.
-Color transmittance(const RenderContext& context, const Surface& surface);
+/// unchanged, else material colour * transparency. Of `s` only the names count.
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const Surface& s);
+
+/// True if `transmittance` is black, whatever the place of the hit.
+bool is_opaque(const Material& material);
 
 }  // namespace oktett

@@ -33,31 +33,39 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   RayBatch rays, rest;
   for (const std::uint32_t i : left) rays.push_back(queue.rays[i]);
   HitBatch hits;
+  std::vector<std::uint32_t> kept;  // of `left`
+  std::vector<Surface> behind;
   for (int layer = 0; layer < kMostLayers && !left.empty(); ++layer) {
     hits.resize_uninitialized(rays.size());
     closest_hit(accel, rays.span(), hits.span(), context.isa);
-    rest.resize_uninitialized(0);
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < left.size(); ++k) {
+    kept.clear();
+    for (std::uint32_t k = 0; k < left.size(); ++k) {
       const Hit hit = hits[k];
       if (!hit.valid()) continue;
-      const Ray ray = rays[k];
-      const Surface s = surface(accel, ray, hit);
       Color& light = passed[left[k]];
-      light = light * transmittance(context, s);
-      if (is_black(light)) continue;
-      rest.push_back(continue_behind(ray, s));
-      left[kept++] = left[k];
+      // Most surfaces let nothing pass, which their names tell.
+      const Surface names = identify(accel, hit);
+      const bool opaque = is_opaque(material_at(*context.world, names));
+      light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names);
+      if (!is_black(light)) kept.push_back(k);
     }
-    left.resize(kept);
+    behind.resize(kept.size());
+    surfaces(accel, rays.span(), hits.span(), kept.data(), kept.size(), context.isa, behind.data());
+    rest.resize_uninitialized(0);
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      rest.push_back(continue_behind(rays[kept[k]], behind[k]));
+      left[k] = left[kept[k]];
+    }
+    left.resize(kept.size());
     std::swap(rays, rest);
   }
   for (const std::uint32_t i : left) passed[i] = {0, 0, 0};
 }
 
-void trace_shadows(const RenderContext& context, const ShadowQueue& queue, Column<Color>& radiance) {
+void trace_shadows(const RenderContext& context, ShadowQueue& queue, Column<Color>& radiance) {
   if (queue.size() == 0) return;
-  std::vector<std::uint8_t> occluded(queue.size());
+  Column<std::uint8_t>& occluded = queue.occluded;
+  occluded.resize_uninitialized(queue.size());
   any_hit(*context.world->accel, queue.rays.span(), occluded.data(), context.isa);
   if (!context.world->see_through) {
     for (std::size_t i = 0; i < queue.size(); ++i)

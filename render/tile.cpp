@@ -1,18 +1,16 @@
 #include "render/tile.h"
 
 #include <algorithm>
+#include <span>
 
 #include "render/film.h"
 
 namespace oktett {
 namespace {
 
-/// Camera samples per wave: enough to keep packets full after some bounces, few enough to stay in the cache.
-constexpr std::uint32_t kWaveSamples = 2048;
-
-struct Pixel {
-  std::uint32_t x, y;  ///< in the picture
-};
+/// Most camera samples per wave: enough to keep packets full after some bounces, few enough to stay in the
+/// cache.
+constexpr std::uint32_t kWaveSamples = 4096;
 
 /// The even bits of `code`, closed up.
 std::uint32_t even_bits(std::uint32_t code) {
@@ -21,28 +19,18 @@ std::uint32_t even_bits(std::uint32_t code) {
   return bits;
 }
 
-/// The pixels of a tile in Morton order, so that neighbours in the list make coherent packets.
-std::vector<Pixel> tile_pixels(const FinishedTile& tile) {
-  std::vector<Pixel> pixels;
-  pixels.reserve(static_cast<std::size_t>(tile.width) * tile.height);
+/// The pixels of a tile of the given size in Morton order, so that neighbours in the list make coherent
+/// packets.
+void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work) {
+  if (work.width == width && work.height == height) return;
+  work.width = width, work.height = height;
+  work.order.clear();
   std::uint32_t edge = 1;
-  while (edge < tile.width || edge < tile.height) edge *= 2;
+  while (edge < width || edge < height) edge *= 2;
   for (std::uint32_t code = 0; code < edge * edge; ++code) {
     const std::uint32_t x = even_bits(code), y = even_bits(code >> 1);
-    if (x < tile.width && y < tile.height) pixels.push_back({tile.x + x, tile.y + y});
+    if (x < width && y < height) work.order.push_back({static_cast<std::uint32_t>(work.order.size()), x, y});
   }
-  return pixels;
-}
-
-/// Traces samples [first_sample, last_sample) of pixels [first, last) of the list.
-void run_wave(const RenderContext& context, const std::vector<Pixel>& pixels, std::size_t first,
-              std::size_t last, std::uint32_t first_sample, std::uint32_t last_sample, Wave& wave) {
-  wave.clear();
-  for (std::size_t p = first; p < last; ++p)
-    for (std::uint32_t s = first_sample; s < last_sample; ++s)
-      add_sample(context, wave, static_cast<std::uint32_t>(p), context.window.x0 + pixels[p].x,
-                 context.window.y0 + pixels[p].y, s);
-  trace_wave(context, wave);
 }
 
 }  // namespace
@@ -56,23 +44,43 @@ std::vector<FinishedTile> cut_tiles(std::uint32_t width, std::uint32_t height, s
   return tiles;
 }
 
-TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture) {
-  const std::vector<Pixel> pixels = tile_pixels(tile);
+TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture,
+                       TileWorkspace& work) {
+  list_pixels(tile.width, tile.height, work);
+  work.pixels.clear();
+  for (const WavePixel& p : work.order)
+    work.pixels.push_back({p.number, context.window.x0 + tile.x + p.x, context.window.y0 + tile.y + p.y});
   const std::uint32_t samples = context.settings.samples;
-  const std::size_t pixels_per_wave = std::max(1u, kWaveSamples / samples);
+  // Waves of equal size: a small rest would not fill tiles of rays.
+  const std::size_t most_pixels = std::max(1u, kWaveSamples / samples);
+  const std::size_t waves = (work.pixels.size() + most_pixels - 1) / most_pixels;
+  const std::size_t pixels_per_wave = (work.pixels.size() + waves - 1) / waves;
   const std::uint32_t samples_per_wave = std::min(samples, kWaveSamples);
   TileCounts counts;
-  Wave wave;
-  std::vector<PixelSum> sums(pixels.size());
-  for (std::size_t p = 0; p < pixels.size(); p += pixels_per_wave) {
-    const std::size_t last = std::min(pixels.size(), p + pixels_per_wave);
+  Wave& wave = work.wave;
+  wave.counts = {};
+  const auto write = [&](std::uint32_t number, const PixelSum& sum) {
+    write_pixel(picture, tile.x + work.order[number].x, tile.y + work.order[number].y, sum);
+  };
+  for (std::size_t p = 0; p < work.pixels.size(); p += pixels_per_wave) {
+    const auto pixels = std::span(work.pixels).subspan(p, std::min(pixels_per_wave, work.pixels.size() - p));
+    // A pixel's samples follow each other; if they fill several waves, the pixel is alone in them.
+    std::uint32_t number = pixels.front().number;
+    PixelSum sum;
     for (std::uint32_t s = 0; s < samples; s += samples_per_wave) {
-      run_wave(context, pixels, p, last, s, std::min(samples, s + samples_per_wave), wave);
-      for (std::size_t i = 0; i < wave.samples.size(); ++i)
-        if (!add_to_pixel(sums[wave.samples.pixel[i]], wave.samples, i)) ++counts.bad_samples;
+      start_wave(context, pixels, s, std::min(samples, s + samples_per_wave), wave);
+      if (!trace_wave(context, wave)) continue;
+      for (std::size_t i = 0; i < wave.samples.size(); ++i) {
+        if (wave.samples.pixel[i] != number) {
+          write(number, sum);
+          number = wave.samples.pixel[i], sum = {};
+        }
+        if (!add_to_pixel(sum, wave.samples, i)) ++counts.bad_samples;
+      }
     }
+    // Pixels are black to begin with, those that were skipped stay so.
+    write(number, sum);
   }
-  for (std::size_t p = 0; p < pixels.size(); ++p) write_pixel(picture, pixels[p].x, pixels[p].y, sums[p]);
   counts.rays = wave.counts;
   return counts;
 }

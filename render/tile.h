@@ -19,7 +19,16 @@ struct TileCounts {
   std::uint64_t bad_samples = 0;
 };
 
+/// Storage that a thread keeps from one tile to the next.
+struct TileWorkspace {
+  Wave wave;
+  std::vector<WavePixel> pixels;  ///< of the tile
+  std::uint32_t width = 0, height = 0;
+  std::vector<WavePixel> order;  ///< pixels of a tile of that size, relative to its corner
+};
+
 /// Renders the pixels of `tile` into `picture` and touches no others.
-TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture);
+TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture,
+                       TileWorkspace& work);
 
 }  // namespace oktett

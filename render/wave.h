@@ -2,6 +2,8 @@
 /// \file A wave: the camera samples of some pixels, traced together level by level.
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "render/context.h"
 #include "render/ray_queue.h"
@@ -9,7 +11,8 @@
 
 namespace oktett {
 
-/// What the data layers show: the nearest surface that a sample's camera ray meets.
+/// What the data layers show: the nearest surface that a sample's camera ray meets. The rest counts only if
+/// one is `found`.
 struct FirstHit {
   bool found = false;
   float depth = 0;  ///< along the view axis
@@ -31,6 +34,17 @@ struct SampleBatch {
   Column<FirstHit> first;
 
   std::size_t size() const { return pixel.size(); }
+  void resize_uninitialized(std::size_t n) {
+    pixel.resize_uninitialized(n), number.resize_uninitialized(n), key.resize_uninitialized(n);
+    offset.resize_uninitialized(n), color.resize_uninitialized(n), alpha.resize_uninitialized(n);
+    spawned.resize_uninitialized(n), first.resize_uninitialized(n);
+  }
+};
+
+/// A pixel whose samples a wave holds.
+struct WavePixel {
+  std::uint32_t number = 0;    ///< the caller's
+  std::uint32_t x = 0, y = 0;  ///< in the full frame
 };
 
 /// How many rays of each kind were traced.
@@ -47,19 +61,23 @@ struct Wave {
   RayQueue rays, next;     ///< of this level and the next
   HitBatch hits;           ///< of `rays`
   Column<Color> radiance;  ///< light found by each of `rays`, throughput included
-  ShadowQueue shadows;     ///< owners are entries of `rays`
-  unsigned level = 0;      ///< 0 = camera rays
+  /// One queue per light, so that the rays of a queue share an end; owners are entries of `rays`. Rays to no
+  /// light in particular stand in the first.
+  std::vector<ShadowQueue> shadows;
+  Column<std::uint32_t> hit_rays;  ///< entries of `rays` that hit something
+  Column<double> film_x, film_y;   ///< where the camera rays pass the film
+  unsigned level = 0;              ///< 0 = camera rays
+  bool whole_pixels = true;        ///< all samples of each of its pixels are in this wave
   RayCounts counts;
-
-  void clear();
 };
 
-/// Adds sample `number` of the pixel (x, y) of the full frame to the wave.
-void add_sample(const RenderContext& context, Wave& wave, std::uint32_t pixel, std::uint32_t x,
-                std::uint32_t y, std::uint32_t number);
+/// Begins a wave, empty or finished, with the camera rays of samples [first, last) of each of the pixels.
+void start_wave(const RenderContext& context, std::span<const WavePixel> pixels, std::uint32_t first,
+                std::uint32_t last, Wave& wave);
 
-/// Traces the samples to the end: fills their colour, alpha and first hit.
-void trace_wave(const RenderContext& context, Wave& wave);
+/// Traces the samples to the end: fills their colour, alpha and first hit. False if there is nothing to fill
+/// in, since whole pixels met nothing and the background is black.
+bool trace_wave(const RenderContext& context, Wave& wave);
 
 /// How a ray goes on from a surface.
 enum class Bounce {

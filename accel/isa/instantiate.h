@@ -57,13 +57,16 @@ struct IsaCode {
 
 #include "accel/isa/run_kernel.h"
 #include "accel/isa/run_roots.h"
+#include "accel/isa/surface_code.h"
+#include "accel/isa/view_code.h"
 
 namespace oktett {
 
 template <class A>
 const IsaTable& make_table() {
-  static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit, IsaCode<A>::all_hits,
-                                     IsaCode<A>::run_kernel,  build_kernels<A>(),  IsaCode<A>::run_roots};
+  static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit,  IsaCode<A>::all_hits,
+                                     IsaCode<A>::run_kernel,  build_kernels<A>(),   IsaCode<A>::run_roots,
+                                     view_directions_code<A>, mesh_surfaces_code<A>};
   return table;
 }
 

@@ -4,7 +4,9 @@
 #include "accel/accel.h"
 #include "accel/build_sah.h"
 #include "accel/hit_list.h"
+#include "accel/mesh_surfaces.h"
 #include "accel/trace_mode.h"
+#include "accel/view_rays.h"
 #include "core/isa.h"
 
 namespace oktett {
@@ -61,6 +63,8 @@ struct IsaTable {
   BuildKernels build;
   /// Eight lanes; one on the scalar path.
   void (*run_roots)(RootsKernel, const RootsRun&);
+  void (*view_directions)(const ViewPlane&, const ViewPoints&);
+  void (*mesh_surfaces)(MeshSurfaces&);
 };
 
 /// Null if this build holds no code for `isa`.

@@ -10,7 +10,8 @@
 /// - `S::kRoots` and `S::roots(ray, lanes, t)`: where the ray's whole line meets the shape, t[0] <= t[1], and
 /// a mask of the
 ///   lanes where it does. In double, with a fixed order of operations: the same bits everywhere;
-/// - `S::bounds(pool, i)` (not for unbounded shapes) and `S::surface(pool, i, ray, t)`;
+/// - `S::bounds(pool, i)` (not for unbounded shapes) and `S::surface(pool, i, ray, t)`; where uv costs much,
+///   also `S::surface_without_uv(pool, i, ray, t)`, the same without uv and tangent;
 /// - `S::kSolid`: has an inside; then `S::inside(pool, i, point)`.
 
 #include "core/box.h"

@@ -95,14 +95,21 @@ struct Sphere {
     return dot(m, m) < p.radius[i] * p.radius[i];
   }
 
-  /// uv: longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1].
-  static Surface surface(const Pool& p, std::size_t i, const Ray& ray, double t) {
+  /// Without uv, whose angles cost more than all the rest.
+  static Surface surface_without_uv(const Pool& p, std::size_t i, const Ray& ray, double t) {
     const Vec3d c{p.x[i], p.y[i], p.z[i]};
     const Vec3d n = normalize(point_at(ray, t) - c);
     Surface s;
     // Moving the point onto the sphere removes the error along the normal.
     set_position(s, c + n * p.radius[i], ray, t, 0x1p-48 * (length(c) + p.radius[i]));
     s.geometric_normal = s.shading_normal = Vec3f(n);
+    return s;
+  }
+
+  /// uv: longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1].
+  static Surface surface(const Pool& p, std::size_t i, const Ray& ray, double t) {
+    Surface s = surface_without_uv(p, i, ray, t);
+    const Vec3d n = normalize(point_at(ray, t) - Vec3d{p.x[i], p.y[i], p.z[i]});
     const double phi = portable::atan2(n.z, n.x), theta = portable::asin(n.y < -1 ? -1 : n.y > 1 ? 1 : n.y);
     s.uv = {static_cast<float>(0.5 + phi * 0.5 / std::numbers::pi),
             static_cast<float>(0.5 + theta / std::numbers::pi)};

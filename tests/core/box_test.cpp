@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace oktett {
 namespace {
@@ -51,6 +54,23 @@ TEST(Round, HandlesTheEndsOfTheRange) {
   EXPECT_EQ(round_down(1e-60), 0);
   EXPECT_EQ(round_up(1e300), std::numeric_limits<float>::infinity());
   EXPECT_EQ(round_up(0.0), 0.0f);
+}
+
+TEST(Box, NeighboursAreThoseOfTheLibrary) {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
+  std::uint32_t pattern = 1;
+  for (int i = 0; i < 100000; ++i, pattern = pattern * 1664525u + 1013904223u) {
+    const auto f = std::bit_cast<float>(pattern);
+    if (std::isnan(f)) continue;
+    ASSERT_EQ(bits(next_up(f)), bits(std::nextafter(f, inf))) << f;
+    ASSERT_EQ(bits(next_down(f)), bits(std::nextafter(f, -inf))) << f;
+  }
+  for (const float f : {0.0f, -0.0f, 1e-45f, -1e-45f, inf, -inf, 3.40282347e38f, -3.40282347e38f}) {
+    ASSERT_EQ(bits(next_up(f)), bits(std::nextafter(f, inf))) << f;
+    ASSERT_EQ(bits(next_down(f)), bits(std::nextafter(f, -inf))) << f;
+  }
+  EXPECT_TRUE(std::isnan(next_up(std::nanf(""))));
 }
 
 }  // namespace

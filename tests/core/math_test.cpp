@@ -94,5 +94,14 @@ TEST(PortableMath, InverseTrigonometryFollowsTheLibrary) {
     }
 }
 
+TEST(PortableMath, WholePowersAreThoseOfTheLibrary) {
+  for (const double x : {0.0, 1e-30, 0.01, 0.3, 0.77, 0.999, 1.0, 1.3, -0.5})
+    for (const unsigned n : {0u, 1u, 2u, 3u, 7u, 32u, 80u, 300u, 511u, 1024u}) {
+      const double expected = std::pow(x, n), power = portable::whole_power(x, n);
+      EXPECT_NEAR(power, expected, 1e-12 * std::abs(expected)) << x << "^" << n;
+    }
+  EXPECT_TRUE(std::isnan(portable::whole_power(std::nan(""), 3)));
+}
+
 }  // namespace
 }  // namespace oktett

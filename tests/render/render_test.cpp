@@ -218,5 +218,21 @@ TEST(Render, NumbersThatAreNoneAreCountedAndLeftOut) {
   EXPECT_EQ(bad_samples(s), 64u);
 }
 
+// The samples of this pixel fill several waves, some of which meet nothing.
+TEST(Render, APixelOfManyWavesCountsThoseThatMeetNothing) {
+  Scene scene = bare_scene(1);
+  scene.integrator.samples = 65536;
+  scene.camera.fov = 60, scene.camera.from = {0, 0, 10};
+  // A square in the corner of the view: 0.1 of the width times 0.2 of the height.
+  const double edge = 10 * std::tan(std::numbers::pi / 6);
+  PolygonShape square;
+  square.vertices = {
+      {-edge, -edge, 0}, {-0.8 * edge, -edge, 0}, {-0.8 * edge, -0.6 * edge, 0}, {-edge, -0.6 * edge, 0}};
+  add_object(scene, square, add_material(scene, glowing({1, 1, 1})));
+  const Picture picture = run(scene).picture;
+  EXPECT_NEAR(picture.find("A")->values[0], 0.02, 2e-4);
+  EXPECT_NEAR(picture.find("R")->values[0], 0.02, 2e-4);
+}
+
 }  // namespace
 }  // namespace oktett

@@ -56,7 +56,8 @@ TEST(Tile, TilesNeedNoOrderAmongThreads) {
     std::vector<std::thread> threads;
     for (int i = 0; i < count; ++i)
       threads.emplace_back([&] {
-        for (std::size_t t; (t = next++) < tiles.size();) render_tile(context, tiles[t], picture);
+        TileWorkspace work;
+        for (std::size_t t; (t = next++) < tiles.size();) render_tile(context, tiles[t], picture, work);
       });
     for (std::thread& thread : threads) thread.join();
     return picture;

@@ -1,0 +1,36 @@
+#pragma once
+/// \file Where in a structure, and through which instances, a hit lies: the parts of surface().
+
+#include "accel/accel_data.h"
+
+namespace oktett {
+
+/// The structure that holds the item of a hit, and the way there.
+struct HitPlace {
+  const Accel* accel = nullptr;
+  Affine to_world, inverse;  ///< of that structure's space; the identity unless `moved`
+  bool moved = false;
+  std::uint32_t user = kNoId;  ///< of the outermost instance that has one
+};
+
+/// Follows an instance path to the structure that holds the item.
+HitPlace follow_path(const Accel& accel, std::uint32_t path);
+
+/// The ray as the structure at `place` sees it.
+Ray ray_inside(const HitPlace& place, const Ray& ray);
+
+/// Brings a surface found inside an instance to the world.
+void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s);
+
+/// A hit's geometry, and a surface that has names only: geometry, primitive, user and material slot.
+struct NamedHit {
+  const Geometry* geometry = nullptr;
+  Surface surface;
+};
+NamedHit identify_in(const HitPlace& place, const Hit& hit);
+
+/// The surface at a hit whose place is known; uv and tangent may be missing if they are not wanted.
+void surface_at(const HitPlace& place, const NamedHit& named, const Ray& ray, const Hit& hit, bool uv,
+                Surface& s);
+
+}  // namespace oktett

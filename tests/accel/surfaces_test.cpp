@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <vector>
+
+#include "accel/accel.h"
+#include "app/oracle_mesh.h"
+#include "app/verify_cases.h"
+
+namespace oktett {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Equal bits, or both NaN.
+bool same(float a, float b) {
+  return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b) || (a != a && b != b);
+}
+bool same(const Vec3f& a, const Vec3f& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
+
+/// All but uv and tangent.
+void expect_same(const Surface& s, const Surface& expected, std::size_t i) {
+  ASSERT_TRUE(same(s.position, expected.position)) << i;
+  ASSERT_TRUE(same(s.position_error, expected.position_error)) << i;
+  ASSERT_TRUE(same(s.geometric_normal, expected.geometric_normal)) << i;
+  ASSERT_TRUE(same(s.shading_normal, expected.shading_normal)) << i;
+  ASSERT_EQ(s.geometry, expected.geometry) << i;
+  ASSERT_EQ(s.primitive, expected.primitive) << i;
+  ASSERT_EQ(s.user, expected.user) << i;
+  ASSERT_EQ(s.material_slot, expected.material_slot) << i;
+}
+
+/// Compares hits `which` of a batch with surface() on every instruction set.
+void expect_like_surface(const Accel& accel, const RayBatch& rays, HitBatch& hits,
+                         const std::vector<std::uint32_t>& which) {
+  for (const Isa isa : available_isas()) {
+    std::vector<Surface> found(which.size());
+    surfaces(accel, rays.span(), hits.span(), which.data(), which.size(), isa, found.data());
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      expect_same(found[i], surface(accel, rays[which[i]], hits[which[i]]), i);
+      const Surface names = identify(accel, hits[which[i]]);
+      ASSERT_EQ(names.user, found[i].user);
+      ASSERT_EQ(names.geometry, found[i].geometry);
+      ASSERT_EQ(names.primitive, found[i].primitive);
+      ASSERT_EQ(names.material_slot, found[i].material_slot);
+    }
+  }
+}
+
+/// A mesh with normals at all corners but those of every seventh triangle, and slots.
+TriangleMesh smooth_mesh() {
+  TriangleMesh mesh = make_icosphere(2).mesh;
+  CaseRandom r(5);
+  for (const Vec3f& p : mesh.positions) mesh.normals.push_back(p + Vec3f(r.vector() * 0.3));
+  mesh.normal_indices = mesh.indices;
+  for (std::size_t i = 0; i < mesh.normal_indices.size(); i += 21) mesh.normal_indices[i] = kNoId;
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) mesh.material_slots.push_back(i % 3);
+  return mesh;
+}
+
+std::vector<Geometry> bodies(const TriangleMesh& smooth, const TriangleMesh& flat) {
+  return {{MeshGeometry{&smooth}, {}, 1},
+          {MeshGeometry{&smooth}, Affine::translation({2, 0, 0}) * Affine::rotation({10, 20, 30}), 2},
+          {MeshGeometry{&flat}, Affine::translation({-2, 1, 0}) * Affine::scaling({1, -0.5, 2}), 3},
+          {SpheresShape{{{{0, 2, 0}, 0.7}, {{0, -2, 0}, 0.5}}}, {}, 4},
+          {PlaneShape{{0, 1, 0.1}, -3}, {}, 5}};
+}
+
+RayBatch random_rays(int count) {
+  RayBatch rays;
+  CaseRandom r(11);
+  for (int i = 0; i < count; ++i) {
+    const Vec3f o(r.vector() * 9.0);
+    rays.push_back({o, 0, Vec3f(r.vector() * 3.0) - o, kInf});
+  }
+  return rays;
+}
+
+HitBatch trace_all(const Accel& accel, const RayBatch& rays, std::vector<std::uint32_t>& found) {
+  HitBatch hits;
+  hits.resize_uninitialized(rays.size());
+  closest_hit(accel, rays.span(), hits.span(), Isa::scalar);
+  for (std::uint32_t i = 0; i < rays.size(); ++i)
+    if (hits[i].valid()) found.push_back(i);
+  return hits;
+}
+
+TEST(Surfaces, AreThoseOfSingleHits) {
+  const TriangleMesh smooth = smooth_mesh(), flat = make_cube().mesh;
+  const auto accel = build_accel(bodies(smooth, flat));
+  const RayBatch rays = random_rays(2000);
+  std::vector<std::uint32_t> found;
+  HitBatch hits = trace_all(*accel, rays, found);
+  ASSERT_GT(found.size(), 1000u);
+  expect_like_surface(*accel, rays, hits, found);
+}
+
+TEST(Surfaces, OfAnyNumberOfHits) {
+  const TriangleMesh smooth = smooth_mesh();
+  const auto accel = build_accel({{MeshGeometry{&smooth}, Affine::scaling({1, 2, 3}), 1}});
+  const RayBatch rays = random_rays(600);
+  std::vector<std::uint32_t> found;
+  HitBatch hits = trace_all(*accel, rays, found);
+  ASSERT_GT(found.size(), 140u);
+  for (const std::size_t count : {0u, 1u, 3u, 7u, 8u, 9u, 63u, 64u, 65u, 129u})
+    expect_like_surface(*accel, rays, hits, {found.begin(), found.begin() + static_cast<long>(count)});
+}
+
+TEST(Surfaces, InsideNestedInstances) {
+  const TriangleMesh smooth = smooth_mesh(), flat = make_cube().mesh;
+  const auto leaf = build_accel(bodies(smooth, flat));
+  const auto middle = build_accel({{InstanceGeometry{leaf}, Affine::scaling({0.3, 0.5, -0.4}), kNoId},
+                                   {InstanceGeometry{leaf}, Affine::translation({4, 0, 0}), 8},
+                                   {MeshGeometry{&smooth}, {}, 9}});
+  const auto top = build_accel({{InstanceGeometry{middle}, Affine::rotation({10, 20, 30}), 42},
+                                {InstanceGeometry{middle}, Affine::translation({0, 5, 0}), kNoId},
+                                {MeshGeometry{&flat}, {}, 7}});
+  const RayBatch rays = random_rays(2000);
+  std::vector<std::uint32_t> found;
+  HitBatch hits = trace_all(*top, rays, found);
+  ASSERT_GT(found.size(), 800u);
+  expect_like_surface(*top, rays, hits, found);
+}
+
+// Weights that no hit has, triangles without area, normals that are zero, infinite or NaN.
+TEST(Surfaces, OfDegenerateInput) {
+  TriangleMesh mesh = make_cube().mesh;
+  CaseRandom r(3);
+  const float odd[] = {0, -0.0f, kNan, kInf, -kInf, 1e38f, 1e-38f, 1};
+  for (const Vec3f& p : mesh.positions) {
+    static_cast<void>(p);
+    mesh.normals.push_back({odd[r.bits() % 8], odd[r.bits() % 8], odd[r.bits() % 8]});
+  }
+  mesh.normal_indices = mesh.indices;
+  const auto accel = build_accel({{MeshGeometry{&mesh}, Affine::scaling({1, 2, 3}), 1}});
+  for (int k = 0; k < 3; ++k) mesh.indices[3 + k] = mesh.indices[3];
+  mesh.positions[mesh.indices[6]] = {kNan, kInf, 0};
+  RayBatch rays = random_rays(400);
+  HitBatch hits;
+  hits.resize_uninitialized(rays.size());
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    hits.span().set(i, {1, odd[r.bits() % 8], odd[r.bits() % 8], i % 12, kNoId});
+    all.push_back(i);
+  }
+  expect_like_surface(*accel, rays, hits, all);
+}
+
+}  // namespace
+}  // namespace oktett
