@@ -1,6 +1,7 @@
 #pragma once
 /// \file A tile at work: what its rays hold, what is unclear, and the decisions at the end.
 
+#include "accel/decide_pairs.h"
 #include "accel/tile_leaf.h"
 
 namespace oktett {
@@ -25,49 +26,6 @@ struct TileTask {
   int max_leaves;        ///< blocks to meet before the tile is given up
   bool decided = false;  ///< some hits have been decided and stand in `hits`
 };
-
-/// Gathers the triangles `ids` (8 * block + lane) into lanes.
-template <int N, class A>
-OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* blocks,
-                                                                const std::uint32_t* ids) {
-  using F = Simd<float, N, A>;
-  constexpr std::uint32_t kSize = TriangleBlock::kSize;
-  alignas(64) float v[9][N];
-  for (int i = 0; i < N; ++i) {
-    const float* p = &blocks[ids[i] / kSize].v[0][0][ids[i] % kSize];
-    for (int k = 0; k < 9; ++k) v[k][i] = p[k * kSize];
-  }
-  const auto corner = [&](int k) {
-    return Vec3<F>{F::load(v[3 * k]), F::load(v[3 * k + 1]), F::load(v[3 * k + 2])};
-  };
-  return {corner(0), corner(1), corner(2)};
-}
-
-/// Ray i against triangle ids[i] for all lanes: the decision of decide_watertight, whatever the axes along
-/// which the rays are steepest.
-template <int N, class A>
-OKTETT_INLINE unsigned decide_gathered(RayLanes<Simd<float, N, A>> ray, const TriangleBlock* blocks,
-                                       const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit) {
-  using F = Simd<float, N, A>;
-  using D = Simd<double, N, A>;
-  TriangleLanes<F> tri = gather_triangles<N, A>(blocks, ids);
-  ray.d = flush_direction(ray.d);
-  const F ax = abs(ray.d.x), ay = abs(ray.d.y), az = abs(ray.d.z);
-  const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
-  const unsigned along_x = bits(zx), along_y = bits(zy), all = bits(F::M::all_true());
-  const auto permute = [&](const Vec3<F>& p) {
-    if (along_x == all) return permute_to_z(p, 0);
-    if (along_y == all) return permute_to_z(p, 1);
-    if ((along_x | along_y) == 0) return p;
-    const auto pick = [&](const F& x, const F& y, const F& z) { return select(zx, x, select(zy, y, z)); };
-    return Vec3<F>{pick(p.y, p.z, p.x), pick(p.z, p.x, p.y), pick(p.x, p.y, p.z)};
-  };
-  const Vec3<D> d = to_double(permute(ray.d));
-  const D inv_dz = D(1.0) / d.z;
-  const ShearLanes<D> shear{to_double(permute(ray.o)), inv_dz, d.x * inv_dz, d.y * inv_dz};
-  tri = {permute(tri.a), permute(tri.b), permute(tri.c)};
-  return bits(decide_watertight(shear, tri, ray.tmin, ray.tmax, hit));
-}
 
 /// Lets a decided hit of ray i count.
 template <class A>
@@ -111,7 +69,7 @@ OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray
   const RayLanes<F> rays{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
   HitLanes<F> hit;
   unsigned met =
-      decide_gathered<kTileGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
+      decide_pairs<kTileGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
   if (met == 0) return;
   alignas(64) float t[kTileGroup], u[kTileGroup], v[kTileGroup];
   hit.t.store(t), hit.u.store(u), hit.v.store(v);
@@ -189,28 +147,28 @@ OKTETT_INLINE void store_misses(const HitSpan& hits, std::size_t base) {
 template <class A>
 OKTETT_INLINE void finish_group(TileTask<Query::closest, A>& task, std::size_t base) {
   using F = Simd<float, kTileGroup, A>;
+  using I = Simd<std::int32_t, kTileGroup, A>;
+  constexpr std::uint32_t kSize = TriangleBlock::kSize;
   const HitSpan& hits = *task.hits;
   const std::uint32_t* held = task.tile.held + base;
-  std::uint32_t ids[kTileGroup], some = kNoId;
-  unsigned none = 0;
-  for (int i = 0; i < kTileGroup; ++i) {
-    const bool is_none = held[i] == kNoId;
-    none |= static_cast<unsigned>(is_none) << i;
-    some = is_none ? some : held[i];
-  }
-  if (some == kNoId) return store_misses<A>(hits, base);
-  for (int i = 0; i < kTileGroup; ++i) ids[i] = held[i] == kNoId ? some : held[i];
+  const TriangleBlock* blocks = task.accel.blocks.data();
+  const auto as_int = [](auto* p) { return reinterpret_cast<std::int32_t*>(p); };
+  const I notes = I::load(reinterpret_cast<const std::int32_t*>(held)), nothing(-1);
+  const auto none = notes == nothing;
+  const unsigned missing = bits(none);
+  if (missing == (1u << kTileGroup) - 1) return store_misses<A>(hits, base);
+  const std::uint32_t some = held[__builtin_ctz(~missing)];
+  alignas(64) std::uint32_t ids[kTileGroup];
+  select(none, I(static_cast<std::int32_t>(some)), notes).store(as_int(ids));
   HitLanes<F> h;
-  decide_gathered<kTileGroup, A>(load_span<F>(task.rays, base), task.accel.blocks.data(), ids, h);
-  const auto miss = F::M::from_bits(none);
+  decide_pairs<kTileGroup, A>(load_span<F>(task.rays, base), blocks, ids, h);
+  const auto miss = F::M::from_bits(missing);
   const F zero(0.0f);
   select(miss, F(std::numeric_limits<float>::infinity()), h.t).store(hits.t + base);
   select(miss, zero, h.u).store(hits.u + base), select(miss, zero, h.v).store(hits.v + base);
-  for (int i = 0; i < kTileGroup; ++i) {
-    const std::uint32_t item =
-        task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
-    hits.item[base + i] = held[i] == kNoId ? kNoId : item;
-  }
+  alignas(64) std::uint32_t items[kTileGroup];
+  for (int i = 0; i < kTileGroup; ++i) items[i] = blocks[ids[i] / kSize].item[ids[i] % kSize];
+  select(none, nothing, I::load(as_int(items))).store(as_int(hits.item + base));
   std::memset(hits.instance + base, 0xff, kTileGroup * sizeof(std::uint32_t));
 }
 

@@ -307,10 +307,9 @@ class InterleavedTraversal {
     const auto vec = [&](int k) {
       return Vec3<C>{C::load(column[k]), C::load(column[k + 1]), C::load(column[k + 2])};
     };
-    RayState<kChunk, A> r;
-    r.set(vec(0), vec(3), C::load(column[6]), C::load(column[7]), accel_.bounds);
+    const RayLanes<C> rays{vec(0), vec(3), C::load(column[6]), C::load(column[7])};
     HitLanes<C> h;
-    const unsigned met = decide_pairs(r, accel_.blocks.data(), candidate_, h);
+    const unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), candidate_, h);
     alignas(64) float t[kChunk], u[kChunk], v[kChunk];
     h.t.store(t), h.u.store(u), h.v.store(v);
     for (int i = 0; i < candidates_; ++i) {
