@@ -98,8 +98,13 @@ OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
 template <Query Q>
 int max_tile_leaves(const Accel& accel) {
   constexpr std::size_t kCached = std::size_t{64} << 20;
+#ifdef ENVL
+  if (tree_bytes(accel) > kCached) return exp_small;
+  return Q == Query::any ? exp_any_max : 192;
+#else
   if (tree_bytes(accel) > kCached) return 8;
   return Q == Query::any ? 112 : 192;
+#endif
 }
 
 /// How the rays of a block are traced where no mode is asked for.

@@ -123,8 +123,8 @@ OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, con
     if (tile.regular) return fast_fma(b, mx, fast_fma(c, my, G(p.group[f][k])));
     return greatest(G(p.c[3 * f][k]), b, c, mx, my, G::load(tile.x_half), G::load(tile.y_half));
   };
-  return groups &
-         ~bits((top(0) < zero) | (top(1) < zero) | (top(2) < zero) | (top(3) <= G::load(tile.least)));
+  const auto reject = (top(0) < zero) | (top(1) < zero) | (top(2) < zero) | (top(3) <= G::load(tile.least));
+  return groups & ~bits(reject);
 }
 
 /// What the filter finds about a group and a triangle. Bit i is ray i of the group.

@@ -60,6 +60,7 @@ struct alignas(64) TileRays {
   bool regular;
   bool ranged;  ///< some ray ends somewhere
   TilePatch shape;
+  bool may_sort;  ///< it may be worth it to sort the rays
   /// Where `sorted`, ray i of the tile is ray order[i] of the batch.
   bool sorted = false;
   std::uint8_t order[kTileRays];
@@ -79,10 +80,21 @@ struct alignas(64) TileRays {
   /// or their numbers are so large or small that the bounds here do not hold. `extent` = greatest
   /// |coordinate| of the scene.
   /// `may_sort`: put the rays of a whole tile into another order if they stand in none.
-  bool set(const RaySpan& rays, const Apex& at, float extent, bool may_sort);
+  bool set(const RaySpan& rays, const Apex& at, float extent, bool may_be_sorted);
+
+  /// Puts the rays into an order that makes groups small.
+  void sort();
 
   OKTETT_INLINE void refresh(int group) {
     least[group] = horizontal_min(F::load(held_lo + group * kTileGroup));
+  }
+  OKTETT_INLINE void refresh_groups() {
+    if (ranged) {
+      for (int g = 0; g < kTileGroups; ++g) refresh(g);
+    } else {
+      Simd<float, kTileGroups, A>(0.0f).store(least);
+    }
+    refresh_window();
   }
   OKTETT_INLINE void refresh_window() { window.least = horizontal_min(F::load(least)); }
 
@@ -91,7 +103,6 @@ struct alignas(64) TileRays {
   bool project(const RaySpan& rays, const Apex& at);
   void bound();
   float bound_groups();
-  void sort();
 };
 
 /// Scales between which products of three lengths and their inverses neither overflow nor underflow in float.
@@ -216,6 +227,8 @@ OKTETT_INLINE void group_axes(const float* x, const float* y, float (&e)[2][2]) 
   e[0][0] = ax / a, e[0][1] = ay / a, e[1][0] = bx / b, e[1][1] = by / b;
 }
 
+OKTETT_INLINE float patch_area(const TilePatch& p) { return 4 * std::fabs(p.x1 * p.y2 - p.y1 * p.x2); }
+
 /// Rectangles and patches around the groups and the whole.
 template <class A>
 void TileRays<A>::bound() {
@@ -282,58 +295,51 @@ float TileRays<A>::bound_groups() {
   return sum;
 }
 
-/// The bits of a number below 256, spread so that every second bit is free.
-OKTETT_INLINE unsigned spread_bits(unsigned x) {
-  x = (x | x << 4) & 0x0f0f;
-  x = (x | x << 2) & 0x3333;
-  return (x | x << 1) & 0x5555;
-}
-
-/// Along a Morton curve over the window, so that groups become small.
+/// In rows that are run through in turn to the right and to the left, so that each group becomes a small
+/// patch.
 template <class A>
 void TileRays<A>::sort() {
-  constexpr int kSide = 32, kCells = kSide * kSide;
-  const float extent = std::max({window.x_hi - window.x_lo, window.y_hi - window.y_lo, 1e-30f});
-  const F scale((static_cast<float>(kSide) - 0.25f) / extent), x0(window.x_lo), y0(window.y_lo);
+  constexpr int kCells = 128, kMostRows = 16;
+  const float width = std::max(window.x_hi - window.x_lo, 1e-30f),
+              height = std::max(window.y_hi - window.y_lo, 1e-30f);
+  // As many rows as make groups square.
+  const int rows = std::clamp(static_cast<int>(4 * std::sqrt(height / width) + 0.5f), 1, kMostRows);
+  const int columns = kCells / rows;
+  const float down = (static_cast<float>(rows) - 0.01f) / height, x0 = window.x_lo, y0 = window.y_lo;
+  const float along = (static_cast<float>(columns) - 0.01f) / width;
   alignas(64) float cx[kTileRays], cy[kTileRays], lo[kTileRays], hi[kTileRays];
-  for (int i = 0; i < kTileRays; i += kTileGroup)
-    ((F::load(x + i) - x0) * scale).store(cx + i), ((F::load(y + i) - y0) * scale).store(cy + i);
-  std::uint16_t key[kTileRays], begin[kCells + 1] = {};
-  for (int i = 0; i < kTileRays; ++i) {
-    key[i] = static_cast<std::uint16_t>(spread_bits(static_cast<unsigned>(static_cast<int>(cx[i]))) |
-                                        spread_bits(static_cast<unsigned>(static_cast<int>(cy[i]))) << 1);
-    ++begin[key[i] + 1];
-  }
-  for (int c = 0; c < kCells; ++c) begin[c + 1] = static_cast<std::uint16_t>(begin[c + 1] + begin[c]);
   std::memcpy(cx, x, sizeof x), std::memcpy(cy, y, sizeof y);
   std::memcpy(lo, held_lo, sizeof lo), std::memcpy(hi, held_hi, sizeof hi);
+  alignas(64) std::int32_t key[kTileRays];
+  for (int i = 0; i < kTileRays; ++i) {
+    const int row = static_cast<int>((cy[i] - y0) * down), column = static_cast<int>((cx[i] - x0) * along);
+    key[i] = row * columns + ((row & 1) != 0 ? columns - 1 - column : column);
+  }
+  std::uint16_t begin[kCells + 1] = {};
+  for (int i = 0; i < kTileRays; ++i) ++begin[key[i] + 1];
+  for (int c = 0; c < kCells; ++c) begin[c + 1] = static_cast<std::uint16_t>(begin[c + 1] + begin[c]);
   for (int i = 0; i < kTileRays; ++i) {
     const int to = begin[key[i]]++;
     order[to] = static_cast<std::uint8_t>(i);
     x[to] = cx[i], y[to] = cy[i], held_lo[to] = lo[i], held_hi[to] = hi[i];
   }
-  sorted = true;
+  sorted = true, may_sort = false, regular = false;
   groups = (1u << kTileGroups) - 1;
+  bound_groups();
+  refresh_groups();
 }
 
 template <class A>
-bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool may_sort) {
+bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool may_be_sorted) {
   sorted = false;
   if (!set_frame(rays, at, extent) || !project(rays, at)) return false;
   if (groups == 0) return true;
   bound();
   if (window.x_hi - window.x_lo > 1 || window.y_hi - window.y_lo > 1) return false;
-  if (!regular) {
-    // Sorting costs as much as a few triangles per group.
-    const float area = (window.x_hi - window.x_lo) * (window.y_hi - window.y_lo);
-    if (bound_groups() > 3 * area && may_sort && rays.size == kTileRays) sort(), bound_groups();
-  }
-  if (ranged) {
-    for (int g = 0; g < kTileGroups; ++g) refresh(g);
-  } else {
-    Simd<float, kTileGroups, A>(0.0f).store(least);
-  }
-  refresh_window();
+  const float area = (window.x_hi - window.x_lo) * (window.y_hi - window.y_lo);
+  const float covered = regular ? patch_area(shape) * kTileGroups : bound_groups();
+  may_sort = may_be_sorted && rays.size == kTileRays && covered > area;
+  refresh_groups();
   return true;
 }
 

@@ -68,8 +68,7 @@ OKTETT_NOINLINE void decide_listed(TileTask<Q, A>& task, const std::uint8_t* ray
   const auto load = [&](int c) { return F::load(column[c]); };
   const RayLanes<F> rays{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
   HitLanes<F> hit;
-  unsigned met =
-      decide_pairs<kTileGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
+  unsigned met = decide_pairs<kTileGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
   if (met == 0) return;
   alignas(64) float t[kTileGroup], u[kTileGroup], v[kTileGroup];
   hit.t.store(t), hit.u.store(u), hit.v.store(v);

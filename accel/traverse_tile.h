@@ -8,6 +8,7 @@
 
 #include "accel/tile_task.h"
 #include "accel/traverse_packet.h"
+#include "core/simd_order.h"
 
 namespace oktett {
 
@@ -104,27 +105,32 @@ OKTETT_NOINLINE void meet_edge_on(TileTask<Q, A>& task, std::uint32_t id, unsign
 }
 
 template <Query Q, class A>
-OKTETT_INLINE void leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups, const TileWindow& window,
-                             unsigned& dirty) {
+OKTETT_INLINE int leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups, const TileWindow& window,
+                            unsigned& dirty) {
   TileRays<A>& tile = task.tile;
   ProjectedTriangles<A> projected;
   const BlockCandidates found =
       project_block(task.accel.blocks[ref.block()], ref.triangle_count(), tile, window, projected);
   const std::uint32_t base = ref.block() * TriangleBlock::kSize;
+  // All pairs first: one loop whose end is foretold wrongly once instead of eight.
+  std::int32_t pairs[(TriangleBlock::kSize + 1) * kTileGroups];
+  int size = 0;
+  const bool lone = (groups & (groups - 1)) == 0;
   for (unsigned rest = found.projected; rest != 0; rest &= rest - 1) {
     const int k = __builtin_ctz(rest);
-    unsigned met = (groups & (groups - 1)) == 0 ? groups : groups_meeting(projected, k, tile, groups);
-    for (; met != 0; met &= met - 1) {
-      const int g = __builtin_ctz(met);
-      const GroupVerdict verdict =
-          meet_group<Q == Query::any>(projected, k, base + static_cast<unsigned>(k), tile, g);
-      dirty |= static_cast<unsigned>(verdict.sure != 0) << g;
-      if (OKTETT_UNLIKELY(verdict.unclear != 0))
-        note_unclear(task, verdict.unclear, g, base + static_cast<unsigned>(k));
-    }
+    const unsigned met = lone ? groups : groups_meeting(projected, k, tile, groups);
+    size += store_set_bits<A>(met, k * kTileGroups, pairs + size);
+  }
+  for (int i = 0; i < size; ++i) {
+    const int k = pairs[i] / kTileGroups, g = pairs[i] % kTileGroups;
+    const std::uint32_t id = base + static_cast<unsigned>(k);
+    const GroupVerdict verdict = meet_group<Q == Query::any>(projected, k, id, tile, g);
+    dirty |= static_cast<unsigned>(verdict.sure != 0) << g;
+    if (OKTETT_UNLIKELY(verdict.unclear != 0)) note_unclear(task, verdict.unclear, g, id);
   }
   for (unsigned rest = found.edge_on; OKTETT_UNLIKELY(rest != 0); rest &= rest - 1)
     meet_edge_on(task, base + static_cast<unsigned>(__builtin_ctz(rest)), groups);
+  return size;
 }
 
 /// A leaf that is not a block of triangles, against the rays of some groups.
@@ -180,13 +186,16 @@ OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const Chi
 /// Of so few groups, each is asked whether one of its rays is in the box at all.
 inline constexpr int kRefinedGroups = 8;
 
+/// Tests of a group after which it is worth it to put the rays of a tile into a better order.
+inline constexpr int kTestsBeforeSort = 32;
+
 /// False if the tile was given up because it met too many leaves.
 template <Query Q, class A>
 OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
   const Accel& accel = task.accel;
   TileRays<A>& tile = task.tile;
   TileEntry stack[kStackSize];
-  int size = 0, leaves = 0;
+  int size = 0, leaves = 0, tests = 0;
   unsigned dirty = 0;  // groups whose least[] is out of date, which is harmless
   stack[size++] = {accel.root,       std::numeric_limits<float>::infinity(),
                    tile.window.x_lo, tile.window.x_hi,
@@ -226,7 +235,13 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
       size = push_windows(node, met, children, groups, stack, size);
     } else if (e.ref.is_triangles()) {
       if (++leaves > task.max_leaves) return false;
-      leaf_tile(task, e.ref, groups, window, dirty);
+      tests += leaf_tile(task, e.ref, groups, window, dirty);
+      if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && tile.may_sort) {
+        decide_unclear(task);
+        tile.sort();
+        dirty = 0;
+        for (int i = 0; i < size; ++i) stack[i].groups = tile.groups;
+      }
     } else {
       table_leaf_tile(task, accel.leaves[e.ref.table_index()], groups);
       tile.refresh_window();

@@ -154,4 +154,21 @@ OKTETT_INLINE int store_compact(unsigned lanes, const std::uint32_t* values, std
   return size;
 }
 
+/// Writes base + i for each of the 16 bits i that are set, lowest first; returns their number. Sixteen
+/// elements of `out` may be overwritten.
+template <class A>
+OKTETT_INLINE int store_set_bits(unsigned set, std::int32_t base, std::int32_t* out) {
+#if defined(OKTETT_COMPILED_AVX512)
+  if constexpr (std::is_same_v<A, Avx512Isa>) {
+    const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(set),
+                                                         _mm512_add_epi32(lane, _mm512_set1_epi32(base))));
+    return __builtin_popcount(set);
+  }
+#endif
+  int size = 0;
+  for (; set != 0; set &= set - 1) out[size++] = base + __builtin_ctz(set);
+  return size;
+}
+
 }  // namespace oktett
