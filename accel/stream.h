@@ -93,17 +93,17 @@ OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
          max_component(abs(end(rays.size - 1) - middle)) <= near;
 }
 
-/// Blocks of triangles that a tile may meet. Where it would be more, the triangles are smaller than the rays
+/// Nodes and leaves that a tile may come to. Where it would be more, the triangles are smaller than the rays
 /// are apart, and rays are faster alone; in trees that the caches do not hold, sooner.
 template <Query Q>
-int max_tile_leaves(const Accel& accel) {
+int max_tile_steps(const Accel& accel) {
   constexpr std::size_t kCached = std::size_t{64} << 20;
 #ifdef ENVL
   if (tree_bytes(accel) > kCached) return exp_small;
-  return Q == Query::any ? exp_any_max : 192;
+  return Q == Query::any ? exp_any_max : exp_max;
 #else
-  if (tree_bytes(accel) > kCached) return 8;
-  return Q == Query::any ? 112 : 192;
+  if (tree_bytes(accel) > kCached) return 16;
+  return Q == Query::any ? 256 : 384;
 #endif
 }
 
@@ -113,14 +113,14 @@ enum class Way { tile, packets, interleaved };
 /// Traces the rays as a tile if they share a point and meet few leaves for their number; else says what suits
 /// them better.
 template <Query Q, class A>
-Way try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int max_leaves) {
+Way try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int max_steps) {
   Apex apex;
   if (!common_point<Q>(rays, apex)) return Way::packets;
   TileOutcome outcome;
   if constexpr (Q == Query::closest)
-    outcome = trace_tile<Q, A>(accel, rays, apex, &out, nullptr, max_leaves);
+    outcome = trace_tile<Q, A>(accel, rays, apex, &out, nullptr, max_steps);
   else
-    outcome = trace_tile<Q, A>(accel, rays, apex, nullptr, out, max_leaves);
+    outcome = trace_tile<Q, A>(accel, rays, apex, nullptr, out, max_steps);
   return outcome == TileOutcome::traced    ? Way::tile
          : outcome == TileOutcome::no_tile ? Way::packets
                                            : Way::interleaved;
@@ -131,7 +131,7 @@ Way try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int
 /// rays go interleaved, and so do its neighbours untried, twice as many each time, unless the caller insists.
 template <Query Q, int W, class A>
 void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
-  const int max_leaves = insist ? std::numeric_limits<int>::max() : max_tile_leaves<Q>(accel);
+  const int max_steps = insist ? std::numeric_limits<int>::max() : max_tile_steps<Q>(accel);
   std::size_t begin = 0;  // of a run of rays that wait to be traced the same way
   Way way = Way::packets;
   const auto catch_up = [&](std::size_t end) {
@@ -150,7 +150,7 @@ void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& 
       --skip;
       continue;
     }
-    const Way suits = try_tile<Q, A>(accel, rays.part(b, count), sink_from<Q>(out, b, count), max_leaves);
+    const Way suits = try_tile<Q, A>(accel, rays.part(b, count), sink_from<Q>(out, b, count), max_steps);
     failures = suits == Way::interleaved ? failures + 1 : 0;
     if (suits == Way::interleaved && !insist) skip = (1 << std::min(failures - 1, 3)) - 1;
     if (suits == way) continue;

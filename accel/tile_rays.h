@@ -158,15 +158,18 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
       usable = usable & (s <= most_s);
       nears = max(r.tmin * dz, nears);
     } else {
-      // How far the line passes from the apex at its depth, and how far beyond or short of it the ray ends:
-      // in double, because both are rounding errors of the caller.
+      // Where the ray ends, seen from the apex: in double, because it is a rounding error of the caller. At
+      // the apex's depth the line is as far away, but for what it goes sideways on the way there.
       using D = Simd<double, kTileGroup, A>;
-      const D depth_d = (to_double(*o[axis[2]]) - D(apex[2])) * D(mirrored ? -1.0 : 1.0);
-      const D along = depth_d / to_double(dz);
-      const F slip_x = abs(to_float((to_double(*o[axis[0]]) - along * to_double(dx)) - D(apex[0])));
-      const F slip_y = abs(to_float((to_double(*o[axis[1]]) - along * to_double(dy)) - D(apex[1])));
-      const F over = abs(to_float(depth_d - to_double(r.tmax) * to_double(dz)));
-      const F depth = to_float(depth_d);
+      const D length = to_double(r.tmax);
+      const auto end = [&](int k) {
+        return fast_fma(length, to_double(*d[axis[k]]), to_double(*o[axis[k]])) - D(apex[k]);
+      };
+      const D over_d = end(2), beyond = mirrored ? over_d : -over_d;
+      const F slip_x = abs(to_float(fast_fma(beyond, to_double(dx * inverse), end(0))));
+      const F slip_y = abs(to_float(fast_fma(beyond, to_double(dy * inverse), end(1))));
+      const F over = abs(to_float(over_d));
+      const F depth = (*o[axis[2]] - F(apex[2])) * F(mirrored ? -1.0f : 1.0f);
       s = one / depth;
       usable = usable & (abs(r.o.x) <= limit) & (abs(r.o.y) <= limit) & (abs(r.o.z) <= limit) &
                (r.tmin == zero) & (depth > F(margin * 0x1p26f)) & (s <= most_s) & (r.tmax <= limit);
@@ -203,8 +206,8 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
     F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(held_lo + i),
         infinity.store(held_hi + i);
   }
-  slip = at.at_end ? horizontal_max(slips) * (1 + kTileSlack) + margin : 0.0f;
   behind = at.at_end ? horizontal_max(behinds) * (1 + kTileSlack) + margin : 0.0f;
+  slip = at.at_end ? horizontal_max(slips) * (1 + kTileSlack) + behind * kTileSlack + margin : 0.0f;
   const float near = at.at_end ? behind : horizontal_max(nears);
   near_s = near > kTileLeast * kTileLeast ? (1 - kTileSlack) / near : 1 / (kTileLeast * kTileLeast);
   // A slip that is no rounding error means that the rays do not meet.
@@ -299,7 +302,7 @@ float TileRays<A>::bound_groups() {
 /// patch.
 template <class A>
 void TileRays<A>::sort() {
-  constexpr int kCells = 128, kMostRows = 16;
+  constexpr int kCells = 64, kMostRows = 8;
   const float width = std::max(window.x_hi - window.x_lo, 1e-30f),
               height = std::max(window.y_hi - window.y_lo, 1e-30f);
   // As many rows as make groups square.
@@ -315,14 +318,22 @@ void TileRays<A>::sort() {
     const int row = static_cast<int>((cy[i] - y0) * down), column = static_cast<int>((cx[i] - x0) * along);
     key[i] = row * columns + ((row & 1) != 0 ? columns - 1 - column : column);
   }
-  std::uint16_t begin[kCells + 1] = {};
-  for (int i = 0; i < kTileRays; ++i) ++begin[key[i] + 1];
-  for (int c = 0; c < kCells; ++c) begin[c + 1] = static_cast<std::uint16_t>(begin[c + 1] + begin[c]);
-  for (int i = 0; i < kTileRays; ++i) {
-    const int to = begin[key[i]]++;
+  // Two halves with a table each: neighbours that fall into one cell would wait for each other.
+  constexpr int kHalf = kTileRays / 2;
+  std::uint8_t next[kCells][2] = {};
+  for (int i = 0; i < kHalf; ++i) ++next[key[i]][0], ++next[key[kHalf + i]][1];
+  unsigned at = 0;
+  for (auto& cell : next)
+    for (std::uint8_t& half : cell) {
+      const unsigned count = half;
+      half = static_cast<std::uint8_t>(at), at += count;
+    }
+  const auto move = [&](int i, int half) {
+    const int to = next[key[i]][half]++;
     order[to] = static_cast<std::uint8_t>(i);
     x[to] = cx[i], y[to] = cy[i], held_lo[to] = lo[i], held_hi[to] = hi[i];
-  }
+  };
+  for (int i = 0; i < kHalf; ++i) move(i, 0), move(kHalf + i, 1);
   sorted = true, may_sort = false, regular = false;
   groups = (1u << kTileGroups) - 1;
   bound_groups();

@@ -23,7 +23,7 @@ struct TileTask {
   std::uint8_t* occluded;  ///< for Query::any
   TileRays<A> tile;
   UnclearList unclear;
-  int max_leaves;        ///< blocks to meet before the tile is given up
+  int max_steps;         ///< nodes and leaves to come to before the tile is given up
   bool decided = false;  ///< some hits have been decided and stand in `hits`
 };
 

@@ -187,15 +187,15 @@ OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const Chi
 inline constexpr int kRefinedGroups = 8;
 
 /// Tests of a group after which it is worth it to put the rays of a tile into a better order.
-inline constexpr int kTestsBeforeSort = 32;
+inline constexpr int kTestsBeforeSort = 48;
 
-/// False if the tile was given up because it met too many leaves.
+/// False if the tile was given up because it took too many steps.
 template <Query Q, class A>
 OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
   const Accel& accel = task.accel;
   TileRays<A>& tile = task.tile;
   TileEntry stack[kStackSize];
-  int size = 0, leaves = 0, tests = 0;
+  int size = 0, steps = 0, tests = 0;
   unsigned dirty = 0;  // groups whose least[] is out of date, which is harmless
   stack[size++] = {accel.root,       std::numeric_limits<float>::infinity(),
                    tile.window.x_lo, tile.window.x_hi,
@@ -210,6 +210,7 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
     }
     unsigned groups = entry_groups(e, tile);
     if (groups == 0) continue;
+    if (++steps > task.max_steps) return false;
     if (e.ref.is_triangles() && __builtin_popcount(groups) <= kRefinedGroups) {
       unsigned kept = 0;
       for (unsigned rest = groups; rest != 0; rest &= rest - 1)
@@ -234,7 +235,6 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
       const unsigned met = node_tile(node, tile, window, children);
       size = push_windows(node, met, children, groups, stack, size);
     } else if (e.ref.is_triangles()) {
-      if (++leaves > task.max_leaves) return false;
       tests += leaf_tile(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && tile.may_sort) {
         decide_unclear(task);
@@ -253,15 +253,15 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
 enum class TileOutcome {
   traced,
   no_tile,   ///< the rays share no point, fan out too far or are out of scale
-  given_up,  ///< they met more leaves than was allowed
+  given_up,  ///< they took more steps than was allowed
 };
 
 /// Up to kTileRays rays that meet in `apex`. Unless they are traced, nothing has been written that another
 /// traversal would not overwrite.
 template <Query Q, class A>
 OKTETT_NOINLINE TileOutcome trace_tile(const Accel& accel, const RaySpan& rays, const Apex& apex,
-                                       const HitSpan* hits, std::uint8_t* occluded, int max_leaves) {
-  TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_leaves};
+                                       const HitSpan* hits, std::uint8_t* occluded, int max_steps) {
+  TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_steps};
   if (!task.tile.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return TileOutcome::no_tile;
   if (task.tile.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded) table_leaf_tile(task, leaf, task.tile.groups);
