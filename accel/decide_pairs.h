@@ -7,8 +7,12 @@
 
 namespace oktett {
 
-/// The triangles `ids` = block * TriangleBlock::kSize + lane of `blocks`, one in each lane.
-template <int N, class A>
+/// Numbers of triangles that agree in all bits above this one are less than 2^31 floats apart.
+inline constexpr std::uint32_t kNearTriangles = std::uint32_t{1} << 27;
+
+/// The triangles `ids` = block * TriangleBlock::kSize + lane of `blocks`, one in each lane. `kNear`, a power
+/// of two up to kNearTriangles: those that agree above it are fetched by one index.
+template <int N, class A, std::uint32_t kNear = kNearTriangles>
 OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* blocks,
                                                                 const std::uint32_t* ids) {
   using F = Simd<float, N, A>;
@@ -23,8 +27,6 @@ OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBl
     const float* p = &blocks[ids[0] / kSize].v[0][0][ids[0] % kSize];
     return corners([&](int k) { return F(p[static_cast<std::uint32_t>(k) * kSize]); });
   }
-  // Numbers that agree in their upper bits are less than 2^31 floats apart.
-  constexpr std::uint32_t kNear = std::uint32_t{1} << 27;
   if (OKTETT_LIKELY(differing < kNear)) {
     alignas(64) std::int32_t at[N];
     for (int i = 0; i < N; ++i) {

@@ -98,19 +98,14 @@ OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
 template <Query Q>
 int max_tile_steps(const Accel& accel) {
   constexpr std::size_t kCached = std::size_t{64} << 20;
-#ifdef ENVL
-  if (tree_bytes(accel) > kCached) return exp_small;
-  return Q == Query::any ? exp_any_max : exp_max;
-#else
   if (tree_bytes(accel) > kCached) return 16;
   return Q == Query::any ? 256 : 384;
-#endif
 }
 
 /// How the rays of a block are traced where no mode is asked for.
 enum class Way { tile, packets, interleaved };
 
-/// Traces the rays as a tile if they share a point and meet few leaves for their number; else says what suits
+/// Traces the rays as a tile if they share a point and take few steps for their number; else says what suits
 /// them better.
 template <Query Q, class A>
 Way try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int max_steps) {
@@ -127,7 +122,7 @@ Way try_tile(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int
 }
 
 /// How `automatic` traces a batch: rays that share a point in tiles, others that run together as packets of
-/// W, the rest interleaved. Where a tile met too many leaves, triangles are smaller than rays are apart; its
+/// W, the rest interleaved. Where a tile took too many steps, triangles are smaller than rays are apart; its
 /// rays go interleaved, and so do its neighbours untried, twice as many each time, unless the caller insists.
 template <Query Q, int W, class A>
 void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {

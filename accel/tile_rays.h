@@ -60,7 +60,7 @@ struct alignas(64) TileRays {
   bool regular;
   bool ranged;  ///< some ray ends somewhere
   TilePatch shape;
-  bool may_sort;  ///< it may be worth it to sort the rays
+  bool may_sort;  ///< the groups of a whole tile overlap: sorting would make them smaller
   /// Where `sorted`, ray i of the tile is ray order[i] of the batch.
   bool sorted = false;
   std::uint8_t order[kTileRays];
@@ -79,7 +79,7 @@ struct alignas(64) TileRays {
   /// Prepares up to kTileRays rays. False if they are no tile: they do not share the apex, fan out too far,
   /// or their numbers are so large or small that the bounds here do not hold. `extent` = greatest
   /// |coordinate| of the scene.
-  /// `may_sort`: put the rays of a whole tile into another order if they stand in none.
+  /// `may_be_sorted`: whether the caller can live with rays in another order.
   bool set(const RaySpan& rays, const Apex& at, float extent, bool may_be_sorted);
 
   /// Puts the rays into an order that makes groups small.
@@ -347,6 +347,7 @@ bool TileRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool ma
   if (groups == 0) return true;
   bound();
   if (window.x_hi - window.x_lo > 1 || window.y_hi - window.y_lo > 1) return false;
+  // Groups that part the window cover it once.
   const float area = (window.x_hi - window.x_lo) * (window.y_hi - window.y_lo);
   const float covered = regular ? patch_area(shape) * kTileGroups : bound_groups();
   may_sort = may_be_sorted && rays.size == kTileRays && covered > area;

@@ -187,7 +187,7 @@ OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const Chi
 inline constexpr int kRefinedGroups = 8;
 
 /// Tests of a group after which it is worth it to put the rays of a tile into a better order.
-inline constexpr int kTestsBeforeSort = 48;
+inline constexpr int kTestsBeforeSort = 64;
 
 /// False if the tile was given up because it took too many steps.
 template <Query Q, class A>
@@ -237,6 +237,7 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
     } else if (e.ref.is_triangles()) {
       tests += leaf_tile(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && tile.may_sort) {
+        // What is listed and what waits knows the rays by their old places.
         decide_unclear(task);
         tile.sort();
         dirty = 0;

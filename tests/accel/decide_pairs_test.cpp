@@ -30,7 +30,7 @@ class Random {
 
 template <int N>
 struct Pairs {
-  RayState<N, ScalarIsa> rays;
+  RayLanes<Simd<float, N, ScalarIsa>> rays;
   std::uint32_t triangle[N];
   HitLanes<Simd<float, N, ScalarIsa>> hit;
 };
@@ -42,8 +42,10 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, Random& random, st
   Pairs<N> p;
   rays.clear();
   float column[8][N];
+  const bool same = random.below(4) == 0;  // one triangle for all
   for (int i = 0; i < N; ++i) {
-    p.triangle[i] = random.below(static_cast<std::uint32_t>(blocks.size()) * 8);
+    p.triangle[i] =
+        i > 0 && same ? p.triangle[0] : random.below(static_cast<std::uint32_t>(blocks.size()) * 8);
     const auto& v = blocks[p.triangle[i] / 8].v;
     const std::uint32_t lane = p.triangle[i] % 8;
     const float w[3] = {random.sign(), random.below(2) ? random.sign() : 0, random.below(2) ? 0.5f : 0};
@@ -65,7 +67,7 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, Random& random, st
   const auto vec = [&](int k) {
     return Vec3<F>{F::load(column[k]), F::load(column[k + 1]), F::load(column[k + 2])};
   };
-  p.rays.set(vec(0), vec(3), F::load(column[6]), F::load(column[7]), Box{});
+  p.rays = {vec(0), vec(3), F::load(column[6]), F::load(column[7])};
   return p;
 }
 
@@ -94,7 +96,7 @@ void expect_same_as_alone() {
   std::vector<Ray> rays;
   for (int repeat = 0; repeat < 20000 / N; ++repeat) {
     Pairs<N> p = make_pairs<N>(blocks, random, rays);
-    const unsigned met = decide_pairs(p.rays, blocks.data(), p.triangle, p.hit);
+    const unsigned met = decide_pairs<N, ScalarIsa>(p.rays, blocks.data(), p.triangle, p.hit);
     float t[N], u[N], v[N];
     p.hit.t.store(t), p.hit.u.store(u), p.hit.v.store(v);
     for (int i = 0; i < N; ++i) {
@@ -125,6 +127,35 @@ void expect_same_as_alone() {
 TEST(DecidePairs, SameAsOneRayAndOneTriangle) {
   expect_same_as_alone<8>();
   expect_same_as_alone<16>();
+}
+
+// Triangles by their numbers: all the same, near each other, and too far apart for one index.
+TEST(DecidePairs, GathersNearAndFar) {
+  constexpr int N = 16;
+  constexpr std::uint32_t kNear = 16;  // two blocks
+  Random random(5);
+  const std::vector<TriangleBlock> blocks = random_blocks(random);
+  int near = 0, far = 0;
+  for (int repeat = 0; repeat < 3000; ++repeat) {
+    const std::uint32_t spread = repeat % 3 == 0 ? 1 : repeat % 3 == 1 ? kNear : 72;
+    const std::uint32_t first = random.below(72 / spread) * spread;
+    std::uint32_t ids[N], differing = 0;
+    for (std::uint32_t& id : ids) id = first + random.below(spread), differing |= id ^ ids[0];
+    ++(differing < kNear ? near : far);
+    const auto tri = gather_triangles<N, ScalarIsa, kNear>(blocks.data(), ids);
+    const Vec3<Simd<float, N, ScalarIsa>>* corners[3] = {&tri.a, &tri.b, &tri.c};
+    for (int k = 0; k < 3; ++k) {
+      float x[N], y[N], z[N];
+      corners[k]->x.store(x), corners[k]->y.store(y), corners[k]->z.store(z);
+      for (int i = 0; i < N; ++i) {
+        const auto& v = blocks[ids[i] / 8].v[k];
+        const std::uint32_t lane = ids[i] % 8;
+        ASSERT_TRUE(x[i] == v[0][lane] && y[i] == v[1][lane] && z[i] == v[2][lane]) << repeat << ' ' << i;
+      }
+    }
+  }
+  EXPECT_GT(near, 1000);
+  EXPECT_GT(far, 500);
 }
 
 }  // namespace

@@ -1,0 +1,121 @@
+#include "accel/tile_rays.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "core/random.h"
+
+namespace oktett {
+namespace {
+
+using Tile = TileRays<ScalarIsa>;
+
+/// Rays from a patch of a bent surface around `center`, in no order, that end in `light`.
+RayBatch rays_to(const Vec3f& light, const Vec3f& center, float size, std::uint64_t seed) {
+  const std::uint64_t key = mix_bits(seed);
+  RayBatch rays;
+  for (std::uint32_t i = 0; i < kTileRays; ++i) {
+    const float a = 2 * random_float(key, i, 0) - 1, b = 2 * random_float(key, i, 1) - 1;
+    const Vec3f from = center + Vec3f{a, b, 0.2f * a * b} * size;
+    const Vec3f to = light - from;
+    const float distance = length(to);
+    rays.push_back({from, 0, to / distance, distance});
+  }
+  return rays;
+}
+
+struct Scene {
+  Vec3f light, center;
+  float size;
+};
+
+/// Lights along each axis and both ways, near and far, at coarse coordinates.
+std::vector<Scene> scenes() {
+  std::vector<Scene> all;
+  for (const Vec3f& shift : {Vec3f{0, 0, 0}, Vec3f{1000, -3000, 500}, Vec3f{-1e6f, 3e6f, 2e6f}})
+    for (const Vec3f& to : {Vec3f{0.1f, 0.2f, 5}, Vec3f{0.1f, 0.2f, -5}, Vec3f{5, 0.3f, 0.1f},
+                            Vec3f{-5, 0.3f, 0.1f}, Vec3f{0.3f, 5, 0.1f}, Vec3f{0.3f, -50, 20}})
+      for (const float scale : {1e-3f, 1.0f, 1e4f}) all.push_back({shift + to * scale, shift, scale * 0.5f});
+  return all;
+}
+
+// No line passes the apex farther away than `slip`, and no ray ends farther from it than `behind`, in extended
+// precision.
+TEST(TileRays, SlipBoundsHowFarLinesMissTheApex) {
+  int tiles = 0;
+  long double most = 0;
+  for (const Scene& s : scenes()) {
+    const RayBatch rays = rays_to(s.light, s.center, s.size, 3);
+    const Apex apex{s.light, true};
+    Tile tile;
+    if (!tile.set(rays.span(), apex, 1, true)) continue;
+    ++tiles;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray r = rays[i];
+      long double end[3], d[3];
+      for (int k = 0; k < 3; ++k) {
+        const int axis = tile.axis[k];
+        d[k] = r.direction[axis];
+        end[k] = static_cast<long double>(r.origin[axis]) + d[k] * r.tmax - s.light[axis];
+      }
+      const long double x = std::fabs(end[0] - end[2] * d[0] / d[2]), y = std::fabs(end[1] - end[2] * d[1] / d[2]);
+      ASSERT_LE(x, tile.slip), ASSERT_LE(y, tile.slip), ASSERT_LE(std::fabs(end[2]), tile.behind);
+      most = std::max(most, std::max(x, y) / tile.slip);
+    }
+  }
+  EXPECT_GT(tiles, 20);
+  EXPECT_GT(most, 0.9L);  // the bound is no more than it has to be
+}
+
+TEST(TileRays, SortingKeepsTheRaysAndMakesGroupsSmall) {
+  int sorted = 0;
+  for (const Scene& s : scenes()) {
+    RayBatch rays = rays_to(s.light, s.center, s.size, 4);
+    rays.tmax[17] = 0;  // hits nothing
+    rays.direction[1][100] = std::numeric_limits<float>::quiet_NaN();
+    const Apex apex{s.light, true};
+    Tile tile;
+    if (!tile.set(rays.span(), apex, 1, true)) continue;
+    const Tile before = tile;
+    ASSERT_TRUE(tile.may_sort);
+    tile.sort();
+    ++sorted;
+    std::set<int> seen;
+    float area = 0;
+    for (int g = 0; g < kTileGroups; ++g) {
+      float least = std::numeric_limits<float>::infinity();
+      for (int i = g * kTileGroup; i < (g + 1) * kTileGroup; ++i) {
+        const int from = tile.order[i];
+        seen.insert(from);
+        ASSERT_EQ(tile.x[i], before.x[from]), ASSERT_EQ(tile.y[i], before.y[from]);
+        ASSERT_EQ(tile.held_lo[i], before.held_lo[from]), ASSERT_EQ(tile.held_hi[i], before.held_hi[from]);
+        ASSERT_TRUE(tile.x_lo[g] <= tile.x[i] && tile.x[i] <= tile.x_hi[g] && tile.y_lo[g] <= tile.y[i] &&
+                    tile.y[i] <= tile.y_hi[g]);
+        least = std::min(least, tile.held_lo[i]);
+      }
+      ASSERT_EQ(tile.least[g], least);
+      area += (tile.x_hi[g] - tile.x_lo[g]) * (tile.y_hi[g] - tile.y_lo[g]);
+    }
+    EXPECT_EQ(seen.size(), std::size_t{kTileRays});
+    EXPECT_LT(area, 1.5f * (tile.window.x_hi - tile.window.x_lo) * (tile.window.y_hi - tile.window.y_lo));
+    EXPECT_FALSE(tile.regular);
+    EXPECT_FALSE(tile.may_sort);
+  }
+  EXPECT_GT(sorted, 20);
+}
+
+// A tile that is not whole has no order for its missing rays.
+TEST(TileRays, PartsOfTilesAreNotSorted) {
+  const RayBatch rays = rays_to({0, 0, 5}, {0, 0, 0}, 1, 5);
+  Tile tile;
+  ASSERT_TRUE(tile.set(rays.span().part(0, 255), {{0, 0, 5}, true}, 1, true));
+  EXPECT_FALSE(tile.may_sort);
+  ASSERT_TRUE(tile.set(rays.span(), {{0, 0, 5}, true}, 1, false));
+  EXPECT_FALSE(tile.may_sort);
+}
+
+}  // namespace
+}  // namespace oktett
