@@ -106,7 +106,7 @@ void expect_same_as_alone() {
                     Box{}) == 0)
         continue;
       const int z = alone.z_axis_of(0);
-      HitLanes<One> h;
+      HitLanes<One> h{One(0.0f), One(0.0f), One(0.0f)};
       const bool expected = any(decide_watertight(
           load_shear(alone, z),
           broadcast_triangle<One>(blocks[p.triangle[i] / 8], static_cast<int>(p.triangle[i] % 8), z),

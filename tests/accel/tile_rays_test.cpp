@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -42,8 +43,8 @@ std::vector<Scene> scenes() {
   return all;
 }
 
-// No line passes the apex farther away than `slip`, and no ray ends farther from it than `behind`, in extended
-// precision.
+// No line passes the apex farther away than `slip`, and no ray ends farther from it than `behind`, in
+// extended precision.
 TEST(TileRays, SlipBoundsHowFarLinesMissTheApex) {
   int tiles = 0;
   long double most = 0;
@@ -61,8 +62,11 @@ TEST(TileRays, SlipBoundsHowFarLinesMissTheApex) {
         d[k] = r.direction[axis];
         end[k] = static_cast<long double>(r.origin[axis]) + d[k] * r.tmax - s.light[axis];
       }
-      const long double x = std::fabs(end[0] - end[2] * d[0] / d[2]), y = std::fabs(end[1] - end[2] * d[1] / d[2]);
-      ASSERT_LE(x, tile.slip), ASSERT_LE(y, tile.slip), ASSERT_LE(std::fabs(end[2]), tile.behind);
+      const long double x = std::fabs(end[0] - end[2] * d[0] / d[2]),
+                        y = std::fabs(end[1] - end[2] * d[1] / d[2]);
+      ASSERT_LE(x, tile.slip);
+      ASSERT_LE(y, tile.slip);
+      ASSERT_LE(std::fabs(end[2]), tile.behind);
       most = std::max(most, std::max(x, y) / tile.slip);
     }
   }
@@ -74,7 +78,7 @@ TEST(TileRays, SortingKeepsTheRaysAndMakesGroupsSmall) {
   int sorted = 0;
   for (const Scene& s : scenes()) {
     RayBatch rays = rays_to(s.light, s.center, s.size, 4);
-    rays.tmax[17] = 0;  // hits nothing
+    rays.tmax[17] = std::numeric_limits<float>::quiet_NaN();
     rays.direction[1][100] = std::numeric_limits<float>::quiet_NaN();
     const Apex apex{s.light, true};
     Tile tile;
@@ -90,8 +94,10 @@ TEST(TileRays, SortingKeepsTheRaysAndMakesGroupsSmall) {
       for (int i = g * kTileGroup; i < (g + 1) * kTileGroup; ++i) {
         const int from = tile.order[i];
         seen.insert(from);
-        ASSERT_EQ(tile.x[i], before.x[from]), ASSERT_EQ(tile.y[i], before.y[from]);
-        ASSERT_EQ(tile.held_lo[i], before.held_lo[from]), ASSERT_EQ(tile.held_hi[i], before.held_hi[from]);
+        ASSERT_EQ(tile.x[i], before.x[from]);
+        ASSERT_EQ(tile.y[i], before.y[from]);
+        ASSERT_EQ(tile.held_lo[i], before.held_lo[from]);
+        ASSERT_EQ(tile.held_hi[i], before.held_hi[from]);
         ASSERT_TRUE(tile.x_lo[g] <= tile.x[i] && tile.x[i] <= tile.x_hi[g] && tile.y_lo[g] <= tile.y[i] &&
                     tile.y[i] <= tile.y_hi[g]);
         least = std::min(least, tile.held_lo[i]);
