@@ -245,7 +245,7 @@ void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& t
     const std::size_t first = pool.cells.size();
     S::add(pool, shape, to_world, item);
     for (std::size_t cell = first; cell < pool.cells.size(); ++cell) {
-      const Box box = cell_bounds(pool.frames.back().to_world, pool.cells[cell]);
+      const Box box = cell_bounds<S>(pool, pool.cells[cell]);
       const auto index = static_cast<std::uint32_t>(cell);
       if (is_usable(box)) {
         refs.push_back(make_ref(box, index, kind));

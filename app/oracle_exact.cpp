@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "app/oracle_exact_families.h"
+
 namespace oktett {
 
 namespace {
@@ -16,16 +18,21 @@ ExactOracle torus(CaseRandom& random) {
             return d * d + p.z * p.z - static_cast<long double>(s.minor) * s.minor;
           },
           {-r, -r, -s.minor},
-          {r, r, s.minor}};
+          {r, r, s.minor},
+          {}};
 }
 
-constexpr ExactOracle (*kDraw[])(CaseRandom&) = {torus};
+std::vector<DrawExact> all_families() {
+  std::vector<DrawExact> all{torus};
+  for (const auto& family : {quadric_oracles()}) all.insert(all.end(), family.begin(), family.end());
+  return all;
+}
 
 }  // namespace
 
 std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random) {
   std::vector<ExactOracle> oracles;
-  for (const auto draw : kDraw) oracles.push_back(draw(random));
+  for (const DrawExact draw : all_families()) oracles.push_back(draw(random));
   return oracles;
 }
 

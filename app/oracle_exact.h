@@ -20,7 +20,9 @@ struct ExactOracle {
   /// Negative inside, positive outside, for points in the space in which the shape is described. Written from
   /// the source's equation, not from the kernel.
   std::function<long double(const Vec3l&)> f;
-  Vec3d lo, hi;  ///< the surface lies in this box
+  Vec3d lo, hi;  ///< the surface lies in this box, or what of it is looked at
+  /// If set, the surface is only where this is not positive: what is open ends there.
+  std::function<long double(const Vec3l&)> where;
 };
 
 /// One of each form, with parameters from `random`. Grows by one line per form.

@@ -31,7 +31,8 @@ Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
 /// The function along a ray, in the space of the shape's description.
 class AlongRay {
  public:
-  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray) : f_(oracle.f) {
+  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray)
+      : f_(oracle.f), where_(oracle.where) {
     for (int k = 0; k < 3; ++k) {
       o_[k] = to_own.m[k][3], d_[k] = 0;
       for (int j = 0; j < 3; ++j) {
@@ -69,16 +70,25 @@ class AlongRay {
           const long double mid = lo + (hi - lo) / 2;
           ((((*this)(mid) < 0) == (f0 < 0)) ? lo : hi) = mid;
         }
-        found.push_back(lo + (hi - lo) / 2);
+        const long double t = lo + (hi - lo) / 2;
+        if (ends(t) < 0) found.push_back(t);
       }
       t0 = t1, f0 = f1;
     }
     return found;
   }
+  /// Whether an open surface is there: -1 surely, 1 surely not, 0 if rounding may decide.
+  int ends(long double t) const {
+    if (!where_) return -1;
+    const long double s = slack(t), a = where_(o_ + d_ * (t - s)), b = where_(o_ + d_ * (t + s));
+    const long double rounding = std::abs(a - b) + 0x1p-36L * size_ * std::sqrt(dot(d_, d_));
+    return a < -rounding && b < -rounding ? -1 : a > rounding && b > rounding ? 1 : 0;
+  }
   /// Whether f changes its sign near t, or comes so near to zero that rounding the ray decides.
   enum class Crossing { yes, nearly, no };
   Crossing crosses(long double t) const {
     const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
+    if (ends(t) > 0) return Crossing::no;
     if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
     // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
     const long double off = 0x1p-14L * size_,
@@ -89,7 +99,7 @@ class AlongRay {
   long double begin = 0, end = -1;
 
  private:
-  const std::function<long double(const Vec3l&)>& f_;
+  const std::function<long double(const Vec3l&)>&f_, &where_;
   Vec3l o_, d_;
   long double size_ = 0;
 };

@@ -1,46 +1,50 @@
 #include "io/scene_exact.h"
 
-#include <iterator>
-
 namespace oktett {
 namespace {
 
 using MaybeForm = std::optional<ExactForm>;
-
-/// Warns that the object is left out because of `reason`.
-std::nullopt_t skip(SceneLoad& load, const YamlNode& place, const std::string& reason) {
-  load.warn(place.where(), reason + "; the object is skipped");
-  return std::nullopt;
-}
 
 MaybeForm read_torus(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
   const Fields fields(node, "torus", {"major", "minor", "normals"});
   TorusShape shape;
   load.values.read(fields["major"], shape.major, kNonNegative);
   load.values.read(fields["minor"], shape.minor, kNonNegative);
-  if (shape.minor == 0) return skip(load, key, "the minor radius is zero");
+  if (shape.minor == 0) return skip_exact(load, key, "the minor radius is zero");
   return shape;
 }
 
-struct Reader {
-  const char* key;
-  MaybeForm (*read)(SceneLoad&, const YamlNode& key, const YamlNode& node);
-};
+constexpr ExactReader kReaders[] = {{"torus", read_torus}};
 
-/// Every reader takes the key `normals` too, which is read here.
-constexpr Reader kReaders[] = {{"torus", read_torus}};
+std::vector<ExactReader> all_readers() {
+  std::vector<ExactReader> all;
+  for (const std::span<const ExactReader> family :
+       {std::span<const ExactReader>(kReaders), closed_form_readers()})
+    all.insert(all.end(), family.begin(), family.end());
+  return all;
+}
+
+const std::vector<ExactReader>& readers() {
+  static const std::vector<ExactReader> all = all_readers();
+  return all;
+}
 
 }  // namespace
 
+std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason) {
+  load.warn(place.where(), reason + "; the object is skipped");
+  return std::nullopt;
+}
+
 std::vector<std::string> exact_keys() {
   std::vector<std::string> keys;
-  for (const Reader& reader : kReaders) keys.push_back(reader.key);
+  for (const ExactReader& reader : readers()) keys.push_back(reader.key);
   return keys;
 }
 
 std::optional<ExactShape> read_exact(SceneLoad& load, const YamlNode& key, const YamlNode& node,
                                      bool& known) {
-  for (const Reader& reader : kReaders) {
+  for (const ExactReader& reader : readers()) {
     if (key.text != reader.key) continue;
     known = true;
     const MaybeForm form = reader.read(load, key, node);

@@ -2,6 +2,7 @@
 /// \file Exact surfaces in scene files. Within io/ only.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,20 @@
 #include "kernels/shapes/exact_data.h"
 
 namespace oktett {
+
+/// A shape key and what reads it: a form, or nothing after a warning. Every reader takes the key `normals`
+/// too, which read_exact reads.
+struct ExactReader {
+  const char* key;
+  std::optional<ExactForm> (*read)(SceneLoad&, const YamlNode& key, const YamlNode& node);
+};
+
+// One list of readers per family.
+/// Cylinders, cones, polyhedra and quadrics.
+std::span<const ExactReader> closed_form_readers();
+
+/// Warns that the object is left out because of `reason`.
+std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);
 
 /// Keys of the exact surfaces.
 std::vector<std::string> exact_keys();

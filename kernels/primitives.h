@@ -22,7 +22,20 @@ using ClosedFormShapes = std::tuple<Sphere, Disk, BoxSolid, Polygon, Plane>;
 
 /// What a leaf holds. The closed-form kinds come first and number the entries of ClosedFormShapes; the exact
 /// ones follow and number those of ExactForm (exact_data.h) and ExactShapes (exact_shapes.h).
-enum class Kind : std::uint8_t { sphere, disk, box, polygon, plane, torus, triangle, instance };
+enum class Kind : std::uint8_t {
+  sphere,
+  disk,
+  box,
+  polygon,
+  plane,
+  torus,
+  cylinder,
+  cone,
+  polyhedron,
+  quadric,
+  triangle,
+  instance
+};
 
 inline constexpr int kClosedFormKinds = static_cast<int>(std::tuple_size_v<ClosedFormShapes>);
 inline constexpr int kExactKinds = static_cast<int>(std::variant_size_v<ExactForm>);

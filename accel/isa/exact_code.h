@@ -29,6 +29,18 @@ OKTETT_INLINE void cut_range(LineRange<D>& range, const D& from) {
   range.a = max(from, range.a);
 }
 
+/// Where to look for crossings with the cell before the ray's own range counts.
+template <class S, class D>
+OKTETT_INLINE typename D::M cell_range(const Line<D>& line, const ExactCell& cell, LineRange<D>& range) {
+  if constexpr (requires { S::kWholeLines; }) {
+    const D inf(std::numeric_limits<double>::infinity());
+    range = {-inf, inf, D(0.0), D(0.0)};
+    return D::M::all_true();
+  } else {
+    return clip_line(line, cell.lo, cell.hi, range);
+  }
+}
+
 template <class S, class F>
 OKTETT_INLINE unsigned first_crossing(const typename S::Pool& pool, std::uint32_t index,
                                       const RayLanes<F>& rays, unsigned lanes, HitLanes<F>& hits) {
@@ -36,7 +48,7 @@ OKTETT_INLINE unsigned first_crossing(const typename S::Pool& pool, std::uint32_
   const ExactCell& cell = pool.cells[index];
   const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
   LineRange<D> range;
-  auto active = D::M::from_bits(lanes) & clip_line(line, cell.lo, cell.hi, range);
+  auto active = D::M::from_bits(lanes) & cell_range<S>(line, cell, range);
   cut_range(range, range_begin(to_double(rays.tmin)));
   // Nothing farther than tmax is of use, yet it must not shorten the range: that would change the roots.
   active = active & (range.a <= range.b) & (range.a * D(1 - 0x1p-22) <= to_double(rays.tmax));
@@ -71,7 +83,7 @@ void list_crossings(const typename S::Pool& pool, std::uint32_t index, const Ray
   const RayLanes<F> rays{broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax)};
   const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
   LineRange<D> range;
-  auto active = clip_line(line, cell.lo, cell.hi, range);
+  auto active = cell_range<S>(line, cell, range);
   cut_range(range, range_begin(to_double(rays.tmin)));
   const std::uint32_t item = pool.frames[cell.element].item;
   for (active = active & (range.a <= range.b); any(active);) {

@@ -17,6 +17,12 @@
 /// - `S::value(pool, i, part, p)` and `S::gradient(pool, i, part, p)`: the function whose zeros the part is,
 ///   negative inside, and its gradient;
 /// - `S::inside(pool, i, p)`; `S::uv(pool, i, part, p, surface)` sets uv and tangent in its own space.
+/// It may have
+/// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only
+/// where
+///   the ray begins; `crossings` bears NaN and infinities;
+/// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
+///   than the image of the cell.
 
 #include <cstdint>
 #include <limits>
