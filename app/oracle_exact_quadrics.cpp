@@ -38,8 +38,8 @@ void bound(ExactOracle& oracle, const Vec3d& a, double ra, const Vec3d& b, doubl
   oracle.hi = max(a + Vec3d{ra, ra, ra}, b + Vec3d{rb, rb, rb});
 }
 
-ExactOracle frustum(std::string name, ExactForm form, const Vec3d& from, const Vec3d& to, double r0, double r1,
-                    bool open) {
+ExactOracle frustum(std::string name, ExactForm form, const Vec3d& from, const Vec3d& to, double r0,
+                    double r1, bool open) {
   ExactOracle oracle;
   oracle.name = std::move(name), oracle.shape = {std::move(form)};
   const auto side = [=](const Vec3l& p) {
@@ -184,8 +184,8 @@ ExactOracle hyperboloid(CaseRandom& random) {
 }  // namespace
 
 std::vector<DrawExact> quadric_oracles() {
-  return {cylinder, open_cylinder, cone,       open_cone,  polyhedron, quadric, open_quadric,
-          infinite_cylinder, paraboloid, hyperboloid};
+  return {cylinder,     open_cylinder,     cone,       open_cone,  polyhedron, quadric,
+          open_quadric, infinite_cylinder, paraboloid, hyperboloid};
 }
 
 }  // namespace oktett

@@ -53,8 +53,10 @@ MaybeForm read_polyhedron(SceneLoad& load, const YamlNode& key, const YamlNode& 
   switch (intersect(shape.planes).kind) {
     case ConvexSolid::Kind::unbounded:
       throw Error(planes.where(), "the planes do not bound a solid on all sides");
-    case ConvexSolid::Kind::empty: return skip_exact(load, key, "there is nothing inside of all planes");
-    case ConvexSolid::Kind::solid: break;
+    case ConvexSolid::Kind::empty:
+      return skip_exact(load, key, "there is nothing inside of all planes");
+    case ConvexSolid::Kind::solid:
+      break;
   }
   return shape;
 }

@@ -22,9 +22,9 @@ struct Cone {
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
   static Box world_bounds(const Pool& pool, std::size_t i);
 
-  /// Along the ray x, y and w are linear, so the equation is a s^2 + 2 b s + c = 0. Its discriminant b^2 - a c
-  /// is a sum of squares of cross products (Lagrange's identity for the form x^2 + y^2 - w^2), each of which
-  /// is computed without cancellation. s is 0 at the point nearest to the own origin.
+  /// Along the ray x, y and w are linear, so the equation is a s^2 + 2 b s + c = 0. Its discriminant b^2 - a
+  /// c is a sum of squares of cross products (Lagrange's identity for the form x^2 + y^2 - w^2), each of
+  /// which is computed without cancellation. s is 0 at the point nearest to the own origin.
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {

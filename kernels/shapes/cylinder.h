@@ -19,8 +19,8 @@ struct Cylinder {
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
   static Box world_bounds(const Pool& pool, std::size_t i);
 
-  /// In the plane z = 0, with d of the ray and c = o x d, the ray passes the axis at the distance |c| / |d| and
-  /// is inside for sqrt(d.d - c^2) / d.d to both sides of -o.d / d.d.
+  /// In the plane z = 0, with d of the ray and c = o x d, the ray passes the axis at the distance |c| / |d|
+  /// and is inside for sqrt(d.d - c^2) / d.d to both sides of -o.d / d.d.
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
@@ -36,8 +36,7 @@ struct Cylinder {
                    [](const double(&x)[4], double(&y)[1]) { circle_discriminant(x, y); });
     }
     // A line along the axis stays inside or outside.
-    auto meets =
-        active & ((~along & (discriminant[0] > D(0.0))) | (along & (ox * ox + oy * oy < D(1.0))));
+    auto meets = active & ((~along & (discriminant[0] > D(0.0))) | (along & (ox * ox + oy * oy < D(1.0))));
     if (none(meets)) return list.finish(D(roots::kNoRoot));
     const D inf(roots::kNoRoot), inverse = D(1.0) / dd;
     const D middle = -(ox * dx + oy * dy) * inverse, half = sqrt(max(discriminant[0], D(0.0))) * inverse;

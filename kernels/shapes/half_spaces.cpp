@@ -56,7 +56,8 @@ void enumerate(std::span<const HalfSpace> planes, const Vec3d& center, double re
     polygon = {foot - u - v, foot + u - v, foot + u + v, foot - u + v};
     for (std::uint32_t j = 0; j < planes.size() && !polygon.empty(); ++j)
       if (j != i)
-        clip(polygon, planes[j].normal, planes[j].offset - dot(planes[j].normal, center) + tolerance, scratch);
+        clip(polygon, planes[j].normal, planes[j].offset - dot(planes[j].normal, center) + tolerance,
+             scratch);
     if (polygon.empty()) continue;
     solid.faces.push_back(i);
     for (const Vec3d& p : polygon) solid.vertices.push_back(center + p);

@@ -15,8 +15,10 @@ void Polyhedron::add(Pool& pool, const ExactShape& shape, const Affine& to_world
   if (solid.kind != ConvexSolid::Kind::solid) return;
   Vec3d lo = solid.vertices.front(), hi = lo;
   for (const Vec3d& p : solid.vertices) lo = min(lo, p), hi = max(hi, p);
-  const Vec3d center = (lo + hi) * 0.5;
-  const double size = 0.5 * max_component(hi - lo);
+  // The corners are rounded; what they suggest to be 1 must not become 2.
+  const double size = unit_for(0.5 * (1 - 0x1p-20) * max_component(hi - lo));
+  Vec3d center;
+  for (int k = 0; k < 3; ++k) center[k] = origin_for((lo[k] + hi[k]) / 2, size);
   PolyhedronElement e{static_cast<std::uint32_t>(pool.slabs.size()), 0, {}};
   std::vector<bool> done(s.planes.size());
   for (const std::uint32_t i : solid.faces) {
@@ -33,8 +35,7 @@ void Polyhedron::add(Pool& pool, const ExactShape& shape, const Affine& to_world
     }
     pool.slabs.push_back(slab), ++e.count;
   }
-  const Affine own_to_world =
-      to_world * Affine::translation(center) * Affine::scaling({size, size, size});
+  const Affine own_to_world = to_world * Affine::translation(center) * Affine::scaling({size, size, size});
   // Corners are known to 2^-40 of the size; taking a ray into the own space costs a few roundings more.
   const double span = 0x1p-38 * length(own_to_world.vector({1, 1, 1}));
   for (const Vec3d& p : solid.vertices) {

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Convex polyhedra by the slab method over any number of half-spaces (after T. L. Kay, J. T. Kajiya: Ray
-/// Tracing Complex Scenes, SIGGRAPH 1986).
+/// \file Convex polyhedra by the slab method over any number of half-spaces (after T. L. Kay, J. T. Kajiya:
+/// Ray Tracing Complex Scenes, SIGGRAPH 1986).
 
 #include "core/box.h"
 #include "kernels/shapes/quadratic.h"

@@ -1,5 +1,7 @@
 #include "kernels/shapes/quadratic.h"
 
+#include <cmath>
+
 #include "kernels/roots/double_double.h"
 
 namespace oktett {
@@ -21,5 +23,13 @@ void cone_discriminant(const double (&in)[6], double (&out)[1]) {
                      xy = cross(in[0], in[1], in[3], in[4]);
   out[0] = (xw * xw + yw * yw - xy * xy).hi;
 }
+
+double unit_for(double half) {
+  int exponent;
+  const double fraction = std::frexp(half, &exponent);
+  return std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+}
+
+double origin_for(double center, double unit) { return std::round(center / unit * 256) / 256 * unit; }
 
 }  // namespace oktett

@@ -15,8 +15,8 @@ OKTETT_INLINE D product_difference(const D& a, const D& b, const D& c, const D& 
   return (p - q) + (product_error(a, b, p) - product_error(c, d, q));
 }
 
-/// Calls f(in, out) for each lane of `which`: `in` holds the lane of N columns, what f leaves in the M numbers
-/// of `out` replaces that of the others.
+/// Calls f(in, out) for each lane of `which`: `in` holds the lane of N columns, what f leaves in the M
+/// numbers of `out` replaces that of the others.
 template <int N, int M, class D, class F>
 OKTETT_NOINLINE void lane_by_lane(const typename D::M& which, const D (&in)[N], D (&out)[M], const F& f) {
   constexpr int W = D::kWidth;
@@ -42,6 +42,11 @@ inline constexpr double kDoubtfulDiscriminant = 0x1p-24;
 void circle_discriminant(const double (&in)[4], double (&out)[1]);
 /// (px dw - pw dx)^2 + (py dw - pw dy)^2 - (px dy - py dx)^2 for in = {px, py, pw, dx, dy, dw}; as precise.
 void cone_discriminant(const double (&in)[6], double (&out)[1]);
+
+/// The least power of two that is not below `half`: a unit that rounds nothing.
+double unit_for(double half);
+/// `center` rounded to a 256th of `unit`, so that simple numbers stay simple when it is subtracted.
+double origin_for(double center, double unit);
 
 /// Where a line is between two planes z = -1 and z = 1.
 template <class D>

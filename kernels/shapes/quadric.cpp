@@ -58,8 +58,8 @@ struct Region {
   }
 };
 
-/// The box of the ellipsoid, if the form is one with a positive definite Q: center +- sqrt(k (Q^-1)_ii), where
-/// k is minus the least value. An ellipsoid without points makes the region empty.
+/// The box of the ellipsoid, if the form is one with a positive definite Q: center +- sqrt(k (Q^-1)_ii),
+/// where k is minus the least value. An ellipsoid without points makes the region empty.
 void cut_to_ellipsoid(const Form<double>& f, Region& region) {
   const double *q = f.q, xx = q[0], yy = q[1], zz = q[2], xy = q[3], xz = q[4], yz = q[5];
   const double cofactor[6] = {yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy,
@@ -159,8 +159,8 @@ void Quadric::add(Pool& pool, const ExactShape& shape, const Affine& to_world, s
   if (size == 0) size = natural_size(f);
   for (int k = 0; k < 3; ++k) {
     const bool finite = std::isfinite(region.hi[k] - region.lo[k]);
-    center[k] = finite ? (region.lo[k] + region.hi[k]) / 2 : 0;
-    scale[k] = finite ? (region.hi[k] - region.lo[k]) / 2 : size;
+    scale[k] = unit_for(finite ? (region.hi[k] - region.lo[k]) / 2 : size);
+    center[k] = finite ? origin_for((region.lo[k] + region.hi[k]) / 2, scale[k]) : 0;
   }
   const Form<DoubleDouble> own = moved(f, center, scale);
   double greatest = std::abs(own.j.hi);
@@ -176,9 +176,8 @@ void Quadric::add(Pool& pool, const ExactShape& shape, const Affine& to_world, s
   for (int k = 0; k < 3; ++k) {
     e.h[k] = std::ldexp(own.h[k].hi, exponent);
     e.h_size = std::max(e.h_size, std::abs(e.h[k]));
-    const bool finite = std::isfinite(region.hi[k] - region.lo[k]);
-    e.lo[k] = finite ? -1 : region.lo[k] / scale[k];
-    e.hi[k] = finite ? 1 : region.hi[k] / scale[k];
+    e.lo[k] = (region.lo[k] - center[k]) / scale[k];
+    e.hi[k] = (region.hi[k] - center[k]) / scale[k];
   }
   e.j = std::ldexp(own.j.hi, exponent);
   e.closed = closed, e.clipped = s.clipped;

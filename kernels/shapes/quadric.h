@@ -7,7 +7,7 @@ namespace oktett {
 
 /// The function is x.Qx + 2 h.x + j; its greatest coefficient is about 1.
 struct QuadricElement {
-  double q[6];        ///< of Q: xx, yy, zz, xy, xz, yz
+  double q[6];  ///< of Q: xx, yy, zz, xy, xz, yz
   Vec3d h;
   double j;
   double q_size, h_size;  ///< greatest of |q| and |h|
