@@ -16,6 +16,7 @@ struct ExactTally {
   std::uint64_t missed = 0;       ///< a first crossing that the oracle finds and the tracer does not
   std::uint64_t invented = 0;     ///< a hit where the function does not change its sign
   std::uint64_t touched = 0;      ///< of those, allowed: the function all but touches zero there
+  std::uint64_t creased = 0;      ///< hits at an edge or a tip finer than the position's error bound
   std::uint64_t off_surface = 0;  ///< position, moved by its error bound, is not off the surface to that side
   std::uint64_t lists = 0;        ///< all_hits disagrees with the oracle's crossings
   std::uint64_t differing = 0;    ///< a mode, width or instruction set gave other bits
