@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bench/povray_scene.h"
@@ -20,8 +21,55 @@ FieldObject sphere(const double (&)[6]) {
           [](const Vec3l& p) { return dot(p, p) - 0.9L * 0.9L; }};
 }
 
+FieldObject cylinder(const double (&)[6]) {
+  return {"cylinder { <0, -0.8, 0>, <0, 0.8, 0>, 0.6 }",
+          ExactShape{CylinderShape{{0, -0.8, 0}, {0, 0.8, 0}, 0.6}},
+          [](const Vec3l& p) { return std::max(std::hypot(p.x, p.z) - 0.6L, std::abs(p.y) - 0.8L); }};
+}
+
+FieldObject cone(const double (&)[6]) {
+  return {"cone { <0, -0.8, 0>, 0.7, <0, 0.8, 0>, 0.2 }",
+          ExactShape{ConeShape{{0, -0.8, 0}, {0, 0.8, 0}, 0.7, 0.2}}, [](const Vec3l& p) {
+            return std::max(std::hypot(p.x, p.z) - (0.45L - 0.3125L * p.y), std::abs(p.y) - 0.8L);
+          }};
+}
+
+FieldObject quadric(const double (&)[6]) {
+  return {"intersection { quadric { <1, -1, 1>, <0, 0, 0>, <0, 0, 0>, -0.2 } box { -1, 1 } }",
+          ExactShape{QuadricShape{{1, -1, 1, 0, 0, 0, 0, 0, 0, -0.2}, true}}, [](const Vec3l& p) {
+            return std::max({p.x * p.x - p.y * p.y + p.z * p.z - 0.2L, std::abs(p.x) - 1, std::abs(p.y) - 1,
+                             std::abs(p.z) - 1});
+          }};
+}
+
+/// A dodecahedron.
+FieldObject polyhedron(const double (&)[6]) {
+  FieldObject object{"intersection {", ExactShape{}, {}};
+  PolyhedronShape shape;
+  const double phi = (1 + std::sqrt(5.0)) / 2, inverse = 1 / std::sqrt(1 + phi * phi);
+  for (int k = 0; k < 12; ++k) {
+    Vec3d n{0, 0, 0};
+    n[k / 4] = (k & 1) != 0 ? inverse : -inverse,
+          n[(k / 4 + 1) % 3] = (k & 2) != 0 ? phi * inverse : -phi * inverse;
+    shape.planes.push_back({n, 0.75});
+    object.pov += fmt::format(" plane {{ <{}, {}, {}>, 0.75 }}", n.x, n.y, n.z);
+  }
+  object.pov += " bounded_by { sphere { 0, 0.95 } } }";
+  object.shape = ExactShape{shape};
+  object.f = [shape](const Vec3l& p) {
+    long double f = -1;
+    for (const HalfSpace& h : shape.planes)
+      f = std::max(f, h.normal.x * p.x + h.normal.y * p.y + h.normal.z * p.z - h.offset);
+    return f;
+  };
+  return object;
+}
+
 }  // namespace
 
-std::vector<FieldKind> field_kinds() { return {{"sphere", 10000, sphere}, {"torus", 900, torus}}; }
+std::vector<FieldKind> field_kinds() {
+  return {{"sphere", 10000, sphere}, {"torus", 900, torus},     {"cylinder", 900, cylinder},
+          {"cone", 900, cone},       {"quadric", 900, quadric}, {"polyhedron", 900, polyhedron}};
+}
 
 }  // namespace oktett::bench
