@@ -42,6 +42,7 @@ class Accel {
 
   std::vector<Geometry> geometries;
   std::vector<std::uint32_t> first_item;  ///< per geometry, plus the total at the end
+  bool one_item_each = false;             ///< item k is geometry k
 
   NodeRef root = NodeRef::none();
   Box bounds;
@@ -56,8 +57,9 @@ class Accel {
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
-  /// Per closed-form kind: pool indices ordered by item, to find the primitive of a hit.
-  std::vector<std::uint32_t> pool_by_item[kClosedFormKinds];
+  /// Where primitive k of geometry g, of a closed-form shape, stands in its pool:
+  /// pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
+  std::vector<std::uint32_t> pool_index, first_pool_index;
   std::vector<std::uint32_t> instances_by_path;  ///< indices into `instances`, ordered by first_path
   AccelStats stats;
 

@@ -45,6 +45,7 @@ class PoolFiller {
   PoolFiller(Accel& accel, const ItemOrder& order) : accel_(accel), order_(order) {}
 
   void run() {
+    number_primitives();
     each(
         Kind::sphere,
         [&](auto& pool, const Geometry& g, std::uint32_t local, std::uint32_t item) {
@@ -85,15 +86,29 @@ class PoolFiller {
   }
 
  private:
+  /// Gives every primitive of a closed-form shape a place in pool_index.
+  void number_primitives() {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> first(accel_.geometries.size());
+    for (std::uint32_t g = 0; g < first.size(); ++g) {
+      first[g] = count;
+      if (accel_.kinds[g] < kClosedFormKinds) count += accel_.first_item[g + 1] - accel_.first_item[g];
+    }
+    if (count == 0) return;
+    accel_.first_pool_index = std::move(first);
+    accel_.pool_index.resize(count, kNoId);
+  }
+
   template <class Add, class Pool>
   void each(Kind kind, Add&& add, Pool& pool) {
     for (std::uint32_t item : order_[static_cast<int>(kind)]) {
       const std::uint32_t g = accel_.geometry_of(item);
       add(pool, accel_.geometries[g], item - accel_.first_item[g], item);
     }
-    auto& by_item = accel_.pool_by_item[static_cast<int>(kind)];
-    for (std::uint32_t i = 0; i < pool.item.size(); ++i) by_item.push_back(i);
-    std::sort(by_item.begin(), by_item.end(), [&](auto x, auto y) { return pool.item[x] < pool.item[y]; });
+    for (std::uint32_t i = 0; i < pool.item.size(); ++i) {
+      const std::uint32_t item = pool.item[i], g = accel_.geometry_of(item);
+      accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = i;
+    }
     finish(pool);
     accel_.stats.other_bytes += pool.bytes();
   }
@@ -319,6 +334,7 @@ Accel::Accel() = default;
 Accel::~Accel() = default;
 
 std::uint32_t Accel::geometry_of(std::uint32_t item) const {
+  if (one_item_each) return item;
   return static_cast<std::uint32_t>(std::upper_bound(first_item.begin(), first_item.end(), item) -
                                     first_item.begin() - 1);
 }
@@ -339,6 +355,8 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   }
   accel->first_item.push_back(static_cast<std::uint32_t>(items));
   accel->stats.items = items;
+  accel->one_item_each = true;
+  for (std::size_t g = 0; g < accel->geometries.size(); ++g) accel->one_item_each &= accel->first_item[g + 1] == g + 1;
 
   Column<PrimRef> refs;
   ItemOrder order;

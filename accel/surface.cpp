@@ -69,15 +69,6 @@ Surface mesh_surface(const Geometry& g, const GeometryFrame& frame, const MeshGe
   return s;
 }
 
-/// Index in the pool of the closed-form item `item`.
-template <class Pool>
-std::size_t pool_index(const Pool& pool, std::uint32_t item, const std::vector<std::uint32_t>& by_item) {
-  const auto at =
-      std::lower_bound(by_item.begin(), by_item.end(), item,
-                       [&](std::uint32_t index, std::uint32_t value) { return pool.item[index] < value; });
-  return *at;
-}
-
 }  // namespace
 
 Surface identify(const Accel& accel, const Hit& hit) {
@@ -105,7 +96,7 @@ static void surface_inside(const NamedHit& named, const Accel& a, const Ray& inn
     const Kind kind = static_cast<Kind>(a.kinds[names.geometry]);
     visit_pool(kind, a.pools, [&](auto shape, const auto& pool) {
       using S = decltype(shape);
-      const std::size_t i = pool_index(pool, hit.item, a.pool_by_item[static_cast<int>(kind)]);
+      const std::size_t i = a.pool_index[a.first_pool_index[names.geometry] + names.primitive];
       if constexpr (requires { S::surface_without_uv(pool, i, inner, hit.t); }) {
         if (uv)
           make_in_place(s, [&] { return S::surface(pool, i, inner, hit.t); });
