@@ -119,8 +119,7 @@ TEST(Cone, TinyAndHuge) {
 }
 TEST(Quadric, TinyAndHuge) {
   expect_same_at_all_scales(QuadricShape{{1, 2, 4, 0.5, 0, -0.25, 0, 0, 0, -1}, true}, [](double s) {
-    return QuadricShape{
-        {1, 2, 4, 0.5, 0, -0.25, 0, 0, 0, -s * s}, true, {-s, -s, -s}, {s, s, s}};
+    return QuadricShape{{1, 2, 4, 0.5, 0, -0.25, 0, 0, 0, -s * s}, true, {-s, -s, -s}, {s, s, s}};
   });
 }
 
@@ -130,7 +129,11 @@ std::vector<ExactForm> all_forms() {
     cube.planes.push_back({{0, 0, 0}, 1});
     cube.planes.back().normal[k / 2] = k % 2 == 0 ? 1 : -1;
   }
-  return {CylinderShape{}, ConeShape{}, cube, QuadricShape{}, QuadricShape{{1, 1, -1, 0, 0, 0, 0, 0, 0, -1}},
+  return {CylinderShape{},
+          ConeShape{},
+          cube,
+          QuadricShape{},
+          QuadricShape{{1, 1, -1, 0, 0, 0, 0, 0, 0, -1}},
           QuadricShape{{1, 1, -1, 0, 0, 0, 0, 0, 0, -1}, true}};
 }
 
@@ -298,8 +301,7 @@ TEST(Quadric, LeadingCoefficientZero) {
   const auto whole = accel_of(QuadricShape{{1, 1, 0, 0, 0, 0, 0, 0, -1, 0}});
   expect_crossings(*whole, {0.5f, 0, -5}, {0, 0, 1}, {{5.25f, 0, -1}});
   expect_crossings(*whole, {0.5f, 0, 5}, {0, 0, -1}, {{4.75f, 0, 1}});
-  const auto cut = accel_of(
-      QuadricShape{{1, 1, 0, 0, 0, 0, 0, 0, -1, 0}, true, {-2, -2, -2}, {2, 2, 2}});
+  const auto cut = accel_of(QuadricShape{{1, 1, 0, 0, 0, 0, 0, 0, -1, 0}, true, {-2, -2, -2}, {2, 2, 2}});
   expect_crossings(*cut, {0.5f, 0, -5}, {0, 0, 1}, {{5.25f, 0, -1}, {7, 6, 1}});
   // A half-space in a box is one, too.
   const auto half = accel_of(QuadricShape{{0, 0, 0, 0, 0, 0, 1, 0, 0, -0.25}, true});

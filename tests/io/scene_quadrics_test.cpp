@@ -17,7 +17,8 @@ using Coefficients = std::array<double, 10>;
 
 TEST(SceneQuadrics, HaveNaturalDefaults) {
   const Scene scene = SceneFiles().load_v1(
-      "objects: [{cylinder: }, {cone: }, {quadric: }, {infinite_cylinder: }, {paraboloid: }, {hyperboloid: }, "
+      "objects: [{cylinder: }, {cone: }, {quadric: }, {infinite_cylinder: }, {paraboloid: }, {hyperboloid: "
+      "}, "
       "{hyperboloid: {sheets: 2}}]\n");
   EXPECT_TRUE(scene.warnings.empty());
   const auto& cylinder = form_of<CylinderShape>(scene, 0);
@@ -29,8 +30,10 @@ TEST(SceneQuadrics, HaveNaturalDefaults) {
   EXPECT_EQ(cone.from, (Vec3d{0, -1, 0}));
   EXPECT_EQ(cone.from_radius, 1);
   EXPECT_EQ(cone.to_radius, 0);
-  const Coefficients kinds[] = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -1},  {1, 1, 0, 0, 0, 0, 0, 0, 0, -1},
-                                {1, 1, 0, 0, 0, 0, 0, 0, -1, 0},  {1, 1, -1, 0, 0, 0, 0, 0, 0, -1},
+  const Coefficients kinds[] = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -1},
+                                {1, 1, 0, 0, 0, 0, 0, 0, 0, -1},
+                                {1, 1, 0, 0, 0, 0, 0, 0, -1, 0},
+                                {1, 1, -1, 0, 0, 0, 0, 0, 0, -1},
                                 {1, 1, -1, 0, 0, 0, 0, 0, 0, 1}};
   for (std::size_t i = 0; i < std::size(kinds); ++i) {
     EXPECT_EQ(form_of<QuadricShape>(scene, 2 + i).coefficients, kinds[i]) << i;
@@ -44,7 +47,8 @@ TEST(SceneQuadrics, ReadAllParameters) {
       "  - cylinder: {from: [1, 2, 3], to: [4, 5, 6], radius: 0.5, open: true, normals: central}\n"
       "  - cone: {from: [1, 2, 3], to: [4, 5, 6], from_radius: 0, to_radius: 2, open: true}\n"
       "  - polyhedron: {planes: [[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1], [-1, -2, -3, 4]]}\n"
-      "  - quadric: {coefficients: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], clip: {min: [-1, -2, -3], max: [1, 2, 3]}}\n"
+      "  - quadric: {coefficients: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], clip: {min: [-1, -2, -3], max: [1, 2, "
+      "3]}}\n"
       "  - paraboloid: {clip: , open: true}\n");
   EXPECT_TRUE(scene.warnings.empty());
   EXPECT_EQ(test::shape_of<ExactShape>(scene, 0).normals, NormalMethod::central);
@@ -75,7 +79,8 @@ TEST(SceneQuadrics, ErrorsHaveTheirPlace) {
   } kCases[] = {
       {"objects: [{cylinder: {radius: -1}}]", "scene.yaml:2:31: expected a number of at least 0, found '-1'"},
       {"objects: [{cylinder: {from: 1}}]", "scene.yaml:2:29: expected a list of 3 numbers, found '1'"},
-      {"objects: [{cylinder: {top: [0, 0, 0]}}]", "scene.yaml:2:23: unknown key 'top' in cylinder; did you mean"},
+      {"objects: [{cylinder: {top: [0, 0, 0]}}]",
+       "scene.yaml:2:23: unknown key 'top' in cylinder; did you mean"},
       {"objects: [{cylinder: {open: 1}}]", "scene.yaml:2:29: expected true or false, found '1'"},
       {"objects: [{cone: {radius: 1}}]", "scene.yaml:2:19: unknown key 'radius' in cone"},
       {"objects: [{cone: {to_radius: .nan}}]", "scene.yaml:2:30: expected a finite number"},
@@ -97,8 +102,10 @@ TEST(SceneQuadrics, ErrorsHaveTheirPlace) {
       {"objects: [{infinite_cylinder: {radius: 1}}]",
        "scene.yaml:2:32: unknown key 'radius' in infinite_cylinder"},
       {"objects: [{paraboloid: {sheets: 1}}]", "scene.yaml:2:25: unknown key 'sheets' in paraboloid"},
-      {"objects: [{hyperboloid: {sheets: 3}}]", "scene.yaml:2:34: expected a whole number from 1 to 2, found '3'"},
-      {"objects: [{hyperboloid: {normals: exact}}]", "scene.yaml:2:35: expected gradient or forward or central"},
+      {"objects: [{hyperboloid: {sheets: 3}}]",
+       "scene.yaml:2:34: expected a whole number from 1 to 2, found '3'"},
+      {"objects: [{hyperboloid: {normals: exact}}]",
+       "scene.yaml:2:35: expected gradient or forward or central"},
   };
   SceneFiles files;
   for (const auto& c : kCases) {

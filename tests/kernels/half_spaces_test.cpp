@@ -44,7 +44,8 @@ TEST(HalfSpaces, LeaveOutWhatDoesNotBound) {
 TEST(HalfSpaces, ManyPlanesMakeABall) {
   std::vector<HalfSpace> planes;
   for (std::size_t i = 0; i < kMaxHalfSpaces; ++i) {
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / kMaxHalfSpaces, a = 2.399963 * static_cast<double>(i);
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / kMaxHalfSpaces,
+                 a = 2.399963 * static_cast<double>(i);
     const double r = std::sqrt(1 - z * z);
     planes.push_back({{r * std::cos(a), r * std::sin(a), z}, 1});
   }
@@ -73,8 +74,10 @@ TEST(HalfSpaces, KnowWhatIsNotBounded) {
   }
   EXPECT_EQ(intersect(prism).kind, Kind::unbounded);
   // A wedge: three planes through a line and two ends of four.
-  EXPECT_EQ(intersect(std::vector<HalfSpace>{{{1, 0, 0}, 1}, {{-1, 1, 0}, 1}, {{0, 0, 1}, 1}, {{0, 0, -1}, 1}}).kind,
-            Kind::unbounded);
+  EXPECT_EQ(
+      intersect(std::vector<HalfSpace>{{{1, 0, 0}, 1}, {{-1, 1, 0}, 1}, {{0, 0, 1}, 1}, {{0, 0, -1}, 1}})
+          .kind,
+      Kind::unbounded);
 }
 
 TEST(HalfSpaces, KnowWhatIsEmpty) {
