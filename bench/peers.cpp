@@ -122,8 +122,8 @@ class Comparison {
     if (accel_ == nullptr) accel_ = build(variant);
     if (!options_.wants(Work::bytes)) return;
     // Embree was given positions and indices alone, so ours are counted without normals and uvs.
-    const std::size_t buffers = mesh_.positions.size() * sizeof(mesh_.positions[0]) +
-                                mesh_.indices.size() * sizeof(mesh_.indices[0]);
+    const std::size_t buffers =
+        mesh_.positions.size() * sizeof(mesh_.positions[0]) + mesh_.indices.size() * sizeof(mesh_.indices[0]);
     const double ours = static_cast<double>(stats(*accel_).bytes() + buffers) / triangles;
     const double theirs = static_cast<double>(medium()->bytes()) / triangles;
     Row r = row(none, options_.threads.front(), "bytes per triangle", "B");
