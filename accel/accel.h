@@ -47,7 +47,7 @@ struct Geometry {
 enum class BuildQuality : std::uint8_t {
   fast,      ///< few candidates for splits
   balanced,  ///< full blocks and an exact search near the leaves
-  best,      ///< also splits large triangles between leaves: for single rays in scenes of mixed sizes
+  best,      ///< also splits space: triangles may stand in several leaves; several times slower to build
 };
 
 struct BuildOptions {

@@ -11,6 +11,7 @@
 
 #include "accel/build_collapse.h"
 #include "accel/build_morton.h"
+#include "accel/build_spatial.h"
 #include "accel/build_tree.h"
 
 namespace oktett {
@@ -22,6 +23,10 @@ constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
+
+/// Space is split where the children of the best other split overlap by more than this part of the scene's
+/// surface (Stich et al. 2009, section 4.5).
+constexpr double kLeastOverlap = 1e-3;
 
 /// Half the surface of a box in the {-lo, hi} form, scaled.
 float half_area(const float* negative_lo, const float* hi, float unit) {
@@ -38,14 +43,18 @@ struct Extent {
     for (int k = 0; k < 8; ++k) v[k] = b[k] > v[k] ? b[k] : v[k];
   }
   float area(float unit) const { return half_area(v, v + 4, unit); }
+  Box box() const { return {{-v[0], -v[1], -v[2]}, {v[4], v[5], v[6]}}; }
 };
 
-/// A range of references that stands in `from`; the same place in `to` is free.
+/// A range of references that stands in `from`. Its children may stand in [first, last) of `to`, which has
+/// room for those that splits of space add, and theirs in the same place of `from`.
 struct Range {
-  std::size_t begin, end;
-  PrimRef *from, *to;
+  std::size_t begin = 0, end = 0;
+  PrimRef *from = nullptr, *to = nullptr;
   Centers centers;
+  std::size_t first = begin, last = end;
   std::size_t size() const { return end - begin; }
+  std::size_t room() const { return last - first; }
 };
 
 /// How a large range is cut for threads; it depends on the size alone.
@@ -56,30 +65,33 @@ struct Chunks {
 };
 
 Effort effort_of(BuildQuality quality) {
-  if (quality == BuildQuality::fast) return {8, 256, 32, true};
-  if (quality == BuildQuality::balanced) return {16, 256, 64, false};
-  return {32, 256, 256, false};
+  if (quality == BuildQuality::fast) return {8, 256, 32, true, 0};
+  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0};
+  return {32, 32, 32, false, 0.3};
 }
 
 class Builder {
  public:
-  Builder(Column<PrimRef>& refs, float unit, const BuildOptions& options, bool pieces,
-          const BuildKernels& kernels)
+  Builder(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+          const BuildOptions& options, const BuildKernels& kernels)
       : refs_(refs),
-        unit_(unit),
+        triangles_(triangles),
+        unit_(scene_unit(bounds)),
+        least_overlap_(kLeastOverlap * half_area(bounds)),
         effort_(effort_of(options.quality)),
-        pieces_(pieces),
         parallel_(options.parallel),
         kernels_(kernels) {}
 
   BinaryTree run() {
     const std::size_t n = refs_.size();
+    const std::size_t room = n + static_cast<std::size_t>(effort_.spatial * static_cast<double>(n));
     // A leaf holds at least one item; pages that stay empty cost nothing.
-    tree_.nodes = VirtualArray<BinaryNode>(2 * n + 2 * kMaxSweep);
-    tree_.items.resize_uninitialized(n);
-    scratch_.resize_uninitialized(n > effort_.sweep ? n : 0);
+    tree_.nodes = VirtualArray<BinaryNode>(2 * room + 2 * kMaxSweep);
+    tree_.items.resize_uninitialized(room);
+    refs_.resize_uninitialized(room);
+    scratch_.resize_uninitialized(n > effort_.sweep ? room : 0);
     nodes_ = 1;
-    Range all{0, n, refs_.data(), scratch_.data(), {}};
+    Range all{0, n, refs_.data(), scratch_.data(), {}, 0, room};
     bound(all);
     SubtreeCost cost;
     if (effort_.cells && n > effort_.sweep) {
@@ -90,6 +102,7 @@ class Builder {
       build(all, 1, 0, cost);
     }
     tree_.nodes.truncate(nodes_);
+    tree_.pieces = pieces_;
     return std::move(tree_);
   }
 
@@ -173,7 +186,7 @@ class Builder {
     job.depth = depth;
     job.unit = unit_;
     job.effort = effort_;
-    job.pieces = pieces_;
+    job.pieces = effort_.spatial > 0;
     job.nodes = nodes;
     kernels_.sweep(job);
     cost = job.cost;
@@ -210,10 +223,63 @@ class Builder {
         });
       best = find(grid, chunks.count, bins);
     }
+    if (effort_.spatial > 0 && best.axis >= 0 && split_space(r, grid, best, chunks.count, bins, left, right))
+      return;
     if (best.axis >= 0) return partition(r, grid, best, chunks, bins, left, right);
-    const std::size_t middle = r.begin + balanced_half(r.size());
-    left = {r.begin, middle, r.from, r.to, {}}, right = {middle, r.end, r.from, r.to, {}};
+    const std::size_t half = balanced_half(r.size());
+    PrimRef *const from = r.from + r.begin, *const middle = from + half;
+    std::copy(from, middle, r.to + r.first);
+    std::copy(middle, r.from + r.end, r.to + r.last - (r.size() - half));
+    share_room(r, half, r.size() - half, left, right);
     bound(left), bound(right);
+  }
+
+  /// The children of `r`, which stand at either end of its place in `to`; what room is left is shared in
+  /// proportion to their sizes.
+  static void share_room(const Range& r, std::size_t l, std::size_t rr, Range& left, Range& right) {
+    const std::size_t spare = r.room() - l - rr;
+    const std::size_t middle = r.first + l +
+                               static_cast<std::size_t>(static_cast<double>(spare) * static_cast<double>(l) /
+                                                        static_cast<double>(l + rr));
+    left = {r.first, r.first + l, r.to, r.from, {}, r.first, middle};
+    right = {r.last - rr, r.last, r.to, r.from, {}, middle, r.last};
+  }
+
+  /// Splits space instead of the range, where the children of `object` would overlap and it costs less.
+  template <class BinsOf>
+  bool split_space(const Range& r, const Grid& grid, const Split& object, std::size_t chunks,
+                   const BinsOf& bins, Range& left, Range& right) {
+    if (r.room() == r.size()) return false;
+    Extent side[2];
+    for (std::size_t c = 0; c < chunks; ++c)
+      for (int b = 0; b < grid.bins; ++b) side[b > object.bin].grow(bins(c).box[object.axis][b].v);
+    Box all = side[0].box(), overlap = all;
+    const Box other = side[1].box();
+    all.grow(other);
+    overlap.lo = max(overlap.lo, other.lo), overlap.hi = min(overlap.hi, other.hi);
+    if (!(half_area(overlap) > least_overlap_)) return false;
+    const double object_cost =
+        half_area(side[0].box()) * blocks_of(count_of(object, false, grid, chunks, bins)) +
+        half_area(other) * blocks_of(count_of(object, true, grid, chunks, bins));
+    const SpatialSplit s = find_spatial(r.from + r.begin, r.size(), all, triangles_, parallel_);
+    if (s.axis < 0 || !(s.cost < object_cost)) return false;
+    const SpatialParts parts =
+        partition_spatial(r.from + r.begin, r.size(), r.room(), s, triangles_, r.to + r.first, r.to + r.last);
+    if (parts.left == 0) return false;
+    if (parts.left + parts.right > r.size()) pieces_ = true;
+    share_room(r, parts.left, parts.right, left, right);
+    bound(left), bound(right);
+    return true;
+  }
+
+  template <class BinsOf>
+  static std::uint32_t count_of(const Split& s, bool right, const Grid& grid, std::size_t chunks,
+                                const BinsOf& bins) {
+    std::uint32_t n = 0;
+    for (std::size_t c = 0; c < chunks; ++c)
+      for (int b = right ? s.bin + 1 : 0; b < (right ? grid.bins : s.bin + 1); ++b)
+        n += bins(c).count[s.axis][b];
+    return n;
   }
 
   /// The plane of least surface-area cost.
@@ -259,8 +325,8 @@ class Builder {
       const std::size_t offset = c * chunks.size;
       job.refs = r.from + r.begin + offset;
       job.count = chunks.count == 1 ? r.size() : std::min(chunks.size, r.size() - offset);
-      job.left = r.to + r.begin + lefts[c];
-      job.right = r.to + r.end - (offset - lefts[c]);
+      job.left = r.to + r.first + lefts[c];
+      job.right = r.to + r.last - (offset - lefts[c]);
       job.grid = grid, job.split = s;
       kernels_.partition(job);
     };
@@ -268,18 +334,20 @@ class Builder {
       run(0);
     else
       each_chunk(chunks, run);
-    const std::size_t middle = r.begin + lefts[chunks.count];
-    left = {r.begin, middle, r.to, r.from, {}}, right = {middle, r.end, r.to, r.from, {}};
+    share_room(r, lefts[chunks.count], r.size() - lefts[chunks.count], left, right);
     for (const PartitionJob& job : jobs)
       left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);
   }
 
   Column<PrimRef>& refs_;
+  const TriangleSource& triangles_;
   Column<PrimRef> scratch_;
   Column<std::uint32_t> cells_;  ///< of the references, in their order
   float unit_;
+  double least_overlap_;
   const Effort effort_;
-  const bool pieces_, parallel_;
+  const bool parallel_;
+  std::atomic<bool> pieces_{false};  ///< some item has several references
   const BuildKernels& kernels_;
   BinaryTree tree_;
   std::atomic<std::uint32_t> nodes_{0};
@@ -294,9 +362,9 @@ float scene_unit(const Box& bounds) {
   return std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
 }
 
-BinaryTree build_binary(Column<PrimRef>& refs, float unit, const BuildOptions& options, bool pieces,
-                        const BuildKernels& kernels) {
-  return Builder(refs, unit, options, pieces, kernels).run();
+BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+                        const BuildOptions& options, const BuildKernels& kernels) {
+  return Builder(refs, triangles, bounds, options, kernels).run();
 }
 
 }  // namespace oktett

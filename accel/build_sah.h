@@ -117,6 +117,7 @@ struct Effort {
   std::uint32_t
       every_place;  ///< of these, ranges up to this size are tried at every place, others at full blocks
   bool cells;       ///< larger ranges are divided by a space-filling curve
+  double spatial;   ///< references that splits of space may add, per reference
 };
 
 /// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-#include "accel/build_pieces.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -204,9 +203,8 @@ void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& trian
                 std::vector<std::uint32_t> (&order)[kKinds], const BuildOptions& options,
                 const IsaTable& isa) {
   if (refs.empty()) return;
-  if (options.quality == BuildQuality::best)
-    accel.pieces = split_large(refs, triangles, accel.bounds, options.parallel);
-  const BinaryTree tree = build_binary(refs, scene_unit(accel.bounds), options, accel.pieces, isa.build);
+  const BinaryTree tree = build_binary(refs, triangles, accel.bounds, options, isa.build);
+  accel.pieces = tree.pieces;
   refs.clear();
   WideBuilder(accel, tree, triangles, options.parallel).run();
   order_pools(accel, tree, order);

@@ -25,12 +25,13 @@ class TriangleSource {
 struct BinaryTree {
   VirtualArray<BinaryNode> nodes;
   Column<std::uint32_t> items;
+  bool pieces = false;  ///< an item may stand in several leaves
 };
 
-/// Builds the binary tree over `refs`, which it uses up. The same tree for any number of threads. `pieces`:
-/// an item may have several references.
-BinaryTree build_binary(Column<PrimRef>& refs, float unit, const BuildOptions& options, bool pieces,
-                        const BuildKernels& kernels);
+/// Builds the binary tree over `refs`, which it uses up; `bounds` are theirs. The same tree for any number of
+/// threads.
+BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+                        const BuildOptions& options, const BuildKernels& kernels);
 
 /// The power of two by which a scene with these bounds is of size 1, so that areas neither overflow nor
 /// vanish.

@@ -14,6 +14,26 @@ struct UnclearList {
   int size = 0;
 };
 
+/// Which groups have met a triangle that stands in several leaves ("mailboxes", Amanatides and Woo 1987). An
+/// entry may be lost to another triangle; then the triangle is met twice, which does no harm.
+class MetTriangles {
+ public:
+  MetTriangles() { clear(); }
+  /// For groups of other rays.
+  void clear() { std::fill_n(item_, kSize, kNoId); }
+  /// Those of `groups` that have not met `item` yet; from now on they have.
+  OKTETT_INLINE unsigned add(std::uint32_t item, unsigned groups) {
+    const std::uint32_t at = item * 0x9e3779b1u >> 26;
+    const unsigned met = item_[at] == item ? groups_[at] : 0;
+    item_[at] = item, groups_[at] = met | groups;
+    return groups & ~met;
+  }
+
+ private:
+  static constexpr int kSize = 64;
+  std::uint32_t item_[kSize], groups_[kSize];
+};
+
 /// A tile on its way through the tree, and where its results go.
 template <Query Q, class A>
 struct TileTask {
@@ -23,8 +43,9 @@ struct TileTask {
   std::uint8_t* occluded;  ///< for Query::any
   TileRays<A> tile;
   UnclearList unclear;
-  int max_steps;         ///< nodes and leaves to come to before the tile is given up
-  bool decided = false;  ///< some hits have been decided and stand in `hits`
+  int max_steps;          ///< nodes and leaves to come to before the tile is given up
+  MetTriangles met = {};  ///< in use if triangles stand in several leaves
+  bool decided = false;   ///< some hits have been decided and stand in `hits`
 };
 
 /// Lets a decided hit of ray i count.

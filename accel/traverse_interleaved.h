@@ -163,6 +163,7 @@ class InterleavedTraversal {
   OKTETT_INLINE void take(RaySlot& slot, const TriangleGuess<F>& guess, const HitInterval<F>& h,
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
+    if (maybe != 0 && accel_.pieces) maybe &= ~held_again(slot);
     if (maybe == 0) return;
     const unsigned sure = bits(h.sure) >> first & maybe;
     if (sure != 0) {
@@ -181,6 +182,21 @@ class InterleavedTraversal {
       }
     }
     decide_leaf(slot);
+  }
+
+  /// The lane of the leaf that `slot` is at which holds the triangle that the ray holds already: a triangle
+  /// in pieces stands in several leaves, and deciding it twice would tell nothing new.
+  OKTETT_INLINE unsigned held_again(const RaySlot& slot) const {
+    std::uint32_t item = kNoId;
+    if (slot.held < kHoldsExact) {
+      item = accel_.blocks[slot.held / kBlock].item[slot.held % kBlock];
+    } else if (slot.held == kHoldsExact) {
+      const RayState<1, A>& r = states_[&slot - slots_];
+      if (r.path[0] == kNoId) item = r.item[0];
+    }
+    using I = Simd<std::int32_t, kBlock, A>;
+    const auto* items = reinterpret_cast<const std::int32_t*>(accel_.blocks[slot.current.block()].item);
+    return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
   }
 
   /// For Query::any: nothing is left to do.

@@ -118,7 +118,8 @@ OKTETT_INLINE int leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups, 
   const bool lone = (groups & (groups - 1)) == 0;
   for (unsigned rest = found.projected; rest != 0; rest &= rest - 1) {
     const int k = __builtin_ctz(rest);
-    const unsigned met = lone ? groups : groups_meeting(projected, k, tile, groups);
+    unsigned met = lone ? groups : groups_meeting(projected, k, tile, groups);
+    if (task.accel.pieces) met = task.met.add(task.accel.blocks[ref.block()].item[k], met);
     size += store_set_bits<A>(met, k * kTileGroups, pairs + size);
   }
   for (int i = 0; i < size; ++i) {
@@ -239,6 +240,7 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && tile.may_sort) {
         // What is listed and what waits knows the rays by their old places.
         decide_unclear(task);
+        task.met.clear();
         tile.sort();
         dirty = 0;
         for (int i = 0; i < size; ++i) stack[i].groups = tile.groups;

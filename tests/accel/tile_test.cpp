@@ -70,6 +70,7 @@ struct Subject {
   std::vector<Vec3f> targets;
   float scale = 1;
   Vec3f center{0, 0, 0};
+  BuildQuality quality = BuildQuality::balanced;
 };
 
 void finish(Subject& s, std::vector<Geometry> more = {}) {
@@ -85,7 +86,7 @@ void finish(Subject& s, std::vector<Geometry> more = {}) {
     }
   }
   for (Geometry& g : more) geometries.push_back(std::move(g));
-  s.accel = build_accel(std::move(geometries));
+  s.accel = build_accel(std::move(geometries), {s.quality});
 }
 
 Subject make_subject(int which, Dice& dice) {
@@ -95,12 +96,15 @@ Subject make_subject(int which, Dice& dice) {
       s.meshes = {grid_mesh(20, true, dice)};
       break;
     case 1:
+      // Triangles that stand in several leaves.
+      s.quality = BuildQuality::best;
       s.meshes = {grid_mesh(40, false, dice), soup(200, 0.3f, dice)};
       break;
     case 2:
       s.meshes = {soup(3000, 0.02f, dice)};
       break;
     case 3:
+      s.quality = BuildQuality::best;
       s.meshes = {soup(100, 1e-5f, dice), soup(30, 2, dice)};
       break;
     case 4:  // far from the origin: coordinates are coarse
