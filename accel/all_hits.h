@@ -117,6 +117,7 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
     }
   }
   if (accel.pieces) drop_repeated(accel, hits, first);
+  if (accel.exact) merge_crossings(accel, hits, first);
 }
 
 }  // namespace oktett

@@ -18,6 +18,33 @@ bool is_triangle(const Accel& accel, std::uint32_t item) {
   return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;
 }
 
+void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
+  const auto own_exact = [&](const Hit& h) {
+    return h.instance == kNoId && is_exact(static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]));
+  };
+  std::vector<Hit> crossings;
+  std::size_t kept = first;
+  for (std::size_t i = first; i < list.size(); ++i) {
+    if (own_exact(list[i]))
+      crossings.push_back(list[i]);
+    else
+      list[kept++] = list[i];
+  }
+  list.shrink(kept);
+  std::sort(crossings.begin(), crossings.end(), [](const Hit& a, const Hit& b) {
+    if (a.item != b.item) return a.item < b.item;
+    return a.t != b.t ? a.t < b.t : a.v < b.v;
+  });
+  // Of several ways in the first counts, of several ways out the last.
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const auto same = [&](std::size_t k) {
+      return k < crossings.size() && crossings[k].item == crossings[i].item &&
+             crossings[k].v == crossings[i].v;
+    };
+    if (crossings[i].v < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1)) list.push(crossings[i]);
+  }
+}
+
 const IsaTable* isa_table(Isa isa) {
   switch (isa) {
     case Isa::scalar:
@@ -74,7 +101,7 @@ void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa is
   hits.clear();
   HitList list(hits);
   isa_table(isa)->all_hits(accel, ray, list);
-  std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+  std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
     if (a.t != b.t) return a.t < b.t;
     // Adding one puts "no instance" first.
     if (a.instance != b.instance) return a.instance + 1 < b.instance + 1;

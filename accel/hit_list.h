@@ -26,4 +26,9 @@ class HitList {
   std::vector<Hit>& hits_;
 };
 
+/// Of the hits from `first` on with exact surfaces that are not inside an instance, makes one list per item:
+/// sorted, in and out in turn. Cells of an element may each list a crossing where they meet; what overlaps is
+/// taken together.
+void merge_crossings(const Accel& accel, HitList& hits, std::size_t first);
+
 }  // namespace oktett
