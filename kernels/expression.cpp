@@ -78,42 +78,46 @@ class Parser {
     return true;
   }
 
-  std::uint32_t add(const ExpressionNode& node) {
+  std::uint32_t add(std::size_t place, const ExpressionNode& node) {
     result_.nodes.push_back(node);
+    result_.places.push_back(static_cast<std::uint32_t>(place));
     return static_cast<std::uint32_t>(result_.nodes.size() - 1);
   }
-  std::uint32_t add(ExpressionOp op, std::uint32_t a, std::uint32_t b = kNoId) { return add({op, a, b, 0}); }
+  std::uint32_t add(std::size_t place, ExpressionOp op, std::uint32_t a, std::uint32_t b = kNoId) {
+    return add(place, {op, a, b, 0});
+  }
 
   std::uint32_t sum() {
     std::uint32_t left = product();
     while (true) {
-      if (accept('+'))
-        left = add(ExpressionOp::add, left, product());
-      else if (accept('-'))
-        left = add(ExpressionOp::subtract, left, product());
-      else
-        return left;
+      const bool plus = accept('+');
+      if (!plus && !accept('-')) return left;
+      const std::size_t place = pos_ - 1;
+      left = add(place, plus ? ExpressionOp::add : ExpressionOp::subtract, left, product());
     }
   }
 
   std::uint32_t product() {
     std::uint32_t left = signed_factor();
     while (true) {
-      if (accept('*'))
-        left = add(ExpressionOp::multiply, left, signed_factor());
-      else if (accept('/'))
-        left = add(ExpressionOp::divide, left, signed_factor());
-      else
-        return left;
+      const bool times = accept('*');
+      if (!times && !accept('/')) return left;
+      const std::size_t place = pos_ - 1;
+      left = add(place, times ? ExpressionOp::multiply : ExpressionOp::divide, left, signed_factor());
     }
   }
 
   std::uint32_t signed_factor() {
     const Level level(*this);
-    if (accept('-')) return add(ExpressionOp::negate, signed_factor());
+    if (accept('-')) {
+      const std::size_t place = pos_ - 1;
+      return add(place, ExpressionOp::negate, signed_factor());
+    }
     if (accept('+')) return signed_factor();
     const std::uint32_t base = primary();
-    return accept('^') ? add(ExpressionOp::power, base, signed_factor()) : base;
+    if (!accept('^')) return base;
+    const std::size_t place = pos_ - 1;
+    return add(place, ExpressionOp::power, base, signed_factor());
   }
 
   std::uint32_t primary() {
@@ -133,8 +137,9 @@ class Parser {
     const auto [end, error] = std::from_chars(begin, text_.data() + text_.size(), value);
     if (error == std::errc::result_out_of_range) fail(pos_, "number out of range");
     if (error != std::errc()) fail(pos_, "expected a number, a name or '('");
+    const std::size_t place = pos_;
     pos_ += static_cast<std::size_t>(end - begin);
-    return add({ExpressionOp::constant, kNoId, kNoId, value});
+    return add(place, {ExpressionOp::constant, kNoId, kNoId, value});
   }
 
   std::uint32_t name() {
@@ -143,10 +148,10 @@ class Parser {
     const std::string_view word = text_.substr(begin, pos_ - begin);
     for (std::size_t i = 0; i < variables_.size(); ++i)
       if (word == variables_[i])
-        return add({ExpressionOp::variable, static_cast<std::uint32_t>(i), kNoId, 0});
-    if (word == "pi") return add({ExpressionOp::constant, kNoId, kNoId, std::numbers::pi});
-    if (word == "e") return add({ExpressionOp::constant, kNoId, kNoId, std::numbers::e});
-    if (const Function* function = find_function(word)) return call(*function);
+        return add(begin, {ExpressionOp::variable, static_cast<std::uint32_t>(i), kNoId, 0});
+    if (word == "pi") return add(begin, {ExpressionOp::constant, kNoId, kNoId, std::numbers::pi});
+    if (word == "e") return add(begin, {ExpressionOp::constant, kNoId, kNoId, std::numbers::e});
+    if (const Function* function = find_function(word)) return call(begin, *function);
     fail(begin, "unknown name '" + std::string(word) + "'" + suggestion(word));
   }
 
@@ -162,7 +167,7 @@ class Parser {
     return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
   }
 
-  std::uint32_t call(const Function& function) {
+  std::uint32_t call(std::size_t place, const Function& function) {
     const std::string what = function.name;
     if (!accept('(')) fail(pos_, "expected '(' after " + what);
     std::uint32_t value = sum();
@@ -171,13 +176,13 @@ class Parser {
     const int expected = operand_count(function.op);
     while (accept(',')) {
       if (++count > expected && !any_number) fail(pos_ - 1, what + " takes " + argument_count(expected));
-      value = add(function.op, value, sum());
+      value = add(place, function.op, value, sum());
     }
     if (peek() != ')') fail(pos_, "expected ',' or ')' in the arguments of " + what);
     if (count < expected)
       fail(pos_, what + " takes " + argument_count(expected) + (any_number ? " or more" : ""));
     ++pos_;
-    return expected == 1 ? add(function.op, value) : value;
+    return expected == 1 ? add(place, function.op, value) : value;
   }
 
   static std::string argument_count(int n) {

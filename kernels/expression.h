@@ -63,6 +63,8 @@ struct ExpressionNode {
 /// empty.
 struct Expression {
   std::vector<ExpressionNode> nodes;
+  /// Per node, the byte of the text at which its operator, name or number stands.
+  std::vector<std::uint32_t> places;
 };
 
 /// Number of nodes that `op` has as operands: 0, 1 or 2.
