@@ -11,5 +11,7 @@ using DrawExact = ExactOracle (*)(CaseRandom&);
 
 /// Cylinders, cones, polyhedra and quadrics.
 std::vector<DrawExact> quadric_oracles();
+/// Polynomials, blobs of inverse squares and surfaces of revolution.
+std::vector<DrawExact> polynomial_oracles();
 
 }  // namespace oktett

@@ -21,6 +21,8 @@ struct ExactReader {
 // One list of readers per family.
 /// Cylinders, cones, polyhedra and quadrics.
 std::span<const ExactReader> closed_form_readers();
+/// Polynomials, blobs of inverse squares and surfaces of revolution.
+std::span<const ExactReader> polynomial_readers();
 
 /// Warns that the object is left out because of `reason`.
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);

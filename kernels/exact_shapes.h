@@ -9,16 +9,21 @@
 #include <variant>
 
 #include "kernels/primitives.h"
+#include "kernels/shapes/blob.h"
 #include "kernels/shapes/cone.h"
 #include "kernels/shapes/cylinder.h"
+#include "kernels/shapes/lathe.h"
 #include "kernels/shapes/polyhedron.h"
+#include "kernels/shapes/polynomial.h"
 #include "kernels/shapes/quadric.h"
+#include "kernels/shapes/revolution.h"
 #include "kernels/shapes/torus.h"
 
 namespace oktett {
 
 /// In the order of ExactForm.
-using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric>;
+using ExactShapes =
+    std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob, Revolution, Lathe>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -33,6 +33,10 @@ enum class Kind : std::uint8_t {
   cone,
   polyhedron,
   quadric,
+  polynomial,
+  blob,
+  revolution,
+  lathe,
   triangle,
   instance
 };

@@ -117,6 +117,8 @@ struct CrossingList {
   explicit OKTETT_INLINE CrossingList(Crossings<K, D>& list) : out(list) { out.clear(); }
   /// Appends one in the lanes of `where` that have room.
   OKTETT_INLINE void push(const typename D::M& where, const D& t, const D& turn, const D& part) {
+    // Long lists have few entries.
+    if (K > 8 && none(where)) return;
     for (int k = 0; k < K; ++k) {
       const auto here = where & (count == D(k));
       out.t[k] = select(here, t, out.t[k]);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/vec3.h"
+#include "kernels/roots/roots.h"
 
 namespace oktett {
 
@@ -59,8 +60,69 @@ struct QuadricShape {
   bool open = false;                  ///< without the faces of the box, which otherwise close the solid
 };
 
+/// c x^i y^j z^k.
+struct Monomial {
+  std::uint8_t i, j, k;
+  double c;
+};
+
+/// The sum of the terms is negative inside and zero on the surface. What is outside of the box is no part of
+/// the solid.
+struct PolynomialShape {
+  std::vector<Monomial> terms;        ///< i + j + k <= roots::kMaxDegree, each only once
+  Vec3d lo{-1, -1, -1}, hi{1, 1, 1};  ///< lo < hi
+  bool open = false;                  ///< without the faces of the box
+  roots::Method root_finder = roots::Method::automatic;
+};
+
+/// weight / p, where p is the squared distance from a point, a line or a plane.
+struct BlobSource {
+  enum class Kind : std::uint8_t { point, line, plane };
+  Kind kind = Kind::point;
+  Vec3d at{0, 0, 0};         ///< the point, or one on the line
+  Vec3d direction{0, 1, 0};  ///< of the line, or the plane's normal; not zero
+  double offset = 0;         ///< direction . x = offset on the plane, with the direction's unit vector
+  double weight = 1;
+};
+inline constexpr std::size_t kMaxBlobSources = roots::kMaxDegree / 2;
+
+/// Where the sources add up to more than `iso` (Melcher, "Blobs, Typ I").
+struct BlobShape {
+  std::vector<BlobSource> sources;  ///< at most kMaxBlobSources
+  double iso = 1;                   ///< > 0
+  bool bounded = false;             ///< whether it is cut by the box; needed unless all sources are points
+  Vec3d lo{-1, -1, -1}, hi{1, 1, 1};
+  bool open = false;  ///< without the faces of the box
+  roots::Method root_finder = roots::Method::automatic;
+};
+
+/// A point of a profile, which turns about the y axis.
+struct ProfilePoint {
+  double radius, height;
+};
+
+/// x^2 + z^2 < r(y)^2, where r is given piece by piece; the ends are closed by disks (Melcher, "Surface of
+/// Revolution").
+struct RevolutionShape {
+  enum class Profile : std::uint8_t {
+    spline,  ///< r is cubic between the inner points; the first and the last only give slopes
+    linear,  ///< straight between all points
+    sor,     ///< r^2 is cubic between the inner points, as POV-Ray's `sor`
+  };
+  std::vector<ProfilePoint> points;  ///< heights ascend; in `linear` two may be the same
+  Profile profile = Profile::spline;
+  bool open = false;  ///< without the disks
+};
+
+/// As RevolutionShape for any plane curve of cubic Bezier pieces, which need not ascend.
+struct LatheShape {
+  std::vector<ProfilePoint> points;  ///< 3 n + 1 control points; pieces share their ends
+  bool open = false;                 ///< without the disks at the curve's ends
+};
+
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape>;
+using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
+                               PolynomialShape, BlobShape, RevolutionShape, LatheShape>;
 
 struct ExactShape {
   ExactForm form;
