@@ -356,7 +356,8 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   accel->first_item.push_back(static_cast<std::uint32_t>(items));
   accel->stats.items = items;
   accel->one_item_each = true;
-  for (std::size_t g = 0; g < accel->geometries.size(); ++g) accel->one_item_each &= accel->first_item[g + 1] == g + 1;
+  for (std::size_t g = 0; g < accel->geometries.size(); ++g)
+    accel->one_item_each &= accel->first_item[g + 1] == g + 1;
 
   Column<PrimRef> refs;
   ItemOrder order;

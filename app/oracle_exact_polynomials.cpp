@@ -82,9 +82,10 @@ ExactOracle random_polynomial(CaseRandom& random) {
 ExactOracle even_powers(CaseRandom& random) {
   const int n = 2 + 2 * static_cast<int>(random.unit() * 6);
   const std::string k = std::to_string(n);
-  return polynomial("polynomial_even", "x^" + k + " + y^" + k + " = 1 - z^" + k,
-                    [n](const Vec3l& p) { return power(p.x, n) + power(p.y, n) + power(p.z, n) - 1; },
-                    cube(-1.1), cube(1.1));
+  return polynomial(
+      "polynomial_even", "x^" + k + " + y^" + k + " = 1 - z^" + k,
+      [n](const Vec3l& p) { return power(p.x, n) + power(p.y, n) + power(p.z, n) - 1; }, cube(-1.1),
+      cube(1.1));
 }
 
 /// Barth's sextic, with 65 double points.
@@ -106,16 +107,17 @@ ExactOracle chmutov(CaseRandom&) {
   const auto t8 = [](const std::string& x) {
     return "128*" + x + "^8-256*" + x + "^6+160*" + x + "^4-32*" + x + "^2+1";
   };
-  return polynomial("polynomial_chmutov", t8("x") + "+" + t8("y") + "+" + t8("z"),
-                    [](const Vec3l& p) {
-                      long double sum = 0;
-                      for (int k = 0; k < 3; ++k) {
-                        const long double a = 2 * p[k] * p[k] - 1, b = 2 * a * a - 1;
-                        sum += 2 * b * b - 1;
-                      }
-                      return sum;
-                    },
-                    cube(-1.05), cube(1.05));
+  return polynomial(
+      "polynomial_chmutov", t8("x") + "+" + t8("y") + "+" + t8("z"),
+      [](const Vec3l& p) {
+        long double sum = 0;
+        for (int k = 0; k < 3; ++k) {
+          const long double a = 2 * p[k] * p[k] - 1, b = 2 * a * a - 1;
+          sum += 2 * b * b - 1;
+        }
+        return sum;
+      },
+      cube(-1.05), cube(1.05));
 }
 
 /// The potential of the sources of a blob.
@@ -155,7 +157,8 @@ ExactOracle draw_blob(CaseRandom& random, const char* name, int most, bool endle
   o.name = name;
   // About as even as a distance.
   const auto f = [s](const Vec3l& p) {
-    return 1 / std::sqrt(std::max(potential(s, p), 0.01L * s.iso)) - 1 / std::sqrt(static_cast<long double>(s.iso));
+    return 1 / std::sqrt(std::max(potential(s, p), 0.01L * s.iso)) -
+           1 / std::sqrt(static_cast<long double>(s.iso));
   };
   if (endless) {
     s.bounded = true, s.open = random.unit() < 0.3;
@@ -178,8 +181,8 @@ ExactOracle blob(CaseRandom& random) { return draw_blob(random, "blob", 4, false
 ExactOracle large_blob(CaseRandom& random) { return draw_blob(random, "blob_large", 16, false); }
 ExactOracle endless_blob(CaseRandom& random) { return draw_blob(random, "blob_endless", 4, true); }
 
-/// How far outside of piece k of a profile: of its slab of height, or of its radius at that height by Bezier's
-/// form, with i = y and j = 1 - y (Melcher), or straight, or for `sor` the square root of a cubic.
+/// How far outside of piece k of a profile: of its slab of height, or of its radius at that height by
+/// Bezier's form, with i = y and j = 1 - y (Melcher), or straight, or for `sor` the square root of a cubic.
 long double outside_piece(const RevolutionShape& s, std::size_t k, long double rho, long double height,
                           bool slab) {
   const ProfilePoint &p = s.points[k], &q = s.points[k + 1];
@@ -199,7 +202,8 @@ long double outside_piece(const RevolutionShape& s, std::size_t k, long double r
                                3 * (r * r + 2 * r * m) * i * j * j + r * r * j * j * j;
     return std::max(ends, rho - std::sqrt(std::max(square, 0.0L)));
   }
-  return std::max(ends, rho - (t * i * i * i + 3 * (t - n) * i * i * j + 3 * (r + m) * i * j * j + r * j * j * j));
+  return std::max(ends,
+                  rho - (t * i * i * i + 3 * (t - n) * i * i * j + 3 * (r + m) * i * j * j + r * j * j * j));
 }
 
 ExactOracle revolution(CaseRandom& random, const char* name, RevolutionShape::Profile profile) {
@@ -295,8 +299,15 @@ ExactOracle lathe(CaseRandom& random) {
   LatheShape s;
   if (kind < 0.4) {
     // A vessel with an inner wall.
-    for (const ProfilePoint& p : std::initializer_list<ProfilePoint>{
-             {0, -1}, {0.3, -0.8}, {0.8, -0.3}, {0.6, 0.4}, {0.85, 0.9}, {0.5, 0.6}, {0.4, 0}, {0.2, -0.4}, {0, -0.4}})
+    for (const ProfilePoint& p : std::initializer_list<ProfilePoint>{{0, -1},
+                                                                     {0.3, -0.8},
+                                                                     {0.8, -0.3},
+                                                                     {0.6, 0.4},
+                                                                     {0.85, 0.9},
+                                                                     {0.5, 0.6},
+                                                                     {0.4, 0},
+                                                                     {0.2, -0.4},
+                                                                     {0, -0.4}})
       points.push_back({about(p.radius, 0.04), about(p.height, 0.04)});
     s.points = curve_through(points);
   } else if (kind < 0.7) {
@@ -339,7 +350,8 @@ ExactOracle lathe(CaseRandom& random) {
         const long double r = bezier(c.r, u);
         distance = std::min(distance, std::abs(r - rho)), odd ^= r > rho;
       });
-      for_places(c.r, rho, [&](long double u) { distance = std::min(distance, std::abs(bezier(c.y, u) - p.y)); });
+      for_places(c.r, rho,
+                 [&](long double u) { distance = std::min(distance, std::abs(bezier(c.y, u) - p.y)); });
     }
     for (const ProfilePoint& end : ends)
       if (!loop && rho < end.radius) distance = std::min(distance, std::abs(end.height - p.y));
@@ -357,14 +369,16 @@ ExactOracle lathe(CaseRandom& random) {
   }
   o.lo = o.hi = {0, s.points[0].height, 0};
   for (const ProfilePoint& p : s.points)
-    o.lo = min(o.lo, Vec3d{-p.radius, p.height, -p.radius}), o.hi = max(o.hi, Vec3d{p.radius, p.height, p.radius});
+    o.lo = min(o.lo, Vec3d{-p.radius, p.height, -p.radius}),
+    o.hi = max(o.hi, Vec3d{p.radius, p.height, p.radius});
   return o;
 }
 
 }  // namespace
 
 std::vector<DrawExact> polynomial_oracles() {
-  return {random_polynomial, even_powers, barth, chmutov, blob, large_blob, endless_blob, spline, linear, sor, lathe};
+  return {random_polynomial, even_powers, barth,  chmutov, blob, large_blob,
+          endless_blob,      spline,      linear, sor,     lathe};
 }
 
 }  // namespace oktett

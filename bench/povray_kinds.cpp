@@ -65,11 +65,58 @@ FieldObject polyhedron(const double (&)[6]) {
   return object;
 }
 
+FieldObject quartic(const double (&)[6]) {
+  PolynomialShape shape;
+  shape.terms = {{4, 0, 0, 1},   {0, 4, 0, 1},    {0, 0, 4, 1},    {2, 2, 0, 2.2},  {2, 0, 2, 2.2},
+                 {0, 2, 2, 2.2}, {2, 0, 0, -2.3}, {0, 2, 0, -2.3}, {0, 0, 2, -2.3}, {0, 0, 0, 1.3}};
+  return {
+      "intersection { poly { 4, <1,0,0,0,2.2,0,0,2.2,0,-2.3,0,0,0,0,0,0,0,0,0,0,"
+      "1,0,0,2.2,0,-2.3,0,0,0,0,1,0,-2.3,0,1.3> } box { -1, 1 } }",
+      ExactShape{shape}, [](const Vec3l& p) {
+        const long double x = p.x * p.x, y = p.y * p.y, z = p.z * p.z;
+        const long double f =
+            x * x + y * y + z * z + 2.2L * (x * y + x * z + y * z) - 2.3L * (x + y + z) + 1.3L;
+        return std::max({f, std::abs(p.x) - 1, std::abs(p.y) - 1, std::abs(p.z) - 1});
+      }};
+}
+
+constexpr ProfilePoint kProfile[] = {{0.2, -1.1}, {0.5, -1.0}, {0.8, -0.4},
+                                     {0.3, 0.3},  {0.5, 0.9},  {0.6, 1.2}};
+
+/// The square of the radius is cubic between the points, with the slope between their neighbours.
+long double outside_profile(const Vec3l& p) {
+  std::size_t k = 1;
+  while (k < 3 && p.y > kProfile[k + 1].height) ++k;
+  const auto slope = [&](std::size_t i) {
+    return 2 * static_cast<long double>(kProfile[i].radius) *
+           (kProfile[i + 1].radius - kProfile[i - 1].radius) /
+           (kProfile[i + 1].height - kProfile[i - 1].height);
+  };
+  const auto [r0, y0] = kProfile[k];
+  const auto [r1, y1] = kProfile[k + 1];
+  const long double h = y1 - y0, u = std::clamp((p.y - y0) / h, 0.0L, 1.0L), w = 1 - u;
+  const long double square = r0 * r0 * w * w * (1 + 2 * u) + r1 * r1 * u * u * (1 + 2 * w) +
+                             h * u * w * (slope(k) * w - slope(k + 1) * u);
+  return std::max({p.x * p.x + p.z * p.z - square, kProfile[1].height - p.y, p.y - kProfile[4].height});
+}
+
+FieldObject revolution(const double (&)[6]) {
+  RevolutionShape shape;
+  shape.profile = RevolutionShape::Profile::sor;
+  std::string pov = "sor { 6";
+  for (const ProfilePoint& p : kProfile) {
+    shape.points.push_back(p);
+    pov += fmt::format(", <{}, {}>", p.radius, p.height);
+  }
+  return {pov + " }", ExactShape{shape}, outside_profile};
+}
+
 }  // namespace
 
 std::vector<FieldKind> field_kinds() {
-  return {{"sphere", 10000, sphere}, {"torus", 900, torus},     {"cylinder", 900, cylinder},
-          {"cone", 900, cone},       {"quadric", 900, quadric}, {"polyhedron", 900, polyhedron}};
+  return {{"sphere", 10000, sphere}, {"torus", 900, torus},          {"cylinder", 900, cylinder},
+          {"cone", 900, cone},       {"quadric", 900, quadric},      {"polyhedron", 900, polyhedron},
+          {"quartic", 900, quartic}, {"revolution", 900, revolution}};
 }
 
 }  // namespace oktett::bench

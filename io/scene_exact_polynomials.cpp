@@ -49,7 +49,8 @@ std::vector<Monomial> read_equation(SceneLoad& load, const YamlNode& node) {
     const auto at = std::min(static_cast<std::size_t>(e.where().column) - 1, text.size());
     std::string message = fmt::format("bad equation: {} (column {})", e.what(), e.where().column);
     // The part of a long text around the place.
-    const std::size_t begin = at > 100 ? at - 100 : 0, length = std::min<std::size_t>(text.size() - begin, 200);
+    const std::size_t begin = at > 100 ? at - 100 : 0,
+                      length = std::min<std::size_t>(text.size() - begin, 200);
     if (text.find('\n') == std::string::npos && character_count(text) == text.size())
       message += fmt::format("\n  {}\n  {}^", text.substr(begin, length), std::string(at - begin, ' '));
     throw Error(text == node.text ? node.where(at) : node.where(), message);
@@ -104,7 +105,8 @@ MaybeForm read_blob(SceneLoad& load, const YamlNode& key, const YamlNode& node) 
   const YamlNode& sources = fields.require("sources");
   const auto items = list_items(sources, "sources");
   if (items.empty() || items.size() > kMaxBlobSources)
-    throw Error(sources.where(), fmt::format("expected 1 to {} sources, found {}", kMaxBlobSources, items.size()));
+    throw Error(sources.where(),
+                fmt::format("expected 1 to {} sources, found {}", kMaxBlobSources, items.size()));
   for (const YamlNode* item : items) {
     shape.sources.push_back(read_source(load, *item));
     if (shape.sources.back().weight != 0) continue;
@@ -146,9 +148,11 @@ MaybeForm read_revolution(SceneLoad& load, const YamlNode& key, const YamlNode& 
   const bool ends_are_slopes = kind != ProfileKind::linear && kind != ProfileKind::bezier;
   const std::size_t least = kind == ProfileKind::linear ? 2 : 4;
   if (n < least || n > kMaxProfilePoints)
-    throw Error(points.where(), fmt::format("expected {} to {} points, found {}", least, kMaxProfilePoints, n));
+    throw Error(points.where(),
+                fmt::format("expected {} to {} points, found {}", least, kMaxProfilePoints, n));
   if (kind == ProfileKind::bezier && n % 3 != 1)
-    throw Error(points.where(), fmt::format("expected 4, 7, 10, … points, 3 more for each piece; found {}", n));
+    throw Error(points.where(),
+                fmt::format("expected 4, 7, 10, … points, 3 more for each piece; found {}", n));
   const bool ascends = kind == ProfileKind::spline || kind == ProfileKind::sor || kind == ProfileKind::linear;
   double greatest = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -161,8 +165,10 @@ MaybeForm read_revolution(SceneLoad& load, const YamlNode& key, const YamlNode& 
     if (ascends && i > 0) {
       const double before = shape.points.back().height;
       if (kind == ProfileKind::linear ? p[1] < before : p[1] <= before)
-        throw Error(items[i]->where(), fmt::format("heights must ascend: {} comes after {}; for other profiles "
-                                                   "there is 'profile: curve'", p[1], before));
+        throw Error(items[i]->where(),
+                    fmt::format("heights must ascend: {} comes after {}; for other profiles "
+                                "there is 'profile: curve'",
+                                p[1], before));
     }
     shape.points.push_back({p[0], p[1]});
   }
@@ -181,7 +187,8 @@ MaybeForm read_revolution(SceneLoad& load, const YamlNode& key, const YamlNode& 
                                               : RevolutionShape::Profile::spline;
   if (const auto height = profile_crosses_axis(shape))
     throw Error(points.where(), fmt::format("the profile crosses the axis: at height {:.6g} the radius is "
-                                            "negative", *height));
+                                            "negative",
+                                            *height));
   return shape;
 }
 

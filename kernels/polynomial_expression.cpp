@@ -85,19 +85,26 @@ class Expansion {
 
   Terms apply_node(const ExpressionNode& node, Terms& a, Terms& b) {
     switch (node.op) {
-      case ExpressionOp::constant: return constant(node.value);
+      case ExpressionOp::constant:
+        return constant(node.value);
       case ExpressionOp::variable:
         return {{node.a == 0 ? make_key(1, 0, 0) : node.a == 1 ? make_key(0, 1, 0) : make_key(0, 0, 1), 1}};
-      case ExpressionOp::negate: return times(a, DoubleDouble(-1));
-      case ExpressionOp::add: return sum(a, b, DoubleDouble(1));
-      case ExpressionOp::subtract: return sum(a, b, DoubleDouble(-1));
-      case ExpressionOp::multiply: return product(a, b);
+      case ExpressionOp::negate:
+        return times(a, DoubleDouble(-1));
+      case ExpressionOp::add:
+        return sum(a, b, DoubleDouble(1));
+      case ExpressionOp::subtract:
+        return sum(a, b, DoubleDouble(-1));
+      case ExpressionOp::multiply:
+        return product(a, b);
       case ExpressionOp::divide:
         if (!is_constant(b)) fail("not a polynomial: the divisor has x, y or z in it");
         if (b.empty()) fail("division by zero");
         return divided(a, constant_of(b));
-      case ExpressionOp::power: return power(a, b);
-      default: break;
+      case ExpressionOp::power:
+        return power(a, b);
+      default:
+        break;
     }
     if (!is_constant(a) || !is_constant(b)) fail("not a polynomial: a function of x, y or z");
     return number(apply(node.op, constant_of(a).hi, constant_of(b).hi));

@@ -110,7 +110,8 @@ Normal2 normal_at(const LatheElement& e, const Nearest& at) {
 }
 
 /// A sequence of roots whose number does not fit the signs at the ends has one too many or too few there.
-void make_agree(SignChanges& found, double before, double after, double certainty_before, double certainty_after) {
+void make_agree(SignChanges& found, double before, double after, double certainty_before,
+                double certainty_after) {
   if ((found.count % 2 == 1) == (before != after)) {
     // In turn from what is before.
   } else if (found.count > 0 && found.s[0] < -1 + 0x1p-30) {
@@ -130,8 +131,8 @@ void make_agree(SignChanges& found, double before, double after, double certaint
 
 double sign_of(double x) { return x < 0 ? -1 : 1; }
 
-/// The t at which a line meets the circle of a piece at v, given that by its height. If the curve is steep the
-/// radius is the better guide: then t is moved less by what v is off.
+/// The t at which a line meets the circle of a piece at v, given that by its height. If the curve is steep
+/// the radius is the better guide: then t is moved less by what v is off.
 double place_on(const double (&line)[6], const Piece& piece, double v, double t) {
   const double ox = line[0], oz = line[2], dx = line[3], dz = line[5], dd = dx * dx + dz * dz;
   const double nearest = -(ox * dx + oz * dz) / dd, away = t - nearest, r = cubic(piece.r, v);
@@ -249,7 +250,7 @@ void Lathe::find(const LatheElement& e, const Piece& piece, const OneRay& ray, F
 
 void Lathe::find_shallow(const LatheElement& e, const Piece& piece, const OneRay& ray,
                          const double (&excess)[2], Found& out) {
-  const double (&l)[6] = ray.line;
+  const double(&l)[6] = ray.line;
   const double half = 0.5 * (ray.b - ray.a), middle = ray.a + half;
   const double m[3] = {l[0] + middle * l[3], l[1] + middle * l[4], l[2] + middle * l[5]};
   const double h[3] = {half * l[3], half * l[4], half * l[5]};
@@ -271,8 +272,9 @@ void Lathe::find_shallow(const LatheElement& e, const Piece& piece, const OneRay
     const double lo = cuts[k], hi = cuts[k + 1], v = 0.5 * (lo + hi), w = 0.5 * (hi - lo);
     if (!(lo < hi) || !(std::abs(cubic(piece.y, v) - m[1]) <= rise)) continue;
     // Powers of u, with v + w u; heights in terms of s.
-    const auto local = [&](const double (&c)[4], double (&d)[4]) {
-      d[0] = cubic(c, v), d[1] = w * cubic_slope(c, v), d[2] = w * w * (c[2] + 3 * c[3] * v), d[3] = w * w * w * c[3];
+    const auto local = [&](const double(&c)[4], double(&d)[4]) {
+      d[0] = cubic(c, v), d[1] = w * cubic_slope(c, v), d[2] = w * w * (c[2] + 3 * c[3] * v),
+      d[3] = w * w * w * c[3];
     };
     double y[4], r[4];
     local(piece.y, y), local(piece.r, r);

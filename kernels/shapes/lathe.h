@@ -12,10 +12,10 @@ namespace oktett {
 
 struct LatheElement {
   struct Piece {
-    double r[4], y[4];                ///< in powers of v, -1 <= v <= 1
-    double radius[2], height[2];      ///< at -1 and 1
-    bool cap[2];                      ///< whether a disk closes that end
-    double least_y, greatest_y, most; ///< bounds of y and r
+    double r[4], y[4];                 ///< in powers of v, -1 <= v <= 1
+    double radius[2], height[2];       ///< at -1 and 1
+    bool cap[2];                       ///< whether a disk closes that end
+    double least_y, greatest_y, most;  ///< bounds of y and r
   };
   std::vector<Piece> pieces;
   double side;  ///< side * (y', -r') points outwards
@@ -50,7 +50,8 @@ struct Lathe {
     const auto shallow = abs(line.d.y) <= D(kShallow) * sqrt(dd);
     // A disk may be met without the surface.
     const auto settled = no_sign_change(c, 6) & ~shallow;
-    const unsigned doubtful = bits(there & ~settled), lanes = piece.cap[0] || piece.cap[1] ? bits(there) : doubtful;
+    const unsigned doubtful = bits(there & ~settled),
+                   lanes = piece.cap[0] || piece.cap[1] ? bits(there) : doubtful;
     if (lanes == 0) return;
     double ray[6][W], a[W], b[W], columns[7][W], begins[W], t[K][W], turn[K][W], part[K][W];
     const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
@@ -91,10 +92,10 @@ struct Lathe {
   static constexpr double kShallow = 0x1p-10;
 
   struct OneRay {
-    double line[6];         ///< origin and direction
-    double c[7], a, b;      ///< the polynomial in v, made from the part of the line from a to b
-    double begin;           ///< nothing counts before
-    bool on_surface;        ///< whether it may meet the surface at all
+    double line[6];     ///< origin and direction
+    double c[7], a, b;  ///< the polynomial in v, made from the part of the line from a to b
+    double begin;       ///< nothing counts before
+    bool on_surface;    ///< whether it may meet the surface at all
   };
   /// In ascending order.
   struct Found {

@@ -20,6 +20,18 @@ int degree_of(const std::vector<Monomial>& terms) {
   return degree;
 }
 
+/// Without the even powers of x, y and z that all terms have in common: they never change the sign, and a
+/// root that is there many times would be known to few digits only.
+std::vector<Monomial> without_even_factors(std::vector<Monomial> terms) {
+  if (terms.empty()) return terms;
+  Monomial least = terms[0];
+  for (const Monomial& m : terms)
+    least.i = std::min(least.i, m.i), least.j = std::min(least.j, m.j), least.k = std::min(least.k, m.k);
+  const auto take = [](std::uint8_t& n, int common) { n = static_cast<std::uint8_t>(n - common / 2 * 2); };
+  for (Monomial& m : terms) take(m.i, least.i), take(m.j, least.j), take(m.k, least.k);
+  return terms;
+}
+
 /// The terms for coordinates that count lengths of 2^shift, times a power of two that makes the greatest
 /// coefficient about 1. Nothing overflows on the way, and what underflows does not matter.
 std::vector<Monomial> scaled(std::vector<Monomial> terms, int shift) {
@@ -154,7 +166,7 @@ void PolynomialSurface::add(Pool& pool, const ExactShape& shape, const Affine& t
   const double size = std::ldexp(1.0, shift), per_size = std::ldexp(1.0, -shift);
   const Vec3d center = move ? middle * per_size : Vec3d{0, 0, 0};
   PolynomialElement e;
-  e.terms = scaled(s.terms, shift);
+  e.terms = scaled(without_even_factors(s.terms), shift);
   if (move) e.terms = scaled(moved(e.terms, center), 0);
   e.degree = degree_of(e.terms);
   if (e.degree < 1 || e.degree > roots::kMaxDegree) return;

@@ -78,17 +78,25 @@ struct PolynomialSurface {
       D *const a = levels[step.level], *const b = levels[step.level + 1];
       const int degree = step.degree;
       switch (step.op) {
-        case Op::start: a[0] = D(step.c); break;
+        case Op::start:
+          a[0] = D(step.c);
+          break;
         case Op::take:
           for (int k = 0; k <= step.other; ++k) a[k] = b[k];
           break;
-        case Op::add: a[0] = a[0] + D(step.c); break;
+        case Op::add:
+          a[0] = a[0] + D(step.c);
+          break;
         case Op::merge:
           for (int k = 0; k <= (degree < step.other ? degree : step.other); ++k) a[k] = a[k] + b[k];
           for (int k = degree + 1; k <= step.other; ++k) a[k] = b[k];
           break;
-        case Op::times: times_linear(a, degree, m[step.other], h[step.other]); break;
-        case Op::square: times_quadratic(a, degree, squares[step.other]); break;
+        case Op::times:
+          times_linear(a, degree, m[step.other], h[step.other]);
+          break;
+        case Op::square:
+          times_quadratic(a, degree, squares[step.other]);
+          break;
       }
     }
   }

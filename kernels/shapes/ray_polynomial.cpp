@@ -67,8 +67,8 @@ void PartwiseChanges::add(const double* c, int degree, roots::Method method, dou
     first_sign = before;
   } else if (before != sign_) {
     constexpr double kNear = 0x1p-30;
-    const bool twice = count > 0 && found.count > 0 && found.s[0] < -1 + kNear &&
-                       s[count - 1] > middle - half * (1 + kNear);
+    const bool twice =
+        count > 0 && found.count > 0 && found.s[0] < -1 + kNear && s[count - 1] > middle - half * (1 + kNear);
     if (twice)
       first = 1;
     else

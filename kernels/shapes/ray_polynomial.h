@@ -57,8 +57,8 @@ struct SignChanges {
 /// By roots::solve; at most `wanted`. Methods that prove nothing may leave out or invent some.
 void find_sign_changes(const double* c, int degree, roots::Method method, int wanted, SignChanges& out);
 
-/// The changes of sign along a ray that is looked at in parts. Where the sign at the beginning of a part is not
-/// that at the end of the last one, a root at the end of one of them was found in both or in none.
+/// The changes of sign along a ray that is looked at in parts. Where the sign at the beginning of a part is
+/// not that at the end of the last one, a root at the end of one of them was found in both or in none.
 struct PartwiseChanges {
   int count = 0;
   double s[kMaxRayDegree + 2], turn[kMaxRayDegree + 2];
@@ -66,7 +66,8 @@ struct PartwiseChanges {
 
   /// Adds those in the part middle +- half, up to `most` in all. `c` is null if there are none, and `sign` is
   /// the function's then.
-  void add(const double* c, int degree, roots::Method method, double sign, double middle, double half, int most);
+  void add(const double* c, int degree, roots::Method method, double sign, double middle, double half,
+           int most);
 
  private:
   void push(double place, double way);
@@ -85,8 +86,7 @@ OKTETT_INLINE D common_sign(const D* c, int degree) {
 /// The first change of sign, where the degree is N, in lanes of `active`.
 template <int N, class D>
 OKTETT_NOINLINE void first_of_degree(const D* c, const typename D::M& active, D& s, D& turn) {
-  const auto found =
-      roots::certified_roots<N, 1, roots::Touching::drop>(c, D(-1.0), D(1.0), active);
+  const auto found = roots::certified_roots<N, 1, roots::Touching::drop>(c, D(-1.0), D(1.0), active);
   s = select(active, found.x[0], D(roots::kNoRoot));
   D value, error, slope, value_at_root, error_at_root, slope_at_root;
   roots::lanes::evaluate<N>(c, D(-1.0), value, error, slope);
@@ -129,14 +129,22 @@ OKTETT_NOINLINE void sign_changes(const D* c, int degree, roots::Method method, 
   if constexpr (K == 1) {
     if (method == roots::Method::automatic && degree <= 8) {
       switch (degree) {
-        case 1: return first_of_degree<1>(c, active, s[0], turn[0]);
-        case 2: return first_of_degree<2>(c, active, s[0], turn[0]);
-        case 3: return first_of_degree<3>(c, active, s[0], turn[0]);
-        case 4: return first_of_degree<4>(c, active, s[0], turn[0]);
-        case 5: return first_of_degree<5>(c, active, s[0], turn[0]);
-        case 6: return first_of_degree<6>(c, active, s[0], turn[0]);
-        case 7: return first_of_degree<7>(c, active, s[0], turn[0]);
-        default: return first_of_degree<8>(c, active, s[0], turn[0]);
+        case 1:
+          return first_of_degree<1>(c, active, s[0], turn[0]);
+        case 2:
+          return first_of_degree<2>(c, active, s[0], turn[0]);
+        case 3:
+          return first_of_degree<3>(c, active, s[0], turn[0]);
+        case 4:
+          return first_of_degree<4>(c, active, s[0], turn[0]);
+        case 5:
+          return first_of_degree<5>(c, active, s[0], turn[0]);
+        case 6:
+          return first_of_degree<6>(c, active, s[0], turn[0]);
+        case 7:
+          return first_of_degree<7>(c, active, s[0], turn[0]);
+        default:
+          return first_of_degree<8>(c, active, s[0], turn[0]);
       }
     }
   }
@@ -199,8 +207,8 @@ OKTETT_INLINE void sign_changes_in_parts(int parts, const RaySegment<D>& segment
   sign = D::load(signs);
 }
 
-/// Changes of sign as crossings. `closed`: what is inside of the surface is cut by the cell, and closed by its
-/// faces; `sign` is then that of the function where it has no changes.
+/// Changes of sign as crossings. `closed`: what is inside of the surface is cut by the cell, and closed by
+/// its faces; `sign` is then that of the function where it has no changes.
 template <int K, class D>
 OKTETT_INLINE void list_sign_changes(const D (&s)[K], const D (&turn)[K], const D& sign, bool closed,
                                      const RaySegment<D>& segment, const LineRange<D>& range,

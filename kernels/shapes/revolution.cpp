@@ -144,8 +144,7 @@ void Revolution::add(Pool& pool, const ExactShape& shape, const Affine& to_world
     else
       (below ? below : above)->listed = !s.open;
   }
-  const Affine own =
-      Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
+  const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
   for (std::size_t k = 0; k < e.pieces.size(); ++k) {
     if (k == 0) add_element(pool, e, to_world * own, item, shape.normals);
     const Piece& piece = e.pieces[k];

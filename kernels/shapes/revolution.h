@@ -2,8 +2,8 @@
 /// \file Surfaces of revolution about the y axis (Melcher): x^2 + z^2 - f(y)^2 = 0.
 ///
 /// Each piece of the profile has a cell of its own, a slab of height, and its own polynomial. What keeps the
-/// pieces together is that at each height where two of them meet, it is decided once whether the ray is inside
-/// there, by numbers that both have in common; the crossings in between are then made to agree.
+/// pieces together is that at each height where two of them meet, it is decided once whether the ray is
+/// inside there, by numbers that both have in common; the crossings in between are then made to agree.
 
 #include <optional>
 
@@ -21,9 +21,9 @@ struct RevolutionElement {
   };
   struct Piece {
     End ends[2];
-    double c[4];            ///< of the radius, or its square, in powers of v, -1 <= v <= 1
+    double c[4];              ///< of the radius, or its square, in powers of v, -1 <= v <= 1
     double middle, per_half;  ///< v = (y - middle) per_half
-    double greatest2;       ///< bound on the squared radius, a little more than that
+    double greatest2;         ///< bound on the squared radius, a little more than that
   };
   std::vector<Piece> pieces;
   int degree;    ///< of c

@@ -19,9 +19,14 @@ const char* const kBounds = "bounds: {min: [-1, -2, -3], max: [1, 2, 3]}";
 TEST(ScenePolynomial, ReadsEveryParameter) {
   const Scene scene = SceneFiles().load_v1(
       "objects:\n"
-      "  - polynomial: {equation: \"x^4 + y^4 = 1 - z^4\", " + std::string(kBounds) + ", open: true, root_finder: sturm}\n"
-      "  - blob: {sources: [{point: [1, 2, 3], weight: 2}, {line: {point: [4, 5, 6], direction: [0, 0, 2]}},\n"
-      "           {plane: {normal: [0, 3, 0], offset: 4}, weight: -1}], iso: 5, " + kBounds + ", open: true}\n"
+      "  - polynomial: {equation: \"x^4 + y^4 = 1 - z^4\", " +
+      std::string(kBounds) +
+      ", open: true, root_finder: sturm}\n"
+      "  - blob: {sources: [{point: [1, 2, 3], weight: 2}, {line: {point: [4, 5, 6], direction: [0, 0, "
+      "2]}},\n"
+      "           {plane: {normal: [0, 3, 0], offset: 4}, weight: -1}], iso: 5, " +
+      kBounds +
+      ", open: true}\n"
       "  - revolution: {points: [[1, 0], [2, 1], [1, 2], [0, 3]], open: true}\n"
       "  - revolution: {points: [[1, 0], [2, 1], [0, 1]], profile: linear}\n"
       "  - revolution: {points: [[1, 0], [2, 1], [1, 2], [0, 3]], profile: sor}\n"
@@ -69,18 +74,23 @@ TEST(ScenePolynomial, ErrorsHaveTheirPlace) {
       {"polynomial: {equation: x, root_finder: sturn, " + std::string(kBounds) + "}", "scene.yaml:2:"},
       {"blob: {sources: []}", "scene.yaml:2:28: expected 1 to 16 sources, found 0"},
       {"blob: {sources: [{point: [0, 0, 0], line: {}}]}", "scene.yaml:2:29: a source is one of"},
-      {"blob: {sources: [{line: {direction: [0, 0, 0]}}]}", "scene.yaml:2:48: the direction must not be zero"},
+      {"blob: {sources: [{line: {direction: [0, 0, 0]}}]}",
+       "scene.yaml:2:48: the direction must not be zero"},
       {"blob: {sources: [{plane: {normal: [0, 1, 0]}}]}", "scene.yaml:2:18: a blob with lines or planes"},
       {"blob: {sources: [{point: [0, 0, 0]}], iso: 0}", "scene.yaml:2:55: expected a number greater than 0"},
-      {"revolution: {points: [[1, 0], [1, 1], [1, 2]]}", "scene.yaml:2:33: expected 4 to 1024 points, found 3"},
+      {"revolution: {points: [[1, 0], [1, 1], [1, 2]]}",
+       "scene.yaml:2:33: expected 4 to 1024 points, found 3"},
       {"revolution: {points: [[1, 0], [1, 2], [1, 2], [1, 3]]}", "scene.yaml:2:50: heights must ascend"},
-      {"revolution: {points: [[1, 0], [-1, 1], [1, 2], [1, 3]]}", "scene.yaml:2:42: the profile crosses the axis"},
-      {"revolution: {points: [[9, 0], [0.1, 1], [0.1, 2], [9, 3]]}", "scene.yaml:2:33: the profile crosses the axis: at"},
+      {"revolution: {points: [[1, 0], [-1, 1], [1, 2], [1, 3]]}",
+       "scene.yaml:2:42: the profile crosses the axis"},
+      {"revolution: {points: [[9, 0], [0.1, 1], [0.1, 2], [9, 3]]}",
+       "scene.yaml:2:33: the profile crosses the axis: at"},
       {"revolution: {profile: bezier, points: [[1, 0], [-3, 1], [-3, 2], [1, 3]]}",
        "scene.yaml:2:50: the profile crosses the axis"},
-      {"revolution: {profile: bezier, points: [[1, 0], [5, 3], [5, -2], [1, 1]]}", "no error"},
+      {"revolution: {profile: bezier, points: [[1, 0], [5, 3], [5, -2], [1, 1]]}",
+       "scene.yaml:2:50: the profile crosses itself"},
       {"revolution: {profile: bezier, points: [[1, 0], [9, 1], [0, 1], [3, 0]]}",
-       "no error"},
+       "scene.yaml:2:50: the profile crosses itself"},
       {"revolution: {profile: bezier, points: [[1, 0], [9, 4], [0, 4], [4, 0], [4, 0], [4, 2], [1, 2]]}",
        "scene.yaml:2:50: the profile crosses itself"},
       {"revolution: {profile: bezier, points: [[1, 0], [1, 1], [1, 2], [1, 3], [1, 4]]}",

@@ -35,8 +35,7 @@ std::string failure_of(const std::string& equation) {
 TEST(PolynomialExpression, MultipliesOut) {
   EXPECT_EQ(terms_of("x^2 + y^2 - 1"), (Terms{{{2, 0, 0}, 1}, {{0, 2, 0}, 1}, {{0, 0, 0}, -1}}));
   EXPECT_EQ(terms_of("(x+y)*(x-y)"), (Terms{{{2, 0, 0}, 1}, {{0, 2, 0}, -1}}));
-  EXPECT_EQ(terms_of("(x+2*z)^3"),
-            (Terms{{{3, 0, 0}, 1}, {{2, 0, 1}, 6}, {{1, 0, 2}, 12}, {{0, 0, 3}, 8}}));
+  EXPECT_EQ(terms_of("(x+2*z)^3"), (Terms{{{3, 0, 0}, 1}, {{2, 0, 1}, 6}, {{1, 0, 2}, 12}, {{0, 0, 3}, 8}}));
   EXPECT_EQ(terms_of("-(x - 3)/4 + +y"), (Terms{{{1, 0, 0}, -0.25}, {{0, 0, 0}, 0.75}, {{0, 1, 0}, 1}}));
   EXPECT_EQ(terms_of("2^-1*x + sqrt(16)*y + pow(2, 3)*z - min(3, 2)"),
             (Terms{{{1, 0, 0}, 0.5}, {{0, 1, 0}, 4}, {{0, 0, 1}, 8}, {{0, 0, 0}, -2}}));
@@ -79,9 +78,11 @@ TEST(PolynomialExpression, HasBounds) {
   EXPECT_EQ(terms_of("x^32").size(), 1u);
   EXPECT_EQ(failure_of("x^33"), "2: the degree is above 32");
   EXPECT_EQ(failure_of("x^20*y^13"), "5: the degree is above 32");
-  EXPECT_EQ(failure_of("x^1e300"), "2: the degree is above 32");
+  EXPECT_EQ(failure_of("x^1e99"), "2: the degree is above 32");
   EXPECT_EQ(terms_of("(x+y+z+1)^32").size(), 6545u);
-  EXPECT_EQ(failure_of("(x+y+z+1)^16*(x+y+z+1)^16*1"), "13: too much to multiply out");
+  const std::string much = "(x+y+z+1)^16*(x+y+z+1)^16";
+  EXPECT_EQ(terms_of(much).size(), 6545u);
+  EXPECT_EQ(failure_of(much + "+" + much), "49: too much to multiply out");
   EXPECT_EQ(failure_of("x*1e101"), "3: a coefficient is out of range");
   EXPECT_EQ(failure_of("x*1e60*1e60"), "7: a coefficient is out of range");
   EXPECT_EQ(failure_of("(1e60)^1000*x").substr(0, 3), "7: ");
