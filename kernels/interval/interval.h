@@ -1,9 +1,14 @@
 #pragma once
-/// \file Interval arithmetic in lanes of double, rounded outwards without changing the processor's rounding
-/// mode: each end is moved by a unit in the last place and a tiny amount (R. E. Moore: Interval Analysis, 1966).
-/// Where a value is not defined, the interval is everything.
-
-#include <limits>
+/// \file Intervals in lanes, rounded outwards without changing the rounding mode.
+///
+/// An interval holds every value that a function takes for arguments in the given intervals, where it is
+/// defined. Where it may be undefined for some of them the result is *entire*, [-infinity, infinity], and
+/// stays so through every further operation, even sqr or sin; where it is undefined for all of them it is
+/// *void*, both ends NaN, and stays so, too. Hence an interval that is neither tells that the function is
+/// defined throughout.
+///
+/// A rounded result x is off by at most 2^-53 |x|, or by 2^-1075 where it underflows: moved by
+/// 2^-52 |x| + 2^-1000 it lies beyond the true one (docs/interval.md).
 
 #include "kernels/interval/lane_math.h"
 
@@ -12,125 +17,232 @@ namespace oktett {
 template <class D>
 struct Interval {
   D lo, hi;
+
+  Interval() = default;
+  OKTETT_INLINE explicit Interval(const D& x) : lo(x), hi(x) {}
+  OKTETT_INLINE Interval(const D& l, const D& h) : lo(l), hi(h) {}
+
+  static OKTETT_INLINE D infinity() { return D(std::numeric_limits<double>::infinity()); }
+  static OKTETT_INLINE Interval entire() { return {-infinity(), infinity()}; }
+  static OKTETT_INLINE Interval nothing() {
+    const D nan(std::numeric_limits<double>::quiet_NaN());
+    return {nan, nan};
+  }
+  OKTETT_INLINE typename D::M is_entire() const { return (lo == -infinity()) & (hi == infinity()); }
+  OKTETT_INLINE typename D::M is_void() const { return ~(lo == lo); }
+  /// Both ends are numbers: the function is defined and bounded.
+  OKTETT_INLINE typename D::M is_bounded() const { return (-infinity() < lo) & (hi < infinity()); }
+  OKTETT_INLINE typename D::M has_zero() const { return (lo <= D(0.0)) & (D(0.0) <= hi); }
 };
 
-namespace interval {
-
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr double kTiny = 0x1p-1000;
-
-/// A number at or below (above) `x` by at least its rounding error.
-template <class D>
-OKTETT_INLINE D down(const D& x, double relative = 0x1p-52) {
-  return min(x * D(1 - relative), x * D(1 + relative)) - D(kTiny);
-}
-template <class D>
-OKTETT_INLINE D up(const D& x, double relative = 0x1p-52) {
-  return max(x * D(1 - relative), x * D(1 + relative)) + D(kTiny);
-}
-
-/// NaN at an end stands for no bound.
-template <class D>
-OKTETT_INLINE Interval<D> bounded(const D& lo, const D& hi) {
-  return {select(lo == lo, lo, D(-kInfinity)), select(hi == hi, hi, D(kInfinity))};
-}
-
-template <class D>
-OKTETT_INLINE Interval<D> point(const D& x) {
-  return {x, x};
-}
-template <class D>
-OKTETT_INLINE Interval<D> everything() {
-  return {D(-kInfinity), D(kInfinity)};
-}
-
-/// 0 times infinity is 0: a factor that is 0 makes the product 0 however large the other may be.
-template <class D>
-OKTETT_INLINE D product(const D& a, const D& b) {
-  const D p = a * b;
-  return select(p == p, p, D(0.0));
-}
-
-}  // namespace interval
-
-template <class D>
-OKTETT_INLINE Interval<D> operator+(const Interval<D>& a, const Interval<D>& b) {
-  return interval::bounded(interval::down(a.lo + b.lo), interval::up(a.hi + b.hi));
-}
-template <class D>
-OKTETT_INLINE Interval<D> operator-(const Interval<D>& a, const Interval<D>& b) {
-  return interval::bounded(interval::down(a.lo - b.hi), interval::up(a.hi - b.lo));
-}
-template <class D>
-OKTETT_INLINE Interval<D> operator-(const Interval<D>& a) {
-  return {-a.hi, -a.lo};
-}
-template <class D>
-OKTETT_INLINE Interval<D> operator*(const Interval<D>& a, const Interval<D>& b) {
-  using interval::product;
-  const D p = product(a.lo, b.lo), q = product(a.lo, b.hi), r = product(a.hi, b.lo), s = product(a.hi, b.hi);
-  return {interval::down(min(min(p, q), min(r, s))), interval::up(max(max(p, q), max(r, s)))};
-}
-/// By a number, which is exact.
-template <class D>
-OKTETT_INLINE Interval<D> scale(const Interval<D>& a, double k) {
-  const D p = a.lo * D(k), q = a.hi * D(k);
-  return k < 0 ? Interval<D>{interval::down(q), interval::up(p)} : Interval<D>{interval::down(p), interval::up(q)};
-}
-/// Everything if the divisor may be 0.
-template <class D>
-OKTETT_INLINE Interval<D> operator/(const Interval<D>& a, const Interval<D>& b) {
-  const auto safe = (b.lo > D(0.0)) | (b.hi < D(0.0));
-  const Interval<D> inverse{interval::down(D(1.0) / b.hi), interval::up(D(1.0) / b.lo)};
-  const Interval<D> q = a * inverse;
-  return {select(safe, q.lo, D(-interval::kInfinity)), select(safe, q.hi, D(interval::kInfinity))};
-}
-template <class D>
-OKTETT_INLINE Interval<D> abs(const Interval<D>& a) {
-  const auto holds_zero = (a.lo <= D(0.0)) & (a.hi >= D(0.0));
-  const D p = abs(a.lo), q = abs(a.hi);
-  return {select(holds_zero, D(0.0), min(p, q)), max(p, q)};
-}
-/// What both hold.
-template <class D>
-OKTETT_INLINE Interval<D> intersect(const Interval<D>& a, const Interval<D>& b) {
-  return {max(b.lo, a.lo), min(b.hi, a.hi)};
-}
 template <class D>
 OKTETT_INLINE Interval<D> select(const typename D::M& m, const Interval<D>& a, const Interval<D>& b) {
   return {select(m, a.lo, b.lo), select(m, a.hi, b.hi)};
 }
 
-/// A value and its derivative along the ray.
+namespace interval {
+
+inline constexpr double kRound = 0x1p-52, kTiny = 0x1p-1000;
+inline constexpr double kGreatest = std::numeric_limits<double>::max();
+
+/// [lo, hi] moved outwards by `relative` of the ends and 2^-1000. An overflow inwards becomes the greatest
+/// number.
 template <class D>
-struct Slope {
-  Interval<D> v, d;
-};
+OKTETT_INLINE Interval<D> outward(D lo, D hi, const D& relative) {
+  lo = min(D(kGreatest), lo), hi = max(D(-kGreatest), hi);
+  return {lo - (abs(lo) * relative + D(kTiny)), hi + (abs(hi) * relative + D(kTiny))};
+}
+template <class D>
+OKTETT_INLINE Interval<D> outward(const D& lo, const D& hi) {
+  return outward(lo, hi, D(kRound));
+}
+/// The same for sums, which never underflow: the sign of an end is that of the true one.
+template <class D>
+OKTETT_INLINE Interval<D> outward_sum(D lo, D hi) {
+  lo = min(D(kGreatest), lo), hi = max(D(-kGreatest), hi);
+  return {lo - abs(lo) * D(kRound), hi + abs(hi) * D(kRound)};
+}
+/// As `outward`, for what is known not to be negative.
+template <class D>
+OKTETT_INLINE Interval<D> outward_positive(const D& lo, const D& hi, const D& relative) {
+  const Interval<D> r = outward(lo, hi, relative);
+  return {max(r.lo, D(0.0)), r.hi};
+}
+template <class D>
+OKTETT_INLINE Interval<D> outward_positive(const D& lo, const D& hi) {
+  return outward_positive(lo, hi, D(kRound));
+}
+
+/// `r`, made entire or void where the argument `a` is.
+template <class D>
+OKTETT_INLINE Interval<D> carry(const Interval<D>& a, const Interval<D>& r) {
+  const auto entire = a.is_entire(), defined = a.lo == a.lo;
+  const D inf = Interval<D>::infinity();
+  return {select(defined, select(entire, -inf, r.lo), a.lo),
+          select(defined, select(entire, inf, r.hi), a.lo)};
+}
+template <class D>
+OKTETT_INLINE Interval<D> carry(const Interval<D>& a, const Interval<D>& b, const Interval<D>& r) {
+  const auto entire = a.is_entire() | b.is_entire(), defined = (a.lo == a.lo) & (b.lo == b.lo);
+  const Interval<D> x = select(entire, Interval<D>::entire(), r);
+  return select(defined, x, Interval<D>::nothing());
+}
+/// `r` where all of `a` is in [least, greatest], entire where some may be, void where nothing is.
+template <class D>
+OKTETT_INLINE Interval<D> inside_domain(const Interval<D>& a, const D& least, const D& greatest,
+                                        const Interval<D>& r) {
+  const auto all = (least <= a.lo) & (a.hi <= greatest), some = (least <= a.hi) & (a.lo <= greatest);
+  return carry(a, select(all, r, select(some, Interval<D>::entire(), Interval<D>::nothing())));
+}
+
+}  // namespace interval
 
 template <class D>
-OKTETT_INLINE Slope<D> operator+(const Slope<D>& a, const Slope<D>& b) {
-  return {a.v + b.v, a.d + b.d};
+OKTETT_INLINE Interval<D> operator-(const Interval<D>& a) {
+  return {-a.hi, -a.lo};
 }
 template <class D>
-OKTETT_INLINE Slope<D> operator-(const Slope<D>& a, const Slope<D>& b) {
-  return {a.v - b.v, a.d - b.d};
+OKTETT_INLINE Interval<D> operator+(const Interval<D>& a, const Interval<D>& b) {
+  return interval::outward_sum(a.lo + b.lo, a.hi + b.hi);
 }
 template <class D>
-OKTETT_INLINE Slope<D> operator*(const Slope<D>& a, const Slope<D>& b) {
-  return {a.v * b.v, a.d * b.v + a.v * b.d};
+OKTETT_INLINE Interval<D> operator-(const Interval<D>& a, const Interval<D>& b) {
+  return interval::outward_sum(a.lo - b.hi, a.hi - b.lo);
 }
 template <class D>
-OKTETT_INLINE Slope<D> operator/(const Slope<D>& a, const Slope<D>& b) {
-  const Interval<D> q = a.v / b.v;
-  return {q, (a.d - q * b.d) / b.v};
+OKTETT_INLINE Interval<D> operator*(const Interval<D>& a, const Interval<D>& b) {
+  const D p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
+  Interval<D> x = interval::outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)));
+  // A product of non-negative numbers is none, though it underflows.
+  const auto positive = (D(0.0) <= a.lo) & (D(0.0) <= b.lo);
+  x.lo = select(positive & (x.lo < D(0.0)), D(0.0), x.lo);
+  const auto sound = (p == p) & (q == q) & (r == r) & (s == s);
+  if (OKTETT_UNLIKELY(any(~sound))) {
+    // Zero times infinity, or an undefined factor.
+    const auto defined = (a.lo == a.lo) & (b.lo == b.lo);
+    x = select(sound, x, select(defined, Interval<D>::entire(), Interval<D>::nothing()));
+  }
+  return x;
+}
+/// By a number.
+template <class D>
+OKTETT_INLINE Interval<D> operator*(const Interval<D>& a, const D& b) {
+  const D p = a.lo * b, q = a.hi * b;
+  const Interval<D> x = interval::outward(min(p, q), max(p, q));
+  const Interval<D> unsound = select(a.is_void(), a, Interval<D>::entire());
+  return select(~a.is_bounded() & (a.is_void() | (b == D(0.0))), unsound, x);
 }
 template <class D>
-OKTETT_INLINE Slope<D> scale(const Slope<D>& a, double k) {
-  return {scale(a.v, k), scale(a.d, k)};
+OKTETT_INLINE Interval<D> inverse(const Interval<D>& a) {
+  const D zero(0.0), inf = Interval<D>::infinity();
+  Interval<D> r = interval::outward(D(1.0) / a.hi, D(1.0) / a.lo);
+  r.lo = select(a.hi == zero, -inf, r.lo), r.hi = select(a.lo == zero, inf, r.hi);
+  r.lo = select((zero <= a.lo) & (r.lo < zero), zero, r.lo);
+  r.hi = select((a.hi <= zero) & (zero < r.hi), zero, r.hi);
+  const auto pole = ((a.lo < zero) & (zero < a.hi)) | ((a.lo == zero) & (a.hi == zero));
+  return interval::carry(a, select(pole, Interval<D>::entire(), r));
+}
+/// Entire where the divisor may be zero on both sides or the dividend may be zero with it.
+template <class D>
+OKTETT_INLINE Interval<D> operator/(const Interval<D>& a, const Interval<D>& b) {
+  return a * inverse(b);
+}
+
+/// The least interval that holds both, and what both hold; void if one is.
+template <class D>
+OKTETT_INLINE Interval<D> hull(const Interval<D>& a, const Interval<D>& b) {
+  return interval::carry(a, b, {min(a.lo, b.lo), max(a.hi, b.hi)});
+}
+/// What both hold, for two enclosures of the same values.
+template <class D>
+OKTETT_INLINE Interval<D> intersect(const Interval<D>& a, const Interval<D>& b) {
+  return {max(a.lo, b.lo), min(a.hi, b.hi)};
 }
 template <class D>
-OKTETT_INLINE Slope<D> shift(const Slope<D>& a, double k) {
-  return {a.v + interval::point(D(k)), a.d};
+OKTETT_INLINE Interval<D> min(const Interval<D>& a, const Interval<D>& b) {
+  return interval::carry(a, b, {min(a.lo, b.lo), min(a.hi, b.hi)});
+}
+template <class D>
+OKTETT_INLINE Interval<D> max(const Interval<D>& a, const Interval<D>& b) {
+  return interval::carry(a, b, {max(a.lo, b.lo), max(a.hi, b.hi)});
+}
+template <class D>
+OKTETT_INLINE Interval<D> abs(const Interval<D>& a) {
+  const D p = abs(a.lo), q = abs(a.hi);
+  return interval::carry(a, {select(a.has_zero(), D(0.0), min(p, q)), max(p, q)});
+}
+template <class D>
+OKTETT_INLINE Interval<D> sqr(const Interval<D>& a) {
+  const Interval<D> m = abs(a);
+  return interval::carry(a, interval::outward_positive(m.lo * m.lo, m.hi * m.hi));
+}
+/// Void below 0, entire where the argument reaches below 0.
+template <class D>
+OKTETT_INLINE Interval<D> sqrt(const Interval<D>& a) {
+  const D l = max(a.lo, D(0.0)), h = max(a.hi, D(0.0));
+  const Interval<D> r = interval::outward_positive(sqrt(l), sqrt(h));
+  return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), r);
+}
+
+template <class D>
+OKTETT_INLINE Interval<D> exp2(const Interval<D>& a) {
+  // The argument is exact; the series has its error.
+  return interval::carry(
+      a, interval::outward_positive(lane::exp2(a.lo), lane::exp2(a.hi), D(lane::kExp2Error * 2)));
+}
+template <class D>
+OKTETT_INLINE Interval<D> exp(const Interval<D>& a) {
+  // log2(e) as a double is low by less than 2^-54 of itself.
+  const D log2e(std::numbers::log2e);
+  const Interval<D> x = interval::outward(a.lo * log2e, a.hi * log2e, D(0x1p-51));
+  return exp2(interval::carry(a, x));
+}
+/// Void for what is at most 0, entire where the argument reaches so far.
+template <class D, class F>
+OKTETT_INLINE Interval<D> log_by(const Interval<D>& a, F&& f) {
+  const Interval<D> r = interval::outward(f(max(a.lo, D(0.0))), f(max(a.hi, D(0.0))), D(lane::kLogError * 2));
+  const D inf = Interval<D>::infinity();
+  const Interval<D> x = interval::inside_domain(a, D(0.0), inf, r);
+  // At 0 the logarithm is -infinity, whatever the rounding; only [0, 0] holds nothing else.
+  return select((a.lo == D(0.0)) & (a.hi == D(0.0)), Interval<D>::nothing(), x);
+}
+template <class D>
+OKTETT_INLINE Interval<D> log(const Interval<D>& a) {
+  return log_by(a, [](const D& x) { return lane::log(x); });
+}
+template <class D>
+OKTETT_INLINE Interval<D> log2(const Interval<D>& a) {
+  return log_by(a, [](const D& x) { return lane::log2(x); });
+}
+
+/// x^y for a number y and x >= 0; elsewhere as sqrt. 0^y = 0 for y > 0, and a pole for y < 0.
+template <class D>
+OKTETT_INLINE Interval<D> pow(const Interval<D>& a, double exponent) {
+  if (exponent == 0) return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), Interval<D>(D(1.0)));
+  if (exponent < 0) return inverse(pow(a, -exponent));
+  const D y(exponent);
+  D e_lo, e_hi;
+  const D l = lane::pow(max(a.lo, D(0.0)), y, e_lo), h = lane::pow(max(a.hi, D(0.0)), y, e_hi);
+  const D error = max(lane::pow_error(e_lo), lane::pow_error(e_hi));
+  const Interval<D> r = interval::outward_positive(l, h, error * D(2.0));
+  return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), r);
+}
+/// x^n for whole n, for n < 0 with a pole at 0.
+template <class D>
+OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int n) {
+  if (n == 0) return interval::carry(a, Interval<D>(D(1.0)));
+  if (n < 0) return inverse(pow(a, -n));
+  if (n == 1) return a;
+  if (n == 2) return sqr(a);
+  const D error(n * interval::kRound);
+  if (n % 2 == 0) {
+    const Interval<D> m = abs(a);
+    return interval::carry(
+        a, interval::outward_positive(lane::pow_whole(m.lo, n), lane::pow_whole(m.hi, n), error));
+  }
+  Interval<D> r = interval::outward(lane::pow_whole(a.lo, n), lane::pow_whole(a.hi, n), error);
+  r.lo = select((D(0.0) <= a.lo) & (r.lo < D(0.0)), D(0.0), r.lo);
+  return interval::carry(a, r);
 }
 
 }  // namespace oktett

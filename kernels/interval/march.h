@@ -1,113 +1,185 @@
 #pragma once
-/// \file Crossings of a function with zero along a ray, isolated by interval arithmetic: none is missed, and
-/// none is invented (compare A. Knoll et al.: Fast Ray Tracing of Arbitrary Implicit Surfaces with Interval and
-/// Affine Arithmetic, 2009). Each lane marches along its own range; a step that surely holds no crossing, or
-/// one, is taken, any other is halved.
+/// \file Crossings of any function along a ray, isolated by intervals and proven by signs: nothing is
+/// sampled, no bound on the slope is asked of the user.
 ///
-/// `field.over(t)` encloses f and df/dt over an interval of t, `field.at(t)` encloses f at a point.
+/// `field` gives, in lanes,
+/// - field.over(t): Dual<Interval<D>>, enclosures of f and f' over an interval of t;
+/// - field.at(t): an enclosure of f at a point.
+///
+/// The ray is walked from a to b. A step over which 0 is not in f (R. E. Moore: Interval Analysis, 1966), nor
+/// in the mean value form f(m) + f'(X) (X - m), has a certain sign; the next one is twice as long. Where f is
+/// monotone the signs at the ends decide. Any other step is halved. What rounding does not let one tell,
+/// where the ray touches the surface or lies in it, is a *gap*: it is passed over by steps as long as the
+/// enclosure is mere rounding noise, and only if the sign has turned on its far side is there a crossing.
+/// Steps of 2^-44 of the range end the halving: those over which f is not bounded hold a pole or the border
+/// of where f is defined. Undefined counts as positive.
 
-#include "kernels/interval/interval.h"
+#include "kernels/interval/dual.h"
 #include "kernels/shapes/exact.h"
 
-namespace oktett {
+namespace oktett::interval {
 
-namespace march {
+/// Notes that so many rays were not followed to their ends, as they would have taken too many steps.
+void count_uncertified(int rays);
+/// How many there have been in this process.
+std::uint64_t uncertified_count();
 
-/// Certain sign: -1 or 1, or 0 if the enclosure holds zero.
+/// Steps after which a ray is given up.
+inline constexpr int kMaxSteps = 1 << 14;
+/// Marks crossings where f jumps, through a pole or from defined to undefined.
+inline constexpr int kJumpPart = 7;
+
+/// What to do with sign changes where f is not continuous.
+enum class Jumps { list, drop };
+
+/// 1 or -1 where an enclosure tells the sign, else 0.
 template <class D>
-OKTETT_INLINE D sign(const Interval<D>& f) {
-  return select(f.lo > D(0.0), D(1.0), select(f.hi < D(0.0), D(-1.0), D(0.0)));
+OKTETT_INLINE D certain_sign(const Interval<D>& f) {
+  return select((D(0.0) < f.lo) | f.is_void(), D(1.0), select(f.hi < D(0.0), D(-1.0), D(0.0)));
 }
 
-/// f over [t, t + h], by its natural extension and by the mean value; and its slope.
-template <class Field, class D>
-OKTETT_INLINE Slope<D> enclose(const Field& field, const D& t, const D& h) {
-  Slope<D> f = field.over(Interval<D>{t, t + h});
-  const D half = D(0.5) * h, middle = t + half;
-  const D reach = interval::up(max(middle - t, (t + h) - middle));
-  const Interval<D> mean = field.at(middle) + f.d * Interval<D>{-reach, reach};
-  f.v = intersect(f.v, mean);
-  return f;
+/// Where a crossing is: f has the certain sign `before` at l and the other one at r.
+template <class D>
+struct Bracket {
+  D l, r, before, jump;
+};
+
+/// A representative of what is enclosed.
+template <class D>
+OKTETT_INLINE D middle(const Interval<D>& f) {
+  return f.lo + (f.hi - f.lo) * D(0.5);
 }
 
-/// The crossing in [lo, hi], where the certain signs at the ends differ: by secants that keep the bracket
-/// (the Illinois method; M. Dowell, P. Jarratt 1971), or halving where they do not shorten it.
+/// The crossing in a bracket, to within `tolerance` or to where rounding hides the sign: regula falsi in the
+/// Illinois form (M. Dowell, P. Jarratt 1971), with bisection where that is slow.
 template <class Field, class D>
-OKTETT_INLINE D refine(const Field& field, D lo, D hi, const D& sign_lo, const typename D::M& wanted) {
-  const auto middle_of = [](const Interval<D>& f) { return D(0.5) * (f.lo + f.hi); };
-  D f_lo = middle_of(field.at(lo)), f_hi = middle_of(field.at(hi)), last_side(0.0), width = hi - lo;
-  D x = D(0.5) * (lo + hi);
-  auto active = wanted & (lo < hi);
-  for (int i = 0; i < 64 && any(active); ++i) {
-    D next = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
-    // Every third step halves what secants have not.
-    const auto slow = D(i % 3 == 2 ? 1.0 : 0.0) * (hi - lo) > D(0.5) * width;
-    const auto good = (next > lo) & (next < hi) & ~slow;
-    next = select(good, next, lo + D(0.5) * (hi - lo));
-    if (i % 3 == 2) width = hi - lo;
-    const Interval<D> f = field.at(next);
-    const D s = sign(f), value = middle_of(f);
-    x = select(active, next, x);
-    const auto unsure = s == D(0.0);
-    const auto left = s == sign_lo;
-    const auto go_left = active & ~unsure & left, go_right = active & ~unsure & ~left;
-    f_hi = select(go_left & (last_side == D(-1.0)), f_hi * D(0.5), select(go_right, value, f_hi));
-    f_lo = select(go_right & (last_side == D(1.0)), f_lo * D(0.5), select(go_left, value, f_lo));
-    lo = select(go_left, next, lo), hi = select(go_right, next, hi);
-    last_side = select(go_left, D(-1.0), select(go_right, D(1.0), last_side));
-    // What the function's own rounding leaves open cannot be told better.
-    active = active & ~unsure & (hi - lo > D(0x1p-46) * max(abs(lo), abs(hi))) & (next > lo - width) & (lo < hi);
+OKTETT_INLINE D refine(const Field& field, const Bracket<D>& bracket, const D& tolerance,
+                       typename D::M active) {
+  D l = bracket.l, r = bracket.r, fl = middle(field.at(l)), fr = middle(field.at(r));
+  D root = l + (r - l) * D(0.5), side(0.0), slow(0.0);
+  active = active & (l < r);
+  const auto secant = [&](const D& at_l, const D& at_r) { return l + (r - l) * (at_l / (at_l - at_r)); };
+  for (int i = 0; i < 200 && any(active); ++i) {
+    const D width = r - l, mid = l + width * D(0.5), step = min(tolerance, width * D(0.25));
+    const D guess = min(max(secant(fl, fr), l + step), r - step);
+    const D x = select((slow < D(2.0)) & (l < guess) & (guess < r), guess, mid);
+    const Interval<D> f = field.at(x);
+    const D sign = certain_sign(f), value = middle(f);
+    const auto unsure = sign == D(0.0), left = sign == bracket.before;
+    const auto to_left = active & ~unsure & left, to_right = active & ~unsure & ~left;
+    // An end that stays twice is given half its value.
+    fr = select(to_right, value, select(to_left & (side == D(1.0)), fr * D(0.5), fr));
+    fl = select(to_left, value, select(to_right & (side == D(-1.0)), fl * D(0.5), fl));
+    l = select(to_left, x, l), r = select(to_right, x, r);
+    side = select(to_left, D(1.0), D(-1.0));
+    slow = select(r - l < width * D(0.5), D(0.0), select(slow < D(2.0), slow + D(1.0), D(0.0)));
+    root = select(active & unsure, x, root);
+    const D last = secant(fl, fr), inner = l + (r - l) * D(0.5);
+    const auto narrow = (r - l <= tolerance) | ~((l < inner) & (inner < r));
+    root = select(active & ~unsure & narrow, select((l <= last) & (last <= r), last, inner), root);
+    active = active & ~unsure & ~narrow;
   }
-  return select(wanted & (x >= lo) & (x <= hi), x, D(0.5) * (lo + hi));
+  return root;
 }
 
-}  // namespace march
-
-/// Steps after which a lane gives up; its last sign is taken to hold to the end. Only rays that lie in a
-/// surface whose function is not exactly zero there come near.
-inline constexpr int kMaxMarchSteps = 4096;
-
-/// The first K crossings in [a, b], with the part numbers 0.
+/// A walk along the rays, stopped where K crossings are bracketed.
 template <int K, class Field, class D>
-OKTETT_INLINE void march_crossings(const Field& field, const D& a, const D& b, const typename D::M& active,
-                                   Crossings<K, D>& out) {
-  CrossingList<K, D> list(out);
-  D up_to(roots::kNoRoot);
-  // Lanes without a range compute along with harmless numbers.
-  auto open = active & (a <= b);
-  D t = select(open, a, D(0.0));
-  const D end = select(open, b, D(0.0));
-  const D whole = end - t;
-  D h = whole, gap = t, s = march::sign(field.at(t));
-  const D least = max(D(0x1p-44) * whole, D(0x1p-50) * max(abs(t), abs(end)));
-  for (int step = 0; step < kMaxMarchSteps && any(open); ++step) {
-    h = min(h, end - t);
-    const Slope<D> f = march::enclose(field, t, h);
-    const D next = select(h >= end - t, end, t + h);
-    const D over = march::sign(f.v), slope = march::sign(f.d), last = march::sign(field.at(next));
-    const auto clear = ~(over == D(0.0));
-    // Monotone: the signs at both ends say how often f is zero between them.
-    const auto monotone = ~clear & ~(slope == D(0.0)) & ~(last == D(0.0));
-    const auto tiny = ~clear & ~monotone & (h <= least);
-    const D sign_next = select(clear, over, last);
-    const auto known = open & (clear | monotone);
-    const auto turned = known & ~(s == D(0.0)) & ~(sign_next == s);
-    if (any(turned)) {
-      // In the gap of unknown sign before this step, or in the step.
-      const D from = gap, to = select(clear, t, next);
-      const D x = march::refine(field, select(turned, from, t), select(turned, to, t), s, turned);
-      list.push(turned, x, sign_next, D(0.0));
+struct March {
+  using M = typename D::M;
+  const Field& field;
+  Jumps jumps;
+  Bracket<D> found[K];
+  D count = D(0.0);
+  D t, h, s, g;           ///< place, step, last certain sign, and the last place that has it
+  D jump = D(0.0);        ///< 1 if the gap from g to t holds a step over which f is unbounded
+  D first_sign = D(0.0);  ///< the first certain sign
+  M uncertified;
+
+  /// From a to b; and where the sign at b is uncertain, on to where it is certain, as far as `limit`.
+  OKTETT_INLINE March(const Field& f, Jumps j, const D& a, const D& b, const D& limit, const M& active)
+      : field(f), jumps(j), t(a), h(b - a), s(certain_sign(f.at(a))), g(a) {
+    for (int k = 0; k < K; ++k) found[k] = {a, a, D(0.0), D(0.0)};
+    first_sign = s;
+    const D least = (b - a) * D(0x1p-44);
+    M live = active & (a < b);
+    for (int i = 0; i < kMaxSteps && any(live); ++i) {
+      step(select(t < b, b, limit), least, live);
+      live = live & (count < D(K)) & ((t < b) | ((g < t) & (t < limit)));
     }
-    s = select(known, sign_next, s);
-    const auto pass = open & (clear | monotone | tiny);
-    gap = select(known, next, gap);
-    t = select(pass, next, t);
-    // Where nothing can be told for long, steps grow all the same as far as they tell nothing new.
-    h = select(pass, h * D(2.0), h * D(0.5));
-    open = open & (t < end) & (list.count < D(K));
+    uncertified = live;
   }
-  up_to = select(t >= end, up_to, t);
-  list.finish(up_to);
+
+ private:
+  OKTETT_INLINE void step(const D& end, const D& least, const M& live) {
+    const D zero(0.0), two(2.0);
+    const D e = min(t + h, end), m = t + (e - t) * D(0.5);
+    const Interval<D> x(t, e);
+    const Dual<Interval<D>> f = field.over(x);
+    Interval<D> value = f.v;
+    D sign = certain_sign(value);
+    const auto smooth = f.v.is_bounded() & f.d.is_bounded();
+    auto open = live & (sign == zero);
+    auto noise = open & ~open;
+    if (any(open & smooth)) {
+      const Interval<D> at_m = field.at(m);
+      const Interval<D> mean = at_m + f.d * (x - Interval<D>(m));
+      value = select(smooth & mean.is_bounded(), intersect(f.v, mean), f.v);
+      sign = select(open, certain_sign(value), sign);
+      open = live & (sign == zero);
+      noise = open & smooth & (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16));
+    }
+    auto known = live & ~open, monotone = open & smooth & ((zero < f.d.lo) | (f.d.hi < zero));
+    D reached = t;
+    if (any(monotone)) {
+      const D sign_e = certain_sign(field.at(e));
+      const auto told = monotone & ~(sign_e == zero);
+      // The crossing may be anywhere up to e.
+      sign = select(told, sign_e, sign), reached = select(told, e, reached);
+      known = known | told;
+    }
+    const auto turned = known & ~(s == zero) & ~(sign == s);
+    if (any(turned)) push(turned, reached);
+    first_sign = select(known & (first_sign == zero), sign, first_sign);
+    const auto shortest = (e - t <= least) | ~((t < m) & (m < e));
+    const auto skip = (open & ~known) & (noise | monotone | shortest);
+    jump = select(known, zero, select(skip & ~f.v.is_bounded(), D(1.0), jump));
+    const auto go = known | skip;
+    s = select(known, sign, s), g = select(known, e, g);
+    h = select(go, (e - t) * two, select(live, (e - t) * D(0.5), h));
+    t = select(go, e, t);
+  }
+
+  OKTETT_INLINE void push(const M& turned, const D& reached) {
+    const auto listed = jumps == Jumps::list ? turned : turned & (jump == D(0.0));
+    for (int k = 0; k < K; ++k) {
+      const auto here = listed & (count == D(k));
+      found[k].l = select(here, g, found[k].l), found[k].r = select(here, reached, found[k].r);
+      found[k].before = select(here, s, found[k].before), found[k].jump = select(here, jump, found[k].jump);
+    }
+    count = select(listed, count + D(1.0), count);
+  }
+};
+
+/// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Part 0 are those where f is
+/// continuous, kJumpPart the others. A crossing that is not told apart from b may lie between b and `limit`.
+/// Returns the first certain sign from a on, 0 if there is none.
+template <int K, class Field, class D>
+OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const typename D::M& active,
+                      Jumps jumps, Crossings<K, D>& out) {
+  const March<K, Field, D> walk(field, jumps, a, b, limit, active);
+  const D tolerance = max((b - a) * D(0x1p-42), max(abs(a), abs(b)) * D(0x1p-50));
+  CrossingList<K, D> list(out);
+  for (int k = 0; k < K; ++k) {
+    const auto here = active & (D(k) < walk.count);
+    if (none(here)) break;
+    const Bracket<D>& bracket = walk.found[k];
+    const D x = refine(field, bracket, tolerance, here);
+    list.push(here, x, -bracket.before, bracket.jump * D(kJumpPart));
+  }
+  list.finish(select(walk.count < D(K), D(roots::kNoRoot), walk.t));
+  const unsigned lost = bits(walk.uncertified);
+  if (OKTETT_UNLIKELY(lost != 0)) count_uncertified(__builtin_popcount(lost));
+  return walk.first_sign;
 }
 
-}  // namespace oktett
+}  // namespace oktett::interval
