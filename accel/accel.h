@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "accel/surface_block.h"
 #include "core/box.h"
 #include "core/isa.h"
 #include "core/mesh.h"
@@ -94,11 +95,10 @@ Surface surface(const Accel& accel, const Ray& ray, const Hit& hit);
 /// Only what names the surface of a hit: geometry, primitive, user and material_slot.
 Surface identify(const Accel& accel, const Hit& hit);
 
-/// The surfaces of hits `which[0]` ... `which[count - 1]` of a batch, with the bits that surface() gives, but
-/// uv and tangent may be missing; for hits of triangle meshes in lanes. For those that need uv, ask
-/// surface().
+/// The surfaces of hits `which[0]` ... `which[count - 1]` of a batch, at most SurfaceBlock::kMost, with the
+/// bits that surface() gives but without uv and tangent; found in lanes.
 void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
-              std::size_t count, Isa isa, Surface* out);
+              std::size_t count, Isa isa, SurfaceBlock& out);
 
 /// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the
 /// hit, so that the surface neither shadows itself nor is passed through (Pharr, Jakob, Humphreys 2016,

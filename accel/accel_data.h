@@ -57,7 +57,7 @@ class Accel {
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
-  /// Where primitive k of geometry g, of a closed-form shape, stands in its pool:
+  /// Where primitive k of geometry g, of a closed-form or exact shape, stands in its pool:
   /// pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
   std::vector<std::uint32_t> pool_index, first_pool_index;
   std::vector<std::uint32_t> instances_by_path;  ///< indices into `instances`, ordered by first_path

@@ -86,13 +86,14 @@ class PoolFiller {
   }
 
  private:
-  /// Gives every primitive of a closed-form shape a place in pool_index.
+  /// Gives every primitive of a closed-form or exact shape a place in pool_index.
   void number_primitives() {
     std::uint32_t count = 0;
     std::vector<std::uint32_t> first(accel_.geometries.size());
     for (std::uint32_t g = 0; g < first.size(); ++g) {
       first[g] = count;
-      if (accel_.kinds[g] < kClosedFormKinds) count += accel_.first_item[g + 1] - accel_.first_item[g];
+      if (accel_.kinds[g] < static_cast<int>(Kind::triangle))
+        count += accel_.first_item[g + 1] - accel_.first_item[g];
     }
     if (count == 0) return;
     accel_.first_pool_index = std::move(first);
@@ -127,6 +128,8 @@ class PoolFiller {
     std::vector<ExactCell> cells;
     for (std::uint32_t cell : order_[kind_of_pool(pool)]) cells.push_back(pool.cells[cell]);
     pool.cells = std::move(cells);
+    for (std::uint32_t i = 0; i < pool.frames.size(); ++i)
+      accel_.pool_index[accel_.first_pool_index[accel_.geometry_of(pool.frames[i].item)]] = i;
     accel_.stats.other_bytes += pool.bytes();
   }
   template <class Pool>

@@ -4,6 +4,7 @@
 
 #include "accel/hit_list.h"
 #include "accel/ray_state.h"
+#include "accel/shape_hits.h"
 
 namespace oktett {
 
@@ -20,6 +21,8 @@ struct ExactCode {
                         unsigned lanes, HitLanes<F>& hits, std::uint32_t& item);
   /// Appends every crossing of one ray with the cell.
   static void all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits);
+  /// Surfaces of hits of one element, as exact_surface makes them. False if the kind has no code for that.
+  static bool surfaces(const Accel& accel, Kind kind, ShapeHits& hits);
 };
 
 /// The rays in `lanes` of a state against the cells of a leaf.

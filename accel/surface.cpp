@@ -90,8 +90,11 @@ static void surface_inside(const NamedHit& named, const Accel& a, const Ray& inn
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
     s = mesh_surface(g, a.frames[names.geometry], *mesh, names.primitive, hit);
   } else if (std::holds_alternative<ExactShape>(g.shape)) {
-    visit_exact(static_cast<Kind>(a.kinds[names.geometry]), *a.exact,
-                [&](auto shape, const auto& pool) { s = exact_surface<decltype(shape)>(pool, hit, inner); });
+    visit_exact(static_cast<Kind>(a.kinds[names.geometry]), *a.exact, [&](auto shape, const auto& pool) {
+      using S = decltype(shape);
+      const std::size_t i = a.pool_index[a.first_pool_index[names.geometry]];
+      s = uv ? exact_surface<S>(pool, i, hit, inner) : exact_surface_without_uv<S>(pool, i, hit, inner);
+    });
   } else {
     const Kind kind = static_cast<Kind>(a.kinds[names.geometry]);
     visit_pool(kind, a.pools, [&](auto shape, const auto& pool) {

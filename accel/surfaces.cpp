@@ -3,6 +3,9 @@
 #include "accel/hit_place.h"
 #include "accel/isa/table.h"
 #include "accel/mesh_surfaces.h"
+#include "accel/shape_hits.h"
+#include "kernels/exact_shapes.h"
+#include "kernels/shapes/exact_surface.h"
 
 namespace oktett {
 namespace {
@@ -30,8 +33,9 @@ void gather(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, 
 /// Hits of one mesh that wait for their surfaces.
 class MeshRun {
  public:
-  MeshRun(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which, Isa isa, Surface* out)
-      : rays_(rays), hits_(hits), which_(which), table_(*isa_table(isa)), out_(out) {}
+  MeshRun(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which, const IsaTable& table,
+          SurfaceBlock& out)
+      : rays_(rays), hits_(hits), which_(which), table_(table), out_(out) {}
 
   /// Takes entry `i`, a hit of the mesh `named`; its names stand in the result already.
   void add(const HitPlace& place, const NamedHit& named, std::size_t i) {
@@ -48,13 +52,17 @@ class MeshRun {
     repeat_last();
     table_.mesh_surfaces(columns_);
     for (std::size_t k = 0; k < columns_.count; ++k) {
-      Surface& s = out_[entry_[k]];
-      s.position = get_column(columns_.position, k);
-      s.position_error = get_column(columns_.position_error, k);
-      s.geometric_normal = get_column(columns_.geometric_normal, k);
-      s.shading_normal = get_column(columns_.shading_normal, k);
-      const std::uint32_t ray = which_[entry_[k]];
-      if (place.moved) move_surface(place, rays_[ray], hits_.t[ray], s);
+      const std::size_t i = entry_[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        out_.position[axis][i] = columns_.position[axis][k];
+        out_.position_error[axis][i] = columns_.position_error[axis][k];
+        out_.geometric_normal[axis][i] = columns_.geometric_normal[axis][k];
+        out_.shading_normal[axis][i] = columns_.shading_normal[axis][k];
+      }
+      if (!place.moved) continue;
+      Surface s = out_[i];
+      move_surface(place, rays_[which_[i]], hits_.t[which_[i]], s);
+      out_.set_shape(i, s);
     }
     columns_.count = 0;
     geometry_ = nullptr;
@@ -88,17 +96,118 @@ class MeshRun {
   const HitSpan& hits_;
   const std::uint32_t* which_;
   const IsaTable& table_;
-  Surface* out_;
+  SurfaceBlock& out_;
   const Geometry* geometry_ = nullptr;
   std::size_t entry_[MeshSurfaces::kMost];
   MeshSurfaces columns_;
 };
 
+/// Hits of shapes that stand in the world itself, sorted by what can be worked on together.
+class ShapeGroups {
+ public:
+  ShapeGroups(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
+              const IsaTable& table, SurfaceBlock& out)
+      : accel_(accel), rays_(rays), hits_(hits), which_(which), table_(table), out_(out) {}
+
+  /// Takes entry `i`, whose names stand in the result already; false if its kind has no code for groups.
+  bool add(std::size_t i) {
+    const std::uint32_t geometry = out_.geometry[i];
+    const Kind kind = static_cast<Kind>(accel_.kinds[geometry]);
+    std::uint32_t element, group = 0;
+    if (is_exact(kind)) {
+      group = element = accel_.pool_index[accel_.first_pool_index[geometry]];
+    } else if (kind == Kind::sphere || kind == Kind::plane) {
+      element = accel_.pool_index[accel_.first_pool_index[geometry] + out_.primitive[i]];
+    } else {
+      return false;
+    }
+    entry_[count_] = static_cast<std::uint32_t>(i), element_[count_] = element;
+    group_[count_++] = std::uint64_t{group} << 8 | static_cast<std::uint64_t>(kind);
+    return true;
+  }
+
+  void finish() {
+    for (std::size_t first = 0; first < count_; ++first) {
+      const std::uint64_t group = group_[first];
+      if (group == kDone) continue;
+      std::uint32_t members[SurfaceBlock::kMost];
+      columns_.count = 0;
+      for (std::size_t k = first; k < count_; ++k) {
+        if (group_[k] != group) continue;
+        group_[k] = kDone;
+        members[columns_.count] = entry_[k];
+        gather(k, columns_.count++);
+      }
+      find(static_cast<Kind>(group & 0xff), members);
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kDone = ~std::uint64_t{0};
+
+  void gather(std::size_t k, std::size_t to) {
+    const std::uint32_t i = which_[entry_[k]];
+    for (int axis = 0; axis < 3; ++axis)
+      columns_.origin[axis][to] = rays_.origin[axis][i],
+      columns_.direction[axis][to] = rays_.direction[axis][i];
+    columns_.t[to] = hits_.t[i], columns_.part[to] = hits_.u[i], columns_.element[to] = element_[k];
+  }
+
+  /// Fills the last group of lanes.
+  void repeat_last() {
+    const std::size_t last = columns_.count - 1, end = (columns_.count + 7) / 8 * 8;
+    for (std::size_t i = last + 1; i < end; ++i) {
+      for (int axis = 0; axis < 3; ++axis)
+        columns_.origin[axis][i] = columns_.origin[axis][last],
+        columns_.direction[axis][i] = columns_.direction[axis][last];
+      columns_.t[i] = columns_.t[last], columns_.part[i] = columns_.part[last];
+      columns_.element[i] = columns_.element[last];
+    }
+  }
+
+  void find(Kind kind, const std::uint32_t* members) {
+    repeat_last();
+    if (!is_exact(kind)) {
+      table_.closed_form_surfaces(accel_, kind, columns_);
+    } else if (!table_.exact_surfaces(accel_, kind, columns_)) {
+      visit_exact(kind, *accel_.exact, [&](auto shape, const auto& pool) {
+        for (std::size_t k = 0; k < columns_.count; ++k) {
+          const std::uint32_t i = which_[members[k]];
+          out_.set_shape(members[k], exact_surface_without_uv<decltype(shape)>(pool, columns_.element[k],
+                                                                               hits_[i], rays_[i]));
+        }
+      });
+      return;
+    }
+    for (std::size_t k = 0; k < columns_.count; ++k) {
+      const std::uint32_t i = members[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        out_.position[axis][i] = columns_.position[axis][k];
+        out_.position_error[axis][i] = round_up(columns_.position_error[axis][k]);
+        out_.geometric_normal[axis][i] = out_.shading_normal[axis][i] = columns_.normal[axis][k];
+      }
+    }
+  }
+
+  const Accel& accel_;
+  const RaySpan& rays_;
+  const HitSpan& hits_;
+  const std::uint32_t* which_;
+  const IsaTable& table_;
+  SurfaceBlock& out_;
+  std::size_t count_ = 0;
+  std::uint32_t entry_[SurfaceBlock::kMost], element_[SurfaceBlock::kMost];
+  std::uint64_t group_[SurfaceBlock::kMost];
+  ShapeHits columns_;
+};
+
 }  // namespace
 
 void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
-              std::size_t count, Isa isa, Surface* out) {
-  MeshRun run(rays, hits, which, isa, out);
+              std::size_t count, Isa isa, SurfaceBlock& out) {
+  const IsaTable& table = *isa_table(isa);
+  MeshRun run(rays, hits, which, table, out);
+  ShapeGroups groups(accel, rays, hits, which, table, out);
   HitPlace place;
   std::uint32_t path = kNoId;
   for (std::size_t i = 0; i < count; ++i) {
@@ -109,14 +218,17 @@ void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, cons
       path = hit.instance;
     }
     const NamedHit named = identify_in(place, hit);
+    out.set_names(i, named.surface);
     if (std::holds_alternative<MeshGeometry>(named.geometry->shape)) {
-      out[i] = named.surface;
       run.add(place, named, i);
-    } else {
-      surface_at(place, named, rays[which[i]], hit, false, out[i]);
+    } else if (place.moved || !groups.add(i)) {
+      Surface s;
+      surface_at(place, named, rays[which[i]], hit, false, s);
+      out.set_shape(i, s);
     }
   }
   run.finish(place);
+  groups.finish();
 }
 
 }  // namespace oktett

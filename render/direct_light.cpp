@@ -20,19 +20,26 @@ static float highlight_power(float cosine, float exponent) {
   return static_cast<float>(portable::pow(cosine, exponent));
 }
 
+static OKTETT_INLINE Color sum_here(const Material& m, const Color& color, const Color& specular_color,
+                                    float cosine, float highlight) {
+  Color sum = color * (m.diffuse * cosine);
+  // NaN is not left out.
+  if (m.specular != 0 && !(highlight <= 0))
+    sum += specular_color * (m.specular * highlight_power(std::min(highlight, 1.0f), m.phong));
+  return sum;
+}
+
+Color phong_sum(const Material& m, const Color& color, const Color& specular_color, float cosine,
+                float highlight) {
+  return sum_here(m, color, specular_color, cosine, highlight);
+}
+
 static OKTETT_INLINE Color phong_here(const ShadingPoint& p, const Vec3f& l) {
-  const Material& m = *p.material;
   const float cosine = dot(p.ns, l);
   // Comparisons are such that NaN goes on to the picture, where it is counted.
   if (cosine <= 0 || dot(p.ng, l) <= 0) return {0, 0, 0};
-  Color sum = p.color * (m.diffuse * cosine);
-  if (m.specular != 0) {
-    const float highlight = dot(l, p.direction) - 2 * cosine * dot(p.ns, p.direction);
-    if (!(highlight <= 0)) {
-      sum += p.specular_color * (m.specular * highlight_power(std::min(highlight, 1.0f), m.phong));
-    }
-  }
-  return sum;
+  const float highlight = dot(l, p.direction) - 2 * cosine * dot(p.ns, p.direction);
+  return sum_here(*p.material, p.color, p.specular_color, cosine, highlight);
 }
 
 Color phong(const ShadingPoint& p, const Vec3f& l) { return phong_here(p, l); }
@@ -52,7 +59,7 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
   if (light.falloff) color = color * static_cast<float>(1 / square);
   offset_origin(p.surface, l, ray.origin);
   ray.direction = light.place - ray.origin;
-  ray.tmax = 1 - 0x1p-24f;
+  ray.tmax = kBeforeLight;
   return ray;
 }
 

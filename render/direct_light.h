@@ -9,6 +9,14 @@
 
 namespace oktett {
 
+/// How far shadow rays reach whose direction is the way to the light: just not to it.
+inline constexpr float kBeforeLight = 1 - 0x1p-24f;
+
+/// The sum of `phong` where the light is before the surface: `cosine` > 0 or NaN is that between shading
+/// normal and light, `highlight` that between the mirrored light and the viewer.
+Color phong_sum(const Material& m, const Color& color, const Color& specular_color, float cosine,
+                float highlight);
+
 /// Colour * diffuse * cos(n, l) + specular colour * specular * max(0, r . v)^phong (Phong 1975) for light
 /// from the unit direction `l`; both sides of a surface are lit alike. Black if `l` is behind the true or the
 /// shading surface.

@@ -114,12 +114,15 @@ World build_world(const Scene& scene, const BuildOptions& options) {
 }
 
 const Material& material_at(const World& world, const Surface& surface) {
+  return material_at(world, surface.user, surface.material_slot);
+}
+
+const Material& material_at(const World& world, std::uint32_t user, std::uint32_t material_slot) {
   std::uint32_t material = kNoId;
-  if (surface.user < world.objects.size()) {
-    const ObjectMaterials& object = world.objects[surface.user];
+  if (user < world.objects.size()) {
+    const ObjectMaterials& object = world.objects[user];
     material = object.material;
-    if (material == kNoId && surface.material_slot < object.slots.size())
-      material = object.slots[surface.material_slot];
+    if (material == kNoId && material_slot < object.slots.size()) material = object.slots[material_slot];
   }
   return material < world.materials.size() ? world.materials[material] : world.materials.back();
 }

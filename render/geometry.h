@@ -38,5 +38,6 @@ World build_world(const Scene& scene, const BuildOptions& options = {});
 
 /// The material at a hit: that of the object, else of the mesh's slot, else the default material.
 const Material& material_at(const World& world, const Surface& surface);
+const Material& material_at(const World& world, std::uint32_t user, std::uint32_t material_slot);
 
 }  // namespace oktett

@@ -15,6 +15,11 @@ Integrator integrator_for(IntegratorKind kind);
 /// Snell's and Fresnel's laws; see Material for the sum.
 void shade_whitted(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p);
 
+/// The mirror and refracted rays of a hit in Whitted's model; `throughput` is that of the part of the surface
+/// that is there.
+void push_specular(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p,
+                   const Color& throughput);
+
 /// Unidirectional path tracing (Kajiya 1986). The scene's lights are sampled at each hit; emission and
 /// background are met by chance. Diffuse, mirror and glass take turns at random by their weights. Lights are
 /// scaled as in Whitted's model: a white diffuse surface that faces a light of colour c shows c. Ambient

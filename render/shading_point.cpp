@@ -13,11 +13,6 @@ struct Footprint {
   Vec2f dx, dy;
 };
 
-bool has_textures(const Material& m) {
-  return m.color_texture != kNoId || m.specular_texture != kNoId || m.emission_texture != kNoId ||
-         m.opacity_texture != kNoId || m.bump_texture != kNoId || m.normal_texture != kNoId;
-}
-
 /// The footprint from vectors on the tangent plane. dp/dv is not known; it is taken to be as long as dp/du
 /// and at right angles to it, which is exact for textures that are laid on without distortion.
 Footprint footprint(const Surface& s, const Vec3f& x, const Vec3f& y, float scale) {
@@ -123,6 +118,11 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.opacity = opacity_at(context, m, s.uv, f);
   face_ray(p, ns);
   return p;
+}
+
+bool has_textures(const Material& m) {
+  return m.color_texture != kNoId || m.specular_texture != kNoId || m.emission_texture != kNoId ||
+         m.opacity_texture != kNoId || m.bump_texture != kNoId || m.normal_texture != kNoId;
 }
 
 bool is_opaque(const Material& m) { return m.transparency == 0 && m.opacity_texture == kNoId; }

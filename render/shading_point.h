@@ -34,6 +34,8 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
 /// unchanged, else material colour * transparency. Of `s` only the names count.
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const Surface& s);
 
+bool has_textures(const Material& material);
+
 /// True if `transmittance` is black, whatever the place of the hit.
 bool is_opaque(const Material& material);
 

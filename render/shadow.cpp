@@ -34,7 +34,7 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   for (const std::uint32_t i : left) rays.push_back(queue.rays[i]);
   HitBatch hits;
   std::vector<std::uint32_t> kept;  // of `left`
-  std::vector<Surface> behind;
+  SurfaceBlock behind;
   for (int layer = 0; layer < kMostLayers && !left.empty(); ++layer) {
     hits.resize_uninitialized(rays.size());
     closest_hit(accel, rays.span(), hits.span(), context.isa);
@@ -49,12 +49,14 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
       light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names);
       if (!is_black(light)) kept.push_back(k);
     }
-    behind.resize(kept.size());
-    surfaces(accel, rays.span(), hits.span(), kept.data(), kept.size(), context.isa, behind.data());
     rest.resize_uninitialized(0);
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      rest.push_back(continue_behind(rays[kept[k]], behind[k]));
-      left[k] = left[kept[k]];
+    for (std::size_t first = 0; first < kept.size(); first += SurfaceBlock::kMost) {
+      const std::size_t count = std::min(SurfaceBlock::kMost, kept.size() - first);
+      surfaces(accel, rays.span(), hits.span(), kept.data() + first, count, context.isa, behind);
+      for (std::size_t k = 0; k < count; ++k) {
+        rest.push_back(continue_behind(rays[kept[first + k]], behind[k]));
+        left[first + k] = left[kept[first + k]];
+      }
     }
     left.resize(kept.size());
     std::swap(rays, rest);

@@ -9,6 +9,7 @@
 #include "render/integrators.h"
 #include "render/sampling.h"
 #include "render/shadow.h"
+#include "render/whitted_block.h"
 
 namespace oktett {
 namespace {
@@ -21,7 +22,7 @@ constexpr float kLeastThroughput = 1 / 4096.0f;
 /// Shadow rays are traced when this many have gathered.
 constexpr std::size_t kShadowBatch = 4096;
 /// Hits whose surfaces are found together.
-constexpr std::size_t kShadeBlock = 64;
+constexpr std::size_t kShadeBlock = SurfaceBlock::kMost;
 
 void find_hits(const RenderContext& context, Wave& wave) {
   wave.hits.resize_uninitialized(wave.rays.size());
@@ -88,12 +89,18 @@ bool shadows_are_full(const Wave& wave) {
 /// In blocks, so that what is known of a hit stays in the nearest cache until it has been shaded.
 void shade_hits(const RenderContext& context, Wave& wave) {
   const Integrator integrator = integrator_for(context.settings.kind);
-  Surface found[kShadeBlock];
+  const bool in_blocks = context.settings.kind == IntegratorKind::whitted && !context.data_layers;
+  SurfaceBlock found;
   for (std::size_t first = 0; first < wave.hit_rays.size(); first += kShadeBlock) {
     const std::size_t count = std::min(kShadeBlock, wave.hit_rays.size() - first);
     const std::uint32_t* which = wave.hit_rays.data() + first;
     surfaces(*context.world->accel, wave.rays.rays.span(), wave.hits.span(), which, count, context.isa,
              found);
+    if (in_blocks) {
+      shade_whitted_block(context, wave, which, count, found);
+      if (shadows_are_full(wave)) flush_shadows(context, wave);
+      continue;
+    }
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t i = which[k];
       const bool from_camera = wave.rays.from_camera[i] != 0;

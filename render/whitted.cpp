@@ -14,6 +14,11 @@ void shade_whitted(const RenderContext& context, Wave& wave, std::size_t ray, co
   add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wave.shadows);
 
   if (p.opacity < 1) push_bounce(wave, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
+  push_specular(context, wave, ray, p, throughput);
+}
+
+void push_specular(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p,
+                   const Color& throughput) {
   if (wave.rays.bounces[ray] >= context.settings.depth) return;
   const SpecularRays specular = specular_rays(p);
   if (!is_black(specular.mirror))

@@ -2,6 +2,7 @@
 /// \file ExactCode for one instruction set. Included by accel/isa/exact_*.cpp.
 
 #include "accel/exact.h"
+#include "accel/isa/shape_surfaces.h"
 #include "kernels/exact_shapes.h"
 
 namespace oktett {
@@ -98,6 +99,79 @@ void list_crossings(const typename S::Pool& pool, std::uint32_t index, const Ray
     if (!(c.up_to.part[0].v < range.b.part[0].v)) return;
     cut_range(range, c.up_to);
   }
+}
+
+template <class D>
+OKTETT_INLINE Vec3<D> map_vector(const Affine& a, const Vec3<D>& v) {
+  const auto row = [&](int i) { return D(a.m[i][0]) * v.x + D(a.m[i][1]) * v.y + D(a.m[i][2]) * v.z; };
+  return {row(0), row(1), row(2)};
+}
+template <class D>
+OKTETT_INLINE Vec3<D> map_point(const Affine& a, const Vec3<D>& p) {
+  const Vec3<D> v = map_vector(a, p);
+  return {v.x + D(a.m[0][3]), v.y + D(a.m[1][3]), v.z + D(a.m[2][3])};
+}
+template <class D>
+OKTETT_INLINE Vec3<D> map_normal(const Affine& inverse, const Vec3<D>& n) {
+  const auto column = [&](int i) {
+    return D(inverse.m[0][i]) * n.x + D(inverse.m[1][i]) * n.y + D(inverse.m[2][i]) * n.z;
+  };
+  return {column(0), column(1), column(2)};
+}
+template <class D>
+OKTETT_INLINE Vec3<D> select_each(const typename D::M& m, const Vec3<D>& a, const Vec3<D>& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+/// settle and exact_surface of kernels/shapes/exact_surface.h.
+template <class S, class D>
+void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
+  using F = Simd<float, D::kWidth, typename D::Isa>;
+  const std::size_t element = hits.element[0];
+  const ExactFrame& frame = pool.frames[element];
+  const Vec3d diagonal = frame.to_world.vector({1, 1, 1});
+  const D extent(length(diagonal));
+  for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
+    const HitPoints<D> hit(hits, i);
+    const D part = to_double(F::load(hits.part + i));
+    const Vec3<D> start = map_point(frame.to_own, hit.point());
+    const D reach = D(0x1p-22) * length_lanes(map_vector(frame.to_own, hit.d)) * hit.t + D(0x1p-40);
+    Vec3<D> p = start, g;
+    D value;
+    auto near = D::M::all_true();
+    for (int k = 0; k < 3; ++k) {
+      S::slope(pool, element, part, p, value, g);
+      const D step = value / dot_lanes(g, g);
+      p = {p.x - g.x * step, p.y - g.y * step, p.z - g.z * step};
+      near = near & (length_lanes(sub_lanes(p, start)) <= reach);
+      p = select_each(near, p, start);
+    }
+    S::slope(pool, element, part, p, value, g);
+    Vec3<D> n = map_normal(frame.to_own, g);
+    D l = length_lanes(n);
+    const auto known = (D(0.0) < l) & (l <= D(1.7976931348623157e308));
+    n = select_each(known, n, Vec3<D>{-hit.d.x, -hit.d.y, -hit.d.z});
+    l = select(known, l, length_lanes(hit.d));
+    const Vec3<D> point = map_point(frame.to_world, p);
+    const D size = length_lanes(point) + extent;
+    store_surface(hit, point, D(0x1p-44) * size, Vec3<D>{n.x / l, n.y / l, n.z / l}, hits, i);
+  }
+}
+
+template <class A>
+bool ExactCode<A>::surfaces(const Accel& accel, Kind kind, ShapeHits& hits) {
+  using D = SurfaceLanes<A>;
+  bool done = false;
+  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
+    using S = decltype(shape);
+    D value;
+    Vec3<D> gradient;
+    if constexpr (requires { S::slope(pool, 0, D(), Vec3<D>(), value, gradient); }) {
+      done = pool.frames[hits.element[0]].normals == NormalMethod::gradient;
+      if (done) slope_surfaces<S, D>(pool, hits);
+    }
+  });
+  return done;
 }
 
 template <class A>

@@ -57,6 +57,7 @@ struct IsaCode {
 
 #include "accel/isa/run_kernel.h"
 #include "accel/isa/run_roots.h"
+#include "accel/isa/shape_surfaces.h"
 #include "accel/isa/surface_code.h"
 #include "accel/isa/view_code.h"
 
@@ -64,9 +65,10 @@ namespace oktett {
 
 template <class A>
 const IsaTable& make_table() {
-  static constexpr IsaTable table = {IsaCode<A>::closest_hit, IsaCode<A>::any_hit,  IsaCode<A>::all_hits,
-                                     IsaCode<A>::run_kernel,  build_kernels<A>(),   IsaCode<A>::run_roots,
-                                     view_directions_code<A>, mesh_surfaces_code<A>};
+  static constexpr IsaTable table = {
+      IsaCode<A>::closest_hit,      IsaCode<A>::any_hit,   IsaCode<A>::all_hits,    IsaCode<A>::run_kernel,
+      build_kernels<A>(),           IsaCode<A>::run_roots, view_directions_code<A>, mesh_surfaces_code<A>,
+      closed_form_surfaces_code<A>, ExactCode<A>::surfaces};
   return table;
 }
 

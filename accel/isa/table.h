@@ -5,6 +5,7 @@
 #include "accel/build_sah.h"
 #include "accel/hit_list.h"
 #include "accel/mesh_surfaces.h"
+#include "accel/shape_hits.h"
 #include "accel/trace_mode.h"
 #include "accel/view_rays.h"
 #include "core/isa.h"
@@ -65,6 +66,9 @@ struct IsaTable {
   void (*run_roots)(RootsKernel, const RootsRun&);
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
   void (*mesh_surfaces)(MeshSurfaces&);
+  /// Spheres or planes.
+  void (*closed_form_surfaces)(const Accel&, Kind, ShapeHits&);
+  bool (*exact_surfaces)(const Accel&, Kind, ShapeHits&);
 };
 
 /// Null if this build holds no code for `isa`.

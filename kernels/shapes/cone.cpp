@@ -24,16 +24,11 @@ Box Cone::world_bounds(const Pool& pool, std::size_t i) {
 }
 
 double Cone::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const ConeElement& e = pool.elements[i];
-  const double w = e.middle + e.slope * p.z;
-  if (part == 0) return (p.x * p.x + p.y * p.y) - w * w;
-  return part == 1 ? -1 - p.z : p.z - 1;
+  return slope_at<Cone>(pool, i, part, p).value;
 }
 
 Vec3d Cone::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const ConeElement& e = pool.elements[i];
-  if (part == 0) return Vec3d{p.x, p.y, -e.slope * (e.middle + e.slope * p.z)} * 2.0;
-  return {0, 0, part == 1 ? -1.0 : 1.0};
+  return slope_at<Cone>(pool, i, part, p).gradient;
 }
 
 bool Cone::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

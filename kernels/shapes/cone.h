@@ -77,6 +77,16 @@ struct Cone {
                   select(exits, D(0.0), slab.out_part), range, list);
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const ConeElement& e = pool.elements[i];
+    const auto side = part == D(0.0), low = part == D(1.0);
+    const D w = D(e.middle) + D(e.slope) * p.z;
+    value = select(side, (p.x * p.x + p.y * p.y) - w * w, select(low, D(-1.0) - p.z, p.z - D(1.0)));
+    gradient = {select(side, p.x * D(2.0), D(0.0)), select(side, p.y * D(2.0), D(0.0)),
+                select(side, D(-e.slope) * w * D(2.0), select(low, D(-1.0), D(1.0)))};
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

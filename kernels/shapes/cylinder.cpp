@@ -52,14 +52,12 @@ Box Cylinder::world_bounds(const Pool& pool, std::size_t i) {
   return frustum_bounds(pool.frames[i].to_world, 1, 1);
 }
 
-double Cylinder::value(const Pool&, std::size_t, int part, const Vec3d& p) {
-  if (part == 0) return (p.x * p.x + p.y * p.y) - 1;
-  return part == 1 ? -1 - p.z : p.z - 1;
+double Cylinder::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Cylinder>(pool, i, part, p).value;
 }
 
-Vec3d Cylinder::gradient(const Pool&, std::size_t, int part, const Vec3d& p) {
-  if (part == 0) return {2 * p.x, 2 * p.y, 0};
-  return {0, 0, part == 1 ? -1.0 : 1.0};
+Vec3d Cylinder::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Cylinder>(pool, i, part, p).gradient;
 }
 
 bool Cylinder::inside(const Pool&, std::size_t, const Vec3d& p) {

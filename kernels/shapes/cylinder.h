@@ -55,6 +55,14 @@ struct Cylinder {
     list_interval(meets & (in < exit), in, part_in, exit, part_out, range, list);
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool&, std::size_t, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const auto side = part == D(0.0), low = part == D(1.0);
+    value = select(side, (p.x * p.x + p.y * p.y) - D(1.0), select(low, D(-1.0) - p.z, p.z - D(1.0)));
+    gradient = {select(side, D(2.0) * p.x, D(0.0)), select(side, D(2.0) * p.y, D(0.0)),
+                select(side, D(0.0), select(low, D(-1.0), D(1.0)))};
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

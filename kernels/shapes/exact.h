@@ -21,6 +21,9 @@
 /// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only
 /// where
 ///   the ray begins; `crossings` bears NaN and infinities;
+/// - `S::slope(pool, i, part, p, value, gradient)`: `value` and `gradient` in lanes, which then are made of
+/// it
+///   by slope_at: surfaces of many hits are found together;
 /// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
 ///   than the image of the cell.
 
@@ -160,6 +163,39 @@ inline Vec3d face_gradient(int face) {
   Vec3d g{0, 0, 0};
   g[(face - 1) / 2] = (face - 1) % 2 == 1 ? 1 : -1;
   return g;
+}
+
+/// The same in the lanes whose part is a face of the box.
+template <class D>
+OKTETT_INLINE void select_faces(const Vec3d& lo, const Vec3d& hi, const D& part, const Vec3<D>& p, D& value,
+                                Vec3<D>& gradient) {
+  if (none(part > D(0.0))) return;
+  const D at[3] = {p.x, p.y, p.z};
+  for (int face = 1; face <= 6; ++face) {
+    const auto here = part == D(face);
+    const int axis = (face - 1) / 2;
+    const bool high = (face - 1) % 2 == 1;
+    value = select(here, high ? at[axis] - D(hi[axis]) : D(lo[axis]) - at[axis], value);
+    const D side(high ? 1.0 : -1.0), zero(0.0);
+    gradient = {select(here, axis == 0 ? side : zero, gradient.x),
+                select(here, axis == 1 ? side : zero, gradient.y),
+                select(here, axis == 2 ? side : zero, gradient.z)};
+  }
+}
+
+struct Slope {
+  double value;
+  Vec3d gradient;
+};
+
+/// S::slope at one point.
+template <class S>
+Slope slope_at(const typename S::Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  using D = Simd<double, 1, ScalarIsa>;
+  D value;
+  Vec3<D> gradient;
+  S::slope(pool, i, D(part), broadcast<D>(p), value, gradient);
+  return {value.part[0].v, {gradient.x.part[0].v, gradient.y.part[0].v, gradient.z.part[0].v}};
 }
 
 /// The part of a line that is in a box. A line parallel to a slab lies in it or not: no threshold. The ends

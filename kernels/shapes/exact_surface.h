@@ -27,15 +27,6 @@ Vec3d exact_gradient(const typename S::Pool& pool, std::size_t i, int part, cons
   return g;
 }
 
-/// Element of the pool that an item is.
-template <class Pool>
-std::size_t element_of(const Pool& pool, std::uint32_t item) {
-  return static_cast<std::size_t>(
-      std::lower_bound(pool.frames.begin(), pool.frames.end(), item,
-                       [](const ExactFrame& frame, std::uint32_t value) { return frame.item < value; }) -
-      pool.frames.begin());
-}
-
 /// `p`, near the surface, moved onto it along the gradient by Newton's method; no farther than `reach`, where
 /// it stays if the function has no slope to go by.
 template <class S>
@@ -50,10 +41,11 @@ Vec3d settle(const typename S::Pool& pool, std::size_t i, int part, Vec3d p, dou
   return p;
 }
 
-/// Shading data of a hit that `ray` had with an element of `pool`.
-template <class S>
-Surface exact_surface(const typename S::Pool& pool, const Hit& hit, const Ray& ray) {
-  const std::size_t i = element_of(pool, hit.item);
+/// Shading data of a hit that `ray` had with element `i` of `pool`; `with_uv` is called with the part, the
+/// point in the own space, and the surface.
+template <class S, class Function>
+Surface exact_surface_and(const typename S::Pool& pool, std::size_t i, const Hit& hit, const Ray& ray,
+                          Function&& with_uv) {
   const ExactFrame& frame = pool.frames[i];
   const int part = static_cast<int>(hit.u);
   const double t = hit.t;
@@ -70,9 +62,23 @@ Surface exact_surface(const typename S::Pool& pool, const Hit& hit, const Ray& r
   // At a singular point any normal is as good as another.
   if (!(l > 0 && std::isfinite(l))) n = -Vec3d(ray.direction), l = length(n);
   s.geometric_normal = s.shading_normal = Vec3f(n / l);
-  S::uv(pool, i, part, p, s);
-  s.tangent = Vec3f(frame.to_world.vector(Vec3d(s.tangent)));
+  with_uv(part, p, s);
   return s;
+}
+
+template <class S>
+Surface exact_surface(const typename S::Pool& pool, std::size_t i, const Hit& hit, const Ray& ray) {
+  return exact_surface_and<S>(pool, i, hit, ray, [&](int part, const Vec3d& p, Surface& s) {
+    S::uv(pool, i, part, p, s);
+    s.tangent = Vec3f(pool.frames[i].to_world.vector(Vec3d(s.tangent)));
+  });
+}
+
+/// The same without uv and tangent.
+template <class S>
+Surface exact_surface_without_uv(const typename S::Pool& pool, std::size_t i, const Hit& hit,
+                                 const Ray& ray) {
+  return exact_surface_and<S>(pool, i, hit, ray, [](int, const Vec3d&, Surface&) {});
 }
 
 }  // namespace oktett

@@ -47,18 +47,12 @@ void Polyhedron::add(Pool& pool, const ExactShape& shape, const Affine& to_world
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 
-static const PolyhedronSlab& slab_of(const PolyhedronPool& pool, std::size_t i, int part) {
-  return pool.slabs[pool.elements[i].begin + static_cast<std::uint32_t>(part) / 2];
-}
-
 double Polyhedron::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const PolyhedronSlab& slab = slab_of(pool, i, part);
-  return part % 2 == 1 ? dot(slab.n, p) - slab.hi : slab.lo - dot(slab.n, p);
+  return slope_at<Polyhedron>(pool, i, part, p).value;
 }
 
-Vec3d Polyhedron::gradient(const Pool& pool, std::size_t i, int part, const Vec3d&) {
-  const PolyhedronSlab& slab = slab_of(pool, i, part);
-  return part % 2 == 1 ? slab.n : -slab.n;
+Vec3d Polyhedron::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Polyhedron>(pool, i, part, p).gradient;
 }
 
 bool Polyhedron::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

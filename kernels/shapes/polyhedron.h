@@ -61,6 +61,22 @@ struct Polyhedron {
     list_interval(meets, near, near_part, far, far_part, range, list);
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    constexpr int W = D::kWidth;
+    double parts[W], nx[W], ny[W], nz[W], offset[W];
+    part.store(parts);
+    for (int k = 0; k < W; ++k) {
+      const auto number = static_cast<std::uint32_t>(parts[k]);
+      const PolyhedronSlab& slab = pool.slabs[pool.elements[i].begin + number / 2];
+      const double side = number % 2 == 1 ? 1 : -1;
+      nx[k] = side * slab.n.x, ny[k] = side * slab.n.y, nz[k] = side * slab.n.z;
+      offset[k] = side * (number % 2 == 1 ? slab.hi : slab.lo);
+    }
+    gradient = {D::load(nx), D::load(ny), D::load(nz)};
+    value = dot_lanes(gradient, p) - D::load(offset);
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

@@ -141,15 +141,6 @@ std::vector<Step> cheapest_steps(const std::vector<Monomial>& terms) {
   return best;
 }
 
-/// x^0 to x^n.
-struct Powers {
-  double at[roots::kMaxDegree + 1];
-  Powers(double x, int n) {
-    at[0] = 1;
-    for (int i = 1; i <= n; ++i) at[i] = at[i - 1] * x;
-  }
-};
-
 }  // namespace
 
 void PolynomialSurface::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
@@ -182,25 +173,11 @@ void PolynomialSurface::add(Pool& pool, const ExactShape& shape, const Affine& t
 }
 
 double PolynomialSurface::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const PolynomialElement& e = pool.elements[i];
-  if (part > 0) return face_value(e.lo, e.hi, part, p);
-  const Powers x(p.x, e.degree), y(p.y, e.degree), z(p.z, e.degree);
-  double sum = 0;
-  for (const Monomial& m : e.terms) sum += m.c * (x.at[m.i] * y.at[m.j] * z.at[m.k]);
-  return sum;
+  return slope_at<PolynomialSurface>(pool, i, part, p).value;
 }
 
 Vec3d PolynomialSurface::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  if (part > 0) return face_gradient(part);
-  const PolynomialElement& e = pool.elements[i];
-  const Powers x(p.x, e.degree), y(p.y, e.degree), z(p.z, e.degree);
-  Vec3d g{0, 0, 0};
-  for (const Monomial& m : e.terms) {
-    if (m.i > 0) g.x += m.c * m.i * (x.at[m.i - 1] * y.at[m.j] * z.at[m.k]);
-    if (m.j > 0) g.y += m.c * m.j * (x.at[m.i] * y.at[m.j - 1] * z.at[m.k]);
-    if (m.k > 0) g.z += m.c * m.k * (x.at[m.i] * y.at[m.j] * z.at[m.k - 1]);
-  }
-  return g;
+  return slope_at<PolynomialSurface>(pool, i, part, p).gradient;
 }
 
 bool PolynomialSurface::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

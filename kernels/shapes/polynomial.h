@@ -53,6 +53,26 @@ struct PolynomialSurface {
     list_sign_changes(s, turn, common_sign(c, e.degree), !e.open, segment, range, active, out);
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const PolynomialElement& e = pool.elements[i];
+    D x[kMaxRayDegree + 1], y[kMaxRayDegree + 1], z[kMaxRayDegree + 1];
+    x[0] = y[0] = z[0] = D(1.0);
+    for (int k = 1; k <= e.degree; ++k) x[k] = x[k - 1] * p.x, y[k] = y[k - 1] * p.y, z[k] = z[k - 1] * p.z;
+    value = D(0.0);
+    gradient = {D(0.0), D(0.0), D(0.0)};
+    const std::size_t count = e.terms.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const Monomial& m = e.terms[k];
+      const D yz = y[m.j] * z[m.k], cx = D(m.c) * x[m.i];
+      value = value + cx * yz;
+      if (m.i > 0) gradient.x = gradient.x + D(m.c * m.i) * (x[m.i - 1] * yz);
+      if (m.j > 0) gradient.y = gradient.y + (cx * D(m.j)) * (y[m.j - 1] * z[m.k]);
+      if (m.k > 0) gradient.z = gradient.z + (cx * D(m.k)) * (y[m.j] * z[m.k - 1]);
+    }
+    select_faces(e.lo, e.hi, part, p, value, gradient);
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

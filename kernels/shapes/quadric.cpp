@@ -203,19 +203,11 @@ void Quadric::equation(const QuadricElement& e, const double (&in)[6], double (&
 }
 
 double Quadric::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const QuadricElement& e = pool.elements[i];
-  if (part > 0) return face_value(e.lo, e.hi, part, p);
-  const Vec3d g{e.q[0] * p.x + e.q[3] * p.y + e.q[4] * p.z, e.q[3] * p.x + e.q[1] * p.y + e.q[5] * p.z,
-                e.q[4] * p.x + e.q[5] * p.y + e.q[2] * p.z};
-  return dot(g + e.h * 2.0, p) + e.j;
+  return slope_at<Quadric>(pool, i, part, p).value;
 }
 
 Vec3d Quadric::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const QuadricElement& e = pool.elements[i];
-  if (part > 0) return face_gradient(part);
-  const Vec3d g{e.q[0] * p.x + e.q[3] * p.y + e.q[4] * p.z, e.q[3] * p.x + e.q[1] * p.y + e.q[5] * p.z,
-                e.q[4] * p.x + e.q[5] * p.y + e.q[2] * p.z};
-  return (g + e.h) * 2.0;
+  return slope_at<Quadric>(pool, i, part, p).gradient;
 }
 
 bool Quadric::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

@@ -76,6 +76,15 @@ struct Quadric {
     close_by_cell(open, inside, range, active, out);
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const QuadricElement& e = pool.elements[i];
+    const Vec3<D> g = times(e, p), h = broadcast<D>(e.h);
+    value = dot_lanes(Vec3<D>{g.x + h.x * D(2.0), g.y + h.y * D(2.0), g.z + h.z * D(2.0)}, p) + D(e.j);
+    gradient = {(g.x + h.x) * D(2.0), (g.y + h.y) * D(2.0), (g.z + h.z) * D(2.0)};
+    select_faces(e.lo, e.hi, part, p, value, gradient);
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

@@ -17,11 +17,6 @@ double horner(const double* c, int degree, double v) {
   for (int i = degree - 1; i >= 0; --i) y = y * v + c[i];
   return y;
 }
-double horner_slope(const double* c, int degree, double v) {
-  double y = 0;
-  for (int i = degree; i > 0; --i) y = y * v + i * c[i];
-  return y;
-}
 
 /// Calls f(v, value) at the ends of -1 <= v <= 1 and where a cubic is greatest or least between them.
 template <class F>
@@ -69,12 +64,6 @@ struct Span {
 Span surface_points(const RevolutionShape& s) {
   const std::size_t n = s.points.size(), skip = all_on_surface(s) ? 0 : 1;
   return n < 2 + 2 * skip ? Span{0, 0} : Span{skip, n - skip};
-}
-
-std::size_t piece_at(const RevolutionElement& e, double y) {
-  std::size_t k = 0;
-  while (k + 1 < e.pieces.size() && y > e.pieces[k].ends[1].height) ++k;
-  return k;
 }
 
 }  // namespace
@@ -155,24 +144,11 @@ void Revolution::add(Pool& pool, const ExactShape& shape, const Affine& to_world
 }
 
 double Revolution::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const RevolutionElement& e = pool.elements[i];
-  if (part > 0) {
-    const std::size_t k = static_cast<std::size_t>(part - 1) / 2;
-    const double y = k < e.pieces.size() ? e.pieces[k].ends[0].height : e.pieces.back().ends[1].height;
-    return (part - 1) % 2 == 1 ? p.y - y : y - p.y;
-  }
-  const Piece& piece = e.pieces[piece_at(e, p.y)];
-  const double f = horner(piece.c, e.degree, (p.y - piece.middle) * piece.per_half);
-  return p.x * p.x + p.z * p.z - (e.squared ? f : f * f);
+  return slope_at<Revolution>(pool, i, part, p).value;
 }
 
 Vec3d Revolution::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  if (part > 0) return {0, (part - 1) % 2 == 1 ? 1.0 : -1.0, 0};
-  const RevolutionElement& e = pool.elements[i];
-  const Piece& piece = e.pieces[piece_at(e, p.y)];
-  const double v = (p.y - piece.middle) * piece.per_half;
-  const double slope = horner_slope(piece.c, e.degree, v) * piece.per_half;
-  return {2 * p.x, e.squared ? -slope : -2 * horner(piece.c, e.degree, v) * slope, 2 * p.z};
+  return slope_at<Revolution>(pool, i, part, p).gradient;
 }
 
 bool Revolution::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

@@ -96,6 +96,41 @@ struct Revolution {
     list.finish(D(roots::kNoRoot));
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const RevolutionElement& e = pool.elements[i];
+    constexpr int W = D::kWidth;
+    double heights[W], parts[W], c[4][W], middle[W], per_half[W], height[W];
+    p.y.store(heights), part.store(parts);
+    const std::size_t count = e.pieces.size();
+    for (int k = 0; k < W; ++k) {
+      std::size_t at = 0;
+      while (at + 1 < count && heights[k] > e.pieces[at].ends[1].height) ++at;
+      const RevolutionElement::Piece& piece = e.pieces[at];
+      for (int n = 0; n < 4; ++n) c[n][k] = piece.c[n];
+      middle[k] = piece.middle, per_half[k] = piece.per_half;
+      const std::size_t plane = parts[k] > 0 ? (static_cast<std::size_t>(parts[k]) - 1) / 2 : 0;
+      height[k] = plane < count ? e.pieces[plane].ends[0].height : e.pieces[count - 1].ends[1].height;
+    }
+    const D scale = D::load(per_half), v = (p.y - D::load(middle)) * scale;
+    D f = D::load(c[e.degree]), rise(0.0);
+    for (int n = e.degree; n > 0; --n) rise = rise * v + f, f = f * v + D::load(c[n - 1]);
+    rise = rise * scale;
+    const D inside = e.squared ? f : f * f;
+    value = (p.x * p.x + p.z * p.z) - inside;
+    gradient = {D(2.0) * p.x, e.squared ? -rise : D(-2.0) * f * rise, D(2.0) * p.z};
+    const auto plane = part > D(0.0);
+    if (none(plane)) return;
+    // Odd parts face down.
+    const D level = p.y - D::load(height);
+    double down[W];
+    for (int k = 0; k < W; ++k) down[k] = static_cast<int>(parts[k]) % 2 == 1 ? -1 : 1;
+    const D side = D::load(down);
+    value = select(plane, side * level, value);
+    gradient = {select(plane, D(0.0), gradient.x), select(plane, side, gradient.y),
+                select(plane, D(0.0), gradient.z)};
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

@@ -16,15 +16,12 @@ void Torus::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std
   add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
 }
 
-double Torus::value(const Pool& pool, std::size_t i, int, const Vec3d& p) {
-  const TorusElement& e = pool.elements[i];
-  const double d = std::sqrt(p.x * p.x + p.y * p.y) - e.major;
-  return d * d + p.z * p.z - e.minor * e.minor;
+double Torus::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Torus>(pool, i, part, p).value;
 }
 
-Vec3d Torus::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) {
-  const double rho = std::sqrt(p.x * p.x + p.y * p.y), k = rho > 0 ? pool.elements[i].major / rho : 0;
-  return Vec3d{p.x - k * p.x, p.y - k * p.y, p.z} * 2.0;
+Vec3d Torus::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Torus>(pool, i, part, p).gradient;
 }
 
 bool Torus::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }

@@ -48,6 +48,15 @@ struct Torus {
     list<K>(all, l, c, there, out);
   }
 
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D&, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const TorusElement& e = pool.elements[i];
+    const D rho = sqrt(p.x * p.x + p.y * p.y), d = rho - D(e.major);
+    value = (d * d + p.z * p.z) - D(e.minor * e.minor);
+    const D k = select(rho > D(0.0), D(e.major) / rho, D(0.0));
+    gradient = {(p.x - k * p.x) * D(2.0), (p.y - k * p.y) * D(2.0), p.z * D(2.0)};
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

@@ -52,8 +52,8 @@ void expect_at(const std::vector<Hit>& hits, std::initializer_list<float> places
   }
 }
 
-/// A root that all terms have many times is as sharp as a single one, and where the sign does not change there
-/// is no surface.
+/// A root that all terms have many times is as sharp as a single one, and where the sign does not change
+/// there is no surface.
 TEST(PolynomialSurfaces, CommonFactorsCountOnce) {
   for (const char* equation : {"x = 0", "x^3 = 0", "x^5*3 = 0", "-(0 - x)^7 = 0"}) {
     SCOPED_TRACE(equation);

@@ -36,8 +36,13 @@ void expect_same(const Surface& s, const Surface& expected, std::size_t i) {
 void expect_like_surface(const Accel& accel, const RayBatch& rays, HitBatch& hits,
                          const std::vector<std::uint32_t>& which) {
   for (const Isa isa : available_isas()) {
-    std::vector<Surface> found(which.size());
-    surfaces(accel, rays.span(), hits.span(), which.data(), which.size(), isa, found.data());
+    std::vector<Surface> found;
+    for (std::size_t first = 0; first < which.size(); first += SurfaceBlock::kMost) {
+      SurfaceBlock block;
+      const std::size_t count = std::min(SurfaceBlock::kMost, which.size() - first);
+      surfaces(accel, rays.span(), hits.span(), which.data() + first, count, isa, block);
+      for (std::size_t i = 0; i < count; ++i) found.push_back(block[i]);
+    }
     for (std::size_t i = 0; i < which.size(); ++i) {
       expect_same(found[i], surface(accel, rays[which[i]], hits[which[i]]), i);
       const Surface names = identify(accel, hits[which[i]]);
@@ -60,12 +65,45 @@ TriangleMesh smooth_mesh() {
   return mesh;
 }
 
+PolyhedronShape cut_cube() {
+  return {{{{1, 0, 0}, 1},
+           {{-1, 0, 0}, 1},
+           {{0, 1, 0}, 1},
+           {{0, -1, 0}, 1},
+           {{0, 0, 1}, 1},
+           {{0, 0, -1}, 1},
+           {{1, 1, 1}, 2}}};
+}
+
+PolynomialShape saddle() {
+  PolynomialShape s;
+  s.terms = {{3, 0, 0, 1}, {1, 2, 0, -3}, {0, 0, 1, 1}, {0, 1, 2, 0.5}};
+  return s;
+}
+
+RevolutionShape vase() {
+  RevolutionShape s;
+  s.points = {{0.2, -1.2}, {0.5, -1}, {0.9, -0.4}, {0.3, 0.3}, {0.55, 0.9}, {0.6, 1.2}};
+  return s;
+}
+
 std::vector<Geometry> bodies(const TriangleMesh& smooth, const TriangleMesh& flat) {
   return {{MeshGeometry{&smooth}, {}, 1},
           {MeshGeometry{&smooth}, Affine::translation({2, 0, 0}) * Affine::rotation({10, 20, 30}), 2},
           {MeshGeometry{&flat}, Affine::translation({-2, 1, 0}) * Affine::scaling({1, -0.5, 2}), 3},
           {SpheresShape{{{{0, 2, 0}, 0.7}, {{0, -2, 0}, 0.5}}}, {}, 4},
-          {PlaneShape{{0, 1, 0.1}, -3}, {}, 5}};
+          {PlaneShape{{0, 1, 0.1}, -3}, {}, 5},
+          {ExactShape{TorusShape{0.7, 0.3}}, Affine::translation({3, 3, 0}), 6},
+          {ExactShape{CylinderShape{}}, Affine::translation({-3, -3, 0}), 7},
+          {ExactShape{ConeShape{}}, Affine::translation({-3, 3, 0}) * Affine::rotation({30, 20, 10}), 8},
+          {ExactShape{QuadricShape{{1, -1, 1, 0.1, 0, 0, 0, 0.2, 0, -0.2}, true}},
+           Affine::translation({3, -3, 0}), 9},
+          {ExactShape{cut_cube()}, Affine::translation({0, 0, 3}), 10},
+          {ExactShape{saddle()}, Affine::translation({0, 0, -3}), 11},
+          {ExactShape{vase()}, Affine::translation({0, 4, 0}), 12},
+          {ExactShape{BlobShape{{{BlobSource::Kind::point, {0, 0, 0}, {}, 0, 0.3}}}},
+           Affine::translation({0, -4, 0}), 13},
+          {ExactShape{TorusShape{0.5, 0.2}, NormalMethod::central}, Affine::translation({4, 0, 0}), 14}};
 }
 
 RayBatch random_rays(int count) {

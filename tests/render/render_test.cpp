@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -45,6 +46,33 @@ Scene busy_scene(IntegratorKind kind) {
 
 constexpr IntegratorKind kAllKinds[] = {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::ao,
                                         IntegratorKind::normal, IntegratorKind::depth};
+
+/// Without data layers, hits are shaded in blocks and found without uv; the colours must not show it.
+TEST(Render, ColoursAreTheSameWithoutDataLayers) {
+  for (const IntegratorKind kind : kAllKinds) {
+    Scene scene = busy_scene(kind);
+    Material checked = diffuse({1, 1, 1});
+    scene.textures.push_back({"no such file"});
+    checked.color_texture = 0;
+    add_object(scene, ExactShape{TorusShape{0.8, 0.3}}, add_material(scene, checked),
+               Affine::translation({0, 1, 0}));
+    add_object(scene, ExactShape{TorusShape{0.8, 0.3}}, 0, Affine::translation({0, 1, -2}));
+    scene.lights.push_back(PointLight{{-3, 0.5, 0}, {1, 1, 1}});
+    // Phong's highlight on the far side of a surface that the light is just behind.
+    scene.lights.push_back(DirectionalLight{{0, 1e-3, -1}, {1, 1, 1}});
+    const Picture with = run(scene).picture;
+    for (const Isa isa : available_isas()) {
+      const Picture without =
+          run(scene, [&](RenderOptions& o) { o.data_layers = false, o.isa = isa; }).picture;
+      ASSERT_EQ(without.planes.size(), 4u);
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t i = 0; i < with.planes[k].values.size(); ++i)
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(with.planes[k].values[i]),
+                    std::bit_cast<std::uint32_t>(without.planes[k].values[i]))
+              << to_string(isa) << ", plane " << k << ", pixel " << i;
+    }
+  }
+}
 
 TEST(Render, PictureDependsNeitherOnThreadsNorTilesNorInstructionSet) {
   for (const IntegratorKind kind : kAllKinds) {

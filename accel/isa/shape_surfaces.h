@@ -1,0 +1,99 @@
+#pragma once
+/// \file Surfaces of closed-form and exact shapes for one instruction set: the operations of surface() in the
+/// same order, on several hits at once.
+
+#include "accel/accel_data.h"
+#include "accel/shape_hits.h"
+#include "kernels/lanes.h"
+
+namespace oktett {
+
+/// Rays and distances of hits i, i + 1, ... in double.
+template <class D>
+struct HitPoints {
+  Vec3<D> o, d;
+  D t;
+  using F = Simd<float, D::kWidth, typename D::Isa>;
+
+  OKTETT_INLINE HitPoints(const ShapeHits& hits, std::size_t i)
+      : o(load(hits.origin, i)), d(load(hits.direction, i)), t(to_double(F::load(hits.t + i))) {}
+  OKTETT_INLINE Vec3<D> point() const { return {o.x + d.x * t, o.y + d.y * t, o.z + d.z * t}; }
+
+ private:
+  OKTETT_INLINE static Vec3<D> load(const float (&column)[3][ShapeHits::kMost], std::size_t i) {
+    return to_double(Vec3<F>{F::load(column[0] + i), F::load(column[1] + i), F::load(column[2] + i)});
+  }
+};
+
+template <class D>
+OKTETT_INLINE D length_lanes(const Vec3<D>& v) {
+  return sqrt(dot_lanes(v, v));
+}
+
+/// set_position of kernels/shapes/contract.h, and the normal.
+template <class D>
+OKTETT_INLINE void store_surface(const HitPoints<D>& hit, const Vec3<D>& p, const D& surface_error,
+                                 const Vec3<D>& normal, ShapeHits& out, std::size_t i) {
+  const D ulp(0x1p-23);
+  const auto error = [&](const D& direction, const D& place) {
+    return ulp * abs(hit.t * direction) + ulp * abs(place) + surface_error + D(1e-37);
+  };
+  to_float(p.x).store(out.position[0] + i), to_float(p.y).store(out.position[1] + i);
+  to_float(p.z).store(out.position[2] + i);
+  error(hit.d.x, p.x).store(out.position_error[0] + i), error(hit.d.y, p.y).store(out.position_error[1] + i);
+  error(hit.d.z, p.z).store(out.position_error[2] + i);
+  to_float(normal.x).store(out.normal[0] + i), to_float(normal.y).store(out.normal[1] + i);
+  to_float(normal.z).store(out.normal[2] + i);
+}
+
+/// column[element of hit i], ... in lanes.
+template <class D>
+OKTETT_INLINE D gather_elements(const Column<double>& column, const ShapeHits& hits, std::size_t i) {
+  double lanes[D::kWidth];
+  for (int k = 0; k < D::kWidth; ++k) lanes[k] = column[hits.element[i + k]];
+  return D::load(lanes);
+}
+
+template <class D>
+void sphere_surfaces(const Sphere::Pool& pool, ShapeHits& hits) {
+  for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
+    const HitPoints<D> hit(hits, i);
+    const Vec3<D> c{gather_elements<D>(pool.x, hits, i), gather_elements<D>(pool.y, hits, i),
+                    gather_elements<D>(pool.z, hits, i)};
+    const D radius = gather_elements<D>(pool.radius, hits, i);
+    const Vec3<D> m = sub_lanes(hit.point(), c);
+    const D l = length_lanes(m);
+    const Vec3<D> n{m.x / l, m.y / l, m.z / l};
+    const Vec3<D> p{c.x + n.x * radius, c.y + n.y * radius, c.z + n.z * radius};
+    store_surface(hit, p, D(0x1p-48) * (length_lanes(c) + radius), n, hits, i);
+  }
+}
+
+template <class D>
+void plane_surfaces(const Plane::Pool& pool, ShapeHits& hits) {
+  for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
+    const HitPoints<D> hit(hits, i);
+    const Vec3<D> n{gather_elements<D>(pool.nx, hits, i), gather_elements<D>(pool.ny, hits, i),
+                    gather_elements<D>(pool.nz, hits, i)};
+    const D offset = gather_elements<D>(pool.offset, hits, i);
+    Vec3<D> p = hit.point();
+    const D off = dot_lanes(n, p) - offset;
+    p = {p.x - n.x * off, p.y - n.y * off, p.z - n.z * off};
+    store_surface(hit, p, D(0x1p-50) * (length_lanes(p) + abs(offset)), n, hits, i);
+  }
+}
+
+/// Without vector registers one hit at a time.
+template <class A>
+using SurfaceLanes = Simd<double, std::is_same_v<A, ScalarIsa> ? 1 : 8, A>;
+
+/// Spheres or planes.
+template <class A>
+void closed_form_surfaces_code(const Accel& accel, Kind kind, ShapeHits& hits) {
+  if (kind == Kind::sphere)
+    sphere_surfaces<SurfaceLanes<A>>(std::get<Sphere::Pool>(accel.pools), hits);
+  else
+    plane_surfaces<SurfaceLanes<A>>(std::get<Plane::Pool>(accel.pools), hits);
+}
+
+}  // namespace oktett

@@ -1,0 +1,176 @@
+#include "render/whitted_block.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "render/direct_light.h"
+#include "render/integrators.h"
+
+namespace oktett {
+namespace {
+
+constexpr std::size_t kMost = SurfaceBlock::kMost;
+
+/// Hits and one light. Loops over the columns are written for compilers to turn into vector code: without
+/// branches, and on all of the columns up to a multiple of eight.
+struct Columns {
+  std::size_t count;  ///< a multiple of eight; what follows the last hit repeats the first
+  float direction[3][kMost];
+  float ng[3][kMost], ns[3][kMost];  ///< turned towards the ray's origin, see ShadingPoint
+
+  float l[3][kMost];       ///< unit vector to the light
+  float origin[3][kMost];  ///< of the shadow ray
+  float falloff[kMost];    ///< 1 / squared distance
+  float cosine[kMost];     ///< between ns and l; 0 where the light is behind
+  float highlight[kMost];  ///< cosine between the mirrored light and the viewer
+};
+
+/// face_ray of render/shading_point.cpp.
+void face_rays(const SurfaceBlock& s, Columns& c) {
+  constexpr float kLeast = 1e-3f;
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const float dx = c.direction[0][i], dy = c.direction[1][i], dz = c.direction[2][i];
+    const float nx = s.geometric_normal[0][i], ny = s.geometric_normal[1][i], nz = s.geometric_normal[2][i];
+    const float side = dx * nx + dy * ny + dz * nz > 0 ? -1.0f : 1.0f;
+    const float gx = nx * side, gy = ny * side, gz = nz * side;
+    c.ng[0][i] = gx, c.ng[1][i] = gy, c.ng[2][i] = gz;
+    float x = s.shading_normal[0][i], y = s.shading_normal[1][i], z = s.shading_normal[2][i];
+    const float turn = x * gx + y * gy + z * gz < 0 ? -1.0f : 1.0f;
+    x = x * turn, y = y * turn, z = z * turn;
+    const float away = dx * x + dy * y + dz * z;
+    const float bend = away + kLeast;
+    const float bx = x - dx * bend, by = y - dy * bend, bz = z - dz * bend;
+    const float length = std::sqrt(bx * bx + by * by + bz * bz);
+    const bool bent = away > -kLeast;
+    c.ns[0][i] = bent ? bx / length : x;
+    c.ns[1][i] = bent ? by / length : y;
+    c.ns[2][i] = bent ? bz / length : z;
+  }
+}
+
+void turn_to_light(const SurfaceBlock& s, const LightSource& light, Columns& c) {
+  if (light.directional) {
+    for (int k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < c.count; ++i) c.l[k][i] = light.place[k];
+    return;
+  }
+  const double px = light.place.x, py = light.place.y, pz = light.place.z;
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const double x = px - static_cast<double>(s.position[0][i]), y = py - static_cast<double>(s.position[1][i]),
+                 z = pz - static_cast<double>(s.position[2][i]);
+    const double square = x * x + y * y + z * z, distance = std::sqrt(square);
+    c.l[0][i] = static_cast<float>(x / distance);
+    c.l[1][i] = static_cast<float>(y / distance);
+    c.l[2][i] = static_cast<float>(z / distance);
+    c.falloff[i] = static_cast<float>(1 / square);
+  }
+}
+
+/// move_away of accel/offset_origin.h without branches: floats in the order of their numbers.
+inline float move_away_evenly(float p, float offset) {
+  constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min(), kInfinite = 0x7f800000;
+  const float sum = p + offset;
+  const auto mirrored = [](std::int32_t bits) { return bits < 0 ? kLowest - bits : bits; };
+  std::int32_t place = mirrored(std::bit_cast<std::int32_t>(sum)) + ((offset > 0) - (offset < 0));
+  place = place > kInfinite ? kInfinite : place;
+  place = place < -kInfinite ? -kInfinite : place;
+  const float moved = std::bit_cast<float>(mirrored(place));
+  return sum == sum ? moved : sum;
+}
+
+/// offset_origin of accel/offset_origin.h towards `l`.
+void leave_surfaces(const SurfaceBlock& s, Columns& c) {
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const float nx = s.geometric_normal[0][i], ny = s.geometric_normal[1][i], nz = s.geometric_normal[2][i];
+    const float reach = std::abs(nx) * s.position_error[0][i] + std::abs(ny) * s.position_error[1][i] +
+                        std::abs(nz) * s.position_error[2][i];
+    const float side = c.l[0][i] * nx + c.l[1][i] * ny + c.l[2][i] * nz < 0 ? -reach : reach;
+    c.origin[0][i] = move_away_evenly(s.position[0][i], nx * side);
+    c.origin[1][i] = move_away_evenly(s.position[1][i], ny * side);
+    c.origin[2][i] = move_away_evenly(s.position[2][i], nz * side);
+  }
+}
+
+/// The cosines of phong().
+void measure_angles(Columns& c) {
+  for (std::size_t i = 0; i < c.count; ++i) {
+    const float lx = c.l[0][i], ly = c.l[1][i], lz = c.l[2][i];
+    const float dx = c.direction[0][i], dy = c.direction[1][i], dz = c.direction[2][i];
+    const float x = c.ns[0][i], y = c.ns[1][i], z = c.ns[2][i];
+    const float cosine = x * lx + y * ly + z * lz;
+    const float above = c.ng[0][i] * lx + c.ng[1][i] * ly + c.ng[2][i] * lz;
+    c.highlight[i] = (lx * dx + ly * dy + lz * dz) - 2 * cosine * (x * dx + y * dy + z * dz);
+    c.cosine[i] = above <= 0 ? 0.0f : cosine;
+  }
+}
+
+Vec3f get(const float (&column)[3][kMost], std::size_t i) { return SurfaceBlock::get(column, i); }
+
+/// The shadow ray of hit `k` of the columns.
+Ray shadow_ray(const Columns& c, std::size_t k, const LightSource& light) {
+  Ray ray;
+  ray.origin = get(c.origin, k);
+  if (light.directional) {
+    ray.direction = light.place;
+  } else {
+    ray.direction = light.place - ray.origin;
+    ray.tmax = kBeforeLight;
+  }
+  return ray;
+}
+
+}  // namespace
+
+void shade_whitted_block(const RenderContext& context, Wave& wave, const std::uint32_t* which,
+                         std::size_t count, const SurfaceBlock& found) {
+  Columns c;
+  c.count = (count + 7) / 8 * 8;
+  const Material* materials[kMost];
+  bool plain[kMost];
+  for (std::size_t k = 0; k < count; ++k) {
+    materials[k] = &material_at(*context.world, found.user[k], found.material_slot[k]);
+    plain[k] = context.textures == nullptr || !has_textures(*materials[k]);
+    for (int axis = 0; axis < 3; ++axis) c.direction[axis][k] = wave.rays.rays.direction[axis][which[k]];
+  }
+  // What follows the last hit may hold anything, but denormals would be slow.
+  for (std::size_t k = count; k < c.count; ++k)
+    for (int axis = 0; axis < 3; ++axis) c.direction[axis][k] = 0;
+  face_rays(found, c);
+  for (std::size_t n = 0; n < context.lights.size(); ++n) {
+    const LightSource& light = context.lights[n];
+    turn_to_light(found, light, c);
+    leave_surfaces(found, c);
+    measure_angles(c);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!plain[k] || c.cosine[k] <= 0) continue;
+      const Material& m = *materials[k];
+      const Color shine = phong_sum(m, m.color, m.specular_color, c.cosine[k], c.highlight[k]);
+      const Color color = !light.directional && light.falloff ? light.color * c.falloff[k] : light.color;
+      const Color arriving = wave.rays.throughput[which[k]] * shine * color;
+      if (arriving == Color{0, 0, 0}) continue;
+      wave.shadows[n].push_back(shadow_ray(c, k, light), which[k], arriving);
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = which[k];
+    const Material& m = *materials[k];
+    const bool specular = m.reflection != 0 || m.transparency != 0;
+    ShadingPoint p;
+    if (!plain[k] || specular)
+      p = shading_point(context, wave.rays.rays[i], wave.hits[i],
+                        {wave.rays.distance[i], wave.rays.from_camera[i] != 0}, found[k]);
+    const float opacity = plain[k] ? 1.0f : p.opacity;
+    if (wave.rays.from_camera[i]) wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x * opacity;
+    if (!plain[k]) {
+      shade_whitted(context, wave, i, p);
+      continue;
+    }
+    const Color throughput = wave.rays.throughput[i];
+    wave.radiance[i] += throughput * (m.emission + m.color * m.ambient * context.ambient_light);
+    if (specular) push_specular(context, wave, i, p, throughput);
+  }
+}
+
+}  // namespace oktett
