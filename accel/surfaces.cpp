@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 
 #include "accel/hit_place.h"
 #include "accel/isa/table.h"
@@ -179,13 +180,24 @@ class ShapeGroups {
       });
       return;
     }
+    for (int axis = 0; axis < 3; ++axis) round_up_column(columns_.position_error[axis], error_[axis]);
     for (std::size_t k = 0; k < columns_.count; ++k) {
       const std::uint32_t i = members[k];
       for (int axis = 0; axis < 3; ++axis) {
         out_.position[axis][i] = columns_.position[axis][k];
-        out_.position_error[axis][i] = round_up(columns_.position_error[axis][k]);
+        out_.position_error[axis][i] = error_[axis][k];
         out_.geometric_normal[axis][i] = out_.shading_normal[axis][i] = columns_.normal[axis][k];
       }
+    }
+  }
+
+  /// round_up of numbers that are not negative, without branches.
+  void round_up_column(const double* column, float* out) const {
+    const std::size_t end = (columns_.count + 7) / 8 * 8;
+    for (std::size_t k = 0; k < end; ++k) {
+      const float rounded = static_cast<float>(column[k]);
+      out[k] = std::bit_cast<float>(std::bit_cast<std::int32_t>(rounded) +
+                                    (static_cast<double>(rounded) < column[k] ? 1 : 0));
     }
   }
 
@@ -195,6 +207,7 @@ class ShapeGroups {
   const std::uint32_t* which_;
   const IsaTable& table_;
   SurfaceBlock& out_;
+  float error_[3][SurfaceBlock::kMost];
   std::size_t count_ = 0;
   std::uint32_t entry_[SurfaceBlock::kMost], element_[SurfaceBlock::kMost];
   std::uint64_t group_[SurfaceBlock::kMost];

@@ -31,7 +31,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(oktett_isa_warnings -Wno-uninitialized -Wno-maybe-uninitialized)
 endif()
 # Loops over columns become vector code only where nobody asks for errno and traps; the values are the same.
-set_source_files_properties(${PROJECT_SOURCE_DIR}/render/whitted_block.cpp PROPERTIES
+set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/surfaces.cpp ${PROJECT_SOURCE_DIR}/render/whitted_block.cpp PROPERTIES
   COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
 function(oktett_isa_flags file)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/isa/${file} PROPERTIES

@@ -264,7 +264,7 @@ OKTETT_INLINE Simd<float, W, A> to_float(const Simd<double, W, A>& a) {
 template <class T, int W, class A>
 OKTETT_INLINE Simd<T, 2 * W, A> concat(const Simd<T, W, A>& lo, const Simd<T, W, A>& hi) {
   Simd<T, 2 * W, A> r;
-  if constexpr (r.kLanesPerPart == lo.kLanesPerPart) {
+  if constexpr (Simd<T, 2 * W, A>::kLanesPerPart == Simd<T, W, A>::kLanesPerPart) {
     for (int i = 0; i < lo.kParts; ++i) r.part[i] = lo.part[i], r.part[lo.kParts + i] = hi.part[i];
   } else {
     r.part[0] = native::concat(lo.part[0], hi.part[0]);

@@ -43,10 +43,10 @@ Address parse_address(const std::string& server) {
   return address;
 }
 
-std::vector<const Plane*> shown_planes(const Picture& picture) {
-  std::vector<const Plane*> planes;
+std::vector<const PicturePlane*> shown_planes(const Picture& picture) {
+  std::vector<const PicturePlane*> planes;
   for (const char* name : {"R", "G", "B", "A"}) {
-    const Plane* plane = picture.find(name);
+    const PicturePlane* plane = picture.find(name);
     if (plane != nullptr && plane->type != PlaneType::unsigned_int) planes.push_back(plane);
   }
   return planes;
@@ -134,7 +134,7 @@ Display::~Display() {
 
 void Display::update(const Picture& picture, const FinishedTile& tile) {
   if (link_->stop) return;
-  const std::vector<const Plane*> planes = shown_planes(picture);
+  const std::vector<const PicturePlane*> planes = shown_planes(picture);
   if (planes.empty() || tile.width == 0 || tile.height == 0) return;
   if (!announced_)
     link_->push(create_image_packet(title_, std::max(picture.full_width, picture.x + picture.width),

@@ -38,14 +38,14 @@ class Writer {
   Packet packet_;
 };
 
-void channel_names(Writer& writer, std::span<const Plane* const> planes) {
-  for (const Plane* plane : planes) writer.text(plane->name);
+void channel_names(Writer& writer, std::span<const PicturePlane* const> planes) {
+  for (const PicturePlane* plane : planes) writer.text(plane->name);
 }
 
 }  // namespace
 
 Packet create_image_packet(const std::string& title, std::uint32_t width, std::uint32_t height,
-                           std::span<const Plane* const> planes) {
+                           std::span<const PicturePlane* const> planes) {
   Writer writer(PacketType::create_image);
   writer.byte(1);
   writer.text(title);
@@ -57,7 +57,7 @@ Packet create_image_packet(const std::string& title, std::uint32_t width, std::u
 }
 
 Packet update_image_packet(const std::string& title, const Picture& picture, const FinishedTile& tile,
-                           std::span<const Plane* const> planes) {
+                           std::span<const PicturePlane* const> planes) {
   Writer writer(PacketType::update_image_v2);
   writer.byte(0);
   writer.text(title);
@@ -68,7 +68,7 @@ Packet update_image_packet(const std::string& title, const Picture& picture, con
   writer.number(tile.width);
   writer.number(tile.height);
   writer.reserve(sizeof(float) * planes.size() * tile.width * tile.height);
-  for (const Plane* plane : planes)
+  for (const PicturePlane* plane : planes)
     for (std::size_t y = tile.y; y < std::size_t{tile.y} + tile.height; ++y)
       for (std::size_t x = tile.x; x < std::size_t{tile.x} + tile.width; ++x)
         writer.number(plane->values[y * picture.width + x]);

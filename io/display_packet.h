@@ -18,11 +18,11 @@ using Packet = std::vector<std::byte>;
 
 /// Announces an image of `width` x `height` pixels with these channels, all black; brings it to the front.
 Packet create_image_packet(const std::string& title, std::uint32_t width, std::uint32_t height,
-                           std::span<const Plane* const> planes);
+                           std::span<const PicturePlane* const> planes);
 
 /// Fills a rectangle of several channels at once. `tile` is in the picture's own coordinates, the packet in
 /// those of the full frame.
 Packet update_image_packet(const std::string& title, const Picture& picture, const FinishedTile& tile,
-                           std::span<const Plane* const> planes);
+                           std::span<const PicturePlane* const> planes);
 
 }  // namespace oktett

@@ -44,7 +44,7 @@ void read_channels(OIIO::ImageInput& input, const ImageSpec& spec, const std::st
     throw Error(Location{path}, "cannot read the image: " + first_line(why, "damaged file"), ErrorKind::io);
 
   for (std::size_t c = 0; c < count; ++c) {
-    Plane plane;
+    PicturePlane plane;
     plane.name = spec.channel_name(begin + static_cast<int>(c));
     plane.type = ids ? PlaneType::unsigned_int : PlaneType::single_float;
     if (ids) {
@@ -65,19 +65,19 @@ bool is_color(const std::string& name) { return name == "R" || name == "G" || na
 void expand_grey(Picture& picture) {
   if (picture.find("R") != nullptr) return;
   const auto grey = std::find_if(picture.planes.begin(), picture.planes.end(),
-                                 [](const Plane& p) { return p.name == "Y" || p.name == "I"; });
+                                 [](const PicturePlane& p) { return p.name == "Y" || p.name == "I"; });
   if (grey == picture.planes.end() || grey->type == PlaneType::unsigned_int) return;
   grey->name = "R";
-  Plane green = *grey, blue = *grey;
+  PicturePlane green = *grey, blue = *grey;
   green.name = "G", blue.name = "B";
   const auto next = picture.planes.insert(grey + 1, std::move(green));
   picture.planes.insert(next + 1, std::move(blue));
 }
 
 void decode_colors(Picture& picture, const ColorEncoding& encoding, bool multiply_by_alpha) {
-  const Plane* alpha = multiply_by_alpha ? picture.find("A") : nullptr;
+  const PicturePlane* alpha = multiply_by_alpha ? picture.find("A") : nullptr;
   if (alpha != nullptr && alpha->type == PlaneType::unsigned_int) alpha = nullptr;
-  for (Plane& plane : picture.planes) {
+  for (PicturePlane& plane : picture.planes) {
     if (!is_color(plane.name) || plane.type == PlaneType::unsigned_int) continue;
     if (encoding.curve != TransferCurve::linear)
       for (float& v : plane.values) v = decode(encoding, v);

@@ -49,7 +49,7 @@ ImageOutput::unique_ptr find_writer(const std::string& path) {
 void check_planes(const Picture& picture) {
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   if (pixels == 0) throw Error("the picture has no pixels");
-  for (const Plane& plane : picture.planes) {
+  for (const PicturePlane& plane : picture.planes) {
     const std::size_t held = plane.type == PlaneType::unsigned_int ? plane.ids.size() : plane.values.size();
     if (held != pixels)
       throw Error(fmt::format("plane {} holds {} numbers, expected {}", plane.name, held, pixels));
@@ -76,7 +76,7 @@ void add_metadata(ImageSpec& spec, const ImageMetadata& metadata) {
 }
 
 /// Copies `count` pixels of a plane to every `stride` bytes of `out`, in the type the file has.
-void pack_plane(const Plane& plane, std::size_t first, std::size_t count, std::byte* out,
+void pack_plane(const PicturePlane& plane, std::size_t first, std::size_t count, std::byte* out,
                 std::size_t stride) {
   if (plane.type == PlaneType::unsigned_int) {
     for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * stride, &plane.ids[first + i], 4);
@@ -99,7 +99,7 @@ void pack_plane(const Plane& plane, std::size_t first, std::size_t count, std::b
 
 /// All planes of a row, pixel after pixel. A row stays in the cache while plane after plane is added.
 void pack_row(const Picture& picture, std::uint32_t row, std::byte* out, std::size_t pixel_bytes) {
-  for (const Plane& plane : picture.planes) {
+  for (const PicturePlane& plane : picture.planes) {
     pack_plane(plane, std::size_t{row} * picture.width, picture.width, out, pixel_bytes);
     out += file_type(plane.type).size();
   }
@@ -117,7 +117,7 @@ bool write_planes(ImageOutput& output, const std::string& path, const Picture& p
   spec.full_x = spec.full_y = 0;
   spec.alpha_channel = spec.z_channel = -1;
   std::size_t pixel_bytes = 0;
-  for (const Plane& plane : picture.planes) {
+  for (const PicturePlane& plane : picture.planes) {
     const TypeDesc type = file_type(plane.type);
     if (plane.name == "A") spec.alpha_channel = static_cast<int>(spec.channelnames.size());
     if (plane.name == "Z") spec.z_channel = static_cast<int>(spec.channelnames.size());
@@ -143,8 +143,8 @@ bool write_planes(ImageOutput& output, const std::string& path, const Picture& p
   return output.close();
 }
 
-const Plane& color_plane(const Picture& picture, const char* name) {
-  const Plane* plane = picture.find(name);
+const PicturePlane& color_plane(const Picture& picture, const char* name) {
+  const PicturePlane* plane = picture.find(name);
   if (plane == nullptr || plane->type == PlaneType::unsigned_int)
     throw Error(fmt::format("the picture has no colour plane {}, which this format needs", name));
   return *plane;
@@ -161,8 +161,8 @@ ImageSpec flat_spec(const Picture& picture, int channels, TypeDesc type, const I
 
 bool write_float_rgb(ImageOutput& output, const std::string& path, const Picture& picture,
                      const ImageMetadata& metadata) {
-  const Plane* planes[3] = {&color_plane(picture, "R"), &color_plane(picture, "G"),
-                            &color_plane(picture, "B")};
+  const PicturePlane* planes[3] = {&color_plane(picture, "R"), &color_plane(picture, "G"),
+                                   &color_plane(picture, "B")};
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   std::vector<float> rgb(pixels * 3);
   for (std::size_t i = 0; i < pixels; ++i)
@@ -179,9 +179,9 @@ float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0
 
 bool write_srgb8(ImageOutput& output, const std::string& path, const Picture& picture,
                  const ImageMetadata& metadata) {
-  const Plane* planes[3] = {&color_plane(picture, "R"), &color_plane(picture, "G"),
-                            &color_plane(picture, "B")};
-  const Plane* alpha =
+  const PicturePlane* planes[3] = {&color_plane(picture, "R"), &color_plane(picture, "G"),
+                                   &color_plane(picture, "B")};
+  const PicturePlane* alpha =
       output.supports("alpha") && picture.find("A") != nullptr ? &color_plane(picture, "A") : nullptr;
   const std::size_t channels = alpha != nullptr ? 4 : 3;
   const std::size_t pixels = std::size_t{picture.width} * picture.height;

@@ -75,6 +75,11 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
   const Color color = samples.color[i];
   if (!is_finite(color) || !std::isfinite(samples.alpha[i])) return false;
   ++pixel.good;
+  if (samples.first.empty()) {
+    add3(pixel.color, color);
+    pixel.alpha += static_cast<double>(samples.alpha[i]);
+    return true;
+  }
   const FirstHit& first = samples.first[i];
   if (!first.found && color == Color{} && samples.alpha[i] == 0) {
     add_ids(pixel, first, samples.offset[i]);
@@ -97,7 +102,7 @@ Picture make_picture(const RenderContext& context) {
   const std::size_t size = static_cast<std::size_t>(picture.width) * picture.height;
   const int count = context.data_layers ? kVarianceB + 1 : kA + 1;
   for (int i = 0; i < count; ++i) {
-    Plane plane;
+    PicturePlane plane;
     plane.name = kNames[i];
     if (i == kPrimId || i == kGeomId) {
       plane.type = PlaneType::unsigned_int;
@@ -109,6 +114,14 @@ Picture make_picture(const RenderContext& context) {
     picture.planes.push_back(std::move(plane));
   }
   return picture;
+}
+
+bool write_sample(Picture& picture, std::uint32_t x, std::uint32_t y, const Color& color, float alpha) {
+  if (!is_finite(color) || !std::isfinite(alpha)) return false;
+  const std::size_t at = static_cast<std::size_t>(y) * picture.width + x;
+  for (int k = 0; k < 3; ++k) picture.planes[kR + k].values[at] = color[k];
+  picture.planes[kA].values[at] = alpha;
+  return true;
 }
 
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel) {

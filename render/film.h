@@ -42,6 +42,10 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 Picture make_picture(const RenderContext& context);
 
+/// write_pixel for pixels of one sample without data layers; false if it is left out because it holds NaN or
+/// infinity.
+bool write_sample(Picture& picture, std::uint32_t x, std::uint32_t y, const Color& color, float alpha);
+
 /// Writes a finished pixel, (x, y) counted in the picture. Threads may write different pixels at the same
 /// time.
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel);

@@ -14,7 +14,7 @@ enum class PlaneType { half_float, single_float, unsigned_int };
 
 /// One channel of a picture: `values` (or `ids` for unsigned_int) hold width * height entries, row by row
 /// from the top.
-struct Plane {
+struct PicturePlane {
   std::string name;  ///< EXR channel name: "R", "G", "B", "A", "Z", "N.X", "primID.I", ...
   PlaneType type = PlaneType::half_float;
   Column<float> values;
@@ -27,10 +27,10 @@ struct Picture {
   std::uint32_t width = 0, height = 0;
   std::uint32_t x = 0, y = 0;
   std::uint32_t full_width = 0, full_height = 0;
-  std::vector<Plane> planes;
+  std::vector<PicturePlane> planes;
 
-  const Plane* find(const std::string& name) const {
-    for (const Plane& plane : planes)
+  const PicturePlane* find(const std::string& name) const {
+    for (const PicturePlane& plane : planes)
       if (plane.name == name) return &plane;
     return nullptr;
   }

@@ -59,6 +59,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
   TileCounts counts;
   Wave& wave = work.wave;
   wave.counts = {};
+  const bool single = samples == 1 && !context.data_layers;
   const auto write = [&](std::uint32_t number, const PixelSum& sum) {
     write_pixel(picture, tile.x + work.order[number].x, tile.y + work.order[number].y, sum);
   };
@@ -70,6 +71,15 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
     for (std::uint32_t s = 0; s < samples; s += samples_per_wave) {
       start_wave(context, pixels, s, std::min(samples, s + samples_per_wave), wave);
       if (!trace_wave(context, wave)) continue;
+      if (single) {
+        for (std::size_t i = 0; i < wave.samples.size(); ++i) {
+          const WavePixel& at = work.order[wave.samples.pixel[i]];
+          if (!write_sample(picture, tile.x + at.x, tile.y + at.y, wave.samples.color[i],
+                            wave.samples.alpha[i]))
+            ++counts.bad_samples;
+        }
+        continue;
+      }
       for (std::size_t i = 0; i < wave.samples.size(); ++i) {
         if (wave.samples.pixel[i] != number) {
           write(number, sum);
@@ -79,7 +89,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
       }
     }
     // Pixels are black to begin with, those that were skipped stay so.
-    write(number, sum);
+    if (!single) write(number, sum);
   }
   counts.rays = wave.counts;
   return counts;

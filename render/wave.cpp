@@ -142,9 +142,8 @@ void fill_samples(SampleBatch& samples) {
   const std::size_t count = samples.size();
   std::fill_n(samples.color.data(), count, Color{});
   std::fill_n(samples.alpha.data(), count, 0.0f);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (FirstHit& first : samples.first) {
     // The rest of a first hit is written when it is found.
-    FirstHit& first = samples.first[i];
     first.found = false, first.primitive = first.object = kNoId;
   }
 }
@@ -160,7 +159,7 @@ void start_wave(const RenderContext& context, std::span<const WavePixel> pixels,
   wave.shadows.resize(std::max<std::size_t>(1, context.lights.size()));
   wave.film_x.resize_uninitialized(count), wave.film_y.resize_uninitialized(count);
   SampleBatch& s = wave.samples;
-  s.resize_uninitialized(count);
+  s.resize_uninitialized(count, context.data_layers);
   wave.rays.resize_uninitialized(count);
   std::size_t i = 0;
   for (const WavePixel& pixel : pixels) {

@@ -31,13 +31,13 @@ struct SampleBatch {
   Column<Color> color;
   Column<float> alpha;
   Column<std::uint16_t> spawned;  ///< rays of the next level so far
-  Column<FirstHit> first;
+  Column<FirstHit> first;         ///< empty unless data layers are wanted
 
   std::size_t size() const { return pixel.size(); }
-  void resize_uninitialized(std::size_t n) {
+  void resize_uninitialized(std::size_t n, bool data_layers) {
     pixel.resize_uninitialized(n), number.resize_uninitialized(n), key.resize_uninitialized(n);
     offset.resize_uninitialized(n), color.resize_uninitialized(n), alpha.resize_uninitialized(n);
-    spawned.resize_uninitialized(n), first.resize_uninitialized(n);
+    spawned.resize_uninitialized(n), first.resize_uninitialized(data_layers ? n : 0);
   }
 };
 

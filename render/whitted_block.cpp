@@ -58,7 +58,8 @@ void turn_to_light(const SurfaceBlock& s, const LightSource& light, Columns& c) 
   }
   const double px = light.place.x, py = light.place.y, pz = light.place.z;
   for (std::size_t i = 0; i < c.count; ++i) {
-    const double x = px - static_cast<double>(s.position[0][i]), y = py - static_cast<double>(s.position[1][i]),
+    const double x = px - static_cast<double>(s.position[0][i]),
+                 y = py - static_cast<double>(s.position[1][i]),
                  z = pz - static_cast<double>(s.position[2][i]);
     const double square = x * x + y * y + z * z, distance = std::sqrt(square);
     c.l[0][i] = static_cast<float>(x / distance);
@@ -162,7 +163,8 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
       p = shading_point(context, wave.rays.rays[i], wave.hits[i],
                         {wave.rays.distance[i], wave.rays.from_camera[i] != 0}, found[k]);
     const float opacity = plain[k] ? 1.0f : p.opacity;
-    if (wave.rays.from_camera[i]) wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x * opacity;
+    if (wave.rays.from_camera[i])
+      wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x * opacity;
     if (!plain[k]) {
       shade_whitted(context, wave, i, p);
       continue;

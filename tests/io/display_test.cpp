@@ -100,7 +100,7 @@ Picture picture_with_planes(std::uint32_t width, std::uint32_t height) {
   picture.x = 5, picture.y = 7, picture.full_width = width + 10, picture.full_height = height + 20;
   const char* names[] = {"R", "G", "B", "A"};
   for (int c = 0; c < 4; ++c) {
-    Plane plane{names[c], PlaneType::half_float, Column<float>(std::size_t{width} * height), {}};
+    PicturePlane plane{names[c], PlaneType::half_float, Column<float>(std::size_t{width} * height), {}};
     for (std::size_t i = 0; i < plane.values.size(); ++i)
       plane.values[i] = static_cast<float>(1000 * c) + static_cast<float>(i);
     picture.planes.push_back(plane);

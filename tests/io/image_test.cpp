@@ -25,8 +25,8 @@ using test::TempDir;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-Plane float_plane(const char* name, PlaneType type, std::size_t pixels, float first, float step) {
-  Plane plane{name, type, Column<float>(pixels), {}};
+PicturePlane float_plane(const char* name, PlaneType type, std::size_t pixels, float first, float step) {
+  PicturePlane plane{name, type, Column<float>(pixels), {}};
   for (std::size_t i = 0; i < pixels; ++i) plane.values[i] = first + step * static_cast<float>(i);
   return plane;
 }
@@ -83,7 +83,7 @@ TEST(Exr, RoundTripKeepsTypesAndNumbers) {
   Picture picture = color_picture(7, 5, 0.25f, 0.5f, 2, 1);
   picture.planes.push_back(float_plane("Z", PlaneType::single_float, 35, 1.1f, 0.3f));
   picture.planes.push_back(float_plane("N.X", PlaneType::single_float, 35, -0.7f, 0.01f));
-  Plane ids{"primID.I", PlaneType::unsigned_int, {}, Column<std::uint32_t>(35)};
+  PicturePlane ids{"primID.I", PlaneType::unsigned_int, {}, Column<std::uint32_t>(35)};
   for (std::uint32_t i = 0; i < 35; ++i) ids.ids[i] = 0xffffffffu - i * 0x1234567u;
   picture.planes.push_back(ids);
   write_image(dir.file("a.exr"), picture);
@@ -92,8 +92,8 @@ TEST(Exr, RoundTripKeepsTypesAndNumbers) {
   EXPECT_EQ(back.width, 7u);
   EXPECT_EQ(back.height, 5u);
   ASSERT_EQ(back.planes.size(), picture.planes.size());
-  for (const Plane& plane : picture.planes) {
-    const Plane* read = back.find(plane.name);
+  for (const PicturePlane& plane : picture.planes) {
+    const PicturePlane* read = back.find(plane.name);
     ASSERT_NE(read, nullptr) << plane.name;
     EXPECT_EQ(read->type == PlaneType::unsigned_int, plane.type == PlaneType::unsigned_int);
     for (std::size_t i = 0; i < 35; ++i) {
@@ -121,7 +121,7 @@ TEST(Exr, RowsAreCompleteAtAnyHeight) {
     picture.planes[1] = float_plane("G", PlaneType::single_float, 3 * height, 0, 1);
     write_image(dir.file("a.exr"), picture);
     const Picture back = read_image(dir.file("a.exr"));
-    const Plane* green = back.find("G");
+    const PicturePlane* green = back.find("G");
     ASSERT_NE(green, nullptr);
     for (std::size_t i = 0; i < 3 * height; ++i) ASSERT_EQ(green->values[i], static_cast<float>(i));
   }
@@ -150,7 +150,7 @@ TEST(Exr, NonFiniteNumbersAreKeptAndLargeOnesStayFinite) {
   picture.planes[0].values[3] = 1e9f;
   write_image(dir.file("a.exr"), picture);
   const Picture back = read_image(dir.file("a.exr"));
-  const Plane& red = *back.find("R");
+  const PicturePlane& red = *back.find("R");
   EXPECT_TRUE(std::isnan(red.values[0]));
   EXPECT_EQ(red.values[1], kInf);
   EXPECT_EQ(red.values[2], -kInf);

@@ -47,7 +47,7 @@ TEST(Film, EmptyPixelsSaySo) {
 TEST(Film, PlanesFollowTheConventions) {
   const Picture all = run(bare_scene(2)).picture;
   std::vector<std::string> names;
-  for (const Plane& plane : all.planes) {
+  for (const PicturePlane& plane : all.planes) {
     names.push_back(plane.name);
     const bool is_id = plane.name.ends_with("ID.I"),
                beauty = plane.name.size() == 1 && plane.name.find_first_of("RGBA") == 0;

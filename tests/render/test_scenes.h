@@ -97,7 +97,7 @@ inline Vec3f position(const Picture& p, std::uint32_t x, std::uint32_t y) {
 inline bool same_bytes(const Picture& a, const Picture& b) {
   if (a.width != b.width || a.height != b.height || a.planes.size() != b.planes.size()) return false;
   for (std::size_t i = 0; i < a.planes.size(); ++i) {
-    const Plane &p = a.planes[i], &q = b.planes[i];
+    const PicturePlane &p = a.planes[i], &q = b.planes[i];
     if (p.name != q.name || p.values.size() != q.values.size() || p.ids.size() != q.ids.size()) return false;
     if (p.values.size() > 0 &&
         std::memcmp(p.values.data(), q.values.data(), p.values.size() * sizeof(float)) != 0)
