@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 
 #include "accel/accel_data.h"
 #include "accel/dispatch.h"
 #include "accel/node_planes.h"
+#include "accel/ray_slots.h"
 #include "accel/trace_counts.h"
 #include "app/oracle_mesh.h"
 #include "app/verify_cases.h"
@@ -62,7 +64,7 @@ TEST(CompactNode, DecodedBoxesHoldTheOthers) {
     const int count = 1 + static_cast<int>(r.bits() % 8);
     std::vector<Box> boxes;
     for (int i = 0; i < count; ++i) {
-      const Vec3d at = r.vector() + Vec3d(1, -1, 0.5) * (shift / scale);
+      const Vec3d at = r.vector() + Vec3d{1, -1, 0.5} * (shift / scale);
       const double size = r.magnitude(-8, 0);
       const auto corner = [&] { return Vec3f((at + r.vector() * size) * scale); };
       boxes.push_back(sorted_box(corner(), corner()));
@@ -118,6 +120,74 @@ TEST(CompactNode, LanesAreWhatIsDecodedOneByOne) {
     for (int i = 0; i < 48; ++i) (&node.plane[0][0])[i] = static_cast<std::uint8_t>(48 * e + i);
     expect_planes(node);
   }
+}
+
+/// Whether the line of `r` meets a box within the ray's range, in extended precision.
+bool meets(const Ray& r, const Box& box) {
+  long double near = r.tmin, far = r.tmax;
+  for (int k = 0; k < 3; ++k) {
+    const long double lo = static_cast<long double>(box.lo[k]) - r.origin[k],
+                      hi = static_cast<long double>(box.hi[k]) - r.origin[k], d = r.direction[k];
+    if (d == 0) {
+      if (lo > 0 || hi < 0) return false;
+      continue;
+    }
+    near = std::max(near, std::min(lo / d, hi / d)), far = std::min(far, std::max(lo / d, hi / d));
+  }
+  return near <= far;
+}
+
+// Interleaved rays never form the planes. They must meet every child whose own box they meet, at every scale,
+// also if they only touch a corner of it.
+TEST(CompactNode, InterleavedRaysMeetWhatTheyShould) {
+  constexpr int kRays = 8;
+  using A = ScalarIsa;
+  CaseRandom r(21);
+  int met = 0, more = 0;
+  const auto slot = std::make_unique<RaySlot>();
+  const auto chunk = std::make_unique<RayChunk<kRays, A>>();
+  for (int round = 0; round < 6000; ++round) {
+    const double scale = r.magnitude(-10, 10), shift = round % 2 == 0 ? r.magnitude(-2, 4) : 0;
+    std::vector<Box> boxes;
+    float extent = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3d at = (r.vector() + Vec3d{1, -0.7, 0.2} * shift) * scale;
+      const double size = r.magnitude(-6, 0) * scale;
+      boxes.push_back(sorted_box(Vec3f(at), Vec3f(at + r.vector() * size)));
+      if (i % 3 == 0) boxes.back().hi.z = boxes.back().lo.z;
+      extent = std::max({extent, max_component(abs(boxes.back().lo)), max_component(abs(boxes.back().hi))});
+    }
+    CompactNode node;
+    set_boxes(node, boxes.data(), 8);
+    RayBatch rays;
+    for (int i = 0; i < kRays; ++i) {
+      const Box& b = boxes[r.bits() % 8];
+      Vec3f corner;
+      for (int k = 0; k < 3; ++k) corner[k] = r.bits() % 2 == 0 ? b.lo[k] : b.hi[k];
+      const double far = i % 2 == 0 ? 2 : r.magnitude(0, 5);
+      Vec3f from = corner + Vec3f(r.vector() * (scale * far));
+      // Exactly in a face or along an edge.
+      for (int k = 0; k < 3; ++k)
+        if (r.bits() % 4 == 0) from[k] = corner[k];
+      Ray ray{from, 0, corner - from, kInf};
+      if (i % 3 == 0) ray.direction = ray.direction * static_cast<float>(r.magnitude(-6, 6) / scale);
+      rays.push_back(ray);
+    }
+    chunk->set(rays.span(), 0, extent, true);
+    for (int i = 0; i < kRays; ++i) {
+      if ((chunk->tame >> i & 1) == 0) continue;
+      fill_slot(*slot, *chunk, i, NodeRef::none());
+      Simd<float, BvhNode::kWidth, A> near;
+      const unsigned found = slot_node<A>(*slot, node, near);
+      for (int c = 0; c < 8; ++c) {
+        const bool should = meets(rays[static_cast<std::size_t>(i)], boxes[static_cast<std::size_t>(c)]);
+        ASSERT_TRUE(!should || (found >> c & 1) != 0) << round << " ray " << i << " child " << c;
+        met += should, more += !should && (found >> c & 1) != 0;
+      }
+    }
+  }
+  EXPECT_GT(met, 20000);
+  EXPECT_LT(more, 2 * met);
 }
 
 TriangleMesh soup(int count, std::uint64_t seed, double scale, const Vec3d& shift = {}) {
@@ -234,7 +304,7 @@ TEST(CompactNodes, MixedKindsAndLayouts) {
       if (i % 4 == 0)
         list->push_back({SpheresShape{{{c, 0.05}}}, {}, kNoId});
       else if (i % 4 == 1)
-        list->push_back({BoxShape{c, c + Vec3d(0.1, 0.1, 0.01)}, {}, kNoId});
+        list->push_back({BoxShape{c, c + Vec3d{0.1, 0.1, 0.01}}, {}, kNoId});
       else if (i % 4 == 2)
         list->push_back({DiskShape{c, {0, 0, 1}, 0.1}, {}, kNoId});
       else
