@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "accel/compact_node.h"
 #include "accel/layout.h"
+#include "core/platform.h"
 #include "core/virtual_array.h"
 
 namespace oktett {
@@ -46,7 +48,9 @@ class Accel {
 
   NodeRef root = NodeRef::none();
   Box bounds;
+  bool compact = false;  ///< which of the two lists of nodes is in use
   VirtualArray<BvhNode> nodes;
+  VirtualArray<CompactNode> compact_nodes;
   VirtualArray<TriangleBlock> blocks;
   std::vector<LeafEntry> leaves;
   ShapePools pools;
@@ -66,5 +70,14 @@ class Accel {
   /// Index of the geometry that item belongs to.
   std::uint32_t geometry_of(std::uint32_t item) const;
 };
+
+/// f(node) for node `index` of a tree, which is a BvhNode or a CompactNode.
+template <class Function>
+OKTETT_INLINE void with_node(const Accel& accel, std::uint32_t index, Function&& f) {
+  if (accel.compact)
+    f(accel.compact_nodes[index]);
+  else
+    f(accel.nodes[index]);
+}
 
 }  // namespace oktett

@@ -2,6 +2,7 @@
 /// \file The rays in flight of an interleaved traversal: what each needs at a node, at a leaf, and its stack.
 
 #include "accel/leaf.h"
+#include "accel/node_planes.h"
 #include "accel/ray_chunk.h"
 #include "core/simd_order.h"
 
@@ -19,7 +20,7 @@ struct alignas(64) RaySlot {
   static constexpr int kCapacity = (kStackSize + BvhNode::kWidth + 15) / 16 * 16;
   float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
   float tmin, limit;                          ///< limit = tmax + slack
-  std::uint32_t near_row[3];                  ///< offset in BvhNode::plane of the near planes, per axis
+  std::uint32_t near_row[3];                  ///< offset in a node's planes of the near ones, per axis
   NodeRef current;
   std::int32_t size;  ///< of the stack
   float o[3], d[3], slack;
@@ -85,9 +86,37 @@ OKTETT_INLINE unsigned slot_node(const RaySlot& s, const BvhNode& node,
   return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
 }
 
+/// The same for boxes on a grid, where a plane is never made: with o and s the grid's origin and scale,
+/// (o + q s) i + shift = q (s i) + (o i + shift). RayChunk's shifts pay for the roundings if they are told.
+template <class A>
+OKTETT_INLINE unsigned slot_node(const RaySlot& s, const CompactNode& node,
+                                 Simd<float, BvhNode::kWidth, A>& near) {
+  using F = Simd<float, BvhNode::kWidth, A>;
+  using Axes = Simd<float, 4, A>;
+  constexpr std::uint32_t kOther = BvhNode::kWidth;
+  const Axes inv = Axes::load(s.inv);
+  // What stands behind the three axes must not become a denormal.
+  const Axes origin = select(Axes::M::from_bits(7), Axes::load(node.origin), Axes(0.0f));
+  alignas(16) float step[4], near_shift[4], far_shift[4];
+  (inv * load_powers3<A>(node.exponent)).store(step);
+  fast_fma(origin, inv, Axes::load(s.near_shift)).store(near_shift);
+  fast_fma(origin, inv, Axes::load(s.far_shift)).store(far_shift);
+  reload(step), reload(near_shift), reload(far_shift);
+  const std::uint8_t* rows = &node.plane[0][0];
+  F n[3], f[3];
+  for (int k = 0; k < 3; ++k) {
+    const F per_step(step[k]);
+    n[k] = fast_fma(load_bytes<A>(rows + s.near_row[k]), per_step, F(near_shift[k]));
+    f[k] = fast_fma(load_bytes<A>(rows + (s.near_row[k] ^ kOther)), per_step, F(far_shift[k]));
+  }
+  near = max(max(n[0], n[1]), max(n[2], F(s.tmin)));
+  const F far = min(min(f[0], f[1]), min(f[2], F(s.limit)));
+  return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack)) & node.present;
+}
+
 /// Puts the children that the ray meets on its stack, the nearest last, and takes the last entry off.
-template <Query Q, class A>
-OKTETT_INLINE NodeRef step_node(RaySlot& s, const BvhNode& node) {
+template <Query Q, class A, class Node>
+OKTETT_INLINE NodeRef step_node(RaySlot& s, const Node& node) {
   Simd<float, BvhNode::kWidth, A> near;
   const unsigned met = slot_node<A>(s, node, near);
   const int size = s.size;

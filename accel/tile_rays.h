@@ -172,7 +172,8 @@ bool TileRays<A>::project(const RaySpan& rays, const Apex& at) {
       const F depth = (*o[axis[2]] - F(apex[2])) * F(mirrored ? -1.0f : 1.0f);
       s = one / depth;
       usable = usable & (abs(r.o.x) <= limit) & (abs(r.o.y) <= limit) & (abs(r.o.z) <= limit) &
-               (r.tmin == zero) & (depth > F(margin * 0x1p26f)) & (s <= most_s) & (r.tmax <= limit);
+               (r.tmin == zero) & (depth > F(margin * 0x1p26f)) & (s <= most_s) & (zero < r.tmax) &
+               (r.tmax <= limit);
       slips = max(select(usable, max(slip_x, slip_y), zero), slips);
       behinds = max(select(usable, over, zero), behinds);
     }

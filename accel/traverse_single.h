@@ -3,6 +3,7 @@
 
 #include "accel/exact.h"
 #include "accel/leaf.h"
+#include "accel/node_planes.h"
 
 namespace oktett {
 
@@ -52,31 +53,31 @@ OKTETT_NOINLINE void table_leaf_single(const Accel& accel, const LeafEntry& leaf
 }
 
 /// The boxes of `node` against ray `i`: bit k set if child k is met, its distance in near[k].
-template <int W, class A>
-OKTETT_INLINE unsigned node_single(const BvhNode& node, const RayState<W, A>& r, int i, float* near) {
+template <class Node, int W, class A>
+OKTETT_INLINE unsigned node_single(const Node& node, const RayState<W, A>& r, int i, float* near) {
   using F = Simd<float, BvhNode::kWidth, A>;
   F near_planes[3], far_planes[3];
   for (int k = 0; k < 3; ++k) {
     const unsigned negative = r.negative[k] >> i & 1;
-    near_planes[k] = F::load(node.plane[2 * k + negative]);
-    far_planes[k] = F::load(node.plane[2 * k + (negative ^ 1)]);
+    near_planes[k] = node_planes<A>(node, 2 * k + static_cast<int>(negative));
+    far_planes[k] = node_planes<A>(node, 2 * k + static_cast<int>(negative ^ 1));
   }
   F n, f;
   slab_interval({F(r.o[0][i]), F(r.o[1][i]), F(r.o[2][i])}, {F(r.inv[0][i]), F(r.inv[1][i]), F(r.inv[2][i])},
                 near_planes, far_planes, F(r.tmin[i]), F(r.tmax[i]), F(r.slack[i]), n, f);
   n.store(near);
-  return bits(n <= f);
+  return bits(n <= f) & present_children(node);
 }
 
 /// Puts the children in `hit` on the stack, the nearest last.
-OKTETT_INLINE int push_sorted(const BvhNode& node, unsigned hit, const float* near, SingleEntry* stack,
+OKTETT_INLINE int push_sorted(const NodeRef* child, unsigned hit, const float* near, SingleEntry* stack,
                               int size) {
   const int base = size;
   for (; hit != 0; hit &= hit - 1) {
     const int k = __builtin_ctz(hit);
     int at = size++;
     while (at > base && stack[at - 1].near < near[k]) stack[at] = stack[at - 1], --at;
-    stack[at] = {node.child[k], near[k]};
+    stack[at] = {child[k], near[k]};
   }
   return size;
 }
@@ -90,14 +91,18 @@ OKTETT_NOINLINE void traverse_single(const Accel& accel, RayState<W, A>& r, int 
   alignas(64) float near[BvhNode::kWidth];
   for (;;) {
     if (!ref.is_leaf()) {
-      const BvhNode& node = accel.nodes[ref.node_index()];
-      const unsigned hit = node_single(node, r, i, near);
+      unsigned hit = 0;
+      const NodeRef* child = nullptr;
+      with_node(accel, ref.node_index(), [&](const auto& node) {
+        hit = node_single(node, r, i, near);
+        child = node.child;
+      });
       if (hit != 0) {
         if ((hit & (hit - 1)) == 0) {
-          ref = node.child[__builtin_ctz(hit)];
+          ref = child[__builtin_ctz(hit)];
           continue;
         }
-        size = push_sorted(node, hit, near, stack, size);
+        size = push_sorted(child, hit, near, stack, size);
         ref = stack[--size].ref;
         continue;
       }

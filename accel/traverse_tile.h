@@ -26,15 +26,15 @@ struct alignas(32) ChildWindows {
 };
 
 /// Children of `node` whose boxes meet the window.
-template <class A>
-OKTETT_INLINE unsigned node_tile(const BvhNode& node, const TileRays<A>& tile, const TileWindow& w,
+template <class A, class Node>
+OKTETT_INLINE unsigned node_tile(const Node& node, const TileRays<A>& tile, const TileWindow& w,
                                  ChildWindows& out) {
   using B = Simd<float, BvhNode::kWidth, A>;
   const int kx = 2 * tile.axis[0], ky = 2 * tile.axis[1], kz = 2 * tile.axis[2];
   const B ox(tile.apex[0]), oy(tile.apex[1]), oz(tile.apex[2]);
-  const B xl = B::load(node.plane[kx]) - ox, xh = B::load(node.plane[kx + 1]) - ox;
-  const B yl = B::load(node.plane[ky]) - oy, yh = B::load(node.plane[ky + 1]) - oy;
-  const B z_low = B::load(node.plane[kz]) - oz, z_high = B::load(node.plane[kz + 1]) - oz;
+  const B xl = node_planes<A>(node, kx) - ox, xh = node_planes<A>(node, kx + 1) - ox;
+  const B yl = node_planes<A>(node, ky) - oy, yh = node_planes<A>(node, ky + 1) - oy;
+  const B z_low = node_planes<A>(node, kz) - oz, z_high = node_planes<A>(node, kz + 1) - oz;
   const B zn = tile.mirrored ? -z_high : z_low, zf = tile.mirrored ? -z_low : z_high;
   const B margin(tile.margin + tile.slip), infinity(std::numeric_limits<float>::infinity());
   // So near the plane of the apex that rounding counts for more than kTileSlack, or behind it.
@@ -61,7 +61,7 @@ OKTETT_INLINE unsigned node_tile(const BvhNode& node, const TileRays<A>& tile, c
         (-behind <= zf) & side(xh, w.x_lo) & side(-xl, -w.x_hi) & side(yh, w.y_lo) & side(-yl, -w.y_hi);
     hit = hit & (front | inside);
   }
-  const unsigned children = bits(hit);
+  const unsigned children = bits(hit) & present_children(node);
   if (children != 0)
     near.store(out.near), px_lo.store(out.x_lo), px_hi.store(out.x_hi), py_lo.store(out.y_lo),
         py_hi.store(out.y_hi);
@@ -172,14 +172,14 @@ OKTETT_NOINLINE void table_leaf_tile(TileTask<Q, A>& task, const LeafEntry& leaf
 }
 
 /// Children in the order of their distance, the nearest on top.
-OKTETT_INLINE int push_windows(const BvhNode& node, unsigned children, const ChildWindows& w, unsigned groups,
-                               TileEntry* stack, int size) {
+OKTETT_INLINE int push_windows(const NodeRef* child, unsigned children, const ChildWindows& w,
+                               unsigned groups, TileEntry* stack, int size) {
   const int base = size;
   for (; children != 0; children &= children - 1) {
     const int c = __builtin_ctz(children);
     int at = size++;
     while (at > base && stack[at - 1].near > w.near[c]) stack[at] = stack[at - 1], --at;
-    stack[at] = {node.child[c], w.near[c], w.x_lo[c], w.x_hi[c], w.y_lo[c], w.y_hi[c], groups};
+    stack[at] = {child[c], w.near[c], w.x_lo[c], w.x_hi[c], w.y_lo[c], w.y_hi[c], groups};
   }
   return size;
 }
@@ -232,9 +232,10 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
       }
     }
     if (!e.ref.is_leaf()) {
-      const BvhNode& node = accel.nodes[e.ref.node_index()];
-      const unsigned met = node_tile(node, tile, window, children);
-      size = push_windows(node, met, children, groups, stack, size);
+      with_node(accel, e.ref.node_index(), [&](const auto& node) {
+        const unsigned met = node_tile(node, tile, window, children);
+        size = push_windows(node.child, met, children, groups, stack, size);
+      });
     } else if (e.ref.is_triangles()) {
       tests += leaf_tile(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && tile.may_sort) {

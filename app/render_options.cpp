@@ -17,8 +17,9 @@ namespace oktett {
 namespace {
 
 constexpr const char* kIntegrators[] = {"whitted", "path", "ao", "normal", "depth"};
-/// In the order of BuildQuality.
+/// In the order of BuildQuality and NodeLayout.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
+constexpr const char* kLayouts[] = {"full", "compact"};
 // The same bounds as in a scene file.
 constexpr std::uint32_t kMaxSide = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
@@ -58,14 +59,16 @@ void parse_crop(const std::string& text, double (&crop)[4]) {
         text));
 }
 
-IntegratorKind parse_integrator(const std::string& text) {
-  constexpr std::size_t count = std::size(kIntegrators);
-  for (std::size_t i = 0; i < count; ++i)
-    if (text == kIntegrators[i]) return static_cast<IntegratorKind>(i);
-  const std::string near = nearest_name(text, kIntegrators, count);
-  throw Error(fmt::format("--integrator: unknown kind '{}'; {}", text,
-                          near.empty() ? "expected whitted, path, ao, normal or depth"
-                                       : fmt::format("did you mean '{}'?", near)));
+/// The place of `word` in a list of names. Throws Error if it is not there.
+template <std::size_t N>
+std::size_t index_of(const char* complaint, const std::string& word, const char* const (&names)[N],
+                     const char* all) {
+  for (std::size_t i = 0; i < N; ++i)
+    if (word == names[i]) return i;
+  const std::string near = nearest_name(word, names, N);
+  throw Error(
+      fmt::format("{} '{}'; {}", complaint, word,
+                  near.empty() ? fmt::format("expected {}", all) : fmt::format("did you mean '{}'?", near)));
 }
 
 }  // namespace
@@ -84,7 +87,7 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
   verb.add_option("--seed", a.seed, "Seed of the random numbers")->type_name("N");
   verb.add_option("--integrator", a.integrator, "whitted, path, ao, normal or depth")->type_name("K");
   verb.add_option("--isa", a.isa, "Instruction set: auto, sse4.2, avx2, avx512 or scalar")->type_name("NAME");
-  add_bvh_option(verb, a.bvh);
+  add_tree_options(verb, a.tree);
   verb.add_option("-D", a.definitions, "Define ${k} of the scene file; may be repeated")
       ->type_name("k=v")
       ->allow_extra_args(false);
@@ -96,25 +99,31 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
       ->type_name("HOST:PORT");
 }
 
-void add_bvh_option(CLI::App& verb, std::string& text) {
-  verb.add_option("--bvh", text, "How hard to build the tree: fast, balanced or best")->type_name("QUALITY");
+void add_tree_options(CLI::App& verb, TreeWords& words) {
+  verb.add_option("--bvh", words.quality, "How hard to build the tree: fast, balanced or best")
+      ->type_name("QUALITY");
+  verb.add_option("--nodes", words.nodes, "Nodes of the tree: full, or compact, which are smaller and slower")
+      ->type_name("LAYOUT");
 }
 
-BuildQuality parse_quality(const std::string& text) {
-  constexpr std::size_t count = std::size(kQualities);
-  if (text.empty()) return BuildQuality::balanced;
-  for (std::size_t i = 0; i < count; ++i)
-    if (text == kQualities[i]) return static_cast<BuildQuality>(i);
-  const std::string near = nearest_name(text, kQualities, count);
-  throw Error(fmt::format(
-      "--bvh: unknown quality '{}'; {}", text,
-      near.empty() ? "expected fast, balanced or best" : fmt::format("did you mean '{}'?", near)));
+BuildOptions parse_tree_options(const TreeWords& words) {
+  BuildOptions options;
+  if (!words.quality.empty())
+    options.quality = static_cast<BuildQuality>(
+        index_of("--bvh: unknown quality", words.quality, kQualities, "fast, balanced or best"));
+  if (!words.nodes.empty())
+    options.nodes = static_cast<NodeLayout>(
+        index_of("--nodes: unknown layout", words.nodes, kLayouts, "full or compact"));
+  return options;
 }
 
 void override_scene(const RenderArguments& arguments, Scene& scene) {
   if (!arguments.size.empty()) parse_size(arguments.size, scene.film);
   if (!arguments.crop.empty()) parse_crop(arguments.crop, scene.film.crop);
-  if (!arguments.integrator.empty()) scene.integrator.kind = parse_integrator(arguments.integrator);
+  if (!arguments.integrator.empty())
+    scene.integrator.kind =
+        static_cast<IntegratorKind>(index_of("--integrator: unknown kind", arguments.integrator, kIntegrators,
+                                             "whitted, path, ao, normal or depth"));
   if (arguments.seed) scene.integrator.seed = *arguments.seed;
   if (arguments.samples) {
     if (*arguments.samples < 1 || *arguments.samples > kMaxSamples)

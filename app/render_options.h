@@ -16,6 +16,11 @@ class App;
 
 namespace oktett {
 
+/// How trees are to be built, in words; empty: the default.
+struct TreeWords {
+  std::string quality, nodes;
+};
+
 /// The words of the command line, not yet checked beyond being numbers where numbers belong.
 struct RenderArguments {
   std::string scene;
@@ -27,7 +32,7 @@ struct RenderArguments {
   std::string crop;
   std::string integrator;
   std::string isa;
-  std::string bvh;
+  TreeWords tree;
   std::vector<std::string> definitions;
   std::string stats;  ///< "", "text" or "json"
   std::string display_server;
@@ -42,9 +47,10 @@ void add_render_options(CLI::App& verb, RenderArguments& arguments);
 void override_scene(const RenderArguments& arguments, Scene& scene);
 /// Splits `name=value` words; the last of a name counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
-/// The word of --bvh; empty: the default. Throws Error for words that mean nothing.
-BuildQuality parse_quality(const std::string& text);
-void add_bvh_option(CLI::App& verb, std::string& text);
+/// Adds --bvh and --nodes.
+void add_tree_options(CLI::App& verb, TreeWords& words);
+/// Throws Error for words that mean nothing.
+BuildOptions parse_tree_options(const TreeWords& words);
 /// `outfile`, or the scene's name with .png in the current directory.
 std::string output_path(const RenderArguments& arguments);
 

@@ -11,6 +11,7 @@
 
 #include "app/command.h"
 #include "app/json.h"
+#include "app/render_options.h"
 #include "app/verify_exact.h"
 #include "app/verify_kernels.h"
 #include "app/verify_meshes.h"
@@ -27,6 +28,7 @@ struct VerifyArguments {
   std::vector<std::string> meshes;
   std::vector<std::string> surfaces;
   std::string isa;
+  TreeWords tree;
   bool quick = false;
   bool json = false;
 
@@ -157,16 +159,19 @@ void verify_meshes(const VerifyArguments& arguments, std::uint64_t rays, Report&
   report.heading(fmt::format("\n{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}", "mesh",
                              "placement", "", "rays", "hits", "leaks", "parity", "doubled", "differing",
                              "inconsistent"));
+  const BuildOptions build = parse_tree_options(arguments.tree);
   std::vector<OracleMesh> meshes = make_closed_meshes();
   for (const std::string& file : arguments.meshes)
     meshes.push_back({std::filesystem::path(file).stem().string(), load_obj(file).mesh, false});
   for (const OracleMesh& mesh : meshes)
     for (const MeshPlacement& placement : mesh_placements())
-      report.mesh(mesh.name, placement, verify_mesh(mesh, placement, rays, chosen_isas(arguments.isa)));
+      report.mesh(mesh.name, placement,
+                  verify_mesh(mesh, placement, rays, chosen_isas(arguments.isa), build));
 }
 
 int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
+  parse_tree_options(arguments.tree);  // complains before the work begins
   const std::uint64_t rays = arguments.rays > 0 ? arguments.rays : arguments.quick ? 100'000 : 10'000'000;
   Report report(arguments.json);
   if (arguments.surfaces.empty()) verify_kernels(arguments, rays, report);
@@ -195,6 +200,7 @@ void add_verify_command(CLI::App& app, Command& command) {
   verb->add_option("--isa", arguments->isa,
                    "One instruction set instead of all: scalar, sse4.2, avx2, avx512")
       ->type_name("NAME");
+  add_tree_options(*verb, arguments->tree);
   verb->add_flag("--quick", arguments->quick, "100 000 rays per kernel");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->footer("Exits with status 3 if anything is found wrong.");

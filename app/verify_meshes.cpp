@@ -46,7 +46,7 @@ struct Viewpoint {
 
 struct Subject {
   TriangleMesh mesh;
-  std::shared_ptr<const Accel> accel;
+  std::shared_ptr<const Accel> accel, plain;
   std::vector<Viewpoint> viewpoints;
   bool closed = false, convex = false;
 };
@@ -117,7 +117,7 @@ class ChunkCheck {
     }
     reference_.resize_uninitialized(count), other_.resize_uninitialized(count);
     occluded_.resize(count);
-    closest_hit(*subject_.accel, rays_.span(), reference_.span(), Isa::scalar, TraceMode::single);
+    closest_hit(*subject_.plain, rays_.span(), reference_.span(), Isa::scalar, TraceMode::single);
     for (std::size_t i = 0; i < count; ++i) tally_.hits += reference_[i].valid();
     for (const Isa isa : isas) {
       for (const TraceMode mode : kModes) compare(isa, mode);
@@ -175,7 +175,7 @@ class ChunkCheck {
 }  // namespace
 
 MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, std::uint64_t rays,
-                      const std::vector<Isa>& isas) {
+                      const std::vector<Isa>& isas, const BuildOptions& build) {
   Box box;
   for (const Vec3f& p : mesh.mesh.positions)
     if (is_finite(p)) box.grow(p);
@@ -183,7 +183,9 @@ MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, st
   const double extent = max_component(box.extent());
   subject.mesh =
       placed(mesh.mesh, placement.size > 0 && extent > 0 ? placement.size / extent : 1, placement.offset);
-  subject.accel = build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}});
+  subject.accel = build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}}, build);
+  const bool plain = build.quality == BuildQuality::balanced && build.nodes == NodeLayout::full;
+  subject.plain = plain ? subject.accel : build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}});
   MeshTally total;
   total.open_edges = open_edge_count(mesh.mesh);
   subject.closed = total.open_edges == 0, subject.convex = mesh.convex;

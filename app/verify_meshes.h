@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "accel/accel.h"
 #include "app/oracle_mesh.h"
 #include "core/isa.h"
 
@@ -35,8 +36,9 @@ struct MeshTally {
   void fail(std::uint64_t number, const std::string& text);
 };
 
-/// Rays from points inside and outside, aimed at vertices, at points of edges and at random.
+/// Rays from points inside and outside, aimed at vertices, at points of edges and at random, through a tree
+/// built as `build` says. Hits are compared with those of a tree built by default, too.
 MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, std::uint64_t rays,
-                      const std::vector<Isa>& isas);
+                      const std::vector<Isa>& isas, const BuildOptions& build = {});
 
 }  // namespace oktett

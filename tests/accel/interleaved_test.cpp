@@ -17,12 +17,13 @@ bool same_bits(const Hit& a, const Hit& b) {
          std::memcmp(&a.v, &b.v, sizeof a.v) == 0 && a.item == b.item && a.instance == b.instance;
 }
 
-/// Interleaved rays of every instruction set find what single rays of the scalar code find.
-int expect_same_hits(const Accel& accel, const RayBatch& rays) {
+/// Interleaved rays of every instruction set find what single rays of the scalar code find in `plain`, which
+/// holds the same.
+int expect_same_hits(const Accel& accel, const Accel& plain, const RayBatch& rays) {
   HitBatch expected, hits;
   expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
   std::vector<std::uint8_t> occluded(rays.size());
-  closest_hit(accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
+  closest_hit(plain, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
   for (const Isa isa : available_isas())
     for (const TraceMode mode : {TraceMode::interleaved, TraceMode::automatic}) {
       closest_hit(accel, rays.span(), hits.span(), isa, mode);
@@ -36,6 +37,15 @@ int expect_same_hits(const Accel& accel, const RayBatch& rays) {
   int count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
   return count;
+}
+
+/// In nodes of either layout.
+int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
+  const std::vector<Geometry> geometries = {{MeshGeometry{&mesh}, {}, kNoId}};
+  const auto plain = build_accel(geometries);
+  const auto compact = build_accel(geometries, {BuildQuality::balanced, true, NodeLayout::compact});
+  expect_same_hits(*plain, *plain, rays);
+  return expect_same_hits(*compact, *plain, rays);
 }
 
 /// Slivers, needles and pairs of the same triangle, which tie, with rays that meet or just miss them.
@@ -60,8 +70,7 @@ TEST_P(InterleavedScale, AdversarialTrianglesGiveTheSameHits) {
   TriangleMesh mesh;
   RayBatch rays;
   for (int i = 0; i < 500; ++i) add_case(random, mesh, rays, GetParam());
-  const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
-  EXPECT_GT(expect_same_hits(*accel, rays), 500);
+  EXPECT_GT(expect_same_hits(mesh, rays), 500);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scales, InterleavedScale,
@@ -139,8 +148,7 @@ TEST(Interleaved, StrangeRaysAmongOthers) {
   for (int i = 0; i < 1000; ++i) add_case(random, mesh, soup, 1);
   for (std::size_t i = 0; i < soup.size(); ++i)
     rays.push_back(strange_ray(static_cast<int>(random.bits() % 30), soup[i]));
-  const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
-  EXPECT_GT(expect_same_hits(*accel, rays), 500);
+  EXPECT_GT(expect_same_hits(mesh, rays), 500);
 }
 
 // Rays along the axes, in and beside the faces of boxes, meet what they meet one by one.
@@ -154,7 +162,6 @@ TEST(Interleaved, AxisParallelRaysOnAGrid) {
     const auto x = static_cast<float>(i % 20), y = static_cast<float>(i / 20), z = static_cast<float>(i % 3);
     for (const Vec3f& p : {Vec3f{x, y, z}, Vec3f{x + 1, y, z}, Vec3f{x, y + 1, z}}) add(p);
   }
-  const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
   RayBatch rays;
   for (int i = 0; i < 41 * 41; ++i) {
     const float x = 0.5f * static_cast<float>(i % 41), y = 0.5f * static_cast<float>(i / 41);
@@ -162,7 +169,7 @@ TEST(Interleaved, AxisParallelRaysOnAGrid) {
     rays.push_back({{x, y, -5}, 0, {1e-45f, 0, 2}, kInf});
     rays.push_back({{-1, y, 1}, 0, {1, 0, 0}, kInf});
   }
-  EXPECT_GT(expect_same_hits(*accel, rays), 800);
+  EXPECT_GT(expect_same_hits(mesh, rays), 800);
 }
 
 // Batches that fill no slot, some, all and more.
@@ -171,11 +178,10 @@ TEST(Interleaved, BatchesOfAnySize) {
   TriangleMesh mesh;
   RayBatch soup;
   for (int i = 0; i < 300; ++i) add_case(random, mesh, soup, 1);
-  const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
   for (const std::size_t size : {1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33, 47, 48, 49, 100}) {
     RayBatch rays;
     for (std::size_t i = 0; i < size; ++i) rays.push_back(soup[i]);
-    expect_same_hits(*accel, rays);
+    expect_same_hits(mesh, rays);
   }
 }
 

@@ -74,6 +74,29 @@ TEST(TileRays, SlipBoundsHowFarLinesMissTheApex) {
   EXPECT_GT(most, 0.9L);  // the bound is no more than it has to be
 }
 
+// Rays of no length end somewhere else, but hit nothing wherever that is: they make no tile worse.
+TEST(TileRays, RaysOfNoLengthDoNotCount) {
+  int tiles = 0;
+  for (const Scene& s : scenes()) {
+    RayBatch rays = rays_to(s.light, s.center, s.size, 5), without = rays;
+    const float ends[] = {0.0f, -0.0f, -1e-6f, -1.0f, -1e6f, -std::numeric_limits<float>::infinity()};
+    for (std::size_t i = 0; i < rays.size(); i += 21) {
+      rays.tmax[i] = ends[i / 21 % std::size(ends)];
+      without.tmax[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+    const Apex apex{s.light, true};
+    Tile tile, expected;
+    if (!expected.set(without.span(), apex, 1, true)) continue;
+    ++tiles;
+    ASSERT_TRUE(tile.set(rays.span(), apex, 1, true));
+    EXPECT_EQ(tile.slip, expected.slip);
+    EXPECT_EQ(tile.behind, expected.behind);
+    for (std::size_t i = 0; i < rays.size(); i += 21)
+      EXPECT_EQ(tile.held_lo[i], std::numeric_limits<float>::infinity());
+  }
+  EXPECT_GT(tiles, 20);
+}
+
 TEST(TileRays, SortingKeepsTheRaysAndMakesGroupsSmall) {
   int sorted = 0;
   for (const Scene& s : scenes()) {

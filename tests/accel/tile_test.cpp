@@ -66,10 +66,12 @@ TriangleMesh scaled(TriangleMesh m, float scale, const Vec3f& shift) {
 /// A structure and the points that rays are aimed at.
 struct Subject {
   std::vector<TriangleMesh> meshes;
-  std::shared_ptr<const Accel> accel;
+  std::shared_ptr<const Accel> accel, plain;  ///< plain: the same with full nodes
+  NodeLayout nodes = NodeLayout::full;
   std::vector<Vec3f> targets;
   float scale = 1;
   Vec3f center{0, 0, 0};
+  int rounds() const { return nodes == NodeLayout::full ? 60 : 25; }
   BuildQuality quality = BuildQuality::balanced;
 };
 
@@ -86,11 +88,17 @@ void finish(Subject& s, std::vector<Geometry> more = {}) {
     }
   }
   for (Geometry& g : more) geometries.push_back(std::move(g));
-  s.accel = build_accel(std::move(geometries), {s.quality});
+  s.plain = build_accel(geometries, {s.quality});
+  s.accel =
+      s.nodes == NodeLayout::full ? s.plain : build_accel(std::move(geometries), {s.quality, true, s.nodes});
 }
 
+constexpr int kSubjects = 9;
+
+/// From kSubjects on the same in compact nodes.
 Subject make_subject(int which, Dice& dice) {
   Subject s;
+  if (which >= kSubjects) s.nodes = NodeLayout::compact, which -= kSubjects;
   switch (which) {
     case 0:
       s.meshes = {grid_mesh(20, true, dice)};
@@ -180,8 +188,8 @@ void expect_same(const Subject& s, const RayBatch& rays, const std::string& what
   HitBatch expected, got;
   expected.resize_uninitialized(rays.size()), got.resize_uninitialized(rays.size());
   std::vector<std::uint8_t> dark(rays.size()), got_dark(rays.size());
-  closest_hit(*s.accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
-  any_hit(*s.accel, rays.span(), dark.data(), Isa::scalar, TraceMode::single);
+  closest_hit(*s.plain, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
+  any_hit(*s.plain, rays.span(), dark.data(), Isa::scalar, TraceMode::single);
   for (const Isa isa : available_isas()) {
     for (const TraceMode mode : {TraceMode::automatic, TraceMode::tile}) {
       closest_hit(*s.accel, rays.span(), got.span(), isa, mode);
@@ -219,7 +227,7 @@ class Tiles : public testing::TestWithParam<int> {};
 TEST_P(Tiles, CommonOrigin) {
   Dice dice(17 + static_cast<std::uint64_t>(GetParam()));
   const Subject s = make_subject(GetParam(), dice);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < s.rounds(); ++round) {
     const Vec3f from = random_apex(s, dice);
     const Vec3f target = s.targets[static_cast<std::size_t>(dice.below(static_cast<int>(s.targets.size())))];
     const int kind = dice.below(5), ends = dice.below(4);
@@ -256,7 +264,7 @@ TEST_P(Tiles, CommonOrigin) {
 TEST_P(Tiles, CommonEnd) {
   Dice dice(99 + static_cast<std::uint64_t>(GetParam()));
   const Subject s = make_subject(GetParam(), dice);
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < s.rounds(); ++round) {
     const Vec3f light = random_apex(s, dice);
     const Vec3f near = s.targets[static_cast<std::size_t>(dice.below(static_cast<int>(s.targets.size())))];
     const int kind = dice.below(4), count = dice.below(3) == 0 ? 1 + dice.below(700) : 512;
@@ -282,7 +290,7 @@ TEST_P(Tiles, CommonEnd) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Subjects, Tiles, testing::Range(0, 9));
+INSTANTIATE_TEST_SUITE_P(Subjects, Tiles, testing::Range(0, 2 * kSubjects));
 
 }  // namespace
 }  // namespace oktett
