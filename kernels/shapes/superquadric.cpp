@@ -34,6 +34,14 @@ double root(double y, double p, bool ratio) {
   return below > 0 ? p * y / below : kInfinity;
 }
 
+/// `inverse` is what the line is scaled by: it lies within 4 of the origin (see SuperquadricField::sample).
+SuperRounding rounding(double p, bool ratio, double inverse) {
+  // (1 + r)^(p - 1) and (1 - r)^(p - 1) differ from 1 by less than 2 p r for r < 1 / (2 p); the slope of a
+  // pseudo-power, p / (p + (1 - p) x)^2, by less than 8 p r.
+  const double bend = (ratio ? 8 : 2) * p, vague = 1 / bend, off = 4 * inverse * 0x1p-50;
+  return {vague, bend, 2.1 * power_slope(off * (bend + 1), p, ratio)};
+}
+
 double greatest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
 
 /// A little more than computed, for the box that holds everything.
@@ -84,6 +92,7 @@ void Superquadric::add(Pool& pool, const ExactShape& shape, const Affine& to_wor
   e.q = SuperExponent(s.q), e.r = SuperExponent(s.r), e.d = s.d, e.ee = s.e * s.e;
   e.form = s.form, e.ratio = s.ratio, e.closed = s.form == Form::hyperboloid && !s.open;
   e.convex = s.form == Form::ellipsoid && s.p >= 1 && s.q >= 1 && s.r >= 1;
+  for (int k = 0; k < 3 && e.convex; ++k) e.rounding[k] = rounding(p[k], e.ratio, e.inverse[k]);
   e.lo = lo * (1 / size), e.hi = hi * (1 / size);
   add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
   add_cell(pool, e.lo, e.hi);

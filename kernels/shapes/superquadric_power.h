@@ -17,12 +17,19 @@ struct SuperExponent {
       : p(x), whole(x == static_cast<int>(x < 32 ? x : 0) ? static_cast<int>(x) : 0) {}
 };
 
+/// What rounding x does to the slope of a convex power (p >= 1) for |x| below about 1. Rounding that moves x
+/// by less than `vague` of itself changes the slope by less than `bend` times as much of itself. Otherwise
+/// x is so small that the slope is below `noise`, as is its error.
+struct SuperRounding {
+  double vague, bend, noise;
+};
+
 namespace interval {
 
 /// |x|^p by the ends of |x|, lo <= hi, and the slope by |x|.
 template <class D>
 OKTETT_INLINE Dual<Interval<D>> power_between(const Interval<D>& x, const SuperExponent& e) {
-  const Interval<D> v = e.whole > 0 ? pow(x, e.whole) : pow(x, e.p);
+  const Interval<D> v = e.whole > 0 ? pow_positive(x, e.whole) : pow_positive(x, e.p);
   if (e.p == 1) return {v, Interval<D>(D(1.0))};
   // The slope is p x^(p-1) = p v / x, of which v.lo belongs to x.lo and v.hi to x.hi.
   const D p(e.p), tiny(1e-250);
@@ -59,11 +66,12 @@ OKTETT_INLINE Dual<Interval<D>> ratio_between(const Interval<D>& x, const SuperE
   return {v, {least, most}};
 }
 
-/// The power of |x|.
-template <bool kRatio, class D>
-OKTETT_INLINE Dual<Interval<D>> super_power(const Dual<Interval<D>>& x, const SuperExponent& e) {
+/// The power of |x|, or the pseudo-power.
+template <class D>
+OKTETT_NOINLINE Dual<Interval<D>> super_power(const Dual<Interval<D>>& x, const SuperExponent& e,
+                                              bool ratio) {
   const Interval<D> size = abs(x.v);
-  Dual<Interval<D>> r = kRatio ? ratio_between(size, e) : power_between(size, e);
+  Dual<Interval<D>> r = ratio ? ratio_between(size, e) : power_between(size, e);
   const D one(1.0), zero(0.0);
   const Interval<D> side{select(zero <= x.v.lo, one, -one), select(x.v.hi <= zero, -one, one)};
   const auto still = (x.d.lo == zero) & (x.d.hi == zero);
