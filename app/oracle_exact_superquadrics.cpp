@@ -29,6 +29,7 @@ Real equation(const SuperquadricShape& s, const Vec3l& p) {
     case Form::hyperboloid:
       f = power(x, s.p, s.ratio) + power(y, s.q, s.ratio) - power(z, s.r, s.ratio) - 1;
       // Beyond a pole nothing is inside.
+      if (s.ratio && s.r > 1) f = std::max(f, std::abs(z) - static_cast<Real>(s.r) / (s.r - 1));
       if (!std::isfinite(f)) f = HUGE_VALL;
       for (int k = 0; k < 3; ++k) f = std::max({f, s.lo[k] - p[k], p[k] - s.hi[k]});
       break;
