@@ -118,6 +118,7 @@ struct Superquadric {
 
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static double value_and_gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p, Vec3d& g);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around z; v from bottom to top of an ellipsoid, around the tube of a toroid, the height z of a
   /// hyperboloid. On a face of the box the position on it.
