@@ -124,10 +124,10 @@ FieldObject superellipsoid(const double (&r)[6]) {
 }  // namespace
 
 std::vector<FieldKind> field_kinds() {
-  return {{"sphere", 10000, sphere}, {"torus", 900, torus},          {"cylinder", 900, cylinder},
-          {"cone", 900, cone},       {"quadric", 900, quadric},      {"polyhedron", 900, polyhedron},
-          {"quartic", 900, quartic}, {"revolution", 900, revolution},
-          {"superellipsoid", 900, superellipsoid}};
+  return {
+      {"sphere", 10000, sphere}, {"torus", 900, torus},           {"cylinder", 900, cylinder},
+      {"cone", 900, cone},       {"quadric", 900, quadric},       {"polyhedron", 900, polyhedron},
+      {"quartic", 900, quartic}, {"revolution", 900, revolution}, {"superellipsoid", 900, superellipsoid}};
 }
 
 }  // namespace oktett::bench

@@ -32,7 +32,8 @@ MaybeForm unless_degenerate(SceneLoad& load, const YamlNode& key, const Superqua
 
 template <bool kRatio>
 MaybeForm read_ellipsoid(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, kRatio ? "ratioellipsoid" : "superellipsoid", {"radii", "p", "q", "r", "normals"});
+  const Fields fields(node, kRatio ? "ratioellipsoid" : "superellipsoid",
+                      {"radii", "p", "q", "r", "normals"});
   SuperquadricShape shape;
   shape.ratio = kRatio;
   read_radii(load, fields, shape);
@@ -88,12 +89,9 @@ MaybeForm read_toroid(SceneLoad& load, const YamlNode& key, const YamlNode& node
 }
 
 constexpr ExactReader kReaders[] = {
-    {"superellipsoid", read_ellipsoid<false>},
-    {"superhyperboloid", read_hyperboloid<false>},
-    {"supertoroid", read_toroid<false>},
-    {"ratioellipsoid", read_ellipsoid<true>},
-    {"ratiohyperboloid", read_hyperboloid<true>},
-    {"ratiotoroid", read_toroid<true>},
+    {"superellipsoid", read_ellipsoid<false>},    {"superhyperboloid", read_hyperboloid<false>},
+    {"supertoroid", read_toroid<false>},          {"ratioellipsoid", read_ellipsoid<true>},
+    {"ratiohyperboloid", read_hyperboloid<true>}, {"ratiotoroid", read_toroid<true>},
 };
 
 }  // namespace

@@ -70,8 +70,8 @@ OKTETT_NOINLINE void certain_crossings(const Field& field, const D& a, const D& 
 
 /// Crossings of a convex function in [a, b], as `march`.
 template <int K, class Field, class D>
-OKTETT_INLINE void convex_crossings(const Field& field, const D& a, const D& b,
-                                    const typename D::M& active, Crossings<K, D>& out) {
+OKTETT_INLINE void convex_crossings(const Field& field, const D& a, const D& b, const typename D::M& active,
+                                    Crossings<K, D>& out) {
   const D no_root(roots::kNoRoot);
   const Sample<D> at_a = field.sample(a);
   const auto outside = active & at_a.positive(), inside = active & at_a.negative();

@@ -8,12 +8,12 @@
 namespace oktett {
 
 struct SuperquadricElement {
-  double inverse[3];         ///< 1 / a, 1 / b, 1 / c
+  double inverse[3];          ///< 1 / a, 1 / b, 1 / c
   SuperExponent exponent[3];  ///< of x, y and z
   SuperRounding rounding[3];  ///< of x, y and z of a convex one
-  SuperExponent q, r;        ///< of the toroid's ring and tube
-  double d, ee;              ///< of the toroid: d and e^2
-  Vec3d lo, hi;              ///< the box
+  SuperExponent q, r;         ///< of the toroid's ring and tube
+  double d, ee;               ///< of the toroid: d and e^2
+  Vec3d lo, hi;               ///< the box
   SuperquadricShape::Form form;
   bool ratio, closed;
   bool convex;  ///< an ellipsoid whose function is convex along every line
@@ -56,7 +56,8 @@ struct SuperquadricField {
       f.slope = f.slope + select(x < D(0.0), -along, along);
       f.error = f.error + value * (relative + D(0x1p-50)) + off * steep;
       const D bend = D(rounding.bend) * relative_off + relative + D(0x1p-50);
-      f.slope_error = f.slope_error + select(vague, abs(rate) * noise, select(off > D(0.0), abs(along) * bend, D(0.0)));
+      f.slope_error =
+          f.slope_error + select(vague, abs(rate) * noise, select(off > D(0.0), abs(along) * bend, D(0.0)));
     }
     return f;
   }
@@ -107,8 +108,7 @@ struct Superquadric {
       interval::convex_crossings<K>(ConvexSuperquadricField<false, D>{field}, a, b, active, found);
     else
       first_sign = interval::march<K>(field, a, b, b, active, interval::Jumps::list, found);
-    for (int k = 0; k < K; ++k)
-      found.t[k] = select(found.t[k] < no_root, centered.to_t(found.t[k]), no_root);
+    for (int k = 0; k < K; ++k) found.t[k] = select(found.t[k] < no_root, centered.to_t(found.t[k]), no_root);
     found.up_to = select(found.up_to < no_root, centered.to_t(found.up_to), no_root);
     if (e.closed)
       close_by_cell(found, first_sign < D(0.0), range, active, out);
