@@ -152,7 +152,8 @@ TEST(Superquadrics, BadRaysHitNothing) {
 
 Vec3f origin_of(int i) { return {2.5f - 0.03f * i, 1.7f * std::sin(0.7f * i), 2.3f * std::cos(1.3f * i)}; }
 Vec3f direction_of(int i) {
-  return Vec3f{0.7f * std::sin(3.1f * i), 0.4f * std::sin(1.9f * i), 0.5f * std::cos(2.7f * i)} - origin_of(i);
+  return Vec3f{0.7f * std::sin(3.1f * i), 0.4f * std::sin(1.9f * i), 0.5f * std::cos(2.7f * i)} -
+         origin_of(i);
 }
 
 /// Powers of two leave every bit: of the size and of the length of the direction.
@@ -198,12 +199,13 @@ TEST(Superquadrics, NormalsAreGradients) {
     const auto central = build_accel({{ExactShape{s, NormalMethod::central}, place}});
     int smooth = 0, hits = 0;
     for (int i = 0; i < 60; ++i) {
-      const Ray ray{Vec3f(place.point(Vec3d(origin_of(i)))),
-                    0, Vec3f(place.vector(Vec3d(direction_of(i)))), kInf};
+      const Ray ray{Vec3f(place.point(Vec3d(origin_of(i)))), 0, Vec3f(place.vector(Vec3d(direction_of(i)))),
+                    kInf};
       std::vector<Hit> list;
       all_hits(*exact, ray, list, Isa::scalar);
       for (const Hit& h : list) {
-        const Vec3f a = surface(*exact, ray, h).geometric_normal, b = surface(*central, ray, h).geometric_normal;
+        const Vec3f a = surface(*exact, ray, h).geometric_normal,
+                    b = surface(*central, ray, h).geometric_normal;
         EXPECT_NEAR(length(a), 1, 1e-6);
         // Out of the inside.
         EXPECT_GT(dot(a, ray.direction) * h.v, 0) << i;
@@ -217,7 +219,8 @@ TEST(Superquadrics, NormalsAreGradients) {
 
 TEST(Superquadrics, SenselessOnesHaveNoSurface) {
   std::vector<SuperquadricShape> bad(8);
-  bad[0].p = 0, bad[1].q = -1, bad[2].r = kNan, bad[3].radii.x = 0, bad[4].radii.z = -1, bad[5].radii.y = kInf;
+  bad[0].p = 0, bad[1].q = -1, bad[2].r = kNan, bad[3].radii.x = 0, bad[4].radii.z = -1,
+  bad[5].radii.y = kInf;
   bad[6] = torus(), bad[6].e = 0;
   bad[7] = shape(Form::hyperboloid, 2, 2, 2), bad[7].hi.x = bad[7].lo.x;
   for (std::size_t i = 0; i < bad.size(); ++i)

@@ -55,8 +55,7 @@ TEST(SceneSuperquadrics, ErrorsHaveTheirPlace) {
       {"objects: [{superellipsoid: {q: -2}}]", "scene.yaml:2:32: expected a number greater than 0"},
       {"objects: [{superellipsoid: {r: .nan}}]", "scene.yaml:2:32: expected a finite number"},
       {"objects: [{superellipsoid: {r: 2000}}]", "scene.yaml:2:32: expected a number greater than 0"},
-      {"objects: [{superellipsoid: {radii: [1, -1, 1]}}]",
-       "scene.yaml:2:36: the radii must not be negative"},
+      {"objects: [{superellipsoid: {radii: [1, -1, 1]}}]", "scene.yaml:2:36: the radii must not be negative"},
       {"objects: [{superellipsoid: {radii: 1}}]", "scene.yaml:2:36: expected a list of 3 numbers"},
       {"objects: [{superellipsoid: {open: true}}]", "scene.yaml:2:29: unknown key 'open' in superellipsoid"},
       {"objects: [{ratioellipsoid: {m: 1}}]", "scene.yaml:2:29: unknown key 'm' in ratioellipsoid"},
@@ -78,7 +77,8 @@ TEST(SceneSuperquadrics, DegenerateOnesAreSkipped) {
   const struct {
     const char *object, *warning;
   } kCases[] = {
-      {"superellipsoid: {radii: [0, 1, 1]}", "scene.yaml:2:13: warning: a radius is zero; the object is skipped"},
+      {"superellipsoid: {radii: [0, 1, 1]}",
+       "scene.yaml:2:13: warning: a radius is zero; the object is skipped"},
       {"ratiotoroid: {e: 0}", "scene.yaml:2:13: warning: the tube has no thickness"},
       {"superhyperboloid: {clip: {min: [2, 0, 0]}}", "scene.yaml:2:13: warning: the clip box has no volume"},
   };
