@@ -25,6 +25,8 @@ constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,  TraceM
 constexpr std::size_t kRaysPerShape = 512;
 /// Samples along a ray; what is thinner than a step may escape the oracle, never the tracer.
 constexpr int kSamples = 768;
+/// Samples within the rounding of a hit at which three do not show a crossing.
+constexpr int kFineSamples = 1024;
 
 Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
@@ -90,6 +92,9 @@ class AlongRay {
     const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
     if (ends(t) > 0) return Crossing::no;
     if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
+    // Cusps may be thinner than what rounding to float moves t by.
+    for (int i = 1; i < kFineSamples; ++i)
+      if (((*this)(t - s + 2 * s * i / kFineSamples) < 0) != (before < 0)) return Crossing::nearly;
     // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
     const long double off = 0x1p-14L * size_,
                       rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));

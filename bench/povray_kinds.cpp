@@ -111,12 +111,23 @@ FieldObject revolution(const double (&)[6]) {
   return {pov + " }", ExactShape{shape}, outside_profile};
 }
 
+/// POV-Ray's (|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1 is ours where e = n.
+FieldObject superellipsoid(const double (&r)[6]) {
+  const double e = std::round((0.2 + 1.6 * r[0]) * 1000) / 1000;
+  SuperquadricShape shape;
+  shape.p = shape.q = shape.r = 2 / e;
+  return {fmt::format("superellipsoid {{ <{}, {}> }}", e, e), ExactShape{shape}, [p = 2 / e](const Vec3l& x) {
+            return std::pow(std::abs(x.x), p) + std::pow(std::abs(x.y), p) + std::pow(std::abs(x.z), p) - 1;
+          }};
+}
+
 }  // namespace
 
 std::vector<FieldKind> field_kinds() {
-  return {{"sphere", 10000, sphere}, {"torus", 900, torus},          {"cylinder", 900, cylinder},
-          {"cone", 900, cone},       {"quadric", 900, quadric},      {"polyhedron", 900, polyhedron},
-          {"quartic", 900, quartic}, {"revolution", 900, revolution}};
+  return {
+      {"sphere", 10000, sphere}, {"torus", 900, torus},           {"cylinder", 900, cylinder},
+      {"cone", 900, cone},       {"quadric", 900, quadric},       {"polyhedron", 900, polyhedron},
+      {"quartic", 900, quartic}, {"revolution", 900, revolution}, {"superellipsoid", 900, superellipsoid}};
 }
 
 }  // namespace oktett::bench

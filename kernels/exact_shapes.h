@@ -17,13 +17,14 @@
 #include "kernels/shapes/polynomial.h"
 #include "kernels/shapes/quadric.h"
 #include "kernels/shapes/revolution.h"
+#include "kernels/shapes/superquadric.h"
 #include "kernels/shapes/torus.h"
 
 namespace oktett {
 
 /// In the order of ExactForm.
-using ExactShapes =
-    std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob, Revolution, Lathe>;
+using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
+                               Revolution, Lathe, Superquadric>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -62,8 +62,7 @@ OKTETT_INLINE Dual<T> sqrt(const Dual<T>& a) {
 template <class D>
 OKTETT_INLINE Dual<Interval<D>> abs(const Dual<Interval<D>>& a) {
   const Interval<D> turned = -a.d;
-  const Interval<D> d =
-      select(D(0.0) <= a.v.lo, a.d, select(a.v.hi <= D(0.0), turned, hull(a.d, turned)));
+  const Interval<D> d = select(D(0.0) <= a.v.lo, a.d, select(a.v.hi <= D(0.0), turned, hull(a.d, turned)));
   return {abs(a.v), interval::carry(a.v, d)};
 }
 template <class D>

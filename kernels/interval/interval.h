@@ -215,11 +215,9 @@ OKTETT_INLINE Interval<D> log2(const Interval<D>& a) {
   return log_by(a, [](const D& x) { return lane::log2(x); });
 }
 
-/// x^y for a number y and x >= 0; elsewhere as sqrt. 0^y = 0 for y > 0, and a pole for y < 0.
+/// x^y for a number y > 0 and x >= 0; elsewhere as sqrt.
 template <class D>
-OKTETT_INLINE Interval<D> pow(const Interval<D>& a, double exponent) {
-  if (exponent == 0) return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), Interval<D>(D(1.0)));
-  if (exponent < 0) return inverse(pow(a, -exponent));
+OKTETT_INLINE Interval<D> pow_positive(const Interval<D>& a, double exponent) {
   const D y(exponent);
   D e_lo, e_hi;
   const D l = lane::pow(max(a.lo, D(0.0)), y, e_lo), h = lane::pow(max(a.hi, D(0.0)), y, e_hi);
@@ -227,11 +225,16 @@ OKTETT_INLINE Interval<D> pow(const Interval<D>& a, double exponent) {
   const Interval<D> r = interval::outward_positive(l, h, error * D(2.0));
   return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), r);
 }
-/// x^n for whole n, for n < 0 with a pole at 0.
+/// x^y for any number y and x >= 0; elsewhere as sqrt. 0^y = 0 for y > 0, and a pole for y < 0.
 template <class D>
-OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int n) {
-  if (n == 0) return interval::carry(a, Interval<D>(D(1.0)));
-  if (n < 0) return inverse(pow(a, -n));
+OKTETT_INLINE Interval<D> pow(const Interval<D>& a, double exponent) {
+  if (exponent == 0) return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), Interval<D>(D(1.0)));
+  const Interval<D> r = pow_positive(a, exponent < 0 ? -exponent : exponent);
+  return exponent < 0 ? inverse(r) : r;
+}
+/// x^n for whole n > 0.
+template <class D>
+OKTETT_INLINE Interval<D> pow_positive(const Interval<D>& a, int n) {
   if (n == 1) return a;
   if (n == 2) return sqr(a);
   const D error(n * interval::kRound);
@@ -243,6 +246,13 @@ OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int n) {
   Interval<D> r = interval::outward(lane::pow_whole(a.lo, n), lane::pow_whole(a.hi, n), error);
   r.lo = select((D(0.0) <= a.lo) & (r.lo < D(0.0)), D(0.0), r.lo);
   return interval::carry(a, r);
+}
+/// x^n for whole n, for n < 0 with a pole at 0.
+template <class D>
+OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int n) {
+  if (n == 0) return interval::carry(a, Interval<D>(D(1.0)));
+  const Interval<D> r = pow_positive(a, n < 0 ? -n : n);
+  return n < 0 ? inverse(r) : r;
 }
 
 }  // namespace oktett

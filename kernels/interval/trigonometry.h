@@ -93,8 +93,7 @@ OKTETT_INLINE Interval<D> atan2(const Interval<D>& y, const Interval<D>& x) {
   const Interval<D> half_pi(D(std::numbers::pi / 2), D(std::numbers::pi / 2 * (1 + 0x1p-52)));
   const Interval<D> a = atan(select(right, y, x) / select(right, x, y));
   const Interval<D> around(D(-std::numbers::pi * (1 + 0x1p-52)), D(std::numbers::pi * (1 + 0x1p-52)));
-  const Interval<D> r =
-      select(right, a, select(above, half_pi - a, select(below, -half_pi - a, around)));
+  const Interval<D> r = select(right, a, select(above, half_pi - a, select(below, -half_pi - a, around)));
   return interval::carry(y, x, r);
 }
 

@@ -164,7 +164,8 @@ TEST(Interval, BinaryFunctionsHoldEveryValue) {
       {"min", [](const I& a, const I& b) { return min(a, b); }, [](L x, L y) { return std::min(x, y); }},
       {"max", [](const I& a, const I& b) { return max(a, b); }, [](L x, L y) { return std::max(x, y); }},
       {"hull", [](const I& a, const I& b) { return hull(a, b); }, [](L x, L) { return x; }},
-      {"atan2", [](const I& a, const I& b) { return atan2(a, b); }, [](L x, L y) { return std::atan2(x, y); }},
+      {"atan2", [](const I& a, const I& b) { return atan2(a, b); },
+       [](L x, L y) { return std::atan2(x, y); }},
   };
   for (const Binary& f : binaries) {
     Arguments arguments;
@@ -174,8 +175,7 @@ TEST(Interval, BinaryFunctionsHoldEveryValue) {
       for (const double x : xs)
         for (const double y : ys) {
           const L truth = f.truth ? f.truth(x, y) : static_cast<L>(x) * number(b.lo);
-          expect_held(r, truth,
-                      f.name + std::string(" of ") + std::to_string(x) + ", " + std::to_string(y));
+          expect_held(r, truth, f.name + std::string(" of ") + std::to_string(x) + ", " + std::to_string(y));
           if (::testing::Test::HasFailure()) return;
         }
     }
@@ -194,9 +194,8 @@ TEST(Interval, UndefinedStaysUndefined) {
                        entire / (other + I(D(3.0))), min(entire, other), max(entire, other),
                        hull(entire, other), atan2(entire, other), atan2(other, entire), entire * D(0.0)})
       EXPECT_TRUE(is_entire(r));
-    for (const I& r : {none + other, none * other, other * none, none / other, other / none,
-                       min(none, other), max(other, none), hull(other, none), atan2(none, other),
-                       none * D(0.0)})
+    for (const I& r : {none + other, none * other, other * none, none / other, other / none, min(none, other),
+                       max(other, none), hull(other, none), atan2(none, other), none * D(0.0)})
       EXPECT_TRUE(is_void(r));
   }
   EXPECT_TRUE(is_void(sqrt(I(D(-2.0), D(-1.0)))));
@@ -226,7 +225,11 @@ TEST(Interval, DerivativesHoldEverySlope) {
   };
   const std::vector<Case> cases = {
       {"product", [](const J& a) { return a * a * a; }, [](L x) { return x * x * x; }},
-      {"quotient", [](const J& a) { return a / (a + J{I(D(3.0)), I(D(0.0))}); }, [](L x) { return x / (x + 3); }},
+      {"quotient",
+       [](const J& a) {
+         return a / (a + J{I(D(3.0)), I(D(0.0))});
+       },
+       [](L x) { return x / (x + 3); }},
       {"sqr", [](const J& a) { return sqr(a); }, [](L x) { return x * x; }},
       {"sqrt", [](const J& a) { return sqrt(a); }, [](L x) { return std::sqrt(x); }},
       {"abs", [](const J& a) { return abs(a); }, [](L x) { return std::abs(x); }},
@@ -258,7 +261,8 @@ TEST(Interval, DerivativesHoldEverySlope) {
       for (int i = 0; i < 6; ++i) {
         const L p = a + (b - a) * std::abs(arguments.unit()), q = i < 2 ? (i == 0 ? a : b) : (a + b) / 2;
         if (p == q || p < a || p > b) continue;
-        const L slope = (c.truth(p) - c.truth(q)) / (p - q), slack = 1e-18L * std::abs(c.truth(p)) / std::abs(p - q);
+        const L slope = (c.truth(p) - c.truth(q)) / (p - q),
+                slack = 1e-18L * std::abs(c.truth(p)) / std::abs(p - q);
         EXPECT_TRUE(number(r.d.lo) <= slope + slack + 1e-15L * std::abs(slope) &&
                     slope - slack - 1e-15L * std::abs(slope) <= number(r.d.hi))
             << c.name << " over [" << a << ", " << b << "]: " << static_cast<double>(slope) << " not in ["

@@ -40,7 +40,8 @@ Found find(const std::function<J(const J&)>& f, double a, double b,
   const D sign = interval::march<kRoom>(field, D(a), D(b), D(b), D::M::all_true(), jumps, out);
   Found r;
   for (int k = 0; k < kRoom && number(out.t[k]) < roots::kNoRoot; ++k)
-    r.t.push_back(number(out.t[k])), r.turn.push_back(number(out.turn[k])), r.part.push_back(number(out.part[k]));
+    r.t.push_back(number(out.t[k])), r.turn.push_back(number(out.turn[k])),
+        r.part.push_back(number(out.part[k]));
   r.first_sign = number(sign), r.evaluations = field.evaluations;
   return r;
 }
