@@ -19,7 +19,8 @@ constexpr ExactReader kReaders[] = {{"torus", read_torus}};
 std::vector<ExactReader> all_readers() {
   std::vector<ExactReader> all;
   for (const std::span<const ExactReader> family :
-       {std::span<const ExactReader>(kReaders), closed_form_readers(), polynomial_readers()})
+       {std::span<const ExactReader>(kReaders), closed_form_readers(), polynomial_readers(),
+        metaball_readers()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

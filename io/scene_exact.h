@@ -23,6 +23,8 @@ struct ExactReader {
 std::span<const ExactReader> closed_form_readers();
 /// Polynomials, blobs of inverse squares and surfaces of revolution.
 std::span<const ExactReader> polynomial_readers();
+/// Metaballs and blob trees.
+std::span<const ExactReader> metaball_readers();
 
 /// Warns that the object is left out because of `reason`.
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);

@@ -37,6 +37,8 @@ enum class Kind : std::uint8_t {
   blob,
   revolution,
   lathe,
+  metaballs,
+  blobtree,
   triangle,
   instance
 };

@@ -9,6 +9,7 @@
 
 #include "core/vec3.h"
 #include "kernels/roots/roots.h"
+#include "kernels/shapes/field_data.h"
 
 namespace oktett {
 
@@ -122,7 +123,8 @@ struct LatheShape {
 
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
 using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
-                               PolynomialShape, BlobShape, RevolutionShape, LatheShape>;
+                               PolynomialShape, BlobShape, RevolutionShape, LatheShape,
+                               MetaballsShape, BlobTreeShape>;
 
 struct ExactShape {
   ExactForm form;
