@@ -13,7 +13,8 @@ Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
 /// Balls by the cells of a grid that they reach into, so that a thousand can be added up.
 class BallGrid {
  public:
-  BallGrid(const MetaballsShape& shape, const Vec3d& lo, const Vec3d& hi) : shape_(shape), lo_(lo), step_((hi - lo) / kCells) {
+  BallGrid(const MetaballsShape& shape, const Vec3d& lo, const Vec3d& hi)
+      : shape_(shape), lo_(lo), step_((hi - lo) / kCells) {
     for (std::uint32_t i = 0; i < shape.balls.size(); ++i) {
       const MetaBall& b = shape.balls[i];
       int from[3], to[3];

@@ -52,9 +52,11 @@ PolygonSkeleton read_polygon(SceneLoad& load, const YamlNode& node) {
   const YamlNode& list =
       node.kind == YamlKind::sequence ? node : Fields(node, "polygon", {"vertices"}).require("vertices");
   PolygonShape polygon;
-  for (const YamlNode* vertex : list_items(list, "vertices")) polygon.vertices.push_back(load.values.vector(*vertex));
+  for (const YamlNode* vertex : list_items(list, "vertices"))
+    polygon.vertices.push_back(load.values.vector(*vertex));
   if (polygon.vertices.size() < 3)
-    throw Error(list.where(), "expected at least 3 vertices, found " + std::to_string(polygon.vertices.size()));
+    throw Error(list.where(),
+                "expected at least 3 vertices, found " + std::to_string(polygon.vertices.size()));
   if (const std::string why = why_degenerate(polygon); !why.empty()) throw Error(list.where(), why);
   return {polygon.vertices};
 }
@@ -104,20 +106,31 @@ Potential read_potential(SceneLoad& load, const std::vector<MapEntry>& entries) 
 
 /// A map with the key of a skeleton and its potential.
 FieldElement read_element(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "element", {"point", "segment", "polygon", "ellipsoid", "potential", "radius", "b", "d", "weight"});
+  const Fields fields(
+      node, "element",
+      {"point", "segment", "polygon", "ellipsoid", "potential", "radius", "b", "d", "weight"});
   const std::vector<MapEntry> entries = map_entries(node, "element");
   FieldElement element;
   const char* found = nullptr;
   for (const char* key : kSkeletons) {
     const YamlNode* value = fields[key];
     if (!value) continue;
-    if (found) throw Error(value->where(), std::string("an element has one skeleton: '") + found + "' or '" + key + "'");
+    if (found)
+      throw Error(value->where(),
+                  std::string("an element has one skeleton: '") + found + "' or '" + key + "'");
     found = key;
     switch (key[1] == 'l' ? 'e' : key[2]) {
-      case 'i': element.skeleton = read_point(load, *value); break;
-      case 'g': element.skeleton = read_segment(load, *value); break;
-      case 'l': element.skeleton = read_polygon(load, *value); break;
-      default: element.skeleton = read_ellipsoid(load, *value);
+      case 'i':
+        element.skeleton = read_point(load, *value);
+        break;
+      case 'g':
+        element.skeleton = read_segment(load, *value);
+        break;
+      case 'l':
+        element.skeleton = read_polygon(load, *value);
+        break;
+      default:
+        element.skeleton = read_ellipsoid(load, *value);
     }
   }
   if (!found) throw Error(node.where(), "expected a skeleton: point, segment, polygon or ellipsoid");
@@ -169,6 +182,11 @@ std::vector<MetaBall> read_ball_file(SceneLoad& load, const YamlNode& node) {
   return balls;
 }
 
+bool none_positive(const BlobTreeShape& tree) {
+  return std::none_of(tree.elements.begin(), tree.elements.end(),
+                      [](const FieldElement& e) { return e.potential.weight > 0; });
+}
+
 MaybeForm read_elements(SceneLoad& load, const YamlNode& key, const YamlNode& list, double iso) {
   BlobTreeShape tree;
   tree.iso = iso;
@@ -176,12 +194,12 @@ MaybeForm read_elements(SceneLoad& load, const YamlNode& key, const YamlNode& li
   if (items.empty()) throw Error(list.where(), "the list of elements is empty");
   check_count(items.size(), list.where());
   for (const YamlNode* item : items) tree.elements.push_back(read_element(load, *item));
-  if (std::none_of(tree.elements.begin(), tree.elements.end(), [](const auto& e) { return e.potential.weight > 0; }))
-    return skip_exact(load, key, "no element has a positive weight");
+  if (none_positive(tree)) return skip_exact(load, key, "no element has a positive weight");
   if (all_metaballs(tree.elements)) {
     MetaballsShape shape{iso, {}};
     for (const FieldElement& e : tree.elements)
-      shape.balls.push_back({std::get<PointSkeleton>(e.skeleton).center, e.potential.scale, e.potential.weight});
+      shape.balls.push_back(
+          {std::get<PointSkeleton>(e.skeleton).center, e.potential.scale, e.potential.weight});
     return shape;
   }
   for (std::uint32_t i = 0; i < tree.elements.size(); ++i) tree.blends.push_back({Blend::Op::element, i, 0});
@@ -223,17 +241,19 @@ constexpr Choice<Blend::Op> kBlends[] = {{"sum", Blend::Op::sum},
                                          {"min", Blend::Op::min},
                                          {"difference", Blend::Op::difference}};
 
-/// Appends what a node of the tree stands for, in postfix order.
+/// Appends what a node of the tree stands for, in postfix order. Only the outermost one has other keys.
 void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape& tree) {
   const std::vector<MapEntry> entries = map_entries(node, "blend");
   for (const Choice<Blend::Op>& blend : kBlends) {
     const YamlNode* list = find(entries, blend.name);
     if (!list) continue;
     for (const MapEntry& entry : entries)
-      if (entry.value != list && entry.key->text != "iso" && entry.key->text != "normals")
-        throw Error(entry.key->where(), std::string("'") + blend.name + "' stands alone; unexpected '" + entry.key->text + "'");
+      if (entry.value != list && (level > 1 || (entry.key->text != "iso" && entry.key->text != "normals")))
+        throw Error(entry.key->where(),
+                    std::string("'") + blend.name + "' stands alone; unexpected '" + entry.key->text + "'");
     if (level > kMaxBlendLevels)
-      throw Error(list->where(), "blends are nested deeper than " + std::to_string(kMaxBlendLevels) + " levels");
+      throw Error(list->where(),
+                  "blends are nested deeper than " + std::to_string(kMaxBlendLevels) + " levels");
     const auto items = list_items(*list, blend.name);
     if (items.empty()) throw Error(list->where(), std::string("the list of '") + blend.name + "' is empty");
     for (const YamlNode* item : items) read_blend(load, *item, level + 1, tree);
@@ -245,7 +265,7 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
   tree.blends.push_back({Blend::Op::element, static_cast<std::uint32_t>(tree.elements.size() - 1), 0});
 }
 
-MaybeForm read_blobtree(SceneLoad& load, const YamlNode&, const YamlNode& node) {
+MaybeForm read_blobtree(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
   const Fields fields(node, "blobtree", {"iso", "sum", "max", "min", "difference", "normals"});
   BlobTreeShape tree;
   tree.iso = read_iso(load, fields["iso"]);
@@ -253,6 +273,7 @@ MaybeForm read_blobtree(SceneLoad& load, const YamlNode&, const YamlNode& node) 
   for (const Choice<Blend::Op>& blend : kBlends) found |= fields[blend.name] != nullptr;
   if (!found) throw Error(node.where(), "a blobtree needs one of 'sum', 'max', 'min' and 'difference'");
   read_blend(load, node, 1, tree);
+  if (none_positive(tree)) return skip_exact(load, key, "no element has a positive weight");
   return tree;
 }
 

@@ -24,8 +24,8 @@
 namespace oktett {
 
 /// In the order of ExactForm.
-using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob, Revolution,
-                               Lathe, Metaballs, BlobTree>;
+using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
+                               Revolution, Lathe, Metaballs, BlobTree>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -52,7 +52,9 @@ class Division {
     }
     tree_.nodes[node] = {split, a.node, b.node, static_cast<CellNode::Kind>(axis)};
     if (a.cost == 0 && b.cost == 0) return {node, box, 0};
-    const CellBox both = a.cost == 0 ? b.box : b.cost == 0 ? a.box : CellBox{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)};
+    const CellBox both = a.cost == 0   ? b.box
+                         : b.cost == 0 ? a.box
+                                       : CellBox{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)};
     const double divided = a.cost + b.cost + area(both) * kNodeCost;
     if (area(both) * rule_.cost(part) > divided) return {node, both, divided};
     tree_.nodes.resize(nodes), tree_.lists.resize(lists), cells_.resize(cells);

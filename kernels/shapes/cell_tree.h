@@ -57,9 +57,7 @@ struct CellTree {
                        std::uint32_t element, std::vector<ExactCell>& cells);
   /// The leaf below `root` that a point in the box is in. Points that are not in it lead anywhere.
   const CellNode& leaf_at(std::uint32_t root, const Vec3d& p) const;
-  std::size_t bytes() const {
-    return nodes.size() * sizeof(CellNode) + lists.size() * sizeof(std::uint32_t);
-  }
+  std::size_t bytes() const { return nodes.size() * sizeof(CellNode) + lists.size() * sizeof(std::uint32_t); }
 };
 
 }  // namespace oktett

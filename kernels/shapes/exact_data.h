@@ -122,9 +122,9 @@ struct LatheShape {
 };
 
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
-                               PolynomialShape, BlobShape, RevolutionShape, LatheShape,
-                               MetaballsShape, BlobTreeShape>;
+using ExactForm =
+    std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape, PolynomialShape,
+                 BlobShape, RevolutionShape, LatheShape, MetaballsShape, BlobTreeShape>;
 
 struct ExactShape {
   ExactForm form;

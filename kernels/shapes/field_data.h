@@ -1,6 +1,6 @@
 #pragma once
-/// \file What describes surfaces on which a sum of potentials, or a tree of blends of them, has a given value:
-/// metaballs and blob trees.
+/// \file What describes surfaces on which a sum of potentials, or a tree of blends of them, has a given
+/// value: metaballs and blob trees.
 
 #include <cstdint>
 #include <variant>
@@ -63,9 +63,9 @@ struct FieldElement {
   Potential potential;
 };
 
-/// A blend of `count` values of what stands before it (G. and B. Wyvill, A. Guy: Extending the CSG Tree, 1999).
-/// The difference is of the first and all others: min(a, 2 iso - b), so that a point is inside of it if it is
-/// inside of a and not of b.
+/// A blend of `count` values of what stands before it (G. and B. Wyvill, A. Guy: Extending the CSG Tree,
+/// 1999). The difference is of the first and all others: min(a, 2 iso - b), so that a point is inside of it
+/// if it is inside of a and not of b.
 struct Blend {
   enum class Op : std::uint8_t { element, sum, max, min, difference };
   Op op = Op::element;

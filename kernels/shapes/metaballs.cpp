@@ -85,7 +85,8 @@ void Metaballs::add(Pool& pool, const ExactShape& shape, const Affine& to_world,
   bool any = false;
   double least = std::numeric_limits<double>::infinity();
   for (const MetaBall& b : s.balls) {
-    if (!std::isfinite(dot(b.center, b.center)) || !std::isfinite(b.radius) || !std::isfinite(b.strength)) return;
+    if (!std::isfinite(dot(b.center, b.center)) || !std::isfinite(b.radius) || !std::isfinite(b.strength))
+      return;
     if (!counts(b)) continue;
     least = std::min(least, b.radius);
     if (b.strength < 0) continue;
@@ -97,12 +98,13 @@ void Metaballs::add(Pool& pool, const ExactShape& shape, const Affine& to_world,
   if (!any || !(s.iso > 0 && std::isfinite(s.iso))) return;
   const Vec3d middle = lo + (hi - lo) * 0.5, extent = hi - lo;
   const double size = 0.5 * std::max({extent.x, extent.y, extent.z});
-  MetaballsElement e{s.iso, std::max(0x1p-32 * least / size, 0x1p-48), static_cast<std::uint32_t>(pool.balls.size()),
-                     0, 0};
+  MetaballsElement e{s.iso, std::max(0x1p-32 * least / size, 0x1p-48),
+                     static_cast<std::uint32_t>(pool.balls.size()), 0, 0};
   for (const MetaBall& b : s.balls) {
     if (!counts(b)) continue;
     const double r = b.radius / size;
-    const double alone = b.strength >= s.iso ? std::sqrt(s.iso / b.strength) : std::numeric_limits<double>::infinity();
+    const double alone =
+        b.strength >= s.iso ? std::sqrt(s.iso / b.strength) : std::numeric_limits<double>::infinity();
     pool.balls.push_back({(b.center - middle) / size, r * r, 1 / (r * r), b.strength, alone});
   }
   e.count = static_cast<std::uint32_t>(pool.balls.size()) - e.begin;
@@ -136,11 +138,13 @@ Vec3d Metaballs::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) 
 
 bool Metaballs::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
 
-void Metaballs::uv(const Pool&, std::size_t, int, const Vec3d& p, Surface& s) {
+void set_globe_uv(const Vec3d& p, Surface& s) {
   const double l = length(p), sine = l > 0 ? std::clamp(p.y / l, -1.0, 1.0) : 0;
   s.uv = {static_cast<float>(0.5 + portable::atan2(p.z, p.x) * 0.5 / std::numbers::pi),
           static_cast<float>(0.5 + portable::asin(sine) / std::numbers::pi)};
   s.tangent = Vec3f(Vec3d{-p.z, 0, p.x} * (2 * std::numbers::pi));
 }
+
+void Metaballs::uv(const Pool&, std::size_t, int, const Vec3d& p, Surface& s) { set_globe_uv(p, s); }
 
 }  // namespace oktett

@@ -1,10 +1,11 @@
 #pragma once
-/// \file Metaballs (M. Melcher, Blobs II): the sum of strength (1 - a^2 / r^2)^2 over balls of finite support.
+/// \file Metaballs (M. Melcher, Blobs II): the sum of strength (1 - a^2 / r^2)^2 over balls of finite
+/// support.
 ///
-/// The ray is cut where it enters and leaves the balls; between two cuts the sum is a quartic of the balls that
-/// it is in, added up anew in coordinates that begin at the cut. Where there is only one ball, the surface is a
-/// sphere. Each lane goes from cut to cut on its own until a piece may hold a crossing; then all are solved at
-/// once.
+/// The ray is cut where it enters and leaves the balls; between two cuts the sum is a quartic of the balls
+/// that it is in, added up anew in coordinates that begin at the cut. Where there is only one ball, the
+/// surface is a sphere. Each lane goes from cut to cut on its own until a piece may hold a crossing; then all
+/// are solved at once.
 
 #include "kernels/roots/bernstein_lanes.h"
 #include "kernels/shapes/cell_tree.h"
@@ -22,7 +23,7 @@ struct Ball {
 
 struct MetaballsElement {
   double iso;
-  double short_way;  ///< pieces of the ray shorter than this do not matter
+  double short_way;            ///< pieces of the ray shorter than this do not matter
   std::uint32_t begin, count;  ///< in the pool's balls
   std::uint32_t root;          ///< of the cells
 };
@@ -30,9 +31,7 @@ struct MetaballsElement {
 struct MetaballsPool : ExactPool<MetaballsElement> {
   std::vector<Ball> balls;
   CellTree tree;
-  std::size_t bytes() const {
-    return ExactPool::bytes() + balls.size() * sizeof(Ball) + tree.bytes();
-  }
+  std::size_t bytes() const { return ExactPool::bytes() + balls.size() * sizeof(Ball) + tree.bytes(); }
 };
 
 namespace metaballs {
@@ -53,8 +52,8 @@ struct Span {
   }
 };
 
-/// The spans of a ray in the balls of a cell. The first ones are kept, so that each piece need not compute them
-/// again.
+/// The spans of a ray in the balls of a cell. The first ones are kept, so that each piece need not compute
+/// them again.
 template <class D>
 class Spans {
  public:
@@ -76,7 +75,8 @@ class Spans {
   Span<D> kept_[kKept];
 };
 
-/// A piece of a line with the same balls all along: iso minus their sum in powers of the way from its beginning.
+/// A piece of a line with the same balls all along: iso minus their sum in powers of the way from its
+/// beginning.
 template <class D>
 struct Piece {
   D c[5], width;
@@ -192,6 +192,9 @@ OKTETT_INLINE typename D::M surely_clear(const Piece<D>& p, const PieceRoots<1, 
 
 }  // namespace metaballs
 
+/// Longitude and latitude as of a sphere about the origin.
+void set_globe_uv(const Vec3d& p, Surface& s);
+
 struct Metaballs {
   using Data = MetaballsShape;
   using Pool = MetaballsPool;
@@ -228,7 +231,7 @@ struct Metaballs {
         held.middle = select(hold, p.middle, held.middle), held.half = select(hold, p.half, held.half);
         holds = holds | hold;
         state = select(pass, sign, state);
-        const auto last = s + p.width >= end;
+        const auto last = ~(s + p.width < end);
         s = select(pass, s + p.width, s);
         open = open & ~(pass & last);
         seeking = pass & ~last;
@@ -253,7 +256,7 @@ struct Metaballs {
       D way = held.width;
       // A crossing before the range leads on to the next one.
       if constexpr (R == 1) way = select(r.x[0] < way, min(r.x[0] + D(e.short_way), way), way);
-      const auto last = s + way >= end;
+      const auto last = ~(s + way < end);
       s = select(holds, s + way, s);
       open = open & ~(holds & last) & (list.count < D(K));
     }
