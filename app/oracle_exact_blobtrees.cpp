@@ -85,7 +85,8 @@ Real blend(const BlobTreeShape& s, std::size_t& at, const Vec3l& p) {
   const Blend& b = s.blends[--at];
   if (b.op == Blend::Op::element) {
     const FieldElement& e = s.elements[b.element];
-    const Real r2 = std::visit([&](const auto& skeleton) { return skeleton_square(skeleton, p); }, e.skeleton);
+    const Real r2 =
+        std::visit([&](const auto& skeleton) { return skeleton_square(skeleton, p); }, e.skeleton);
     return e.potential.weight * potential(e.potential, r2);
   }
   std::vector<Real> v(b.count);
@@ -93,10 +94,17 @@ Real blend(const BlobTreeShape& s, std::size_t& at, const Vec3l& p) {
   Real all = v[0];
   for (std::size_t k = 1; k < v.size(); ++k) {
     switch (b.op) {
-      case Blend::Op::sum: all += v[k]; break;
-      case Blend::Op::max: all = std::max(all, v[k]); break;
-      case Blend::Op::min: all = std::min(all, v[k]); break;
-      default: all = std::min(all, 2 * static_cast<Real>(s.iso) - v[k]);
+      case Blend::Op::sum:
+        all += v[k];
+        break;
+      case Blend::Op::max:
+        all = std::max(all, v[k]);
+        break;
+      case Blend::Op::min:
+        all = std::min(all, v[k]);
+        break;
+      default:
+        all = std::min(all, 2 * static_cast<Real>(s.iso) - v[k]);
     }
   }
   return all;
@@ -105,7 +113,8 @@ Real blend(const BlobTreeShape& s, std::size_t& at, const Vec3l& p) {
 /// Within this of a positive element is all that is inside.
 double reach_of(const Potential& p, double share) {
   if (p.kind == PotentialKind::inverse_square) return p.scale * std::sqrt(p.weight / share);
-  if (p.kind == PotentialKind::gaussian) return std::sqrt(std::max(std::log(p.weight / share), 0.0) / p.scale);
+  if (p.kind == PotentialKind::gaussian)
+    return std::sqrt(std::max(std::log(p.weight / share), 0.0) / p.scale);
   return p.scale;
 }
 
@@ -145,7 +154,8 @@ PolygonSkeleton random_polygon(CaseRandom& random) {
   const int count = 3 + static_cast<int>(random.unit() * 5);
   PolygonSkeleton s;
   for (int i = 0; i < count; ++i) {
-    const double angle = (i + 0.8 * random.unit()) * 2 * std::numbers::pi / count, r = 0.15 + 0.8 * random.unit();
+    const double angle = (i + 0.8 * random.unit()) * 2 * std::numbers::pi / count,
+                 r = 0.15 + 0.8 * random.unit();
     s.vertices.push_back(middle + place.vector({r * std::cos(angle), r * std::sin(angle), 0}));
   }
   return s;

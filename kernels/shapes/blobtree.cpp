@@ -58,7 +58,8 @@ double potential(const FieldPart& part, double square, double& slope) {
 }
 
 /// What leads from the nearest place in the polygon to (x, y).
-void from_polygon(const BlobTreePool& pool, const FieldPart& part, double x, double y, double& dx, double& dy) {
+void from_polygon(const BlobTreePool& pool, const FieldPart& part, double x, double y, double& dx,
+                  double& dy) {
   const double* corner = pool.corners.data() + 2 * std::size_t{part.corner};
   const double* a = corner + 2 * (part.corners - 1);
   bool within = false;
@@ -329,7 +330,8 @@ void set_plane(const std::vector<Vec3d>& vertices, FieldPart& part) {
 }
 
 /// An element in own space.
-FieldPart make_part(const FieldElement& element, const Vec3d& middle, double size, std::vector<double>& corners) {
+FieldPart make_part(const FieldElement& element, const Vec3d& middle, double size,
+                    std::vector<double>& corners) {
   const Potential& p = element.potential;
   FieldPart part;
   part.kind = p.kind, part.d = p.d, part.weight = p.weight;
@@ -398,18 +400,24 @@ void BlobTree::add(Pool& pool, const ExactShape& shape, const Affine& to_world, 
   for (const FieldElement& e : s.elements) pool.parts.push_back(make_part(e, middle, size, pool.corners));
   for (std::uint32_t& c : code)
     if (BlobCode::op(c) == BlobCode::element) c += first;
-  BlobTreeElement e{s.iso, static_cast<std::uint32_t>(pool.codes.size()), static_cast<std::uint32_t>(code.size()), 0};
+  BlobTreeElement e{s.iso, static_cast<std::uint32_t>(pool.codes.size()),
+                    static_cast<std::uint32_t>(code.size()), 0};
   pool.codes.insert(pool.codes.end(), code.begin(), code.end());
   BlobRule rule(pool, s.iso);
   const Vec3d half = extent * (0.5 / size);
-  e.root = pool.tree.divide(rule, {-half, half}, code, static_cast<std::uint32_t>(pool.elements.size()), pool.cells);
+  e.root = pool.tree.divide(rule, {-half, half}, code, static_cast<std::uint32_t>(pool.elements.size()),
+                            pool.cells);
   add_element(pool, e, to_world * Affine::translation(middle) * Affine::scaling({size, size, size}), item,
               shape.normals);
 }
 
-double BlobTree::value(const Pool& pool, std::size_t i, int, const Vec3d& p) { return evaluate(pool, i, p).v; }
+double BlobTree::value(const Pool& pool, std::size_t i, int, const Vec3d& p) {
+  return evaluate(pool, i, p).v;
+}
 
-Vec3d BlobTree::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) { return evaluate(pool, i, p).g; }
+Vec3d BlobTree::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) {
+  return evaluate(pool, i, p).g;
+}
 
 bool BlobTree::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
 

@@ -2,8 +2,8 @@
 /// \file Distances from skeletons along a line and the potentials that fall with them, as intervals in lanes.
 ///
 /// Everything is in terms of R, the square of the distance in units of the element. What describes R along a
-/// line is computed in plain double: it is that of a line moved by some 2^-49 of the element's own space. From
-/// there on all is enclosed.
+/// line is computed in plain double: it is that of a line moved by some 2^-49 of the element's own space.
+/// From there on all is enclosed.
 
 #include <cstdint>
 #include <vector>
@@ -21,14 +21,14 @@ struct FieldPart {
   PotentialKind kind = PotentialKind::wyvill;
   double d = 0, weight = 1;
   Vec3d origin;  ///< centre of a point, beginning of a segment, a corner of a polygon
-  /// R of a point is |rows (p - origin)|^2, ellipsoids have rows of different lengths. The rows of polygons are
-  /// two directions in its plane and its normal, of unit length.
+  /// R of a point is |rows (p - origin)|^2, ellipsoids have rows of different lengths. The rows of polygons
+  /// are two directions in its plane and its normal, of unit length.
   Vec3d row[3];
-  Vec3d axis;                          ///< of a segment, to its end
-  double axis_square = 0;              ///< |axis|^2
-  double inverse_axis = 0;             ///< 1 / |axis|^2; 0 if it has no length
-  double unit_square = 1;              ///< R per square of distance, for segments and polygons
-  double reach = 0;                    ///< about how far the potential reaches
+  Vec3d axis;                             ///< of a segment, to its end
+  double axis_square = 0;                 ///< |axis|^2
+  double inverse_axis = 0;                ///< 1 / |axis|^2; 0 if it has no length
+  double unit_square = 1;                 ///< R per square of distance, for segments and polygons
+  double reach = 0;                       ///< about how far the potential reaches
   std::uint32_t corner = 0, corners = 0;  ///< of a polygon, in its plane
 };
 
@@ -51,8 +51,8 @@ OKTETT_INLINE Dual<Interval<D>> square_over(const SegmentTrack<D>& t, const Inte
   const Interval<D> q = x - Interval<D>(t.s0), h = x * t.h1 + Interval<D>(t.h0);
   const D zero(0.0), one(1.0);
   // How far h is below 0 or above 1; never falls with h.
-  const Interval<D> over = interval::outward_sum(min(h.lo, zero) + max(h.lo - one, zero),
-                                                 min(h.hi, zero) + max(h.hi - one, zero));
+  const Interval<D> over =
+      interval::outward_sum(min(h.lo, zero) + max(h.lo - one, zero), min(h.hi, zero) + max(h.hi - one, zero));
   return {sqr(q) * t.a + Interval<D>(t.m) + sqr(over) * t.length,
           (q * t.a + over * t.h1 * t.length) * D(2.0)};
 }
@@ -65,7 +65,7 @@ OKTETT_INLINE D along(const D& zero_at, const D& speed_square) {
 /// R along a line.
 template <class D>
 struct Track {
-  SegmentTrack<D> straight;   ///< points and segments
+  SegmentTrack<D> straight;  ///< points and segments
   D x0, y0, z0, x1, y1, z1;  ///< place in a polygon's own coordinates, and its speed
 
   Track() = default;
@@ -199,8 +199,7 @@ OKTETT_INLINE Dual<Interval<D>> potential_over(const FieldPart& part, const Dual
                       select(past, zero, most + (most + D(1.0)) * error)};
   const D slack = (abs(steepest) + D(1.0)) * error;
   Interval<D> slope{select(past, zero, steepest - slack), select(past, zero, min(flattest + slack, zero))};
-  if (part.kind == PotentialKind::inverse_square)
-    slope.hi = select(near <= D(kLeastSquare), zero, slope.hi);
+  if (part.kind == PotentialKind::inverse_square) slope.hi = select(near <= D(kLeastSquare), zero, slope.hi);
   const D weight(part.weight);
   return {v * weight, slope * square.d * weight};
 }

@@ -51,7 +51,9 @@ const double kHalf = std::sqrt(1 - std::sqrt(0.5));
 
 MetaballsShape one_ball(double size = 1) { return {0.5, {{{0, 0, 0}, size, 1}}}; }
 
-FieldElement element(const Skeleton& skeleton, const Potential& potential = {}) { return {skeleton, potential}; }
+FieldElement element(const Skeleton& skeleton, const Potential& potential = {}) {
+  return {skeleton, potential};
+}
 
 BlobTreeShape blend(Blend::Op op, const std::vector<FieldElement>& elements, double iso = 0.5) {
   BlobTreeShape s{iso, elements, {}};
@@ -74,7 +76,8 @@ TEST(Metaballs, OneWayOutFromInside) {
   EXPECT_EQ(hits[0].v, 1);
 }
 
-/// Balls at one place add up to one that is stronger, in one piece of the ray; a negative one makes it weaker.
+/// Balls at one place add up to one that is stronger, in one piece of the ray; a negative one makes it
+/// weaker.
 TEST(Metaballs, CoincidentBallsAddUp) {
   MetaballsShape s{0.5, {}};
   for (int i = 0; i < 30; ++i) s.balls.push_back({{1, 2, 3}, 1, i % 3 == 2 ? -0.05 : 0.1});
@@ -126,8 +129,9 @@ TEST(Metaballs, NothingForNanAndDegenerate) {
   }
   for (const ExactForm& form :
        {ExactForm{MetaballsShape{0.5, {}}}, ExactForm{MetaballsShape{0.5, {{{0, 0, 0}, 1, -1}}}},
-        ExactForm{MetaballsShape{0.5, {{{0, 0, 0}, 0, 1}}}}, ExactForm{MetaballsShape{2, {{{0, 0, 0}, 1, 1}}}},
-        ExactForm{BlobTreeShape{}}, ExactForm{alone(PointSkeleton{}, {PotentialKind::wyvill, 1, 0, -1})}})
+        ExactForm{MetaballsShape{0.5, {{{0, 0, 0}, 0, 1}}}},
+        ExactForm{MetaballsShape{2, {{{0, 0, 0}, 1, 1}}}}, ExactForm{BlobTreeShape{}},
+        ExactForm{alone(PointSkeleton{}, {PotentialKind::wyvill, 1, 0, -1})}})
     EXPECT_EQ(crossings(form, {-3, 0, 0}, {1, 0, 0}).size(), 0u);
 }
 
@@ -154,8 +158,8 @@ double tests_per_ray(int count) {
   return tests / kRays;
 }
 
-/// Cells keep the number of balls that a whole line is tested with far below their number: it grows as the cube
-/// root, as the number of balls along the line does.
+/// Cells keep the number of balls that a whole line is tested with far below their number: it grows as the
+/// cube root, as the number of balls along the line does.
 TEST(Metaballs, FewBallsPerRay) {
   const double hundred = tests_per_ray(100), ten_thousand = tests_per_ray(10000);
   RecordProperty("hundred", std::to_string(hundred));
@@ -190,7 +194,8 @@ TEST(BlobTrees, Skeletons) {
   expect_at(crossings(capsule, {-3, 0.5f, 0}, {1, 0, 0}), {3 - kHalf, 3 + kHalf});
   expect_at(crossings(capsule, {0, -5, 0}, {0, 1, 0}), {4 - kHalf, 7 + kHalf});
   EXPECT_EQ(crossings(capsule, {-3, 2.6f, 0}, {1, 0, 0}).size(), 0u);
-  expect_at(crossings(alone(SegmentSkeleton{{1, 1, 1}, {1, 1, 1}}), {-3, 1, 1}, {1, 0, 0}), {4 - kHalf, 4 + kHalf});
+  expect_at(crossings(alone(SegmentSkeleton{{1, 1, 1}, {1, 1, 1}}), {-3, 1, 1}, {1, 0, 0}),
+            {4 - kHalf, 4 + kHalf});
   // A plate in the shape of an L, through its middle, beside it in the corner, and in its plane.
   const BlobTreeShape plate =
       alone(PolygonSkeleton{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}},

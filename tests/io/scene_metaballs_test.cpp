@@ -26,7 +26,8 @@ TEST(SceneMetaballs, ReadsEveryParameter) {
       "      elements:\n"
       "        - {segment: {from: [1, 0, 0], to: [2, 0, 0]}, potential: gaussian, b: 3}\n"
       "        - {polygon: [[0, 0, 0], [1, 0, 0], [0, 1, 0]], potential: quadratic, b: 2}\n"
-      "        - {ellipsoid: {center: [1, 1, 1], radii: [1, 2, 3], rotate: [10, 20, 30]}, potential: rational,\n"
+      "        - {ellipsoid: {center: [1, 1, 1], radii: [1, 2, 3], rotate: [10, 20, 30]}, potential: "
+      "rational,\n"
       "           d: 4, radius: 2}\n"
       "        - {point: {center: [0, 1, 0]}, potential: inverse_square}\n"
       "  - blobtree:\n"
@@ -81,11 +82,14 @@ TEST(SceneMetaballs, ErrorsHaveTheirPlace) {
       {"metaballs: {balls: [{radios: 1}]}", "scene.yaml:2:33: unknown key 'radios'"},
       {"metaballs: {balls: [{}], elements: []}", "scene.yaml:2:47: metaballs have one of"},
       {"metaballs: {elements: [{radius: 1}]}", "scene.yaml:2:35: expected a skeleton"},
-      {"metaballs: {elements: [{point: [0, 0, 0], segment: {}}]}", "scene.yaml:2:63: an element has one skeleton"},
+      {"metaballs: {elements: [{point: [0, 0, 0], segment: {}}]}",
+       "scene.yaml:2:63: an element has one skeleton"},
       {"metaballs: {elements: [{point: [0, 0, 0], potential: cubic}]}", "scene.yaml:2:65: expected "},
       {"metaballs: {elements: [{point: [0, 0, 0], b: 1}]}", "scene.yaml:2:57: this potential has no 'b'"},
-      {"metaballs: {elements: [{ellipsoid: {radii: [1, 0, 1]}}]}", "scene.yaml:2:59: expected a number greater"},
-      {"metaballs: {elements: [{polygon: [[0, 0, 0], [1, 0, 0]]}]}", "scene.yaml:2:45: expected at least 3 vertices"},
+      {"metaballs: {elements: [{ellipsoid: {radii: [1, 0, 1]}}]}",
+       "scene.yaml:2:59: expected a number greater"},
+      {"metaballs: {elements: [{polygon: [[0, 0, 0], [1, 0, 0]]}]}",
+       "scene.yaml:2:45: expected at least 3 vertices"},
       {"metaballs: {elements: [{polygon: [[0, 0, 0], [1, 0, 0], [2, 0, 0]]}]}", "scene.yaml:2:45: "},
       {"blobtree: {}", "scene.yaml:2:22: a blobtree needs one of"},
       {"blobtree: {max: []}", "scene.yaml:2:28: the list of 'max' is empty"},
@@ -98,11 +102,13 @@ TEST(SceneMetaballs, ErrorsHaveTheirPlace) {
     SCOPED_TRACE(c.object);
     expect_starts(files.error_v1("objects: [{" + c.object + "}]"), c.error);
   }
-  EXPECT_NE(files.error_v1("objects: [{blobtree: {max: [" + deep + "]}}]").find("nested deeper than 32 levels"),
-            std::string::npos);
+  EXPECT_NE(
+      files.error_v1("objects: [{blobtree: {max: [" + deep + "]}}]").find("nested deeper than 32 levels"),
+      std::string::npos);
   files.dir.write("balls.txt", "0 0 0 1\n0 0 0 0\n");
-  EXPECT_NE(files.error_v1("objects: [{metaballs: {file: balls.txt}}]").find("balls.txt:2:7: expected a radius"),
-            std::string::npos);
+  EXPECT_NE(
+      files.error_v1("objects: [{metaballs: {file: balls.txt}}]").find("balls.txt:2:7: expected a radius"),
+      std::string::npos);
 }
 
 /// What has nothing to show is skipped with a warning.
