@@ -15,5 +15,8 @@ std::vector<DrawExact> quadric_oracles();
 std::vector<DrawExact> polynomial_oracles();
 /// Superquadrics and ratioquadrics.
 std::vector<DrawExact> superquadric_oracles();
+/// Metaballs and blob trees.
+std::vector<DrawExact> metaball_oracles();
+std::vector<DrawExact> blobtree_oracles();
 
 }  // namespace oktett

@@ -121,13 +121,38 @@ FieldObject superellipsoid(const double (&r)[6]) {
           }};
 }
 
+/// Six balls about the middle.
+FieldObject metaballs(const double (&random)[6]) {
+  FieldObject object{"blob { threshold 0.5", ExactShape{}, {}};
+  MetaballsShape shape{0.5, {}};
+  for (int k = 0; k < 6; ++k) {
+    const auto at = [&](double step, int axis) { return k * step + random[axis] * 6; };
+    const Vec3d c{0.5 * std::cos(at(2.4, 0)), 0.5 * std::cos(at(1.7, 1)), 0.5 * std::sin(at(2.1, 2))};
+    shape.balls.push_back({c, 0.75, 1});
+    object.pov += fmt::format(" sphere {{ <{}, {}, {}>, 0.75, 1 }}", c.x, c.y, c.z);
+  }
+  object.pov += " }";
+  object.shape = ExactShape{shape};
+  object.f = [shape](const Vec3l& p) {
+    long double f = shape.iso;
+    for (const MetaBall& ball : shape.balls) {
+      const Vec3l d = p - Vec3l(ball.center);
+      const long double q = 1 - dot(d, d) / (0.75L * 0.75L);
+      if (q > 0) f -= q * q;
+    }
+    return f;
+  };
+  return object;
+}
+
 }  // namespace
 
 std::vector<FieldKind> field_kinds() {
   return {
-      {"sphere", 10000, sphere}, {"torus", 900, torus},           {"cylinder", 900, cylinder},
-      {"cone", 900, cone},       {"quadric", 900, quadric},       {"polyhedron", 900, polyhedron},
-      {"quartic", 900, quartic}, {"revolution", 900, revolution}, {"superellipsoid", 900, superellipsoid}};
+      {"sphere", 10000, sphere},    {"torus", 900, torus},           {"cylinder", 900, cylinder},
+      {"cone", 900, cone},          {"quadric", 900, quadric},       {"polyhedron", 900, polyhedron},
+      {"quartic", 900, quartic},    {"revolution", 900, revolution}, {"superellipsoid", 900, superellipsoid},
+      {"metaballs", 225, metaballs}};
 }
 
 }  // namespace oktett::bench

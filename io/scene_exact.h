@@ -25,6 +25,8 @@ std::span<const ExactReader> closed_form_readers();
 std::span<const ExactReader> polynomial_readers();
 /// Superquadrics and ratioquadrics.
 std::span<const ExactReader> superquadric_readers();
+/// Metaballs and blob trees.
+std::span<const ExactReader> metaball_readers();
 
 /// Warns that the object is left out because of `reason`.
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);

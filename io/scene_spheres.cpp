@@ -1,11 +1,10 @@
 #include "io/scene_spheres.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <string_view>
-#include <system_error>
 #include <utility>
+
+#include "io/scene_number_line.h"
 
 namespace oktett {
 namespace {
@@ -43,53 +42,14 @@ class SphereList {
   std::size_t skipped_ = 0;
 };
 
-/// The numbers of one line of a sphere file.
-class SphereLine {
- public:
-  SphereLine(std::string_view line, const Location& place) : line_(line), place_(place) { skip_space(); }
-
-  bool empty() const { return at_ == line_.size() || line_[at_] == '#'; }
-
-  double number() {
-    if (empty()) fail("expected 4 numbers (x y z radius), found fewer");
-    double value = 0;
-    const std::size_t begin = at_ + (line_[at_] == '+' ? 1 : 0);
-    const auto [end, error] = std::from_chars(line_.data() + begin, line_.data() + line_.size(), value);
-    const auto stop = static_cast<std::size_t>(end - line_.data());
-    const bool ends_word = stop == line_.size() || is_space(line_[stop]) || line_[stop] == '#';
-    if (error == std::errc::invalid_argument || !ends_word) fail("expected a number");
-    if (error != std::errc() || !(std::abs(value) <= kMaxCoordinate))
-      fail("number not finite or out of range");
-    previous_ = at_;
-    at_ = stop;
-    skip_space();
-    return value;
-  }
-
-  SphereShape sphere() {
-    SphereShape s;
-    for (int axis = 0; axis < 3; ++axis) s.center[axis] = number();
-    s.radius = number();
-    if (s.radius < 0) at_ = previous_, fail("expected a radius of at least 0");
-    if (!empty()) fail("expected 4 numbers (x y z radius), found more");
-    return s;
-  }
-
- private:
-  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-  void skip_space() {
-    while (at_ < line_.size() && is_space(line_[at_])) ++at_;
-  }
-  [[noreturn]] void fail(const std::string& message) const {
-    Location place = place_;
-    place.column = static_cast<int>(at_) + 1;
-    throw Error(place, message);
-  }
-
-  std::string_view line_;
-  const Location& place_;
-  std::size_t at_ = 0, previous_ = 0;
-};
+SphereShape sphere_of(NumberLine& line) {
+  SphereShape s;
+  for (int axis = 0; axis < 3; ++axis) s.center[axis] = line.number();
+  s.radius = line.number();
+  if (s.radius < 0) line.reject("expected a radius of at least 0");
+  line.finish();
+  return s;
+}
 
 SpheresShape read_sphere_file(SceneLoad& load, const YamlNode& node) {
   const std::string path = load.values.existing_file(node);
@@ -103,10 +63,10 @@ SpheresShape read_sphere_file(SceneLoad& load, const YamlNode& node) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     ++place.line;
-    SphereLine line(std::string_view(text).substr(begin, end - begin), place);
+    NumberLine line(std::string_view(text).substr(begin, end - begin), place, "4 numbers (x y z radius)");
     if (!line.empty()) {
       count_spheres(load, 1, place);
-      list.add(line.sphere(), place);
+      list.add(sphere_of(line), place);
     }
     begin = end + 1;
   }

@@ -10,9 +10,11 @@
 
 #include "kernels/primitives.h"
 #include "kernels/shapes/blob.h"
+#include "kernels/shapes/blobtree.h"
 #include "kernels/shapes/cone.h"
 #include "kernels/shapes/cylinder.h"
 #include "kernels/shapes/lathe.h"
+#include "kernels/shapes/metaballs.h"
 #include "kernels/shapes/polyhedron.h"
 #include "kernels/shapes/polynomial.h"
 #include "kernels/shapes/quadric.h"
@@ -24,7 +26,7 @@ namespace oktett {
 
 /// In the order of ExactForm.
 using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
-                               Revolution, Lathe, Superquadric>;
+                               Revolution, Lathe, Superquadric, Metaballs, BlobTree>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -38,6 +38,8 @@ enum class Kind : std::uint8_t {
   revolution,
   lathe,
   superquadric,
+  metaballs,
+  blobtree,
   triangle,
   instance
 };

@@ -9,6 +9,7 @@
 
 #include "core/vec3.h"
 #include "kernels/roots/roots.h"
+#include "kernels/shapes/field_data.h"
 
 namespace oktett {
 
@@ -138,8 +139,9 @@ struct SuperquadricShape {
 };
 
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
-                               PolynomialShape, BlobShape, RevolutionShape, LatheShape, SuperquadricShape>;
+using ExactForm =
+    std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape, PolynomialShape,
+                 BlobShape, RevolutionShape, LatheShape, SuperquadricShape, MetaballsShape, BlobTreeShape>;
 
 struct ExactShape {
   ExactForm form;

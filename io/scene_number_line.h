@@ -1,0 +1,36 @@
+#pragma once
+/// \file Lines of numbers in text files beside a scene. Within io/ only.
+
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace oktett {
+
+/// The numbers of one line, parted by blanks; '#' begins a comment.
+class NumberLine {
+ public:
+  /// `expected` says what a line holds, e.g. "4 numbers (x y z radius)".
+  NumberLine(std::string_view line, const Location& place, const char* expected);
+
+  /// Whether nothing is left.
+  bool empty() const { return at_ == line_.size() || line_[at_] == '#'; }
+  /// The next number. Throws Error if there is none or it is out of range.
+  double number();
+  /// Throws Error if something is left.
+  void finish() const;
+  /// Throws Error at the number that was read last.
+  [[noreturn]] void reject(const std::string& message) const { fail(previous_, message); }
+
+ private:
+  void skip_space();
+  [[noreturn]] void fail(std::size_t at, const std::string& message) const;
+
+  std::string_view line_;
+  const Location& place_;
+  const char* expected_;
+  std::size_t at_ = 0, previous_ = 0;
+};
+
+}  // namespace oktett
