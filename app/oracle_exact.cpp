@@ -24,7 +24,7 @@ ExactOracle torus(CaseRandom& random) {
 
 std::vector<DrawExact> all_families() {
   std::vector<DrawExact> all{torus};
-  for (const auto& family : {quadric_oracles(), polynomial_oracles()})
+  for (const auto& family : {quadric_oracles(), polynomial_oracles(), function_oracles()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

@@ -13,5 +13,7 @@ using DrawExact = ExactOracle (*)(CaseRandom&);
 std::vector<DrawExact> quadric_oracles();
 /// Polynomials, blobs of inverse squares and surfaces of revolution.
 std::vector<DrawExact> polynomial_oracles();
+/// Functions of the user's own.
+std::vector<DrawExact> function_oracles();
 
 }  // namespace oktett

@@ -12,6 +12,7 @@
 #include "kernels/shapes/blob.h"
 #include "kernels/shapes/cone.h"
 #include "kernels/shapes/cylinder.h"
+#include "kernels/shapes/implicit.h"
 #include "kernels/shapes/lathe.h"
 #include "kernels/shapes/polyhedron.h"
 #include "kernels/shapes/polynomial.h"
@@ -22,8 +23,8 @@
 namespace oktett {
 
 /// In the order of ExactForm.
-using ExactShapes =
-    std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob, Revolution, Lathe>;
+using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
+                               Revolution, Lathe, Implicit>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -37,6 +37,7 @@ enum class Kind : std::uint8_t {
   blob,
   revolution,
   lathe,
+  implicit,
   triangle,
   instance
 };

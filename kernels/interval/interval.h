@@ -219,30 +219,32 @@ OKTETT_INLINE Interval<D> log2(const Interval<D>& a) {
 template <class D>
 OKTETT_INLINE Interval<D> pow(const Interval<D>& a, double exponent) {
   if (exponent == 0) return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), Interval<D>(D(1.0)));
-  if (exponent < 0) return inverse(pow(a, -exponent));
-  const D y(exponent);
+  const D y(exponent < 0 ? -exponent : exponent);
   D e_lo, e_hi;
   const D l = lane::pow(max(a.lo, D(0.0)), y, e_lo), h = lane::pow(max(a.hi, D(0.0)), y, e_hi);
   const D error = max(lane::pow_error(e_lo), lane::pow_error(e_hi));
-  const Interval<D> r = interval::outward_positive(l, h, error * D(2.0));
-  return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), r);
+  const Interval<D> r = interval::inside_domain(a, D(0.0), Interval<D>::infinity(),
+                                                interval::outward_positive(l, h, error * D(2.0)));
+  return exponent < 0 ? inverse(r) : r;
 }
 /// x^n for whole n, for n < 0 with a pole at 0.
 template <class D>
-OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int n) {
+OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int exponent) {
+  const int n = exponent < 0 ? -exponent : exponent;
+  Interval<D> r = a;
   if (n == 0) return interval::carry(a, Interval<D>(D(1.0)));
-  if (n < 0) return inverse(pow(a, -n));
-  if (n == 1) return a;
-  if (n == 2) return sqr(a);
-  const D error(n * interval::kRound);
-  if (n % 2 == 0) {
+  if (n == 2) {
+    r = sqr(a);
+  } else if (n % 2 == 0) {
     const Interval<D> m = abs(a);
-    return interval::carry(
-        a, interval::outward_positive(lane::pow_whole(m.lo, n), lane::pow_whole(m.hi, n), error));
+    r = interval::carry(a, interval::outward_positive(lane::pow_whole(m.lo, n), lane::pow_whole(m.hi, n),
+                                                      D(n * interval::kRound)));
+  } else if (n > 1) {
+    r = interval::outward(lane::pow_whole(a.lo, n), lane::pow_whole(a.hi, n), D(n * interval::kRound));
+    r.lo = select((D(0.0) <= a.lo) & (r.lo < D(0.0)), D(0.0), r.lo);
+    r = interval::carry(a, r);
   }
-  Interval<D> r = interval::outward(lane::pow_whole(a.lo, n), lane::pow_whole(a.hi, n), error);
-  r.lo = select((D(0.0) <= a.lo) & (r.lo < D(0.0)), D(0.0), r.lo);
-  return interval::carry(a, r);
+  return exponent < 0 ? inverse(r) : r;
 }
 
 }  // namespace oktett

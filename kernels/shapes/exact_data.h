@@ -9,6 +9,7 @@
 
 #include "core/vec3.h"
 #include "kernels/roots/roots.h"
+#include "kernels/tape_data.h"
 
 namespace oktett {
 
@@ -120,9 +121,16 @@ struct LatheShape {
   bool open = false;                 ///< without the disks at the curve's ends
 };
 
+/// Where a function of x, y and z is negative, in a box. Where it is not defined is outside.
+struct ImplicitShape {
+  FunctionTape function;
+  Vec3d lo{-1, -1, -1}, hi{1, 1, 1};  ///< lo < hi
+  bool open = false;                  ///< without the faces of the box
+};
+
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
 using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
-                               PolynomialShape, BlobShape, RevolutionShape, LatheShape>;
+                               PolynomialShape, BlobShape, RevolutionShape, LatheShape, ImplicitShape>;
 
 struct ExactShape {
   ExactForm form;
