@@ -18,5 +18,7 @@ std::vector<DrawExact> superquadric_oracles();
 /// Metaballs and blob trees.
 std::vector<DrawExact> metaball_oracles();
 std::vector<DrawExact> blobtree_oracles();
+/// Functions of the user's own.
+std::vector<DrawExact> function_oracles();
 
 }  // namespace oktett

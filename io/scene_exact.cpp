@@ -1,5 +1,11 @@
 #include "io/scene_exact.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "io/scene_utf8.h"
+
 namespace oktett {
 namespace {
 
@@ -20,7 +26,7 @@ std::vector<ExactReader> all_readers() {
   std::vector<ExactReader> all;
   for (const std::span<const ExactReader> family :
        {std::span<const ExactReader>(kReaders), closed_form_readers(), polynomial_readers(),
-        superquadric_readers(), metaball_readers()})
+        superquadric_readers(), metaball_readers(), function_readers()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }
@@ -35,6 +41,25 @@ const std::vector<ExactReader>& readers() {
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason) {
   load.warn(place.where(), reason + "; the object is skipped");
   return std::nullopt;
+}
+
+void fail_in_text(const char* what, const YamlNode& node, const std::string& text, const Error& error) {
+  const auto at = std::min(static_cast<std::size_t>(error.where().column) - 1, text.size());
+  std::string message = fmt::format("bad {}: {} (column {})", what, error.what(), error.where().column);
+  // The part of a long text around the place.
+  const std::size_t begin = at > 100 ? at - 100 : 0, length = std::min<std::size_t>(text.size() - begin, 200);
+  if (text.find('\n') == std::string::npos && character_count(text) == text.size())
+    message += fmt::format("\n  {}\n  {}^", text.substr(begin, length), std::string(at - begin, ' '));
+  throw Error(text == node.text ? node.where(at) : node.where(), message);
+}
+
+void read_bounds(SceneLoad& load, const YamlNode& node, Vec3d& lo, Vec3d& hi) {
+  const Fields fields(node, "bounds", {"min", "max"});
+  lo = load.values.vector(fields.require("min")), hi = load.values.vector(fields.require("max"));
+  for (int k = 0; k < 3; ++k)
+    if (!(lo[k] < hi[k]))
+      throw Error(fields.require("max").where(),
+                  fmt::format("the {} of max must be greater than that of min", "xyz"[k]));
 }
 
 std::vector<std::string> exact_keys() {

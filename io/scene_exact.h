@@ -27,9 +27,19 @@ std::span<const ExactReader> polynomial_readers();
 std::span<const ExactReader> superquadric_readers();
 /// Metaballs and blob trees.
 std::span<const ExactReader> metaball_readers();
+/// Functions of the user's own.
+std::span<const ExactReader> function_readers();
 
 /// Warns that the object is left out because of `reason`.
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);
+
+/// Throws what is wrong with a text such as an equation, found in `error`, whose column counts bytes in
+/// `text`, at its place in the file, and shows it. `text` is what `node` stands for.
+[[noreturn]] void fail_in_text(const char* what, const YamlNode& node, const std::string& text,
+                               const Error& error);
+
+/// A box with an inside.
+void read_bounds(SceneLoad& load, const YamlNode& node, Vec3d& lo, Vec3d& hi);
 
 /// Keys of the exact surfaces.
 std::vector<std::string> exact_keys();

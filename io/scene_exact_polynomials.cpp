@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "io/scene_exact.h"
-#include "io/scene_utf8.h"
 #include "kernels/polynomial_expression.h"
 #include "kernels/shapes/blob.h"
 #include "kernels/shapes/lathe.h"
@@ -18,16 +17,6 @@ using MaybeForm = std::optional<ExactForm>;
 
 /// Most points of a profile.
 constexpr std::size_t kMaxProfilePoints = 1024;
-
-/// A box with an inside.
-void read_bounds(SceneLoad& load, const YamlNode& node, Vec3d& lo, Vec3d& hi) {
-  const Fields fields(node, "bounds", {"min", "max"});
-  lo = load.values.vector(fields.require("min")), hi = load.values.vector(fields.require("max"));
-  for (int k = 0; k < 3; ++k)
-    if (!(lo[k] < hi[k]))
-      throw Error(fields.require("max").where(),
-                  fmt::format("the {} of max must be greater than that of min", "xyz"[k]));
-}
 
 void read_root_finder(SceneLoad& load, const YamlNode* node, roots::Method& method) {
   using roots::Method;
@@ -46,14 +35,7 @@ std::vector<Monomial> read_equation(SceneLoad& load, const YamlNode& node) {
   try {
     return expand_polynomial(text);
   } catch (const Error& e) {
-    const auto at = std::min(static_cast<std::size_t>(e.where().column) - 1, text.size());
-    std::string message = fmt::format("bad equation: {} (column {})", e.what(), e.where().column);
-    // The part of a long text around the place.
-    const std::size_t begin = at > 100 ? at - 100 : 0,
-                      length = std::min<std::size_t>(text.size() - begin, 200);
-    if (text.find('\n') == std::string::npos && character_count(text) == text.size())
-      message += fmt::format("\n  {}\n  {}^", text.substr(begin, length), std::string(at - begin, ' '));
-    throw Error(text == node.text ? node.where(at) : node.where(), message);
+    fail_in_text("equation", node, text, e);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "kernels/shapes/blobtree.h"
 #include "kernels/shapes/cone.h"
 #include "kernels/shapes/cylinder.h"
+#include "kernels/shapes/implicit.h"
 #include "kernels/shapes/lathe.h"
 #include "kernels/shapes/metaballs.h"
 #include "kernels/shapes/polyhedron.h"
@@ -26,7 +27,7 @@ namespace oktett {
 
 /// In the order of ExactForm.
 using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
-                               Revolution, Lathe, Superquadric, Metaballs, BlobTree>;
+                               Revolution, Lathe, Superquadric, Metaballs, BlobTree, Implicit>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

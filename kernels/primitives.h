@@ -40,6 +40,7 @@ enum class Kind : std::uint8_t {
   superquadric,
   metaballs,
   blobtree,
+  implicit,
   triangle,
   instance
 };

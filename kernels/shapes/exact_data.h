@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "kernels/roots/roots.h"
 #include "kernels/shapes/field_data.h"
+#include "kernels/tape_data.h"
 
 namespace oktett {
 
@@ -138,10 +139,17 @@ struct SuperquadricShape {
   bool open = false;                    ///< without the faces of the box
 };
 
+/// Where a function of x, y and z is negative, in a box. Where it is not defined is outside.
+struct ImplicitShape {
+  FunctionTape function;
+  Vec3d lo{-1, -1, -1}, hi{1, 1, 1};  ///< lo < hi
+  bool open = false;                  ///< without the faces of the box
+};
+
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm =
-    std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape, PolynomialShape,
-                 BlobShape, RevolutionShape, LatheShape, SuperquadricShape, MetaballsShape, BlobTreeShape>;
+using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
+                               PolynomialShape, BlobShape, RevolutionShape, LatheShape, SuperquadricShape,
+                               MetaballsShape, BlobTreeShape, ImplicitShape>;
 
 struct ExactShape {
   ExactForm form;

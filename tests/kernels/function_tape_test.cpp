@@ -1,0 +1,179 @@
+#include "kernels/function_tape.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "kernels/expression.h"
+
+namespace oktett {
+namespace {
+
+using D = Simd<double, 1, ScalarIsa>;
+using I = Interval<D>;
+
+constexpr std::string_view kNames[] = {"x", "y", "z"};
+
+double number(const D& d) { return d.part[0].v; }
+I interval_of(double lo, double hi) { return {D(lo), D(hi)}; }
+
+Gradient<D> slope(const FunctionTape& tape, double x, double y, double z) {
+  const D one(1.0), zero(0.0);
+  return run_tape(tape, Gradient<D>{D(x), {one, zero, zero}}, Gradient<D>{D(y), {zero, one, zero}},
+                  Gradient<D>{D(z), {zero, zero, one}});
+}
+
+/// A random expression of every function there is.
+std::string draw(std::mt19937& random, int depth) {
+  if (depth == 0 || random() % 8 == 0) {
+    static const char* const kLeaves[] = {"x", "y", "z", "0.7", "2", "(-1.3)", "pi"};
+    return kLeaves[random() % 7];
+  }
+  static const char* const kUnary[] = {"sqrt",  "abs",  "sin",   "cos",  "tan",  "asin",
+                                       "acos",  "atan", "exp",   "log",  "log2", "log10",
+                                       "floor", "ceil", "round", "sign", "-"};
+  static const char* const kPowers[] = {"^2", "^3", "^-1", "^-2", "^0", "^1.5", "^-0.3", "^7", "^0.5"};
+  const std::string a = draw(random, depth - 1), b = draw(random, depth - 1);
+  switch (random() % 12) {
+    case 0:
+    case 1:
+    case 2:
+    case 3:
+      return std::string(kUnary[random() % 17]) + "(" + a + ")";
+    case 4:
+      return "(" + a + ")" + kPowers[random() % 9];
+    case 5:
+      return "(" + a + "+" + b + ")";
+    case 6:
+      return "(" + a + "-(" + b + "))";
+    case 7:
+      return "((" + a + ")*(" + b + "))";
+    case 8:
+      return "((" + a + ")/(" + b + "))";
+    case 9:
+      return (random() % 2 ? "min(" : "max(") + a + "," + b + ")";
+    case 10:
+      return (random() % 2 ? "hypot(" : "atan2(") + a + "," + b + ")";
+    default:
+      return "(" + a + ")^(" + b + ")";
+  }
+}
+
+/// Where an interval over a box is bounded, the function is defined in all of the box and within it; so is
+/// the derivative, which holds the slope along the diagonal.
+TEST(FunctionTape, IntervalsHoldTheValues) {
+  std::mt19937 random(1);
+  const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
+  int compiled = 0, bounded = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const std::string text = draw(random, 4);
+    FunctionTape tape;
+    try {
+      tape = compile_function(text);
+    } catch (const Error&) {
+      continue;
+    }
+    ++compiled;
+    const double size = random() % 2 ? 0.01 : 1;
+    double lo[3], hi[3];
+    for (int i = 0; i < 3; ++i) lo[i] = 4 * unit() - 2, hi[i] = lo[i] + size * unit();
+    const I over =
+        run_tape(tape, interval_of(lo[0], hi[0]), interval_of(lo[1], hi[1]), interval_of(lo[2], hi[2]));
+    if (!std::isfinite(number(over.lo)) || !std::isfinite(number(over.hi))) continue;
+    ++bounded;
+    for (int i = 0; i < 10; ++i) {
+      double p[3];
+      for (int j = 0; j < 3; ++j) p[j] = lo[j] + (hi[j] - lo[j]) * unit();
+      const double value = number(slope(tape, p[0], p[1], p[2]).v), slack = 1e-11 * (1 + std::abs(value));
+      ASSERT_TRUE(std::isfinite(value)) << text;
+      ASSERT_GE(value, number(over.lo) - slack) << text;
+      ASSERT_LE(value, number(over.hi) + slack) << text;
+    }
+  }
+  EXPECT_GT(compiled, 5000);
+  EXPECT_GT(bounded, 2000);
+}
+
+/// Against the C library, node by node, and central differences of it.
+TEST(FunctionTape, ValuesAndGradientsOfSmoothFunctions) {
+  std::mt19937 random(2);
+  const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
+  for (const char* text : {"sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)", "x^4 - 5*x^2 + y*z^3 - 2",
+                           "exp(-x^2)*log(3 + y) - z", "sqrt(4 + x*y*z)/(3 + z)",
+                           "atan2(x + 3, y) + asin(z/3) - acos(y/3)", "tan(x/2) + atan(y*z) - log2(4 + x)",
+                           "log10(3 + x)^3 - hypot(x + 3, y)", "2^x - (3 + y)^z + (x + 4)^-3 + (y + 3)^1.7",
+                           "min(x, 9) - max(y, z - 9)", "abs(x + 5) - x/7 + (2 - y) - y*-1 + 0*z"}) {
+    const FunctionTape tape = compile_function(text);
+    const Expression expression = parse_expression(text, kNames);
+    for (int k = 0; k < 200; ++k) {
+      double p[3];
+      for (double& c : p) c = 4 * unit() - 2;
+      const Gradient<D> g = slope(tape, p[0], p[1], p[2]);
+      EXPECT_NEAR(number(g.v), evaluate(expression, p), 1e-11) << text;
+      const double found[3] = {number(g.d.x), number(g.d.y), number(g.d.z)};
+      for (int i = 0; i < 3; ++i) {
+        const double h = 1e-5, at = p[i];
+        p[i] = at + h;
+        const double ahead = evaluate(expression, p);
+        p[i] = at - h;
+        const double behind = evaluate(expression, p);
+        p[i] = at;
+        EXPECT_NEAR(found[i], (ahead - behind) / (2 * h), 1e-5 * (1 + std::abs(found[i]))) << text;
+      }
+    }
+  }
+}
+
+/// Undefined is NaN, through everything that follows.
+TEST(FunctionTape, UndefinedIsNan) {
+  for (const char* text :
+       {"sqrt(x - 1)", "log(x)", "1/x", "x^-1", "x^-0.5", "(x - 1)^1.5", "x^y", "asin(x + 2)", "acos(x - 2)",
+        "max(sqrt(x - 1), 3)", "min(3, log(x))", "sign(1/x)", "floor(1/x)", "abs(log(x))", "sin(log(x - 1))",
+        "(1/x)^0", "0*sqrt(x - 1)", "atan(0/x)"})
+    EXPECT_TRUE(std::isnan(number(slope(compile_function(text), 0, 0, 0).v))) << text;
+}
+
+/// What is the same is computed once.
+TEST(FunctionTape, SharesAndFolds) {
+  EXPECT_EQ(compile_function("x").steps.size(), 0u);
+  EXPECT_EQ(compile_function("x + 0").steps.size(), 0u);
+  EXPECT_EQ(compile_function("sin(x*y) * sin(y*x)").steps.size(), 3u);
+  EXPECT_EQ(compile_function("sin(x) + cos(x)").steps.size(), 2u);
+  EXPECT_EQ(compile_function("2*pi*sqrt(4)*x").steps.size(), 1u);
+  EXPECT_FALSE(compile_function("2*pi").varies);
+  EXPECT_TRUE(compile_function("x").varies);
+  std::string sum = "x";
+  for (int i = 0; i < 100; ++i) sum += " + sin(x*" + std::to_string(i + 2) + ")";
+  EXPECT_LE(compile_function(sum).registers, 6);
+}
+
+int column_of_error(const std::string& text) {
+  try {
+    compile_function(text);
+  } catch (const Error& e) {
+    return e.where().column;
+  }
+  return 0;
+}
+
+TEST(FunctionTape, ErrorsHaveTheirPlace) {
+  EXPECT_EQ(column_of_error("x + 1/0"), 6);
+  EXPECT_EQ(column_of_error("x/0"), 2);
+  EXPECT_EQ(column_of_error("x + sqrt(-1)"), 5);
+  EXPECT_EQ(column_of_error("y*log(0)"), 3);
+  EXPECT_EQ(column_of_error("(-2)^x"), 5);
+  EXPECT_EQ(column_of_error("x + wobble(y)"), 5);
+  EXPECT_EQ(column_of_error("x +"), 4);
+  std::string deep, wide = "x";
+  for (int i = 0; i < 1200; ++i) wide += "+sin(" + std::to_string(i) + "*x)";
+  EXPECT_EQ(column_of_error(wide), 1);
+  for (int i = 0; i < 60; ++i) deep += "(sin(" + std::to_string(i) + "*x)*2 + y)^2/(1 - ";
+  deep += "x" + std::string(60, ')');
+  EXPECT_EQ(column_of_error(deep), 1);
+}
+
+}  // namespace
+}  // namespace oktett
