@@ -1,6 +1,6 @@
 #pragma once
 /// \file Numbers in lanes with their derivatives by x, y and z (forward automatic differentiation). NaN where
-/// a function is not defined: poles and the border of a logarithm among them, as for intervals (interval.h).
+/// a function is not defined, at the poles of quotients, too; the logarithm of 0 is -infinity.
 /// At kinks the derivative is that of one side, at steps it is 0.
 
 #include "core/vec3.h"
@@ -105,8 +105,7 @@ OKTETT_INLINE Gradient<D> exp(const Gradient<D>& a) {
 }
 template <class D>
 OKTETT_INLINE Gradient<D> log(const Gradient<D>& a) {
-  const D l = select(a.v > D(0.0), lane::log(a.v), gradient::nan<D>());
-  return gradient::chain(a, l, D(1.0) / a.v);
+  return gradient::chain(a, lane::log(a.v), D(1.0) / a.v);
 }
 /// For whole n.
 template <class D>
