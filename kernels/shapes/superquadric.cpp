@@ -13,25 +13,6 @@ namespace {
 using Form = SuperquadricShape::Form;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The power of |x|, and its derivative by x. Made of few operations, as every hit asks for some.
-double power(double x, const SuperExponent& e, bool ratio, double& slope) {
-  const double side = x < 0 ? -1 : x > 0 ? 1 : 0, a = std::abs(x);
-  if (ratio) {
-    const double below = e.p + (1 - e.p) * a;
-    slope = side * e.p / (below * below);
-    return !(below > 0) ? kInfinity : std::isinf(a) ? 1 / (1 - e.p) : a / below;
-  }
-  if (e.whole > 0) {
-    const double rest = portable::whole_power(a, static_cast<unsigned>(e.whole - 1));
-    slope = side * e.p * rest;
-    return rest * a;
-  }
-  using D = Simd<double, 1, ScalarIsa>;
-  D exponent;
-  const double v = lane::pow(D(a), D(e.p), exponent).part[0].v;
-  slope = a > 0 ? side * e.p * (v / a) : 0;
-  return v;
-}
 /// The x >= 0 whose power is y; infinite if there is none.
 double root(double y, double p, bool ratio) {
   if (!ratio) return portable::pow(y, 1 / p);
@@ -45,9 +26,13 @@ SuperRounding rounding(double p, bool ratio, double inverse) {
   // (1 + r)^(p - 1) and (1 - r)^(p - 1) differ from 1 by less than 2 p r for r < 1 / (2 p); the slope of a
   // pseudo-power, p / (p + (1 - p) x)^2, by less than 8 p r.
   const double bend = (ratio ? 8 : 2) * p, vague = 1 / bend, off = 4 * inverse * 0x1p-50;
-  double slope;
-  power(off * (bend + 1), SuperExponent(p), ratio, slope);
-  return {vague, bend, 2.1 * slope};
+  const Simd<double, 1, ScalarIsa> x(off * (bend + 1));
+  Simd<double, 1, ScalarIsa> value, slope, relative;
+  if (ratio)
+    sample_power<true>(x, SuperExponent(p), value, slope, relative);
+  else
+    sample_power<false>(x, SuperExponent(p), value, slope, relative);
+  return {vague, bend, 2.1 * slope.part[0].v};
 }
 
 double greatest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
@@ -106,38 +91,12 @@ void Superquadric::add(Pool& pool, const ExactShape& shape, const Affine& to_wor
   add_cell(pool, e.lo, e.hi);
 }
 
-double Superquadric::value_and_gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p, Vec3d& g) {
-  const SuperquadricElement& e = pool.elements[i];
-  if (part > 0) {
-    g = face_gradient(part);
-    return face_value(e.lo, e.hi, part, p);
-  }
-  double v[3];
-  for (int k = 0; k < 3; ++k) {
-    v[k] = power(p[k] * e.inverse[k], e.exponent[k], e.ratio, g[k]);
-    g[k] *= e.inverse[k];
-  }
-  if (e.form == Form::ellipsoid) return v[0] + v[1] + v[2] - 1;
-  if (e.form == Form::hyperboloid) {
-    g.z = -g.z;
-    return v[0] + v[1] - v[2] - 1;
-  }
-  double around, across;
-  const double ring = power(v[0] + v[1], e.q, e.ratio, around) - e.d;
-  const double tube = power(ring, e.r, e.ratio, across);
-  g.x *= around * across, g.y *= around * across;
-  return tube + v[2] - e.ee;
-}
-
 double Superquadric::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  Vec3d g;
-  return value_and_gradient(pool, i, part, p, g);
+  return slope_at<Superquadric>(pool, i, part, p).value;
 }
 
 Vec3d Superquadric::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  Vec3d g;
-  value_and_gradient(pool, i, part, p, g);
-  return g;
+  return slope_at<Superquadric>(pool, i, part, p).gradient;
 }
 
 bool Superquadric::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

@@ -108,7 +108,11 @@ struct Superquadric {
       interval::convex_crossings<K>(ConvexSuperquadricField<false, D>{field}, a, b, active, found);
     else
       first_sign = interval::march<K>(field, a, b, b, active, interval::Jumps::list, found);
-    for (int k = 0; k < K; ++k) found.t[k] = select(found.t[k] < no_root, centered.to_t(found.t[k]), no_root);
+    for (int k = 0; k < K; ++k) {
+      found.t[k] = select(found.t[k] < no_root, centered.to_t(found.t[k]), no_root);
+      // Where the function jumps is surface as well.
+      found.part[k] = D(0.0);
+    }
     found.up_to = select(found.up_to < no_root, centered.to_t(found.up_to), no_root);
     if (e.closed)
       close_by_cell(found, first_sign < D(0.0), range, active, out);
@@ -116,9 +120,39 @@ struct Superquadric {
       out = found;
   }
 
+  template <class D>
+  OKTETT_NOINLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p,
+                                    D& value, Vec3<D>& gradient) {
+    const SuperquadricElement& e = pool.elements[i];
+    const auto power = [&](const D& x, const SuperExponent& exponent, D& rise) {
+      const D size = abs(x), side = select(x < D(0.0), D(-1.0), select(D(0.0) < x, D(1.0), D(0.0)));
+      D v, s, relative;
+      if (e.ratio)
+        sample_power<true>(size, exponent, v, s, relative);
+      else
+        sample_power<false>(size, exponent, v, s, relative);
+      rise = side * s;
+      return v;
+    };
+    D v[3], g[3];
+    const D* const axis[3] = {&p.x, &p.y, &p.z};
+    for (int k = 0; k < 3; ++k) {
+      v[k] = power(*axis[k] * D(e.inverse[k]), e.exponent[k], g[k]);
+      g[k] = g[k] * D(e.inverse[k]);
+    }
+    value = ((v[0] + v[1]) + v[2]) - D(1.0);
+    if (e.form == Form::hyperboloid) value = ((v[0] + v[1]) - v[2]) - D(1.0), g[2] = -g[2];
+    if (e.form == Form::toroid) {
+      D around, across;
+      const D ring = power(v[0] + v[1], e.q, around) - D(e.d);
+      value = (power(ring, e.r, across) + v[2]) - D(e.ee);
+      g[0] = g[0] * around * across, g[1] = g[1] * around * across;
+    }
+    gradient = {g[0], g[1], g[2]};
+    if (e.closed) select_faces(e.lo, e.hi, part, p, value, gradient);
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static double value_and_gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p, Vec3d& g);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around z; v from bottom to top of an ellipsoid, around the tube of a toroid, the height z of a
   /// hyperboloid. On a face of the box the position on it.
