@@ -72,8 +72,11 @@ struct Implicit {
     const Gradient<D> f =
         run_tape(e.function, Gradient<D>{p.x * size, {size, zero, zero}},
                  Gradient<D>{p.y * size, {zero, size, zero}}, Gradient<D>{p.z * size, {zero, zero, size}});
-    value = f.v, gradient = f.d;
-    select_faces(e.lo, e.hi, select(part == D(interval::kJumpPart), zero, part), p, value, gradient);
+    // No slope tells of where a wall is, nor which way it faces.
+    const auto wall = part == D(interval::kJumpPart);
+    value = f.v;
+    gradient = {select(wall, zero, f.d.x), select(wall, zero, f.d.y), select(wall, zero, f.d.z)};
+    select_faces(e.lo, e.hi, select(wall, zero, part), p, value, gradient);
   }
   /// NaN where the function is not defined.
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
