@@ -222,9 +222,14 @@ TEST(BlobTrees, Blends) {
   expect_at(crossings(blend(Blend::Op::min, {a, b}), from, along), {m, n});
   expect_at(crossings(blend(Blend::Op::difference, {a, b}), from, along), {l, m});
   expect_at(crossings(blend(Blend::Op::difference, {b, a}), from, along), {n, r});
-  const auto sum = crossings(blend(Blend::Op::sum, {a, b}), from, along);
+  // Neither reaches the far side of the other, but between them they add up.
+  expect_at(crossings(blend(Blend::Op::sum, {a, b}), from, along), {l, r});
+  const Vec3f below{0, -3, 0}, up{0, 1, 0};
+  const auto sum = crossings(blend(Blend::Op::sum, {a, b}), below, up);
+  const auto greater = crossings(blend(Blend::Op::max, {a, b}), below, up);
   ASSERT_EQ(sum.size(), 2u);
-  EXPECT_LT(sum[0].t, l);
+  ASSERT_EQ(greater.size(), 2u);
+  EXPECT_LT(sum[0].t, greater[0].t - 0.05f);
   // What is taken away from itself leaves nothing.
   EXPECT_EQ(crossings(blend(Blend::Op::difference, {a, a}), from, along).size(), 0u);
 }
