@@ -47,13 +47,17 @@ std::vector<Subject> subjects() {
          return Vec3l{p.x * k, p.y * k, p.z};
        }},
       {"quartic", polynomial("x^4 + y^4 + z^4 = 1"),
-       [](const Vec3l& p) { return Vec3l{p.x * p.x * p.x, p.y * p.y * p.y, p.z * p.z * p.z}; }},
+       [](const Vec3l& p) {
+         return Vec3l{p.x * p.x * p.x, p.y * p.y * p.y, p.z * p.z * p.z};
+       }},
       {"degree_12", polynomial("x^12 + y^12 + z^12 = 1"),
        [](const Vec3l& p) {
          return Vec3l{std::pow(p.x, 11.0L), std::pow(p.y, 11.0L), std::pow(p.z, 11.0L)};
        }},
       {"superellipsoid", super,
-       [power](const Vec3l& p) { return Vec3l{power(p.x, 3), power(p.y, 3.5L), power(p.z, 4)}; }},
+       [power](const Vec3l& p) {
+         return Vec3l{power(p.x, 3), power(p.y, 3.5L), power(p.z, 4)};
+       }},
       {"metaballs", balls,
        [balls](const Vec3l& p) {
          Vec3l g{0, 0, 0};
@@ -70,7 +74,9 @@ std::vector<Subject> subjects() {
 void normals(benchmark::State& state, const Subject& subject, NormalMethod method) {
   const auto accel = build_accel({{ExactShape{subject.form, method}}});
   RayBatch rays;
-  const auto number = [](std::uint32_t i, std::uint32_t k) { return 2 * random_float(pixel_key(7, i), 0, k) - 1; };
+  const auto number = [](std::uint32_t i, std::uint32_t k) {
+    return 2 * random_float(pixel_key(7, i), 0, k) - 1;
+  };
   for (std::uint32_t i = 0; i < 4096; ++i) {
     const Vec3f from = normalize(Vec3f{number(i, 0), number(i, 1), number(i, 2)}) * 4.0f;
     rays.push_back({from, 0, Vec3f{number(i, 3), number(i, 4), number(i, 5)} * 0.8f - from});
@@ -84,7 +90,8 @@ void normals(benchmark::State& state, const Subject& subject, NormalMethod metho
   double greatest = 0, sum = 0;
   for (const std::uint32_t i : which) {
     const Surface s = surface(*accel, rays[i], hits[i]);
-    const Vec3l n = normalize(Vec3l(s.geometric_normal)), truth = normalize(subject.gradient(Vec3l(s.position)));
+    const Vec3l n = normalize(Vec3l(s.geometric_normal)),
+                truth = normalize(subject.gradient(Vec3l(s.position)));
     const double angle = static_cast<double>(2 * std::asin(std::min(length(n - truth) / 2, 1.0L)));
     greatest = std::max(greatest, angle), sum += angle;
   }
@@ -106,9 +113,10 @@ void normals(benchmark::State& state, const Subject& subject, NormalMethod metho
 int main(int argc, char** argv) {
   using namespace oktett;
   for (const bench::Subject& subject : bench::subjects())
-    for (const auto& [name, method] : {std::pair<const char*, NormalMethod>{"gradient", NormalMethod::gradient},
-                                       {"forward", NormalMethod::forward},
-                                       {"central", NormalMethod::central}})
+    for (const auto& [name, method] :
+         {std::pair<const char*, NormalMethod>{"gradient", NormalMethod::gradient},
+          {"forward", NormalMethod::forward},
+          {"central", NormalMethod::central}})
       benchmark::RegisterBenchmark((subject.name + "/" + name).c_str(), bench::normals, subject, method);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
