@@ -215,8 +215,8 @@ TEST(BlobTrees, Skeletons) {
 }
 
 TEST(BlobTrees, Blends) {
-  const auto a = element(PointSkeleton{{-0.3, 0, 0}}), b = element(PointSkeleton{{0.3, 0, 0}});
-  const double l = 3 - 0.3 - kHalf, m = 3 + 0.3 - kHalf, n = 3 - 0.3 + kHalf, r = 3 + 0.3 + kHalf;
+  const auto a = element(PointSkeleton{{-0.2, 0, 0}}), b = element(PointSkeleton{{0.2, 0, 0}});
+  const double l = 3 - 0.2 - kHalf, m = 3 + 0.2 - kHalf, n = 3 - 0.2 + kHalf, r = 3 + 0.2 + kHalf;
   const Vec3f from{-3, 0, 0}, along{1, 0, 0};
   expect_at(crossings(blend(Blend::Op::max, {a, b}), from, along), {l, r});
   expect_at(crossings(blend(Blend::Op::min, {a, b}), from, along), {m, n});
