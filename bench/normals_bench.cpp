@@ -72,7 +72,7 @@ std::vector<Subject> subjects() {
 }
 
 void normals(benchmark::State& state, const Subject& subject, NormalMethod method) {
-  const auto accel = build_accel({{ExactShape{subject.form, method}}});
+  const auto accel = build_accel({{ExactShape{subject.form, method}, Affine{}}});
   RayBatch rays;
   const auto number = [](std::uint32_t i, std::uint32_t k) {
     return 2 * random_float(pixel_key(7, i), 0, k) - 1;
