@@ -8,34 +8,15 @@
 #include "app/verify_cases.h"
 #include "kernels/shapes/blobtree.h"
 #include "kernels/shapes/metaballs.h"
+#include "tests/accel/all_crossings.h"
 
 namespace oktett {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// All crossings, after a check that the first of them is what the other queries find.
-std::vector<Hit> trace(const ExactForm& form, const Ray& ray, const Affine& to_world = {}) {
-  const auto accel = build_accel({{ExactShape{form}, to_world}});
-  std::vector<Hit> all;
-  for (const Isa isa : available_isas()) {
-    all_hits(*accel, ray, all, isa);
-    RayBatch rays;
-    for (int i = 0; i < 16; ++i) rays.push_back(ray);
-    HitBatch hits;
-    hits.resize_uninitialized(rays.size());
-    std::vector<std::uint8_t> occluded(rays.size());
-    closest_hit(*accel, rays.span(), hits.span(), isa);
-    any_hit(*accel, rays.span(), occluded.data(), isa);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      EXPECT_EQ(hits[i], all.empty() ? Hit{} : all[0]) << to_string(isa);
-      EXPECT_EQ(occluded[i], all.empty() ? 0 : 1) << to_string(isa);
-    }
-  }
-  return all;
-}
 std::vector<Hit> crossings(const ExactForm& form, const Vec3f& from, const Vec3f& direction) {
-  return trace(form, Ray{from, 0, direction, kInf});
+  return all_crossings(form, {from, 0, direction, kInf});
 }
 
 void expect_at(const std::vector<Hit>& hits, const std::vector<double>& places, double within = 1e-6) {
@@ -113,12 +94,14 @@ TEST(Metaballs, AnyScaleAndPlace) {
     const auto f = static_cast<float>(size);
     expect_at(crossings(one_ball(size), {-3 * f, 0, 0}, {1, 0, 0}), {(3 - kHalf) * size, (3 + kHalf) * size},
               1e-6 * size);
-    expect_at(trace(one_ball(), Ray{{-3 * f, 0, 0}, 0, {1, 0, 0}, kInf}, Affine::scaling({size, size, size})),
+    expect_at(all_crossings(one_ball(), Ray{{-3 * f, 0, 0}, 0, {1, 0, 0}, kInf},
+                            Affine::scaling({size, size, size})),
               {(3 - kHalf) * size, (3 + kHalf) * size}, 1e-6 * size);
   }
   const Ray ray{{1e5f, 3, 0}, 0, {0, -1, 0}, kInf};
-  expect_at(trace(one_ball(), ray, Affine::translation({1e5, 0, 0})), {3 - kHalf, 3 + kHalf});
-  expect_at(trace(alone(PointSkeleton{}), ray, Affine::translation({1e5, 0, 0})), {3 - kHalf, 3 + kHalf});
+  expect_at(all_crossings(one_ball(), ray, Affine::translation({1e5, 0, 0})), {3 - kHalf, 3 + kHalf});
+  expect_at(all_crossings(alone(PointSkeleton{}), ray, Affine::translation({1e5, 0, 0})),
+            {3 - kHalf, 3 + kHalf});
 }
 
 TEST(Metaballs, NothingForNanAndDegenerate) {

@@ -5,6 +5,7 @@
 
 #include "accel/accel.h"
 #include "kernels/polynomial_expression.h"
+#include "tests/accel/all_crossings.h"
 
 namespace oktett {
 namespace {
@@ -18,28 +19,8 @@ PolynomialShape polynomial(const std::string& equation, double size, bool open =
   return s;
 }
 
-/// All crossings, after a check that the first of them is what the other queries find.
-std::vector<Hit> trace(const ExactForm& form, const Ray& ray, const Affine& to_world = {}) {
-  const auto accel = build_accel({{ExactShape{form}, to_world}});
-  std::vector<Hit> all;
-  for (const Isa isa : available_isas()) {
-    all_hits(*accel, ray, all, isa);
-    RayBatch rays;
-    for (int i = 0; i < 16; ++i) rays.push_back(ray);
-    HitBatch hits;
-    hits.resize_uninitialized(rays.size());
-    std::vector<std::uint8_t> occluded(rays.size());
-    closest_hit(*accel, rays.span(), hits.span(), isa);
-    any_hit(*accel, rays.span(), occluded.data(), isa);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      EXPECT_EQ(hits[i], all.empty() ? Hit{} : all[0]) << to_string(isa);
-      EXPECT_EQ(occluded[i], all.empty() ? 0 : 1) << to_string(isa);
-    }
-  }
-  return all;
-}
 std::vector<Hit> crossings(const ExactForm& form, const Vec3f& from, const Vec3f& direction) {
-  return trace(form, Ray{from, 0, direction, kInf});
+  return all_crossings(form, {from, 0, direction, kInf});
 }
 
 void expect_at(const std::vector<Hit>& hits, std::initializer_list<float> places, float within = 1e-6f) {
@@ -94,7 +75,8 @@ TEST(PolynomialSurfaces, AnyScaleAndPlace) {
   s.lo = {998, -2, -2}, s.hi = {1002, 2, 2};
   expect_at(crossings(s, {990, 0, 0}, {1, 0, 0}), {9, 11}, 1e-5f);
   const Ray ray{{1e5f, 3, 0}, 0, {0, -1, 0}, kInf};
-  expect_at(trace(polynomial("x^4 + y^4 + z^4 - 1", 2), ray, Affine::translation({1e5, 0, 0})), {2, 4}, 0);
+  expect_at(all_crossings(polynomial("x^4 + y^4 + z^4 - 1", 2), ray, Affine::translation({1e5, 0, 0})),
+            {2, 4}, 0);
 }
 
 TEST(PolynomialSurfaces, NothingForNan) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "accel/accel.h"
+#include "tests/accel/all_crossings.h"
 
 namespace oktett {
 namespace {
@@ -23,25 +24,8 @@ std::shared_ptr<const Accel> accel_of(const SuperquadricShape& s, const Affine& 
   return build_accel({{ExactShape{s}, to_world}});
 }
 
-/// All crossings, after a check that the first of them is what closest_hit and any_hit find.
 std::vector<Hit> crossings(const Accel& accel, const Vec3f& from, const Vec3f& direction) {
-  const Ray ray{from, 0, direction, kInf};
-  std::vector<Hit> all;
-  for (const Isa isa : available_isas()) {
-    all_hits(accel, ray, all, isa);
-    RayBatch rays;
-    for (int i = 0; i < 16; ++i) rays.push_back(ray);
-    HitBatch hits;
-    hits.resize_uninitialized(rays.size());
-    std::vector<std::uint8_t> occluded(rays.size());
-    closest_hit(accel, rays.span(), hits.span(), isa);
-    any_hit(accel, rays.span(), occluded.data(), isa);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      EXPECT_EQ(hits[i], all.empty() ? Hit{} : all[0]) << to_string(isa);
-      EXPECT_EQ(occluded[i], all.empty() ? 0 : 1) << to_string(isa);
-    }
-  }
-  return all;
+  return all_crossings(accel, {from, 0, direction, kInf});
 }
 
 /// Crossings lie at `places`; they go in and out in turn, the last one out.
