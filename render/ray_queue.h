@@ -57,7 +57,13 @@ struct ShadowQueue {
 
   std::size_t size() const { return owner.size(); }
 
-  void clear() { rays.resize_uninitialized(0), owner.resize_uninitialized(0), light.resize_uninitialized(0); }
+  void clear() { resize_uninitialized(0); }
+  void resize_uninitialized(std::size_t n) {
+    rays.resize_uninitialized(n), owner.resize_uninitialized(n), light.resize_uninitialized(n);
+  }
+  void set(std::size_t i, const Ray& ray, std::uint32_t ray_owner, const Color& color) {
+    rays.set(i, ray), owner[i] = ray_owner, light[i] = color;
+  }
   void push_back(const Ray& ray, std::uint32_t ray_owner, const Color& color) {
     rays.push_back(ray), owner.push_back(ray_owner), light.push_back(color);
   }

@@ -144,6 +144,10 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
     turn_to_light(found, light, c);
     leave_surfaces(found, c);
     measure_angles(c);
+    // Room for all of them: asking for it ray by ray and column by column takes longer than writing.
+    ShadowQueue& queue = wave.shadows[n];
+    std::size_t end = queue.size();
+    queue.resize_uninitialized(end + count);
     for (std::size_t k = 0; k < count; ++k) {
       if (!plain[k] || c.cosine[k] <= 0) continue;
       const Material& m = *materials[k];
@@ -151,8 +155,9 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
       const Color color = !light.directional && light.falloff ? light.color * c.falloff[k] : light.color;
       const Color arriving = wave.rays.throughput[which[k]] * shine * color;
       if (arriving == Color{0, 0, 0}) continue;
-      wave.shadows[n].push_back(shadow_ray(c, k, light), which[k], arriving);
+      queue.set(end++, shadow_ray(c, k, light), which[k], arriving);
     }
+    queue.resize_uninitialized(end);
   }
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = which[k];
