@@ -48,20 +48,22 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
 const IsaTable* isa_table(Isa isa) {
   switch (isa) {
     case Isa::scalar:
-      return scalar_table();
-#if defined(__x86_64__)
+      return &isa_code<ScalarIsa>();
+#if defined(OKTETT_WITH_SSE42)
     case Isa::sse42:
-      return sse42_table();
+      return &isa_code<Sse42Isa>();
+#endif
+#if defined(OKTETT_WITH_AVX2)
     case Isa::avx2:
-      return avx2_table();
+      return &isa_code<Avx2Isa>();
+#endif
+#if defined(OKTETT_WITH_AVX512)
     case Isa::avx512:
-      return avx512_table();
-#else
+      return &isa_code<Avx512Isa>();
+#endif
     default:
       return nullptr;
-#endif
   }
-  return nullptr;
 }
 
 /// Batches above this size are shared out in pieces of it.

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Rays against cells of exact surfaces. The code is compiled per instruction set in translation units
-/// of its own (accel/isa/exact_*.cpp), so that adding a shape does not recompile the traversals.
+/// \file Rays against cells of exact surfaces. The code is compiled per instruction set and family of shapes
+/// in translation units of its own (accel/isa/exact*.cpp), so that a change to a shape recompiles little.
 
 #include "accel/hit_list.h"
 #include "accel/ray_state.h"

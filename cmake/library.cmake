@@ -2,11 +2,10 @@
 file(GLOB OKTETT_SOURCES CONFIGURE_DEPENDS
   core/*.cpp kernels/*.cpp kernels/*/*.cpp accel/*.cpp render/*.cpp io/*.cpp)
 
-# One translation unit per instruction set holds every instantiation of the hot code for it; the rest of the library is
-# compiled for the baseline, so one binary runs everywhere. Fused multiply-adds happen only where the code asks for them.
+# The hot code is compiled once per instruction set, the rest of the library for the baseline, so one binary runs everywhere.
 file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp)
 
-add_library(oktett ${OKTETT_SOURCES} ${OKTETT_ISA_SOURCES})
+add_library(oktett ${OKTETT_SOURCES})
 add_library(oktett::oktett ALIAS oktett)
 target_compile_features(oktett PUBLIC cxx_std_20)
 target_compile_options(oktett PRIVATE -ffp-contract=off)
@@ -33,24 +32,33 @@ endif()
 # Loops over columns become vector code only where nobody asks for errno and traps; the values are the same.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/surfaces.cpp ${PROJECT_SOURCE_DIR}/render/whitted_block.cpp PROPERTIES
   COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
-function(oktett_isa_flags file)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/isa/${file} PROPERTIES
-    COMPILE_OPTIONS "${oktett_isa_optimization};-g0;${oktett_isa_warnings};${ARGN}")
+# One object library per set. Fused multiply-adds happen only where the code asks for them.
+function(oktett_isa_code set tag)
+  set(code oktett_${set})
+  add_library(${code} OBJECT ${OKTETT_ISA_SOURCES})
+  target_compile_definitions(${code} PRIVATE OKTETT_ISA=${tag})
+  target_compile_options(${code} PRIVATE -ffp-contract=off ${oktett_isa_optimization} -g0 ${oktett_isa_warnings} ${ARGN})
+  oktett_target_warnings(${code})
+  target_include_directories(${code} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_include_directories(${code} SYSTEM PRIVATE ${xsimd_INCLUDE_DIRS})
+  target_link_libraries(${code} PRIVATE TBB::tbb)
+  if(BUILD_SHARED_LIBS)
+    set_target_properties(${code} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  target_sources(oktett PRIVATE $<TARGET_OBJECTS:${code}>)
+  string(TOUPPER ${set} upper)
+  target_compile_definitions(oktett PRIVATE OKTETT_WITH_${upper})
 endfunction()
-oktett_isa_flags(scalar.cpp -O2 -fno-tree-vectorize)
-oktett_isa_flags(exact_scalar.cpp -O2 -fno-tree-vectorize)
+oktett_isa_code(scalar ScalarIsa -O2 -fno-tree-vectorize)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  # Without its flags a unit is empty, and the set counts as absent.
-  set(oktett_avx2 -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
-  set(oktett_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl ${oktett_avx2} -mprefer-vector-width=512)
-  set(oktett_sse42 -msse4.2)
+  set(oktett_flags_sse42 Sse42Isa -msse4.2)
+  set(oktett_flags_avx2 Avx2Isa -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
+  set(oktett_flags_avx512 Avx512Isa -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mbmi -mbmi2
+    -mlzcnt -mpopcnt -mf16c -mprefer-vector-width=512)
   foreach(set IN LISTS OKTETT_INSTRUCTION_SETS)
     if(NOT set MATCHES "^(sse42|avx2|avx512)$")
       message(FATAL_ERROR "OKTETT_INSTRUCTION_SETS: unknown set '${set}'; known are sse42, avx2 and avx512")
     endif()
-    oktett_isa_flags(${set}.cpp ${oktett_${set}})
-    oktett_isa_flags(exact_${set}.cpp ${oktett_${set}})
-    string(TOUPPER ${set} upper)
-    target_compile_definitions(oktett PRIVATE OKTETT_WITH_${upper})
+    oktett_isa_code(${set} ${oktett_flags_${set}})
   endforeach()
 endif()

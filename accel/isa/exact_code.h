@@ -1,9 +1,8 @@
 #pragma once
-/// \file ExactCode for one instruction set. Included by accel/isa/exact_*.cpp.
+/// \file ExactShapeCode for one instruction set. Included by accel/isa/exact_*.cpp.
 
-#include "accel/exact.h"
+#include "accel/isa/exact_shape.h"
 #include "accel/isa/shape_surfaces.h"
-#include "kernels/exact_shapes.h"
 
 namespace oktett {
 
@@ -42,9 +41,9 @@ OKTETT_INLINE typename D::M cell_range(const Line<D>& line, const ExactCell& cel
   }
 }
 
-template <class S, class F>
-OKTETT_INLINE unsigned first_crossing(const typename S::Pool& pool, std::uint32_t index,
-                                      const RayLanes<F>& rays, unsigned lanes, HitLanes<F>& hits) {
+template <class S, class A>
+unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
+                                     unsigned lanes, HitLanes<F>& hits) {
   using D = Simd<double, F::kWidth, typename F::Isa>;
   const ExactCell& cell = pool.cells[index];
   const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
@@ -76,12 +75,13 @@ OKTETT_INLINE unsigned first_crossing(const typename S::Pool& pool, std::uint32_
 }
 
 template <class S, class A>
-void list_crossings(const typename S::Pool& pool, std::uint32_t index, const Ray& ray, HitList& hits) {
-  using F = Simd<float, 1, A>;
+void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray& ray, HitList& hits) {
+  using One = Simd<float, 1, A>;
   using D = Simd<double, 1, A>;
   constexpr int K = S::kMaxCrossings;
   const ExactCell& cell = pool.cells[index];
-  const RayLanes<F> rays{broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax)};
+  const RayLanes<One> rays{broadcast<One>(ray.origin), broadcast<One>(ray.direction), One(ray.tmin),
+                           One(ray.tmax)};
   const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
   LineRange<D> range;
   auto active = cell_range<S>(line, cell, range);
@@ -158,38 +158,14 @@ void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
   }
 }
 
-template <class A>
-bool ExactCode<A>::surfaces(const Accel& accel, Kind kind, ShapeHits& hits) {
+template <class S, class A>
+bool ExactShapeCode<S, A>::surfaces(const Pool& pool, ShapeHits& hits) {
   using D = SurfaceLanes<A>;
-  bool done = false;
-  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
-    using S = decltype(shape);
-    D value;
-    Vec3<D> gradient;
-    if constexpr (requires { S::slope(pool, 0, D(), Vec3<D>(), value, gradient); }) {
-      done = pool.frames[hits.element[0]].normals == NormalMethod::gradient;
-      if (done) slope_surfaces<S, D>(pool, hits);
-    }
-  });
-  return done;
-}
-
-template <class A>
-unsigned ExactCode<A>::first(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
-                             unsigned lanes, HitLanes<F>& hits, std::uint32_t& item) {
-  unsigned met = 0;
-  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
-    item = pool.frames[pool.cells[cell].element].item;
-    met = first_crossing<decltype(shape)>(pool, cell, rays, lanes, hits);
-  });
-  return met;
-}
-
-template <class A>
-void ExactCode<A>::all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits) {
-  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
-    list_crossings<decltype(shape), A>(pool, cell, ray, hits);
-  });
+  D value;
+  Vec3<D> gradient;
+  constexpr bool has_slope = requires { S::slope(pool, 0, D(), Vec3<D>(), value, gradient); };
+  if constexpr (has_slope) slope_surfaces<S, D>(pool, hits);
+  return has_slope;
 }
 
 }  // namespace oktett

@@ -64,7 +64,7 @@ struct IsaCode {
 namespace oktett {
 
 template <class A>
-const IsaTable& make_table() {
+const IsaTable& isa_code() {
   static constexpr IsaTable table = {
       IsaCode<A>::closest_hit,      IsaCode<A>::any_hit,   IsaCode<A>::all_hits,    IsaCode<A>::run_kernel,
       build_kernels<A>(),           IsaCode<A>::run_roots, view_directions_code<A>, mesh_surfaces_code<A>,

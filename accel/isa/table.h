@@ -1,5 +1,6 @@
 #pragma once
-/// \file The hot code of one instruction set, as functions. One translation unit per set instantiates it.
+/// \file The hot code of one instruction set, as functions. Each set compiles the files of
+/// accel/isa with flags of its own and OKTETT_ISA as its tag.
 
 #include "accel/accel.h"
 #include "accel/build_sah.h"
@@ -74,9 +75,8 @@ struct IsaTable {
 /// Null if this build holds no code for `isa`.
 const IsaTable* isa_table(Isa isa);
 
-const IsaTable* scalar_table();
-const IsaTable* sse42_table();
-const IsaTable* avx2_table();
-const IsaTable* avx512_table();
+/// Defined for each set `A` that this build holds.
+template <class A>
+const IsaTable& isa_code();
 
 }  // namespace oktett

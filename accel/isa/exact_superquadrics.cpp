@@ -2,6 +2,6 @@
 
 namespace oktett {
 
-template struct ExactCode<ScalarIsa>;
+template struct ExactShapeCode<Superquadric, OKTETT_ISA>;
 
 }  // namespace oktett

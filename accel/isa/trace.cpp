@@ -2,6 +2,6 @@
 
 namespace oktett {
 
-const IsaTable* scalar_table() { return &make_table<ScalarIsa>(); }
+template const IsaTable& isa_code<OKTETT_ISA>();
 
 }  // namespace oktett

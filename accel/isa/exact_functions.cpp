@@ -2,8 +2,6 @@
 
 namespace oktett {
 
-#if defined(OKTETT_COMPILED_SSE42)
-template struct ExactCode<Sse42Isa>;
-#endif
+template struct ExactShapeCode<Implicit, OKTETT_ISA>;
 
 }  // namespace oktett
