@@ -55,12 +55,24 @@ OKTETT_INLINE ShearLanes<Simd<double, N, A>> broadcast_shear(const RayState<W, A
 template <int W, class A>
 OKTETT_INLINE void accept_packet(RayState<W, A>& r, unsigned lanes, const HitLanes<Simd<float, W, A>>& h,
                                  std::uint32_t item) {
-  alignas(64) float t[W], u[W], v[W];
-  h.t.store(t), h.u.store(u), h.v.store(v);
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int i = __builtin_ctz(lanes);
+  using F = Simd<float, W, A>;
+  using I = Simd<std::int32_t, W, A>;
+  const F held = F::load(r.tmax);
+  // Hits at the very distance that is held are told apart by their numbers.
+  for (unsigned same = lanes & bits(h.t == held); OKTETT_UNLIKELY(same != 0); same &= same - 1) {
+    const int i = __builtin_ctz(same);
+    alignas(64) float t[W], u[W], v[W];
+    h.t.store(t), h.u.store(u), h.v.store(v);
     accept_hit(r, i, t[i], u[i], v[i], item, kNoId);
   }
+  const auto nearer = F::M::from_bits(lanes) & (h.t < held);
+  select(nearer, h.t, held).store(r.tmax);
+  select(nearer, h.u, F::load(r.u)).store(r.u), select(nearer, h.v, F::load(r.v)).store(r.v);
+  const auto name = [&](std::uint32_t(&column)[W], std::uint32_t value) {
+    auto* ids = reinterpret_cast<std::int32_t*>(column);
+    select(mask_cast<std::int32_t>(nearer), I(static_cast<std::int32_t>(value)), I::load(ids)).store(ids);
+  };
+  name(r.item, item), name(r.path, kNoId);
 }
 
 /// Hits of ray `i` with N items; for Query::any one is enough.

@@ -1,6 +1,8 @@
 #pragma once
 /// \file Rays on their way through a tree: what is computed once per ray and what is found so far.
 
+#include <cstring>
+
 #include "accel/accel_data.h"
 #include "core/ray.h"
 #include "kernels/lanes.h"
@@ -52,15 +54,14 @@ struct alignas(64) RayState {
   /// range (see Ray).
   OKTETT_INLINE unsigned set(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1,
                              const Box& box) {
-    const F zero(0.0f), big(std::numeric_limits<float>::max());
+    const unsigned lanes = set_rays(origin, direction, t0, t1);
+    const F zero(0.0f);
     direction = flush_direction(direction);
     const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
     const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
     const F dm = max(az, max(ay, ax));
     const F om = max(abs(origin.z), max(abs(origin.y), abs(origin.x)));
-    store(origin, o), store(direction, d);
     store({F(1.0f) / direction.x, F(1.0f) / direction.y, F(1.0f) / direction.z}, inv);
-    t0.store(tmin), t1.store(tmax);
     select(dm <= F(kFilterMaxDirection), dm, F(std::numeric_limits<float>::infinity())).store(d_max);
 
     const auto pick = [&](const F& x, const F& y, const F& z) { return select(zx, x, select(zy, y, z)); };
@@ -71,14 +72,24 @@ struct alignas(64) RayState {
     const float extent = box_extent(box);
     ((om + F(extent)) / dm * F(kSlabAbsoluteSlack) + F(kSlabUnderflow)).store(slack);
 
-    zero.store(u), zero.store(v);
-    for (int i = 0; i < W; ++i) item[i] = path[i] = kNoId;
     negative[0] = bits(direction.x < zero), negative[1] = bits(direction.y < zero),
     negative[2] = bits(direction.z < zero);
     z_axis[0] = bits(zx), z_axis[1] = bits(zy), z_axis[2] = bits(~(zx | zy));
+    return lanes;
+  }
+
+  /// `set` without what only boxes, triangles and instances ask for: origin, direction, range, nothing found.
+  OKTETT_INLINE unsigned set_rays(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1) {
+    const F zero(0.0f), big(std::numeric_limits<float>::max());
+    direction = flush_direction(direction);
+    const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
+    store(origin, o), store(direction, d);
+    t0.store(tmin), t1.store(tmax);
+    zero.store(u), zero.store(v);
+    std::memset(item, 0xff, sizeof item), std::memset(path, 0xff, sizeof path);
     // Each comparison is false on NaN, and max() may drop one, so every component is asked.
     return bits((ax <= big) & (ay <= big) & (az <= big) & (abs(origin.x) <= big) & (abs(origin.y) <= big) &
-                (abs(origin.z) <= big) & (zero < dm) & (zero <= t0) & (t0 < t1));
+                (abs(origin.z) <= big) & (zero < max(az, max(ay, ax))) & (zero <= t0) & (t0 < t1));
   }
 
   OKTETT_INLINE Hit hit(int i) const {

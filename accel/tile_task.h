@@ -63,6 +63,48 @@ OKTETT_INLINE void accept_tile(const HitSpan& hits, TileRays<A>& tile, float dz,
   tile.held_hi[i] = hi > tile.held_hi[i] ? hi : tile.held_hi[i];
 }
 
+/// What the rays of a group hold, for other shapes to be compared with it.
+template <class A>
+OKTETT_INLINE void take_held(const HitSpan& hits, std::size_t base, RayState<kTileGroup, A>& r) {
+  for (std::size_t i = 0; i < kTileGroup && base + i < hits.size; ++i) {
+    if (hits.item[base + i] == kNoId) continue;
+    r.tmax[i] = hits.t[base + i], r.u[i] = hits.u[base + i], r.v[i] = hits.v[base + i];
+    r.item[i] = hits.item[base + i], r.path[i] = hits.instance[base + i];
+  }
+}
+
+/// Gives back what take_held took, for the rays in `lanes`, which hold something.
+template <class A>
+OKTETT_INLINE void give_held(const RayState<kTileGroup, A>& r, unsigned lanes, const HitSpan& hits,
+                             std::size_t base, TileRays<A>& tile) {
+  using F = Simd<float, kTileGroup, A>;
+  using I = Simd<std::int32_t, kTileGroup, A>;
+  const auto found = F::M::from_bits(lanes);
+  if (base + kTileGroup <= hits.size) {
+    const auto put = [&](const float* from, float* to) {
+      select(found, F::load(from), F::load(to + base)).store(to + base);
+    };
+    const auto put_ids = [&](const std::uint32_t* from, std::uint32_t* to) {
+      auto* at = reinterpret_cast<std::int32_t*>(to + base);
+      const I ids = I::load(reinterpret_cast<const std::int32_t*>(from));
+      select(mask_cast<std::int32_t>(found), ids, I::load(at)).store(at);
+    };
+    put(r.tmax, hits.t), put(r.u, hits.u), put(r.v, hits.v);
+    put_ids(r.item, hits.item), put_ids(r.path, hits.instance);
+  } else {
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+      const int i = __builtin_ctz(rest);
+      hits.set(base + static_cast<std::size_t>(i), r.hit(i));
+    }
+  }
+  const F s = F(1.0f) / (F::load(r.tmax) * abs(F::load(r.d[tile.axis[2]])));
+  const auto raise = [&](float* column, float slack) {
+    const F was = F::load(column + base);
+    select(found, max(s * F(slack), was), was).store(column + base);
+  };
+  raise(tile.held_lo, 1 - kTilePointSlack), raise(tile.held_hi, 1 + kTilePointSlack);
+}
+
 /// Before the first decision, all rays have hit nothing.
 template <Query Q, class A>
 OKTETT_INLINE void begin_decisions(TileTask<Q, A>& task) {

@@ -134,40 +134,41 @@ OKTETT_INLINE int leaf_tile(TileTask<Q, A>& task, NodeRef ref, unsigned groups, 
   return size;
 }
 
-/// A leaf that is not a block of triangles, against the rays of some groups.
+/// A leaf that is not a block of triangles, against the rays `rays` of group `g`.
 template <Query Q, class A>
-OKTETT_NOINLINE void table_leaf_tile(TileTask<Q, A>& task, const LeafEntry& leaf, unsigned groups) {
+OKTETT_NOINLINE void table_leaf_group(TileTask<Q, A>& task, const LeafEntry& leaf, int g, unsigned rays) {
   using F = Simd<float, kTileGroup, A>;
   TileRays<A>& tile = task.tile;
-  decide_unclear(task);
+  if (!task.decided || task.unclear.size > 0) decide_unclear(task);
+  const std::size_t base = static_cast<std::size_t>(g) * kTileGroup;
+  const F infinity(std::numeric_limits<float>::infinity());
+  const RayLanes<F> r = load_group(tile, task.rays, g);
+  rays &= bits(F::load(tile.held_lo + base) < infinity);
+  RayState<kTileGroup, A> state;
+  rays &= leaf.kind < Kind::triangle ? state.set_rays(r.o, r.d, r.tmin, r.tmax)
+                                     : state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
+  if (rays == 0) return;
+  if constexpr (Q == Query::closest) {
+    decide_held(task, g);
+    take_held(*task.hits, base, state);
+  }
+  table_leaf_packet<Q>(task.accel, leaf, state, rays);
+  const unsigned found = found_lanes(state, rays);
+  if (found == 0) return;
+  if constexpr (Q == Query::any)
+    select(F::M::from_bits(found), infinity, F::load(tile.held_lo + base)).store(tile.held_lo + base);
+  else
+    give_held(state, found, *task.hits, base, tile);
+  tile.refresh(g);
+}
+
+/// The same for several groups; `met(g)` are the rays of group `g` that the leaf may concern.
+template <Query Q, class A, class Met>
+OKTETT_INLINE void table_leaf_tile(TileTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
-    const std::size_t base = static_cast<std::size_t>(g) * kTileGroup;
-    const RayLanes<F> r = load_group(tile, task.rays, g);
-    const unsigned open = bits(F::load(tile.held_lo + base) < F(std::numeric_limits<float>::infinity()));
-    RayState<kTileGroup, A> state;
-    const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds) & open;
-    if constexpr (Q == Query::closest) {
-      decide_held(task, g);
-      for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
-        const int i = __builtin_ctz(rest);
-        const Hit h = (*task.hits)[base + static_cast<std::size_t>(i)];
-        if (h.valid())
-          state.tmax[i] = h.t, state.u[i] = h.u, state.v[i] = h.v, state.item[i] = h.item,
-          state.path[i] = h.instance;
-      }
-    }
-    table_leaf_packet<Q>(task.accel, leaf, state, lanes);
-    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
-      const int i = __builtin_ctz(rest);
-      if (state.item[i] == kNoId) continue;
-      if constexpr (Q == Query::any)
-        tile.held_lo[base + static_cast<std::size_t>(i)] = std::numeric_limits<float>::infinity();
-      else
-        accept_tile(*task.hits, tile, __builtin_fabsf(state.d[tile.axis[2]][i]),
-                    base + static_cast<std::size_t>(i), state.hit(i));
-    }
-    tile.refresh(g);
+    const unsigned rays = met(g);
+    if (rays != 0) table_leaf_group(task, leaf, g, rays);
   }
 }
 
@@ -212,6 +213,12 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
     unsigned groups = entry_groups(e, tile);
     if (groups == 0) continue;
     if (++steps > task.max_steps) return false;
+    if (e.ref.is_leaf() && !e.ref.is_triangles()) {
+      table_leaf_tile(task, accel.leaves[e.ref.table_index()], groups,
+                      [&](int g) { return entry_rays(e, tile, g); });
+      tile.refresh_window();
+      continue;
+    }
     if (e.ref.is_triangles() && __builtin_popcount(groups) <= kRefinedGroups) {
       unsigned kept = 0;
       for (unsigned rest = groups; rest != 0; rest &= rest - 1)
@@ -236,7 +243,7 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
         const unsigned met = node_tile(node, tile, window, children);
         size = push_windows(node.child, met, children, groups, stack, size);
       });
-    } else if (e.ref.is_triangles()) {
+    } else {
       tests += leaf_tile(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && tile.may_sort) {
         // What is listed and what waits knows the rays by their old places.
@@ -246,9 +253,6 @@ OKTETT_NOINLINE bool traverse_tile(TileTask<Q, A>& task) {
         dirty = 0;
         for (int i = 0; i < size; ++i) stack[i].groups = tile.groups;
       }
-    } else {
-      table_leaf_tile(task, accel.leaves[e.ref.table_index()], groups);
-      tile.refresh_window();
     }
   }
   return true;
@@ -268,7 +272,8 @@ OKTETT_NOINLINE TileOutcome trace_tile(const Accel& accel, const RaySpan& rays, 
   TileTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_steps};
   if (!task.tile.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return TileOutcome::no_tile;
   if (task.tile.groups != 0) {
-    for (const LeafEntry& leaf : accel.unbounded) table_leaf_tile(task, leaf, task.tile.groups);
+    for (const LeafEntry& leaf : accel.unbounded)
+      table_leaf_tile(task, leaf, task.tile.groups, [](int) { return (1u << kTileGroup) - 1; });
     if (!accel.root.is_none() && !traverse_tile(task)) return TileOutcome::given_up;
   }
   finish_tile(task);

@@ -52,15 +52,16 @@ struct Sphere {
   template <class D>
   OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
     const Vec3<D> m = sub_lanes(s.center, ray.o);
-    const D dd = dot_lanes(ray.d, ray.d);
+    // A product instead of two quotients: compilers find the inverse once for all the spheres of a leaf.
+    const D inverse = D(1.0) / dot_lanes(ray.d, ray.d);
     const D b = dot_lanes(m, ray.d);
     const D rr = s.radius * s.radius;
-    const D closest = b / dd;
+    const D closest = b * inverse;
     const Vec3<D> miss{m.x - closest * ray.d.x, m.y - closest * ray.d.y, m.z - closest * ray.d.z};
     const D h = rr - dot_lanes(miss, miss);
     const auto meets = D(0.0) <= h;
     if (none(meets)) return meets;
-    const D half = sqrt(h / dd);
+    const D half = sqrt(h * inverse);
     t[0] = closest - half;
     t[1] = closest + half;
     return meets;
