@@ -2,6 +2,7 @@
 /// \file What an acceleration structure consists of. Data only; accel/build*.cpp makes it, accel/traverse_*.h
 /// walk it.
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -61,6 +62,7 @@ class Accel {
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
+  std::vector<std::uint32_t> users;   ///< Geometry::user of each
   /// Where primitive k of geometry g, of a closed-form or exact shape, stands in its pool:
   /// pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
   std::vector<std::uint32_t> pool_index, first_pool_index;
@@ -68,7 +70,11 @@ class Accel {
   AccelStats stats;
 
   /// Index of the geometry that item belongs to.
-  std::uint32_t geometry_of(std::uint32_t item) const;
+  std::uint32_t geometry_of(std::uint32_t item) const {
+    if (one_item_each) return item;
+    return static_cast<std::uint32_t>(std::upper_bound(first_item.begin(), first_item.end(), item) -
+                                      first_item.begin() - 1);
+  }
 };
 
 /// f(node) for node `index` of a tree, which is a BvhNode or a CompactNode.

@@ -337,12 +337,6 @@ double sah_cost(const Accel& accel) {
 Accel::Accel() = default;
 Accel::~Accel() = default;
 
-std::uint32_t Accel::geometry_of(std::uint32_t item) const {
-  if (one_item_each) return item;
-  return static_cast<std::uint32_t>(std::upper_bound(first_item.begin(), first_item.end(), item) -
-                                    first_item.begin() - 1);
-}
-
 std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options) {
   auto accel = std::make_shared<Accel>();
   wrap_sheared_shapes(geometries);
@@ -354,6 +348,7 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
     accel->frames.push_back(
         {g.transform.inverse(), g.transform.is_identity(), g.transform.determinant() < 0});
     accel->kinds.push_back(static_cast<std::uint8_t>(kind_of(g)));
+    accel->users.push_back(g.user);
     if (std::holds_alternative<MeshGeometry>(g.shape)) accel->stats.triangles += item_count(g);
     if (items >= kNoId) throw Error("more than 2^32 - 2 primitives in one structure");
   }

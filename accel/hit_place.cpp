@@ -54,18 +54,18 @@ Ray ray_inside(const HitPlace& place, const Ray& ray) {
           ray.tmax};
 }
 
-NamedHit identify_in(const HitPlace& place, const Hit& hit) {
+HitNames identify_in(const HitPlace& place, const Hit& hit) {
   const Accel& a = *place.accel;
-  NamedHit named;
-  Surface& s = named.surface;
-  s.geometry = a.geometry_of(hit.item);
-  s.primitive = hit.item - a.first_item[s.geometry];
-  const Geometry& g = a.geometries[s.geometry];
-  named.geometry = &g;
-  s.user = place.user != kNoId ? place.user : g.user;
-  if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape))
-    if (!mesh->mesh->material_slots.empty()) s.material_slot = mesh->mesh->material_slots[s.primitive];
-  return named;
+  HitNames names;
+  names.geometry = a.geometry_of(hit.item);
+  names.primitive = hit.item - a.first_item[names.geometry];
+  names.user = place.user != kNoId ? place.user : a.users[names.geometry];
+  names.kind = static_cast<Kind>(a.kinds[names.geometry]);
+  if (names.kind == Kind::triangle) {
+    const auto& slots = std::get<MeshGeometry>(a.geometries[names.geometry].shape).mesh->material_slots;
+    if (!slots.empty()) names.material_slot = slots[names.primitive];
+  }
+  return names;
 }
 
 }  // namespace oktett

@@ -22,15 +22,16 @@ Ray ray_inside(const HitPlace& place, const Ray& ray);
 /// Brings a surface found inside an instance to the world.
 void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s);
 
-/// A hit's geometry, and a surface that has names only: geometry, primitive, user and material slot.
-struct NamedHit {
-  const Geometry* geometry = nullptr;
-  Surface surface;
+/// What a hit met, by the names that Surface has for it.
+struct HitNames {
+  std::uint32_t geometry, primitive, user;
+  std::uint32_t material_slot = 0;
+  Kind kind;
 };
-NamedHit identify_in(const HitPlace& place, const Hit& hit);
+HitNames identify_in(const HitPlace& place, const Hit& hit);
 
 /// The surface at a hit whose place is known; uv and tangent may be missing if they are not wanted.
-void surface_at(const HitPlace& place, const NamedHit& named, const Ray& ray, const Hit& hit, bool uv,
+void surface_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
                 Surface& s);
 
 }  // namespace oktett

@@ -16,9 +16,8 @@ struct ShapeHits {
   float part[kMost];             ///< Hit::u, of exact shapes the part that was met
   std::uint32_t element[kMost];  ///< in its pool
 
-  /// What Surface has of these names; the error is still to be rounded up.
-  float position[3][kMost], normal[3][kMost];
-  double position_error[3][kMost];
+  /// What Surface has of these names.
+  float position[3][kMost], position_error[3][kMost], normal[3][kMost];
 };
 
 }  // namespace oktett

@@ -72,7 +72,11 @@ Surface mesh_surface(const Geometry& g, const GeometryFrame& frame, const MeshGe
 }  // namespace
 
 Surface identify(const Accel& accel, const Hit& hit) {
-  return identify_in(follow_path(accel, hit.instance), hit).surface;
+  const HitNames names = identify_in(follow_path(accel, hit.instance), hit);
+  Surface s;
+  s.geometry = names.geometry, s.primitive = names.primitive;
+  s.user = names.user, s.material_slot = names.material_slot;
+  return s;
 }
 
 /// Makes a surface in its place: a copy would read whole registers of what was just written number by number,
@@ -83,21 +87,19 @@ static void make_in_place(Surface& s, const Function& make) {
 }
 
 /// The surface inside the structure that holds the item; `uv` says whether uv and tangent are wanted.
-static void surface_inside(const NamedHit& named, const Accel& a, const Ray& inner, const Hit& hit, bool uv,
+static void surface_inside(const HitNames& names, const Accel& a, const Ray& inner, const Hit& hit, bool uv,
                            Surface& s) {
-  const Surface names = named.surface;
-  const Geometry& g = *named.geometry;
+  const Geometry& g = a.geometries[names.geometry];
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
     s = mesh_surface(g, a.frames[names.geometry], *mesh, names.primitive, hit);
   } else if (std::holds_alternative<ExactShape>(g.shape)) {
-    visit_exact(static_cast<Kind>(a.kinds[names.geometry]), *a.exact, [&](auto shape, const auto& pool) {
+    visit_exact(names.kind, *a.exact, [&](auto shape, const auto& pool) {
       using S = decltype(shape);
       const std::size_t i = a.pool_index[a.first_pool_index[names.geometry]];
       s = uv ? exact_surface<S>(pool, i, hit, inner) : exact_surface_without_uv<S>(pool, i, hit, inner);
     });
   } else {
-    const Kind kind = static_cast<Kind>(a.kinds[names.geometry]);
-    visit_pool(kind, a.pools, [&](auto shape, const auto& pool) {
+    visit_pool(names.kind, a.pools, [&](auto shape, const auto& pool) {
       using S = decltype(shape);
       const std::size_t i = a.pool_index[a.first_pool_index[names.geometry] + names.primitive];
       if constexpr (requires { S::surface_without_uv(pool, i, inner, hit.t); }) {
@@ -114,10 +116,10 @@ static void surface_inside(const NamedHit& named, const Accel& a, const Ray& inn
   s.material_slot = names.material_slot;
 }
 
-void surface_at(const HitPlace& place, const NamedHit& named, const Ray& ray, const Hit& hit, bool uv,
+void surface_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
                 Surface& s) {
-  if (!place.moved) return surface_inside(named, *place.accel, ray, hit, uv, s);
-  surface_inside(named, *place.accel, ray_inside(place, ray), hit, uv, s);
+  if (!place.moved) return surface_inside(names, *place.accel, ray, hit, uv, s);
+  surface_inside(names, *place.accel, ray_inside(place, ray), hit, uv, s);
   move_surface(place, ray, hit.t, s);
 }
 

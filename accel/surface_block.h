@@ -24,10 +24,6 @@ struct SurfaceBlock {
     s.user = user[i], s.material_slot = material_slot[i];
     return s;
   }
-  void set_names(std::size_t i, const Surface& s) {
-    geometry[i] = s.geometry, primitive[i] = s.primitive;
-    user[i] = s.user, material_slot[i] = s.material_slot;
-  }
   /// All but the names.
   void set_shape(std::size_t i, const Surface& s) {
     put(position, i, s.position), put(position_error, i, s.position_error);

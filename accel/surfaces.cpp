@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 
 #include "accel/hit_place.h"
 #include "accel/isa/table.h"
@@ -38,12 +37,13 @@ class MeshRun {
           SurfaceBlock& out)
       : rays_(rays), hits_(hits), which_(which), table_(table), out_(out) {}
 
-  /// Takes entry `i`, a hit of the mesh `named`; its names stand in the result already.
-  void add(const HitPlace& place, const NamedHit& named, std::size_t i) {
-    if (columns_.count == MeshSurfaces::kMost || geometry_ != named.geometry) begin(place, named);
+  /// Takes entry `i`, a hit of the mesh `names`.
+  void add(const HitPlace& place, const HitNames& names, std::size_t i) {
+    const Geometry& geometry = place.accel->geometries[names.geometry];
+    if (columns_.count == MeshSurfaces::kMost || geometry_ != &geometry) begin(place, geometry, names);
     const Hit hit = hits_[which_[i]];
-    gather(*std::get<MeshGeometry>(named.geometry->shape).mesh, named.surface.primitive, hit.u, hit.v,
-           columns_, columns_.count);
+    gather(*std::get<MeshGeometry>(geometry.shape).mesh, names.primitive, hit.u, hit.v, columns_,
+           columns_.count);
     entry_[columns_.count++] = i;
   }
 
@@ -70,11 +70,11 @@ class MeshRun {
   }
 
  private:
-  void begin(const HitPlace& place, const NamedHit& named) {
+  void begin(const HitPlace& place, const Geometry& geometry, const HitNames& names) {
     finish(place);
-    geometry_ = named.geometry;
-    const auto& shape = std::get<MeshGeometry>(geometry_->shape);
-    const GeometryFrame& frame = place.accel->frames[named.surface.geometry];
+    geometry_ = &geometry;
+    const auto& shape = std::get<MeshGeometry>(geometry.shape);
+    const GeometryFrame& frame = place.accel->frames[names.geometry];
     columns_.smooth = shape.smooth && !shape.mesh->normal_indices.empty();
     columns_.to_world = frame.identity ? nullptr : &geometry_->transform;
     columns_.inverse = frame.identity ? nullptr : &frame.inverse;
@@ -110,15 +110,14 @@ class ShapeGroups {
               const IsaTable& table, SurfaceBlock& out)
       : accel_(accel), rays_(rays), hits_(hits), which_(which), table_(table), out_(out) {}
 
-  /// Takes entry `i`, whose names stand in the result already; false if its kind has no code for groups.
-  bool add(std::size_t i) {
-    const std::uint32_t geometry = out_.geometry[i];
-    const Kind kind = static_cast<Kind>(accel_.kinds[geometry]);
+  /// Takes entry `i`; false if its kind has no code for groups.
+  bool add(const HitNames& names, std::size_t i) {
+    const Kind kind = names.kind;
     std::uint32_t element, group = 0;
     if (is_exact(kind)) {
-      group = element = accel_.pool_index[accel_.first_pool_index[geometry]];
+      group = element = accel_.pool_index[accel_.first_pool_index[names.geometry]];
     } else if (kind == Kind::sphere || kind == Kind::plane) {
-      element = accel_.pool_index[accel_.first_pool_index[geometry] + out_.primitive[i]];
+      element = accel_.pool_index[accel_.first_pool_index[names.geometry] + names.primitive];
     } else {
       return false;
     }
@@ -180,24 +179,13 @@ class ShapeGroups {
       });
       return;
     }
-    for (int axis = 0; axis < 3; ++axis) round_up_column(columns_.position_error[axis], error_[axis]);
     for (std::size_t k = 0; k < columns_.count; ++k) {
       const std::uint32_t i = members[k];
       for (int axis = 0; axis < 3; ++axis) {
         out_.position[axis][i] = columns_.position[axis][k];
-        out_.position_error[axis][i] = error_[axis][k];
+        out_.position_error[axis][i] = columns_.position_error[axis][k];
         out_.geometric_normal[axis][i] = out_.shading_normal[axis][i] = columns_.normal[axis][k];
       }
-    }
-  }
-
-  /// round_up of numbers that are not negative, without branches.
-  void round_up_column(const double* column, float* out) const {
-    const std::size_t end = (columns_.count + 7) / 8 * 8;
-    for (std::size_t k = 0; k < end; ++k) {
-      const float rounded = static_cast<float>(column[k]);
-      out[k] = std::bit_cast<float>(std::bit_cast<std::int32_t>(rounded) +
-                                    (static_cast<double>(rounded) < column[k] ? 1 : 0));
     }
   }
 
@@ -207,7 +195,6 @@ class ShapeGroups {
   const std::uint32_t* which_;
   const IsaTable& table_;
   SurfaceBlock& out_;
-  float error_[3][SurfaceBlock::kMost];
   std::size_t count_ = 0;
   std::uint32_t entry_[SurfaceBlock::kMost], element_[SurfaceBlock::kMost];
   std::uint64_t group_[SurfaceBlock::kMost];
@@ -230,13 +217,14 @@ void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, cons
       place = follow_path(accel, hit.instance);
       path = hit.instance;
     }
-    const NamedHit named = identify_in(place, hit);
-    out.set_names(i, named.surface);
-    if (std::holds_alternative<MeshGeometry>(named.geometry->shape)) {
-      run.add(place, named, i);
-    } else if (place.moved || !groups.add(i)) {
+    const HitNames names = identify_in(place, hit);
+    out.geometry[i] = names.geometry, out.primitive[i] = names.primitive;
+    out.user[i] = names.user, out.material_slot[i] = names.material_slot;
+    if (names.kind == Kind::triangle) {
+      run.add(place, names, i);
+    } else if (place.moved || !groups.add(names, i)) {
       Surface s;
-      surface_at(place, named, rays[which[i]], hit, false, s);
+      surface_at(place, names, rays[which[i]], hit, false, s);
       out.set_shape(i, s);
     }
   }

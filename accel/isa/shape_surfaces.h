@@ -30,13 +30,23 @@ OKTETT_INLINE D length_lanes(const Vec3<D>& v) {
   return sqrt(dot_lanes(v, v));
 }
 
+/// The least floats that are not below `x`, which must be no less than 1e-37: round_up of core/box.h.
+template <class D>
+OKTETT_INLINE Simd<float, D::kWidth, typename D::Isa> round_up_lanes(const D& x) {
+  using F = Simd<float, D::kWidth, typename D::Isa>;
+  const F nearest = to_float(x);
+  // Five to ten eighths of the distance to the next float lead there.
+  const F next = nearest + nearest * F(0.625f * 0x1p-23f);
+  return select(mask_cast<float>(to_double(nearest) < x), next, nearest);
+}
+
 /// set_position of kernels/shapes/contract.h, and the normal.
 template <class D>
 OKTETT_INLINE void store_surface(const HitPoints<D>& hit, const Vec3<D>& p, const D& surface_error,
                                  const Vec3<D>& normal, ShapeHits& out, std::size_t i) {
   const D ulp(0x1p-23);
   const auto error = [&](const D& direction, const D& place) {
-    return ulp * abs(hit.t * direction) + ulp * abs(place) + surface_error + D(1e-37);
+    return round_up_lanes(ulp * abs(hit.t * direction) + ulp * abs(place) + surface_error + D(1e-37));
   };
   to_float(p.x).store(out.position[0] + i), to_float(p.y).store(out.position[1] + i);
   to_float(p.z).store(out.position[2] + i);
