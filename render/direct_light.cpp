@@ -8,30 +8,10 @@
 
 namespace oktett {
 
-/// `cosine`, in [0, 1] or NaN, to the power of a material's exponent.
-static float highlight_power(float cosine, float exponent) {
-  constexpr float kMostBySquaring = 1024;
-  // Exponents of materials mostly are whole.
-  if (exponent <= kMostBySquaring && exponent >= 0) {
-    const auto whole = static_cast<unsigned>(exponent);
-    if (static_cast<float>(whole) == exponent)
-      return static_cast<float>(portable::whole_power(cosine, whole));
-  }
+float highlight_power(float cosine, float exponent) {
+  if (by_squaring(exponent))
+    return static_cast<float>(portable::whole_power(cosine, static_cast<unsigned>(exponent)));
   return static_cast<float>(portable::pow(cosine, exponent));
-}
-
-static OKTETT_INLINE Color sum_here(const Material& m, const Color& color, const Color& specular_color,
-                                    float cosine, float highlight) {
-  Color sum = color * (m.diffuse * cosine);
-  // NaN is not left out.
-  if (m.specular != 0 && !(highlight <= 0))
-    sum += specular_color * (m.specular * highlight_power(std::min(highlight, 1.0f), m.phong));
-  return sum;
-}
-
-Color phong_sum(const Material& m, const Color& color, const Color& specular_color, float cosine,
-                float highlight) {
-  return sum_here(m, color, specular_color, cosine, highlight);
 }
 
 static OKTETT_INLINE Color phong_here(const ShadingPoint& p, const Vec3f& l) {
@@ -39,7 +19,8 @@ static OKTETT_INLINE Color phong_here(const ShadingPoint& p, const Vec3f& l) {
   // Comparisons are such that NaN goes on to the picture, where it is counted.
   if (cosine <= 0 || dot(p.ng, l) <= 0) return {0, 0, 0};
   const float highlight = dot(l, p.direction) - 2 * cosine * dot(p.ns, p.direction);
-  return sum_here(*p.material, p.color, p.specular_color, cosine, highlight);
+  return phong_sum(*p.material, p.color, p.specular_color, cosine, highlight,
+                   [&] { return highlight_power(std::min(highlight, 1.0f), p.material->phong); });
 }
 
 Color phong(const ShadingPoint& p, const Vec3f& l) { return phong_here(p, l); }

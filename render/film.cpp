@@ -116,12 +116,8 @@ Picture make_picture(const RenderContext& context) {
   return picture;
 }
 
-bool write_sample(Picture& picture, std::uint32_t x, std::uint32_t y, const Color& color, float alpha) {
-  if (!is_finite(color) || !std::isfinite(alpha)) return false;
-  const std::size_t at = static_cast<std::size_t>(y) * picture.width + x;
-  for (int k = 0; k < 3; ++k) picture.planes[kR + k].values[at] = color[k];
-  picture.planes[kA].values[at] = alpha;
-  return true;
+SampleWriter::SampleWriter(Picture& picture) : width_(picture.width) {
+  for (int k = kR; k <= kA; ++k) plane_[k] = picture.planes[k].values.data();
 }
 
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel) {

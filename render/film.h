@@ -1,6 +1,7 @@
 #pragma once
 /// \file From samples to pixels.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -42,9 +43,22 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 Picture make_picture(const RenderContext& context);
 
-/// write_pixel for pixels of one sample without data layers; false if it is left out because it holds NaN or
-/// infinity.
-bool write_sample(Picture& picture, std::uint32_t x, std::uint32_t y, const Color& color, float alpha);
+/// Writes pixels of one sample without data layers, as write_pixel does.
+class SampleWriter {
+ public:
+  explicit SampleWriter(Picture& picture);
+  /// False if the sample is left out because it holds NaN or infinity.
+  bool write(std::uint32_t x, std::uint32_t y, const Color& color, float alpha) {
+    if (!is_finite(color) || !std::isfinite(alpha)) return false;
+    const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
+    plane_[0][at] = color.x, plane_[1][at] = color.y, plane_[2][at] = color.z, plane_[3][at] = alpha;
+    return true;
+  }
+
+ private:
+  float* plane_[4];
+  std::uint32_t width_;
+};
 
 /// Writes a finished pixel, (x, y) counted in the picture. Threads may write different pixels at the same
 /// time.

@@ -13,6 +13,9 @@ struct SquareSample {
   double x = 0, y = 0;
 };
 
+/// What every pattern of a single point consists of.
+inline constexpr SquareSample kSquareCentre{0.5, 0.5};
+
 /// A pattern of `count` points chosen by `key`: correlated multi-jittered sampling (Kensler 2013).
 ///
 /// The pattern has m = floor(sqrt(count)) columns and ceil(count / m) rows. If they multiply to `count`, each

@@ -72,10 +72,10 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
       start_wave(context, pixels, s, std::min(samples, s + samples_per_wave), wave);
       if (!trace_wave(context, wave)) continue;
       if (single) {
+        SampleWriter writer(picture);
         for (std::size_t i = 0; i < wave.samples.size(); ++i) {
           const WavePixel& at = work.order[wave.samples.pixel[i]];
-          if (!write_sample(picture, tile.x + at.x, tile.y + at.y, wave.samples.color[i],
-                            wave.samples.alpha[i]))
+          if (!writer.write(tile.x + at.x, tile.y + at.y, wave.samples.color[i], wave.samples.alpha[i]))
             ++counts.bad_samples;
         }
         continue;

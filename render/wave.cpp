@@ -162,16 +162,21 @@ void start_wave(const RenderContext& context, std::span<const WavePixel> pixels,
   s.resize_uninitialized(count, context.data_layers);
   wave.rays.resize_uninitialized(count);
   std::size_t i = 0;
+  const auto add = [&](const WavePixel& pixel, std::uint32_t number, std::uint64_t key,
+                       const SquareSample& at) {
+    wave.film_x[i] = pixel.x + at.x, wave.film_y[i] = pixel.y + at.y;
+    s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
+    s.offset[i++] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
+  };
   for (const WavePixel& pixel : pixels) {
     const std::uint64_t index = static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x;
     const std::uint64_t key = pixel_key(context.settings.seed, index);
-    const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
-    for (std::uint32_t number = first; number < last; ++number, ++i) {
-      const SquareSample at = pattern[number];
-      wave.film_x[i] = pixel.x + at.x, wave.film_y[i] = pixel.y + at.y;
-      s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
-      s.offset[i] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
+    if (context.settings.samples == 1) {
+      add(pixel, 0, key, kSquareCentre);
+      continue;
     }
+    const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
+    for (std::uint32_t number = first; number < last; ++number) add(pixel, number, key, pattern[number]);
   }
   camera_rays(context.camera, {wave.film_x, wave.film_y}, context.isa, wave.rays.rays);
   wave.counts.camera += count;

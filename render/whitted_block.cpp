@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/per_set.h"
+#include "core/platform.h"
 #include "render/direct_light.h"
 #include "render/integrators.h"
 
@@ -25,10 +27,11 @@ struct Columns {
   float falloff[kMost];    ///< 1 / squared distance
   float cosine[kMost];     ///< between ns and l; 0 where the light is behind
   float highlight[kMost];  ///< cosine between the mirrored light and the viewer
+  float power[kMost];      ///< highlight_power of it, where exponents are raised to by squaring
 };
 
 /// face_ray of render/shading_point.cpp.
-void face_rays(const SurfaceBlock& s, Columns& c) {
+OKTETT_PER_SET void face_rays(const SurfaceBlock& s, Columns& c) {
   constexpr float kLeast = 1e-3f;
   for (std::size_t i = 0; i < c.count; ++i) {
     const float dx = c.direction[0][i], dy = c.direction[1][i], dz = c.direction[2][i];
@@ -50,7 +53,7 @@ void face_rays(const SurfaceBlock& s, Columns& c) {
   }
 }
 
-void turn_to_light(const SurfaceBlock& s, const LightSource& light, Columns& c) {
+OKTETT_PER_SET void turn_to_light(const SurfaceBlock& s, const LightSource& light, Columns& c) {
   if (light.directional) {
     for (int k = 0; k < 3; ++k)
       for (std::size_t i = 0; i < c.count; ++i) c.l[k][i] = light.place[k];
@@ -82,7 +85,7 @@ inline float move_away_evenly(float p, float offset) {
 }
 
 /// offset_origin of accel/offset_origin.h towards `l`.
-void leave_surfaces(const SurfaceBlock& s, Columns& c) {
+OKTETT_PER_SET void leave_surfaces(const SurfaceBlock& s, Columns& c) {
   for (std::size_t i = 0; i < c.count; ++i) {
     const float nx = s.geometric_normal[0][i], ny = s.geometric_normal[1][i], nz = s.geometric_normal[2][i];
     const float reach = std::abs(nx) * s.position_error[0][i] + std::abs(ny) * s.position_error[1][i] +
@@ -95,7 +98,7 @@ void leave_surfaces(const SurfaceBlock& s, Columns& c) {
 }
 
 /// The cosines of phong().
-void measure_angles(Columns& c) {
+OKTETT_PER_SET void measure_angles(Columns& c) {
   for (std::size_t i = 0; i < c.count; ++i) {
     const float lx = c.l[0][i], ly = c.l[1][i], lz = c.l[2][i];
     const float dx = c.direction[0][i], dy = c.direction[1][i], dz = c.direction[2][i];
@@ -105,6 +108,23 @@ void measure_angles(Columns& c) {
     c.highlight[i] = (lx * dx + ly * dy + lz * dz) - 2 * cosine * (x * dx + y * dy + z * dz);
     c.cosine[i] = above <= 0 ? 0.0f : cosine;
   }
+}
+
+/// Highlights to the power of `exponent`: portable::whole_power for all, digit by digit of the exponents.
+OKTETT_PER_SET void raise_highlights(const std::int32_t* exponent, std::int32_t greatest, Columns& c) {
+  double x[kMost], product[kMost];
+  for (std::size_t i = 0; i < c.count; ++i) {
+    x[i] = static_cast<double>(1.0f < c.highlight[i] ? 1.0f : c.highlight[i]);
+    product[i] = 1;
+  }
+  for (std::int32_t digit = 1; digit <= greatest; digit *= 2) {
+    for (std::size_t i = 0; i < c.count; ++i) {
+      const double longer = product[i] * x[i];
+      product[i] = (exponent[i] & digit) != 0 ? longer : product[i];
+      x[i] = x[i] * x[i];
+    }
+  }
+  for (std::size_t i = 0; i < c.count; ++i) c.power[i] = static_cast<float>(product[i]);
 }
 
 Vec3f get(const float (&column)[3][kMost], std::size_t i) { return SurfaceBlock::get(column, i); }
@@ -122,6 +142,17 @@ Ray shadow_ray(const Columns& c, std::size_t k, const LightSource& light) {
   return ray;
 }
 
+/// Hit `i` by itself: all of it, or if it is plain, and thus lit already, its mirror and what shines through.
+OKTETT_NOINLINE void shade_alone(const RenderContext& context, Wave& wave, std::uint32_t i,
+                                 const Surface& found, bool plain) {
+  const ShadingPoint p = shading_point(context, wave.rays.rays[i], wave.hits[i],
+                                       {wave.rays.distance[i], wave.rays.from_camera[i] != 0}, found);
+  if (plain) return push_specular(context, wave, i, p, wave.rays.throughput[i]);
+  if (wave.rays.from_camera[i])
+    wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x * p.opacity;
+  shade_whitted(context, wave, i, p);
+}
+
 }  // namespace
 
 void shade_whitted_block(const RenderContext& context, Wave& wave, const std::uint32_t* which,
@@ -130,20 +161,27 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
   c.count = (count + 7) / 8 * 8;
   const Material* materials[kMost];
   bool plain[kMost];
+  std::int32_t exponent[kMost], greatest = 0;
   for (std::size_t k = 0; k < count; ++k) {
     materials[k] = &material_at(*context.world, found.user[k], found.material_slot[k]);
     plain[k] = context.textures == nullptr || !has_textures(*materials[k]);
+    const Material& m = *materials[k];
+    exponent[k] = m.specular != 0 && by_squaring(m.phong) ? static_cast<std::int32_t>(m.phong) : 0;
+    greatest = std::max(greatest, exponent[k]);
     for (int axis = 0; axis < 3; ++axis) c.direction[axis][k] = wave.rays.rays.direction[axis][which[k]];
   }
   // What follows the last hit may hold anything, but denormals would be slow.
-  for (std::size_t k = count; k < c.count; ++k)
+  for (std::size_t k = count; k < c.count; ++k) {
+    exponent[k] = 0;
     for (int axis = 0; axis < 3; ++axis) c.direction[axis][k] = 0;
+  }
   face_rays(found, c);
   for (std::size_t n = 0; n < context.lights.size(); ++n) {
     const LightSource& light = context.lights[n];
     turn_to_light(found, light, c);
     leave_surfaces(found, c);
     measure_angles(c);
+    raise_highlights(exponent, greatest, c);
     // Room for all of them: asking for it ray by ray and column by column takes longer than writing.
     ShadowQueue& queue = wave.shadows[n];
     std::size_t end = queue.size();
@@ -151,7 +189,10 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
     for (std::size_t k = 0; k < count; ++k) {
       if (!plain[k] || c.cosine[k] <= 0) continue;
       const Material& m = *materials[k];
-      const Color shine = phong_sum(m, m.color, m.specular_color, c.cosine[k], c.highlight[k]);
+      const Color shine = phong_sum(m, m.color, m.specular_color, c.cosine[k], c.highlight[k], [&] {
+        if (by_squaring(m.phong)) return c.power[k];
+        return highlight_power(std::min(c.highlight[k], 1.0f), m.phong);
+      });
       const Color color = !light.directional && light.falloff ? light.color * c.falloff[k] : light.color;
       const Color arriving = wave.rays.throughput[which[k]] * shine * color;
       if (arriving == Color{0, 0, 0}) continue;
@@ -162,21 +203,13 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = which[k];
     const Material& m = *materials[k];
-    const bool specular = m.reflection != 0 || m.transparency != 0;
-    ShadingPoint p;
-    if (!plain[k] || specular)
-      p = shading_point(context, wave.rays.rays[i], wave.hits[i],
-                        {wave.rays.distance[i], wave.rays.from_camera[i] != 0}, found[k]);
-    const float opacity = plain[k] ? 1.0f : p.opacity;
-    if (wave.rays.from_camera[i])
-      wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x * opacity;
-    if (!plain[k]) {
-      shade_whitted(context, wave, i, p);
-      continue;
+    if (plain[k]) {
+      if (wave.rays.from_camera[i]) wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x;
+      wave.radiance[i] +=
+          wave.rays.throughput[i] * (m.emission + m.color * m.ambient * context.ambient_light);
     }
-    const Color throughput = wave.rays.throughput[i];
-    wave.radiance[i] += throughput * (m.emission + m.color * m.ambient * context.ambient_light);
-    if (specular) push_specular(context, wave, i, p, throughput);
+    if (!plain[k] || m.reflection != 0 || m.transparency != 0)
+      shade_alone(context, wave, i, found[k], plain[k]);
   }
 }
 
