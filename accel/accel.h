@@ -34,14 +34,31 @@ struct InstanceGeometry {
   std::shared_ptr<const Accel> child;
 };
 
+struct CsgExpression;
+
+/// A Boolean combination of solids. Each solid keeps its own `user`.
+struct CsgGeometry {
+  std::shared_ptr<const CsgExpression> expression;
+};
+
 /// One thing to trace. `transform` maps it to the space of the structure. `user` is handed back with each
 /// hit; an instance whose `user` is not kNoId overrides those of the geometries below it.
 struct Geometry {
   std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, ExactShape,
-               InstanceGeometry>
+               CsgGeometry, InstanceGeometry>
       shape;
   Affine transform;
   std::uint32_t user = kNoId;
+};
+
+/// A node of a Boolean expression: either solids whose union is an operand, or children to be combined.
+/// Closed meshes, spheres, boxes, planes (the half-space below),
+/// exact surfaces, and instances and combinations of these are solids; anything else has no inside and is
+/// left out.
+struct CsgExpression {
+  CsgOp op = CsgOp::operand;
+  std::vector<Geometry> solids;
+  std::vector<CsgExpression> children;
 };
 
 /// How hard the builder tries. The hits are the same for each.

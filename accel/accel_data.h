@@ -8,6 +8,7 @@
 
 #include "accel/accel.h"
 #include "accel/compact_node.h"
+#include "accel/csg.h"
 #include "accel/layout.h"
 #include "core/platform.h"
 #include "core/virtual_array.h"
@@ -23,6 +24,13 @@ struct InstanceItem {
   const Accel* child;
   std::uint32_t item;
   std::uint32_t first_path;  ///< paths through this instance are first_path + 1 + (path inside the child + 1)
+};
+
+/// Where the paths through one instance or combination begin.
+struct PathStep {
+  std::uint32_t first_path, item;
+  const Accel* child;
+  bool is_combination;
 };
 
 /// What shading needs of a geometry's transform, computed once.
@@ -66,7 +74,8 @@ class Accel {
   /// Where primitive k of geometry g, of a closed-form or exact shape, stands in its pool:
   /// pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
   std::vector<std::uint32_t> pool_index, first_pool_index;
-  std::vector<std::uint32_t> instances_by_path;  ///< indices into `instances`, ordered by first_path
+  std::vector<CsgItem> combinations;
+  std::vector<PathStep> path_steps;  ///< ordered by first_path
   AccelStats stats;
 
   /// Index of the geometry that item belongs to.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accel/build_tree.h"
+#include "accel/geometry_bounds.h"
 #include "accel/mesh_source.h"
 #include "core/error.h"
 #include "kernels/exact_bounds.h"
@@ -25,18 +26,6 @@ bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite
 
 PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind) {
   return {{-b.lo.x, -b.lo.y, -b.lo.z}, item, {b.hi.x, b.hi.y, b.hi.z}, static_cast<std::uint32_t>(kind)};
-}
-
-SphereShape moved_sphere(const SphereShape& s, const Affine& m) {
-  return {m.point(s.center), s.radius * m.uniform_scale()};
-}
-
-/// A plane, disk or polygon under an affine map is one again (a disk only under a similarity).
-PlaneShape moved_plane(const PlaneShape& s, const Affine& m) {
-  const Vec3d n = normalize(s.normal);
-  const Vec3d p = m.point(n * s.offset);
-  const Vec3d q = normalize(m.inverse().normal_by_inverse(n));
-  return {q, dot(q, p)};
 }
 
 /// Fills the pools in the order in which the leaves refer to them.
@@ -82,7 +71,9 @@ class PoolFiller {
         },
         std::get<Plane::Pool>(accel_.pools));
     if (accel_.exact) std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact->pools);
+    number_paths();
     fill_instances();
+    arrange_combinations();
   }
 
  private:
@@ -141,35 +132,57 @@ class PoolFiller {
     return kind;
   }
 
-  void fill_instances() {
-    // Paths are numbered in the order of items, so that hits at equal distance keep the order of the scene.
-    std::vector<std::uint32_t> sorted = order_[static_cast<int>(Kind::instance)];
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<std::uint32_t> first_path(sorted.size());
+  /// Numbers the paths in the order of items, so that hits at equal distance keep the order of the scene.
+  void number_paths() {
+    std::vector<PathStep>& steps = accel_.path_steps;
+    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)])
+      steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), false});
+    for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), true});
+    std::sort(steps.begin(), steps.end(),
+              [](const PathStep& a, const PathStep& b) { return a.item < b.item; });
     std::uint64_t paths = 0;
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      first_path[i] = static_cast<std::uint32_t>(paths);
-      const Geometry& g = accel_.geometries[accel_.geometry_of(sorted[i])];
-      paths += 1 + std::uint64_t{std::get<InstanceGeometry>(g.shape).child->path_count};
+    for (PathStep& step : steps) {
+      step.first_path = static_cast<std::uint32_t>(paths);
+      paths += (1 + std::uint64_t{step.child->path_count}) * (step.is_combination ? 2 : 1);
       if (paths >= kNoId) throw Error("more than 2^32 - 2 nested instances");
     }
     accel_.path_count = static_cast<std::uint32_t>(paths);
+  }
+
+  std::uint32_t first_path(std::uint32_t item) const {
+    const std::vector<PathStep>& steps = accel_.path_steps;
+    return std::lower_bound(steps.begin(), steps.end(), item,
+                            [](const PathStep& step, std::uint32_t value) { return step.item < value; })
+        ->first_path;
+  }
+
+  void fill_instances() {
     for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
-      const Geometry& g = accel_.geometries[accel_.geometry_of(item)];
+      const Geometry& g = geometry(item);
       InstanceItem instance{};
       const Affine inverse = g.transform.inverse();
       for (int k = 0; k < 12; ++k) instance.to_child[k] = inverse.m[k / 4][k % 4];
       instance.child = std::get<InstanceGeometry>(g.shape).child.get();
       instance.item = item;
-      instance.first_path = first_path[std::lower_bound(sorted.begin(), sorted.end(), item) - sorted.begin()];
+      instance.first_path = first_path(item);
       accel_.instances.push_back(instance);
     }
-    for (std::uint32_t i = 0; i < accel_.instances.size(); ++i) accel_.instances_by_path.push_back(i);
-    std::sort(accel_.instances_by_path.begin(), accel_.instances_by_path.end(), [&](auto x, auto y) {
-      return accel_.instances[x].first_path < accel_.instances[y].first_path;
-    });
     accel_.stats.other_bytes += accel_.instances.size() * sizeof(InstanceItem);
   }
+
+  /// Brings the combinations into leaf order.
+  void arrange_combinations() {
+    std::vector<CsgItem> ordered;
+    for (std::uint32_t index : order_[static_cast<int>(Kind::csg)]) {
+      ordered.push_back(std::move(accel_.combinations[index]));
+      ordered.back().first_path = first_path(ordered.back().item);
+      accel_.stats.other_bytes += sizeof(CsgItem) + ordered.back().nodes.size() * sizeof(CsgNode) +
+                                  stats(*ordered.back().solids).bytes();
+    }
+    accel_.combinations = std::move(ordered);
+  }
+
+  const Geometry& geometry(std::uint32_t item) const { return accel_.geometries[accel_.geometry_of(item)]; }
 
   Accel& accel_;
   const ItemOrder& order_;
@@ -191,67 +204,6 @@ void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
     if (needs_similarity && g.transform.is_invertible() && g.transform.uniform_scale() == 0)
       g = as_instance(std::move(g));
   }
-}
-
-/// Bounds of one closed-form item, or an empty box if it is degenerate.
-Box shape_bounds(const Geometry& g, std::size_t local) {
-  const Affine& m = g.transform;
-  if (const auto* s = std::get_if<SpheresShape>(&g.shape)) {
-    const SphereShape moved = moved_sphere(s->spheres[local], m);
-    if (!(moved.radius > 0) || !is_finite(moved.center)) return {};
-    Sphere::Pool p;
-    Sphere::add(p, moved, 0);
-    return Sphere::bounds(p, 0);
-  }
-  if (const auto* s = std::get_if<DiskShape>(&g.shape)) {
-    if (!(s->radius > 0) || !(length(s->normal) > 0)) return {};
-    Disk::Pool p;
-    Disk::add(
-        p, {m.point(s->center), m.inverse().normal_by_inverse(s->normal), s->radius * m.uniform_scale()}, 0);
-    return Disk::bounds(p, 0);
-  }
-  if (const auto* s = std::get_if<BoxShape>(&g.shape)) {
-    if (!(s->min.x < s->max.x && s->min.y < s->max.y && s->min.z < s->max.z)) return {};
-    BoxSolid::Pool p;
-    BoxSolid::add(p, *s, m, 0);
-    return BoxSolid::bounds(p, 0);
-  }
-  if (const auto* s = std::get_if<PolygonShape>(&g.shape)) {
-    if (s->vertices.size() < 3 || !(length(Polygon::area_normal(s->vertices)) > 0)) return {};
-    PolygonShape moved = *s;
-    for (Vec3d& v : moved.vertices) v = m.point(v);
-    Polygon::Pool p;
-    Polygon::add(p, moved, 0);
-    return Polygon::bounds(p, 0);
-  }
-  return {};
-}
-
-/// The image of the child's bounds, grown by what rounding the transformed ray to float may displace.
-Box instance_bounds(const Geometry& g) {
-  Box b = transform_bounds(g.transform, bounds(*std::get<InstanceGeometry>(g.shape).child));
-  if (b.empty()) return b;
-  const Vec3f e = b.extent();
-  const float pad = 0x1p-20f * std::max({e.x, e.y, e.z, max_component(abs(b.lo)), max_component(abs(b.hi))});
-  b.lo -= Vec3f{pad, pad, pad}, b.hi += Vec3f{pad, pad, pad};
-  return b;
-}
-
-Kind kind_of(const Geometry& g) {
-  if (std::holds_alternative<MeshGeometry>(g.shape)) return Kind::triangle;
-  if (std::holds_alternative<SpheresShape>(g.shape)) return Kind::sphere;
-  if (std::holds_alternative<PlaneShape>(g.shape)) return Kind::plane;
-  if (std::holds_alternative<DiskShape>(g.shape)) return Kind::disk;
-  if (std::holds_alternative<BoxShape>(g.shape)) return Kind::box;
-  if (std::holds_alternative<PolygonShape>(g.shape)) return Kind::polygon;
-  if (const auto* exact = std::get_if<ExactShape>(&g.shape)) return kind_of(exact->form);
-  return Kind::instance;
-}
-
-/// An infinite plane, or an instance of something that holds one.
-bool is_unbounded(const Geometry& g) {
-  if (const auto* i = std::get_if<InstanceGeometry>(&g.shape)) return !i->child->unbounded.empty();
-  return std::holds_alternative<PlaneShape>(g.shape);
 }
 
 /// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
@@ -278,15 +230,41 @@ void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& t
   });
 }
 
+/// Builds one combination. Its number takes the place of the item number, as cells do.
+void add_combination(Accel& accel, const Geometry& geometry, std::uint32_t item, const BuildOptions& options,
+                     Column<PrimRef>& refs, ItemOrder& order) {
+  const auto& expression = std::get<CsgGeometry>(geometry.shape).expression;
+  if (!expression) return;
+  CsgItem csg = build_csg(moved(*expression, geometry.transform), options);
+  csg.item = item;
+  const Box box = csg_bounds(csg);
+  if (box.empty()) return;
+  const auto index = static_cast<std::uint32_t>(accel.combinations.size());
+  if (is_usable(box)) {
+    refs.push_back(make_ref(box, index, Kind::csg));
+    accel.bounds.grow(box);
+  } else {
+    std::vector<std::uint32_t>& list = order[static_cast<int>(Kind::csg)];
+    accel.unbounded.push_back(
+        {static_cast<std::uint32_t>(list.size()), 1, Kind::csg, TriangleTest::watertight});
+    list.push_back(index);
+  }
+  accel.combinations.push_back(std::move(csg));
+}
+
 void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& refs, ItemOrder& order,
-                    bool parallel) {
+                    const BuildOptions& options) {
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     const Geometry& geometry = accel.geometries[g];
     const Kind kind = kind_of(geometry);
     const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
     if (!geometry.transform.is_invertible()) continue;
     if (kind == Kind::triangle) {
-      accel.bounds.grow(meshes.add_references(g, refs, parallel));
+      accel.bounds.grow(meshes.add_references(g, refs, options.parallel));
+      continue;
+    }
+    if (kind == Kind::csg) {
+      add_combination(accel, geometry, first, options, refs, order);
       continue;
     }
     if (const auto* exact = std::get_if<ExactShape>(&geometry.shape)) {
@@ -361,7 +339,7 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   Column<PrimRef> refs;
   ItemOrder order;
   const MeshSource meshes(*accel);
-  add_references(*accel, meshes, refs, order, options.parallel);
+  add_references(*accel, meshes, refs, order, options);
   const IsaTable* isa = isa_table(available_isas().back());
   build_tree(*accel, refs, meshes, order, options, *isa);
   PoolFiller(*accel, order).run();

@@ -10,9 +10,9 @@
 
 namespace oktett {
 
-void HitList::push(const Hit& hit) { hits_.push_back(hit); }
+void HitList::push(const Hit& hit, float turn) { hits_.push_back({hit, turn}); }
 std::size_t HitList::size() const { return hits_.size(); }
-Hit& HitList::operator[](std::size_t i) { return hits_[i]; }
+Crossing& HitList::operator[](std::size_t i) { return hits_[i]; }
 void HitList::shrink(std::size_t size) { hits_.resize(size); }
 bool is_triangle(const Accel& accel, std::uint32_t item) {
   return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;
@@ -22,27 +22,32 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
   const auto own_exact = [&](const Hit& h) {
     return h.instance == kNoId && is_exact(static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]));
   };
-  std::vector<Hit> crossings;
+  std::vector<Crossing> crossings;
   std::size_t kept = first;
   for (std::size_t i = first; i < list.size(); ++i) {
-    if (own_exact(list[i]))
+    if (own_exact(list[i].hit))
       crossings.push_back(list[i]);
     else
       list[kept++] = list[i];
   }
   list.shrink(kept);
-  std::sort(crossings.begin(), crossings.end(), [](const Hit& a, const Hit& b) {
-    if (a.item != b.item) return a.item < b.item;
-    return a.t != b.t ? a.t < b.t : a.v < b.v;
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
+    return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
   });
   // Of several ways in the first counts, of several ways out the last.
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const auto same = [&](std::size_t k) {
-      return k < crossings.size() && crossings[k].item == crossings[i].item &&
-             crossings[k].v == crossings[i].v;
+      return k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
+             crossings[k].turn == crossings[i].turn;
     };
-    if (crossings[i].v < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1)) list.push(crossings[i]);
+    if (crossings[i].turn < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1))
+      list.push(crossings[i].hit, crossings[i].turn);
   }
+}
+
+bool is_mirrored(const Accel& accel, std::uint32_t item) {
+  return accel.frames[accel.geometry_of(item)].mirrored;
 }
 
 const IsaTable* isa_table(Isa isa) {
@@ -101,8 +106,10 @@ void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Is
 
 void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {
   hits.clear();
-  HitList list(hits);
+  std::vector<Crossing> crossings;
+  HitList list(crossings);
   isa_table(isa)->all_hits(accel, ray, list);
+  for (const Crossing& c : crossings) hits.push_back(c.hit);
   std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
     if (a.t != b.t) return a.t < b.t;
     // Adding one puts "no instance" first.

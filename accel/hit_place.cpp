@@ -3,31 +3,48 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/csg_solids.h"
+
 namespace oktett {
+
+static const PathStep& step_of(const Accel& accel, std::uint32_t path) {
+  return *(
+      std::upper_bound(accel.path_steps.begin(), accel.path_steps.end(), path,
+                       [](std::uint32_t value, const PathStep& step) { return value < step.first_path; }) -
+      1);
+}
+
+std::uint32_t top_item(const Accel& accel, std::uint32_t path) { return step_of(accel, path).item; }
 
 HitPlace follow_path(const Accel& accel, std::uint32_t path) {
   HitPlace place;
   place.accel = &accel;
   while (path != kNoId) {
-    const auto& by_path = place.accel->instances_by_path;
-    const auto at = std::upper_bound(by_path.begin(), by_path.end(), path,
-                                     [&](std::uint32_t value, std::uint32_t index) {
-                                       return value < place.accel->instances[index].first_path;
-                                     }) -
-                    1;
-    const InstanceItem& instance = place.accel->instances[*at];
-    const Geometry& g = place.accel->geometries[place.accel->geometry_of(instance.item)];
-    place.to_world = place.moved ? place.to_world * g.transform : g.transform;
-    place.moved = true;
+    const PathStep& step = step_of(*place.accel, path);
+    const Geometry& g = place.accel->geometries[place.accel->geometry_of(step.item)];
+    const std::uint32_t inner = path - step.first_path;
+    if (step.is_combination) {
+      // The solids of a combination already stand where its transform puts them.
+      if (place.combined == nullptr) {
+        place.combined = step.child;
+        if (place.moved) place.to_combined = place.to_world.inverse();
+      }
+      place.flipped ^= (inner & 1) != 0;
+      path = inner / 2 - 1;
+    } else {
+      place.to_world = place.moved ? place.to_world * g.transform : g.transform;
+      place.moved = true;
+      path = inner - 1;
+    }
     if (place.user == kNoId) place.user = g.user;
-    path = path - instance.first_path - 1;
-    place.accel = instance.child;
+    place.accel = step.child;
   }
   if (place.moved) place.inverse = place.to_world.inverse();
   return place;
 }
 
-void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s) {
+/// From the space of the structure that holds the item to the world.
+static void move_by_instances(const HitPlace& place, const Ray& ray, float t, Surface& s) {
   const Affine& m = place.to_world;
   const Affine& inverse = place.inverse;
   const Vec3d p = m.point(Vec3d(s.position));
@@ -48,11 +65,21 @@ void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s) {
   s.tangent = Vec3f(m.vector(Vec3d(s.tangent)));
 }
 
-Ray ray_inside(const HitPlace& place, const Ray& ray) {
-  const Affine& inverse = place.inverse;
-  return {Vec3f(inverse.point(Vec3d(ray.origin))), ray.tmin, Vec3f(inverse.vector(Vec3d(ray.direction))),
-          ray.tmax};
+static Ray moved_ray(const Affine& m, const Ray& ray) {
+  return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
 }
+
+void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s) {
+  if (place.moved) move_by_instances(place, ray, t, s);
+  if (place.combined == nullptr) return;
+  // Faces that coincide within this count as one, so rays that leave must clear them all.
+  const double reach = coincidence(t, coincidence_slack(*place.combined, moved_ray(place.to_combined, ray)));
+  for (int k = 0; k < 3; ++k)
+    s.position_error[k] = round_up(s.position_error[k] + reach * std::abs(double(ray.direction[k])));
+  if (place.flipped) s.geometric_normal = -s.geometric_normal, s.shading_normal = -s.shading_normal;
+}
+
+Ray ray_inside(const HitPlace& place, const Ray& ray) { return moved_ray(place.inverse, ray); }
 
 HitNames identify_in(const HitPlace& place, const Hit& hit) {
   const Accel& a = *place.accel;

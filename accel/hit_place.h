@@ -10,7 +10,13 @@ struct HitPlace {
   const Accel* accel = nullptr;
   Affine to_world, inverse;  ///< of that structure's space; the identity unless `moved`
   bool moved = false;
-  std::uint32_t user = kNoId;  ///< of the outermost instance that has one
+  bool flipped = false;             ///< Boolean combinations turn the normal round
+  const Accel* combined = nullptr;  ///< the solids of the outermost combination on the way, if there is one
+  Affine to_combined;               ///< from the world to their space
+  std::uint32_t user = kNoId;       ///< of the outermost instance that has one
+
+  /// True if a surface found in the structure is not yet what the world sees.
+  bool changes() const { return moved || combined != nullptr; }
 };
 
 /// Follows an instance path to the structure that holds the item.
@@ -19,7 +25,7 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path);
 /// The ray as the structure at `place` sees it.
 Ray ray_inside(const HitPlace& place, const Ray& ray);
 
-/// Brings a surface found inside an instance to the world.
+/// Brings a surface found inside instances and combinations to the world.
 void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s);
 
 /// What a hit met, by the names that Surface has for it.

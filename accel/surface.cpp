@@ -118,8 +118,8 @@ static void surface_inside(const HitNames& names, const Accel& a, const Ray& inn
 
 void surface_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
                 Surface& s) {
-  if (!place.moved) return surface_inside(names, *place.accel, ray, hit, uv, s);
-  surface_inside(names, *place.accel, ray_inside(place, ray), hit, uv, s);
+  if (!place.changes()) return surface_inside(names, *place.accel, ray, hit, uv, s);
+  surface_inside(names, *place.accel, place.moved ? ray_inside(place, ray) : ray, hit, uv, s);
   move_surface(place, ray, hit.t, s);
 }
 

@@ -60,7 +60,7 @@ class MeshRun {
         out_.geometric_normal[axis][i] = columns_.geometric_normal[axis][k];
         out_.shading_normal[axis][i] = columns_.shading_normal[axis][k];
       }
-      if (!place.moved) continue;
+      if (!place.changes()) continue;
       Surface s = out_[i];
       move_surface(place, rays_[which_[i]], hits_.t[which_[i]], s);
       out_.set_shape(i, s);
@@ -222,7 +222,7 @@ void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, cons
     out.user[i] = names.user, out.material_slot[i] = names.material_slot;
     if (names.kind == Kind::triangle) {
       run.add(place, names, i);
-    } else if (place.moved || !groups.add(names, i)) {
+    } else if (place.changes() || !groups.add(names, i)) {
       Surface s;
       surface_at(place, names, rays[which[i]], hit, false, s);
       out.set_shape(i, s);

@@ -88,6 +88,11 @@ class Walk {
       return;
     }
     counts_.other += leaf.count;
+    if (leaf.kind == Kind::csg) {
+      for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)
+        tmax_ = std::min(tmax_, hit_.valid() ? double(hit_.t) : tmax_);
+      return;
+    }
     if (is_exact(leaf.kind)) {
       visit_exact(leaf.kind, *accel.exact, [&](auto, const auto& pool) {
         for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)

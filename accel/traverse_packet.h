@@ -134,6 +134,8 @@ OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf
       if (lanes == 0) return;
       instance_packet<Q>(accel.instances[leaf.begin + k], r, lanes);
     }
+  } else if (leaf.kind == Kind::csg) {
+    leaf_csg(accel, leaf, r, lanes);
   } else if (is_exact(leaf.kind)) {
     leaf_exact(accel, leaf, r, lanes);
   } else {

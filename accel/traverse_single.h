@@ -1,6 +1,7 @@
 #pragma once
 /// \file One ray through the tree: the eight boxes of a node at once, nearest child first.
 
+#include "accel/csg_trace.h"
 #include "accel/exact.h"
 #include "accel/leaf.h"
 #include "accel/node_planes.h"
@@ -43,6 +44,8 @@ OKTETT_NOINLINE void table_leaf_single(const Accel& accel, const LeafEntry& leaf
       instance_single<Q>(accel.instances[leaf.begin + k], r, i);
       if (Q == Query::any && r.item[i] != kNoId) return;
     }
+  } else if (leaf.kind == Kind::csg) {
+    leaf_csg(accel, leaf, r, 1u << i);
   } else if (is_exact(leaf.kind)) {
     leaf_exact(accel, leaf, r, 1u << i);
   } else {

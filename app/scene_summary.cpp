@@ -1,13 +1,12 @@
 #include "app/scene_summary.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <variant>
 #include <vector>
 
+#include "core/open_edges.h"
 #include "kernels/exact_bounds.h"
 
 namespace oktett {
@@ -56,6 +55,7 @@ struct ShapeBounds {
     return box;
   }
   Box operator()(const ExactShape& shape) const { return exact_bounds(shape, {}); }
+  Box operator()(const CsgShape& shape) const;
   Box operator()(const InstanceShape& shape) const {
     return shape.prototype < prototypes.size() ? prototypes[shape.prototype] : Box{};
   }
@@ -73,6 +73,13 @@ Box object_bounds(const Object& object, const std::vector<Box>& prototypes) {
     const Vec3d moved = object.transform.point(static_cast<Vec3d>(p));
     grow(box, moved, moved);
   }
+  return box;
+}
+
+/// Operands are bounded one by one: what the combination leaves out of them is not known without building it.
+Box ShapeBounds::operator()(const CsgShape& shape) const {
+  Box box;
+  for (const Object& object : *shape.operands) box.grow(object_bounds(object, prototypes));
   return box;
 }
 
@@ -130,7 +137,7 @@ class Counter {
       summary_.triangles += mesh.triangle_count();
       summary_.vertices += mesh.positions.size();
       summary_.mesh_bytes += mesh.bytes();
-      summary_.open_edges += count_open_edges(mesh);
+      summary_.open_edges += find_open_edges(mesh).count;
     }
     return static_cast<double>(mesh.triangle_count());
   }
@@ -144,31 +151,5 @@ class Counter {
 }  // namespace
 
 SceneSummary summarize(const Scene& scene) { return Counter(scene).summary(); }
-
-std::uint64_t count_open_edges(const TriangleMesh& mesh) {
-  // The lower index first, so that both directions of an edge sort together.
-  struct Edge {
-    std::uint32_t low, high;
-    bool backwards;
-    bool operator<(const Edge& b) const { return low != b.low ? low < b.low : high < b.high; }
-  };
-  const std::size_t count = mesh.triangle_count() * 3;
-  std::vector<Edge> edges;
-  edges.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t a = mesh.indices[i];
-    const std::uint32_t b = mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
-    if (a != b) edges.push_back({std::min(a, b), std::max(a, b), a > b});
-  }
-  tbb::parallel_sort(edges.begin(), edges.end());
-  std::uint64_t open = 0;
-  for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
-    std::int64_t balance = 0;
-    for (end = begin; end < edges.size() && !(edges[begin] < edges[end]); ++end)
-      balance += edges[end].backwards ? -1 : 1;
-    open += balance != 0 ? 1 : 0;
-  }
-  return open;
-}
 
 }  // namespace oktett

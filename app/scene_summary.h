@@ -20,13 +20,9 @@ struct SceneSummary {
   double triangles_shown = 0;    ///< with all instances multiplied out
   std::uint64_t unbounded = 0;   ///< infinite planes
   Box bounds;                    ///< of all that is shown and bounded; empty if nothing is
-  std::uint64_t open_edges = 0;  ///< summed over meshes; see count_open_edges
+  std::uint64_t open_edges = 0;  ///< summed over meshes; see find_open_edges
 };
 
 SceneSummary summarize(const Scene& scene);
-
-/// The edges of `mesh` that keep it from being closed: those whose triangles do not pair up in opposite
-/// directions. Vertices are told apart by index.
-std::uint64_t count_open_edges(const TriangleMesh& mesh);
 
 }  // namespace oktett

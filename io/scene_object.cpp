@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "io/scene_csg.h"
 #include "io/scene_degenerate.h"
 #include "io/scene_material.h"
 #include "io/scene_shape.h"
@@ -36,6 +37,7 @@ class ObjectReader {
 
  private:
   void read_group(const YamlNode& members, const Surroundings& inner);
+  std::optional<Shape> read_csg(const YamlNode& key, const YamlNode& operands, const Surroundings& inner);
   std::optional<Shape> read_instance(const YamlNode& node);
   [[noreturn]] void fail_unknown_prototype(const YamlNode& node, const std::string& name) const;
 
@@ -44,16 +46,18 @@ class ObjectReader {
   const YamlNode* defining_;
   std::string name_;
   int levels_ = 0;
+  int csg_depth_ = 0;
 };
 
 bool is_shape_key(const std::string& key) {
-  if (key == "group" || key == "instance") return true;
+  if (key == "group" || key == "instance" || is_csg_key(key)) return true;
   return std::find(shape_keys().begin(), shape_keys().end(), key) != shape_keys().end();
 }
 
 /// The one entry of an object that says what it is. Throws Error for keys that no object has.
 MapEntry find_shape(const YamlNode& node) {
   std::vector<std::string> known = shape_keys();
+  for (const std::string& key : csg_keys()) known.push_back(key);
   known.insert(known.end(), {"group", "instance"});
   const std::string shape_names = fmt::format("{}", fmt::join(known, ", "));
   known.insert(known.end(), {"material", "transform", "name"});
@@ -101,8 +105,10 @@ void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
     }
   }
   if (is_group) return read_group(*shape_entry.value, inner);
-  std::optional<Shape> shape = is_instance ? read_instance(*shape_entry.value)
-                                           : read_shape(load_, *shape_entry.key, *shape_entry.value);
+  std::optional<Shape> shape = is_csg_key(shape_entry.key->text)
+                                   ? read_csg(*shape_entry.key, *shape_entry.value, inner)
+                               : is_instance ? read_instance(*shape_entry.value)
+                                             : read_shape(load_, *shape_entry.key, *shape_entry.value);
   if (!shape || inner.is_dropped) return;
   object.shape = std::move(*shape);
   object.material = inner.material;
@@ -112,6 +118,38 @@ void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
 
 void ObjectReader::read_group(const YamlNode& members, const Surroundings& inner) {
   for (const YamlNode* member : list_items(members, "group")) read(*member, inner);
+}
+
+std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode& operands,
+                                            const Surroundings& outer) {
+  if (++csg_depth_ > kMaxCsgDepth)
+    throw Error(key.where(), fmt::format("combinations are nested deeper than {} levels", kMaxCsgDepth));
+  const auto nodes = list_items(operands, key.text);
+  if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
+  // Operands stand in the space of the combination, whose transform applies to all.
+  const Surroundings inner{{}, outer.material, outer.is_dropped};
+  std::vector<Object> solids;
+  bool is_nothing = false;
+  for (const YamlNode* node : nodes) {
+    std::vector<Object> members;
+    ObjectReader reader(load_, members, defining_, name_);
+    reader.csg_depth_ = csg_depth_;
+    reader.read(*node, inner);
+    levels_ = std::max(levels_, reader.levels_);
+    for (const Object& member : members) require_solid(load_, member);
+    // What was skipped is nothing, and so is what it is intersected with or taken from.
+    const bool is_needed = key.text == "intersection" || (key.text == "difference" && node == nodes.front());
+    if (members.empty())
+      is_nothing |= is_needed;
+    else
+      solids.push_back(unite(std::move(members), node->where()));
+  }
+  --csg_depth_;
+  if (is_nothing || solids.empty()) {
+    load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
+    return std::nullopt;
+  }
+  return make_csg(load_, key.text, std::move(solids));
 }
 
 std::optional<Shape> ObjectReader::read_instance(const YamlNode& node) {

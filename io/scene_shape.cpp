@@ -22,7 +22,7 @@ MaybeShape unless_degenerate(SceneLoad& load, const YamlNode& place, T shape) {
 }
 
 MaybeShape read_mesh(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "mesh", {"file", "smooth", "test"});
+  const Fields fields(node, "mesh", {"file", "smooth", "test", "solid"});
   const YamlNode& file = fields.require("file");
   MeshShape shape;
   load.values.read(fields["smooth"], shape.smooth);
@@ -31,6 +31,8 @@ MaybeShape read_mesh(SceneLoad& load, const YamlNode& key, const YamlNode& node)
                                                           {"moller_trumbore", TriangleTest::moller_trumbore},
                                                           {"badouel", TriangleTest::badouel},
                                                           {"segura_feito", TriangleTest::segura_feito}});
+  if (const YamlNode* solid = fields["solid"])
+    shape.by_winding = load.values.choice<bool>(*solid, {{"closed", false}, {"winding", true}});
   const std::string path = load.values.existing_file(file);
   if (!is_mesh_file(path)) throw Error(file.where(), "unknown kind of mesh file; expected .obj");
   const MeshLibrary::Entry& entry = load.meshes.load(path, load.scene);

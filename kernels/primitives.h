@@ -42,19 +42,20 @@ enum class Kind : std::uint8_t {
   blobtree,
   implicit,
   triangle,
+  csg,
   instance
 };
 
 inline constexpr int kClosedFormKinds = static_cast<int>(std::tuple_size_v<ClosedFormShapes>);
 inline constexpr int kExactKinds = static_cast<int>(std::variant_size_v<ExactForm>);
 inline constexpr int kKinds = static_cast<int>(Kind::instance) + 1;
-static_assert(kKinds == kClosedFormKinds + kExactKinds + 2);
+static_assert(kKinds == kClosedFormKinds + kExactKinds + 3);
 
 inline constexpr bool is_exact(Kind kind) {
   return kind >= static_cast<Kind>(kClosedFormKinds) && kind < Kind::triangle;
 }
 /// Kinds whose elements cost more to test than a node of the tree.
-inline constexpr bool stands_alone(Kind kind) { return kind == Kind::instance || is_exact(kind); }
+inline constexpr bool stands_alone(Kind kind) { return kind >= Kind::csg || is_exact(kind); }
 /// The kind of an exact form.
 inline Kind kind_of(const ExactForm& form) { return static_cast<Kind>(kClosedFormKinds + form.index()); }
 

@@ -26,15 +26,9 @@ class WorldBuilder {
     std::vector<Geometry> geometries;
     std::uint64_t instances = 0;
     for (const Object& object : objects) {
-      const auto id = static_cast<std::uint32_t>(world_.objects.size());
-      world_.objects.push_back({object.material, {}});
       Geometry geometry;
-      geometry.transform = object.transform;
-      geometry.user = id;
-      if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) continue;
+      if (!make_geometry(object, geometry)) continue;
       const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
-      // An instance without a material of its own shows those of the objects inside.
-      if (instance && object.material == kNoId) geometry.user = kNoId;
       if (instance && object.transform.is_invertible()) ++instances;
       geometries.push_back(std::move(geometry));
     }
@@ -44,6 +38,20 @@ class WorldBuilder {
     world_.primitives += s.items - std::min<std::uint64_t>(s.items, instances);
     world_.bvh_bytes += s.bytes();
     return accel;
+  }
+
+  bool make_geometry(const Object& object, Geometry& geometry) {
+    const auto id = static_cast<std::uint32_t>(world_.objects.size());
+    world_.objects.push_back({object.material, {}});
+    geometry.transform = object.transform;
+    geometry.user = id;
+    if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) return false;
+    // Without a material of its own, an instance shows those of the objects inside; a combination always
+    // does, as its operands have been given its material if they had none.
+    const bool combination = std::holds_alternative<CsgGeometry>(geometry.shape);
+    if (combination || (std::holds_alternative<InstanceGeometry>(geometry.shape) && object.material == kNoId))
+      geometry.user = kNoId;
+    return true;
   }
 
   /// For the shapes that the acceleration structure knows as they are.
@@ -79,6 +87,34 @@ class WorldBuilder {
     geometry.shape = MeshGeometry{mesh.get(), false, TriangleTest::watertight};
     keep(mesh);
     return true;
+  }
+
+  bool convert(const CsgShape& shape, Geometry& geometry) {
+    auto expression = std::make_shared<CsgExpression>(csg_expression(shape));
+    geometry.shape = CsgGeometry{std::move(expression)};
+    return true;
+  }
+
+  /// Operands are numbered as objects of their own, so that each shows its material.
+  CsgExpression csg_expression(const CsgShape& shape) {
+    CsgExpression expression;
+    expression.op = shape.op;
+    for (const Object& object : *shape.operands) {
+      CsgExpression& child = expression.children.emplace_back();
+      if (const auto* csg = std::get_if<CsgShape>(&object.shape)) {
+        child = csg_expression(*csg);
+        move(child, object.transform);
+        continue;
+      }
+      Geometry solid;
+      if (make_geometry(object, solid)) child.solids.push_back(std::move(solid));
+    }
+    return expression;
+  }
+
+  static void move(CsgExpression& expression, const Affine& transform) {
+    for (Geometry& solid : expression.solids) solid.transform = transform * solid.transform;
+    for (CsgExpression& child : expression.children) move(child, transform);
   }
 
   bool convert(const InstanceShape& shape, Geometry& geometry) {

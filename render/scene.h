@@ -71,8 +71,9 @@ using Light = std::variant<PointLight, DirectionalLight>;
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<std::uint32_t>
-      slot_materials;  ///< index into Scene::materials per slot of the mesh; may be empty
-  bool smooth = true;  ///< interpolate the mesh's normals; false = flat shading
+      slot_materials;       ///< index into Scene::materials per slot of the mesh; may be empty
+  bool smooth = true;       ///< interpolate the mesh's normals; false = flat shading
+  bool by_winding = false;  ///< in combinations: inside is where crossings say so, closed or not
   TriangleTest test = TriangleTest::watertight;
 };
 
@@ -81,9 +82,18 @@ struct InstanceShape {
   std::uint32_t prototype = kNoId;  ///< index into Scene::prototypes
 };
 
+struct Object;
+
+/// Operands combined; `subtract` takes the others from the first. An operand's transform leads to the space
+/// of the object that this is the shape of, and each keeps its own material.
+struct CsgShape {
+  CsgOp op = CsgOp::unite;
+  std::shared_ptr<const std::vector<Object>> operands;
+};
+
 /// Any shape an object can have. The plain shapes are listed in kernels/shapes/shape_data.h.
 using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape,
-                           PolygonShape, TriangleShape, ExactShape, InstanceShape>;
+                           PolygonShape, TriangleShape, ExactShape, CsgShape, InstanceShape>;
 
 /// A thing in the scene: groups are flattened into objects while the file is read, their transforms
 /// multiplied out.

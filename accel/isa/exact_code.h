@@ -94,7 +94,8 @@ void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray&
       const float t = static_cast<float>(c.t[k].part[0].v);
       if (ray.tmin < t && t <= ray.tmax && t <= std::numeric_limits<float>::max())
         hits.push({t, static_cast<float>(c.part[k].part[0].v), static_cast<float>(c.turn[k].part[0].v), item,
-                   kNoId});
+                   kNoId},
+                  static_cast<float>(c.turn[k].part[0].v));
     }
     if (!(c.up_to.part[0].v < range.b.part[0].v)) return;
     cut_range(range, c.up_to);

@@ -59,4 +59,12 @@ struct PolygonShape {
   std::vector<Vec3d> vertices;
 };
 
+/// How the children of a Boolean expression are combined. `subtract` takes the others from the first.
+enum class CsgOp : std::uint8_t {
+  operand,  ///< not combined: a solid, or the union of several
+  unite,
+  intersect,
+  subtract,
+};
+
 }  // namespace oktett

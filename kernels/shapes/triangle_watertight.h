@@ -69,13 +69,16 @@ OKTETT_INLINE EdgeFunction<D> edge_function(const D& px, const D& py, const D& q
 }
 
 /// The decision, bit-identical in every width and instruction set. `tri` is permuted like the ray. Lanes must
-/// hold finite numbers. u and v are the weights of b and c.
+/// hold finite numbers. u and v are the weights of b and c. `clockwise`, of lanes that are hit: the displaced
+/// corners run clockwise around the sheared axis. A line crosses a closed displaced mesh as often one way as
+/// the other.
 template <int W, class A>
 OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, W, A>>& ray,
                                                   const TriangleLanes<Simd<float, W, A>>& tri,
                                                   const Simd<float, W, A>& tmin,
                                                   const Simd<float, W, A>& tmax,
-                                                  HitLanes<Simd<float, W, A>>& hit) {
+                                                  HitLanes<Simd<float, W, A>>& hit,
+                                                  Mask<float, W, A>& clockwise) {
   using F = Simd<float, W, A>;
   using D = Simd<double, W, A>;
   const Vec3<D> a = sub_lanes(to_double(tri.a), ray.o);
@@ -89,6 +92,7 @@ OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, 
   const EdgeFunction<D> v = edge_function(ax, ay, cx, cy);
   const EdgeFunction<D> w = edge_function(bx, by, ax, ay);
   const auto inside = (u.positive & v.positive & w.positive) | (u.negative & v.negative & w.negative);
+  clockwise = mask_cast<float>(u.positive);
   if (none(inside)) return mask_cast<float>(inside);
 
   // One division serves all three; each result is within two roundings of 2^-53 of its quotient.
@@ -99,6 +103,16 @@ OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, 
   hit.u = to_float(v.value * inv_det) + F(0.0f);
   hit.v = to_float(w.value * inv_det) + F(0.0f);
   return mask_cast<float>(inside) & (tmin < hit.t) & (hit.t <= tmax) & (hit.t <= F(3.402823466e38f));
+}
+
+template <int W, class A>
+OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, W, A>>& ray,
+                                                  const TriangleLanes<Simd<float, W, A>>& tri,
+                                                  const Simd<float, W, A>& tmin,
+                                                  const Simd<float, W, A>& tmax,
+                                                  HitLanes<Simd<float, W, A>>& hit) {
+  Mask<float, W, A> clockwise;
+  return decide_watertight(ray, tri, tmin, tmax, hit, clockwise);
 }
 
 /// A triangle made ready for the filter: edges from a, their cross product and their greatest size.

@@ -1,0 +1,82 @@
+#pragma once
+/// \file Boolean combinations of solids (slides: intervals along the ray, combined up the tree). The solids
+/// of one combination stand in a structure of their own; a ray's crossings with all of them are gathered
+/// there, sorted, and swept once.
+///
+/// Departs from the slides in that no intervals are built: each crossing turns the state of one operand, and
+/// only the nodes above it whose state turns with it are looked at, so that k crossings among any number of
+/// operands cost about k log k.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "accel/accel.h"
+#include "accel/hit_list.h"
+#include "core/box.h"
+
+namespace oktett {
+
+/// A node of a Boolean expression in its flat form. Leaves stand for operands.
+struct CsgNode {
+  CsgOp op;
+  bool is_first = false;         ///< among its siblings: what the others are subtracted from
+  std::uint32_t parent = kNoId;  ///< kNoId: the root
+  std::uint32_t children = 0;
+};
+
+/// A combination in the tree.
+struct CsgItem {
+  std::shared_ptr<const Accel> solids;
+  std::vector<std::uint32_t> operand_of;  ///< node of each geometry of `solids`
+  std::vector<std::uint8_t> inverted;     ///< per geometry: a mesh wound inside out
+  std::vector<CsgNode> nodes;             ///< the root first
+  std::vector<std::uint32_t> unbounded;   ///< geometries of `solids` that no crossing need tell of
+  std::uint32_t item = 0;
+  /// A hit with path p inside `solids` has path first_path + 2 (p + 1) + (1 if its normal is turned round).
+  std::uint32_t first_path = 0;
+};
+
+inline std::uint32_t csg_path(const CsgItem& csg, std::uint32_t inner, bool flipped) {
+  return csg.first_path + 2 * (inner + 1) + static_cast<std::uint32_t>(flipped);
+}
+
+/// The expression with all its solids moved.
+CsgExpression moved(CsgExpression e, const Affine& m);
+
+/// The combination's nodes, and the structure over its solids.
+CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options);
+
+/// A box that holds the solid: intersections and differences are smaller than their operands. Empty if there
+/// is nothing, infinite if it is unbounded.
+Box csg_bounds(const CsgItem& csg);
+
+/// Distances by which crossings count as coincident: what rounding t to float, and the surfaces themselves,
+/// leave open.
+inline float coincidence(float t, float slack) { return t * 0x1p-21f + slack; }
+
+/// The slack for a ray: a few roundings of the coordinates in `accel`, in units of t.
+float coincidence_slack(const Accel& accel, const Ray& ray);
+
+/// One ray's way through a combination. Crossings that coincide are applied together, so that spans without
+/// length vanish; of those that turn the whole, the one of the same turn with the least item counts.
+class CsgSweep {
+ public:
+  CsgSweep();
+  ~CsgSweep();
+  CsgSweep(const CsgSweep&) = delete;
+  CsgSweep& operator=(const CsgSweep&) = delete;
+
+  /// To be filled with the crossings of the ray, from its beginning to infinity, with csg.solids, in any
+  /// order.
+  HitList& solids() { return list_; }
+  /// The first crossing of the combination; its path in `csg` says which surface is seen, and from what side.
+  bool first(const CsgItem& csg, const Ray& ray, Crossing& found);
+  /// Appends all crossings within the ray's range.
+  void all(const CsgItem& csg, const Ray& ray, HitList& out);
+
+ private:
+  HitList list_;
+};
+
+}  // namespace oktett
