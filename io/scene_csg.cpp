@@ -33,6 +33,22 @@ struct WhyFlat {
   std::string operator()(const DiskShape&) const { return flat("a disk"); }
   std::string operator()(const PolygonShape&) const { return flat("a polygon"); }
   std::string operator()(const TriangleShape&) const { return flat("a triangle"); }
+  std::string operator()(const ExactShape& shape) const {
+    const bool open = std::visit(
+        [](const auto& form) {
+          // Without a box a quadric or a blob has no faces that could be missing.
+          if constexpr (requires { form.clipped; })
+            return form.open && form.clipped;
+          else if constexpr (requires { form.bounded; })
+            return form.open && form.bounded;
+          else if constexpr (requires { form.open; })
+            return form.open;
+          else
+            return false;
+        },
+        shape.form);
+    return open ? flat("an open surface") : "";
+  }
   std::string operator()(const InstanceShape& shape) const {
     if (shape.prototype < load.scene.prototypes.size())
       for (const Object& object : load.scene.prototypes[shape.prototype].objects) {
@@ -70,8 +86,7 @@ void require_solid(const SceneLoad& load, const Object& object) {
   if (!why.empty()) throw Error(object.where, why);
 }
 
-CsgShape make_csg(const SceneLoad& load, const std::string& key, std::vector<Object> operands) {
-  for (const Object& object : operands) require_solid(load, object);
+CsgShape make_csg(const std::string& key, std::vector<Object> operands) {
   CsgShape shape;
   for (const CsgKey& k : kKeys)
     if (key == k.name) shape.op = k.op;

@@ -15,14 +15,13 @@ inline constexpr int kMaxCsgDepth = 64;
 bool is_csg_key(const std::string& key);
 std::vector<std::string> csg_keys();
 
-/// What `key` makes of its operands. Throws Error at `place` if one of them has no inside: if it is flat, or
-/// a mesh that is not closed.
-CsgShape make_csg(const SceneLoad& load, const std::string& key, std::vector<Object> operands);
+/// What `key` makes of its operands.
+CsgShape make_csg(const std::string& key, std::vector<Object> operands);
 
 /// Several objects as one operand: their union.
 Object unite(std::vector<Object> members, const Location& where);
 
-/// Throws Error at the object's place if it has no inside.
+/// Throws Error at the object's place if it has no inside: if it is flat, open, or a mesh that is not closed.
 void require_solid(const SceneLoad& load, const Object& object);
 
 }  // namespace oktett

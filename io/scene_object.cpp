@@ -146,10 +146,11 @@ std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode&
   }
   --csg_depth_;
   if (is_nothing || solids.empty()) {
-    load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
+    if (!outer.is_dropped)
+      load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
     return std::nullopt;
   }
-  return make_csg(load_, key.text, std::move(solids));
+  return make_csg(key.text, std::move(solids));
 }
 
 std::optional<Shape> ObjectReader::read_instance(const YamlNode& node) {

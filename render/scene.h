@@ -71,10 +71,10 @@ using Light = std::variant<PointLight, DirectionalLight>;
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<std::uint32_t>
-      slot_materials;       ///< index into Scene::materials per slot of the mesh; may be empty
-  bool smooth = true;       ///< interpolate the mesh's normals; false = flat shading
-  bool by_winding = false;  ///< in combinations: inside is where crossings say so, closed or not
+      slot_materials;  ///< index into Scene::materials per slot of the mesh; may be empty
+  bool smooth = true;  ///< interpolate the mesh's normals; false = flat shading
   TriangleTest test = TriangleTest::watertight;
+  bool by_winding = false;  ///< in combinations: inside is where crossings say so, closed or not
 };
 
 /// Everything that prototype `prototype` holds, moved by the object's transform.

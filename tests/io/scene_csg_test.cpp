@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include "tests/io/scene_test_support.h"
+
+namespace oktett {
+namespace {
+
+using test::expect_starts;
+using test::SceneFiles;
+
+const CsgShape& csg(const Scene& scene, std::size_t i = 0) { return test::shape_of<CsgShape>(scene, i); }
+const Object& operand(const CsgShape& shape, std::size_t i) { return shape.operands->at(i); }
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+/// The same without its last triangle.
+constexpr const char* kOpened = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
+
+TEST(SceneCsg, ReadsEachOperationAtAnyDepth) {
+  const Scene scene = SceneFiles().load_v1(
+      "objects:\n"
+      "  - difference:\n"
+      "      - intersection: [{box: }, {sphere: }]\n"
+      "      - union: [{cylinder: }, {torus: }, {infinite_cylinder: }]\n"
+      "      - plane:\n");
+  EXPECT_TRUE(scene.warnings.empty());
+  ASSERT_EQ(scene.objects.size(), 1u);
+  const CsgShape& top = csg(scene);
+  EXPECT_EQ(top.op, CsgOp::subtract);
+  ASSERT_EQ(top.operands->size(), 3u);
+  EXPECT_EQ(std::get<CsgShape>(operand(top, 0).shape).op, CsgOp::intersect);
+  EXPECT_EQ(std::get<CsgShape>(operand(top, 1).shape).op, CsgOp::unite);
+  EXPECT_EQ(std::get<CsgShape>(operand(top, 1).shape).operands->size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<PlaneShape>(operand(top, 2).shape));
+}
+
+/// An operand without a material shows that of the combination.
+TEST(SceneCsg, OperandsKeepTheirMaterials) {
+  const Scene scene = SceneFiles().load_v1(
+      "materials: {red: {color: [1, 0, 0]}, blue: {color: [0, 0, 1]}}\n"
+      "objects:\n"
+      "  - union: [{sphere: , material: red}, {union: [{box: }, {box: , material: red}]}]\n"
+      "    material: blue\n");
+  const CsgShape& top = csg(scene);
+  EXPECT_EQ(operand(top, 0).material, 0u);
+  const CsgShape& inner = std::get<CsgShape>(operand(top, 1).shape);
+  EXPECT_EQ(operand(inner, 0).material, 1u);
+  EXPECT_EQ(operand(inner, 1).material, 0u);
+}
+
+/// The combination's own transform applies to all operands, a group's to its members.
+TEST(SceneCsg, TransformsAreNested) {
+  const Scene scene = SceneFiles().load_v1(
+      "objects:\n"
+      "  - difference:\n"
+      "      - group: [{sphere: , transform: {translate: [0, 1, 0]}}, {box: }]\n"
+      "        transform: {translate: [1, 0, 0]}\n"
+      "      - {sphere: , transform: {scale: 2}}\n"
+      "    transform: {translate: [0, 0, 5]}\n");
+  const CsgShape& top = csg(scene);
+  EXPECT_EQ(scene.objects[0].transform.point({0, 0, 0}), (Vec3d{0, 0, 5}));
+  const CsgShape& group = std::get<CsgShape>(operand(top, 0).shape);
+  EXPECT_EQ(group.op, CsgOp::unite);
+  const Affine whole = operand(top, 0).transform * operand(group, 0).transform;
+  EXPECT_EQ(whole.point({0, 0, 0}), (Vec3d{1, 1, 0}));
+  EXPECT_EQ(operand(top, 1).transform.point({1, 0, 0}), (Vec3d{2, 0, 0}));
+}
+
+TEST(SceneCsg, WhatHasNoInsideIsRefused) {
+  const SceneFiles files;
+  const auto error = [&](const std::string& operand) {
+    return files.error_v1("define: {flat: {disk: }}\nobjects:\n  - union:\n      - sphere:\n      - " +
+                          operand + "\n");
+  };
+  for (const char* flat : {"disk:", "triangle:", "polygon: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}",
+                           "cylinder: {open: true}", "paraboloid: {clip: , open: true}",
+                           "polynomial: {equation: x^4 + y^4 = z, bounds: , open: true}"})
+    EXPECT_NE(error(flat).find("has no inside; only solids can be combined"), std::string::npos)
+        << flat << ": " << error(flat);
+  expect_starts(error("disk:"), "scene.yaml:6:9: a disk has no inside");
+  expect_starts(error("instance: flat"), "scene.yaml:6:9: in prototype 'flat': a disk has no inside");
+  expect_starts(error("group: [{sphere: }, {disk: }]"), "scene.yaml:6:29: a disk has no inside");
+  EXPECT_EQ(error("paraboloid: {open: true}"), "no error");
+}
+
+TEST(SceneCsg, MeshesAreClosedOrTakenByWinding) {
+  const SceneFiles files;
+  files.dir.write("closed.obj", kTetrahedron);
+  files.dir.write("open.obj", kOpened);
+  const std::string before = "objects:\n  - difference:\n      - box:\n      - mesh: ";
+  EXPECT_EQ(files.error_v1(before + "{file: closed.obj}\n"), "no error");
+  expect_starts(files.error_v1(before + "{file: open.obj}\n"),
+                "scene.yaml:5:9: the mesh is not closed: 3 open edges, the first from (0, 0, 0) to (0, 1, 0)");
+  EXPECT_EQ(files.error_v1(before + "{file: open.obj, solid: winding}\n"), "no error");
+  const Scene scene = files.load_v1(before + "{file: open.obj, solid: winding}\n");
+  EXPECT_TRUE(std::get<MeshShape>(operand(csg(scene), 1).shape).by_winding);
+  expect_starts(files.error_v1(before + "{file: open.obj, solid: maybe}\n"), "scene.yaml:5:39: ");
+  // Elsewhere meshes may be open.
+  EXPECT_EQ(files.error_v1("objects:\n  - mesh: {file: open.obj}\n"), "no error");
+}
+
+/// Files often repeat the vertices where normals or texture coordinates differ.
+TEST(SceneCsg, VerticesAtOnePlaceCloseAMesh) {
+  const SceneFiles files;
+  files.dir.write("split.obj",
+                  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv -0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                  "f 1 3 2\nf 5 6 8\nf 2 3 4\nf 1 8 7\n");
+  EXPECT_EQ(files.error_v1("objects:\n  - union: [{mesh: {file: split.obj}}]\n"), "no error");
+}
+
+/// A skipped operand is nothing: what it is taken from stays, what is intersected with it goes.
+TEST(SceneCsg, SkippedOperandsAreNothing) {
+  const auto load = [](const std::string& shape) {
+    return SceneFiles().load_v1("objects:\n  - " + shape + "\n  - sphere:\n");
+  };
+  const std::string nothing = "{sphere: {radius: 0}}";
+  EXPECT_EQ(load("difference: [{box: }, " + nothing + "]").objects.size(), 2u);
+  EXPECT_EQ(load("union: [{box: }, " + nothing + "]").objects.size(), 2u);
+  EXPECT_EQ(load("difference: [" + nothing + ", {box: }]").objects.size(), 1u);
+  EXPECT_EQ(load("intersection: [{box: }, " + nothing + "]").objects.size(), 1u);
+  EXPECT_EQ(load("union: [" + nothing + "]").warnings.size(), 2u);
+  const Scene flattened = load("{union: [{box: }], transform: {scale: [1, 0, 1]}}");
+  EXPECT_EQ(flattened.objects.size(), 1u);
+  EXPECT_EQ(flattened.warnings.size(), 1u);
+}
+
+TEST(SceneCsg, BadCombinationsAreExplained) {
+  const SceneFiles files;
+  expect_starts(files.error_v1("objects:\n  - union: []\n"), "scene.yaml:3:5: union needs at least one");
+  expect_starts(files.error_v1("objects:\n  - unoin: []\n"), "scene.yaml:3:5: unknown key");
+  std::string deep = "sphere: ";
+  for (int i = 0; i < 65; ++i) deep = "union: [{" + deep + "}]";
+  EXPECT_NE(files.error_v1("objects: [{" + deep + "}]\n").find("nested deeper than 64"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace oktett
