@@ -10,6 +10,7 @@
 #include "accel/accel.h"
 #include "accel/dispatch.h"
 #include "accel/trace_mode.h"
+#include "app/oracle_exact.h"
 #include "app/oracle_mesh.h"
 #include "app/verify_cases.h"
 #include "app/verify_kernels.h"
@@ -19,7 +20,6 @@ namespace oktett {
 
 namespace {
 
-using Vec3l = Vec3<long double>;
 using Inside = std::function<bool(const Vec3l&)>;
 
 constexpr std::size_t kRaysPerTree = 256;
@@ -71,7 +71,8 @@ class TreeMaker {
     const int parts = std::min(operands, 2 + static_cast<int>(random_.unit() * 3));
     std::vector<Inside> inside;
     for (int i = 0; i < parts; ++i) {
-      const int share = i + 1 == parts ? operands : 1 + static_cast<int>(random_.unit() * (operands - (parts - 1 - i)));
+      const int share =
+          i + 1 == parts ? operands : 1 + static_cast<int>(random_.unit() * (operands - (parts - 1 - i)));
       operands -= share;
       inside.push_back(make(e.children.emplace_back(), share, depth + 1));
     }
@@ -114,7 +115,7 @@ class TreeMaker {
         return std::abs(d.x) < half.x && std::abs(d.y) < half.y && std::abs(d.z) < half.z;
       };
     }
-    if (kind < 0.6) {
+    if (kind < 0.55) {
       const Affine m = Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
       const TorusShape t{r, 0.5 * r};
       add(e, ExactShape{t}, m);
@@ -124,6 +125,7 @@ class TreeMaker {
         return d * d + q.z * q.z < static_cast<long double>(t.minor) * t.minor;
       };
     }
+    if (kind < 0.6) return exact(e, c);
     if (kind < 0.7) {
       const Vec3d n = coarse_ ? Vec3d{0, random_.sign() < 0 ? -1.0 : 1.0, 0} : random_.vector();
       const double offset = coordinate();
@@ -146,6 +148,17 @@ class TreeMaker {
       };
     }
     return inside_convex(mesh, m);
+  }
+
+  /// Any of the surfaces that have an inside, some of them without bounds.
+  Inside exact(CsgExpression& e, const Vec3d& c) {
+    std::vector<ExactOracle> all = draw_exact_oracles(random_);
+    ExactOracle oracle;
+    do oracle = all[static_cast<std::size_t>(random_.unit() * static_cast<double>(all.size()))];
+    while (oracle.where);
+    const Affine m = Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
+    add(e, oracle.shape, m);
+    return [inverse = m.inverse(), f = oracle.f](const Vec3l& p) { return f(mapped(inverse, p)) < 0; };
   }
 
   CaseRandom& random_;
@@ -171,7 +184,9 @@ class Checker {
     const Vec3d eye = normalize(random_.vector()) * 4.0;
     while (rays.size() < kRaysPerTree) {
       const Vec3d at = random_.vector() * 1.5;
-      Vec3d from = camera ? eye : random_.unit() < 0.2 ? random_.vector() * 1.2 : normalize(random_.vector()) * 4.0;
+      Vec3d from = camera                 ? eye
+                   : random_.unit() < 0.2 ? random_.vector() * 1.2
+                                          : normalize(random_.vector()) * 4.0;
       Vec3d d = at - from;
       if (!camera && random_.unit() < 0.15) {
         const int axis = static_cast<int>(random_.unit() * 3);
@@ -230,8 +245,8 @@ class Checker {
       // The beginning itself may lie on a boundary.
       if (at(slack) != at(0)) continue;
       fail(tally_.wrong_spans, ray,
-           fmt::format("at {} the oracle is {}, {} crossings", static_cast<double>(t), at(t) ? "inside" : "outside",
-                       list_.size()));
+           fmt::format("at {} the oracle is {}, {} crossings", static_cast<double>(t),
+                       at(t) ? "inside" : "outside", list_.size()));
       break;
     }
     if (first.valid()) check_normal(ray, first);

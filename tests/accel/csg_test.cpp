@@ -2,9 +2,72 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/oracle_mesh.h"
 #include "app/verify_csg.h"
 
 namespace oktett {
+namespace {
+
+const float kInfinity = std::numeric_limits<float>::infinity();
+
+Geometry solid(decltype(Geometry::shape) shape, std::uint32_t user, const Affine& to_world = {}) {
+  return {std::move(shape), to_world, user};
+}
+Geometry ball(const Vec3d& center, double radius, std::uint32_t user) {
+  return solid(SpheresShape{{{center, radius}}}, user);
+}
+Geometry cube(const Vec3d& min, const Vec3d& max, std::uint32_t user) {
+  return solid(BoxShape{min, max}, user);
+}
+
+CsgExpression combine(CsgOp op, std::vector<Geometry> solids) {
+  CsgExpression e;
+  e.op = op;
+  for (Geometry& g : solids) e.children.push_back({CsgOp::operand, {std::move(g)}, {}});
+  return e;
+}
+Geometry whole(CsgExpression e, const Affine& to_world = {}) {
+  return {CsgGeometry{std::make_shared<const CsgExpression>(std::move(e))}, to_world, kNoId};
+}
+std::shared_ptr<const Accel> built(Geometry g) { return build_accel({std::move(g)}); }
+
+Ray ray_along_x(float y = 0, float z = 0, float from = -8) { return {{from, y, z}, 0, {1, 0, 0}, kInfinity}; }
+
+/// Distances of all crossings; on every instruction set the first of them is closest_hit.
+std::vector<float> crossings(const Accel& accel, const Ray& ray) {
+  std::vector<float> t;
+  for (const Isa isa : available_isas()) {
+    std::vector<Hit> list;
+    all_hits(accel, ray, list, isa);
+    t.clear();
+    for (const Hit& hit : list) t.push_back(hit.t);
+    RayBatch rays;
+    rays.push_back(ray);
+    HitBatch hits;
+    hits.resize_uninitialized(1);
+    closest_hit(accel, rays.span(), hits.span(), isa);
+    std::uint8_t occluded;
+    any_hit(accel, rays.span(), &occluded, isa);
+    EXPECT_EQ(hits[0].valid(), !list.empty());
+    EXPECT_EQ(occluded != 0, !list.empty());
+    if (!list.empty()) EXPECT_TRUE(hits[0] == list[0]);
+  }
+  return t;
+}
+
+std::vector<Surface> surfaces_along(const Accel& accel, const Ray& ray) {
+  std::vector<Hit> list;
+  all_hits(accel, ray, list, available_isas().front());
+  std::vector<Surface> all;
+  for (const Hit& hit : list) all.push_back(surface(accel, ray, hit));
+  return all;
+}
+
+using Distances = std::vector<float>;
 
 /// Random trees of random solids against sampling: no span on the wrong side, normals outwards, the same bits
 /// everywhere.
@@ -15,4 +78,279 @@ TEST(Csg, AgreesWithSampling) {
   EXPECT_GT(t.crossings, t.rays / 4);
 }
 
+TEST(Csg, TwoBoxesInEachCombination) {
+  const Geometry a = cube({0, -1, -1}, {2, 1, 1}, 0), b = cube({1, -1, -1}, {3, 1, 1}, 1);
+  const Ray ray = ray_along_x(0.25f, 0.125f);
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::unite, {a, b}))), ray), (Distances{8, 11}));
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::intersect, {a, b}))), ray), (Distances{9, 10}));
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {a, b}))), ray), (Distances{8, 9}));
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {b, a}))), ray), (Distances{10, 11}));
+}
+
+/// Faces that coincide leave nothing between them: neither skin where equals are subtracted, nor a seam where
+/// neighbours are united.
+TEST(Csg, CoincidentFacesLeaveNoSlivers) {
+  const Geometry a = cube({0, -1, -1}, {1, 1, 1}, 0), b = cube({1, -1, -1}, {2, 1, 1}, 1),
+                 tall = cube({0, -2, -2}, {1, 2, 2}, 2);
+  const Ray ray = ray_along_x(0.25f, 0.125f);
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::unite, {a, b}))), ray), (Distances{8, 10}));
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::intersect, {a, b}))), ray), Distances{});
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {a, a}))), ray), Distances{});
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {a, tall}))), ray), Distances{});
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::intersect, {a, a, a}))), ray), (Distances{8, 9}));
+  // Faces that meet only up to rounding.
+  for (const double gap : {1e-7, -1e-7}) {
+    const Geometry near = cube({1 + gap, -1, -1}, {2, 1, 1}, 1);
+    EXPECT_EQ(crossings(*built(whole(combine(CsgOp::unite, {a, near}))), ray), (Distances{8, 10})) << gap;
+    EXPECT_EQ(crossings(*built(whole(combine(CsgOp::intersect, {a, near}))), ray), Distances{}) << gap;
+  }
+  // A wall that is thin, but no accident, stays.
+  const Geometry most = cube({0, -2, -2}, {0.9995, 2, 2}, 1);
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {a, most}))), ray).size(), 2u);
+}
+
+/// What is subtracted shows its own surface, turned round.
+TEST(Csg, SubtractedSurfacesAreTurnedRoundAndKeepTheirUser) {
+  const auto accel =
+      built(whole(combine(CsgOp::subtract, {cube({-1, -1, -1}, {1, 1, 1}, 7), ball({0, 0, 0}, 0.5, 9)})));
+  const auto seen = surfaces_along(*accel, ray_along_x());
+  ASSERT_EQ(seen.size(), 4u);
+  const std::uint32_t users[] = {7, 9, 9, 7};
+  const float x[] = {-1, -0.5f, 0.5f, 1}, normal[] = {-1, 1, -1, 1};
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(seen[i].user, users[i]) << i;
+    EXPECT_EQ(seen[i].position.x, x[i]) << i;
+    EXPECT_EQ(seen[i].geometric_normal.x, normal[i]) << i;
+    EXPECT_EQ(seen[i].shading_normal.x, normal[i]) << i;
+  }
+}
+
+/// A double negation turns twice.
+TEST(Csg, WhatIsTakenFromWhatIsTakenComesBack) {
+  CsgExpression inner = combine(CsgOp::subtract, {ball({0, 0, 0}, 1, 1), ball({0, 0, 0}, 0.5, 2)});
+  CsgExpression outer = combine(CsgOp::subtract, {ball({0, 0, 0}, 2, 0)});
+  outer.children.push_back(std::move(inner));
+  const auto seen = surfaces_along(*built(whole(std::move(outer))), ray_along_x());
+  ASSERT_EQ(seen.size(), 6u);
+  const float normal[] = {-1, 1, -1, 1, -1, 1};
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(seen[i].geometric_normal.x, normal[i], 1e-6f) << i;
+}
+
+/// Surfaces found in blocks are those found one by one.
+TEST(Csg, BlocksOfSurfacesHaveTheSameBits) {
+  Geometry turned = whole(combine(CsgOp::subtract, {cube({-1, -1, -1}, {1, 1, 1}, 7), ball({0, 0, 1}, 0.5, 9),
+                                                    solid(ExactShape{TorusShape{0.8, 0.2}}, 3)}),
+                          Affine::rotation({10, 20, 30}));
+  Geometry inside;
+  inside.shape = InstanceGeometry{built(turned)};
+  inside.transform = Affine::translation({3, 0, 0}) * Affine::scaling({1, -0.5, 2});
+  const OracleMesh sphere = make_icosphere(2);
+  Geometry cut = whole(combine(
+      CsgOp::subtract, {cube({-1, 2, -1}, {1, 4, 1}, 4),
+                        solid(MeshGeometry{&sphere.mesh, true}, 5, Affine::translation({0, 3.5, 0.8}))}));
+  const auto accel = build_accel({turned, inside, cut, ball({0, -3, 0}, 1, 8)});
+  RayBatch rays;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) rays.push_back({{1, 0, 9}, 0, {-0.4f + 0.03f * x, -0.6f + 0.03f * y, -1}});
+  HitBatch hits;
+  hits.resize_uninitialized(rays.size());
+  std::size_t flipped = 0, found = 0;
+  for (const Isa isa : available_isas()) {
+    closest_hit(*accel, rays.span(), hits.span(), isa);
+    std::vector<std::uint32_t> which;
+    for (std::uint32_t i = 0; i < rays.size(); ++i)
+      if (hits[i].valid()) which.push_back(i);
+    SurfaceBlock block;
+    for (std::size_t at = 0; at < which.size(); at += SurfaceBlock::kMost) {
+      const std::size_t count = std::min(which.size() - at, SurfaceBlock::kMost);
+      surfaces(*accel, rays.span(), hits.span(), &which[at], count, isa, block);
+      for (std::size_t k = 0; k < count; ++k, ++found) {
+        const std::uint32_t i = which[at + k];
+        const Surface one = surface(*accel, rays[i], hits[i]), many = block[k];
+        EXPECT_EQ(one.position, many.position);
+        EXPECT_EQ(one.position_error, many.position_error);
+        EXPECT_EQ(one.geometric_normal, many.geometric_normal);
+        EXPECT_EQ(one.shading_normal, many.shading_normal);
+        EXPECT_EQ(one.user, many.user);
+        // A closed solid shows its outside.
+        EXPECT_LE(dot(one.geometric_normal, rays[i].direction), 1e-3f);
+        flipped += one.user == 9 || one.user == 5 || one.user == 3;
+      }
+    }
+  }
+  EXPECT_GT(found, 400u);
+  EXPECT_GT(flipped, 40u);
+}
+
+/// Shadow rays stop at the first true transition: surfaces that the combination leaves out cast no shadow,
+/// nor does what lies beyond the light.
+TEST(Csg, ShadowsAreOfTheCombinationOnly) {
+  const auto accel = built(whole(combine(CsgOp::intersect, {ball({-1, 0, 0}, 2, 0), ball({1, 0, 0}, 2, 1)})));
+  const auto occluded = [&](Ray ray) {
+    RayBatch rays;
+    rays.push_back(ray);
+    std::uint8_t answer;
+    any_hit(*accel, rays.span(), &answer, available_isas().front());
+    return answer != 0;
+  };
+  // Through the left ball alone.
+  EXPECT_FALSE(occluded({{-2.5f, 8, 0}, 0, {0, -1, 0}, kInfinity}));
+  EXPECT_TRUE(occluded({{0, 8, 0}, 0, {0, -1, 0}, kInfinity}));
+  // The lens begins at x = -1, t = 7.
+  EXPECT_FALSE(occluded({{-8, 0, 0}, 0, {1, 0, 0}, 6.5f}));
+  EXPECT_TRUE(occluded({{-8, 0, 0}, 0, {1, 0, 0}, 7.5f}));
+  EXPECT_FALSE(occluded({{-8, 0, 0}, 9.5f, {1, 0, 0}, kInfinity}));
+}
+
+/// A ray may begin inside of any operand.
+TEST(Csg, RaysBeginAnywhere) {
+  const auto accel =
+      built(whole(combine(CsgOp::subtract, {cube({0, -1, -1}, {4, 1, 1}, 0), cube({1, -2, -2}, {2, 2, 2}, 1),
+                                            solid(PlaneShape{{-1, 0, 0}, -3}, 2)})));
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, -1)), (Distances{1, 2, 3, 4}));
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, 0.5f)), (Distances{0.5f, 1.5f, 2.5f}));
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, 1.5f)), (Distances{0.5f, 1.5f}));
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, 2.5f)), (Distances{0.5f}));
+  EXPECT_EQ(crossings(*accel, ray_along_x(0, 0, 3.5f)), Distances{});
+  // Never a crossing with the plane, yet on either side of it.
+  EXPECT_EQ(crossings(*accel, {{3.5f, -8, 0}, 0, {0, 1, 0}, kInfinity}), Distances{});
+  EXPECT_EQ(crossings(*accel, {{2.5f, -8, 0}, 0, {0, 1, 0}, kInfinity}), (Distances{7, 9}));
+}
+
+/// Rays along faces and edges of a mesh, where neighbours share the line, never leave it inside.
+TEST(Csg, MeshesAreEnteredAsOftenAsLeft) {
+  const OracleMesh sphere = make_icosphere(3), block = make_cube();
+  for (const OracleMesh* mesh : {&sphere, &block}) {
+    const auto accel = built(whole(combine(
+        CsgOp::subtract, {cube({-4, -4, -4}, {4, 4, 4}, 0), solid(MeshGeometry{&mesh->mesh, false}, 1)})));
+    const auto& p = mesh->mesh.positions;
+    for (std::size_t i = 0; i + 1 < mesh->mesh.indices.size(); ++i) {
+      const Vec3f a = p[mesh->mesh.indices[i]], b = p[mesh->mesh.indices[i + 1]];
+      for (const Vec3f& d : {b - a, a, Vec3f{1, 0, 0}, Vec3f{0, 1e-6f, -1}}) {
+        if (!(length(d) > 0)) continue;
+        const Vec3f from = a - d * (10 / length(d));
+        const Distances t = crossings(*accel, {from, 0, d, kInfinity});
+        ASSERT_FALSE(t.empty());
+        EXPECT_EQ(t.size() % 2, 0u);
+        // The last crossing leaves the large cube.
+        const Vec3f end = from + d * t.back();
+        EXPECT_NEAR(std::max({std::abs(end.x), std::abs(end.y), std::abs(end.z)}), 4, 1e-3f);
+      }
+    }
+  }
+}
+
+/// A mesh wound inside out is the same solid.
+TEST(Csg, InsideOutAndMirroredMeshesAreSolidsToo) {
+  OracleMesh block = make_cube();
+  OracleMesh reversed = block;
+  for (std::size_t i = 0; i < reversed.mesh.indices.size(); i += 3)
+    std::swap(reversed.mesh.indices[i + 1], reversed.mesh.indices[i + 2]);
+  const Ray ray = ray_along_x(0.25f, 0.125f);
+  const auto with = [&](const OracleMesh& mesh, const Affine& m) {
+    return crossings(*built(whole(combine(CsgOp::subtract, {cube({-4, -4, -4}, {4, 4, 4}, 0),
+                                                            solid(MeshGeometry{&mesh.mesh, false}, 1, m)}))),
+                     ray);
+  };
+  const Distances expected = with(block, {});
+  EXPECT_EQ(expected.size(), 4u);
+  EXPECT_EQ(with(reversed, {}), expected);
+  EXPECT_EQ(with(block, Affine::scaling({1, 1, -1})), expected);
+  EXPECT_EQ(with(reversed, Affine::scaling({1, -1, 1})), expected);
+}
+
+/// Triangles in several leaves are one crossing each.
+TEST(Csg, SplitsOfSpaceDoNotRepeatCrossings) {
+  const OracleMesh sphere = make_icosphere(4);
+  const Geometry g = whole(combine(
+      CsgOp::subtract, {cube({-4, -4, -4}, {4, 4, 4}, 0), solid(MeshGeometry{&sphere.mesh, false}, 1)}));
+  const auto plain = build_accel({g}, {BuildQuality::fast}), split = build_accel({g}, {BuildQuality::best}),
+             compact = build_accel({g}, {BuildQuality::best, true, NodeLayout::compact});
+  for (int i = 0; i < 200; ++i) {
+    const Ray ray{{-8, 0, 0}, 0, {1, 0.001f * i, 0.0007f * i}, kInfinity};
+    const Distances t = crossings(*plain, ray);
+    EXPECT_EQ(crossings(*split, ray), t);
+    EXPECT_EQ(crossings(*compact, ray), t);
+  }
+}
+
+/// Combinations in instances in combinations.
+TEST(Csg, StandsInInstancesAndInItself) {
+  const auto shell = built(whole(combine(CsgOp::subtract, {ball({0, 0, 0}, 1, 5), ball({0, 0, 0}, 0.5, 6)})));
+  Geometry placed = solid(InstanceGeometry{shell}, kNoId, Affine::translation({2, 0, 0}));
+  const auto accel =
+      built(whole(combine(CsgOp::subtract, {cube({0, -2, -2}, {4, 2, 2}, 0), std::move(placed)})));
+  const Ray ray = ray_along_x();
+  EXPECT_EQ(crossings(*accel, ray), (Distances{8, 9, 9.5f, 10.5f, 11, 12}));
+  const auto seen = surfaces_along(*accel, ray);
+  const std::uint32_t users[] = {0, 5, 6, 6, 5, 0};
+  const float normal[] = {-1, 1, -1, 1, -1, 1};
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(seen[i].user, users[i]) << i;
+    EXPECT_NEAR(seen[i].geometric_normal.x, normal[i], 1e-6f) << i;
+  }
+  // As a solid of an operand, beside another.
+  CsgExpression both;
+  both.solids = {whole(combine(CsgOp::subtract, {ball({0, 0, 0}, 1, 5), ball({0, 0, 0}, 0.5, 6)}),
+                       Affine::translation({2, 0, 0})),
+                 ball({2, 0, 0}, 0.25, 7)};
+  CsgExpression outer = combine(CsgOp::subtract, {cube({0, -2, -2}, {4, 2, 2}, 0)});
+  outer.children.push_back(both);
+  EXPECT_EQ(crossings(*built(whole(outer)), ray), (Distances{8, 9, 9.5f, 9.75f, 10.25f, 10.5f, 11, 12}));
+}
+
+/// Origins moved off a surface where faces coincide do not meet the other face.
+TEST(Csg, RaysLeaveCoincidentFaces) {
+  const Geometry a = cube({0, -1, -1}, {1, 1, 1}, 0), b = cube({1.00000012, -1, -1}, {2, 1, 1}, 1),
+                 c = cube({0.99999994, -1, -1}, {3, 0, 1}, 2);
+  CsgExpression e = combine(CsgOp::subtract, {});
+  e.children.push_back(combine(CsgOp::unite, {a, b}));
+  e.children.push_back({CsgOp::operand, {c}, {}});
+  const auto accel = built(whole(e));
+  for (int i = 0; i < 100; ++i) {
+    const Ray ray{{8, -4, 0}, 0, {-1, 0.42f + 0.001f * i, 0.002f * i}, kInfinity};
+    for (const Surface& s : surfaces_along(*accel, ray)) {
+      const Vec3f out = s.geometric_normal;
+      const Ray next{offset_origin(s, out), 0, out, kInfinity};
+      for (const float t : crossings(*accel, next)) EXPECT_GT(t, 1e-3f);
+    }
+  }
+}
+
+TEST(Csg, DegenerateCombinationsAreNothing) {
+  const Ray ray = ray_along_x();
+  EXPECT_EQ(crossings(*built(whole({})), ray), Distances{});
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::intersect, {}))), ray), Distances{});
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {}))), ray), Distances{});
+  EXPECT_EQ(crossings(*build_accel({{CsgGeometry{}, {}, kNoId}}), ray), Distances{});
+  const Geometry a = cube({0, -1, -1}, {1, 1, 1}, 0), nothing = ball({0, 0, 0}, 0, 1);
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::intersect, {a, nothing}))), ray), Distances{});
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {a, nothing}))), ray), (Distances{8, 9}));
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto accel = built(whole(combine(CsgOp::unite, {a, solid(PlaneShape{{0, 1, 0}, -2}, 2)})));
+  EXPECT_EQ(crossings(*accel, {{nan, 0, 0}, 0, {1, 0, 0}, kInfinity}), Distances{});
+  EXPECT_EQ(crossings(*accel, {{0, 0, 0}, 0, {0, 0, 0}, kInfinity}), Distances{});
+  EXPECT_EQ(crossings(*accel, {{-8, 0, 0}, 2, {1, 0, 0}, 1}), Distances{});
+}
+
+/// Only operands along the ray cost, and deep trees do not recurse along it.
+TEST(Csg, ManyOperands) {
+  std::vector<Geometry> holes{cube({-1, -1, 0}, {100, 1, 1}, 0)};
+  for (int i = 0; i < 1000; ++i)
+    holes.push_back(ball({0.05 + 0.1 * (i % 500), i < 500 ? 0.0 : 0.5, 0.5}, 0.03, 1));
+  const auto flat = built(whole(combine(CsgOp::subtract, holes)));
+  EXPECT_EQ(crossings(*flat, ray_along_x(0, 0.5f)).size(), 1002u);
+  EXPECT_EQ(crossings(*flat, ray_along_x(0.25f, 0.5f)).size(), 2u);
+  CsgExpression deep = combine(CsgOp::unite, {holes[0]});
+  for (int i = 1; i <= 200; ++i) {
+    CsgExpression next;
+    next.op = CsgOp::subtract;
+    next.children.push_back(std::move(deep));
+    next.children.push_back({CsgOp::operand, {holes[static_cast<std::size_t>(i)]}, {}});
+    deep = std::move(next);
+  }
+  EXPECT_EQ(crossings(*built(whole(std::move(deep))), ray_along_x(0, 0.5f)).size(), 402u);
+}
+
+}  // namespace
 }  // namespace oktett
