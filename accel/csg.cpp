@@ -262,8 +262,9 @@ std::vector<Crossing>& borrow_list() {
 float coincidence_slack(const Accel& accel, const Ray& ray) {
   float size = 0, speed = 0;
   for (int k = 0; k < 3; ++k) {
-    size =
-        std::max({size, std::abs(accel.bounds.lo[k]), std::abs(accel.bounds.hi[k]), std::abs(ray.origin[k])});
+    size = std::max(size, std::abs(ray.origin[k]));
+    if (!accel.bounds.empty())
+      size = std::max({size, std::abs(accel.bounds.lo[k]), std::abs(accel.bounds.hi[k])});
     speed = std::max(speed, std::abs(ray.direction[k]));
   }
   return std::isfinite(size) ? 0x1p-22f * (size / speed) : 0;

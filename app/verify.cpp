@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/json.h"
 #include "app/render_options.h"
+#include "app/verify_csg.h"
 #include "app/verify_exact.h"
 #include "app/verify_kernels.h"
 #include "app/verify_meshes.h"
@@ -98,6 +99,20 @@ class Report {
     note(fmt::format("{} {} ray {}", name, p.name, t.first_failure), t.failure);
   }
 
+  void csg(const CsgTally& t) {
+    if (!json_) {
+      fmt::print("{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>9}{:>11}\n", "random trees", t.rays, t.crossings,
+                 t.samples, t.wrong_spans, t.wrong_first, t.wrong_normal, t.differing);
+      std::fflush(stdout);
+    }
+    combinations_.add("rays", t.rays), combinations_.add("crossings", t.crossings);
+    combinations_.add("samples", t.samples), combinations_.add("wrong_spans", t.wrong_spans);
+    combinations_.add("wrong_first", t.wrong_first), combinations_.add("wrong_normal", t.wrong_normal);
+    combinations_.add("differing", t.differing);
+    rays_ += t.rays;
+    note("combinations", t.failure);
+  }
+
   /// Prints the end of the report; the exit status.
   int finish(double seconds) const {
     if (json_) {
@@ -105,6 +120,7 @@ class Report {
       all.add("passed", failure_.empty()), all.add("failed_rows", failed_rows_), all.add("rays", rays_);
       all.add("seconds", seconds), all.add("first_failure", failure_);
       all.add("kernels", kernels_), all.add("surfaces", surfaces_), all.add("meshes", meshes_);
+      all.add("combinations", combinations_);
       fmt::print("{}\n", all.text());
     } else {
       fmt::print("\n{} rays in {:.1f} s: {}\n", rays_, seconds,
@@ -122,7 +138,7 @@ class Report {
   }
 
   bool json_;
-  JsonObject kernels_, surfaces_, meshes_;
+  JsonObject kernels_, surfaces_, meshes_, combinations_;
   std::uint64_t rays_ = 0, failed_rows_ = 0;
   std::string failure_;
 };
@@ -169,6 +185,12 @@ void verify_meshes(const VerifyArguments& arguments, std::uint64_t rays, Report&
                   verify_mesh(mesh, placement, rays, chosen_isas(arguments.isa), build));
 }
 
+void verify_combinations(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+  report.heading(fmt::format("\n{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>9}{:>11}", "combinations", "rays",
+                             "crossings", "samples", "spans", "firsts", "normals", "differing"));
+  report.csg(verify_csg(rays, chosen_isas(arguments.isa)));
+}
+
 int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   parse_tree_options(arguments.tree);  // complains before the work begins
@@ -177,6 +199,7 @@ int run_verify(const VerifyArguments& arguments) {
   if (arguments.surfaces.empty()) verify_kernels(arguments, rays, report);
   verify_surfaces(arguments, rays / 10, report);
   if (arguments.surfaces.empty()) verify_meshes(arguments, rays / 100 + 1, report);
+  if (arguments.surfaces.empty()) verify_combinations(arguments, rays / 10, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
 }

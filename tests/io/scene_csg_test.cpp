@@ -90,8 +90,9 @@ TEST(SceneCsg, MeshesAreClosedOrTakenByWinding) {
   files.dir.write("open.obj", kOpened);
   const std::string before = "objects:\n  - difference:\n      - box:\n      - mesh: ";
   EXPECT_EQ(files.error_v1(before + "{file: closed.obj}\n"), "no error");
-  expect_starts(files.error_v1(before + "{file: open.obj}\n"),
-                "scene.yaml:5:9: the mesh is not closed: 3 open edges, the first from (0, 0, 0) to (0, 1, 0)");
+  expect_starts(
+      files.error_v1(before + "{file: open.obj}\n"),
+      "scene.yaml:5:9: the mesh is not closed: 3 open edges, the first from (0, 0, 0) to (0, 1, 0)");
   EXPECT_EQ(files.error_v1(before + "{file: open.obj, solid: winding}\n"), "no error");
   const Scene scene = files.load_v1(before + "{file: open.obj, solid: winding}\n");
   EXPECT_TRUE(std::get<MeshShape>(operand(csg(scene), 1).shape).by_winding);
