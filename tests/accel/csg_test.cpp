@@ -54,7 +54,9 @@ std::vector<float> crossings(const Accel& accel, const Ray& ray) {
     any_hit(accel, rays.span(), &occluded, isa);
     EXPECT_EQ(hits[0].valid(), !list.empty());
     EXPECT_EQ(occluded != 0, !list.empty());
-    if (!list.empty()) EXPECT_TRUE(hits[0] == list[0]);
+    if (!list.empty()) {
+      EXPECT_TRUE(hits[0] == list[0]);
+    }
   }
   return t;
 }
