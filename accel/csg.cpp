@@ -91,14 +91,30 @@ struct Scratch {
   States states;
 };
 
+/// One past the last of the events that coincide with event `first`.
+std::size_t group_end(const std::vector<Event>& events, std::size_t first, float slack) {
+  const float limit = events[first].t + coincidence(events[first].t, slack);
+  std::size_t end = first + 1;
+  while (end < events.size() && events[end].t <= limit) ++end;
+  return end;
+}
+
 /// Operands start as far inside as their crossings tell: they end outside, or never were anywhere else.
-void start_states(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, Scratch& s) {
+/// Crossings that coincide have no order.
+void start_states(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, float slack,
+                  Scratch& s) {
   if (s.sum.size() < csg.nodes.size()) s.sum.resize(csg.nodes.size(), 0), s.least.resize(csg.nodes.size(), 0);
-  for (const Event& e : s.events) {
-    int& sum = s.sum[e.operand];
-    if (sum == 0 && s.least[e.operand] == 0) s.seen.push_back(e.operand);
-    sum += e.turn < 0 ? 1 : -1;
-    s.least[e.operand] = std::min(s.least[e.operand], sum);
+  for (std::size_t i = 0; i < s.events.size();) {
+    const std::size_t first = i, end = group_end(s.events, first, slack);
+    for (; i < end; ++i) {
+      const Event& e = s.events[i];
+      s.seen.push_back(e.operand);
+      s.sum[e.operand] += e.turn < 0 ? 1 : -1;
+    }
+    for (std::size_t k = first; k < end; ++k) {
+      const std::uint32_t operand = s.events[k].operand;
+      s.least[operand] = std::min(s.least[operand], s.sum[operand]);
+    }
   }
   for (const std::uint32_t operand : s.seen) {
     if (s.least[operand] < 0) s.states.add(operand, -s.least[operand]);
@@ -217,14 +233,12 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
     return a.turn < b.turn;
   });
   s.states.begin(csg);
-  start_states(csg, ray, crossings, s);
   const float slack = coincidence_slack(*csg.solids, ray);
+  start_states(csg, ray, crossings, slack, s);
   bool inside = s.states.whole();
   for (std::size_t i = 0; i < s.events.size();) {
-    const std::size_t first = i;
-    const float limit = s.events[first].t + coincidence(s.events[first].t, slack);
-    for (; i < s.events.size() && s.events[i].t <= limit; ++i)
-      s.states.add(s.events[i].operand, s.events[i].turn < 0 ? 1 : -1);
+    const std::size_t first = i, end = group_end(s.events, first, slack);
+    for (; i < end; ++i) s.states.add(s.events[i].operand, s.events[i].turn < 0 ? 1 : -1);
     const bool now = s.states.whole();
     if (now == inside) continue;
     inside = now;

@@ -199,7 +199,7 @@ int run_verify(const VerifyArguments& arguments) {
   if (arguments.surfaces.empty()) verify_kernels(arguments, rays, report);
   verify_surfaces(arguments, rays / 10, report);
   if (arguments.surfaces.empty()) verify_meshes(arguments, rays / 100 + 1, report);
-  if (arguments.surfaces.empty()) verify_combinations(arguments, rays / 10, report);
+  if (arguments.wants("combinations")) verify_combinations(arguments, rays / 10, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
 }
@@ -216,8 +216,9 @@ void add_verify_command(CLI::App& app, Command& command) {
   verb->add_option("--mesh", arguments->meshes, "Check this mesh too; may be repeated")
       ->type_name("FILE.obj")
       ->allow_extra_args(false);
-  verb->add_option("--surface", arguments->surfaces,
-                   "Check this exact surface only, on a tenth of the rays; may be repeated")
+  verb->add_option(
+          "--surface", arguments->surfaces,
+          "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
   verb->add_option("--isa", arguments->isa,

@@ -8,9 +8,6 @@
 
 namespace oktett {
 
-/// Deepest nesting of combinations.
-inline constexpr int kMaxCsgDepth = 64;
-
 /// "union", "intersection", "difference".
 bool is_csg_key(const std::string& key);
 std::vector<std::string> csg_keys();

@@ -46,7 +46,6 @@ class ObjectReader {
   const YamlNode* defining_;
   std::string name_;
   int levels_ = 0;
-  int csg_depth_ = 0;
 };
 
 bool is_shape_key(const std::string& key) {
@@ -122,8 +121,6 @@ void ObjectReader::read_group(const YamlNode& members, const Surroundings& inner
 
 std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode& operands,
                                             const Surroundings& outer) {
-  if (++csg_depth_ > kMaxCsgDepth)
-    throw Error(key.where(), fmt::format("combinations are nested deeper than {} levels", kMaxCsgDepth));
   const auto nodes = list_items(operands, key.text);
   if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
   // Operands stand in the space of the combination, whose transform applies to all.
@@ -133,7 +130,6 @@ std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode&
   for (const YamlNode* node : nodes) {
     std::vector<Object> members;
     ObjectReader reader(load_, members, defining_, name_);
-    reader.csg_depth_ = csg_depth_;
     reader.read(*node, inner);
     levels_ = std::max(levels_, reader.levels_);
     for (const Object& member : members) require_solid(load_, member);
@@ -144,7 +140,6 @@ std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode&
     else
       solids.push_back(unite(std::move(members), node->where()));
   }
-  --csg_depth_;
   if (is_nothing || solids.empty()) {
     if (!outer.is_dropped)
       load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");

@@ -73,9 +73,10 @@ TEST(SceneCsg, WhatHasNoInsideIsRefused) {
     return files.error_v1("define: {flat: {disk: }}\nobjects:\n  - union:\n      - sphere:\n      - " +
                           operand + "\n");
   };
-  for (const char* flat : {"disk:", "triangle:", "polygon: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}",
-                           "cylinder: {open: true}", "paraboloid: {clip: , open: true}",
-                           "polynomial: {equation: x^4 + y^4 = z, bounds: , open: true}"})
+  for (const char* flat :
+       {"disk:", "triangle:", "polygon: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}",
+        "cylinder: {open: true}", "paraboloid: {clip: , open: true}",
+        "polynomial: {equation: x^4 + y^4 = z, bounds: {min: [-1, -1, -1], max: [1, 1, 1]}, open: true}"})
     EXPECT_NE(error(flat).find("has no inside; only solids can be combined"), std::string::npos)
         << flat << ": " << error(flat);
   expect_starts(error("disk:"), "scene.yaml:6:9: a disk has no inside");
@@ -130,9 +131,13 @@ TEST(SceneCsg, BadCombinationsAreExplained) {
   const SceneFiles files;
   expect_starts(files.error_v1("objects:\n  - union: []\n"), "scene.yaml:3:5: union needs at least one");
   expect_starts(files.error_v1("objects:\n  - unoin: []\n"), "scene.yaml:3:5: unknown key");
-  std::string deep = "sphere: ";
-  for (int i = 0; i < 65; ++i) deep = "union: [{" + deep + "}]";
-  EXPECT_NE(files.error_v1("objects: [{" + deep + "}]\n").find("nested deeper than 64"), std::string::npos);
+  const auto nested = [&](int levels) {
+    std::string deep = "sphere: ";
+    for (int i = 0; i < levels; ++i) deep = "union: [{" + deep + "}]";
+    return files.error_v1("objects: [{" + deep + "}]\n");
+  };
+  EXPECT_EQ(nested(48), "no error");
+  EXPECT_NE(nested(49).find("nested deeper than 100 levels"), std::string::npos);
 }
 
 }  // namespace
