@@ -12,124 +12,6 @@ namespace oktett {
 
 namespace {
 
-/// The state of all nodes on the way along one ray. Only what was touched is put back afterwards.
-class States {
- public:
-  void begin(const CsgItem& csg) {
-    nodes_ = csg.nodes.data();
-    if (inside_.size() < csg.nodes.size())
-      inside_.resize(csg.nodes.size(), 0), depth_.resize(csg.nodes.size(), 0);
-  }
-  void end() {
-    for (const std::uint32_t node : touched_) inside_[node] = 0, depth_[node] = 0;
-    touched_.clear();
-  }
-
-  /// How often the ray is inside of what the operand consists of.
-  void add(std::uint32_t operand, int turns) {
-    touch(operand);
-    const bool before = depth_[operand] > 0;
-    depth_[operand] += turns;
-    const bool after = depth_[operand] > 0;
-    if (before != after) turn(operand, after);
-  }
-  bool whole() const { return is_inside(0); }
-
- private:
-  bool is_inside(std::uint32_t node) const {
-    const CsgNode& n = nodes_[node];
-    switch (n.op) {
-      case CsgOp::operand:
-        return depth_[node] > 0;
-      case CsgOp::unite:
-        return inside_[node] > 0;
-      case CsgOp::intersect:
-        return inside_[node] == static_cast<int>(n.children);
-      case CsgOp::subtract:
-        // Bit 0: inside of the first; the others count in twos.
-        return inside_[node] == 1;
-    }
-    return false;
-  }
-  /// Operand or node `node` has become inside or outside.
-  void turn(std::uint32_t node, bool inside) {
-    for (std::uint32_t parent = nodes_[node].parent; parent != kNoId; parent = nodes_[node].parent) {
-      touch(parent);
-      const bool before = is_inside(parent);
-      const int weight = nodes_[parent].op == CsgOp::subtract && !nodes_[node].is_first ? 2 : 1;
-      inside_[parent] += inside ? weight : -weight;
-      const bool after = is_inside(parent);
-      if (before == after) return;
-      inside = after, node = parent;
-    }
-  }
-  void touch(std::uint32_t node) { touched_.push_back(node); }
-
-  const CsgNode* nodes_ = nullptr;
-  std::vector<int> inside_;  ///< per node: how many children are, weighted as the node's kind asks for
-  std::vector<int> depth_;   ///< per operand
-  std::vector<std::uint32_t> touched_;
-};
-
-/// The geometry of `solids` that a hit belongs to, instances followed up to the top.
-std::uint32_t top_geometry(const Accel& solids, const Hit& hit) {
-  return solids.geometry_of(hit.instance == kNoId ? hit.item : top_item(solids, hit.instance));
-}
-
-struct Event {
-  float t;
-  float turn;
-  std::uint32_t operand;
-  std::uint32_t crossing;
-};
-
-/// Room for one ray's sweep, kept between rays.
-struct Scratch {
-  std::vector<Event> events;
-  std::vector<int> least, sum;  // per node: of the turns so far
-  std::vector<std::uint32_t> seen;
-  States states;
-};
-
-/// One past the last of the events that coincide with event `first`.
-std::size_t group_end(const std::vector<Event>& events, std::size_t first, float slack) {
-  const float limit = events[first].t + coincidence(events[first].t, slack);
-  std::size_t end = first + 1;
-  while (end < events.size() && events[end].t <= limit) ++end;
-  return end;
-}
-
-/// Operands start as far inside as their crossings tell: they end outside, or never were anywhere else.
-/// Crossings that coincide have no order.
-void start_states(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, float slack,
-                  Scratch& s) {
-  if (s.sum.size() < csg.nodes.size()) s.sum.resize(csg.nodes.size(), 0), s.least.resize(csg.nodes.size(), 0);
-  for (std::size_t i = 0; i < s.events.size();) {
-    const std::size_t first = i, end = group_end(s.events, first, slack);
-    for (; i < end; ++i) {
-      const Event& e = s.events[i];
-      s.seen.push_back(e.operand);
-      s.sum[e.operand] += e.turn < 0 ? 1 : -1;
-    }
-    for (std::size_t k = first; k < end; ++k) {
-      const std::uint32_t operand = s.events[k].operand;
-      s.least[operand] = std::min(s.least[operand], s.sum[operand]);
-    }
-  }
-  for (const std::uint32_t operand : s.seen) {
-    if (s.least[operand] < 0) s.states.add(operand, -s.least[operand]);
-    s.sum[operand] = s.least[operand] = 0;
-  }
-  s.seen.clear();
-  for (const std::uint32_t geometry : csg.unbounded) {
-    const std::uint32_t operand = csg.operand_of[geometry];
-    const bool crossed = std::any_of(s.events.begin(), s.events.end(), [&](const Event& e) {
-      return top_geometry(*csg.solids, crossings[e.crossing].hit) == geometry;
-    });
-    if (!crossed && runs_inside(*csg.solids, geometry, ray)) s.states.add(operand, 1);
-  }
-}
-
 /// Six times the volume that a mesh encloses, negative if it is wound inside out.
 double signed_volume(const TriangleMesh& mesh) {
   if (mesh.positions.empty()) return 0;
@@ -140,6 +22,42 @@ double signed_volume(const TriangleMesh& mesh) {
     volume += dot(corner(0), cross(corner(1), corner(2)));
   }
   return volume;
+}
+
+/// Whether the crossings of all solids can be listed in lanes: they are primitives that one call lists all
+/// crossings of.
+bool fits_lanes(const CsgItem& csg) {
+  const Accel& solids = *csg.solids;
+  if (solids.first_item.back() > 0x7fffffff) return false;
+  return std::all_of(solids.kinds.begin(), solids.kinds.end(), [](std::uint8_t k) {
+    const auto kind = static_cast<Kind>(k);
+    return kind == Kind::sphere || kind == Kind::box || kind == Kind::plane || has_one_cell(kind);
+  });
+}
+
+void number_solids(CsgItem& csg) {
+  const Accel& solids = *csg.solids;
+  std::uint32_t count = 0;
+  for (std::size_t g = 0; g < solids.kinds.size(); ++g) {
+    csg.first_solid.push_back(count);
+    count += static_cast<Kind>(solids.kinds[g]) < Kind::triangle
+                 ? solids.first_item[g + 1] - solids.first_item[g]
+                 : 1;
+  }
+  csg.first_solid.push_back(count);
+}
+
+constexpr std::uint32_t kAll = ~std::uint32_t{0};
+
+CsgStep step_of(const CsgItem& csg, std::uint32_t node) {
+  const CsgNode& n = csg.nodes[node];
+  CsgStep step{0, n.op == CsgOp::unite ? kAll : 0, n.op == CsgOp::operand || n.children == 0 ? 0 : kAll};
+  if (n.op == CsgOp::unite) step.initial = kAll;
+  if (n.parent == kNoId) return step;
+  const CsgOp above = csg.nodes[n.parent].op;
+  step.parent = n.parent;
+  if (above == CsgOp::unite || (above == CsgOp::subtract && !n.is_first)) step.flip ^= kAll;
+  return step;
 }
 
 }  // namespace
@@ -184,6 +102,10 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   };
   add(add, expression, kNoId, true);
   csg.solids = build_accel(std::move(solids), options);
+  number_solids(csg);
+  csg.in_lanes = fits_lanes(csg);
+  if (csg.nodes.size() <= kMaxCsgSteps)
+    for (std::uint32_t node = 0; node < csg.nodes.size(); ++node) csg.steps.push_back(step_of(csg, node));
   return csg;
 }
 
@@ -211,67 +133,36 @@ Box csg_bounds(const CsgItem& csg) {
   return boxes[0];
 }
 
-namespace {
-
-/// Calls f(crossing) for each crossing of the combination until it returns false.
-template <class Function>
-void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, Function&& f) {
-  static thread_local Scratch scratch;
-  Scratch& s = scratch;
-  s.events.clear();
-  for (std::uint32_t i = 0; i < crossings.size(); ++i) {
-    if (crossings[i].turn == 0) continue;
-    const std::uint32_t geometry = top_geometry(*csg.solids, crossings[i].hit);
-    const float turn = csg.inverted[geometry] != 0 ? -crossings[i].turn : crossings[i].turn;
-    s.events.push_back({crossings[i].hit.t, turn, csg.operand_of[geometry], i});
+std::vector<CsgStep>& csg_steps(const CsgItem& csg, std::uint32_t* operands, int count) {
+  static thread_local std::vector<CsgStep> steps;
+  static thread_local std::vector<std::uint32_t> nodes, place, met;
+  if (place.size() < csg.nodes.size()) place.resize(csg.nodes.size(), kNoId);
+  nodes.clear();
+  for (int i = 0; i < count; ++i)
+    for (std::uint32_t node = operands[i]; node != kNoId && place[node] == kNoId;
+         node = csg.nodes[node].parent)
+      place[node] = 0, nodes.push_back(node);
+  std::sort(nodes.begin(), nodes.end());
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) place[nodes[i]] = i;
+  steps.clear();
+  met.assign(nodes.size(), 0);
+  for (const std::uint32_t node : nodes) {
+    const CsgNode& n = csg.nodes[node];
+    CsgStep step = step_of(csg, node);
+    step.parent = n.parent == kNoId ? 0 : place[n.parent];
+    // An intersection counts those that are met, a difference whether its first operand is.
+    if (n.parent != kNoId && (csg.nodes[n.parent].op == CsgOp::intersect || n.is_first)) ++met[step.parent];
+    steps.push_back(step);
   }
-  std::sort(s.events.begin(), s.events.end(), [&](const Event& a, const Event& b) {
-    if (a.t != b.t) return a.t < b.t;
-    const Hit &x = crossings[a.crossing].hit, &y = crossings[b.crossing].hit;
-    if (x.instance != y.instance) return x.instance + 1 < y.instance + 1;
-    if (x.item != y.item) return x.item < y.item;
-    return a.turn < b.turn;
-  });
-  s.states.begin(csg);
-  const float slack = coincidence_slack(*csg.solids, ray);
-  start_states(csg, ray, crossings, slack, s);
-  bool inside = s.states.whole();
-  for (std::size_t i = 0; i < s.events.size();) {
-    const std::size_t first = i, end = group_end(s.events, first, slack);
-    for (; i < end; ++i) s.states.add(s.events[i].operand, s.events[i].turn < 0 ? 1 : -1);
-    const bool now = s.states.whole();
-    if (now == inside) continue;
-    inside = now;
-    // The surface that is seen: one that turns as the whole does, if there is one; its normal then is right.
-    const float turn = now ? -1.0f : 1.0f;
-    std::size_t seen = first;
-    for (std::size_t k = i; k-- > first;)
-      if (s.events[k].turn == turn) seen = k;
-    // The normal goes by the winding, whether that is inside out or not.
-    Crossing found = crossings[s.events[seen].crossing];
-    found.hit.instance = csg_path(csg, found.hit.instance, found.turn != turn);
-    found.turn = turn;
-    if (!f(found)) break;
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+    const CsgNode& n = csg.nodes[nodes[i]];
+    const std::uint32_t needed = n.op == CsgOp::intersect ? n.children : n.op == CsgOp::subtract ? 1 : 0;
+    if (met[i] < needed) steps[i].initial = 0;
   }
-  s.states.end();
+  for (int i = 0; i < count; ++i) operands[i] = place[operands[i]];
+  for (const std::uint32_t node : nodes) place[node] = kNoId;
+  return steps;
 }
-
-/// Lists of crossings for combinations within combinations, kept between rays.
-struct Lists {
-  std::vector<std::unique_ptr<std::vector<Crossing>>> lists;
-  std::size_t used = 0;
-};
-thread_local Lists free_lists;
-
-std::vector<Crossing>& borrow_list() {
-  if (free_lists.used == free_lists.lists.size())
-    free_lists.lists.push_back(std::make_unique<std::vector<Crossing>>());
-  std::vector<Crossing>& list = *free_lists.lists[free_lists.used++];
-  list.clear();
-  return list;
-}
-
-}  // namespace
 
 float coincidence_slack(const Accel& accel, const Ray& ray) {
   float size = 0, speed = 0;
@@ -282,25 +173,6 @@ float coincidence_slack(const Accel& accel, const Ray& ray) {
     speed = std::max(speed, std::abs(ray.direction[k]));
   }
   return std::isfinite(size) ? 0x1p-22f * (size / speed) : 0;
-}
-
-CsgSweep::CsgSweep() : list_(borrow_list()) {}
-CsgSweep::~CsgSweep() { --free_lists.used; }
-
-bool CsgSweep::first(const CsgItem& csg, const Ray& ray, Crossing& found) {
-  bool any = false;
-  sweep(csg, ray, list_.crossings(), [&](const Crossing& c) {
-    found = c, any = true;
-    return false;
-  });
-  return any;
-}
-
-void CsgSweep::all(const CsgItem& csg, const Ray& ray, HitList& out) {
-  sweep(csg, ray, list_.crossings(), [&](const Crossing& c) {
-    if (c.hit.t <= ray.tmax) out.push(c.hit, c.turn);
-    return c.hit.t <= ray.tmax;
-  });
 }
 
 }  // namespace oktett

@@ -19,8 +19,11 @@ bool is_triangle(const Accel& accel, std::uint32_t item) {
 }
 
 void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
+  // Elements of one cell list theirs as they are.
   const auto own_exact = [&](const Hit& h) {
-    return h.instance == kNoId && is_exact(static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]));
+    if (h.instance != kNoId) return false;
+    const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
+    return is_exact(kind) && !has_one_cell(kind);
   };
   std::vector<Crossing> crossings;
   std::size_t kept = first;

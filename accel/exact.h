@@ -2,6 +2,7 @@
 /// \file Rays against cells of exact surfaces. The code is compiled per instruction set and family of shapes
 /// in translation units of its own (accel/isa/exact*.cpp), so that a change to a shape recompiles little.
 
+#include "accel/crossing_lanes.h"
 #include "accel/hit_list.h"
 #include "accel/ray_state.h"
 #include "accel/shape_hits.h"
@@ -21,6 +22,10 @@ struct ExactCode {
                         unsigned lanes, HitLanes<F>& hits, std::uint32_t& item);
   /// Appends every crossing of one ray with the cell.
   static void all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits);
+  /// Appends every crossing of the rays in `lanes` with the cell, for kinds that has_one_cell. Returns the
+  /// item that the cell belongs to.
+  static std::uint32_t rows(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
+                            unsigned lanes, CrossingLanes<kLanes>& out);
   /// Surfaces of hits of one element, as exact_surface makes them. False if the kind has no code for that.
   static bool surfaces(const Accel& accel, Kind kind, ShapeHits& hits);
 };

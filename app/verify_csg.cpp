@@ -59,7 +59,8 @@ Inside inside_convex(const TriangleMesh& mesh, const Affine& to_world) {
 /// A random expression and what it should be.
 class TreeMaker {
  public:
-  explicit TreeMaker(CaseRandom& random) : random_(random), coarse_(random.unit() < 0.5) {
+  explicit TreeMaker(CaseRandom& random)
+      : random_(random), coarse_(random.unit() < 0.5), simple_(random.unit() < 0.5) {
     static const OracleMesh ball = make_icosphere(2), cube = make_cube();
     ball_ = &ball.mesh, cube_ = &cube.mesh;
   }
@@ -99,7 +100,7 @@ class TreeMaker {
 
   Inside solid(CsgExpression& e) {
     const Vec3d c = place();
-    const double r = size(), kind = random_.unit();
+    const double r = size(), kind = random_.unit() * (simple_ ? 0.7 : 1.0);
     if (kind < 0.25) {
       add(e, SpheresShape{{{c, r}}}, {});
       return [c, r](const Vec3l& p) {
@@ -155,7 +156,7 @@ class TreeMaker {
     std::vector<ExactOracle> all = draw_exact_oracles(random_);
     ExactOracle oracle;
     do oracle = all[static_cast<std::size_t>(random_.unit() * static_cast<double>(all.size()))];
-    while (oracle.where);
+    while (oracle.where || (simple_ && !has_one_cell(kind_of(oracle.shape.form))));
     const Affine m = Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
     add(e, oracle.shape, m);
     return [inverse = m.inverse(), f = oracle.f](const Vec3l& p) { return f(mapped(inverse, p)) < 0; };
@@ -163,6 +164,7 @@ class TreeMaker {
 
   CaseRandom& random_;
   const bool coarse_;
+  const bool simple_;  ///< of primitives only, which go through the tree several rays at once
   const TriangleMesh *ball_, *cube_;
 };
 

@@ -138,8 +138,9 @@ Silhouettes compare_ids(const Field& field, const std::vector<std::uint32_t>& th
   s.pixels = rays.size();
   const auto floor = static_cast<std::uint32_t>(field.objects.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // 0 is the background, object k is k + 1.
-    const std::uint32_t ours = hits[i].valid() ? surface(*world.accel, rays[i], hits[i]).user + 1 : 0;
+    // 0 is the background, object k, which has material k, is k + 1.
+    const auto named = [&] { return world.objects[identify(*world.accel, hits[i]).user].material + 1; };
+    const std::uint32_t ours = hits[i].valid() ? named() : 0;
     if (ours == theirs[i]) continue;
     ++s.differ;
     const auto distance = [&](std::uint32_t id) -> long double {

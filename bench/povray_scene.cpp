@@ -37,6 +37,16 @@ Material material(const Color& color) {
   return m;
 }
 
+/// Gives all operands of a combination the material of the whole.
+void set_material(Object& object, std::uint32_t material) {
+  object.material = material;
+  auto* csg = std::get_if<CsgShape>(&object.shape);
+  if (csg == nullptr) return;
+  std::vector<Object> operands = *csg->operands;
+  for (Object& operand : operands) set_material(operand, material);
+  csg->operands = std::make_shared<const std::vector<Object>>(std::move(operands));
+}
+
 Scene empty_scene(std::uint32_t width, std::uint32_t height) {
   Scene scene;
   scene.camera.from = kEye, scene.camera.at = kTarget, scene.camera_given = true;
@@ -80,7 +90,7 @@ Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t heigh
       field.pov_ids += text(id_color(id + 1));
       Object& o = field.scene.objects.emplace_back();
       o.shape = object.shape;
-      o.material = static_cast<std::uint32_t>(field.scene.materials.size());
+      set_material(o, static_cast<std::uint32_t>(field.scene.materials.size()));
       o.transform = Affine::translation(place) * Affine::scaling({size, size, size}) * Affine::rotation(turn);
       field.scene.materials.push_back(material(color));
       field.objects.push_back(std::move(object));

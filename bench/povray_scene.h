@@ -29,9 +29,14 @@ struct FieldKind {
 
 std::vector<FieldKind> field_kinds();
 
+/// A cube with rounded corners and three bores.
+FieldObject rounded_cube(const double (&r)[6]);
+/// A plate with a thousand holes.
+FieldObject drilled_plate(const double (&r)[6]);
+
 /// A field seen by both. POV-Ray's space is left-handed: its picture is Oktett's mirrored from left to right.
 struct Field {
-  Scene scene;               ///< for Oktett; objects 0, 1, ... and the floor last
+  Scene scene;               ///< for Oktett; objects 0, 1, ... and the floor last, each with its own material
   std::string pov, pov_ids;  ///< the same for POV-Ray, lit; and each object in a colour that numbers it
   std::vector<FieldObject> objects;  ///< without the floor
 };

@@ -54,6 +54,8 @@ static_assert(kKinds == kClosedFormKinds + kExactKinds + 3);
 inline constexpr bool is_exact(Kind kind) {
   return kind >= static_cast<Kind>(kClosedFormKinds) && kind < Kind::triangle;
 }
+/// Exact kinds whose elements are one cell and list all their crossings, at most four, at once.
+inline constexpr bool has_one_cell(Kind kind) { return Kind::torus <= kind && kind <= Kind::quadric; }
 /// Kinds whose elements cost more to test than a node of the tree.
 inline constexpr bool stands_alone(Kind kind) { return kind >= Kind::csg || is_exact(kind); }
 /// The kind of an exact form.

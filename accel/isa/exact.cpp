@@ -24,6 +24,18 @@ void ExactCode<A>::all(const Accel& accel, Kind kind, std::uint32_t cell, const 
 }
 
 template <class A>
+std::uint32_t ExactCode<A>::rows(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
+                                 unsigned lanes, CrossingLanes<kLanes>& out) {
+  std::uint32_t item = kNoId;
+  visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
+    if (!has_one_cell(kind)) return;
+    item = pool.frames[pool.cells[cell].element].item;
+    ExactShapeCode<decltype(shape), A>::rows(pool, cell, rays, lanes, out);
+  });
+  return item;
+}
+
+template <class A>
 bool ExactCode<A>::surfaces(const Accel& accel, Kind kind, ShapeHits& hits) {
   bool done = false;
   visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {

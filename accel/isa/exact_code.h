@@ -102,6 +102,30 @@ void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray&
   }
 }
 
+template <class S, class A>
+void ExactShapeCode<S, A>::rows(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
+                                unsigned lanes, CrossingLanes<F::kWidth>& out) {
+  constexpr int K = S::kMaxCrossings;
+  if constexpr (K <= CrossingLanes<F::kWidth>::kMostPerSolid) {
+    using D = Simd<double, F::kWidth, A>;
+    const ExactCell& cell = pool.cells[index];
+    const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
+    LineRange<D> range;
+    auto active = D::M::from_bits(lanes) & cell_range<S>(line, cell, range);
+    cut_range(range, range_begin(to_double(rays.tmin)));
+    active = active & (range.a <= range.b);
+    if (none(active)) return;
+    Crossings<K, D> c;
+    S::template crossings<K>(pool, cell, line, range, active, c);
+    const auto asked = mask_cast<float>(active);
+    for (int k = 0; k < K; ++k) {
+      const F t = to_float(c.t[k]);
+      const auto valid = asked & (rays.tmin < t) & (t <= F(std::numeric_limits<float>::max()));
+      push_row(out, valid, t, to_float(c.turn[k]), to_float(c.part[k]), pool.frames[cell.element].item, true);
+    }
+  }
+}
+
 template <class D>
 OKTETT_INLINE Vec3<D> map_vector(const Affine& a, const Vec3<D>& v) {
   const auto row = [&](int i) { return D(a.m[i][0]) * v.x + D(a.m[i][1]) * v.y + D(a.m[i][2]) * v.z; };

@@ -2,6 +2,7 @@
 /// \file The code of one exact shape for one instruction set: defined in exact_code.h, compiled family by
 /// family in exact_*.cpp.
 
+#include "accel/crossing_lanes.h"
 #include "accel/hit_list.h"
 #include "accel/ray_state.h"
 #include "accel/shape_hits.h"
@@ -18,6 +19,8 @@ struct ExactShapeCode {
   static unsigned first(const Pool& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
                         HitLanes<F>& hits);
   static void all(const Pool& pool, std::uint32_t cell, const Ray& ray, HitList& hits);
+  static void rows(const Pool& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
+                   CrossingLanes<F::kWidth>& out);
   static bool surfaces(const Pool& pool, ShapeHits& hits);
 };
 
