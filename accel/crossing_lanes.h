@@ -12,7 +12,7 @@ namespace oktett {
 /// distance infinite where there is none. The rows of a solid stand together, in the order of the ray.
 template <int W>
 struct CrossingLanes {
-  static constexpr int kMost = 96;       ///< rows
+  static constexpr int kMost = 96;  ///< rows
   static constexpr int kMostPerSolid = 4;
 
   alignas(64) float t[kMost][W];
@@ -25,9 +25,9 @@ struct CrossingLanes {
 
 /// Appends a row unless it is empty: crossings in the lanes of `valid`.
 template <int W, class A>
-OKTETT_INLINE void push_row(CrossingLanes<W>& out, const Mask<float, W, A>& valid,
-                            const Simd<float, W, A>& t, const Simd<float, W, A>& turn,
-                            const Simd<float, W, A>& part, std::uint32_t item, bool exact) {
+OKTETT_INLINE void push_row(CrossingLanes<W>& out, const Mask<float, W, A>& valid, const Simd<float, W, A>& t,
+                            const Simd<float, W, A>& turn, const Simd<float, W, A>& part, std::uint32_t item,
+                            bool exact) {
   if (none(valid)) return;
   using F = Simd<float, W, A>;
   const int row = out.rows++;

@@ -1,7 +1,7 @@
 #pragma once
-/// \file Several rays at once against a combination of primitives: the crossings of all rays with a solid side
-/// by side, swept side by side. The same crossings, states and hits as those of accel/csg_sweep.cpp, bit by
-/// bit.
+/// \file Several rays at once against a combination of primitives: the crossings of all rays with a solid
+/// side by side, swept side by side. The same crossings, states and hits as those of accel/csg_sweep.cpp, bit
+/// by bit.
 
 #include "accel/csg.h"
 #include "accel/csg_solids.h"
@@ -114,7 +114,8 @@ class CsgLanes {
     while (size > 0) {
       const Entry e = stack[--size];
       if (e.ref.is_leaf()) {
-        if (!e.ref.is_none() && !gather_leaf(solids.leaves[e.ref.table_index()], e.lanes, false)) return false;
+        if (!e.ref.is_none() && !gather_leaf(solids.leaves[e.ref.table_index()], e.lanes, false))
+          return false;
         continue;
       }
       with_node(solids, e.ref.node_index(), [&](const auto& node) {
@@ -127,7 +128,8 @@ class CsgLanes {
           }
           // A solid that begins behind the end of a ray matters to no crossing before it.
           F near, far;
-          slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near, far);
+          slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
+                        far);
           const unsigned met = e.lanes & bits(near <= far);
           if (met != 0) stack[size++] = {node.child[c], met};
         }
@@ -177,8 +179,7 @@ class CsgLanes {
   OKTETT_INLINE void begin_solid(int first, std::uint32_t item, unsigned lanes, bool unbounded) {
     unsigned met = 0, begun = 0;
     for (int row = first; row < rows_.rows; ++row) {
-      const unsigned here =
-          bits(F::load(rows_.t[row]) <= F(std::numeric_limits<float>::max())) & ~met;
+      const unsigned here = bits(F::load(rows_.t[row]) <= F(std::numeric_limits<float>::max())) & ~met;
       begun |= here & bits(F::load(rows_.turn[row]) > F(0.0f));
       met |= here;
     }
@@ -201,7 +202,8 @@ class CsgLanes {
     rays_.tmin.store(tmin);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int i = __builtin_ctz(lanes);
-      if (runs_inside(*csg_.solids, geometry, {{o[0][i], o[1][i], o[2][i]}, tmin[i], {d[0][i], d[1][i], d[2][i]}}))
+      if (runs_inside(*csg_.solids, geometry,
+                      {{o[0][i], o[1][i], o[2][i]}, tmin[i], {d[0][i], d[1][i], d[2][i]}}))
         inside |= 1u << i;
     }
     return inside;

@@ -166,8 +166,7 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   bool inside = s.states.whole();
   for (std::size_t i = 0; i < s.events.size();) {
     const std::size_t first = i, end = group_end(s.events, first, slack);
-    for (; i < end; ++i)
-      s.states.add(s.events[i].solid, s.events[i].geometry, s.events[i].turn < 0 ? 1 : -1);
+    for (; i < end; ++i) s.states.add(s.events[i].solid, s.events[i].geometry, s.events[i].turn < 0 ? 1 : -1);
     const bool now = s.states.whole();
     if (now == inside) continue;
     inside = now;

@@ -34,8 +34,9 @@ double hole_place(int i, int count) { return ((2 * i + 1) / static_cast<double>(
 
 FieldObject rounded_cube(const double (&)[6]) {
   FieldObject object{"difference { intersection { box { -0.75, 0.75 } sphere { 0, 1 } }", {}, {}};
-  std::vector<Object> operands{operand(combine(
-      CsgOp::intersect, {operand(BoxShape{{-0.75, -0.75, -0.75}, {0.75, 0.75, 0.75}}), operand(SphereShape{})}))};
+  std::vector<Object> operands{
+      operand(combine(CsgOp::intersect, {operand(BoxShape{{-0.75, -0.75, -0.75}, {0.75, 0.75, 0.75}}),
+                                         operand(SphereShape{})}))};
   for (int axis = 0; axis < 3; ++axis) {
     Vec3d end{0, 0, 0};
     end[axis] = 1.1;
@@ -56,7 +57,8 @@ FieldObject rounded_cube(const double (&)[6]) {
 }
 
 FieldObject drilled_plate(const double (&)[6]) {
-  FieldObject object{fmt::format("difference {{ box {{ <-{0}, -0.2, -{0}>, <{0}, 0.2, {0}> }}", kPlate), {}, {}};
+  FieldObject object{
+      fmt::format("difference {{ box {{ <-{0}, -0.2, -{0}>, <{0}, 0.2, {0}> }}", kPlate), {}, {}};
   std::vector<Object> operands{operand(BoxShape{{-kPlate, -0.2, -kPlate}, {kPlate, 0.2, kPlate}})};
   for (int i = 0; i < kHolesX; ++i)
     for (int k = 0; k < kHolesZ; ++k) {
