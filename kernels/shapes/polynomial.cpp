@@ -160,7 +160,9 @@ void PolynomialSurface::add(Pool& pool, const ExactShape& shape, const Affine& t
   e.terms = scaled(without_even_factors(s.terms), shift);
   if (move) e.terms = scaled(moved(e.terms, center), 0);
   e.degree = degree_of(e.terms);
-  if (e.degree < 1 || e.degree > roots::kMaxDegree) return;
+  if (e.terms.empty() || e.degree > roots::kMaxDegree) return;
+  // What never changes its sign, as -x^2, fills the box or has nothing in it.
+  if (e.degree == 0 && (s.open || e.terms[0].c > 0)) return;
   for (const Monomial& m : e.terms)
     if (!std::isfinite(m.c)) return;
   e.steps = cheapest_steps(e.terms);

@@ -46,6 +46,20 @@ TEST(PolynomialSurfaces, CommonFactorsCountOnce) {
   expect_at(crossings(polynomial("-x^2 = 0", 1, true), {-3, 0.3f, 0.2f}, {1, 0, 0}), {});
 }
 
+/// What is left without its even factors may be a constant: of one sign it is the whole box, of the other
+/// nothing, with or without another term that is too small to matter.
+TEST(PolynomialSurfaces, EvenFactorsAloneFillTheBox) {
+  for (const char* equation : {"-x^2", "-3*x^4*y^2*z^6", "-x^2 - 1e-9*y^4", "1 = 2"}) {
+    SCOPED_TRACE(equation);
+    expect_at(crossings(polynomial(equation, 1), {-3, 0.3f, 0.2f}, {1, 0, 0}), {2, 4}, 0);
+    expect_at(crossings(polynomial(equation, 1), {0.5f, 0.3f, 3}, {0, 0, -2}), {1, 2}, 0);
+    expect_at(crossings(polynomial(equation, 1, true), {-3, 0.3f, 0.2f}, {1, 0, 0}), {});
+    EXPECT_EQ(crossings(polynomial(equation, 1), {-3, 1.5f, 0}, {1, 0, 0}).size(), 0u);
+  }
+  for (const char* equation : {"x^2", "3*x^4*y^2*z^6", "2 = 1", "x = x"})
+    EXPECT_EQ(crossings(polynomial(equation, 1), {-3, 0.3f, 0.2f}, {1, 0, 0}).size(), 0u) << equation;
+}
+
 /// Rays through singular points, along lines in the surface, and with directions that have zeros.
 TEST(PolynomialSurfaces, SingularPoints) {
   // A cone's tip: through it the sign changes along the axis not at all.
