@@ -68,16 +68,17 @@ class Report {
 
   void exact(const std::string& name, const ExactTally& t) {
     if (!json_) {
-      fmt::print("{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>11}{:>10.3f}\n", name, t.rays, t.hits,
-                 t.missed, t.invented, t.touched, t.creased, t.off_surface, t.lists, t.differing,
-                 t.worst_residual);
+      fmt::print("{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>11}{:>9}{:>10.3f}\n", name, t.rays,
+                 t.hits, t.missed, t.invented, t.touched, t.creased, t.off_surface, t.lists, t.differing,
+                 t.uncertified, t.worst_residual);
       std::fflush(stdout);
     }
     JsonObject row;
     row.add("rays", t.rays), row.add("hits", t.hits), row.add("missed", t.missed);
     row.add("invented", t.invented), row.add("touched", t.touched), row.add("creased", t.creased),
         row.add("off_surface", t.off_surface);
-    row.add("lists", t.lists), row.add("differing", t.differing), row.add("worst_residual", t.worst_residual);
+    row.add("lists", t.lists), row.add("differing", t.differing);
+    row.add("uncertified", t.uncertified), row.add("worst_residual", t.worst_residual);
     surfaces_.add(name, row);
     rays_ += t.rays;
     note(name, t.failure);
@@ -163,9 +164,9 @@ void verify_kernels(const VerifyArguments& arguments, std::uint64_t rays, Report
 void verify_surfaces(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
   const std::vector<std::string> names = exact_oracle_names();
   if (names.empty()) return;
-  report.heading(fmt::format("\n{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>11}{:>10}", "surface",
-                             "rays", "hits", "missed", "invented", "touched", "creased", "off", "lists",
-                             "differing", "residual"));
+  report.heading(fmt::format("\n{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>11}{:>9}{:>10}",
+                             "surface", "rays", "hits", "missed", "invented", "touched", "creased", "off",
+                             "lists", "differing", "given up", "residual"));
   for (std::size_t form = 0; form < names.size(); ++form)
     if (arguments.wants(names[form]))
       report.exact(names[form], verify_exact(form, rays, chosen_isas(arguments.isa)));

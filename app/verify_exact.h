@@ -20,10 +20,11 @@ struct ExactTally {
   std::uint64_t off_surface = 0;  ///< position, moved by its error bound, is not off the surface to that side
   std::uint64_t lists = 0;        ///< all_hits disagrees with the oracle's crossings
   std::uint64_t differing = 0;    ///< a mode, width or instruction set gave other bits
+  std::uint64_t uncertified = 0;  ///< answers, in any mode, that took too many steps to be proved
   double worst_residual = 0;      ///< |f| at a hit over what its error bound allows
   std::string failure;            ///< the first one
 
-  std::uint64_t wrong() const { return missed + invented + off_surface + lists + differing; }
+  std::uint64_t wrong() const { return missed + invented + off_surface + lists + differing + uncertified; }
 };
 
 /// Form number `form` of draw_exact_oracles, `rays` rays spread over shapes of random parameters and
