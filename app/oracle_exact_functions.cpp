@@ -181,6 +181,28 @@ std::vector<Named> combined(CaseRandom& random) {
   };
 }
 
+/// Not defined everywhere, with poles, or with steps; none of these in a face of the box, which would leave a
+/// sheet without thickness there.
+std::vector<Named> torn(CaseRandom&) {
+  return {
+      {"sqrt(x) + y^2 + z^2 - 0.6",
+       [](const Vec3l& p) { return std::sqrt(p.x) + p.y * p.y + p.z * p.z - 0.6L; }, 1},
+      {"log(x^2 + y) + z", [](const Vec3l& p) { return std::log(p.x * p.x + p.y) + p.z; }, 1.5},
+      {"1/x + 1/y + z", [](const Vec3l& p) { return 1 / p.x + 1 / p.y + p.z; }, 2},
+      {"y - tan(x)*z", [](const Vec3l& p) { return p.y - std::tan(p.x) * p.z; }, 3},
+      {"y - 0.2*floor(4*x) - 0.1*sign(z)",
+       [](const Vec3l& p) {
+         return p.y - 0.2L * std::floor(4 * p.x) - 0.1L * (p.z > 0 ? 1 : p.z < 0 ? -1 : 0);
+       },
+       0.9},
+      {"asin(x^2 + y^2) - 1 + z^2",
+       [](const Vec3l& p) { return std::asin(p.x * p.x + p.y * p.y) - 1 + p.z * p.z; }, 1.2},
+      {"y - x^z*0.5",
+       [](const Vec3l& p) { return p.y - (p.x > 0 ? std::pow(p.x, p.z) : std::nan("")) * 0.5L; }, 1},
+      {"x^-2 + y^-2 + z - 9", [](const Vec3l& p) { return 1 / (p.x * p.x) + 1 / (p.y * p.y) + p.z - 9; }, 1},
+  };
+}
+
 /// A random expression, smooth or with kinks.
 Named draw(CaseRandom& random, int depth) {
   const auto pick = [&](int n) { return static_cast<int>(random.unit() * n); };
@@ -244,6 +266,7 @@ ExactOracle draw_algebraic(CaseRandom& random) {
 ExactOracle draw_combined(CaseRandom& random) {
   return one_of("implicit_combined", combined(random), random);
 }
+ExactOracle draw_torn(CaseRandom& random) { return one_of("implicit_torn", torn(random), random); }
 
 ExactOracle draw_random(CaseRandom& random) {
   // Around a sphere, so that there is something to see.
@@ -257,7 +280,7 @@ ExactOracle draw_random(CaseRandom& random) {
 }  // namespace
 
 std::vector<DrawExact> function_oracles() {
-  return {draw_random, draw_periodic, draw_algebraic, draw_combined};
+  return {draw_random, draw_periodic, draw_algebraic, draw_combined, draw_torn};
 }
 
 }  // namespace oktett

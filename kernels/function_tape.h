@@ -51,8 +51,8 @@ template <class D>
 OKTETT_INLINE void set(Dual<Interval<D>>& r, double c) {
   r = {Interval<D>(D(c)), Interval<D>(D(0.0))};
 }
-template <class D>
-OKTETT_INLINE void set(Gradient<D>& r, double c) {
+template <class D, Walls W>
+OKTETT_INLINE void set(Gradient<D, W>& r, double c) {
   r = {D(c), gradient::zero<D>()};
 }
 

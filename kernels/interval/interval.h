@@ -132,6 +132,7 @@ OKTETT_INLINE Interval<D> operator*(const Interval<D>& a, const D& b) {
   const Interval<D> unsound = select(a.is_void(), a, Interval<D>::entire());
   return select(~a.is_bounded() & (a.is_void() | (b == D(0.0))), unsound, x);
 }
+/// 1 / a, void for zero itself.
 template <class D>
 OKTETT_INLINE Interval<D> inverse(const Interval<D>& a) {
   const D zero(0.0), inf = Interval<D>::infinity();
@@ -139,10 +140,12 @@ OKTETT_INLINE Interval<D> inverse(const Interval<D>& a) {
   r.lo = select(a.hi == zero, -inf, r.lo), r.hi = select(a.lo == zero, inf, r.hi);
   r.lo = select((zero <= a.lo) & (r.lo < zero), zero, r.lo);
   r.hi = select((a.hi <= zero) & (zero < r.hi), zero, r.hi);
-  const auto pole = ((a.lo < zero) & (zero < a.hi)) | ((a.lo == zero) & (a.hi == zero));
-  return interval::carry(a, select(pole, Interval<D>::entire(), r));
+  const auto pole = (a.lo < zero) & (zero < a.hi), nowhere = (a.lo == zero) & (a.hi == zero);
+  const Interval<D> x = interval::carry(a, select(pole, Interval<D>::entire(), r));
+  return select(nowhere, Interval<D>::nothing(), x);
 }
-/// Entire where the divisor may be zero on both sides or the dividend may be zero with it.
+/// Entire where the divisor may be zero on both sides or the dividend may be zero with it, void where it is
+/// zero throughout.
 template <class D>
 OKTETT_INLINE Interval<D> operator/(const Interval<D>& a, const Interval<D>& b) {
   return a * inverse(b);

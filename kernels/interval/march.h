@@ -7,12 +7,13 @@
 /// - field.at(t): an enclosure of f at a point.
 ///
 /// The ray is walked from a to b. A step over which 0 is not in f (R. E. Moore: Interval Analysis, 1966), nor
-/// in the mean value form f(m) + f'(X) (X - m), has a certain sign; the next one is twice as long. Where f is
-/// monotone the signs at the ends decide. Any other step is halved. What rounding does not let one tell,
-/// where the ray touches the surface or lies in it, is a *gap*: it is passed over by steps as long as the
-/// enclosure is mere rounding noise, and only if the sign has turned on its far side is there a crossing.
-/// Steps of 2^-44 of the range end the halving: those over which f is not bounded hold a pole or the border
-/// of where f is defined. Undefined counts as positive.
+/// in the mean value form f(m) + f'(X) (X - m), has a certain sign; the next one is twice as long, but for
+/// the first after one that had to be halved. Where f is monotone the signs at the ends decide. Any other
+/// step is halved. What rounding does not let one tell, where the ray touches the surface or lies in it, is a
+/// *gap*: it is passed over by steps as long as the enclosure is mere rounding noise, and only if the sign
+/// has turned on its far side is there a crossing. Steps of 2^-44 of the range end the halving: those over
+/// which f is not bounded hold a pole or the border of where f is defined. Undefined counts as
+/// positive.
 
 #include "kernels/interval/dual.h"
 #include "kernels/shapes/exact.h"
@@ -26,10 +27,11 @@ std::uint64_t uncertified_count();
 
 /// Steps after which a ray is given up.
 inline constexpr int kMaxSteps = 1 << 14;
-/// Marks crossings where f jumps, through a pole or from defined to undefined.
+/// Marks crossings where f jumps, through a pole, by a step or from defined to undefined; also where it is
+/// infinitely steep.
 inline constexpr int kJumpPart = 7;
 
-/// What to do with sign changes where f is not continuous.
+/// What to do with sign changes where f is not bounded.
 enum class Jumps { list, drop };
 
 /// 1 or -1 where an enclosure tells the sign, else 0.
@@ -38,7 +40,8 @@ OKTETT_INLINE D certain_sign(const Interval<D>& f) {
   return select((D(0.0) < f.lo) | f.is_void(), D(1.0), select(f.hi < D(0.0), D(-1.0), D(0.0)));
 }
 
-/// Where a crossing is: f has the certain sign `before` at l and the other one at r.
+/// Where a crossing is: f has the certain sign `before` at l and the other one at r. `jump` is 1 if f is not
+/// bounded between, 2 if only its derivative is not, else 0.
 template <class D>
 struct Bracket {
   D l, r, before, jump;
@@ -91,26 +94,28 @@ struct March {
   Bracket<D> found[K];
   D count = D(0.0);
   D t, h, s, g;           ///< place, step, last certain sign, and the last place that has it
-  D jump = D(0.0);        ///< 1 if the gap from g to t holds a step over which f is unbounded
+  D jump = D(0.0);        ///< of the gap from g to t, as in Bracket
+  D grow = D(2.0);        ///< by what the next step is longer, if this one is passed
   D first_sign = D(0.0);  ///< the first certain sign
   M uncertified;
 
   /// From a to b; and where the sign at b is uncertain, on to where it is certain, as far as `limit`.
   OKTETT_INLINE March(const Field& f, Jumps j, const D& a, const D& b, const D& limit, const M& active)
-      : field(f), jumps(j), t(a), h(b - a), s(certain_sign(f.at(a))), g(a) {
+      : field(f), jumps(j), t(a), h(b - a), s(0.0), g(a) {
     for (int k = 0; k < K; ++k) found[k] = {a, a, D(0.0), D(0.0)};
-    first_sign = s;
     const D least = (b - a) * D(0x1p-44);
     M live = active & (a < b);
+    const M points = active & ~live;
+    if (OKTETT_UNLIKELY(any(points))) first_sign = select(points, certain_sign(f.at(a)), first_sign);
     for (int i = 0; i < kMaxSteps && any(live); ++i) {
-      step(select(t < b, b, limit), least, live);
+      step(i == 0, select(t < b, b, limit), least, live);
       live = live & (count < D(K)) & ((t < b) | ((g < t) & (t < limit)));
     }
     uncertified = live;
   }
 
  private:
-  OKTETT_INLINE void step(const D& end, const D& least, const M& live) {
+  OKTETT_INLINE void step(bool first, const D& end, const D& least, const M& live) {
     const D zero(0.0), two(2.0);
     const D e = min(t + h, end), m = t + (e - t) * D(0.5);
     const Interval<D> x(t, e);
@@ -120,6 +125,8 @@ struct March {
     const auto smooth = f.v.is_bounded() & f.d.is_bounded();
     auto open = live & (sign == zero);
     auto noise = open & ~open;
+    // Where the first step has one sign, so has its beginning.
+    if (first && any(open)) s = first_sign = select(open, certain_sign(field.at(t)), first_sign);
     if (any(open & smooth)) {
       const Interval<D> at_m = field.at(m);
       const Interval<D> mean = at_m + f.d * (x - Interval<D>(m));
@@ -142,15 +149,18 @@ struct March {
     first_sign = select(known & (first_sign == zero), sign, first_sign);
     const auto shortest = (e - t <= least) | ~((t < m) & (m < e));
     const auto skip = (open & ~known) & (noise | monotone | shortest);
-    jump = select(known, zero, select(skip & ~f.v.is_bounded(), D(1.0), jump));
+    const D steep = select(f.v.is_bounded(), select(jump == zero, two, jump), D(1.0));
+    jump = select(known, zero, select(skip & ~smooth, steep, jump));
     const auto go = known | skip;
     s = select(known, sign, s), g = select(known, e, g);
-    h = select(go, (e - t) * two, select(live, (e - t) * D(0.5), h));
+    // What is twice as long as a step that follows a failure would likely fail as well.
+    h = select(go, (e - t) * grow, select(live, (e - t) * D(0.5), h));
+    grow = select(go, two, D(1.0));
     t = select(go, e, t);
   }
 
   OKTETT_INLINE void push(const M& turned, const D& reached) {
-    const auto listed = jumps == Jumps::list ? turned : turned & (jump == D(0.0));
+    const auto listed = jumps == Jumps::list ? turned : turned & ~(jump == D(1.0));
     for (int k = 0; k < K; ++k) {
       const auto here = listed & (count == D(k));
       found[k].l = select(here, g, found[k].l), found[k].r = select(here, reached, found[k].r);
@@ -160,8 +170,8 @@ struct March {
   }
 };
 
-/// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Part 0 are those where f is
-/// continuous, kJumpPart the others. A crossing that is not told apart from b may lie between b and `limit`.
+/// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Their parts are 0 or, with
+/// Jumps::list, kJumpPart. A crossing that is not told apart from b may lie between b and `limit`.
 /// Returns the first certain sign from a on, 0 if there is none.
 template <int K, class Field, class D>
 OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const typename D::M& active,
@@ -174,7 +184,8 @@ OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit
     if (none(here)) break;
     const Bracket<D>& bracket = walk.found[k];
     const D x = refine(field, bracket, tolerance, here);
-    list.push(here, x, -bracket.before, bracket.jump * D(kJumpPart));
+    const auto wall = jumps == Jumps::list ? here & (bracket.jump > D(0.0)) : here & ~here;
+    list.push(here, x, -bracket.before, select(wall, D(kJumpPart), D(0.0)));
   }
   list.finish(select(walk.count < D(K), D(roots::kNoRoot), walk.t));
   const unsigned lost = bits(walk.uncertified);

@@ -69,13 +69,16 @@ struct Implicit {
                                   Vec3<D>& gradient) {
     const ImplicitElement& e = pool.elements[i];
     const D size(e.size), zero(0.0);
-    const Gradient<D> f =
-        run_tape(e.function, Gradient<D>{p.x * size, {size, zero, zero}},
-                 Gradient<D>{p.y * size, {zero, size, zero}}, Gradient<D>{p.z * size, {zero, zero, size}});
-    // No slope tells of where a wall is, nor which way it faces.
+    const Gradient<D> f = slope_of<Walls::flat>(e, p);
+    value = f.v, gradient = f.d;
     const auto wall = part == D(interval::kJumpPart);
-    value = f.v;
-    gradient = {select(wall, zero, f.d.x), select(wall, zero, f.d.y), select(wall, zero, f.d.z)};
+    if (any(wall)) {
+      // No value tells how far away a wall is.
+      const Vec3<D> n = wall_normal(e, p);
+      value = select(wall, zero, value);
+      gradient = {select(wall, n.x, gradient.x), select(wall, n.y, gradient.y),
+                  select(wall, n.z, gradient.z)};
+    }
     select_faces(e.lo, e.hi, select(wall, zero, part), p, value, gradient);
   }
   /// NaN where the function is not defined.
@@ -84,6 +87,34 @@ struct Implicit {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// None.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, Surface& s);
+
+ private:
+  template <Walls W, class D>
+  OKTETT_INLINE static Gradient<D, W> slope_of(const ImplicitElement& e, const Vec3<D>& p) {
+    const D size(e.size), zero(0.0);
+    using T = Gradient<D, W>;
+    return run_tape(e.function, T{p.x * size, {size, zero, zero}}, T{p.y * size, {zero, size, zero}},
+                    T{p.z * size, {zero, zero, size}});
+  }
+
+  /// The normal of a wall, to the side where the function is not negative; zero where that is not to be told.
+  template <class D>
+  OKTETT_NOINLINE static Vec3<D> wall_normal(const ImplicitElement& e, const Vec3<D>& p) {
+    const Vec3<D> d = slope_of<Walls::steep>(e, p).d;
+    const D zero(0.0), greatest = max(max(abs(d.x), abs(d.y)), abs(d.z));
+    // What is infinite or NaN tells nothing.
+    const auto known = (zero < greatest) & (abs(d.x) + abs(d.y) + abs(d.z) < Interval<D>::infinity());
+    const D per = select(known, D(1.0) / greatest, zero);
+    const auto unit = [&](const D& x) { return select(known, x * per, zero); };
+    const Vec3<D> n{unit(d.x), unit(d.y), unit(d.z)};
+    const auto inside_at = [&](double by) {
+      const D h(by);
+      return slope_of<Walls::flat>(e, Vec3<D>{p.x + n.x * h, p.y + n.y * h, p.z + n.z * h}).v < zero;
+    };
+    const auto ahead = inside_at(0x1p-22), behind = inside_at(-0x1p-22);
+    const D way = select(behind & ~ahead, D(1.0), select(ahead & ~behind, D(-1.0), zero));
+    return {n.x * way, n.y * way, n.z * way};
+  }
 };
 
 }  // namespace oktett

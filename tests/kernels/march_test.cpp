@@ -200,6 +200,13 @@ TEST(March, GivesUpOnlyOnMonsters) {
   find([](const J& t) { return sin(constant(100) * t) + cos(constant(31) * t * t) - constant(0.1); }, 0, 10);
   find([](const J& t) { return sin(constant(1) / t); }, 1e-3, 1);
   EXPECT_EQ(interval::uncertified_count(), before);
+  // Not defined on a part of the range.
+  const Found half = find([](const J& t) { return constant(1) / floor(t); }, -0.9, 0.9);
+  EXPECT_EQ(half.first_sign, -1);
+  ASSERT_EQ(half.t.size(), 1u);
+  EXPECT_NEAR(half.t[0], 0, 1e-11);
+  EXPECT_EQ(half.part[0], interval::kJumpPart);
+  EXPECT_EQ(interval::uncertified_count(), before);
   // Zero with a step every 1e-9, for all that intervals can tell.
   const auto monster = [](const J& t) {
     const J steps = floor(t * constant(1e9));
@@ -207,6 +214,9 @@ TEST(March, GivesUpOnlyOnMonsters) {
   };
   find(monster, 0.1, 1);
   EXPECT_EQ(interval::uncertified_count(), before + 1);
+  // Not defined anywhere, or all over the place, for all that intervals can tell.
+  EXPECT_TRUE(find([](const J& t) { return constant(1) / (t - t); }, 0.1, 1).t.empty());
+  EXPECT_EQ(interval::uncertified_count(), before + 2);
 }
 
 }  // namespace
