@@ -1,6 +1,7 @@
 #include "kernels/function_tape.h"
 
 #include <gtest/gtest.h>
+#include <rapidcheck.h>
 
 #include <cmath>
 #include <random>
@@ -62,8 +63,7 @@ std::string draw(std::mt19937& random, int depth) {
   }
 }
 
-/// Where an interval over a box is bounded, the function is defined in all of the box and within it; so is
-/// the derivative, which holds the slope along the diagonal.
+/// Where an interval over a box is bounded, the function is defined in all of the box and within it.
 TEST(FunctionTape, IntervalsHoldTheValues) {
   std::mt19937 random(1);
   const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
@@ -101,6 +101,48 @@ TEST(FunctionTape, IntervalsHoldTheValues) {
   EXPECT_LT(poles, bounded / 10);
 }
 
+/// Where a derivative over an interval is bounded, it holds the slope between any two places in there, across
+/// kinks as well.
+TEST(FunctionTape, DerivativesHoldTheSlopes) {
+  std::mt19937 random(3);
+  const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
+  int bounded = 0, kinks = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const std::string text = draw(random, 4);
+    FunctionTape tape;
+    try {
+      tape = compile_function(text);
+    } catch (const Error&) {
+      continue;
+    }
+    const double size = random() % 2 ? 0.03125 : 1;
+    double from[3], by[3];
+    Dual<I> axis[3];
+    for (int i = 0; i < 3; ++i) {
+      from[i] = 4 * unit() - 2, by[i] = 2 * unit() - 1;
+      axis[i] = {I(D(from[i])) + interval_of(0, size) * D(by[i]), I(D(by[i]))};
+    }
+    const Dual<I> over = run_tape(tape, axis[0], axis[1], axis[2]);
+    if (!std::isfinite(number(over.d.lo)) || !std::isfinite(number(over.d.hi)) ||
+        !std::isfinite(number(over.v.lo)) || !std::isfinite(number(over.v.hi)))
+      continue;
+    ++bounded;
+    kinks += text.find("abs") != std::string::npos || text.find("min") != std::string::npos;
+    const auto value = [&](double t) {
+      return number(slope(tape, from[0] + t * by[0], from[1] + t * by[1], from[2] + t * by[2]).v);
+    };
+    for (int i = 0; i < 10; ++i) {
+      const double a = size * 0.45 * unit(), b = size * (0.55 + 0.45 * unit());
+      const double f = value(a), g = value(b), rise = (g - f) / (b - a);
+      const double slack = 1e-11 * (1 + std::abs(f) + std::abs(g)) / (b - a);
+      ASSERT_GE(rise, number(over.d.lo) - slack) << text;
+      ASSERT_LE(rise, number(over.d.hi) + slack) << text;
+    }
+  }
+  EXPECT_GT(bounded, 2000);
+  EXPECT_GT(kinks, 200);
+}
+
 /// Against the C library, node by node, and central differences of it.
 TEST(FunctionTape, ValuesAndGradientsOfSmoothFunctions) {
   std::mt19937 random(2);
@@ -133,10 +175,27 @@ TEST(FunctionTape, ValuesAndGradientsOfSmoothFunctions) {
 
 /// Undefined is NaN, through everything that follows.
 TEST(FunctionTape, UndefinedIsNan) {
-  for (const char* text :
-       {"sqrt(x - 1)", "log(x - 1)", "1/x", "x^-1", "x^-0.5", "(x - 1)^1.5", "(x - 1)^y", "asin(x + 2)",
-        "acos(x - 2)", "max(sqrt(x - 1), 3)", "min(3, log(x - 1))", "sign(1/x)", "floor(1/x)",
-        "abs(log(x - 1))", "sin(log(x - 1))", "(1/x)^0", "0*sqrt(x - 1)", "atan(0/x)"})
+  for (const char* text : {"sqrt(x - 1)",
+                           "log(x - 1)",
+                           "1/x",
+                           "x^-1",
+                           "x^-0.5",
+                           "(x - 1)^1.5",
+                           "(x - 1)^y",
+                           "asin(x + 2)",
+                           "acos(x - 2)",
+                           "max(sqrt(x - 1), 3)",
+                           "min(3, log(x - 1))",
+                           "sign(1/x)",
+                           "floor(1/x)",
+                           "abs(log(x - 1))",
+                           "sin(log(x - 1))",
+                           "(1/x)^0",
+                           "0*sqrt(x - 1)",
+                           "atan(0/x)",
+                           "log(x)",
+                           "-log(abs(x*y))",
+                           "exp(log(z))"})
     EXPECT_TRUE(std::isnan(number(slope(compile_function(text), 0, 0, 0).v))) << text;
 }
 
@@ -177,6 +236,39 @@ TEST(FunctionTape, ErrorsHaveTheirPlace) {
   for (int i = 0; i < 60; ++i) deep += "(sin(" + std::to_string(i) + "*x)*2 + y)^2/(1 - ";
   deep += "x" + std::string(60, ')');
   EXPECT_EQ(column_of_error(deep), 1);
+}
+
+/// Any text either compiles to a tape within its limits, which gives the same on numbers and on intervals of
+/// one number, or throws an Error with a column inside the text or just behind it.
+TEST(FunctionTape, SurvivesAnyText) {
+  int compiled = 0;
+  const bool passed = rc::check("compile or report", [&compiled] {
+    static const std::vector<std::string> kTokens = {
+        "x",      "y",    "z", "2",    "0.5", "1e3", "0",    "pi",    "+",     "-",      "*",    "/",
+        "^",      "(",    ")", "(",    ")",   ",",   "sin(", "log(",  "sqrt(", "atan2(", "min(", "max(",
+        "floor(", "abs(", " ", "tan(", "e",   "$",   "\xc3", "sine(", ".",     "^-3",    "^0.7"};
+    const auto tokens = *rc::gen::container<std::vector<std::string>>(rc::gen::elementOf(kTokens));
+    std::string text;
+    for (const std::string& token : tokens) text += token;
+    try {
+      const FunctionTape tape = compile_function(text);
+      ++compiled;
+      RC_ASSERT(tape.steps.size() <= kMaxTapeSteps);
+      RC_ASSERT(tape.registers <= 3 + kMaxTapeRegisters);
+      const double value = number(slope(tape, 0.3, 0.7, 1.1).v);
+      const I range = run_tape(tape, interval_of(0.3, 0.3), interval_of(0.7, 0.7), interval_of(1.1, 1.1));
+      const bool bounded = std::isfinite(number(range.lo)) && std::isfinite(number(range.hi));
+      const double slack = 1e-11 * (1 + std::abs(value));
+      if (bounded && std::isfinite(value))
+        RC_ASSERT(number(range.lo) - slack <= value && value <= number(range.hi) + slack);
+    } catch (const Error& error) {
+      RC_ASSERT(error.where().column >= 1);
+      RC_ASSERT(error.where().column <= static_cast<int>(text.size()) + 1);
+      RC_ASSERT(!std::string(error.what()).empty());
+    }
+  });
+  EXPECT_TRUE(passed);
+  EXPECT_GT(compiled, 3);
 }
 
 }  // namespace
