@@ -134,24 +134,24 @@ class BlobRule : public CellRule {
   BlobRule(const BlobTreePool& pool, double iso) : pool_(pool), iso_(iso) {}
 
   CellRange narrow(const CellBox& box, std::span<const std::uint32_t> part,
-                   std::vector<std::uint32_t>& out) override {
-    stack_.clear();
+                   std::vector<std::uint32_t>& out) const override {
+    Entry stack[kBlobStack];
+    int top = -1;
     for (const std::uint32_t code : part) {
       const auto op = BlobCode::op(code);
       if (op == BlobCode::element) {
         const PartRange r = part_range(pool_, pool_.parts[BlobCode::index(code)], box);
-        stack_.push_back({r.lo, r.hi, out.size(), r.zero});
+        stack[++top] = {r.lo, r.hi, out.size(), r.zero};
         out.push_back(r.zero ? BlobCode::make(BlobCode::zero) : code);
       } else if (op == BlobCode::zero) {
-        stack_.push_back({0, 0, out.size(), true});
+        stack[++top] = {0, 0, out.size(), true};
         out.push_back(code);
       } else {
-        const Entry b = stack_.back();
-        stack_.pop_back();
-        blend(op, code, stack_.back(), b, out);
+        const Entry& b = stack[top--];
+        blend(op, code, stack[top], b, out);
       }
     }
-    const Entry& all = stack_.back();
+    const Entry& all = stack[top];
     const double error = 0x1p-36 * (iso_ + std::max(std::abs(all.lo), std::abs(all.hi)));
     return {iso_ - all.hi - error, iso_ - all.lo + error};
   }
@@ -182,7 +182,8 @@ class BlobRule : public CellRule {
   };
 
   /// Makes one of the two topmost values; leaves out what does not matter.
-  void blend(BlobCode::Op op, std::uint32_t code, Entry& a, const Entry& b, std::vector<std::uint32_t>& out) {
+  void blend(BlobCode::Op op, std::uint32_t code, Entry& a, const Entry& b,
+             std::vector<std::uint32_t>& out) const {
     const auto keep_a = [&] { out.resize(b.begin); };
     const auto keep_b = [&] {
       out.erase(out.begin() + static_cast<std::ptrdiff_t>(a.begin),
@@ -217,7 +218,6 @@ class BlobRule : public CellRule {
 
   const BlobTreePool& pool_;
   double iso_;
-  std::vector<Entry> stack_;
 };
 
 struct ValueGradient {

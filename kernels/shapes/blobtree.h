@@ -61,26 +61,52 @@ class CellField {
       if (BlobCode::op(code_[i]) == BlobCode::element) kept_[k++] = Track<D>(part(i), line);
   }
 
-  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& x) const {
-    Dual<Interval<D>> stack[kBlobStack];
+  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& x) const { return run<Dual<Interval<D>>>(x); }
+  OKTETT_INLINE Interval<D> at(const D& s) const { return run<Interval<D>>(Interval<D>(s)); }
+
+ private:
+  static OKTETT_INLINE void set_constant(Interval<D>& v, double c) { v = Interval<D>(D(c)); }
+  static OKTETT_INLINE void set_constant(Dual<Interval<D>>& v, double c) {
+    v = {Interval<D>(D(c)), Interval<D>(D(0.0))};
+  }
+  /// c - v.
+  static OKTETT_INLINE Interval<D> from_constant(double c, const Interval<D>& v) {
+    return Interval<D>(D(c)) - v;
+  }
+  static OKTETT_INLINE Dual<Interval<D>> from_constant(double c, const Dual<Interval<D>>& v) {
+    return {Interval<D>(D(c)) - v.v, -v.d};
+  }
+  OKTETT_INLINE void square(const FieldPart& p, const Track<D>& track, const Interval<D>& x,
+                            Dual<Interval<D>>& out) const {
+    const bool flat = p.shape == FieldPart::Shape::polygon;
+    out = flat ? square_over(p, corners(p), track, x) : square_over(track.straight, x);
+  }
+  OKTETT_INLINE void square(const FieldPart& p, const Track<D>& track, const Interval<D>& x,
+                            Interval<D>& out) const {
+    const bool flat = p.shape == FieldPart::Shape::polygon;
+    out = flat ? square_over(p, corners(p), track, x).v : square_values(track.straight, x);
+  }
+
+  /// The program on values of one kind, with or without derivatives.
+  template <class T>
+  OKTETT_INLINE T run(const Interval<D>& x) const {
+    T stack[kBlobStack];
     int top = -1;
     std::uint32_t k = 0;
     for (std::uint32_t i = 0; i < count_; ++i) {
       const BlobCode::Op op = BlobCode::op(code_[i]);
       if (op == BlobCode::zero) {
-        stack[++top] = {Interval<D>(D(0.0)), Interval<D>(D(0.0))};
+        set_constant(stack[++top], 0);
       } else if (op == BlobCode::element) {
         const FieldPart& p = part(i);
         const Track<D> track = k < kKept ? kept_[k] : Track<D>(p, line_);
         ++k;
-        const bool flat = p.shape == FieldPart::Shape::polygon;
-        const Dual<Interval<D>> square =
-            flat ? square_over(p, pool_.corners.data() + 2 * std::size_t{p.corner}, track, x)
-                 : square_over(track.straight, x);
-        stack[++top] = potential_over(p, square);
+        T r;
+        square(p, track, x, r);
+        stack[++top] = potential_over(p, r);
       } else {
-        const Dual<Interval<D>> b = stack[top--];
-        Dual<Interval<D>>& a = stack[top];
+        const T b = stack[top--];
+        T& a = stack[top];
         if (op == BlobCode::sum) {
           a = a + b;
         } else if (op == BlobCode::max) {
@@ -88,17 +114,18 @@ class CellField {
         } else if (op == BlobCode::min) {
           a = oktett::min(a, b);
         } else {
-          a = oktett::min(a, Dual<Interval<D>>{Interval<D>(D(2 * iso_)) - b.v, -b.d});
+          a = oktett::min(a, from_constant(2 * iso_, b));
         }
       }
     }
-    return {Interval<D>(D(iso_)) - stack[0].v, -stack[0].d};
+    return from_constant(iso_, stack[0]);
   }
-  OKTETT_INLINE Interval<D> at(const D& s) const { return over(Interval<D>(s)).v; }
 
- private:
   OKTETT_INLINE const FieldPart& part(std::uint32_t i) const {
     return pool_.parts[BlobCode::index(code_[i])];
+  }
+  OKTETT_INLINE const double* corners(const FieldPart& p) const {
+    return pool_.corners.data() + 2 * std::size_t{p.corner};
   }
 
   const BlobTreePool& pool_;

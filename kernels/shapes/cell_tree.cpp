@@ -1,10 +1,16 @@
 #include "kernels/shapes/cell_tree.h"
 
+#include <utility>
+
+#include "core/parallel.h"
+
 namespace oktett {
 
 namespace {
 
 constexpr int kMaxDepth = 64;
+/// Halves of boxes in which fewer parts matter are not worth a task.
+constexpr std::size_t kTaskSize = 64;
 /// Time to visit a node of the scene's tree.
 constexpr double kNodeCost = 1;
 
@@ -21,7 +27,7 @@ double area(const CellBox& box) {
 /// Divides to the end, then keeps the divisions that are expected to save time (surface area heuristic).
 class Division {
  public:
-  Division(CellRule& rule, CellTree& tree, std::uint32_t element, std::vector<ExactCell>& cells)
+  Division(const CellRule& rule, CellTree& tree, std::uint32_t element, std::vector<ExactCell>& cells)
       : rule_(rule), tree_(tree), element_(element), cells_(cells) {}
 
   struct Part {
@@ -44,7 +50,7 @@ class Division {
     CellBox low = box, high = box;
     const double split = box.lo[axis] + e[axis] / 2;
     low.hi[axis] = high.lo[axis] = split;
-    const Part a = grow(low, part, depth + 1), b = grow(high, part, depth + 1);
+    const auto [a, b] = grow_both(low, high, part, depth + 1);
     if (a.cost == 0 && b.cost == 0 && tree_.nodes[a.node].kind == tree_.nodes[b.node].kind) {
       const bool outside = tree_.nodes[a.node].kind == CellNode::Kind::outside;
       tree_.nodes.resize(nodes);
@@ -62,6 +68,38 @@ class Division {
   }
 
  private:
+  std::pair<Part, Part> grow_both(const CellBox& low, const CellBox& high,
+                                  const std::vector<std::uint32_t>& part, int depth) {
+    if (part.size() < kTaskSize) {
+      const Part a = grow(low, part, depth);
+      return {a, grow(high, part, depth)};
+    }
+    CellTree other;
+    std::vector<ExactCell> cells;
+    Part a, b;
+    run_both([&] { a = grow(low, part, depth); },
+             [&] { b = Division(rule_, other, element_, cells).grow(high, part, depth); });
+    b.node = append(other, cells, b.node);
+    return {a, b};
+  }
+
+  /// Puts a part that grew by itself behind what there is; where its node `root` comes to stand.
+  std::uint32_t append(const CellTree& other, const std::vector<ExactCell>& cells, std::uint32_t root) {
+    const auto nodes = static_cast<std::uint32_t>(tree_.nodes.size());
+    const auto lists = static_cast<std::uint32_t>(tree_.lists.size());
+    for (CellNode node : other.nodes) {
+      if (node.kind <= CellNode::Kind::z) node.first += nodes, node.second += nodes;
+      if (node.kind == CellNode::Kind::leaf) node.first += lists;
+      tree_.nodes.push_back(node);
+    }
+    tree_.lists.insert(tree_.lists.end(), other.lists.begin(), other.lists.end());
+    for (ExactCell cell : cells) {
+      cell.begin += lists;
+      cells_.push_back(cell);
+    }
+    return root + nodes;
+  }
+
   Part finish(std::uint32_t node, bool outside) {
     tree_.nodes[node].kind = outside ? CellNode::Kind::outside : CellNode::Kind::inside;
     return {node, {}, 0};
@@ -77,7 +115,7 @@ class Division {
     return {node, box, area(box) * rule_.cost(part)};
   }
 
-  CellRule& rule_;
+  const CellRule& rule_;
   CellTree& tree_;
   std::uint32_t element_;
   std::vector<ExactCell>& cells_;
@@ -85,7 +123,7 @@ class Division {
 
 }  // namespace
 
-std::uint32_t CellTree::divide(CellRule& rule, const CellBox& box, std::span<const std::uint32_t> part,
+std::uint32_t CellTree::divide(const CellRule& rule, const CellBox& box, std::span<const std::uint32_t> part,
                                std::uint32_t element, std::vector<ExactCell>& cells) {
   return Division(rule, *this, element, cells).grow(box, part, 0).node;
 }

@@ -25,14 +25,14 @@ struct CellRange {
   double lo, hi;
 };
 
-/// What a function is made of.
+/// What a function is made of. Asked by several threads at once.
 class CellRule {
  public:
   virtual ~CellRule() = default;
   /// Encloses the function in a box. `part` is what matters in a box around it; `out` becomes what matters in
   /// this one.
   virtual CellRange narrow(const CellBox& box, std::span<const std::uint32_t> part,
-                           std::vector<std::uint32_t>& out) = 0;
+                           std::vector<std::uint32_t>& out) const = 0;
   /// Cells shorter than this are not divided.
   virtual double least_size(std::span<const std::uint32_t> part) const = 0;
   /// Time to look for crossings in a cell, in units of the time to visit a node.
@@ -52,8 +52,8 @@ struct CellTree {
   std::vector<std::uint32_t> lists;
 
   /// Divides `box`, in all of which `part` may matter, for the element; returns the root of its nodes. The
-  /// cells are appended to `cells` and refer to `lists`.
-  std::uint32_t divide(CellRule& rule, const CellBox& box, std::span<const std::uint32_t> part,
+  /// cells are appended to `cells` and refer to `lists`. In parallel; the same for any number of threads.
+  std::uint32_t divide(const CellRule& rule, const CellBox& box, std::span<const std::uint32_t> part,
                        std::uint32_t element, std::vector<ExactCell>& cells);
   /// The leaf below `root` that a point in the box is in. Points that are not in it lead anywhere.
   const CellNode& leaf_at(std::uint32_t root, const Vec3d& p) const;

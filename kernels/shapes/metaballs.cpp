@@ -13,7 +13,7 @@ namespace oktett {
 namespace {
 
 /// Cells are divided down to this, in radii of their smallest ball.
-constexpr double kLeastSize = 0.25;
+constexpr double kLeastSize = 0.5;
 /// Times relative to that of a node, measured with 8 rays at once: a cell, and each of its balls.
 constexpr double kCellCost = 6, kBallCost = 2;
 
@@ -24,7 +24,7 @@ class BallRule : public CellRule {
   BallRule(const std::vector<Ball>& balls, double iso) : balls_(balls), iso_(iso) {}
 
   CellRange narrow(const CellBox& box, std::span<const std::uint32_t> part,
-                   std::vector<std::uint32_t>& out) override {
+                   std::vector<std::uint32_t>& out) const override {
     double least = 0, most = 0, size = iso_;
     for (const std::uint32_t i : part) {
       const Ball& ball = balls_[i];

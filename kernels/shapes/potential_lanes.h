@@ -46,15 +46,24 @@ struct SegmentTrack {
   D a, s0, m, h0, h1, length;
 };
 
+/// How far h is below 0 or above 1; never falls with h.
+template <class D>
+OKTETT_INLINE Interval<D> beyond_ends(const SegmentTrack<D>& t, const Interval<D>& x) {
+  const Interval<D> h = x * t.h1 + Interval<D>(t.h0);
+  const D zero(0.0), one(1.0);
+  return interval::outward_sum(min(h.lo, zero) + max(h.lo - one, zero),
+                               min(h.hi, zero) + max(h.hi - one, zero));
+}
+
+/// R, without its derivative or with it.
+template <class D>
+OKTETT_INLINE Interval<D> square_values(const SegmentTrack<D>& t, const Interval<D>& x) {
+  return sqr(x - Interval<D>(t.s0)) * t.a + Interval<D>(t.m) + sqr(beyond_ends(t, x)) * t.length;
+}
 template <class D>
 OKTETT_INLINE Dual<Interval<D>> square_over(const SegmentTrack<D>& t, const Interval<D>& x) {
-  const Interval<D> q = x - Interval<D>(t.s0), h = x * t.h1 + Interval<D>(t.h0);
-  const D zero(0.0), one(1.0);
-  // How far h is below 0 or above 1; never falls with h.
-  const Interval<D> over =
-      interval::outward_sum(min(h.lo, zero) + max(h.lo - one, zero), min(h.hi, zero) + max(h.hi - one, zero));
-  return {sqr(q) * t.a + Interval<D>(t.m) + sqr(over) * t.length,
-          (q * t.a + over * t.h1 * t.length) * D(2.0)};
+  const Interval<D> q = x - Interval<D>(t.s0), over = beyond_ends(t, x);
+  return {square_values(t, x), (q * t.a + over * t.h1 * t.length) * D(2.0)};
 }
 
 template <class D>
@@ -147,6 +156,11 @@ OKTETT_INLINE Dual<Interval<D>> square_over(const FieldPart& part, const double*
   return {(edges.v + sqr(z)) * D(part.unit_square), (edges.d + z * t.z1 * D(2.0)) * D(part.unit_square)};
 }
 
+/// Those that end are zero from R = 1 on, exactly.
+inline bool potential_ends(PotentialKind kind) {
+  return kind != PotentialKind::inverse_square && kind != PotentialKind::gaussian;
+}
+
 /// A potential and its derivative by R.
 template <class D>
 OKTETT_INLINE void potential_at(PotentialKind kind, double d, const D& square, D& value, D& slope) {
@@ -184,24 +198,31 @@ OKTETT_INLINE void potential_at(PotentialKind kind, double d, const D& square, D
   }
 }
 
-/// Potentials fall with R and are convex in it: the ends of an interval tell all.
+/// Potentials fall with R and are convex in it: the ends of an interval tell all. First the values alone.
+template <class D>
+OKTETT_INLINE Interval<D> potential_over(const FieldPart& part, const Interval<D>& square) {
+  const D zero(0.0), error(0x1p-48);
+  const D near = max(square.lo, zero), far = max(square.hi, zero);
+  D most, least, slope;
+  potential_at(part.kind, part.d, near, most, slope);
+  potential_at(part.kind, part.d, far, least, slope);
+  const auto past = potential_ends(part.kind) ? near >= D(1.0) : zero > zero;
+  const Interval<D> v{max(least - (least + D(1.0)) * error, zero),
+                      select(past, zero, most + (most + D(1.0)) * error)};
+  return v * D(part.weight);
+}
 template <class D>
 OKTETT_INLINE Dual<Interval<D>> potential_over(const FieldPart& part, const Dual<Interval<D>>& square) {
   const D zero(0.0), error(0x1p-48);
   const D near = max(square.v.lo, zero), far = max(square.v.hi, zero);
-  D most, least, steepest, flattest;
-  potential_at(part.kind, part.d, near, most, steepest);
-  potential_at(part.kind, part.d, far, least, flattest);
-  // Those that end are zero from R = 1 on, exactly.
-  const bool ends = part.kind != PotentialKind::inverse_square && part.kind != PotentialKind::gaussian;
-  const auto past = ends ? near >= D(1.0) : zero > zero;
-  const Interval<D> v{max(least - (least + D(1.0)) * error, zero),
-                      select(past, zero, most + (most + D(1.0)) * error)};
+  D value, steepest, flattest;
+  potential_at(part.kind, part.d, near, value, steepest);
+  potential_at(part.kind, part.d, far, value, flattest);
+  const auto past = potential_ends(part.kind) ? near >= D(1.0) : zero > zero;
   const D slack = (abs(steepest) + D(1.0)) * error;
   Interval<D> slope{select(past, zero, steepest - slack), select(past, zero, min(flattest + slack, zero))};
   if (part.kind == PotentialKind::inverse_square) slope.hi = select(near <= D(kLeastSquare), zero, slope.hi);
-  const D weight(part.weight);
-  return {v * weight, slope * square.d * weight};
+  return {potential_over(part, square.v), slope * square.d * D(part.weight)};
 }
 
 }  // namespace field
