@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bench/povray_scene.h"
+#include "kernels/function_tape.h"
 
 namespace oktett::bench {
 
@@ -145,6 +146,23 @@ FieldObject metaballs(const double (&random)[6]) {
   return object;
 }
 
+/// A piece of a gyroid in a box. Its gradient is nowhere longer than 4 sqrt(12).
+FieldObject implicit(const double (&random)[6]) {
+  const double c = std::round(600 * (random[0] - 0.5)) / 1000;
+  const std::string text =
+      fmt::format("sin(4*x)*cos(4*y) + sin(4*y)*cos(4*z) + sin(4*z)*cos(4*x) - ({:.3f})", c);
+  ImplicitShape shape;
+  shape.function = compile_function(text);
+  shape.lo = {-0.9, -0.9, -0.9}, shape.hi = {0.9, 0.9, 0.9};
+  return {"isosurface { function { " + text +
+              " } contained_by { box { -0.9, 0.9 } } accuracy 0.0001 max_gradient 13.86 }",
+          ExactShape{shape}, [c](const Vec3l& p) {
+            const auto wave = [](long double x, long double y) { return std::sin(4 * x) * std::cos(4 * y); };
+            const long double f = wave(p.x, p.y) + wave(p.y, p.z) + wave(p.z, p.x) - c;
+            return std::max({f, std::abs(p.x) - 0.9L, std::abs(p.y) - 0.9L, std::abs(p.z) - 0.9L});
+          }};
+}
+
 }  // namespace
 
 std::vector<FieldKind> field_kinds() {
@@ -152,7 +170,8 @@ std::vector<FieldKind> field_kinds() {
       {"sphere", 10000, sphere},     {"torus", 900, torus},           {"cylinder", 900, cylinder},
       {"cone", 900, cone},           {"quadric", 900, quadric},       {"polyhedron", 900, polyhedron},
       {"quartic", 900, quartic},     {"revolution", 900, revolution}, {"superellipsoid", 900, superellipsoid},
-      {"metaballs", 225, metaballs}, {"csg", 900, rounded_cube},      {"csg_holes", 1, drilled_plate}};
+      {"metaballs", 225, metaballs}, {"implicit", 225, implicit},     {"csg", 900, rounded_cube},
+      {"csg_holes", 1, drilled_plate}};
 }
 
 }  // namespace oktett::bench
