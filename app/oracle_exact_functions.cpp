@@ -194,7 +194,7 @@ std::vector<Named> torn(CaseRandom&) {
        [](const Vec3l& p) {
          return p.y - 0.2L * std::floor(4 * p.x) - 0.1L * (p.z > 0 ? 1 : p.z < 0 ? -1 : 0);
        },
-       0.9},
+       0.85},
       {"asin(x^2 + y^2) - 1 + z^2",
        [](const Vec3l& p) { return std::asin(p.x * p.x + p.y * p.y) - 1 + p.z * p.z; }, 1.2},
       {"y - x^z*0.5",

@@ -27,12 +27,15 @@ std::uint64_t uncertified_count();
 
 /// Steps after which a ray is given up.
 inline constexpr int kMaxSteps = 1 << 14;
-/// Marks crossings where f jumps, through a pole, by a step or from defined to undefined; also where it is
-/// infinitely steep.
+/// Marks crossings where f jumps, through a pole or from defined to undefined.
 inline constexpr int kJumpPart = 7;
 
 /// What to do with sign changes where f is not bounded.
-enum class Jumps { list, drop };
+enum class Jumps {
+  drop,        ///< leave them out
+  list,        ///< list them as kJumpPart
+  list_steep,  ///< and as kJumpPart also those where f is bounded, but steps or is infinitely steep
+};
 
 /// 1 or -1 where an enclosure tells the sign, else 0.
 template <class D>
@@ -160,7 +163,7 @@ struct March {
   }
 
   OKTETT_INLINE void push(const M& turned, const D& reached) {
-    const auto listed = jumps == Jumps::list ? turned : turned & ~(jump == D(1.0));
+    const auto listed = jumps == Jumps::drop ? turned & ~(jump == D(1.0)) : turned;
     for (int k = 0; k < K; ++k) {
       const auto here = listed & (count == D(k));
       found[k].l = select(here, g, found[k].l), found[k].r = select(here, reached, found[k].r);
@@ -170,8 +173,8 @@ struct March {
   }
 };
 
-/// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Their parts are 0 or, with
-/// Jumps::list, kJumpPart. A crossing that is not told apart from b may lie between b and `limit`.
+/// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Their parts are 0 or
+/// kJumpPart. A crossing that is not told apart from b may lie between b and `limit`.
 /// Returns the first certain sign from a on, 0 if there is none.
 template <int K, class Field, class D>
 OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const typename D::M& active,
@@ -184,7 +187,7 @@ OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit
     if (none(here)) break;
     const Bracket<D>& bracket = walk.found[k];
     const D x = refine(field, bracket, tolerance, here);
-    const auto wall = jumps == Jumps::list ? here & (bracket.jump > D(0.0)) : here & ~here;
+    const auto wall = jumps == Jumps::list_steep ? bracket.jump > D(0.0) : bracket.jump == D(1.0);
     list.push(here, x, -bracket.before, select(wall, D(kJumpPart), D(0.0)));
   }
   list.finish(select(walk.count < D(K), D(roots::kNoRoot), walk.t));

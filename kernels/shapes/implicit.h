@@ -53,7 +53,8 @@ struct Implicit {
         {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)},
         {line.d.x * size, line.d.y * size, line.d.z * size}};
     Crossings<kOwn, D> own;
-    const D sign = interval::march<kOwn>(field, zero, length, length, active, interval::Jumps::list, own);
+    const D sign =
+        interval::march<kOwn>(field, zero, length, length, active, interval::Jumps::list_steep, own);
     const auto to_t = [&](const D& s) { return select(s < D(roots::kNoRoot), range.a + s, s); };
     for (int k = 0; k < kOwn; ++k) own.t[k] = to_t(own.t[k]);
     own.up_to = to_t(own.up_to);

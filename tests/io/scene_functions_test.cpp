@@ -39,26 +39,26 @@ TEST(SceneFunctions, ErrorsHaveTheirPlace) {
   const struct {
     std::string function, error;
   } kCases[] = {
-      {"", "scene.yaml:2:33: bad function: expected a number, a name or '(' (column 1)\n  \n  ^"},
-      {"x + ", "scene.yaml:2:37: bad function: expected a number, a name or '(' (column 5)\n  x + \n      ^"},
-      {"x y", "scene.yaml:2:35: bad function: expected an operator or the end (column 3)\n  x y\n    ^"},
-      {"x + w", "scene.yaml:2:37: bad function: unknown name 'w'"},
+      {"", "scene.yaml:2:34: bad function: expected a number, a name or '(' (column 1)\n  \n  ^"},
+      {"x + ", "scene.yaml:2:38: bad function: expected a number, a name or '(' (column 5)\n  x + \n      ^"},
+      {"x y", "scene.yaml:2:36: bad function: expected an operator or the end (column 3)\n  x y\n    ^"},
+      {"x + w", "scene.yaml:2:38: bad function: unknown name 'w'"},
       {"x + sine(y)",
-       "scene.yaml:2:37: bad function: unknown name 'sine'; did you mean 'sin'? (column 5)\n"
+       "scene.yaml:2:38: bad function: unknown name 'sine'; did you mean 'sin'? (column 5)\n"
        "  x + sine(y)\n      ^"},
       {"(x + (y - z)",
-       "scene.yaml:2:45: bad function: expected ')' for the '(' at column 1 (column 13)\n"
+       "scene.yaml:2:46: bad function: expected ')' for the '(' at column 1 (column 13)\n"
        "  (x + (y - z)\n              ^"},
-      {"x)", "scene.yaml:2:34: bad function: ')' without '(' (column 2)\n  x)\n   ^"},
-      {"atan2(x)", "scene.yaml:2:40: bad function: atan2 takes 2 arguments"},
+      {"x)", "scene.yaml:2:35: bad function: ')' without '(' (column 2)\n  x)\n   ^"},
+      {"atan2(x)", "scene.yaml:2:41: bad function: atan2 takes 2 arguments"},
       {"x + sqrt(-1)",
-       "scene.yaml:2:37: bad function: the value is not a finite number (column 5)\n"
+       "scene.yaml:2:38: bad function: the value is not a finite number (column 5)\n"
        "  x + sqrt(-1)\n      ^"},
-      {"x/0", "scene.yaml:2:34: bad function: division by zero (column 2)\n  x/0\n   ^"},
-      {"(-2)^x", "scene.yaml:2:37: bad function: only a positive number may have an exponent with x, y or z"},
-      {repeat("(", 201) + "x" + repeat(")", 201), "scene.yaml:2:233: bad function: nested deeper than 200"},
-      {repeat("sin(", 300) + "x" + repeat(")", 300), "scene.yaml:2:8"},
-      {"x" + repeat(" + 1", 5000), "scene.yaml:2:33: bad function: longer than 16384 bytes"},
+      {"x/0", "scene.yaml:2:35: bad function: division by zero (column 2)\n  x/0\n   ^"},
+      {"(-2)^x", "scene.yaml:2:38: bad function: only a positive number may have an exponent with x, y or z"},
+      {repeat("(", 201) + "x" + repeat(")", 201), "scene.yaml:2:234: bad function: nested deeper than 200"},
+      {repeat("sin(", 300) + "x" + repeat(")", 300), "scene.yaml:2:"},
+      {"x" + repeat(" + 1", 5000), "scene.yaml:2:34: bad function: longer than 16384 bytes"},
   };
   SceneFiles files;
   for (const auto& c : kCases) {

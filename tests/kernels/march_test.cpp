@@ -194,18 +194,33 @@ TEST(March, SettlesTheEnd) {
   }
 }
 
+/// Steps and infinite slopes are told from other crossings, if that is asked for.
+TEST(March, TellsSteps) {
+  const auto step = [](const J& t) { return floor(t + constant(0.3)) - constant(0.5); };
+  const auto root = [](const J& t) {
+    return sqrt(abs(t - constant(0.7))) * (t - constant(0.7)) + sign(t - constant(0.7));
+  };
+  for (const auto& [f, at] : {std::pair<std::function<J(const J&)>, double>{step, 0.7}, {root, 0.7}}) {
+    for (const auto jumps : {interval::Jumps::list, interval::Jumps::drop, interval::Jumps::list_steep}) {
+      const Found found = find(f, 0, 1, jumps);
+      ASSERT_EQ(found.t.size(), 1u);
+      EXPECT_NEAR(found.t[0], at, 1e-11);
+      EXPECT_EQ(found.part[0], jumps == interval::Jumps::list_steep ? interval::kJumpPart : 0);
+    }
+  }
+  EXPECT_EQ(find([](const J& t) { return t - constant(0.3); }, 0, 1, interval::Jumps::list_steep).part[0], 0);
+}
+
 /// Ordinary functions never exhaust the steps.
 TEST(March, GivesUpOnlyOnMonsters) {
   const std::uint64_t before = interval::uncertified_count();
   find([](const J& t) { return sin(constant(100) * t) + cos(constant(31) * t * t) - constant(0.1); }, 0, 10);
   find([](const J& t) { return sin(constant(1) / t); }, 1e-3, 1);
   EXPECT_EQ(interval::uncertified_count(), before);
-  // Not defined on a part of the range.
-  const Found half = find([](const J& t) { return constant(1) / floor(t); }, -0.9, 0.9);
-  EXPECT_EQ(half.first_sign, -1);
-  ASSERT_EQ(half.t.size(), 1u);
-  EXPECT_NEAR(half.t[0], 0, 1e-11);
-  EXPECT_EQ(half.part[0], interval::kJumpPart);
+  // Surely not defined: outside.
+  const Found none = find([](const J& t) { return constant(1) / (floor(t) - floor(t)); }, 0.1, 0.9);
+  EXPECT_EQ(none.first_sign, 1);
+  EXPECT_TRUE(none.t.empty());
   EXPECT_EQ(interval::uncertified_count(), before);
   // Zero with a step every 1e-9, for all that intervals can tell.
   const auto monster = [](const J& t) {
