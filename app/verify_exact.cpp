@@ -278,17 +278,12 @@ class Checker {
     next->push_back({outwards ? out : in, 0, Vec3f(d), std::numeric_limits<float>::infinity()});
   }
 
-  /// Whether a surface with an edge or a tip passes through the box of the error bound, by samples.
+  /// Whether a surface with an edge or a tip passes through the box of the error bound, by ever more samples.
   template <class F>
   static bool passes_through(const F& f, const Surface& s, const Vec3f& out, const Vec3f& in, const Ray& ray,
                              long double t) {
     bool negative = false, positive = false;
     const auto look = [&](const auto& p) { (f(p) < 0 ? negative : positive) = true; };
-    for (int i = 0; i < 125; ++i) {
-      const Vec3f step{static_cast<float>(i % 5 - 2), static_cast<float>(i / 5 % 5 - 2),
-                       static_cast<float>(i / 25 - 2)};
-      look(s.position + step * s.position_error * 0.5f);
-    }
     for (int i = 0; i <= 16; ++i) look(in + (out - in) * (static_cast<float>(i) / 16));
     // A sliver may be thinner than all that, but the ray has met it.
     for (int i = -64; i <= 64; ++i) {
@@ -296,6 +291,13 @@ class Checker {
       bool within = true;
       for (int k = 0; k < 3; ++k) within &= std::abs(p[k] - s.position[k]) <= s.position_error[k];
       if (within) look(p);
+    }
+    for (int side = 2; side <= 16 && !(negative && positive); side *= 2) {
+      const int row = 2 * side + 1;
+      const auto at = [&](int axis, int i) {
+        return s.position[axis] + static_cast<long double>(s.position_error[axis]) * (i % row - side) / side;
+      };
+      for (int i = 0; i < row * row * row; ++i) look(Vec3l{at(0, i), at(1, i / row), at(2, i / row / row)});
     }
     return negative && positive;
   }
