@@ -23,44 +23,69 @@ Real segment_square(const Vec3l& a, const Vec3l& b, const Vec3l& p) {
   return square(p - a - e * h);
 }
 
-Real skeleton_square(const PointSkeleton& s, const Vec3l& p) { return square(p - widen(s.center)); }
+/// A skeleton with what does not depend on the place.
+struct Body {
+  /// Of an ellipsoid, or two in a polygon's plane and its normal.
+  Vec3l axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
 
-Real skeleton_square(const SegmentSkeleton& s, const Vec3l& p) {
+Body body_of(const decltype(FieldElement::skeleton)& skeleton) {
+  Body body;
+  if (const auto* ellipsoid = std::get_if<EllipsoidSkeleton>(&skeleton)) {
+    // Turned about x, y and z in that order.
+    for (int k = 0; k < 3; ++k) {
+      const Real angle = ellipsoid->rotation[k] * std::numbers::pi_v<Real> / 180, c = std::cos(angle),
+                 d = std::sin(angle);
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      for (Vec3l& v : body.axis) {
+        const Real x = v[i], y = v[j];
+        v[i] = c * x - d * y, v[j] = d * x + c * y;
+      }
+    }
+  } else if (const auto* polygon = std::get_if<PolygonSkeleton>(&skeleton)) {
+    Vec3l n{0, 0, 0};
+    const Vec3l first = widen(polygon->vertices[0]);
+    for (std::size_t i = 1; i + 1 < polygon->vertices.size(); ++i)
+      n += cross(widen(polygon->vertices[i]) - first, widen(polygon->vertices[i + 1]) - first);
+    const Vec3l along = widen(polygon->vertices[1]) - first;
+    body.axis[2] = n / std::sqrt(square(n));
+    body.axis[0] = along / std::sqrt(square(along));
+    body.axis[1] = cross(body.axis[2], body.axis[0]);
+  }
+  return body;
+}
+
+Real skeleton_square(const PointSkeleton& s, const Body&, const Vec3l& p) {
+  return square(p - widen(s.center));
+}
+
+Real skeleton_square(const SegmentSkeleton& s, const Body&, const Vec3l& p) {
   return segment_square(widen(s.from), widen(s.to), p);
 }
 
-/// The angles at which the corners are seen from the foot of p add up to a full turn if it is inside.
-Real skeleton_square(const PolygonSkeleton& s, const Vec3l& p) {
-  Vec3l n{0, 0, 0};
+/// The border winds about the foot of p if that is inside: it passes the half-line from there to the right,
+/// up or down, with the foot to its left or right.
+Real skeleton_square(const PolygonSkeleton& s, const Body& body, const Vec3l& p) {
   Real edge = HUGE_VALL;
+  int winding = 0;
   const std::size_t count = s.vertices.size();
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3l a = widen(s.vertices[i]), b = widen(s.vertices[(i + 1) % count]);
-    n += cross(a - widen(s.vertices[0]), b - widen(s.vertices[0]));
     edge = std::min(edge, segment_square(a, b, p));
+    const Real ax = dot(a - p, body.axis[0]), ay = dot(a - p, body.axis[1]);
+    const Real bx = dot(b - p, body.axis[0]), by = dot(b - p, body.axis[1]);
+    const Real side = ax * by - ay * bx;
+    if (ay <= 0 && by > 0 && side > 0) ++winding;
+    if (by <= 0 && ay > 0 && side < 0) --winding;
   }
-  n = n / std::sqrt(square(n));
-  const Real height = dot(p - widen(s.vertices[0]), n);
-  const Vec3l foot = p - n * height;
-  Real turn = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3l a = widen(s.vertices[i]) - foot, b = widen(s.vertices[(i + 1) % count]) - foot;
-    turn += std::atan2(dot(cross(a, b), n), dot(a, b));
-  }
-  return std::abs(turn) > std::numbers::pi_v<Real> ? height * height : edge;
+  const Real height = dot(p - widen(s.vertices[0]), body.axis[2]);
+  return winding != 0 ? height * height : edge;
 }
 
-Real skeleton_square(const EllipsoidSkeleton& s, const Vec3l& p) {
-  Vec3l q = p - widen(s.center);
-  // Turned about x, y and z in that order; here back again.
-  for (int k = 2; k >= 0; --k) {
-    const Real angle = -s.rotation[k] * std::numbers::pi_v<Real> / 180;
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const Real c = std::cos(angle), d = std::sin(angle), x = q[i], y = q[j];
-    q[i] = c * x - d * y, q[j] = d * x + c * y;
-  }
-  for (int k = 0; k < 3; ++k) q[k] /= s.radii[k];
-  return square(q);
+Real skeleton_square(const EllipsoidSkeleton& s, const Body& body, const Vec3l& p) {
+  const Vec3l q = p - widen(s.center);
+  return square(
+      {dot(q, body.axis[0]) / s.radii.x, dot(q, body.axis[1]) / s.radii.y, dot(q, body.axis[2]) / s.radii.z});
 }
 
 Real potential(const Potential& p, Real r2) {
@@ -80,17 +105,28 @@ Real potential(const Potential& p, Real r2) {
   }
 }
 
+/// A blob tree with what does not depend on the place.
+struct Field {
+  explicit Field(BlobTreeShape tree) : shape(std::move(tree)) {
+    for (const FieldElement& e : shape.elements) bodies.push_back(body_of(e.skeleton));
+  }
+  BlobTreeShape shape;
+  std::vector<Body> bodies;
+};
+
 /// The value of the blend that ends before `at`; moves `at` to where it begins.
-Real blend(const BlobTreeShape& s, std::size_t& at, const Vec3l& p) {
+Real blend(const Field& field, std::size_t& at, const Vec3l& p) {
+  const BlobTreeShape& s = field.shape;
   const Blend& b = s.blends[--at];
   if (b.op == Blend::Op::element) {
     const FieldElement& e = s.elements[b.element];
-    const Real r2 =
-        std::visit([&](const auto& skeleton) { return skeleton_square(skeleton, p); }, e.skeleton);
+    const Real r2 = std::visit(
+        [&](const auto& skeleton) { return skeleton_square(skeleton, field.bodies[b.element], p); },
+        e.skeleton);
     return e.potential.weight * potential(e.potential, r2);
   }
   std::vector<Real> v(b.count);
-  for (std::size_t k = b.count; k-- > 0;) v[k] = blend(s, at, p);
+  for (std::size_t k = b.count; k-- > 0;) v[k] = blend(field, at, p);
   Real all = v[0];
   for (std::size_t k = 1; k < v.size(); ++k) {
     switch (b.op) {
@@ -138,10 +174,10 @@ ExactOracle oracle_of(std::string name, const BlobTreeShape& shape) {
       for (const Vec3d& v : s->vertices) add(v);
     if (const auto* s = std::get_if<EllipsoidSkeleton>(&e.skeleton)) r *= extent_of(*s), add(s->center);
   }
-  const auto data = std::make_shared<BlobTreeShape>(shape);
+  const auto data = std::make_shared<const Field>(shape);
   o.f = [data](const Vec3l& p) {
-    std::size_t at = data->blends.size();
-    return data->iso - blend(*data, at, p);
+    std::size_t at = data->shape.blends.size();
+    return data->shape.iso - blend(*data, at, p);
   };
   return o;
 }

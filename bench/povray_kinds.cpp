@@ -166,12 +166,19 @@ FieldObject implicit(const double (&random)[6]) {
 }  // namespace
 
 std::vector<FieldKind> field_kinds() {
-  return {
-      {"sphere", 10000, sphere},     {"torus", 900, torus},           {"cylinder", 900, cylinder},
-      {"cone", 900, cone},           {"quadric", 900, quadric},       {"polyhedron", 900, polyhedron},
-      {"quartic", 900, quartic},     {"revolution", 900, revolution}, {"superellipsoid", 900, superellipsoid},
-      {"metaballs", 225, metaballs}, {"implicit", 225, implicit},     {"csg", 900, rounded_cube},
-      {"csg_holes", 1, drilled_plate}};
+  return {{"sphere", 10000, sphere},
+          {"torus", 900, torus},
+          {"cylinder", 900, cylinder},
+          {"cone", 900, cone},
+          {"quadric", 900, quadric},
+          {"polyhedron", 900, polyhedron},
+          {"quartic", 900, quartic},
+          {"revolution", 900, revolution},
+          {"superellipsoid", 900, superellipsoid},
+          {"metaballs", 225, metaballs},
+          {"implicit", 225, implicit},
+          {"csg", 900, rounded_cube},
+          {"csg_holes", 1, drilled_plate}};
 }
 
 }  // namespace oktett::bench

@@ -136,7 +136,9 @@ struct March {
       value = select(smooth & mean.is_bounded(), intersect(f.v, mean), f.v);
       sign = select(open, certain_sign(value), sign);
       open = live & (sign == zero);
-      noise = open & smooth & (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16));
+      // Where the sign in the middle is certain, as beside a pole, a wide enclosure there is no noise.
+      noise = open & smooth & (certain_sign(at_m) == zero) &
+              (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16));
     }
     auto known = live & ~open, monotone = open & smooth & ((zero < f.d.lo) | (f.d.hi < zero));
     D reached = t;

@@ -74,6 +74,18 @@ TEST(March, FindsKnownRoots) {
                 10 * M_PI, 11 * M_PI, 12 * M_PI, 13 * M_PI, 14 * M_PI, 15 * M_PI});
 }
 
+/// Beside a pole what is enclosed is wide, though its sign is certain: that is not the noise of a touch.
+TEST(March, PolesInTheMiddleAreNoNoise) {
+  const double root = std::sqrt(0.01 / 0.6);
+  expect_roots(find(
+                   [](const J& t) {
+                     const J z = t + J{I(D(-1e-17), D(3e-17)), I(D(0.0))};
+                     return constant(0.6) - constant(0.01) / (sqr(z) + constant(1e-60));
+                   },
+                   -0.5, 0.5),
+               {-root, root});
+}
+
 /// Random roots, far apart or close together, are all found, within what doubles tell.
 TEST(March, FindsRandomRoots) {
   std::mt19937 random(3);
