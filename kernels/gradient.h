@@ -105,7 +105,8 @@ OKTETT_INLINE Gradient<D, W> sqr(const Gradient<D, W>& a) {
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> sqrt(const Gradient<D, W>& a) {
   const D r = sqrt(W == Walls::flat ? a.v : abs(a.v));
-  return gradient::chain(a, r, D(0.5) / gradient::divisor<W>(r));
+  const D below = W == Walls::flat ? r : gradient::divisor<W>(abs(a.v));
+  return gradient::chain(a, r, D(0.5) / below);
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> abs(const Gradient<D, W>& a) {
@@ -122,7 +123,8 @@ OKTETT_INLINE Gradient<D, W> max(const Gradient<D, W>& a, const Gradient<D, W>& 
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> exp(const Gradient<D, W>& a) {
   const D e = lane::exp2(a.v * D(std::numbers::log2e));
-  return gradient::chain(a, e, e);
+  // x^z is exp(z log(x)).
+  return gradient::chain(a, e, W == Walls::flat ? e : max(e, D(1.0)));
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> log(const Gradient<D, W>& a) {
@@ -151,7 +153,7 @@ OKTETT_INLINE Gradient<D, W> pow(const Gradient<D, W>& a, double y) {
   const D magnitude = lane::pow(max(x, D(0.0)), D(y < 0 ? -y : y), exponent);
   const auto defined = y < 0 ? x > D(0.0) : x >= D(0.0);
   const D p = select(defined, y < 0 ? D(1.0) / magnitude : magnitude, gradient::nan<D>());
-  return gradient::chain(a, p, D(y) * p / x);
+  return gradient::chain(a, p, D(y) * (W == Walls::flat ? p : max(p, D(1.0))) / x);
 }
 template <class D, Walls W>
 OKTETT_INLINE void sin_cos(const Gradient<D, W>& a, Gradient<D, W>& sin, Gradient<D, W>& cos) {
@@ -185,11 +187,11 @@ OKTETT_INLINE Gradient<D, W> atan(const Gradient<D, W>& a) {
 }
 namespace gradient {
 
-/// sqrt(1 - x^2).
+/// sqrt(1 - x^2); near walls its square.
 template <Walls W, class D>
 OKTETT_INLINE D cosine_of_asin(const D& x) {
   const D square = (D(1.0) - x) * (D(1.0) + x);
-  return divisor<W>(sqrt(W == Walls::flat ? square : abs(square)));
+  return W == Walls::flat ? sqrt(square) : divisor<W>(abs(square));
 }
 template <Walls W, class D>
 OKTETT_INLINE D sine_range(const D& x) {

@@ -26,7 +26,7 @@ void count_uncertified(int rays);
 std::uint64_t uncertified_count();
 
 /// Steps after which a ray is given up.
-inline constexpr int kMaxSteps = 1 << 14;
+inline constexpr int kMaxSteps = 1 << 16;
 /// Marks crossings where f jumps, through a pole or from defined to undefined.
 inline constexpr int kJumpPart = 7;
 

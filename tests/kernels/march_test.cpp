@@ -223,6 +223,21 @@ TEST(March, TellsSteps) {
   EXPECT_EQ(find([](const J& t) { return t - constant(0.3); }, 0, 1, interval::Jumps::list_steep).part[0], 0);
 }
 
+/// Into the wall of a logarithm at a small angle: steps are eight hundredths of a per cent of what is left.
+TEST(March, ReachesWallsAtSmallAngles) {
+  const std::uint64_t before = interval::uncertified_count();
+  const Found found = find(
+      [](const J& t) {
+        const J x = constant(1) + t, y = constant(-2.005) * t;
+        return log(sqr(x) + y - sqr(t) - constant(1) + constant(0.0025)) - constant(50);
+      },
+      0, 4, interval::Jumps::list_steep);
+  EXPECT_EQ(interval::uncertified_count(), before);
+  ASSERT_EQ(found.t.size(), 1u);
+  EXPECT_NEAR(found.t[0], 0.5, 1e-9);
+  EXPECT_EQ(found.part[0], interval::kJumpPart);
+}
+
 /// Ordinary functions never exhaust the steps.
 TEST(March, GivesUpOnlyOnMonsters) {
   const std::uint64_t before = interval::uncertified_count();
