@@ -94,8 +94,14 @@ class AlongRay {
     if (ends(t) > 0) return Crossing::no;
     if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
     // Cusps may be thinner than what rounding to float moves t by.
-    for (int i = 1; i < kFineSamples; ++i)
-      if (((*this)(t - s + 2 * s * i / kFineSamples) < 0) != (before < 0)) return Crossing::nearly;
+    long double l = t - s, fl = before, steepest = 0, cliff = l;
+    for (int i = 1; i < kFineSamples; ++i) {
+      const long double r = t - s + 2 * s * i / kFineSamples, fr = (*this)(r);
+      if ((fr < 0) != (before < 0)) return Crossing::nearly;
+      if (std::abs(fr - fl) > steepest) steepest = std::abs(fr - fl), cliff = l;
+      l = r, fl = fr;
+    }
+    if (hides_at_cliff(cliff, cliff + 2 * s / kFineSamples)) return Crossing::nearly;
     // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
     const long double off = 0x1p-14L * size_,
                       rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
@@ -105,6 +111,19 @@ class AlongRay {
   long double begin = 0, end = -1;
 
  private:
+  /// Whether f, of one sign at l and r, has the other one next to where it is steepest.
+  bool hides_at_cliff(long double l, long double r) const {
+    long double fl = (*this)(l), fr = (*this)(r);
+    for (int k = 0; k < 64; ++k) {
+      const long double mid = l + (r - l) / 2, f = (*this)(mid);
+      if ((f < 0) != (fl < 0)) return true;
+      if (std::abs(f - fl) > std::abs(fr - f))
+        r = mid, fr = f;
+      else
+        l = mid, fl = f;
+    }
+    return false;
+  }
   const std::function<long double(const Vec3l&)>&f_, &where_;
   Vec3l o_, d_;
   long double size_ = 0;
