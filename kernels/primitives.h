@@ -41,6 +41,8 @@ enum class Kind : std::uint8_t {
   metaballs,
   blobtree,
   implicit,
+  sphereflake,
+  menger,
   triangle,
   csg,
   instance
