@@ -43,6 +43,9 @@ enum class Kind : std::uint8_t {
   implicit,
   sphereflake,
   menger,
+  ifs,
+  julia,
+  terrain,
   triangle,
   csg,
   instance

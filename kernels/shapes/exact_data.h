@@ -148,9 +148,10 @@ struct ImplicitShape {
 };
 
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
-                               PolynomialShape, BlobShape, RevolutionShape, LatheShape, SuperquadricShape,
-                               MetaballsShape, BlobTreeShape, ImplicitShape, SphereflakeShape, MengerShape>;
+using ExactForm =
+    std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape, PolynomialShape,
+                 BlobShape, RevolutionShape, LatheShape, SuperquadricShape, MetaballsShape, BlobTreeShape,
+                 ImplicitShape, SphereflakeShape, MengerShape, IfsShape, JuliaShape, TerrainShape>;
 
 struct ExactShape {
   ExactForm form;

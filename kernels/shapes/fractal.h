@@ -38,6 +38,45 @@ struct FractalCrossing {
 /// counts as closed, so that every query sees the same crossings.
 inline bool same_float(double a, double b) { return static_cast<float>(a) == static_cast<float>(b); }
 
+/// Makes a list of crossings out of what a walk meets, in ascending order.
+class TurnList {
+ public:
+  TurnList(FractalCrossing* out, int room) : out_(out), room_(room) {}
+
+  int count() const { return count_; }
+  bool full() const { return count_ == room_; }
+  /// Whether the line is inside, as far as the walk knows.
+  bool inside() const { return inside_ && !leaves_; }
+  void begin(bool inside) { inside_ = inside; }
+
+  void enter(const FractalCrossing& c) {
+    pass(c.t);
+    // What was open for no longer than rounding was not.
+    if (leaves_)
+      leaves_ = false;
+    else if (!inside_ && !full())
+      out_[count_++] = c, inside_ = true;
+  }
+  void leave(const FractalCrossing& c) {
+    if (inside_ && !leaves_) left_ = c, leaves_ = true;
+  }
+  /// The walk has come to t.
+  void pass(double t) {
+    if (leaves_ && !same_float(left_.t, t)) finish();
+  }
+  void finish() {
+    if (!leaves_) return;
+    if (!full()) out_[count_++] = left_;
+    inside_ = leaves_ = false;
+  }
+
+ private:
+  FractalCrossing* out_;
+  int room_, count_ = 0;
+  bool inside_ = false, leaves_ = false;
+  FractalCrossing left_;
+};
+
 /// F::find for each lane: up to K crossings in ascending order.
 template <class F, int K, class D>
 void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, const Line<D>& line,

@@ -67,29 +67,28 @@ class MengerWalk {
       : e_(e), query_(query), line_(query, e.side) {}
 
   int find(FractalCrossing* out, int room) {
+    TurnList turns(out, room);
     Gate gate;  // how the current cell is entered
     if (!enter(gate)) return 0;
     bool known = query_.a < gate.t;  // begins outside
     if (!known) gate.t = query_.a;
-    bool inside = false, leaves = false;  // as far as told; whether `left` is to be told
-    Gate left;
-    int count = 0, level = 0;
-    while (level >= 0 && gate.t <= query_.b && count < room) {
+    int level = 0;
+    while (level >= 0 && gate.t <= query_.b && !turns.full()) {
       Cell cell;
       const bool solid = descend(gate.t, level, cell);
-      if (!known) known = true, inside = solid;
-      if (solid && !inside) tell(gate, -1, out[count++]), inside = true;
-      if (!solid && inside && !leaves) left = gate, leaves = true;
-      // What was open for no longer than rounding was not.
-      if (solid) leaves = false;
+      if (!known)
+        known = true, turns.begin(solid);
+      else if (solid && !turns.inside())
+        turns.enter(turn_at(gate, -1));
+      else if (!solid && turns.inside())
+        turns.leave(turn_at(gate, 1));
       gate = cell.exit;
       while (level >= 0 && !(gate.t < path_[level].exit.t)) --level;
-      if (leaves && count < room && !same_float(left.t, gate.t))
-        tell(left, 1, out[count++]), inside = leaves = false;
+      turns.pass(gate.t);
     }
-    if (level < 0 && inside && !leaves && gate.t <= query_.b) left = gate, leaves = true;
-    if (leaves && count < room) tell(left, 1, out[count++]);
-    return count;
+    if (level < 0 && turns.inside() && gate.t <= query_.b) turns.leave(turn_at(gate, 1));
+    turns.finish();
+    return turns.count();
   }
 
  private:
@@ -144,16 +143,17 @@ class MengerWalk {
 
   double size_of(int level) const { return kPowers.at[e_.depth - level]; }
 
-  void tell(const Gate& gate, double turn, FractalCrossing& c) const {
-    c = {};
+  FractalCrossing turn_at(const Gate& gate, double turn) const {
+    FractalCrossing c;
     c.t = gate.t, c.turn = turn, c.part = line_.face(gate.axis, turn);
-    if (!query_.with_surface) return;
+    if (!query_.with_surface) return c;
     c.point = query_.o + query_.d * gate.t;
     c.point[gate.axis] = gate.plane * (2 / e_.side) - 1;
     c.normal[gate.axis] = line_.way(gate.axis) * turn;
     const int u = (gate.axis + 1) % 3, v = (gate.axis + 2) % 3;
     c.u = 0.5 * (c.point[u] + 1), c.v = 0.5 * (c.point[v] + 1);
     c.tangent[u] = 2;
+    return c;
   }
 
   const MengerElement& e_;

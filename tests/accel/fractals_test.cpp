@@ -4,8 +4,11 @@
 #include <limits>
 
 #include "core/random.h"
+#include "kernels/shapes/ifs.h"
+#include "kernels/shapes/julia.h"
 #include "kernels/shapes/menger.h"
 #include "kernels/shapes/sphereflake.h"
+#include "kernels/shapes/terrain.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/support/convex_union.h"
 
@@ -19,6 +22,48 @@ constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numer
 
 SphereflakeShape flake(std::uint32_t depth, double ratio = 1.0 / 3) { return {depth, ratio}; }
 MengerShape sponge(std::uint32_t depth) { return {depth}; }
+
+Affine shrink(double by, const Vec3d& to) { return Affine::translation(to) * Affine::scaling({by, by, by}); }
+
+/// Sierpinski's tetrahedron.
+IfsShape tetrahedron(std::uint32_t depth, IfsShape::Base base = IfsShape::Base::ball) {
+  IfsShape s;
+  for (const Vec3d& to : {Vec3d{1, 1, 1}, Vec3d{1, -1, -1}, Vec3d{-1, 1, -1}, Vec3d{-1, -1, 1}})
+    s.maps.push_back(shrink(0.5, to * 0.5));
+  s.depth = depth, s.base = base;
+  return s;
+}
+/// Menger's sponge as an iterated function system.
+IfsShape sponge_by_maps(std::uint32_t depth) {
+  IfsShape s;
+  for (int i = 0; i < 27; ++i) {
+    const Vec3d to{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
+    if ((to.x == 0) + (to.y == 0) + (to.z == 0) < 2) s.maps.push_back(shrink(1.0 / 3, to * (2.0 / 3)));
+  }
+  s.depth = depth, s.base = IfsShape::Base::box;
+  return s;
+}
+/// A plant of maps that turn, flatten and mirror.
+IfsShape plant(std::uint32_t depth) {
+  IfsShape s;
+  s.maps = {
+      Affine::translation({0, 0.5, 0}) * Affine::rotation({0, 40, 12}) * Affine::scaling({0.8, 0.8, 0.8}),
+      Affine::translation({0.2, 0.1, 0}) * Affine::rotation({20, 0, -50}) * Affine::scaling({-0.4, 0.5, 0.4}),
+      Affine::scaling({0.1, 0.4, 0.1})};
+  s.depth = depth, s.every_level = true;
+  return s;
+}
+JuliaShape julia(std::uint32_t iterations) {
+  JuliaShape s;
+  s.c[0] = -0.2, s.c[1] = 0.6, s.c[2] = 0.2, s.c[3] = 0.2;
+  s.iterations = iterations;
+  return s;
+}
+TerrainShape terrain(std::uint32_t depth, double roughness = 0.5) {
+  TerrainShape s;
+  s.depth = depth, s.roughness = roughness, s.seed = 3;
+  return s;
+}
 
 /// Children in the order of angles, each found by turning the parent's own axes.
 void grow(ConvexUnion& all, const Vec3l& c, long double r, const Vec3l& x, const Vec3l& y,
@@ -119,6 +164,234 @@ TEST(Menger, AgreesWithAllItsCubes) {
     expect_agreement(sponge(depth), explicit_cubes(sponge(depth)), depth == 3 ? 80 : 250, 1.1);
 }
 
+/// Pieces of maps that scale all axes alike.
+ConvexUnion explicit_pieces(const IfsShape& s) {
+  std::vector<Affine> pieces{Affine{}};
+  for (std::uint32_t k = 0; k < s.depth; ++k) {
+    std::vector<Affine> next;
+    for (const Affine& piece : pieces)
+      for (const Affine& map : s.maps) next.push_back(piece * map);
+    pieces = next;
+  }
+  ConvexUnion all;
+  for (const Affine& piece : pieces) {
+    const double size = std::abs(piece.m[0][0]);
+    const Vec3l c(piece.point({0, 0, 0})), half(Vec3d{size, size, size});
+    if (s.base == IfsShape::Base::ball)
+      all.balls.push_back({c, size});
+    else
+      all.boxes.push_back({c - half, c + half});
+  }
+  return all;
+}
+
+TEST(Ifs, AgreesWithAllItsPieces) {
+  for (const std::uint32_t depth : {0, 1, 2, 5})
+    for (const auto base : {IfsShape::Base::ball, IfsShape::Base::box}) {
+      const IfsShape s = tetrahedron(depth, base);
+      expect_agreement(s, explicit_pieces(s), 120, depth < 3 ? 1.3 : 1);
+    }
+}
+
+/// The sponge walked cell by cell, and the one whose pieces know nothing of each other.
+TEST(Ifs, MengersSpongeByMapsIsTheSponge) {
+  for (const std::uint32_t depth : {1u, 3u, 5u}) {
+    const auto a = build_accel({{ExactShape{sponge_by_maps(depth)}, {}}});
+    const auto b = build_accel({{ExactShape{sponge(depth)}, {}}});
+    int crossings = 0;
+    for (int i = 0; i < 40; ++i) {
+      Numbers random{static_cast<std::uint64_t>(i)};
+      const Vec3d from = random.vector() * 4, at = random.vector();
+      const Ray ray{Vec3f(from), 0, Vec3f(at - from), kInf};
+      const auto x = all_crossings(*a, ray), y = all_crossings(*b, ray);
+      ASSERT_EQ(x.size(), y.size()) << depth << ", " << i;
+      for (std::size_t k = 0; k < x.size(); ++k) EXPECT_FLOAT_EQ(x[k].t, y[k].t);
+      crossings += static_cast<int>(x.size());
+    }
+    EXPECT_GT(crossings, 80);
+  }
+}
+
+TEST(Ifs, NormIsTheLargestStretch) {
+  for (const Vec3d& s :
+       {Vec3d{0.5, 0.5, 0.5}, Vec3d{0.1, 0.9, 0.3}, Vec3d{1e-6, 1e-3, -0.7}, Vec3d{3, 2, 1}}) {
+    const double truth = std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)});
+    const double norm =
+        Ifs::norm(Affine::rotation({10, 20, 30}) * Affine::scaling(s) * Affine::rotation({50, 60, 70}));
+    EXPECT_GE(norm, truth * (1 - 1e-14));
+    EXPECT_LE(norm, truth * (1 + 1e-6));
+  }
+}
+
+/// What bounds promise: no point that the maps lead to is outside of them.
+TEST(Ifs, BoundsHoldEveryPiece) {
+  for (const std::uint32_t depth : {0u, 3u, 9u, 32u}) {
+    const Affine place = Affine::rotation({10, 20, 30}) * Affine::scaling({2, 1, 0.5});
+    const IfsShape s = plant(depth);
+    const Box box = bounds(*build_accel({{ExactShape{s}, place}}));
+    Numbers random{11};
+    for (int i = 0; i < 2000; ++i) {
+      Affine piece = place;
+      const int levels = static_cast<int>((random.next() + 1) / 2 * (depth + 1));
+      for (int k = 0; k < levels; ++k)
+        piece = piece * s.maps[static_cast<std::size_t>((random.next() + 1) * 1.5) % 3];
+      const Vec3d p = piece.point(normalize(random.vector()));
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_LE(box.lo[k], p[k]);
+        EXPECT_GE(box.hi[k], p[k]);
+      }
+    }
+  }
+}
+
+/// Heights level by level, every cell as two triangles.
+struct ExplicitTerrain {
+  explicit ExplicitTerrain(const TerrainShape& s)
+      : side(1 << s.depth), base(s.base), h((side + 1) * (side + 1)) {
+    double step = s.height;
+    for (const int i : {0, side})
+      for (const int k : {0, side}) at(i, k) = step * Terrain::displacement(s.seed, 0, i / side, k / side);
+    for (int size = side, level = 1; size > 1; size /= 2, ++level) {
+      step *= s.roughness;
+      const int half = size / 2;
+      for (int k = 0; k <= side; k += half)
+        for (int i = 0; i <= side; i += half) {
+          const bool odd_i = i / half % 2 == 1, odd_k = k / half % 2 == 1;
+          if (!odd_i && !odd_k) continue;
+          const int di = odd_i ? half : 0, dk = odd_k ? half : 0;
+          at(i, k) = (at(i - di, k - dk) + at(i + di, k - dk) + at(i - di, k + dk) + at(i + di, k + dk)) / 4 +
+                     step * Terrain::displacement(s.seed, level, i / half, k / half);
+        }
+    }
+  }
+  long double& at(int i, int k) { return h[k * (side + 1) + i]; }
+  Vec3l corner(int i, int k) { return {2.0L * i / side - 1, at(i, k), 2.0L * k / side - 1}; }
+
+  /// Where a line meets the triangles (Möller and Trumbore), walls and floor.
+  std::vector<long double> crossings(const Ray& ray) {
+    const Vec3l o(ray.origin), d(ray.direction);
+    std::vector<long double> all;
+    for (int k = 0; k < side; ++k)
+      for (int i = 0; i < side; ++i)
+        for (const int upper : {0, 1}) {
+          const Vec3l a = corner(i, k), b = corner(i + 1, k + 1),
+                      c = upper ? corner(i, k + 1) : corner(i + 1, k);
+          const Vec3l e1 = b - a, e2 = c - a, p = cross(d, e2), s = o - a, q = cross(s, e1);
+          const long double det = dot(e1, p), u = dot(s, p) / det, v = dot(d, q) / det, t = dot(e2, q) / det;
+          const Vec3l at_t = o + d * t;
+          if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && at_t.y > base) all.push_back(t);
+        }
+    for (const int axis : {0, 1, 2})
+      for (const long double plane : {-1.0L, 1.0L}) {
+        if (axis == 1 && plane > 0) continue;
+        const long double t = ((axis == 1 ? base : plane) - o[axis]) / d[axis];
+        const Vec3l p = o + d * t;
+        const bool beside = (axis == 0 || std::abs(p.x) < 1) && (axis == 2 || std::abs(p.z) < 1);
+        if (!(t > 0) || !beside) continue;
+        const auto place = [&](long double x) { return std::min(std::max((x + 1) / 2, 0.0L), 1.0L) * side; };
+        const long double x = place(p.x), z = place(p.z);
+        const int i = std::min(static_cast<int>(x), side - 1), k = std::min(static_cast<int>(z), side - 1);
+        const long double u = x - i, v = z - k;
+        const long double height = u >= v
+                                       ? at(i, k) * (1 - u) + at(i + 1, k) * (u - v) + at(i + 1, k + 1) * v
+                                       : at(i, k) * (1 - v) + at(i, k + 1) * (v - u) + at(i + 1, k + 1) * u;
+        if ((axis == 1 || p.y > base) && p.y < height) all.push_back(t);
+      }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  int side;
+  double base;
+  std::vector<long double> h;
+};
+
+TEST(Terrain, AgreesWithAllItsTriangles) {
+  for (const std::uint32_t depth : {0u, 1u, 4u})
+    for (const double base : {-1.0, 0.0}) {
+      TerrainShape s = terrain(depth, 0.6);
+      s.base = base;
+      ExplicitTerrain truth(s);
+      const auto accel = build_accel({{ExactShape{s}, {}}});
+      int met = 0;
+      for (int i = 0; i < 300; ++i) {
+        Numbers random{static_cast<std::uint64_t>(i)};
+        const Vec3d from = random.vector() * 2.5, at = random.vector() * 0.9;
+        const Ray ray{Vec3f(from), 0, Vec3f(at - from), kInf};
+        const auto found = all_crossings(*accel, ray);
+        const auto expected = truth.crossings(ray);
+        ASSERT_EQ(found.size(), expected.size()) << depth << ", ray " << i;
+        for (std::size_t k = 0; k < found.size(); ++k) {
+          EXPECT_NEAR(found[k].t, expected[k], 1e-6) << i;
+          EXPECT_EQ(found[k].v, (found.size() - k) % 2 == 1 ? 1 : -1);
+          const Surface surf = surface(*accel, ray, found[k]);
+          EXPECT_GE(dot(surf.geometric_normal, ray.direction) * found[k].v, 0);
+        }
+        met += !found.empty();
+      }
+      EXPECT_GT(met, 60);
+    }
+}
+
+/// Straight down and aslant through corners, edges and diagonals: in once, out once.
+TEST(Terrain, HasNoCracks) {
+  const std::uint32_t depth = 10;
+  const auto accel = build_accel({{ExactShape{terrain(depth)}, {}}});
+  for (int i = 1; i < 64; ++i)
+    for (int k = 1; k < 64; ++k) {
+      const Vec3f at{static_cast<float>(i) / 32 - 1, 3, static_cast<float>(k) / 32 - 1};
+      std::vector<Hit> hits;
+      all_hits(*accel, {at, 0, {0, -1, 0}, kInf}, hits, default_isa());
+      ASSERT_EQ(hits.size(), 2u) << i << ", " << k;
+      EXPECT_EQ(hits[1].t, 4);
+      // Along grid lines and diagonals, from above the middle to below everything.
+      for (const Vec3f& d : {Vec3f{0x1p-12f, -1, 0}, Vec3f{0, -1, 0x1p-12f}, Vec3f{0x1p-12f, -1, 0x1p-12f},
+                             Vec3f{-0x1p-12f, -1, 0x1p-12f}}) {
+        all_hits(*accel, {at, 0, d, kInf}, hits, default_isa());
+        ASSERT_GE(hits.size(), 2u);
+        EXPECT_EQ(hits.size() % 2, 0u);
+      }
+    }
+}
+
+/// Coarse and fine agree where both have points: detail is added, nothing is drawn anew.
+TEST(Terrain, DepthRefines) {
+  const auto coarse = build_accel({{ExactShape{terrain(4)}, {}}}),
+             fine = build_accel({{ExactShape{terrain(20)}, {}}});
+  for (int i = 1; i < 16; ++i) {
+    const Ray ray{{static_cast<float>(i) / 8 - 1, 3, 0.25f}, 0, {0, -1, 0}, kInf};
+    EXPECT_FLOAT_EQ(all_crossings(*coarse, ray)[0].t, all_crossings(*fine, ray)[0].t);
+  }
+}
+
+/// What iterations say of points along the ray: none inside lies outside of the listed spans, but near their
+/// ends.
+TEST(Julia, MissesNothingThatSamplesFind) {
+  for (const std::uint32_t iterations : {1u, 4u, 9u, 16u}) {
+    const JuliaShape s = julia(iterations);
+    Julia::Pool pool;
+    Julia::add(pool, ExactShape{s}, {}, 0);
+    const auto accel = build_accel({{ExactShape{s}, {}}});
+    int inside = 0;
+    for (int i = 0; i < 60; ++i) {
+      Numbers random{static_cast<std::uint64_t>(i)};
+      const Vec3d from = normalize(random.vector()) * 3, at = random.vector();
+      const Ray ray{Vec3f(from), 0, Vec3f(at - from), kInf};
+      const std::vector<Hit> hits = all_crossings(*accel, ray);
+      for (int k = 0; k < 3000; ++k) {
+        const double t = 2.0 * k / 3000;
+        if (!Julia::inside(pool, 0, Vec3d(ray.origin) + Vec3d(ray.direction) * t)) continue;
+        ++inside;
+        bool listed = false;
+        for (std::size_t j = 0; j + 1 < hits.size(); j += 2)
+          listed |= hits[j].t - 1e-6 <= t && t <= hits[j + 1].t + 1e-6;
+        EXPECT_TRUE(listed) << iterations << ", ray " << i << " at " << t;
+      }
+    }
+    EXPECT_GT(inside, 500);
+  }
+}
+
 template <class S>
 bool holds(const typename S::Data& data, const Vec3d& p) {
   typename S::Pool pool;
@@ -192,7 +465,8 @@ TEST(Sphereflake, KnownCrossings) {
 }
 
 std::vector<ExactForm> all_forms() {
-  return {flake(0), flake(3, 0.5), flake(5), flake(12), flake(24), sponge(0), sponge(3), sponge(7)};
+  return {flake(0),  flake(3, 0.5),  flake(5), flake(12), flake(24),  sponge(0),  sponge(3),
+          sponge(7), tetrahedron(4), plant(6), plant(32), terrain(3), terrain(9), terrain(20, 0.7)};
 }
 
 TEST(Fractals, BadRaysHitNothing) {
@@ -286,7 +560,7 @@ TEST(Fractals, SurfacesLieOnParts) {
             }
           }
         EXPECT_LE(off, length(s.position_error));
-        EXPECT_LE(turn, 1e-9L);
+        EXPECT_LE(turn, 1e-6L);
         ++hits;
       }
     }
@@ -300,8 +574,18 @@ TEST(Fractals, MemoryDoesNotGrowWithDepth) {
     return stats(*build_accel({{ExactShape{form}, {}}})).bytes();
   };
   const std::size_t one_ball = bytes(flake(0)), cube = bytes(sponge(0));
-  EXPECT_LT(one_ball, 2048u);
-  EXPECT_LT(cube, 2048u);
+  EXPECT_LT(one_ball, 8192u);
+  EXPECT_LT(cube, 8192u);
+  const std::size_t plain = bytes(terrain(0)), set = bytes(julia(1));
+  EXPECT_LT(plain, 8192u);
+  EXPECT_LT(set, 8192u);
+  for (const std::uint32_t depth : {1u, 10u, 24u}) EXPECT_EQ(bytes(terrain(depth)), plain);
+  for (const std::uint32_t n : {2u, 10u, 24u}) EXPECT_EQ(bytes(julia(n)), set);
+  // A ball of bounds per level.
+  Ifs::Pool pool;
+  Ifs::add(pool, ExactShape{tetrahedron(32)}, {}, 0);
+  EXPECT_EQ(pool.elements[0].balls.size(), 33u);
+  EXPECT_EQ(pool.elements[0].maps.size(), 4u);
   for (const std::uint32_t depth : {1u, 6u, 12u, 24u}) EXPECT_EQ(bytes(flake(depth)), one_ball);
   for (const std::uint32_t depth : {1u, 5u, 10u, 16u}) EXPECT_EQ(bytes(sponge(depth)), cube);
   EXPECT_GT(Sphereflake::count(flake(12)), 3e11);
@@ -331,8 +615,12 @@ TEST(Fractals, BoundsAreTight) {
 
 TEST(Fractals, SenselessOnesHaveNoSurface) {
   for (const ExactForm& form : {ExactForm(flake(25)), ExactForm(flake(2, 0)), ExactForm(flake(2, 0.51)),
-                                ExactForm(flake(2, kNan)), ExactForm(sponge(17))})
+                                ExactForm(flake(2, kNan)), ExactForm(sponge(17)), ExactForm(tetrahedron(33)),
+                                ExactForm(julia(0)), ExactForm(terrain(25)), ExactForm(terrain(3, 1))})
     EXPECT_TRUE(all_crossings(form, {{-3, 0.1f, 0.7f}, 0, {1, 0, 0}, kInf}).empty());
+  IfsShape growing = tetrahedron(2);
+  growing.maps[1] = Affine::scaling({0.5, 1, 0.5});
+  EXPECT_EQ(stats(*build_accel({{ExactShape{growing}, {}}})).leaves, 0u);
 }
 
 }  // namespace
