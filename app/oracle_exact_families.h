@@ -20,7 +20,7 @@ std::vector<DrawExact> metaball_oracles();
 std::vector<DrawExact> blobtree_oracles();
 /// Functions of the user's own.
 std::vector<DrawExact> function_oracles();
-/// Sphereflakes and Menger's sponge.
+/// Fractals.
 std::vector<DrawExact> fractal_oracles();
 
 }  // namespace oktett
