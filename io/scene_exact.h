@@ -11,7 +11,7 @@
 
 namespace oktett {
 
-/// A shape key and what reads it: a form, or nothing after a warning. Every reader but those of
+/// A shape key and what reads it: a form, or nothing after a warning. Every reader but most of
 /// fractals takes the key `normals` too, which read_exact reads.
 struct ExactReader {
   const char* key;
@@ -29,7 +29,7 @@ std::span<const ExactReader> superquadric_readers();
 std::span<const ExactReader> metaball_readers();
 /// Functions of the user's own.
 std::span<const ExactReader> function_readers();
-/// Sphereflakes and Menger's sponge.
+/// Fractals.
 std::span<const ExactReader> fractal_readers();
 
 /// Warns that the object is left out because of `reason`.
