@@ -96,7 +96,8 @@ ExactOracle ifs(CaseRandom& random) {
   IfsShape s;
   const int maps = 2 + static_cast<int>(random.unit() * 2);
   for (int k = 0; k < maps; ++k) {
-    const Vec3d size{0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit()};
+    Vec3d size{0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit()};
+    if (random.unit() < 0.1) size.x = 0.02;
     s.maps.push_back(Affine::translation(random.vector()) * Affine::rotation(random.vector() * 180.0) *
                      Affine::scaling(size));
   }

@@ -11,7 +11,7 @@ namespace {
 
 using Ball = IfsElement::Ball;
 
-/// Parts that rounding displaces by more than this part of their size are not looked for.
+/// Pieces that rounding displaces a line by more than this part of are not divided.
 constexpr double kMostMargin = 0x1p-8;
 /// Parts looked at for bounds; those that are left count with their balls.
 constexpr int kMostBoundSteps = 20000;
@@ -43,12 +43,27 @@ Ball image(const IfsElement::Map& map, const Ball& b) {
   return {map.to_parent.point(b.center), map.norm * b.radius};
 }
 
+/// Which piece it is does not matter for where it ends, but what the maps on the way to it are.
+struct Depth {
+  int level = 0;
+  double size = 1;    ///< of the piece, at most
+  double margin = 0;  ///< how far, in the piece's units, rounding may have displaced a line
+
+  static Depth root(const IfsElement& e) { return {0, 1, e.rounding}; }
+  Depth below(const IfsElement& e, const IfsElement::Map& map) const {
+    return {level + 1, size * map.norm, margin * map.back + e.rounding};
+  }
+  bool is_leaf(const IfsElement& e) const {
+    return level == e.depth() || size <= e.least || !(margin <= kMostMargin);
+  }
+};
+
 /// The line in the space of one piece: the points o + (t - at) d, o nearest to the middle of the ball of its
 /// level.
 struct IfsNode {
   Vec3d o, d;
-  double at, dd, size;
-  int level;
+  double at, dd;
+  Depth depth;
 };
 
 struct IfsTree {
@@ -56,20 +71,21 @@ struct IfsTree {
   static constexpr int kMaxChildren = kMaxIfsMaps;
   const IfsElement& e;
 
-  const Ball& ball(const Node& node) const { return e.balls[e.depth() - node.level]; }
-  bool is_leaf(const Node& node) const { return node.level == e.depth() || node.size <= e.least; }
+  const Ball& ball(const Node& node) const { return e.balls[e.depth() - node.depth.level]; }
+  bool is_leaf(const Node& node) const { return node.depth.is_leaf(e); }
 
-  Node make(const Vec3d& o, const Vec3d& d, double at, double size, int level) const {
-    Node node{o, d, at, dot(d, d), size, level};
+  Node make(const Vec3d& o, const Vec3d& d, double at, const Depth& depth) const {
+    Node node{o, d, at, dot(d, d), depth};
     const double along = dot(ball(node).center - o, d) / node.dd;
     node.o = o + d * along, node.at = at + along;
     return node;
   }
   bool bounds(const Node& node, UnionSpan& out) const {
     const Vec3d m = node.o - ball(node).center;
-    const double h2 = ball(node).radius * ball(node).radius - dot(m, m);
+    const double radius = ball(node).radius + node.depth.margin, h2 = radius * radius - dot(m, m);
     if (!(h2 >= 0) || !(node.dd > 0)) return false;
-    const double h = std::sqrt(h2 / node.dd);
+    // With room for the rounding of t, which grows with where the line begins.
+    const double h = std::sqrt(h2 / node.dd) + 0x1p-46 * std::abs(node.at);
     out = {node.at - h, node.at + h, 0};
     return true;
   }
@@ -116,8 +132,7 @@ struct IfsTree {
   }
   Node child(const Node& node, int k) const {
     const IfsElement::Map& map = e.maps[k];
-    return make(map.to_piece.point(node.o), map.to_piece.vector(node.d), node.at, node.size * map.norm,
-                node.level + 1);
+    return make(map.to_piece.point(node.o), map.to_piece.vector(node.d), node.at, node.depth.below(e, map));
   }
 };
 
@@ -129,8 +144,8 @@ struct Support {
   double slack, best;
   int steps = 0;
 
-  void grow(double from, const Vec3d& w, double size, int level) {
-    const bool leaf = level == e.depth() || size <= e.least;
+  void grow(double from, const Vec3d& w, const Depth& depth) {
+    const bool leaf = depth.is_leaf(e);
     if (leaf || e.every_level) {
       const double base =
           e.base == IfsShape::Base::ball ? length(w) : std::abs(w.x) + std::abs(w.y) + std::abs(w.z);
@@ -139,7 +154,7 @@ struct Support {
     if (leaf) return;
     std::pair<double, int> order[kMaxIfsMaps];
     const int n = static_cast<int>(e.maps.size());
-    const Ball& below = e.balls[e.depth() - level - 1];
+    const Ball& below = e.balls[e.depth() - depth.level - 1];
     const auto turned = [&](int k) {
       // The transposed linear part.
       const auto& m = e.maps[k].to_parent.m;
@@ -162,7 +177,7 @@ struct Support {
       if (++steps > kMostBoundSteps)
         best = std::max(best, -down);
       else
-        grow(start(k), turned(k), size * e.maps[k].norm, level + 1);
+        grow(start(k), turned(k), depth.below(e, e.maps[k]));
     }
   }
 };
@@ -171,15 +186,16 @@ double support(const IfsElement& e, const Vec3d& w) {
   const double l = length(w);
   if (!(l > 0)) return 0;
   Support s{e, e.balls.back().radius * 0x1p-11, -HUGE_VAL};
-  s.grow(0, w / l, 1, 0);
+  s.grow(0, w / l, Depth::root(e));
   return (s.best + s.slack + e.balls.back().radius * 0x1p-40) * l;
 }
 
-bool holds(const IfsElement& e, const Vec3d& p, double size, int level) {
-  const Ball& ball = e.balls[e.depth() - level];
+bool holds(const IfsElement& e, const Vec3d& p, const Depth& depth) {
+  const Ball& ball = e.balls[e.depth() - depth.level];
   const Vec3d m = p - ball.center;
-  if (dot(m, m) > ball.radius * ball.radius) return false;
-  const bool leaf = level == e.depth() || size <= e.least;
+  const double radius = ball.radius + depth.margin;
+  if (dot(m, m) > radius * radius) return false;
+  const bool leaf = depth.is_leaf(e);
   if (leaf || e.every_level) {
     const bool in_ball = dot(p, p) < 1;
     const bool in_box = -1 <= p.x && p.x < 1 && -1 <= p.y && p.y < 1 && -1 <= p.z && p.z < 1;
@@ -187,7 +203,7 @@ bool holds(const IfsElement& e, const Vec3d& p, double size, int level) {
   }
   if (leaf) return false;
   for (const IfsElement::Map& map : e.maps)
-    if (holds(e, map.to_piece.point(p), size * map.norm, level + 1)) return true;
+    if (holds(e, map.to_piece.point(p), depth.below(e, map))) return true;
   return false;
 }
 
@@ -248,37 +264,29 @@ double Ifs::norm(const Affine& map) {
 void Ifs::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
   const auto& s = std::get<IfsShape>(shape.form);
   if (s.maps.empty() || s.maps.size() > kMaxIfsMaps || s.depth > kMaxIfsDepth || !(s.least >= 0)) return;
-  Element e{s.base, s.every_level, s.least, {}, {}};
-  double worst = 1;  // how much a map makes of a displacement
+  Element e{s.base, s.every_level, s.least, {}, {}, 0};
   for (const Affine& map : s.maps) {
     const double n = norm(map);
     if (!map.is_invertible() || !(n < 1)) return;
     const Affine inverse = map.inverse();
-    e.maps.push_back({inverse, map, n});
-    worst = std::max(worst, norm(inverse));
+    e.maps.push_back({inverse, map, n, norm(inverse)});
   }
   const Ball base{{0, 0, 0}, base_radius(s.base)};
   e.balls.push_back(base);
   std::vector<Ball> parts;
   for (std::uint32_t k = 0; k < s.depth; ++k) {
-    parts.clear();
+    // With the base, as a piece may end at any level.
+    parts.assign(1, base);
     for (const auto& map : e.maps) parts.push_back(image(map, e.balls.back()));
-    if (s.every_level || s.least > 0) parts.push_back(base);
     e.balls.push_back(ball_about(parts));
   }
   // A few roundings in each level, of numbers as large as the ball and its distance.
   double size = 0;
   for (const Ball& b : e.balls) size = std::max(size, b.radius + length(b.center));
-  double margin = 0x1p-49 * size;
-  std::size_t levels = 0;
-  for (; levels < e.balls.size() && margin <= kMostMargin; ++levels) {
-    e.balls[e.balls.size() - 1 - levels].radius += margin;
-    margin = margin * worst + 0x1p-49 * size;
-  }
-  e.balls.erase(e.balls.begin(), e.balls.end() - static_cast<std::ptrdiff_t>(levels));
+  e.rounding = 0x1p-49 * size;
   add_element(pool, e, to_world, item, shape.normals);
   const Ball& all = e.balls.back();
-  const Vec3d r = Vec3d{1, 1, 1} * all.radius;
+  const Vec3d r = Vec3d{1, 1, 1} * (all.radius + e.rounding);
   add_cell(pool, all.center - r, all.center + r);
 }
 
@@ -286,7 +294,7 @@ int Ifs::find(const Element& e, const FractalQuery& query, FractalCrossing* out,
   const Vec3d sum = query.o + query.d;
   if (!std::isfinite(sum.x + sum.y + sum.z) || !(dot(query.d, query.d) > 0)) return 0;
   const IfsTree tree{e};
-  const IfsNode root = tree.make(query.o, query.d, 0, 1, 0);
+  const IfsNode root = tree.make(query.o, query.d, 0, Depth::root(e));
   UnionSpan bounds;
   if (!tree.bounds(root, bounds)) return 0;
   Walk walk(tree, root, bounds, e.depth());
@@ -297,7 +305,9 @@ int Ifs::find(const Element& e, const FractalQuery& query, FractalCrossing* out,
   });
 }
 
-bool Ifs::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return holds(pool.elements[i], p, 1, 0); }
+bool Ifs::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  return holds(pool.elements[i], p, Depth::root(pool.elements[i]));
+}
 
 Box Ifs::world_bounds(const Pool& pool, std::size_t i) {
   const Affine& m = pool.frames[i].to_world;

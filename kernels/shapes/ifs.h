@@ -16,6 +16,7 @@ struct IfsElement {
   struct Map {
     Affine to_piece, to_parent;
     double norm;  ///< an upper bound of the linear part's
+    double back;  ///< the same of the inverse's
   };
   struct Ball {
     Vec3d center;
@@ -25,9 +26,9 @@ struct IfsElement {
   bool every_level;
   double least;
   std::vector<Map> maps;
-  /// Holds all pieces below one that is still to be divided k times; larger than that by what rounding may
-  /// displace a line that far down.
+  /// Holds all pieces below one that is still to be divided k times.
   std::vector<Ball> balls;
+  double rounding;  ///< what one level may displace a line by, in units of the piece
 
   int depth() const { return static_cast<int>(balls.size()) - 1; }
 };
