@@ -98,7 +98,7 @@ ConvexUnion explicit_cubes(const MengerShape& s) {
         bool solid = true;
         for (int p = 1; p < side; p *= 3) solid &= (i / p % 3 == 1) + (j / p % 3 == 1) + (k / p % 3 == 1) < 2;
         if (!solid) continue;
-        const Vec3l lo{i, j, k}, one{1, 1, 1};
+        const Vec3l lo{1.0L * i, 1.0L * j, 1.0L * k}, one{1, 1, 1};
         const long double size = 2.0L / side;
         all.boxes.push_back({lo * size - one, (lo + one) * size - one});
       }
@@ -212,6 +212,35 @@ TEST(Ifs, MengersSpongeByMapsIsTheSponge) {
   }
 }
 
+/// Barnsley's fern has a stem almost without thickness. That the stem's pieces soon are too thin to be
+/// divided does not end the leaves.
+TEST(Ifs, FlatMapsLeaveTheOthersTheirDepth) {
+  IfsShape s;
+  s.maps = {Affine::scaling({0.001, 0.16, 0.001}),
+            Affine::translation({0, 0.32, 0}) * Affine::scaling({0.85, 0.85, 0.85})};
+  s.depth = 32;
+  // What is highest is the base after 32 of the second map: 0.32 (1 + 0.85 + ...) + 0.85^32.
+  const double last = std::pow(0.85, 32), top = 0.32 * (1 - last) / 0.15 + last;
+  const auto accel = build_accel({{ExactShape{s}, {}}});
+  const auto hits = all_crossings(*accel, {{0, 8, 0}, 0, {0, -1, 0}, kInf});
+  ASSERT_FALSE(hits.empty());
+  EXPECT_NEAR(8 - hits[0].t, top, 1e-6);
+  EXPECT_NEAR(bounds(*accel).hi.y, top, 0.01);
+}
+
+/// Far from the origin of the ray t is coarser than the margin of any ball.
+TEST(Ifs, BallsAreLeftWhereverRaysBegin) {
+  const auto accel = build_accel({{ExactShape{tetrahedron(0)}, {}}});
+  Numbers random{5};
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3d at = random.vector() * 0.5;
+    const Vec3d from = at + normalize(random.vector()) * std::ldexp(1.0, i % 12);
+    std::vector<Hit> hits;
+    all_hits(*accel, {Vec3f(from), 0, Vec3f(at - from) * 0.5f, kInf}, hits, default_isa());
+    EXPECT_EQ(hits.size(), length(Vec3d(Vec3f(from))) < 1 ? 1u : 2u) << i;
+  }
+}
+
 TEST(Ifs, NormIsTheLargestStretch) {
   for (const Vec3d& s :
        {Vec3d{0.5, 0.5, 0.5}, Vec3d{0.1, 0.9, 0.3}, Vec3d{1e-6, 1e-3, -0.7}, Vec3d{3, 2, 1}}) {
@@ -314,9 +343,11 @@ TEST(Terrain, AgreesWithAllItsTriangles) {
       ExplicitTerrain truth(s);
       const auto accel = build_accel({{ExactShape{s}, {}}});
       int met = 0;
-      for (int i = 0; i < 300; ++i) {
+      for (int i = 0; i < 600; ++i) {
         Numbers random{static_cast<std::uint64_t>(i)};
-        const Vec3d from = random.vector() * 2.5, at = random.vector() * 0.9;
+        const Vec3d from = random.vector() * 2.5;
+        Vec3d at = random.vector() * 0.9;
+        at.y = base + 0.2 * (at.y + 0.9);
         const Ray ray{Vec3f(from), 0, Vec3f(at - from), kInf};
         const auto found = all_crossings(*accel, ray);
         const auto expected = truth.crossings(ray);
@@ -411,6 +442,53 @@ TEST(Fractals, InsideIsInsideOfAPart) {
   }
   EXPECT_GT(in_balls, 50);
   EXPECT_GT(in_cubes, 50);
+}
+
+/// Rays through a combination of a fractal and a ball, against what both hold at samples along them.
+template <class S>
+void expect_operand(const typename S::Data& data) {
+  const Vec3d center{0.4, 0.3, 0.2};
+  const double radius = 0.8;
+  typename S::Pool pool;
+  S::add(pool, ExactShape{data}, {}, 0);
+  for (const CsgOp op : {CsgOp::unite, CsgOp::intersect, CsgOp::subtract}) {
+    auto e = std::make_shared<CsgExpression>();
+    e->op = op;
+    e->children.push_back({CsgOp::operand, {{ExactShape{data}, {}, 0}}, {}});
+    e->children.push_back({CsgOp::operand, {{SpheresShape{{{center, radius}}}, {}, 1}}, {}});
+    const auto accel = build_accel({{CsgGeometry{e}, {}, kNoId}});
+    int samples = 0;
+    for (const Ray& ray : rays_about(60, 1)) {
+      const auto inside = [&](double t) {
+        const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * t;
+        const bool f = S::inside(pool, 0, p), b = length(p - center) < radius;
+        return op == CsgOp::unite ? f || b : op == CsgOp::intersect ? f && b : f && !b;
+      };
+      std::vector<Hit> hits;
+      all_hits(*accel, ray, hits, default_isa());
+      constexpr double kSlack = 1e-5;
+      if (inside(0) != inside(kSlack)) continue;
+      bool now = inside(0);
+      std::size_t next = 0;
+      for (double t = 0.001; t < 3; t += 0.00371) {
+        for (; next < hits.size() && hits[next].t < t; ++next) now = !now;
+        const bool truth = inside(t);
+        if (truth != inside(t - kSlack) || truth != inside(t + kSlack)) continue;
+        ASSERT_EQ(now, truth) << "at " << t << " of ray from " << ray.origin.x << " " << ray.origin.y;
+        samples += truth;
+      }
+    }
+    EXPECT_GT(samples, 100);
+  }
+}
+
+TEST(Fractals, AreOperandsOfCombinations) {
+  expect_operand<Sphereflake>(flake(3, 0.4));
+  expect_operand<Menger>(sponge(3));
+  expect_operand<Ifs>(tetrahedron(4));
+  expect_operand<Ifs>(plant(5));
+  expect_operand<Julia>(julia(5));
+  expect_operand<Terrain>(terrain(6));
 }
 
 /// Along a diagonal all three digits are the same, so that what is left is Cantor's dust; every plane is met
