@@ -20,5 +20,7 @@ std::vector<DrawExact> metaball_oracles();
 std::vector<DrawExact> blobtree_oracles();
 /// Functions of the user's own.
 std::vector<DrawExact> function_oracles();
+/// Fractals.
+std::vector<DrawExact> fractal_oracles();
 
 }  // namespace oktett

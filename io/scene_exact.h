@@ -11,8 +11,8 @@
 
 namespace oktett {
 
-/// A shape key and what reads it: a form, or nothing after a warning. Every reader takes the key `normals`
-/// too, which read_exact reads.
+/// A shape key and what reads it: a form, or nothing after a warning. Every reader but most of
+/// fractals takes the key `normals` too, which read_exact reads.
 struct ExactReader {
   const char* key;
   std::optional<ExactForm> (*read)(SceneLoad&, const YamlNode& key, const YamlNode& node);
@@ -29,6 +29,8 @@ std::span<const ExactReader> superquadric_readers();
 std::span<const ExactReader> metaball_readers();
 /// Functions of the user's own.
 std::span<const ExactReader> function_readers();
+/// Fractals.
+std::span<const ExactReader> fractal_readers();
 
 /// Warns that the object is left out because of `reason`.
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);

@@ -13,21 +13,27 @@
 #include "kernels/shapes/blobtree.h"
 #include "kernels/shapes/cone.h"
 #include "kernels/shapes/cylinder.h"
+#include "kernels/shapes/ifs.h"
 #include "kernels/shapes/implicit.h"
+#include "kernels/shapes/julia.h"
 #include "kernels/shapes/lathe.h"
+#include "kernels/shapes/menger.h"
 #include "kernels/shapes/metaballs.h"
 #include "kernels/shapes/polyhedron.h"
 #include "kernels/shapes/polynomial.h"
 #include "kernels/shapes/quadric.h"
 #include "kernels/shapes/revolution.h"
+#include "kernels/shapes/sphereflake.h"
 #include "kernels/shapes/superquadric.h"
+#include "kernels/shapes/terrain.h"
 #include "kernels/shapes/torus.h"
 
 namespace oktett {
 
 /// In the order of ExactForm.
-using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
-                               Revolution, Lathe, Superquadric, Metaballs, BlobTree, Implicit>;
+using ExactShapes =
+    std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob, Revolution, Lathe,
+               Superquadric, Metaballs, BlobTree, Implicit, Sphereflake, Menger, Ifs, Julia, Terrain>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -41,6 +41,11 @@ enum class Kind : std::uint8_t {
   metaballs,
   blobtree,
   implicit,
+  sphereflake,
+  menger,
+  ifs,
+  julia,
+  terrain,
   triangle,
   csg,
   instance

@@ -21,6 +21,9 @@
 /// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only
 /// where
 ///   the ray begins; `crossings` bears NaN and infinities;
+/// - `S::kStopsAtLimit`: crossings up to some t do not depend on where the range ends, which then is where
+/// the ray does;
+/// - `S::find` in place of value, gradient and uv: a fractal (fractal.h);
 /// - `S::slope(pool, i, part, p, value, gradient)`: `value` and `gradient` in lanes, which then are made of
 /// it
 ///   by slope_at: surfaces of many hits are found together;

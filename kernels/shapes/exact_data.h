@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "kernels/roots/roots.h"
 #include "kernels/shapes/field_data.h"
+#include "kernels/shapes/fractal_data.h"
 #include "kernels/tape_data.h"
 
 namespace oktett {
@@ -147,9 +148,10 @@ struct ImplicitShape {
 };
 
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
-                               PolynomialShape, BlobShape, RevolutionShape, LatheShape, SuperquadricShape,
-                               MetaballsShape, BlobTreeShape, ImplicitShape>;
+using ExactForm =
+    std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape, PolynomialShape,
+                 BlobShape, RevolutionShape, LatheShape, SuperquadricShape, MetaballsShape, BlobTreeShape,
+                 ImplicitShape, SphereflakeShape, MengerShape, IfsShape, JuliaShape, TerrainShape>;
 
 struct ExactShape {
   ExactForm form;

@@ -6,6 +6,7 @@
 
 #include "kernels/shapes/contract.h"
 #include "kernels/shapes/exact.h"
+#include "kernels/shapes/fractal.h"
 
 namespace oktett {
 
@@ -66,19 +67,41 @@ Surface exact_surface_and(const typename S::Pool& pool, std::size_t i, const Hit
   return s;
 }
 
+/// The same for shapes whose crossings have to be found again (kernels/shapes/fractal.h).
+template <class F>
+Surface fractal_surface(const typename F::Pool& pool, std::size_t i, const Hit& hit, const Ray& ray) {
+  const ExactFrame& frame = pool.frames[i];
+  const FractalQuery query{frame.to_own.point(Vec3d(ray.origin)), frame.to_own.vector(Vec3d(ray.direction))};
+  const FractalCrossing c = resolve_crossing<F>(pool.elements[i], query, hit.t, hit.v);
+  Surface s;
+  const Vec3d point = frame.to_world.point(c.point);
+  set_position(s, point, ray, c.t, 0x1p-44 * (length(point) + length(frame.to_world.vector({1, 1, 1}))));
+  const Vec3d n = frame.to_own.normal_by_inverse(c.normal);
+  s.geometric_normal = s.shading_normal = Vec3f(n / length(n));
+  s.uv = {static_cast<float>(c.u), static_cast<float>(c.v)};
+  s.tangent = Vec3f(frame.to_world.vector(c.tangent));
+  return s;
+}
+
 template <class S>
 Surface exact_surface(const typename S::Pool& pool, std::size_t i, const Hit& hit, const Ray& ray) {
-  return exact_surface_and<S>(pool, i, hit, ray, [&](int part, const Vec3d& p, Surface& s) {
-    S::uv(pool, i, part, p, s);
-    s.tangent = Vec3f(pool.frames[i].to_world.vector(Vec3d(s.tangent)));
-  });
+  if constexpr (kIsFractal<S>)
+    return fractal_surface<S>(pool, i, hit, ray);
+  else
+    return exact_surface_and<S>(pool, i, hit, ray, [&](int part, const Vec3d& p, Surface& s) {
+      S::uv(pool, i, part, p, s);
+      s.tangent = Vec3f(pool.frames[i].to_world.vector(Vec3d(s.tangent)));
+    });
 }
 
 /// The same without uv and tangent.
 template <class S>
 Surface exact_surface_without_uv(const typename S::Pool& pool, std::size_t i, const Hit& hit,
                                  const Ray& ray) {
-  return exact_surface_and<S>(pool, i, hit, ray, [](int, const Vec3d&, Surface&) {});
+  if constexpr (kIsFractal<S>)
+    return fractal_surface<S>(pool, i, hit, ray);
+  else
+    return exact_surface_and<S>(pool, i, hit, ray, [](int, const Vec3d&, Surface&) {});
 }
 
 }  // namespace oktett

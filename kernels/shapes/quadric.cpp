@@ -149,8 +149,8 @@ void Quadric::add(Pool& pool, const ExactShape& shape, const Affine& to_world, s
   const bool closed = s.clipped && !s.open;
   cut_to_ellipsoid(f, region);
   cut_by_axes(f, region);
-  // What is outside of an ellipsoid has its surface there, too.
-  if (!closed) cut_to_ellipsoid(negative(f), region);
+  // What is outside of an ellipsoid has its surface there, too; as a solid it has no bounds.
+  if (s.clipped && s.open) cut_to_ellipsoid(negative(f), region);
   if (region.empty()) return;
   Vec3d center, scale;
   double size = 0;

@@ -319,6 +319,18 @@ TEST(Csg, RaysLeaveCoincidentFaces) {
   }
 }
 
+/// What is outside of an ellipsoid has a surface with bounds, but has none itself.
+TEST(Csg, TheOutsideOfAnEllipsoidIsEverywhere) {
+  const Geometry outside = solid(ExactShape{QuadricShape{{-1, -1, -1, 0, 0, 0, 0, 0, 0, 1}}}, 1),
+                 box = cube({-2, -2, -2}, {2, 2, 2}, 0);
+  const auto both = built(whole(combine(CsgOp::intersect, {box, outside}))),
+             rest = built(whole(combine(CsgOp::subtract, {box, outside})));
+  EXPECT_EQ(crossings(*both, ray_along_x()), (Distances{6, 7, 9, 10}));
+  EXPECT_EQ(crossings(*both, ray_along_x(1.5f)), (Distances{6, 10}));
+  EXPECT_EQ(crossings(*rest, ray_along_x()), (Distances{7, 9}));
+  EXPECT_EQ(crossings(*rest, ray_along_x(1.5f)), Distances{});
+}
+
 TEST(Csg, DegenerateCombinationsAreNothing) {
   const Ray ray = ray_along_x();
   EXPECT_EQ(crossings(*built(whole({})), ray), Distances{});
