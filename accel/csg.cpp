@@ -24,6 +24,19 @@ double signed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
+bool is_inside_out(const Geometry& g) {
+  const auto* mesh = std::get_if<MeshGeometry>(&g.shape);
+  return mesh != nullptr && signed_volume(*mesh->mesh) < 0;
+}
+
+void find_inverted(const Accel& accel, std::vector<std::pair<const Accel*, std::uint32_t>>& found) {
+  for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
+    if (is_inside_out(accel.geometries[g])) found.emplace_back(&accel, g);
+    if (const auto* instance = std::get_if<InstanceGeometry>(&accel.geometries[g].shape))
+      find_inverted(*instance->child, found);
+  }
+}
+
 /// Whether the crossings of all solids can be listed in lanes: they are primitives that one call lists all
 /// crossings of.
 bool fits_lanes(const CsgItem& csg) {
@@ -93,8 +106,9 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
     csg.nodes.push_back({e.op, is_first, parent, static_cast<std::uint32_t>(e.children.size())});
     for (const Geometry& g : e.solids) {
       if (is_unbounded(g)) csg.unbounded.push_back(static_cast<std::uint32_t>(solids.size()));
-      const auto* mesh = std::get_if<MeshGeometry>(&g.shape);
-      csg.inverted.push_back(mesh != nullptr && signed_volume(*mesh->mesh) < 0);
+      csg.inverted.push_back(is_inside_out(g));
+      if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape))
+        find_inverted(*instance->child, csg.inverted_inside);
       solids.push_back(g);
       csg.operand_of.push_back(node);
     }
@@ -102,6 +116,7 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   };
   add(add, expression, kNoId, true);
   csg.solids = build_accel(std::move(solids), options);
+  std::sort(csg.inverted_inside.begin(), csg.inverted_inside.end());
   number_solids(csg);
   csg.in_lanes = fits_lanes(csg);
   if (csg.nodes.size() <= kMaxCsgSteps)

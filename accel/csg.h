@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "accel/accel.h"
@@ -40,8 +41,10 @@ struct CsgItem {
   std::shared_ptr<const Accel> solids;
   std::vector<std::uint32_t> operand_of;  ///< node of each geometry of `solids`
   std::vector<std::uint32_t>
-      first_solid;                       ///< number of each geometry's first solid, plus the total at the end
-  std::vector<std::uint8_t> inverted;    ///< per geometry: a mesh wound inside out
+      first_solid;                     ///< number of each geometry's first solid, plus the total at the end
+  std::vector<std::uint8_t> inverted;  ///< per geometry: a mesh wound inside out
+  /// Such meshes inside of instances: structure and geometry, in order.
+  std::vector<std::pair<const Accel*, std::uint32_t>> inverted_inside;
   std::vector<CsgNode> nodes;            ///< the root first
   std::vector<std::uint32_t> unbounded;  ///< geometries of `solids` that no crossing need tell of
   /// Every solid lists its crossings with many rays at once (accel/csg_lanes.h).

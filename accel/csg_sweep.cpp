@@ -3,6 +3,7 @@
 #include "accel/accel_data.h"
 #include "accel/csg.h"
 #include "accel/csg_solids.h"
+#include "accel/hit_place.h"
 
 namespace oktett {
 namespace {
@@ -135,6 +136,14 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   }
 }
 
+/// Whether the hit, inside of an instance, is with a mesh that is wound inside out.
+bool is_inverted_inside(const CsgItem& csg, const Hit& hit) {
+  if (csg.inverted_inside.empty() || hit.instance == kNoId) return false;
+  const Accel* accel = follow_path(*csg.solids, hit.instance).accel;
+  return std::binary_search(csg.inverted_inside.begin(), csg.inverted_inside.end(),
+                            std::pair(accel, accel->geometry_of(hit.item)));
+}
+
 /// Calls f(crossing) for each crossing of the combination until it returns false.
 template <class Function>
 void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, Function&& f) {
@@ -147,7 +156,8 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
     const Hit& hit = crossings[i].hit;
     const std::uint32_t item = hit.instance == kNoId ? hit.item : top_item(solids, hit.instance);
     const std::uint32_t geometry = solids.geometry_of(item);
-    const float turn = csg.inverted[geometry] != 0 ? -crossings[i].turn : crossings[i].turn;
+    const bool inverted = csg.inverted[geometry] != 0 || is_inverted_inside(csg, hit);
+    const float turn = inverted ? -crossings[i].turn : crossings[i].turn;
     std::uint32_t solid = csg.first_solid[geometry];
     if (csg.first_solid[geometry + 1] > solid + 1) solid += item - solids.first_item[geometry];
     s.events.push_back({hit.t, turn, solid, geometry, i});

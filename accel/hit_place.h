@@ -28,6 +28,10 @@ Ray ray_inside(const HitPlace& place, const Ray& ray);
 /// Brings a surface found inside instances and combinations to the world.
 void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s);
 
+/// Makes a surface that of a combination of `solids`, whose space sees the ray as `inner`.
+void combine_surface(const Accel& solids, const Ray& inner, const Ray& ray, float t, bool flipped,
+                     Surface& s);
+
 /// What a hit met, by the names that Surface has for it.
 struct HitNames {
   std::uint32_t geometry, primitive, user;

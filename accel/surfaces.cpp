@@ -103,26 +103,30 @@ class MeshRun {
   MeshSurfaces columns_;
 };
 
-/// Hits of shapes that stand in the world itself, sorted by what can be worked on together.
+/// Hits of shapes that stand in the world itself, also in combinations there, sorted by what can be worked on
+/// together.
 class ShapeGroups {
  public:
-  ShapeGroups(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
-              const IsaTable& table, SurfaceBlock& out)
-      : accel_(accel), rays_(rays), hits_(hits), which_(which), table_(table), out_(out) {}
+  ShapeGroups(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which, const IsaTable& table,
+              SurfaceBlock& out)
+      : rays_(rays), hits_(hits), which_(which), table_(table), out_(out) {}
 
   /// Takes entry `i`; false if its kind has no code for groups.
-  bool add(const HitNames& names, std::size_t i) {
+  bool add(const HitPlace& place, const HitNames& names, std::size_t i) {
+    const Accel& accel = *place.accel;
     const Kind kind = names.kind;
     std::uint32_t element, group = 0;
-    if (is_exact(kind)) {
-      group = element = accel_.pool_index[accel_.first_pool_index[names.geometry]];
+    if (is_exact(kind) || kind == Kind::box) {
+      group = element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
     } else if (kind == Kind::sphere || kind == Kind::plane) {
-      element = accel_.pool_index[accel_.first_pool_index[names.geometry] + names.primitive];
+      element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
     } else {
       return false;
     }
     entry_[count_] = static_cast<std::uint32_t>(i), element_[count_] = element;
+    accel_[count_] = &accel;
     group_[count_++] = std::uint64_t{group} << 8 | static_cast<std::uint64_t>(kind);
+    if (place.combined != nullptr) combined_[combinations_++] = {place.combined, i, place.flipped};
     return true;
   }
 
@@ -130,15 +134,23 @@ class ShapeGroups {
     for (std::size_t first = 0; first < count_; ++first) {
       const std::uint64_t group = group_[first];
       if (group == kDone) continue;
+      const Accel* accel = accel_[first];
       std::uint32_t members[SurfaceBlock::kMost];
       columns_.count = 0;
       for (std::size_t k = first; k < count_; ++k) {
-        if (group_[k] != group) continue;
+        if (group_[k] != group || accel_[k] != accel) continue;
         group_[k] = kDone;
         members[columns_.count] = entry_[k];
         gather(k, columns_.count++);
       }
-      find(static_cast<Kind>(group & 0xff), members);
+      find(*accel, static_cast<Kind>(group & 0xff), members);
+    }
+    for (std::size_t k = 0; k < combinations_; ++k) {
+      const Combined& c = combined_[k];
+      const std::uint32_t i = which_[c.entry];
+      Surface s = out_[c.entry];
+      combine_surface(*c.solids, rays_[i], rays_[i], hits_.t[i], c.flipped, s);
+      out_.set_shape(c.entry, s);
     }
   }
 
@@ -165,12 +177,12 @@ class ShapeGroups {
     }
   }
 
-  void find(Kind kind, const std::uint32_t* members) {
+  void find(const Accel& accel, Kind kind, const std::uint32_t* members) {
     repeat_last();
     if (!is_exact(kind)) {
-      table_.closed_form_surfaces(accel_, kind, columns_);
-    } else if (!table_.exact_surfaces(accel_, kind, columns_)) {
-      visit_exact(kind, *accel_.exact, [&](auto shape, const auto& pool) {
+      table_.closed_form_surfaces(accel, kind, columns_);
+    } else if (!table_.exact_surfaces(accel, kind, columns_)) {
+      visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
         for (std::size_t k = 0; k < columns_.count; ++k) {
           const std::uint32_t i = which_[members[k]];
           out_.set_shape(members[k], exact_surface_without_uv<decltype(shape)>(pool, columns_.element[k],
@@ -189,15 +201,23 @@ class ShapeGroups {
     }
   }
 
-  const Accel& accel_;
+  /// An entry that is seen in a combination.
+  struct Combined {
+    const Accel* solids;
+    std::size_t entry;
+    bool flipped;
+  };
+
   const RaySpan& rays_;
   const HitSpan& hits_;
   const std::uint32_t* which_;
   const IsaTable& table_;
   SurfaceBlock& out_;
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, combinations_ = 0;
   std::uint32_t entry_[SurfaceBlock::kMost], element_[SurfaceBlock::kMost];
   std::uint64_t group_[SurfaceBlock::kMost];
+  const Accel* accel_[SurfaceBlock::kMost];
+  Combined combined_[SurfaceBlock::kMost];
   ShapeHits columns_;
 };
 
@@ -207,7 +227,7 @@ void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, cons
               std::size_t count, Isa isa, SurfaceBlock& out) {
   const IsaTable& table = *isa_table(isa);
   MeshRun run(rays, hits, which, table, out);
-  ShapeGroups groups(accel, rays, hits, which, table, out);
+  ShapeGroups groups(rays, hits, which, table, out);
   HitPlace place;
   std::uint32_t path = kNoId;
   for (std::size_t i = 0; i < count; ++i) {
@@ -222,7 +242,7 @@ void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, cons
     out.user[i] = names.user, out.material_slot[i] = names.material_slot;
     if (names.kind == Kind::triangle) {
       run.add(place, names, i);
-    } else if (place.changes() || !groups.add(names, i)) {
+    } else if (place.moved || !groups.add(place, names, i)) {
       Surface s;
       surface_at(place, names, rays[which[i]], hit, false, s);
       out.set_shape(i, s);

@@ -30,6 +30,24 @@ OKTETT_INLINE D length_lanes(const Vec3<D>& v) {
   return sqrt(dot_lanes(v, v));
 }
 
+/// Affine::vector, Affine::point and Affine::normal_by_inverse.
+template <class D>
+OKTETT_INLINE Vec3<D> map_vector(const Affine& a, const Vec3<D>& v) {
+  const auto row = [&](int i) { return D(a.m[i][0]) * v.x + D(a.m[i][1]) * v.y + D(a.m[i][2]) * v.z; };
+  return {row(0), row(1), row(2)};
+}
+template <class D>
+OKTETT_INLINE Vec3<D> map_point(const Affine& a, const Vec3<D>& p) {
+  const Vec3<D> v = map_vector(a, p);
+  return {v.x + D(a.m[0][3]), v.y + D(a.m[1][3]), v.z + D(a.m[2][3])};
+}
+template <class D>
+OKTETT_INLINE Vec3<D> map_normal(const Affine& inverse, const Vec3<D>& n) {
+  const auto column = [&](int i) {
+    return D(inverse.m[0][i]) * n.x + D(inverse.m[1][i]) * n.y + D(inverse.m[2][i]) * n.z;
+  };
+  return {column(0), column(1), column(2)};
+}
 /// The least floats that are not below `x`, which must be no less than 1e-37: round_up of core/box.h.
 template <class D>
 OKTETT_INLINE Simd<float, D::kWidth, typename D::Isa> round_up_lanes(const D& x) {
@@ -93,14 +111,40 @@ void plane_surfaces(const Plane::Pool& pool, ShapeHits& hits) {
   }
 }
 
+/// BoxSolid::surface for hits of one box.
+template <class D>
+void box_surfaces(const BoxSolid::Pool& pool, ShapeHits& hits) {
+  Affine to_local;
+  for (int k = 0; k < 12; ++k) to_local.m[k / 4][k % 4] = pool.m[k][hits.element[0]];
+  const Affine to_world = to_local.inverse();
+  const D extent(length(to_world.vector({1, 1, 1})));
+  for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
+    const HitPoints<D> hit(hits, i);
+    Vec3<D> q = map_point(to_local, hit.point());
+    const Vec3<D> m{abs(q.x), abs(q.y), abs(q.z)};
+    const auto x = (m.x >= m.y) & (m.x >= m.z), y = ~x & (m.y >= m.z);
+    const auto side = [](const D& v) { return select(v < D(0.0), D(-1.0), D(1.0)); };
+    const D zero(0.0);
+    const Vec3<D> face{select(x, side(q.x), zero), select(y, side(q.y), zero),
+                       select(x | y, zero, side(q.z))};
+    q = {select(x, face.x, q.x), select(y, face.y, q.y), select(x | y, q.z, face.z)};
+    const Vec3<D> point = map_point(to_world, q), n = map_normal(to_local, face);
+    const D l = length_lanes(n);
+    store_surface(hit, point, D(0x1p-46) * (length_lanes(point) + extent), Vec3<D>{n.x / l, n.y / l, n.z / l},
+                  hits, i);
+  }
+}
+
 /// Without vector registers one hit at a time.
 template <class A>
 using SurfaceLanes = Simd<double, std::is_same_v<A, ScalarIsa> ? 1 : 8, A>;
 
-/// Spheres or planes.
+/// Spheres, planes, or one box.
 template <class A>
 void closed_form_surfaces_code(const Accel& accel, Kind kind, ShapeHits& hits) {
-  if (kind == Kind::sphere)
+  if (kind == Kind::box)
+    box_surfaces<SurfaceLanes<A>>(std::get<BoxSolid::Pool>(accel.pools), hits);
+  else if (kind == Kind::sphere)
     sphere_surfaces<SurfaceLanes<A>>(std::get<Sphere::Pool>(accel.pools), hits);
   else
     plane_surfaces<SurfaceLanes<A>>(std::get<Plane::Pool>(accel.pools), hits);

@@ -67,7 +67,7 @@ struct IsaTable {
   void (*run_roots)(RootsKernel, const RootsRun&);
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
   void (*mesh_surfaces)(MeshSurfaces&);
-  /// Spheres or planes.
+  /// Spheres, planes, or one box.
   void (*closed_form_surfaces)(const Accel&, Kind, ShapeHits&);
   bool (*exact_surfaces)(const Accel&, Kind, ShapeHits&);
 };

@@ -259,6 +259,12 @@ TEST(Csg, InsideOutAndMirroredMeshesAreSolidsToo) {
   EXPECT_EQ(with(reversed, {}), expected);
   EXPECT_EQ(with(block, Affine::scaling({1, 1, -1})), expected);
   EXPECT_EQ(with(reversed, Affine::scaling({1, -1, 1})), expected);
+  // The same inside of an instance.
+  const auto inner = built(solid(MeshGeometry{&reversed.mesh, false}, 1));
+  EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {cube({-4, -4, -4}, {4, 4, 4}, 0),
+                                                             solid(InstanceGeometry{inner}, 1)}))),
+                      ray),
+            expected);
 }
 
 /// Triangles in several leaves are one crossing each.

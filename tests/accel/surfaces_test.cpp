@@ -103,7 +103,11 @@ std::vector<Geometry> bodies(const TriangleMesh& smooth, const TriangleMesh& fla
           {ExactShape{vase()}, Affine::translation({0, 4, 0}), 12},
           {ExactShape{BlobShape{{{BlobSource::Kind::point, {0, 0, 0}, {}, 0, 0.3}}}},
            Affine::translation({0, -4, 0}), 13},
-          {ExactShape{TorusShape{0.5, 0.2}, NormalMethod::central}, Affine::translation({4, 0, 0}), 14}};
+          {ExactShape{TorusShape{0.5, 0.2}, NormalMethod::central}, Affine::translation({4, 0, 0}), 14},
+          {BoxShape{{-0.5, -0.5, -0.5}, {0.5, 1, 0.5}}, Affine::translation({-4, 0, 0}), 15},
+          {BoxShape{},
+           Affine::translation({0, 0, 4.5}) * Affine::rotation({10, 50, 0}) * Affine::scaling({1, -0.5, 0.3}),
+           16}};
 }
 
 RayBatch random_rays(int count) {
@@ -160,6 +164,32 @@ TEST(Surfaces, InsideNestedInstances) {
   HitBatch hits = trace_all(*top, rays, found);
   ASSERT_GT(found.size(), 800u);
   expect_like_surface(*top, rays, hits, found);
+}
+
+// Solids in the world, some of them taken away, and the same once more in an instance.
+TEST(Surfaces, OfCombinations) {
+  const TriangleMesh smooth = smooth_mesh(), flat = make_cube().mesh;
+  const auto part = [&](double size, const Vec3d& from) {
+    CsgExpression e{CsgOp::unite, {}, {}};
+    for (Geometry g : bodies(smooth, flat)) {
+      if (std::holds_alternative<PlaneShape>(g.shape)) continue;
+      g.transform = Affine::translation(from) * g.transform * Affine::scaling({size, size, size});
+      e.children.push_back({CsgOp::operand, {std::move(g)}, {}});
+    }
+    return e;
+  };
+  const CsgExpression whole{CsgOp::subtract, {}, {part(1, {}), part(0.7, {0.4, 0.2, 0.3})}};
+  const Geometry csg{CsgGeometry{std::make_shared<const CsgExpression>(whole)}, {}, kNoId};
+  const auto inner = build_accel({csg});
+  const auto accel =
+      build_accel({csg,
+                   {InstanceGeometry{inner}, Affine::translation({6, 1, 0}) * Affine::scaling({1, 0.5, -2})},
+                   {SpheresShape{{{{0, 0, 0}, 0.5}}}, {}, 99}});
+  const RayBatch rays = random_rays(3000);
+  std::vector<std::uint32_t> found;
+  HitBatch hits = trace_all(*accel, rays, found);
+  ASSERT_GT(found.size(), 1000u);
+  expect_like_surface(*accel, rays, hits, found);
 }
 
 // Weights that no hit has, triangles without area, normals that are zero, infinite or NaN.
