@@ -34,6 +34,21 @@ struct InstanceGeometry {
   std::shared_ptr<const Accel> child;
 };
 
+/// One of many instances, in 56 bytes. The place of what it shows is that of these floats.
+struct InstancePlace {
+  float to_list[12];    ///< row-major 3x4: from the child to the space of the list
+  std::uint32_t child;  ///< index into InstanceList::children
+  /// If it is not kNoId, it overrides those of the geometries below.
+  std::uint32_t user = kNoId;
+};
+
+/// Many instances, an item each, that take 64 bytes besides their share of the tree. The children may have
+/// several levels of instances; the numbers of their paths are as far apart as the deepest child needs.
+struct InstanceList {
+  std::vector<std::shared_ptr<const Accel>> children;
+  std::vector<InstancePlace> places;  ///< given up when the structure is built
+};
+
 struct CsgExpression;
 
 /// A Boolean combination of solids. Each solid keeps its own `user`.
@@ -45,7 +60,7 @@ struct CsgGeometry {
 /// hit; an instance whose `user` is not kNoId overrides those of the geometries below it.
 struct Geometry {
   std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, ExactShape,
-               CsgGeometry, InstanceGeometry>
+               CsgGeometry, InstanceGeometry, InstanceList>
       shape;
   Affine transform;
   std::uint32_t user = kNoId;

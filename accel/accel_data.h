@@ -26,10 +26,20 @@ struct InstanceItem {
   std::uint32_t first_path;  ///< paths through this instance are first_path + 1 + (path inside the child + 1)
 };
 
-/// Where the paths through one instance or combination begin.
+/// An instance of a list. What is traced is what the floats say.
+struct ListedInstance {
+  float to_child[12];              ///< row-major 3x4
+  std::uint32_t child;             ///< index into Accel::listed_children
+  std::uint32_t item, first_path;  ///< as in InstanceItem
+  std::uint32_t user;              ///< kNoId if it has none
+};
+static_assert(sizeof(ListedInstance) == 64);
+
+/// Where the paths through one instance or combination begin, or those through a list of instances.
 struct PathStep {
   std::uint32_t first_path, item;
-  const Accel* child;
+  const Accel* child;    ///< null for a list
+  std::uint32_t stride;  ///< in a list: paths from one instance to the next
   bool is_combination;
 };
 
@@ -65,14 +75,16 @@ class Accel {
   ShapePools pools;
   std::unique_ptr<ExactPools> exact;  ///< null if there are no exact surfaces
   std::vector<InstanceItem> instances;
+  std::vector<ListedInstance> listed_instances;
+  std::vector<const Accel*> listed_children;
   bool pieces = false;                ///< a triangle may stand in more than one block
   std::vector<LeafEntry> unbounded;   ///< tested against every ray
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
   std::vector<std::uint32_t> users;   ///< Geometry::user of each
-  /// Where primitive k of geometry g, of a closed-form or exact shape, stands in its pool:
-  /// pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
+  /// Where primitive k of geometry g, of a closed-form or exact shape or in a list of instances, stands in
+  /// its pool: pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
   std::vector<std::uint32_t> pool_index, first_pool_index;
   std::vector<CsgItem> combinations;
   std::vector<PathStep> path_steps;  ///< ordered by first_path

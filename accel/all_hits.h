@@ -85,19 +85,19 @@ template <class A>
 void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A>& r, HitList& hits) {
   if (leaf.kind == Kind::triangle) {
     collect_triangles(accel, accel.blocks[leaf.begin], leaf.count, leaf.test, r, hits);
-  } else if (leaf.kind == Kind::instance) {
-    for (std::uint32_t k = 0; k < leaf.count; ++k) {
-      const InstanceItem& instance = accel.instances[leaf.begin + k];
+  } else if (holds_instances(leaf.kind)) {
+    each_instance(accel, leaf, [&](const auto& instance, const Accel& inner) {
       const auto outer = broadcast_ray<1>(r, 0);
       Vec3<Simd<float, 1, A>> o, d;
       transform_rays(instance, outer, o, d);
       RayState<1, A> child;
-      if (child.set(o, d, outer.tmin, outer.tmax, instance.child->bounds) == 0) continue;
+      if (child.set(o, d, outer.tmin, outer.tmax, inner.bounds) == 0) return true;
       const std::size_t before = hits.size();
-      collect(*instance.child, child, hits);
+      collect(inner, child, hits);
       for (std::size_t j = before; j < hits.size(); ++j)
         hits[j].hit.instance = outer_path(instance, hits[j].hit.instance);
-    }
+      return true;
+    });
   } else if (is_exact(leaf.kind) || leaf.kind == Kind::csg) {
     const Ray ray{{r.o[0][0], r.o[1][0], r.o[2][0]}, r.tmin[0], {r.d[0][0], r.d[1][0], r.d[2][0]}, r.tmax[0]};
     if (leaf.kind == Kind::csg)

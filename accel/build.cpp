@@ -19,6 +19,7 @@ using ItemOrder = std::vector<std::uint32_t>[kKinds];
 std::size_t item_count(const Geometry& g) {
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) return mesh->mesh->triangle_count();
   if (const auto* spheres = std::get_if<SpheresShape>(&g.shape)) return spheres->spheres.size();
+  if (const auto* list = std::get_if<InstanceList>(&g.shape)) return list->places.size();
   return 1;
 }
 
@@ -73,17 +74,19 @@ class PoolFiller {
     if (accel_.exact) std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact->pools);
     number_paths();
     fill_instances();
+    arrange_listed();
     arrange_combinations();
   }
 
  private:
-  /// Gives every primitive of a closed-form or exact shape a place in pool_index.
+  /// Gives every primitive of a closed-form or exact shape and every listed instance a place in pool_index.
   void number_primitives() {
     std::uint32_t count = 0;
     std::vector<std::uint32_t> first(accel_.geometries.size());
     for (std::uint32_t g = 0; g < first.size(); ++g) {
       first[g] = count;
-      if (accel_.kinds[g] < static_cast<int>(Kind::triangle))
+      if (accel_.kinds[g] < static_cast<int>(Kind::triangle) ||
+          accel_.kinds[g] == static_cast<int>(Kind::instance_list))
         count += accel_.first_item[g + 1] - accel_.first_item[g];
     }
     if (count == 0) return;
@@ -136,25 +139,37 @@ class PoolFiller {
   void number_paths() {
     std::vector<PathStep>& steps = accel_.path_steps;
     for (std::uint32_t item : order_[static_cast<int>(Kind::instance)])
-      steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), false});
-    for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), true});
+      steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), 0, false});
+    for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), 0, true});
+    for (std::uint32_t g = 0; g < accel_.geometries.size(); ++g)
+      if (const auto* list = std::get_if<InstanceList>(&accel_.geometries[g].shape)) {
+        std::uint32_t stride = 1;
+        for (const auto& child : list->children) stride = std::max(stride, 1 + child->path_count);
+        if (accel_.first_item[g] < accel_.first_item[g + 1])
+          steps.push_back({0, accel_.first_item[g], nullptr, stride, false});
+      }
     std::sort(steps.begin(), steps.end(),
               [](const PathStep& a, const PathStep& b) { return a.item < b.item; });
     std::uint64_t paths = 0;
     for (PathStep& step : steps) {
       step.first_path = static_cast<std::uint32_t>(paths);
-      paths += (1 + std::uint64_t{step.child->path_count}) * (step.is_combination ? 2 : 1);
+      if (step.stride != 0) {
+        const std::uint32_t g = accel_.geometry_of(step.item);
+        paths += std::uint64_t{step.stride} * (accel_.first_item[g + 1] - step.item);
+      } else {
+        paths += (1 + std::uint64_t{step.child->path_count}) * (step.is_combination ? 2 : 1);
+      }
       if (paths >= kNoId) throw Error("more than 2^32 - 2 nested instances");
     }
     accel_.path_count = static_cast<std::uint32_t>(paths);
   }
 
-  std::uint32_t first_path(std::uint32_t item) const {
+  const PathStep& step_of(std::uint32_t item) const {
     const std::vector<PathStep>& steps = accel_.path_steps;
-    return std::lower_bound(steps.begin(), steps.end(), item,
-                            [](const PathStep& step, std::uint32_t value) { return step.item < value; })
-        ->first_path;
+    return *std::lower_bound(steps.begin(), steps.end(), item,
+                             [](const PathStep& step, std::uint32_t value) { return step.item < value; });
   }
+  std::uint32_t first_path(std::uint32_t item) const { return step_of(item).first_path; }
 
   void fill_instances() {
     for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
@@ -168,6 +183,22 @@ class PoolFiller {
       accel_.instances.push_back(instance);
     }
     accel_.stats.other_bytes += accel_.instances.size() * sizeof(InstanceItem);
+  }
+
+  /// Brings the listed instances into leaf order.
+  void arrange_listed() {
+    const std::vector<std::uint32_t>& order = order_[static_cast<int>(Kind::instance_list)];
+    std::vector<ListedInstance> ordered;
+    ordered.reserve(order.size());
+    for (const std::uint32_t index : order) {
+      ListedInstance& listed = ordered.emplace_back(accel_.listed_instances[index]);
+      const std::uint32_t g = accel_.geometry_of(listed.item), local = listed.item - accel_.first_item[g];
+      const PathStep& step = step_of(accel_.first_item[g]);
+      listed.first_path = step.first_path + local * step.stride;
+      accel_.pool_index[accel_.first_pool_index[g] + local] = static_cast<std::uint32_t>(ordered.size() - 1);
+    }
+    accel_.listed_instances = std::move(ordered);
+    accel_.stats.other_bytes += accel_.listed_instances.size() * sizeof(ListedInstance);
   }
 
   /// Brings the combinations into leaf order.
@@ -252,6 +283,41 @@ void add_combination(Accel& accel, const Geometry& geometry, std::uint32_t item,
   accel.combinations.push_back(std::move(csg));
 }
 
+/// Adds the instances of a list, each by its number in accel.listed_instances, as cells are.
+void add_listed(Accel& accel, Geometry& geometry, std::uint32_t first, Column<PrimRef>& refs,
+                ItemOrder& order) {
+  InstanceList& list = std::get<InstanceList>(geometry.shape);
+  const auto first_child = static_cast<std::uint32_t>(accel.listed_children.size());
+  for (const auto& child : list.children) accel.listed_children.push_back(child.get());
+  accel.listed_instances.reserve(accel.listed_instances.size() + list.places.size());
+  for (std::uint32_t k = 0; k < list.places.size(); ++k) {
+    const InstancePlace& place = list.places[k];
+    const Affine to_world = geometry.transform * affine_of(place.to_list);
+    if (place.child >= list.children.size() || !to_world.is_invertible()) continue;
+    const Affine inverse = to_world.inverse();
+    ListedInstance listed{{}, first_child + place.child, first + k, 0, place.user};
+    for (int i = 0; i < 12; ++i) listed.to_child[i] = static_cast<float>(inverse.m[i / 4][i % 4]);
+    const Affine to_child = affine_of(listed.to_child);
+    if (!to_child.is_invertible()) continue;
+    const Accel& child = *list.children[place.child];
+    const Box box = instance_bounds(to_child.inverse(), child);
+    const auto index = static_cast<std::uint32_t>(accel.listed_instances.size());
+    if (!child.unbounded.empty()) {
+      std::vector<std::uint32_t>& all = order[static_cast<int>(Kind::instance_list)];
+      accel.unbounded.push_back(
+          {static_cast<std::uint32_t>(all.size()), 1, Kind::instance_list, TriangleTest::watertight});
+      all.push_back(index);
+    } else if (is_usable(box)) {
+      refs.push_back(make_ref(box, index, Kind::instance_list));
+      accel.bounds.grow(box);
+    } else {
+      continue;
+    }
+    accel.listed_instances.push_back(listed);
+  }
+  list.places = {};
+}
+
 void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& refs, ItemOrder& order,
                     const BuildOptions& options) {
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
@@ -259,6 +325,10 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
     const Kind kind = kind_of(geometry);
     const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
     if (!geometry.transform.is_invertible()) continue;
+    if (kind == Kind::instance_list) {
+      add_listed(accel, accel.geometries[g], first, refs, order);
+      continue;
+    }
     if (kind == Kind::triangle) {
       accel.bounds.grow(meshes.add_references(g, refs, options.parallel));
       continue;
@@ -281,7 +351,9 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
         continue;
       }
       const Box box =
-          kind == Kind::instance ? instance_bounds(geometry) : shape_bounds(geometry, item - first);
+          kind == Kind::instance
+              ? instance_bounds(geometry.transform, *std::get<InstanceGeometry>(geometry.shape).child)
+              : shape_bounds(geometry, item - first);
       if (!is_usable(box)) continue;
       refs.push_back(make_ref(box, item, kind));
       accel.bounds.grow(box);

@@ -24,6 +24,16 @@ double signed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
+/// What instances show.
+std::vector<const Accel*> children_of(const Geometry& g) {
+  std::vector<const Accel*> children;
+  if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape))
+    children.push_back(instance->child.get());
+  if (const auto* list = std::get_if<InstanceList>(&g.shape))
+    for (const auto& child : list->children) children.push_back(child.get());
+  return children;
+}
+
 bool is_inside_out(const Geometry& g) {
   const auto* mesh = std::get_if<MeshGeometry>(&g.shape);
   return mesh != nullptr && signed_volume(*mesh->mesh) < 0;
@@ -32,8 +42,7 @@ bool is_inside_out(const Geometry& g) {
 void find_inverted(const Accel& accel, std::vector<std::pair<const Accel*, std::uint32_t>>& found) {
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     if (is_inside_out(accel.geometries[g])) found.emplace_back(&accel, g);
-    if (const auto* instance = std::get_if<InstanceGeometry>(&accel.geometries[g].shape))
-      find_inverted(*instance->child, found);
+    for (const Accel* child : children_of(accel.geometries[g])) find_inverted(*child, found);
   }
 }
 
@@ -107,8 +116,7 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
     for (const Geometry& g : e.solids) {
       if (is_unbounded(g)) csg.unbounded.push_back(static_cast<std::uint32_t>(solids.size()));
       csg.inverted.push_back(is_inside_out(g));
-      if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape))
-        find_inverted(*instance->child, csg.inverted_inside);
+      for (const Accel* child : children_of(g)) find_inverted(*child, csg.inverted_inside);
       solids.push_back(g);
       csg.operand_of.push_back(node);
     }

@@ -46,17 +46,27 @@ bool is_inside(const CsgItem& csg, const HalfLine& line) {
   return evaluate(evaluate, 0);
 }
 
+/// Inside of something in `child` that may reach to where the line ends.
+bool is_inside_unbounded(const Accel& child, const HalfLine& line) {
+  for (std::uint32_t i = 0; i < child.geometries.size(); ++i)
+    if ((is_unbounded(child.geometries[i]) ||
+         std::holds_alternative<CsgGeometry>(child.geometries[i].shape)) &&
+        is_inside(child, i, line))
+      return true;
+  return false;
+}
+
 bool is_inside(const Accel& accel, std::uint32_t geometry, const HalfLine& line) {
   const Geometry& g = accel.geometries[geometry];
-  if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape)) {
-    const Accel& child = *instance->child;
-    const HalfLine inner = line.moved(accel.frames[geometry].inverse);
-    for (std::uint32_t i = 0; i < child.geometries.size(); ++i)
-      if ((is_unbounded(child.geometries[i]) ||
-           std::holds_alternative<CsgGeometry>(child.geometries[i].shape)) &&
-          is_inside(child, i, inner))
-        return true;
-    return false;
+  if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape))
+    return is_inside_unbounded(*instance->child, line.moved(accel.frames[geometry].inverse));
+  if (std::holds_alternative<InstanceList>(g.shape)) {
+    return std::any_of(accel.listed_instances.begin(), accel.listed_instances.end(),
+                       [&](const ListedInstance& listed) {
+                         return accel.geometry_of(listed.item) == geometry &&
+                                is_inside_unbounded(*accel.listed_children[listed.child],
+                                                    line.moved(affine_of(listed.to_child)));
+                       });
   }
   if (std::holds_alternative<CsgGeometry>(g.shape)) {
     for (const CsgItem& csg : accel.combinations)

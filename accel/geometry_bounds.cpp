@@ -18,7 +18,7 @@ Kind kind_of(const Geometry& g) {
   if (std::holds_alternative<PolygonShape>(g.shape)) return Kind::polygon;
   if (const auto* exact = std::get_if<ExactShape>(&g.shape)) return kind_of(exact->form);
   if (std::holds_alternative<CsgGeometry>(g.shape)) return Kind::csg;
-  return Kind::instance;
+  return std::holds_alternative<InstanceList>(g.shape) ? Kind::instance_list : Kind::instance;
 }
 
 SphereShape moved_sphere(const SphereShape& s, const Affine& m) {
@@ -65,8 +65,14 @@ Box shape_bounds(const Geometry& g, std::size_t local) {
   return {};
 }
 
-Box instance_bounds(const Geometry& g) {
-  Box b = transform_bounds(g.transform, bounds(*std::get<InstanceGeometry>(g.shape).child));
+Affine affine_of(const float* m) {
+  Affine a;
+  for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = m[k];
+  return a;
+}
+
+Box instance_bounds(const Affine& to_world, const Accel& child) {
+  Box b = transform_bounds(to_world, child.bounds);
   if (b.empty()) return b;
   const Vec3f e = b.extent();
   const float pad = 0x1p-20f * std::max({e.x, e.y, e.z, max_component(abs(b.lo)), max_component(abs(b.hi))});
@@ -76,6 +82,9 @@ Box instance_bounds(const Geometry& g) {
 
 bool is_unbounded(const Geometry& g) {
   if (const auto* i = std::get_if<InstanceGeometry>(&g.shape)) return !i->child->unbounded.empty();
+  if (const auto* list = std::get_if<InstanceList>(&g.shape))
+    return std::any_of(list->children.begin(), list->children.end(),
+                       [](const auto& child) { return !child->unbounded.empty(); });
   if (const auto* exact = std::get_if<ExactShape>(&g.shape)) {
     ExactPools pools;
     bool unbounded = false;
@@ -99,8 +108,12 @@ Box geometry_bounds(const Geometry& g) {
     for (std::size_t i = 0; i < spheres->spheres.size(); ++i) box.grow(shape_bounds(g, i));
   } else if (const auto* exact = std::get_if<ExactShape>(&g.shape)) {
     box = exact_bounds(*exact, g.transform);
-  } else if (std::holds_alternative<InstanceGeometry>(g.shape)) {
-    box = instance_bounds(g);
+  } else if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape)) {
+    box = instance_bounds(g.transform, *instance->child);
+  } else if (const auto* list = std::get_if<InstanceList>(&g.shape)) {
+    for (const InstancePlace& place : list->places)
+      if (place.child < list->children.size())
+        box.grow(instance_bounds(g.transform * affine_of(place.to_list), *list->children[place.child]));
   } else {
     box = shape_bounds(g, 0);
   }

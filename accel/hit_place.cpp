@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accel/csg_solids.h"
+#include "accel/geometry_bounds.h"
 
 namespace oktett {
 
@@ -14,7 +15,17 @@ static const PathStep& step_of(const Accel& accel, std::uint32_t path) {
       1);
 }
 
-std::uint32_t top_item(const Accel& accel, std::uint32_t path) { return step_of(accel, path).item; }
+std::uint32_t top_item(const Accel& accel, std::uint32_t path) {
+  const PathStep& step = step_of(accel, path);
+  return step.stride == 0 ? step.item : step.item + (path - step.first_path) / step.stride;
+}
+
+/// The instance of a list that path `path` leads through.
+static const ListedInstance& listed_instance(const Accel& accel, const PathStep& step, std::uint32_t path) {
+  const std::uint32_t g = accel.geometry_of(step.item);
+  const std::uint32_t local = (path - step.first_path) / step.stride;
+  return accel.listed_instances[accel.pool_index[accel.first_pool_index[g] + local]];
+}
 
 HitPlace follow_path(const Accel& accel, std::uint32_t path) {
   HitPlace place;
@@ -23,6 +34,16 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path) {
     const PathStep& step = step_of(*place.accel, path);
     const Geometry& g = place.accel->geometries[place.accel->geometry_of(step.item)];
     const std::uint32_t inner = path - step.first_path;
+    if (step.stride != 0) {
+      const ListedInstance& listed = listed_instance(*place.accel, step, path);
+      const Affine to_outer = affine_of(listed.to_child).inverse();
+      place.to_world = place.moved ? place.to_world * to_outer : to_outer;
+      place.moved = true;
+      path = inner % step.stride - 1;
+      if (place.user == kNoId) place.user = listed.user != kNoId ? listed.user : g.user;
+      place.accel = place.accel->listed_children[listed.child];
+      continue;
+    }
     if (step.is_combination) {
       // The solids of a combination already stand where its transform puts them.
       if (place.combined == nullptr) {

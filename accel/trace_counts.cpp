@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "accel/instance.h"
 #include "accel/node_planes.h"
 #include "kernels/exact_shapes.h"
 
@@ -83,10 +84,11 @@ class Walk {
 
   void entry(const Accel& accel, const LeafEntry& leaf) {
     if (leaf.kind == Kind::triangle) return block(accel.blocks[leaf.begin], leaf.count);
-    if (leaf.kind == Kind::instance) {
-      for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) instance(accel.instances[k]);
-      return;
-    }
+    if (holds_instances(leaf.kind))
+      return each_instance(accel, leaf, [&](const auto& item, const Accel& child) {
+        instance(item, child);
+        return true;
+      });
     counts_.other += leaf.count;
     if (leaf.kind == Kind::csg) {
       for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k)
@@ -106,16 +108,17 @@ class Walk {
     });
   }
 
-  void instance(const InstanceItem& instance) {
+  template <class Instance>
+  void instance(const Instance& instance, const Accel& child) {
     ++counts_.instances;
     Vec3d o, d;
     for (int k = 0; k < 3; ++k) {
-      const double* m = instance.to_child + 4 * k;
+      const auto* m = instance.to_child + 4 * k;
       o[k] = m[0] * o_.x + m[1] * o_.y + m[2] * o_.z + m[3];
       d[k] = m[0] * d_.x + m[1] * d_.y + m[2] * d_.z;
     }
     Walk inner(o, d, tmin_, tmax_, hit_, counts_);
-    inner.run(*instance.child);
+    inner.run(child);
     tmax_ = inner.tmax_;
   }
 

@@ -96,14 +96,15 @@ template <Query Q, int W, class A>
 void trace_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes);
 
 /// The rays in `lanes` through one instance: they may part ways there, so they are sorted into groups anew.
-template <Query Q, int W, class A>
-OKTETT_NOINLINE void instance_packet(const InstanceItem& instance, RayState<W, A>& r, unsigned lanes) {
+template <Query Q, class Instance, int W, class A>
+OKTETT_NOINLINE void instance_packet(const Instance& instance, const Accel& inner, RayState<W, A>& r,
+                                     unsigned lanes) {
   const auto outer = load_rays(r);
   Vec3<Simd<float, W, A>> o, d;
   transform_rays(instance, outer, o, d);
   RayState<W, A> child;
-  lanes &= child.set(o, d, outer.tmin, outer.tmax, instance.child->bounds);
-  trace_packet<Q>(*instance.child, child, lanes);
+  lanes &= child.set(o, d, outer.tmin, outer.tmax, inner.bounds);
+  trace_packet<Q>(inner, child, lanes);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int i = __builtin_ctz(lanes);
     if (child.item[i] != kNoId)
@@ -128,12 +129,12 @@ OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf
                                        unsigned lanes) {
   if (leaf.kind == Kind::triangle) {
     leaf_textbook_packet(leaf.test, accel.blocks[leaf.begin], leaf.count, r, lanes);
-  } else if (leaf.kind == Kind::instance) {
-    for (std::uint32_t k = 0; k < leaf.count; ++k) {
+  } else if (holds_instances(leaf.kind)) {
+    each_instance(accel, leaf, [&](const auto& instance, const Accel& child) {
       if (Q == Query::any) lanes &= ~found_lanes(r, lanes);
-      if (lanes == 0) return;
-      instance_packet<Q>(accel.instances[leaf.begin + k], r, lanes);
-    }
+      if (lanes != 0) instance_packet<Q>(instance, child, r, lanes);
+      return lanes != 0;
+    });
   } else if (leaf.kind == Kind::csg) {
     leaf_csg(accel, leaf, r, lanes);
   } else if (is_exact(leaf.kind)) {

@@ -21,14 +21,14 @@ template <Query Q, int W, class A>
 void trace_single(const Accel& accel, RayState<W, A>& r, int i);
 
 /// Ray `i` through one instance.
-template <Query Q, int W, class A>
-OKTETT_NOINLINE void instance_single(const InstanceItem& instance, RayState<W, A>& r, int i) {
+template <Query Q, class Instance, int W, class A>
+OKTETT_NOINLINE void instance_single(const Instance& instance, const Accel& inner, RayState<W, A>& r, int i) {
   const auto outer = broadcast_ray<1>(r, i);
   Vec3<Simd<float, 1, A>> o, d;
   transform_rays(instance, outer, o, d);
   RayState<1, A> child;
-  if (child.set(o, d, outer.tmin, outer.tmax, instance.child->bounds) == 0) return;
-  trace_single<Q>(*instance.child, child, 0);
+  if (child.set(o, d, outer.tmin, outer.tmax, inner.bounds) == 0) return;
+  trace_single<Q>(inner, child, 0);
   if (child.item[0] != kNoId)
     accept_hit(r, i, child.tmax[0], child.u[0], child.v[0], child.item[0],
                outer_path(instance, child.path[0]));
@@ -39,11 +39,11 @@ template <Query Q, int W, class A>
 OKTETT_NOINLINE void table_leaf_single(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r, int i) {
   if (leaf.kind == Kind::triangle) {
     leaf_textbook_single(leaf.test, accel.blocks[leaf.begin], leaf.count, r, i);
-  } else if (leaf.kind == Kind::instance) {
-    for (std::uint32_t k = 0; k < leaf.count; ++k) {
-      instance_single<Q>(accel.instances[leaf.begin + k], r, i);
-      if (Q == Query::any && r.item[i] != kNoId) return;
-    }
+  } else if (holds_instances(leaf.kind)) {
+    each_instance(accel, leaf, [&](const auto& instance, const Accel& child) {
+      instance_single<Q>(instance, child, r, i);
+      return Q != Query::any || r.item[i] == kNoId;
+    });
   } else if (leaf.kind == Kind::csg) {
     leaf_csg(accel, leaf, r, 1u << i);
   } else if (is_exact(leaf.kind)) {

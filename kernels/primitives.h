@@ -48,13 +48,14 @@ enum class Kind : std::uint8_t {
   terrain,
   triangle,
   csg,
-  instance
+  instance,
+  instance_list
 };
 
 inline constexpr int kClosedFormKinds = static_cast<int>(std::tuple_size_v<ClosedFormShapes>);
 inline constexpr int kExactKinds = static_cast<int>(std::variant_size_v<ExactForm>);
-inline constexpr int kKinds = static_cast<int>(Kind::instance) + 1;
-static_assert(kKinds == kClosedFormKinds + kExactKinds + 3);
+inline constexpr int kKinds = static_cast<int>(Kind::instance_list) + 1;
+static_assert(kKinds == kClosedFormKinds + kExactKinds + 4);
 
 inline constexpr bool is_exact(Kind kind) {
   return kind >= static_cast<Kind>(kClosedFormKinds) && kind < Kind::triangle;

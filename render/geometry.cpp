@@ -7,6 +7,9 @@
 namespace oktett {
 namespace {
 
+/// So many instances in a row become a list, which takes less memory.
+constexpr std::size_t kLeastList = 64;
+
 /// Turns lists of objects into acceleration structures, one list after the other.
 class WorldBuilder {
  public:
@@ -25,8 +28,15 @@ class WorldBuilder {
   std::shared_ptr<const Accel> build_list(const std::vector<Object>& objects) {
     std::vector<Geometry> geometries;
     std::uint64_t instances = 0;
-    for (const Object& object : objects) {
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+      const Object& object = objects[k];
       Geometry geometry;
+      if (const std::size_t run = instances_from(objects, k); run >= kLeastList) {
+        geometries.push_back({instance_list(objects, k, run), {}, kNoId});
+        instances += run;
+        k += run - 1;
+        continue;
+      }
       if (!make_geometry(object, geometry)) continue;
       const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
       if (instance && object.transform.is_invertible()) ++instances;
@@ -38,6 +48,34 @@ class WorldBuilder {
     world_.primitives += s.items - std::min<std::uint64_t>(s.items, instances);
     world_.bvh_bytes += s.bytes();
     return accel;
+  }
+
+  /// Number of instances in a row from object `first` on.
+  std::size_t instances_from(const std::vector<Object>& objects, std::size_t first) const {
+    std::size_t end = first;
+    while (end < objects.size()) {
+      const auto* instance = std::get_if<InstanceShape>(&objects[end].shape);
+      if (instance == nullptr || instance->prototype >= prototypes_.size()) break;
+      ++end;
+    }
+    return end - first;
+  }
+
+  InstanceList instance_list(const std::vector<Object>& objects, std::size_t first, std::size_t count) {
+    InstanceList list;
+    list.children = prototypes_;
+    list.places.reserve(count);
+    for (std::size_t k = first; k < first + count; ++k) {
+      const Object& object = objects[k];
+      const auto id = static_cast<std::uint32_t>(world_.objects.size());
+      world_.objects.push_back({object.material, {}});
+      // Without a material of its own, an instance shows those of the objects inside.
+      InstancePlace place{
+          {}, std::get<InstanceShape>(object.shape).prototype, object.material == kNoId ? kNoId : id};
+      for (int i = 0; i < 12; ++i) place.to_list[i] = static_cast<float>(object.transform.m[i / 4][i % 4]);
+      list.places.push_back(place);
+    }
+    return list;
   }
 
   bool make_geometry(const Object& object, Geometry& geometry) {

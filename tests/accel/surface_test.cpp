@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "accel/dispatch.h"
 #include "app/oracle.h"
@@ -197,6 +198,93 @@ TEST(Instance, SingularTransformsAreLeftOut) {
   const auto flat = build_accel({instance(leaf, Affine::scaling({1, 0, 1}))});
   EXPECT_TRUE(bounds(*flat).empty());
   EXPECT_FALSE(trace(*flat, {{0, 0, 5}, 0, {0, 0, -1}, kInf}).valid());
+}
+
+InstancePlace listed(const Affine& m, std::uint32_t child, std::uint32_t user = kNoId) {
+  InstancePlace place{{}, child, user};
+  for (int k = 0; k < 12; ++k) place.to_list[k] = static_cast<float>(m.m[k / 4][k % 4]);
+  return place;
+}
+
+/// Maps that floats hold exactly, and their inverses, too.
+std::vector<Affine> dyadic_maps() {
+  return {Affine::translation({4, 0, 0}) * Affine::scaling({0.5, 0.25, -1}),
+          Affine::translation({0, -4, 2}) * Affine::scaling({-1, 2, 1}), Affine::translation({0, 5, 0}),
+          Affine::scaling({0.5, 0.5, 0.5}), Affine::translation({-4, 0.5, 0})};
+}
+
+// One geometry with many instances in it gives the hits of as many geometries.
+TEST(InstanceList, LikeInstancesOneByOne) {
+  const TriangleMesh mesh = make_icosphere(2).mesh;
+  std::vector<Geometry> shapes = one_of_each(mesh);
+  const auto leaf = build_accel(shapes);
+  const auto nested = build_accel({instance(leaf, Affine::scaling({0.5, 0.5, 0.5}), 3)});
+  std::vector<Geometry> alone{{SpheresShape{{{{0, 0, 3}, 1}}}, {}, 1}}, together = alone;
+  InstanceList list{{leaf, nested}, {}};
+  for (std::uint32_t k = 0; k < dyadic_maps().size(); ++k) {
+    const Affine m = dyadic_maps()[k];
+    alone.push_back(instance(k % 2 == 0 ? leaf : nested, m, k == 2 ? kNoId : 10 + k));
+    list.places.push_back(listed(m, k % 2, k == 2 ? kNoId : 10 + k));
+  }
+  together.push_back({list, {}, kNoId});
+  alone.push_back({SpheresShape{{{{0, 3, 3}, 1}}}, {}, 2}), together.push_back(alone.back());
+  const auto a = build_accel(alone), b = build_accel(together);
+  const RayBatch rays = rays_towards_origin(1500, 20, 6, 5);
+  EXPECT_GT(expect_agreement(*b, rays), 700);
+  expect_good_surfaces(*b, rays);
+  HitBatch one, two;
+  one.resize_uninitialized(rays.size()), two.resize_uninitialized(rays.size());
+  closest_hit(*a, rays.span(), one.span(), default_isa());
+  closest_hit(*b, rays.span(), two.span(), default_isa());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(one[i].valid(), two[i].valid());
+    if (!one[i].valid()) continue;
+    ASSERT_EQ(one[i].t, two[i].t);
+    ASSERT_EQ(one[i].item, two[i].item);
+    const Surface s = surface(*a, rays[i], one[i]), t = surface(*b, rays[i], two[i]);
+    ASSERT_EQ(s.user, t.user);
+    ASSERT_EQ(s.position, t.position);
+    ASSERT_EQ(s.geometric_normal, t.geometric_normal);
+  }
+}
+
+// What is traced is what the floats say, to the last bit and in every mode.
+TEST(InstanceList, TurnedAndNested) {
+  const TriangleMesh mesh = make_icosphere(2).mesh;
+  const auto leaf = build_accel(one_of_each(mesh));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  const auto some = [&](double far) {
+    std::vector<InstancePlace> places;
+    for (std::uint32_t k = 0; k < 40; ++k)
+      places.push_back(listed(Affine::translation(Vec3d{u(random), u(random), u(random)} * far) *
+                                  Affine::rotation(Vec3d{u(random), u(random), u(random)} * 180.0) *
+                                  Affine::scaling({0.3, 0.2 + 0.1 * u(random), -0.3}),
+                              0, k % 3 == 0 ? k : kNoId));
+    return places;
+  };
+  const auto middle = build_accel({{InstanceList{{leaf}, some(3)}, Affine::scaling({1, 0.5, 1}), kNoId}});
+  const auto top = build_accel({{InstanceList{{middle}, some(4)}, {}, kNoId}});
+  const RayBatch rays = rays_towards_origin(1000, 20, 6, 5);
+  EXPECT_GT(expect_agreement(*top, rays), 300);
+  expect_good_surfaces(*top, rays);
+}
+
+TEST(InstanceList, LeavesOutWhatCannotBeShown) {
+  const auto leaf = build_accel({{SpheresShape{{{{0, 0, 0}, 1}}}, {}, 7}});
+  const auto floor = build_accel({{PlaneShape{{0, 0, 1}, -3}, {}, 8}});
+  const Ray ray{{0, 0, 5}, 0, {0, 0, -1}, kInf};
+  InstanceList list{{leaf, floor},
+                    {listed(Affine::scaling({1, 0, 1}), 0), listed({}, 2),
+                     listed(Affine::translation({std::nan(""), 0, 0}), 0)}};
+  EXPECT_FALSE(trace(*build_accel({{list, {}, kNoId}}), ray).valid());
+  list.places.push_back(listed(Affine::translation({0, 0, 1}), 1));
+  const auto accel = build_accel({{list, {}, 5}});
+  const Hit hit = trace(*accel, ray);
+  EXPECT_EQ(hit.t, 7);
+  EXPECT_EQ(hit.item, 0u);
+  EXPECT_EQ(surface(*accel, ray, hit).user, 5u);
+  EXPECT_FALSE(trace(*build_accel({{InstanceList{}, {}, kNoId}}), ray).valid());
 }
 
 // A mirrored mesh still points outwards, and t means the same inside an instance.
