@@ -1,11 +1,12 @@
-/// \file Building the tree: triangles per second, by threads. The mesh is OKTETT_BENCH_MESH or a generated
-/// one.
+/// \file Building the tree: triangles per second, by threads, and a million instances. The mesh is
+/// OKTETT_BENCH_MESH or a generated one.
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
 #include "accel/accel.h"
 #include "bench/bench_mesh.h"
+#include "core/random.h"
 
 namespace oktett::bench {
 namespace {
@@ -23,6 +24,34 @@ void build(benchmark::State& state) {
   state.counters["sah_cost"] = s.sah_cost;
 }
 
+/// Boxes of a box's structure, turned and scaled, all over a cube.
+InstanceList scattered_instances(std::uint32_t count) {
+  InstanceList list{{build_accel({{BoxShape{}, {}, 0}})}, std::vector<InstancePlace>(count)};
+  const std::uint64_t key = mix_bits(1);
+  std::uint32_t drawn = 0;
+  const auto random = [&] { return 2.0 * random_float(key, 0, drawn++) - 1; };
+  for (InstancePlace& place : list.places) {
+    const Vec3d at{random(), random(), random()}, angles{random(), random(), random()};
+    const Affine m = Affine::translation(at * 100.0) * Affine::rotation(angles * 180.0) *
+                     Affine::scaling({0.5, 0.5 + 0.1 * random(), 0.5});
+    for (int k = 0; k < 12; ++k) place.to_list[k] = static_cast<float>(m.m[k / 4][k % 4]);
+    place.child = 0;
+  }
+  return list;
+}
+
+void build_instances(benchmark::State& state) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
+  const InstanceList list = scattered_instances(1'000'000);
+  AccelStats s;
+  for (auto _ : state) s = stats(*build_accel({{list, {}, 0}}));
+  const auto count = static_cast<double>(list.places.size());
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+  state.counters["bytes_per_instance"] = static_cast<double>(s.bytes()) / count;
+}
+
+BENCHMARK(build_instances)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(build)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
