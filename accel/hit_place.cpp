@@ -90,19 +90,13 @@ static Ray moved_ray(const Affine& m, const Ray& ray) {
   return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
 }
 
-void combine_surface(const Accel& solids, const Ray& inner, const Ray& ray, float t, bool flipped,
-                     Surface& s) {
-  // Faces that coincide within this count as one, so rays that leave must clear them all.
-  const double reach = coincidence(t, coincidence_slack(solids, inner));
-  for (int k = 0; k < 3; ++k)
-    s.position_error[k] = round_up(s.position_error[k] + reach * std::abs(double(ray.direction[k])));
-  if (flipped) s.geometric_normal = -s.geometric_normal, s.shading_normal = -s.shading_normal;
-}
-
 void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s) {
   if (place.moved) move_by_instances(place, ray, t, s);
-  if (place.combined != nullptr)
-    combine_surface(*place.combined, moved_ray(place.to_combined, ray), ray, t, place.flipped, s);
+  if (place.combined == nullptr) return;
+  const float reach = coincidence(t, coincidence_slack(*place.combined, moved_ray(place.to_combined, ray)));
+  for (int k = 0; k < 3; ++k)
+    s.position_error[k] = widened_error(s.position_error[k], reach, ray.direction[k]);
+  if (place.flipped) s.geometric_normal = -s.geometric_normal, s.shading_normal = -s.shading_normal;
 }
 
 Ray ray_inside(const HitPlace& place, const Ray& ray) { return moved_ray(place.inverse, ray); }

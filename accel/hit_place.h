@@ -1,6 +1,8 @@
 #pragma once
 /// \file Where in a structure, and through which instances, a hit lies: the parts of surface().
 
+#include <cmath>
+
 #include "accel/accel_data.h"
 
 namespace oktett {
@@ -28,9 +30,11 @@ Ray ray_inside(const HitPlace& place, const Ray& ray);
 /// Brings a surface found inside instances and combinations to the world.
 void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s);
 
-/// Makes a surface that of a combination of `solids`, whose space sees the ray as `inner`.
-void combine_surface(const Accel& solids, const Ray& inner, const Ray& ray, float t, bool flipped,
-                     Surface& s);
+/// The error of a position on a combination of which faces within `reach` along the ray count as one: rays
+/// that leave must clear them all. Rounded up.
+OKTETT_INLINE float widened_error(float error, float reach, float direction) {
+  return (error + reach * std::abs(direction)) * (1 + 0x1p-22f);
+}
 
 /// What a hit met, by the names that Surface has for it.
 struct HitNames {

@@ -14,10 +14,12 @@ OKTETT_INLINE void transform_rays(const Instance& instance, const RayLanes<Simd<
   using D = Simd<double, W, A>;
   const Vec3<D> od = to_double(ray.o), dd = to_double(ray.d);
   const auto linear = [&](int k, const Vec3<D>& v) {
-    const auto* m = instance.to_child + 4 * k;
-    return (D(double(m[0])) * v.x + D(double(m[1])) * v.y) + D(double(m[2])) * v.z;
+    const auto entry = [&](int j) { return D(static_cast<double>(instance.to_child[4 * k + j])); };
+    return (entry(0) * v.x + entry(1) * v.y) + entry(2) * v.z;
   };
-  const auto point = [&](int k) { return to_float(linear(k, od) + D(double(instance.to_child[4 * k + 3]))); };
+  const auto point = [&](int k) {
+    return to_float(linear(k, od) + D(static_cast<double>(instance.to_child[4 * k + 3])));
+  };
   o = {point(0), point(1), point(2)};
   d = {to_float(linear(0, dd)), to_float(linear(1, dd)), to_float(linear(2, dd))};
 }

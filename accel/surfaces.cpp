@@ -148,9 +148,14 @@ class ShapeGroups {
     for (std::size_t k = 0; k < combinations_; ++k) {
       const Combined& c = combined_[k];
       const std::uint32_t i = which_[c.entry];
-      Surface s = out_[c.entry];
-      combine_surface(*c.solids, rays_[i], rays_[i], hits_.t[i], c.flipped, s);
-      out_.set_shape(c.entry, s);
+      const float reach = coincidence(hits_.t[i], coincidence_slack(*c.solids, rays_[i]));
+      for (int axis = 0; axis < 3; ++axis) {
+        float& error = out_.position_error[axis][c.entry];
+        error = widened_error(error, reach, rays_.direction[axis][i]);
+        if (!c.flipped) continue;
+        float &n = out_.geometric_normal[axis][c.entry], &shading = out_.shading_normal[axis][c.entry];
+        n = -n, shading = -shading;
+      }
     }
   }
 

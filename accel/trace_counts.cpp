@@ -113,7 +113,7 @@ class Walk {
     ++counts_.instances;
     Vec3d o, d;
     for (int k = 0; k < 3; ++k) {
-      const auto* m = instance.to_child + 4 * k;
+      const auto* m = &instance.to_child[4 * k];
       o[k] = m[0] * o_.x + m[1] * o_.y + m[2] * o_.z + m[3];
       d[k] = m[0] * d_.x + m[1] * d_.y + m[2] * d_.z;
     }
