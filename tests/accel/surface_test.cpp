@@ -256,7 +256,7 @@ TEST(InstanceList, TurnedAndNested) {
   std::uniform_real_distribution<double> u(-1, 1);
   const auto some = [&](double far) {
     std::vector<InstancePlace> places;
-    for (std::uint32_t k = 0; k < 40; ++k)
+    for (std::uint32_t k = 0; k < 12; ++k)
       places.push_back(listed(Affine::translation(Vec3d{u(random), u(random), u(random)} * far) *
                                   Affine::rotation(Vec3d{u(random), u(random), u(random)} * 180.0) *
                                   Affine::scaling({0.3, 0.2 + 0.1 * u(random), -0.3}),
@@ -265,8 +265,8 @@ TEST(InstanceList, TurnedAndNested) {
   };
   const auto middle = build_accel({{InstanceList{{leaf}, some(3)}, Affine::scaling({1, 0.5, 1}), kNoId}});
   const auto top = build_accel({{InstanceList{{middle}, some(4)}, {}, kNoId}});
-  const RayBatch rays = rays_towards_origin(1000, 20, 6, 5);
-  EXPECT_GT(expect_agreement(*top, rays), 300);
+  const RayBatch rays = rays_towards_origin(500, 20, 6, 5);
+  EXPECT_GT(expect_agreement(*top, rays), 150);
   expect_good_surfaces(*top, rays);
 }
 
