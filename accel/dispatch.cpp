@@ -19,11 +19,11 @@ bool is_triangle(const Accel& accel, std::uint32_t item) {
 }
 
 void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
-  // Elements of one cell list theirs as they are.
+  // Elements of one cell, and height fields, list theirs as they are.
   const auto own_exact = [&](const Hit& h) {
     if (h.instance != kNoId) return false;
     const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
-    return is_exact(kind) && !has_one_cell(kind);
+    return is_exact(kind) && !has_one_cell(kind) && kind != Kind::height_field;
   };
   std::vector<Crossing> crossings;
   std::size_t kept = first;

@@ -24,8 +24,9 @@ ExactOracle torus(CaseRandom& random) {
 
 std::vector<DrawExact> all_families() {
   std::vector<DrawExact> all{torus};
-  for (const auto& family : {quadric_oracles(), polynomial_oracles(), superquadric_oracles(),
-                             metaball_oracles(), blobtree_oracles(), function_oracles(), fractal_oracles()})
+  for (const auto& family :
+       {quadric_oracles(), polynomial_oracles(), superquadric_oracles(), metaball_oracles(),
+        blobtree_oracles(), function_oracles(), fractal_oracles(), height_oracles()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

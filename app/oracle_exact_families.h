@@ -22,5 +22,7 @@ std::vector<DrawExact> blobtree_oracles();
 std::vector<DrawExact> function_oracles();
 /// Fractals.
 std::vector<DrawExact> fractal_oracles();
+/// Height fields, open and solid.
+std::vector<DrawExact> height_oracles();
 
 }  // namespace oktett

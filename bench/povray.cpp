@@ -139,10 +139,18 @@ Silhouettes compare_ids(const Field& field, const std::vector<std::uint32_t>& th
   const auto floor = static_cast<std::uint32_t>(field.objects.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // 0 is the background, object k, which has material k, is k + 1.
-    const auto named = [&] { return world.objects[identify(*world.accel, hits[i]).user].material + 1; };
+    const auto named = [&] {
+      if (field.id) return field.id(surface(*world.accel, rays[i], hits[i]));
+      return world.objects[identify(*world.accel, hits[i]).user].material + 1;
+    };
     const std::uint32_t ours = hits[i].valid() ? named() : 0;
     if (ours == theirs[i]) continue;
     ++s.differ;
+    if (field.right) {
+      const std::uint32_t right = field.right(rays[i]);
+      ++(ours == right ? s.ours : theirs[i] == right ? s.theirs : s.neither);
+      continue;
+    }
     const auto distance = [&](std::uint32_t id) -> long double {
       if (id == 0 || id > floor + 1) return HUGE_VALL;
       if (id == floor + 1) {
@@ -170,7 +178,8 @@ struct Row {
 };
 
 Row compare(const FieldKind& kind, const Options& o, const fs::path& dir) {
-  const Field field = make_field(kind, o.width, o.height);
+  const Field field = kind.name == kTerrainKind ? make_terrain_field(o.width, o.height, dir.string())
+                                                : make_field(kind, o.width, o.height);
   write_text(dir / (kind.name + ".pov"), field.pov);
   write_text(dir / (kind.name + "_ids.pov"), field.pov_ids);
   Row row;

@@ -178,7 +178,8 @@ std::vector<FieldKind> field_kinds() {
           {"metaballs", 225, metaballs},
           {"implicit", 225, implicit},
           {"csg", 900, rounded_cube},
-          {"csg_holes", 1, drilled_plate}};
+          {"csg_holes", 1, drilled_plate},
+          {kTerrainKind, 1, nullptr}};
 }
 
 }  // namespace oktett::bench

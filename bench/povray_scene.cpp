@@ -15,7 +15,9 @@ constexpr double kEdge = 24;        // of the field
 constexpr double kHorizontal = 50;  // degrees of view
 const Vec3d kEye{0, 14, -22}, kTarget{0, 0, -2}, kLight{-20, 40, -20};
 
-std::string head(bool ids) {
+}  // namespace
+
+std::string field_head(bool ids) {
   const auto v = [](const Vec3d& p) { return fmt::format("<{}, {}, {}>", p.x, p.y, p.z); };
   return fmt::format(
       "#version 3.7;\nglobal_settings {{ assumed_gamma 1.0 max_trace_level 5 }}\n"
@@ -30,12 +32,14 @@ std::string id_color(std::uint32_t id) {
   return fmt::format("rgb <{}/255, {}/255, {}/255>", id & 255, id >> 8 & 255, id >> 16);
 }
 
-Material material(const Color& color) {
+Material field_material(const Color& color) {
   Material m;
   m.color = color;
   m.ambient = 0.1f, m.diffuse = 0.7f, m.specular = 0.3f, m.phong = 40;
   return m;
 }
+
+namespace {
 
 /// Gives all operands of a combination the material of the whole.
 void set_material(Object& object, std::uint32_t material) {
@@ -47,7 +51,9 @@ void set_material(Object& object, std::uint32_t material) {
   csg->operands = std::make_shared<const std::vector<Object>>(std::move(operands));
 }
 
-Scene empty_scene(std::uint32_t width, std::uint32_t height) {
+}  // namespace
+
+Scene empty_field(std::uint32_t width, std::uint32_t height) {
   Scene scene;
   scene.camera.from = kEye, scene.camera.at = kTarget, scene.camera_given = true;
   const double half = std::tan(kHorizontal * std::numbers::pi / 360) * height / width;
@@ -60,10 +66,8 @@ Scene empty_scene(std::uint32_t width, std::uint32_t height) {
   return scene;
 }
 
-}  // namespace
-
 Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t height) {
-  Field field{empty_scene(width, height), head(false), head(true), {}};
+  Field field{empty_field(width, height), field_head(false), field_head(true), {}, {}, {}};
   const int side = static_cast<int>(std::lround(std::sqrt(kind.count)));
   const double pitch = kEdge / side, size = pitch * 0.45;
   std::uint32_t dimension = 0;
@@ -92,7 +96,7 @@ Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t heigh
       o.shape = object.shape;
       set_material(o, static_cast<std::uint32_t>(field.scene.materials.size()));
       o.transform = Affine::translation(place) * Affine::scaling({size, size, size}) * Affine::rotation(turn);
-      field.scene.materials.push_back(material(color));
+      field.scene.materials.push_back(field_material(color));
       field.objects.push_back(std::move(object));
     }
   field.pov += "plane { y, 0 pigment { rgb <.6, .6, .65> } }\n";
@@ -101,7 +105,7 @@ Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t heigh
   Object& floor = field.scene.objects.emplace_back();
   floor.shape = PlaneShape{};
   floor.material = static_cast<std::uint32_t>(field.scene.materials.size());
-  field.scene.materials.push_back(material({0.6f, 0.6f, 0.65f}));
+  field.scene.materials.push_back(field_material({0.6f, 0.6f, 0.65f}));
   return field;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/ray.h"
+#include "kernels/surface.h"
 #include "render/scene.h"
 
 namespace oktett::bench {
@@ -28,6 +30,9 @@ struct FieldKind {
 };
 
 std::vector<FieldKind> field_kinds();
+/// The kind that is no field of objects but one of heights: a terrain of kTerrainSide^2 samples.
+inline constexpr const char* kTerrainKind = "heightfield";
+inline constexpr std::uint32_t kTerrainSide = 4096;
 
 /// A cube with rounded corners and three bores.
 FieldObject rounded_cube(const double (&r)[6]);
@@ -39,8 +44,19 @@ struct Field {
   Scene scene;               ///< for Oktett; objects 0, 1, ... and the floor last, each with its own material
   std::string pov, pov_ids;  ///< the same for POV-Ray, lit; and each object in a colour that numbers it
   std::vector<FieldObject> objects;  ///< without the floor
+  /// If set, the number of the colour at a hit of Oktett's, and the one that is right for a ray.
+  std::function<std::uint32_t(const Surface&)> id;
+  std::function<std::uint32_t(const Ray&)> right;
 };
 
 Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t height);
+/// The terrain; the file of its heights for POV-Ray goes to `directory`.
+Field make_terrain_field(std::uint32_t width, std::uint32_t height, const std::string& directory);
+
+// What all fields share.
+std::string field_head(bool ids);
+std::string id_color(std::uint32_t id);
+Material field_material(const Color& color);
+Scene empty_field(std::uint32_t width, std::uint32_t height);
 
 }  // namespace oktett::bench

@@ -26,7 +26,7 @@ std::vector<ExactReader> all_readers() {
   std::vector<ExactReader> all;
   for (const std::span<const ExactReader> family :
        {std::span<const ExactReader>(kReaders), closed_form_readers(), polynomial_readers(),
-        superquadric_readers(), metaball_readers(), function_readers(), fractal_readers()})
+        superquadric_readers(), metaball_readers(), function_readers(), fractal_readers(), height_readers()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }

@@ -31,6 +31,8 @@ std::span<const ExactReader> metaball_readers();
 std::span<const ExactReader> function_readers();
 /// Fractals.
 std::span<const ExactReader> fractal_readers();
+/// Height fields.
+std::span<const ExactReader> height_readers();
 
 /// Warns that the object is left out because of `reason`.
 std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason);

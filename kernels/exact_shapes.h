@@ -13,6 +13,7 @@
 #include "kernels/shapes/blobtree.h"
 #include "kernels/shapes/cone.h"
 #include "kernels/shapes/cylinder.h"
+#include "kernels/shapes/height_field.h"
 #include "kernels/shapes/ifs.h"
 #include "kernels/shapes/implicit.h"
 #include "kernels/shapes/julia.h"
@@ -31,9 +32,9 @@
 namespace oktett {
 
 /// In the order of ExactForm.
-using ExactShapes =
-    std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob, Revolution, Lathe,
-               Superquadric, Metaballs, BlobTree, Implicit, Sphereflake, Menger, Ifs, Julia, Terrain>;
+using ExactShapes = std::tuple<Torus, Cylinder, Cone, Polyhedron, Quadric, PolynomialSurface, Blob,
+                               Revolution, Lathe, Superquadric, Metaballs, BlobTree, Implicit, Sphereflake,
+                               Menger, Ifs, Julia, Terrain, HeightField>;
 
 template <std::size_t... I>
 constexpr bool exact_kinds_agree(std::index_sequence<I...>) {

@@ -46,6 +46,7 @@ enum class Kind : std::uint8_t {
   ifs,
   julia,
   terrain,
+  height_field,
   triangle,
   csg,
   instance,

@@ -29,6 +29,12 @@ OKTETT_INLINE void cut_range(LineRange<D>& range, const D& from) {
   range.a = max(from, range.a);
 }
 
+template <class D>
+OKTETT_INLINE void cut_end(LineRange<D>& range, const D& to) {
+  range.exit_face = select(to < range.b, D(0.0), range.exit_face);
+  range.b = min(to, range.b);
+}
+
 /// Where to look for crossings with the cell before the ray's own range counts.
 template <class S, class D>
 OKTETT_INLINE typename D::M cell_range(const Line<D>& line, const ExactCell& cell, LineRange<D>& range) {
@@ -52,11 +58,7 @@ unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, cons
   cut_range(range, range_begin(to_double(rays.tmin)));
   // Nothing farther than tmax is of use, yet it must not shorten the range: that would change the roots.
   active = active & (range.a <= range.b) & (range.a * D(1 - 0x1p-22) <= to_double(rays.tmax));
-  if constexpr (requires { S::kStopsAtLimit; }) {
-    // A little more, for what rounds to tmax.
-    const D end = to_double(rays.tmax) * D(1 + 0x1p-22);
-    range.exit_face = select(end < range.b, D(0.0), range.exit_face), range.b = min(end, range.b);
-  }
+  if constexpr (requires { S::kStopsAtLimit; }) cut_end(range, to_double(rays.tmax) * D(1 + 0x1p-22));
   hits.t = hits.u = hits.v = F(0.0f);
   const F far_limit = min(rays.tmax, F(std::numeric_limits<float>::max()));
   unsigned met = 0;

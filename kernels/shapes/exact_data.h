@@ -11,6 +11,7 @@
 #include "kernels/roots/roots.h"
 #include "kernels/shapes/field_data.h"
 #include "kernels/shapes/fractal_data.h"
+#include "kernels/shapes/height_data.h"
 #include "kernels/tape_data.h"
 
 namespace oktett {
@@ -148,10 +149,10 @@ struct ImplicitShape {
 };
 
 /// One of them, in the order of ExactShapes in kernels/primitives.h.
-using ExactForm =
-    std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape, PolynomialShape,
-                 BlobShape, RevolutionShape, LatheShape, SuperquadricShape, MetaballsShape, BlobTreeShape,
-                 ImplicitShape, SphereflakeShape, MengerShape, IfsShape, JuliaShape, TerrainShape>;
+using ExactForm = std::variant<TorusShape, CylinderShape, ConeShape, PolyhedronShape, QuadricShape,
+                               PolynomialShape, BlobShape, RevolutionShape, LatheShape, SuperquadricShape,
+                               MetaballsShape, BlobTreeShape, ImplicitShape, SphereflakeShape, MengerShape,
+                               IfsShape, JuliaShape, TerrainShape, HeightFieldShape>;
 
 struct ExactShape {
   ExactForm form;

@@ -1,0 +1,8 @@
+#include "accel/isa/exact_code.h"
+#include "kernels/shapes/height_crossings.h"
+
+namespace oktett {
+
+template struct ExactShapeCode<HeightField, OKTETT_ISA>;
+
+}  // namespace oktett

@@ -1,0 +1,24 @@
+#pragma once
+/// \file Heights from image files.
+
+#include <cstdint>
+#include <string>
+
+#include "core/soa.h"
+
+namespace oktett {
+
+/// One number per pixel, row by row from the top. One of the columns is filled.
+struct HeightImage {
+  std::uint32_t columns = 0, rows = 0;
+  Column<std::uint16_t> words;  ///< of 8-bit and 16-bit files; 65535 is one
+  Column<float> floats;         ///< of all others, as stored
+};
+
+/// Reads a grey image, or one whose red, green and blue are the same; alpha is ignored. The numbers are taken
+/// as stored, without a transfer curve. Throws Error of kind io, without a line, if the file cannot be read,
+/// is damaged, has colours or numbers that are not finite, or fewer than 2 or more than `most_side` pixels
+/// along a side or `most_pixels` in all.
+HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels);
+
+}  // namespace oktett

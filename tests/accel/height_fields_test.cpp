@@ -1,0 +1,535 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/random.h"
+#include "kernels/shapes/height_grid.h"
+#include "tests/accel/all_crossings.h"
+
+namespace oktett {
+namespace {
+
+using Real = long double;
+using Interpolation = HeightInterpolation;
+constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::triangles, Interpolation::bilinear};
+constexpr HeightWalk kWalks[] = {HeightWalk::pyramid, HeightWalk::cells, HeightWalk::spans};
+
+/// One column per unit of x and one row per unit of z, the first at -(samples - 1) / 2; heights as they are.
+HeightFieldShape field(std::uint32_t columns, std::uint32_t rows, const std::vector<float>& heights,
+                       Interpolation interpolation) {
+  HeightFieldShape s;
+  Column<float> column(heights.size());
+  std::copy(heights.begin(), heights.end(), column.begin());
+  s.grid = HeightGrid::from_floats(columns, rows, std::move(column), interpolation);
+  s.size = {columns - 1.0, 1, rows - 1.0};
+  return s;
+}
+
+HeightFieldShape rough(std::uint32_t columns, std::uint32_t rows, Interpolation interpolation,
+                       float height = 3) {
+  std::vector<float> heights;
+  for (std::uint32_t i = 0; i < columns * rows; ++i) heights.push_back(height * random_float(11, columns, i));
+  return field(columns, rows, heights, interpolation);
+}
+
+HeightFieldShape solid(HeightFieldShape s, double base) {
+  s.open = false, s.base = base;
+  return s;
+}
+
+std::shared_ptr<const Accel> accel_of(const HeightFieldShape& s, const Affine& to_world = {}) {
+  return build_accel({{ExactShape{s}, to_world}});
+}
+
+void expect_at(const HeightFieldShape& shape, const Vec3f& from, const Vec3f& direction,
+               std::initializer_list<double> places) {
+  for (const HeightWalk walk : kWalks) {
+    HeightFieldShape s = shape;
+    s.walk = walk;
+    const std::vector<Hit> all = all_crossings(*accel_of(s), {from, 0, direction, kInf});
+    ASSERT_EQ(all.size(), places.size());
+    std::size_t i = 0;
+    for (const double t : places) EXPECT_FLOAT_EQ(all[i++].t, static_cast<float>(t)) << "crossing " << i;
+    for (i = 1; i < all.size(); ++i) EXPECT_EQ(all[i].v, -all[i - 1].v);
+  }
+}
+
+TEST(HeightFields, KnownCrossings) {
+  // A hump of 1 in the middle of a 3 x 3 field that is level at 0.
+  const std::vector<float> hump{0, 0, 0, 0, 1, 0, 0, 0, 0};
+  const auto patch = field(3, 3, hump, Interpolation::bilinear);
+  const auto faces = field(3, 3, hump, Interpolation::triangles);
+  const auto steps = field(3, 3, hump, Interpolation::nearest);
+  // From above: (1 - |x|) (1 - |z|), two triangles per cell, a quarter of the hump.
+  expect_at(patch, {0.5f, 3, 0.25f}, {0, -1, 0}, {3 - 0.5 * 0.75});
+  expect_at(patch, {0, 3, 0}, {0, -2, 0}, {1});
+  expect_at(faces, {0.25f, 3, 0.25f}, {0, -1, 0}, {2.5});
+  expect_at(faces, {-0.25f, 3, 0.5f}, {0, -1, 0}, {2.5});
+  expect_at(faces, {0.75f, 3, 0.5f}, {0, -1, 0}, {3});
+  expect_at(steps, {0.75f, 3, 0.5f}, {0, -1, 0}, {2.75});
+  // Through the hump, and along a diagonal of it, where the patch is a parabola.
+  expect_at(patch, {-2, 0.25f, 0}, {1, 0, 0}, {1.25, 2.75});
+  expect_at(faces, {-2, 0.25f, 0}, {1, 0, 0}, {1.25, 2.75});
+  expect_at(patch, {-2, 0.25f, -2}, {1, 0, 1}, {1.5, 2.5});
+  expect_at(faces, {-2, 0.25f, -2}, {1, 0, 1}, {1.625, 2.375});
+  expect_at(patch, {-2, 0.25f, 2}, {1, 0, -1}, {1.5, 2.5});
+  expect_at(faces, {-2, 0.25f, 2}, {1, 0, -1}, {1.25, 2.75});
+  expect_at(patch, {2, 0.25f, 2}, {-1, 0, -1}, {1.5, 2.5});
+  // All four cells have the same mean, so there is one level.
+  expect_at(steps, {-2, 0.125f, 0.5f}, {1, 0, 0}, {});
+  expect_at(steps, {-2, 0.5f, 0.5f}, {1, -0.125f, 0}, {2});
+}
+
+TEST(HeightFields, StepsHaveWalls) {
+  const auto steps = field(4, 2, {0, 0, 8, 8, 0, 0, 8, 8}, Interpolation::nearest);
+  // Levels 0, 4 and 8.
+  expect_at(steps, {-3, 1, 0}, {1, 0, 0}, {2.5});
+  expect_at(steps, {-3, 5, 0}, {1, 0, 0}, {3.5});
+  expect_at(steps, {3, 5, 0}, {-1, 0, 0}, {2.5});
+  // Out of the highest step, which has no wall at the border; onto it and out of its wall, and so the next
+  // one.
+  expect_at(steps, {3, 7.5f, 0}, {-2, -1, 0}, {1.25});
+  expect_at(steps, {3.5f, 14, 0}, {-3, -8, 0}, {0.75, 1, 1.25, 4.0 / 3});
+  expect_at(solid(steps, -1), {-3, 1, 0}, {1, 0, 0}, {2.5, 4.5});
+  const auto accel = accel_of(steps);
+  const auto normal = [&](const Vec3f& from, const Vec3f& d) {
+    const Ray ray{from, 0, d, kInf};
+    return surface(*accel, ray, all_crossings(*accel, ray).at(0)).geometric_normal;
+  };
+  EXPECT_EQ(normal({-3, 1, 0}, {1, 0, 0}), (Vec3f{-1, 0, 0}));
+  EXPECT_EQ(normal({3, 5, 0}, {-1, 0, 0}), (Vec3f{-1, 0, 0}));
+  EXPECT_EQ(normal({0, 9, 0}, {0, -1, 0}), (Vec3f{0, 1, 0}));
+}
+
+TEST(HeightFields, SolidsHaveSidesAndABottom) {
+  for (const Interpolation interpolation : kAll) {
+    const auto s = solid(field(3, 2, {1, 1, 1, 1, 1, 1}, interpolation), -1);
+    expect_at(s, {0.25f, 3, 0.25f}, {0, -1, 0}, {2, 4});
+    expect_at(s, {-3, 0, 0.25f}, {1, 0, 0}, {2, 4});
+    expect_at(s, {0.5f, 0, -3}, {0, 0, 1}, {2.5, 3.5});
+    expect_at(s, {-3, 0, 0}, {2, 0, 0}, {1, 2});
+    // From inside.
+    expect_at(s, {0.25f, 0, 0.25f}, {0, 1, 0}, {1});
+    expect_at(s, {0.25f, 0, 0.25f}, {0, -1, 0}, {1});
+    expect_at(s, {0.25f, 0, 0.25f}, {1, 0, 0}, {0.75});
+    expect_at(s, {-3, 1.5f, 0}, {1, 0, 0}, {});
+    expect_at(s, {-3, 2, 0}, {2, -1, 0}, {1, 2});
+    expect_at(s, {-3, -2, 0}, {2, 1, 0}, {1, 2});
+  }
+}
+
+/// Where a ray meets the field by looking at each cell alone: the equation of its patch in long double,
+/// solved and kept inside of the cell. `near` are the crossings that are so close to the border of a cell
+/// that either side may have them, or neither.
+struct ByCell {
+  std::vector<Real> sure, near;
+
+  ByCell(const HeightFieldShape& s, const Ray& ray) : grid_(*s.grid) {
+    const Real columns = grid_.columns() - 1.0L, rows = grid_.rows() - 1.0L;
+    o_ = {Real(ray.origin.x) + columns / 2, ray.origin.y, Real(ray.origin.z) + rows / 2};
+    d_ = {ray.direction.x, ray.direction.y, ray.direction.z};
+    for (std::uint32_t j = 0; j + 1 < grid_.rows(); ++j)
+      for (std::uint32_t i = 0; i + 1 < grid_.columns(); ++i) cell(i, j);
+    std::sort(sure.begin(), sure.end());
+  }
+
+ private:
+  Real at(std::uint32_t i, std::uint32_t j) const { return grid_.at(i, j); }
+  Real mean(std::uint32_t i, std::uint32_t j) const {
+    return (at(i, j) + at(i + 1, j) + at(i, j + 1) + at(i + 1, j + 1)) / 4;
+  }
+  /// A crossing at t, which counts where all of `inside` are positive.
+  void add(Real t, std::initializer_list<Real> inside) {
+    if (!(t > 0) || !std::isfinite(t)) return;
+    Real least = HUGE_VALL;
+    for (const Real x : inside) least = std::min(least, x);
+    if (least > 1e-9L) sure.push_back(t);
+    if (std::abs(least) <= 1e-9L) near.push_back(t);
+  }
+  void cell(std::uint32_t i, std::uint32_t j) {
+    const Real a = at(i, j), b = at(i + 1, j), c = at(i, j + 1), d = at(i + 1, j + 1);
+    const Real x = o_.x - i, z = o_.z - j;
+    const auto u = [&](Real t) { return x + t * d_.x; };
+    const auto v = [&](Real t) { return z + t * d_.z; };
+    switch (grid_.interpolation()) {
+      case Interpolation::nearest: {
+        const Real t = (mean(i, j) - o_.y) / d_.y;
+        add(t, {u(t), 1 - u(t), v(t), 1 - v(t)});
+        if (i > 0) wall(-x / d_.x, mean(i - 1, j), mean(i, j), v);
+        if (j > 0) wall(-z / d_.z, mean(i, j - 1), mean(i, j), u);
+        break;
+      }
+      case Interpolation::triangles: {
+        Real t = (a + (b - a) * x + (c - a) * z - o_.y) / (d_.y - (b - a) * d_.x - (c - a) * d_.z);
+        add(t, {u(t), v(t), 1 - u(t) - v(t)});
+        t = (d + (d - c) * (x - 1) + (d - b) * (z - 1) - o_.y) / (d_.y - (d - c) * d_.x - (d - b) * d_.z);
+        add(t, {1 - u(t), 1 - v(t), u(t) + v(t) - 1});
+        break;
+      }
+      case Interpolation::bilinear: {
+        const Real twist = a + d - b - c, by_x = b - a, by_z = c - a;
+        const Real qa = twist * d_.x * d_.z;
+        const Real qb = by_x * d_.x + by_z * d_.z + twist * (x * d_.z + z * d_.x) - d_.y;
+        const Real qc = a + by_x * x + by_z * z + twist * x * z - o_.y;
+        if (std::abs(qa) < 1e-18L * std::abs(qb)) {
+          const Real t = -qc / qb;
+          add(t, {u(t), 1 - u(t), v(t), 1 - v(t)});
+          break;
+        }
+        const Real square = qb * qb - 4 * qa * qc;
+        if (square < 0) break;
+        const Real q = -(qb + std::copysign(std::sqrt(square), qb)) / 2;
+        for (const Real t : {q / qa, qc / q})
+          // A ray that all but touches may be taken to miss.
+          add(t, {u(t), 1 - u(t), v(t), 1 - v(t), square < 1e-12L * qb * qb ? Real(0) : Real(1)});
+        break;
+      }
+    }
+  }
+  template <class Along>
+  void wall(Real t, Real before, Real here, Along&& along) {
+    const Real y = o_.y + t * d_.y;
+    add(t, {along(t), 1 - along(t), y - std::min(before, here), std::max(before, here) - y});
+  }
+
+  const HeightGrid& grid_;
+  Vec3<Real> o_, d_;
+};
+
+bool is_among(Real t, const std::vector<Real>& list) {
+  return std::any_of(list.begin(), list.end(), [&](Real x) { return std::abs(x - t) <= 1e-6L * (1 + x); });
+}
+
+Vec3f random_point(std::uint32_t key, const Vec3f& half) {
+  return {half.x * (2 * random_float(5, key, 0) - 1), half.y * random_float(5, key, 1),
+          half.z * (2 * random_float(5, key, 2) - 1)};
+}
+
+/// Random rays, rays in rows and columns, and rays with components that are zero.
+TEST(HeightFields, AgreesWithEveryCellOnItsOwn) {
+  std::uint32_t key = 0;
+  for (const Interpolation interpolation : kAll)
+    for (const auto& [columns, rows] : {std::pair{2u, 2u}, {5u, 3u}, {9u, 20u}, {33u, 33u}})
+      for (const float height : {0.5f, 3.0f}) {
+        const auto s = rough(columns, rows, interpolation, height);
+        const auto accel = accel_of(s);
+        int met = 0;
+        for (int n = 0; n < 300; ++n) {
+          const Vec3f half{columns / 2.0f, height, rows / 2.0f};
+          Vec3f from = random_point(++key, half * 1.5f);
+          const Vec3f at = random_point(++key, half);
+          if (n % 2 == 0) from.y += 2;
+          Vec3f d = at - from;
+          if (n % 5 == 1) d.x = 0;
+          if (n % 7 == 2) d.z = 0;
+          if (n % 11 == 3) d.y = 0;
+          const Ray ray{from, 0, d, kInf};
+          const std::vector<Hit> found = all_crossings(*accel, ray);
+          const ByCell expected(s, ray);
+          std::vector<Real> places;
+          for (const Hit& h : found) {
+            places.push_back(h.t);
+            EXPECT_TRUE(is_among(h.t, expected.sure) || is_among(h.t, expected.near)) << n << " at " << h.t;
+          }
+          for (const Real t : expected.sure) EXPECT_TRUE(is_among(t, places)) << n << " at " << double(t);
+          met += !found.empty();
+        }
+        EXPECT_GT(met, 40);
+      }
+}
+
+std::vector<Ray> hostile_rays(const HeightFieldShape& s) {
+  const auto columns = static_cast<int>(s.grid->columns()), rows = static_cast<int>(s.grid->rows());
+  std::vector<Ray> rays;
+  const auto x = [&](double i) { return static_cast<float>(i - (columns - 1) / 2.0); };
+  const auto z = [&](double j) { return static_cast<float>(j - (rows - 1) / 2.0); };
+  const auto add = [&](const Vec3f& from, const Vec3f& d) { rays.push_back({from, 0, d, kInf}); };
+  // Upright, along grid lines, along diagonals, from corner to corner; all of them through samples.
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      add({x(i), 50, z(j)}, {0, -1, 0});
+      add({x(i), -50, z(j)}, {0, 1e-3f, 0});
+      add({x(i + 0.5), 50, z(j)}, {0, -7, 0});
+      const Vec3f low{x(i), -4, z(j)};
+      for (const Vec3f& d :
+           {Vec3f{1, 1, 0}, Vec3f{-1, 1, 0}, Vec3f{0, 1, 1}, Vec3f{0, 1, -1}, Vec3f{1, 1, 1}, Vec3f{-1, 1, 1},
+            Vec3f{1, 1, -1}, Vec3f{-1, 1, -1}, Vec3f{2, 1, 1}, Vec3f{1, 2, -3}})
+        add(low - d * 8.0f, d), add(low + d * 16.0f, -d);
+    }
+  for (int i = -1; i <= columns; ++i) {
+    add({x(i), 1, -100}, {0, 0, 1});
+    add({x(i), 1, 100}, {0, 1e-4f, -1});
+    add({x(i), 2, -100}, {1e-30f, 1e-30f, 1});
+    add({x(0) - 100, 2, z(i)}, {1, -1e-3f, 0});
+    add({x(0) - 100, 2, z(i)}, {1, -1e-3f, 1e-38f});
+  }
+  return rays;
+}
+
+/// Along the diagonal of a chequerboard of steps a ray meets two walls in each corner, at one t; the list has
+/// both also where it is continued after as many as it has room for.
+TEST(HeightFields, CornersOfStepsAreCrossedTwice) {
+  constexpr int n = 41;
+  std::vector<float> heights;
+  // Means of 2 and 0 in turn.
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      heights.push_back(static_cast<float>(1 + 4 * i * j * ((i + j) % 2 == 0 ? 1 : -1)));
+  const HeightFieldShape steps = field(n, n, heights, Interpolation::nearest);
+  for (const bool closed : {false, true})
+    for (const HeightWalk walk : kWalks) {
+      HeightFieldShape s = closed ? solid(steps, -1e4) : steps;
+      s.walk = walk;
+      // Onto a step at x = -9.8, then through 29 corners.
+      const auto hits = all_crossings(*accel_of(s), {{-30, 3.01f, -30}, 0, {1, -0.05f, 1}, kInf});
+      ASSERT_EQ(hits.size(), closed ? 60u : 59u);
+      for (std::size_t i = 1; i < hits.size(); ++i) EXPECT_EQ(hits[i].v, -hits[i - 1].v) << i;
+      for (std::size_t i = 1; i < 59; ++i) EXPECT_EQ(hits[i].t, 21.0f + static_cast<float>((i - 1) / 2));
+    }
+}
+
+/// No walk leaves out a cell, whatever the ray.
+TEST(HeightFields, AllWalksFindTheSame) {
+  for (const Interpolation interpolation : kAll)
+    for (const auto& [columns, rows] : {std::pair{2u, 3u}, {9u, 9u}, {23u, 40u}})
+      for (const bool closed : {false, true}) {
+        HeightFieldShape s = rough(columns, rows, interpolation);
+        if (closed) s = solid(s, -1);
+        std::vector<Ray> rays = hostile_rays(s);
+        for (std::uint32_t n = 0; n < 500; ++n) {
+          const Vec3f half{columns * 1.0f, 4, rows * 1.0f};
+          const Vec3f from = random_point(2 * n, half), at = random_point(2 * n + 1, half * 0.4f);
+          const float tmin = n % 3 == 0 ? 0.5f * random_float(9, n, 0) : 0;
+          rays.push_back({from, tmin, at - from, n % 4 == 0 ? 0.8f : kInf});
+        }
+        HeightFieldShape other = s;
+        std::vector<std::vector<Hit>> reference;
+        for (const HeightWalk walk : kWalks) {
+          other.walk = walk;
+          const auto accel = accel_of(other);
+          for (std::size_t i = 0; i < rays.size(); ++i) {
+            std::vector<Hit> all = all_crossings(*accel, rays[i]);
+            if (walk == kWalks[0])
+              reference.push_back(std::move(all));
+            else
+              EXPECT_EQ(all, reference[i]) << "walk " << static_cast<int>(walk) << ", ray " << i;
+          }
+        }
+      }
+}
+
+/// From far below to far above, inside of the rectangle all the way, a ray crosses an odd number of times:
+/// also through samples, along edges and diagonals.
+TEST(HeightFields, NoRaySlipsThrough) {
+  for (const Interpolation interpolation : kAll)
+    for (const std::uint32_t size : {9u, 14u}) {
+      const auto s = rough(size, size, interpolation);
+      const auto accel = accel_of(s);
+      const auto check = [&](const Vec3f& from, const Vec3f& to) {
+        const std::vector<Hit> all = all_crossings(*accel, {from, 0, to - from, kInf});
+        ASSERT_EQ(all.size() % 2, 1u) << from.x << " " << from.y << " " << from.z;
+        EXPECT_EQ(all[0].v, from.y < to.y ? 1 : -1);
+      };
+      const float half = (static_cast<float>(size) - 1) / 2;
+      const auto at = [&](std::uint32_t k) { return static_cast<float>(k) - half; };
+      for (std::uint32_t i = 0; i < size; ++i)
+        for (std::uint32_t j = 0; j < size; ++j)
+          for (std::uint32_t k = 1; k + 1 < size; ++k) {
+            // Between grid points below and above, the middle of the way, too, often on a grid point.
+            const std::uint32_t m = (i * 7 + j * 3 + k * 5) % (size - 2) + 1;
+            if (i > 0 && j > 0 && i + 1 < size && j + 1 < size) {
+              check({at(i), -4, at(j)}, {at(k), 8, at(m)});
+              check({at(k), 8, at(m)}, {at(i), -4, at(j)});
+              check({at(i), 8, at(j)}, {at(i), -4, at(m)});
+              check({at(i), 8, at(j)}, {at(k), -4, at(j)});
+              check({at(i) + 0.5f, 8, at(j)}, {at(k), -4, at(m) + 0.25f});
+            }
+          }
+    }
+}
+
+/// The same after transforms that leave nothing on the grid exactly.
+TEST(HeightFields, ClosedOnesAreEnteredAsOftenAsLeft) {
+  for (const Interpolation interpolation : kAll) {
+    const auto s = solid(rough(12, 7, interpolation), -1);
+    for (const double size : {1e-3, 1.0, 1e4}) {
+      const Affine place = Affine::translation({3 * size, -2 * size, size}) * Affine::rotation({20, 50, 70}) *
+                           Affine::scaling({size, size, 2 * size});
+      const auto accel = accel_of(s, place);
+      int hits = 0;
+      for (const Ray& ray : hostile_rays(s)) {
+        const Ray moved{Vec3f(place.point(Vec3d(ray.origin))), 0, Vec3f(place.vector(Vec3d(ray.direction))),
+                        kInf};
+        const std::vector<Hit> all = all_crossings(*accel, moved);
+        EXPECT_EQ(all.size() % 2, 0u);
+        for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].v, i % 2 == 0 ? -1 : 1);
+        hits += !all.empty();
+      }
+      EXPECT_GT(hits, 300);
+    }
+  }
+}
+
+TEST(HeightFields, BadRaysHitNothing) {
+  for (const Interpolation interpolation : kAll)
+    for (const HeightWalk walk : kWalks) {
+      HeightFieldShape s = rough(6, 6, interpolation);
+      s.walk = walk;
+      const auto accel = accel_of(s);
+      for (int k = 0; k < 3; ++k) {
+        for (const float bad : {kNan, kInf, -kInf}) {
+          Vec3f v{0.1f, 9, 0.3f};
+          v[k] = bad;
+          EXPECT_TRUE(all_crossings(*accel, {v, 0, {0.1f, -1, 0}, kInf}).empty()) << bad;
+        }
+        Vec3f d{0.1f, -1, 0.3f};
+        d[k] = kNan;
+        EXPECT_TRUE(all_crossings(*accel, {{0, 9, 0}, 0, d, kInf}).empty());
+      }
+      EXPECT_TRUE(all_crossings(*accel, {{0.5f, 1, 0}, 0, {0, 0, 0}, kInf}).empty());
+    }
+}
+
+/// Powers of two leave every bit: of the size and of the length of the direction.
+TEST(HeightFields, TinyAndHuge) {
+  for (const Interpolation interpolation : kAll) {
+    const auto s = solid(rough(9, 6, interpolation), -1);
+    const auto unit = accel_of(s);
+    int hits = 0;
+    for (const int exponent : {-50, 50}) {
+      const double scale = std::ldexp(1.0, exponent);
+      const auto f = static_cast<float>(scale);
+      const auto scaled = accel_of(s, Affine::scaling({scale, scale, scale}));
+      for (std::uint32_t i = 0; i < 60; ++i) {
+        const Vec3f from = random_point(i, {9, 6, 9}), d = random_point(i + 100, {4, 3, 3}) - from;
+        const std::vector<Hit> expected = all_crossings(*unit, {from, 0, d, kInf});
+        EXPECT_EQ(all_crossings(*scaled, {from * f, 0, d * f, kInf}), expected) << i;
+        hits += !expected.empty();
+      }
+    }
+    EXPECT_GT(hits, 60);
+  }
+}
+
+/// From so far away that a cell is less than what a float can tell apart: the ray may miss, but what it finds
+/// is on it and the search ends.
+TEST(HeightFields, FarAway) {
+  for (const Interpolation interpolation : kAll)
+    for (const HeightWalk walk : kWalks) {
+      HeightFieldShape s = solid(rough(40, 40, interpolation), -1);
+      s.walk = walk;
+      const auto accel = accel_of(s);
+      for (const float far : {1e6f, 1e12f, 1e25f})
+        for (const Vec3f& d : {Vec3f{0, -1, 0}, Vec3f{1, -1, 1}, Vec3f{-1, -1, 2}, Vec3f{1, 0, 0}}) {
+          const std::vector<Hit> all = all_crossings(*accel, {d * -far, 0, d, kInf});
+          for (const Hit& h : all) EXPECT_NEAR(h.t, far, 100 + 1e-6 * far);
+          if (far < 1e7f) {
+            EXPECT_GE(all.size(), 1u);
+          }
+        }
+    }
+}
+
+/// A ray that ends before the field, or in it, finds only what is before its end.
+TEST(HeightFields, RaysEnd) {
+  for (const Interpolation interpolation : kAll)
+    for (const bool closed : {false, true}) {
+      HeightFieldShape s = rough(20, 20, interpolation);
+      if (closed) s = solid(s, -1);
+      const auto accel = accel_of(s);
+      int cut = 0;
+      for (std::uint32_t i = 0; i < 200; ++i) {
+        const Vec3f from = random_point(i, {15, 6, 15}), d = random_point(i + 500, {8, 3, 8}) - from;
+        const std::vector<Hit> all = all_crossings(*accel, {from, 0, d, kInf});
+        for (std::size_t k = 0; k < all.size(); ++k) {
+          const float t = all[k].t;
+          if (k + 1 < all.size() && all[k + 1].t == t) continue;
+          EXPECT_EQ(all_crossings(*accel, {from, 0, d, t}),
+                    std::vector<Hit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(k) + 1));
+          if (k > 0 && all[k - 1].t == t) continue;
+          EXPECT_EQ(all_crossings(*accel, {from, t, d, kInf}),
+                    std::vector<Hit>(all.begin() + static_cast<std::ptrdiff_t>(k) + 1, all.end()));
+          ++cut;
+        }
+      }
+      EXPECT_GT(cut, 100);
+    }
+}
+
+/// The exact normal against central differences, out of the inside, and uv as in an image seen from above.
+TEST(HeightFields, SurfacesHaveNormalsAndCoordinates) {
+  for (const Interpolation interpolation : {Interpolation::triangles, Interpolation::bilinear}) {
+    const auto s = rough(8, 6, interpolation);
+    const Affine place = Affine::rotation({10, 20, 30}) * Affine::scaling({1, 2, 0.5});
+    const auto exact = build_accel({{ExactShape{s}, place}});
+    const auto central = build_accel({{ExactShape{s, NormalMethod::central}, place}});
+    int smooth = 0, hits = 0;
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      const Vec3f p = random_point(i, {3, 1, 2});
+      const Ray ray{Vec3f(place.point({p.x, 9, p.z})), 0, Vec3f(place.vector({0, -1, 0})), kInf};
+      for (const Hit& h : all_crossings(*exact, ray)) {
+        const Surface a = surface(*exact, ray, h), b = surface(*central, ray, h);
+        EXPECT_NEAR(length(a.geometric_normal), 1, 1e-6);
+        EXPECT_GT(dot(a.geometric_normal, Vec3f(place.vector({0, 1, 0}))), 0);
+        EXPECT_NEAR(a.uv.x, (p.x + 3.5) / 7, 1e-5);
+        EXPECT_NEAR(a.uv.y, (2.5 - p.z) / 5, 1e-5);
+        EXPECT_NEAR(dot(normalize(a.tangent), a.geometric_normal), 0, 1e-5);
+        ++hits, smooth += length(a.geometric_normal - b.geometric_normal) < 1e-4f;
+      }
+    }
+    EXPECT_EQ(hits, 100);
+    EXPECT_GE(smooth, hits - 2);
+  }
+}
+
+/// Solids take part in combinations: a hill less a ball, and a hill within a slab.
+TEST(HeightFields, SolidsAreCombined) {
+  for (const Interpolation interpolation : kAll) {
+    const auto level = solid(field(3, 3, std::vector<float>(9, 1.0f), interpolation), -1);
+    const Geometry hill{ExactShape{level}, {}, 0};
+    const auto combined = [&](CsgOp op, Geometry other) {
+      auto e = std::make_shared<CsgExpression>();
+      e->op = op;
+      e->children = {{CsgOp::operand, {hill}, {}}, {CsgOp::operand, {std::move(other)}, {}}};
+      return build_accel({{CsgGeometry{std::move(e)}, {}, kNoId}});
+    };
+    const auto distances = [&](const Accel& accel, const Vec3f& from, const Vec3f& d) {
+      std::vector<float> t;
+      for (const Hit& h : all_crossings(accel, {from, 0, d, kInf})) t.push_back(h.t);
+      return t;
+    };
+    const auto drilled = combined(CsgOp::subtract, {SpheresShape{{{{0, 1, 0}, 0.5}}}, {}, 1});
+    EXPECT_EQ(distances(*drilled, {0, 3, 0}, {0, -1, 0}), (std::vector<float>{2.5f, 4}));
+    EXPECT_EQ(distances(*drilled, {-3, 0.75f, 0}, {1, 0, 0}).size(), 4u);
+    EXPECT_EQ(distances(*drilled, {0.75f, 3, 0}, {0, -1, 0}), (std::vector<float>{2, 4}));
+    const auto slab = combined(CsgOp::intersect, {BoxShape{{-0.5, -3, -3}, {0.5, 3, 3}}, {}, 1});
+    EXPECT_EQ(distances(*slab, {-3, 0, 0}, {1, 0, 0}), (std::vector<float>{2.5f, 3.5f}));
+    EXPECT_EQ(distances(*slab, {0.25f, 3, 0.25f}, {0, -1, 0}), (std::vector<float>{2, 4}));
+    EXPECT_EQ(distances(*slab, {0.75f, 3, 0.25f}, {0, -1, 0}), std::vector<float>{});
+  }
+}
+
+TEST(HeightFields, WordsAreSixtyFiveThousandthsOfTheHeight) {
+  Column<std::uint16_t> words(4);
+  words[0] = words[2] = 0, words[1] = words[3] = 65535;
+  HeightFieldShape s;
+  s.grid = HeightGrid::from_words(2, 2, std::move(words), Interpolation::bilinear);
+  s.size = {2, 3, 2};
+  expect_at(s, {0.5f, 5, 0}, {0, -1, 0}, {5 - 0.75 * 3});
+  expect_at(s, {-1, 5, 0.25f}, {0, -1, 0}, {5});
+}
+
+TEST(HeightFields, SenselessOnesHaveNoSurface) {
+  std::vector<HeightFieldShape> bad(7, field(3, 3, {0, 0, 0, 0, 1, 0, 0, 0, 0}, Interpolation::bilinear));
+  bad[0].grid = nullptr, bad[1].size.x = 0, bad[2].size.z = -1, bad[3].size.y = kNan, bad[4].size.y = 0;
+  bad[5] = solid(bad[5], 0);
+  bad[6] = field(1, 3, {0, 1, 0}, Interpolation::bilinear), bad[6].size = {1, 1, 1};
+  for (std::size_t i = 0; i < bad.size(); ++i)
+    EXPECT_TRUE(all_crossings(ExactForm{bad[i]}, {{0, 3, 0.1f}, 0, {0, -1, 0}, kInf}).empty()) << i;
+}
+
+}  // namespace
+}  // namespace oktett

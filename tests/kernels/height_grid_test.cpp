@@ -1,0 +1,84 @@
+#include "kernels/shapes/height_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/random.h"
+
+namespace oktett {
+namespace {
+
+std::shared_ptr<const HeightGrid> random_grid(std::uint32_t columns, std::uint32_t rows, bool words,
+                                              HeightInterpolation interpolation) {
+  const std::size_t count = std::size_t{columns} * rows;
+  const auto value = [&](std::size_t i) { return random_float(3, columns + 1000 * rows, i); };
+  if (words) {
+    Column<std::uint16_t> w(count);
+    for (std::size_t i = 0; i < count; ++i) w[i] = static_cast<std::uint16_t>(value(i) * 65535);
+    return HeightGrid::from_words(columns, rows, std::move(w), interpolation);
+  }
+  Column<float> f(count);
+  for (std::size_t i = 0; i < count; ++i) f[i] = 1e-3f * value(i) - 7;
+  return HeightGrid::from_floats(columns, rows, std::move(f), interpolation);
+}
+
+constexpr std::uint32_t kSizes[][2] = {{2, 2}, {5, 5}, {6, 3}, {17, 17}, {18, 33}, {2, 100}, {67, 41}};
+
+/// No block of any level leaves out a sample on which the surface over its cells depends, and words are
+/// bounded exactly.
+TEST(HeightGrid, PyramidBoundsEverySample) {
+  for (const auto& size : kSizes)
+    for (const bool words : {false, true})
+      for (const auto interpolation : {HeightInterpolation::nearest, HeightInterpolation::bilinear}) {
+        const auto grid = random_grid(size[0], size[1], words, interpolation);
+        const int ring = interpolation == HeightInterpolation::nearest ? 1 : 0;
+        for (int k = 0; k < grid->levels(); ++k) {
+          const HeightGrid::Level& level = grid->level(k);
+          const int side = HeightGrid::kBlock << k;
+          for (std::uint32_t j = 0; j < level.rows; ++j)
+            for (std::uint32_t i = 0; i < level.columns; ++i) {
+              const HeightRange range = grid->ranges()[level.at(i, j)];
+              double lo = HUGE_VAL, hi = -HUGE_VAL;
+              const int x0 = static_cast<int>(i) * side, z0 = static_cast<int>(j) * side;
+              for (int z = std::max(z0 - ring, 0); z <= std::min<int>(z0 + side + ring, size[1] - 1); ++z)
+                for (int x = std::max(x0 - ring, 0); x <= std::min<int>(x0 + side + ring, size[0] - 1); ++x) {
+                  const double h = grid->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z));
+                  lo = std::min(lo, h), hi = std::max(hi, h);
+                }
+              const double below = grid->least() + grid->step() * range.least;
+              const double above = grid->least() + grid->step() * range.greatest;
+              EXPECT_LE(below, lo + 1e-12);
+              EXPECT_GE(above, hi - 1e-12);
+              // Tight: a step at most, and a level's own share for rounding.
+              EXPECT_GE(below, lo - 1.01 * grid->step() * (words ? 0 : 1));
+              EXPECT_LE(above, hi + 1.01 * grid->step() * (words ? 0 : 1));
+            }
+        }
+        EXPECT_EQ(grid->level(grid->levels() - 1).columns, 1u);
+        EXPECT_EQ(grid->level(grid->levels() - 1).rows, 1u);
+      }
+}
+
+TEST(HeightGrid, PyramidAddsASixthToWords) {
+  const auto words = random_grid(1025, 1025, true, HeightInterpolation::bilinear);
+  const auto floats = random_grid(1025, 1025, false, HeightInterpolation::bilinear);
+  const double samples = 1025.0 * 1025;
+  EXPECT_LT(static_cast<double>(words->bytes()), samples * 2 * (1 + 1.0 / 6) * 1.03);
+  EXPECT_LT(static_cast<double>(floats->bytes()), samples * 4 * (1 + 1.0 / 12) * 1.03);
+}
+
+TEST(HeightGrid, LevelFieldsHaveOneHeight) {
+  const auto grid = HeightGrid::from_floats(9, 3, Column<float>(27, -2.5f), HeightInterpolation::triangles);
+  EXPECT_EQ(grid->least(), -2.5);
+  EXPECT_EQ(grid->greatest(), -2.5);
+  for (int k = 0; k < grid->levels(); ++k) {
+    const HeightRange range = grid->ranges()[grid->level(k).first];
+    EXPECT_EQ(range.least, 0);
+    EXPECT_EQ(range.greatest, 0);
+  }
+}
+
+}  // namespace
+}  // namespace oktett
