@@ -252,43 +252,70 @@ ExactOracle sor(CaseRandom& random) {
 }
 
 /// One coordinate of a Bezier piece at u.
-long double bezier(const long double (&p)[4], long double u) {
-  const long double w = 1 - u;
+template <class Real>
+Real bezier(const Real (&p)[4], Real u) {
+  const Real w = 1 - u;
   return p[0] * w * w * w + 3 * p[1] * w * w * u + 3 * p[2] * w * u * u + p[3] * u * u * u;
 }
 
 /// Calls f(u) where the piece has the value `at`, by safeguarded Newton on each part between its extremes.
-template <class F>
-void for_places(const long double (&p)[4], long double at, F&& f) {
+template <class Real, class F>
+void for_places(const Real (&p)[4], Real at, F&& f) {
   if (std::max({p[0], p[1], p[2], p[3]}) < at || std::min({p[0], p[1], p[2], p[3]}) > at) return;
   // Half the derivative's coefficients, in powers.
-  const long double d0 = p[1] - p[0], d1 = p[2] - p[1], d2 = p[3] - p[2];
-  const long double a = d0 - 2 * d1 + d2, b = d1 - d0, c = d0, disc = b * b - a * c;
-  long double cuts[4] = {0};
+  const Real d0 = p[1] - p[0], d1 = p[2] - p[1], d2 = p[3] - p[2];
+  const Real a = d0 - 2 * d1 + d2, b = d1 - d0, c = d0, disc = b * b - a * c;
+  Real cuts[4] = {0};
   int n = 1;
   if (disc > 0) {
-    const long double q = -(b + std::copysign(std::sqrt(disc), b));
-    long double u = q / a, v = c / q;
+    const Real q = -(b + std::copysign(std::sqrt(disc), b));
+    Real u = q / a, v = c / q;
     if (v < u) std::swap(u, v);
     if (u > 0 && u < 1) cuts[n++] = u;
     if (v > 0 && v < 1) cuts[n++] = v;
   }
   cuts[n] = 1;
   for (int i = 0; i < n; ++i) {
-    long double lo = cuts[i], hi = cuts[i + 1];
+    Real lo = cuts[i], hi = cuts[i + 1];
     const bool rises = bezier(p, lo) < at;
     if (rises == (bezier(p, hi) < at)) continue;
-    long double u = (lo + hi) / 2;
+    Real u = (lo + hi) / 2;
     for (int k = 0; k < 100; ++k) {
-      const long double y = bezier(p, u) - at, w = 1 - u;
+      const Real y = bezier(p, u) - at, w = 1 - u;
       ((y < 0) == rises ? lo : hi) = u;
-      long double next = u - y / (3 * (d0 * w * w + 2 * d1 * w * u + d2 * u * u));
+      Real next = u - y / (3 * (d0 * w * w + 2 * d1 * w * u + d2 * u * u));
       if (!(next > lo && next < hi)) next = (lo + hi) / 2;
-      if (std::abs(next - u) < 1e-19L) break;
+      if (std::abs(next - u) < std::numeric_limits<Real>::epsilon()) break;
       u = next;
     }
     f(u);
   }
+}
+
+template <class Real>
+struct ProfileCurve {
+  explicit ProfileCurve(const ProfilePoint* p) {
+    for (int k = 0; k < 4; ++k) r[k] = p[k].radius, y[k] = p[k].height;
+  }
+  Real r[4], y[4];
+};
+
+/// About how far (rho, y) is from the profile, negative inside.
+template <class Real>
+Real outside_profile(const std::vector<ProfileCurve<Real>>& pieces, const std::array<ProfilePoint, 2>& ends,
+                     bool loop, Real rho, Real y) {
+  Real distance = 3;
+  bool odd = false;
+  for (const ProfileCurve<Real>& c : pieces) {
+    for_places(c.y, y, [&](Real u) {
+      const Real r = bezier(c.r, u);
+      distance = std::min(distance, std::abs(r - rho)), odd ^= r > rho;
+    });
+    for_places(c.r, rho, [&](Real u) { distance = std::min(distance, std::abs(bezier(c.y, u) - y)); });
+  }
+  for (const ProfilePoint& end : ends)
+    if (!loop && rho < end.radius) distance = std::min(distance, std::abs(static_cast<Real>(end.height) - y));
+  return odd ? -distance : distance;
 }
 
 /// A point is inside if a level line outwards crosses the profile an odd number of times.
@@ -328,34 +355,23 @@ ExactOracle lathe(CaseRandom& random) {
   }
   if (random.unit() < 0.5) std::reverse(s.points.begin(), s.points.end());
   if (!std::string(why_bad_profile(s)).empty()) return lathe(random);
-  struct Curve {
-    long double r[4], y[4];
-  };
-  std::vector<Curve> pieces;
+  std::vector<ProfileCurve<double>> rough;
+  std::vector<ProfileCurve<long double>> pieces;
   for (std::size_t i = 0; i + 3 < s.points.size(); i += 3) {
-    Curve c;
-    for (int k = 0; k < 4; ++k) c.r[k] = s.points[i + k].radius, c.y[k] = s.points[i + k].height;
-    pieces.push_back(c);
+    rough.emplace_back(&s.points[i]);
+    pieces.emplace_back(&s.points[i]);
   }
   const ProfilePoint ends[2] = {s.points.front(), s.points.back()};
   const bool loop = ends[0].radius == ends[1].radius && ends[0].height == ends[1].height;
   ExactOracle o;
   o.name = "lathe", o.shape = {s};
-  o.f = [pieces, ends = std::array{ends[0], ends[1]}, loop](const Vec3l& p) {
+  // In `long double` where `double` might not tell the sign.
+  o.f = [rough, pieces, ends = std::array{ends[0], ends[1]}, loop](const Vec3l& p) {
     const long double rho = std::sqrt(p.x * p.x + p.z * p.z);
-    long double distance = 3;
-    bool odd = false;
-    for (const Curve& c : pieces) {
-      for_places(c.y, p.y, [&](long double u) {
-        const long double r = bezier(c.r, u);
-        distance = std::min(distance, std::abs(r - rho)), odd ^= r > rho;
-      });
-      for_places(c.r, rho,
-                 [&](long double u) { distance = std::min(distance, std::abs(bezier(c.y, u) - p.y)); });
-    }
-    for (const ProfilePoint& end : ends)
-      if (!loop && rho < end.radius) distance = std::min(distance, std::abs(end.height - p.y));
-    return odd ? -distance : distance;
+    const double distance =
+        outside_profile<double>(rough, ends, loop, static_cast<double>(rho), static_cast<double>(p.y));
+    return std::abs(distance) > 0x1p-20 ? distance
+                                        : outside_profile<long double>(pieces, ends, loop, rho, p.y);
   };
   // The disks at the ends are not there.
   if (s.open) {
