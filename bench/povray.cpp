@@ -96,8 +96,10 @@ RayBatch pixel_rays(const Field& field) {
   return rays;
 }
 
-/// Where the ray first crosses the object by dense sampling and bisection; infinity if nowhere.
-long double first_crossing(const FieldObject& object, const Affine& to_world, const Ray& ray) {
+/// Where the ray first crosses the object by dense sampling and bisection; infinity if nowhere. What is
+/// thinner than a step may escape the samples, so they are joined by `hint`, which may be inside.
+long double first_crossing(const FieldObject& object, const Affine& to_world, const Ray& ray,
+                           long double hint) {
   const Affine inverse = to_world.inverse();
   const Vec3l o(inverse.point(Vec3d(ray.origin))), d(inverse.vector(Vec3d(ray.direction)));
   const long double dd = dot(d, d), middle = -dot(o, d) / dd;
@@ -109,7 +111,11 @@ long double first_crossing(const FieldObject& object, const Affine& to_world, co
   constexpr int kSteps = 4096;
   long double t0 = middle - w, f0 = object.f(o + d * t0);
   for (int i = 1; i <= kSteps; ++i) {
-    const long double t1 = middle - w + 2 * w * i / kSteps, f1 = object.f(o + d * t1);
+    long double t1 = middle - w + 2 * w * i / kSteps, f1 = object.f(o + d * t1);
+    if (t0 < hint && hint < t1 && (f0 < 0) == (f1 < 0)) {
+      const long double f = object.f(o + d * hint);
+      if ((f < 0) != (f0 < 0)) t1 = hint, f1 = f;
+    }
     if ((f0 < 0) != (f1 < 0)) {
       long double lo = t0, hi = t1;
       for (int k = 0; k < 64; ++k) {
@@ -151,13 +157,17 @@ Silhouettes compare_ids(const Field& field, const std::vector<std::uint32_t>& th
       ++(ours == right ? s.ours : theirs[i] == right ? s.theirs : s.neither);
       continue;
     }
+    // Between the first two crossings that Oktett has found.
+    std::vector<Hit> all;
+    all_hits(*world.accel, rays[i], all, default_isa());
+    const long double hint = all.size() < 2 ? 0 : (static_cast<long double>(all[0].t) + all[1].t) / 2;
     const auto distance = [&](std::uint32_t id) -> long double {
       if (id == 0 || id > floor + 1) return HUGE_VALL;
       if (id == floor + 1) {
         const long double t = -static_cast<long double>(rays[i].origin.y) / rays[i].direction.y;
         return t > 0 ? t : HUGE_VALL;
       }
-      return first_crossing(field.objects[id - 1], field.scene.objects[id - 1].transform, rays[i]);
+      return first_crossing(field.objects[id - 1], field.scene.objects[id - 1].transform, rays[i], hint);
     };
     const long double a = distance(ours), b = distance(theirs[i]);
     if (a < b)
