@@ -94,14 +94,16 @@ class AlongRay {
     if (ends(t) > 0) return Crossing::no;
     if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
     // Cusps may be thinner than what rounding to float moves t by.
-    long double l = t - s, fl = before, steepest = 0, cliff = l;
+    const long double step = 2 * s / kFineSamples;
+    long double l = t - s, fl = before, steepest = 0, cliff = l, least = HUGE_VALL, tip = l;
     for (int i = 1; i < kFineSamples; ++i) {
-      const long double r = t - s + 2 * s * i / kFineSamples, fr = (*this)(r);
+      const long double r = t - s + step * i, fr = (*this)(r);
       if ((fr < 0) != (before < 0)) return Crossing::nearly;
       if (std::abs(fr - fl) > steepest) steepest = std::abs(fr - fl), cliff = l;
+      if (std::abs(fr) < least) least = std::abs(fr), tip = r;
       l = r, fl = fr;
     }
-    if (hides_at_cliff(cliff, cliff + 2 * s / kFineSamples)) return Crossing::nearly;
+    if (hides_at_cliff(cliff, cliff + step) || hides_at_tip(tip - step, tip + step)) return Crossing::nearly;
     // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
     const long double off = 0x1p-14L * size_,
                       rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
@@ -121,6 +123,20 @@ class AlongRay {
         r = mid, fr = f;
       else
         l = mid, fl = f;
+    }
+    return false;
+  }
+  /// Whether f has the other sign where it comes nearest to zero between l and r.
+  bool hides_at_tip(long double l, long double r) const {
+    const bool negative = (*this)(l) < 0;
+    for (int k = 0; k < 128; ++k) {
+      const long double a = l + (r - l) * 0.4L, b = l + (r - l) * 0.6L;
+      const long double fa = (*this)(a), fb = (*this)(b);
+      if ((fa < 0) != negative || (fb < 0) != negative) return true;
+      if (std::abs(fa) < std::abs(fb))
+        r = b;
+      else
+        l = a;
     }
     return false;
   }
