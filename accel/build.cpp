@@ -142,14 +142,16 @@ class PoolFiller {
       steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), 0, false});
     for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), 0, true});
     for (std::uint32_t g = 0; g < accel_.geometries.size(); ++g)
-      if (const auto* list = std::get_if<InstanceList>(&accel_.geometries[g].shape)) {
-        std::uint32_t stride = 1;
-        for (const auto& child : list->children) stride = std::max(stride, 1 + child->path_count);
-        if (accel_.first_item[g] < accel_.first_item[g + 1])
-          steps.push_back({0, accel_.first_item[g], nullptr, stride, false});
-      }
+      if (accel_.kinds[g] == static_cast<int>(Kind::instance_list) &&
+          accel_.first_item[g] < accel_.first_item[g + 1])
+        steps.push_back({0, accel_.first_item[g], nullptr, 1, false});
     std::sort(steps.begin(), steps.end(),
               [](const PathStep& a, const PathStep& b) { return a.item < b.item; });
+    // Children that no instance shows need no numbers.
+    for (const ListedInstance& listed : accel_.listed_instances) {
+      std::uint32_t& stride = step_of(accel_.first_item[accel_.geometry_of(listed.item)]).stride;
+      stride = std::max(stride, 1 + accel_.listed_children[listed.child]->path_count);
+    }
     std::uint64_t paths = 0;
     for (PathStep& step : steps) {
       step.first_path = static_cast<std::uint32_t>(paths);
@@ -164,8 +166,8 @@ class PoolFiller {
     accel_.path_count = static_cast<std::uint32_t>(paths);
   }
 
-  const PathStep& step_of(std::uint32_t item) const {
-    const std::vector<PathStep>& steps = accel_.path_steps;
+  PathStep& step_of(std::uint32_t item) const {
+    std::vector<PathStep>& steps = accel_.path_steps;
     return *std::lower_bound(steps.begin(), steps.end(), item,
                              [](const PathStep& step, std::uint32_t value) { return step.item < value; });
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "accel/accel_data.h"
 #include "accel/csg_solids.h"
@@ -39,10 +40,13 @@ bool is_inside_out(const Geometry& g) {
   return mesh != nullptr && signed_volume(*mesh->mesh) < 0;
 }
 
-void find_inverted(const Accel& accel, std::vector<std::pair<const Accel*, std::uint32_t>>& found) {
+/// Looks at each structure once, however many instances show it: `seen` holds those that have been looked at.
+void find_inverted(const Accel& accel, std::set<const Accel*>& seen,
+                   std::vector<std::pair<const Accel*, std::uint32_t>>& found) {
+  if (!seen.insert(&accel).second) return;
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     if (is_inside_out(accel.geometries[g])) found.emplace_back(&accel, g);
-    for (const Accel* child : children_of(accel.geometries[g])) find_inverted(*child, found);
+    for (const Accel* child : children_of(accel.geometries[g])) find_inverted(*child, seen, found);
   }
 }
 
@@ -107,6 +111,7 @@ static CsgExpression expanded(const CsgExpression& operand) {
 CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) {
   CsgItem csg;
   std::vector<Geometry> solids;
+  std::set<const Accel*> seen;
   const auto add = [&](const auto& self, const CsgExpression& e, std::uint32_t parent,
                        bool is_first) -> void {
     for (const Geometry& g : e.solids)
@@ -116,7 +121,7 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
     for (const Geometry& g : e.solids) {
       if (is_unbounded(g)) csg.unbounded.push_back(static_cast<std::uint32_t>(solids.size()));
       csg.inverted.push_back(is_inside_out(g));
-      for (const Accel* child : children_of(g)) find_inverted(*child, csg.inverted_inside);
+      for (const Accel* child : children_of(g)) find_inverted(*child, seen, csg.inverted_inside);
       solids.push_back(g);
       csg.operand_of.push_back(node);
     }

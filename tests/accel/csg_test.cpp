@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "accel/accel_data.h"
 #include "app/oracle_mesh.h"
 #include "app/verify_csg.h"
 
@@ -265,6 +266,20 @@ TEST(Csg, InsideOutAndMirroredMeshesAreSolidsToo) {
                                                              solid(InstanceGeometry{inner}, 1)}))),
                       ray),
             expected);
+}
+
+/// A mesh wound inside out is noted once, though a thousand chains of instances lead to it.
+TEST(Csg, LooksAtSharedStructuresOnce) {
+  OracleMesh block = make_cube();
+  for (std::size_t k = 0; k < block.mesh.indices.size(); k += 3)
+    std::swap(block.mesh.indices[k], block.mesh.indices[k + 1]);
+  auto inner = built(solid(MeshGeometry{&block.mesh, false}, 1));
+  for (int level = 0; level < 10; ++level)
+    inner = build_accel({solid(InstanceGeometry{inner}, 1, Affine::translation({3, 0, 0})),
+                         solid(InstanceGeometry{inner}, 1, Affine::translation({0, 3, 0}))});
+  const auto whole_of = built(whole(combine(CsgOp::unite, {solid(InstanceGeometry{inner}, 1)})));
+  ASSERT_EQ(whole_of->combinations.size(), 1u);
+  EXPECT_EQ(whole_of->combinations[0].inverted_inside.size(), 1u);
 }
 
 /// Triangles in several leaves are one crossing each.
