@@ -19,6 +19,16 @@ OKTETT_INLINE Simd<double, 1, A> lane_of(const Simd<double, W, A>& x, int k) {
   return Simd<double, 1, A>(lanes[k]);
 }
 
+/// The cell in which each lane's x is, of the field where it is outside.
+template <class D>
+OKTETT_INLINE D cell_of(const D& x, std::uint32_t samples) {
+  // The whole number below, by rounding x - 1/2 to a whole number.
+  const D last(static_cast<double>(samples) - 2), shifter(0x1.8p52);
+  const D inside = min(max(x, D(0.0)), last + D(1.0));
+  const D cell = ((inside - D(0.5)) + shifter) - shifter;
+  return min(max(select(cell + D(1.0) <= inside, cell + D(1.0), cell), D(0.0)), last);
+}
+
 /// Lines in the space of the grid: x counts columns, z rows, and y is a sample as stored.
 template <class D>
 struct GridLines {
@@ -60,8 +70,8 @@ struct GridLines {
         forward_x(M::from_bits(bits(all.forward_x) >> k & 1)),
         forward_z(M::from_bits(bits(all.forward_z) >> k & 1)) {}
 
-  OKTETT_INLINE D at_column(double column) const { return (D(column) - meet_x) * per_x; }
-  OKTETT_INLINE D at_row(double row) const { return (D(row) - meet_z) * per_z; }
+  OKTETT_INLINE D at_column(const D& column) const { return (column - meet_x) * per_x; }
+  OKTETT_INLINE D at_row(const D& row) const { return (row - meet_z) * per_z; }
   OKTETT_INLINE D height(const D& t) const { return o.y + t * d.y; }
 
  private:
@@ -70,13 +80,8 @@ struct GridLines {
 
   OKTETT_INLINE static void meet(const D& o, const D& d, std::uint32_t samples, D& at, D& per, M& forward) {
     const auto along = abs(d) < D(kTiny);
-    // The middle of its cell: the whole number below o, by rounding o - 1/2 to a whole number.
-    const D last(static_cast<double>(samples) - 2), shifter(0x1.8p52);
-    const D inside = min(max(o, D(0.0)), last + D(1.0));
-    D cell = ((inside - D(0.5)) + shifter) - shifter;
-    cell = select(cell + D(1.0) <= inside, cell + D(1.0), cell);
-    cell = min(max(cell, D(0.0)), last);
-    at = select(along, cell + D(0.5), o);
+    // The middle of its cell.
+    at = select(along, cell_of(o, samples) + D(0.5), o);
     per = select(along, D(std::numeric_limits<double>::infinity()), D(1.0) / d);
     forward = along | (D(0.0) < d);
   }
@@ -110,48 +115,80 @@ OKTETT_INLINE CellPassage<D> pass_cell(const GridLines<D>& g, const D& x_in, con
   return p;
 }
 
-/// The samples at the corners of a cell.
+/// The samples at the corners of a cell, or of one cell in each lane: T is double or a vector of them.
+template <class T>
 struct CellCorners {
-  double h00, h10, h01, h11;  ///< h10 is that of the next column
+  T h00, h10, h01, h11;  ///< h10 is that of the next column
 
-  OKTETT_INLINE CellCorners(const HeightGrid& grid, std::uint32_t i, std::uint32_t j) {
-    const std::size_t x0 = grid.column_place(i), x1 = grid.column_place(i + 1);
-    const std::size_t z0 = grid.row_place(j), z1 = grid.row_place(j + 1);
+  /// `Index` is std::uint32_t, or T of whole numbers.
+  template <class Index>
+  OKTETT_INLINE CellCorners(const HeightGrid& grid, const Index& i, const Index& j) {
+    const auto x0 = grid.column_place(i), x1 = grid.column_place(i + Index(1));
+    const auto z0 = grid.row_place(j), z1 = grid.row_place(j + Index(1));
     h00 = grid.load(x0 + z0), h10 = grid.load(x1 + z0), h01 = grid.load(x0 + z1), h11 = grid.load(x1 + z1);
   }
-  OKTETT_INLINE double mean() const { return ((h00 + h10) + (h01 + h11)) * 0.25; }
+  OKTETT_INLINE T mean() const { return ((h00 + h10) + (h01 + h11)) * T(0.25); }
 };
 
-/// A cell as lines of one quadrant see it.
+/// A cell as lines of one quadrant see it, or one in each lane.
+template <class T>
 struct GridCell {
-  double i, j;
-  CellCorners corners;
+  T i, j;
+  CellCorners<T> corners;
   /// Of `nearest`: its level, and those of the cells from which lines come by a column or a row; beyond the
   /// field there is no cell and no wall, as if it had the same level.
-  double level = 0, before_column = 0, before_row = 0;
-  double least, greatest;  ///< of the surface in the cell
+  T level, before_column, before_row;
+  T least, greatest;  ///< of the surface in the cell
 
   OKTETT_INLINE GridCell(const HeightGrid& grid, std::uint32_t column, std::uint32_t row, bool forward_x,
                          bool forward_z)
       : i(column), j(row), corners(grid, column, row) {
-    if (grid.interpolation() != HeightInterpolation::nearest) {
-      const CellCorners& c = corners;
-      least = lesser(lesser(c.h00, c.h10), lesser(c.h01, c.h11));
-      greatest = greater(greater(c.h00, c.h10), greater(c.h01, c.h11));
-      return;
+    if (grid.interpolation() == HeightInterpolation::nearest) {
+      level = before_column = before_row = corners.mean();
+      // Numbers without sign: one less than 0 is far beyond the field.
+      const std::uint32_t x = forward_x ? column - 1 : column + 1, z = forward_z ? row - 1 : row + 1;
+      if (x < grid.columns() - 1) before_column = CellCorners<T>(grid, x, row).mean();
+      if (z < grid.rows() - 1) before_row = CellCorners<T>(grid, column, z).mean();
     }
-    level = before_column = before_row = corners.mean();
-    // Numbers without sign: one less than 0 is far beyond the field.
-    const std::uint32_t x = forward_x ? column - 1 : column + 1, z = forward_z ? row - 1 : row + 1;
-    if (x < grid.columns() - 1) before_column = CellCorners(grid, x, row).mean();
-    if (z < grid.rows() - 1) before_row = CellCorners(grid, column, z).mean();
-    least = lesser(level, lesser(before_column, before_row));
-    greatest = greater(level, greater(before_column, before_row));
+    bound(grid.interpolation());
+  }
+  /// Cells of the field, in lanes.
+  template <class M>
+  OKTETT_INLINE GridCell(const HeightGrid& grid, const T& column, const T& row, const M& forward_x,
+                         const M& forward_z)
+      : i(column), j(row), corners(grid, column, row) {
+    if (grid.interpolation() == HeightInterpolation::nearest) {
+      level = before_column = before_row = corners.mean();
+      const T one(1.0), zero(0.0), last_x(grid.columns() - 2.0), last_z(grid.rows() - 2.0);
+      const T x = column + select(forward_x, -one, one), z = row + select(forward_z, -one, one);
+      const T x_in = min(max(x, zero), last_x), z_in = min(max(z, zero), last_z);
+      before_column = select(x == x_in, CellCorners<T>(grid, x_in, row).mean(), level);
+      before_row = select(z == z_in, CellCorners<T>(grid, column, z_in).mean(), level);
+    }
+    bound(grid.interpolation());
   }
 
  private:
+  OKTETT_INLINE void bound(HeightInterpolation interpolation) {
+    if (interpolation == HeightInterpolation::nearest) {
+      least = lesser(level, lesser(before_column, before_row));
+      greatest = greater(level, greater(before_column, before_row));
+    } else {
+      least = lesser(lesser(corners.h00, corners.h10), lesser(corners.h01, corners.h11));
+      greatest = greater(greater(corners.h00, corners.h10), greater(corners.h01, corners.h11));
+    }
+  }
+
   static OKTETT_INLINE double lesser(double a, double b) { return a < b ? a : b; }
   static OKTETT_INLINE double greater(double a, double b) { return a > b ? a : b; }
+  template <class D>
+  static OKTETT_INLINE D lesser(const D& a, const D& b) {
+    return min(a, b);
+  }
+  template <class D>
+  static OKTETT_INLINE D greater(const D& a, const D& b) {
+    return max(a, b);
+  }
 };
 
 template <class D>
@@ -164,8 +201,8 @@ OKTETT_INLINE D between(const D& a, const D& b, const D& share) {
 }
 
 /// Height of a patch at (u, v) in its cell.
-template <class D>
-OKTETT_INLINE D patch_height(HeightInterpolation interpolation, const CellCorners& c, const D& u,
+template <class D, class T>
+OKTETT_INLINE D patch_height(HeightInterpolation interpolation, const CellCorners<T>& c, const D& u,
                              const D& v) {
   const D h00(c.h00), h10(c.h10), h01(c.h01), h11(c.h11);
   if (interpolation == HeightInterpolation::bilinear)
@@ -187,26 +224,49 @@ OKTETT_INLINE D turn_from(const D& before) {
   return select(before < D(0.0), D(1.0), D(-1.0));
 }
 
+/// Heights of the surface and their derivatives by column and row, of samples as stored.
+template <class D>
+struct HeightPatch {
+  D height, by_x, by_z;
+
+  OKTETT_INLINE HeightPatch(const HeightGrid& grid, const D& x, const D& z) {
+    const D i = cell_of(x, grid.columns()), j = cell_of(z, grid.rows());
+    const CellCorners<D> c(grid, i, j);
+    const D u = unit_clamp(x - i), v = unit_clamp(z - j);
+    if (grid.interpolation() == HeightInterpolation::nearest) {
+      height = c.mean(), by_x = by_z = D(0.0);
+      return;
+    }
+    height = patch_height(grid.interpolation(), c, u, v);
+    if (grid.interpolation() == HeightInterpolation::triangles) {
+      const auto low = u + v <= D(1.0);
+      by_x = select(low, c.h10 - c.h00, c.h11 - c.h01), by_z = select(low, c.h01 - c.h00, c.h11 - c.h10);
+    } else {
+      by_x = between(c.h10 - c.h00, c.h11 - c.h01, v), by_z = between(c.h01 - c.h00, c.h11 - c.h10, u);
+    }
+  }
+};
+
 namespace height {
 
 /// The line's height above the surface at t on the edge at column or row `line` of the cell (i, j).
-template <class D>
-OKTETT_INLINE D above_column(const GridLines<D>& g, const D& h0, const D& h1, double j, const D& t) {
+template <class D, class T>
+OKTETT_INLINE D above_column(const GridLines<D>& g, const D& h0, const D& h1, const T& j, const D& t) {
   return g.height(t) - between(h0, h1, unit_clamp((g.o.z + t * g.d.z) - D(j)));
 }
-template <class D>
-OKTETT_INLINE D above_row(const GridLines<D>& g, const D& h0, const D& h1, double i, const D& t) {
+template <class D, class T>
+OKTETT_INLINE D above_row(const GridLines<D>& g, const D& h0, const D& h1, const T& i, const D& t) {
   return g.height(t) - between(h0, h1, unit_clamp((g.o.x + t * g.d.x) - D(i)));
 }
 
-template <class D>
-OKTETT_INLINE void triangle_crossings(const GridLines<D>& g, const CellCorners& c, double i, double j,
-                                      const CellPassage<D>& p, const D& f0, const D& f1,
-                                      CellCrossings<D>& out) {
+template <class D, class T>
+OKTETT_INLINE void triangle_crossings(const GridLines<D>& g, const GridCell<T>& cell, const CellPassage<D>& p,
+                                      const D& f0, const D& f1, CellCrossings<D>& out) {
+  const CellCorners<T>& c = cell.corners;
   // The common edge has column + row = i + j + 1.
-  const D zero(0.0), t = (D(i + j + 1) - (g.o.x + g.o.z)) / (g.d.x + g.d.z);
+  const D zero(0.0), t = (D(cell.i + cell.j + T(1.0)) - (g.o.x + g.o.z)) / (g.d.x + g.d.z);
   const auto bends = (p.in < t) & (t < p.out);
-  const D f = above_column(g, D(c.h10), D(c.h01), j, t);
+  const D f = above_column(g, D(c.h10), D(c.h01), cell.j, t);
   const auto low0 = f0 < zero, low = f < zero, low1 = f1 < zero;
   const auto differ = [](const auto& a, const auto& b) { return (a & ~b) | (b & ~a); };
   out.found[0] = differ(low0, low) & bends;
@@ -218,8 +278,8 @@ OKTETT_INLINE void triangle_crossings(const GridLines<D>& g, const CellCorners& 
 
 /// With s = 0 ... 1 from where the line enters to where it leaves, its height above the patch is
 /// a s^2 + (f1 - f0 - a) s + f0.
-template <class D>
-OKTETT_INLINE void bilinear_crossings(const GridLines<D>& g, const CellCorners& c, const CellPassage<D>& p,
+template <class D, class T>
+OKTETT_INLINE void bilinear_crossings(const GridLines<D>& g, const CellCorners<T>& c, const CellPassage<D>& p,
                                       const D& f0, const D& f1, CellCrossings<D>& out) {
   const D zero(0.0), length = p.out - p.in;
   const auto below = f0 < zero, low1 = f1 < zero;
@@ -245,11 +305,11 @@ OKTETT_INLINE void bilinear_crossings(const GridLines<D>& g, const CellCorners& 
 }  // namespace height
 
 /// Crossings of lines with the surface in a cell, which they pass as `p` says.
-template <class D>
+template <class D, class T>
 OKTETT_INLINE void patch_crossings(HeightInterpolation interpolation, const GridLines<D>& g,
-                                   const GridCell& cell, const CellPassage<D>& p, CellCrossings<D>& out) {
+                                   const GridCell<T>& cell, const CellPassage<D>& p, CellCrossings<D>& out) {
   // Where lines go back, they enter by the far edges.
-  const CellCorners& c = cell.corners;
+  const CellCorners<T>& c = cell.corners;
   const D h00(c.h00), h10(c.h10), h01(c.h01), h11(c.h11);
   const auto edge = [&](const typename D::M& by_row, const typename D::M& low_x, const typename D::M& low_z,
                         const D& t) {
@@ -268,15 +328,15 @@ OKTETT_INLINE void patch_crossings(HeightInterpolation interpolation, const Grid
     f1 = select(p.cut_out, inner(p.out), f1);
   }
   if (interpolation == HeightInterpolation::triangles)
-    height::triangle_crossings(g, c, cell.i, cell.j, p, f0, f1, out);
+    height::triangle_crossings(g, cell, p, f0, f1, out);
   else
     height::bilinear_crossings(g, c, p, f0, f1, out);
   out.part[0] = out.part[1] = D(0.0);
 }
 
 /// The same for `nearest`: first the wall by which lines enter, then the level.
-template <class D>
-OKTETT_INLINE void step_crossings(const GridLines<D>& g, const GridCell& cell, const CellPassage<D>& p,
+template <class D, class T>
+OKTETT_INLINE void step_crossings(const GridLines<D>& g, const GridCell<T>& cell, const CellPassage<D>& p,
                                   CellCrossings<D>& out) {
   const D zero(0.0), here(cell.level);
   const D before = select(p.by_row_in, D(cell.before_row), D(cell.before_column));

@@ -1,7 +1,8 @@
 #pragma once
 /// \file HeightField::crossings. For accel/isa/ alone, so that a change to the walks recompiles little.
 
-#include "kernels/shapes/height_walk.h"
+#include "kernels/shapes/height_pyramid.h"
+#include "kernels/shapes/height_slope.h"
 
 namespace oktett {
 

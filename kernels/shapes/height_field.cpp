@@ -3,48 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/shapes/height_cell.h"
+#include "kernels/shapes/height_slope.h"
 
 namespace oktett {
-
-namespace {
-
-/// The cell of [0, samples - 1] that x is in, and where in it.
-struct Place {
-  std::uint32_t cell;
-  double share;
-
-  Place(double x, std::uint32_t samples) {
-    const double last = static_cast<double>(samples) - 2;
-    const double whole = x >= 1 ? std::min(std::floor(x), last) : 0;
-    cell = static_cast<std::uint32_t>(whole);
-    share = std::clamp(x - whole, 0.0, 1.0);
-  }
-};
-
-struct Patch {
-  double height, by_x, by_z;  ///< and its derivatives, all of samples as stored, by column and row
-};
-
-Patch patch_at(const HeightGrid& grid, double x, double z) {
-  const Place a(x, grid.columns()), b(z, grid.rows());
-  const CellCorners c(grid, a.cell, b.cell);
-  const double u = a.share, v = b.share;
-  switch (grid.interpolation()) {
-    case HeightInterpolation::nearest:
-      return {c.mean(), 0, 0};
-    case HeightInterpolation::triangles:
-      if (u + v <= 1)
-        return {c.h00 + (u * (c.h10 - c.h00) + v * (c.h01 - c.h00)), c.h10 - c.h00, c.h01 - c.h00};
-      return {c.h11 + ((1 - u) * (c.h01 - c.h11) + (1 - v) * (c.h10 - c.h11)), c.h11 - c.h01, c.h11 - c.h10};
-    case HeightInterpolation::bilinear:
-      break;
-  }
-  const double low = c.h00 + u * (c.h10 - c.h00), high = c.h01 + u * (c.h11 - c.h01);
-  return {low + v * (high - low), (c.h10 - c.h00) + v * ((c.h11 - c.h01) - (c.h10 - c.h00)), high - low};
-}
-
-}  // namespace
 
 std::size_t HeightFieldPool::bytes() const {
   std::size_t sum = ExactPool<HeightFieldElement>::bytes();
@@ -88,31 +49,8 @@ bool HeightField::below_rim(const HeightGrid& grid, int face, double x, double y
   // Edges are straight, but for steps, which end upright there.
   if (face <= 2) x = face == 1 ? 0 : static_cast<double>(grid.columns()) - 1;
   if (face >= 5) z = face == 5 ? 0 : static_cast<double>(grid.rows()) - 1;
-  return y < patch_at(grid, x, z).height;
-}
-
-void HeightField::slope_of(const HeightFieldElement& e, int part, double x, double y, double z, double& value,
-                           double& gx, double& gy, double& gz) {
-  gx = gy = gz = 0;
-  if (part >= 1 && part <= 6) {
-    value = face_value(e.lo, e.hi, part, {x, y, z});
-    const Vec3d g = face_gradient(part);
-    gx = g.x, gy = g.y, gz = g.z;
-    return;
-  }
-  const Vec3d &scale = e.frame.scale, &shift = e.frame.shift;
-  if (part == kWallLowX || part == kWallHighX || part == kWallLowZ || part == kWallHighZ) {
-    const bool along_x = part <= kWallHighX, low = part == kWallLowX || part == kWallLowZ;
-    const int k = along_x ? 0 : 2;
-    const double at = along_x ? x : z,
-                 wall = (std::nearbyint(at * scale[k] + shift[k]) - shift[k]) / scale[k];
-    value = low ? wall - at : at - wall;
-    (along_x ? gx : gz) = low ? -1 : 1;
-    return;
-  }
-  const Patch patch = patch_at(*e.grid, x * scale.x + shift.x, z * scale.z + shift.z);
-  value = y - (patch.height - shift.y) / scale.y;
-  gx = -patch.by_x * (scale.x / scale.y), gy = 1, gz = -patch.by_z * (scale.z / scale.y);
+  using D = Simd<double, 1, ScalarIsa>;
+  return y < HeightPatch<D>(grid, D(x), D(z)).height.part[0].v;
 }
 
 double HeightField::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {

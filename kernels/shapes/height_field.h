@@ -47,16 +47,10 @@ struct HeightField {
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out);
 
+  /// Defined in height_slope.h.
   template <class D>
   static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
-                    Vec3<D>& gradient) {
-    constexpr int W = D::kWidth;
-    double parts[W], x[W], y[W], z[W], f[W], gx[W], gy[W], gz[W];
-    part.store(parts), p.x.store(x), p.y.store(y), p.z.store(z);
-    for (int k = 0; k < W; ++k)
-      slope_of(pool.elements[i], static_cast<int>(parts[k]), x[k], y[k], z[k], f[k], gx[k], gy[k], gz[k]);
-    value = D::load(f), gradient = {D::load(gx), D::load(gy), D::load(gz)};
-  }
+                    Vec3<D>& gradient);
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   /// Below the surface and above the bottom of a solid; nothing is inside of an open surface.
@@ -67,8 +61,6 @@ struct HeightField {
 
   /// Whether (x, y, z), in the space of the grid, is below the surface's edge over a side of the box.
   static bool below_rim(const HeightGrid& grid, int face, double x, double y, double z);
-  static void slope_of(const HeightFieldElement& e, int part, double x, double y, double z, double& value,
-                       double& gx, double& gy, double& gz);
 };
 
 }  // namespace oktett

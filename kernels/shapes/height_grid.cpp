@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -56,16 +57,18 @@ template <class T>
 VirtualArray<T> HeightGrid::take(const Column<T>& samples) {
   const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
   least_ = *lo, greatest_ = *hi;
-  VirtualArray<T> tiles = large_array<T>(places());
+  // Gathering words reads one more.
+  VirtualArray<T> tiles = large_array<T>(places() + 1);
   for (std::uint32_t j = 0; j < rows_; ++j)
     for (std::uint32_t i = 0; i < columns_; ++i)
       tiles[column_place(i) + row_place(j)] = samples[i + std::size_t{j} * columns_];
   return tiles;
 }
 
-/// Of the samples that the surface over the cells of a block depends on: `nearest` has walls on the borders
-/// of the block, up to the heights of the cells around it.
-HeightRange HeightGrid::range_of_block(std::uint32_t i, std::uint32_t j) const {
+/// Of the samples that the surface over the cells of block (i, j) depends on: `nearest` has walls on the
+/// borders of the block, up to the heights of the cells around it.
+void HeightGrid::bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& least,
+                             std::uint16_t& greatest) const {
   const std::uint32_t ring = interpolation_ == HeightInterpolation::nearest ? 1 : 0;
   const auto begin = [&](std::uint32_t k) { return k * kBlock - std::min(ring, k * kBlock); };
   const auto end = [&](std::uint32_t k, std::uint32_t size) {
@@ -78,35 +81,38 @@ HeightRange HeightGrid::range_of_block(std::uint32_t i, std::uint32_t j) const {
       lo = std::min(lo, h), hi = std::max(hi, h);
     }
   const double below = std::floor((lo - least_) / step_), above = std::ceil((hi - least_) / step_);
-  return {static_cast<std::uint16_t>(std::clamp(below, 0.0, 65535.0)),
-          static_cast<std::uint16_t>(std::clamp(above, 0.0, 65535.0))};
+  least = static_cast<std::uint16_t>(std::clamp(below, 0.0, 65535.0));
+  greatest = static_cast<std::uint16_t>(std::clamp(above, 0.0, 65535.0));
 }
 
 void HeightGrid::build_pyramid() {
-  const auto blocks = [](std::uint32_t samples) { return std::max((samples + kBlock - 2) / kBlock, 1u); };
-  std::uint32_t columns = blocks(columns_), rows = blocks(rows_);
-  for (levels_ = 0;; columns = (columns + 1) / 2, rows = (rows + 1) / 2) {
-    const std::uint32_t pairs = (columns + 1) / 2;
-    level_[levels_++] = {columns, rows, pairs, range_count_};
-    range_count_ += 4 * std::size_t{pairs} * ((rows + 1) / 2);
+  const auto part = [](std::uint32_t whole) { return std::max((whole + kBlock - 1) / kBlock, 1u); };
+  for (std::uint32_t columns = part(columns_ - 1), rows = part(rows_ - 1);;) {
+    const Level level{columns, rows, part(columns), part(rows), node_count_};
+    level_[levels_++] = level;
+    node_count_ += std::size_t{level.columns} * level.rows;
+    columns = level.columns, rows = level.rows;
     if (columns == 1 && rows == 1) break;
   }
-  ranges_ = large_array<HeightRange>(range_count_);
-  range_data_ = ranges_.data();
-  for (std::uint32_t j = 0; j < level_[0].rows; ++j)
-    for (std::uint32_t i = 0; i < level_[0].columns; ++i) ranges_[level_[0].at(i, j)] = range_of_block(i, j);
-  for (int k = 1; k < levels_; ++k) {
-    const Level &fine = level_[k - 1], &coarse = level_[k];
-    for (std::uint32_t j = 0; j < coarse.rows; ++j)
-      for (std::uint32_t i = 0; i < coarse.columns; ++i) {
-        HeightRange range{65535, 0};
-        for (std::uint32_t y = 2 * j; y < std::min(2 * j + 2, fine.rows); ++y)
-          for (std::uint32_t x = 2 * i; x < std::min(2 * i + 2, fine.columns); ++x) {
-            const HeightRange part = ranges_[fine.at(x, y)];
-            range.least = std::min(range.least, part.least);
-            range.greatest = std::max(range.greatest, part.greatest);
+  nodes_ = large_array<HeightNode>(node_count_);
+  node_data_ = nodes_.data();
+  for (int k = 0; k < levels_; ++k) {
+    const Level& level = level_[k];
+    for (std::uint32_t j = 0; j < level.rows; ++j)
+      for (std::uint32_t i = 0; i < level.columns; ++i) {
+        HeightNode& own = nodes_[level.first + i + std::size_t{j} * level.columns];
+        std::fill_n(own.least, 16, std::uint16_t{65535});
+        for (unsigned blocks = level.blocks(i, j); blocks != 0; blocks &= blocks - 1) {
+          const auto b = static_cast<std::uint32_t>(std::countr_zero(blocks));
+          const std::uint32_t x = kBlock * i + b % kBlock, z = kBlock * j + b / kBlock;
+          if (k == 0) {
+            bound_cells(x, z, own.least[b], own.greatest[b]);
+          } else {
+            const HeightNode& below = node(k - 1, x, z);
+            own.least[b] = *std::min_element(below.least, below.least + 16);
+            own.greatest[b] = *std::max_element(below.greatest, below.greatest + 16);
           }
-        ranges_[coarse.at(i, j)] = range;
+        }
       }
   }
 }

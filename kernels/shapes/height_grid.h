@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/platform.h"
+#include "core/simd_gather.h"
 #include "core/soa.h"
 #include "core/virtual_array.h"
 #include "kernels/shapes/height_data.h"
@@ -17,28 +18,31 @@ namespace oktett {
 inline constexpr std::uint32_t kMaxHeightSide = 32768;
 inline constexpr std::size_t kMaxHeightSamples = std::size_t{1} << 28;
 
-/// The least and greatest value over a block of cells, in steps of HeightGrid::step.
-struct HeightRange {
-  std::uint16_t least, greatest;
+/// The least and greatest value over each of 4 x 4 blocks of cells, row by row, in steps of HeightGrid::step.
+struct alignas(64) HeightNode {
+  std::uint16_t least[16], greatest[16];
 };
-static_assert(sizeof(HeightRange) == 4);
+static_assert(sizeof(HeightNode) == 64);
 
 /// Immutable. Samples are 16-bit numbers or floats; they stand in tiles of 8 x 8, so that what is near each
 /// other in the field is so in memory. Cell (i, j) lies between the columns i and i + 1 and the rows j and
-/// j + 1. Level k of the pyramid has blocks of (4 << k) x (4 << k) cells; the last level has one block. That
-/// adds 1/6 to 16-bit samples.
+/// j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k + 1) cells, 4 x 4 of them to a node; the last
+/// level has one node. That adds 2/15 to 16-bit samples.
 class HeightGrid {
  public:
-  static constexpr int kBlock = 4;       ///< cells along a side of the smallest blocks
-  static constexpr int kMaxLevels = 16;  ///< 4 << 15 > kMaxHeightSide
+  static constexpr std::uint32_t kBlock =
+      4;                                ///< cells along a side of the smallest blocks, blocks along a node
+  static constexpr int kMaxLevels = 7;  ///< 4^8 > kMaxHeightSide
 
   struct Level {
-    std::uint32_t columns = 0, rows = 0;
-    std::uint32_t pairs = 0;  ///< of columns: the four blocks under one of the next level stand together
-    std::size_t first = 0;    ///< of its blocks in `ranges`
+    std::uint32_t block_columns = 0, block_rows = 0;
+    std::uint32_t columns = 0, rows = 0;  ///< of nodes
+    std::size_t first = 0;                ///< of its nodes
 
-    OKTETT_INLINE std::size_t at(std::uint32_t i, std::uint32_t j) const {
-      return first + 4 * ((i >> 1) + std::size_t{j >> 1} * pairs) + (i & 1) + 2 * (j & 1);
+    /// Bit a + 4 b is set where block (a, b) of node (i, j) is one of the field.
+    OKTETT_INLINE unsigned blocks(std::uint32_t i, std::uint32_t j) const {
+      const std::uint32_t x = block_columns - kBlock * i, z = block_rows - kBlock * j;
+      return (x < kBlock ? 0x1111u * ((1u << x) - 1) : 0xffffu) & (z < kBlock ? (1u << 4 * z) - 1 : 0xffffu);
     }
   };
 
@@ -62,7 +66,7 @@ class HeightGrid {
   /// Of samples and pyramid.
   std::size_t bytes() const {
     return places() * (word_data_ != nullptr ? sizeof(std::uint16_t) : sizeof(float)) +
-           range_count_ * sizeof(HeightRange);
+           node_count_ * sizeof(HeightNode);
   }
 
   // What walks need, without bounds checks.
@@ -82,32 +86,54 @@ class HeightGrid {
     return word_data_ != nullptr ? static_cast<double>(word_data_[place])
                                  : static_cast<double>(float_data_[place]);
   }
+  /// Samples at `place`, one in each lane, and where they stand; columns and rows are whole numbers.
+  template <class D>
+  OKTETT_INLINE D load(const D& place) const {
+    return word_data_ != nullptr ? gather(word_data_, place) : gather(float_data_, place);
+  }
+  template <class D>
+  OKTETT_INLINE D column_place(const D& i) const {
+    return i + D(double{kTile * (kTile - 1)}) * tile_of(i);
+  }
+  template <class D>
+  OKTETT_INLINE D row_place(const D& j) const {
+    return D(double{kTile}) * j + D(static_cast<double>(tile_row_) - kTile * kTile) * tile_of(j);
+  }
   OKTETT_INLINE int levels() const { return levels_; }
   OKTETT_INLINE const Level& level(int k) const { return level_[k]; }
-  OKTETT_INLINE const HeightRange* ranges() const { return range_data_; }
-  /// A block has samples from least() + step() * range.least to least() + step() * range.greatest.
+  OKTETT_INLINE const HeightNode& node(int level, std::uint32_t i, std::uint32_t j) const {
+    const Level& l = level_[level];
+    return node_data_[l.first + i + std::size_t{j} * l.columns];
+  }
+  /// A block has samples from least() + step() * node.least[...] to least() + step() * node.greatest[...].
   OKTETT_INLINE double step() const { return step_; }
 
  private:
   static constexpr std::uint32_t kTile = 8;
 
   HeightGrid(std::uint32_t columns, std::uint32_t rows, HeightInterpolation interpolation);
+  /// Of a whole number: by rounding to a whole number what is at most 7/16 from it.
+  template <class D>
+  static OKTETT_INLINE D tile_of(const D& i) {
+    const D shifter(0x1.8p52);
+    return ((i * D(1.0 / kTile) - D(0.4375)) + shifter) - shifter;
+  }
   template <class T>
   VirtualArray<T> take(const Column<T>& samples);
   std::size_t places() const { return (rows_ + kTile - 1) / kTile * tile_row_; }
   void build_pyramid();
-  HeightRange range_of_block(std::uint32_t i, std::uint32_t j) const;
+  void bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& least, std::uint16_t& greatest) const;
 
   std::uint32_t columns_ = 0, rows_ = 0;
   HeightInterpolation interpolation_ = HeightInterpolation::bilinear;
   std::size_t tile_row_ = 0;  ///< samples in a row of tiles
   VirtualArray<std::uint16_t> words_;
   VirtualArray<float> floats_;
-  VirtualArray<HeightRange> ranges_;
-  std::size_t range_count_ = 0;
+  VirtualArray<HeightNode> nodes_;
+  std::size_t node_count_ = 0;
   const std::uint16_t* word_data_ = nullptr;
   const float* float_data_ = nullptr;
-  const HeightRange* range_data_ = nullptr;
+  const HeightNode* node_data_ = nullptr;
   double least_ = 0, greatest_ = 0, step_ = 1;
   Level level_[kMaxLevels];
   int levels_ = 0;

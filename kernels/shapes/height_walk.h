@@ -1,6 +1,7 @@
 #pragma once
-/// \file The ways of lines over the cells of a height field. Each visits, in the order of the line, all cells
-/// in which height_cell.h may find a crossing, so all find the same ones.
+/// \file The ways of single lines over the cells of a height field, and what they share with that of many
+/// lines (height_pyramid.h). Each way visits, in the order of the line, all cells in which height_cell.h may
+/// find a crossing, so all find the same ones.
 
 #include "kernels/shapes/height_cell.h"
 
@@ -32,7 +33,8 @@ struct HeightSearch {
   }
 
   /// A cell, passed as `p` says.
-  OKTETT_INLINE void look(const GridCell& cell, const M& lanes, const CellPassage<D>& p) {
+  template <class T>
+  OKTETT_INLINE void look(const GridCell<T>& cell, const M& lanes, const CellPassage<D>& p) {
     CellCrossings<D> c;
     if (grid.interpolation() == HeightInterpolation::nearest)
       step_crossings(g, cell, p, c);
@@ -61,106 +63,10 @@ struct HeightSearch {
     }
   }
   /// Whether lines between the heights y0 and y1 may meet what lies between `least` and `greatest`.
-  OKTETT_INLINE M meets(const D& y0, const D& y1, double least, double greatest) const {
+  template <class T>
+  OKTETT_INLINE M meets(const D& y0, const D& y1, const T& least, const T& greatest) const {
     return (D(least) <= max(y0, y1) + g.noise) & (min(y0, y1) - g.noise <= D(greatest));
   }
-};
-
-/// From the whole field down to single cells, leaving out blocks that lines pass above or below. Lines of one
-/// quadrant go together and see cells in the order in which they pass them.
-template <int K, class D>
-class PyramidWalk {
- public:
-  using M = typename D::M;
-  explicit OKTETT_INLINE PyramidWalk(HeightSearch<K, D>& search) : s_(search), g_(search.g) {}
-
-  OKTETT_INLINE void run() {
-    const unsigned x = bits(g_.forward_x), z = bits(g_.forward_z);
-    for (unsigned left = bits(s_.wanted); left != 0;) {
-      const unsigned first = left & -left;
-      const unsigned same = left & ((x & first) != 0 ? x : ~x) & ((z & first) != 0 ? z : ~z);
-      descend(same, (x & first) != 0, (z & first) != 0);
-      left &= ~same;
-    }
-  }
-
- private:
-  struct Entry {
-    int level;
-    std::uint32_t i, j;
-    unsigned lanes;
-  };
-  static constexpr int kStack = 3 * HeightGrid::kMaxLevels + 1;
-
-  OKTETT_INLINE void descend(unsigned lanes, bool forward_x, bool forward_z) {
-    Entry stack[kStack];
-    int size = 0;
-    stack[size++] = {s_.grid.levels() - 1, 0, 0, lanes};
-    while (size > 0) {
-      const Entry e = stack[--size];
-      const unsigned wanted = e.lanes & bits(s_.wanted);
-      if (wanted == 0) continue;
-      if (e.level == 0)
-        block(e.i, e.j, M::from_bits(wanted), forward_x, forward_z);
-      else
-        size = children(e, M::from_bits(wanted), forward_x, forward_z, stack, size);
-    }
-  }
-
-  /// Pushes those of the four children that lines may meet, the first of them last.
-  OKTETT_INLINE int children(const Entry& e, const M& lanes, bool forward_x, bool forward_z, Entry* stack,
-                             int size) {
-    const HeightGrid::Level& level = s_.grid.level(e.level - 1);
-    const double side = static_cast<double>(HeightGrid::kBlock << (e.level - 1)), step = s_.grid.step();
-    const std::uint32_t far_x = forward_x ? 1 : 0, far_z = forward_z ? 1 : 0;
-    D x[3], z[3];
-    for (int k = 0; k < 3; ++k) {
-      x[k] = g_.at_column(side * (2.0 * e.i + (forward_x ? k : 2 - k)));
-      z[k] = g_.at_row(side * (2.0 * e.j + (forward_z ? k : 2 - k)));
-    }
-    for (unsigned k = 4; k-- > 0;) {
-      const unsigned a = k & 1, b = k >> 1;
-      const std::uint32_t i = 2 * e.i + (a ^ far_x ^ 1), j = 2 * e.j + (b ^ far_z ^ 1);
-      if (i >= level.columns || j >= level.rows) continue;
-      const D in = max(max(x[a], z[b]), s_.from), out = min(min(x[a + 1], z[b + 1]), s_.to);
-      const HeightRange range = s_.grid.ranges()[level.at(i, j)];
-      const unsigned met = bits(lanes & (in <= out) &
-                                s_.meets(g_.height(in), g_.height(out), s_.grid.least() + step * range.least,
-                                         s_.grid.least() + step * range.greatest));
-      if (met != 0) stack[size++] = {e.level - 1, i, j, met};
-    }
-    return size;
-  }
-
-  OKTETT_INLINE void block(std::uint32_t block_i, std::uint32_t block_j, const M& lanes, bool forward_x,
-                           bool forward_z) {
-    constexpr int N = HeightGrid::kBlock;
-    const std::uint32_t i0 = block_i * N, j0 = block_j * N;
-    D x[N + 1];
-    for (int k = 0; k <= N; ++k) x[k] = g_.at_column(i0 + static_cast<double>(forward_x ? k : N - k));
-    D z_out = g_.at_row(j0 + static_cast<double>(forward_z ? 0 : N));
-    for (int b = 0; b < N; ++b) {
-      const D z_in = z_out;
-      z_out = g_.at_row(j0 + static_cast<double>(forward_z ? b + 1 : N - 1 - b));
-      const std::uint32_t j = j0 + static_cast<std::uint32_t>(forward_z ? b : N - 1 - b);
-      if (j + 1 >= s_.grid.rows()) continue;
-      const D begin = max(z_in, s_.from), end = min(z_out, s_.to);
-      const M row = lanes & (begin <= end);
-      if (none(row & s_.wanted)) continue;
-      for (int a = 0; a < N; ++a) {
-        const std::uint32_t i = i0 + static_cast<std::uint32_t>(forward_x ? a : N - 1 - a);
-        const D in = max(x[a], begin), out = min(x[a + 1], end);
-        M here = row & s_.wanted & (in <= out);
-        if (none(here) || i + 1 >= s_.grid.columns()) continue;
-        const GridCell cell(s_.grid, i, j, forward_x, forward_z);
-        here = here & s_.meets(g_.height(in), g_.height(out), cell.least, cell.greatest);
-        if (any(here)) s_.look(cell, here, pass_cell(g_, x[a], x[a + 1], z_in, z_out));
-      }
-    }
-  }
-
-  HeightSearch<K, D>& s_;
-  const GridLines<D>& g_;
 };
 
 /// What walks of a single line share. A lone lane is a number.
@@ -183,8 +89,8 @@ struct LineWalk {
 
   static OKTETT_INLINE double value(const D& x) { return x.part[0].v; }
   /// Where the line meets column c; the same for rows.
-  OKTETT_INLINE double column(int c) const { return value(g.at_column(c)); }
-  OKTETT_INLINE double row(int r) const { return value(g.at_row(r)); }
+  OKTETT_INLINE double column(int c) const { return value(g.at_column(D(c))); }
+  OKTETT_INLINE double row(int r) const { return value(g.at_row(D(r))); }
   OKTETT_INLINE double column_in(int i) const { return column(forward_x ? i : i + 1); }
   OKTETT_INLINE double column_out(int i) const { return column(forward_x ? i + 1 : i); }
   OKTETT_INLINE double row_in(int j) const { return row(forward_z ? j : j + 1); }
@@ -204,10 +110,10 @@ struct LineWalk {
   }
 
   /// Whether a line between the heights y0 and y1 may meet the surface in a cell.
-  OKTETT_INLINE bool may_meet(const GridCell& cell, double y0, double y1) const {
+  OKTETT_INLINE bool may_meet(const GridCell<double>& cell, double y0, double y1) const {
     return any(s.meets(D(y0), D(y1), cell.least, cell.greatest));
   }
-  OKTETT_INLINE GridCell cell(int i, int j) const {
+  OKTETT_INLINE GridCell<double> cell(int i, int j) const {
     return {s.grid, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), forward_x, forward_z};
   }
   OKTETT_INLINE double height(double t) const { return value(g.height(D(t))); }
@@ -232,7 +138,7 @@ OKTETT_INLINE void walk_cells(HeightSearch<K, D>& search) {
   while (in <= to && any(search.wanted) && w.in_field(i, j)) {
     const bool by_row = z_out < x_out;
     const double out = by_row ? z_out : x_out;
-    const GridCell cell = w.cell(i, j);
+    const GridCell<double> cell = w.cell(i, j);
     if (w.may_meet(cell, w.height(in), w.height(out < to ? out : to)))
       search.look(cell, search.wanted, pass_cell(w.g, D(x_in), D(x_out), D(z_in), D(z_out)));
     if (by_row)
@@ -369,7 +275,7 @@ class SpanWalk {
 
   OKTETT_INLINE void look(int along, int across, double y0, double y1) {
     const int i = kAlongX ? along : across, j = kAlongX ? across : along;
-    const GridCell cell = w_.cell(i, j);
+    const GridCell<double> cell = w_.cell(i, j);
     if (w_.may_meet(cell, y0, y1))
       s_.look(cell, s_.wanted,
               pass_cell(w_.g, D(w_.column_in(i)), D(w_.column_out(i)), D(w_.row_in(j)), D(w_.row_out(j))));

@@ -36,10 +36,11 @@ TEST(HeightGrid, PyramidBoundsEverySample) {
         const int ring = interpolation == HeightInterpolation::nearest ? 1 : 0;
         for (int k = 0; k < grid->levels(); ++k) {
           const HeightGrid::Level& level = grid->level(k);
-          const int side = HeightGrid::kBlock << k;
-          for (std::uint32_t j = 0; j < level.rows; ++j)
-            for (std::uint32_t i = 0; i < level.columns; ++i) {
-              const HeightRange range = grid->ranges()[level.at(i, j)];
+          const int side = 4 << 2 * k;
+          for (std::uint32_t j = 0; j < level.block_rows; ++j)
+            for (std::uint32_t i = 0; i < level.block_columns; ++i) {
+              const HeightNode& node = grid->node(k, i / 4, j / 4);
+              const std::size_t block = i % 4 + 4 * (j % 4);
               double lo = HUGE_VAL, hi = -HUGE_VAL;
               const int x0 = static_cast<int>(i) * side, z0 = static_cast<int>(j) * side;
               for (int z = std::max(z0 - ring, 0); z <= std::min<int>(z0 + side + ring, size[1] - 1); ++z)
@@ -47,26 +48,37 @@ TEST(HeightGrid, PyramidBoundsEverySample) {
                   const double h = grid->at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(z));
                   lo = std::min(lo, h), hi = std::max(hi, h);
                 }
-              const double below = grid->least() + grid->step() * range.least;
-              const double above = grid->least() + grid->step() * range.greatest;
+              const double below = grid->least() + grid->step() * node.least[block];
+              const double above = grid->least() + grid->step() * node.greatest[block];
               EXPECT_LE(below, lo + 1e-12);
               EXPECT_GE(above, hi - 1e-12);
               // Tight: a step at most, and a level's own share for rounding.
               EXPECT_GE(below, lo - 1.01 * grid->step() * (words ? 0 : 1));
               EXPECT_LE(above, hi + 1.01 * grid->step() * (words ? 0 : 1));
             }
+          // Beyond the field there are no blocks.
+          for (std::uint32_t j = 0; j < level.rows; ++j)
+            for (std::uint32_t i = 0; i < level.columns; ++i)
+              for (std::uint32_t b = 0; b < 16; ++b) {
+                const bool in_field = 4 * i + b % 4 < level.block_columns && 4 * j + b / 4 < level.block_rows;
+                EXPECT_EQ(level.blocks(i, j) >> b & 1, in_field);
+                const HeightNode& node = grid->node(k, i, j);
+                if (!in_field) {
+                  EXPECT_GT(node.least[b], node.greatest[b]);
+                }
+              }
         }
         EXPECT_EQ(grid->level(grid->levels() - 1).columns, 1u);
         EXPECT_EQ(grid->level(grid->levels() - 1).rows, 1u);
       }
 }
 
-TEST(HeightGrid, PyramidAddsASixthToWords) {
+TEST(HeightGrid, PyramidAddsLittle) {
   const auto words = random_grid(1025, 1025, true, HeightInterpolation::bilinear);
   const auto floats = random_grid(1025, 1025, false, HeightInterpolation::bilinear);
   const double samples = 1025.0 * 1025;
-  EXPECT_LT(static_cast<double>(words->bytes()), samples * 2 * (1 + 1.0 / 6) * 1.03);
-  EXPECT_LT(static_cast<double>(floats->bytes()), samples * 4 * (1 + 1.0 / 12) * 1.03);
+  EXPECT_LT(static_cast<double>(words->bytes()), samples * 2 * (1 + 2.0 / 15) * 1.03);
+  EXPECT_LT(static_cast<double>(floats->bytes()), samples * 4 * (1 + 1.0 / 15) * 1.03);
 }
 
 TEST(HeightGrid, LevelFieldsHaveOneHeight) {
@@ -74,9 +86,8 @@ TEST(HeightGrid, LevelFieldsHaveOneHeight) {
   EXPECT_EQ(grid->least(), -2.5);
   EXPECT_EQ(grid->greatest(), -2.5);
   for (int k = 0; k < grid->levels(); ++k) {
-    const HeightRange range = grid->ranges()[grid->level(k).first];
-    EXPECT_EQ(range.least, 0);
-    EXPECT_EQ(range.greatest, 0);
+    EXPECT_EQ(grid->node(k, 0, 0).least[0], 0);
+    EXPECT_EQ(grid->node(k, 0, 0).greatest[0], 0);
   }
 }
 
