@@ -16,7 +16,8 @@ OKTETT_INLINE Simd<float, 16, A> load_words(const std::uint16_t* p) {
     const auto* words = reinterpret_cast<const __m128i*>(p);
 #if defined(OKTETT_COMPILED_AVX512)
     if constexpr (r.kParts == 1) {
-      r.part[0] = _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+      r.part[0] =
+          _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
       return r;
     }
 #endif

@@ -2,69 +2,85 @@
 /// \file Lines that go together over the pyramid of a height field, and which blocks of a node they may meet.
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/simd_words.h"
 #include "kernels/shapes/height_cell.h"
 
 namespace oktett {
 
-/// What a bundle needs of lines, lane by lane.
-template <int W>
-struct HeightLineLanes {
-  double o[3][W], d[3][W], noise[W], from[W], to[W];
-};
-
 /// Lines of one quadrant, or a line alone, from where the first of them begins to matter (s = 0) to where the
-/// last one ceases to (s = 1). All numbers are bounds over the lines, and wide enough for what rounding does to
-/// the lines, to the bounds and to what is made of them in floats. x and z count samples in the direction of
-/// the lines: those of lines that go back are negative. y counts steps of the pyramid above its least.
+/// last one ceases to (s = 1). All numbers are bounds over the lines, and wide enough for what rounding does
+/// to the lines, to the bounds and to what is made of them in floats. x and z count samples in the direction
+/// of the lines: those of lines that go back are negative. y counts steps of the pyramid above its least.
 class HeightBundle {
  public:
   unsigned lanes = 0;
   bool forward_x = true, forward_z = true;
-  double spread = 0;  ///< how far lines are apart, in samples, at most
+  float spread = 0;  ///< how far lines are apart, in samples, at most
 
-  template <int W>
-  void bound(const HeightGrid& grid, const HeightLineLanes<W>& l, unsigned of, bool forward_x_of,
-             bool forward_z_of) {
-    lanes = of, forward_x = forward_x_of, forward_z = forward_z_of;
-    double t0 = kFar, t1 = -kFar, reach = 0;
-    for (unsigned left = of; left != 0; left &= left - 1) {
-      const int k = std::countr_zero(left);
-      t0 = std::min(t0, l.from[k]), t1 = std::max(t1, l.to[k]);
-      reach = std::max(reach, std::abs(l.o[0][k]) + std::abs(l.o[2][k]));
-    }
-    t0 = std::max(t0, -kFar), t1 = std::min(t1, kFar);
+  /// `from` and `to` are where the lines begin and cease to matter.
+  template <class D>
+  OKTETT_INLINE void bound(const HeightGrid& grid, const GridLines<D>& g, const D& from, const D& to,
+                           unsigned of, bool is_forward_x, bool is_forward_z) {
+    lanes = of, forward_x = is_forward_x, forward_z = is_forward_z;
+    const auto m = mask_cast<float>(D::M::from_bits(of));
+    // Hits are floats, and rounding to them must not lose any.
+    const D far(0x1p+127);
+    const double first = lowest(m, max(min(from, far), -far)), last = highest(m, max(min(to, far), -far));
+    const double t0 = first - std::abs(first) * 0x1p-23, t1 = last + std::abs(last) * 0x1p-23;
     // Floats of numbers up to the sides of the field, and doubles of those of the lines.
-    const double slack = std::max(grid.columns(), grid.rows()) * 0x1p-19 + reach * 0x1p-46;
-    spread = 0;
-    side(l, 0, t0, t1, forward_x ? 1 : -1, slack, x_);
-    side(l, 2, t0, t1, forward_z ? 1 : -1, slack, z_);
-    height(l, t0, t1, grid);
+    const double slack = std::max(grid.columns(), grid.rows()) * 0x1p-19 +
+                         static_cast<double>(highest(m, abs(g.o.x) + abs(g.o.z))) * 0x1p-46;
+    const auto side = [&](const D& o, const D& d, bool forward, Side& out) {
+      const D at = o + D(t0) * d, begin = forward ? at : -at;
+      // What hardly moves is taken to move a little, which is less than the slack.
+      const D way = max(abs(d) * D(t1 - t0), D(slack * 0.25));
+      out.low = lowest(m, begin - D(slack)), out.high = highest(m, begin + D(slack));
+      const float shortest = lowest(m, way), longest = highest(m, way);
+      out.per_low = 1 / longest, out.per_high = 1 / shortest;
+      return (out.high - out.low) + (longest - shortest);
+    };
+    const float x = side(g.o.x, g.d.x, forward_x, x_), z = side(g.o.z, g.d.z, forward_z, z_);
+    spread = x > z ? x : z;
+
+    const D per_step(1 / grid.step());
+    const D begin = ((g.o.y - D(grid.least())) + D(t0) * g.d.y) * per_step,
+            rise = g.d.y * D(t1 - t0) * per_step;
+    const D room = D(0.125) + g.noise * per_step + (abs(begin) + abs(rise)) * D(0x1p-20);
+    y_low_ = lowest(m, begin - room), y_high_ = highest(m, begin + room);
+    rise_low_ = lowest(m, rise), rise_high_ = highest(m, rise);
+    // What floats cannot bound meets everything.
+    constexpr float kMost = 0x1p+100f;
+    if (-kMost < y_low_ && y_high_ < kMost && -kMost < rise_low_ && rise_high_ < kMost) return;
+    y_low_ = -kMost, y_high_ = kMost, rise_low_ = rise_high_ = 0;
   }
 
-  /// Bit a + 4 b for each block (a, b) of a node, whose blocks have `side` cells along theirs and whose first
-  /// one begins at cell (i, j), in the order in which lines pass them: `a` and `b` count in their directions.
+  /// Bit a + 4 b for each block (a, b) of node (i, j) of a level whose blocks have `side` cells along theirs,
+  /// in the order in which lines pass them: `a` and `b` count in their directions.
   template <class A>
-  OKTETT_INLINE unsigned meets(const HeightNode& node, double i, double j, double side) const {
+  OKTETT_INLINE unsigned meets(const HeightNode& node, int i, int j, int side) const {
     using F = Simd<float, 16, A>;
     alignas(64) static constexpr float kUp[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
     alignas(64) static constexpr float kDown[16] = {3, 2, 1, 0, 3, 2, 1, 0, 3, 2, 1, 0, 3, 2, 1, 0};
     alignas(64) static constexpr float kRowsUp[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
     alignas(64) static constexpr float kRowsDown[16] = {3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0};
-    const F size(static_cast<float>(side)), zero(0.0f), one(1.0f);
-    const auto near = [&](double first, bool forward, const float* up, const float* down) {
-      const double base = forward ? first : -(first + 4 * side);
-      return F(static_cast<float>(base)) + size * F::load(forward ? up : down);
+    const F zero(0.0f), one(1.0f);
+    // s where each block begins and ends: a multiple of a count, and where that begins. Where s < 0 or s > 1
+    // it does not matter by how much.
+    const F x = F::load(forward_x ? kUp : kDown), z = F::load(forward_z ? kRowsUp : kRowsDown);
+    const auto size = static_cast<float>(side);
+    const auto near_x = static_cast<float>((forward_x ? i : -i - 1) * 4 * side);
+    const auto near_z = static_cast<float>((forward_z ? j : -j - 1) * 4 * side);
+    const auto at = [&](const F& count, float begin, float per) {
+      return fast_fma(count, F(size * per), F(begin * per));
     };
-    const F x = near(i, forward_x, kUp, kDown), z = near(j, forward_z, kRowsUp, kRowsDown);
-    // Where s < 0 or s > 1 it does not matter by how much.
-    const F in = max(max((x - F(x_.high)) * F(x_.per_low), (z - F(z_.high)) * F(z_.per_low)), zero);
-    const F out = min(min(((x + size) - F(x_.low)) * F(x_.per_high), ((z + size) - F(z_.low)) * F(z_.per_high)), one);
-    const F low = F(y_low_) + min(in * F(rise_low_), out * F(rise_low_));
-    const F high = F(y_high_) + max(in * F(rise_high_), out * F(rise_high_));
+    const F in = max(max(at(x, near_x - x_.high, x_.per_low), at(z, near_z - z_.high, z_.per_low)), zero);
+    const F out =
+        min(min(at(x, near_x + size - x_.low, x_.per_high), at(z, near_z + size - z_.low, z_.per_high)), one);
+    const F low = min(fast_fma(in, F(rise_low_), F(y_low_)), fast_fma(out, F(rise_low_), F(y_low_)));
+    const F high = max(fast_fma(in, F(rise_high_), F(y_high_)), fast_fma(out, F(rise_high_), F(y_high_)));
     const F least = load_words<A>(node.least), greatest = load_words<A>(node.greatest);
     return in_order(bits((in <= out) & (least <= high) & (low <= greatest)));
   }
@@ -74,47 +90,19 @@ class HeightBundle {
   }
 
  private:
-  static constexpr double kFar = 0x1p+900;
   /// Samples at s = 0, and by how much s grows with each.
   struct Side {
     float low, high, per_low, per_high;
   };
 
-  template <int W>
-  OKTETT_INLINE void side(const HeightLineLanes<W>& l, int axis, double t0, double t1, double sign, double slack,
-                          Side& out) {
-    double low = kFar, high = -kFar, way_low = kFar, way_high = 0;
-    for (unsigned left = lanes; left != 0; left &= left - 1) {
-      const int k = std::countr_zero(left);
-      const double d = l.d[axis][k], begin = sign * (l.o[axis][k] + t0 * d);
-      // What hardly moves is taken to move a little, which is less than the slack.
-      const double way = std::max(std::abs(d) * (t1 - t0), slack * 0.25);
-      low = std::min(low, begin), high = std::max(high, begin);
-      way_low = std::min(way_low, way), way_high = std::max(way_high, way);
-    }
-    spread = std::max(spread, (high - low) + (way_high - way_low));
-    out.low = static_cast<float>(low - slack), out.high = static_cast<float>(high + slack);
-    out.per_low = static_cast<float>(1 / way_high), out.per_high = static_cast<float>(1 / way_low);
+  template <class M, class D>
+  static OKTETT_INLINE float lowest(const M& lanes, const D& x) {
+    using F = Simd<float, D::kWidth, typename D::Isa>;
+    return horizontal_min(select(lanes, to_float(x), F(std::numeric_limits<float>::infinity())));
   }
-
-  template <int W>
-  OKTETT_INLINE void height(const HeightLineLanes<W>& l, double t0, double t1, const HeightGrid& grid) {
-    double low = kFar, high = -kFar, rise_low = kFar, rise_high = -kFar, slack = 0;
-    const double per_step = 1 / grid.step();
-    for (unsigned left = lanes; left != 0; left &= left - 1) {
-      const int k = std::countr_zero(left);
-      const double begin = ((l.o[1][k] - grid.least()) + t0 * l.d[1][k]) * per_step;
-      const double rise = l.d[1][k] * (t1 - t0) * per_step;
-      low = std::min(low, begin), high = std::max(high, begin);
-      rise_low = std::min(rise_low, rise), rise_high = std::max(rise_high, rise);
-      slack = std::max(slack, 0.125 + l.noise[k] * per_step + (std::abs(begin) + std::abs(rise)) * 0x1p-20);
-    }
-    // What floats cannot bound meets everything.
-    const bool bounded = std::abs(low) + std::abs(high) + std::abs(rise_low) + std::abs(rise_high) + slack < 0x1p+100;
-    y_low_ = bounded ? static_cast<float>(low - slack) : -0x1p+100f;
-    y_high_ = bounded ? static_cast<float>(high + slack) : 0x1p+100f;
-    rise_low_ = bounded ? static_cast<float>(rise_low) : 0;
-    rise_high_ = bounded ? static_cast<float>(rise_high) : 0;
+  template <class M, class D>
+  static OKTETT_INLINE float highest(const M& lanes, const D& x) {
+    return -lowest(lanes, -x);
   }
 
   /// From the node's order, bit by bit.

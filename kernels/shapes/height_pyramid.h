@@ -3,9 +3,9 @@
 /// that have nothing at the heights of the lines.
 ///
 /// Lines that keep close together go down in a bundle, others alone; the 16 blocks of a node of the pyramid
-/// are tested at once. Each line queues the smallest blocks that it may meet. Over the cells of these all lines
-/// walk at the same time, each in a block of its own: even neighbouring lines hardly ever meet the same cells,
-/// but so all lanes are busy.
+/// are tested at once. Each line queues the smallest blocks that it may meet. Over the cells of these all
+/// lines walk at the same time, each in a block of its own: even neighbouring lines hardly ever meet the same
+/// cells, but so all lanes are busy.
 
 #include "kernels/shapes/height_bundle.h"
 #include "kernels/shapes/height_walk.h"
@@ -35,7 +35,7 @@ class PyramidWalk {
   static constexpr std::uint32_t kBlock = HeightGrid::kBlock;
   /// Lines that are not farther apart than this many cells go together.
   static constexpr double kClose = 24;
-  static constexpr int kQueue = 16;
+  static constexpr int kNode = 16, kQueue = 3 * kNode + 1;
 
   /// One of the smallest blocks.
   struct Block {
@@ -51,23 +51,19 @@ class PyramidWalk {
   };
 
   OKTETT_INLINE void make_bundles() {
-    HeightLineLanes<W> l;
-    g_.o.x.store(l.o[0]), g_.o.y.store(l.o[1]), g_.o.z.store(l.o[2]);
-    g_.d.x.store(l.d[0]), g_.d.y.store(l.d[1]), g_.d.z.store(l.d[2]);
-    g_.noise.store(l.noise), s_.from.store(l.from), s_.to.store(l.to);
     const unsigned x = bits(g_.forward_x), z = bits(g_.forward_z);
     for (unsigned left = bits(s_.wanted); left != 0;) {
       const unsigned first = left & -left;
       const bool forward_x = (x & first) != 0, forward_z = (z & first) != 0;
       const unsigned same = left & (forward_x ? x : ~x) & (forward_z ? z : ~z);
       left &= ~same;
-      bundles_[size_].bound(s_.grid, l, same, forward_x, forward_z);
+      bundles_[size_].bound(s_.grid, g_, s_.from, s_.to, same, forward_x, forward_z);
       if (same == first || bundles_[size_].spread <= kClose) {
         start(bundles_[size_++]);
         continue;
       }
       for (unsigned lanes = same; lanes != 0; lanes &= lanes - 1) {
-        bundles_[size_].bound(s_.grid, l, lanes & -lanes, forward_x, forward_z);
+        bundles_[size_].bound(s_.grid, g_, s_.from, s_.to, lanes & -lanes, forward_x, forward_z);
         start(bundles_[size_++]);
       }
     }
@@ -80,13 +76,13 @@ class PyramidWalk {
   /// Looks at node (i, j) of the level below.
   OKTETT_INLINE void enter(Bundle& b, std::uint32_t i, std::uint32_t j) {
     const int level = b.level - 1;
-    const double side = static_cast<double>(kBlock << 2 * level);
-    const unsigned met = b.template meets<A>(s_.grid.node(level, i, j), 4 * side * i, 4 * side * j, side);
+    const unsigned met = b.template meets<A>(s_.grid.node(level, i, j), static_cast<int>(i),
+                                             static_cast<int>(j), static_cast<int>(kBlock << 2 * level));
     if (met == 0) return;
     b.level = level, b.stack[level] = {i, j, met};
   }
 
-  /// Down to the next of the smallest blocks.
+  /// Down to the next of the smallest blocks, until every line has one.
   OKTETT_INLINE void descend(Bundle& b) {
     const unsigned wanted = b.lanes & bits(s_.wanted);
     if (wanted == 0) b.level = s_.grid.levels();
@@ -98,7 +94,8 @@ class PyramidWalk {
       }
       const HeightGrid::Level& level = s_.grid.level(b.level);
       if (b.level == 0) {
-        if (queue_blocks(b, node, wanted)) return;
+        queue_blocks(b, node, wanted);
+        if ((wanted & ~queued_) == 0 || *std::max_element(length_, length_ + W) >= kQueue - kNode) return;
         continue;
       }
       const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)));
@@ -108,10 +105,10 @@ class PyramidWalk {
     }
   }
 
-  /// Queues the blocks of a node for the lines that may meet them; whether there are any.
-  OKTETT_INLINE bool queue_blocks(const Bundle& b, Node& node, unsigned wanted) {
+  /// Queues the blocks of a node for the lines that may meet them.
+  OKTETT_INLINE void queue_blocks(const Bundle& b, Node& node, unsigned wanted) {
     const HeightNode& heights = s_.grid.node(0, node.i, node.j);
-    const unsigned in_field = s_.grid.level(0).blocks(node.i, node.j), before = queued_;
+    const unsigned in_field = s_.grid.level(0).blocks(node.i, node.j);
     const bool alone = (wanted & (wanted - 1)) == 0;
     for (; node.left != 0; node.left &= node.left - 1) {
       const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)));
@@ -120,24 +117,28 @@ class PyramidWalk {
                         static_cast<std::uint16_t>(kBlock * node.j + k / kBlock), heights.least[k],
                         heights.greatest[k]};
       const unsigned met = alone ? wanted : wanted & lines_at(b, block);
-      for (unsigned left = met; left != 0; left &= left - 1) {
-        const int lane = std::countr_zero(left);
-        queue_[lane][length_[lane]++] = block;
+      // Whom the block does not matter overwrites it by the next one.
+      for (int lane = 0; lane < W; ++lane) {
+        queue_[lane][length_[lane]] = block;
+        length_[lane] += static_cast<int>(met >> lane & 1);
       }
       queued_ |= met;
+      if (met != 0) s_.grid.prefetch_block(kBlock * block.i, kBlock * block.j);
     }
-    return queued_ != before;
   }
 
   OKTETT_INLINE unsigned lines_at(const HeightBundle& b, const Block& block) const {
     const double i = kBlock * block.i, j = kBlock * block.j, end = kBlock;
-    const D x_in = g_.at_column(D(b.forward_x ? i : i + end)), x_out = g_.at_column(D(b.forward_x ? i + end : i));
+    const D x_in = g_.at_column(D(b.forward_x ? i : i + end)),
+            x_out = g_.at_column(D(b.forward_x ? i + end : i));
     const D z_in = g_.at_row(D(b.forward_z ? j : j + end)), z_out = g_.at_row(D(b.forward_z ? j + end : j));
     const D in = max(max(x_in, z_in), s_.from), out = min(min(x_out, z_out), s_.to);
     return bits((in <= out) & s_.meets(g_.height(in), g_.height(out), least_of(block), greatest_of(block)));
   }
   OKTETT_INLINE double least_of(const Block& b) const { return s_.grid.least() + s_.grid.step() * b.least; }
-  OKTETT_INLINE double greatest_of(const Block& b) const { return s_.grid.least() + s_.grid.step() * b.greatest; }
+  OKTETT_INLINE double greatest_of(const Block& b) const {
+    return s_.grid.least() + s_.grid.step() * b.greatest;
+  }
 
   /// Lets all lines walk over the cells of their blocks.
   OKTETT_INLINE void walk_blocks() {
@@ -207,8 +208,7 @@ class PyramidWalk {
     const D z_in = g_.at_row(w.j + select(g_.forward_z, zero, one));
     const D z_out = g_.at_row(w.j + select(g_.forward_z, one, zero));
     const D in = max(max(x_in, z_in), s_.from), out = min(min(x_out, z_out), s_.to);
-    const M here =
-        walking & (in <= out) & s_.meets(g_.height(in), g_.height(out), cell.least, cell.greatest);
+    const M here = walking & (in <= out) & s_.meets(g_.height(in), g_.height(out), cell.least, cell.greatest);
     if (any(here)) s_.look(cell, here, pass_cell(g_, x_in, x_out, z_in, z_out));
     const M by_row = z_out < x_out;
     const D i = select(by_row, w.i, w.i + select(g_.forward_x, one, -one));
