@@ -2,47 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "core/random.h"
-#include "kernels/shapes/height_grid.h"
 #include "tests/accel/all_crossings.h"
+#include "tests/accel/height_field_cases.h"
 
 namespace oktett {
 namespace {
 
 using Real = long double;
-using Interpolation = HeightInterpolation;
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::triangles, Interpolation::bilinear};
-constexpr HeightWalk kWalks[] = {HeightWalk::pyramid, HeightWalk::cells, HeightWalk::spans};
-
-/// One column per unit of x and one row per unit of z, the first at -(samples - 1) / 2; heights as they are.
-HeightFieldShape field(std::uint32_t columns, std::uint32_t rows, const std::vector<float>& heights,
-                       Interpolation interpolation) {
-  HeightFieldShape s;
-  Column<float> column(heights.size());
-  std::copy(heights.begin(), heights.end(), column.begin());
-  s.grid = HeightGrid::from_floats(columns, rows, std::move(column), interpolation);
-  s.size = {columns - 1.0, 1, rows - 1.0};
-  return s;
-}
-
-HeightFieldShape rough(std::uint32_t columns, std::uint32_t rows, Interpolation interpolation,
-                       float height = 3) {
-  std::vector<float> heights;
-  for (std::uint32_t i = 0; i < columns * rows; ++i) heights.push_back(height * random_float(11, columns, i));
-  return field(columns, rows, heights, interpolation);
-}
-
-HeightFieldShape solid(HeightFieldShape s, double base) {
-  s.open = false, s.base = base;
-  return s;
-}
-
-std::shared_ptr<const Accel> accel_of(const HeightFieldShape& s, const Affine& to_world = {}) {
-  return build_accel({{ExactShape{s}, to_world}});
-}
 
 void expect_at(const HeightFieldShape& shape, const Vec3f& from, const Vec3f& direction,
                std::initializer_list<double> places) {
@@ -203,11 +170,6 @@ bool is_among(Real t, const std::vector<Real>& list) {
   return std::any_of(list.begin(), list.end(), [&](Real x) { return std::abs(x - t) <= 1e-6L * (1 + x); });
 }
 
-Vec3f random_point(std::uint32_t key, const Vec3f& half) {
-  return {half.x * (2 * random_float(5, key, 0) - 1), half.y * random_float(5, key, 1),
-          half.z * (2 * random_float(5, key, 2) - 1)};
-}
-
 /// Random rays, rays in rows and columns, and rays with components that are zero.
 TEST(HeightFields, AgreesWithEveryCellOnItsOwn) {
   std::uint32_t key = 0;
@@ -241,34 +203,6 @@ TEST(HeightFields, AgreesWithEveryCellOnItsOwn) {
       }
 }
 
-std::vector<Ray> hostile_rays(const HeightFieldShape& s) {
-  const auto columns = static_cast<int>(s.grid->columns()), rows = static_cast<int>(s.grid->rows());
-  std::vector<Ray> rays;
-  const auto x = [&](double i) { return static_cast<float>(i - (columns - 1) / 2.0); };
-  const auto z = [&](double j) { return static_cast<float>(j - (rows - 1) / 2.0); };
-  const auto add = [&](const Vec3f& from, const Vec3f& d) { rays.push_back({from, 0, d, kInf}); };
-  // Upright, along grid lines, along diagonals, from corner to corner; all of them through samples.
-  for (int i = 0; i < columns; ++i)
-    for (int j = 0; j < rows; ++j) {
-      add({x(i), 50, z(j)}, {0, -1, 0});
-      add({x(i), -50, z(j)}, {0, 1e-3f, 0});
-      add({x(i + 0.5), 50, z(j)}, {0, -7, 0});
-      const Vec3f low{x(i), -4, z(j)};
-      for (const Vec3f& d :
-           {Vec3f{1, 1, 0}, Vec3f{-1, 1, 0}, Vec3f{0, 1, 1}, Vec3f{0, 1, -1}, Vec3f{1, 1, 1}, Vec3f{-1, 1, 1},
-            Vec3f{1, 1, -1}, Vec3f{-1, 1, -1}, Vec3f{2, 1, 1}, Vec3f{1, 2, -3}})
-        add(low - d * 8.0f, d), add(low + d * 16.0f, -d);
-    }
-  for (int i = -1; i <= columns; ++i) {
-    add({x(i), 1, -100}, {0, 0, 1});
-    add({x(i), 1, 100}, {0, 1e-4f, -1});
-    add({x(i), 2, -100}, {1e-30f, 1e-30f, 1});
-    add({x(0) - 100, 2, z(i)}, {1, -1e-3f, 0});
-    add({x(0) - 100, 2, z(i)}, {1, -1e-3f, 1e-38f});
-  }
-  return rays;
-}
-
 /// Along the diagonal of a chequerboard of steps a ray meets two walls in each corner, at one t; the list has
 /// both also where it is continued after as many as it has room for.
 TEST(HeightFields, CornersOfStepsAreCrossedTwice) {
@@ -288,174 +222,6 @@ TEST(HeightFields, CornersOfStepsAreCrossedTwice) {
       ASSERT_EQ(hits.size(), closed ? 60u : 59u);
       for (std::size_t i = 1; i < hits.size(); ++i) EXPECT_EQ(hits[i].v, -hits[i - 1].v) << i;
       for (std::size_t i = 1; i < 59; ++i) EXPECT_EQ(hits[i].t, 21.0f + static_cast<float>((i - 1) / 2));
-    }
-}
-
-/// No walk leaves out a cell, whatever the ray.
-TEST(HeightFields, AllWalksFindTheSame) {
-  for (const Interpolation interpolation : kAll)
-    for (const auto& [columns, rows] : {std::pair{2u, 3u}, {9u, 9u}, {23u, 40u}})
-      for (const bool closed : {false, true}) {
-        HeightFieldShape s = rough(columns, rows, interpolation);
-        if (closed) s = solid(s, -1);
-        std::vector<Ray> rays = hostile_rays(s);
-        for (std::uint32_t n = 0; n < 500; ++n) {
-          const Vec3f half{columns * 1.0f, 4, rows * 1.0f};
-          const Vec3f from = random_point(2 * n, half), at = random_point(2 * n + 1, half * 0.4f);
-          const float tmin = n % 3 == 0 ? 0.5f * random_float(9, n, 0) : 0;
-          rays.push_back({from, tmin, at - from, n % 4 == 0 ? 0.8f : kInf});
-        }
-        HeightFieldShape other = s;
-        std::vector<std::vector<Hit>> reference;
-        for (const HeightWalk walk : kWalks) {
-          other.walk = walk;
-          const auto accel = accel_of(other);
-          for (std::size_t i = 0; i < rays.size(); ++i) {
-            std::vector<Hit> all = all_crossings(*accel, rays[i]);
-            if (walk == kWalks[0])
-              reference.push_back(std::move(all));
-            else
-              EXPECT_EQ(all, reference[i]) << "walk " << static_cast<int>(walk) << ", ray " << i;
-          }
-        }
-      }
-}
-
-/// From far below to far above, inside of the rectangle all the way, a ray crosses an odd number of times:
-/// also through samples, along edges and diagonals.
-TEST(HeightFields, NoRaySlipsThrough) {
-  for (const Interpolation interpolation : kAll)
-    for (const std::uint32_t size : {9u, 14u}) {
-      const auto s = rough(size, size, interpolation);
-      const auto accel = accel_of(s);
-      const auto check = [&](const Vec3f& from, const Vec3f& to) {
-        const std::vector<Hit> all = all_crossings(*accel, {from, 0, to - from, kInf});
-        ASSERT_EQ(all.size() % 2, 1u) << from.x << " " << from.y << " " << from.z;
-        EXPECT_EQ(all[0].v, from.y < to.y ? 1 : -1);
-      };
-      const float half = (static_cast<float>(size) - 1) / 2;
-      const auto at = [&](std::uint32_t k) { return static_cast<float>(k) - half; };
-      for (std::uint32_t i = 0; i < size; ++i)
-        for (std::uint32_t j = 0; j < size; ++j)
-          for (std::uint32_t k = 1; k + 1 < size; ++k) {
-            // Between grid points below and above, the middle of the way, too, often on a grid point.
-            const std::uint32_t m = (i * 7 + j * 3 + k * 5) % (size - 2) + 1;
-            if (i > 0 && j > 0 && i + 1 < size && j + 1 < size) {
-              check({at(i), -4, at(j)}, {at(k), 8, at(m)});
-              check({at(k), 8, at(m)}, {at(i), -4, at(j)});
-              check({at(i), 8, at(j)}, {at(i), -4, at(m)});
-              check({at(i), 8, at(j)}, {at(k), -4, at(j)});
-              check({at(i) + 0.5f, 8, at(j)}, {at(k), -4, at(m) + 0.25f});
-            }
-          }
-    }
-}
-
-/// The same after transforms that leave nothing on the grid exactly.
-TEST(HeightFields, ClosedOnesAreEnteredAsOftenAsLeft) {
-  for (const Interpolation interpolation : kAll) {
-    const auto s = solid(rough(12, 7, interpolation), -1);
-    for (const double size : {1e-3, 1.0, 1e4}) {
-      const Affine place = Affine::translation({3 * size, -2 * size, size}) * Affine::rotation({20, 50, 70}) *
-                           Affine::scaling({size, size, 2 * size});
-      const auto accel = accel_of(s, place);
-      int hits = 0;
-      for (const Ray& ray : hostile_rays(s)) {
-        const Ray moved{Vec3f(place.point(Vec3d(ray.origin))), 0, Vec3f(place.vector(Vec3d(ray.direction))),
-                        kInf};
-        const std::vector<Hit> all = all_crossings(*accel, moved);
-        EXPECT_EQ(all.size() % 2, 0u);
-        for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].v, i % 2 == 0 ? -1 : 1);
-        hits += !all.empty();
-      }
-      EXPECT_GT(hits, 300);
-    }
-  }
-}
-
-TEST(HeightFields, BadRaysHitNothing) {
-  for (const Interpolation interpolation : kAll)
-    for (const HeightWalk walk : kWalks) {
-      HeightFieldShape s = rough(6, 6, interpolation);
-      s.walk = walk;
-      const auto accel = accel_of(s);
-      for (int k = 0; k < 3; ++k) {
-        for (const float bad : {kNan, kInf, -kInf}) {
-          Vec3f v{0.1f, 9, 0.3f};
-          v[k] = bad;
-          EXPECT_TRUE(all_crossings(*accel, {v, 0, {0.1f, -1, 0}, kInf}).empty()) << bad;
-        }
-        Vec3f d{0.1f, -1, 0.3f};
-        d[k] = kNan;
-        EXPECT_TRUE(all_crossings(*accel, {{0, 9, 0}, 0, d, kInf}).empty());
-      }
-      EXPECT_TRUE(all_crossings(*accel, {{0.5f, 1, 0}, 0, {0, 0, 0}, kInf}).empty());
-    }
-}
-
-/// Powers of two leave every bit: of the size and of the length of the direction.
-TEST(HeightFields, TinyAndHuge) {
-  for (const Interpolation interpolation : kAll) {
-    const auto s = solid(rough(9, 6, interpolation), -1);
-    const auto unit = accel_of(s);
-    int hits = 0;
-    for (const int exponent : {-50, 50}) {
-      const double scale = std::ldexp(1.0, exponent);
-      const auto f = static_cast<float>(scale);
-      const auto scaled = accel_of(s, Affine::scaling({scale, scale, scale}));
-      for (std::uint32_t i = 0; i < 60; ++i) {
-        const Vec3f from = random_point(i, {9, 6, 9}), d = random_point(i + 100, {4, 3, 3}) - from;
-        const std::vector<Hit> expected = all_crossings(*unit, {from, 0, d, kInf});
-        EXPECT_EQ(all_crossings(*scaled, {from * f, 0, d * f, kInf}), expected) << i;
-        hits += !expected.empty();
-      }
-    }
-    EXPECT_GT(hits, 60);
-  }
-}
-
-/// From so far away that a cell is less than what a float can tell apart: the ray may miss, but what it finds
-/// is on it and the search ends.
-TEST(HeightFields, FarAway) {
-  for (const Interpolation interpolation : kAll)
-    for (const HeightWalk walk : kWalks) {
-      HeightFieldShape s = solid(rough(40, 40, interpolation), -1);
-      s.walk = walk;
-      const auto accel = accel_of(s);
-      for (const float far : {1e6f, 1e12f, 1e25f})
-        for (const Vec3f& d : {Vec3f{0, -1, 0}, Vec3f{1, -1, 1}, Vec3f{-1, -1, 2}, Vec3f{1, 0, 0}}) {
-          const std::vector<Hit> all = all_crossings(*accel, {d * -far, 0, d, kInf});
-          for (const Hit& h : all) EXPECT_NEAR(h.t, far, 100 + 1e-6 * far);
-          if (far < 1e7f) {
-            EXPECT_GE(all.size(), 1u);
-          }
-        }
-    }
-}
-
-/// A ray that ends before the field, or in it, finds only what is before its end.
-TEST(HeightFields, RaysEnd) {
-  for (const Interpolation interpolation : kAll)
-    for (const bool closed : {false, true}) {
-      HeightFieldShape s = rough(20, 20, interpolation);
-      if (closed) s = solid(s, -1);
-      const auto accel = accel_of(s);
-      int cut = 0;
-      for (std::uint32_t i = 0; i < 200; ++i) {
-        const Vec3f from = random_point(i, {15, 6, 15}), d = random_point(i + 500, {8, 3, 8}) - from;
-        const std::vector<Hit> all = all_crossings(*accel, {from, 0, d, kInf});
-        for (std::size_t k = 0; k < all.size(); ++k) {
-          const float t = all[k].t;
-          if (k + 1 < all.size() && all[k + 1].t == t) continue;
-          EXPECT_EQ(all_crossings(*accel, {from, 0, d, t}),
-                    std::vector<Hit>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(k) + 1));
-          if (k > 0 && all[k - 1].t == t) continue;
-          EXPECT_EQ(all_crossings(*accel, {from, t, d, kInf}),
-                    std::vector<Hit>(all.begin() + static_cast<std::ptrdiff_t>(k) + 1, all.end()));
-          ++cut;
-        }
-      }
-      EXPECT_GT(cut, 100);
     }
 }
 
