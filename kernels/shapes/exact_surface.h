@@ -28,14 +28,27 @@ Vec3d exact_gradient(const typename S::Pool& pool, std::size_t i, int part, cons
   return g;
 }
 
+/// Value and gradient, in one go where the shape can.
+template <class S>
+Slope any_slope(const typename S::Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  using D = Simd<double, 1, ScalarIsa>;
+  constexpr bool has_slope = requires(D & value, Vec3<D> & gradient) {
+    S::slope(pool, i, D(), Vec3<D>(), value, gradient);
+  };
+  if constexpr (has_slope)
+    return slope_at<S>(pool, i, part, p);
+  else
+    return {S::value(pool, i, part, p), S::gradient(pool, i, part, p)};
+}
+
 /// `p`, near the surface, moved onto it along the gradient by Newton's method; no farther than `reach`, where
 /// it stays if the function has no slope to go by.
 template <class S>
 Vec3d settle(const typename S::Pool& pool, std::size_t i, int part, Vec3d p, double reach) {
   const Vec3d start = p;
   for (int k = 0; k < 3; ++k) {
-    const Vec3d g = S::gradient(pool, i, part, p);
-    const Vec3d q = p - g * (S::value(pool, i, part, p) / dot(g, g));
+    const Slope f = any_slope<S>(pool, i, part, p);
+    const Vec3d q = p - f.gradient * (f.value / dot(f.gradient, f.gradient));
     if (!(length(q - start) <= reach)) return start;
     p = q;
   }

@@ -7,6 +7,11 @@
 
 namespace oktett {
 
+// For those who do not include height_slope.h.
+using LoneLane = Simd<double, 1, ScalarIsa>;
+template void HeightField::slope(const Pool&, std::size_t, const LoneLane&, const Vec3<LoneLane>&, LoneLane&,
+                                 Vec3<LoneLane>&);
+
 std::size_t HeightFieldPool::bytes() const {
   std::size_t sum = ExactPool<HeightFieldElement>::bytes();
   for (const HeightFieldElement& e : elements) sum += e.grid->bytes();
@@ -49,8 +54,7 @@ bool HeightField::below_rim(const HeightGrid& grid, int face, double x, double y
   // Edges are straight, but for steps, which end upright there.
   if (face <= 2) x = face == 1 ? 0 : static_cast<double>(grid.columns()) - 1;
   if (face >= 5) z = face == 5 ? 0 : static_cast<double>(grid.rows()) - 1;
-  using D = Simd<double, 1, ScalarIsa>;
-  return y < HeightPatch<D>(grid, D(x), D(z)).height.part[0].v;
+  return y < HeightPatch<LoneLane>(grid, LoneLane(x), LoneLane(z)).height.part[0].v;
 }
 
 double HeightField::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {

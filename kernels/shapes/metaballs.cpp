@@ -60,22 +60,6 @@ class BallRule : public CellRule {
   double iso_;
 };
 
-/// Calls f(ball) for the balls that may matter at p.
-template <class Function>
-void each_ball(const MetaballsPool& pool, std::size_t i, const Vec3d& p, Function&& f) {
-  const MetaballsElement& e = pool.elements[i];
-  const CellNode& node = pool.tree.leaf_at(e.root, p);
-  if (node.kind == CellNode::Kind::leaf) {
-    for (std::uint32_t k = 0; k < node.second; ++k) f(pool.balls[pool.tree.lists[node.first + k]]);
-  } else {
-    for (std::uint32_t k = 0; k < e.count; ++k) f(pool.balls[e.begin + k]);
-  }
-}
-
-double falloff(const Ball& ball, const Vec3d& from_center) {
-  return std::max(1 - dot(from_center, from_center) * ball.inverse_square, 0.0);
-}
-
 }  // namespace
 
 void Metaballs::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
@@ -118,22 +102,12 @@ void Metaballs::add(Pool& pool, const ExactShape& shape, const Affine& to_world,
               shape.normals);
 }
 
-double Metaballs::value(const Pool& pool, std::size_t i, int, const Vec3d& p) {
-  double f = pool.elements[i].iso;
-  each_ball(pool, i, p, [&](const Ball& ball) {
-    const double q = falloff(ball, p - ball.center);
-    f -= ball.strength * (q * q);
-  });
-  return f;
+double Metaballs::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Metaballs>(pool, i, part, p).value;
 }
 
-Vec3d Metaballs::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) {
-  Vec3d g{0, 0, 0};
-  each_ball(pool, i, p, [&](const Ball& ball) {
-    const Vec3d d = p - ball.center;
-    g += d * (4 * ball.strength * ball.inverse_square * falloff(ball, d));
-  });
-  return g;
+Vec3d Metaballs::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Metaballs>(pool, i, part, p).gradient;
 }
 
 bool Metaballs::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }

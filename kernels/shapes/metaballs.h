@@ -264,6 +264,26 @@ struct Metaballs {
     out.up_to = select(list.count < D(K), D(roots::kNoRoot), out.t[K - 1]);
   }
 
+  template <class D>
+  static void slope(const Pool& pool, std::size_t i, const D&, const Vec3<D>& p, D& value,
+                    Vec3<D>& gradient) {
+    const MetaballsElement& e = pool.elements[i];
+    value = D(e.iso), gradient = {D(0.0), D(0.0), D(0.0)};
+    pool.tree.each_leaf(e.root, p, [&](const CellNode& node, const typename D::M& lanes) {
+      const bool listed = node.kind == CellNode::Kind::leaf;
+      const std::uint32_t* list = pool.tree.lists.data() + node.first;
+      for (std::uint32_t k = 0; k < (listed ? node.second : e.count); ++k) {
+        const Ball& ball = pool.balls[listed ? list[k] : e.begin + k];
+        const Vec3<D> d{p.x - D(ball.center.x), p.y - D(ball.center.y), p.z - D(ball.center.z)};
+        const D q = max(D(1.0) - dot_lanes(d, d) * D(ball.inverse_square), D(0.0));
+        const D falls = D(4 * ball.strength * ball.inverse_square) * q;
+        value = select(lanes, value - D(ball.strength) * (q * q), value);
+        gradient = {select(lanes, gradient.x + d.x * falls, gradient.x),
+                    select(lanes, gradient.y + d.y * falls, gradient.y),
+                    select(lanes, gradient.z + d.z * falls, gradient.z)};
+      }
+    });
+  }
   static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

@@ -15,12 +15,13 @@ namespace oktett {
 using Interpolation = HeightInterpolation;
 inline constexpr float kInf = std::numeric_limits<float>::infinity(),
                        kNan = std::numeric_limits<float>::quiet_NaN();
-inline constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::triangles, Interpolation::bilinear};
+inline constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::triangles,
+                                         Interpolation::bilinear};
 inline constexpr HeightWalk kWalks[] = {HeightWalk::pyramid, HeightWalk::cells, HeightWalk::spans};
 
 /// One column per unit of x and one row per unit of z, the first at -(samples - 1) / 2; heights as they are.
 inline HeightFieldShape field(std::uint32_t columns, std::uint32_t rows, const std::vector<float>& heights,
-                       Interpolation interpolation) {
+                              Interpolation interpolation) {
   HeightFieldShape s;
   Column<float> column(heights.size());
   std::copy(heights.begin(), heights.end(), column.begin());
@@ -30,7 +31,7 @@ inline HeightFieldShape field(std::uint32_t columns, std::uint32_t rows, const s
 }
 
 inline HeightFieldShape rough(std::uint32_t columns, std::uint32_t rows, Interpolation interpolation,
-                       float height = 3) {
+                              float height = 3) {
   std::vector<float> heights;
   for (std::uint32_t i = 0; i < columns * rows; ++i) heights.push_back(height * random_float(11, columns, i));
   return field(columns, rows, heights, interpolation);
