@@ -47,9 +47,10 @@ OKTETT_INLINE typename D::M cell_range(const Line<D>& line, const ExactCell& cel
   }
 }
 
-template <class S, class A>
-unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
-                                     unsigned lanes, HitLanes<F>& hits) {
+/// First crossings with cell `index`, of the rays in `lanes`; the lanes that have one.
+template <class S, class F>
+OKTETT_INLINE unsigned first_crossings(const typename S::Pool& pool, std::uint32_t index,
+                                       const RayLanes<F>& rays, unsigned lanes, HitLanes<F>& hits) {
   using D = Simd<double, F::kWidth, typename F::Isa>;
   const ExactCell& cell = pool.cells[index];
   const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
@@ -79,6 +80,31 @@ unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, cons
     active = active & (range.a <= range.b);
   }
   return met;
+}
+
+template <class S, class A>
+unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
+                                     unsigned lanes, HitLanes<F>& hits) {
+  if constexpr (requires { S::kLoneLanes; } && F::kWidth > 1) {
+    if ((lanes & (lanes - 1)) == 0) {
+      using One = Simd<float, 1, A>;
+      const int k = __builtin_ctz(lanes);
+      const auto lone = [&](const F& x) {
+        float column[F::kWidth];
+        x.store(column);
+        return One(column[k]);
+      };
+      const RayLanes<One> ray{{lone(rays.o.x), lone(rays.o.y), lone(rays.o.z)},
+                              {lone(rays.d.x), lone(rays.d.y), lone(rays.d.z)},
+                              lone(rays.tmin),
+                              lone(rays.tmax)};
+      HitLanes<One> hit;
+      const unsigned met = first_crossings<S>(pool, index, ray, 1, hit);
+      hits.t = F(hit.t.part[0].v), hits.u = F(hit.u.part[0].v), hits.v = F(hit.v.part[0].v);
+      return met << k;
+    }
+  }
+  return first_crossings<S>(pool, index, rays, lanes, hits);
 }
 
 template <class S, class A>

@@ -21,6 +21,7 @@
 /// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only
 /// where
 ///   the ray begins; `crossings` bears NaN and infinities;
+/// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;
 /// - `S::kStopsAtLimit`: crossings up to some t do not depend on where the range ends, which then is where
 /// the ray does;
 /// - `S::find` in place of value, gradient and uv: a fractal (fractal.h);

@@ -44,9 +44,7 @@ void find_one_by_one(const HeightFieldElement& e, const GridLines<D>& g, const L
 template <int K, class D>
 OKTETT_INLINE void find(const HeightFieldElement& e, const GridLines<D>& g, const LineRange<D>& range,
                         const typename D::M& active, Crossings<K, D>& out) {
-  // A lone line is faster as a number than in lanes that have nothing else to do.
-  const unsigned lanes = bits(active);
-  if (D::kWidth == 1 || (e.walk == HeightWalk::pyramid && (lanes & (lanes - 1)) != 0))
+  if (D::kWidth == 1 || e.walk == HeightWalk::pyramid)
     find_in_lanes(e, g, range, active, out);
   else
     find_one_by_one(e, g, range, active, out);

@@ -39,6 +39,8 @@ struct HeightField {
   using Pool = HeightFieldPool;
   static constexpr int kMaxCrossings = 18;
   static constexpr bool kStopsAtLimit = true;
+  /// A ray on its own is faster as a number than in lanes that have nothing else to do.
+  static constexpr bool kLoneLanes = true;
 
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
 
