@@ -3,13 +3,12 @@
 ///
 /// A shape S (one file each) has
 /// - `S::Pool`: columns of double, one element per primitive, plus `item` numbers; `S::add` appends,
-/// `S::finish` pads with
-///   primitives that can never be hit, so that lanes may be loaded past the end;
+///   `S::finish` pads with primitives that can never be hit, so that lanes may be loaded past the end;
 /// - `S::Lanes<D>`, `S::load<D>(pool, i)`: primitives i, i+1, ... in lanes; `S::broadcast<D>(pool, i)`: one
-/// in all lanes;
+///   in all lanes;
 /// - `S::kRoots` and `S::roots(ray, lanes, t)`: where the ray's whole line meets the shape, t[0] <= t[1], and
-/// a mask of the
-///   lanes where it does. In double, with a fixed order of operations: the same bits everywhere;
+///   a mask of the lanes where it does. In double, with a fixed order of operations: everywhere the same
+///   bits;
 /// - `S::bounds(pool, i)` (not for unbounded shapes) and `S::surface(pool, i, ray, t)`; where uv costs much,
 ///   also `S::surface_without_uv(pool, i, ray, t)`, the same without uv and tangent;
 /// - `S::kSolid`: has an inside; then `S::inside(pool, i, point)`.

@@ -18,15 +18,13 @@
 ///   negative inside, and its gradient;
 /// - `S::inside(pool, i, p)`; `S::uv(pool, i, part, p, surface)` sets uv and tangent in its own space.
 /// It may have
-/// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only
-/// where
-///   the ray begins; `crossings` bears NaN and infinities;
+/// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only to
+///   where the ray begins; `crossings` bears NaN and infinities;
 /// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;
 /// - `S::kStopsAtLimit`: crossings up to some t do not depend on where the range ends, which then is where
-/// the ray does;
+///   the ray does;
 /// - `S::find` in place of value, gradient and uv: a fractal (fractal.h);
-/// - `S::slope(pool, i, part, p, value, gradient)`: `value` and `gradient` in lanes, which then are made of
-/// it
+/// - `S::slope(pool, i, part, p, value, gradient)`: both in lanes, and then value and gradient are made of it
 ///   by slope_at: surfaces of many hits are found together;
 /// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
 ///   than the image of the cell.
