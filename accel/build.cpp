@@ -177,8 +177,7 @@ class PoolFiller {
     for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
       const Geometry& g = geometry(item);
       InstanceItem instance{};
-      const Affine inverse = g.transform.inverse();
-      for (int k = 0; k < 12; ++k) instance.to_child[k] = inverse.m[k / 4][k % 4];
+      g.transform.inverse().to_rows(instance.to_child);
       instance.child = std::get<InstanceGeometry>(g.shape).child.get();
       instance.item = item;
       instance.first_path = first_path(item);
@@ -294,12 +293,11 @@ void add_listed(Accel& accel, Geometry& geometry, std::uint32_t first, Column<Pr
   accel.listed_instances.reserve(accel.listed_instances.size() + list.places.size());
   for (std::uint32_t k = 0; k < list.places.size(); ++k) {
     const InstancePlace& place = list.places[k];
-    const Affine to_world = geometry.transform * affine_of(place.to_list);
+    const Affine to_world = geometry.transform * Affine::from_rows(place.to_list);
     if (place.child >= list.children.size() || !to_world.is_invertible()) continue;
-    const Affine inverse = to_world.inverse();
     ListedInstance listed{{}, first_child + place.child, first + k, 0, place.user};
-    for (int i = 0; i < 12; ++i) listed.to_child[i] = static_cast<float>(inverse.m[i / 4][i % 4]);
-    const Affine to_child = affine_of(listed.to_child);
+    to_world.inverse().to_rows(listed.to_child);
+    const Affine to_child = Affine::from_rows(listed.to_child);
     if (!to_child.is_invertible()) continue;
     const Accel& child = *list.children[place.child];
     const Box box = instance_bounds(to_child.inverse(), child);

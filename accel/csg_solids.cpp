@@ -65,7 +65,7 @@ bool is_inside(const Accel& accel, std::uint32_t geometry, const HalfLine& line)
                        [&](const ListedInstance& listed) {
                          return accel.geometry_of(listed.item) == geometry &&
                                 is_inside_unbounded(*accel.listed_children[listed.child],
-                                                    line.moved(affine_of(listed.to_child)));
+                                                    line.moved(Affine::from_rows(listed.to_child)));
                        });
   }
   if (std::holds_alternative<CsgGeometry>(g.shape)) {

@@ -65,12 +65,6 @@ Box shape_bounds(const Geometry& g, std::size_t local) {
   return {};
 }
 
-Affine affine_of(const float* m) {
-  Affine a;
-  for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = m[k];
-  return a;
-}
-
 Box instance_bounds(const Affine& to_world, const Accel& child) {
   Box b = transform_bounds(to_world, child.bounds);
   if (b.empty()) return b;
@@ -113,7 +107,8 @@ Box geometry_bounds(const Geometry& g) {
   } else if (const auto* list = std::get_if<InstanceList>(&g.shape)) {
     for (const InstancePlace& place : list->places)
       if (place.child < list->children.size())
-        box.grow(instance_bounds(g.transform * affine_of(place.to_list), *list->children[place.child]));
+        box.grow(
+            instance_bounds(g.transform * Affine::from_rows(place.to_list), *list->children[place.child]));
   } else {
     box = shape_bounds(g, 0);
   }

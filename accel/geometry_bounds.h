@@ -22,9 +22,6 @@ Box shape_bounds(const Geometry& geometry, std::size_t local);
 /// The image of the child's bounds, grown by what rounding the transformed ray to float may displace.
 Box instance_bounds(const Affine& to_world, const Accel& child);
 
-/// A row-major 3x4 matrix.
-Affine affine_of(const float* m);
-
 /// Bounds of all of a geometry; empty if it is degenerate or unbounded.
 Box geometry_bounds(const Geometry& geometry);
 

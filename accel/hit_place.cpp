@@ -36,7 +36,7 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path) {
     const std::uint32_t inner = path - step.first_path;
     if (step.stride != 0) {
       const ListedInstance& listed = listed_instance(*place.accel, step, path);
-      const Affine to_outer = affine_of(listed.to_child).inverse();
+      const Affine to_outer = Affine::from_rows(listed.to_child).inverse();
       place.to_world = place.moved ? place.to_world * to_outer : to_outer;
       place.moved = true;
       path = inner % step.stride - 1;

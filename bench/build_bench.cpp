@@ -34,7 +34,7 @@ InstanceList scattered_instances(std::uint32_t count) {
     const Vec3d at{random(), random(), random()}, angles{random(), random(), random()};
     const Affine m = Affine::translation(at * 100.0) * Affine::rotation(angles * 180.0) *
                      Affine::scaling({0.5, 0.5 + 0.1 * random(), 0.5});
-    for (int k = 0; k < 12; ++k) place.to_list[k] = static_cast<float>(m.m[k / 4][k % 4]);
+    m.to_rows(place.to_list);
     place.child = 0;
   }
   return list;

@@ -2,6 +2,7 @@
 /// \file Affine transforms of points, directions and normals, in double.
 
 #include <array>
+#include <cstddef>
 
 #include "core/box.h"
 #include "core/vec3.h"
@@ -20,6 +21,18 @@ struct Affine {
   static Affine rotation(const Vec3d& degrees);
   /// Rotation by `degrees` about `axis`, which need not be of unit length but must not be zero.
   static Affine rotation(const Vec3d& axis, double degrees);
+
+  /// From and to a row-major 3x4 matrix.
+  template <class T>
+  static Affine from_rows(const T* rows) {
+    Affine a;
+    for (std::size_t k = 0; k < 12; ++k) a.m[k / 4][k % 4] = static_cast<double>(rows[k]);
+    return a;
+  }
+  template <class T>
+  void to_rows(T* rows) const {
+    for (std::size_t k = 0; k < 12; ++k) rows[k] = static_cast<T>(m[k / 4][k % 4]);
+  }
 
   Vec3d point(const Vec3d& p) const;
   Vec3d vector(const Vec3d& v) const;

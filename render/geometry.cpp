@@ -72,7 +72,7 @@ class WorldBuilder {
       // Without a material of its own, an instance shows those of the objects inside.
       InstancePlace place{
           {}, std::get<InstanceShape>(object.shape).prototype, object.material == kNoId ? kNoId : id};
-      for (int i = 0; i < 12; ++i) place.to_list[i] = static_cast<float>(object.transform.m[i / 4][i % 4]);
+      object.transform.to_rows(place.to_list);
       list.places.push_back(place);
     }
     return list;

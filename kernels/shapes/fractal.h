@@ -4,8 +4,8 @@
 /// its memory grows with the depth and not with the number of parts.
 ///
 /// A fractal F has, beside what exact.h asks for,
-/// - `F::find(element, query, out, room)`: lists crossings, see FractalSweep;
-/// - `F::Element`, and in its header `crossings` as fractal_crossings.
+/// - `F::find(element, query, out, room)`: lists crossings, see TurnList;
+/// and is derived from Fractal.
 
 #include <cmath>
 #include <cstdint>
@@ -104,6 +104,22 @@ void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, cons
     out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
   out.up_to = D::load(up_to);
 }
+
+/// What all fractals declare alike.
+template <class F, class Shape, class E>
+struct Fractal {
+  using Data = Shape;
+  using Element = E;
+  using Pool = ExactPool<Element>;
+  static constexpr int kMaxCrossings = 32;
+  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
+
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    fractal_crossings<F, K>(pool, cell, line, range, active, out);
+  }
+};
 
 /// The crossing that `hit` was before its t was rounded to float, on the line of `query`, whose range is not
 /// looked at. If rounding took the line itself past it, a point on the line that faces the ray.

@@ -33,20 +33,8 @@ struct IfsElement {
   int depth() const { return static_cast<int>(balls.size()) - 1; }
 };
 
-struct Ifs {
-  using Data = IfsShape;
-  using Element = IfsElement;
-  using Pool = ExactPool<Element>;
-  static constexpr int kMaxCrossings = 32;
-  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
-
+struct Ifs : Fractal<Ifs, IfsShape, IfsElement> {
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
-
-  template <int K, class D>
-  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
-                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    fractal_crossings<Ifs, K>(pool, cell, line, range, active, out);
-  }
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   static Box world_bounds(const Pool& pool, std::size_t i);

@@ -19,20 +19,10 @@ struct MengerElement {
 };
 
 /// Parts are faces as in LineRange: 1 + 2 axis + side.
-struct Menger {
-  using Data = MengerShape;
-  using Element = MengerElement;
-  using Pool = ExactPool<Element>;
+struct Menger : Fractal<Menger, MengerShape, MengerElement> {
   static constexpr int kMaxCrossings = 64;
-  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
 
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
-
-  template <int K, class D>
-  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
-                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    fractal_crossings<Menger, K>(pool, cell, line, range, active, out);
-  }
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
 };

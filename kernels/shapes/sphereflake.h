@@ -20,20 +20,8 @@ struct SphereflakeElement {
   double radius[kMaxSphereflakeDepth + 1], reach[kMaxSphereflakeDepth + 1];
 };
 
-struct Sphereflake {
-  using Data = SphereflakeShape;
-  using Element = SphereflakeElement;
-  using Pool = ExactPool<Element>;
-  static constexpr int kMaxCrossings = 32;
-  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
-
+struct Sphereflake : Fractal<Sphereflake, SphereflakeShape, SphereflakeElement> {
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
-
-  template <int K, class D>
-  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
-                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    fractal_crossings<Sphereflake, K>(pool, cell, line, range, active, out);
-  }
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// How far it reaches along `direction`, from its centre in lengths of the direction: no less, and more by

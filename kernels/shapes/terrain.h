@@ -22,20 +22,8 @@ struct TerrainElement {
 };
 
 /// Parts: 0 the landscape, else walls and floor as faces as in LineRange.
-struct Terrain {
-  using Data = TerrainShape;
-  using Element = TerrainElement;
-  using Pool = ExactPool<Element>;
-  static constexpr int kMaxCrossings = 32;
-  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
-
+struct Terrain : Fractal<Terrain, TerrainShape, TerrainElement> {
   static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
-
-  template <int K, class D>
-  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
-                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    fractal_crossings<Terrain, K>(pool, cell, line, range, active, out);
-  }
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// How far point (i, k) of the grid of 2^level cells to the side is moved, for a step of 1: from -1 to 1.

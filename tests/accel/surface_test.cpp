@@ -202,7 +202,7 @@ TEST(Instance, SingularTransformsAreLeftOut) {
 
 InstancePlace listed(const Affine& m, std::uint32_t child, std::uint32_t user = kNoId) {
   InstancePlace place{{}, child, user};
-  for (int k = 0; k < 12; ++k) place.to_list[k] = static_cast<float>(m.m[k / 4][k % 4]);
+  m.to_rows(place.to_list);
   return place;
 }
 
