@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include "app/verify_exact.h"
 #include "app/verify_kernels.h"
 #include "app/verify_meshes.h"
+#include "core/error.h"
 #include "io/obj.h"
 
 namespace oktett {
@@ -172,14 +174,20 @@ void verify_surfaces(const VerifyArguments& arguments, std::uint64_t rays, Repor
       report.exact(names[form], verify_exact(form, rays, chosen_isas(arguments.isa)));
 }
 
-void verify_meshes(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
+/// The closed meshes that are made up, and those of files.
+std::vector<OracleMesh> oracle_meshes(const VerifyArguments& arguments) {
+  std::vector<OracleMesh> meshes = make_closed_meshes();
+  for (const std::string& file : arguments.meshes)
+    meshes.push_back({std::filesystem::path(file).stem().string(), load_obj(file).mesh, false});
+  return meshes;
+}
+
+void verify_meshes(const VerifyArguments& arguments, const std::vector<OracleMesh>& meshes,
+                   std::uint64_t rays, Report& report) {
   report.heading(fmt::format("\n{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}", "mesh",
                              "placement", "", "rays", "hits", "leaks", "parity", "doubled", "differing",
                              "inconsistent"));
   const BuildOptions build = parse_tree_options(arguments.tree);
-  std::vector<OracleMesh> meshes = make_closed_meshes();
-  for (const std::string& file : arguments.meshes)
-    meshes.push_back({std::filesystem::path(file).stem().string(), load_obj(file).mesh, false});
   for (const OracleMesh& mesh : meshes)
     for (const MeshPlacement& placement : mesh_placements())
       report.mesh(mesh.name, placement,
@@ -192,14 +200,34 @@ void verify_combinations(const VerifyArguments& arguments, std::uint64_t rays, R
   report.csg(verify_csg(rays, chosen_isas(arguments.isa)));
 }
 
+/// Throws Error if one of the surfaces that were asked for is not there.
+void check_surfaces(const std::vector<std::string>& asked) {
+  std::vector<std::string> names = exact_oracle_names();
+  names.push_back("combinations");
+  for (const std::string& name : asked) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    std::vector<const char*> words;
+    for (const std::string& known : names) words.push_back(known.c_str());
+    const std::string near = nearest_name(name, words.data(), words.size());
+    throw Error(fmt::format("--surface: unknown surface '{}'; {}", name,
+                            near.empty() ? fmt::format("expected one of {}", fmt::join(names, ", "))
+                                         : fmt::format("did you mean '{}'?", near)));
+  }
+}
+
 int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  parse_tree_options(arguments.tree);  // complains before the work begins
+  // Complains before the work begins.
+  parse_tree_options(arguments.tree);
+  chosen_isas(arguments.isa);
+  check_surfaces(arguments.surfaces);
+  const bool all = arguments.surfaces.empty();
+  const std::vector<OracleMesh> meshes = all ? oracle_meshes(arguments) : std::vector<OracleMesh>();
   const std::uint64_t rays = arguments.rays > 0 ? arguments.rays : arguments.quick ? 100'000 : 10'000'000;
   Report report(arguments.json);
-  if (arguments.surfaces.empty()) verify_kernels(arguments, rays, report);
+  if (all) verify_kernels(arguments, rays, report);
   verify_surfaces(arguments, rays / 10, report);
-  if (arguments.surfaces.empty()) verify_meshes(arguments, rays / 100 + 1, report);
+  if (all) verify_meshes(arguments, meshes, rays / 100 + 1, report);
   if (arguments.wants("combinations")) verify_combinations(arguments, rays / 10, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
