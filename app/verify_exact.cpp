@@ -295,7 +295,14 @@ class Checker {
     const Vec3f out = offset_origin(s, n), in = offset_origin(s, -n);
     const long double here = f(s.position), above = f(out), below = f(in);
     // Within the error bound a smooth surface is flat, and f is linear.
-    const bool creased = std::abs(above - 2 * here + below) > 0x1p-6L * std::abs(above - below);
+    long double slope = std::abs(above - below), bend = std::abs(above - 2 * here + below);
+    for (int k = 0; k < 3; ++k) {
+      Vec3l ahead(Vec3d(s.position)), behind = ahead;
+      ahead[k] += s.position_error[k], behind[k] -= s.position_error[k];
+      const long double f0 = f(behind), f1 = f(ahead);
+      slope = std::max(slope, std::abs(f1 - f0)), bend = std::max(bend, std::abs(f1 - 2 * here + f0));
+    }
+    const bool creased = bend > 0x1p-6L * slope;
     if (creased && !(above > 0 && below < 0) && passes_through(f, s, out, in, ray, hit.t)) {
       ++tally_.creased;
       return;
