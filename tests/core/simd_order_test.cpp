@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/simd_gather.h"
+#include "core/simd_words.h"
 
 namespace oktett {
 namespace {
@@ -28,6 +29,29 @@ TEST(SimdGather, TakesWhatTheIndexNames) {
   float got[16];
   gather(base, Simd<std::int32_t, 16, ScalarIsa>::load(index)).store(got);
   for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], base[index[i]]);
+}
+
+TEST(SimdGather, DoublesOfFloatsAndWords) {
+  using D = Simd<double, 8, ScalarIsa>;
+  float floats[50];
+  std::uint16_t words[51] = {};
+  for (int i = 0; i < 50; ++i) {
+    floats[i] = 0.1f * static_cast<float>(i);
+    words[i] = static_cast<std::uint16_t>(65535 - 7 * i);
+  }
+  double index[8], got[8];
+  for (int i = 0; i < 8; ++i) index[i] = (i * 31 + 49) % 50;
+  gather(floats, D::load(index)).store(got);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(got[i], floats[static_cast<int>(index[i])]);
+  gather(words, D::load(index)).store(got);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(got[i], words[static_cast<int>(index[i])]);
+}
+
+TEST(SimdWords, AreNumbersWithoutSign) {
+  const std::uint16_t words[17] = {9, 0, 1, 255, 256, 32767, 32768, 65535, 7, 6, 5, 4, 3, 2, 1, 40000, 50000};
+  float got[16];
+  load_words<ScalarIsa>(words + 1).store(got);
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], static_cast<float>(words[i + 1]));
 }
 
 }  // namespace

@@ -10,6 +10,17 @@ namespace {
 
 double distance(const Vec3d& a, const Vec3d& b) { return length(a - b); }
 
+TEST(Affine, RowsAreThoseOfTheMatrix) {
+  double rows[12];
+  for (int k = 0; k < 12; ++k) rows[k] = k + 0.5;
+  const Affine a = Affine::from_rows(rows);
+  EXPECT_EQ(a.vector({0, 1, 0}), (Vec3d{1.5, 5.5, 9.5}));
+  EXPECT_EQ(a.point({0, 0, 0}), (Vec3d{3.5, 7.5, 11.5}));
+  float back[12];
+  a.to_rows(back);
+  for (int k = 0; k < 12; ++k) EXPECT_EQ(back[k], static_cast<float>(rows[k]));
+}
+
 TEST(Affine, QuarterTurnsAreExact) {
   const Affine r = Affine::rotation({0, 0, 90});
   EXPECT_EQ(r.vector({1, 0, 0}), (Vec3d{0, 1, 0}));
