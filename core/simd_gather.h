@@ -29,10 +29,10 @@ namespace native {
 template <class T, class B>
 OKTETT_INLINE B gather(const T* base, const B& index) {
   double lanes[B::size];
-  store(lanes, index);
+  native::store(lanes, index);
   for (double& lane : lanes) lane = static_cast<double>(base[static_cast<std::int32_t>(lane)]);
   B r;
-  load(r, lanes);
+  native::load(r, lanes);
   return r;
 }
 #if defined(OKTETT_COMPILED_AVX2)
