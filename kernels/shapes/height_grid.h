@@ -30,8 +30,8 @@ static_assert(sizeof(HeightNode) == 64);
 /// level has one node. That adds 2/15 to 16-bit samples.
 class HeightGrid {
  public:
-  static constexpr std::uint32_t kBlock =
-      4;                                ///< cells along a side of the smallest blocks, blocks along a node
+  /// Cells along a side of the smallest blocks, and blocks along a side of a node.
+  static constexpr std::uint32_t kBlock = 4;
   static constexpr int kMaxLevels = 7;  ///< 4^8 > kMaxHeightSide
 
   struct Level {

@@ -14,7 +14,7 @@ void HeightField::slope(const Pool& pool, std::size_t i, const D& part, const Ve
   value = p.y - (patch.height - D(shift.y)) / D(scale.y);
   gradient = {-patch.by_x * D(scale.x / scale.y), D(1.0), -patch.by_z * D(scale.z / scale.y)};
 
-  const D zero(0.0), one(1.0);
+  const D zero(0.0);
   const auto others = zero < part;
   if (none(others)) return;
   const auto set = [&](const typename D::M& where, const D& to, const D& x, const D& y, const D& z) {
