@@ -162,12 +162,15 @@ int run_render(const Command& command, const RenderArguments& arguments) {
   const StopOnSignal interrupt;
   options.stop = interrupt.flag();
   Watch shown(arguments, options);
-  const RenderResult result = render(std::move(scene), options);
+  RenderResult result = render(std::move(scene), options);
   shown.finish();
   times.build = result.report.build_seconds;
   times.render = result.report.render_seconds;
   watch.lap();
-  write_image(output, result.picture, metadata_of(command, arguments, result));
+  const ImageMetadata metadata = metadata_of(command, arguments, result);
+  // To load what writes images takes as much memory as a large scene; they need not meet.
+  result.scene = Scene{};
+  write_image(output, result.picture, metadata);
   times.write = watch.lap();
   print_summary(arguments, times, result.report, output);
   if (!result.report.stopped) return 0;

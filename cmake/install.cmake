@@ -1,5 +1,4 @@
 # Installs the library, its headers and a CMake package: find_package(oktett CONFIG) gives oktett::oktett.
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
@@ -8,12 +7,13 @@ target_include_directories(oktett PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INC
 install(TARGETS oktett EXPORT oktett-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS oktett_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
 if(TARGET oktett_app)
   install(TARGETS oktett_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 foreach(layer core kernels accel render io)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${layer} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oktett
-    FILES_MATCHING PATTERN "*.h")
+    FILES_MATCHING PATTERN "*.h" PATTERN oiio EXCLUDE)
 endforeach()
 
 install(EXPORT oktett-targets NAMESPACE oktett:: DESTINATION ${package_dir})

@@ -12,10 +12,11 @@ target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
 set_target_properties(oktett PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+set_target_properties(oktett PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
   PUBLIC TBB::tbb Threads::Threads
-  PRIVATE OpenImageIO::OpenImageIO yaml-cpp fmt::fmt)
+  PRIVATE yaml-cpp fmt::fmt ${CMAKE_DL_LIBS})
 target_include_directories(oktett SYSTEM PUBLIC $<BUILD_INTERFACE:${xsimd_INCLUDE_DIRS}>)
 
 # -O3 in every build type, so that no small function of the standard library survives as a call and is shared across sets;
@@ -61,4 +62,33 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     endif()
     oktett_isa_code(${set} ${oktett_flags_${set}})
   endforeach()
+endif()
+
+# What uses OpenImageIO, see io/image_library.h: a shared library that oktett loads when it is needed, and finds from where
+# the program or itself lies. It shows one symbol and has its own copy of the little that both need.
+file(GLOB OKTETT_IMAGE_SOURCES CONFIGURE_DEPENDS io/oiio/*.cpp)
+add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp io/image_color.cpp)
+target_compile_features(oktett_images PRIVATE cxx_std_20)
+target_compile_options(oktett_images PRIVATE -ffp-contract=off)
+oktett_target_warnings(oktett_images)
+target_include_directories(oktett_images PRIVATE ${PROJECT_SOURCE_DIR})
+target_include_directories(oktett_images SYSTEM PRIVATE ${xsimd_INCLUDE_DIRS})
+target_link_libraries(oktett_images PRIVATE OpenImageIO::OpenImageIO TBB::tbb fmt::fmt Threads::Threads)
+if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  target_link_options(oktett_images PRIVATE LINKER:--no-undefined)
+endif()
+set_target_properties(oktett_images PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
+  CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+add_dependencies(oktett oktett_images)
+file(RELATIVE_PATH oktett_libraries ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+set_property(SOURCE io/image_library.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+  OKTETT_IMAGE_LIBRARY="liboktett_images.so.${PROJECT_VERSION}" OKTETT_LIBRARIES_FROM_PROGRAMS="${oktett_libraries}")
+if(BUILD_SHARED_LIBS)
+  set_property(SOURCE io/image_library.cpp APPEND PROPERTY COMPILE_DEFINITIONS OKTETT_SHARED)
+endif()
+if(NOT PROJECT_IS_TOP_LEVEL)
+  # The programs of another project may be built anywhere.
+  set_property(SOURCE io/image_library.cpp APPEND PROPERTY COMPILE_DEFINITIONS
+    OKTETT_BUILT_LIBRARIES="${PROJECT_BINARY_DIR}/lib")
 endif()

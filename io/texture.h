@@ -26,12 +26,9 @@ class ImageTextures : public TextureSampler {
   /// Reads all images, in parallel. One that is missing or damaged gives a warning and is white (value 1)
   /// everywhere.
   explicit ImageTextures(std::vector<Texture> textures);
-  ~ImageTextures() override;
-  ImageTextures(const ImageTextures&) = delete;
-  ImageTextures& operator=(const ImageTextures&) = delete;
 
   /// One per file that could not be used.
-  const std::vector<Warning>& warnings() const;
+  const std::vector<Warning>& warnings() const { return warnings_; }
 
   /// An index beyond the textures gives white. Non-finite uv count as 0.
   Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
@@ -40,8 +37,8 @@ class ImageTextures : public TextureSampler {
   Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<TextureSampler> sampler_;  ///< null without textures
+  std::vector<Warning> warnings_;
 };
 
 }  // namespace oktett

@@ -134,6 +134,26 @@ TEST(RenderCommand, RefusesBadOutputsFirst) {
   EXPECT_EQ(file_count(dir), 1u);
 }
 
+// Without what writes images there is nothing to render for.
+TEST(RenderCommand, MissesTheLibraryOfImagesFirst) {
+#ifdef OKTETT_SHARED
+  GTEST_SKIP() << "the shared library of Oktett lies beside that of images";
+#endif
+  const TempDir dir;
+  fs::create_directory(dir.path() / "bin");
+  const std::string alone = dir.file("bin/oktett");
+  fs::copy_file(OKTETT_COMMAND, alone);
+  const CommandResult result = run_command(dir, {"render", "missing.yaml", "-o", "a.png"}, alone);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_TRUE(contains(result.err, "cannot load liboktett_images.so")) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
+
+  fs::copy(fs::path(OKTETT_COMMAND).parent_path().parent_path() / "lib", dir.path() / "lib");
+  dir.write("ball.yaml", kScene);
+  EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "-o", "a.png"}, alone).status, 0);
+  EXPECT_TRUE(fs::exists(dir.path() / "a.png"));
+}
+
 TEST(RenderCommand, ABadSceneLeavesTheOldPicture) {
   const TempDir dir;
   dir.write("bad.yaml", "oktett: 1\nwidth: 3\n");

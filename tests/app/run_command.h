@@ -25,10 +25,11 @@ inline std::string file_content(const std::string& path) {
 /// A running command whose output goes to files in a directory of its own.
 class CommandProcess {
  public:
-  /// Starts `oktett ARGUMENTS...` in `directory`.
-  CommandProcess(const TempDir& directory, std::vector<std::string> arguments) {
+  /// Starts `program ARGUMENTS...` in `directory`.
+  CommandProcess(const TempDir& directory, std::vector<std::string> arguments,
+                 const std::string& program = OKTETT_COMMAND) {
     std::vector<char*> words;
-    arguments.insert(arguments.begin(), OKTETT_COMMAND);
+    arguments.insert(arguments.begin(), program);
     for (std::string& word : arguments) words.push_back(word.data());
     words.push_back(nullptr);
     const std::string out = output_.file("out"), err = output_.file("err");
@@ -82,8 +83,9 @@ struct CommandResult {
   std::string out, err;
 };
 
-inline CommandResult run_command(const TempDir& directory, const std::vector<std::string>& arguments) {
-  CommandProcess process(directory, arguments);
+inline CommandResult run_command(const TempDir& directory, const std::vector<std::string>& arguments,
+                                 const std::string& program = OKTETT_COMMAND) {
+  CommandProcess process(directory, arguments, program);
   CommandResult result;
   result.status = process.wait();
   result.out = process.out();

@@ -1,5 +1,5 @@
-// Rays against a square and a sphere, through the library's public headers alone. The lines between the two
-// marks are the example of README.md.
+// Rays against a square and a sphere, and a picture of one pixel, through the library's public headers alone.
+// The lines between the two marks are the example of README.md.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "io/image.h"
 
 namespace {
 
@@ -26,7 +27,8 @@ oktett::Column<T> column(std::span<const T> elements) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
+  expect(count == 2, "expected the name of an EXR file to write");
   const oktett::Vec3f corners[] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   const std::uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
   oktett::TriangleMesh mesh;
@@ -70,4 +72,12 @@ int main() {
   oktett::closest_hit(*accel, rays.span(), hits.span(), oktett::Isa::scalar);
   const oktett::Surface s = oktett::surface(*accel, rays[2], hits[2]);
   expect(s.geometric_normal == oktett::Vec3f{0, 0, 1} && s.geometry == 0, "the square looks along z");
+
+  oktett::Picture picture;
+  picture.width = picture.height = 1;
+  for (const char* name : {"R", "G", "B"})
+    picture.planes.push_back({name, oktett::PlaneType::half_float, oktett::Column<float>(1, 0.5f), {}});
+  oktett::write_image(arguments[1], picture);
+  expect(oktett::read_image(arguments[1]).find("G")->values[0] == 0.5f,
+         "a picture is read as it was written");
 }

@@ -1,5 +1,3 @@
-#include "io/image.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -9,9 +7,10 @@
 
 #include "core/error.h"
 #include "io/image_color.h"
-#include "io/image_oiio.h"
+#include "io/oiio/library.h"
+#include "io/oiio/open_image.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 namespace {
 
@@ -23,26 +22,14 @@ bool is_id(const ImageSpec& spec, int channel) {
 }
 
 /// Reads channels [begin, end), all ids or all numbers, and appends them to the picture.
-void read_channels(OIIO::ImageInput& input, const ImageSpec& spec, const std::string& path, int begin,
+void append_planes(OIIO::ImageInput& input, const ImageSpec& spec, const std::string& path, int begin,
                    int end, Picture& picture) {
   const std::size_t count = static_cast<std::size_t>(end - begin);
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   const bool ids = is_id(spec, begin);
   Column<std::uint32_t> words(pixels * count);
   const TypeDesc type = ids ? TypeDesc::UINT32 : TypeDesc::FLOAT;
-  bool good = false;
-  std::string why;
-  try {
-    good = input.read_image(0, 0, begin, end, type, words.data());
-    if (!good) why = input.geterror();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    why = error.what();
-  }
-  if (!good)
-    throw Error(Location{path}, "cannot read the image: " + first_line(why, "damaged file"), ErrorKind::io);
-
+  read_channels(input, path, begin, end, type, words.data());
   for (std::size_t c = 0; c < count; ++c) {
     PicturePlane plane;
     plane.name = spec.channel_name(begin + static_cast<int>(c));
@@ -88,7 +75,7 @@ void decode_colors(Picture& picture, const ColorEncoding& encoding, bool multipl
 
 }  // namespace
 
-Picture read_image(const std::string& path) {
+Picture read_picture(const std::string& path) {
   const OIIO::ImageInput::unique_ptr input = open_image(path);
   const ImageSpec spec = input->spec();
   Picture picture;
@@ -107,7 +94,7 @@ Picture read_image(const std::string& path) {
   for (int begin = 0; begin < spec.nchannels;) {
     int end = begin + 1;
     while (end < spec.nchannels && is_id(spec, end) == is_id(spec, begin)) ++end;
-    read_channels(*input, spec, path, begin, end, picture);
+    append_planes(*input, spec, path, begin, end, picture);
     begin = end;
   }
   expand_grey(picture);
@@ -115,4 +102,4 @@ Picture read_image(const std::string& path) {
   return picture;
 }
 
-}  // namespace oktett
+}  // namespace oktett::oiio

@@ -1,4 +1,4 @@
-#include "io/image_oiio.h"
+#include "io/oiio/open_image.h"
 
 #include <OpenImageIO/sysutil.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 namespace {
 
@@ -86,4 +86,18 @@ OIIO::ImageInput::unique_ptr open_image(const std::string& path) {
   return input;
 }
 
-}  // namespace oktett
+void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
+                   void* pixels) {
+  std::string why;
+  try {
+    if (input.read_image(0, 0, begin, end, type, pixels)) return;
+    why = input.geterror();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  fail(path, "cannot read the image: " + first_line(why, "damaged file"));
+}
+
+}  // namespace oktett::oiio

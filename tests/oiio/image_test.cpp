@@ -272,7 +272,8 @@ TEST(WriteImage, DropsPlanesAndAlphaThatAFormatCannotHold) {
   const TempDir dir;
   Picture picture = color_picture(4, 4, 0.5f, 0.25f, 0.125f, 1);
   picture.planes.push_back(float_plane("Z", PlaneType::single_float, 16, 0, 1));
-  for (const char* name : {"a.png", "a.jpg", "a.tif", "a.hdr", "a.bmp", "a.tga", "A.PNG"}) {
+  for (const char* name :
+       {"a.png", "a.jpg", "a.jpeg", "a.tif", "a.tiff", "a.hdr", "a.bmp", "a.tga", "A.PNG"}) {
     check_output(dir.file(name));
     EXPECT_FALSE(keeps_all_planes(name));
     write_image(dir.file(name), picture);

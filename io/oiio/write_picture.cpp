@@ -1,5 +1,3 @@
-#include "io/image.h"
-
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -11,10 +9,10 @@
 
 #include "core/error.h"
 #include "io/image_color.h"
-#include "io/image_oiio.h"
-#include "io/image_output.h"
+#include "io/oiio/library.h"
+#include "io/oiio/open_image.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 namespace {
 
@@ -25,13 +23,10 @@ using OIIO::TypeDesc;
 constexpr float kLargestHalf = 65504;
 constexpr std::uint32_t kRowsAtOnce = 64;
 
-/// What a format can hold of a picture.
-enum class Layout { all_planes, float_rgb, srgb8 };
-
-Layout layout_of(const ImageOutput& output) {
+PictureLayout layout_of(const ImageOutput& output) {
   const std::string format = output.format_name();
-  if (format == "openexr") return Layout::all_planes;
-  return format == "hdr" ? Layout::float_rgb : Layout::srgb8;
+  if (format == "openexr") return PictureLayout::all_planes;
+  return format == "hdr" ? PictureLayout::float_rgb : PictureLayout::srgb8;
 }
 
 /// The writer for `path`'s extension, or null. Leaves out those that make no file.
@@ -44,16 +39,6 @@ ImageOutput::unique_ptr find_writer(const std::string& path) {
       (std::strcmp(output->format_name(), "null") == 0 || std::strcmp(output->format_name(), "term") == 0))
     output.reset();
   return output;
-}
-
-void check_planes(const Picture& picture) {
-  const std::size_t pixels = std::size_t{picture.width} * picture.height;
-  if (pixels == 0) throw Error("the picture has no pixels");
-  for (const PicturePlane& plane : picture.planes) {
-    const std::size_t held = plane.type == PlaneType::unsigned_int ? plane.ids.size() : plane.values.size();
-    if (held != pixels)
-      throw Error(fmt::format("plane {} holds {} numbers, expected {}", plane.name, held, pixels));
-  }
 }
 
 TypeDesc file_type(PlaneType type) {
@@ -198,20 +183,30 @@ bool write_srgb8(ImageOutput& output, const std::string& path, const Picture& pi
          output.write_image(TypeDesc::UINT8, bytes.data()) && output.close();
 }
 
-/// Writes to the file `temporary`; errors are reported as those of `path`.
-void write_file(const std::string& path, const std::string& temporary, ImageOutput& output,
-                const Picture& picture, const ImageMetadata& metadata) {
+}  // namespace
+
+std::optional<PictureLayout> find_layout(const std::string& path) {
+  const ImageOutput::unique_ptr output = find_writer(path);
+  if (!output) return std::nullopt;
+  return layout_of(*output);
+}
+
+void write_picture(const std::string& path, const std::string& temporary, const Picture& picture,
+                   const ImageMetadata& metadata) {
+  const ImageOutput::unique_ptr writer = find_writer(path);
+  if (!writer) throw Error(Location{path}, "unknown image format");
+  ImageOutput& output = *writer;
   bool written = false;
   std::string why;
   try {
     switch (layout_of(output)) {
-      case Layout::all_planes:
+      case PictureLayout::all_planes:
         written = write_planes(output, temporary, picture, metadata);
         break;
-      case Layout::float_rgb:
+      case PictureLayout::float_rgb:
         written = write_float_rgb(output, temporary, picture, metadata);
         break;
-      case Layout::srgb8:
+      case PictureLayout::srgb8:
         written = write_srgb8(output, temporary, picture, metadata);
         break;
     }
@@ -227,43 +222,4 @@ void write_file(const std::string& path, const std::string& temporary, ImageOutp
     throw Error(Location{path}, "cannot write: " + first_line(why, "unknown reason"), ErrorKind::io);
 }
 
-Picture one_pixel() {
-  Picture picture;
-  picture.width = picture.height = picture.full_width = picture.full_height = 1;
-  for (const char* name : {"R", "G", "B", "A"})
-    picture.planes.push_back({name, PlaneType::half_float, Column<float>(1, 0.5f), {}});
-  return picture;
-}
-
-}  // namespace
-
-void check_output(const std::string& path) {
-  if (path.empty()) throw Error("the name of the output file is empty");
-  if (path == "-")
-    throw Error("cannot write the picture to standard output: the format follows from a file name");
-  if (path.find('\0') != std::string::npos) throw Error("the name of the output file contains a zero byte");
-  if (std::filesystem::path(path).filename().empty() || std::filesystem::is_directory(path))
-    throw Error(Location{path}, "cannot write: is a directory", ErrorKind::io);
-  const ImageOutput::unique_ptr output = find_writer(path);
-  if (!output)
-    throw Error(Location{path}, "unknown image format '" + std::filesystem::path(path).extension().string() +
-                                    "': known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp");
-  const OutputFile file(path);
-  write_file(path, file.temporary(), *output, one_pixel(), {});
-}
-
-bool keeps_all_planes(const std::string& path) {
-  const ImageOutput::unique_ptr output = find_writer(path);
-  return output && layout_of(*output) == Layout::all_planes;
-}
-
-void write_image(const std::string& path, const Picture& picture, const ImageMetadata& metadata) {
-  check_planes(picture);
-  const ImageOutput::unique_ptr output = find_writer(path);
-  if (!output) throw Error(Location{path}, "unknown image format");
-  OutputFile file(path);
-  write_file(path, file.temporary(), *output, picture, metadata);
-  file.commit();
-}
-
-}  // namespace oktett
+}  // namespace oktett::oiio

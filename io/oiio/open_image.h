@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the image files of io/ share in dealing with OpenImageIO. Not for other folders.
+/// \file What all who deal with OpenImageIO share. Not for other folders.
 
 #include <OpenImageIO/imageio.h>
 
@@ -8,7 +8,7 @@
 
 #include "io/image_color.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 /// The first line of an error text, without a full stop at its end; `fallback` if there is none.
 std::string first_line(const std::string& text, const std::string& fallback);
@@ -25,4 +25,9 @@ ColorEncoding color_encoding(const OIIO::ImageSpec& spec);
 /// or would take more than half of this machine's memory once read.
 OIIO::ImageInput::unique_ptr open_image(const std::string& path);
 
-}  // namespace oktett
+/// Reads channels [begin, end) of all pixels, row by row from the top, converted to `type`. Throws Error of
+/// kind io, which names `path`, if the file is damaged.
+void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
+                   void* pixels);
+
+}  // namespace oktett::oiio

@@ -1,5 +1,3 @@
-#include "io/image_heights.h"
-
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -8,9 +6,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/image_oiio.h"
+#include "io/oiio/library.h"
+#include "io/oiio/open_image.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 namespace {
 
@@ -48,17 +47,7 @@ Column<T> read_grey(OIIO::ImageInput& input, const std::string& path, const Imag
   const int channels = height_channels(path, spec);
   const std::size_t count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   Column<T> grey(count * static_cast<std::size_t>(channels));
-  bool good = false;
-  std::string why;
-  try {
-    good = input.read_image(0, 0, 0, channels, type, grey.data());
-    if (!good) why = input.geterror();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    why = error.what();
-  }
-  if (!good) fail(path, "cannot read the image: " + first_line(why, "damaged file"));
+  read_channels(input, path, 0, channels, type, grey.data());
   if (channels == 1) return grey;
   Column<T> first(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -92,4 +81,4 @@ HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::
   return image;
 }
 
-}  // namespace oktett
+}  // namespace oktett::oiio

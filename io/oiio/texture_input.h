@@ -8,7 +8,7 @@
 
 #include "io/image_color.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 /// Presents an image file to a texture cache as four channels: linear R, G, B and the first channel as
 /// stored. Halves for 8-bit files, which lose nothing that 8 bits hold, floats for all others. The path is
@@ -39,4 +39,4 @@ class TextureInput : public OIIO::ImageInput {
   int file_channels_ = 0;
 };
 
-}  // namespace oktett
+}  // namespace oktett::oiio

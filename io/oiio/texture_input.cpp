@@ -1,13 +1,13 @@
-#include "io/texture_input.h"
+#include "io/oiio/texture_input.h"
 
 #include <cstdint>
 #include <exception>
 #include <string>
 
 #include "core/error.h"
-#include "io/image_oiio.h"
+#include "io/oiio/open_image.h"
 
-namespace oktett {
+namespace oktett::oiio {
 
 using OIIO::TypeDesc;
 
@@ -83,4 +83,4 @@ bool TextureInput::read_native_scanline(int subimage, int miplevel, int y, int z
   return true;
 }
 
-}  // namespace oktett
+}  // namespace oktett::oiio

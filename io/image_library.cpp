@@ -1,0 +1,77 @@
+#include "io/image_library.h"
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+
+namespace oktett {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Where to look, from the folder of what this code is part of.
+constexpr const char* kPlaces[] = {
+    OKTETT_LIBRARIES_FROM_PROGRAMS,  // an installed program
+    "../lib",                        // one that was only built
+    ".",                             // a shared library beside its like
+#ifdef OKTETT_BUILT_LIBRARIES
+    OKTETT_BUILT_LIBRARIES,  // a program of a project that Oktett is a part of
+#endif
+};
+
+/// The file that this code is part of: a program, or Oktett itself where that is a shared library.
+fs::path own_file() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+#ifdef OKTETT_SHARED
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr)
+    return fs::weakly_canonical(info.dli_fname, error);
+#endif
+  return program;
+}
+
+/// The path of the library's file, or nothing if it lies nowhere near.
+fs::path find_file() {
+  const fs::path own = own_file();
+  if (own.empty()) return {};
+  const fs::path folder = own.parent_path();
+  for (const char* place : kPlaces) {
+    const fs::path file = (folder / place / OKTETT_IMAGE_LIBRARY).lexically_normal();
+    if (access(file.c_str(), R_OK) == 0) return file;
+  }
+  return {};
+}
+
+const ImageLibrary* load() {
+  // What is found by name alone is found as the system finds all libraries.
+  const fs::path found = find_file();
+  const std::string name = found.empty() ? std::string(OKTETT_IMAGE_LIBRARY) : found.string();
+  const auto fail = [] {
+    const char* why = dlerror();
+    throw Error(std::string("cannot load ") + OKTETT_IMAGE_LIBRARY + ", which reads and writes images: " +
+                    (why != nullptr ? why : "unknown reason"),
+                ErrorKind::io);
+  };
+  // Lazy, as programs are linked: of all those libraries few functions are called. It stays: objects with code of
+  // its own outlive any call.
+  void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
+  if (library == nullptr) fail();
+  void* const entry = dlsym(library, kImageLibraryEntry);
+  if (entry == nullptr) fail();
+  return reinterpret_cast<ImageLibraryEntry>(entry)();
+}
+
+}  // namespace
+
+const ImageLibrary& image_library() {
+  static const ImageLibrary* const library = load();
+  return *library;
+}
+
+bool image_library_is_installed() { return !find_file().empty(); }
+
+}  // namespace oktett
