@@ -73,6 +73,43 @@ void number_solids(CsgItem& csg) {
   csg.first_solid.push_back(count);
 }
 
+/// Nodes that hold all of the combination.
+std::vector<bool> needed_nodes(const CsgItem& csg) {
+  std::vector<bool> needed(csg.nodes.size());
+  // Parents stand before their children.
+  for (std::size_t node = 0; node < csg.nodes.size(); ++node) {
+    const CsgNode& n = csg.nodes[node];
+    if (n.parent == kNoId) {
+      needed[node] = true;
+      continue;
+    }
+    const CsgNode& above = csg.nodes[n.parent];
+    const bool holds_it =
+        above.op == CsgOp::intersect || (above.op == CsgOp::subtract && n.is_first) || above.children == 1;
+    needed[node] = needed[n.parent] && holds_it;
+  }
+  return needed;
+}
+
+/// Operands of one solid each that all of the combination is inside of, and the leaves where these are.
+void find_needed(CsgItem& csg) {
+  const Accel& solids = *csg.solids;
+  const std::vector<bool> nodes = needed_nodes(csg);
+  std::vector<std::uint32_t> count(csg.nodes.size());
+  for (std::size_t g = 0; g < csg.operand_of.size(); ++g)
+    count[csg.operand_of[g]] += csg.first_solid[g + 1] - csg.first_solid[g];
+  std::set<std::uint8_t> kinds;
+  for (std::size_t g = 0; g < csg.operand_of.size(); ++g) {
+    const std::uint32_t node = csg.operand_of[g];
+    csg.needed.push_back(nodes[node] && count[node] == 1);
+    if (csg.needed.back() != 0) kinds.insert(solids.kinds[g]);
+  }
+  for (const bool first : {true, false})
+    for (std::uint32_t leaf = 0; leaf < solids.leaves.size(); ++leaf)
+      if (kinds.contains(static_cast<std::uint8_t>(solids.leaves[leaf].kind)) == first)
+        csg.leaf_order.push_back(leaf);
+}
+
 constexpr std::uint32_t kAll = ~std::uint32_t{0};
 
 CsgStep step_of(const CsgItem& csg, std::uint32_t node) {
@@ -132,6 +169,7 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   std::sort(csg.inverted_inside.begin(), csg.inverted_inside.end());
   number_solids(csg);
   csg.in_lanes = fits_lanes(csg);
+  find_needed(csg);
   if (csg.nodes.size() <= kMaxCsgSteps)
     for (std::uint32_t node = 0; node < csg.nodes.size(); ++node) csg.steps.push_back(step_of(csg, node));
   return csg;

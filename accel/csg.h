@@ -47,9 +47,11 @@ struct CsgItem {
   std::vector<std::pair<const Accel*, std::uint32_t>> inverted_inside;
   std::vector<CsgNode> nodes;            ///< the root first
   std::vector<std::uint32_t> unbounded;  ///< geometries of `solids` that no crossing need tell of
+  std::vector<std::uint8_t> needed;      ///< per geometry: whoever is outside of it is outside of all
   /// Every solid lists its crossings with many rays at once (accel/csg_lanes.h).
   bool in_lanes = false;
-  std::vector<CsgStep> steps;  ///< of all nodes, if there are at most kMaxCsgSteps
+  std::vector<std::uint32_t> leaf_order;  ///< leaves of `solids`, those with what is needed first
+  std::vector<CsgStep> steps;             ///< of all nodes, if there are at most kMaxCsgSteps
   std::uint32_t item = 0;
   /// A hit with path p inside `solids` has path first_path + 2 (p + 1) + (1 if its normal is turned round).
   std::uint32_t first_path = 0;

@@ -54,8 +54,8 @@ class CsgLanes {
     for (const LeafEntry& leaf : solids.unbounded)
       if (!gather_leaf(leaf, lanes_, true)) return false;
     if (solids.leaves.size() <= kAllCsgLeaves) {
-      for (const LeafEntry& leaf : solids.leaves)
-        if (!gather_leaf(leaf, lanes_, false)) return false;
+      for (const std::uint32_t leaf : csg_.leaf_order)
+        if (!gather_leaf(solids.leaves[leaf], lanes_, false)) return false;
       return true;
     }
     return walk();
@@ -64,7 +64,7 @@ class CsgLanes {
   /// Sweeps the crossings in their order until each ray has met the combination or come to its end.
   /// False if the expression is too large.
   OKTETT_INLINE bool sweep(Found& found) {
-    if (rows_.rows == 0) return true;
+    if (rows_.rows == 0 || lanes_ == 0) return true;
     const std::vector<CsgStep>& steps = csg_.steps.empty() ? csg_steps(csg_, operand_, solids_) : csg_.steps;
     if (steps.size() > kMaxPlaces) return false;
     const F inf(std::numeric_limits<float>::infinity()), biggest(std::numeric_limits<float>::max());
@@ -114,7 +114,7 @@ class CsgLanes {
     while (size > 0) {
       const Entry e = stack[--size];
       if (e.ref.is_leaf()) {
-        if (!e.ref.is_none() && !gather_leaf(solids.leaves[e.ref.table_index()], e.lanes, false))
+        if (!e.ref.is_none() && !gather_leaf(solids.leaves[e.ref.table_index()], e.lanes & lanes_, false))
           return false;
         continue;
       }
@@ -130,7 +130,7 @@ class CsgLanes {
           F near, far;
           slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
                         far);
-          const unsigned met = e.lanes & bits(near <= far);
+          const unsigned met = e.lanes & lanes_ & bits(near <= far);
           if (met != 0) stack[size++] = {node.child[c], met};
         }
       });
@@ -139,14 +139,19 @@ class CsgLanes {
   }
 
   OKTETT_INLINE bool gather_leaf(const LeafEntry& leaf, unsigned lanes, bool unbounded) {
-    for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
+    for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count && lanes != 0; ++k) {
       const int first = rows_.rows;
       if (first + CrossingLanes<N>::kMostPerSolid > CrossingLanes<N>::kMost) return false;
       if (solids_ == CrossingLanes<N>::kMost) return false;
       const std::uint32_t item = is_exact(leaf.kind)
                                      ? ExactCode<A>::rows(*csg_.solids, leaf.kind, k, rays_, lanes, rows_)
                                      : gather_shape(leaf.kind, k, lanes);
-      if (rows_.rows > first || unbounded) begin_solid(first, item, lanes, unbounded);
+      if (rows_.rows > first || unbounded) {
+        begin_solid(first, item, lanes, unbounded);
+      } else if (csg_.needed[csg_.solids->geometry_of(item)] != 0) {
+        lanes_ &= ~lanes;
+      }
+      lanes &= lanes_;
     }
     return true;
   }
@@ -185,8 +190,12 @@ class CsgLanes {
     }
     const std::uint32_t geometry = csg_.solids->geometry_of(item);
     if (unbounded) begun |= asked(geometry, lanes & ~met);
+    // Rays that never are inside of what holds all of the combination have no more to ask.
+    const bool needed = csg_.needed[geometry] != 0;
+    if (needed) lanes_ &= ~(lanes & ~(met | begun));
     if (rows_.rows == first && begun == 0) return;
     const int s = solids_++;
+    if (needed && needed_count_ < kMostNeeded) needed_[needed_count_++] = s;
     operand_[s] = csg_.operand_of[geometry];
     end_[s] = rows_.rows;
     select(F::M::from_bits(begun), F(1.0f), F(0.0f)).store(depth_[s]);
@@ -231,13 +240,16 @@ class CsgLanes {
 
   /// The rays that are inside of the combination.
   OKTETT_INLINE unsigned evaluate(const std::vector<CsgStep>& steps) const {
+    unsigned possible = lanes_;
+    for (int i = 0; i < needed_count_; ++i) possible &= inside_[needed_[i]];
+    if (possible == 0) return 0;
     const auto count = static_cast<std::uint32_t>(steps.size());
     std::uint32_t state[kMaxPlaces];
     const CsgStep* step = steps.data();
     for (std::uint32_t i = 0; i < count; ++i) state[i] = step[i].initial;
     for (int s = 0; s < solids_; ++s) state[operand_[s]] |= inside_[s];
     for (std::uint32_t i = count; i-- > 1;) state[step[i].parent] &= state[i] ^ step[i].flip;
-    return (state[0] ^ step[0].flip) & ((2u << (N - 1)) - 1);
+    return (state[0] ^ step[0].flip) & possible;
   }
 
   /// Notes what the rays in `turned` see of the crossings in (limit, end], the first of which is at `next`.
@@ -273,13 +285,17 @@ class CsgLanes {
   /// Steps that are evaluated at a time: those of an expression, or what its solids lead to.
   static constexpr std::size_t kMaxPlaces = 512;
 
+  /// Solids that are looked at before a whole expression is.
+  static constexpr int kMostNeeded = 4;
+
   const CsgItem& csg_;
   unsigned lanes_;
   RayLanes<F> rays_;
   RayLanes<D> doubles_;
   Vec3<F> inv_;
   F slab_slack_;
-  int solids_ = 0;
+  int solids_ = 0, needed_count_ = 0;
+  int needed_[kMostNeeded];
   std::uint32_t operand_[CrossingLanes<N>::kMost];  ///< per solid; in the end its place among the steps
   int end_[CrossingLanes<N>::kMost];                ///< one past its last row
   unsigned inside_[CrossingLanes<N>::kMost];        ///< the rays inside of it

@@ -17,9 +17,9 @@ namespace {
 using Format = std::pair<const char*, PictureLayout>;
 /// Every OpenImageIO writes these.
 constexpr Format kCommonFormats[] = {
-    {".exr", PictureLayout::all_planes}, {".png", PictureLayout::srgb8},  {".jpg", PictureLayout::srgb8},
-    {".jpeg", PictureLayout::srgb8},     {".tif", PictureLayout::srgb8},  {".tiff", PictureLayout::srgb8},
-    {".hdr", PictureLayout::float_rgb},  {".bmp", PictureLayout::srgb8},  {".tga", PictureLayout::srgb8}};
+    {".exr", PictureLayout::all_planes}, {".png", PictureLayout::srgb8}, {".jpg", PictureLayout::srgb8},
+    {".jpeg", PictureLayout::srgb8},     {".tif", PictureLayout::srgb8}, {".tiff", PictureLayout::srgb8},
+    {".hdr", PictureLayout::float_rgb},  {".bmp", PictureLayout::srgb8}, {".tga", PictureLayout::srgb8}};
 
 std::string extension_of(const std::string& path) { return std::filesystem::path(path).extension().string(); }
 

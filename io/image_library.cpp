@@ -52,12 +52,12 @@ const ImageLibrary* load() {
   const std::string name = found.empty() ? std::string(OKTETT_IMAGE_LIBRARY) : found.string();
   const auto fail = [] {
     const char* why = dlerror();
-    throw Error(std::string("cannot load ") + OKTETT_IMAGE_LIBRARY + ", which reads and writes images: " +
-                    (why != nullptr ? why : "unknown reason"),
+    throw Error(std::string("cannot load ") + OKTETT_IMAGE_LIBRARY +
+                    ", which reads and writes images: " + (why != nullptr ? why : "unknown reason"),
                 ErrorKind::io);
   };
-  // Lazy, as programs are linked: of all those libraries few functions are called. It stays: objects with code of
-  // its own outlive any call.
+  // Lazy, as programs are linked: of all those libraries few functions are called. It stays: objects with
+  // code of its own outlive any call.
   void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
   if (library == nullptr) fail();
   void* const entry = dlsym(library, kImageLibraryEntry);

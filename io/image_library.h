@@ -44,8 +44,8 @@ class ImageLibrary {
   ~ImageLibrary() = default;
 };
 
-/// Loads the library on the first call, for as long as the process lives. Throws Error of kind io if it cannot
-/// be loaded.
+/// Loads the library on the first call, for as long as the process lives. Throws Error of kind io if it
+/// cannot be loaded.
 const ImageLibrary& image_library();
 
 /// True if the library is loaded or its file is where an installation puts it, so that a later call of
