@@ -11,8 +11,9 @@ namespace oktett {
 
 /// Throws Error if a picture cannot be written to `path`: "-", empty or of unknown extension (bad_input), a
 /// directory or other thing that is no regular file, or a place that does not exist or cannot be written to
-/// (io). It tries by writing a one-pixel picture beside `path` and removing it; what may stand at `path` is
-/// not touched. Ask before rendering.
+/// (io), or if the image library is missing (io). It tries by creating a file beside `path` and removing it,
+/// with a picture of one pixel unless every OpenImageIO writes the format; what may stand at `path` is not
+/// touched. Ask before rendering.
 void check_output(const std::string& path);
 
 /// True if the format that `path`'s extension names keeps planes other than R, G, B, A.

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <system_error>
 
 #include "core/error.h"
