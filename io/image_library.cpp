@@ -3,8 +3,10 @@
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 namespace oktett {
 
@@ -34,15 +36,37 @@ fs::path own_file() {
   return program;
 }
 
-/// The path of the library's file, or nothing if it lies nowhere near.
+/// Where the system looks for libraries that this code asks for, run paths first; without what its cache
+/// adds.
+std::vector<fs::path> system_folders() {
+  std::vector<fs::path> folders;
+#ifdef __GLIBC__
+  Dl_info info{};
+  void* self = nullptr;
+  if (dladdr1(reinterpret_cast<const void*>(&own_file), &info, &self, RTLD_DL_LINKMAP) == 0) return folders;
+  Dl_serinfo size{};
+  if (dlinfo(self, RTLD_DI_SERINFOSIZE, &size) != 0) return folders;
+  std::vector<std::max_align_t> room(size.dls_size / sizeof(std::max_align_t) + 1);
+  auto* const list = reinterpret_cast<Dl_serinfo*>(room.data());
+  if (dlinfo(self, RTLD_DI_SERINFOSIZE, list) != 0 || dlinfo(self, RTLD_DI_SERINFO, list) != 0)
+    return folders;
+  const Dl_serpath* const paths = list->dls_serpath;
+  for (unsigned i = 0; i < list->dls_cnt; ++i) folders.emplace_back(paths[i].dls_name);
+#endif
+  return folders;
+}
+
+bool can_read(const fs::path& file) { return access(file.c_str(), R_OK) == 0; }
+
+/// The path of the library's file, or nothing if only the system may know it.
 fs::path find_file() {
   const fs::path own = own_file();
-  if (own.empty()) return {};
-  const fs::path folder = own.parent_path();
   for (const char* place : kPlaces) {
-    const fs::path file = (folder / place / OKTETT_IMAGE_LIBRARY).lexically_normal();
-    if (access(file.c_str(), R_OK) == 0) return file;
+    const fs::path file = (own.parent_path() / place / OKTETT_IMAGE_LIBRARY).lexically_normal();
+    if (!own.empty() && can_read(file)) return file;
   }
+  for (const fs::path& folder : system_folders())
+    if (can_read(folder / OKTETT_IMAGE_LIBRARY)) return folder / OKTETT_IMAGE_LIBRARY;
   return {};
 }
 
