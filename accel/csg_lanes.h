@@ -146,11 +146,7 @@ class CsgLanes {
       const std::uint32_t item = is_exact(leaf.kind)
                                      ? ExactCode<A>::rows(*csg_.solids, leaf.kind, k, rays_, lanes, rows_)
                                      : gather_shape(leaf.kind, k, lanes);
-      if (rows_.rows > first || unbounded) {
-        begin_solid(first, item, lanes, unbounded);
-      } else if (csg_.needed[csg_.solids->geometry_of(item)] != 0) {
-        lanes_ &= ~lanes;
-      }
+      begin_solid(first, item, lanes, unbounded);
       lanes &= lanes_;
     }
     return true;
