@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "accel/accel_data.h"
@@ -104,10 +105,11 @@ void find_needed(CsgItem& csg) {
     csg.needed.push_back(nodes[node] && count[node] == 1);
     if (csg.needed.back() != 0) kinds.insert(solids.kinds[g]);
   }
-  for (const bool first : {true, false})
-    for (std::uint32_t leaf = 0; leaf < solids.leaves.size(); ++leaf)
-      if (kinds.contains(static_cast<std::uint8_t>(solids.leaves[leaf].kind)) == first)
-        csg.leaf_order.push_back(leaf);
+  csg.leaf_order.resize(solids.leaves.size());
+  std::iota(csg.leaf_order.begin(), csg.leaf_order.end(), 0u);
+  std::stable_partition(csg.leaf_order.begin(), csg.leaf_order.end(), [&](std::uint32_t leaf) {
+    return kinds.contains(static_cast<std::uint8_t>(solids.leaves[leaf].kind));
+  });
 }
 
 constexpr std::uint32_t kAll = ~std::uint32_t{0};
