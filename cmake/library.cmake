@@ -10,9 +10,9 @@ add_library(oktett::oktett ALIAS oktett)
 target_compile_features(oktett PUBLIC cxx_std_20)
 target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
-set_target_properties(oktett PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+set_target_properties(oktett PROPERTIES
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
-set_target_properties(oktett PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
   PUBLIC TBB::tbb Threads::Threads

@@ -27,13 +27,12 @@ constexpr const char* kPlaces[] = {
 /// The file that this code is part of: a program, or Oktett itself where that is a shared library.
 fs::path own_file() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
 #ifdef OKTETT_SHARED
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr)
     return fs::weakly_canonical(info.dli_fname, error);
 #endif
-  return program;
+  return fs::read_symlink("/proc/self/exe", error);
 }
 
 /// Where the system looks for libraries that this code asks for, run paths first; without what its cache

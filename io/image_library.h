@@ -48,8 +48,8 @@ class ImageLibrary {
 /// cannot be loaded.
 const ImageLibrary& image_library();
 
-/// True if the library is loaded or its file is where an installation puts it, so that a later call of
-/// image_library can be relied on. Loads nothing.
+/// True if the library's file is found, so that a later call of image_library can be relied on. Loads
+/// nothing. False may only mean that the system's cache knows more.
 bool image_library_is_installed();
 
 /// What the shared library of io/oiio/ exports, by its name for dlsym.

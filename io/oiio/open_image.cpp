@@ -19,10 +19,6 @@ namespace {
 
 constexpr int kMaxChannels = 1024;
 
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-  throw Error(Location{path}, message, ErrorKind::io);
-}
-
 void check_exists(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -47,6 +43,10 @@ void check_header(const std::string& path, const OIIO::ImageSpec& spec) {
 }
 
 }  // namespace
+
+void fail(const std::string& path, const std::string& message) {
+  throw Error(Location{path}, message, ErrorKind::io);
+}
 
 std::string first_line(const std::string& text, const std::string& fallback) {
   std::string line = text.substr(0, text.find_first_of("\r\n"));

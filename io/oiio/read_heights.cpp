@@ -16,10 +16,6 @@ namespace {
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-[[noreturn]] void fail(const std::string& path, const std::string& message) {
-  throw Error(Location{path}, message, ErrorKind::io);
-}
-
 void check_size(const std::string& path, const ImageSpec& spec, std::uint32_t most_side,
                 std::size_t most_pixels) {
   const auto width = static_cast<std::size_t>(spec.width), height = static_cast<std::size_t>(spec.height);
@@ -63,7 +59,8 @@ Column<T> read_grey(OIIO::ImageInput& input, const std::string& path, const Imag
 
 }  // namespace
 
-HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels) {
+HeightImage OpenImageIoLibrary::read_heights(const std::string& path, std::uint32_t most_side,
+                                             std::size_t most_pixels) const {
   const OIIO::ImageInput::unique_ptr input = open_image(path);
   const ImageSpec spec = input->spec();
   check_size(path, spec, most_side, most_pixels);

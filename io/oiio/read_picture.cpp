@@ -75,7 +75,7 @@ void decode_colors(Picture& picture, const ColorEncoding& encoding, bool multipl
 
 }  // namespace
 
-Picture read_picture(const std::string& path) {
+Picture OpenImageIoLibrary::read(const std::string& path) const {
   const OIIO::ImageInput::unique_ptr input = open_image(path);
   const ImageSpec spec = input->spec();
   Picture picture;

@@ -10,10 +10,10 @@
 
 namespace oktett::oiio {
 
-/// Presents an image file to a texture cache as four channels: linear R, G, B and the first channel as
-/// stored. Halves for 8-bit files, which lose nothing that 8 bits hold, floats for all others. The path is
-/// handed over as the string attribute `oktett:path` of the configuration, so no character of it has a
-/// meaning to the cache.
+/// Presents an image file to a texture cache as six channels: linear R, G, B, then the first three as
+/// stored (a grey one repeated). Halves for 8-bit files, which lose nothing that 8 bits hold, floats for all
+/// others. The path is handed over as the string attribute `oktett:path` of the configuration, so no
+/// character of it has a meaning to the cache.
 class TextureInput : public OIIO::ImageInput {
  public:
   static constexpr int kChannels = 6;

@@ -222,7 +222,8 @@ Vec3f FileTextures::normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) co
 
 }  // namespace
 
-std::unique_ptr<TextureSampler> load_textures(std::vector<Texture> textures, std::vector<Warning>& warnings) {
+std::unique_ptr<TextureSampler> OpenImageIoLibrary::load_textures(std::vector<Texture> textures,
+                                                                  std::vector<Warning>& warnings) const {
   return std::make_unique<FileTextures>(std::move(textures), warnings);
 }
 

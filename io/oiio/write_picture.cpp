@@ -185,14 +185,14 @@ bool write_srgb8(ImageOutput& output, const std::string& path, const Picture& pi
 
 }  // namespace
 
-std::optional<PictureLayout> find_layout(const std::string& path) {
+std::optional<PictureLayout> OpenImageIoLibrary::layout(const std::string& path) const {
   const ImageOutput::unique_ptr output = find_writer(path);
   if (!output) return std::nullopt;
   return layout_of(*output);
 }
 
-void write_picture(const std::string& path, const std::string& temporary, const Picture& picture,
-                   const ImageMetadata& metadata) {
+void OpenImageIoLibrary::write(const std::string& path, const std::string& temporary, const Picture& picture,
+                               const ImageMetadata& metadata) const {
   const ImageOutput::unique_ptr writer = find_writer(path);
   if (!writer) throw Error(Location{path}, "unknown image format");
   ImageOutput& output = *writer;
@@ -218,8 +218,7 @@ void write_picture(const std::string& path, const std::string& temporary, const 
   } catch (const std::exception& error) {
     why = error.what();
   }
-  if (!written)
-    throw Error(Location{path}, "cannot write: " + first_line(why, "unknown reason"), ErrorKind::io);
+  if (!written) fail(path, "cannot write: " + first_line(why, "unknown reason"));
 }
 
 }  // namespace oktett::oiio
