@@ -8,15 +8,15 @@
 #include <variant>
 #include <vector>
 
-#include "accel/surface_block.h"
+#include "accel/interaction_block.h"
 #include "core/box.h"
 #include "core/isa.h"
 #include "core/mesh.h"
 #include "core/ray.h"
+#include "core/surface_interaction.h"
 #include "core/transform.h"
-#include "kernels/shapes/exact_data.h"
-#include "kernels/shapes/shape_data.h"
-#include "kernels/surface.h"
+#include "kernels/closed/shape_data.h"
+#include "kernels/exact/exact_data.h"
 
 namespace oktett {
 
@@ -129,19 +129,19 @@ void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Is
 void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa);
 
 /// Shading data of a hit that `ray` had with `accel`.
-Surface surface(const Accel& accel, const Ray& ray, const Hit& hit);
+SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const Hit& hit);
 
 /// Only what names the surface of a hit: geometry, primitive, user and material_slot.
-Surface identify(const Accel& accel, const Hit& hit);
+SurfaceInteraction identify(const Accel& accel, const Hit& hit);
 
-/// The surfaces of hits `which[0]` ... `which[count - 1]` of a batch, at most SurfaceBlock::kMost, with the
-/// bits that surface() gives but without uv and tangent; found in lanes.
-void surfaces(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
-              std::size_t count, Isa isa, SurfaceBlock& out);
+/// The surfaces of hits `which[0]` ... `which[count - 1]` of a batch, at most InteractionBlock::kMost, with
+/// the bits that surface_interaction() gives but without uv and tangent; found in lanes.
+void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
+                          const std::uint32_t* which, std::size_t count, Isa isa, InteractionBlock& out);
 
 /// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the
 /// hit, so that the surface neither shadows itself nor is passed through (Pharr, Jakob, Humphreys 2016,
 /// section 3.9).
-Vec3f offset_origin(const Surface& s, const Vec3f& direction);
+Vec3f offset_origin(const SurfaceInteraction& s, const Vec3f& direction);
 
 }  // namespace oktett

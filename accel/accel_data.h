@@ -8,8 +8,8 @@
 
 #include "accel/accel.h"
 #include "accel/compact_node.h"
-#include "accel/csg.h"
-#include "accel/layout.h"
+#include "accel/csg/csg.h"
+#include "accel/node.h"
 #include "core/platform.h"
 #include "core/virtual_array.h"
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "accel/layout.h"
+#include "accel/node.h"
 #include "core/box.h"
 #include "core/platform.h"
 

@@ -2,7 +2,7 @@
 /// \file What a geometry is and where it lies, before anything is built of it.
 
 #include "accel/accel.h"
-#include "kernels/primitives.h"
+#include "kernels/kinds.h"
 
 namespace oktett {
 

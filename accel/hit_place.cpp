@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accel/csg_solids.h"
+#include "accel/csg/csg_solids.h"
 #include "accel/geometry_bounds.h"
 
 namespace oktett {
@@ -65,7 +65,7 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path) {
 }
 
 /// From the space of the structure that holds the item to the world.
-static void move_by_instances(const HitPlace& place, const Ray& ray, float t, Surface& s) {
+static void move_by_instances(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
   const Affine& m = place.to_world;
   const Affine& inverse = place.inverse;
   const Vec3d p = m.point(Vec3d(s.position));
@@ -90,7 +90,7 @@ static Ray moved_ray(const Affine& m, const Ray& ray) {
   return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
 }
 
-void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s) {
+void move_surface(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
   if (place.moved) move_by_instances(place, ray, t, s);
   if (place.combined == nullptr) return;
   const float reach = coincidence(t, coincidence_slack(*place.combined, moved_ray(place.to_combined, ray)));

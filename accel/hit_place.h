@@ -1,5 +1,5 @@
 #pragma once
-/// \file Where in a structure, and through which instances, a hit lies: the parts of surface().
+/// \file Where in a structure, and through which instances, a hit lies: the parts of surface_interaction().
 
 #include <cmath>
 
@@ -28,7 +28,7 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path);
 Ray ray_inside(const HitPlace& place, const Ray& ray);
 
 /// Brings a surface found inside instances and combinations to the world.
-void move_surface(const HitPlace& place, const Ray& ray, float t, Surface& s);
+void move_surface(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s);
 
 /// The error of a position on a combination of which faces within `reach` along the ray count as one: rays
 /// that leave must clear them all. Rounded up.
@@ -36,7 +36,7 @@ OKTETT_INLINE float widened_error(float error, float reach, float direction) {
   return (error + reach * std::abs(direction)) * (1 + 0x1p-22f);
 }
 
-/// What a hit met, by the names that Surface has for it.
+/// What a hit met, by the names that SurfaceInteraction has for it.
 struct HitNames {
   std::uint32_t geometry, primitive, user;
   std::uint32_t material_slot = 0;
@@ -46,6 +46,6 @@ HitNames identify_in(const HitPlace& place, const Hit& hit);
 
 /// The surface at a hit whose place is known; uv and tangent may be missing if they are not wanted.
 void surface_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
-                Surface& s);
+                SurfaceInteraction& s);
 
 }  // namespace oktett

@@ -3,7 +3,7 @@
 /// the same inside.
 
 #include "accel/accel_data.h"
-#include "kernels/lanes.h"
+#include "core/lanes.h"
 
 namespace oktett {
 

@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "accel/accel_data.h"
+#include "core/lanes.h"
 #include "core/ray.h"
-#include "kernels/lanes.h"
-#include "kernels/slab.h"
+#include "kernels/closed/slab.h"
 
 namespace oktett {
 

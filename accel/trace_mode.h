@@ -7,14 +7,14 @@
 namespace oktett {
 
 enum class TraceMode : std::uint8_t {
-  automatic,    ///< tiles for rays that share a point, packets for those that run together, the others
+  automatic,    ///< beams for rays that share a point, packets for those that run together, the others
                 ///< interleaved
   single,       ///< one by one
   interleaved,  ///< one by one, many in flight (without vector registers: like `single`)
   packet4,
   packet8,
   packet16,
-  tile,  ///< as automatic, but no tile is given up, however small the triangles
+  beam,  ///< as automatic, but no beam is given up, however small the triangles
 };
 
 }  // namespace oktett

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "accel/trace_counts.h"
+#include "accel/traverse/trace_counts.h"
 #include "app/command.h"
 #include "app/json.h"
 #include "app/render_options.h"
 #include "app/scene_summary.h"
 #include "app/units.h"
 #include "app/warnings.h"
-#include "io/scene_file.h"
+#include "io/scene/scene_file.h"
 #include "render/camera.h"
 #include "render/default_view.h"
 #include "render/geometry.h"

@@ -20,10 +20,10 @@
 #include "app/warnings.h"
 #include "core/error.h"
 #include "core/isa.h"
-#include "io/display.h"
-#include "io/image.h"
-#include "io/scene_file.h"
-#include "io/texture.h"
+#include "io/display/display.h"
+#include "io/image/image.h"
+#include "io/image/texture.h"
+#include "io/scene/scene_file.h"
 #include "render/render.h"
 
 namespace oktett {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "io/scene_file.h"
+#include "io/scene/scene_file.h"
 #include "render/scene.h"
 
 namespace CLI {

@@ -13,12 +13,12 @@
 #include "app/command.h"
 #include "app/json.h"
 #include "app/render_options.h"
-#include "app/verify_csg.h"
-#include "app/verify_exact.h"
-#include "app/verify_kernels.h"
-#include "app/verify_meshes.h"
 #include "core/error.h"
-#include "io/obj.h"
+#include "io/obj/obj.h"
+#include "verify/checks/csg.h"
+#include "verify/checks/exact.h"
+#include "verify/checks/kernels.h"
+#include "verify/checks/meshes.h"
 
 namespace oktett {
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "io/obj.h"
+#include "io/obj/obj.h"
 
 namespace oktett::bench {
 

@@ -9,8 +9,8 @@ namespace {
 float radius_of(const Box& b) { return 0.5f * length(b.extent()); }
 
 /// The hit point, a little off the surface on the side of the ray, and the normal on that side.
-Surface lifted_surface(const Accel& accel, const Ray& ray, const Hit& hit, float lift) {
-  Surface s = surface(accel, ray, hit);
+SurfaceInteraction lifted_surface(const Accel& accel, const Ray& ray, const Hit& hit, float lift) {
+  SurfaceInteraction s = surface_interaction(accel, ray, hit);
   if (dot(s.geometric_normal, ray.direction) > 0) s.geometric_normal = -s.geometric_normal;
   s.position += s.geometric_normal * lift;
   return s;
@@ -62,7 +62,7 @@ RayBatch diffuse_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, 
   RayBatch out;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!hits[i].valid()) continue;
-    const Surface s = lifted_surface(accel, rays[i], hits[i], lift);
+    const SurfaceInteraction s = lifted_surface(accel, rays[i], hits[i], lift);
     Vec3f t, b;
     make_basis(s.geometric_normal, t, b);
     for (int k = 0; k < count; ++k) {

@@ -24,7 +24,7 @@
 #include "accel/accel.h"
 #include "bench/terrain.h"
 #include "core/random.h"
-#include "kernels/shapes/height_grid.h"
+#include "kernels/heights/height_grid.h"
 
 namespace oktett::bench {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "accel/isa/table.h"
 #include "core/random.h"
 #include "core/ray.h"
+#include "verify/probes/kernel_probe.h"
 
 namespace oktett::bench {
 namespace {
@@ -60,8 +60,8 @@ struct KernelData {
     for (int k = 0; k < 12; ++k) shape[k].push_back(value[k]);
   }
 
-  KernelRun run() {
-    KernelRun r;
+  KernelProbe run() {
+    KernelProbe r;
     r.count = kPairs, r.rays = rays.span();
     for (int k = 0; k < 3; ++k)
       for (int axis = 0; axis < 3; ++axis) r.corner[k][axis] = corner[k][axis].data();
@@ -73,9 +73,9 @@ struct KernelData {
 
 void run_kernel(benchmark::State& state, KernelId id, Isa isa, int width) {
   KernelData data(id);
-  const KernelRun run = data.run();
+  const KernelProbe run = data.run();
   for (auto _ : state) {
-    isa_table(isa)->run_kernel(id, width, run);
+    probe_kernel(isa, id, width, run);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPairs));

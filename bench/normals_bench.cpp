@@ -11,7 +11,7 @@
 
 #include "accel/accel.h"
 #include "core/random.h"
-#include "kernels/polynomial_expression.h"
+#include "kernels/exact/polynomial_expression.h"
 
 namespace oktett::bench {
 namespace {
@@ -89,17 +89,17 @@ void normals(benchmark::State& state, const Subject& subject, NormalMethod metho
     if (hits[i].valid()) which.push_back(i);
   double greatest = 0, sum = 0;
   for (const std::uint32_t i : which) {
-    const Surface s = surface(*accel, rays[i], hits[i]);
+    const SurfaceInteraction s = surface_interaction(*accel, rays[i], hits[i]);
     const Vec3l n = normalize(Vec3l(s.geometric_normal)),
                 truth = normalize(subject.gradient(Vec3l(s.position)));
     const double angle = static_cast<double>(2 * std::asin(std::min(length(n - truth) / 2, 1.0L)));
     greatest = std::max(greatest, angle), sum += angle;
   }
-  SurfaceBlock block;
+  InteractionBlock block;
   for (auto _ : state)
-    for (std::size_t first = 0; first < which.size(); first += SurfaceBlock::kMost) {
-      surfaces(*accel, rays.span(), hits.span(), which.data() + first,
-               std::min(SurfaceBlock::kMost, which.size() - first), default_isa(), block);
+    for (std::size_t first = 0; first < which.size(); first += InteractionBlock::kMost) {
+      surface_interactions(*accel, rays.span(), hits.span(), which.data() + first,
+                           std::min(InteractionBlock::kMost, which.size() - first), default_isa(), block);
       benchmark::DoNotOptimize(block);
     }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(which.size()));

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/obj.h"
+#include "io/obj/obj.h"
 
 #ifdef OKTETT_HAVE_TINYOBJLOADER
 #include <tiny_obj_loader.h>

@@ -6,7 +6,7 @@
 #include "bench/peer_timing.h"
 #include "bench/peer_trace.h"
 #include "core/error.h"
-#include "io/obj.h"
+#include "io/obj/obj.h"
 
 #ifdef OKTETT_HAVE_TINYOBJLOADER
 #include <tiny_obj_loader.h>

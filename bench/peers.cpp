@@ -24,7 +24,7 @@
 #include "bench/peer_timing.h"
 #include "bench/peer_trace.h"
 #include "core/error.h"
-#include "io/obj.h"
+#include "io/obj/obj.h"
 
 namespace oktett::bench {
 namespace {

@@ -146,7 +146,7 @@ Silhouettes compare_ids(const Field& field, const std::vector<std::uint32_t>& th
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // 0 is the background, object k, which has material k, is k + 1.
     const auto named = [&] {
-      if (field.id) return field.id(surface(*world.accel, rays[i], hits[i]));
+      if (field.id) return field.id(surface_interaction(*world.accel, rays[i], hits[i]));
       return world.objects[identify(*world.accel, hits[i]).user].material + 1;
     };
     const std::uint32_t ours = hits[i].valid() ? named() : 0;

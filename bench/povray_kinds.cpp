@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bench/povray_scene.h"
-#include "kernels/function_tape.h"
+#include "kernels/functions/function_tape.h"
 
 namespace oktett::bench {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/ray.h"
-#include "kernels/surface.h"
+#include "core/surface_interaction.h"
 #include "render/scene.h"
 
 namespace oktett::bench {
@@ -45,7 +45,7 @@ struct Field {
   std::string pov, pov_ids;  ///< the same for POV-Ray, lit; and each object in a colour that numbers it
   std::vector<FieldObject> objects;  ///< without the floor
   /// If set, the number of the colour at a hit of Oktett's, and the one that is right for a ray.
-  std::function<std::uint32_t(const Surface&)> id;
+  std::function<std::uint32_t(const SurfaceInteraction&)> id;
   std::function<std::uint32_t(const Ray&)> right;
 };
 

@@ -8,7 +8,7 @@
 #include "bench/povray_scene.h"
 #include "bench/terrain.h"
 #include "core/error.h"
-#include "kernels/shapes/height_grid.h"
+#include "kernels/heights/height_grid.h"
 
 namespace oktett::bench {
 
@@ -114,7 +114,7 @@ Field make_terrain_field(std::uint32_t width, std::uint32_t height, const std::s
       HeightGrid::from_words(kTerrainSide, kTerrainSide, std::move(heights), HeightInterpolation::triangles);
   shape.size = {kSide, kTall, kSide};
   field.right = Oracle(shape.grid);
-  field.id = [](const Surface& s) { return square_at(s.position.x, s.position.z); };
+  field.id = [](const SurfaceInteraction& s) { return square_at(s.position.x, s.position.z); };
   Object& object = field.scene.objects.emplace_back();
   object.shape = ExactShape{shape};
   object.material = 0;

@@ -12,9 +12,9 @@
 #include <cmath>
 #include <vector>
 
-#include "accel/isa/table.h"
 #include "core/random.h"
 #include "kernels/roots/solve.h"
+#include "verify/probes/roots_probe.h"
 
 namespace oktett::bench {
 namespace {
@@ -107,7 +107,7 @@ void run_lanes(benchmark::State& state, RootsKernel id, int degree, bool rays, I
     for (int k = 0; k < 7; ++k) c[k].push_back(k <= degree ? q.p.c[k] : 0);
     a.push_back(q.a), b.push_back(q.b);
   }
-  RootsRun run;
+  RootsProbe run;
   run.count = kProblems;
   for (int k = 0; k < 7; ++k) run.c[k] = c[k].data();
   for (int k = 0; k < 6; ++k) {
@@ -116,7 +116,7 @@ void run_lanes(benchmark::State& state, RootsKernel id, int degree, bool rays, I
   }
   run.a = a.data(), run.b = b.data(), run.unsure = unsure.data();
   for (auto _ : state) {
-    isa_table(isa)->run_roots(id, run);
+    probe_roots(isa, id, run);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kProblems));

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "accel/dispatch.h"
+#include "accel/query.h"
 #include "bench/bench_mesh.h"
 #include "bench/bench_rays.h"
 

@@ -2,7 +2,7 @@
 /// \file Bounds of exact surfaces in the world.
 
 #include "core/box.h"
-#include "kernels/shapes/exact.h"
+#include "kernels/exact/exact.h"
 
 namespace oktett {
 

@@ -5,16 +5,16 @@
 
 namespace oktett {
 
-void shade_ambient_occlusion(const RenderContext& context, Wave& wave, std::size_t ray,
+void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                              const ShadingPoint& p) {
-  const std::uint32_t sample = wave.rays.sample[ray];
-  const std::uint64_t pattern = pattern_key(wave.samples.key[sample], 1);
-  SquareSample at = stratified_sample(wave.samples.number[sample], context.settings.samples, pattern);
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  const std::uint64_t pattern = pattern_key(wavefront.samples.key[sample], 1);
+  SquareSample at = stratified_sample(wavefront.samples.number[sample], context.settings.samples, pattern);
   if (context.settings.samples == 1) at = {random_float(pattern, 0, 2), random_float(pattern, 0, 3)};
   const Vec3f direction = cosine_direction(p.ns, at);
   if (dot(direction, p.ng) <= 0) return;
   const Ray probe{offset_origin(p.surface, direction), 0, direction, context.ao_radius};
-  wave.shadows.front().push_back(probe, static_cast<std::uint32_t>(ray), wave.rays.throughput[ray]);
+  wavefront.shadows.front().push_back(probe, static_cast<std::uint32_t>(ray), wavefront.rays.throughput[ray]);
 }
 
 }  // namespace oktett

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "accel/view_rays.h"
 #include "core/math.h"
+#include "render/view_directions.h"
 
 namespace oktett {
 

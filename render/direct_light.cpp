@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "accel/offset_origin.h"
+#include "accel/surface/offset_origin.h"
 #include "core/math.h"
 #include "core/platform.h"
 

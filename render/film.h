@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/picture.h"
-#include "render/wave.h"
+#include "render/wavefront.h"
 
 namespace oktett {
 

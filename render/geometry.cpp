@@ -187,7 +187,7 @@ World build_world(const Scene& scene, const BuildOptions& options) {
   return WorldBuilder(scene, options).build();
 }
 
-const Material& material_at(const World& world, const Surface& surface) {
+const Material& material_at(const World& world, const SurfaceInteraction& surface) {
   return material_at(world, surface.user, surface.material_slot);
 }
 

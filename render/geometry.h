@@ -11,7 +11,7 @@
 
 namespace oktett {
 
-/// What an object of the scene contributes to shading its hits; indexed by Surface::user.
+/// What an object of the scene contributes to shading its hits; indexed by SurfaceInteraction::user.
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
@@ -37,7 +37,7 @@ struct World {
 World build_world(const Scene& scene, const BuildOptions& options = {});
 
 /// The material at a hit: that of the object, else of the mesh's slot, else the default material.
-const Material& material_at(const World& world, const Surface& surface);
+const Material& material_at(const World& world, const SurfaceInteraction& surface);
 const Material& material_at(const World& world, std::uint32_t user, std::uint32_t material_slot);
 
 }  // namespace oktett

@@ -1,39 +1,42 @@
 #pragma once
 /// \file What happens at a surface that a ray has found: one function per kind of picture.
 
-#include "render/wave.h"
+#include "render/wavefront.h"
 
 namespace oktett {
 
-/// Shades the hit `p` of entry `ray` of `wave.rays`: adds what is known at once to `wave.radiance[ray]`,
-/// queues shadow rays for what depends on visibility, and queues rays of the next level.
-using Integrator = void (*)(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p);
+/// Shades the hit `p` of entry `ray` of `wavefront.rays`: adds what is known at once to
+/// `wavefront.radiance[ray]`, queues shadow rays for what depends on visibility, and queues rays of the next
+/// level.
+using Integrator = void (*)(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                            const ShadingPoint& p);
 
 Integrator integrator_for(IntegratorKind kind);
 
 /// Recursive ray tracing after Whitted (1980) with Phong's illumination model, mirrors, and dielectrics by
 /// Snell's and Fresnel's laws; see Material for the sum.
-void shade_whitted(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p);
+void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                   const ShadingPoint& p);
 
 /// The mirror and refracted rays of a hit in Whitted's model; `throughput` is that of the part of the surface
 /// that is there.
-void push_specular(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p,
+void push_specular(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                    const Color& throughput);
 
 /// Unidirectional path tracing (Kajiya 1986). The scene's lights are sampled at each hit; emission and
 /// background are met by chance. Diffuse, mirror and glass take turns at random by their weights. Lights are
 /// scaled as in Whitted's model: a white diffuse surface that faces a light of colour c shows c. Ambient
 /// light is left out, as it stands for what is computed here.
-void shade_path(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p);
+void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
 
 /// White times the cosine-weighted fraction of directions that meet nothing within the radius.
-void shade_ambient_occlusion(const RenderContext& context, Wave& wave, std::size_t ray,
+void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                              const ShadingPoint& p);
 
 /// The shading normal in world space, [-1, 1] shown as [0, 1].
-void shade_normal(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p);
+void shade_normal(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
 
 /// Distance along the view axis: white at the near end of the scene's bounds, black at the far end.
-void shade_depth(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p);
+void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
 
 }  // namespace oktett

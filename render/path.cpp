@@ -16,49 +16,52 @@ constexpr float kMostSurvival = 0.95f;
 /// What the random numbers of a level are for. Dimension 0 is the place on the film.
 enum Dimension : std::uint32_t { hole, lobe, roulette, direction, per_level };
 
-std::uint32_t dimension(const Wave& wave, Dimension d) { return 1 + wave.level * per_level + d; }
+std::uint32_t dimension(const Wavefront& wavefront, Dimension d) {
+  return 1 + wavefront.level * per_level + d;
+}
 
-float random_number(const Wave& wave, std::uint32_t sample, Dimension d) {
-  return random_float(wave.samples.key[sample], wave.samples.number[sample], dimension(wave, d));
+float random_number(const Wavefront& wavefront, std::uint32_t sample, Dimension d) {
+  return random_float(wavefront.samples.key[sample], wavefront.samples.number[sample],
+                      dimension(wavefront, d));
 }
 
 /// Ends paths of little weight and raises the others', so that the mean stays. False if the path ends.
-bool survives(const Wave& wave, std::size_t ray, Color& throughput) {
-  if (wave.rays.bounces[ray] + 1u <= kSureBounces) return true;
+bool survives(const Wavefront& wavefront, std::size_t ray, Color& throughput) {
+  if (wavefront.rays.bounces[ray] + 1u <= kSureBounces) return true;
   const float chance = std::min(kMostSurvival, max_component(throughput));
-  if (random_number(wave, wave.rays.sample[ray], roulette) >= chance) return false;
+  if (random_number(wavefront, wavefront.rays.sample[ray], roulette) >= chance) return false;
   throughput *= 1 / chance;
   return true;
 }
 
-void push_path(Wave& wave, std::size_t ray, const ShadingPoint& p, const Vec3f& towards, Color throughput,
-               Bounce bounce) {
-  if (survives(wave, ray, throughput)) push_bounce(wave, ray, p, towards, throughput, bounce);
+void push_path(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& towards,
+               Color throughput, Bounce bounce) {
+  if (survives(wavefront, ray, throughput)) push_bounce(wavefront, ray, p, towards, throughput, bounce);
 }
 
-void push_diffuse(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p,
+void push_diffuse(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                   const Color& throughput) {
-  const std::uint32_t sample = wave.rays.sample[ray];
-  const std::uint64_t pattern = pattern_key(wave.samples.key[sample], dimension(wave, direction));
-  SquareSample at = stratified_sample(wave.samples.number[sample], context.settings.samples, pattern);
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  const std::uint64_t pattern = pattern_key(wavefront.samples.key[sample], dimension(wavefront, direction));
+  SquareSample at = stratified_sample(wavefront.samples.number[sample], context.settings.samples, pattern);
   // The pattern of one is its centre, which would give all pixels the same direction.
   if (context.settings.samples == 1) at = {random_float(pattern, 0, 2), random_float(pattern, 0, 3)};
   const Vec3f towards = cosine_direction(p.ns, at);
   if (dot(towards, p.ng) <= 0) return;
-  push_path(wave, ray, p, towards, throughput, Bounce::reflected);
+  push_path(wavefront, ray, p, towards, throughput, Bounce::reflected);
 }
 
 }  // namespace
 
-void shade_path(const RenderContext& context, Wave& wave, std::size_t ray, const ShadingPoint& p) {
-  const Color throughput = wave.rays.throughput[ray];
-  const std::uint32_t sample = wave.rays.sample[ray];
-  if (p.opacity < 1 && random_number(wave, sample, hole) >= p.opacity)
-    return push_bounce(wave, ray, p, p.direction, throughput, Bounce::straight);
+void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+  const Color throughput = wavefront.rays.throughput[ray];
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  if (p.opacity < 1 && random_number(wavefront, sample, hole) >= p.opacity)
+    return push_bounce(wavefront, ray, p, p.direction, throughput, Bounce::straight);
 
-  wave.radiance[ray] += throughput * p.emission;
-  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wave.shadows);
-  if (wave.rays.bounces[ray] >= context.settings.depth) return;
+  wavefront.radiance[ray] += throughput * p.emission;
+  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
+  if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
 
   const SpecularRays specular = specular_rays(p);
   const Color diffuse = p.color * p.material->diffuse;
@@ -66,15 +69,15 @@ void shade_path(const RenderContext& context, Wave& wave, std::size_t ray, const
                            max_component(specular.refracted)};
   const float sum = weight[0] + weight[1] + weight[2];
   if (!(sum > 0)) return;
-  const float at = random_number(wave, sample, lobe) * sum;
+  const float at = random_number(wavefront, sample, lobe) * sum;
   if (at < weight[0]) {
-    push_diffuse(context, wave, ray, p, throughput * diffuse * (sum / weight[0]));
+    push_diffuse(context, wavefront, ray, p, throughput * diffuse * (sum / weight[0]));
   } else if (at < weight[0] + weight[1]) {
-    push_path(wave, ray, p, specular.mirror_direction, throughput * specular.mirror * (sum / weight[1]),
+    push_path(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror * (sum / weight[1]),
               Bounce::reflected);
   } else if (weight[2] > 0) {
-    push_path(wave, ray, p, specular.refracted_direction, throughput * specular.refracted * (sum / weight[2]),
-              Bounce::refracted);
+    push_path(wavefront, ray, p, specular.refracted_direction,
+              throughput * specular.refracted * (sum / weight[2]), Bounce::refracted);
   }
 }
 

@@ -12,7 +12,7 @@ namespace oktett {
 /// Columns of rays of unit direction with their state. Emptying a queue keeps its storage.
 struct RayQueue {
   RayBatch rays;
-  Column<std::uint32_t> sample;      ///< index into the wave's samples
+  Column<std::uint32_t> sample;      ///< index into the wavefront's samples
   Column<Color> throughput;          ///< factor on whatever light the ray finds
   Column<float> distance;            ///< length of the path up to the ray's origin
   Column<std::uint8_t> bounces;      ///< reflections and refractions so far

@@ -12,8 +12,8 @@
 #include "core/mesh.h"
 #include "core/transform.h"
 #include "core/vec3.h"
-#include "kernels/shapes/exact_data.h"
-#include "kernels/shapes/shape_data.h"
+#include "kernels/closed/shape_data.h"
+#include "kernels/exact/exact_data.h"
 #include "render/material.h"
 
 namespace oktett {
@@ -91,7 +91,7 @@ struct CsgShape {
   std::shared_ptr<const std::vector<Object>> operands;
 };
 
-/// Any shape an object can have. The plain shapes are listed in kernels/shapes/shape_data.h.
+/// Any shape an object can have. The plain shapes are listed in kernels/closed/shape_data.h.
 using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape,
                            PolygonShape, TriangleShape, ExactShape, CsgShape, InstanceShape>;
 

@@ -15,7 +15,7 @@ struct Footprint {
 
 /// The footprint from vectors on the tangent plane. dp/dv is not known; it is taken to be as long as dp/du
 /// and at right angles to it, which is exact for textures that are laid on without distortion.
-Footprint footprint(const Surface& s, const Vec3f& x, const Vec3f& y, float scale) {
+Footprint footprint(const SurfaceInteraction& s, const Vec3f& x, const Vec3f& y, float scale) {
   const float square = dot(s.tangent, s.tangent);
   const Vec3f du = s.tangent * (scale / square);
   const Vec3f dv = cross(s.geometric_normal, du);
@@ -26,8 +26,8 @@ Footprint footprint(const Surface& s, const Vec3f& x, const Vec3f& y, float scal
 }
 
 /// Camera rays know their neighbours; other rays are taken for cones that open as wide as a pixel does.
-Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& hit, const Surface& s,
-                            const RayHistory& history) {
+Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& hit,
+                            const SurfaceInteraction& s, const RayHistory& history) {
   Vec3f x, y;
   if (history.from_camera && history.distance == 0) {
     pixel_footprint(c.camera, ray, s.position, s.geometric_normal, x, y);
@@ -52,7 +52,7 @@ float opacity_at(const RenderContext& c, const Material& m, const Vec2f& uv, con
 }
 
 /// The normal of the surface displaced by a height map along `n` (Blinn 1978), dp/dv as in `footprint`.
-Vec3f bumped(const RenderContext& c, const Material& m, const Surface& s, const Vec3f& n,
+Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const Footprint& f) {
   const float size = length(s.tangent);
   if (!(size > 0)) return n;
@@ -70,7 +70,7 @@ Vec3f bumped(const RenderContext& c, const Material& m, const Surface& s, const 
 }
 
 /// The normal that a tangent-space normal map states.
-Vec3f mapped(const RenderContext& c, const Material& m, const Surface& s, const Vec3f& n,
+Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const Footprint& f) {
   const Vec3f flat = s.tangent - n * dot(s.tangent, n);
   if (!(dot(flat, flat) > 0)) return n;
@@ -95,16 +95,16 @@ void face_ray(ShadingPoint& p, Vec3f ns) {
 }  // namespace
 
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
-                           const RayHistory& history, const Surface& found) {
+                           const RayHistory& history, const SurfaceInteraction& found) {
   ShadingPoint p;
   p.material = &material_at(*context.world, found);
   const bool textured_here = context.textures != nullptr && has_textures(*p.material);
   const bool uv_shown = context.data_layers && history.from_camera;
-  p.surface = textured_here || uv_shown ? surface(*context.world->accel, ray, hit) : found;
+  p.surface = textured_here || uv_shown ? surface_interaction(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;
   const Material& m = *p.material;
-  const Surface& s = p.surface;
+  const SurfaceInteraction& s = p.surface;
   Footprint f;
   Vec3f ns = s.shading_normal;
   if (textured_here) {
@@ -127,10 +127,12 @@ bool has_textures(const Material& m) {
 
 bool is_opaque(const Material& m) { return m.transparency == 0 && m.opacity_texture == kNoId; }
 
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const Surface& s) {
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit,
+                    const SurfaceInteraction& s) {
   const Material& m = material_at(*context.world, s);
   Vec2f uv;
-  if (context.textures != nullptr && has_textures(m)) uv = surface(*context.world->accel, ray, hit).uv;
+  if (context.textures != nullptr && has_textures(m))
+    uv = surface_interaction(*context.world->accel, ray, hit).uv;
   const float opacity = opacity_at(context, m, uv, {});
   const float hole = 1 - opacity;
   if (m.transparency == 0) return {hole, hole, hole};

@@ -2,7 +2,7 @@
 /// \file A hit with its material looked up: all that the integrators ask about a surface.
 
 #include "core/ray.h"
-#include "kernels/surface.h"
+#include "core/surface_interaction.h"
 #include "render/context.h"
 #include "render/material.h"
 
@@ -15,7 +15,7 @@ struct RayHistory {
 };
 
 struct ShadingPoint {
-  Surface surface;
+  SurfaceInteraction surface;
   const Material* material = nullptr;
   Vec3f direction;  ///< unit direction in which the ray travels
   float t = 0;      ///< distance from the ray's origin
@@ -28,11 +28,12 @@ struct ShadingPoint {
 /// `ray` is of unit direction and has the valid hit `hit`, whose surface is `s`; of that, uv and tangent may
 /// be missing: they are found if textures or the picture's data layers ask for them.
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
-                           const RayHistory& history, const Surface& s);
+                           const RayHistory& history, const SurfaceInteraction& s);
 
 /// The fraction of light that passes straight through the surface at a hit of a shadow ray: through holes
 /// unchanged, else material colour * transparency. Of `s` only the names count.
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const Surface& s);
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit,
+                    const SurfaceInteraction& s);
 
 bool has_textures(const Material& material);
 

@@ -13,7 +13,7 @@ static constexpr int kMostLayers = 128;
 static bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 /// The rest of a shadow ray behind the surface `s`. It still ends where `ray` does.
-static Ray continue_behind(const Ray& ray, const Surface& s) {
+static Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
   Ray rest = ray;
   rest.origin = offset_origin(s, ray.direction);
   if (ray.tmax < std::numeric_limits<float>::infinity()) {
@@ -34,7 +34,7 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   for (const std::uint32_t i : left) rays.push_back(queue.rays[i]);
   HitBatch hits;
   std::vector<std::uint32_t> kept;  // of `left`
-  SurfaceBlock behind;
+  InteractionBlock behind;
   for (int layer = 0; layer < kMostLayers && !left.empty(); ++layer) {
     hits.resize_uninitialized(rays.size());
     closest_hit(accel, rays.span(), hits.span(), context.isa);
@@ -44,15 +44,15 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
       if (!hit.valid()) continue;
       Color& light = passed[left[k]];
       // Most surfaces let nothing pass, which their names tell.
-      const Surface names = identify(accel, hit);
+      const SurfaceInteraction names = identify(accel, hit);
       const bool opaque = is_opaque(material_at(*context.world, names));
       light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names);
       if (!is_black(light)) kept.push_back(k);
     }
     rest.resize_uninitialized(0);
-    for (std::size_t first = 0; first < kept.size(); first += SurfaceBlock::kMost) {
-      const std::size_t count = std::min(SurfaceBlock::kMost, kept.size() - first);
-      surfaces(accel, rays.span(), hits.span(), kept.data() + first, count, context.isa, behind);
+    for (std::size_t first = 0; first < kept.size(); first += InteractionBlock::kMost) {
+      const std::size_t count = std::min(InteractionBlock::kMost, kept.size() - first);
+      surface_interactions(accel, rays.span(), hits.span(), kept.data() + first, count, context.isa, behind);
       for (std::size_t k = 0; k < count; ++k) {
         rest.push_back(continue_behind(rays[kept[first + k]], behind[k]));
         left[first + k] = left[kept[first + k]];

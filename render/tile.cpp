@@ -8,9 +8,9 @@
 namespace oktett {
 namespace {
 
-/// Most camera samples per wave: enough to keep packets full after some bounces, few enough to stay in the
-/// cache.
-constexpr std::uint32_t kWaveSamples = 4096;
+/// Most camera samples per wavefront: enough to keep packets full after some bounces, few enough to stay in
+/// the cache.
+constexpr std::uint32_t kWavefrontSamples = 4096;
 
 /// The even bits of `code`, closed up.
 std::uint32_t even_bits(std::uint32_t code) {
@@ -48,50 +48,52 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
                        TileWorkspace& work) {
   list_pixels(tile.width, tile.height, work);
   work.pixels.clear();
-  for (const WavePixel& p : work.order)
+  for (const WavefrontPixel& p : work.order)
     work.pixels.push_back({p.number, context.window.x0 + tile.x + p.x, context.window.y0 + tile.y + p.y});
   const std::uint32_t samples = context.settings.samples;
-  // Waves of equal size: a small rest would not fill tiles of rays.
-  const std::size_t most_pixels = std::max(1u, kWaveSamples / samples);
-  const std::size_t waves = (work.pixels.size() + most_pixels - 1) / most_pixels;
-  const std::size_t pixels_per_wave = (work.pixels.size() + waves - 1) / waves;
-  const std::uint32_t samples_per_wave = std::min(samples, kWaveSamples);
+  // Wavefronts of equal size: a small rest would not fill tiles of rays.
+  const std::size_t most_pixels = std::max(1u, kWavefrontSamples / samples);
+  const std::size_t wavefronts = (work.pixels.size() + most_pixels - 1) / most_pixels;
+  const std::size_t pixels_per_wavefront = (work.pixels.size() + wavefronts - 1) / wavefronts;
+  const std::uint32_t samples_per_wavefront = std::min(samples, kWavefrontSamples);
   TileCounts counts;
-  Wave& wave = work.wave;
-  wave.counts = {};
+  Wavefront& wavefront = work.wavefront;
+  wavefront.counts = {};
   const bool single = samples == 1 && !context.data_layers;
   const auto write = [&](std::uint32_t number, const PixelSum& sum) {
     write_pixel(picture, tile.x + work.order[number].x, tile.y + work.order[number].y, sum);
   };
-  for (std::size_t p = 0; p < work.pixels.size(); p += pixels_per_wave) {
-    const auto pixels = std::span(work.pixels).subspan(p, std::min(pixels_per_wave, work.pixels.size() - p));
-    // A pixel's samples follow each other; if they fill several waves, the pixel is alone in them.
+  for (std::size_t p = 0; p < work.pixels.size(); p += pixels_per_wavefront) {
+    const auto pixels =
+        std::span(work.pixels).subspan(p, std::min(pixels_per_wavefront, work.pixels.size() - p));
+    // A pixel's samples follow each other; if they fill several wavefronts, the pixel is alone in them.
     std::uint32_t number = pixels.front().number;
     PixelSum sum;
-    for (std::uint32_t s = 0; s < samples; s += samples_per_wave) {
-      start_wave(context, pixels, s, std::min(samples, s + samples_per_wave), wave);
-      if (!trace_wave(context, wave)) continue;
+    for (std::uint32_t s = 0; s < samples; s += samples_per_wavefront) {
+      start_wavefront(context, pixels, s, std::min(samples, s + samples_per_wavefront), wavefront);
+      if (!trace_wavefront(context, wavefront)) continue;
       if (single) {
         SampleWriter writer(picture);
-        for (std::size_t i = 0; i < wave.samples.size(); ++i) {
-          const WavePixel& at = work.order[wave.samples.pixel[i]];
-          if (!writer.write(tile.x + at.x, tile.y + at.y, wave.samples.color[i], wave.samples.alpha[i]))
+        for (std::size_t i = 0; i < wavefront.samples.size(); ++i) {
+          const WavefrontPixel& at = work.order[wavefront.samples.pixel[i]];
+          if (!writer.write(tile.x + at.x, tile.y + at.y, wavefront.samples.color[i],
+                            wavefront.samples.alpha[i]))
             ++counts.bad_samples;
         }
         continue;
       }
-      for (std::size_t i = 0; i < wave.samples.size(); ++i) {
-        if (wave.samples.pixel[i] != number) {
+      for (std::size_t i = 0; i < wavefront.samples.size(); ++i) {
+        if (wavefront.samples.pixel[i] != number) {
           write(number, sum);
-          number = wave.samples.pixel[i], sum = {};
+          number = wavefront.samples.pixel[i], sum = {};
         }
-        if (!add_to_pixel(sum, wave.samples, i)) ++counts.bad_samples;
+        if (!add_to_pixel(sum, wavefront.samples, i)) ++counts.bad_samples;
       }
     }
     // Pixels are black to begin with, those that were skipped stay so.
     if (!single) write(number, sum);
   }
-  counts.rays = wave.counts;
+  counts.rays = wavefront.counts;
   return counts;
 }
 

@@ -7,7 +7,7 @@
 #include "render/context.h"
 #include "render/picture.h"
 #include "render/render.h"
-#include "render/wave.h"
+#include "render/wavefront.h"
 
 namespace oktett {
 
@@ -21,10 +21,10 @@ struct TileCounts {
 
 /// Storage that a thread keeps from one tile to the next.
 struct TileWorkspace {
-  Wave wave;
-  std::vector<WavePixel> pixels;  ///< of the tile
+  Wavefront wavefront;
+  std::vector<WavefrontPixel> pixels;  ///< of the tile
   std::uint32_t width = 0, height = 0;
-  std::vector<WavePixel> order;  ///< pixels of a tile of that size, relative to its corner
+  std::vector<WavefrontPixel> order;  ///< pixels of a tile of that size, relative to its corner
 };
 
 /// Renders the pixels of `tile` into `picture` and touches no others.

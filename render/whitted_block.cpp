@@ -13,7 +13,7 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kMost = SurfaceBlock::kMost;
+constexpr std::size_t kMost = InteractionBlock::kMost;
 
 /// Hits and one light. Loops over the columns are written for compilers to turn into vector code: without
 /// branches, and on all of the columns up to a multiple of eight.
@@ -31,7 +31,7 @@ struct Columns {
 };
 
 /// face_ray of render/shading_point.cpp.
-OKTETT_PER_SET void face_rays(const SurfaceBlock& s, Columns& c) {
+OKTETT_PER_SET void face_rays(const InteractionBlock& s, Columns& c) {
   constexpr float kLeast = 1e-3f;
   for (std::size_t i = 0; i < c.count; ++i) {
     const float dx = c.direction[0][i], dy = c.direction[1][i], dz = c.direction[2][i];
@@ -53,7 +53,7 @@ OKTETT_PER_SET void face_rays(const SurfaceBlock& s, Columns& c) {
   }
 }
 
-OKTETT_PER_SET void turn_to_light(const SurfaceBlock& s, const LightSource& light, Columns& c) {
+OKTETT_PER_SET void turn_to_light(const InteractionBlock& s, const LightSource& light, Columns& c) {
   if (light.directional) {
     for (int k = 0; k < 3; ++k)
       for (std::size_t i = 0; i < c.count; ++i) c.l[k][i] = light.place[k];
@@ -72,7 +72,7 @@ OKTETT_PER_SET void turn_to_light(const SurfaceBlock& s, const LightSource& ligh
   }
 }
 
-/// move_away of accel/offset_origin.h without branches: floats in the order of their numbers.
+/// move_away of accel/surface/offset_origin.h without branches: floats in the order of their numbers.
 inline float move_away_evenly(float p, float offset) {
   constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min(), kInfinite = 0x7f800000;
   const float sum = p + offset;
@@ -84,8 +84,8 @@ inline float move_away_evenly(float p, float offset) {
   return sum == sum ? moved : sum;
 }
 
-/// offset_origin of accel/offset_origin.h towards `l`.
-OKTETT_PER_SET void leave_surfaces(const SurfaceBlock& s, Columns& c) {
+/// offset_origin of accel/surface/offset_origin.h towards `l`.
+OKTETT_PER_SET void leave_surfaces(const InteractionBlock& s, Columns& c) {
   for (std::size_t i = 0; i < c.count; ++i) {
     const float nx = s.geometric_normal[0][i], ny = s.geometric_normal[1][i], nz = s.geometric_normal[2][i];
     const float reach = std::abs(nx) * s.position_error[0][i] + std::abs(ny) * s.position_error[1][i] +
@@ -127,7 +127,7 @@ OKTETT_PER_SET void raise_highlights(const std::int32_t* exponent, std::int32_t 
   for (std::size_t i = 0; i < c.count; ++i) c.power[i] = static_cast<float>(product[i]);
 }
 
-Vec3f get(const float (&column)[3][kMost], std::size_t i) { return SurfaceBlock::get(column, i); }
+Vec3f get(const float (&column)[3][kMost], std::size_t i) { return InteractionBlock::get(column, i); }
 
 /// The shadow ray of hit `k` of the columns.
 Ray shadow_ray(const Columns& c, std::size_t k, const LightSource& light) {
@@ -143,20 +143,21 @@ Ray shadow_ray(const Columns& c, std::size_t k, const LightSource& light) {
 }
 
 /// Hit `i` by itself: all of it, or if it is plain, and thus lit already, its mirror and what shines through.
-OKTETT_NOINLINE void shade_alone(const RenderContext& context, Wave& wave, std::uint32_t i,
-                                 const Surface& found, bool plain) {
-  const ShadingPoint p = shading_point(context, wave.rays.rays[i], wave.hits[i],
-                                       {wave.rays.distance[i], wave.rays.from_camera[i] != 0}, found);
-  if (plain) return push_specular(context, wave, i, p, wave.rays.throughput[i]);
-  if (wave.rays.from_camera[i])
-    wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x * p.opacity;
-  shade_whitted(context, wave, i, p);
+OKTETT_NOINLINE void shade_alone(const RenderContext& context, Wavefront& wavefront, std::uint32_t i,
+                                 const SurfaceInteraction& found, bool plain) {
+  const ShadingPoint p =
+      shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                    {wavefront.rays.distance[i], wavefront.rays.from_camera[i] != 0}, found);
+  if (plain) return push_specular(context, wavefront, i, p, wavefront.rays.throughput[i]);
+  if (wavefront.rays.from_camera[i])
+    wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x * p.opacity;
+  shade_whitted(context, wavefront, i, p);
 }
 
 }  // namespace
 
-void shade_whitted_block(const RenderContext& context, Wave& wave, const std::uint32_t* which,
-                         std::size_t count, const SurfaceBlock& found) {
+void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                         std::size_t count, const InteractionBlock& found) {
   Columns c;
   c.count = (count + 7) / 8 * 8;
   const Material* materials[kMost];
@@ -168,7 +169,7 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
     const Material& m = *materials[k];
     exponent[k] = m.specular != 0 && by_squaring(m.phong) ? static_cast<std::int32_t>(m.phong) : 0;
     greatest = std::max(greatest, exponent[k]);
-    for (int axis = 0; axis < 3; ++axis) c.direction[axis][k] = wave.rays.rays.direction[axis][which[k]];
+    for (int axis = 0; axis < 3; ++axis) c.direction[axis][k] = wavefront.rays.rays.direction[axis][which[k]];
   }
   // What follows the last hit may hold anything, but denormals would be slow.
   for (std::size_t k = count; k < c.count; ++k) {
@@ -183,7 +184,7 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
     measure_angles(c);
     raise_highlights(exponent, greatest, c);
     // Room for all of them: asking for it ray by ray and column by column takes longer than writing.
-    ShadowQueue& queue = wave.shadows[n];
+    ShadowQueue& queue = wavefront.shadows[n];
     std::size_t end = queue.size();
     queue.resize_uninitialized(end + count);
     for (std::size_t k = 0; k < count; ++k) {
@@ -194,7 +195,7 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
         return highlight_power(std::min(c.highlight[k], 1.0f), m.phong);
       });
       const Color color = !light.directional && light.falloff ? light.color * c.falloff[k] : light.color;
-      const Color arriving = wave.rays.throughput[which[k]] * shine * color;
+      const Color arriving = wavefront.rays.throughput[which[k]] * shine * color;
       if (arriving == Color{0, 0, 0}) continue;
       queue.set(end++, shadow_ray(c, k, light), which[k], arriving);
     }
@@ -204,12 +205,13 @@ void shade_whitted_block(const RenderContext& context, Wave& wave, const std::ui
     const std::uint32_t i = which[k];
     const Material& m = *materials[k];
     if (plain[k]) {
-      if (wave.rays.from_camera[i]) wave.samples.alpha[wave.rays.sample[i]] += wave.rays.throughput[i].x;
-      wave.radiance[i] +=
-          wave.rays.throughput[i] * (m.emission + m.color * m.ambient * context.ambient_light);
+      if (wavefront.rays.from_camera[i])
+        wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
+      wavefront.radiance[i] +=
+          wavefront.rays.throughput[i] * (m.emission + m.color * m.ambient * context.ambient_light);
     }
     if (!plain[k] || m.reflection != 0 || m.transparency != 0)
-      shade_alone(context, wave, i, found[k], plain[k]);
+      shade_alone(context, wavefront, i, found[k], plain[k]);
   }
 }
 

@@ -4,15 +4,15 @@
 
 #include <cstdint>
 
-#include "accel/surface_block.h"
-#include "render/wave.h"
+#include "accel/interaction_block.h"
+#include "render/wavefront.h"
 
 namespace oktett {
 
-/// What shade_whitted does for each of the rays `which[0]` ... `which[count - 1]` of the wave, whose surfaces
-/// are `found`, to the same bits. None of them may need the picture's data layers. Hits of materials with
-/// textures are shaded one by one.
-void shade_whitted_block(const RenderContext& context, Wave& wave, const std::uint32_t* which,
-                         std::size_t count, const SurfaceBlock& found);
+/// What shade_whitted does for each of the rays `which[0]` ... `which[count - 1]` of the wavefront, whose
+/// surfaces are `found`, to the same bits. None of them may need the picture's data layers. Hits of materials
+/// with textures are shaded one by one.
+void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                         std::size_t count, const InteractionBlock& found);
 
 }  // namespace oktett

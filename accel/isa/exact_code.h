@@ -2,7 +2,7 @@
 /// \file ExactShapeCode for one instruction set. Included by accel/isa/exact_*.cpp.
 
 #include "accel/isa/exact_shape.h"
-#include "accel/isa/shape_surfaces.h"
+#include "accel/isa/shape_interactions.h"
 
 namespace oktett {
 
@@ -164,7 +164,7 @@ OKTETT_INLINE Vec3<D> select_each(const typename D::M& m, const Vec3<D>& a, cons
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 
-/// settle and exact_surface of kernels/shapes/exact_surface.h.
+/// settle and exact_surface of kernels/exact/exact_surface.h.
 template <class S, class D>
 void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
   using F = Simd<float, D::kWidth, typename D::Isa>;

@@ -1,5 +1,5 @@
 #include "accel/isa/exact_code.h"
-#include "kernels/shapes/height_crossings.h"
+#include "kernels/heights/height_crossings.h"
 
 namespace oktett {
 

@@ -1,7 +1,14 @@
-#include "accel/isa/instantiate.h"
+#include "accel/isa/trace_query.h"
 
 namespace oktett {
 
-template const IsaTable& isa_code<OKTETT_ISA>();
+template <class A>
+const TraceCode& trace_code() {
+  using Functions = TraceFunctions<A>;
+  static constexpr TraceCode code = {Functions::closest_hit, Functions::any_hit, Functions::all_hits};
+  return code;
+}
+
+template const TraceCode& trace_code<OKTETT_ISA>();
 
 }  // namespace oktett

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "accel/accel_data.h"
-#include "accel/dispatch.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_cases.h"
+#include "accel/query.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
@@ -128,7 +128,7 @@ TEST(Build, LowestOfIdenticalTrianglesIsHit) {
   for (const Isa isa : available_isas())
     for (const TraceMode mode :
          {TraceMode::automatic, TraceMode::single, TraceMode::packet4, TraceMode::packet8,
-          TraceMode::packet16, TraceMode::tile, TraceMode::interleaved}) {
+          TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
       closest_hit(*accel, rays.span(), hits.span(), isa, mode);
       for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(hits[i].item, 0u);
     }

@@ -8,13 +8,13 @@
 #include <memory>
 
 #include "accel/accel_data.h"
-#include "accel/dispatch.h"
-#include "accel/node_planes.h"
-#include "accel/ray_slots.h"
-#include "accel/trace_counts.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_cases.h"
+#include "accel/query.h"
+#include "accel/traverse/inflight/inflight_ray.h"
+#include "accel/traverse/node_planes.h"
+#include "accel/traverse/trace_counts.h"
 #include "core/isa.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
@@ -144,7 +144,7 @@ TEST(CompactNode, InterleavedRaysMeetWhatTheyShould) {
   using A = ScalarIsa;
   CaseRandom r(21);
   int met = 0, more = 0;
-  const auto slot = std::make_unique<RaySlot>();
+  const auto slot = std::make_unique<InflightRay>();
   const auto chunk = std::make_unique<RayChunk<kRays, A>>();
   for (int round = 0; round < 6000; ++round) {
     const double scale = r.magnitude(-10, 10), shift = round % 2 == 0 ? r.magnitude(-2, 4) : 0;
@@ -238,7 +238,7 @@ int expect_same(const Accel& plain, const Accel& other, const RayBatch& rays, co
   for (const Isa isa : available_isas()) {
     for (const TraceMode mode :
          {TraceMode::automatic, TraceMode::single, TraceMode::packet4, TraceMode::packet8,
-          TraceMode::packet16, TraceMode::tile, TraceMode::interleaved}) {
+          TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
       closest_hit(other, rays.span(), hits.span(), isa, mode);
       any_hit(other, rays.span(), dark.data(), isa, mode);
       for (std::size_t i = 0; i < rays.size(); ++i) {

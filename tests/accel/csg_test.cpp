@@ -1,4 +1,4 @@
-#include "accel/csg.h"
+#include "accel/csg/csg.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "accel/accel_data.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_csg.h"
+#include "verify/checks/csg.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
@@ -62,11 +62,11 @@ std::vector<float> crossings(const Accel& accel, const Ray& ray) {
   return t;
 }
 
-std::vector<Surface> surfaces_along(const Accel& accel, const Ray& ray) {
+std::vector<SurfaceInteraction> surfaces_along(const Accel& accel, const Ray& ray) {
   std::vector<Hit> list;
   all_hits(accel, ray, list, available_isas().front());
-  std::vector<Surface> all;
-  for (const Hit& hit : list) all.push_back(surface(accel, ray, hit));
+  std::vector<SurfaceInteraction> all;
+  for (const Hit& hit : list) all.push_back(surface_interaction(accel, ray, hit));
   return all;
 }
 
@@ -163,13 +163,13 @@ TEST(Csg, BlocksOfSurfacesHaveTheSameBits) {
     std::vector<std::uint32_t> which;
     for (std::uint32_t i = 0; i < rays.size(); ++i)
       if (hits[i].valid()) which.push_back(i);
-    SurfaceBlock block;
-    for (std::size_t at = 0; at < which.size(); at += SurfaceBlock::kMost) {
-      const std::size_t count = std::min(which.size() - at, SurfaceBlock::kMost);
-      surfaces(*accel, rays.span(), hits.span(), &which[at], count, isa, block);
+    InteractionBlock block;
+    for (std::size_t at = 0; at < which.size(); at += InteractionBlock::kMost) {
+      const std::size_t count = std::min(which.size() - at, InteractionBlock::kMost);
+      surface_interactions(*accel, rays.span(), hits.span(), &which[at], count, isa, block);
       for (std::size_t k = 0; k < count; ++k, ++found) {
         const std::uint32_t i = which[at + k];
-        const Surface one = surface(*accel, rays[i], hits[i]), many = block[k];
+        const SurfaceInteraction one = surface_interaction(*accel, rays[i], hits[i]), many = block[k];
         EXPECT_EQ(one.position, many.position);
         EXPECT_EQ(one.position_error, many.position_error);
         EXPECT_EQ(one.geometric_normal, many.geometric_normal);
@@ -332,7 +332,7 @@ TEST(Csg, RaysLeaveCoincidentFaces) {
   const auto accel = built(whole(e));
   for (int i = 0; i < 100; ++i) {
     const Ray ray{{8, -4, 0}, 0, {-1, 0.42f + 0.001f * i, 0.002f * i}, kInfinity};
-    for (const Surface& s : surfaces_along(*accel, ray)) {
+    for (const SurfaceInteraction& s : surfaces_along(*accel, ray)) {
       const Vec3f out = s.geometric_normal;
       const Ray next{offset_origin(s, out), 0, out, kInfinity};
       for (const float t : crossings(*accel, next)) EXPECT_GT(t, 1e-3f);

@@ -1,4 +1,4 @@
-#include "accel/decide_pairs.h"
+#include "accel/traverse/inflight/decide_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/verify_exact.h"
+#include "verify/checks/exact.h"
 
 #include <gtest/gtest.h>
 

@@ -7,11 +7,11 @@
 
 #include "core/random.h"
 #include "core/ray.h"
-#include "kernels/shapes/ifs.h"
-#include "kernels/shapes/julia.h"
-#include "kernels/shapes/menger.h"
-#include "kernels/shapes/sphereflake.h"
-#include "kernels/shapes/terrain.h"
+#include "kernels/fractals/ifs.h"
+#include "kernels/fractals/julia.h"
+#include "kernels/fractals/menger.h"
+#include "kernels/fractals/sphereflake.h"
+#include "kernels/fractals/terrain.h"
 #include "tests/support/convex_union.h"
 
 namespace oktett {

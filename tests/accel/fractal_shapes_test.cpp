@@ -231,7 +231,7 @@ TEST(Terrain, AgreesWithAllItsTriangles) {
         for (std::size_t k = 0; k < found.size(); ++k) {
           EXPECT_NEAR(found[k].t, expected[k], 1e-6) << i;
           EXPECT_EQ(found[k].v, (found.size() - k) % 2 == 1 ? 1 : -1);
-          const Surface surf = surface(*accel, ray, found[k]);
+          const SurfaceInteraction surf = surface_interaction(*accel, ray, found[k]);
           EXPECT_GE(dot(surf.geometric_normal, ray.direction) * found[k].v, 0);
         }
         met += !found.empty();

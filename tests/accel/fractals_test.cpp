@@ -135,7 +135,8 @@ TEST(Fractals, RaysFromFarAway) {
       ASSERT_EQ(near.empty(), far.empty());
       if (near.empty()) continue;
       EXPECT_NEAR(far[0].t - 0x1p20, near[0].t - 4, 0.125);
-      const Surface s = surface(*accel, {{0.015625f, y, -0x1p20f}, 0, {0, 0, 1}, kInf}, far[0]);
+      const SurfaceInteraction s =
+          surface_interaction(*accel, {{0.015625f, y, -0x1p20f}, 0, {0, 0, 1}, kInf}, far[0]);
       EXPECT_NEAR(s.position.z, near[0].t - 4, 1e-6);
     }
   }
@@ -150,7 +151,7 @@ TEST(Fractals, SurfacesLieOnParts) {
     int hits = 0;
     for (const Ray& ray : rays_about(200, 1.2)) {
       for (const Hit& h : all_crossings(*accel, ray)) {
-        const Surface s = surface(*accel, ray, h);
+        const SurfaceInteraction s = surface_interaction(*accel, ray, h);
         const Vec3l p(s.position), n(s.geometric_normal);
         EXPECT_GE(dot(s.geometric_normal, ray.direction) * h.v, 0);
         EXPECT_NEAR(length(s.geometric_normal), 1, 1e-6);

@@ -8,7 +8,7 @@
 
 #include "accel/accel.h"
 #include "core/random.h"
-#include "kernels/shapes/height_grid.h"
+#include "kernels/heights/height_grid.h"
 
 namespace oktett {
 

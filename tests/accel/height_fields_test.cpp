@@ -64,7 +64,7 @@ TEST(HeightFields, StepsHaveWalls) {
   const auto accel = accel_of(steps);
   const auto normal = [&](const Vec3f& from, const Vec3f& d) {
     const Ray ray{from, 0, d, kInf};
-    return surface(*accel, ray, all_crossings(*accel, ray).at(0)).geometric_normal;
+    return surface_interaction(*accel, ray, all_crossings(*accel, ray).at(0)).geometric_normal;
   };
   EXPECT_EQ(normal({-3, 1, 0}, {1, 0, 0}), (Vec3f{-1, 0, 0}));
   EXPECT_EQ(normal({3, 5, 0}, {-1, 0, 0}), (Vec3f{-1, 0, 0}));
@@ -237,7 +237,8 @@ TEST(HeightFields, SurfacesHaveNormalsAndCoordinates) {
       const Vec3f p = random_point(i, {3, 1, 2});
       const Ray ray{Vec3f(place.point({p.x, 9, p.z})), 0, Vec3f(place.vector({0, -1, 0})), kInf};
       for (const Hit& h : all_crossings(*exact, ray)) {
-        const Surface a = surface(*exact, ray, h), b = surface(*central, ray, h);
+        const SurfaceInteraction a = surface_interaction(*exact, ray, h),
+                                 b = surface_interaction(*central, ray, h);
         EXPECT_NEAR(length(a.geometric_normal), 1, 1e-6);
         EXPECT_GT(dot(a.geometric_normal, Vec3f(place.vector({0, 1, 0}))), 0);
         EXPECT_NEAR(a.uv.x, (p.x + 3.5) / 7, 1e-5);

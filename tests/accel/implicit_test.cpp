@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "accel/accel.h"
-#include "kernels/function_tape.h"
-#include "kernels/interval/march.h"
+#include "kernels/exact/march.h"
+#include "kernels/functions/function_tape.h"
 #include "tests/accel/all_crossings.h"
 
 namespace oktett {
@@ -142,11 +142,11 @@ TEST(Implicit, ListsAllOfMany) {
 }
 
 /// The surface where a ray meets it first.
-Surface first_surface(const ImplicitShape& shape, const Ray& ray) {
+SurfaceInteraction first_surface(const ImplicitShape& shape, const Ray& ray) {
   const auto accel = build_accel({{ExactShape{shape}, {}}});
   const std::vector<Hit> hits = all_crossings(*accel, ray);
   EXPECT_FALSE(hits.empty());
-  return hits.empty() ? Surface{} : surface(*accel, ray, hits[0]);
+  return hits.empty() ? SurfaceInteraction{} : surface_interaction(*accel, ray, hits[0]);
 }
 
 /// Where the function has a pole, a step or an end, the normal stands on the wall and points outwards,
@@ -179,7 +179,7 @@ TEST(Implicit, NormalsOfWalls) {
     ASSERT_FALSE(hits.empty());
     EXPECT_NEAR(hits[0].t, c.t, 1e-6f);
     if (length(c.normal) == 0) continue;
-    const Surface s = first_surface(shape, ray);
+    const SurfaceInteraction s = first_surface(shape, ray);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.geometric_normal[k], c.normal[k], 1e-3f) << k;
   }
 }

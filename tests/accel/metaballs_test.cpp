@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "accel/accel.h"
-#include "app/verify_cases.h"
-#include "kernels/shapes/blobtree.h"
-#include "kernels/shapes/metaballs.h"
+#include "kernels/exact/blobtree.h"
+#include "kernels/exact/metaballs.h"
 #include "tests/accel/all_crossings.h"
+#include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "accel/accel.h"
-#include "kernels/polynomial_expression.h"
+#include "kernels/exact/polynomial_expression.h"
 #include "tests/accel/all_crossings.h"
 
 namespace oktett {

@@ -8,10 +8,10 @@
 #include <map>
 
 #include "accel/accel_data.h"
-#include "accel/dispatch.h"
-#include "accel/mesh_source.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_cases.h"
+#include "accel/build/mesh_source.h"
+#include "accel/query.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
@@ -262,7 +262,7 @@ TEST(Quality, TreesAreTheSameForAllInstructionSets) {
       Column<PrimRef> refs;
       const MeshSource source(*accel);
       source.add_references(0, refs, false);
-      trees.push_back(build_binary(refs, source, accel->bounds, {q, false}, isa_table(isa)->build));
+      trees.push_back(build_binary(refs, source, accel->bounds, {q, false}, build_kernels(isa)));
       const BinaryTree &first = trees[0], &last = trees.back();
       EXPECT_EQ(leaf_items(last), leaf_items(first));
       // However full its leaves are, a tree has this many nodes.

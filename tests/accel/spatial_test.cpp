@@ -4,8 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "accel/build_spatial.h"
-#include "app/verify_cases.h"
+#include "accel/build/spatial.h"
+#include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {

@@ -188,8 +188,8 @@ TEST(Superquadrics, NormalsAreGradients) {
       std::vector<Hit> list;
       all_hits(*exact, ray, list, Isa::scalar);
       for (const Hit& h : list) {
-        const Vec3f a = surface(*exact, ray, h).geometric_normal,
-                    b = surface(*central, ray, h).geometric_normal;
+        const Vec3f a = surface_interaction(*exact, ray, h).geometric_normal,
+                    b = surface_interaction(*central, ray, h).geometric_normal;
         EXPECT_NEAR(length(a), 1, 1e-6);
         // Out of the inside.
         EXPECT_GT(dot(a, ray.direction) * h.v, 0) << i;

@@ -4,17 +4,17 @@
 #include <limits>
 #include <random>
 
-#include "accel/dispatch.h"
-#include "app/oracle.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_cases.h"
+#include "accel/query.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/closed.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr TraceMode kModes[] = {TraceMode::automatic,  TraceMode::single,   TraceMode::packet4,
-                                TraceMode::packet8,    TraceMode::packet16, TraceMode::tile,
+                                TraceMode::packet8,    TraceMode::packet16, TraceMode::beam,
                                 TraceMode::interleaved};
 
 Hit trace(const Accel& accel, const Ray& ray) {
@@ -86,13 +86,13 @@ std::vector<Geometry> one_of_each(const TriangleMesh& mesh) {
   return g;
 }
 
-TEST(Surface, MixedKindsAgreeInAllModes) {
+TEST(SurfaceInteraction, MixedKindsAgreeInAllModes) {
   const TriangleMesh mesh = make_icosphere(2).mesh;
   const auto accel = build_accel(one_of_each(mesh));
   EXPECT_GT(expect_agreement(*accel, rays_towards_origin(3000, 8, 3, 1)), 1500);
 }
 
-TEST(Surface, PolygonAgreesWithTheOracle) {
+TEST(SurfaceInteraction, PolygonAgreesWithTheOracle) {
   const TriangleMesh mesh = make_cube().mesh;
   const std::vector<Geometry> all = one_of_each(mesh);
   const PolygonShape star = std::get<PolygonShape>(all[5].shape);
@@ -125,7 +125,7 @@ void expect_good_surfaces(const Accel& accel, const RayBatch& rays) {
     const Hit hit = trace(accel, ray);
     if (!hit.valid()) continue;
     ++hits;
-    const Surface s = surface(accel, ray, hit);
+    const SurfaceInteraction s = surface_interaction(accel, ray, hit);
     ASSERT_NEAR(length(s.geometric_normal), 1, 1e-5) << i;
     ASSERT_NEAR(length(s.shading_normal), 1, 1e-5) << i;
     const double slope = std::abs(dot(s.geometric_normal, ray.direction)) / length(ray.direction);
@@ -145,12 +145,12 @@ void expect_good_surfaces(const Accel& accel, const RayBatch& rays) {
   EXPECT_GT(hits, static_cast<int>(rays.size() / 3));
 }
 
-TEST(Surface, ShapesNeitherShadowThemselvesNorStray) {
+TEST(SurfaceInteraction, ShapesNeitherShadowThemselvesNorStray) {
   const TriangleMesh mesh = make_icosphere(2).mesh;
   expect_good_surfaces(*build_accel(one_of_each(mesh)), rays_towards_origin(3000, 8, 3, 2));
 }
 
-TEST(Surface, MeshesAtAllScalesNeitherShadowThemselvesNorStray) {
+TEST(SurfaceInteraction, MeshesAtAllScalesNeitherShadowThemselvesNorStray) {
   for (const double scale : {1e-6, 1.0, 1e6, 1e12}) {
     const TriangleMesh mesh = placed(make_torus(24, 16).mesh, scale, {0, 0, 0});
     const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
@@ -186,11 +186,11 @@ TEST(Instance, OutermostUserNumberWins) {
   const auto leaf = build_accel({{SpheresShape{{{{0, 0, 0}, 1}}}, {}, 7}});
   const Ray ray{{0, 0, 5}, 0, {0, 0, -1}, kInf};
   const auto named = build_accel({instance(build_accel({instance(leaf, {}, 8)}), {}, 9)});
-  EXPECT_EQ(surface(*named, ray, trace(*named, ray)).user, 9u);
+  EXPECT_EQ(surface_interaction(*named, ray, trace(*named, ray)).user, 9u);
   const auto plain = build_accel({instance(build_accel({instance(leaf, {}, 8)}), {})});
-  EXPECT_EQ(surface(*plain, ray, trace(*plain, ray)).user, 8u);
+  EXPECT_EQ(surface_interaction(*plain, ray, trace(*plain, ray)).user, 8u);
   const auto bare = build_accel({instance(leaf, {})});
-  EXPECT_EQ(surface(*bare, ray, trace(*bare, ray)).user, 7u);
+  EXPECT_EQ(surface_interaction(*bare, ray, trace(*bare, ray)).user, 7u);
 }
 
 TEST(Instance, SingularTransformsAreLeftOut) {
@@ -241,7 +241,8 @@ TEST(InstanceList, LikeInstancesOneByOne) {
     if (!one[i].valid()) continue;
     ASSERT_EQ(one[i].t, two[i].t);
     ASSERT_EQ(one[i].item, two[i].item);
-    const Surface s = surface(*a, rays[i], one[i]), t = surface(*b, rays[i], two[i]);
+    const SurfaceInteraction s = surface_interaction(*a, rays[i], one[i]),
+                             t = surface_interaction(*b, rays[i], two[i]);
     ASSERT_EQ(s.user, t.user);
     ASSERT_EQ(s.position, t.position);
     ASSERT_EQ(s.geometric_normal, t.geometric_normal);
@@ -283,7 +284,7 @@ TEST(InstanceList, LeavesOutWhatCannotBeShown) {
   const Hit hit = trace(*accel, ray);
   EXPECT_EQ(hit.t, 7);
   EXPECT_EQ(hit.item, 0u);
-  EXPECT_EQ(surface(*accel, ray, hit).user, 5u);
+  EXPECT_EQ(surface_interaction(*accel, ray, hit).user, 5u);
   EXPECT_FALSE(trace(*build_accel({{InstanceList{}, {}, kNoId}}), ray).valid());
 }
 
@@ -298,7 +299,7 @@ TEST(Instance, NormalsPointOutwardsAndDistancesStay) {
        {Ray{{3.1f, 0.2f, 9}, 0, {0, 0, -0.5f}, kInf}, Ray{{0.1f, 0.2f, 9}, 0, {0, 0, -0.5f}, kInf}}) {
     const Hit hit = trace(*accel, ray);
     ASSERT_TRUE(hit.valid());
-    const Surface s = surface(*accel, ray, hit);
+    const SurfaceInteraction s = surface_interaction(*accel, ray, hit);
     EXPECT_GT(s.geometric_normal.z, 0.8f);
     EXPECT_NEAR(ray.origin.z - 0.5f * hit.t, s.position.z, 1e-5f);
   }

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_cases.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
@@ -21,7 +21,7 @@ bool same(float a, float b) {
 bool same(const Vec3f& a, const Vec3f& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 
 /// All but uv and tangent.
-void expect_same(const Surface& s, const Surface& expected, std::size_t i) {
+void expect_same(const SurfaceInteraction& s, const SurfaceInteraction& expected, std::size_t i) {
   ASSERT_TRUE(same(s.position, expected.position)) << i;
   ASSERT_TRUE(same(s.position_error, expected.position_error)) << i;
   ASSERT_TRUE(same(s.geometric_normal, expected.geometric_normal)) << i;
@@ -32,20 +32,20 @@ void expect_same(const Surface& s, const Surface& expected, std::size_t i) {
   ASSERT_EQ(s.material_slot, expected.material_slot) << i;
 }
 
-/// Compares hits `which` of a batch with surface() on every instruction set.
+/// Compares hits `which` of a batch with surface_interaction() on every instruction set.
 void expect_like_surface(const Accel& accel, const RayBatch& rays, HitBatch& hits,
                          const std::vector<std::uint32_t>& which) {
   for (const Isa isa : available_isas()) {
-    std::vector<Surface> found;
-    for (std::size_t first = 0; first < which.size(); first += SurfaceBlock::kMost) {
-      SurfaceBlock block;
-      const std::size_t count = std::min(SurfaceBlock::kMost, which.size() - first);
-      surfaces(accel, rays.span(), hits.span(), which.data() + first, count, isa, block);
+    std::vector<SurfaceInteraction> found;
+    for (std::size_t first = 0; first < which.size(); first += InteractionBlock::kMost) {
+      InteractionBlock block;
+      const std::size_t count = std::min(InteractionBlock::kMost, which.size() - first);
+      surface_interactions(accel, rays.span(), hits.span(), which.data() + first, count, isa, block);
       for (std::size_t i = 0; i < count; ++i) found.push_back(block[i]);
     }
     for (std::size_t i = 0; i < which.size(); ++i) {
-      expect_same(found[i], surface(accel, rays[which[i]], hits[which[i]]), i);
-      const Surface names = identify(accel, hits[which[i]]);
+      expect_same(found[i], surface_interaction(accel, rays[which[i]], hits[which[i]]), i);
+      const SurfaceInteraction names = identify(accel, hits[which[i]]);
       ASSERT_EQ(names.user, found[i].user);
       ASSERT_EQ(names.geometry, found[i].geometry);
       ASSERT_EQ(names.primitive, found[i].primitive);

@@ -1,12 +1,12 @@
-#include "accel/trace_counts.h"
+#include "accel/traverse/trace_counts.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "accel/accel_data.h"
-#include "app/oracle_mesh.h"
-#include "app/verify_cases.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "app/verify_meshes.h"
+#include "verify/checks/meshes.h"
 
 namespace oktett {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "io/image.h"
+#include "io/image/image.h"
 
 namespace {
 
@@ -70,7 +70,7 @@ int main(int count, char** arguments) {
   }
 
   oktett::closest_hit(*accel, rays.span(), hits.span(), oktett::Isa::scalar);
-  const oktett::Surface s = oktett::surface(*accel, rays[2], hits[2]);
+  const oktett::SurfaceInteraction s = oktett::surface_interaction(*accel, rays[2], hits[2]);
   expect(s.geometric_normal == oktett::Vec3f{0, 0, 1} && s.geometry == 0, "the square looks along z");
 
   oktett::Picture picture;

@@ -1,4 +1,4 @@
-#include "io/display.h"
+#include "io/display/display.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
-#include "io/image_library.h"
+#include "io/image/library.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <string>
 
-#include "io/image.h"
-#include "io/texture.h"
+#include "io/image/image.h"
+#include "io/image/texture.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/obj.h"
+#include "io/obj/obj.h"
 #include "tests/io/obj_test_support.h"
 
 namespace oktett::test {

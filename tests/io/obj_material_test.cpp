@@ -1,4 +1,4 @@
-#include "io/obj_materials.h"
+#include "io/obj/materials.h"
 
 #include <gtest/gtest.h>
 

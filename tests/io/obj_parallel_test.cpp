@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/obj.h"
+#include "io/obj/obj.h"
 #include "tests/io/obj_test_support.h"
 
 namespace oktett::test {

@@ -1,4 +1,4 @@
-#include "io/obj_polygon.h"
+#include "io/obj/polygon.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

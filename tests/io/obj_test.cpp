@@ -1,4 +1,4 @@
-#include "io/obj.h"
+#include "io/obj/obj.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/obj.h"
-#include "io/obj_options.h"
+#include "io/obj/obj.h"
+#include "io/obj/options.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::test {

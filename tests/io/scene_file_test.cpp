@@ -1,4 +1,4 @@
-#include "io/scene_file.h"
+#include "io/scene/scene_file.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "io/scene_file.h"
+#include "io/scene/scene_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::test {

@@ -1,4 +1,4 @@
-#include "io/text_number.h"
+#include "io/text/number.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "io/mapped_file.h"
+#include "io/text/mapped_file.h"
 
 namespace oktett::test {
 namespace {

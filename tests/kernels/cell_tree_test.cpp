@@ -1,4 +1,4 @@
-#include "kernels/shapes/cell_tree.h"
+#include "kernels/exact/cell_tree.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <random>
 
-#include "kernels/shapes/blobtree.h"
-#include "kernels/shapes/metaballs.h"
+#include "kernels/exact/blobtree.h"
+#include "kernels/exact/metaballs.h"
 
 namespace oktett {
 namespace {

@@ -1,4 +1,4 @@
-#include "kernels/expression.h"
+#include "kernels/functions/expression.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

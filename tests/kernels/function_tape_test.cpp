@@ -1,4 +1,4 @@
-#include "kernels/function_tape.h"
+#include "kernels/functions/function_tape.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/expression.h"
+#include "kernels/functions/expression.h"
 
 namespace oktett {
 namespace {

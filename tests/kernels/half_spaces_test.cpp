@@ -1,10 +1,10 @@
-#include "kernels/shapes/half_spaces.h"
+#include "kernels/exact/half_spaces.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "kernels/shapes/quadratic.h"
+#include "kernels/exact/quadratic.h"
 
 namespace oktett {
 namespace {

@@ -1,4 +1,4 @@
-#include "kernels/shapes/height_grid.h"
+#include "kernels/heights/height_grid.h"
 
 #include <gtest/gtest.h>
 

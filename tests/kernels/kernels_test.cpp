@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "app/verify_kernels.h"
+#include "verify/checks/kernels.h"
 
 namespace oktett {
 namespace {
@@ -43,9 +43,9 @@ std::vector<Outcome> run(KernelId id, const KernelCases& cases, std::size_t begi
   // One element more, to see that nothing is written past the end.
   std::vector<float> t(count + 1, -7), u(count + 1, -7), v(count + 1, -7);
   std::vector<std::uint8_t> hit(count + 1, 77);
-  KernelRun r = cases.run(begin, count);
+  KernelProbe r = cases.run(begin, count);
   r.t = t.data(), r.u = u.data(), r.v = v.data(), r.hit = hit.data();
-  isa_table(isa)->run_kernel(id, width, r);
+  probe_kernel(isa, id, width, r);
   EXPECT_EQ(hit[count], 77) << "written past the end";
   EXPECT_EQ(t[count], -7) << "written past the end";
   std::vector<Outcome> out;

@@ -1,4 +1,4 @@
-#include "kernels/interval/march.h"
+#include "kernels/exact/march.h"
 
 #include <gtest/gtest.h>
 

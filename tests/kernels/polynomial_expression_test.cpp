@@ -1,4 +1,4 @@
-#include "kernels/polynomial_expression.h"
+#include "kernels/exact/polynomial_expression.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "core/error.h"
-#include "kernels/expression.h"
+#include "kernels/functions/expression.h"
 
 namespace oktett {
 namespace {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
-#include "accel/isa/table.h"
 #include "kernels/roots/solve.h"
 #include "tests/support/exact_roots.h"
 #include "tests/support/random_polynomials.h"
+#include "verify/probes/roots_probe.h"
 
 namespace oktett {
 namespace {
@@ -38,7 +38,7 @@ struct Columns {
     a.push_back(from), b.push_back(to);
   }
   void solve(RootsKernel id, Isa isa, std::size_t begin, std::size_t count) {
-    RootsRun run;
+    RootsProbe run;
     run.count = count;
     for (int k = 0; k < 7; ++k) run.c[k] = c[k].data() + begin;
     run.a = a.data() + begin, run.b = b.data() + begin;
@@ -48,7 +48,7 @@ struct Columns {
     }
     unsure.assign(count + 1, 77);
     run.unsure = unsure.data();
-    isa_table(isa)->run_roots(id, run);
+    probe_roots(isa, id, run);
   }
   roots::Roots answer(std::size_t i, int ranks) const {
     roots::Roots r;

@@ -1,10 +1,10 @@
-#include "kernels/shapes/triangle_classify.h"
+#include "kernels/triangle/triangle_classify.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "accel/leaf.h"
+#include "accel/traverse/leaf.h"
 #include "tests/support/triangle_cases.h"
 
 namespace oktett {

@@ -1,11 +1,11 @@
-#include "kernels/shapes/triangle_watertight.h"
+#include "kernels/triangle/triangle_watertight.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "accel/leaf.h"
+#include "accel/traverse/leaf.h"
 #include "tests/support/triangle_cases.h"
 
 namespace oktett {

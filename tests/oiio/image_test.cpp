@@ -1,4 +1,4 @@
-#include "io/image.h"
+#include "io/image/image.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/image_color.h"
+#include "io/image/color.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {

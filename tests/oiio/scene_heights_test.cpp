@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/shapes/height_grid.h"
+#include "kernels/heights/height_grid.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett {

@@ -1,4 +1,4 @@
-#include "io/texture.h"
+#include "io/image/texture.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/image_color.h"
+#include "io/image/color.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {

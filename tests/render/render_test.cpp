@@ -246,7 +246,7 @@ TEST(Render, NumbersThatAreNoneAreCountedAndLeftOut) {
   EXPECT_EQ(bad_samples(s), 64u);
 }
 
-// The samples of this pixel fill several waves, some of which meet nothing.
+// The samples of this pixel fill several wavefronts, some of which meet nothing.
 TEST(Render, APixelOfManyWavesCountsThoseThatMeetNothing) {
   Scene scene = bare_scene(1);
   scene.integrator.samples = 65536;

@@ -1,0 +1,370 @@
+/// \file From references to a binary tree, top-down: binned splits of large ranges (Wald 2007), sweeps of
+/// small ones.
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "accel/build/collapse.h"
+#include "accel/build/morton.h"
+#include "accel/build/spatial.h"
+#include "accel/build/wide_tree.h"
+
+namespace oktett {
+namespace {
+
+/// Ranges below this many references are built by one task; above kParallelSplit, binning and partitioning
+/// are shared out too, in at most kMaxChunks pieces.
+constexpr std::size_t kParallelTask = 4096;
+constexpr std::size_t kParallelSplit = 1u << 15;
+constexpr std::size_t kMinChunk = 1u << 13;
+constexpr std::size_t kMaxChunks = 64;
+
+/// Space is split where the children of the best other split overlap by more than this part of the scene's
+/// surface (Stich et al. 2009, section 4.5).
+constexpr double kLeastOverlap = 1e-3;
+
+/// Half the surface of a box in the {-lo, hi} form, scaled.
+float half_area(const float* negative_lo, const float* hi, float unit) {
+  float e[3];
+  for (int k = 0; k < 3; ++k) e[k] = (negative_lo[k] * 0.5f + hi[k] * 0.5f) * unit;
+  return e[0] * (e[1] + e[2]) + e[1] * e[2];
+}
+
+/// The union of bins.
+struct Extent {
+  float v[8];
+  Extent() { std::fill_n(v, 8, -Centers::kInf); }
+  void grow(const float* b) {
+    for (int k = 0; k < 8; ++k) v[k] = b[k] > v[k] ? b[k] : v[k];
+  }
+  float area(float unit) const { return half_area(v, v + 4, unit); }
+  Box box() const { return {{-v[0], -v[1], -v[2]}, {v[4], v[5], v[6]}}; }
+};
+
+/// A range of references that stands in `from`. Its children may stand in [first, last) of `to`, which has
+/// room for those that splits of space add, and theirs in the same place of `from`.
+struct Range {
+  std::size_t begin = 0, end = 0;
+  PrimRef *from = nullptr, *to = nullptr;
+  Centers centers;
+  std::size_t first = begin, last = end;
+  std::size_t size() const { return end - begin; }
+  std::size_t room() const { return last - first; }
+};
+
+/// How a large range is cut for threads; it depends on the size alone.
+struct Chunks {
+  std::size_t size, count;
+  explicit Chunks(std::size_t n)
+      : size(std::max(kMinChunk, (n + kMaxChunks - 1) / kMaxChunks)), count((n + size - 1) / size) {}
+};
+
+Effort effort_of(BuildQuality quality) {
+  if (quality == BuildQuality::fast) return {8, 256, 32, true, 0};
+  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0};
+  return {32, 32, 32, false, 0.3};
+}
+
+class Builder {
+ public:
+  Builder(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+          const BuildOptions& options, const BuildKernels& kernels)
+      : refs_(refs),
+        triangles_(triangles),
+        unit_(scene_unit(bounds)),
+        least_overlap_(kLeastOverlap * half_area(bounds)),
+        effort_(effort_of(options.quality)),
+        parallel_(options.parallel),
+        kernels_(kernels) {}
+
+  BinaryTree run() {
+    const std::size_t n = refs_.size();
+    const std::size_t room = n + static_cast<std::size_t>(effort_.spatial * static_cast<double>(n));
+    // A leaf holds at least one item; pages that stay empty cost nothing.
+    tree_.nodes = VirtualArray<BinaryNode>(2 * room + 2 * kMaxSweep);
+    tree_.items.resize_uninitialized(room);
+    refs_.resize_uninitialized(room);
+    scratch_.resize_uninitialized(n > effort_.sweep ? room : 0);
+    nodes_ = 1;
+    Range all{0, n, refs_.data(), scratch_.data(), {}, 0, room};
+    bound(all);
+    SubtreeCost cost;
+    if (effort_.cells && n > effort_.sweep) {
+      sort_by_cells(refs_, all.centers, parallel_, scratch_, cells_);
+      std::swap(all.from, all.to);
+      build_cells(all, 1, 0, cost);
+    } else {
+      build(all, 1, 0, cost);
+    }
+    tree_.nodes.truncate(nodes_);
+    tree_.pieces = pieces_;
+    return std::move(tree_);
+  }
+
+ private:
+  template <class Body>
+  void each_chunk(const Chunks& chunks, Body&& body) const {
+    if (parallel_)
+      tbb::parallel_for(std::size_t{0}, chunks.count, body);
+    else
+      for (std::size_t c = 0; c < chunks.count; ++c) body(c);
+  }
+
+  void bound(Range& r) const {
+    if (r.size() <= effort_.sweep) return;
+    const Chunks chunks(r.size());
+    std::vector<Centers> parts(chunks.count);
+    each_chunk(chunks, [&](std::size_t c) {
+      const std::size_t b = r.begin + c * chunks.size;
+      kernels_.bound(r.from + b, std::min(chunks.size, r.end - b), parts[c]);
+    });
+    for (const Centers& p : parts) r.centers.grow(p);
+  }
+
+  void build(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
+    if (r.size() <= effort_.sweep) return sweep(r, depth, at, cost);
+    Range left, right;
+    split(r, depth, left, right);
+    build_children(left, right, at, cost, [&](const Range& side, std::uint32_t child, SubtreeCost& c) {
+      build(side, depth + 1, child, c);
+    });
+  }
+
+  /// A range in the order of its cells: divided where the highest bit of their numbers changes, which halves
+  /// space (Lauterbach et al. 2009). What is left in one cell goes the usual way.
+  void build_cells(Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
+    if (r.size() <= effort_.sweep) return sweep(r, depth, at, cost);
+    const std::uint32_t *first = cells_.data() + r.begin, *last = cells_.data() + r.end - 1;
+    if (*first == *last) {
+      bound(r);
+      return build(r, depth, at, cost);
+    }
+    const int bit = std::bit_width(*first ^ *last) - 1;
+    const std::uint32_t upper = *last >> bit << bit;
+    const auto middle = static_cast<std::size_t>(std::lower_bound(first, last, upper) - cells_.data());
+    Range left{r.begin, middle, r.from, r.to, {}}, right{middle, r.end, r.from, r.to, {}};
+    build_children(left, right, at, cost, [&](Range& side, std::uint32_t child, SubtreeCost& c) {
+      build_cells(side, depth + 1, child, c);
+    });
+  }
+
+  /// Builds both sides by `build_side`, then the node above them.
+  template <class BuildSide>
+  void build_children(Range& left, Range& right, std::uint32_t at, SubtreeCost& cost,
+                      const BuildSide& build_side) {
+    const std::uint32_t children = nodes_.fetch_add(2);
+    SubtreeCost l, rr;
+    if (parallel_ && left.size() + right.size() >= kParallelTask) {
+      tbb::parallel_invoke([&] { build_side(left, children, l); },
+                           [&] { build_side(right, children + 1, rr); });
+    } else {
+      build_side(left, children, l);
+      build_side(right, children + 1, rr);
+    }
+    BinaryNode& node = tree_.nodes[at];
+    const BinaryNode &a = tree_.nodes[children], &b = tree_.nodes[children + 1];
+    for (int k = 0; k < 3; ++k) {
+      node.negative_lo[k] = std::max(a.negative_lo[k], b.negative_lo[k]);
+      node.hi[k] = std::max(a.hi[k], b.hi[k]);
+    }
+    node.link = children;
+    node.info = collapse(l, rr, half_area(node.negative_lo, node.hi, unit_), cost);
+  }
+
+  void sweep(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
+    BinaryNode nodes[2 * kMaxSweep];
+    SweepJob job;
+    job.refs = r.from + r.begin;
+    job.count = static_cast<std::uint32_t>(r.size());
+    job.first = static_cast<std::uint32_t>(r.begin);
+    job.items = tree_.items.data() + r.begin;
+    job.depth = depth;
+    job.unit = unit_;
+    job.effort = effort_;
+    job.pieces = effort_.spatial > 0;
+    job.nodes = nodes;
+    kernels_.sweep(job);
+    cost = job.cost;
+    const std::uint32_t rest = nodes_.fetch_add(job.node_count - 1);
+    for (std::uint32_t i = 0; i < job.node_count; ++i) {
+      BinaryNode& to = tree_.nodes[i == 0 ? at : rest + i - 1];
+      to = nodes[i];
+      if (!to.is_leaf()) to.link += rest - 1;
+    }
+  }
+
+  void split(const Range& r, int depth, Range& left, Range& right) {
+    Grid grid;
+    grid.bins = effort_.bins;
+    for (int k = 0; k < 3; ++k) {
+      const float extent = r.centers.hi[k] - r.centers.lo[k];
+      const float scale = static_cast<float>(grid.bins) / extent;
+      grid.origin[k] = r.centers.lo[k];
+      grid.scale[k] = extent > 0 && std::isfinite(scale) && std::isfinite(extent) ? scale : 0;
+    }
+    const Chunks chunks(r.size() >= kParallelSplit ? r.size() : 1);
+    std::vector<Bins> more(chunks.count - 1);
+    Bins first;
+    const auto bins = [&](std::size_t c) -> Bins& { return c == 0 ? first : more[c - 1]; };
+    Split best;
+    // What is left of the depth must do for halving.
+    if (depth + std::bit_width(r.size()) + 7 < kMaxDepth) {
+      if (chunks.count == 1)
+        kernels_.bin({r.from + r.begin, r.size(), grid, &first});
+      else
+        each_chunk(chunks, [&](std::size_t c) {
+          const std::size_t b = r.begin + c * chunks.size;
+          kernels_.bin({r.from + b, std::min(chunks.size, r.end - b), grid, &bins(c)});
+        });
+      best = find(grid, chunks.count, bins);
+    }
+    if (effort_.spatial > 0 && best.axis >= 0 && split_space(r, grid, best, chunks.count, bins, left, right))
+      return;
+    if (best.axis >= 0) return partition(r, grid, best, chunks, bins, left, right);
+    const std::size_t half = balanced_half(r.size());
+    PrimRef *const from = r.from + r.begin, *const middle = from + half;
+    std::copy(from, middle, r.to + r.first);
+    std::copy(middle, r.from + r.end, r.to + r.last - (r.size() - half));
+    share_room(r, half, r.size() - half, left, right);
+    bound(left), bound(right);
+  }
+
+  /// The children of `r`, which stand at either end of its place in `to`; what room is left is shared in
+  /// proportion to their sizes.
+  static void share_room(const Range& r, std::size_t l, std::size_t rr, Range& left, Range& right) {
+    const std::size_t spare = r.room() - l - rr;
+    const std::size_t middle = r.first + l +
+                               static_cast<std::size_t>(static_cast<double>(spare) * static_cast<double>(l) /
+                                                        static_cast<double>(l + rr));
+    left = {r.first, r.first + l, r.to, r.from, {}, r.first, middle};
+    right = {r.last - rr, r.last, r.to, r.from, {}, middle, r.last};
+  }
+
+  /// Splits space instead of the range, where the children of `object` would overlap and it costs less.
+  template <class BinsOf>
+  bool split_space(const Range& r, const Grid& grid, const Split& object, std::size_t chunks,
+                   const BinsOf& bins, Range& left, Range& right) {
+    if (r.room() == r.size()) return false;
+    Extent side[2];
+    for (std::size_t c = 0; c < chunks; ++c)
+      for (int b = 0; b < grid.bins; ++b) side[b > object.bin].grow(bins(c).box[object.axis][b].v);
+    Box all = side[0].box(), overlap = all;
+    const Box other = side[1].box();
+    all.grow(other);
+    overlap.lo = max(overlap.lo, other.lo), overlap.hi = min(overlap.hi, other.hi);
+    if (!(half_area(overlap) > least_overlap_)) return false;
+    const double object_cost =
+        half_area(side[0].box()) * blocks_of(count_of(object, false, grid, chunks, bins)) +
+        half_area(other) * blocks_of(count_of(object, true, grid, chunks, bins));
+    const SpatialSplit s = find_spatial(r.from + r.begin, r.size(), all, triangles_, parallel_);
+    if (s.axis < 0 || !(s.cost < object_cost)) return false;
+    const SpatialParts parts =
+        partition_spatial(r.from + r.begin, r.size(), r.room(), s, triangles_, r.to + r.first, r.to + r.last);
+    if (parts.left == 0) return false;
+    if (parts.left + parts.right > r.size()) pieces_ = true;
+    share_room(r, parts.left, parts.right, left, right);
+    bound(left), bound(right);
+    return true;
+  }
+
+  template <class BinsOf>
+  static std::uint32_t count_of(const Split& s, bool right, const Grid& grid, std::size_t chunks,
+                                const BinsOf& bins) {
+    std::uint32_t n = 0;
+    for (std::size_t c = 0; c < chunks; ++c)
+      for (int b = right ? s.bin + 1 : 0; b < (right ? grid.bins : s.bin + 1); ++b)
+        n += bins(c).count[s.axis][b];
+    return n;
+  }
+
+  /// The plane of least surface-area cost.
+  template <class BinsOf>
+  Split find(const Grid& grid, std::size_t chunks, const BinsOf& bins) const {
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (grid.scale[axis] == 0) continue;
+      Extent box[kMaxBins];
+      std::uint32_t count[kMaxBins] = {};
+      for (std::size_t c = 0; c < chunks; ++c)
+        for (int b = 0; b < grid.bins; ++b)
+          box[b].grow(bins(c).box[axis][b].v), count[b] += bins(c).count[axis][b];
+      float right_cost[kMaxBins];
+      Extent side;
+      std::uint32_t n = 0;
+      for (int b = grid.bins - 1; b > 0; --b) {
+        side.grow(box[b].v), n += count[b];
+        right_cost[b] = n > 0 ? side.area(unit_) * static_cast<float>(blocks_of(n)) : Centers::kInf;
+      }
+      side = {}, n = 0;
+      for (int b = 0; b + 1 < grid.bins; ++b) {
+        side.grow(box[b].v), n += count[b];
+        if (n == 0) continue;
+        const float cost = side.area(unit_) * static_cast<float>(blocks_of(n)) + right_cost[b + 1];
+        if (cost < best.cost) best = {axis, b, cost};
+      }
+    }
+    return best;
+  }
+
+  template <class BinsOf>
+  void partition(const Range& r, const Grid& grid, const Split& s, const Chunks& chunks, const BinsOf& bins,
+                 Range& left, Range& right) {
+    std::vector<std::size_t> lefts(chunks.count + 1, 0);
+    for (std::size_t c = 0; c < chunks.count; ++c) {
+      lefts[c + 1] = lefts[c];
+      for (int b = 0; b <= s.bin; ++b) lefts[c + 1] += bins(c).count[s.axis][b];
+    }
+    std::vector<PartitionJob> jobs(chunks.count);
+    const auto run = [&](std::size_t c) {
+      PartitionJob& job = jobs[c];
+      const std::size_t offset = c * chunks.size;
+      job.refs = r.from + r.begin + offset;
+      job.count = chunks.count == 1 ? r.size() : std::min(chunks.size, r.size() - offset);
+      job.left = r.to + r.first + lefts[c];
+      job.right = r.to + r.last - (offset - lefts[c]);
+      job.grid = grid, job.split = s;
+      kernels_.partition(job);
+    };
+    if (chunks.count == 1)
+      run(0);
+    else
+      each_chunk(chunks, run);
+    share_room(r, lefts[chunks.count], r.size() - lefts[chunks.count], left, right);
+    for (const PartitionJob& job : jobs)
+      left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);
+  }
+
+  Column<PrimRef>& refs_;
+  const TriangleSource& triangles_;
+  Column<PrimRef> scratch_;
+  Column<std::uint32_t> cells_;  ///< of the references, in their order
+  float unit_;
+  double least_overlap_;
+  const Effort effort_;
+  const bool parallel_;
+  std::atomic<bool> pieces_{false};  ///< some item has several references
+  const BuildKernels& kernels_;
+  BinaryTree tree_;
+  std::atomic<std::uint32_t> nodes_{0};
+};
+
+}  // namespace
+
+float scene_unit(const Box& bounds) {
+  float size = 0;
+  for (int k = 0; k < 3; ++k) size = std::max(size, bounds.hi[k] * 0.5f - bounds.lo[k] * 0.5f);
+  if (!(size > 0 && std::isfinite(size))) return 1;
+  return std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
+}
+
+BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+                        const BuildOptions& options, const BuildKernels& kernels) {
+  return Builder(refs, triangles, bounds, options, kernels).run();
+}
+
+}  // namespace oktett

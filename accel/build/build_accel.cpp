@@ -1,0 +1,425 @@
+/// \file From geometries to a tree: numbers the items, drops degenerate ones, lays out the pools.
+
+#include <algorithm>
+#include <cmath>
+
+#include "accel/build/mesh_source.h"
+#include "accel/build/wide_tree.h"
+#include "accel/geometry_bounds.h"
+#include "core/error.h"
+#include "kernels/exact_bounds.h"
+#include "kernels/exact_shapes.h"
+
+namespace oktett {
+namespace {
+
+/// order[k] collects the items of kind k in leaf order; for exact kinds, the cells.
+using ItemOrder = std::vector<std::uint32_t>[kKinds];
+
+std::size_t item_count(const Geometry& g) {
+  if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) return mesh->mesh->triangle_count();
+  if (const auto* spheres = std::get_if<SpheresShape>(&g.shape)) return spheres->spheres.size();
+  if (const auto* list = std::get_if<InstanceList>(&g.shape)) return list->places.size();
+  return 1;
+}
+
+bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite(b.hi); }
+
+PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind) {
+  return {{-b.lo.x, -b.lo.y, -b.lo.z}, item, {b.hi.x, b.hi.y, b.hi.z}, static_cast<std::uint32_t>(kind)};
+}
+
+/// Fills the pools in the order in which the leaves refer to them.
+class PoolFiller {
+ public:
+  PoolFiller(Accel& accel, const ItemOrder& order) : accel_(accel), order_(order) {}
+
+  void run() {
+    number_primitives();
+    each(
+        Kind::sphere,
+        [&](auto& pool, const Geometry& g, std::uint32_t local, std::uint32_t item) {
+          Sphere::add(pool, moved_sphere(std::get<SpheresShape>(g.shape).spheres[local], g.transform), item);
+        },
+        std::get<Sphere::Pool>(accel_.pools));
+    each(
+        Kind::disk,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          const DiskShape& s = std::get<DiskShape>(g.shape);
+          const Vec3d n = g.transform.inverse().normal_by_inverse(s.normal);
+          Disk::add(pool, {g.transform.point(s.center), n, s.radius * g.transform.uniform_scale()}, item);
+        },
+        std::get<Disk::Pool>(accel_.pools));
+    each(
+        Kind::box,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          BoxSolid::add(pool, std::get<BoxShape>(g.shape), g.transform, item);
+        },
+        std::get<BoxSolid::Pool>(accel_.pools));
+    each(
+        Kind::polygon,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          PolygonShape s = std::get<PolygonShape>(g.shape);
+          for (Vec3d& v : s.vertices) v = g.transform.point(v);
+          if (g.transform.determinant() < 0) std::reverse(s.vertices.begin(), s.vertices.end());
+          Polygon::add(pool, s, item);
+        },
+        std::get<Polygon::Pool>(accel_.pools));
+    each(
+        Kind::plane,
+        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
+          Plane::add(pool, moved_plane(std::get<PlaneShape>(g.shape), g.transform), item);
+        },
+        std::get<Plane::Pool>(accel_.pools));
+    if (accel_.exact) std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact->pools);
+    number_paths();
+    fill_instances();
+    arrange_listed();
+    arrange_combinations();
+  }
+
+ private:
+  /// Gives every primitive of a closed-form or exact shape and every listed instance a place in pool_index.
+  void number_primitives() {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> first(accel_.geometries.size());
+    for (std::uint32_t g = 0; g < first.size(); ++g) {
+      first[g] = count;
+      if (accel_.kinds[g] < static_cast<int>(Kind::triangle) ||
+          accel_.kinds[g] == static_cast<int>(Kind::instance_list))
+        count += accel_.first_item[g + 1] - accel_.first_item[g];
+    }
+    if (count == 0) return;
+    accel_.first_pool_index = std::move(first);
+    accel_.pool_index.resize(count, kNoId);
+  }
+
+  template <class Add, class Pool>
+  void each(Kind kind, Add&& add, Pool& pool) {
+    for (std::uint32_t item : order_[static_cast<int>(kind)]) {
+      const std::uint32_t g = accel_.geometry_of(item);
+      add(pool, accel_.geometries[g], item - accel_.first_item[g], item);
+    }
+    for (std::uint32_t i = 0; i < pool.item.size(); ++i) {
+      const std::uint32_t item = pool.item[i], g = accel_.geometry_of(item);
+      accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = i;
+    }
+    finish(pool);
+    accel_.stats.other_bytes += pool.bytes();
+  }
+  template <class Pool>
+  static void finish(Pool& pool) {
+    std::apply([&](auto... shape) { (finish_if<decltype(shape)>(pool), ...); }, ClosedFormShapes{});
+  }
+  template <class S, class Pool>
+  static void finish_if(Pool& pool) {
+    if constexpr (std::is_same_v<Pool, typename S::Pool>) S::finish(pool);
+  }
+
+  /// Brings the cells of an exact kind into leaf order.
+  template <class Pool>
+  void arrange_cells(Pool& pool) {
+    std::vector<ExactCell> cells;
+    for (std::uint32_t cell : order_[kind_of_pool(pool)]) cells.push_back(pool.cells[cell]);
+    pool.cells = std::move(cells);
+    for (std::uint32_t i = 0; i < pool.frames.size(); ++i)
+      accel_.pool_index[accel_.first_pool_index[accel_.geometry_of(pool.frames[i].item)]] = i;
+    accel_.stats.other_bytes += pool.bytes();
+  }
+  template <class Pool>
+  int kind_of_pool(const Pool& pool) const {
+    int kind = kClosedFormKinds;
+    const auto matches = [&](const auto& other) { return static_cast<const void*>(&other) == &pool; };
+    std::apply([&](const auto&... other) { static_cast<void>(((matches(other) || (++kind, false)) || ...)); },
+               accel_.exact->pools);
+    return kind;
+  }
+
+  /// Numbers the paths in the order of items, so that hits at equal distance keep the order of the scene.
+  void number_paths() {
+    std::vector<PathStep>& steps = accel_.path_steps;
+    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)])
+      steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), 0, false});
+    for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), 0, true});
+    for (std::uint32_t g = 0; g < accel_.geometries.size(); ++g)
+      if (accel_.kinds[g] == static_cast<int>(Kind::instance_list) &&
+          accel_.first_item[g] < accel_.first_item[g + 1])
+        steps.push_back({0, accel_.first_item[g], nullptr, 1, false});
+    std::sort(steps.begin(), steps.end(),
+              [](const PathStep& a, const PathStep& b) { return a.item < b.item; });
+    // Children that no instance shows need no numbers.
+    for (const ListedInstance& listed : accel_.listed_instances) {
+      std::uint32_t& stride = step_of(accel_.first_item[accel_.geometry_of(listed.item)]).stride;
+      stride = std::max(stride, 1 + accel_.listed_children[listed.child]->path_count);
+    }
+    std::uint64_t paths = 0;
+    for (PathStep& step : steps) {
+      step.first_path = static_cast<std::uint32_t>(paths);
+      if (step.stride != 0) {
+        const std::uint32_t g = accel_.geometry_of(step.item);
+        paths += std::uint64_t{step.stride} * (accel_.first_item[g + 1] - step.item);
+      } else {
+        paths += (1 + std::uint64_t{step.child->path_count}) * (step.is_combination ? 2 : 1);
+      }
+      if (paths >= kNoId) throw Error("more than 2^32 - 2 nested instances");
+    }
+    accel_.path_count = static_cast<std::uint32_t>(paths);
+  }
+
+  PathStep& step_of(std::uint32_t item) const {
+    std::vector<PathStep>& steps = accel_.path_steps;
+    return *std::lower_bound(steps.begin(), steps.end(), item,
+                             [](const PathStep& step, std::uint32_t value) { return step.item < value; });
+  }
+  std::uint32_t first_path(std::uint32_t item) const { return step_of(item).first_path; }
+
+  void fill_instances() {
+    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
+      const Geometry& g = geometry(item);
+      InstanceItem instance{};
+      g.transform.inverse().to_rows(instance.to_child);
+      instance.child = std::get<InstanceGeometry>(g.shape).child.get();
+      instance.item = item;
+      instance.first_path = first_path(item);
+      accel_.instances.push_back(instance);
+    }
+    accel_.stats.other_bytes += accel_.instances.size() * sizeof(InstanceItem);
+  }
+
+  /// Brings the listed instances into leaf order.
+  void arrange_listed() {
+    const std::vector<std::uint32_t>& order = order_[static_cast<int>(Kind::instance_list)];
+    std::vector<ListedInstance> ordered;
+    ordered.reserve(order.size());
+    for (const std::uint32_t index : order) {
+      ListedInstance& listed = ordered.emplace_back(accel_.listed_instances[index]);
+      const std::uint32_t g = accel_.geometry_of(listed.item), local = listed.item - accel_.first_item[g];
+      const PathStep& step = step_of(accel_.first_item[g]);
+      listed.first_path = step.first_path + local * step.stride;
+      accel_.pool_index[accel_.first_pool_index[g] + local] = static_cast<std::uint32_t>(ordered.size() - 1);
+    }
+    accel_.listed_instances = std::move(ordered);
+    accel_.stats.other_bytes += accel_.listed_instances.size() * sizeof(ListedInstance);
+  }
+
+  /// Brings the combinations into leaf order.
+  void arrange_combinations() {
+    std::vector<CsgItem> ordered;
+    for (std::uint32_t index : order_[static_cast<int>(Kind::csg)]) {
+      ordered.push_back(std::move(accel_.combinations[index]));
+      ordered.back().first_path = first_path(ordered.back().item);
+      accel_.stats.other_bytes += sizeof(CsgItem) + ordered.back().nodes.size() * sizeof(CsgNode) +
+                                  stats(*ordered.back().solids).bytes();
+    }
+    accel_.combinations = std::move(ordered);
+  }
+
+  const Geometry& geometry(std::uint32_t item) const { return accel_.geometries[accel_.geometry_of(item)]; }
+
+  Accel& accel_;
+  const ItemOrder& order_;
+};
+
+/// A shape of its own structure, seen through an instance: for maps under which its kind is not closed (an
+/// ellipsoid).
+Geometry as_instance(Geometry g) {
+  Geometry inner = g;
+  inner.transform = Affine{};
+  g.shape = InstanceGeometry{build_accel({std::move(inner)}, {})};
+  return g;
+}
+
+void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
+  for (Geometry& g : geometries) {
+    const bool needs_similarity =
+        std::holds_alternative<SpheresShape>(g.shape) || std::holds_alternative<DiskShape>(g.shape);
+    if (needs_similarity && g.transform.is_invertible() && g.transform.uniform_scale() == 0)
+      g = as_instance(std::move(g));
+  }
+}
+
+/// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
+void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world, std::uint32_t item,
+               Column<PrimRef>& refs, ItemOrder& order) {
+  if (!accel.exact) accel.exact = std::make_unique<ExactPools>();
+  visit_exact(kind, *accel.exact, [&](auto tag, auto& pool) {
+    using S = decltype(tag);
+    const std::size_t first = pool.cells.size();
+    S::add(pool, shape, to_world, item);
+    for (std::size_t cell = first; cell < pool.cells.size(); ++cell) {
+      const Box box = cell_bounds<S>(pool, pool.cells[cell]);
+      const auto index = static_cast<std::uint32_t>(cell);
+      if (is_usable(box)) {
+        refs.push_back(make_ref(box, index, kind));
+        accel.bounds.grow(box);
+      } else {
+        std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
+        accel.unbounded.push_back(
+            {static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
+        list.push_back(index);
+      }
+    }
+  });
+}
+
+/// Builds one combination. Its number takes the place of the item number, as cells do.
+void add_combination(Accel& accel, const Geometry& geometry, std::uint32_t item, const BuildOptions& options,
+                     Column<PrimRef>& refs, ItemOrder& order) {
+  const auto& expression = std::get<CsgGeometry>(geometry.shape).expression;
+  if (!expression) return;
+  CsgItem csg = build_csg(moved(*expression, geometry.transform), options);
+  csg.item = item;
+  const Box box = csg_bounds(csg);
+  if (box.empty()) return;
+  const auto index = static_cast<std::uint32_t>(accel.combinations.size());
+  if (is_usable(box)) {
+    refs.push_back(make_ref(box, index, Kind::csg));
+    accel.bounds.grow(box);
+  } else {
+    std::vector<std::uint32_t>& list = order[static_cast<int>(Kind::csg)];
+    accel.unbounded.push_back(
+        {static_cast<std::uint32_t>(list.size()), 1, Kind::csg, TriangleTest::watertight});
+    list.push_back(index);
+  }
+  accel.combinations.push_back(std::move(csg));
+}
+
+/// Adds the instances of a list, each by its number in accel.listed_instances, as cells are.
+void add_listed(Accel& accel, Geometry& geometry, std::uint32_t first, Column<PrimRef>& refs,
+                ItemOrder& order) {
+  InstanceList& list = std::get<InstanceList>(geometry.shape);
+  const auto first_child = static_cast<std::uint32_t>(accel.listed_children.size());
+  for (const auto& child : list.children) accel.listed_children.push_back(child.get());
+  accel.listed_instances.reserve(accel.listed_instances.size() + list.places.size());
+  for (std::uint32_t k = 0; k < list.places.size(); ++k) {
+    const InstancePlace& place = list.places[k];
+    const Affine to_world = geometry.transform * Affine::from_rows(place.to_list);
+    if (place.child >= list.children.size() || !to_world.is_invertible()) continue;
+    ListedInstance listed{{}, first_child + place.child, first + k, 0, place.user};
+    to_world.inverse().to_rows(listed.to_child);
+    const Affine to_child = Affine::from_rows(listed.to_child);
+    if (!to_child.is_invertible()) continue;
+    const Accel& child = *list.children[place.child];
+    const Box box = instance_bounds(to_child.inverse(), child);
+    const auto index = static_cast<std::uint32_t>(accel.listed_instances.size());
+    if (!child.unbounded.empty()) {
+      std::vector<std::uint32_t>& all = order[static_cast<int>(Kind::instance_list)];
+      accel.unbounded.push_back(
+          {static_cast<std::uint32_t>(all.size()), 1, Kind::instance_list, TriangleTest::watertight});
+      all.push_back(index);
+    } else if (is_usable(box)) {
+      refs.push_back(make_ref(box, index, Kind::instance_list));
+      accel.bounds.grow(box);
+    } else {
+      continue;
+    }
+    accel.listed_instances.push_back(listed);
+  }
+  list.places = {};
+}
+
+void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& refs, ItemOrder& order,
+                    const BuildOptions& options) {
+  for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
+    const Geometry& geometry = accel.geometries[g];
+    const Kind kind = kind_of(geometry);
+    const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
+    if (!geometry.transform.is_invertible()) continue;
+    if (kind == Kind::instance_list) {
+      add_listed(accel, accel.geometries[g], first, refs, order);
+      continue;
+    }
+    if (kind == Kind::triangle) {
+      accel.bounds.grow(meshes.add_references(g, refs, options.parallel));
+      continue;
+    }
+    if (kind == Kind::csg) {
+      add_combination(accel, geometry, first, options, refs, order);
+      continue;
+    }
+    if (const auto* exact = std::get_if<ExactShape>(&geometry.shape)) {
+      add_exact(accel, *exact, kind, geometry.transform, first, refs, order);
+      continue;
+    }
+    for (std::uint32_t item = first; item < end; ++item) {
+      if (is_unbounded(geometry)) {
+        if (kind == Kind::plane && !(length(std::get<PlaneShape>(geometry.shape).normal) > 0)) continue;
+        std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
+        accel.unbounded.push_back(
+            {static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
+        list.push_back(item);
+        continue;
+      }
+      const Box box =
+          kind == Kind::instance
+              ? instance_bounds(geometry.transform, *std::get<InstanceGeometry>(geometry.shape).child)
+              : shape_bounds(geometry, item - first);
+      if (!is_usable(box)) continue;
+      refs.push_back(make_ref(box, item, kind));
+      accel.bounds.grow(box);
+    }
+  }
+}
+
+/// Expected node and leaf visits of a random ray that meets the root's box (MacDonald and Booth 1990).
+double sah_cost(const Accel& accel) {
+  if (accel.root.is_leaf()) return accel.root.is_none() ? 0 : 1;
+  const auto half_area = [](double x, double y, double z) { return x * y + y * z + z * x; };
+  const Vec3d extent = Vec3d(accel.bounds.hi) - Vec3d(accel.bounds.lo);
+  const double root = half_area(extent.x, extent.y, extent.z);
+  double area = root;
+  for (std::size_t n = 0; n < accel.stats.nodes; ++n) {
+    with_node(accel, static_cast<std::uint32_t>(n), [&](const auto& node) {
+      for (int i = 0; i < BvhNode::kWidth; ++i) {
+        if (node.child[i].is_none()) continue;
+        const auto width = [&](int axis) {
+          return double(node_plane(node, 2 * axis + 1, i)) - node_plane(node, 2 * axis, i);
+        };
+        area += half_area(width(0), width(1), width(2));
+      }
+    });
+  }
+  return root > 0 ? area / root : 0;
+}
+
+}  // namespace
+
+Accel::Accel() = default;
+Accel::~Accel() = default;
+
+std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options) {
+  auto accel = std::make_shared<Accel>();
+  wrap_sheared_shapes(geometries);
+  accel->geometries = std::move(geometries);
+  std::uint64_t items = 0;
+  for (const Geometry& g : accel->geometries) {
+    accel->first_item.push_back(static_cast<std::uint32_t>(items));
+    items += item_count(g);
+    accel->frames.push_back(
+        {g.transform.inverse(), g.transform.is_identity(), g.transform.determinant() < 0});
+    accel->kinds.push_back(static_cast<std::uint8_t>(kind_of(g)));
+    accel->users.push_back(g.user);
+    if (std::holds_alternative<MeshGeometry>(g.shape)) accel->stats.triangles += item_count(g);
+    if (items >= kNoId) throw Error("more than 2^32 - 2 primitives in one structure");
+  }
+  accel->first_item.push_back(static_cast<std::uint32_t>(items));
+  accel->stats.items = items;
+  accel->one_item_each = true;
+  for (std::size_t g = 0; g < accel->geometries.size(); ++g)
+    accel->one_item_each &= accel->first_item[g + 1] == g + 1;
+
+  Column<PrimRef> refs;
+  ItemOrder order;
+  const MeshSource meshes(*accel);
+  add_references(*accel, meshes, refs, order, options);
+  build_tree(*accel, refs, meshes, order, options, build_kernels(available_isas().back()));
+  PoolFiller(*accel, order).run();
+  accel->stats.unbounded = accel->unbounded.size();
+  accel->stats.sah_cost = sah_cost(*accel);
+  return accel;
+}
+
+AccelStats stats(const Accel& accel) { return accel.stats; }
+Box bounds(const Accel& accel) { return accel.bounds; }
+
+}  // namespace oktett

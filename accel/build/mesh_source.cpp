@@ -1,0 +1,115 @@
+#include "accel/build/mesh_source.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace oktett {
+namespace {
+
+/// References made by one task.
+constexpr std::size_t kChunk = 1u << 14;
+
+/// Finite, and three corners in different places.
+bool is_usable(const Vec3f (&v)[3]) {
+  std::uint32_t greatest = 0;
+  for (const Vec3f& p : v)
+    for (int k = 0; k < 3; ++k)
+      greatest = std::max(greatest, std::bit_cast<std::uint32_t>(p[k]) & 0x7fffffffu);
+  return greatest < 0x7f800000u && v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+}
+
+}  // namespace
+
+MeshSource::MeshSource(const Accel& accel) : accel_(accel) {
+  for (std::size_t g = 0; g < accel.geometries.size(); ++g) {
+    const Geometry& geometry = accel.geometries[g];
+    Mesh m;
+    if (const auto* shape = std::get_if<MeshGeometry>(&geometry.shape))
+      m = {shape->mesh->positions.data(), shape->mesh->indices.data(), accel.first_item[g],
+           geometry.transform.is_identity() ? nullptr : &geometry.transform};
+    meshes_.push_back(m);
+  }
+}
+
+inline void MeshSource::corners(const Mesh& mesh, std::uint32_t item, Vec3f (&v)[3]) const {
+  const std::uint32_t* index = mesh.indices + 3 * std::size_t{item - mesh.first_item};
+  for (int k = 0; k < 3; ++k) {
+    v[k] = mesh.positions[index[k]];
+    if (mesh.transform != nullptr) v[k] = Vec3f(mesh.transform->point(Vec3d(v[k])));
+  }
+}
+
+inline const MeshSource::Mesh& MeshSource::mesh_of(std::uint32_t item) const {
+  return meshes_.size() == 1 ? meshes_[0] : meshes_[accel_.geometry_of(item)];
+}
+
+void MeshSource::corners(std::uint32_t item, Vec3f (&v)[3]) const { corners(mesh_of(item), item, v); }
+
+Box MeshSource::add_references(std::uint32_t geometry, Column<PrimRef>& refs, bool parallel) const {
+  const MeshGeometry& shape = std::get<MeshGeometry>(accel_.geometries[geometry].shape);
+  const Mesh& mesh = meshes_[geometry];
+  const std::size_t count = shape.mesh->triangle_count(), base = refs.size();
+  const std::uint32_t kind =
+      static_cast<std::uint32_t>(Kind::triangle) | static_cast<std::uint32_t>(shape.test) << 8;
+  refs.resize_uninitialized(base + count);
+  struct Part {
+    Box bounds;
+    std::size_t usable = 0;
+  };
+  std::vector<Part> parts((count + kChunk - 1) / kChunk);
+  const auto fill = [&](std::size_t chunk) {
+    Part& part = parts[chunk];
+    PrimRef* out = refs.data() + base + chunk * kChunk;
+    for (std::size_t i = chunk * kChunk, end = std::min(i + kChunk, count); i < end; ++i) {
+      const std::uint32_t item = mesh.first_item + static_cast<std::uint32_t>(i);
+      Vec3f v[3];
+      corners(mesh, item, v);
+      if (!is_usable(v)) continue;
+      const Vec3f lo = min(min(v[0], v[1]), v[2]), hi = max(max(v[0], v[1]), v[2]);
+      part.bounds.lo = min(lo, part.bounds.lo), part.bounds.hi = max(hi, part.bounds.hi);
+      *out++ = {{-lo.x, -lo.y, -lo.z}, item, {hi.x, hi.y, hi.z}, kind};
+      ++part.usable;
+    }
+  };
+  if (parallel && parts.size() > 1)
+    tbb::parallel_for(std::size_t{0}, parts.size(), fill);
+  else
+    for (std::size_t c = 0; c < parts.size(); ++c) fill(c);
+  // Close the gaps that unusable triangles left.
+  Box bounds;
+  PrimRef* end = refs.data() + base;
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    const PrimRef* from = refs.data() + base + c * kChunk;
+    if (from != end) std::copy(from, from + parts[c].usable, end);
+    end += parts[c].usable;
+    if (parts[c].usable > 0) bounds.grow(parts[c].bounds);
+  }
+  refs.resize_uninitialized(static_cast<std::size_t>(end - refs.data()));
+  return bounds;
+}
+
+void MeshSource::fill(const std::uint32_t* items, int count, TriangleBlock& block) const {
+  for (int i = 0; i < count; ++i) {
+    Vec3f v[3];
+    corners(mesh_of(items[i]), items[i], v);
+    for (int k = 0; k < 3; ++k)
+      for (int axis = 0; axis < 3; ++axis) block.v[k][axis][i] = v[k][axis];
+    block.item[i] = items[i];
+  }
+  for (int i = count; i < TriangleBlock::kSize; ++i) {
+    for (auto& corner : block.v)
+      for (int axis = 0; axis < 3; ++axis) corner[axis][i] = block.v[0][axis][0];
+    block.item[i] = kNoId;
+  }
+}
+
+void MeshSource::prefetch(const std::uint32_t* items, int count) const {
+  if (meshes_.size() > 1) return;
+  const Mesh& mesh = meshes_[0];
+  for (int i = 0; i < count; ++i)
+    __builtin_prefetch(mesh.indices + 3 * std::size_t{items[i] - mesh.first_item});
+}
+
+}  // namespace oktett

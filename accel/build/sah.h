@@ -1,0 +1,166 @@
+#pragma once
+/// \file What the builder works on: primitive references, bins, and the binary tree that comes before the
+/// wide one.
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "accel/node.h"
+#include "core/isa_select.h"
+
+namespace oktett {
+
+/// A primitive's box as {-lo, hi}, so that one maximum grows both corners at once (the layout is tinybvh's
+/// idea), with its item number and kind in the gaps. 32 bytes.
+struct alignas(32) PrimRef {
+  float negative_lo[3];
+  std::uint32_t item;
+  float hi[3];
+  std::uint32_t kind;  ///< Kind in bits 0-7, TriangleTest in bits 8-15
+};
+static_assert(sizeof(PrimRef) == 32);
+
+/// Boxes in the same form, and a count, for every candidate interval of one axis.
+struct alignas(32) BinBox {
+  float v[8];  ///< {-lo.xyz, any, hi.xyz, any}
+};
+
+inline constexpr int kMaxBins = 32;
+
+struct Bins {
+  BinBox box[3][kMaxBins];
+  std::uint32_t count[3][kMaxBins];
+};
+
+/// Bounds of lo + hi, twice the centres of boxes; the fourth component is never read. Beyond 1.7e38 they are
+/// infinite, and such an axis is not split.
+struct alignas(16) Centers {
+  static constexpr float kInf = std::numeric_limits<float>::infinity();
+  float lo[4] = {kInf, kInf, kInf, kInf};
+  float hi[4] = {-kInf, -kInf, -kInf, -kInf};
+
+  void grow(const Centers& c) {
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = c.lo[k] < lo[k] ? c.lo[k] : lo[k];
+      hi[k] = c.hi[k] > hi[k] ? c.hi[k] : hi[k];
+    }
+  }
+};
+
+/// Which bin a centre falls into: floor((centre - origin) * scale), clamped to [0, bins). The centre is
+/// formed from halves, so that huge boxes do not overflow. Scale 0: all in bin 0.
+struct Grid {
+  float origin[4] = {}, scale[4] = {};
+  int bins = 0;
+};
+
+/// Bins refs[0, count).
+struct BinJob {
+  const PrimRef* refs;
+  std::size_t count;
+  Grid grid;
+  Bins* out;  ///< overwritten
+};
+
+/// A plane between bins `bin` and `bin` + 1 of an axis; axis < 0: none.
+struct Split {
+  int axis = -1, bin = 0;
+  float cost = std::numeric_limits<float>::infinity();
+};
+
+/// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]), by the
+/// side of the plane that their centres are on, and bounds the centres of each side.
+struct PartitionJob {
+  const PrimRef* refs;
+  std::size_t count;
+  PrimRef* left;
+  PrimRef* right;
+  Grid grid;
+  Split split;
+  Centers centers[2];  ///< grown
+};
+
+/// A node of the binary tree: a pair of children, or a leaf. 32 bytes.
+struct alignas(32) BinaryNode {
+  static constexpr std::uint32_t kInner = 1u << 31;
+
+  float negative_lo[3];
+  std::uint32_t link;  ///< the left child, the right one follows; in a leaf the place of the first item
+  float hi[3];
+  std::uint32_t info;  ///< see below
+
+  bool is_leaf() const { return (info & kInner) == 0; }
+  // Leaves: how many items, of which kind.
+  static std::uint32_t leaf_info(std::uint32_t count, std::uint32_t kind) { return count | kind << 8; }
+  int count() const { return static_cast<int>(info & 0xff); }
+  Kind kind() const { return static_cast<Kind>(info >> 8 & 0xff); }
+  TriangleTest test() const { return static_cast<TriangleTest>(info >> 16 & 0xff); }
+  /// Inner nodes: of `slots` places (2 to 8) in a wide node, how many the left child's subtree gets for the
+  /// least cost; 0: a place is better left empty. See accel/build/collapse.h.
+  int left_slots(int slots) const { return static_cast<int>(info >> 3 * (slots - 2) & 7); }
+};
+static_assert(sizeof(BinaryNode) == 32);
+
+/// Cost of a subtree (the areas of its wide nodes and leaves) if it may fill 1 to 7 places of a wide node.
+/// See accel/build/collapse.h.
+struct SubtreeCost {
+  float places[7];
+};
+
+/// The largest range that may be built by sorting instead of binning.
+inline constexpr std::uint32_t kMaxSweep = 256;
+
+/// What a BuildQuality means.
+struct Effort {
+  int bins;             ///< candidate intervals per axis, [2, kMaxBins]
+  std::uint32_t sweep;  ///< ranges up to this size are swept, [8, kMaxSweep]
+  std::uint32_t
+      every_place;  ///< of these, ranges up to this size are tried at every place, others at full blocks
+  bool cells;       ///< larger ranges are divided by a space-filling curve
+  double spatial;   ///< references that splits of space may add, per reference
+};
+
+/// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].
+struct SweepJob {
+  const PrimRef* refs;
+  std::uint32_t count;
+  std::uint32_t first;   ///< place of the range among all items
+  std::uint32_t* items;  ///< out: the items in the order of the leaves
+  int depth;             ///< of the range; the tree stays below kMaxDepth
+  float unit;            ///< a power of two by which the scene is of size 1
+  Effort effort;
+  bool pieces;               ///< an item may occur more than once
+  BinaryNode* nodes;         ///< out: up to 2 * count - 1, the root first; links to children count from here
+  std::uint32_t node_count;  ///< out
+  SubtreeCost cost;          ///< out
+};
+
+/// The parts of the builder that are compiled per instruction set. All sets build the same tree.
+struct BuildKernels {
+  void (*bin)(const BinJob&);
+  void (*bound)(const PrimRef*, std::size_t count, Centers&);  ///< grows bounds of centres
+  void (*partition)(PartitionJob&);
+  void (*sweep)(SweepJob&);
+};
+
+/// Blocks of eight that n primitives fill: what leaves cost, and why splits fall at multiples of eight where
+/// they can.
+constexpr std::uint32_t blocks_of(std::uint32_t n) {
+  return (n + TriangleBlock::kSize - 1) / TriangleBlock::kSize;
+}
+
+/// Half of n, a multiple of eight if that is possible.
+constexpr std::size_t balanced_half(std::size_t n) {
+  constexpr std::size_t size = TriangleBlock::kSize;
+  return n > 2 * size ? n / 2 / size * size : n > size ? size : n / 2;
+}
+
+template <class A>
+const BuildKernels& build_kernels();
+
+inline const BuildKernels& build_kernels(Isa isa) {
+  return with_isa(isa, []<class A>() -> const BuildKernels& { return build_kernels<A>(); });
+}
+
+}  // namespace oktett

@@ -1,0 +1,46 @@
+#pragma once
+/// \file The tree builder proper: primitive references in, nodes and leaves out.
+
+#include <vector>
+
+#include "accel/accel_data.h"
+#include "accel/build/sah.h"
+#include "core/soa.h"
+
+namespace oktett {
+
+/// Where blocks get their triangles from; called from many threads.
+class TriangleSource {
+ public:
+  virtual ~TriangleSource() = default;
+  /// Fills a block with 1 to 8 items.
+  virtual void fill(const std::uint32_t* items, int count, TriangleBlock& block) const = 0;
+  /// Says that `fill` will soon be asked for these.
+  virtual void prefetch(const std::uint32_t* items, int count) const = 0;
+  virtual void corners(std::uint32_t item, Vec3f (&v)[3]) const = 0;
+};
+
+/// A binary tree down to leaves of a block, and the order of the items in them. The root is node 0.
+struct BinaryTree {
+  VirtualArray<BinaryNode> nodes;
+  Column<std::uint32_t> items;
+  bool pieces = false;  ///< an item may stand in several leaves
+};
+
+/// Builds the binary tree over `refs`, which it uses up; `bounds` are theirs. The same tree for any number of
+/// threads.
+BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+                        const BuildOptions& options, const BuildKernels& kernels);
+
+/// The power of two by which a scene with these bounds is of size 1, so that areas neither overflow nor
+/// vanish.
+float scene_unit(const Box& bounds);
+
+/// Builds the tree over `refs` (which it uses up) into accel.nodes, accel.blocks, accel.leaves, accel.root,
+/// accel.bounds and accel.stats. Leaves of closed-form shapes and instances are given as ranges of `order`:
+/// the caller lays out the pools so that element i of kind k is item order[k][i].
+void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles,
+                std::vector<std::uint32_t> (&order)[kKinds], const BuildOptions& options,
+                const BuildKernels& kernels);
+
+}  // namespace oktett

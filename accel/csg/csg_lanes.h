@@ -1,0 +1,302 @@
+#pragma once
+/// \file Several rays at once against a combination of primitives: the crossings of all rays with a solid
+/// side by side, swept side by side. The same crossings, states and hits as those of accel/csg/csg_sweep.cpp,
+/// bit by bit.
+
+#include "accel/csg/csg.h"
+#include "accel/csg/csg_solids.h"
+#include "accel/exact.h"
+#include "accel/traverse/node_planes.h"
+
+namespace oktett {
+
+/// Trees of at most this many leaves are not walked: all solids are asked.
+inline constexpr std::size_t kAllCsgLeaves = 6;
+
+/// Rays on their way through one combination.
+template <class A>
+class CsgLanes {
+ public:
+  static constexpr int N = ExactCode<A>::kLanes;
+  using F = Simd<float, N, A>;
+  using D = Simd<double, N, A>;
+  using I = Simd<std::int32_t, N, A>;
+
+  /// What the rays in `lanes` meet first.
+  struct Found {
+    alignas(64) float t[N];
+    alignas(64) std::int32_t row[N];
+    unsigned lanes = 0, flipped = 0;
+  };
+
+  template <int W>
+  OKTETT_INLINE CsgLanes(const CsgItem& csg, const RayState<W, A>& r, int base, unsigned lanes)
+      : csg_(csg), lanes_(lanes) {
+    // Lanes past the end of a narrow state repeat its first one.
+    const auto load = [&](const float* column) {
+      if constexpr (N <= W) return F::load(column + base);
+      float padded[N];
+      for (int i = 0; i < N; ++i) padded[i] = column[i < W ? i : 0];
+      return F::load(padded);
+    };
+    rays_ = {{load(r.o[0]), load(r.o[1]), load(r.o[2])},
+             {load(r.d[0]), load(r.d[1]), load(r.d[2])},
+             load(r.tmin),
+             load(r.tmax)};
+    inv_ = {load(r.inv[0]), load(r.inv[1]), load(r.inv[2])};
+    slab_slack_ = load(r.slack);
+  }
+
+  /// Lists the crossings; false if there is no room for all.
+  bool gather() {
+    const Accel& solids = *csg_.solids;
+    doubles_ = to_double(rays_);
+    for (const LeafEntry& leaf : solids.unbounded)
+      if (!gather_leaf(leaf, lanes_, true)) return false;
+    if (solids.leaves.size() <= kAllCsgLeaves) {
+      for (const std::uint32_t leaf : csg_.leaf_order)
+        if (!gather_leaf(solids.leaves[leaf], lanes_, false)) return false;
+      return true;
+    }
+    return walk();
+  }
+
+  /// Sweeps the crossings in their order until each ray has met the combination or come to its end.
+  /// False if the expression is too large.
+  OKTETT_INLINE bool sweep(Found& found) {
+    if (rows_.rows == 0 || lanes_ == 0) return true;
+    const std::vector<CsgStep>& steps = csg_.steps.empty() ? csg_steps(csg_, operand_, solids_) : csg_.steps;
+    if (steps.size() > kMaxPlaces) return false;
+    const F inf(std::numeric_limits<float>::infinity()), biggest(std::numeric_limits<float>::max());
+    const F slack = coincidence_slack();
+    const F last = min(rays_.tmax, biggest);
+    F limit(-1.0f), next = inf;
+    for (int row = 0; row < rows_.rows; ++row) next = min(F::load(rows_.t[row]), next);
+    unsigned inside = evaluate(steps);
+    for (unsigned active = lanes_;;) {
+      active &= bits(next <= last);
+      if (active == 0) return true;
+      const F end = min(next + (next * F(0x1p-21f) + slack), biggest);
+      const F after = advance(limit, end);
+      const unsigned now = evaluate(steps);
+      const unsigned turned = (now ^ inside) & active;
+      if (turned != 0) {
+        resolve(limit, end, next, turned, now, found);
+        active &= ~turned;
+      }
+      inside = now, limit = end, next = after;
+    }
+  }
+
+  const CrossingLanes<N>& rows() const { return rows_; }
+
+ private:
+  OKTETT_INLINE F coincidence_slack() const {
+    const Box& box = csg_.solids->bounds;
+    float size = 0;
+    if (!box.empty()) size = box_extent(box);
+    const F s = max(abs(rays_.o.z), max(abs(rays_.o.y), max(abs(rays_.o.x), F(size))));
+    const F speed = max(abs(rays_.d.z), max(abs(rays_.d.y), abs(rays_.d.x)));
+    return select(s <= F(std::numeric_limits<float>::max()), F(0x1p-22f) * (s / speed), F(0.0f));
+  }
+
+  /// Leads to the leaves along the rays.
+  OKTETT_NOINLINE bool walk() {
+    const Accel& solids = *csg_.solids;
+    struct Entry {
+      NodeRef ref;
+      unsigned lanes;
+    };
+    Entry stack[kStackSize];
+    int size = 0;
+    stack[size++] = {solids.root, lanes_};
+    const typename F::M negative[3] = {rays_.d.x < F(0.0f), rays_.d.y < F(0.0f), rays_.d.z < F(0.0f)};
+    while (size > 0) {
+      const Entry e = stack[--size];
+      if (e.ref.is_leaf()) {
+        if (!e.ref.is_none() && !gather_leaf(solids.leaves[e.ref.table_index()], e.lanes & lanes_, false))
+          return false;
+        continue;
+      }
+      with_node(solids, e.ref.node_index(), [&](const auto& node) {
+        for (unsigned rest = present_children(node); rest != 0; rest &= rest - 1) {
+          const int c = __builtin_ctz(rest);
+          F near_planes[3], far_planes[3];
+          for (int k = 0; k < 3; ++k) {
+            const F lo(node_plane(node, 2 * k, c)), hi(node_plane(node, 2 * k + 1, c));
+            near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
+          }
+          // A solid that begins behind the end of a ray matters to no crossing before it.
+          F near, far;
+          slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
+                        far);
+          const unsigned met = e.lanes & lanes_ & bits(near <= far);
+          if (met != 0) stack[size++] = {node.child[c], met};
+        }
+      });
+    }
+    return true;
+  }
+
+  OKTETT_INLINE bool gather_leaf(const LeafEntry& leaf, unsigned lanes, bool unbounded) {
+    for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count && lanes != 0; ++k) {
+      const int first = rows_.rows;
+      if (first + CrossingLanes<N>::kMostPerSolid > CrossingLanes<N>::kMost) return false;
+      if (solids_ == CrossingLanes<N>::kMost) return false;
+      const std::uint32_t item = is_exact(leaf.kind)
+                                     ? ExactCode<A>::rows(*csg_.solids, leaf.kind, k, rays_, lanes, rows_)
+                                     : gather_shape(leaf.kind, k, lanes);
+      begin_solid(first, item, lanes, unbounded);
+      lanes &= lanes_;
+    }
+    return true;
+  }
+
+  OKTETT_INLINE std::uint32_t gather_shape(Kind kind, std::uint32_t k, unsigned lanes) {
+    if (kind == Kind::sphere) return shape_rows<Sphere>(k, lanes);
+    if (kind == Kind::box) return shape_rows<BoxSolid>(k, lanes);
+    return shape_rows<Plane>(k, lanes);
+  }
+
+  template <class S>
+  OKTETT_INLINE std::uint32_t shape_rows(std::uint32_t k, unsigned lanes) {
+    const auto& pool = std::get<typename S::Pool>(csg_.solids->pools);
+    const auto shape = S::template broadcast<D>(pool, k);
+    D t[S::kRoots];
+    const auto meets = mask_cast<float>(S::roots(doubles_, shape, t)) & F::M::from_bits(lanes);
+    if (none(meets)) return pool.item[k];
+    for (int j = 0; j < S::kRoots; ++j) {
+      const F tf = to_float(t[j]);
+      const auto valid = meets & (rays_.tmin < tf) & (tf <= F(std::numeric_limits<float>::max()));
+      F turn(j == 0 ? -1.0f : 1.0f);
+      if constexpr (std::is_same_v<S, Plane>)
+        turn = select(mask_cast<float>(dot_lanes(shape.n, doubles_.d) < D(0.0)), F(-1.0f), F(1.0f));
+      push_row(rows_, valid, tf, turn, F(0.0f), pool.item[k], false);
+    }
+    return pool.item[k];
+  }
+
+  /// A solid whose rows begin at `first`: where its first crossing leaves it, the rays begin inside.
+  OKTETT_INLINE void begin_solid(int first, std::uint32_t item, unsigned lanes, bool unbounded) {
+    unsigned met = 0, begun = 0;
+    for (int row = first; row < rows_.rows; ++row) {
+      const unsigned here = bits(F::load(rows_.t[row]) <= F(std::numeric_limits<float>::max())) & ~met;
+      begun |= here & bits(F::load(rows_.turn[row]) > F(0.0f));
+      met |= here;
+    }
+    const std::uint32_t geometry = csg_.solids->geometry_of(item);
+    if (unbounded) begun |= asked(geometry, lanes & ~met);
+    // Rays that never are inside of what holds all of the combination have no more to ask.
+    const bool needed = csg_.needed[geometry] != 0;
+    if (needed) lanes_ &= ~(lanes & ~(met | begun));
+    if (rows_.rows == first && begun == 0) return;
+    const int s = solids_++;
+    if (needed && needed_count_ < kMostNeeded) needed_[needed_count_++] = s;
+    operand_[s] = csg_.operand_of[geometry];
+    end_[s] = rows_.rows;
+    select(F::M::from_bits(begun), F(1.0f), F(0.0f)).store(depth_[s]);
+    inside_[s] = begun;
+  }
+
+  /// Those of `lanes` that run inside of a solid that they do not cross.
+  OKTETT_NOINLINE unsigned asked(std::uint32_t geometry, unsigned lanes) const {
+    unsigned inside = 0;
+    float o[3][N], d[3][N], tmin[N];
+    rays_.o.x.store(o[0]), rays_.o.y.store(o[1]), rays_.o.z.store(o[2]);
+    rays_.d.x.store(d[0]), rays_.d.y.store(d[1]), rays_.d.z.store(d[2]);
+    rays_.tmin.store(tmin);
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const int i = __builtin_ctz(lanes);
+      if (runs_inside(*csg_.solids, geometry,
+                      {{o[0][i], o[1][i], o[2][i]}, tmin[i], {d[0][i], d[1][i], d[2][i]}}))
+        inside |= 1u << i;
+    }
+    return inside;
+  }
+
+  /// Applies the crossings in (limit, end]; the nearest distance behind.
+  OKTETT_INLINE F advance(const F& limit, const F& end) {
+    const F inf(std::numeric_limits<float>::infinity());
+    F after = inf;
+    int row = 0;
+    for (int s = 0; s < solids_; ++s) {
+      if (row == end_[s]) continue;
+      F depth = F::load(depth_[s]);
+      for (; row < end_[s]; ++row) {
+        const F t = F::load(rows_.t[row]);
+        const auto beyond = t > end;
+        depth = select((t > limit) & ~beyond, depth - F::load(rows_.turn[row]), depth);
+        after = select(beyond, min(t, after), after);
+      }
+      depth.store(depth_[s]);
+      inside_[s] = bits(depth > F(0.0f));
+    }
+    return after;
+  }
+
+  /// The rays that are inside of the combination.
+  OKTETT_INLINE unsigned evaluate(const std::vector<CsgStep>& steps) const {
+    unsigned possible = lanes_;
+    for (int i = 0; i < needed_count_; ++i) possible &= inside_[needed_[i]];
+    if (possible == 0) return 0;
+    const auto count = static_cast<std::uint32_t>(steps.size());
+    std::uint32_t state[kMaxPlaces];
+    const CsgStep* step = steps.data();
+    for (std::uint32_t i = 0; i < count; ++i) state[i] = step[i].initial;
+    for (int s = 0; s < solids_; ++s) state[operand_[s]] |= inside_[s];
+    for (std::uint32_t i = count; i-- > 1;) state[step[i].parent] &= state[i] ^ step[i].flip;
+    return (state[0] ^ step[0].flip) & possible;
+  }
+
+  /// Notes what the rays in `turned` see of the crossings in (limit, end], the first of which is at `next`.
+  OKTETT_NOINLINE void resolve(const F& limit, const F& end, const F& next, unsigned turned, unsigned now,
+                               Found& found) const {
+    const F inf(std::numeric_limits<float>::infinity());
+    const F want = select(F::M::from_bits(now), F(-1.0f), F(1.0f));
+    const auto meant = [&](int row, const F& t) {
+      return (t > limit) & (t <= end) & (F::load(rows_.turn[row]) == want);
+    };
+    F same = inf;
+    for (int row = 0; row < rows_.rows; ++row) {
+      const F t = F::load(rows_.t[row]);
+      same = select(meant(row, t), min(t, same), same);
+    }
+    const auto matched = same < inf;
+    const F chosen = select(matched, same, next);
+    I least(0x7fffffff), at(0);
+    for (int row = 0; row < rows_.rows; ++row) {
+      const F t = F::load(rows_.t[row]);
+      const auto candidate = (t == chosen) & (t > limit) & (meant(row, t) | ~matched);
+      const I item(static_cast<std::int32_t>(rows_.item[row]));
+      const auto before = mask_cast<std::int32_t>(candidate) & (item < least);
+      least = select(before, item, least), at = select(before, I(row), at);
+    }
+    const auto here = F::M::from_bits(turned);
+    select(here, chosen, F::load(found.t)).store(found.t);
+    select(mask_cast<std::int32_t>(here), at, I::load(found.row)).store(found.row);
+    found.lanes |= turned;
+    found.flipped |= turned & ~bits(matched);
+  }
+
+  /// Steps that are evaluated at a time: those of an expression, or what its solids lead to.
+  static constexpr std::size_t kMaxPlaces = 512;
+
+  /// Solids that are looked at before a whole expression is.
+  static constexpr int kMostNeeded = 4;
+
+  const CsgItem& csg_;
+  unsigned lanes_;
+  RayLanes<F> rays_;
+  RayLanes<D> doubles_;
+  Vec3<F> inv_;
+  F slab_slack_;
+  int solids_ = 0, needed_count_ = 0;
+  int needed_[kMostNeeded];
+  std::uint32_t operand_[CrossingLanes<N>::kMost];  ///< per solid; in the end its place among the steps
+  int end_[CrossingLanes<N>::kMost];                ///< one past its last row
+  unsigned inside_[CrossingLanes<N>::kMost];        ///< the rays inside of it
+  alignas(64) float depth_[CrossingLanes<N>::kMost][N];
+  CrossingLanes<N> rows_;
+};
+
+}  // namespace oktett

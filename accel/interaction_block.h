@@ -1,0 +1,43 @@
+#pragma once
+/// \file Surfaces of many hits in columns, for those who shade them together.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/surface_interaction.h"
+
+namespace oktett {
+
+/// Up to 64 surfaces. The columns mean what SurfaceInteraction says; uv and tangent are missing.
+struct InteractionBlock {
+  static constexpr std::size_t kMost = 64;
+
+  float position[3][kMost], position_error[3][kMost];
+  float geometric_normal[3][kMost], shading_normal[3][kMost];
+  std::uint32_t geometry[kMost], primitive[kMost], user[kMost], material_slot[kMost];
+
+  SurfaceInteraction operator[](std::size_t i) const {
+    SurfaceInteraction s;
+    s.position = get(position, i), s.position_error = get(position_error, i);
+    s.geometric_normal = get(geometric_normal, i), s.shading_normal = get(shading_normal, i);
+    s.geometry = geometry[i], s.primitive = primitive[i];
+    s.user = user[i], s.material_slot = material_slot[i];
+    return s;
+  }
+  /// All but the names.
+  void set_shape(std::size_t i, const SurfaceInteraction& s) {
+    put(position, i, s.position), put(position_error, i, s.position_error);
+    put(geometric_normal, i, s.geometric_normal), put(shading_normal, i, s.shading_normal);
+  }
+
+  template <class T>
+  static Vec3<T> get(const T (&column)[3][kMost], std::size_t i) {
+    return {column[0][i], column[1][i], column[2][i]};
+  }
+  template <class T>
+  static void put(T (&column)[3][kMost], std::size_t i, const Vec3<T>& v) {
+    column[0][i] = v.x, column[1][i] = v.y, column[2][i] = v.z;
+  }
+};
+
+}  // namespace oktett

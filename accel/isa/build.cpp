@@ -1,0 +1,7 @@
+#include "accel/build/kernels.h"
+
+namespace oktett {
+
+template const BuildKernels& build_kernels<OKTETT_ISA>();
+
+}  // namespace oktett

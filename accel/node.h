@@ -1,0 +1,69 @@
+#pragma once
+/// \file How the tree lies in memory.
+
+#include <cstdint>
+
+#include "kernels/kinds.h"
+
+namespace oktett {
+
+/// Where a child of a node is: another node, a block of triangles, or an entry of the leaf table. Blocks of
+/// triangles are by far the most frequent leaves, so they are reached without a table.
+class NodeRef {
+ public:
+  static constexpr std::uint32_t kMaxBlocks = 1u << 27;
+
+  NodeRef() = default;
+  static NodeRef node(std::uint32_t index) { return NodeRef(index); }
+  /// A block of `count` triangles, 1 to 8, tested by the watertight test.
+  static NodeRef triangles(std::uint32_t block, int count) {
+    return NodeRef(kLeaf | static_cast<std::uint32_t>(count - 1) << 27 | block);
+  }
+  static NodeRef leaf(std::uint32_t table_index) { return NodeRef(kLeaf | kTable | table_index); }
+  static NodeRef none() { return NodeRef(kLeaf | kTable | (kTable - 1)); }
+
+  bool is_leaf() const { return (bits_ & kLeaf) != 0; }
+  bool is_triangles() const { return (bits_ & (kLeaf | kTable)) == kLeaf; }
+  bool is_none() const { return bits_ == none().bits_; }
+  std::uint32_t node_index() const { return bits_; }
+  std::uint32_t block() const { return bits_ & (kMaxBlocks - 1); }
+  int triangle_count() const { return static_cast<int>(bits_ >> 27 & 7) + 1; }
+  std::uint32_t table_index() const { return bits_ & (kTable - 1); }
+  /// The number as it is stored: nodes from 0, blocks from 2^31, the rest from 3 * 2^30.
+  std::uint32_t bits() const { return bits_; }
+  static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
+
+ private:
+  explicit NodeRef(std::uint32_t bits) : bits_(bits) {}
+  static constexpr std::uint32_t kLeaf = 1u << 31, kTable = 1u << 30;
+  std::uint32_t bits_;
+};
+
+/// Eight children and their boxes in columns: 256 bytes. `plane[2 * axis + side]`, side 0 = low, 1 = high.
+/// Unused children have empty boxes (low = +inf, high = -inf), which no ray meets.
+struct alignas(64) BvhNode {
+  static constexpr int kWidth = 8;
+  float plane[6][kWidth];
+  NodeRef child[kWidth];
+  std::uint32_t padding[8];
+
+  /// The children as NodeRef::bits.
+  const std::uint32_t* child_bits() const { return reinterpret_cast<const std::uint32_t*>(child); }
+};
+static_assert(sizeof(BvhNode) == 256);
+
+/// A leaf that is not a block of watertight triangles: `count` items of one kind from `begin` in the kind's
+/// pool (for triangles: in one block, tested as `test` says).
+struct LeafEntry {
+  std::uint32_t begin = 0;
+  std::uint16_t count = 0;
+  Kind kind = Kind::triangle;
+  TriangleTest test = TriangleTest::watertight;
+};
+static_assert(sizeof(LeafEntry) == 8);
+
+/// Deepest tree the builder makes, so that a stack of (kWidth - 1) * kMaxDepth + 1 entries suffices.
+inline constexpr int kMaxDepth = 64;
+inline constexpr int kStackSize = (BvhNode::kWidth - 1) * kMaxDepth + 1;
+
+}  // namespace oktett

@@ -1,0 +1,103 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "accel/accel_data.h"
+#include "accel/hit_list.h"
+#include "accel/query.h"
+#include "accel/trace_code.h"
+
+namespace oktett {
+
+void HitList::push(const Hit& hit, float turn) { hits_.push_back({hit, turn}); }
+std::size_t HitList::size() const { return hits_.size(); }
+Crossing& HitList::operator[](std::size_t i) { return hits_[i]; }
+void HitList::shrink(std::size_t size) { hits_.resize(size); }
+bool is_triangle(const Accel& accel, std::uint32_t item) {
+  return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;
+}
+
+void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
+  // Elements of one cell, and height fields, list theirs as they are.
+  const auto own_exact = [&](const Hit& h) {
+    if (h.instance != kNoId) return false;
+    const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
+    return is_exact(kind) && !has_one_cell(kind) && kind != Kind::height_field;
+  };
+  std::vector<Crossing> crossings;
+  std::size_t kept = first;
+  for (std::size_t i = first; i < list.size(); ++i) {
+    if (own_exact(list[i].hit))
+      crossings.push_back(list[i]);
+    else
+      list[kept++] = list[i];
+  }
+  list.shrink(kept);
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
+    return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
+  });
+  // Of several ways in the first counts, of several ways out the last.
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const auto same = [&](std::size_t k) {
+      return k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
+             crossings[k].turn == crossings[i].turn;
+    };
+    if (crossings[i].turn < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1))
+      list.push(crossings[i].hit, crossings[i].turn);
+  }
+}
+
+bool is_mirrored(const Accel& accel, std::uint32_t item) {
+  return accel.frames[accel.geometry_of(item)].mirrored;
+}
+
+/// Batches above this size are shared out in pieces of it.
+static constexpr std::size_t kGrain = 4096;
+
+template <class Trace>
+static void for_each_piece(std::size_t size, Trace&& trace) {
+  if (size <= kGrain) return trace(std::size_t{0}, size);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (size + kGrain - 1) / kGrain), [&](const auto& r) {
+    for (std::size_t k = r.begin(); k < r.end(); ++k) trace(k * kGrain, std::min(kGrain, size - k * kGrain));
+  });
+}
+
+void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode) {
+  const TraceCode& code = trace_code(isa);
+  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
+    code.closest_hit(accel, rays.part(begin, count), hits.part(begin, count), mode);
+  });
+}
+
+void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa, TraceMode mode) {
+  const TraceCode& code = trace_code(isa);
+  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
+    code.any_hit(accel, rays.part(begin, count), occluded + begin, mode);
+  });
+}
+
+void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa) {
+  closest_hit(accel, rays, hits, isa, TraceMode::automatic);
+}
+
+void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa) {
+  any_hit(accel, rays, occluded, isa, TraceMode::automatic);
+}
+
+void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {
+  hits.clear();
+  std::vector<Crossing> crossings;
+  HitList list(crossings);
+  trace_code(isa).all_hits(accel, ray, list);
+  for (const Crossing& c : crossings) hits.push_back(c.hit);
+  std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+    if (a.t != b.t) return a.t < b.t;
+    // Adding one puts "no instance" first.
+    if (a.instance != b.instance) return a.instance + 1 < b.instance + 1;
+    return a.item < b.item;
+  });
+}
+
+}  // namespace oktett

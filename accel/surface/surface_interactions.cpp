@@ -1,0 +1,260 @@
+#include <algorithm>
+
+#include "accel/hit_place.h"
+#include "accel/shape_hits.h"
+#include "accel/surface/interaction_code.h"
+#include "accel/surface/mesh_interactions.h"
+#include "kernels/exact/exact_surface.h"
+#include "kernels/exact_shapes.h"
+
+namespace oktett {
+namespace {
+
+void set_column(float (&column)[3][MeshInteractions::kMost], std::size_t i, const Vec3f& v) {
+  for (int k = 0; k < 3; ++k) column[k][i] = v[k];
+}
+
+Vec3f get_column(const float (&column)[3][MeshInteractions::kMost], std::size_t i) {
+  return {column[0][i], column[1][i], column[2][i]};
+}
+
+/// Puts a hit of triangle `triangle` into place `i` of the columns.
+void gather(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, MeshInteractions& s,
+            std::size_t i) {
+  const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
+  for (int k = 0; k < 3; ++k) set_column(s.corner[k], i, mesh.positions[index[k]]);
+  s.u[i] = u, s.v[i] = v;
+  if (!s.smooth) return;
+  index = &mesh.normal_indices[3 * std::size_t{triangle}];
+  const bool known = index[0] != kNoId && index[1] != kNoId && index[2] != kNoId;
+  for (int k = 0; k < 3; ++k) set_column(s.normal[k], i, known ? mesh.normals[index[k]] : Vec3f{});
+}
+
+/// Hits of one mesh that wait for their surfaces.
+class MeshRun {
+ public:
+  MeshRun(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which, const InteractionCode& code,
+          InteractionBlock& out)
+      : rays_(rays), hits_(hits), which_(which), code_(code), out_(out) {}
+
+  /// Takes entry `i`, a hit of the mesh `names`.
+  void add(const HitPlace& place, const HitNames& names, std::size_t i) {
+    const Geometry& geometry = place.accel->geometries[names.geometry];
+    if (columns_.count == MeshInteractions::kMost || geometry_ != &geometry) begin(place, geometry, names);
+    const Hit hit = hits_[which_[i]];
+    gather(*std::get<MeshGeometry>(geometry.shape).mesh, names.primitive, hit.u, hit.v, columns_,
+           columns_.count);
+    entry_[columns_.count++] = i;
+  }
+
+  /// Must be called before `place` changes, and in the end.
+  void finish(const HitPlace& place) {
+    if (columns_.count == 0) return;
+    repeat_last();
+    code_.mesh(columns_);
+    for (std::size_t k = 0; k < columns_.count; ++k) {
+      const std::size_t i = entry_[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        out_.position[axis][i] = columns_.position[axis][k];
+        out_.position_error[axis][i] = columns_.position_error[axis][k];
+        out_.geometric_normal[axis][i] = columns_.geometric_normal[axis][k];
+        out_.shading_normal[axis][i] = columns_.shading_normal[axis][k];
+      }
+      if (!place.changes()) continue;
+      SurfaceInteraction s = out_[i];
+      move_surface(place, rays_[which_[i]], hits_.t[which_[i]], s);
+      out_.set_shape(i, s);
+    }
+    columns_.count = 0;
+    geometry_ = nullptr;
+  }
+
+ private:
+  void begin(const HitPlace& place, const Geometry& geometry, const HitNames& names) {
+    finish(place);
+    geometry_ = &geometry;
+    const auto& shape = std::get<MeshGeometry>(geometry.shape);
+    const GeometryFrame& frame = place.accel->frames[names.geometry];
+    columns_.smooth = shape.smooth && !shape.mesh->normal_indices.empty();
+    columns_.to_world = frame.identity ? nullptr : &geometry_->transform;
+    columns_.inverse = frame.identity ? nullptr : &frame.inverse;
+    columns_.mirrored = frame.mirrored;
+  }
+
+  /// Fills the last group of lanes.
+  void repeat_last() {
+    const std::size_t last = columns_.count - 1, end = (columns_.count + 7) / 8 * 8;
+    for (std::size_t i = last + 1; i < end; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        set_column(columns_.corner[k], i, get_column(columns_.corner[k], last));
+        if (columns_.smooth) set_column(columns_.normal[k], i, get_column(columns_.normal[k], last));
+      }
+      columns_.u[i] = columns_.u[last], columns_.v[i] = columns_.v[last];
+    }
+  }
+
+  const RaySpan& rays_;
+  const HitSpan& hits_;
+  const std::uint32_t* which_;
+  const InteractionCode& code_;
+  InteractionBlock& out_;
+  const Geometry* geometry_ = nullptr;
+  std::size_t entry_[MeshInteractions::kMost];
+  MeshInteractions columns_;
+};
+
+/// Hits of shapes that stand in the world itself, also in combinations there, sorted by what can be worked on
+/// together.
+class ShapeGroups {
+ public:
+  ShapeGroups(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
+              const InteractionCode& code, InteractionBlock& out)
+      : rays_(rays), hits_(hits), which_(which), code_(code), out_(out) {}
+
+  /// Takes entry `i`; false if its kind has no code for groups.
+  bool add(const HitPlace& place, const HitNames& names, std::size_t i) {
+    const Accel& accel = *place.accel;
+    const Kind kind = names.kind;
+    std::uint32_t element, group = 0;
+    if (is_exact(kind) || kind == Kind::box) {
+      group = element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
+    } else if (kind == Kind::sphere || kind == Kind::plane) {
+      element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
+    } else {
+      return false;
+    }
+    entry_[count_] = static_cast<std::uint32_t>(i), element_[count_] = element;
+    accel_[count_] = &accel;
+    group_[count_++] = std::uint64_t{group} << 8 | static_cast<std::uint64_t>(kind);
+    if (place.combined != nullptr) combined_[combinations_++] = {place.combined, i, place.flipped};
+    return true;
+  }
+
+  void finish() {
+    for (std::size_t first = 0; first < count_; ++first) {
+      const std::uint64_t group = group_[first];
+      if (group == kDone) continue;
+      const Accel* accel = accel_[first];
+      std::uint32_t members[InteractionBlock::kMost];
+      columns_.count = 0;
+      for (std::size_t k = first; k < count_; ++k) {
+        if (group_[k] != group || accel_[k] != accel) continue;
+        group_[k] = kDone;
+        members[columns_.count] = entry_[k];
+        gather(k, columns_.count++);
+      }
+      find(*accel, static_cast<Kind>(group & 0xff), members);
+    }
+    for (std::size_t k = 0; k < combinations_; ++k) {
+      const Combined& c = combined_[k];
+      const std::uint32_t i = which_[c.entry];
+      const float reach = coincidence(hits_.t[i], coincidence_slack(*c.solids, rays_[i]));
+      for (int axis = 0; axis < 3; ++axis) {
+        float& error = out_.position_error[axis][c.entry];
+        error = widened_error(error, reach, rays_.direction[axis][i]);
+        if (!c.flipped) continue;
+        float &n = out_.geometric_normal[axis][c.entry], &shading = out_.shading_normal[axis][c.entry];
+        n = -n, shading = -shading;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kDone = ~std::uint64_t{0};
+
+  void gather(std::size_t k, std::size_t to) {
+    const std::uint32_t i = which_[entry_[k]];
+    for (int axis = 0; axis < 3; ++axis)
+      columns_.origin[axis][to] = rays_.origin[axis][i],
+      columns_.direction[axis][to] = rays_.direction[axis][i];
+    columns_.t[to] = hits_.t[i], columns_.part[to] = hits_.u[i], columns_.element[to] = element_[k];
+  }
+
+  /// Fills the last group of lanes.
+  void repeat_last() {
+    const std::size_t last = columns_.count - 1, end = (columns_.count + 7) / 8 * 8;
+    for (std::size_t i = last + 1; i < end; ++i) {
+      for (int axis = 0; axis < 3; ++axis)
+        columns_.origin[axis][i] = columns_.origin[axis][last],
+        columns_.direction[axis][i] = columns_.direction[axis][last];
+      columns_.t[i] = columns_.t[last], columns_.part[i] = columns_.part[last];
+      columns_.element[i] = columns_.element[last];
+    }
+  }
+
+  void find(const Accel& accel, Kind kind, const std::uint32_t* members) {
+    repeat_last();
+    if (!is_exact(kind)) {
+      code_.closed_form(accel, kind, columns_);
+    } else if (!code_.exact(accel, kind, columns_)) {
+      visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
+        for (std::size_t k = 0; k < columns_.count; ++k) {
+          const std::uint32_t i = which_[members[k]];
+          out_.set_shape(members[k], exact_surface_without_uv<decltype(shape)>(pool, columns_.element[k],
+                                                                               hits_[i], rays_[i]));
+        }
+      });
+      return;
+    }
+    for (std::size_t k = 0; k < columns_.count; ++k) {
+      const std::uint32_t i = members[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        out_.position[axis][i] = columns_.position[axis][k];
+        out_.position_error[axis][i] = columns_.position_error[axis][k];
+        out_.geometric_normal[axis][i] = out_.shading_normal[axis][i] = columns_.normal[axis][k];
+      }
+    }
+  }
+
+  /// An entry that is seen in a combination.
+  struct Combined {
+    const Accel* solids;
+    std::size_t entry;
+    bool flipped;
+  };
+
+  const RaySpan& rays_;
+  const HitSpan& hits_;
+  const std::uint32_t* which_;
+  const InteractionCode& code_;
+  InteractionBlock& out_;
+  std::size_t count_ = 0, combinations_ = 0;
+  std::uint32_t entry_[InteractionBlock::kMost], element_[InteractionBlock::kMost];
+  std::uint64_t group_[InteractionBlock::kMost];
+  const Accel* accel_[InteractionBlock::kMost];
+  Combined combined_[InteractionBlock::kMost];
+  ShapeHits columns_;
+};
+
+}  // namespace
+
+void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
+                          const std::uint32_t* which, std::size_t count, Isa isa, InteractionBlock& out) {
+  const InteractionCode& code = interaction_code(isa);
+  MeshRun run(rays, hits, which, code, out);
+  ShapeGroups groups(rays, hits, which, code, out);
+  HitPlace place;
+  std::uint32_t path = kNoId;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Hit hit = hits[which[i]];
+    if (place.accel == nullptr || hit.instance != path) {
+      run.finish(place);
+      place = follow_path(accel, hit.instance);
+      path = hit.instance;
+    }
+    const HitNames names = identify_in(place, hit);
+    out.geometry[i] = names.geometry, out.primitive[i] = names.primitive;
+    out.user[i] = names.user, out.material_slot[i] = names.material_slot;
+    if (names.kind == Kind::triangle) {
+      run.add(place, names, i);
+    } else if (place.moved || !groups.add(place, names, i)) {
+      SurfaceInteraction s;
+      surface_at(place, names, rays[which[i]], hit, false, s);
+      out.set_shape(i, s);
+    }
+  }
+  run.finish(place);
+  groups.finish();
+}
+
+}  // namespace oktett

@@ -1,0 +1,24 @@
+#pragma once
+/// \file The queries of accel/accel.h as they are compiled for each instruction set, in accel/isa.
+
+#include "accel/accel.h"
+#include "accel/hit_list.h"
+#include "accel/trace_mode.h"
+#include "core/isa_select.h"
+
+namespace oktett {
+
+struct TraceCode {
+  void (*closest_hit)(const Accel&, const RaySpan&, const HitSpan&, TraceMode);
+  void (*any_hit)(const Accel&, const RaySpan&, std::uint8_t*, TraceMode);
+  void (*all_hits)(const Accel&, const Ray&, HitList&);
+};
+
+template <class A>
+const TraceCode& trace_code();
+
+inline const TraceCode& trace_code(Isa isa) {
+  return with_isa(isa, []<class A>() -> const TraceCode& { return trace_code<A>(); });
+}
+
+}  // namespace oktett

@@ -1,0 +1,157 @@
+#pragma once
+/// \file Every crossing of one ray, in order.
+
+#include "accel/hit_list.h"
+#include "accel/traverse/single.h"
+
+namespace oktett {
+
+/// Whether the ray meets triangle `k` of a block from its front (-1) or from behind (1); for the textbook
+/// tests, which give no more.
+template <class A>
+OKTETT_INLINE float turn_of(const TriangleBlock& block, int k, const RayState<1, A>& r) {
+  const auto corner = [&](int c, int axis) { return static_cast<double>(block.v[c][axis][k]); };
+  double side = 0;
+  for (int x = 0; x < 3; ++x) {
+    const int y = (x + 1) % 3, z = (x + 2) % 3;
+    const double n = (corner(1, y) - corner(0, y)) * (corner(2, z) - corner(0, z)) -
+                     (corner(1, z) - corner(0, z)) * (corner(2, y) - corner(0, y));
+    side += n * r.d[x][0];
+  }
+  return side < 0 ? -1.0f : 1.0f;
+}
+
+/// Collects all hits of ray 0 of `r` with a block's triangles.
+template <class A>
+void collect_triangles(const Accel& accel, const TriangleBlock& block, int count, TriangleTest test,
+                       const RayState<1, A>& r, HitList& hits) {
+  constexpr int N = TriangleBlock::kSize;
+  using F = Simd<float, N, A>;
+  const auto ray = broadcast_ray<N>(r, 0);
+  HitLanes<F> h;
+  unsigned lanes = (1u << count) - 1, front = 0;
+  if (test == TriangleTest::watertight) {
+    lanes &= bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(load_triangles<F>(block))));
+    if (lanes == 0) return;
+    typename F::M clockwise;
+    lanes &= bits(decide_watertight(broadcast_shear<N>(r, 0), load_triangles<F>(block, 0, r.z_axis_of(0)),
+                                    ray.tmin, ray.tmax, h, clockwise));
+    front = r.inv_dz[0] > 0 ? bits(clockwise) : ~bits(clockwise);
+  } else {
+    lanes &= bits(textbook_test(test, ray, load_triangles<F>(block), h));
+    for (int k = 0; k < count; ++k) front |= (turn_of(block, k, r) < 0 ? 1u : 0u) << k;
+  }
+  if (lanes == 0) return;
+  alignas(64) float t[N], u[N], v[N];
+  h.t.store(t), h.u.store(u), h.v.store(v);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int k = __builtin_ctz(lanes);
+    const bool entered = (front >> k & 1) != (is_mirrored(accel, block.item[k]) ? 1u : 0u);
+    hits.push({t[k], u[k], v[k], block.item[k], kNoId}, entered ? -1.0f : 1.0f);
+  }
+}
+
+/// Whether root `j` of a shape enters (-1) or leaves (1) it; 0 for what has no inside.
+template <class S, class A>
+OKTETT_INLINE float turn_of(const typename S::Pool& pool, std::uint32_t k, int j, const RayState<1, A>& r) {
+  if constexpr (std::is_same_v<S, Plane>)
+    return pool.nx[k] * r.d[0][0] + pool.ny[k] * r.d[1][0] + pool.nz[k] * r.d[2][0] < 0 ? -1.0f : 1.0f;
+  return !S::kSolid ? 0.0f : j == 0 ? -1.0f : 1.0f;
+}
+
+/// Collects all roots of a closed-form shape inside the ray's range.
+template <class S, class A>
+void collect_shape(const typename S::Pool& pool, const LeafEntry& leaf, const RayState<1, A>& r,
+                   HitList& hits) {
+  using D = Simd<double, 1, A>;
+  const auto ray = to_double(broadcast_ray<1>(r, 0));
+  for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
+    D t[S::kRoots];
+    if (none(S::roots(ray, S::template broadcast<D>(pool, k), t))) continue;
+    for (int j = 0; j < S::kRoots; ++j) {
+      double td;
+      t[j].store(&td);
+      const float tf = static_cast<float>(td);
+      if (r.tmin[0] < tf && tf <= r.tmax[0] && tf <= std::numeric_limits<float>::max())
+        hits.push({tf, 0, 0, pool.item[k], kNoId}, turn_of<S>(pool, k, j, r));
+    }
+  }
+}
+
+template <class A>
+void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
+
+template <class A>
+void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A>& r, HitList& hits) {
+  if (leaf.kind == Kind::triangle) {
+    collect_triangles(accel, accel.blocks[leaf.begin], leaf.count, leaf.test, r, hits);
+  } else if (holds_instances(leaf.kind)) {
+    each_instance(accel, leaf, [&](const auto& instance, const Accel& inner) {
+      const auto outer = broadcast_ray<1>(r, 0);
+      Vec3<Simd<float, 1, A>> o, d;
+      transform_rays(instance, outer, o, d);
+      RayState<1, A> child;
+      if (child.set(o, d, outer.tmin, outer.tmax, inner.bounds) == 0) return true;
+      const std::size_t before = hits.size();
+      collect(inner, child, hits);
+      for (std::size_t j = before; j < hits.size(); ++j)
+        hits[j].hit.instance = outer_path(instance, hits[j].hit.instance);
+      return true;
+    });
+  } else if (is_exact(leaf.kind) || leaf.kind == Kind::csg) {
+    const Ray ray{{r.o[0][0], r.o[1][0], r.o[2][0]}, r.tmin[0], {r.d[0][0], r.d[1][0], r.d[2][0]}, r.tmax[0]};
+    if (leaf.kind == Kind::csg)
+      for (std::uint32_t k = 0; k < leaf.count; ++k)
+        collect_csg<A>(accel.combinations[leaf.begin + k], ray, hits);
+    else
+      for (std::uint32_t k = 0; k < leaf.count; ++k)
+        ExactCode<A>::all(accel, leaf.kind, leaf.begin + k, ray, hits);
+  } else {
+    visit_pool(leaf.kind, accel.pools,
+               [&](auto shape, const auto& pool) { collect_shape<decltype(shape)>(pool, leaf, r, hits); });
+  }
+}
+
+/// Drops repetitions of triangles among the hits from `first` on: those that are not inside an instance.
+OKTETT_INLINE void drop_repeated(const Accel& accel, HitList& hits, std::size_t first) {
+  std::size_t kept = first;
+  for (std::size_t i = first; i < hits.size(); ++i) {
+    bool seen = false;
+    const Hit hit = hits[i].hit;
+    if (hit.instance == kNoId && is_triangle(accel, hit.item))
+      for (std::size_t k = first; k < kept; ++k)
+        seen |= hits[k].hit.item == hit.item && hits[k].hit.instance == kNoId;
+    if (!seen) hits[kept++] = hits[i];
+  }
+  hits.shrink(kept);
+}
+
+/// Appends all hits of ray 0 of `r`, unsorted.
+template <class A>
+void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
+  const std::size_t first = hits.size();
+  for (const LeafEntry& leaf : accel.unbounded) collect_leaf(accel, leaf, r, hits);
+  if (accel.root.is_none()) return;
+  NodeRef stack[kStackSize];
+  int size = 0;
+  stack[size++] = accel.root;
+  alignas(64) float near[BvhNode::kWidth];
+  while (size > 0) {
+    const NodeRef ref = stack[--size];
+    if (ref.is_triangles()) {
+      collect_triangles(accel, accel.blocks[ref.block()], ref.triangle_count(), TriangleTest::watertight, r,
+                        hits);
+    } else if (ref.is_leaf()) {
+      collect_leaf(accel, accel.leaves[ref.table_index()], r, hits);
+    } else {
+      with_node(accel, ref.node_index(), [&](const auto& node) {
+        for (unsigned hit = node_single(node, r, 0, near); hit != 0; hit &= hit - 1)
+          stack[size++] = node.child[__builtin_ctz(hit)];
+      });
+    }
+  }
+  if (accel.pieces) drop_repeated(accel, hits, first);
+  if (accel.exact) merge_crossings(accel, hits, first);
+}
+
+}  // namespace oktett

@@ -1,0 +1,165 @@
+#pragma once
+/// \file A block of triangles as a beam sees it: filter functions that are linear in the plane of the beam.
+///
+/// With c the first corner seen from the apex, e1, e2 the edges and n = e1 x e2, a ray (x, y) has the scaled
+/// weights u = (e2 x c) . (x, y, 1), v = (c x e1) . (x, y, 1) and w = det - u - v with det = n . (x, y, 1)
+/// (Möller and Trumbore 1997, with the products regrouped for a common origin). Divided by t = n . c, which
+/// no ray changes, they keep their signs, a hit has all three positive, and det becomes the inverse depth of
+/// the hit. The bounds are derived in docs/numerics.md.
+
+#include "accel/traverse/beam/beam_rays.h"
+
+namespace oktett {
+
+/// Rounding error of the linear functions, in units of their products' magnitudes.
+inline constexpr float kBeamError = 20 * 0x1p-24f;
+/// The same for t.
+inline constexpr float kBeamDepthError = 10 * 0x1p-24f;
+/// Relative error of an inverse depth on top of that of t, and of comparing it with a decided t.
+inline constexpr float kBeamInverseError = 4 * 0x1p-24f;
+/// What the decision may displace a vertex, in units of its distance and relative to kBeamError.
+inline constexpr float kBeamShear = 0x1p-28f;
+inline constexpr float kBeamUnderflow = 1e-36f;
+
+/// Eight triangles. `c[3 * f + k]`: function f (u, v, w, s) is c[0] + c[1] x + c[2] y, raised by its error
+/// bound.
+template <class A>
+struct alignas(64) ProjectedTriangles {
+  static constexpr int kSize = TriangleBlock::kSize;
+  float c[12][kSize];
+  float group[4][kSize];  ///< c[3 * f] + the most that the function grows from the middle of a regular group
+  float sure[kSize];      ///< a ray surely hits if u, v and w are all above this
+  float lower_scale[kSize];  ///< then its inverse depth is at least s * lower_scale - lower_gap
+  float lower_gap[kSize];
+};
+
+/// Which triangles of a block a beam has to look at.
+struct BlockCandidates {
+  unsigned projected;  ///< those that may be hit by a ray of the window
+  unsigned edge_on;    ///< those whose plane passes by the apex so closely that they cannot be projected
+};
+
+/// Upper bound of the linear function (a, b, c) in the rectangle around (mx, my) with half sides (hx, hy).
+template <class F>
+OKTETT_INLINE F greatest(const F& a, const F& b, const F& c, const F& mx, const F& my, const F& hx,
+                         const F& hy) {
+  return fast_fma(abs(b), hx, fast_fma(abs(c), hy, fast_fma(b, mx, fast_fma(c, my, a))));
+}
+
+template <class A>
+OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int count, const BeamRays<A>& beam,
+                                            const BeamWindow& w, ProjectedTriangles<A>& out) {
+  using B = Simd<float, TriangleBlock::kSize, A>;
+  const int kx = beam.axis[0], ky = beam.axis[1], kz = beam.axis[2];
+  const auto column = [&](int corner, int axis) { return B::load(block.v[corner][axis]); };
+  const auto along_z = [&](const B& p, const B& q) { return beam.mirrored ? q - p : p - q; };
+  const Vec3<B> c{column(0, kx) - B(beam.apex[0]), column(0, ky) - B(beam.apex[1]),
+                  along_z(column(0, kz), B(beam.apex[2]))};
+  const Vec3<B> e1{column(1, kx) - column(0, kx), column(1, ky) - column(0, ky),
+                   along_z(column(1, kz), column(0, kz))};
+  const Vec3<B> e2{column(2, kx) - column(0, kx), column(2, ky) - column(0, ky),
+                   along_z(column(2, kz), column(0, kz))};
+  const Vec3<B> u = fast_cross(e2, c), v = fast_cross(c, e1), n = fast_cross(e1, e2);
+  const B t = fast_dot(n, c);
+
+  const B n1 = norm1(e1), n2 = norm1(e2), size = n1 + n2, reach = norm1(c) + size, area = n1 * n2;
+  const B spread(beam.spread), tiny(kBeamUnderflow);
+  const B farthest = max(abs(c.x), max(abs(c.y), abs(c.z)));
+  const B t_error =
+      fast_fma(area, fast_fma(farthest, B(kBeamDepthError), B(beam.slip + 2 * beam.behind) * spread), tiny);
+  const auto projectable = abs(t) > t_error + t_error;
+  const B inverse = B(1.0f) / t, scale = abs(inverse);
+  const B shear = fast_fma(reach, B(kBeamShear), size);
+  const B error =
+      scale * fast_fma(spread, fast_fma(shear * reach, B(kBeamError), size * B(2 * beam.slip)), tiny);
+  const B s_error = scale * fast_fma(area * spread, B(kBeamError), tiny);
+  const B depth_error = fast_fma(t_error * scale, B(2.0f), B(kBeamInverseError));
+
+  const Vec3<B> ui{u.x * inverse, u.y * inverse, u.z * inverse},
+      vi{v.x * inverse, v.y * inverse, v.z * inverse}, si{n.x * inverse, n.y * inverse, n.z * inverse};
+  const Vec3<B> wi{si.x - (ui.x + vi.x), si.y - (ui.y + vi.y), si.z - (ui.z + vi.z)};
+  const B raise = B(1.0f) + depth_error;
+  const Vec3<B> f[4] = {{ui.z + error, ui.x, ui.y},
+                        {vi.z + error, vi.x, vi.y},
+                        {wi.z + error, wi.x, wi.y},
+                        {fast_fma(si.z, raise, s_error), si.x * raise, si.y * raise}};
+  // The greatest value of a function in a patch, rounding of the patch itself included.
+  const B pad(beam.spread * 0x1p-21f);
+  const auto within = [&](const Vec3<B>& g, const BeamPatch& p) {
+    return fast_fma(abs(g.y) + abs(g.z), pad,
+                    abs(fast_fma(g.y, B(p.x1), g.z * B(p.y1))) + abs(fast_fma(g.y, B(p.x2), g.z * B(p.y2))));
+  };
+  const auto top = [&](const Vec3<B>& g) {
+    return within(g, w.patch) + fast_fma(g.y, B(w.patch.x), fast_fma(g.z, B(w.patch.y), g.x));
+  };
+  const B s_top = top(f[3]);
+  const B zero(0.0f);
+  // A lane is dropped only by a comparison that is true: NaN keeps it.
+  const auto reject = (top(f[0]) < zero) | (top(f[1]) < zero) | (top(f[2]) < zero) | (s_top <= B(w.least));
+  const unsigned all = (1u << count) - 1, flat = all & ~bits(projectable);
+  const unsigned keep = all & ~flat & ~bits(reject);
+  if (keep != 0) {
+    for (int k = 0; k < 4; ++k) {
+      f[k].x.store(out.c[3 * k]), f[k].y.store(out.c[3 * k + 1]), f[k].z.store(out.c[3 * k + 2]);
+      if (beam.regular) (f[k].x + within(f[k], beam.shape)).store(out.group[k]);
+    }
+    // Where a hit may lie outside a ray's range at the near end, or a product may overflow, nothing is sure.
+    const auto plain = (s_top < B(beam.near_s)) & (scale * size * reach < B(1e30f));
+    select(plain, error * B(2.25f), B(std::numeric_limits<float>::infinity())).store(out.sure);
+    (B(1.0f) - fast_fma(depth_error, B(2.0f), B(kBeamInverseError))).store(out.lower_scale);
+    (s_error * B(2.5f)).store(out.lower_gap);
+  }
+  return {keep, flat};
+}
+
+/// The groups of `groups` in whose rectangle triangle `k` may be hit.
+template <class A>
+OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, const BeamRays<A>& beam,
+                                      unsigned groups) {
+  using G = Simd<float, kBeamGroups, A>;
+  const G zero(0.0f), mx = G::load(beam.x_mid), my = G::load(beam.y_mid);
+  const auto top = [&](int f) {
+    const G b(p.c[3 * f + 1][k]), c(p.c[3 * f + 2][k]);
+    if (beam.regular) return fast_fma(b, mx, fast_fma(c, my, G(p.group[f][k])));
+    return greatest(G(p.c[3 * f][k]), b, c, mx, my, G::load(beam.x_half), G::load(beam.y_half));
+  };
+  const auto reject = (top(0) < zero) | (top(1) < zero) | (top(2) < zero) | (top(3) <= G::load(beam.least));
+  return groups & ~bits(reject);
+}
+
+/// What the filter finds about a group and a triangle. Bit i is ray i of the group.
+struct GroupVerdict {
+  unsigned sure;     ///< hit, and nearer than what was held
+  unsigned unclear;  ///< may be hit, and may be nearer: to be decided
+};
+
+/// Triangle `k` against the rays of one group; sure hits are put down as held. For an any-hit query a ray
+/// that surely hits something needs nothing more. Whether a camera ray hits is hard to foretell, so nothing
+/// branches on it; that a shadow ray misses is not.
+template <bool kAny, class A>
+OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std::uint32_t id,
+                                      BeamRays<A>& beam, int group) {
+  using F = Simd<float, kBeamGroup, A>;
+  const int base = group * kBeamGroup;
+  const F x = F::load(beam.x + base), y = F::load(beam.y + base);
+  const auto value = [&](int f) {
+    return fast_fma(F(p.c[3 * f + 1][k]), x, fast_fma(F(p.c[3 * f + 2][k]), y, F(p.c[3 * f][k])));
+  };
+  const F least = min(value(0), min(value(1), value(2))), s = value(3);
+  const F held_lo = F::load(beam.held_lo + base);
+  const auto reject = (least < F(0.0f)) | (s <= held_lo);
+  if (kAny && (~bits(reject) & 0xffff) == 0) return {0, 0};
+  const F held_hi = F::load(beam.held_hi + base), s_lo = fast_fma(s, F(p.lower_scale[k]), F(-p.lower_gap[k]));
+  // Where s <= held_lo, s_lo is below held_hi too.
+  const auto sure = (F(p.sure[k]) < least) & (held_hi < s_lo);
+  select(sure, kAny ? F(std::numeric_limits<float>::infinity()) : s_lo, held_lo).store(beam.held_lo + base);
+  if (!kAny) {
+    using I = Simd<std::int32_t, kBeamGroup, A>;
+    select(sure, s, held_hi).store(beam.held_hi + base);
+    std::int32_t* ids = reinterpret_cast<std::int32_t*>(beam.held + base);
+    select(mask_cast<std::int32_t>(sure), I(static_cast<std::int32_t>(id)), I::load(ids)).store(ids);
+  }
+  return {bits(sure), bits(~(reject | sure)) & 0xffff};
+}
+
+}  // namespace oktett

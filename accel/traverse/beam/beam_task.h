@@ -1,0 +1,270 @@
+#pragma once
+/// \file A beam at work: what its rays hold, what is unclear, and the decisions at the end.
+
+#include "accel/traverse/beam/beam_leaf.h"
+#include "accel/traverse/inflight/decide_pairs.h"
+
+namespace oktett {
+
+/// Candidates that the filter could not tell.
+struct UnclearList {
+  static constexpr int kSize = 512;
+  std::uint32_t triangle[kSize + kBeamGroup];  ///< 8 * block + lane
+  std::uint8_t ray[kSize + kBeamGroup];
+  int size = 0;
+};
+
+/// Which groups have met a triangle that stands in several leaves ("mailboxes", Amanatides and Woo 1987). An
+/// entry may be lost to another triangle; then the triangle is met twice, which does no harm.
+class MetTriangles {
+ public:
+  MetTriangles() { clear(); }
+  /// For groups of other rays.
+  void clear() { std::fill_n(item_, kSize, kNoId); }
+  /// Those of `groups` that have not met `item` yet; from now on they have.
+  OKTETT_INLINE unsigned add(std::uint32_t item, unsigned groups) {
+    const std::uint32_t at = item * 0x9e3779b1u >> 26;
+    const unsigned met = item_[at] == item ? groups_[at] : 0;
+    item_[at] = item, groups_[at] = met | groups;
+    return groups & ~met;
+  }
+
+ private:
+  static constexpr int kSize = 64;
+  std::uint32_t item_[kSize], groups_[kSize];
+};
+
+/// A beam on its way through the tree, and where its results go.
+template <Query Q, class A>
+struct BeamTask {
+  const Accel& accel;
+  const RaySpan& rays;
+  const HitSpan* hits;     ///< for Query::closest; complete only when the beam is finished
+  std::uint8_t* occluded;  ///< for Query::any
+  BeamRays<A> beam;
+  UnclearList unclear;
+  int max_steps;          ///< nodes and leaves to come to before the beam is given up
+  MetTriangles met = {};  ///< in use if triangles stand in several leaves
+  bool decided = false;   ///< some hits have been decided and stand in `hits`
+};
+
+/// Lets a decided hit of ray i count.
+template <class A>
+OKTETT_INLINE void accept_beam(const HitSpan& hits, BeamRays<A>& beam, float dz, std::size_t i,
+                               const Hit& h) {
+  if (h.t > hits.t[i]) return;
+  if (h.t == hits.t[i] && hits.item[i] != kNoId &&
+      !id_before(h.instance, h.item, hits.instance[i], hits.item[i]))
+    return;
+  hits.set(i, h);
+  const float s = 1 / (h.t * dz);
+  const float lo = s * (1 - kBeamPointSlack), hi = s * (1 + kBeamPointSlack);
+  beam.held_lo[i] = lo > beam.held_lo[i] ? lo : beam.held_lo[i];
+  beam.held_hi[i] = hi > beam.held_hi[i] ? hi : beam.held_hi[i];
+}
+
+/// What the rays of a group hold, for other shapes to be compared with it.
+template <class A>
+OKTETT_INLINE void take_held(const HitSpan& hits, std::size_t base, RayState<kBeamGroup, A>& r) {
+  for (std::size_t i = 0; i < kBeamGroup && base + i < hits.size; ++i) {
+    if (hits.item[base + i] == kNoId) continue;
+    r.tmax[i] = hits.t[base + i], r.u[i] = hits.u[base + i], r.v[i] = hits.v[base + i];
+    r.item[i] = hits.item[base + i], r.path[i] = hits.instance[base + i];
+  }
+}
+
+/// Gives back what take_held took, for the rays in `lanes`, which hold something.
+template <class A>
+OKTETT_INLINE void give_held(const RayState<kBeamGroup, A>& r, unsigned lanes, const HitSpan& hits,
+                             std::size_t base, BeamRays<A>& beam) {
+  using F = Simd<float, kBeamGroup, A>;
+  using I = Simd<std::int32_t, kBeamGroup, A>;
+  const auto found = F::M::from_bits(lanes);
+  if (base + kBeamGroup <= hits.size) {
+    const auto put = [&](const float* from, float* to) {
+      select(found, F::load(from), F::load(to + base)).store(to + base);
+    };
+    const auto put_ids = [&](const std::uint32_t* from, std::uint32_t* to) {
+      auto* at = reinterpret_cast<std::int32_t*>(to + base);
+      const I ids = I::load(reinterpret_cast<const std::int32_t*>(from));
+      select(mask_cast<std::int32_t>(found), ids, I::load(at)).store(at);
+    };
+    put(r.tmax, hits.t), put(r.u, hits.u), put(r.v, hits.v);
+    put_ids(r.item, hits.item), put_ids(r.path, hits.instance);
+  } else {
+    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+      const int i = __builtin_ctz(rest);
+      hits.set(base + static_cast<std::size_t>(i), r.hit(i));
+    }
+  }
+  const F s = F(1.0f) / (F::load(r.tmax) * abs(F::load(r.d[beam.axis[2]])));
+  const auto raise = [&](float* column, float slack) {
+    const F was = F::load(column + base);
+    select(found, max(s * F(slack), was), was).store(column + base);
+  };
+  raise(beam.held_lo, 1 - kBeamPointSlack), raise(beam.held_hi, 1 + kBeamPointSlack);
+}
+
+/// Before the first decision, all rays have hit nothing.
+template <Query Q, class A>
+OKTETT_INLINE void begin_decisions(BeamTask<Q, A>& task) {
+  if (Q == Query::any || task.decided) return;
+  task.decided = true;
+  for (std::size_t i = 0; i < task.rays.size; ++i) task.hits->set(i, Hit{});
+}
+
+/// Decides `count` (up to 16) pairs.
+template <Query Q, class A>
+OKTETT_NOINLINE void decide_listed(BeamTask<Q, A>& task, const std::uint8_t* ray,
+                                   const std::uint32_t* triangle, int count) {
+  using F = Simd<float, kBeamGroup, A>;
+  alignas(64) float column[8][kBeamGroup];
+  std::uint32_t ids[kBeamGroup];
+  for (int i = 0; i < kBeamGroup; ++i) {
+    const int k = i < count ? i : 0;
+    const Ray r = task.rays[task.beam.sorted ? task.beam.order[ray[k]] : ray[k]];
+    const float values[8] = {r.origin.x,    r.origin.y,    r.origin.z, r.direction.x,
+                             r.direction.y, r.direction.z, r.tmin,     r.tmax};
+    for (int c = 0; c < 8; ++c) column[c][i] = values[c];
+    ids[i] = triangle[k];
+  }
+  const auto load = [&](int c) { return F::load(column[c]); };
+  const RayLanes<F> rays{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
+  HitLanes<F> hit;
+  unsigned met = decide_pairs<kBeamGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
+  if (met == 0) return;
+  alignas(64) float t[kBeamGroup], u[kBeamGroup], v[kBeamGroup];
+  hit.t.store(t), hit.u.store(u), hit.v.store(v);
+  for (; met != 0; met &= met - 1) {
+    const int i = __builtin_ctz(met);
+    if constexpr (Q == Query::any) {
+      task.beam.held_lo[ray[i]] = std::numeric_limits<float>::infinity();
+    } else {
+      const std::uint32_t item =
+          task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
+      accept_beam(*task.hits, task.beam, __builtin_fabsf(column[3 + task.beam.axis[2]][i]), ray[i],
+                  {t[i], u[i], v[i], item, kNoId});
+    }
+  }
+}
+
+/// Decides the list of unclear candidates.
+template <Query Q, class A>
+OKTETT_NOINLINE void decide_unclear(BeamTask<Q, A>& task) {
+  begin_decisions(task);
+  UnclearList& list = task.unclear;
+  for (int i = 0; i < list.size; i += kBeamGroup) {
+    if (Q == Query::any) {
+      // Rays that are known to be occluded need no decision.
+      int kept = 0;
+      const int end = std::min(list.size, i + kBeamGroup);
+      for (int k = i; k < end; ++k) {
+        if (task.beam.held_lo[list.ray[k]] == std::numeric_limits<float>::infinity()) continue;
+        list.ray[i + kept] = list.ray[k], list.triangle[i + kept] = list.triangle[k], ++kept;
+      }
+      if (kept > 0) decide_listed(task, list.ray + i, list.triangle + i, kept);
+    } else {
+      decide_listed(task, list.ray + i, list.triangle + i, std::min(list.size - i, kBeamGroup));
+    }
+  }
+  list.size = 0;
+}
+
+template <Query Q, class A>
+OKTETT_INLINE void note_unclear(BeamTask<Q, A>& task, unsigned rays, int group, std::uint32_t id) {
+  UnclearList& list = task.unclear;
+  for (; rays != 0; rays &= rays - 1) {
+    list.ray[list.size] = static_cast<std::uint8_t>(group * kBeamGroup + __builtin_ctz(rays));
+    list.triangle[list.size++] = id;
+  }
+  if (OKTETT_UNLIKELY(list.size >= UnclearList::kSize)) decide_unclear(task);
+}
+
+/// Decides what the rays of a group hold, so that other shapes can be compared with it.
+template <Query Q, class A>
+OKTETT_NOINLINE void decide_held(BeamTask<Q, A>& task, int group) {
+  std::uint8_t ray[kBeamGroup];
+  std::uint32_t ids[kBeamGroup];
+  int count = 0;
+  for (int i = group * kBeamGroup; i < (group + 1) * kBeamGroup; ++i) {
+    if (task.beam.held[i] == kNoId) continue;
+    ray[count] = static_cast<std::uint8_t>(i), ids[count++] = task.beam.held[i];
+    task.beam.held[i] = kNoId;
+  }
+  if (count > 0) decide_listed(task, ray, ids, count);
+}
+
+/// Sixteen misses from position `base`.
+template <class A>
+OKTETT_INLINE void store_misses(const HitSpan& hits, std::size_t base) {
+  using F = Simd<float, kBeamGroup, A>;
+  const F zero(0.0f);
+  F(std::numeric_limits<float>::infinity()).store(hits.t + base);
+  zero.store(hits.u + base), zero.store(hits.v + base);
+  std::memset(hits.item + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
+  std::memset(hits.instance + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
+}
+
+/// Decides what the rays of a whole group hold and writes it.
+template <class A>
+OKTETT_INLINE void finish_group(BeamTask<Query::closest, A>& task, std::size_t base) {
+  using F = Simd<float, kBeamGroup, A>;
+  using I = Simd<std::int32_t, kBeamGroup, A>;
+  constexpr std::uint32_t kSize = TriangleBlock::kSize;
+  const HitSpan& hits = *task.hits;
+  const std::uint32_t* held = task.beam.held + base;
+  const TriangleBlock* blocks = task.accel.blocks.data();
+  const auto as_int = [](auto* p) { return reinterpret_cast<std::int32_t*>(p); };
+  const I notes = I::load(reinterpret_cast<const std::int32_t*>(held)), nothing(-1);
+  const auto none = notes == nothing;
+  const unsigned missing = bits(none);
+  if (missing == (1u << kBeamGroup) - 1) return store_misses<A>(hits, base);
+  const std::uint32_t some = held[__builtin_ctz(~missing)];
+  alignas(64) std::uint32_t ids[kBeamGroup];
+  select(none, I(static_cast<std::int32_t>(some)), notes).store(as_int(ids));
+  HitLanes<F> h;
+  decide_pairs<kBeamGroup, A>(load_span<F>(task.rays, base), blocks, ids, h);
+  const auto miss = F::M::from_bits(missing);
+  const F zero(0.0f);
+  select(miss, F(std::numeric_limits<float>::infinity()), h.t).store(hits.t + base);
+  select(miss, zero, h.u).store(hits.u + base), select(miss, zero, h.v).store(hits.v + base);
+  alignas(64) std::uint32_t items[kBeamGroup];
+  for (int i = 0; i < kBeamGroup; ++i) items[i] = blocks[ids[i] / kSize].item[ids[i] % kSize];
+  select(none, nothing, I::load(as_int(items))).store(as_int(hits.item + base));
+  std::memset(hits.instance + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
+}
+
+/// Writes the results of a finished beam.
+template <class A>
+OKTETT_INLINE void finish_beam(BeamTask<Query::closest, A>& task) {
+  const std::size_t whole = task.decided ? 0 : task.rays.size / kBeamGroup * kBeamGroup;
+  for (std::size_t base = 0; base < whole; base += kBeamGroup) finish_group(task, base);
+  if (!task.decided)
+    for (std::size_t i = whole; i < task.rays.size; ++i) task.hits->set(i, Hit{});
+  task.decided = true;
+  for (std::size_t base = whole; base < task.rays.size; base += kBeamGroup)
+    decide_held(task, static_cast<int>(base / kBeamGroup));
+  if (task.unclear.size > 0) decide_unclear(task);
+}
+
+template <class A>
+OKTETT_INLINE void finish_beam(BeamTask<Query::any, A>& task) {
+  if (task.unclear.size > 0) decide_unclear(task);
+  const BeamRays<A>& beam = task.beam;
+  using F = Simd<float, kBeamGroup, A>;
+  const F infinity(std::numeric_limits<float>::infinity());
+  std::uint8_t found[kBeamRays];
+  for (int base = 0; base < kBeamRays; base += kBeamGroup) {
+    // Rays that could not hit anything from the start have no end either.
+    const unsigned done =
+        bits((F::load(beam.held_lo + base) == infinity) & (F::load(beam.held_hi + base) < infinity));
+    for (int i = 0; i < kBeamGroup; ++i) found[base + i] = static_cast<std::uint8_t>(done >> i & 1);
+  }
+  if (beam.sorted) {
+    for (int i = 0; i < kBeamRays; ++i) task.occluded[beam.order[i]] = found[i];
+  } else {
+    std::memcpy(task.occluded, found, task.rays.size);
+  }
+}
+
+}  // namespace oktett

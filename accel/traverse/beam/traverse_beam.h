@@ -1,0 +1,283 @@
+#pragma once
+/// \file A beam of rays through the tree: nodes and triangles are culled against the whole beam first, then
+/// against its groups of sixteen; decisions are put off until the end.
+///
+/// The filter tells sure hits from unclear ones. A sure hit that is surely nearer than what a ray holds is
+/// only noted; unclear ones go to a list. Each ray's note and the list are decided exactly at the end, with
+/// all lanes busy, so that the hits are those of every other traversal, bit by bit.
+
+#include "accel/traverse/beam/beam_task.h"
+#include "accel/traverse/packet.h"
+#include "core/simd_order.h"
+
+namespace oktett {
+
+struct BeamEntry {
+  NodeRef ref;
+  float near;  ///< greatest inverse depth in the box
+  float x_lo, x_hi, y_lo, y_hi;
+  unsigned groups;
+};
+
+/// Where the boxes of a node's children lie in the plane of a beam.
+struct alignas(32) ChildWindows {
+  float near[BvhNode::kWidth], x_lo[BvhNode::kWidth], x_hi[BvhNode::kWidth], y_lo[BvhNode::kWidth],
+      y_hi[BvhNode::kWidth];
+};
+
+/// Children of `node` whose boxes meet the window.
+template <class A, class Node>
+OKTETT_INLINE unsigned node_beam(const Node& node, const BeamRays<A>& beam, const BeamWindow& w,
+                                 ChildWindows& out) {
+  using B = Simd<float, BvhNode::kWidth, A>;
+  const int kx = 2 * beam.axis[0], ky = 2 * beam.axis[1], kz = 2 * beam.axis[2];
+  const B ox(beam.apex[0]), oy(beam.apex[1]), oz(beam.apex[2]);
+  const B xl = node_planes<A>(node, kx) - ox, xh = node_planes<A>(node, kx + 1) - ox;
+  const B yl = node_planes<A>(node, ky) - oy, yh = node_planes<A>(node, ky + 1) - oy;
+  const B z_low = node_planes<A>(node, kz) - oz, z_high = node_planes<A>(node, kz + 1) - oz;
+  const B zn = beam.mirrored ? -z_high : z_low, zf = beam.mirrored ? -z_low : z_high;
+  const B margin(beam.margin + beam.slip), infinity(std::numeric_limits<float>::infinity());
+  // So near the plane of the apex that rounding counts for more than kBeamSlack, or behind it.
+  const auto front = zn > B(beam.margin * 0x1p20f + 4 * beam.behind);
+  const B rn = B(1 + kBeamSlack) / zn, rf = B(1 - kBeamSlack) / zf, wide = margin * rn;
+  const B px_lo = select(front, min(xl * rn, xl * rf) - wide, -infinity);
+  const B px_hi = select(front, max(xh * rn, xh * rf) + wide, infinity);
+  const B py_lo = select(front, min(yl * rn, yl * rf) - wide, -infinity);
+  const B py_hi = select(front, max(yh * rn, yh * rf) + wide, infinity);
+  const B near = select(front, rn, infinity);
+  auto hit = (zn <= zf) & (px_lo <= B(w.x_hi)) & (B(w.x_lo) <= px_hi) & (py_lo <= B(w.y_hi)) &
+             (B(w.y_lo) <= py_hi) & (B(w.least) < near);
+  const auto about = hit & ~front;
+  if (OKTETT_UNLIKELY(any(about))) {
+    // Against the four planes of the window's pyramid, which needs no division.
+    const B behind(beam.behind + beam.margin);
+    const B zc = max(zn, -behind);
+    const auto side = [&](const B& coordinate, float slope) {
+      const B bound = B(slope) * (slope > 0 ? zc : zf);
+      return coordinate - bound + (abs(coordinate) + abs(bound)) * B(kBeamSlack) + (margin + behind) >=
+             B(0.0f);
+    };
+    const auto inside =
+        (-behind <= zf) & side(xh, w.x_lo) & side(-xl, -w.x_hi) & side(yh, w.y_lo) & side(-yl, -w.y_hi);
+    hit = hit & (front | inside);
+  }
+  const unsigned children = bits(hit) & present_children(node);
+  if (children != 0)
+    near.store(out.near), px_lo.store(out.x_lo), px_hi.store(out.x_hi), py_lo.store(out.y_lo),
+        py_hi.store(out.y_hi);
+  return children;
+}
+
+/// The groups of `e` that its box may concern.
+template <class A>
+OKTETT_INLINE unsigned entry_groups(const BeamEntry& e, const BeamRays<A>& beam) {
+  using G = Simd<float, kBeamGroups, A>;
+  return e.groups & bits((G::load(beam.x_lo) <= G(e.x_hi)) & (G(e.x_lo) <= G::load(beam.x_hi)) &
+                         (G::load(beam.y_lo) <= G(e.y_hi)) & (G(e.y_lo) <= G::load(beam.y_hi)) &
+                         (G::load(beam.least) < G(e.near)));
+}
+
+/// The rays of one group that the box of `e` may concern.
+template <class A>
+OKTETT_INLINE unsigned entry_rays(const BeamEntry& e, const BeamRays<A>& beam, int group) {
+  using F = Simd<float, kBeamGroup, A>;
+  const int base = group * kBeamGroup;
+  const F x = F::load(beam.x + base), y = F::load(beam.y + base);
+  return bits((x <= F(e.x_hi)) & (F(e.x_lo) <= x) & (y <= F(e.y_hi)) & (F(e.y_lo) <= y) &
+              (F::load(beam.held_lo + base) < F(e.near)));
+}
+
+/// A triangle whose plane passes by the apex, against the rays of some groups, by the filter that knows no
+/// beam.
+template <Query Q, class A>
+OKTETT_NOINLINE void meet_edge_on(BeamTask<Q, A>& task, std::uint32_t id, unsigned groups) {
+  using F = Simd<float, kBeamGroup, A>;
+  const auto tri = filter_triangle(broadcast_triangle<F>(task.accel.blocks[id / TriangleBlock::kSize],
+                                                         static_cast<int>(id % TriangleBlock::kSize)));
+  for (; groups != 0; groups &= groups - 1) {
+    const int g = __builtin_ctz(groups);
+    const RayLanes<F> r = load_group(task.beam, task.rays, g);
+    const F d_max = max(abs(r.d.x), max(abs(r.d.y), abs(r.d.z)));
+    const F infinity(std::numeric_limits<float>::infinity());
+    const unsigned open = bits(F::load(task.beam.held_lo + g * kBeamGroup) < infinity);
+    note_unclear(task, open & bits(filter_watertight(r, d_max, tri)), g, id);
+  }
+}
+
+template <Query Q, class A>
+OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, const BeamWindow& window,
+                            unsigned& dirty) {
+  BeamRays<A>& beam = task.beam;
+  ProjectedTriangles<A> projected;
+  const BlockCandidates found =
+      project_block(task.accel.blocks[ref.block()], ref.triangle_count(), beam, window, projected);
+  const std::uint32_t base = ref.block() * TriangleBlock::kSize;
+  // All pairs first: one loop whose end is foretold wrongly once instead of eight.
+  std::int32_t pairs[(TriangleBlock::kSize + 1) * kBeamGroups];
+  int size = 0;
+  const bool lone = (groups & (groups - 1)) == 0;
+  for (unsigned rest = found.projected; rest != 0; rest &= rest - 1) {
+    const int k = __builtin_ctz(rest);
+    unsigned met = lone ? groups : groups_meeting(projected, k, beam, groups);
+    if (task.accel.pieces) met = task.met.add(task.accel.blocks[ref.block()].item[k], met);
+    size += store_set_bits<A>(met, k * kBeamGroups, pairs + size);
+  }
+  for (int i = 0; i < size; ++i) {
+    const int k = pairs[i] / kBeamGroups, g = pairs[i] % kBeamGroups;
+    const std::uint32_t id = base + static_cast<unsigned>(k);
+    const GroupVerdict verdict = meet_group<Q == Query::any>(projected, k, id, beam, g);
+    dirty |= static_cast<unsigned>(verdict.sure != 0) << g;
+    if (OKTETT_UNLIKELY(verdict.unclear != 0)) note_unclear(task, verdict.unclear, g, id);
+  }
+  for (unsigned rest = found.edge_on; OKTETT_UNLIKELY(rest != 0); rest &= rest - 1)
+    meet_edge_on(task, base + static_cast<unsigned>(__builtin_ctz(rest)), groups);
+  return size;
+}
+
+/// A leaf that is not a block of triangles, against the rays `rays` of group `g`.
+template <Query Q, class A>
+OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& leaf, int g, unsigned rays) {
+  using F = Simd<float, kBeamGroup, A>;
+  BeamRays<A>& beam = task.beam;
+  if (!task.decided || task.unclear.size > 0) decide_unclear(task);
+  const std::size_t base = static_cast<std::size_t>(g) * kBeamGroup;
+  const F infinity(std::numeric_limits<float>::infinity());
+  const RayLanes<F> r = load_group(beam, task.rays, g);
+  rays &= bits(F::load(beam.held_lo + base) < infinity);
+  RayState<kBeamGroup, A> state;
+  rays &= leaf.kind < Kind::triangle ? state.set_rays(r.o, r.d, r.tmin, r.tmax)
+                                     : state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
+  if (rays == 0) return;
+  if constexpr (Q == Query::closest) {
+    decide_held(task, g);
+    take_held(*task.hits, base, state);
+  }
+  table_leaf_packet<Q>(task.accel, leaf, state, rays);
+  const unsigned found = found_lanes(state, rays);
+  if (found == 0) return;
+  if constexpr (Q == Query::any)
+    select(F::M::from_bits(found), infinity, F::load(beam.held_lo + base)).store(beam.held_lo + base);
+  else
+    give_held(state, found, *task.hits, base, beam);
+  beam.refresh(g);
+}
+
+/// The same for several groups; `met(g)` are the rays of group `g` that the leaf may concern.
+template <Query Q, class A, class Met>
+OKTETT_INLINE void table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
+  for (; groups != 0; groups &= groups - 1) {
+    const int g = __builtin_ctz(groups);
+    const unsigned rays = met(g);
+    if (rays != 0) table_leaf_group(task, leaf, g, rays);
+  }
+}
+
+/// Children in the order of their distance, the nearest on top.
+OKTETT_INLINE int push_windows(const NodeRef* child, unsigned children, const ChildWindows& w,
+                               unsigned groups, BeamEntry* stack, int size) {
+  const int base = size;
+  for (; children != 0; children &= children - 1) {
+    const int c = __builtin_ctz(children);
+    int at = size++;
+    while (at > base && stack[at - 1].near > w.near[c]) stack[at] = stack[at - 1], --at;
+    stack[at] = {child[c], w.near[c], w.x_lo[c], w.x_hi[c], w.y_lo[c], w.y_hi[c], groups};
+  }
+  return size;
+}
+
+/// Of so few groups, each is asked whether one of its rays is in the box at all.
+inline constexpr int kRefinedGroups = 8;
+
+/// Tests of a group after which it is worth it to put the rays of a beam into a better order.
+inline constexpr int kTestsBeforeSort = 64;
+
+/// False if the beam was given up because it took too many steps.
+template <Query Q, class A>
+OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
+  const Accel& accel = task.accel;
+  BeamRays<A>& beam = task.beam;
+  BeamEntry stack[kStackSize];
+  int size = 0, steps = 0, tests = 0;
+  unsigned dirty = 0;  // groups whose least[] is out of date, which is harmless
+  stack[size++] = {accel.root,       std::numeric_limits<float>::infinity(),
+                   beam.window.x_lo, beam.window.x_hi,
+                   beam.window.y_lo, beam.window.y_hi,
+                   beam.groups};
+  ChildWindows children;
+  while (size > 0) {
+    const BeamEntry e = stack[--size];
+    if (__builtin_popcount(dirty) >= 4) {
+      for (; dirty != 0; dirty &= dirty - 1) beam.refresh(__builtin_ctz(dirty));
+      beam.refresh_window();
+    }
+    unsigned groups = entry_groups(e, beam);
+    if (groups == 0) continue;
+    if (++steps > task.max_steps) return false;
+    if (e.ref.is_leaf() && !e.ref.is_triangles()) {
+      table_leaf_beam(task, accel.leaves[e.ref.table_index()], groups,
+                      [&](int g) { return entry_rays(e, beam, g); });
+      beam.refresh_window();
+      continue;
+    }
+    if (e.ref.is_triangles() && __builtin_popcount(groups) <= kRefinedGroups) {
+      unsigned kept = 0;
+      for (unsigned rest = groups; rest != 0; rest &= rest - 1)
+        kept |= static_cast<unsigned>(entry_rays(e, beam, __builtin_ctz(rest)) != 0) << __builtin_ctz(rest);
+      groups = kept;
+      if (groups == 0) continue;
+    }
+    BeamWindow window = beam.window;
+    if ((groups & (groups - 1)) == 0) {
+      const int g = __builtin_ctz(groups);
+      const unsigned rays = entry_rays(e, beam, g);
+      if (rays == 0) continue;
+      if ((rays & (rays - 1)) == 0) {
+        const int i = g * kBeamGroup + __builtin_ctz(rays);
+        window = {beam.x[i], beam.x[i], beam.y[i], beam.y[i], beam.held_lo[i], {beam.x[i], beam.y[i]}};
+      } else {
+        window = group_window(beam, g);
+      }
+    }
+    if (!e.ref.is_leaf()) {
+      with_node(accel, e.ref.node_index(), [&](const auto& node) {
+        const unsigned met = node_beam(node, beam, window, children);
+        size = push_windows(node.child, met, children, groups, stack, size);
+      });
+    } else {
+      tests += leaf_beam(task, e.ref, groups, window, dirty);
+      if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && beam.may_sort) {
+        // What is listed and what waits knows the rays by their old places.
+        decide_unclear(task);
+        task.met.clear();
+        beam.sort();
+        dirty = 0;
+        for (int i = 0; i < size; ++i) stack[i].groups = beam.groups;
+      }
+    }
+  }
+  return true;
+}
+
+enum class BeamOutcome {
+  traced,
+  no_beam,   ///< the rays share no point, fan out too far or are out of scale
+  given_up,  ///< they took more steps than was allowed
+};
+
+/// Up to kBeamRays rays that meet in `apex`. Unless they are traced, nothing has been written that another
+/// traversal would not overwrite.
+template <Query Q, class A>
+OKTETT_NOINLINE BeamOutcome trace_beam(const Accel& accel, const RaySpan& rays, const Apex& apex,
+                                       const HitSpan* hits, std::uint8_t* occluded, int max_steps) {
+  BeamTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_steps};
+  if (!task.beam.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return BeamOutcome::no_beam;
+  if (task.beam.groups != 0) {
+    for (const LeafEntry& leaf : accel.unbounded)
+      table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; });
+    if (!accel.root.is_none() && !traverse_beam(task)) return BeamOutcome::given_up;
+  }
+  finish_beam(task);
+  return BeamOutcome::traced;
+}
+
+}  // namespace oktett

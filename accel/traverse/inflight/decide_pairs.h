@@ -1,0 +1,75 @@
+#pragma once
+/// \file The exact decision for pairs: each lane has a ray and a triangle of its own. Traversals that put
+/// decisions off keep one candidate per ray and decide them here, all lanes busy.
+
+#include "accel/traverse/leaf.h"
+#include "core/simd_gather.h"
+
+namespace oktett {
+
+/// Numbers of triangles that agree in all bits above this one are less than 2^31 floats apart.
+inline constexpr std::uint32_t kNearTriangles = std::uint32_t{1} << 27;
+
+/// The triangles `ids` = block * TriangleBlock::kSize + lane of `blocks`, one in each lane. `kNear`, a power
+/// of two up to kNearTriangles: those that agree above it are fetched by one index.
+template <int N, class A, std::uint32_t kNear = kNearTriangles>
+OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* blocks,
+                                                                const std::uint32_t* ids) {
+  using F = Simd<float, N, A>;
+  constexpr std::uint32_t kSize = TriangleBlock::kSize;
+  const auto corners = [](auto&& row) {
+    const auto corner = [&](int k) { return Vec3<F>{row(3 * k), row(3 * k + 1), row(3 * k + 2)}; };
+    return TriangleLanes<F>{corner(0), corner(1), corner(2)};
+  };
+  std::uint32_t differing = 0;
+  for (int i = 1; i < N; ++i) differing |= ids[i] ^ ids[0];
+  if (differing == 0) {
+    const float* p = &blocks[ids[0] / kSize].v[0][0][ids[0] % kSize];
+    return corners([&](int k) { return F(p[static_cast<std::uint32_t>(k) * kSize]); });
+  }
+  if (OKTETT_LIKELY(differing < kNear)) {
+    alignas(64) std::int32_t at[N];
+    for (int i = 0; i < N; ++i) {
+      const std::uint32_t id = ids[i] % kNear;
+      at[i] = static_cast<std::int32_t>(id / kSize * (sizeof(TriangleBlock) / sizeof(float)) + id % kSize);
+    }
+    const auto index = Simd<std::int32_t, N, A>::load(at);
+    const float* base = blocks[ids[0] / kNear * (kNear / kSize)].v[0][0];
+    return corners([&](int k) { return gather(base + static_cast<std::uint32_t>(k) * kSize, index); });
+  }
+  return corners([&](int k) {
+    float lanes[N];
+    for (int i = 0; i < N; ++i) lanes[i] = blocks[ids[i] / kSize].v[k / 3][k % 3][ids[i] % kSize];
+    return F::load(lanes);
+  });
+}
+
+/// Ray i of `ray` against triangle `ids[i]` = block * TriangleBlock::kSize + lane, for all i at once: the
+/// same bits as decide_watertight of the two alone. The rays may differ in their axes of greatest direction.
+/// Returns a bit for each ray that meets its triangle at tmin < t <= tmax; lanes that serve nothing may name
+/// any triangle and any finite ray.
+template <int N, class A>
+OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, const TriangleBlock* blocks,
+                                    const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit) {
+  using F = Simd<float, N, A>;
+  using D = Simd<double, N, A>;
+  TriangleLanes<F> tri = gather_triangles<N, A>(blocks, ids);
+  ray.d = flush_direction(ray.d);
+  const F ax = abs(ray.d.x), ay = abs(ray.d.y), az = abs(ray.d.z);
+  const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
+  const unsigned along_x = bits(zx), along_y = bits(zy), all = bits(F::M::all_true());
+  const auto permute = [&](const Vec3<F>& p) {
+    if (along_x == all) return permute_to_z(p, 0);
+    if (along_y == all) return permute_to_z(p, 1);
+    if ((along_x | along_y) == 0) return p;
+    const auto pick = [&](const F& x, const F& y, const F& z) { return select(zx, x, select(zy, y, z)); };
+    return Vec3<F>{pick(p.y, p.z, p.x), pick(p.z, p.x, p.y), pick(p.x, p.y, p.z)};
+  };
+  const Vec3<D> d = to_double(permute(ray.d));
+  const D inv_dz = D(1.0) / d.z;
+  const ShearLanes<D> shear{to_double(permute(ray.o)), inv_dz, d.x * inv_dz, d.y * inv_dz};
+  tri = {permute(tri.a), permute(tri.b), permute(tri.c)};
+  return bits(decide_watertight(shear, tri, ray.tmin, ray.tmax, hit));
+}
+
+}  // namespace oktett

@@ -1,0 +1,85 @@
+#pragma once
+/// \file Rays made ready for boxes in fused form: plane * (1/d) - o * (1/d), all roundings paid for once per
+/// ray.
+
+#include "accel/ray_state.h"
+#include "accel/traverse/load_span.h"
+#include "core/lanes.h"
+#include "kernels/closed/slab.h"
+#include "kernels/triangle/triangle_classify.h"
+
+namespace oktett {
+
+/// Rays nearer to zero than this to all there is underflow; they are not ready either.
+inline constexpr float kChunkMinExtent = 0x1p-36f;
+/// A direction component below this part of the greatest is replaced by it.
+inline constexpr float kChunkMinComponent = 0x1p-40f;
+/// Products with a grid's scale may underflow 255-fold.
+inline constexpr float kChunkGridUnderflow = 1e-35f;
+/// Relative error of o * (1/d), of its sum with the error, and a reserve.
+inline constexpr float kChunkShiftError = 0x1p-21f;
+
+/// W rays from a span in columns. A box is met where
+///     max(near plane * inv + near_shift, tmin) <= min(far plane * inv + far_shift, tmax + slack)
+///                                                 * kSlabRelativeSlack
+/// and this rejects no box that holds a hit with t <= tmax (docs/numerics.md). The planes on the near side
+/// are the low ones where `negative` is 0, else the high ones.
+template <int W, class A>
+struct alignas(64) RayChunk {
+  using F = Simd<float, W, A>;
+  float o[3][W], d[3][W], d_max[W];
+  float inv[3][W], near_shift[3][W], far_shift[3][W];
+  float tmin[W], tmax[W], slack[W];
+  unsigned negative[3];
+  unsigned valid;  ///< rays that can hit anything, see Ray
+  unsigned tame;   ///< of them: those whose numbers are neither so great nor so small that bounds break
+
+  /// The W rays from position `b` on of a structure within `extent` of zero; past the end none is valid.
+  /// `grid`: for planes of CompactNode, whose origin and steps are multiplied one by one.
+  OKTETT_INLINE void set(const RaySpan& rays, std::size_t b, float extent, bool grid) {
+    const std::size_t rest = rays.size - b;
+    const RayLanes<F> r = load_span<F>(rays, b);
+    const F zero(0.0f), big(std::numeric_limits<float>::max());
+    const Vec3<F> dir = flush_direction(r.d);
+    const F ax = abs(dir.x), ay = abs(dir.y), az = abs(dir.z);
+    const F dm = max(az, max(ay, ax));
+    const F om = max(abs(r.o.z), max(abs(r.o.y), abs(r.o.x)));
+    // Each comparison is false on NaN, and max() may drop one, so every component is asked.
+    const auto finite = (ax <= big) & (ay <= big) & (az <= big) & (abs(r.o.x) <= big) & (abs(r.o.y) <= big) &
+                        (abs(r.o.z) <= big);
+    const auto usable = finite & (zero < dm) & (zero <= r.tmin) & (r.tmin < r.tmax);
+    const F span = om + F(extent);
+    valid = bits(usable) & (rest >= W ? ~0u : (1u << rest) - 1);
+    tame = valid & bits((F(kChunkMinExtent) <= span) & (span <= F(kClassifyMaxExtent)) &
+                        (F(1 / kClassifyMaxDirection) <= dm) & (dm <= F(kClassifyMaxDirection)));
+    const F reach = span / dm, least = dm * F(kChunkMinComponent);
+    set_axis(0, r.o.x, dir.x, reach, least, extent, grid);
+    set_axis(1, r.o.y, dir.y, reach, least, extent, grid);
+    set_axis(2, r.o.z, dir.z, reach, least, extent, grid);
+    dm.store(d_max);
+    // Zero added: a negative zero would not sort as a key.
+    (r.tmin + zero).store(tmin), r.tmax.store(tmax), slack_of(reach).store(slack);
+  }
+
+ private:
+  OKTETT_INLINE static F slack_of(const F& reach) {
+    return fast_fma(reach, F(2 * kSlabAbsoluteSlack), F(2 * kSlabUnderflow));
+  }
+  OKTETT_INLINE void set_axis(int k, const F& origin, const F& direction, const F& reach, const F& least,
+                              float extent, bool grid) {
+    const auto tiny = abs(direction) < least;
+    const F inverse = F(1.0f) / select(tiny, flip_sign(least, direction + F(0.0f)), direction);
+    const F shift = origin * inverse;
+    // Without fusing, the product with the plane rounds too; on a grid, that with its origin.
+    const F size = kHasFma<A> && W > 1 && !grid ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
+    // A ray turned by replacing its component strays no farther than the new component carries it twice.
+    const F error = fast_fma(size, F(kChunkShiftError),
+                             select(tiny, F(4.0f) * reach, F(grid ? kChunkGridUnderflow : 0.0f)));
+    origin.store(o[k]), direction.store(d[k]), inverse.store(inv[k]);
+    (-(shift + error)).store(near_shift[k]);
+    ((error + slack_of(reach)) - shift).store(far_shift[k]);
+    negative[k] = bits(inverse < F(0.0f));
+  }
+};
+
+}  // namespace oktett

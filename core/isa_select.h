@@ -1,0 +1,40 @@
+#pragma once
+/// \file The one way from an instruction set chosen at run time to code that was compiled for it.
+///
+/// A layer compiles such code as templates over the set, in units of its folder `isa/`, and reaches it through a
+/// table of functions: `template <class A> const XCode& x_code();` is defined for each set in those units only.
+
+#include "core/error.h"
+#include "core/isa.h"
+
+namespace oktett {
+
+struct ScalarIsa;
+struct Sse42Isa;
+struct Avx2Isa;
+struct Avx512Isa;
+
+/// Calls f.operator()<A>() for the set `isa`. Throws Error if this build holds no code for it.
+template <class Function>
+decltype(auto) with_isa(Isa isa, Function&& f) {
+  switch (isa) {
+#if defined(OKTETT_WITH_SSE42)
+    case Isa::sse42:
+      return f.template operator()<Sse42Isa>();
+#endif
+#if defined(OKTETT_WITH_AVX2)
+    case Isa::avx2:
+      return f.template operator()<Avx2Isa>();
+#endif
+#if defined(OKTETT_WITH_AVX512)
+    case Isa::avx512:
+      return f.template operator()<Avx512Isa>();
+#endif
+    case Isa::scalar:
+      return f.template operator()<ScalarIsa>();
+    default:
+      throw Error(std::string("this build holds no code for ") + to_string(isa));
+  }
+}
+
+}  // namespace oktett

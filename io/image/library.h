@@ -1,0 +1,59 @@
+#pragma once
+/// \file The part of io/ that knows OpenImageIO, behind an interface. Not for other folders.
+///
+/// OpenImageIO brings hundreds of shared libraries: to start with them takes a third of a second and 120 MB.
+/// So its users, io/image/oiio/, are a shared library of their own, which is loaded when the first image is
+/// read or written; most runs need it for an instant at their end, some never.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "io/image/heights.h"
+#include "io/image/metadata.h"
+#include "render/material.h"
+#include "render/picture.h"
+#include "render/texture_sampler.h"
+
+namespace oktett {
+
+/// What the files of a format hold of a picture.
+enum class PictureLayout { all_planes, float_rgb, srgb8 };
+
+/// All members may be called by many threads at once; they throw Error of kind io for what files are not.
+class ImageLibrary {
+ public:
+  /// Of files with `path`'s extension; nothing if no such file can be written.
+  virtual std::optional<PictureLayout> layout(const std::string& path) const = 0;
+  /// Writes to the file `temporary`, which has `path`'s extension; errors are reported as those of `path`.
+  virtual void write(const std::string& path, const std::string& temporary, const Picture& picture,
+                     const ImageMetadata& metadata) const = 0;
+  /// See read_image.
+  virtual Picture read(const std::string& path) const = 0;
+  /// See read_heights.
+  virtual HeightImage read_heights(const std::string& path, std::uint32_t most_side,
+                                   std::size_t most_pixels) const = 0;
+  /// See ImageTextures. Appends one warning per file that cannot be used.
+  virtual std::unique_ptr<TextureSampler> load_textures(std::vector<Texture> textures,
+                                                        std::vector<Warning>& warnings) const = 0;
+
+ protected:
+  ~ImageLibrary() = default;
+};
+
+/// Loads the library on the first call, for as long as the process lives. Throws Error of kind io if it
+/// cannot be loaded.
+const ImageLibrary& image_library();
+
+/// True if the library's file is found, so that a later call of image_library can be relied on. Loads
+/// nothing. False may only mean that the system's cache knows more.
+bool image_library_is_installed();
+
+/// What the shared library of io/image/oiio/ exports, by its name for dlsym.
+inline constexpr const char* kImageLibraryEntry = "oktett_image_library";
+using ImageLibraryEntry = const ImageLibrary* (*)();
+
+}  // namespace oktett

@@ -1,0 +1,105 @@
+#include "io/image/oiio/open_image.h"
+
+#include <OpenImageIO/sysutil.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace oktett::oiio {
+
+namespace {
+
+constexpr int kMaxChannels = 1024;
+
+void check_exists(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) fail(path, "no such file");
+  if (status.type() == std::filesystem::file_type::directory) fail(path, "is a directory, not an image");
+  if (status.type() != std::filesystem::file_type::regular) fail(path, "is not a regular file");
+}
+
+/// A header is a few bytes that can ask for any amount of memory.
+void check_header(const std::string& path, const OIIO::ImageSpec& spec) {
+  if (spec.deep) fail(path, "deep images are not supported");
+  if (spec.depth > 1) fail(path, "volumes are not supported");
+  if (spec.width <= 0 || spec.height <= 0) fail(path, "the image has no pixels");
+  if (spec.nchannels <= 0 || spec.nchannels > kMaxChannels)
+    fail(path, fmt::format("the image has {} channels, expected 1 to {}", spec.nchannels, kMaxChannels));
+  const double bytes = 4.0 * spec.width * spec.height * spec.nchannels;
+  const double limit = 0.25 * static_cast<double>(OIIO::Sysutil::physical_memory());
+  if (bytes > limit)
+    fail(path,
+         fmt::format("an image of {} x {} x {} channels needs {:.1f} GB, more than a quarter of the memory",
+                     spec.width, spec.height, spec.nchannels, bytes * 1e-9));
+}
+
+}  // namespace
+
+void fail(const std::string& path, const std::string& message) {
+  throw Error(Location{path}, message, ErrorKind::io);
+}
+
+std::string first_line(const std::string& text, const std::string& fallback) {
+  std::string line = text.substr(0, text.find_first_of("\r\n"));
+  while (!line.empty() && (line.back() == '.' || line.back() == ' ')) line.pop_back();
+  return line.empty() ? fallback : line;
+}
+
+std::string take_image_error(const std::string& fallback) { return first_line(OIIO::geterror(), fallback); }
+
+ColorEncoding color_encoding(const OIIO::ImageSpec& spec) {
+  // Names differ between versions of the library: "sRGB" or "srgb_rec709_scene", "Linear" or "lin_rec709",
+  // "Gamma2.2", "GammaCorrected2.2" or "g22_rec709".
+  std::string space{spec.get_string_attribute("oiio:ColorSpace")};
+  std::transform(space.begin(), space.end(), space.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (space.starts_with("srgb") || space == "rec709") return {TransferCurve::srgb, 1};
+  if (space.starts_with("g18") || space.starts_with("g22") || space.starts_with("g24"))
+    return {TransferCurve::gamma, space[1] == '1' ? 1.8f : space[2] == '2' ? 2.2f : 2.4f};
+  if (space.starts_with("gamma")) {
+    const std::size_t digit = space.find_first_of("0123456789");
+    const float exponent = digit == std::string::npos ? 2.2f : std::strtof(space.c_str() + digit, nullptr);
+    if (exponent > 0.1f && exponent < 10) return {TransferCurve::gamma, exponent};
+  }
+  if (space.empty() && spec.format.basetype == OIIO::TypeDesc::UINT8) return {TransferCurve::srgb, 1};
+  return {};
+}
+
+OIIO::ImageInput::unique_ptr open_image(const std::string& path) {
+  check_exists(path);
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  OIIO::ImageInput::unique_ptr input;
+  try {
+    input = OIIO::ImageInput::open(path, &config);
+  } catch (const std::exception& error) {
+    fail(path, "cannot read the image: " + first_line(error.what(), "damaged file"));
+  }
+  if (!input) fail(path, "cannot read the image: " + take_image_error("damaged file"));
+  check_header(path, input->spec());
+  return input;
+}
+
+void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
+                   void* pixels) {
+  std::string why;
+  try {
+    if (input.read_image(0, 0, begin, end, type, pixels)) return;
+    why = input.geterror();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  fail(path, "cannot read the image: " + first_line(why, "damaged file"));
+}
+
+}  // namespace oktett::oiio

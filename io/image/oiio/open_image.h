@@ -1,0 +1,36 @@
+#pragma once
+/// \file What all who deal with OpenImageIO share. Not for other folders.
+
+#include <OpenImageIO/imageio.h>
+
+#include <cstdint>
+#include <string>
+
+#include "io/image/color.h"
+
+namespace oktett::oiio {
+
+/// The first line of an error text, without a full stop at its end; `fallback` if there is none.
+std::string first_line(const std::string& text, const std::string& fallback);
+
+/// Throws Error of kind io, which names `path`.
+[[noreturn]] void fail(const std::string& path, const std::string& message);
+
+/// Takes the pending global error of OpenImageIO; it would be printed at exit otherwise.
+std::string take_image_error(const std::string& fallback);
+
+/// How the colour channels of a file with this header are encoded: as the file says, else sRGB for 8-bit
+/// integers and linear for everything else.
+ColorEncoding color_encoding(const OIIO::ImageSpec& spec);
+
+/// Opens an image for reading with colours as they are stored, not multiplied by an unassociated alpha. The
+/// file is not trusted: throws Error of kind io if it cannot be opened, is not a plain two-dimensional image,
+/// or would take more than a quarter of this machine's memory once read.
+OIIO::ImageInput::unique_ptr open_image(const std::string& path);
+
+/// Reads channels [begin, end) of all pixels, row by row from the top, converted to `type`. Throws Error of
+/// kind io, which names `path`, if the file is damaged.
+void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
+                   void* pixels);
+
+}  // namespace oktett::oiio

@@ -1,0 +1,86 @@
+#pragma once
+/// \file The first pass over an OBJ file: the text is cut into chunks of whole lines, and each is counted, so
+/// that the second pass can write every element straight to its place. Statements that are rare are collected
+/// on the way.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "io/obj/failure.h"
+
+namespace oktett {
+
+struct ObjCounts {
+  std::uint64_t positions = 0;
+  std::uint64_t uvs = 0;
+  std::uint64_t normals = 0;
+  std::uint64_t faces = 0;
+  std::uint64_t triangles = 0;
+
+  ObjCounts& operator+=(const ObjCounts& b) {
+    positions += b.positions, uvs += b.uvs, normals += b.normals, faces += b.faces, triangles += b.triangles;
+    return *this;
+  }
+};
+
+/// A `usemtl`: the triangles from `triangle` on have the material `name`.
+struct ObjMaterialUse {
+  const char* where;
+  std::string_view name;
+  std::uint64_t triangle;  ///< counted from the start of the chunk
+};
+
+/// A `mtllib` with all that follows it on its line.
+struct ObjLibrary {
+  const char* where;
+  std::string_view names;
+};
+
+/// The first statement of a kind that is left out.
+struct ObjSkipped {
+  const char* where;
+  std::string_view keyword;
+};
+
+/// A `{` or `}`.
+struct ObjBrace {
+  const char* where = nullptr;
+  bool open = false;
+};
+
+/// A run of whole lines and what the first pass finds in it.
+struct ObjChunk {
+  const char* begin = nullptr;
+  const char* end = nullptr;
+  ObjCounts counts;        ///< within the chunk
+  ObjCounts before;        ///< in all chunks before it
+  bool has_slash = false;  ///< some face refers to normals or uvs
+  std::vector<ObjMaterialUse> material_uses;
+  std::vector<ObjLibrary> libraries;
+  std::vector<ObjSkipped> skipped;  ///< each keyword once, in order; not many more than kMaxSkippedKeywords
+  ObjBrace first_brace;
+  ObjBrace last_brace;
+  bool uses_uvs = false;              ///< found in the second pass
+  bool uses_normals = false;          ///< found in the second pass
+  std::optional<ObjFailure> failure;  ///< the first one
+};
+
+/// A file with more unknown keywords than this is something else; they are not listed one by one.
+inline constexpr std::size_t kMaxSkippedKeywords = 32;
+
+/// Cuts `text` into runs of whole lines of about `chunk_bytes` each.
+std::vector<ObjChunk> cut_into_chunks(std::string_view text, std::size_t chunk_bytes);
+
+/// Fills in what the first pass finds, all but `before`. The number of triangles is that of the words behind
+/// `f`, less two a face.
+void count_chunk(ObjChunk& chunk);
+
+/// Fills in `before` of all chunks and returns the totals.
+ObjCounts sum_counts(std::vector<ObjChunk>& chunks);
+
+/// A brace that does not pair with another, if there is one.
+std::optional<ObjFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks);
+
+}  // namespace oktett

@@ -1,0 +1,29 @@
+#include "io/obj/failure.h"
+
+namespace oktett {
+
+std::string quote_name(std::string_view text) {
+  constexpr std::size_t most = 40;
+  std::string result = "'";
+  for (const char c : text.substr(0, most)) {
+    const auto code = static_cast<unsigned char>(c);
+    result += code < 0x20 || code == 0x7f ? '?' : c;
+  }
+  // A cut must not leave half a UTF-8 sequence behind.
+  if (text.size() > most) {
+    while (result.size() > 1 && (static_cast<unsigned char>(result.back()) & 0xc0) == 0x80) result.pop_back();
+    if (result.size() > 1 && static_cast<unsigned char>(result.back()) >= 0xc0) result.pop_back();
+    result += "...";
+  }
+  return result + "'";
+}
+
+std::string quote_word(const char* p) {
+  std::string word(word_at(p).substr(0, 64));
+  // Not a name but a keyword or a number, where bytes beyond ASCII are garbage in no known encoding.
+  for (char& c : word)
+    if (static_cast<unsigned char>(c) >= 0x80) c = '?';
+  return quote_name(word);
+}
+
+}  // namespace oktett

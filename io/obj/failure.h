@@ -1,0 +1,33 @@
+#pragma once
+/// \file Failures while an OBJ file is read in parallel: the first one in the file counts, whichever task
+/// finds it.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "io/text/scan.h"
+
+namespace oktett {
+
+/// What is wrong at a place in the text. Lines are counted only when the failure is reported.
+struct ObjFailure {
+  const char* where = nullptr;
+  std::string message;
+};
+
+/// Keeps the failure that comes first in the text.
+inline void keep_first(std::optional<ObjFailure>& first, const char* where, std::string message) {
+  if (!first || where < first->where) first = ObjFailure{where, std::move(message)};
+}
+inline void keep_first(std::optional<ObjFailure>& first, const std::optional<ObjFailure>& other) {
+  if (other) keep_first(first, other->where, other->message);
+}
+
+/// A name between quotes for a message, shortened, with a `?` for each control character.
+std::string quote_name(std::string_view text);
+/// The word at `p` in the same way, with a `?` for each byte that is not ASCII too.
+std::string quote_word(const char* p);
+
+}  // namespace oktett

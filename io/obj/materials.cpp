@@ -1,0 +1,184 @@
+#include "io/obj/materials.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <unordered_map>
+#include <utility>
+
+namespace oktett {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Library {
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  std::unordered_map<std::string, std::size_t> by_name;
+  bool complete = true;  ///< every file could be read
+};
+
+bool is_file(const std::string& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+/// `name` in `directory`; with slashes for the backslashes of Windows if only that exists.
+std::string resolve(const std::string& directory, std::string_view name) {
+  const std::string path = (fs::path(directory) / fs::path(name)).string();
+  if (is_file(path) || name.find('\\') == std::string_view::npos) return path;
+  std::string slashes(name);
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  const std::string other = (fs::path(directory) / fs::path(slashes)).string();
+  return is_file(other) ? other : path;
+}
+
+bool ends_like_library(std::string_view name) {
+  constexpr std::string_view suffix = ".mtl";
+  if (name.size() < suffix.size()) return false;
+  const std::string_view end = name.substr(name.size() - suffix.size());
+  return std::equal(end.begin(), end.end(), suffix.begin(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + ('a' - 'A') : a) == b; });
+}
+
+Library load_libraries(const std::vector<ObjChunk>& chunks, const std::string& obj_path, ObjFile& obj,
+                       std::vector<ObjNotice>& notices) {
+  Library library;
+  const std::string directory = fs::path(obj_path).parent_path().string();
+  std::unordered_map<std::string, bool> seen;
+  for (const ObjChunk& chunk : chunks) {
+    for (const ObjLibrary& statement : chunk.libraries) {
+      for (const std::string& path : split_library_names(statement.names, directory)) {
+        if (!seen.emplace(path, true).second) continue;
+        try {
+          load_mtl(path, library.materials, library.textures, obj.warnings);
+        } catch (const Error& error) {
+          library.complete = false;
+          notices.push_back(
+              {statement.where, std::string(error.what()) + "; its materials are replaced by a grey one"});
+        }
+      }
+    }
+  }
+  // The first definition of a name counts.
+  for (std::size_t i = 0; i < library.materials.size(); ++i)
+    library.by_name.emplace(library.materials[i].name, i);
+  return library;
+}
+
+/// Hands out slots in the order of first use.
+class Slots {
+ public:
+  Slots(const Library& library, ObjFile& obj, std::vector<ObjNotice>& notices)
+      : library_(library), obj_(obj), notices_(notices), textures_(library.textures.size(), kNoId) {}
+
+  /// The slot of `name`; beyond the last one if there are too many. `where` is null if there is no statement.
+  std::size_t of(std::string_view name, const char* where) {
+    const auto [entry, is_new] = by_name_.try_emplace(std::string(name), obj_.materials.size());
+    if (is_new) add(entry->first, where);
+    return entry->second;
+  }
+
+ private:
+  void add(const std::string& name, const char* where) {
+    const auto found = library_.by_name.find(name);
+    if (found != library_.by_name.end()) {
+      Material material = library_.materials[found->second];
+      for (std::uint32_t* texture :
+           {&material.color_texture, &material.specular_texture, &material.emission_texture,
+            &material.opacity_texture, &material.bump_texture, &material.normal_texture})
+        *texture = take_texture(*texture);
+      obj_.materials.push_back(std::move(material));
+      return;
+    }
+    Material material;
+    material.name = name.empty() ? "default" : name;
+    obj_.materials.push_back(std::move(material));
+    // Of a library that is missing, one warning is enough.
+    if (where != nullptr && !name.empty() && library_.complete)
+      notices_.push_back({where, "material " + quote_name(name) + " is not defined; a grey one is used"});
+  }
+
+  /// Keeps only textures that some used material refers to.
+  std::uint32_t take_texture(std::uint32_t texture) {
+    if (texture == kNoId) return kNoId;
+    if (textures_[texture] == kNoId) {
+      textures_[texture] = static_cast<std::uint32_t>(obj_.textures.size());
+      obj_.textures.push_back(library_.textures[texture]);
+    }
+    return textures_[texture];
+  }
+
+  const Library& library_;
+  ObjFile& obj_;
+  std::vector<ObjNotice>& notices_;
+  std::vector<std::uint32_t> textures_;
+  std::unordered_map<std::string, std::size_t> by_name_;
+};
+
+struct Run {
+  ObjChunk* chunk;
+  ObjMaterialUse use;  ///< `triangle` counted from the start of the file
+};
+
+/// The statements that some face follows before the next one, in order.
+std::vector<Run> collect_runs(std::vector<ObjChunk>& chunks, std::uint64_t triangle_count) {
+  std::vector<Run> runs;
+  for (ObjChunk& chunk : chunks) {
+    for (ObjMaterialUse use : chunk.material_uses) {
+      use.triangle += chunk.before.triangles;
+      if (!runs.empty() && runs.back().use.triangle == use.triangle) runs.pop_back();
+      runs.push_back({&chunk, use});
+    }
+  }
+  if (!runs.empty() && runs.back().use.triangle == triangle_count) runs.pop_back();
+  return runs;
+}
+
+}  // namespace
+
+std::vector<std::string> split_library_names(std::string_view text, const std::string& directory) {
+  if (text.empty()) return {};
+  const std::string whole = resolve(directory, text);
+  if (is_file(whole)) return {whole};
+  std::vector<std::string> paths;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    // Up to the first blank behind `.mtl`, or all that is left.
+    std::size_t end = begin;
+    do {
+      end = std::min(text.find_first_of(" \t", end + 1), text.size());
+    } while (end < text.size() && !ends_like_library(text.substr(begin, end - begin)));
+    paths.push_back(resolve(directory, text.substr(begin, end - begin)));
+    begin = std::min(text.find_first_not_of(" \t", end), text.size());
+  }
+  return paths;
+}
+
+void assign_materials(std::vector<ObjChunk>& chunks, const std::string& obj_path, ObjFile& obj,
+                      std::vector<ObjNotice>& notices) {
+  const Library library = load_libraries(chunks, obj_path, obj, notices);
+  const std::size_t count = obj.mesh.triangle_count();
+  const std::vector<Run> runs = collect_runs(chunks, count);
+  if (runs.empty()) return;
+
+  constexpr std::size_t max_slots = std::numeric_limits<std::uint16_t>::max();
+  Slots slots(library, obj, notices);
+  obj.mesh.material_slots.resize_uninitialized(count);
+  std::uint16_t* const out = obj.mesh.material_slots.data();
+  const std::uint64_t first = runs.front().use.triangle;
+  if (first > 0) std::fill_n(out, first, static_cast<std::uint16_t>(slots.of("", nullptr)));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ObjMaterialUse& use = runs[i].use;
+    const std::uint64_t end = i + 1 < runs.size() ? runs[i + 1].use.triangle : count;
+    const std::size_t slot = slots.of(use.name, use.where);
+    if (slot >= max_slots) {
+      keep_first(runs[i].chunk->failure, use.where, "more than " + std::to_string(max_slots) + " materials");
+      return;
+    }
+    std::fill(out + use.triangle, out + end, static_cast<std::uint16_t>(slot));
+  }
+}
+
+}  // namespace oktett

@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "io/obj/failure.h"
+#include "io/obj/mtl_line.h"
+#include "io/obj/mtl_texture.h"
+#include "io/obj/obj.h"
+#include "io/text/mapped_file.h"
+
+namespace oktett {
+namespace {
+
+float clamp_unit(float x) { return std::clamp(x, 0.0f, 1.0f); }
+
+/// Rec.709.
+float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+/// What the statements of one material say, before they are put in terms of Material.
+struct Statements {
+  std::optional<Color> ka, kd, ks, ke, tf;
+  std::optional<float> d, tr;
+  int illum = 2;
+};
+
+class MtlReader {
+ public:
+  MtlReader(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
+            std::vector<Warning>& warnings)
+      : path_(path),
+        directory_(std::filesystem::path(path).parent_path().string()),
+        materials_(materials),
+        first_(materials.size()),
+        textures_(textures),
+        warnings_(warnings) {}
+
+  void run() {
+    const MappedFile file(path_);
+    const std::string_view text = file.text();
+    const char* const end = text.data() + text.size();
+    LineCounter lines(text);
+    for (const char* p = text.data() + (text.starts_with("\xef\xbb\xbf") ? 3 : 0); p < end;) {
+      p = skip_blanks(p);
+      MtlLine line(p, path_, lines, warnings_);
+      if (line.keyword() == "newmtl")
+        start_material(line);
+      else if (in_material_)
+        read_statement(line);
+      p = next_line(find_joined_line_end(p), end);
+    }
+    finish_material();
+    if (materials_.size() == first_) warnings_.push_back({Location{path_}, "no materials"});
+  }
+
+ private:
+  void start_material(MtlLine& line) {
+    finish_material();
+    Material material;
+    material.name = line.take_rest();
+    if (material.name.empty()) line.warn("expected the name of the material");
+    if (!names_.insert(material.name).second)
+      line.warn("material " + quote_name(material.name) + " is defined again; the first definition counts");
+    materials_.push_back(std::move(material));
+    said_ = Statements{};
+    in_material_ = true;
+  }
+
+  void read_statement(MtlLine& line) {
+    const std::string& key = line.keyword();
+    Material& material = materials_.back();
+    if (key == "ka")
+      read(line.take_color(), said_.ka);
+    else if (key == "kd")
+      read(line.take_color(), said_.kd);
+    else if (key == "ks")
+      read(line.take_color(), said_.ks);
+    else if (key == "ke")
+      read(line.take_color(), said_.ke);
+    else if (key == "tf")
+      read(line.take_color(), said_.tf);
+    else if (key == "d")
+      read_dissolve(line);
+    else if (key == "tr")
+      read(line.take_number(), said_.tr);
+    else if (key == "ns")
+      read_phong(line, material);
+    else if (key == "ni")
+      read_ior(line, material);
+    else if (key == "illum")
+      read_illum(line);
+    else if (key == "pr")
+      material.roughness = clamp_unit(line.take_number().value_or(material.roughness));
+    else if (key == "pm")
+      material.metallic = clamp_unit(line.take_number().value_or(material.metallic));
+    else
+      read_texture(line, material);
+  }
+
+  /// A malformed value leaves what was there.
+  template <class T>
+  static void read(const std::optional<T>& value, std::optional<T>& target) {
+    if (value) target = value;
+  }
+
+  void read_dissolve(MtlLine& line) {
+    // The halo, which depends on the angle of view, is not reproduced.
+    if (line.peek() == "-halo") line.take();
+    read(line.take_number(), said_.d);
+  }
+
+  static void read_phong(MtlLine& line, Material& material) {
+    const std::optional<float> value = line.take_number();
+    if (!value) return;
+    if (*value >= 0)
+      material.phong = *value;
+    else
+      line.warn("Ns must not be negative; the default is kept");
+  }
+
+  static void read_ior(MtlLine& line, Material& material) {
+    const std::optional<float> value = line.take_number();
+    if (!value) return;
+    if (*value > 0)
+      material.ior = *value;
+    else
+      line.warn("Ni must be greater than 0; the default is kept");
+  }
+
+  void read_illum(MtlLine& line) {
+    const std::optional<float> value = line.take_number();
+    if (!value) return;
+    if (*value >= 0 && *value <= 10 && *value == static_cast<float>(static_cast<int>(*value)))
+      said_.illum = static_cast<int>(*value);
+    else
+      line.warn("illum must be a whole number from 0 to 10; the default is kept");
+  }
+
+  void read_texture(MtlLine& line, Material& material) {
+    const std::string& key = line.keyword();
+    std::uint32_t* const slot = key == "map_kd"                        ? &material.color_texture
+                                : key == "map_ks"                      ? &material.specular_texture
+                                : key == "map_ke"                      ? &material.emission_texture
+                                : key == "map_d"                       ? &material.opacity_texture
+                                : key == "map_bump" || key == "bump"   ? &material.bump_texture
+                                : key == "norm" || key == "map_normal" ? &material.normal_texture
+                                                                       : nullptr;
+    if (slot == nullptr) return;
+    const std::optional<MtlTexture> texture = read_mtl_texture(line, directory_);
+    if (!texture) return;
+    *slot = textures_.add(texture->texture);
+    if (slot == &material.bump_texture) material.bump_scale = texture->bump_scale;
+  }
+
+  void finish_material() {
+    if (!in_material_) return;
+    Material& m = materials_.back();
+    set_opacity(m);
+    set_diffuse(m);
+    set_specular(m);
+    if (said_.ke)
+      m.emission = *said_.ke;
+    else if (m.emission_texture != kNoId)
+      m.emission = {1, 1, 1};
+  }
+
+  void set_opacity(Material& m) const {
+    if (said_.d)
+      m.transparency = 1 - clamp_unit(*said_.d);
+    else if (said_.tr)
+      m.transparency = clamp_unit(*said_.tr);
+  }
+
+  void set_diffuse(Material& m) const {
+    if (said_.kd) {
+      m.color = *said_.kd;
+      m.diffuse = 1;
+    } else if (m.color_texture != kNoId) {
+      m.color = {1, 1, 1};
+      m.diffuse = 1;
+    }
+    if (m.transparency > 0) {
+      // In MTL the surface and what is seen through it share the light; weights of Material add up.
+      m.diffuse *= 1 - m.transparency;
+      // One colour serves both what is scattered and what passes, and the filter shows more.
+      if (said_.tf) {
+        const float before = luminance(m.color);
+        m.color = *said_.tf;
+        const float after = luminance(m.color);
+        m.diffuse = after > 0 ? clamp_unit(m.diffuse * before / after) : 0;
+      }
+    }
+    if (said_.ka) {
+      const float brightness = luminance(m.color);
+      m.ambient = brightness > 0 ? clamp_unit(luminance(*said_.ka) / brightness) : 0;
+    }
+  }
+
+  void set_specular(Material& m) const {
+    const bool has_color = said_.ks && max_component(*said_.ks) > 0;
+    // A black Ks takes away the highlight but not the reflections that glass has by nature.
+    if (has_color) m.specular_color = *said_.ks;
+    m.specular = has_color || (!said_.ks && m.specular_texture != kNoId) ? 1.0f : 0.0f;
+    const bool mirrors = said_.illum == 3 || said_.illum == 5;
+    if (mirrors && said_.ks) m.reflection = clamp_unit(luminance(*said_.ks));
+  }
+
+  const std::string path_;
+  const std::string directory_;
+  std::vector<Material>& materials_;
+  const std::size_t first_;
+  TextureList textures_;
+  std::vector<Warning>& warnings_;
+  std::unordered_set<std::string> names_;
+  Statements said_;
+  bool in_material_ = false;
+};
+
+}  // namespace
+
+void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
+              std::vector<Warning>& warnings) {
+  MtlReader(path, materials, textures, warnings).run();
+}
+
+}  // namespace oktett

@@ -1,0 +1,132 @@
+#include "io/scene/degenerate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "io/scene/values.h"
+
+namespace oktett {
+namespace {
+
+bool is_zero(const Vec3d& v) { return v == Vec3d{0, 0, 0}; }
+
+struct Point2 {
+  double x, y;
+};
+
+/// > 0 if a, b, c turn left.
+double turn(const Point2& a, const Point2& b, const Point2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+int sign(double v) { return v > 0 ? 1 : v < 0 ? -1 : 0; }
+
+/// True if `p`, known to be in line with a and b, lies between them.
+bool between(const Point2& a, const Point2& b, const Point2& p) {
+  return std::min(a.x, b.x) <= p.x && p.x <= std::max(a.x, b.x) && std::min(a.y, b.y) <= p.y &&
+         p.y <= std::max(a.y, b.y);
+}
+
+bool segments_touch(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
+  const int abc = sign(turn(a, b, c)), abd = sign(turn(a, b, d));
+  const int cda = sign(turn(c, d, a)), cdb = sign(turn(c, d, b));
+  if (abc != abd && cda != cdb && abc * abd <= 0 && cda * cdb <= 0 && (abc != 0 || abd != 0)) return true;
+  return (abc == 0 && between(a, b, c)) || (abd == 0 && between(a, b, d)) || (cda == 0 && between(c, d, a)) ||
+         (cdb == 0 && between(c, d, b));
+}
+
+/// True if edge b-c runs back over edge a-b.
+bool folds_back(const Point2& a, const Point2& b, const Point2& c) {
+  const double along = (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y);
+  return turn(a, b, c) == 0 && along < 0;
+}
+
+/// Sweeps over the edges by their least x, so that only edges that overlap in x are compared.
+bool is_simple(const std::vector<Point2>& points) {
+  const std::size_t n = points.size();
+  const auto end_of = [&](std::size_t edge) -> const Point2& { return points[edge + 1 == n ? 0 : edge + 1]; };
+  const auto lo = [&](std::size_t edge) { return std::min(points[edge].x, end_of(edge).x); };
+  const auto hi = [&](std::size_t edge) { return std::max(points[edge].x, end_of(edge).x); };
+  for (std::size_t i = 0; i < n; ++i)
+    if (folds_back(points[i], end_of(i), points[(i + 2) % n])) return false;
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return lo(a) < lo(b); });
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t l = k + 1; l < n && lo(order[l]) <= hi(order[k]); ++l) {
+      const std::size_t a = order[k], b = order[l];
+      const bool are_neighbours = (a + 1) % n == b || (b + 1) % n == a;
+      if (!are_neighbours && segments_touch(points[a], end_of(a), points[b], end_of(b))) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+std::string why_degenerate(const TriangleShape& triangle) {
+  const Vec3d ab = triangle.v[1] - triangle.v[0], ac = triangle.v[2] - triangle.v[0];
+  const Vec3d bc = triangle.v[2] - triangle.v[1];
+  const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)});
+  // Below this the area is all rounding error.
+  return length(cross(ab, ac)) > 1e-12 * longest ? "" : "the triangle has no area";
+}
+
+std::string why_degenerate(const SphereShape& sphere) {
+  return sphere.radius > 0 ? "" : "the radius is zero";
+}
+
+std::string why_degenerate(const PlaneShape& plane) {
+  return is_zero(plane.normal) ? "the normal is zero" : "";
+}
+
+std::string why_degenerate(const DiskShape& disk) {
+  if (is_zero(disk.normal)) return "the normal is zero";
+  return disk.radius > 0 ? "" : "the radius is zero";
+}
+
+std::string why_degenerate(const BoxShape& box) {
+  const Vec3d extent = box.max - box.min;
+  const int flat = int(extent.x == 0) + int(extent.y == 0) + int(extent.z == 0);
+  return flat >= 2 ? "the box has no area" : "";
+}
+
+std::string why_degenerate(const PolygonShape& polygon) {
+  const std::vector<Vec3d>& v = polygon.vertices;
+  if (v.size() < 3) return "the polygon has no area";
+  // Newell's normal, relative to the first vertex to keep the products small.
+  Vec3d normal{0, 0, 0}, lo = v[0], hi = v[0];
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    normal += cross(v[i] - v[0], v[(i + 1) % v.size()] - v[0]);
+    lo = min(lo, v[i]), hi = max(hi, v[i]);
+  }
+  const double size = length(hi - lo);
+  if (!(length(normal) > 1e-12 * size * size)) return "the polygon has no area";
+  const Vec3d unit = normalize(normal);
+  Vec3d centre{0, 0, 0};
+  for (const Vec3d& p : v) centre += p / static_cast<double>(v.size());
+  for (const Vec3d& p : v)
+    if (std::abs(dot(unit, p - centre)) > 1e-5 * size) return "the polygon is not planar";
+  const int axis = dominant_axis(unit);
+  std::vector<Point2> points;
+  for (const Vec3d& p : v) points.push_back({p[(axis + 1) % 3], p[(axis + 2) % 3]});
+  return is_simple(points) ? "" : "the polygon is not simple: its edges touch each other";
+}
+
+std::string why_degenerate(const Affine& transform) {
+  if (!transform.is_invertible()) return "the transform is singular";
+  for (const auto& row : transform.m)
+    for (const double value : row)
+      if (!(std::abs(value) <= kMaxCoordinate)) return "the transform moves things out of range";
+  return "";
+}
+
+void remove_repeated_vertices(PolygonShape& polygon) {
+  std::vector<Vec3d>& v = polygon.vertices;
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+  while (v.size() > 1 && v.front() == v.back()) v.pop_back();
+}
+
+}  // namespace oktett

@@ -1,0 +1,286 @@
+/// \file Metaballs and blob trees in scene files.
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "io/scene/degenerate.h"
+#include "io/scene/exact.h"
+#include "io/scene/number_line.h"
+
+namespace oktett {
+namespace {
+
+using MaybeForm = std::optional<ExactForm>;
+
+/// Most balls or elements of one object, and most bytes of a file of them.
+constexpr std::size_t kMaxBalls = std::size_t{1} << 20;
+constexpr std::size_t kMaxBallFileBytes = std::size_t{1} << 28;
+constexpr Range kStrength{-1e9, 1e9};
+constexpr Range kIso{0, 1e9, true};
+
+void check_count(std::size_t count, const Location& place) {
+  if (count > kMaxBalls)
+    throw Error(place, "more than " + std::to_string(kMaxBalls) + " elements in one object");
+}
+
+double read_iso(SceneLoad& load, const YamlNode* node) {
+  double iso = 0.5;
+  load.values.read(node, iso, kIso);
+  return iso;
+}
+
+// Skeletons
+
+PointSkeleton read_point(SceneLoad& load, const YamlNode& node) {
+  if (node.kind == YamlKind::sequence) return {load.values.vector(node)};
+  const Fields fields(node, "point", {"center"});
+  PointSkeleton s;
+  load.values.read(fields["center"], s.center);
+  return s;
+}
+
+SegmentSkeleton read_segment(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "segment", {"from", "to"});
+  SegmentSkeleton s;
+  load.values.read(fields["from"], s.from);
+  load.values.read(fields["to"], s.to);
+  return s;
+}
+
+PolygonSkeleton read_polygon(SceneLoad& load, const YamlNode& node) {
+  const YamlNode& list =
+      node.kind == YamlKind::sequence ? node : Fields(node, "polygon", {"vertices"}).require("vertices");
+  PolygonShape polygon;
+  for (const YamlNode* vertex : list_items(list, "vertices"))
+    polygon.vertices.push_back(load.values.vector(*vertex));
+  if (polygon.vertices.size() < 3)
+    throw Error(list.where(),
+                "expected at least 3 vertices, found " + std::to_string(polygon.vertices.size()));
+  if (const std::string why = why_degenerate(polygon); !why.empty()) throw Error(list.where(), why);
+  return {polygon.vertices};
+}
+
+EllipsoidSkeleton read_ellipsoid(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "ellipsoid", {"center", "radii", "rotate"});
+  EllipsoidSkeleton s;
+  load.values.read(fields["center"], s.center);
+  if (const YamlNode* radii = fields["radii"]) {
+    double r[3];
+    load.values.numbers(*radii, r, kPositive);
+    s.radii = {r[0], r[1], r[2]};
+  }
+  load.values.read(fields["rotate"], s.rotation);
+  return s;
+}
+
+// Elements
+
+const char* const kSkeletons[] = {"point", "segment", "polygon", "ellipsoid"};
+
+const YamlNode* find(const std::vector<MapEntry>& entries, std::string_view key) {
+  for (const MapEntry& entry : entries)
+    if (entry.key->text == key) return entry.value;
+  return nullptr;
+}
+
+Potential read_potential(SceneLoad& load, const std::vector<MapEntry>& entries) {
+  Potential p;
+  if (const YamlNode* kind = find(entries, "potential"))
+    p.kind = load.values.choice<PotentialKind>(*kind, {{"inverse_square", PotentialKind::inverse_square},
+                                                       {"gaussian", PotentialKind::gaussian},
+                                                       {"quadratic", PotentialKind::quadratic},
+                                                       {"rational", PotentialKind::rational},
+                                                       {"wyvill", PotentialKind::wyvill}});
+  const bool by_b = p.kind == PotentialKind::gaussian || p.kind == PotentialKind::quadratic;
+  load.values.read(find(entries, by_b ? "b" : "radius"), p.scale, kPositive);
+  if (p.kind == PotentialKind::rational) load.values.read(find(entries, "d"), p.d, kNonNegative);
+  load.values.read(find(entries, "weight"), p.weight, kStrength);
+  for (const char* key : {"b", "radius", "d"}) {
+    const YamlNode* value = find(entries, key);
+    const bool meant = key[0] == 'd' ? p.kind == PotentialKind::rational : (key[0] == 'b') == by_b;
+    if (value && !meant) throw Error(value->where(), std::string("this potential has no '") + key + "'");
+  }
+  return p;
+}
+
+/// A map with the key of a skeleton and its potential.
+FieldElement read_element(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(
+      node, "element",
+      {"point", "segment", "polygon", "ellipsoid", "potential", "radius", "b", "d", "weight"});
+  const std::vector<MapEntry> entries = map_entries(node, "element");
+  FieldElement element;
+  const char* found = nullptr;
+  for (const char* key : kSkeletons) {
+    const YamlNode* value = fields[key];
+    if (!value) continue;
+    if (found)
+      throw Error(value->where(),
+                  std::string("an element has one skeleton: '") + found + "' or '" + key + "'");
+    found = key;
+    switch (key[1] == 'l' ? 'e' : key[2]) {
+      case 'i':
+        element.skeleton = read_point(load, *value);
+        break;
+      case 'g':
+        element.skeleton = read_segment(load, *value);
+        break;
+      case 'l':
+        element.skeleton = read_polygon(load, *value);
+        break;
+      default:
+        element.skeleton = read_ellipsoid(load, *value);
+    }
+  }
+  if (!found) throw Error(node.where(), "expected a skeleton: point, segment, polygon or ellipsoid");
+  element.potential = read_potential(load, entries);
+  return element;
+}
+
+bool all_metaballs(const std::vector<FieldElement>& elements) {
+  return std::all_of(elements.begin(), elements.end(), [](const FieldElement& e) {
+    return std::holds_alternative<PointSkeleton>(e.skeleton) && e.potential.kind == PotentialKind::wyvill;
+  });
+}
+
+MetaBall read_ball(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "ball", {"center", "radius", "strength"});
+  MetaBall ball;
+  load.values.read(fields["center"], ball.center);
+  load.values.read(fields["radius"], ball.radius, kPositive);
+  load.values.read(fields["strength"], ball.strength, kStrength);
+  return ball;
+}
+
+std::vector<MetaBall> read_ball_file(SceneLoad& load, const YamlNode& node) {
+  const std::string path = load.values.existing_file(node);
+  const std::string text = read_text_file(path, kMaxBallFileBytes);
+  load.sphere_file_bytes += text.size();
+  if (load.sphere_file_bytes > kMaxSphereFileBytes)
+    throw Error(node.where(), "the files of spheres and balls are larger than " +
+                                  std::to_string(kMaxSphereFileBytes >> 20) + " MiB in all");
+  std::vector<MetaBall> balls;
+  Location place{path, 0, 1};
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    ++place.line;
+    NumberLine line(std::string_view(text).substr(begin, end - begin), place,
+                    "4 or 5 numbers (x y z radius strength)");
+    begin = end + 1;
+    if (line.empty()) continue;
+    MetaBall ball;
+    for (int axis = 0; axis < 3; ++axis) ball.center[axis] = line.number();
+    ball.radius = line.number();
+    if (!(ball.radius > 0)) line.reject("expected a radius greater than 0");
+    if (!line.empty()) ball.strength = line.number();
+    if (!kStrength.contains(ball.strength)) line.reject("the strength is out of range");
+    line.finish();
+    balls.push_back(ball);
+    check_count(balls.size(), place);
+  }
+  return balls;
+}
+
+bool none_positive(const BlobTreeShape& tree) {
+  return std::none_of(tree.elements.begin(), tree.elements.end(),
+                      [](const FieldElement& e) { return e.potential.weight > 0; });
+}
+
+MaybeForm read_elements(SceneLoad& load, const YamlNode& key, const YamlNode& list, double iso) {
+  BlobTreeShape tree;
+  tree.iso = iso;
+  const auto items = list_items(list, "elements");
+  if (items.empty()) throw Error(list.where(), "the list of elements is empty");
+  check_count(items.size(), list.where());
+  for (const YamlNode* item : items) tree.elements.push_back(read_element(load, *item));
+  if (none_positive(tree)) return skip_exact(load, key, "no element has a positive weight");
+  if (all_metaballs(tree.elements)) {
+    MetaballsShape shape{iso, {}};
+    for (const FieldElement& e : tree.elements)
+      shape.balls.push_back(
+          {std::get<PointSkeleton>(e.skeleton).center, e.potential.scale, e.potential.weight});
+    return shape;
+  }
+  for (std::uint32_t i = 0; i < tree.elements.size(); ++i) tree.blends.push_back({Blend::Op::element, i, 0});
+  tree.blends.push_back({Blend::Op::sum, 0, static_cast<std::uint32_t>(tree.elements.size())});
+  return tree;
+}
+
+MaybeForm read_metaballs(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
+  const Fields fields(node, "metaballs", {"iso", "balls", "file", "elements", "normals"});
+  const double iso = read_iso(load, fields["iso"]);
+  const YamlNode* source = nullptr;
+  for (const char* name : {"balls", "file", "elements"}) {
+    if (const YamlNode* value = fields[name]) {
+      if (source) throw Error(value->where(), "metaballs have one of 'balls', 'file' and 'elements'");
+      source = value;
+    }
+  }
+  if (!source) throw Error(node.where(), "metaballs need 'balls', 'file' or 'elements'");
+  if (const YamlNode* elements = fields["elements"]) return read_elements(load, key, *elements, iso);
+  MetaballsShape shape;
+  shape.iso = iso;
+  if (const YamlNode* balls = fields["balls"]) {
+    const auto items = list_items(*balls, "balls");
+    check_count(items.size(), balls->where());
+    for (const YamlNode* item : items) shape.balls.push_back(read_ball(load, *item));
+  } else {
+    shape.balls = read_ball_file(load, *source);
+  }
+  if (shape.balls.empty()) throw Error(source->where(), "there are no balls");
+  if (std::none_of(shape.balls.begin(), shape.balls.end(), [](const MetaBall& b) { return b.strength > 0; }))
+    return skip_exact(load, key, "no ball has a positive strength");
+  return shape;
+}
+
+// Trees
+
+constexpr Choice<Blend::Op> kBlends[] = {{"sum", Blend::Op::sum},
+                                         {"max", Blend::Op::max},
+                                         {"min", Blend::Op::min},
+                                         {"difference", Blend::Op::difference}};
+
+/// Appends what a node of the tree stands for, in postfix order. Only the outermost one has other keys.
+void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape& tree) {
+  const std::vector<MapEntry> entries = map_entries(node, "blend");
+  for (const Choice<Blend::Op>& blend : kBlends) {
+    const YamlNode* list = find(entries, blend.name);
+    if (!list) continue;
+    for (const MapEntry& entry : entries)
+      if (entry.value != list && (level > 1 || (entry.key->text != "iso" && entry.key->text != "normals")))
+        throw Error(entry.key->where(),
+                    std::string("'") + blend.name + "' stands alone; unexpected '" + entry.key->text + "'");
+    if (level > kMaxBlendLevels)
+      throw Error(list->where(),
+                  "blends are nested deeper than " + std::to_string(kMaxBlendLevels) + " levels");
+    const auto items = list_items(*list, blend.name);
+    if (items.empty()) throw Error(list->where(), std::string("the list of '") + blend.name + "' is empty");
+    for (const YamlNode* item : items) read_blend(load, *item, level + 1, tree);
+    tree.blends.push_back({blend.value, 0, static_cast<std::uint32_t>(items.size())});
+    return;
+  }
+  tree.elements.push_back(read_element(load, node));
+  check_count(tree.elements.size(), node.where());
+  tree.blends.push_back({Blend::Op::element, static_cast<std::uint32_t>(tree.elements.size() - 1), 0});
+}
+
+MaybeForm read_blobtree(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
+  const Fields fields(node, "blobtree", {"iso", "sum", "max", "min", "difference", "normals"});
+  BlobTreeShape tree;
+  tree.iso = read_iso(load, fields["iso"]);
+  bool found = false;
+  for (const Choice<Blend::Op>& blend : kBlends) found |= fields[blend.name] != nullptr;
+  if (!found) throw Error(node.where(), "a blobtree needs one of 'sum', 'max', 'min' and 'difference'");
+  read_blend(load, node, 1, tree);
+  if (none_positive(tree)) return skip_exact(load, key, "no element has a positive weight");
+  return tree;
+}
+
+constexpr ExactReader kReaders[] = {{"metaballs", read_metaballs}, {"blobtree", read_blobtree}};
+
+}  // namespace
+
+std::span<const ExactReader> metaball_readers() { return kReaders; }
+
+}  // namespace oktett

@@ -1,0 +1,38 @@
+#include "io/scene/load.h"
+
+#include <algorithm>
+
+#include "io/scene/utf8.h"
+
+namespace oktett {
+
+void NameTable::add(const std::string& name, std::uint32_t index, const Location& place,
+                    const std::string& what) {
+  const auto [taken, is_new] = entries.try_emplace(name, Entry{index, place});
+  if (is_new) return;
+  throw Error(place,
+              what + " " + quote(name) + " is defined twice; first at " + to_string(taken->second.where));
+}
+
+const NameTable::Entry* NameTable::find(const std::string& name) const {
+  const auto found = entries.find(name);
+  return found == entries.end() ? nullptr : &found->second;
+}
+
+std::string NameTable::suggestion(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.first);
+  std::sort(names.begin(), names.end());
+  return suggest(name, names);
+}
+
+void SceneLoad::warn(const Location& place, const std::string& message) {
+  constexpr std::size_t kMostWarnings = 1000;
+  const std::size_t count = scene.warnings.size();
+  if (count < kMostWarnings)
+    scene.warnings.push_back(Warning{place, message});
+  else if (count == kMostWarnings)
+    scene.warnings.push_back(Warning{Location{}, "there are more warnings, which are not shown"});
+}
+
+}  // namespace oktett

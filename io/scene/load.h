@@ -1,0 +1,57 @@
+#pragma once
+/// \file What is known while a scene file is read. Within io/ only.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "io/scene/meshes.h"
+#include "io/scene/parameters.h"
+#include "io/scene/values.h"
+#include "render/scene.h"
+
+namespace oktett {
+
+/// Most spheres in a scene, and most bytes of sphere files, each file counted as often as it is named.
+inline constexpr std::size_t kMaxSpheres = std::size_t{1} << 25;
+inline constexpr std::size_t kMaxSphereFileBytes = std::size_t{1} << 30;
+/// Most levels of instances inside prototypes.
+inline constexpr int kMaxInstanceLevels = 32;
+
+/// Names of one kind and where each was given.
+struct NameTable {
+  struct Entry {
+    std::uint32_t index;
+    Location where;
+  };
+  std::unordered_map<std::string, Entry> entries;
+
+  /// Throws Error at `place` if `name` is taken; `what` is the kind of thing, e.g. "material".
+  void add(const std::string& name, std::uint32_t index, const Location& place, const std::string& what);
+  const Entry* find(const std::string& name) const;
+  /// "; did you mean 'x'?" or nothing.
+  std::string suggestion(const std::string& name) const;
+};
+
+struct SceneLoad {
+  explicit SceneLoad(const Definitions& definitions) : parameters(definitions), values(parameters) {}
+  SceneLoad(const SceneLoad&) = delete;
+  SceneLoad& operator=(const SceneLoad&) = delete;
+
+  Scene scene;
+  SceneParameters parameters;
+  SceneValues values;
+  MeshLibrary meshes;
+  NameTable materials, prototypes, objects;
+  std::map<std::string, std::uint32_t> textures;  ///< by path and layout
+  std::vector<int> prototype_levels;              ///< of instances, its own included, per prototype
+  std::size_t spheres = 0, sphere_file_bytes = 0;
+
+  /// Adds a warning; after the first thousand only says that there are more.
+  void warn(const Location& place, const std::string& message);
+};
+
+}  // namespace oktett

@@ -1,0 +1,53 @@
+#include "io/scene/meshes.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "io/obj/obj.h"
+
+namespace oktett {
+namespace {
+
+/// Appends what `obj` brings to `scene` and returns the new index of each of its materials.
+std::vector<std::uint32_t> append_materials(ObjFile& obj, Scene& scene) {
+  const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
+  std::move(obj.textures.begin(), obj.textures.end(), std::back_inserter(scene.textures));
+  std::vector<std::uint32_t> indices;
+  for (Material& material : obj.materials) {
+    for (std::uint32_t* texture :
+         {&material.color_texture, &material.specular_texture, &material.emission_texture,
+          &material.opacity_texture, &material.bump_texture, &material.normal_texture})
+      if (*texture != kNoId) *texture += first_texture;
+    indices.push_back(static_cast<std::uint32_t>(scene.materials.size()));
+    scene.materials.push_back(std::move(material));
+  }
+  return indices;
+}
+
+}  // namespace
+
+bool is_mesh_file(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".obj";
+}
+
+const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, Scene& scene) {
+  std::error_code error;
+  const std::filesystem::path canonical = std::filesystem::canonical(path, error);
+  const std::string key = error ? path : canonical.string();
+  const auto found = entries_.find(key);
+  if (found != entries_.end()) return found->second;
+  ObjFile obj = load_obj(path);
+  Entry entry;
+  entry.slot_materials = append_materials(obj, scene);
+  entry.mesh = std::make_shared<const TriangleMesh>(std::move(obj.mesh));
+  std::move(obj.warnings.begin(), obj.warnings.end(), std::back_inserter(scene.warnings));
+  return entries_.emplace(key, std::move(entry)).first->second;
+}
+
+}  // namespace oktett

@@ -1,0 +1,193 @@
+#include "io/scene/object.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "io/scene/csg.h"
+#include "io/scene/degenerate.h"
+#include "io/scene/material.h"
+#include "io/scene/shape.h"
+#include "io/scene/transform.h"
+#include "io/scene/utf8.h"
+
+namespace oktett {
+namespace {
+
+/// What a group hands to its members.
+struct Surroundings {
+  Affine transform;
+  std::uint32_t material = kNoId;
+  bool is_dropped = false;  ///< the members are checked but not kept
+};
+
+/// Reads the objects of the world or of one prototype, groups flattened.
+class ObjectReader {
+ public:
+  /// `defining` is the map of prototypes that is being read, `name` the one in it that the objects belong to;
+  /// null and empty for the world.
+  ObjectReader(SceneLoad& load, std::vector<Object>& out, const YamlNode* defining, std::string name)
+      : load_(load), out_(out), defining_(defining), name_(std::move(name)) {}
+
+  void read(const YamlNode& node, const Surroundings& outer);
+  /// Levels of instances below what has been read.
+  int levels() const { return levels_; }
+
+ private:
+  void read_group(const YamlNode& members, const Surroundings& inner);
+  std::optional<Shape> read_csg(const YamlNode& key, const YamlNode& operands, const Surroundings& inner);
+  std::optional<Shape> read_instance(const YamlNode& node);
+  [[noreturn]] void fail_unknown_prototype(const YamlNode& node, const std::string& name) const;
+
+  SceneLoad& load_;
+  std::vector<Object>& out_;
+  const YamlNode* defining_;
+  std::string name_;
+  int levels_ = 0;
+};
+
+bool is_shape_key(const std::string& key) {
+  if (key == "group" || key == "instance" || is_csg_key(key)) return true;
+  return std::find(shape_keys().begin(), shape_keys().end(), key) != shape_keys().end();
+}
+
+/// The one entry of an object that says what it is. Throws Error for keys that no object has.
+MapEntry find_shape(const YamlNode& node) {
+  std::vector<std::string> known = shape_keys();
+  for (const std::string& key : csg_keys()) known.push_back(key);
+  known.insert(known.end(), {"group", "instance"});
+  const std::string shape_names = fmt::format("{}", fmt::join(known, ", "));
+  known.insert(known.end(), {"material", "transform", "name"});
+  MapEntry shape{nullptr, nullptr};
+  for (const MapEntry& entry : map_entries(node, "an object")) {
+    const std::string& key = entry.key->text;
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      const std::string hint = suggest(key, known);
+      throw Error(entry.key->where(), "unknown key " + quote(key) + " in an object" +
+                                          (hint.empty() ? "; shapes are " + shape_names : hint));
+    }
+    if (!is_shape_key(key)) continue;
+    if (shape.key)
+      throw Error(entry.key->where(), "an object has one shape, but " + quote(shape.key->text) + " and " +
+                                          quote(key) + " are given");
+    shape = entry;
+  }
+  if (!shape.key) throw Error(node.where(), "an object needs a shape: one of " + shape_names);
+  return shape;
+}
+
+void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
+  const MapEntry shape_entry = find_shape(node);
+  const Fields fields(node, "an object", {shape_entry.key->text.c_str(), "material", "transform", "name"});
+  const bool is_group = shape_entry.key->text == "group", is_instance = shape_entry.key->text == "instance";
+
+  Object object;
+  object.where = node.where();
+  if (const YamlNode* name = fields["name"]) {
+    object.name = load_.values.text(*name);
+    load_.objects.add(object.name, 0, name->where(), "object");
+  }
+  // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
+  Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped};
+  if (const YamlNode* material = fields["material"]) inner.material = read_material(load_, *material);
+  if (const YamlNode* transform = fields["transform"]) {
+    const Affine own = read_transform(load_.values, *transform);
+    inner.transform = outer.transform * own;
+    std::string reason = why_degenerate(own);
+    if (reason.empty() && !outer.is_dropped) reason = why_degenerate(inner.transform);
+    if (!reason.empty()) {
+      inner.is_dropped = true;
+      load_.warn(transform->where(),
+                 reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
+    }
+  }
+  if (is_group) return read_group(*shape_entry.value, inner);
+  std::optional<Shape> shape = is_csg_key(shape_entry.key->text)
+                                   ? read_csg(*shape_entry.key, *shape_entry.value, inner)
+                               : is_instance ? read_instance(*shape_entry.value)
+                                             : read_shape(load_, *shape_entry.key, *shape_entry.value);
+  if (!shape || inner.is_dropped) return;
+  object.shape = std::move(*shape);
+  object.material = inner.material;
+  object.transform = inner.transform;
+  out_.push_back(std::move(object));
+}
+
+void ObjectReader::read_group(const YamlNode& members, const Surroundings& inner) {
+  for (const YamlNode* member : list_items(members, "group")) read(*member, inner);
+}
+
+std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode& operands,
+                                            const Surroundings& outer) {
+  const auto nodes = list_items(operands, key.text);
+  if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
+  // Operands stand in the space of the combination, whose transform applies to all.
+  const Surroundings inner{{}, outer.material, outer.is_dropped};
+  std::vector<Object> solids;
+  bool is_nothing = false;
+  for (const YamlNode* node : nodes) {
+    std::vector<Object> members;
+    ObjectReader reader(load_, members, defining_, name_);
+    reader.read(*node, inner);
+    levels_ = std::max(levels_, reader.levels_);
+    for (const Object& member : members) require_solid(load_, member);
+    // What was skipped is nothing, and so is what it is intersected with or taken from.
+    const bool is_needed = key.text == "intersection" || (key.text == "difference" && node == nodes.front());
+    if (members.empty())
+      is_nothing |= is_needed;
+    else
+      solids.push_back(unite(std::move(members), node->where()));
+  }
+  if (is_nothing || solids.empty()) {
+    if (!outer.is_dropped)
+      load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
+    return std::nullopt;
+  }
+  return make_csg(key.text, std::move(solids));
+}
+
+std::optional<Shape> ObjectReader::read_instance(const YamlNode& node) {
+  const std::string name = load_.values.text(node);
+  const NameTable::Entry* prototype = load_.prototypes.find(name);
+  if (!prototype) fail_unknown_prototype(node, name);
+  levels_ = std::max(levels_, load_.prototype_levels[prototype->index] + 1);
+  if (levels_ > kMaxInstanceLevels)
+    throw Error(node.where(), fmt::format("instances are nested deeper than {} levels", kMaxInstanceLevels));
+  return InstanceShape{prototype->index};
+}
+
+void ObjectReader::fail_unknown_prototype(const YamlNode& node, const std::string& name) const {
+  if (defining_ && name == name_) throw Error(node.where(), "prototype " + quote(name) + " contains itself");
+  if (defining_)
+    for (const auto& [key, value] : map_entries(*defining_, "define"))
+      if (key->text == name)
+        throw Error(node.where(),
+                    fmt::format("prototype {} is defined only later, at line {}; a prototype may hold "
+                                "instances of those before it",
+                                quote(name), key->line));
+  throw Error(node.where(), "unknown prototype " + quote(name) + load_.prototypes.suggestion(name));
+}
+
+}  // namespace
+
+void define_prototypes(SceneLoad& load, const YamlNode& define) {
+  for (const auto& [key, value] : map_entries(define, "define")) {
+    Prototype prototype{key->text, {}};
+    ObjectReader reader(load, prototype.objects, &define, key->text);
+    reader.read(*value, {});
+    // Only now, so that the prototype cannot name itself.
+    load.prototypes.add(key->text, static_cast<std::uint32_t>(load.scene.prototypes.size()), key->where(),
+                        "prototype");
+    load.scene.prototypes.push_back(std::move(prototype));
+    load.prototype_levels.push_back(reader.levels());
+  }
+}
+
+void read_objects(SceneLoad& load, const YamlNode& objects) {
+  ObjectReader reader(load, load.scene.objects, nullptr, "");
+  for (const YamlNode* object : list_items(objects, "objects")) reader.read(*object, {});
+}
+
+}  // namespace oktett

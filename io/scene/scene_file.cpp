@@ -1,0 +1,174 @@
+#include "io/scene/scene_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "io/scene/load.h"
+#include "io/scene/material.h"
+#include "io/scene/object.h"
+#include "io/scene/settings.h"
+#include "io/scene/utf8.h"
+#include "io/scene/yaml.h"
+#include "render/default_view.h"
+
+namespace oktett {
+namespace {
+
+constexpr std::size_t kMaxIncludeDepth = 16;
+constexpr std::size_t kMaxIncludedFiles = 256;
+
+std::string canonical_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path canonical = std::filesystem::canonical(path, error);
+  return error ? path : canonical.string();
+}
+
+/// Reads a scene file and, before its own sections, those that it includes.
+class FileReader {
+ public:
+  explicit FileReader(SceneLoad& load) : load_(load) {}
+
+  void read(const std::string& path) {
+    chain_.push_back({path, canonical_path(path)});
+    seen_.push_back(chain_.back().canonical);
+    YamlFile file;
+    file.path = path;
+    file.text = read_text_file(path, kMaxYamlBytes);
+    parse_yaml(file, kMaxYamlNodes - nodes_);
+    nodes_ += file.expanded_nodes;
+    read_sections(*file.root);
+    chain_.pop_back();
+  }
+
+ private:
+  struct Link {
+    std::string path, canonical;
+  };
+
+  void read_sections(const YamlNode& root) {
+    if (root.kind != YamlKind::map)
+      throw Error(root.where(), "expected a map that begins with 'oktett: 1', found " + root.describe());
+    const Fields fields(root, "a scene",
+                        {"oktett", "include", "params", "camera", "film", "integrator", "background",
+                         "ambient_light", "materials", "lights", "define", "objects"});
+    check_version(fields, root);
+    const auto section = [&](const char* key, auto read_section) {
+      if (const YamlNode* node = fields[key]) read_section(load_, *node);
+    };
+    section("params", [](SceneLoad& load, const YamlNode& node) { load.parameters.add_defaults(node); });
+    if (const YamlNode* node = fields["include"]) read_includes(*node);
+    section("camera", read_camera);
+    section("film", read_film);
+    section("integrator", read_integrator);
+    load_.values.read_color(fields["background"], load_.scene.background);
+    load_.values.read_color(fields["ambient_light"], load_.scene.ambient_light);
+    section("materials", define_materials);
+    section("lights", read_lights);
+    section("define", define_prototypes);
+    section("objects", read_objects);
+  }
+
+  void check_version(const Fields& fields, const YamlNode& root) {
+    const YamlNode* version = fields["oktett"];
+    if (!version) throw Error(root.where(), "the format version is missing: expected 'oktett: 1'");
+    if (version->kind != YamlKind::scalar || load_.values.text(*version) != "1")
+      throw Error(version->where(), "expected format version 1, found " + version->describe());
+  }
+
+  void read_includes(const YamlNode& node) {
+    for (const YamlNode* item : list_items(node, "include")) {
+      const std::string path = load_.values.existing_file(*item);
+      const std::string canonical = canonical_path(path);
+      check_cycle(*item, path, canonical);
+      if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) continue;
+      if (chain_.size() > kMaxIncludeDepth)
+        throw Error(item->where(),
+                    "included files are nested deeper than " + std::to_string(kMaxIncludeDepth) + " levels");
+      if (seen_.size() > kMaxIncludedFiles)
+        throw Error(item->where(), "more than " + std::to_string(kMaxIncludedFiles) + " files are included");
+      read(path);
+    }
+  }
+
+  void check_cycle(const YamlNode& place, const std::string& path, const std::string& canonical) {
+    const auto is_same = [&](const Link& link) { return link.canonical == canonical; };
+    const auto begin = std::find_if(chain_.begin(), chain_.end(), is_same);
+    if (begin == chain_.end()) return;
+    std::string message = "include cycle: ";
+    for (auto link = begin; link != chain_.end(); ++link) message += link->path + " -> ";
+    throw Error(place.where(), message + path);
+  }
+
+  SceneLoad& load_;
+  std::vector<Link> chain_;        ///< the files being read, outermost first
+  std::vector<std::string> seen_;  ///< canonical paths; a file that is included twice is merged once
+  std::size_t nodes_ = 0;
+};
+
+void expect_readable(const std::string& path) {
+  if (const std::string reason = why_unreadable(path); !reason.empty())
+    throw Error(Location{path, 0, 0}, reason, ErrorKind::io);
+}
+
+std::string lower_case_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+}  // namespace
+
+Scene load_scene_file(const std::string& path, const Definitions& definitions) {
+  SceneLoad load(definitions);
+  load.scene.source = path;
+  FileReader(load).read(path);
+  for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
+  return std::move(load.scene);
+}
+
+Scene scene_from_mesh(const std::string& path) {
+  expect_readable(path);
+  Scene scene;
+  scene.source = path;
+  MeshLibrary meshes;
+  const MeshLibrary::Entry& entry = meshes.load(path, scene);
+  MeshShape shape;
+  shape.mesh = entry.mesh;
+  shape.slot_materials = entry.slot_materials;
+  if (shape.slot_materials.empty()) {
+    scene.materials.push_back({});
+    scene.materials.back().name = "neutral";
+    shape.slot_materials.push_back(static_cast<std::uint32_t>(scene.materials.size() - 1));
+  }
+  if (shape.mesh->triangle_count() == 0) {
+    scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
+    return scene;
+  }
+  scene.camera.up = guess_up(*shape.mesh);
+  scene.background = {0.30f, 0.34f, 0.40f};
+  Object object;
+  object.shape = std::move(shape);
+  object.name = std::filesystem::path(path).stem().string();
+  object.where = {path, 0, 0};
+  scene.objects.push_back(std::move(object));
+  return scene;
+}
+
+Scene load_scene(const std::string& path, const Definitions& definitions) {
+  expect_readable(path);
+  const std::string extension = lower_case_extension(path);
+  if (extension == ".yaml" || extension == ".yml") return load_scene_file(path, definitions);
+  if (!is_mesh_file(path))
+    throw Error(Location{path, 0, 0},
+                "unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj)");
+  Scene scene = scene_from_mesh(path);
+  for (const Warning& warning : SceneParameters(definitions).unused()) scene.warnings.push_back(warning);
+  return scene;
+}
+
+}  // namespace oktett

@@ -1,0 +1,125 @@
+#pragma once
+/// \file Typed values out of YAML nodes, with the error that says what was expected and where. Within io/
+/// only.
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/transform.h"
+#include "core/vec3.h"
+#include "io/scene/parameters.h"
+#include "io/scene/yaml.h"
+
+namespace oktett {
+
+/// Greatest magnitude of a coordinate or length: its square still fits a float.
+inline constexpr double kMaxCoordinate = 1e18;
+
+/// The numbers that are allowed.
+struct Range {
+  double lo = -kMaxCoordinate;
+  double hi = kMaxCoordinate;
+  bool lo_open = false;  ///< `lo` itself is not allowed
+  bool hi_open = false;
+
+  /// E.g. "a number greater than 0".
+  std::string describe(const char* noun) const;
+  bool contains(double value) const;
+};
+
+/// Any coordinate.
+inline constexpr Range kAnyNumber{};
+/// Lengths and weights without a bound of their own.
+inline constexpr Range kNonNegative{0, kMaxCoordinate};
+inline constexpr Range kPositive{0, kMaxCoordinate, true};
+inline constexpr Range kUnitInterval{0, 1};
+
+struct MapEntry {
+  const YamlNode* key;
+  const YamlNode* value;
+};
+
+/// The entries of a map in order; none for an empty node. Throws Error if `node` is anything else; `what`
+/// names it.
+std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what);
+
+/// The items of a list; none for an empty node. Throws Error if `node` is anything else; `what` names it.
+std::span<const YamlNode* const> list_items(const YamlNode& node, const std::string& what);
+
+/// "; did you mean 'x'?" for the nearest of `known`, or nothing.
+std::string suggest(const std::string& name, std::span<const std::string> known);
+
+/// A map whose keys are known beforehand.
+class Fields {
+ public:
+  /// Throws Error if `node` is no map or has a key that is not in `known`; `what` names it. An empty node is
+  /// an empty map.
+  Fields(const YamlNode& node, const std::string& what, std::initializer_list<const char*> known);
+
+  /// The value of `key`, or null if the map does not have it.
+  const YamlNode* operator[](const char* key) const;
+  /// The value of `key`. Throws Error if the map does not have it.
+  const YamlNode& require(const char* key) const;
+
+ private:
+  const YamlNode& node_;
+  std::string what_;
+};
+
+/// A choice from a fixed list of words.
+template <class T>
+struct Choice {
+  const char* name;
+  T value;
+};
+
+/// Reads values; `${name}` is replaced in every scalar.
+class SceneValues {
+ public:
+  explicit SceneValues(SceneParameters& parameters) : parameters_(parameters) {}
+
+  std::string text(const YamlNode& node);
+  bool boolean(const YamlNode& node);
+  /// A number or an expression.
+  double number(const YamlNode& node, const Range& range = kAnyNumber);
+  std::uint32_t integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi);
+  /// A list of as many numbers as `out` holds.
+  void numbers(const YamlNode& node, std::span<double> out, const Range& range = kAnyNumber);
+  /// [x, y, z].
+  Vec3d vector(const YamlNode& node);
+  /// [r, g, b], linear, or "#rrggbb", sRGB.
+  Color color(const YamlNode& node);
+  /// A path to a regular file that can be read, relative to the file that `node` stands in.
+  std::string existing_file(const YamlNode& node);
+
+  template <class T>
+  T choice(const YamlNode& node, std::initializer_list<Choice<T>> choices) {
+    const std::string word = text(node);
+    std::vector<std::string> names;
+    for (const Choice<T>& c : choices) {
+      if (word == c.name) return c.value;
+      names.push_back(c.name);
+    }
+    fail_choice(node, word, names);
+  }
+
+  // The same for an optional field: `out` keeps its value if `node` is null.
+  void read(const YamlNode* node, double& out, const Range& range = kAnyNumber);
+  void read(const YamlNode* node, float& out, const Range& range);
+  void read(const YamlNode* node, Vec3d& out);
+  void read_color(const YamlNode* node, Color& out);
+  void read(const YamlNode* node, bool& out);
+
+ private:
+  [[noreturn]] static void fail_choice(const YamlNode& node, const std::string& word,
+                                       std::span<const std::string> names);
+  double expression(const YamlNode& node, const std::string& text);
+
+  SceneParameters& parameters_;
+};
+
+}  // namespace oktett

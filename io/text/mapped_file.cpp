@@ -1,0 +1,81 @@
+#include "io/text/mapped_file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace oktett {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& why) {
+  throw Error(Location{path}, "cannot read: " + why, ErrorKind::io);
+}
+
+[[noreturn]] void fail_with_errno(const std::string& path) {
+  fail(path, std::generic_category().message(errno));
+}
+
+class Descriptor {
+ public:
+  // Without O_NONBLOCK, opening a pipe that nobody writes to would never return.
+  explicit Descriptor(const std::string& path) : fd_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+std::size_t page_size() {
+  static const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return size;
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::string& path) {
+  const Descriptor file(path);
+  struct stat status;
+  if (file.get() < 0 || fstat(file.get(), &status) != 0) fail_with_errno(path);
+  if (S_ISDIR(status.st_mode)) fail(path, "it is a directory");
+  if (!S_ISREG(status.st_mode)) fail(path, "it is not a regular file");
+  size_ = static_cast<std::size_t>(status.st_size);
+
+  // The file is laid over the front of zero pages: what follows it in its last page reads as zero too.
+  const std::size_t page = page_size();
+  const std::size_t file_pages = (size_ + page - 1) / page * page;
+  reserved_ = file_pages + page;
+  void* base = mmap(nullptr, reserved_, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (base == MAP_FAILED) fail_with_errno(path);
+  data_ = static_cast<char*>(base);
+  if (size_ == 0) return;
+  if (mmap(base, size_, PROT_READ, MAP_PRIVATE | MAP_FIXED, file.get(), 0) == MAP_FAILED) {
+    const int error = errno;
+    munmap(base, reserved_);
+    errno = error;
+    fail_with_errno(path);
+  }
+  madvise(base, size_, MADV_SEQUENTIAL);
+}
+
+MappedFile::~MappedFile() { munmap(data_, reserved_); }
+
+void MappedFile::release(const char* begin, const char* end) const {
+  const std::size_t page = page_size();
+  const std::size_t first = (static_cast<std::size_t>(begin - data_) + page - 1) / page * page;
+  const std::size_t last = static_cast<std::size_t>(end - data_) / page * page;
+  if (first < last) madvise(data_ + first, last - first, MADV_DONTNEED);
+}
+
+}  // namespace oktett

@@ -1,0 +1,110 @@
+#pragma once
+/// \file Solid boxes, oriented or not, by slabs in the box's own space (slides: the interval of a ray inside
+/// a box).
+
+#include "core/transform.h"
+#include "kernels/closed/contract.h"
+#include "kernels/closed/shape_data.h"
+
+namespace oktett {
+
+struct BoxSolid {
+  static constexpr int kRoots = 2;
+  static constexpr bool kSolid = true;
+
+  struct Pool {
+    Column<double> m[12];  ///< row-major 3x4 map from the world to the cube [-1, 1]^3
+    Column<std::uint32_t> item;
+    std::size_t size() const { return item.size(); }
+    std::size_t bytes() const { return m[0].bytes() * 12 + item.bytes(); }
+  };
+
+  template <class D>
+  struct Lanes {
+    D m[12];
+  };
+
+  /// `to_world` maps the shape's own space to the world and must be invertible.
+  static void add(Pool& p, const BoxShape& s, const Affine& to_world, std::uint32_t item) {
+    const Affine cube =
+        to_world * Affine::translation((s.min + s.max) * 0.5) * Affine::scaling((s.max - s.min) * 0.5);
+    const Affine inverse = cube.inverse();
+    for (int k = 0; k < 12; ++k) p.m[k].push_back(inverse.m[k / 4][k % 4]);
+    p.item.push_back(item);
+  }
+  static void finish(Pool& p) {
+    for (int i = 0; i < kPoolPadding; ++i)
+      for (Column<double>& c : p.m) c.push_back(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  template <class D>
+  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
+    Lanes<D> l;
+    for (int k = 0; k < 12; ++k) l.m[k] = D::load(&p.m[k][i]);
+    return l;
+  }
+  template <class D>
+  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
+    Lanes<D> l;
+    for (int k = 0; k < 12; ++k) l.m[k] = D(p.m[k][i]);
+    return l;
+  }
+
+  /// A ray parallel to a slab lies in it or not: no threshold, and a ray inside a face counts as inside.
+  template <class D>
+  OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
+    const D one(1.0), zero(0.0);
+    D near(-std::numeric_limits<double>::infinity()), far(std::numeric_limits<double>::infinity());
+    auto meets = zero == zero;
+    for (int k = 0; k < 3; ++k) {
+      const D* r = &s.m[4 * k];
+      const D o = ((r[0] * ray.o.x + r[1] * ray.o.y) + r[2] * ray.o.z) + r[3];
+      const D d = (r[0] * ray.d.x + r[1] * ray.d.y) + r[2] * ray.d.z;
+      const D a = (-one - o) / d, b = (one - o) / d;
+      const auto parallel = d == zero;
+      near = select(parallel, near, max(min(a, b), near));
+      far = select(parallel, far, min(max(a, b), far));
+      meets = meets & (~parallel | (abs(o) <= one)) & (d == d) & (o == o);
+    }
+    t[0] = near, t[1] = far;
+    return meets & (near <= far);
+  }
+
+  static Affine to_cube(const Pool& p, std::size_t i) {
+    Affine a;
+    for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = p.m[k][i];
+    return a;
+  }
+
+  static Box bounds(const Pool& p, std::size_t i) {
+    return transform_bounds(to_cube(p, i).inverse(), Box{{-1, -1, -1}, {1, 1, 1}});
+  }
+
+  static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
+    return max_component(abs(to_cube(p, i).point(q))) < 1;
+  }
+
+  /// uv: position on the face, [0, 1]^2.
+  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+    const Affine to_local = to_cube(p, i);
+    Vec3d q = to_local.point(point_at(ray, t));
+    const int k = dominant_axis(q);
+    const double side = q[k] < 0 ? -1 : 1;
+    q[k] = side;
+    const Affine to_world = to_local.inverse();
+    const Vec3d point = to_world.point(q);
+    Vec3d normal{0, 0, 0};
+    normal[k] = side;
+    SurfaceInteraction s;
+    set_position(s, point, ray, t, 0x1p-46 * (length(point) + length(to_world.vector({1, 1, 1}))));
+    s.geometric_normal = s.shading_normal = Vec3f(normalize(to_local.normal_by_inverse(normal)));
+    const int a = (k + 1) % 3, b = (k + 2) % 3;
+    s.uv = {static_cast<float>(0.5 + 0.5 * q[a]), static_cast<float>(0.5 + 0.5 * q[b])};
+    Vec3d tangent{0, 0, 0};
+    tangent[a] = 2;
+    s.tangent = Vec3f(to_world.vector(tangent));
+    return s;
+  }
+};
+
+}  // namespace oktett

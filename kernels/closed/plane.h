@@ -1,0 +1,79 @@
+#pragma once
+/// \file Infinite planes. Unbounded: they stand in a list beside the tree.
+
+#include "kernels/closed/contract.h"
+#include "kernels/closed/shape_data.h"
+
+namespace oktett {
+
+/// Distance along the ray to the plane dot(n, p) = offset. Parallel lanes are false.
+template <class D>
+OKTETT_INLINE typename D::M plane_root(const RayLanes<D>& ray, const Vec3<D>& n, const D& offset, D& t) {
+  const D speed = dot_lanes(n, ray.d);
+  t = (offset - dot_lanes(n, ray.o)) / speed;
+  return ~(speed == D(0.0));
+}
+
+struct Plane {
+  static constexpr int kRoots = 1;
+  static constexpr bool kSolid = true;  ///< the half-space below
+
+  struct Pool {
+    Column<double> nx, ny, nz, offset;  ///< unit normal
+    Column<std::uint32_t> item;
+    std::size_t size() const { return item.size(); }
+    std::size_t bytes() const { return nx.bytes() * 4 + item.bytes(); }
+  };
+
+  template <class D>
+  struct Lanes {
+    Vec3<D> n;
+    D offset;
+  };
+
+  static void add(Pool& p, const PlaneShape& s, std::uint32_t item) {
+    const Vec3d n = normalize(s.normal);
+    p.nx.push_back(n.x), p.ny.push_back(n.y), p.nz.push_back(n.z);
+    p.offset.push_back(s.offset), p.item.push_back(item);
+  }
+  static void finish(Pool& p) {
+    for (int i = 0; i < kPoolPadding; ++i)
+      for (Column<double>* c : {&p.nx, &p.ny, &p.nz, &p.offset}) c->push_back(0);
+  }
+
+  template <class D>
+  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
+    return {{D::load(&p.nx[i]), D::load(&p.ny[i]), D::load(&p.nz[i])}, D::load(&p.offset[i])};
+  }
+  template <class D>
+  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
+    return {{D(p.nx[i]), D(p.ny[i]), D(p.nz[i])}, D(p.offset[i])};
+  }
+
+  template <class D>
+  OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[1]) {
+    return plane_root(ray, s.n, s.offset, t[0]);
+  }
+
+  static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
+    return dot(Vec3d{p.nx[i], p.ny[i], p.nz[i]}, q) < p.offset[i];
+  }
+
+  /// uv: coordinates in the plane, in world units, along a basis that for the ground (0, 1, 0) is (x, -z).
+  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+    const Vec3d n{p.nx[i], p.ny[i], p.nz[i]};
+    Vec3d point = point_at(ray, t);
+    point -= n * (dot(n, point) - p.offset[i]);
+    SurfaceInteraction s;
+    set_position(s, point, ray, t, 0x1p-50 * (length(point) + std::abs(p.offset[i])));
+    s.geometric_normal = s.shading_normal = Vec3f(n);
+    const int k = dominant_axis(n);
+    const Vec3d u = normalize(k == 1 ? cross(n, Vec3d{0, 0, -1}) * -1.0 : cross(Vec3d{0, 1, 0}, n));
+    const Vec3d v = cross(n, u);
+    s.uv = {static_cast<float>(dot(u, point)), static_cast<float>(dot(v, point))};
+    s.tangent = Vec3f(u);
+    return s;
+  }
+};
+
+}  // namespace oktett

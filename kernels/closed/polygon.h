@@ -1,0 +1,129 @@
+#pragma once
+/// \file Planar simple polygons: ray against plane, then point in polygon in the dominant coordinate plane.
+
+#include <vector>
+
+#include "kernels/closed/plane.h"
+
+namespace oktett {
+
+struct Polygon {
+  static constexpr int kRoots = 1;
+  static constexpr bool kSolid = false;
+
+  struct Pool {
+    Column<double> nx, ny, nz, offset;         ///< plane with unit normal
+    Column<std::uint32_t> axis, begin, count;  ///< dropped axis; range of projected vertices
+    Column<double> u, v;                       ///< projected vertices of all polygons
+    Column<std::uint32_t> item;
+    std::vector<Box> boxes;
+    std::size_t size() const { return item.size(); }
+    std::size_t bytes() const {
+      return nx.bytes() * 4 + axis.bytes() * 4 + u.bytes() * 2 + boxes.size() * sizeof(Box);
+    }
+  };
+
+  /// A polygon has its own number of vertices, so lanes of rays meet one polygon at a time.
+  template <class D>
+  struct Lanes {
+    Vec3<D> n;
+    D offset;
+    const double* u;
+    const double* v;
+    std::uint32_t axis, count;
+  };
+
+  /// Newell's normal: twice the polygon's area along the direction from which it runs counter-clockwise.
+  static Vec3d area_normal(const std::vector<Vec3d>& p) {
+    Vec3d n{0, 0, 0};
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const Vec3d a = p[i] - p[0], b = p[(i + 1) % p.size()] - p[0];
+      n += cross(a, b);
+    }
+    return n;
+  }
+
+  static void add(Pool& p, const PolygonShape& s, std::uint32_t item) {
+    const Vec3d n = normalize(area_normal(s.vertices));
+    Vec3d centroid{0, 0, 0};
+    for (const Vec3d& q : s.vertices) centroid += q / static_cast<double>(s.vertices.size());
+    p.nx.push_back(n.x), p.ny.push_back(n.y), p.nz.push_back(n.z);
+    p.offset.push_back(dot(n, centroid));
+    const int axis = dominant_axis(n);
+    p.axis.push_back(static_cast<std::uint32_t>(axis));
+    p.begin.push_back(static_cast<std::uint32_t>(p.u.size()));
+    p.count.push_back(static_cast<std::uint32_t>(s.vertices.size()));
+    p.item.push_back(item);
+    Box box;
+    for (const Vec3d& q : s.vertices) {
+      p.u.push_back(q[(axis + 1) % 3]), p.v.push_back(q[(axis + 2) % 3]);
+      // Vertices may stand off the common plane by rounding, and hits lie on the plane.
+      const Vec3d pad = Vec3d{1, 1, 1} * (std::abs(dot(n, q - centroid)) + 0x1p-45 * max_component(abs(q)));
+      box.grow(round_down(q - pad)), box.grow(round_up(q + pad));
+    }
+    p.boxes.push_back(box);
+  }
+  static void finish(Pool&) {}
+
+  template <class D>
+  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
+    return {{D(p.nx[i]), D(p.ny[i]), D(p.nz[i])},
+            D(p.offset[i]),
+            &p.u[p.begin[i]],
+            &p.v[p.begin[i]],
+            p.axis[i],
+            p.count[i]};
+  }
+  template <class D>
+  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
+    static_assert(D::kWidth == 1);
+    return broadcast<D>(p, i);
+  }
+
+  /// Crossing number with half-open edges, so that polygons that share an edge share no point of it.
+  template <class D>
+  OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[1]) {
+    const auto meets = plane_root(ray, s.n, s.offset, t[0]);
+    const Vec3<D> p{ray.o.x + t[0] * ray.d.x, ray.o.y + t[0] * ray.d.y, ray.o.z + t[0] * ray.d.z};
+    const D pu = s.axis == 0 ? p.y : s.axis == 1 ? p.z : p.x;
+    const D pv = s.axis == 0 ? p.z : s.axis == 1 ? p.x : p.y;
+    auto inside = meets & ~meets;
+    for (std::uint32_t i = 0, j = s.count - 1; i < s.count; j = i++) {
+      const D ui(s.u[i]), vi(s.v[i]), uj(s.u[j]), vj(s.v[j]);
+      const auto straddles = ((vi > pv) & ~(vj > pv)) | (~(vi > pv) & (vj > pv));
+      // The edge is always evaluated from its lower to its upper end: neighbours that share it agree to the
+      // bit.
+      const auto upward = vi < vj;
+      const D u0 = select(upward, ui, uj), v0 = select(upward, vi, vj);
+      const D u1 = select(upward, uj, ui), v1 = select(upward, vj, vi);
+      const auto left = pu < u0 + (pv - v0) / (v1 - v0) * (u1 - u0);
+      const auto crossing = straddles & left;
+      inside = (inside & ~crossing) | (~inside & crossing);
+    }
+    return meets & inside;
+  }
+
+  static Box bounds(const Pool& p, std::size_t i) { return p.boxes[i]; }
+
+  /// uv: position in the polygon's projected bounding rectangle, [0, 1]^2.
+  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+    const Vec3d n{p.nx[i], p.ny[i], p.nz[i]};
+    Vec3d point = point_at(ray, t);
+    point -= n * (dot(n, point) - p.offset[i]);
+    SurfaceInteraction s;
+    set_position(s, point, ray, t, 0x1p-50 * (length(point) + std::abs(p.offset[i])));
+    s.geometric_normal = s.shading_normal = Vec3f(n);
+    const int a = (p.axis[i] + 1) % 3, b = (p.axis[i] + 2) % 3;
+    const Box& box = p.boxes[i];
+    const Vec3f e = box.extent();
+    s.uv = {(s.position[a] - box.lo[a]) / (e[a] > 0 ? e[a] : 1),
+            (s.position[b] - box.lo[b]) / (e[b] > 0 ? e[b] : 1)};
+    Vec3d tangent{0, 0, 0};
+    tangent[a] = e[a];
+    tangent[p.axis[i]] = -n[a] * e[a] / n[p.axis[i]];
+    s.tangent = Vec3f(tangent);
+    return s;
+  }
+};
+
+}  // namespace oktett

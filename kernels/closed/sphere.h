@@ -1,0 +1,122 @@
+#pragma once
+/// \file Spheres: the geometric method (the default) and the algebraic one.
+
+#include <numbers>
+
+#include "core/math.h"
+#include "kernels/closed/contract.h"
+#include "kernels/closed/shape_data.h"
+
+namespace oktett {
+
+struct Sphere {
+  static constexpr int kRoots = 2;
+  static constexpr bool kSolid = true;
+
+  struct Pool {
+    Column<double> x, y, z, radius;
+    Column<std::uint32_t> item;
+    std::size_t size() const { return item.size(); }
+    std::size_t bytes() const { return x.bytes() * 4 + item.bytes(); }
+  };
+
+  template <class D>
+  struct Lanes {
+    Vec3<D> center;
+    D radius;
+  };
+
+  static void add(Pool& p, const SphereShape& s, std::uint32_t item) {
+    p.x.push_back(s.center.x), p.y.push_back(s.center.y), p.z.push_back(s.center.z);
+    p.radius.push_back(s.radius), p.item.push_back(item);
+  }
+  static void finish(Pool& p) {
+    for (int i = 0; i < kPoolPadding; ++i) {
+      for (Column<double>* c : {&p.x, &p.y, &p.z}) c->push_back(0);
+      p.radius.push_back(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  template <class D>
+  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
+    return {{D::load(&p.x[i]), D::load(&p.y[i]), D::load(&p.z[i])}, D::load(&p.radius[i])};
+  }
+  template <class D>
+  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
+    return {{D(p.x[i]), D(p.y[i]), D(p.z[i])}, D(p.radius[i])};
+  }
+
+  /// The geometric method: the point of closest approach, then half the chord. The chord is taken from the
+  /// distance vector itself, not from a difference of squares, so that small far spheres stay sharp (Haines
+  /// et al., Ray Tracing Gems 7). Rays that start outside and point away leave early when all lanes do.
+  template <class D>
+  OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
+    const Vec3<D> m = sub_lanes(s.center, ray.o);
+    // A product instead of two quotients: compilers find the inverse once for all the spheres of a leaf.
+    const D inverse = D(1.0) / dot_lanes(ray.d, ray.d);
+    const D b = dot_lanes(m, ray.d);
+    const D rr = s.radius * s.radius;
+    const D closest = b * inverse;
+    const Vec3<D> miss{m.x - closest * ray.d.x, m.y - closest * ray.d.y, m.z - closest * ray.d.z};
+    const D h = rr - dot_lanes(miss, miss);
+    const auto meets = D(0.0) <= h;
+    if (none(meets)) return meets;
+    const D half = sqrt(h * inverse);
+    t[0] = closest - half;
+    t[1] = closest + half;
+    return meets;
+  }
+
+  /// The algebraic method: |o + t d - c|^2 = r^2 solved as a quadratic, with the root of lesser magnitude
+  /// from the product of the roots (no cancellation). Same contract as `roots`; kept for comparison.
+  template <class D>
+  OKTETT_INLINE static typename D::M roots_algebraic(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
+    const Vec3<D> m = sub_lanes(s.center, ray.o);
+    const D a = dot_lanes(ray.d, ray.d);
+    const D b = dot_lanes(m, ray.d);
+    const D c = dot_lanes(m, m) - s.radius * s.radius;
+    const D discriminant = b * b - a * c;
+    const auto meets = D(0.0) <= discriminant;
+    if (none(meets)) return meets;
+    const D root = sqrt(discriminant);
+    const D q = select(b < D(0.0), b - root, b + root);
+    const D t0 = q / a, t1 = select(q == D(0.0), t0, c / q);
+    t[0] = min(t0, t1);
+    t[1] = max(t0, t1);
+    return meets;
+  }
+
+  static Box bounds(const Pool& p, std::size_t i) {
+    const Vec3d c{p.x[i], p.y[i], p.z[i]}, r{p.radius[i], p.radius[i], p.radius[i]};
+    return {round_down(c - r), round_up(c + r)};
+  }
+
+  static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
+    const Vec3d m = q - Vec3d{p.x[i], p.y[i], p.z[i]};
+    return dot(m, m) < p.radius[i] * p.radius[i];
+  }
+
+  /// Without uv, whose angles cost more than all the rest.
+  static SurfaceInteraction interaction_without_uv(const Pool& p, std::size_t i, const Ray& ray, double t) {
+    const Vec3d c{p.x[i], p.y[i], p.z[i]};
+    const Vec3d n = normalize(point_at(ray, t) - c);
+    SurfaceInteraction s;
+    // Moving the point onto the sphere removes the error along the normal.
+    set_position(s, c + n * p.radius[i], ray, t, 0x1p-48 * (length(c) + p.radius[i]));
+    s.geometric_normal = s.shading_normal = Vec3f(n);
+    return s;
+  }
+
+  /// uv: longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1].
+  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+    SurfaceInteraction s = interaction_without_uv(p, i, ray, t);
+    const Vec3d n = normalize(point_at(ray, t) - Vec3d{p.x[i], p.y[i], p.z[i]});
+    const double phi = portable::atan2(n.z, n.x), theta = portable::asin(n.y < -1 ? -1 : n.y > 1 ? 1 : n.y);
+    s.uv = {static_cast<float>(0.5 + phi * 0.5 / std::numbers::pi),
+            static_cast<float>(0.5 + theta / std::numbers::pi)};
+    s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * p.radius[i]));
+    return s;
+  }
+};
+
+}  // namespace oktett

@@ -1,0 +1,44 @@
+#include "kernels/exact/cone.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/exact/cylinder.h"
+
+namespace oktett {
+
+void Cone::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const ConeShape& s = std::get<ConeShape>(shape.form);
+  const double axis = length(s.to - s.from), radius = std::max(s.from_radius, s.to_radius);
+  if (!(s.from_radius >= 0 && s.to_radius >= 0 && radius > 0 && axis > 0)) return;
+  if (!std::isfinite(radius) || !std::isfinite(axis)) return;
+  const double r0 = s.from_radius / radius, r1 = s.to_radius / radius;
+  add_element(pool, {0.5 * (r0 + r1), 0.5 * (r1 - r0), s.open}, to_world * along_axis(s.from, s.to, radius),
+              item, shape.normals);
+  add_cell(pool, {-1, -1, -1}, {1, 1, 1});
+}
+
+Box Cone::world_bounds(const Pool& pool, std::size_t i) {
+  const ConeElement& e = pool.elements[i];
+  return frustum_bounds(pool.frames[i].to_world, e.middle - e.slope, e.middle + e.slope);
+}
+
+double Cone::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Cone>(pool, i, part, p).value;
+}
+
+Vec3d Cone::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Cone>(pool, i, part, p).gradient;
+}
+
+bool Cone::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  return value(pool, i, 0, p) < 0 && std::abs(p.z) < 1;
+}
+
+void Cone::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
+  const ConeElement& e = pool.elements[i];
+  const double radius = part == 1 ? e.middle - e.slope : e.middle + e.slope;
+  frustum_uv(part, radius > 0 ? radius : 1, p, s);
+}
+
+}  // namespace oktett

@@ -1,0 +1,71 @@
+#include "kernels/exact/cylinder.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/math.h"
+
+namespace oktett {
+
+Affine along_axis(const Vec3d& from, const Vec3d& to, double radius) {
+  const Vec3d half = (to - from) * 0.5, middle = from + half;
+  Vec3d u, v;
+  make_basis(normalize(half), u, v);
+  u *= radius, v *= radius;
+  Affine a;
+  for (int k = 0; k < 3; ++k) a.m[k] = {u[k], v[k], half[k], middle[k]};
+  return a;
+}
+
+Box frustum_bounds(const Affine& to_world, double r0, double r1) {
+  const Vec3d u = to_world.vector({1, 0, 0}), v = to_world.vector({0, 1, 0});
+  Box b;
+  for (int end = 0; end < 2; ++end) {
+    const Vec3d c = to_world.point({0, 0, end == 0 ? -1.0 : 1.0});
+    const double r = end == 0 ? r0 : r1;
+    // Taking a ray into the own space may displace it by a few roundings of the coordinates.
+    const double pad = 0x1p-44 * (length(c) + length(u) + length(v) + length(to_world.vector({0, 0, 1})));
+    // A circle of radius r reaches r (u_k cos + v_k sin) along axis k.
+    Vec3d e;
+    for (int k = 0; k < 3; ++k) e[k] = r * std::sqrt(u[k] * u[k] + v[k] * v[k]) + pad;
+    b.grow(Box{round_down(c - e), round_up(c + e)});
+  }
+  return b;
+}
+
+void frustum_uv(int part, double radius, const Vec3d& p, SurfaceInteraction& s) {
+  const double v = part == 0 ? 0.5 + 0.5 * p.z : std::sqrt(p.x * p.x + p.y * p.y) / radius;
+  s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
+          static_cast<float>(v)};
+  s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
+}
+
+void Cylinder::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const CylinderShape& s = std::get<CylinderShape>(shape.form);
+  const double axis = length(s.to - s.from);
+  if (!(s.radius > 0 && axis > 0 && std::isfinite(s.radius) && std::isfinite(axis))) return;
+  add_element(pool, {s.open}, to_world * along_axis(s.from, s.to, s.radius), item, shape.normals);
+  add_cell(pool, {-1, -1, -1}, {1, 1, 1});
+}
+
+Box Cylinder::world_bounds(const Pool& pool, std::size_t i) {
+  return frustum_bounds(pool.frames[i].to_world, 1, 1);
+}
+
+double Cylinder::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Cylinder>(pool, i, part, p).value;
+}
+
+Vec3d Cylinder::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Cylinder>(pool, i, part, p).gradient;
+}
+
+bool Cylinder::inside(const Pool&, std::size_t, const Vec3d& p) {
+  return p.x * p.x + p.y * p.y < 1 && std::abs(p.z) < 1;
+}
+
+void Cylinder::uv(const Pool&, std::size_t, int part, const Vec3d& p, SurfaceInteraction& s) {
+  frustum_uv(part, 1, p, s);
+}
+
+}  // namespace oktett

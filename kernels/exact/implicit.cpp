@@ -1,0 +1,39 @@
+#include "kernels/exact/implicit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace oktett {
+
+void Implicit::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const auto& s = std::get<ImplicitShape>(shape.form);
+  const Vec3d half = (s.hi - s.lo) * 0.5;
+  if (!(half.x > 0 && half.y > 0 && half.z > 0) || !s.function.varies) return;
+  for (int k = 0; k < 3; ++k)
+    if (!(std::isfinite(s.lo[k]) && std::isfinite(s.hi[k]))) return;
+  int shift = 0;
+  std::frexp(std::max({half.x, half.y, half.z}), &shift);
+  const double size = std::ldexp(1.0, shift), per_size = std::ldexp(1.0, -shift);
+  const ImplicitElement e{s.function, size, s.open, s.lo * per_size, s.hi * per_size};
+  add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
+  add_cell(pool, e.lo, e.hi);
+}
+
+double Implicit::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Implicit>(pool, i, part, p).value;
+}
+
+Vec3d Implicit::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Implicit>(pool, i, part, p).gradient;
+}
+
+bool Implicit::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  const ImplicitElement& e = pool.elements[i];
+  for (int k = 0; k < 3; ++k)
+    if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
+  return value(pool, i, 0, p) < 0;
+}
+
+void Implicit::uv(const Pool&, std::size_t, int, const Vec3d&, SurfaceInteraction&) {}
+
+}  // namespace oktett

@@ -1,0 +1,121 @@
+#pragma once
+/// \file Functions of x, y and z inside of a box, solved by intervals along the ray
+/// (kernels/exact/march.h; D. P. Mitchell: Robust ray intersection with interval arithmetic, 1990).
+
+#include "kernels/exact/march.h"
+#include "kernels/functions/function_tape.h"
+
+namespace oktett {
+
+struct ImplicitElement {
+  FunctionTape function;
+  double size;  ///< a power of two: so many units of the function's are 1 in the own space
+  bool open;
+  Vec3d lo, hi;
+};
+
+/// The function along rays. s is 0 where they begin to matter.
+template <class D>
+struct FunctionField {
+  const FunctionTape& function;
+  Vec3<D> o, d;
+
+  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const {
+    const auto axis = [&](const D& from, const D& by) {
+      return Dual<Interval<D>>{s * by + Interval<D>(from), Interval<D>(by)};
+    };
+    return run_tape(function, axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
+  }
+  OKTETT_INLINE Interval<D> at(const D& s) const {
+    const auto axis = [&](const D& from, const D& by) { return Interval<D>(s) * by + Interval<D>(from); };
+    return run_tape(function, axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
+  }
+};
+
+/// Parts: 0 the surface, 1 to 6 the faces of the box, kJumpPart where the function jumps.
+struct Implicit {
+  using Data = ImplicitShape;
+  using Pool = ExactPool<ImplicitElement>;
+  static constexpr int kMaxCrossings = 18;
+
+  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    const ImplicitElement& e = pool.elements[cell.element];
+    // The box may be entered and left as well.
+    constexpr int kOwn = K > 2 ? K - 2 : K;
+    const D size(e.size), zero(0.0), length = range.b - range.a;
+    const auto place = [&](const D& o, const D& d) { return (o + range.a * d) * size; };
+    const FunctionField<D> field{
+        e.function,
+        {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)},
+        {line.d.x * size, line.d.y * size, line.d.z * size}};
+    Crossings<kOwn, D> own;
+    const D sign =
+        interval::march<kOwn>(field, zero, length, length, active, interval::Jumps::list_steep, own);
+    const auto to_t = [&](const D& s) { return select(s < D(roots::kNoRoot), range.a + s, s); };
+    for (int k = 0; k < kOwn; ++k) own.t[k] = to_t(own.t[k]);
+    own.up_to = to_t(own.up_to);
+    if (!e.open) return close_by_cell(own, sign < zero, range, active, out);
+    CrossingList<K, D> list(out);
+    for (int k = 0; k < kOwn; ++k)
+      list.push(own.t[k] < D(roots::kNoRoot), own.t[k], own.turn[k], own.part[k]);
+    list.finish(own.up_to);
+  }
+
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const ImplicitElement& e = pool.elements[i];
+    const D size(e.size), zero(0.0);
+    const Gradient<D> f = slope_of<Walls::flat>(e, p);
+    value = f.v, gradient = f.d;
+    const auto wall = part == D(interval::kJumpPart);
+    if (any(wall)) {
+      // No value tells how far away a wall is.
+      const Vec3<D> n = wall_normal(e, p);
+      value = select(wall, zero, value);
+      gradient = {select(wall, n.x, gradient.x), select(wall, n.y, gradient.y),
+                  select(wall, n.z, gradient.z)};
+    }
+    select_faces(e.lo, e.hi, select(wall, zero, part), p, value, gradient);
+  }
+  /// NaN where the function is not defined.
+  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// None.
+  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+
+ private:
+  template <Walls W, class D>
+  OKTETT_INLINE static Gradient<D, W> slope_of(const ImplicitElement& e, const Vec3<D>& p) {
+    const D size(e.size), zero(0.0);
+    using T = Gradient<D, W>;
+    return run_tape(e.function, T{p.x * size, {size, zero, zero}}, T{p.y * size, {zero, size, zero}},
+                    T{p.z * size, {zero, zero, size}});
+  }
+
+  /// The normal of a wall, to the side where the function is not negative; zero where that is not to be told.
+  template <class D>
+  OKTETT_NOINLINE static Vec3<D> wall_normal(const ImplicitElement& e, const Vec3<D>& p) {
+    const Vec3<D> d = slope_of<Walls::steep>(e, p).d;
+    const D zero(0.0), greatest = max(max(abs(d.x), abs(d.y)), abs(d.z));
+    // What is infinite or NaN tells nothing.
+    const auto known = (zero < greatest) & (abs(d.x) + abs(d.y) + abs(d.z) < Interval<D>::infinity());
+    const D per = select(known, D(1.0) / greatest, zero);
+    const auto unit = [&](const D& x) { return select(known, x * per, zero); };
+    const Vec3<D> n{unit(d.x), unit(d.y), unit(d.z)};
+    const auto inside_at = [&](double by) {
+      const D h(by);
+      return slope_of<Walls::flat>(e, Vec3<D>{p.x + n.x * h, p.y + n.y * h, p.z + n.z * h}).v < zero;
+    };
+    const auto ahead = inside_at(0x1p-22), behind = inside_at(-0x1p-22);
+    const D way = select(behind & ~ahead, D(1.0), select(ahead & ~behind, D(-1.0), zero));
+    return {n.x * way, n.y * way, n.z * way};
+  }
+};
+
+}  // namespace oktett

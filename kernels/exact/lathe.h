@@ -1,0 +1,136 @@
+#pragma once
+/// \file Surfaces of revolution whose profile is any plane curve: cubic Bezier pieces (r(v), y(v)).
+///
+/// A ray that rises or falls is at the height y(v) at one t, so that it meets the surface where
+/// (x(t)^2 + z(t)^2) - r(v)^2 is zero: of degree 6 in v. One that is level meets the piece where y(v) is its
+/// height, of degree 3, and then a circle. Whether the ray is inside of the circle where two pieces meet is
+/// decided once, by numbers that both have in common.
+
+#include "kernels/exact/ray_polynomial.h"
+
+namespace oktett {
+
+struct LatheElement {
+  struct Piece {
+    double r[4], y[4];                 ///< in powers of v, -1 <= v <= 1
+    double radius[2], height[2];       ///< at -1 and 1
+    bool cap[2];                       ///< whether a disk closes that end
+    double least_y, greatest_y, most;  ///< bounds of y and r
+  };
+  std::vector<Piece> pieces;
+  double side;  ///< side * (y', -r') points outwards
+};
+
+/// Parts: 0 the surface, 1 the disk at the curve's beginning, 2 that at its end.
+struct Lathe {
+  using Data = LatheShape;
+  using Pool = ExactPool<LatheElement>;
+  static constexpr int kMaxCrossings = 8;
+
+  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    constexpr int W = D::kWidth;
+    const LatheElement& e = pool.elements[cell.element];
+    const LatheElement::Piece& piece = e.pieces[cell.begin];
+    out.clear();
+    // Where it passes the cylinder around the piece by, there is nothing.
+    const D dd = line.d.x * line.d.x + line.d.z * line.d.z;
+    const D nearest = -((line.o.x * line.d.x + line.o.z * line.d.z) / dd);
+    const D x = line.o.x + nearest * line.d.x, z = line.o.z + nearest * line.d.z;
+    const D room = D(piece.most * piece.most) - (x * x + z * z);
+    const auto slants = dd > D(0x1p-100) * (line.d.y * line.d.y);
+    const auto there = active & (~slants | (room >= D(0.0)));
+    if (none(there)) return;
+    const RaySegment<D> segment(line, range);
+    D c[7];
+    substitute(piece, segment, c);
+    const auto shallow = abs(line.d.y) <= D(kShallow) * sqrt(dd);
+    // A disk may be met without the surface.
+    const auto settled = no_sign_change(c, 6) & ~shallow;
+    const unsigned doubtful = bits(there & ~settled),
+                   lanes = piece.cap[0] || piece.cap[1] ? bits(there) : doubtful;
+    if (lanes == 0) return;
+    double ray[6][W], a[W], b[W], columns[7][W], begins[W], t[K][W], turn[K][W], part[K][W];
+    const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
+    for (int i = 0; i < 6; ++i) from[i]->store(ray[i]);
+    for (int i = 0; i < 7; ++i) c[i].store(columns[i]);
+    range.a.store(a), range.b.store(b);
+    select(range.enter_face == D(0.0), range.a, D(-roots::kNoRoot)).store(begins);
+    for (int k = 0; k < K; ++k) out.t[k].store(t[k]), out.turn[k].store(turn[k]), out.part[k].store(part[k]);
+    for (int i = 0; i < W; ++i) {
+      if (!(lanes >> i & 1)) continue;
+      OneRay one;
+      for (int k = 0; k < 6; ++k) one.line[k] = ray[k][i];
+      for (int k = 0; k < 7; ++k) one.c[k] = columns[k][i];
+      one.a = a[i], one.b = b[i], one.begin = begins[i];
+      one.on_surface = doubtful >> i & 1;
+      Found found;
+      find(e, piece, one, found);
+      for (int k = 0; k < K && k < found.count; ++k)
+        t[k][i] = found.t[k], turn[k][i] = found.turn[k], part[k][i] = found.part[k];
+    }
+    for (int k = 0; k < K; ++k)
+      out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
+  }
+
+  /// About the distance from the surface.
+  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// u around the axis from +z towards +x, v along the curve, both in [0, 1].
+  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+
+ private:
+  /// A ray that rises by less than this times its way is taken as level: within the surface it goes astray by
+  /// no more than that. Above, double-double tells the two roots at one height apart.
+  static constexpr double kLevel = 0x1p-40;
+  /// One that rises by less than this is solved where the piece is at its heights only. Elsewhere the terms
+  /// that do not depend on how it rises would drown those that do.
+  static constexpr double kShallow = 0x1p-10;
+
+  struct OneRay {
+    double line[6];     ///< origin and direction
+    double c[7], a, b;  ///< the polynomial in v, made from the part of the line from a to b
+    double begin;       ///< nothing counts before
+    bool on_surface;    ///< whether it may meet the surface at all
+  };
+  /// In ascending order.
+  struct Found {
+    int count = 0;
+    double t[kMaxCrossings], turn[kMaxCrossings], part[kMaxCrossings];
+    void push(double place, double way, double of);
+  };
+  static void find(const LatheElement& e, const LatheElement::Piece& piece, const OneRay& ray, Found& out);
+  static void find_level(const LatheElement& e, const LatheElement::Piece& piece, const OneRay& ray,
+                         Found& out);
+  static void find_shallow(const LatheElement& e, const LatheElement::Piece& piece, const OneRay& ray,
+                           const double (&excess)[2], Found& out);
+
+  /// With m + h s the part of the ray and w = y(v) - m_y: h_y^2 times x^2 + z^2 - r(v)^2 at s = w / h_y.
+  template <class D>
+  OKTETT_INLINE static void substitute(const LatheElement::Piece& piece, const RaySegment<D>& segment, D* c) {
+    const Vec3<D>&m = segment.m, &h = segment.h;
+    const D hy2 = h.y * h.y, aa = h.x * h.x + h.z * h.z;
+    const D bb = D(2.0) * (m.x * h.x + m.z * h.z) * h.y, cc = (m.x * m.x + m.z * m.z) * hy2;
+    const D w[4] = {D(piece.y[0]) - m.y, D(piece.y[1]), D(piece.y[2]), D(piece.y[3])};
+    const D r[4] = {D(piece.r[0]) * h.y, D(piece.r[1]) * h.y, D(piece.r[2]) * h.y, D(piece.r[3]) * h.y};
+    for (int k = 0; k < 7; ++k) c[k] = D(0.0);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 4; ++k) c[i + k] = c[i + k] + (aa * w[i] * w[k] - r[i] * r[k]);
+    for (int i = 0; i < 4; ++i) c[i] = c[i] + bb * w[i];
+    c[0] = c[0] + cc;
+  }
+};
+
+/// Control points of the Catmull-Rom curve through all points but the first and the last, which only give the
+/// directions at the ends: at a point the curve goes as the chord between its neighbours, with half its
+/// length. At least 4 points.
+std::vector<ProfilePoint> curve_through(const std::vector<ProfilePoint>& points);
+
+/// What is wrong with a profile: it reaches over the axis, or it meets itself. Empty if nothing is.
+const char* why_bad_profile(const LatheShape& shape);
+
+}  // namespace oktett

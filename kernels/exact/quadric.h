@@ -1,0 +1,106 @@
+#pragma once
+/// \file Quadrics (slides: x^2 + y^2 = 1, x^2 + y^2 - z = 0, x^2 + y^2 - z^2 = 1), also cut by a box.
+
+#include "kernels/exact/quadratic.h"
+
+namespace oktett {
+
+/// The function is x.Qx + 2 h.x + j; its greatest coefficient is about 1.
+struct QuadricElement {
+  double q[6];  ///< of Q: xx, yy, zz, xy, xz, yz
+  Vec3d h;
+  double j;
+  double q_size, h_size;  ///< greatest of |q| and |h|
+  Vec3d lo, hi;           ///< the box, which may be infinite
+  bool closed;            ///< by the faces of the box
+  bool clipped;           ///< what is outside of the box is no part of the solid
+};
+
+/// Parts: 0 the surface, 1 to 6 the faces of the box.
+struct Quadric {
+  using Data = QuadricShape;
+  using Pool = ExactPool<QuadricElement>;
+  static constexpr int kMaxCrossings = 4;
+
+  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+
+  /// a s^2 + 2 b s + c = 0 where s = 0 is the point nearest to the own origin.
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    const QuadricElement& e = pool.elements[cell.element];
+    const Vec3<D>& d = line.d;
+    const D shift = -(dot_lanes(line.o, d) / dot_lanes(d, d));
+    const Vec3<D> p{line.o.x + shift * d.x, line.o.y + shift * d.y, line.o.z + shift * d.z};
+    const Vec3<D> h = broadcast<D>(e.h), qd = times(e, d), qp = times(e, p);
+    const Vec3<D> qph{qp.x + D(2.0) * h.x, qp.y + D(2.0) * h.y, qp.z + D(2.0) * h.z};
+    const D b = dot_lanes(qd, p) + dot_lanes(h, d), a = dot_lanes(qd, d), c = dot_lanes(qph, p) + D(e.j);
+    // {a, b, c, b^2 - a c}
+    D f[4] = {a, b, c, product_difference(b, b, a, c)};
+    // What the terms add up to that a, b and c are sums of; each is off by less than 2^-49 of that.
+    const D u = norm1(d), r = norm1(p), q_size(e.q_size), h_size(e.h_size);
+    const D a_size = q_size * u * u, b_size = (q_size * r + h_size) * u;
+    const D c_size = (q_size * r + D(2.0) * h_size) * r + D(e.j < 0 ? -e.j : e.j);
+    const D size = D(2.0) * abs(b) * b_size + abs(a) * c_size + abs(c) * a_size;
+    const auto doubtful = active & (size > D(0.0)) & (abs(f[3]) <= D(kDoubtfulDiscriminant) * size);
+    if (OKTETT_UNLIKELY(any(doubtful))) {
+      const D in[6] = {p.x, p.y, p.z, d.x, d.y, d.z};
+      lane_by_lane(doubtful, in, f, [&e](const double(&x)[6], double(&y)[4]) { equation(e, x, y); });
+    }
+    // See Cone::crossings. Solutions that are infinite do not count.
+    const auto real = active & (f[3] > D(0.0));
+    const D inf(roots::kNoRoot), root = sqrt(max(f[3], D(0.0)));
+    const auto falling = f[1] < D(0.0);
+    const D q = select(falling, root, -root) - f[1], far = shift + q / f[0], near = shift + f[2] / q;
+    const D enter = select(falling, near, far), exit = select(falling, far, near);
+    const auto enters = real & (enter >= range.a) & (enter <= range.b) & (abs(enter) < inf);
+    const auto exits = real & (exit >= range.a) & (exit <= range.b) & (abs(exit) < inf);
+    const auto enter_first = (enter < exit) | ((enter == exit) & (f[0] > D(0.0)));
+    const D t0 = select(enter_first, enter, exit), t1 = select(enter_first, exit, enter);
+    const D turn = select(enter_first, D(-1.0), D(1.0));
+    const auto at0 = (enter_first & enters) | (~enter_first & exits);
+    const auto at1 = (enter_first & exits) | (~enter_first & enters);
+    if (!e.closed) {
+      CrossingList<K, D> list(out);
+      list.push(at0, t0, turn, D(0.0));
+      list.push(at1, t1, -turn, D(0.0));
+      return list.finish(D(roots::kNoRoot));
+    }
+    Crossings<2, D> open;
+    CrossingList<2, D> list(open);
+    list.push(at0, t0, turn, D(0.0));
+    list.push(at1, t1, -turn, D(0.0));
+    list.finish(D(roots::kNoRoot));
+    const D s = D(0.5) * (range.a + range.b) - shift;
+    const auto inside = (f[0] * s + D(2.0) * f[1]) * s + f[2] < D(0.0);
+    close_by_cell(open, inside, range, active, out);
+  }
+
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const QuadricElement& e = pool.elements[i];
+    const Vec3<D> g = times(e, p), h = broadcast<D>(e.h);
+    value = dot_lanes(Vec3<D>{g.x + h.x * D(2.0), g.y + h.y * D(2.0), g.z + h.z * D(2.0)}, p) + D(e.j);
+    gradient = {(g.x + h.x) * D(2.0), (g.y + h.y) * D(2.0), (g.z + h.z) * D(2.0)};
+    select_faces(e.lo, e.hi, part, p, value, gradient);
+  }
+  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// On the surface, u around z and v the height in the box, both in [0, 1]; v = z where the box is infinite.
+  /// On a face of the box, the position on it.
+  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+
+ private:
+  template <class D>
+  OKTETT_INLINE static Vec3<D> times(const QuadricElement& e, const Vec3<D>& v) {
+    const D xy(e.q[3]), xz(e.q[4]), yz(e.q[5]);
+    return {(D(e.q[0]) * v.x + xy * v.y) + xz * v.z, (xy * v.x + D(e.q[1]) * v.y) + yz * v.z,
+            (xz * v.x + yz * v.y) + D(e.q[2]) * v.z};
+  }
+  /// a, b, c and b^2 - a c of the point and the direction in `in`, in double-double.
+  static void equation(const QuadricElement& e, const double (&in)[6], double (&out)[4]);
+};
+
+}  // namespace oktett

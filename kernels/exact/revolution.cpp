@@ -1,0 +1,168 @@
+#include "kernels/exact/revolution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/math.h"
+
+namespace oktett {
+namespace {
+
+using Piece = RevolutionElement::Piece;
+using Profile = RevolutionShape::Profile;
+
+double horner(const double* c, int degree, double v) {
+  double y = c[degree];
+  for (int i = degree - 1; i >= 0; --i) y = y * v + c[i];
+  return y;
+}
+
+/// Calls f(v, value) at the ends of -1 <= v <= 1 and where a cubic is greatest or least between them.
+template <class F>
+void for_extremes(const double* c, int degree, F&& f) {
+  f(-1.0, horner(c, degree, -1)), f(1.0, horner(c, degree, 1));
+  if (degree < 2) return;
+  const double a = degree > 2 ? 3 * c[3] : 0, b = c[2], d = b * b - a * c[1];
+  if (!(d >= 0)) return;
+  const double q = -(b + std::copysign(std::sqrt(d), b));
+  for (const double v : {q / a, c[1] / q})
+    if (v > -1 && v < 1) f(v, horner(c, degree, v));
+}
+
+/// Whether the points from the first to the last are on the surface.
+bool all_on_surface(const RevolutionShape& s) { return s.profile == Profile::linear; }
+
+/// The radius, or its square, from point i to the next, in powers of v from -1 to 1. Slopes at points are
+/// those of the chord from the point before to the point after.
+void piece_powers(const RevolutionShape& s, std::size_t i, double (&c)[4]) {
+  const ProfilePoint &p = s.points[i], &q = s.points[i + 1];
+  if (s.profile == Profile::linear) {
+    c[0] = 0.5 * (p.radius + q.radius), c[1] = 0.5 * (q.radius - p.radius), c[2] = c[3] = 0;
+    return;
+  }
+  const double half = 0.5 * (q.height - p.height);
+  const auto slope = [&](std::size_t k) {
+    const ProfilePoint &before = s.points[k - 1], &after = s.points[k + 1];
+    return (after.radius - before.radius) / (after.height - before.height);
+  };
+  double f0 = p.radius, f1 = q.radius, d0 = slope(i) * half, d1 = slope(i + 1) * half;
+  if (s.profile == Profile::sor) d0 *= 2 * f0, d1 *= 2 * f1, f0 *= f0, f1 *= f1;
+  // Hermite's form; that of Bezier has the control points f0 + 2/3 d0 and f1 - 2/3 d1.
+  c[0] = 0.5 * (f0 + f1) - 0.25 * (d1 - d0);
+  c[1] = 0.75 * (f1 - f0) - 0.25 * (d0 + d1);
+  c[2] = 0.25 * (d1 - d0);
+  c[3] = 0.25 * (d0 + d1) - 0.25 * (f1 - f0);
+}
+
+int piece_degree(const RevolutionShape& s) { return s.profile == Profile::linear ? 1 : 3; }
+
+/// The points that the pieces lie between: from `begin` to `end`.
+struct Span {
+  std::size_t begin, end;
+};
+Span surface_points(const RevolutionShape& s) {
+  const std::size_t n = s.points.size(), skip = all_on_surface(s) ? 0 : 1;
+  return n < 2 + 2 * skip ? Span{0, 0} : Span{skip, n - skip};
+}
+
+}  // namespace
+
+std::optional<double> profile_crosses_axis(const RevolutionShape& s) {
+  const Span span = surface_points(s);
+  double greatest = 0;
+  for (std::size_t i = span.begin; i < span.end; ++i)
+    greatest = std::max(greatest, std::abs(s.points[i].radius));
+  if (s.profile == Profile::sor) greatest *= greatest;
+  for (std::size_t i = span.begin; i + 1 < span.end; ++i) {
+    double c[4], least = 0, at = 0;
+    piece_powers(s, i, c);
+    for_extremes(c, piece_degree(s), [&](double v, double f) {
+      // What touches the axis may be rounded to the other side.
+      if (f < -0x1p-40 * greatest && f < least) least = f, at = v;
+    });
+    if (least < 0) {
+      const double y0 = s.points[i].height, y1 = s.points[i + 1].height;
+      return 0.5 * (y0 + y1) + at * 0.5 * (y1 - y0);
+    }
+  }
+  return std::nullopt;
+}
+
+void Revolution::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const auto& described = std::get<RevolutionShape>(shape.form);
+  const Span span = surface_points(described);
+  if (span.begin == span.end) return;
+  // Own space: heights about the middle, everything about 1 in size.
+  const double y0 = described.points[span.begin].height, y1 = described.points[span.end - 1].height;
+  const double middle = 0.5 * (y0 + y1);
+  double size = 0.5 * (y1 - y0);
+  for (std::size_t i = span.begin; i < span.end; ++i) size = std::max(size, described.points[i].radius);
+  if (!(size > 0 && y1 > y0 && std::isfinite(size + std::abs(middle)))) return;
+  RevolutionShape s = described;
+  for (ProfilePoint& p : s.points) p.radius /= size, p.height = (p.height - middle) / size;
+
+  RevolutionElement e;
+  e.degree = piece_degree(s);
+  e.squared = s.profile == Profile::sor;
+  for (std::size_t i = span.begin; i + 1 < span.end; ++i) {
+    const ProfilePoint &p = s.points[i], &q = s.points[i + 1];
+    if (!(p.height < q.height)) continue;
+    Piece piece{};
+    piece_powers(s, i, piece.c);
+    piece.middle = 0.5 * (p.height + q.height);
+    piece.per_half = 2 / (q.height - p.height);
+    if (!std::isfinite(piece.per_half)) return;
+    piece.ends[0] = {p.height, p.radius * p.radius, 0, false, 0};
+    piece.ends[1] = {q.height, q.radius * q.radius, 0, false, 0};
+    double greatest = 0;
+    for_extremes(piece.c, e.degree, [&](double, double f) { greatest = std::max(greatest, f); });
+    piece.greatest2 = (e.squared ? greatest : greatest * greatest) * (1 + 0x1p-20) + 0x1p-80;
+    e.pieces.push_back(piece);
+  }
+  if (e.pieces.empty()) return;
+  for (std::size_t k = 0; k <= e.pieces.size(); ++k) {
+    RevolutionElement::End* const below = k > 0 ? &e.pieces[k - 1].ends[1] : nullptr;
+    RevolutionElement::End* const above = k < e.pieces.size() ? &e.pieces[k].ends[0] : nullptr;
+    const int part = 1 + 2 * static_cast<int>(k);
+    if (below) below->beyond2 = above ? above->here2 : 0, below->part = part;
+    if (above) above->beyond2 = below ? below->here2 : 0, above->part = part;
+    // Radii that change at one height make a ring, which belongs to the piece that reaches farther.
+    if (below && above)
+      below->listed = below->here2 > above->here2, above->listed = above->here2 > below->here2;
+    else
+      (below ? below : above)->listed = !s.open;
+  }
+  const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
+  for (std::size_t k = 0; k < e.pieces.size(); ++k) {
+    if (k == 0) add_element(pool, e, to_world * own, item, shape.normals);
+    const Piece& piece = e.pieces[k];
+    const double r = std::sqrt(piece.greatest2);
+    add_cell(pool, {-r, piece.ends[0].height, -r}, {r, piece.ends[1].height, r}).begin =
+        static_cast<std::uint32_t>(k);
+  }
+}
+
+double Revolution::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Revolution>(pool, i, part, p).value;
+}
+
+Vec3d Revolution::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Revolution>(pool, i, part, p).gradient;
+}
+
+bool Revolution::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  const RevolutionElement& e = pool.elements[i];
+  if (!(e.pieces.front().ends[0].height <= p.y && p.y <= e.pieces.back().ends[1].height)) return false;
+  return value(pool, i, 0, p) < 0;
+}
+
+void Revolution::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
+  const RevolutionElement& e = pool.elements[i];
+  const double lo = e.pieces.front().ends[0].height, hi = e.pieces.back().ends[1].height;
+  s.uv = {static_cast<float>(0.5 + portable::atan2(p.x, p.z) * 0.5 / std::numbers::pi),
+          static_cast<float>((p.y - lo) / (hi - lo))};
+  s.tangent = Vec3f(Vec3d{p.z, 0, -p.x} * (2 * std::numbers::pi));
+}
+
+}  // namespace oktett

@@ -1,0 +1,37 @@
+#include "kernels/exact/torus.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/math.h"
+
+namespace oktett {
+
+void Torus::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const TorusShape& s = std::get<TorusShape>(shape.form);
+  const double size = s.major + s.minor;
+  if (!(s.major >= 0 && s.minor > 0 && std::isfinite(size))) return;
+  const TorusElement e{s.major / size, s.minor / size};
+  add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
+  add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
+}
+
+double Torus::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Torus>(pool, i, part, p).value;
+}
+
+Vec3d Torus::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Torus>(pool, i, part, p).gradient;
+}
+
+bool Torus::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
+
+void Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
+  const TorusElement& e = pool.elements[i];
+  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
+  s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
+          static_cast<float>(0.5 + portable::atan2(p.z, rho - e.major) * 0.5 / std::numbers::pi)};
+  s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
+}
+
+}  // namespace oktett

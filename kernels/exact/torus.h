@@ -1,0 +1,81 @@
+#pragma once
+/// \file Tori (slides: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
+
+#include "kernels/exact/exact.h"
+#include "kernels/roots/bernstein_lanes.h"
+
+namespace oktett {
+
+struct TorusElement {
+  double major, minor;
+};
+
+struct Torus {
+  using Data = TorusShape;
+  using Pool = ExactPool<TorusElement>;
+  static constexpr int kMaxCrossings = 4;
+
+  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+
+  /// With p the point of the line nearest to the centre, p.u = 0 and the quartic has no cubic term:
+  /// s^4 + 2 (k + 2 R^2 u_z^2) s^2 + 8 R^2 p_z u_z s + k^2 + 4 R^2 (p_z^2 - r^2), k = p.p - R^2 - r^2.
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    const TorusElement& e = pool.elements[cell.element];
+    const CenteredLine<D> l(line);
+    const D rr(e.major * e.major), outer(e.major + e.minor);
+    const D pp = dot_lanes(l.p, l.p), k = pp - D(e.major * e.major + e.minor * e.minor);
+    const D c2 = D(2.0) * (k + D(2.0) * rr * l.u.z * l.u.z), c1 = D(8.0) * rr * l.p.z * l.u.z;
+    const D c0 = k * k + D(4.0) * rr * (l.p.z * l.p.z - D(e.minor * e.minor));
+    const D c[5] = {c0, c1, c2, D(0.0), D(1.0)};
+    // Everything lies in the sphere around the torus.
+    const D reach2 = outer * outer * D(1 + 0x1p-40) - pp;
+    const D reach = sqrt(max(reach2, D(0.0)));
+    const D a = max(l.to_s(range.a), -reach), b = min(l.to_s(range.b), reach);
+    const auto there = active & (reach2 >= D(0.0)) & (a <= b);
+    out.clear();
+    if (none(there)) return;
+    if (e.minor <= e.major)
+      return list<K>(roots::certified_roots<4, K, roots::Touching::drop>(c, a, b, there), l, c, there, out);
+    // The quartic is zero, too, on the lemon inside that the square root of the equation leaves out.
+    auto all = roots::certified_roots<4, 4, roots::Touching::drop>(c, a, b, there);
+    for (int i = 0; i < 4; ++i) {
+      const D s = select(all.x[i] < D(roots::kNoRoot), all.x[i], D(0.0));
+      const auto lemon = (pp + s * s) + rr < D(e.minor * e.minor);
+      all.x[i] = select(lemon, D(roots::kNoRoot), all.x[i]);
+    }
+    list<K>(all, l, c, there, out);
+  }
+
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D&, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const TorusElement& e = pool.elements[i];
+    const D rho = sqrt(p.x * p.x + p.y * p.y), d = rho - D(e.major);
+    value = (d * d + p.z * p.z) - D(e.minor * e.minor);
+    const D k = select(rho > D(0.0), D(e.major) / rho, D(0.0));
+    gradient = {(p.x - k * p.x) * D(2.0), (p.y - k * p.y) * D(2.0), p.z * D(2.0)};
+  }
+  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// u around the axis from +x towards +y, v around the tube from the outside upwards, both in [0, 1].
+  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+
+ private:
+  /// The first K of the roots that are there, which need not stand side by side.
+  template <int K, int N, class D>
+  OKTETT_INLINE static void list(const roots::LaneRoots<D, N>& roots, const CenteredLine<D>& l,
+                                 const D (&c)[5], const typename D::M& there, Crossings<K, D>& out) {
+    CrossingList<K, D> list(out);
+    for (int i = 0; i < N; ++i) {
+      const D s = roots.x[i];
+      const D slope = (D(4.0) * s * s + D(2.0) * c[2]) * s + c[1];
+      list.push(there & (s < D(roots::kNoRoot)), l.to_t(s), select(slope < D(0.0), D(-1.0), D(1.0)), D(0.0));
+    }
+    list.finish(K < N || N == 4 ? D(roots::kNoRoot) : out.t[K - 1]);
+  }
+};
+
+}  // namespace oktett

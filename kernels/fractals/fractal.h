@@ -1,0 +1,149 @@
+#pragma once
+/// \file What all fractals have in common. Their crossings are found one ray at a time, by walks over parts
+/// that come to be while the ray descends: a walk keeps one path from the whole down to the part it is at, so
+/// its memory grows with the depth and not with the number of parts.
+///
+/// A fractal F has, beside what exact.h asks for,
+/// - `F::find(element, query, out, room)`: lists crossings, see TurnList;
+/// and is derived from Fractal.
+
+#include <cmath>
+#include <cstdint>
+
+#include "kernels/exact/exact.h"
+
+namespace oktett {
+
+template <class S>
+inline constexpr bool kIsFractal = requires {
+  S::find;
+};
+
+/// Where to look for crossings: at a < t <= b on the line o + t d in the element's own space. What lies at a
+/// itself says whether the line starts inside.
+struct FractalQuery {
+  Vec3d o, d;
+  double a = 0, b = HUGE_VAL;
+  bool with_surface = false;  ///< whether points, normals and uv are wanted
+};
+
+/// A crossing: `turn` as in Crossings; the rest, in the element's own space, only if it was asked for.
+struct FractalCrossing {
+  double t = 0, turn = 0, part = 0;
+  Vec3d point, normal, tangent;
+  double u = 0, v = 0;
+};
+
+/// Whether two distances are one after rounding to float, as they are stored. What is open for less than that
+/// counts as closed, so that every query sees the same crossings.
+inline bool same_float(double a, double b) { return static_cast<float>(a) == static_cast<float>(b); }
+
+/// Makes a list of crossings out of what a walk meets, in ascending order.
+class TurnList {
+ public:
+  TurnList(FractalCrossing* out, int room) : out_(out), room_(room) {}
+
+  int count() const { return count_; }
+  bool full() const { return count_ == room_; }
+  /// Whether the line is inside, as far as the walk knows.
+  bool inside() const { return inside_ && !leaves_; }
+  void begin(bool inside) { inside_ = inside; }
+
+  void enter(const FractalCrossing& c) {
+    pass(c.t);
+    // What was open for no longer than rounding was not.
+    if (leaves_)
+      leaves_ = false;
+    else if (!inside_ && !full())
+      out_[count_++] = c, inside_ = true;
+  }
+  void leave(const FractalCrossing& c) {
+    if (inside_ && !leaves_) left_ = c, leaves_ = true;
+  }
+  /// The walk has come to t.
+  void pass(double t) {
+    if (leaves_ && !same_float(left_.t, t)) finish();
+  }
+  void finish() {
+    if (!leaves_) return;
+    if (!full()) out_[count_++] = left_;
+    inside_ = leaves_ = false;
+  }
+
+ private:
+  FractalCrossing* out_;
+  int room_, count_ = 0;
+  bool inside_ = false, leaves_ = false;
+  FractalCrossing left_;
+};
+
+/// F::find for each lane: up to K crossings in ascending order.
+template <class F, int K, class D>
+void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, const Line<D>& line,
+                       const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+  constexpr int W = D::kWidth;
+  double o[3][W], d[3][W], a[W], b[W];
+  line.o.x.store(o[0]), line.o.y.store(o[1]), line.o.z.store(o[2]);
+  line.d.x.store(d[0]), line.d.y.store(d[1]), line.d.z.store(d[2]);
+  range.a.store(a), range.b.store(b);
+  double t[K][W], turn[K][W], part[K][W], up_to[W];
+  for (int i = 0; i < W; ++i) up_to[i] = roots::kNoRoot;
+  for (int k = 0; k < K; ++k)
+    for (int i = 0; i < W; ++i) t[k][i] = roots::kNoRoot, turn[k][i] = part[k][i] = 0;
+  for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    FractalCrossing found[K];
+    const int count =
+        F::find(pool.elements[cell.element],
+                {{o[0][i], o[1][i], o[2][i]}, {d[0][i], d[1][i], d[2][i]}, a[i], b[i]}, found, K);
+    for (int k = 0; k < count; ++k)
+      t[k][i] = found[k].t, turn[k][i] = found[k].turn, part[k][i] = found[k].part;
+    if (count == K) up_to[i] = found[K - 1].t;
+  }
+  for (int k = 0; k < K; ++k)
+    out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
+  out.up_to = D::load(up_to);
+}
+
+/// What all fractals declare alike.
+template <class F, class Shape, class E>
+struct Fractal {
+  using Data = Shape;
+  using Element = E;
+  using Pool = ExactPool<Element>;
+  static constexpr int kMaxCrossings = 32;
+  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
+
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    fractal_crossings<F, K>(pool, cell, line, range, active, out);
+  }
+};
+
+/// The crossing that `hit` was before its t was rounded to float, on the line of `query`, whose range is not
+/// looked at. If rounding took the line itself past it, a point on the line that faces the ray.
+template <class F>
+FractalCrossing resolve_crossing(const typename F::Element& element, FractalQuery query, double t,
+                                 double turn) {
+  const double off = std::abs(t) * 0x1p-22 + 0x1p-140;
+  query.a = t - off, query.b = t + off, query.with_surface = true;
+  constexpr int kRoom = 8;
+  FractalCrossing found[kRoom], best{};
+  double least = HUGE_VAL;
+  for (;;) {
+    const int count = F::find(element, query, found, kRoom);
+    for (int k = 0; k < count; ++k) {
+      const double away = same_float(found[k].t, t) ? 0 : std::abs(found[k].t - t);
+      if (found[k].turn == turn && away < least) best = found[k], least = away;
+    }
+    if (count < kRoom || least == 0) break;
+    query.a = found[kRoom - 1].t;
+  }
+  if (least < HUGE_VAL) return best;
+  best.t = t, best.turn = turn;
+  best.point = query.o + query.d * t, best.normal = query.d * turn;
+  return best;
+}
+
+}  // namespace oktett

@@ -1,0 +1,70 @@
+#include "kernels/fractals/julia.h"
+
+#include <algorithm>
+
+namespace oktett {
+namespace {
+
+/// Halvings of the box that is looked at for bounds.
+constexpr int kBoundLevels = 6;
+
+/// Whether the whole ball about p surely leaves.
+bool escapes(const JuliaElement& e, const Vec3d& p, double radius) {
+  double z[4] = {p.x, p.y, p.z, e.slice}, eps = radius * (1 + 0x1p-40);
+  for (int n = 0;; ++n) {
+    const double zz = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3], length = std::sqrt(zz);
+    if (length - eps > e.radius * (1 + 0x1p-40)) return true;
+    if (n == e.iterations || !(eps < 1e6)) return false;
+    eps = (2 * length + eps) * eps + 0x1p-45 * (zz + e.radius);
+    const double next[4] = {z[0] * z[0] - (z[1] * z[1] + z[2] * z[2] + z[3] * z[3]) + e.c[0],
+                            2 * z[0] * z[1] + e.c[1], 2 * z[0] * z[2] + e.c[2], 2 * z[0] * z[3] + e.c[3]};
+    std::copy(next, next + 4, z);
+  }
+}
+
+void grow_bounds(const JuliaElement& e, const Vec3d& middle, double half, int levels, Vec3d& lo, Vec3d& hi) {
+  bool known = true;
+  for (int k = 0; k < 3; ++k) known &= lo[k] <= middle[k] - half && middle[k] + half <= hi[k];
+  if (known || escapes(e, middle, half * std::sqrt(3.0))) return;
+  if (levels == 0) {
+    for (int k = 0; k < 3; ++k)
+      lo[k] = std::min(lo[k], middle[k] - half), hi[k] = std::max(hi[k], middle[k] + half);
+    return;
+  }
+  for (int k = 0; k < 8; ++k)
+    grow_bounds(e, middle + Vec3d{k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half} * 0.5,
+                half / 2, levels - 1, lo, hi);
+}
+
+}  // namespace
+
+void Julia::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  const auto& s = std::get<JuliaShape>(shape.form);
+  const double size = std::sqrt(s.c[0] * s.c[0] + s.c[1] * s.c[1] + s.c[2] * s.c[2] + s.c[3] * s.c[3]);
+  if (!(size <= 2) || !std::isfinite(s.slice) || s.iterations < 1 || s.iterations > kMaxJuliaIterations)
+    return;
+  const JuliaElement e{{s.c[0], s.c[1], s.c[2], s.c[3]},
+                       s.slice,
+                       0.5 * (1 + std::sqrt(1 + 4 * size)),
+                       static_cast<int>(s.iterations)};
+  const double inf = std::numeric_limits<double>::infinity();
+  Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
+  grow_bounds(e, {0, 0, 0}, e.radius * (1 + 0x1p-20), kBoundLevels, lo, hi);
+  if (!(lo.x < hi.x)) return;
+  add_element(pool, e, to_world, item, shape.normals);
+  add_cell(pool, lo, hi);
+}
+
+double Julia::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Julia>(pool, i, part, p).value;
+}
+
+Vec3d Julia::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  return slope_at<Julia>(pool, i, part, p).gradient;
+}
+
+bool Julia::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
+
+void Julia::uv(const Pool&, std::size_t, int, const Vec3d&, SurfaceInteraction&) {}
+
+}  // namespace oktett

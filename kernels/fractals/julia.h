@@ -1,0 +1,148 @@
+#pragma once
+/// \file Filled quaternion Julia sets of q^2 + c after a number of iterations (A. Norton: Generation and
+/// Display of Geometric Fractals in 3-D, 1982), solved by enclosures along the ray
+/// (kernels/exact/march.h).
+///
+/// With z_0 = q and z_k+1 = z_k^2 + c, the surface is where |z_n| = R = (1 + sqrt(1 + 4 |c|)) / 2; what is
+/// farther out never comes back. Along a piece of the ray, h from its middle with |h| <= d, each iterate is
+/// enclosed as z + w h + e with |e| <= eps, and its derivative as w + f with |f| <= phi (a Taylor model of
+/// degree 1: K. Makino, M. Berz 2003). As |pq| = |p| |q| for quaternions, with r = |w| d + eps
+///   eps' = 2 |z| eps + r^2,   phi' = 2 (|z| phi + r (|w| + phi)),
+/// to which the roundings of z and w are added. A piece of which all has |z_k| > R for some k is outside. So
+/// no estimate of a distance is trusted, and no step is made that is not proved.
+
+#include "kernels/exact/march.h"
+
+namespace oktett {
+
+struct JuliaElement {
+  double c[4];
+  double slice;
+  double radius;  ///< R
+  int iterations;
+};
+
+/// |z_n|^2 - R^2 along rays.
+template <class D>
+struct JuliaField {
+  const JuliaElement& e;
+  Vec3<D> o, d;
+
+  /// Roundings are below this, relative; one iteration makes fewer than eight.
+  static constexpr double kRound = 0x1p-49;
+  static constexpr double kHuge = 1e40;
+
+  struct Quaternion {
+    D r, i, j, k;
+    OKTETT_INLINE D norm2() const { return (r * r + i * i) + (j * j + k * k); }
+  };
+
+  /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what is
+  /// told of it is positive and no more than the value.
+  OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
+    const D zero(0.0), two(2.0), u(kRound), radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);
+    Quaternion z{o.x + m * d.x, o.y + m * d.y, o.z + m * d.z, D(e.slice)}, w{d.x, d.y, d.z, zero};
+    const D far = sqrt((o.x * o.x + o.y * o.y) + o.z * o.z);
+    D eps = u * (far + sqrt(z.norm2())), phi = zero, escaped_by = zero;
+    auto escaped = m == m;
+    escaped = escaped & ~escaped;
+    auto lost = escaped;
+    const D cc(std::abs(e.c[0]) + std::abs(e.c[1]) + std::abs(e.c[2]) + std::abs(e.c[3]));
+    for (int n = 0; n <= e.iterations; ++n) {
+      const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
+      const auto leaves = ~escaped & ~lost & (length - r > radius);
+      escaped_by = select(leaves, zz - limit, escaped_by), escaped = escaped | leaves;
+      lost = lost | ~(length + r + slope + phi < D(kHuge));
+      const auto stays = ~(escaped | lost);
+      if (n == e.iterations || none(stays)) break;
+      eps = select(stays, two * length * eps + r * r + u * (zz + cc + length * slope * half), eps);
+      phi = select(stays, two * (length * phi + r * (slope + phi)) + u * length * slope, phi);
+      const Quaternion s{((z.r * z.r - z.i * z.i) - (z.j * z.j + z.k * z.k)) + D(e.c[0]),
+                         two * (z.r * z.i) + D(e.c[1]), two * (z.r * z.j) + D(e.c[2]),
+                         two * (z.r * z.k) + D(e.c[3])};
+      const Quaternion v{two * ((z.r * w.r - z.i * w.i) - (z.j * w.j + z.k * w.k)),
+                         two * (z.r * w.i + w.r * z.i), two * (z.r * w.j + w.r * z.j),
+                         two * (z.r * w.k + w.r * z.k)};
+      z = {select(stays, s.r, z.r), select(stays, s.i, z.i), select(stays, s.j, z.j),
+           select(stays, s.k, z.k)};
+      w = {select(stays, v.r, w.r), select(stays, v.i, w.i), select(stays, v.j, w.j),
+           select(stays, v.k, w.k)};
+    }
+    const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
+    const D by_h = two * ((z.r * w.r + z.i * w.i) + (z.j * w.j + z.k * w.k));
+    const D off = abs(by_h) * half + two * length * eps + u * (zz + limit) + u * length * slope * half;
+    const D turn = two * (slope * r + (length + r) * phi) + u * length * slope;
+    const D value = zz - limit, huge(kHuge * kHuge);
+    const auto told = ~(escaped | lost);
+    const D low = select(told, value - off, select(escaped, escaped_by * D(1 - 0x1p-40), -huge));
+    const D high = select(told, value + off + r * r, select(escaped, max(escaped_by, low), huge));
+    return {{low, high}, {select(told, by_h - turn, -huge), select(told, by_h + turn, huge)}};
+  }
+
+  OKTETT_INLINE Dual<Interval<D>> over(const Interval<D>& s) const {
+    const D m = s.lo + (s.hi - s.lo) * D(0.5);
+    return about(m, max(s.hi - m, m - s.lo) * D(1 + 0x1p-50));
+  }
+  OKTETT_INLINE Interval<D> at(const D& s) const { return about(s, D(0.0)).v; }
+};
+
+struct Julia {
+  using Data = JuliaShape;
+  using Pool = ExactPool<JuliaElement>;
+  static constexpr int kMaxCrossings = 16;
+
+  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    const JuliaElement& e = pool.elements[cell.element];
+    const D zero(0.0), length = range.b - range.a;
+    const auto place = [&](const D& o, const D& d) { return o + range.a * d; };
+    const JuliaField<D> field{
+        e, {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)}, line.d};
+    Crossings<K, D> own;
+    interval::march<K>(field, zero, length, length, active, interval::Jumps::list, own);
+    const auto to_t = [&](const D& s) { return select(s < D(roots::kNoRoot), range.a + s, s); };
+    CrossingList<K, D> list(out);
+    for (int k = 0; k < K; ++k)
+      list.push(active & (own.t[k] < D(roots::kNoRoot)), to_t(own.t[k]), own.turn[k], zero);
+    list.finish(to_t(own.up_to));
+  }
+
+  /// |z_n|^2 - R^2 and its gradient; farther out, those of the iterate that leaves.
+  template <class D>
+  OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D&, const Vec3<D>& p, D& value,
+                                  Vec3<D>& gradient) {
+    const JuliaElement& e = pool.elements[i];
+    const D zero(0.0), one(1.0), two(2.0);
+    using Q = typename JuliaField<D>::Quaternion;
+    Q z{p.x, p.y, p.z, D(e.slice)},
+        w[3] = {{one, zero, zero, zero}, {zero, one, zero, zero}, {zero, zero, one, zero}};
+    for (int n = 0; n < e.iterations; ++n) {
+      const auto stays = z.norm2() < D(0x1p20);
+      if (none(stays)) break;
+      const auto keep = [&](const Q& to, Q& from) {
+        from = {select(stays, to.r, from.r), select(stays, to.i, from.i), select(stays, to.j, from.j),
+                select(stays, to.k, from.k)};
+      };
+      for (Q& v : w)
+        keep({two * ((z.r * v.r - z.i * v.i) - (z.j * v.j + z.k * v.k)), two * (z.r * v.i + v.r * z.i),
+              two * (z.r * v.j + v.r * z.j), two * (z.r * v.k + v.r * z.k)},
+             v);
+      keep({((z.r * z.r - z.i * z.i) - (z.j * z.j + z.k * z.k)) + D(e.c[0]), two * (z.r * z.i) + D(e.c[1]),
+            two * (z.r * z.j) + D(e.c[2]), two * (z.r * z.k) + D(e.c[3])},
+           z);
+    }
+    const auto along = [&](const Q& v) { return two * ((z.r * v.r + z.i * v.i) + (z.j * v.j + z.k * v.k)); };
+    value = z.norm2() - D(e.radius * e.radius);
+    gradient = {along(w[0]), along(w[1]), along(w[2])};
+  }
+  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// None.
+  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+};
+
+}  // namespace oktett

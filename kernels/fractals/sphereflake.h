@@ -1,0 +1,35 @@
+#pragma once
+/// \file Sphereflakes (E. Haines: A Proposal for Standard Graphics Environments, 1987), as the union of their
+/// balls.
+///
+/// The ray is taken from ball to ball into the space in which that ball has radius 1, each time with the
+/// point nearest to its centre as its origin. So the rounding errors of a level are those of numbers of the
+/// size of that level's ball, and at depth n a crossing is off by a few 2^-53 of the first ball, whatever n.
+
+#include <vector>
+
+#include "kernels/fractals/fractal.h"
+
+namespace oktett {
+
+struct SphereflakeElement {
+  int depth;
+  double ratio;
+  /// Of each generation g: its balls' radius, and the radius, in their own spaces, of a ball about one of
+  /// them that holds all its descendants.
+  double radius[kMaxSphereflakeDepth + 1], reach[kMaxSphereflakeDepth + 1];
+};
+
+struct Sphereflake : Fractal<Sphereflake, SphereflakeShape, SphereflakeElement> {
+  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
+  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// How far it reaches along `direction`, from its centre in lengths of the direction: no less, and more by
+  /// no more than 1/1000.
+  static double support(const Element& element, const Vec3d& direction);
+  static Box world_bounds(const Pool& pool, std::size_t i);
+  /// Balls of all generations.
+  static double count(const SphereflakeShape& shape);
+};
+
+}  // namespace oktett

@@ -1,0 +1,276 @@
+#include "kernels/functions/function_tape.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "kernels/functions/expression.h"
+
+namespace oktett {
+namespace {
+
+using Number = Simd<double, 1, ScalarIsa>;
+constexpr std::string_view kVariables[] = {"x", "y", "z"};
+
+/// A value to compute, with the values it is made of.
+struct Value {
+  TapeOp op = TapeOp::constant;
+  std::uint32_t a = kNoId, b = kNoId;
+  int n = 0;
+  double c = 0;
+};
+
+[[noreturn]] void fail(std::size_t place, const std::string& what) {
+  throw Error(Location{"", 0, static_cast<int>(place) + 1}, what);
+}
+
+/// Translates nodes to values, each only once.
+class Values {
+ public:
+  Values() {
+    for (std::uint32_t k = 0; k < 3; ++k) list_.push_back({});
+  }
+
+  std::uint32_t constant(double c) { return find({TapeOp::constant, kNoId, kNoId, 0, c}); }
+
+  /// `place` is where to say what is wrong.
+  std::uint32_t make(TapeOp op, std::size_t place, std::uint32_t a, std::uint32_t b = kNoId, int n = 0,
+                     double c = 0) {
+    if (is_constant(a) && (b == kNoId || is_constant(b))) return fold({op, a, b, n, c}, place);
+    return find({op, a, b, n, c});
+  }
+
+  std::uint32_t translate(const ExpressionNode& node, std::size_t place, std::uint32_t a, std::uint32_t b) {
+    switch (node.op) {
+      case ExpressionOp::constant:
+        return constant(node.value);
+      case ExpressionOp::variable:
+        return node.a;
+      case ExpressionOp::negate:
+        return make(TapeOp::negate, place, a);
+      case ExpressionOp::add:
+        return sum(place, a, b);
+      case ExpressionOp::subtract:
+        if (is_constant(b)) return sum(place, a, constant(-list_[b].c));
+        if (is_constant(a)) return sum(place, make(TapeOp::negate, place, b), a);
+        return make(TapeOp::subtract, place, a, b);
+      case ExpressionOp::multiply:
+        return product(place, a, b);
+      case ExpressionOp::divide:
+        return quotient(place, a, b);
+      case ExpressionOp::power:
+        return power(place, a, b);
+      case ExpressionOp::log2:
+        return product(place, make(TapeOp::log, place, a), constant(1 / std::numbers::ln2));
+      case ExpressionOp::log10:
+        return product(place, make(TapeOp::log, place, a), constant(1 / std::numbers::ln10));
+      case ExpressionOp::hypot:
+        return make(TapeOp::sqrt, place,
+                    sum(place, make(TapeOp::square, place, a), make(TapeOp::square, place, b)));
+      default:
+        return make(simple(node.op), place, a, b);
+    }
+  }
+
+  const std::vector<Value>& list() const { return list_; }
+  bool is_constant(std::uint32_t v) const { return v > 2 && list_[v].op == TapeOp::constant; }
+  /// The cosine of what `v` is the sine of, or the other way round; kNoId if there is none.
+  std::uint32_t partner(std::uint32_t v) const {
+    Value other = list_[v];
+    other.op = other.op == TapeOp::sin ? TapeOp::cos : TapeOp::sin;
+    const auto found = index_.find(key(other));
+    return found == index_.end() ? kNoId : found->second;
+  }
+
+ private:
+  using Key = std::tuple<TapeOp, std::uint32_t, std::uint32_t, int, std::uint64_t>;
+  static Key key(const Value& v) { return {v.op, v.a, v.b, v.n, std::bit_cast<std::uint64_t>(v.c)}; }
+
+  std::uint32_t find(Value v) {
+    const bool commutes =
+        v.op == TapeOp::add || v.op == TapeOp::multiply || v.op == TapeOp::min || v.op == TapeOp::max;
+    if (commutes && v.b < v.a) std::swap(v.a, v.b);
+    const auto [at, is_new] = index_.try_emplace(key(v), static_cast<std::uint32_t>(list_.size()));
+    if (is_new) list_.push_back(v);
+    return at->second;
+  }
+
+  std::uint32_t fold(const Value& v, std::size_t place) {
+    Gradient<Number> r[3];
+    tape::set(r[0], list_[v.a].c);
+    tape::set(r[1], v.b == kNoId ? 0 : list_[v.b].c);
+    tape::set(r[2], 0);
+    if (v.op == TapeOp::divide && list_[v.b].c == 0) fail(place, "division by zero");
+    tape::run_step({v.op, 2, 0, 1, v.n, v.c}, r);
+    const double result = r[2].v.part[0].v;
+    if (!std::isfinite(result)) fail(place, "the value is not a finite number");
+    return constant(result);
+  }
+
+  std::uint32_t sum(std::size_t place, std::uint32_t a, std::uint32_t b) {
+    if (is_constant(a) == is_constant(b)) return make(TapeOp::add, place, a, b);
+    if (is_constant(a)) std::swap(a, b);
+    return list_[b].c == 0 ? a : make(TapeOp::add_constant, place, a, kNoId, 0, list_[b].c);
+  }
+  std::uint32_t product(std::size_t place, std::uint32_t a, std::uint32_t b) {
+    if (a == b) return make(TapeOp::square, place, a);
+    if (is_constant(a) == is_constant(b)) return make(TapeOp::multiply, place, a, b);
+    if (is_constant(a)) std::swap(a, b);
+    const double c = list_[b].c;
+    if (c == 1) return a;
+    return c == -1 ? make(TapeOp::negate, place, a) : make(TapeOp::multiply_constant, place, a, kNoId, 0, c);
+  }
+  std::uint32_t quotient(std::size_t place, std::uint32_t a, std::uint32_t b) {
+    if (!is_constant(b) || is_constant(a)) return make(TapeOp::divide, place, a, b);
+    const double c = list_[b].c, inverse = 1 / c;
+    if (c == 0) fail(place, "division by zero");
+    return std::isnormal(inverse) ? product(place, a, constant(inverse)) : make(TapeOp::divide, place, a, b);
+  }
+  std::uint32_t power(std::size_t place, std::uint32_t a, std::uint32_t b) {
+    if (!is_constant(b)) {
+      if (is_constant(a) && !(list_[a].c > 0))
+        fail(place, "only a positive number may have an exponent with x, y or z in it");
+      return make(TapeOp::exp, place, product(place, b, make(TapeOp::log, place, a)));
+    }
+    const double y = list_[b].c;
+    const bool whole = y == std::nearbyint(y) && std::abs(y) <= kMaxTapePower;
+    if (y == 1) return a;
+    if (y == 2) return make(TapeOp::square, place, a);
+    if (y == 0.5) return make(TapeOp::sqrt, place, a);
+    if (whole) return make(TapeOp::whole_power, place, a, kNoId, static_cast<int>(y));
+    return make(TapeOp::real_power, place, a, kNoId, 0, y);
+  }
+
+  static TapeOp simple(ExpressionOp op) {
+    switch (op) {
+      case ExpressionOp::sqrt:
+        return TapeOp::sqrt;
+      case ExpressionOp::abs:
+        return TapeOp::abs;
+      case ExpressionOp::sin:
+        return TapeOp::sin;
+      case ExpressionOp::cos:
+        return TapeOp::cos;
+      case ExpressionOp::tan:
+        return TapeOp::tan;
+      case ExpressionOp::asin:
+        return TapeOp::asin;
+      case ExpressionOp::acos:
+        return TapeOp::acos;
+      case ExpressionOp::atan:
+        return TapeOp::atan;
+      case ExpressionOp::atan2:
+        return TapeOp::atan2;
+      case ExpressionOp::exp:
+        return TapeOp::exp;
+      case ExpressionOp::log:
+        return TapeOp::log;
+      case ExpressionOp::min:
+        return TapeOp::min;
+      case ExpressionOp::max:
+        return TapeOp::max;
+      case ExpressionOp::floor:
+        return TapeOp::floor;
+      case ExpressionOp::ceil:
+        return TapeOp::ceil;
+      case ExpressionOp::round:
+        return TapeOp::round;
+      default:
+        return TapeOp::sign;
+    }
+  }
+
+  std::vector<Value> list_;  ///< x, y and z first
+  std::map<Key, std::uint32_t> index_;
+};
+
+/// Writes the steps for the values that count, and gives registers back after their last use.
+class Writer {
+ public:
+  Writer(const Values& values, std::uint32_t root) : values_(values), list_(values.list()) {
+    uses_.assign(list_.size(), 0);
+    uses_[root] = 1;
+    for (std::size_t v = list_.size(); v-- > 3;) {
+      if (uses_[v] == 0) continue;
+      if (list_[v].a != kNoId) ++uses_[list_[v].a];
+      if (list_[v].b != kNoId) ++uses_[list_[v].b];
+    }
+    registers_.resize(list_.size());
+    for (std::uint32_t k = 0; k < 3; ++k) registers_[k] = static_cast<std::uint8_t>(k);
+    written_.assign(list_.size(), false);
+    for (std::uint32_t v = 3; v < list_.size(); ++v)
+      if (uses_[v] > 0 && !written_[v]) write(v);
+    tape_.result = registers_[root];
+  }
+  FunctionTape take() { return std::move(tape_); }
+
+ private:
+  void write(std::uint32_t v) {
+    const Value& value = list_[v];
+    if (tape_.steps.size() == kMaxTapeSteps)
+      fail(0, "the function takes more than " + std::to_string(kMaxTapeSteps) + " steps");
+    TapeStep step{value.op, 0, 0, 0, value.n, value.c};
+    if (value.a != kNoId) step.a = registers_[value.a];
+    if (value.b != kNoId) step.b = registers_[value.b];
+    const bool wave = value.op == TapeOp::sin || value.op == TapeOp::cos;
+    const std::uint32_t other = wave ? values_.partner(v) : kNoId;
+    if (other != kNoId && uses_[other] > 0) {
+      // The angle is used by both; neither result may overwrite it before the other is there.
+      registers_[v] = acquire(), registers_[other] = acquire();
+      written_[other] = true;
+      release(value.a), release(value.a);
+      step.op = TapeOp::sin_cos;
+      step.out = registers_[value.op == TapeOp::sin ? v : other];
+      step.b = registers_[value.op == TapeOp::sin ? other : v];
+    } else {
+      // What a result overwrites is read before.
+      if (value.a != kNoId) release(value.a);
+      if (value.b != kNoId) release(value.b);
+      step.out = registers_[v] = acquire();
+    }
+    written_[v] = true;
+    tape_.steps.push_back(step);
+  }
+  void release(std::uint32_t v) {
+    if (--uses_[v] == 0 && v > 2) free_.push_back(registers_[v]);
+  }
+  std::uint8_t acquire() {
+    if (free_.empty()) {
+      if (tape_.registers == 3 + kMaxTapeRegisters)
+        fail(0, "the function needs more than " + std::to_string(kMaxTapeRegisters) + " values at a time");
+      return static_cast<std::uint8_t>(tape_.registers++);
+    }
+    const std::uint8_t r = free_.back();
+    free_.pop_back();
+    return r;
+  }
+
+  const Values& values_;
+  const std::vector<Value>& list_;
+  std::vector<std::uint32_t> uses_;
+  std::vector<std::uint8_t> registers_, free_;
+  std::vector<bool> written_;
+  FunctionTape tape_;
+};
+
+}  // namespace
+
+FunctionTape compile_function(std::string_view text) {
+  const Expression parsed = parse_expression(text, kVariables);
+  Values values;
+  std::vector<std::uint32_t> made;
+  for (std::size_t i = 0; i < parsed.nodes.size(); ++i) {
+    const ExpressionNode& node = parsed.nodes[i];
+    const int operands = operand_count(node.op);
+    made.push_back(values.translate(node, parsed.places[i], operands > 0 ? made[node.a] : kNoId,
+                                    operands > 1 ? made[node.b] : kNoId));
+  }
+  const std::uint32_t root = made.back();
+  FunctionTape tape = Writer(values, root).take();
+  tape.varies = !values.is_constant(root);
+  return tape;
+}
+
+}  // namespace oktett

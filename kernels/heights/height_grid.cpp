@@ -1,0 +1,120 @@
+#include "kernels/heights/height_grid.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace oktett {
+
+namespace {
+
+/// Rays come to a field in many places: with pages of 2 MiB their addresses are at hand.
+template <class T>
+VirtualArray<T> large_array(std::size_t count) {
+  constexpr std::size_t kWorthwhile = std::size_t{1} << 22;
+  VirtualArray<T> array(count);
+  // Only advice: whether it is taken changes nothing but the speed.
+  if (count * sizeof(T) >= kWorthwhile) madvise(array.data(), count * sizeof(T), MADV_HUGEPAGE);
+  return array;
+}
+
+}  // namespace
+
+HeightGrid::HeightGrid(std::uint32_t columns, std::uint32_t rows, HeightInterpolation interpolation)
+    : columns_(columns),
+      rows_(rows),
+      interpolation_(interpolation),
+      tile_row_((columns + kTile - 1) / kTile * std::size_t{kTile} * kTile) {}
+
+std::shared_ptr<const HeightGrid> HeightGrid::from_words(std::uint32_t columns, std::uint32_t rows,
+                                                         Column<std::uint16_t> words,
+                                                         HeightInterpolation interpolation) {
+  std::shared_ptr<HeightGrid> grid(new HeightGrid(columns, rows, interpolation));
+  grid->words_ = grid->take(words);
+  grid->word_data_ = grid->words_.data();
+  grid->step_ = 1;
+  grid->build_pyramid();
+  return grid;
+}
+
+std::shared_ptr<const HeightGrid> HeightGrid::from_floats(std::uint32_t columns, std::uint32_t rows,
+                                                          Column<float> floats,
+                                                          HeightInterpolation interpolation) {
+  std::shared_ptr<HeightGrid> grid(new HeightGrid(columns, rows, interpolation));
+  grid->floats_ = grid->take(floats);
+  grid->float_data_ = grid->floats_.data();
+  // Rounded outwards to steps, for which there must be one to spare.
+  grid->step_ = grid->greatest_ > grid->least_ ? (grid->greatest_ - grid->least_) / 65534 : 1;
+  grid->build_pyramid();
+  return grid;
+}
+
+/// The samples in tiles; notes the least and the greatest.
+template <class T>
+VirtualArray<T> HeightGrid::take(const Column<T>& samples) {
+  const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
+  least_ = *lo, greatest_ = *hi;
+  // Gathering words reads one more.
+  VirtualArray<T> tiles = large_array<T>(places() + 1);
+  for (std::uint32_t j = 0; j < rows_; ++j)
+    for (std::uint32_t i = 0; i < columns_; ++i)
+      tiles[column_place(i) + row_place(j)] = samples[i + std::size_t{j} * columns_];
+  return tiles;
+}
+
+/// Of the samples that the surface over the cells of block (i, j) depends on: `nearest` has walls on the
+/// borders of the block, up to the heights of the cells around it.
+void HeightGrid::bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& least,
+                             std::uint16_t& greatest) const {
+  const std::uint32_t ring = interpolation_ == HeightInterpolation::nearest ? 1 : 0;
+  const auto begin = [&](std::uint32_t k) { return k * kBlock - std::min(ring, k * kBlock); };
+  const auto end = [&](std::uint32_t k, std::uint32_t size) {
+    return std::min(k * kBlock + kBlock + 1 + ring, size);
+  };
+  double lo = greatest_, hi = least_;
+  for (std::uint32_t row = begin(j); row < end(j, rows_); ++row)
+    for (std::uint32_t column = begin(i); column < end(i, columns_); ++column) {
+      const double h = at(column, row);
+      lo = std::min(lo, h), hi = std::max(hi, h);
+    }
+  const double below = std::floor((lo - least_) / step_), above = std::ceil((hi - least_) / step_);
+  least = static_cast<std::uint16_t>(std::clamp(below, 0.0, 65535.0));
+  greatest = static_cast<std::uint16_t>(std::clamp(above, 0.0, 65535.0));
+}
+
+void HeightGrid::build_pyramid() {
+  const auto part = [](std::uint32_t whole) { return std::max((whole + kBlock - 1) / kBlock, 1u); };
+  for (std::uint32_t columns = part(columns_ - 1), rows = part(rows_ - 1);;) {
+    const Level level{columns, rows, part(columns), part(rows), node_count_};
+    level_[levels_++] = level;
+    node_count_ += std::size_t{level.columns} * level.rows;
+    columns = level.columns, rows = level.rows;
+    if (columns == 1 && rows == 1) break;
+  }
+  nodes_ = large_array<HeightNode>(node_count_);
+  node_data_ = nodes_.data();
+  for (int k = 0; k < levels_; ++k) {
+    const Level& level = level_[k];
+    for (std::uint32_t j = 0; j < level.rows; ++j)
+      for (std::uint32_t i = 0; i < level.columns; ++i) {
+        HeightNode& own = nodes_[level.first + i + std::size_t{j} * level.columns];
+        std::fill_n(own.least, 16, std::uint16_t{65535});
+        for (unsigned blocks = level.blocks(i, j); blocks != 0; blocks &= blocks - 1) {
+          const auto b = static_cast<std::uint32_t>(std::countr_zero(blocks));
+          const std::uint32_t x = kBlock * i + b % kBlock, z = kBlock * j + b / kBlock;
+          if (k == 0) {
+            bound_cells(x, z, own.least[b], own.greatest[b]);
+          } else {
+            const HeightNode& below = node(k - 1, x, z);
+            own.least[b] = *std::min_element(below.least, below.least + 16);
+            own.greatest[b] = *std::max_element(below.greatest, below.greatest + 16);
+          }
+        }
+      }
+  }
+}
+
+}  // namespace oktett

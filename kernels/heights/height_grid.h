@@ -1,0 +1,151 @@
+#pragma once
+/// \file Samples of a height field, and the pyramid of their least and greatest values over ever larger
+/// blocks (F. K. Musgrave: Grid Tracing, 1988; A. Tevs, I. Ihrke, H.-P. Seidel: Maximum Mipmaps, 2008).
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "core/platform.h"
+#include "core/simd_gather.h"
+#include "core/soa.h"
+#include "core/virtual_array.h"
+#include "kernels/heights/height_data.h"
+
+namespace oktett {
+
+/// Most samples along a side, and in all.
+inline constexpr std::uint32_t kMaxHeightSide = 32768;
+inline constexpr std::size_t kMaxHeightSamples = std::size_t{1} << 28;
+
+/// The least and greatest value over each of 4 x 4 blocks of cells, row by row, in steps of HeightGrid::step.
+struct alignas(64) HeightNode {
+  std::uint16_t least[16], greatest[16];
+};
+static_assert(sizeof(HeightNode) == 64);
+
+/// Immutable. Samples are 16-bit numbers or floats; they stand in tiles of 8 x 8, so that what is near each
+/// other in the field is so in memory. Cell (i, j) lies between the columns i and i + 1 and the rows j and
+/// j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k + 1) cells, 4 x 4 of them to a node; the last
+/// level has one node. That adds 2/15 to 16-bit samples.
+class HeightGrid {
+ public:
+  /// Cells along a side of the smallest blocks, and blocks along a side of a node.
+  static constexpr std::uint32_t kBlock = 4;
+  static constexpr int kMaxLevels = 7;  ///< 4^8 > kMaxHeightSide
+
+  struct Level {
+    std::uint32_t block_columns = 0, block_rows = 0;
+    std::uint32_t columns = 0, rows = 0;  ///< of nodes
+    std::size_t first = 0;                ///< of its nodes
+
+    /// Bit a + 4 b is set where block (a, b) of node (i, j) is one of the field.
+    OKTETT_INLINE unsigned blocks(std::uint32_t i, std::uint32_t j) const {
+      const std::uint32_t x = block_columns - kBlock * i, z = block_rows - kBlock * j;
+      return (x < kBlock ? 0x1111u * ((1u << x) - 1) : 0xffffu) & (z < kBlock ? (1u << 4 * z) - 1 : 0xffffu);
+    }
+  };
+
+  /// Sample (i, j) has the value words[i + j * columns] / 65535.
+  static std::shared_ptr<const HeightGrid> from_words(std::uint32_t columns, std::uint32_t rows,
+                                                      Column<std::uint16_t> words,
+                                                      HeightInterpolation interpolation);
+  /// Sample (i, j) has the value floats[i + j * columns], which is finite.
+  static std::shared_ptr<const HeightGrid> from_floats(std::uint32_t columns, std::uint32_t rows,
+                                                       Column<float> floats,
+                                                       HeightInterpolation interpolation);
+
+  OKTETT_INLINE std::uint32_t columns() const { return columns_; }
+  OKTETT_INLINE std::uint32_t rows() const { return rows_; }
+  OKTETT_INLINE HeightInterpolation interpolation() const { return interpolation_; }
+  /// What a sample as it is stored is multiplied by to be a value.
+  double unit() const { return word_data_ == nullptr ? 1.0 : 1.0 / 65535; }
+  /// The least and greatest sample as stored.
+  OKTETT_INLINE double least() const { return least_; }
+  OKTETT_INLINE double greatest() const { return greatest_; }
+  /// Of samples and pyramid.
+  std::size_t bytes() const {
+    return places() * (word_data_ != nullptr ? sizeof(std::uint16_t) : sizeof(float)) +
+           node_count_ * sizeof(HeightNode);
+  }
+
+  // What walks need, without bounds checks.
+
+  /// Sample (i, j) as stored.
+  OKTETT_INLINE double at(std::uint32_t i, std::uint32_t j) const {
+    return load(column_place(i) + row_place(j));
+  }
+  /// Sample (i, j) stands at column_place(i) + row_place(j).
+  OKTETT_INLINE std::size_t column_place(std::uint32_t i) const {
+    return (std::size_t{i / kTile} * kTile * kTile) + i % kTile;
+  }
+  OKTETT_INLINE std::size_t row_place(std::uint32_t j) const {
+    return j / kTile * tile_row_ + j % kTile * kTile;
+  }
+  OKTETT_INLINE double load(std::size_t place) const {
+    return word_data_ != nullptr ? static_cast<double>(word_data_[place])
+                                 : static_cast<double>(float_data_[place]);
+  }
+  /// The samples about the block whose first cell is (i, j): they are wanted soon.
+  OKTETT_INLINE void prefetch_block(std::uint32_t i, std::uint32_t j) const {
+    const std::size_t size = word_data_ != nullptr ? sizeof(std::uint16_t) : sizeof(float);
+    const auto* samples = word_data_ != nullptr ? reinterpret_cast<const char*>(word_data_)
+                                                : reinterpret_cast<const char*>(float_data_);
+    for (const std::uint32_t x : {i, i + kBlock})
+      for (const std::uint32_t z : {j, j + kBlock})
+        __builtin_prefetch(samples + (column_place(x) + row_place(z)) * size);
+  }
+  /// Samples at `place`, one in each lane, and where they stand; columns and rows are whole numbers.
+  template <class D>
+  OKTETT_INLINE D load(const D& place) const {
+    return word_data_ != nullptr ? gather(word_data_, place) : gather(float_data_, place);
+  }
+  template <class D>
+  OKTETT_INLINE D column_place(const D& i) const {
+    return i + D(double{kTile * (kTile - 1)}) * tile_of(i);
+  }
+  template <class D>
+  OKTETT_INLINE D row_place(const D& j) const {
+    return D(double{kTile}) * j + D(static_cast<double>(tile_row_) - kTile * kTile) * tile_of(j);
+  }
+  OKTETT_INLINE int levels() const { return levels_; }
+  OKTETT_INLINE const Level& level(int k) const { return level_[k]; }
+  OKTETT_INLINE const HeightNode& node(int level, std::uint32_t i, std::uint32_t j) const {
+    const Level& l = level_[level];
+    return node_data_[l.first + i + std::size_t{j} * l.columns];
+  }
+  /// A block has samples from least() + step() * node.least[...] to least() + step() * node.greatest[...].
+  OKTETT_INLINE double step() const { return step_; }
+
+ private:
+  static constexpr std::uint32_t kTile = 8;
+
+  HeightGrid(std::uint32_t columns, std::uint32_t rows, HeightInterpolation interpolation);
+  /// Of a whole number: by rounding to a whole number what is at most 7/16 from it.
+  template <class D>
+  static OKTETT_INLINE D tile_of(const D& i) {
+    const D shifter(0x1.8p52);
+    return ((i * D(1.0 / kTile) - D(0.4375)) + shifter) - shifter;
+  }
+  template <class T>
+  VirtualArray<T> take(const Column<T>& samples);
+  std::size_t places() const { return (rows_ + kTile - 1) / kTile * tile_row_; }
+  void build_pyramid();
+  void bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& least, std::uint16_t& greatest) const;
+
+  std::uint32_t columns_ = 0, rows_ = 0;
+  HeightInterpolation interpolation_ = HeightInterpolation::bilinear;
+  std::size_t tile_row_ = 0;  ///< samples in a row of tiles
+  VirtualArray<std::uint16_t> words_;
+  VirtualArray<float> floats_;
+  VirtualArray<HeightNode> nodes_;
+  std::size_t node_count_ = 0;
+  const std::uint16_t* word_data_ = nullptr;
+  const float* float_data_ = nullptr;
+  const HeightNode* node_data_ = nullptr;
+  double least_ = 0, greatest_ = 0, step_ = 1;
+  Level level_[kMaxLevels];
+  int levels_ = 0;
+};
+
+}  // namespace oktett

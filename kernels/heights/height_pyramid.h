@@ -1,0 +1,232 @@
+#pragma once
+/// \file The way of many lines over a height field from its whole down to single cells, past blocks of cells
+/// that have nothing at the heights of the lines.
+///
+/// Lines that keep close together go down in a bundle, others alone; the 16 blocks of a node of the pyramid
+/// are tested at once. Each line queues the smallest blocks that it may meet. Over the cells of these all
+/// lines walk at the same time, each in a block of its own: even neighbouring lines hardly ever meet the same
+/// cells, but so all lanes are busy.
+
+#include "kernels/heights/height_bundle.h"
+#include "kernels/heights/height_walk.h"
+
+namespace oktett {
+
+template <int K, class D>
+class PyramidWalk {
+ public:
+  using M = typename D::M;
+  explicit OKTETT_INLINE PyramidWalk(HeightSearch<K, D>& search) : s_(search), g_(search.g) {}
+
+  OKTETT_INLINE void run() {
+    if (none(s_.wanted)) return;
+    make_bundles();
+    for (;;) {
+      queued_ = 0;
+      for (int b = 0; b < size_; ++b) descend(bundles_[b]);
+      if (queued_ == 0) return;
+      walk_blocks();
+    }
+  }
+
+ private:
+  static constexpr int W = D::kWidth;
+  using A = typename D::Isa;
+  static constexpr std::uint32_t kBlock = HeightGrid::kBlock;
+  /// Lines that are not farther apart than this many cells go together.
+  static constexpr double kClose = 24;
+  static constexpr int kNode = 16, kQueue = 3 * kNode + 1;
+
+  /// One of the smallest blocks.
+  struct Block {
+    std::uint16_t i, j, least, greatest;
+  };
+  struct Node {
+    std::uint32_t i, j;
+    unsigned left;  ///< blocks to be looked at, in the order of the lines
+  };
+  struct Bundle : HeightBundle {
+    Node stack[HeightGrid::kMaxLevels];
+    int level;  ///< of the node that is looked at; those above it are behind it
+  };
+
+  OKTETT_INLINE void make_bundles() {
+    const unsigned x = bits(g_.forward_x), z = bits(g_.forward_z);
+    for (unsigned left = bits(s_.wanted); left != 0;) {
+      const unsigned first = left & -left;
+      const bool forward_x = (x & first) != 0, forward_z = (z & first) != 0;
+      const unsigned same = left & (forward_x ? x : ~x) & (forward_z ? z : ~z);
+      left &= ~same;
+      bundles_[size_].bound(s_.grid, g_, s_.from, s_.to, same, forward_x, forward_z);
+      if (same == first || bundles_[size_].spread <= kClose) {
+        start(bundles_[size_++]);
+        continue;
+      }
+      for (unsigned lanes = same; lanes != 0; lanes &= lanes - 1) {
+        bundles_[size_].bound(s_.grid, g_, s_.from, s_.to, lanes & -lanes, forward_x, forward_z);
+        start(bundles_[size_++]);
+      }
+    }
+  }
+  OKTETT_INLINE void start(Bundle& b) {
+    b.level = s_.grid.levels();
+    enter(b, 0, 0);
+  }
+
+  /// Looks at node (i, j) of the level below.
+  OKTETT_INLINE void enter(Bundle& b, std::uint32_t i, std::uint32_t j) {
+    const int level = b.level - 1;
+    const unsigned met = b.template meets<A>(s_.grid.node(level, i, j), static_cast<int>(i),
+                                             static_cast<int>(j), static_cast<int>(kBlock << 2 * level));
+    if (met == 0) return;
+    b.level = level, b.stack[level] = {i, j, met};
+  }
+
+  /// Down to the next of the smallest blocks, until every line has one.
+  OKTETT_INLINE void descend(Bundle& b) {
+    const unsigned wanted = b.lanes & bits(s_.wanted);
+    if (wanted == 0) b.level = s_.grid.levels();
+    while (b.level < s_.grid.levels()) {
+      Node& node = b.stack[b.level];
+      if (node.left == 0) {
+        ++b.level;
+        continue;
+      }
+      const HeightGrid::Level& level = s_.grid.level(b.level);
+      if (b.level == 0) {
+        queue_blocks(b, node, wanted);
+        if ((wanted & ~queued_) == 0 || *std::max_element(length_, length_ + W) >= kQueue - kNode) return;
+        continue;
+      }
+      const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)));
+      node.left &= node.left - 1;
+      if ((level.blocks(node.i, node.j) >> k & 1) != 0)
+        enter(b, kBlock * node.i + k % kBlock, kBlock * node.j + k / kBlock);
+    }
+  }
+
+  /// Queues the blocks of a node for the lines that may meet them.
+  OKTETT_INLINE void queue_blocks(const Bundle& b, Node& node, unsigned wanted) {
+    const HeightNode& heights = s_.grid.node(0, node.i, node.j);
+    const unsigned in_field = s_.grid.level(0).blocks(node.i, node.j);
+    const bool alone = (wanted & (wanted - 1)) == 0;
+    for (; node.left != 0; node.left &= node.left - 1) {
+      const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)));
+      if ((in_field >> k & 1) == 0) continue;
+      const Block block{static_cast<std::uint16_t>(kBlock * node.i + k % kBlock),
+                        static_cast<std::uint16_t>(kBlock * node.j + k / kBlock), heights.least[k],
+                        heights.greatest[k]};
+      const unsigned met = alone ? wanted : wanted & lines_at(b, block);
+      // Whom the block does not matter overwrites it by the next one.
+      for (int lane = 0; lane < W; ++lane) {
+        queue_[lane][length_[lane]] = block;
+        length_[lane] += static_cast<int>(met >> lane & 1);
+      }
+      queued_ |= met;
+      if (met != 0) s_.grid.prefetch_block(kBlock * block.i, kBlock * block.j);
+    }
+  }
+
+  OKTETT_INLINE unsigned lines_at(const HeightBundle& b, const Block& block) const {
+    const double i = kBlock * block.i, j = kBlock * block.j, end = kBlock;
+    const D x_in = g_.at_column(D(b.forward_x ? i : i + end)),
+            x_out = g_.at_column(D(b.forward_x ? i + end : i));
+    const D z_in = g_.at_row(D(b.forward_z ? j : j + end)), z_out = g_.at_row(D(b.forward_z ? j + end : j));
+    const D in = max(max(x_in, z_in), s_.from), out = min(min(x_out, z_out), s_.to);
+    return bits((in <= out) & s_.meets(g_.height(in), g_.height(out), least_of(block), greatest_of(block)));
+  }
+  OKTETT_INLINE double least_of(const Block& b) const { return s_.grid.least() + s_.grid.step() * b.least; }
+  OKTETT_INLINE double greatest_of(const Block& b) const {
+    return s_.grid.least() + s_.grid.step() * b.greatest;
+  }
+
+  /// Lets all lines walk over the cells of their blocks.
+  OKTETT_INLINE void walk_blocks() {
+    Walk w;
+    int taken[W] = {};
+    M walking = ~M::all_true();
+    for (;;) {
+      // Who is through with a block takes the next one.
+      unsigned fresh = 0;
+      for (unsigned free = queued_ & bits(s_.wanted) & ~bits(walking); free != 0; free &= free - 1) {
+        const int lane = std::countr_zero(free);
+        if (taken[lane] == length_[lane]) {
+          queued_ &= ~(1u << lane);
+          continue;
+        }
+        const Block& block = queue_[lane][taken[lane]++];
+        w.block_i[lane] = kBlock * block.i, w.block_j[lane] = kBlock * block.j;
+        w.least[lane] = least_of(block), w.greatest[lane] = greatest_of(block);
+        fresh |= 1u << lane;
+      }
+      if (fresh != 0) {
+        const M lanes = M::from_bits(fresh);
+        enter_blocks(w, lanes);
+        walking = walking | lanes;
+      }
+      if (none(walking)) break;
+      step(w, walking);
+    }
+    for (int& length : length_) length = 0;
+  }
+
+  /// Where lines are, in cells, and the block that each of them walks over.
+  struct Walk {
+    alignas(64) double block_i[W] = {}, block_j[W] = {}, least[W] = {}, greatest[W] = {};
+    D i = D(0.0), j = D(0.0), last_i = D(0.0), last_j = D(0.0);  ///< the last ones are of the block
+  };
+
+  /// To the cell where a line comes to heights that its block has, or one before it.
+  OKTETT_INLINE void enter_blocks(Walk& w, const M& fresh) const {
+    const D i = D::load(w.block_i), j = D::load(w.block_j), zero(0.0), end(static_cast<double>(kBlock));
+    const D x_in = g_.at_column(i + select(g_.forward_x, zero, end));
+    const D z_in = g_.at_row(j + select(g_.forward_z, zero, end));
+    const M falls = g_.d.y < zero;
+    const D far = D(4.0) * g_.noise;
+    const D begins = (select(falls, D::load(w.greatest) + far, D::load(w.least) - far) - g_.o.y) / g_.d.y;
+    D t = max(max(x_in, z_in), s_.from);
+    t = select((t < begins) & (begins <= s_.to), begins, t);
+    const D slack = (abs(g_.o.x) + abs(g_.o.z) + D(kMaxHeightSide)) * D(0x1p-46);
+    const auto cell = [&](const D& o, const D& d, const M& forward, const D& first, const D& last) {
+      const D place = (o + t * d) + select(forward, -slack, slack), shifter(0x1.8p52);
+      const D inside = min(max(place, first - end), last + end);
+      return min(max(((inside - D(0.5)) + shifter) - shifter, first), last);
+    };
+    const D last_i = min(i + D(kBlock - 1.0), D(s_.grid.columns() - 2.0));
+    const D last_j = min(j + D(kBlock - 1.0), D(s_.grid.rows() - 2.0));
+    w.i = select(fresh, cell(g_.o.x, g_.d.x, g_.forward_x, i, last_i), w.i);
+    w.j = select(fresh, cell(g_.o.z, g_.d.z, g_.forward_z, j, last_j), w.j);
+    w.last_i = last_i, w.last_j = last_j;
+  }
+
+  /// Looks at the cells and goes to the next ones.
+  OKTETT_INLINE void step(Walk& w, M& walking) {
+    const GridCell<D> cell(s_.grid, w.i, w.j, g_.forward_x, g_.forward_z);
+    const D zero(0.0), one(1.0);
+    const D x_in = g_.at_column(w.i + select(g_.forward_x, zero, one));
+    const D x_out = g_.at_column(w.i + select(g_.forward_x, one, zero));
+    const D z_in = g_.at_row(w.j + select(g_.forward_z, zero, one));
+    const D z_out = g_.at_row(w.j + select(g_.forward_z, one, zero));
+    const D in = max(max(x_in, z_in), s_.from), out = min(min(x_out, z_out), s_.to);
+    const M here = walking & (in <= out) & s_.meets(g_.height(in), g_.height(out), cell.least, cell.greatest);
+    if (any(here)) s_.look(cell, here, pass_cell(g_, x_in, x_out, z_in, z_out));
+    const M by_row = z_out < x_out;
+    const D i = select(by_row, w.i, w.i + select(g_.forward_x, one, -one));
+    const D j = select(by_row, w.j + select(g_.forward_z, one, -one), w.j);
+    const M in_block =
+        (D::load(w.block_i) <= i) & (i <= w.last_i) & (D::load(w.block_j) <= j) & (j <= w.last_j);
+    walking = walking & s_.wanted & in_block & (min(x_out, z_out) <= s_.to);
+    // All lanes are at cells of the field.
+    w.i = select(in_block, i, w.i), w.j = select(in_block, j, w.j);
+  }
+
+  HeightSearch<K, D>& s_;
+  const GridLines<D>& g_;
+  Bundle bundles_[W];
+  int size_ = 0;
+  Block queue_[W][kQueue];
+  int length_[W] = {};
+  unsigned queued_ = 0;  ///< lanes with blocks to walk over
+};
+
+}  // namespace oktett

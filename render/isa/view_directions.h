@@ -1,0 +1,48 @@
+#pragma once
+/// \file view_directions for one instruction set.
+
+#include <algorithm>
+
+#include "core/lanes.h"
+#include "render/view_code.h"
+
+namespace oktett {
+
+/// Without vector registers one point at a time.
+template <class A>
+void view_directions_code(const ViewPlane& plane, const ViewPoints& points) {
+  constexpr int W = std::is_same_v<A, ScalarIsa> ? 1 : 8;
+  using D = Simd<double, W, A>;
+  const Vec3<D> corner = broadcast<D>(plane.corner), across = broadcast<D>(plane.per_pixel_x),
+                down = broadcast<D>(plane.per_pixel_y);
+  const auto directions = [&](const double* x_column, const double* y_column, float* out_x, float* out_y,
+                              float* out_z) {
+    const D x = D::load(x_column), y = D::load(y_column);
+    const Vec3<D> place{corner.x + across.x * x + down.x * y, corner.y + across.y * x + down.y * y,
+                        corner.z + across.z * x + down.z * y};
+    const D length = sqrt(dot_lanes(place, place));
+    to_float(place.x / length).store(out_x);
+    to_float(place.y / length).store(out_y);
+    to_float(place.z / length).store(out_z);
+  };
+  float* const* out = points.direction;
+  std::size_t i = 0;
+  for (; i + W <= points.count; i += W)
+    directions(points.x + i, points.y + i, out[0] + i, out[1] + i, out[2] + i);
+  if (i == points.count) return;
+  double x[W] = {}, y[W] = {};
+  float d[3][W];
+  const std::size_t rest = points.count - i;
+  for (std::size_t k = 0; k < rest; ++k) x[k] = points.x[i + k], y[k] = points.y[i + k];
+  directions(x, y, d[0], d[1], d[2]);
+  for (std::size_t k = 0; k < rest; ++k)
+    for (int axis = 0; axis < 3; ++axis) out[axis][i + k] = d[axis][k];
+}
+
+template <class A>
+const ViewCode& view_code() {
+  static constexpr ViewCode code = {view_directions_code<A>};
+  return code;
+}
+
+}  // namespace oktett

@@ -1,0 +1,224 @@
+#include "render/wavefront.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "accel/accel.h"
+#include "accel/surface/offset_origin.h"
+#include "core/random.h"
+#include "render/integrators.h"
+#include "render/sampling.h"
+#include "render/shadow.h"
+#include "render/whitted_block.h"
+
+namespace oktett {
+namespace {
+
+/// Holes that a camera path may lead through, in addition to its bounces.
+constexpr unsigned kMostHoles = 128;
+/// Bound on the growth of a tree of rays where materials give out more light than they receive.
+constexpr std::uint16_t kMostRaysPerLevel = 256;
+constexpr float kLeastThroughput = 1 / 4096.0f;
+/// Shadow rays are traced when this many have gathered.
+constexpr std::size_t kShadowBatch = 4096;
+/// Hits whose surfaces are found together.
+constexpr std::size_t kShadeBlock = InteractionBlock::kMost;
+
+void find_hits(const RenderContext& context, Wavefront& wavefront) {
+  wavefront.hits.resize_uninitialized(wavefront.rays.size());
+  closest_hit(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), context.isa);
+}
+
+/// Gives every ray its radiance if it escapes, none yet if not, and lists those that do not.
+void start_level(const RenderContext& context, Wavefront& wavefront) {
+  const std::size_t count = wavefront.rays.size();
+  wavefront.radiance.resize_uninitialized(count);
+  wavefront.hit_rays.resize_uninitialized(count);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool hit = wavefront.hits.item[i] != kNoId;
+    wavefront.hit_rays[hits] = static_cast<std::uint32_t>(i);
+    hits += hit;
+    wavefront.radiance[i] = hit ? Color{} : wavefront.rays.throughput[i] * context.background;
+  }
+  wavefront.hit_rays.resize_uninitialized(hits);
+  std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
+  wavefront.next.clear();
+}
+
+/// A background that is part of the picture covers it.
+void cover_background(const RenderContext& context, Wavefront& wavefront) {
+  if (!context.opaque_background) return;
+  for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
+    if (wavefront.rays.from_camera[i] && wavefront.hits.item[i] == kNoId)
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
+}
+
+void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                      const ShadingPoint& p) {
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * p.opacity;
+  if (!context.data_layers) return;
+  FirstHit& first = wavefront.samples.first[sample];
+  if (first.found || p.opacity == 0) return;
+  const SurfaceInteraction& s = p.surface;
+  first = {true,
+           static_cast<float>(camera_depth(context.camera, s.position)),
+           s.shading_normal,
+           s.position,
+           p.color,
+           s.uv,
+           s.primitive,
+           s.user};
+}
+
+/// The order of the lights, and within a light that of the rays, is that in which each ray gets its light.
+void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
+  for (ShadowQueue& queue : wavefront.shadows) {
+    trace_shadows(context, queue, wavefront.radiance);
+    wavefront.counts.shadow += queue.size();
+    queue.clear();
+  }
+}
+
+bool shadows_are_full(const Wavefront& wavefront) {
+  for (const ShadowQueue& queue : wavefront.shadows)
+    if (queue.size() >= kShadowBatch) return true;
+  return false;
+}
+
+/// In blocks, so that what is known of a hit stays in the nearest cache until it has been shaded.
+void shade_hits(const RenderContext& context, Wavefront& wavefront) {
+  const Integrator integrator = integrator_for(context.settings.kind);
+  const bool in_blocks = context.settings.kind == IntegratorKind::whitted && !context.data_layers;
+  InteractionBlock found;
+  for (std::size_t first = 0; first < wavefront.hit_rays.size(); first += kShadeBlock) {
+    const std::size_t count = std::min(kShadeBlock, wavefront.hit_rays.size() - first);
+    const std::uint32_t* which = wavefront.hit_rays.data() + first;
+    surface_interactions(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), which,
+                         count, context.isa, found);
+    if (in_blocks) {
+      shade_whitted_block(context, wavefront, which, count, found);
+      if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
+      continue;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = which[k];
+      const bool from_camera = wavefront.rays.from_camera[i] != 0;
+      const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                                           {wavefront.rays.distance[i], from_camera}, found[k]);
+      if (from_camera) record_first_hit(context, wavefront, i, p);
+      integrator(context, wavefront, i, p);
+    }
+    if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
+  }
+  flush_shadows(context, wavefront);
+}
+
+void add_to_samples(Wavefront& wavefront) {
+  for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
+    wavefront.samples.color[wavefront.rays.sample[i]] += wavefront.radiance[i];
+}
+
+bool meets_anything(const Wavefront& wavefront) {
+  for (const std::uint32_t item : wavefront.hits.item)
+    if (item != kNoId) return true;
+  return false;
+}
+
+/// Columns in which all camera rays are alike.
+void fill_camera_rays(Wavefront& wavefront) {
+  const std::size_t count = wavefront.rays.size();
+  const RayQueue::Entry like;
+  RayQueue& rays = wavefront.rays;
+  for (std::size_t i = 0; i < count; ++i) rays.sample[i] = static_cast<std::uint32_t>(i);
+  std::fill_n(rays.throughput.data(), count, like.throughput);
+  std::fill_n(rays.distance.data(), count, like.distance);
+  std::fill_n(rays.bounces.data(), count, like.bounces);
+  std::fill_n(rays.from_camera.data(), count, std::uint8_t{1});
+}
+
+/// Samples that have found nothing yet.
+void fill_samples(SampleBatch& samples) {
+  const std::size_t count = samples.size();
+  std::fill_n(samples.color.data(), count, Color{});
+  std::fill_n(samples.alpha.data(), count, 0.0f);
+  for (FirstHit& first : samples.first) {
+    // The rest of a first hit is written when it is found.
+    first.found = false, first.primitive = first.object = kNoId;
+  }
+}
+
+}  // namespace
+
+void start_wavefront(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                     std::uint32_t first, std::uint32_t last, Wavefront& wavefront) {
+  const std::size_t count = pixels.size() * (last - first);
+  wavefront.level = 0;
+  wavefront.whole_pixels = last - first == context.settings.samples;
+  wavefront.next.clear();
+  wavefront.shadows.resize(std::max<std::size_t>(1, context.lights.size()));
+  wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);
+  SampleBatch& s = wavefront.samples;
+  s.resize_uninitialized(count, context.data_layers);
+  wavefront.rays.resize_uninitialized(count);
+  std::size_t i = 0;
+  const auto add = [&](const WavefrontPixel& pixel, std::uint32_t number, std::uint64_t key,
+                       const SquareSample& at) {
+    wavefront.film_x[i] = pixel.x + at.x, wavefront.film_y[i] = pixel.y + at.y;
+    s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
+    s.offset[i++] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
+  };
+  for (const WavefrontPixel& pixel : pixels) {
+    const std::uint64_t index = static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x;
+    const std::uint64_t key = pixel_key(context.settings.seed, index);
+    if (context.settings.samples == 1) {
+      add(pixel, 0, key, kSquareCentre);
+      continue;
+    }
+    const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
+    for (std::uint32_t number = first; number < last; ++number) add(pixel, number, key, pattern[number]);
+  }
+  camera_rays(context.camera, {wavefront.film_x, wavefront.film_y}, context.isa, wavefront.rays.rays);
+  wavefront.counts.camera += count;
+}
+
+bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
+  const unsigned most_levels = context.settings.depth + kMostHoles;
+  for (wavefront.level = 0; wavefront.level <= most_levels && !wavefront.rays.empty(); ++wavefront.level) {
+    find_hits(context, wavefront);
+    if (wavefront.level == 0) {
+      // Wavefronts that share a pixel are all needed for its mean.
+      if (wavefront.whole_pixels && !context.opaque_background && !meets_anything(wavefront)) return false;
+      fill_samples(wavefront.samples);
+      fill_camera_rays(wavefront);
+    }
+    start_level(context, wavefront);
+    cover_background(context, wavefront);
+    shade_hits(context, wavefront);
+    add_to_samples(wavefront);
+    std::swap(wavefront.rays, wavefront.next);
+  }
+  return true;
+}
+
+void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce) {
+  if (max_component(throughput) < kLeastThroughput) return;
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  if (wavefront.samples.spawned[sample] >= kMostRaysPerLevel) return;
+  ++wavefront.samples.spawned[sample];
+  const bool straight = bounce == Bounce::straight;
+  RayQueue::Entry entry;
+  offset_origin(p.surface, direction, entry.ray.origin);
+  entry.ray.direction = direction;
+  entry.sample = sample;
+  entry.throughput = throughput;
+  entry.distance = wavefront.rays.distance[ray] + p.t;
+  entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (straight ? 0 : 1));
+  entry.from_camera = straight && wavefront.rays.from_camera[ray];
+  wavefront.next.push_back(entry);
+  ++(bounce == Bounce::reflected ? wavefront.counts.reflected : wavefront.counts.refracted);
+}
+
+}  // namespace oktett

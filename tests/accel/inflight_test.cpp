@@ -1,0 +1,189 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "accel/query.h"
+#include "tests/support/triangle_cases.h"
+
+namespace oktett {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+bool same_bits(const Hit& a, const Hit& b) {
+  return std::memcmp(&a.t, &b.t, sizeof a.t) == 0 && std::memcmp(&a.u, &b.u, sizeof a.u) == 0 &&
+         std::memcmp(&a.v, &b.v, sizeof a.v) == 0 && a.item == b.item && a.instance == b.instance;
+}
+
+/// Interleaved rays of every instruction set find what single rays of the scalar code find in `plain`, which
+/// holds the same.
+int expect_same_hits(const Accel& accel, const Accel& plain, const RayBatch& rays) {
+  HitBatch expected, hits;
+  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
+  std::vector<std::uint8_t> occluded(rays.size());
+  closest_hit(plain, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
+  for (const Isa isa : available_isas())
+    for (const TraceMode mode : {TraceMode::interleaved, TraceMode::automatic}) {
+      closest_hit(accel, rays.span(), hits.span(), isa, mode);
+      any_hit(accel, rays.span(), occluded.data(), isa, mode);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_TRUE(same_bits(hits[i], expected[i])) << to_string(isa) << " ray " << i;
+        EXPECT_EQ(occluded[i] != 0, expected[i].valid()) << to_string(isa) << " ray " << i;
+        if (testing::Test::HasFailure()) return 0;
+      }
+    }
+  int count = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
+  return count;
+}
+
+/// In nodes of either layout.
+int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
+  const std::vector<Geometry> geometries = {{MeshGeometry{&mesh}, {}, kNoId}};
+  const auto plain = build_accel(geometries);
+  const auto compact = build_accel(geometries, {BuildQuality::balanced, true, NodeLayout::compact});
+  expect_same_hits(*plain, *plain, rays);
+  return expect_same_hits(*compact, *plain, rays);
+}
+
+/// Slivers, needles and pairs of the same triangle, which tie, with rays that meet or just miss them.
+void add_case(TriangleRandom& random, TriangleMesh& mesh, RayBatch& rays, float scale) {
+  const TriangleCase c = adversarial_case(random, scale);
+  const int copies = random.bits() % 8 == 0 ? 2 : 1;
+  for (int k = 0; k < copies; ++k)
+    for (const Vec3f& p : c.corner) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(p);
+    }
+  rays.push_back(c.ray);
+  Ray up_to_target = c.ray;
+  up_to_target.tmax = 1;
+  rays.push_back(up_to_target);
+}
+
+class InterleavedScale : public testing::TestWithParam<float> {};
+
+TEST_P(InterleavedScale, AdversarialTrianglesGiveTheSameHits) {
+  TriangleRandom random(static_cast<std::uint64_t>(std::ilogb(GetParam()) + 3000));
+  TriangleMesh mesh;
+  RayBatch rays;
+  for (int i = 0; i < 500; ++i) add_case(random, mesh, rays, GetParam());
+  EXPECT_GT(expect_same_hits(mesh, rays), 500);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scales, InterleavedScale,
+                         testing::Values(1.0f, 1e-4f, 1e-9f, 1e-12f, 1e-20f, 1e5f, 1e10f, 1e12f, 1e20f));
+
+/// A ray that is wrong or strange in one way, by number.
+Ray strange_ray(int kind, Ray r) {
+  switch (kind) {
+    case 0:
+      r.origin.y = kNan;
+      break;
+    case 1:
+      r.direction.x = kNan;
+      break;
+    case 2:
+      r.direction = {0, 0, 0};
+      break;
+    case 3:
+      r.origin.z = kInf;
+      break;
+    case 4:
+      r.direction.y = -kInf;
+      break;
+    case 5:
+      r.tmax = r.tmin = 0.5f;
+      break;
+    case 6:
+      r.tmin = -1;
+      break;
+    case 7:
+      r.tmin = kNan;
+      break;
+    case 8:
+      r.tmax = kNan;
+      break;
+    case 9:
+      r.direction = r.direction * 1e-30f;
+      break;
+    case 10:
+      r.direction = r.direction * 1e30f;
+      break;
+    case 11:
+      r.direction = {1e-39f, -1e-39f, r.direction.z};
+      break;
+    case 12:
+      r.direction = {0, -0.0f, r.direction.z};
+      break;
+    case 13:
+      r.direction.x = 1e-20f;
+      break;
+    case 14:
+      r.tmin = -0.0f;
+      break;
+    case 15:
+      r.tmin = 0.9f;
+      break;
+    case 16:
+      r.origin = r.origin * 1e15f;
+      r.direction = -r.origin;
+      break;
+    case 17:
+      r.direction = {1e-42f, 1e-43f, 1e-41f};
+      break;
+    default:
+      break;
+  }
+  return r;
+}
+
+// Rays that hit nothing, or that the fast arithmetic is not made for, stand between others.
+TEST(Interleaved, StrangeRaysAmongOthers) {
+  TriangleRandom random(17);
+  TriangleMesh mesh;
+  RayBatch soup, rays;
+  for (int i = 0; i < 1000; ++i) add_case(random, mesh, soup, 1);
+  for (std::size_t i = 0; i < soup.size(); ++i)
+    rays.push_back(strange_ray(static_cast<int>(random.bits() % 30), soup[i]));
+  EXPECT_GT(expect_same_hits(mesh, rays), 500);
+}
+
+// Rays along the axes, in and beside the faces of boxes, meet what they meet one by one.
+TEST(Interleaved, AxisParallelRaysOnAGrid) {
+  TriangleMesh mesh;
+  const auto add = [&](const Vec3f& p) {
+    mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+    mesh.positions.push_back(p);
+  };
+  for (int i = 0; i < 400; ++i) {
+    const auto x = static_cast<float>(i % 20), y = static_cast<float>(i / 20), z = static_cast<float>(i % 3);
+    for (const Vec3f& p : {Vec3f{x, y, z}, Vec3f{x + 1, y, z}, Vec3f{x, y + 1, z}}) add(p);
+  }
+  RayBatch rays;
+  for (int i = 0; i < 41 * 41; ++i) {
+    const float x = 0.5f * static_cast<float>(i % 41), y = 0.5f * static_cast<float>(i / 41);
+    rays.push_back({{x, y, 5}, 0, {0, -0.0f, -1}, kInf});
+    rays.push_back({{x, y, -5}, 0, {1e-45f, 0, 2}, kInf});
+    rays.push_back({{-1, y, 1}, 0, {1, 0, 0}, kInf});
+  }
+  EXPECT_GT(expect_same_hits(mesh, rays), 800);
+}
+
+// Batches that fill no slot, some, all and more.
+TEST(Interleaved, BatchesOfAnySize) {
+  TriangleRandom random(23);
+  TriangleMesh mesh;
+  RayBatch soup;
+  for (int i = 0; i < 300; ++i) add_case(random, mesh, soup, 1);
+  for (const std::size_t size : {1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33, 47, 48, 49, 100}) {
+    RayBatch rays;
+    for (std::size_t i = 0; i < size; ++i) rays.push_back(soup[i]);
+    expect_same_hits(mesh, rays);
+  }
+}
+
+}  // namespace
+}  // namespace oktett

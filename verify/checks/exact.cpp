@@ -1,0 +1,391 @@
+#include "verify/checks/exact.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+
+#include "accel/accel.h"
+#include "accel/query.h"
+#include "accel/trace_mode.h"
+#include "core/random.h"
+#include "kernels/exact/march.h"
+#include "verify/checks/kernels.h"
+
+namespace oktett {
+
+namespace {
+
+constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,  TraceMode::interleaved,
+                                TraceMode::packet4,   TraceMode::packet8, TraceMode::packet16,
+                                TraceMode::beam};
+/// Rays against one shape: a camera's worth, so that beams and packets are formed.
+constexpr std::size_t kRaysPerShape = 512;
+/// Samples along a ray; what is thinner than a step may escape the oracle, never the tracer.
+constexpr int kSamples = 768;
+/// Samples within the rounding of a hit at which three do not show a crossing.
+constexpr int kFineSamples = 1024;
+
+Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+/// The function along a ray, in the space of the shape's description.
+class AlongRay {
+ public:
+  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray)
+      : f_(oracle.f), where_(oracle.where) {
+    for (int k = 0; k < 3; ++k) {
+      o_[k] = to_own.m[k][3], d_[k] = 0;
+      for (int j = 0; j < 3; ++j) {
+        o_[k] += static_cast<long double>(to_own.m[k][j]) * ray.origin[j];
+        d_[k] += static_cast<long double>(to_own.m[k][j]) * ray.direction[j];
+      }
+    }
+    // The sphere around the box, a little larger.
+    const Vec3l c = (widen(oracle.lo) + widen(oracle.hi)) * 0.5L, m = o_ - c;
+    const Vec3l half = (widen(oracle.hi) - widen(oracle.lo)) * 0.5L;
+    const long double dd = dot(d_, d_), b = dot(m, d_) / dd;
+    const long double h = dot(half, half) * 1.02L - (dot(m, m) - b * b * dd);
+    size_ = std::sqrt(dot(half, half) / dd);
+    if (h < 0) return;
+    const long double w = std::sqrt(h / dd);
+    begin = std::max(-b - w, static_cast<long double>(ray.tmin));
+    end = std::min(-b + w, static_cast<long double>(ray.tmax));
+  }
+  long double operator()(long double t) const { return f_(o_ + d_ * t); }
+  /// Where t may be off: what rounding to float and the ray's way into the own space allow.
+  long double slack(long double t) const {
+    const long double far = std::abs(t) + std::sqrt(dot(o_, o_) / dot(d_, d_));
+    return 0x1p-24L * 1.01L * std::abs(t) + 0x1p-44L * far + 0x1p-36L * size_;
+  }
+  /// Crossings, each by bisection.
+  std::vector<long double> crossings() const {
+    std::vector<long double> found;
+    if (!(begin < end)) return found;
+    long double t0 = begin, f0 = (*this)(t0);
+    for (int i = 1; i <= kSamples; ++i) {
+      const long double t1 = begin + (end - begin) * i / kSamples, f1 = (*this)(t1);
+      if ((f0 < 0) != (f1 < 0)) {
+        long double lo = t0, hi = t1;
+        for (int k = 0; k < 64; ++k) {
+          const long double mid = lo + (hi - lo) / 2;
+          ((((*this)(mid) < 0) == (f0 < 0)) ? lo : hi) = mid;
+        }
+        const long double t = lo + (hi - lo) / 2;
+        if (ends(t) < 0) found.push_back(t);
+      }
+      t0 = t1, f0 = f1;
+    }
+    return found;
+  }
+  /// Whether an open surface is there: -1 surely, 1 surely not, 0 if rounding may decide.
+  int ends(long double t) const {
+    if (!where_) return -1;
+    const long double s = slack(t), a = where_(o_ + d_ * (t - s)), b = where_(o_ + d_ * (t + s));
+    const long double rounding = std::abs(a - b) + 0x1p-36L * size_ * std::sqrt(dot(d_, d_));
+    return a < -rounding && b < -rounding ? -1 : a > rounding && b > rounding ? 1 : 0;
+  }
+  /// Whether f changes its sign near t, or comes so near to zero that rounding the ray decides.
+  enum class Crossing { yes, nearly, no };
+  Crossing crosses(long double t) const {
+    const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
+    if (ends(t) > 0) return Crossing::no;
+    if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
+    // Cusps may be thinner than what rounding to float moves t by.
+    const long double step = 2 * s / kFineSamples;
+    long double l = t - s, fl = before, steepest = 0, cliff = l, least = HUGE_VALL, tip = l;
+    for (int i = 1; i < kFineSamples; ++i) {
+      const long double r = t - s + step * i, fr = (*this)(r);
+      if ((fr < 0) != (before < 0)) return Crossing::nearly;
+      if (std::abs(fr - fl) > steepest) steepest = std::abs(fr - fl), cliff = l;
+      if (std::abs(fr) < least) least = std::abs(fr), tip = r;
+      l = r, fl = fr;
+    }
+    if (hides_at_cliff(cliff, cliff + step) || hides_at_tip(tip - step, tip + step)) return Crossing::nearly;
+    // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
+    const long double off = 0x1p-14L * size_,
+                      rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
+    return std::abs(here) <= 0x1p-8L * rim ? Crossing::nearly : Crossing::no;
+  }
+
+  long double begin = 0, end = -1;
+
+ private:
+  /// Whether f, of one sign at l and r, has the other one next to where it is steepest.
+  bool hides_at_cliff(long double l, long double r) const {
+    long double fl = (*this)(l), fr = (*this)(r);
+    for (int k = 0; k < 64; ++k) {
+      const long double mid = l + (r - l) / 2, f = (*this)(mid);
+      if ((f < 0) != (fl < 0)) return true;
+      if (std::abs(f - fl) > std::abs(fr - f))
+        r = mid, fr = f;
+      else
+        l = mid, fl = f;
+    }
+    return false;
+  }
+  /// Whether f has the other sign where it comes nearest to zero between l and r.
+  bool hides_at_tip(long double l, long double r) const {
+    const bool negative = (*this)(l) < 0;
+    for (int k = 0; k < 128; ++k) {
+      const long double a = l + (r - l) * 0.4L, b = l + (r - l) * 0.6L;
+      const long double fa = (*this)(a), fb = (*this)(b);
+      if ((fa < 0) != negative || (fb < 0) != negative) return true;
+      if (std::abs(fa) < std::abs(fb))
+        r = b;
+      else
+        l = a;
+    }
+    return false;
+  }
+  const std::function<long double(const Vec3l&)>&f_, &where_;
+  Vec3l o_, d_;
+  long double size_ = 0;
+};
+
+/// A shape in a random place, its rays, and what the tracer says.
+struct Trial {
+  ExactOracle oracle;
+  Affine to_world, to_own;
+  std::shared_ptr<const Accel> accel;
+  RayBatch rays;
+};
+
+Affine random_place(CaseRandom& random) {
+  const double size = random.unit() < 0.5 ? 1 : random.magnitude(-2, 2);
+  const double far = random.unit() < 0.25 ? 300 : 1;
+  Affine a = Affine::rotation(random.vector() * 180.0);
+  if (random.unit() < 0.5)
+    a = a * Affine::scaling({0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()});
+  if (random.unit() < 0.2) a = Affine{};
+  return Affine::translation(random.vector() * (size * far)) * Affine::scaling({size, size, size}) * a;
+}
+
+/// Rays from a common point or from all around, aimed into the box; some along axes, some from inside.
+void shoot(Trial& trial, CaseRandom& random) {
+  const Vec3d middle = (trial.oracle.lo + trial.oracle.hi) * 0.5,
+              half = (trial.oracle.hi - trial.oracle.lo) * 0.5;
+  const auto inside = [&] { return trial.to_world.point(middle + half * random.vector()); };
+  const bool camera = random.unit() < 0.5;
+  const double size = length(trial.to_world.vector(half));
+  const auto outside = [&] {
+    return trial.to_world.point(middle) + normalize(random.vector()) * (size * (1.2 + 3 * random.unit()));
+  };
+  const Vec3d eye = outside();
+  while (trial.rays.size() < kRaysPerShape / 2) {
+    Vec3d from = camera ? eye : random.unit() < 0.1 ? inside() : outside(), at = inside();
+    Ray ray;
+    if (!camera && random.unit() < 0.1) {
+      const int axis = static_cast<int>(random.unit() * 3);
+      from = at, from[axis] += random.sign() < 0 ? -3 * size : 3 * size;
+      Vec3d d{0, 0, 0};
+      d[axis] = from[axis] < at[axis] ? 1 : -1;
+      ray.direction = Vec3f(d * random.magnitude(-2, 2));
+    } else {
+      ray.direction = Vec3f((at - from) * (random.unit() < 0.5 ? 1.0 : random.magnitude(-2, 2)));
+    }
+    ray.origin = Vec3f(from);
+    trial.rays.push_back(ray);
+  }
+}
+
+class Checker {
+ public:
+  /// `turn` tells which instruction set is asked in all ways.
+  Checker(Trial& trial, CaseRandom& random, const std::vector<Isa>& isas, std::size_t turn, ExactTally& tally)
+      : trial_(trial), random_(random), isas_(isas), turn_(turn % isas.size()), tally_(tally) {}
+
+  void run() {
+    HitBatch first = trace(trial_.rays);
+    RayBatch second;
+    for (std::size_t i = 0; i < trial_.rays.size(); ++i) check(trial_.rays[i], first[i], &second);
+    if (second.size() == 0) return;
+    HitBatch next = trace(second);
+    for (std::size_t i = 0; i < second.size(); ++i) check(second[i], next[i], nullptr);
+  }
+
+ private:
+  /// All ways to trace must agree to the bit: those of one instruction set with two of each other one.
+  HitBatch trace(const RayBatch& rays) {
+    HitBatch reference;
+    reference.resize_uninitialized(rays.size());
+    closest_hit(*trial_.accel, rays.span(), reference.span(), isas_.front(), TraceMode::single);
+    for (std::size_t k = 0; k < isas_.size(); ++k) {
+      const Isa isa = isas_[k];
+      for (const TraceMode mode : kModes) {
+        if (k != turn_ && mode != TraceMode::automatic && mode != TraceMode::single) continue;
+        HitBatch other;
+        other.resize_uninitialized(rays.size());
+        closest_hit(*trial_.accel, rays.span(), other.span(), isa, mode);
+        std::vector<std::uint8_t> occluded(rays.size());
+        any_hit(*trial_.accel, rays.span(), occluded.data(), isa, mode);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          if (other[i] == reference[i] && (occluded[i] != 0) == reference[i].valid()) continue;
+          ++tally_.differing;
+          fail(rays[i], fmt::format("{} differs", to_string(isa)));
+        }
+      }
+    }
+    return reference;
+  }
+
+  void fail(const Ray& ray, const std::string& what) {
+    if (tally_.failure.empty()) tally_.failure = what + "; ray " + exact_text(ray);
+  }
+
+  void check(const Ray& ray, const Hit& hit, RayBatch* next) {
+    ++tally_.rays, tally_.hits += hit.valid();
+    const AlongRay f(trial_.oracle, trial_.to_own, ray);
+    const std::vector<long double> truth = f.crossings();
+    // Near the ray's beginning and end rounding decides.
+    const auto inside = [&](long double t) { return t > ray.tmin + f.slack(t) && t < ray.tmax - f.slack(t); };
+    const auto first = std::find_if(truth.begin(), truth.end(), inside);
+    const bool expected = first != truth.end();
+    if (expected && (!hit.valid() || hit.t > *first + f.slack(*first))) {
+      ++tally_.missed;
+      fail(ray, fmt::format("missed the crossing at {}, {}", static_cast<double>(*first),
+                            hit.valid() ? fmt::format("hit {}", hit.t) : "no hit"));
+    }
+    check_list(ray, f, truth);
+    if (!hit.valid()) return;
+    if (!(expected && std::abs(hit.t - *first) <= f.slack(*first))) {
+      const auto crossing = f.crosses(hit.t);
+      tally_.touched += crossing == AlongRay::Crossing::nearly;
+      if (crossing == AlongRay::Crossing::no) {
+        ++tally_.invented;
+        fail(ray, fmt::format("hit {} where nothing is", hit.t));
+      }
+      if (crossing != AlongRay::Crossing::yes) return;
+    }
+    check_surface(ray, hit, next);
+  }
+
+  void check_list(const Ray& ray, const AlongRay& f, const std::vector<long double>& truth) {
+    std::vector<Hit> list;
+    all_hits(*trial_.accel, ray, list, isas_.front());
+    std::size_t at = 0;
+    bool good = true;
+    for (const long double t : truth) {
+      const long double s = f.slack(t);
+      if (t <= ray.tmin + s || t >= ray.tmax - s) continue;
+      while (at < list.size() && list[at].t < t - s) ++at;
+      good &= at < list.size() && list[at].t <= t + s;
+    }
+    // Crossings go in and out in turn.
+    for (std::size_t i = 1; i < list.size(); ++i) good &= list[i].v == -list[i - 1].v;
+    if (good) return;
+    ++tally_.lists;
+    fail(ray, fmt::format("all_hits lists {} crossings, the oracle {}", list.size(), truth.size()));
+  }
+
+  /// Moved off the surface by its error bound, the position must be off it.
+  void check_surface(const Ray& ray, const Hit& hit, RayBatch* next) {
+    const SurfaceInteraction s = surface_interaction(*trial_.accel, ray, hit);
+    const auto f = [&](const auto& p) {
+      Vec3l q;
+      for (int k = 0; k < 3; ++k) {
+        q[k] = trial_.to_own.m[k][3];
+        for (int j = 0; j < 3; ++j) q[k] += static_cast<long double>(trial_.to_own.m[k][j]) * p[j];
+      }
+      return trial_.oracle.f(q);
+    };
+    const Vec3f n = s.geometric_normal;
+    const Vec3f out = offset_origin(s, n), in = offset_origin(s, -n);
+    const long double here = f(s.position), above = f(out), below = f(in);
+    // Within the error bound a smooth surface is flat, and f is linear.
+    long double slope = std::abs(above - below), bend = std::abs(above - 2 * here + below);
+    for (int k = 0; k < 3; ++k) {
+      Vec3l ahead(Vec3d(s.position)), behind = ahead;
+      ahead[k] += s.position_error[k], behind[k] -= s.position_error[k];
+      const long double f0 = f(behind), f1 = f(ahead);
+      slope = std::max(slope, std::abs(f1 - f0)), bend = std::max(bend, std::abs(f1 - 2 * here + f0));
+    }
+    const bool creased = bend > 0x1p-6L * slope;
+    if (creased && !(above > 0 && below < 0) && passes_through(f, s, out, in, ray, hit.t)) {
+      ++tally_.creased;
+      return;
+    }
+    const long double allowed = std::min(std::abs(above - here), std::abs(here - below));
+    if (allowed > 0 && !creased)
+      tally_.worst_residual = std::max(tally_.worst_residual, static_cast<double>(std::abs(here) / allowed));
+    if (!(above > 0 && below < 0)) {
+      ++tally_.off_surface;
+      fail(ray,
+           fmt::format("at t = {} the position is not off the surface: {}, {}, {}", hit.t,
+                       static_cast<double>(below), static_cast<double>(here), static_cast<double>(above)));
+      return;
+    }
+    if (next == nullptr) return;
+    Vec3d d = random_.vector();
+    const bool outwards = random_.unit() < 0.5;
+    if ((dot(d, Vec3d(n)) > 0) != outwards) d = -d;
+    next->push_back({outwards ? out : in, 0, Vec3f(d), std::numeric_limits<float>::infinity()});
+  }
+
+  /// Whether a surface with an edge or a tip passes through the box of the error bound, by ever more samples.
+  template <class F>
+  static bool passes_through(const F& f, const SurfaceInteraction& s, const Vec3f& out, const Vec3f& in,
+                             const Ray& ray, long double t) {
+    bool negative = false, positive = false;
+    const auto look = [&](const auto& p) { (f(p) < 0 ? negative : positive) = true; };
+    for (int i = 0; i <= 16; ++i) look(in + (out - in) * (static_cast<float>(i) / 16));
+    // A sliver may be thinner than all that, but the ray has met it.
+    for (int i = -64; i <= 64; ++i) {
+      const Vec3l p = Vec3l(Vec3d(ray.origin)) + Vec3l(Vec3d(ray.direction)) * (t * (1 + i * 0x1p-30L));
+      bool within = true;
+      for (int k = 0; k < 3; ++k) within &= std::abs(p[k] - s.position[k]) <= s.position_error[k];
+      if (within) look(p);
+    }
+    for (int side = 2; side <= 16 && !(negative && positive); side *= 2) {
+      const int row = 2 * side + 1;
+      const auto at = [&](int axis, int i) {
+        return s.position[axis] + static_cast<long double>(s.position_error[axis]) * (i % row - side) / side;
+      };
+      for (int i = 0; i < row * row * row; ++i) look(Vec3l{at(0, i), at(1, i / row), at(2, i / row / row)});
+    }
+    return negative && positive;
+  }
+
+  Trial& trial_;
+  CaseRandom& random_;
+  const std::vector<Isa>& isas_;
+  std::size_t turn_;
+  ExactTally& tally_;
+};
+
+void add(ExactTally& sum, const ExactTally& t) {
+  sum.rays += t.rays, sum.hits += t.hits, sum.missed += t.missed, sum.invented += t.invented;
+  sum.touched += t.touched, sum.creased += t.creased, sum.off_surface += t.off_surface, sum.lists += t.lists;
+  sum.differing += t.differing;
+  sum.worst_residual = std::max(sum.worst_residual, t.worst_residual);
+  if (sum.failure.empty()) sum.failure = t.failure;
+}
+
+}  // namespace
+
+ExactTally verify_exact(std::size_t form, std::uint64_t rays, const std::vector<Isa>& isas) {
+  const std::size_t trials = (rays + kRaysPerShape - 1) / kRaysPerShape;
+  std::vector<ExactTally> tallies(trials);
+  const std::uint64_t uncertified_before = interval::uncertified_count();
+  tbb::parallel_for(std::size_t{0}, trials, [&](std::size_t k) {
+    CaseRandom random(mix_bits(form + 1) + k);
+    Trial trial;
+    trial.oracle = draw_exact_oracles(random)[form];
+    trial.to_world = random_place(random);
+    trial.to_own = trial.to_world.inverse();
+    trial.accel = build_accel({{trial.oracle.shape, trial.to_world}}, {BuildQuality::balanced, false});
+    shoot(trial, random);
+    Checker(trial, random, isas, k, tallies[k]).run();
+    if (!tallies[k].failure.empty()) tallies[k].failure = fmt::format("trial {}: {}", k, tallies[k].failure);
+  });
+  ExactTally sum;
+  for (const ExactTally& t : tallies) add(sum, t);
+  sum.uncertified = interval::uncertified_count() - uncertified_before;
+  if (sum.uncertified > 0 && sum.failure.empty())
+    sum.failure = fmt::format("{} answers took too many steps to be proved", sum.uncertified);
+  return sum;
+}
+
+}  // namespace oktett

@@ -1,0 +1,34 @@
+#pragma once
+/// \file Exact surfaces against their oracles.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/isa.h"
+#include "verify/oracles/exact.h"
+
+namespace oktett {
+
+/// Counts over the rays shot at one form.
+struct ExactTally {
+  std::uint64_t rays = 0, hits = 0;
+  std::uint64_t missed = 0;       ///< a first crossing that the oracle finds and the tracer does not
+  std::uint64_t invented = 0;     ///< a hit where the function does not change its sign
+  std::uint64_t touched = 0;      ///< of those, allowed: the function all but touches zero there
+  std::uint64_t creased = 0;      ///< hits at an edge or a tip finer than the position's error bound
+  std::uint64_t off_surface = 0;  ///< position, moved by its error bound, is not off the surface to that side
+  std::uint64_t lists = 0;        ///< all_hits disagrees with the oracle's crossings
+  std::uint64_t differing = 0;    ///< a mode, width or instruction set gave other bits
+  std::uint64_t uncertified = 0;  ///< answers, in any mode, that took too many steps to be proved
+  double worst_residual = 0;      ///< |f| at a hit over what its error bound allows
+  std::string failure;            ///< the first one
+
+  std::uint64_t wrong() const { return missed + invented + off_surface + lists + differing + uncertified; }
+};
+
+/// Form number `form` of draw_exact_oracles, `rays` rays spread over shapes of random parameters and
+/// transforms; half of them leave the surfaces that others have hit. A function of its arguments alone.
+ExactTally verify_exact(std::size_t form, std::uint64_t rays, const std::vector<Isa>& isas);
+
+}  // namespace oktett

@@ -1,0 +1,170 @@
+#include "verify/checks/kernels.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "verify/oracles/closed.h"
+
+namespace oktett {
+
+void KernelTally::add(const KernelTally& o) {
+  rays += o.rays, hits += o.hits, undecided += o.undecided, wrong += o.wrong;
+  excess += o.excess, differing += o.differing;
+  worst_ulps = std::max(worst_ulps, o.worst_ulps);
+  if (o.first_failure < first_failure) first_failure = o.first_failure, failure = o.failure;
+}
+
+void KernelTally::fail(std::uint64_t number, const std::string& text) {
+  if (number < first_failure) first_failure = number, failure = text;
+}
+
+bool must_be_right(KernelId id, CaseClass c) {
+  const bool textbook = id == KernelId::triangle_moller_trumbore || id == KernelId::triangle_badouel ||
+                        id == KernelId::triangle_segura_feito;
+  return !textbook || (c != CaseClass::huge && c != CaseClass::tiny);
+}
+
+std::string exact_text(const Ray& r) {
+  return fmt::format("origin {:a} {:a} {:a} direction {:a} {:a} {:a} tmin {:a} tmax {:a}", r.origin.x,
+                     r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.tmin, r.tmax);
+}
+
+namespace {
+
+constexpr std::size_t kChunk = 8192;
+
+struct Results {
+  float t[kChunk], u[kChunk], v[kChunk];
+  std::uint8_t hit[kChunk];
+};
+
+bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+TriangleTolerance tolerance_of(KernelId id) {
+  switch (id) {
+    case KernelId::triangle_moller_trumbore:
+      return {0, 0x1p-19, 0};
+    case KernelId::triangle_badouel:
+      return {0, 0x1p-19, 0x1p-19};
+    case KernelId::triangle_segura_feito:
+      return {0x1p-19, 0x1p-19, 0};
+    default:
+      return {};
+  }
+}
+
+OracleAnswer ask_oracle(KernelId id, const KernelCases& cases, std::size_t i) {
+  const Ray ray = cases.rays[i];
+  const auto& s = cases.shape;
+  const auto corner = [&](int k) {
+    return Vec3f{cases.corner[k][0][i], cases.corner[k][1][i], cases.corner[k][2][i]};
+  };
+  const auto vec = [&](int k) { return Vec3d{s[k][i], s[k + 1][i], s[k + 2][i]}; };
+  switch (id) {
+    case KernelId::sphere_geometric:
+    case KernelId::sphere_algebraic:
+      return oracle_sphere(ray, {vec(0), s[3][i]});
+    case KernelId::plane:
+      return oracle_plane(ray, {vec(0), s[3][i]});
+    case KernelId::disk:
+      return oracle_disk(ray, {vec(0), vec(3), s[6][i]});
+    case KernelId::box: {
+      Affine map;
+      for (int k = 0; k < 12; ++k)
+        map.m[static_cast<std::size_t>(k / 4)][static_cast<std::size_t>(k % 4)] = s[k][i];
+      return oracle_box(ray, map);
+    }
+    case KernelId::slab:
+      return oracle_slab(ray, {corner(0), corner(1)});
+    default: {
+      const Vec3f p[3] = {corner(0), corner(1), corner(2)};
+      return oracle_triangle(ray, p, tolerance_of(id));
+    }
+  }
+}
+
+/// Empty if the kernel's answer is right; updates the counts but not `wrong`.
+std::string judge(KernelId id, const OracleAnswer& truth, const Results& r, std::size_t i,
+                  KernelTally& tally) {
+  const bool hit = r.hit[i] != 0;
+  tally.hits += hit;
+  if (truth.verdict == OracleVerdict::undecided) return ++tally.undecided, "";
+  const bool met = truth.verdict == OracleVerdict::hit;
+  if (id == KernelId::slab) {
+    tally.excess += hit && !met;
+    return met && !hit ? "the box is missed" : "";
+  }
+  if (hit != met) return fmt::format("hit {} but should be {}", hit, met);
+  if (!hit) return "";
+  const double ulp = std::max(std::abs(truth.t) * 0x1p-23, 0x1p-149);
+  const double error = std::abs(r.t[i] - truth.t);
+  if (truth.t_error < 0.01 * ulp) tally.worst_ulps = std::max(tally.worst_ulps, error / ulp);
+  if (!(error <= truth.t_error + 0.51 * ulp))
+    return fmt::format("t {:a} but should be {:a} +- {:g}", r.t[i], truth.t, truth.t_error);
+  const bool triangle = id <= KernelId::triangle_segura_feito;
+  const double uv_error = truth.uv_error + 0x1p-24;
+  if (triangle && !(std::abs(r.u[i] - truth.u) <= uv_error && std::abs(r.v[i] - truth.v) <= uv_error))
+    return fmt::format("u, v {:a} {:a} but should be {:a} {:a}", r.u[i], r.v[i], truth.u, truth.v);
+  return "";
+}
+
+KernelTally verify_chunk(KernelId id, CaseClass c, std::uint64_t first, std::size_t count,
+                         const std::vector<Isa>& isas) {
+  KernelTally tally;
+  tally.rays = count;
+  KernelCases cases;
+  cases.fill(id, c, first, count);
+  const auto results = std::make_unique<Results[]>(2);
+  Results &reference = results[0], &other = results[1];
+  const auto run = [&](Isa isa, int width, Results& out) {
+    KernelProbe k = cases.run(0, count);
+    k.t = out.t, k.u = out.u, k.v = out.v, k.hit = out.hit;
+    probe_kernel(isa, id, width, k);
+  };
+  run(Isa::scalar, 1, reference);
+  for (const Isa isa : isas)
+    for (const int width : {1, 4, 8, 16}) {
+      run(isa, width, other);
+      for (std::size_t i = 0; i < count; ++i) {
+        // The slab test is held to be conservative, not identical.
+        const bool same =
+            id == KernelId::slab ||
+            (other.hit[i] == reference.hit[i] && (!other.hit[i] || (same_bits(other.t[i], reference.t[i]) &&
+                                                                    same_bits(other.u[i], reference.u[i]) &&
+                                                                    same_bits(other.v[i], reference.v[i]))));
+        const bool lost = id == KernelId::slab && !other.hit[i] && reference.hit[i] &&
+                          ask_oracle(id, cases, i).verdict == OracleVerdict::hit;
+        if (same && !lost) continue;
+        ++tally.differing;
+        tally.fail(first + i, fmt::format("{} width {} differs from scalar: {}", to_string(isa), width,
+                                          exact_text(cases.rays[i])));
+      }
+    }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string complaint = judge(id, ask_oracle(id, cases, i), reference, i, tally);
+    if (complaint.empty()) continue;
+    ++tally.wrong;
+    if (must_be_right(id, c)) tally.fail(first + i, complaint + ": " + exact_text(cases.rays[i]));
+  }
+  return tally;
+}
+
+}  // namespace
+
+KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas) {
+  const std::size_t chunks = static_cast<std::size_t>((rays + kChunk - 1) / kChunk);
+  std::vector<KernelTally> parts(chunks);
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
+    const std::uint64_t first = k * kChunk;
+    parts[k] = verify_chunk(id, c, first, std::min<std::uint64_t>(kChunk, rays - first), isas);
+  });
+  KernelTally total;
+  for (const KernelTally& part : parts) total.add(part);
+  return total;
+}
+
+}  // namespace oktett

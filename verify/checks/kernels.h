@@ -1,0 +1,37 @@
+#pragma once
+/// \file Single kernels against the oracle, and against themselves in every width and instruction set.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/isa.h"
+#include "verify/cases/kernel_cases.h"
+
+namespace oktett {
+
+/// Counts over pairs of one kernel and class.
+struct KernelTally {
+  std::uint64_t rays = 0, hits = 0;
+  std::uint64_t undecided = 0;  ///< within the tolerance: either answer is right
+  std::uint64_t wrong = 0;      ///< the answer, t, u or v outside the tolerance
+  std::uint64_t excess = 0;     ///< boxes met by the slab test that the ray misses: allowed, but costs time
+  std::uint64_t differing = 0;  ///< a width or instruction set gave other bits
+  double worst_ulps = 0;        ///< of t in float, where the problem itself is well-conditioned
+  std::uint64_t first_failure = ~std::uint64_t{0};
+  std::string failure;  ///< of the pair with number `first_failure`
+
+  void add(const KernelTally& other);
+  void fail(std::uint64_t number, const std::string& text);
+};
+
+/// True where an answer outside the tolerance is a failure: not for the textbook tests at scales at which
+/// their floats overflow or underflow.
+bool must_be_right(KernelId id, CaseClass c);
+
+KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas);
+
+/// A ray in hexadecimal floats, exactly.
+std::string exact_text(const Ray& ray);
+
+}  // namespace oktett

@@ -1,0 +1,266 @@
+/// \file Blob trees, from the potentials and blends as they are written down.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "verify/oracles/exact_families.h"
+
+namespace oktett {
+
+namespace {
+
+using Real = long double;
+
+Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+Real square(const Vec3l& v) { return dot(v, v); }
+
+Real segment_square(const Vec3l& a, const Vec3l& b, const Vec3l& p) {
+  const Vec3l e = b - a;
+  const Real h = square(e) > 0 ? std::clamp(dot(p - a, e) / square(e), Real{0}, Real{1}) : Real{0};
+  return square(p - a - e * h);
+}
+
+/// A skeleton with what does not depend on the place.
+struct Body {
+  /// Of an ellipsoid, or two in a polygon's plane and its normal.
+  Vec3l axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
+
+Body body_of(const decltype(FieldElement::skeleton)& skeleton) {
+  Body body;
+  if (const auto* ellipsoid = std::get_if<EllipsoidSkeleton>(&skeleton)) {
+    // Turned about x, y and z in that order.
+    for (int k = 0; k < 3; ++k) {
+      const Real angle = ellipsoid->rotation[k] * std::numbers::pi_v<Real> / 180, c = std::cos(angle),
+                 d = std::sin(angle);
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      for (Vec3l& v : body.axis) {
+        const Real x = v[i], y = v[j];
+        v[i] = c * x - d * y, v[j] = d * x + c * y;
+      }
+    }
+  } else if (const auto* polygon = std::get_if<PolygonSkeleton>(&skeleton)) {
+    Vec3l n{0, 0, 0};
+    const Vec3l first = widen(polygon->vertices[0]);
+    for (std::size_t i = 1; i + 1 < polygon->vertices.size(); ++i)
+      n += cross(widen(polygon->vertices[i]) - first, widen(polygon->vertices[i + 1]) - first);
+    const Vec3l along = widen(polygon->vertices[1]) - first;
+    body.axis[2] = n / std::sqrt(square(n));
+    body.axis[0] = along / std::sqrt(square(along));
+    body.axis[1] = cross(body.axis[2], body.axis[0]);
+  }
+  return body;
+}
+
+Real skeleton_square(const PointSkeleton& s, const Body&, const Vec3l& p) {
+  return square(p - widen(s.center));
+}
+
+Real skeleton_square(const SegmentSkeleton& s, const Body&, const Vec3l& p) {
+  return segment_square(widen(s.from), widen(s.to), p);
+}
+
+/// The border winds about the foot of p if that is inside: it passes the half-line from there to the right,
+/// up or down, with the foot to its left or right.
+Real skeleton_square(const PolygonSkeleton& s, const Body& body, const Vec3l& p) {
+  Real edge = HUGE_VALL;
+  int winding = 0;
+  const std::size_t count = s.vertices.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3l a = widen(s.vertices[i]), b = widen(s.vertices[(i + 1) % count]);
+    edge = std::min(edge, segment_square(a, b, p));
+    const Real ax = dot(a - p, body.axis[0]), ay = dot(a - p, body.axis[1]);
+    const Real bx = dot(b - p, body.axis[0]), by = dot(b - p, body.axis[1]);
+    const Real side = ax * by - ay * bx;
+    if (ay <= 0 && by > 0 && side > 0) ++winding;
+    if (by <= 0 && ay > 0 && side < 0) --winding;
+  }
+  const Real height = dot(p - widen(s.vertices[0]), body.axis[2]);
+  return winding != 0 ? height * height : edge;
+}
+
+Real skeleton_square(const EllipsoidSkeleton& s, const Body& body, const Vec3l& p) {
+  const Vec3l q = p - widen(s.center);
+  return square(
+      {dot(q, body.axis[0]) / s.radii.x, dot(q, body.axis[1]) / s.radii.y, dot(q, body.axis[2]) / s.radii.z});
+}
+
+Real potential(const Potential& p, Real r2) {
+  const Real s2 = static_cast<Real>(p.scale) * p.scale, r = std::sqrt(r2), q2 = r2 / s2;
+  switch (p.kind) {
+    case PotentialKind::inverse_square:
+      return s2 / r2;
+    case PotentialKind::gaussian:
+      return std::exp(-p.scale * r2);
+    case PotentialKind::quadratic:
+      if (r > p.scale) return 0;
+      return r <= p.scale / Real{3} ? 1 - 3 * r2 / s2 : Real{1.5} * (1 - r / p.scale) * (1 - r / p.scale);
+    case PotentialKind::rational:
+      return q2 > 1 ? 0 : (q2 * q2 - 2 * q2 + 1) / (1 + p.d * q2);
+    default:
+      return q2 > 1 ? 0 : (1 - q2) * (1 - q2);
+  }
+}
+
+/// A blob tree with what does not depend on the place.
+struct Field {
+  explicit Field(BlobTreeShape tree) : shape(std::move(tree)) {
+    for (const FieldElement& e : shape.elements) bodies.push_back(body_of(e.skeleton));
+  }
+  BlobTreeShape shape;
+  std::vector<Body> bodies;
+};
+
+/// The value of the blend that ends before `at`; moves `at` to where it begins.
+Real blend(const Field& field, std::size_t& at, const Vec3l& p) {
+  const BlobTreeShape& s = field.shape;
+  const Blend& b = s.blends[--at];
+  if (b.op == Blend::Op::element) {
+    const FieldElement& e = s.elements[b.element];
+    const Real r2 = std::visit(
+        [&](const auto& skeleton) { return skeleton_square(skeleton, field.bodies[b.element], p); },
+        e.skeleton);
+    return e.potential.weight * potential(e.potential, r2);
+  }
+  std::vector<Real> v(b.count);
+  for (std::size_t k = b.count; k-- > 0;) v[k] = blend(field, at, p);
+  Real all = v[0];
+  for (std::size_t k = 1; k < v.size(); ++k) {
+    switch (b.op) {
+      case Blend::Op::sum:
+        all += v[k];
+        break;
+      case Blend::Op::max:
+        all = std::max(all, v[k]);
+        break;
+      case Blend::Op::min:
+        all = std::min(all, v[k]);
+        break;
+      default:
+        all = std::min(all, 2 * static_cast<Real>(s.iso) - v[k]);
+    }
+  }
+  return all;
+}
+
+/// Within this of a positive element is all that is inside.
+double reach_of(const Potential& p, double share) {
+  if (p.kind == PotentialKind::inverse_square) return p.scale * std::sqrt(p.weight / share);
+  if (p.kind == PotentialKind::gaussian)
+    return std::sqrt(std::max(std::log(p.weight / share), 0.0) / p.scale);
+  return p.scale;
+}
+
+double extent_of(const EllipsoidSkeleton& s) { return std::max({s.radii.x, s.radii.y, s.radii.z}); }
+
+ExactOracle oracle_of(std::string name, const BlobTreeShape& shape) {
+  ExactOracle o;
+  o.name = std::move(name), o.shape = {shape};
+  o.lo = {1e9, 1e9, 1e9}, o.hi = -o.lo;
+  const double share = shape.iso / static_cast<double>(shape.elements.size());
+  for (const FieldElement& e : shape.elements) {
+    if (e.potential.weight <= 0) continue;
+    double r = reach_of(e.potential, share);
+    const auto add = [&](const Vec3d& c) {
+      const Vec3d by{r, r, r};
+      o.lo = min(o.lo, c - by), o.hi = max(o.hi, c + by);
+    };
+    if (const auto* s = std::get_if<PointSkeleton>(&e.skeleton)) add(s->center);
+    if (const auto* s = std::get_if<SegmentSkeleton>(&e.skeleton)) add(s->from), add(s->to);
+    if (const auto* s = std::get_if<PolygonSkeleton>(&e.skeleton))
+      for (const Vec3d& v : s->vertices) add(v);
+    if (const auto* s = std::get_if<EllipsoidSkeleton>(&e.skeleton)) r *= extent_of(*s), add(s->center);
+  }
+  const auto data = std::make_shared<const Field>(shape);
+  o.f = [data](const Vec3l& p) {
+    std::size_t at = data->shape.blends.size();
+    return data->shape.iso - blend(*data, at, p);
+  };
+  return o;
+}
+
+/// Plane and simple: a star about its middle, in any plane or one of the axes'.
+PolygonSkeleton random_polygon(CaseRandom& random) {
+  const bool level = random.unit() < 0.5;
+  const Affine place = level ? Affine{} : Affine::rotation(random.vector() * 180.0);
+  const Vec3d middle = random.vector() * 0.7;
+  const int count = 3 + static_cast<int>(random.unit() * 5);
+  PolygonSkeleton s;
+  for (int i = 0; i < count; ++i) {
+    const double angle = (i + 0.8 * random.unit()) * 2 * std::numbers::pi / count,
+                 r = 0.15 + 0.8 * random.unit();
+    s.vertices.push_back(middle + place.vector({r * std::cos(angle), r * std::sin(angle), 0}));
+  }
+  return s;
+}
+
+FieldElement random_element(CaseRandom& random) {
+  FieldElement e;
+  const double dice = random.unit();
+  if (dice < 0.3)
+    e.skeleton = PointSkeleton{random.vector()};
+  else if (dice < 0.6)
+    e.skeleton = SegmentSkeleton{random.vector(), random.unit() < 0.1 ? Vec3d{0, 0, 1} : random.vector()};
+  else if (dice < 0.8)
+    e.skeleton = random_polygon(random);
+  else
+    e.skeleton = EllipsoidSkeleton{random.vector(),
+                                   {0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()},
+                                   random.vector() * 180.0};
+  Potential& p = e.potential;
+  p.kind = static_cast<PotentialKind>(static_cast<int>(random.unit() * 5));
+  p.weight = 0.5 + random.unit();
+  p.scale = 0.3 + 0.5 * random.unit();
+  if (p.kind == PotentialKind::gaussian) p.scale = 2 + 8 * random.unit();
+  if (p.kind == PotentialKind::inverse_square) p.scale *= 0.3;
+  if (p.kind == PotentialKind::rational) p.d = random.unit() < 0.5 ? 0 : random.magnitude(-1, 3);
+  return e;
+}
+
+std::uint32_t index(std::size_t i) { return static_cast<std::uint32_t>(i); }
+
+/// All kinds of elements in one sum.
+ExactOracle skeletons(CaseRandom& random) {
+  BlobTreeShape s;
+  s.iso = 0.2 + 0.4 * random.unit();
+  const int count = 1 + static_cast<int>(random.unit() * 6);
+  for (int i = 0; i < count; ++i) {
+    s.elements.push_back(random_element(random));
+    if (i > 0 && random.unit() < 0.25) s.elements.back().potential.weight *= -1;
+    s.blends.push_back({Blend::Op::element, index(static_cast<std::size_t>(i)), 0});
+  }
+  s.blends.push_back({Blend::Op::sum, 0, index(s.elements.size())});
+  return oracle_of("metaballs_skeletons", s);
+}
+
+void random_blend(CaseRandom& random, int level, BlobTreeShape& s) {
+  if (level > 0 && (level == 3 || random.unit() < 0.5)) {
+    s.elements.push_back(random_element(random));
+    if (random.unit() < 0.1) s.elements.back().potential.weight *= -1;
+    s.blends.push_back({Blend::Op::element, index(s.elements.size() - 1), 0});
+    return;
+  }
+  const int count = 1 + static_cast<int>(random.unit() * 3);
+  for (int i = 0; i < count; ++i) random_blend(random, level + 1, s);
+  constexpr Blend::Op kOps[] = {Blend::Op::sum, Blend::Op::max, Blend::Op::min, Blend::Op::difference};
+  s.blends.push_back({kOps[static_cast<int>(random.unit() * 4)], 0, index(static_cast<std::size_t>(count))});
+}
+
+ExactOracle tree(CaseRandom& random) {
+  BlobTreeShape s;
+  s.iso = 0.2 + 0.4 * random.unit();
+  s.elements.push_back({PointSkeleton{{0, 0, 0}}, {PotentialKind::wyvill, 1, 0, 1}});
+  s.blends.push_back({Blend::Op::element, 0, 0});
+  random_blend(random, 0, s);
+  s.blends.push_back({random.unit() < 0.5 ? Blend::Op::max : Blend::Op::difference, 0, 2});
+  return oracle_of("blobtree", s);
+}
+
+}  // namespace
+
+std::vector<DrawExact> blobtree_oracles() { return {skeletons, tree}; }
+
+}  // namespace oktett

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "kernels/fractals/terrain.h"
+#include "verify/oracles/exact_families.h"
+
+namespace oktett {
+
+namespace {
+
+using Real = long double;
+
+Vec3l unit(const Vec3l& v) { return v / std::sqrt(dot(v, v)); }
+
+/// A ball of a sphereflake with all balls that grow on it, written down in the space of the first one.
+struct Balls {
+  Vec3l center;
+  Real radius, reach;
+  std::vector<Balls> children;
+};
+
+/// By turning a hexagon and a triangle about the axis, from the parent's own directions.
+Balls grow(const Vec3l& center, Real radius, Real ratio, const Vec3l& east, const Vec3l& up, unsigned depth) {
+  Balls b{center, radius, radius, {}};
+  if (depth == 0) return b;
+  const Vec3l south = cross(east, up);
+  for (int k = 0; k < 9; ++k) {
+    const Real around = (k < 6 ? k * 60 : 30 + (k - 6) * 120) * std::acos(-1.0L) / 180;
+    const Real high = k < 6 ? 0 : std::asin(std::sqrt(2.0L / 3));
+    const Vec3l level = east * std::cos(around) + south * std::sin(around);
+    const Vec3l out = unit(level * std::cos(high) + up * std::sin(high));
+    const Vec3l left = south * std::cos(around) - east * std::sin(around);
+    b.children.push_back(
+        grow(center + out * (radius * (1 + ratio)), radius * ratio, ratio, left, out, depth - 1));
+  }
+  for (const Balls& c : b.children) b.reach = std::max(b.reach, radius * (1 + ratio) + c.reach);
+  return b;
+}
+
+/// The distance from the nearest ball, negative inside.
+void nearest(const Balls& b, const Vec3l& p, Real& least) {
+  const Vec3l m = p - b.center;
+  const Real away = std::sqrt(dot(m, m));
+  if (away - b.reach >= least) return;
+  least = std::min(least, away - b.radius);
+  for (const Balls& c : b.children) nearest(c, p, least);
+}
+
+ExactOracle sphereflake(CaseRandom& random) {
+  SphereflakeShape s;
+  s.depth = static_cast<std::uint32_t>(random.unit() * 4);
+  s.ratio = random.unit() < 0.5 ? 1.0 / 3 : 0.1 + 0.4 * random.unit();
+  const auto balls =
+      std::make_shared<const Balls>(grow({0, 0, 0}, 1, s.ratio, {1, 0, 0}, {0, 1, 0}, s.depth));
+  const double r = static_cast<double>(balls->reach);
+  return {"sphereflake",
+          {s},
+          [balls](const Vec3l& p) {
+            Real least = HUGE_VALL;
+            nearest(*balls, p, least);
+            return least;
+          },
+          {-r, -r, -r},
+          {r, r, r},
+          {}};
+}
+
+/// The cube less an infinite cross of bars per level, each level repeated all over space.
+ExactOracle menger(CaseRandom& random) {
+  MengerShape s;
+  s.depth = static_cast<std::uint32_t>(random.unit() * 5);
+  return {"menger",
+          {s},
+          [s](const Vec3l& p) {
+            Real f = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 1, size = 2;
+            for (unsigned level = 0; level < s.depth; ++level, size /= 3) {
+              // Distances from the middle of the bars along each axis.
+              Real m[3];
+              for (int k = 0; k < 3; ++k) {
+                const Real at = p[k] + 1, whole = std::floor(at / size) * size;
+                m[k] = std::abs(at - whole - size / 2);
+              }
+              const Real bars = std::min({std::max(m[0], m[1]), std::max(m[1], m[2]), std::max(m[2], m[0])});
+              f = std::max(f, size / 6 - bars);
+            }
+            return f;
+          },
+          {-1, -1, -1},
+          {1, 1, 1},
+          {}};
+}
+
+/// All pieces, by the maps' products.
+ExactOracle ifs(CaseRandom& random) {
+  IfsShape s;
+  const int maps = 2 + static_cast<int>(random.unit() * 2);
+  for (int k = 0; k < maps; ++k) {
+    Vec3d size{0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit()};
+    if (random.unit() < 0.1) size.x = 0.02;
+    s.maps.push_back(Affine::translation(random.vector()) * Affine::rotation(random.vector() * 180.0) *
+                     Affine::scaling(size));
+  }
+  s.depth = static_cast<std::uint32_t>(random.unit() * 4);
+  s.base = random.unit() < 0.5 ? IfsShape::Base::ball : IfsShape::Base::box;
+  s.every_level = random.unit() < 0.3;
+  const auto pieces = std::make_shared<std::vector<Affine>>(1, Affine{});
+  std::size_t first = 0;
+  for (std::uint32_t level = 0; level < s.depth; ++level) {
+    const std::size_t end = pieces->size();
+    for (std::size_t i = first; i < end; ++i)
+      for (const Affine& map : s.maps) pieces->push_back((*pieces)[i] * map);
+    first = end;
+  }
+  if (!s.every_level) pieces->erase(pieces->begin(), pieces->begin() + static_cast<std::ptrdiff_t>(first));
+  Vec3d lo{1e9, 1e9, 1e9}, hi = -lo;
+  for (Affine& piece : *pieces) {
+    for (int k = 0; k < 3; ++k) {
+      const double reach = std::abs(piece.m[k][0]) + std::abs(piece.m[k][1]) + std::abs(piece.m[k][2]);
+      lo[k] = std::min(lo[k], piece.m[k][3] - reach), hi[k] = std::max(hi[k], piece.m[k][3] + reach);
+    }
+    piece = piece.inverse();
+  }
+  return {"ifs",
+          {s},
+          [s, pieces](const Vec3l& p) {
+            Real least = HUGE_VALL;
+            for (const Affine& to_piece : *pieces) {
+              Vec3l q;
+              for (int k = 0; k < 3; ++k) {
+                const auto& m = to_piece.m[k];
+                q[k] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
+              }
+              least = std::min(least, s.base == IfsShape::Base::ball
+                                          ? std::sqrt(dot(q, q)) - 1
+                                          : std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) - 1);
+            }
+            return least;
+          },
+          lo,
+          hi,
+          {}};
+}
+
+ExactOracle julia(CaseRandom& random) {
+  JuliaShape s;
+  for (double& c : s.c) c = 0.6 * random.sign();
+  s.slice = random.unit() < 0.5 ? 0 : 0.3 * random.sign();
+  s.iterations = 1 + static_cast<std::uint32_t>(random.unit() * 6);
+  Real size = 0;
+  for (const double c : s.c) size += static_cast<Real>(c) * c;
+  const Real r = (1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2;
+  const double side = static_cast<double>(r);
+  return {"julia",
+          {s},
+          [s, r](const Vec3l& p) {
+            Real a = p.x, b = p.y, c = p.z, d = s.slice;
+            for (std::uint32_t n = 0; n < s.iterations && a * a + b * b + c * c + d * d < 1e30L; ++n) {
+              const Real twice = 2 * a, square = a * a - b * b - c * c - d * d;
+              a = square + s.c[0], b = twice * b + s.c[1], c = twice * c + s.c[2], d = twice * d + s.c[3];
+            }
+            return a * a + b * b + c * c + d * d - r * r;
+          },
+          {-side, -side, -side},
+          {side, side, side},
+          {}};
+}
+
+/// All heights, level by level.
+ExactOracle terrain(CaseRandom& random) {
+  TerrainShape s;
+  s.depth = static_cast<std::uint32_t>(random.unit() * 6), s.seed = static_cast<std::uint32_t>(random.bits());
+  s.height = 0.2 + random.unit(), s.roughness = 0.3 + 0.5 * random.unit(), s.base = -1.5 * random.unit();
+  const std::size_t side = std::size_t{1} << s.depth, row = side + 1;
+  const auto heights = std::make_shared<std::vector<Real>>(row * row);
+  const auto at = [&](std::size_t i, std::size_t k) -> Real& { return (*heights)[k * row + i]; };
+  Real step = s.height, top = -HUGE_VALL;
+  for (const std::size_t i : {std::size_t{0}, side})
+    for (const std::size_t k : {std::size_t{0}, side})
+      at(i, k) = step * Terrain::displacement(s.seed, 0, i / side, k / side);
+  for (std::size_t size = side, level = 1; size > 1; size /= 2, ++level) {
+    step *= s.roughness;
+    const std::size_t half = size / 2;
+    const auto moved = [&](std::size_t i, std::size_t k) {
+      return step * Terrain::displacement(s.seed, static_cast<int>(level), i / half, k / half);
+    };
+    for (std::size_t k = 0; k <= side; k += size)
+      for (std::size_t i = half; i < side; i += size) {
+        at(i, k) = (at(i - half, k) + at(i + half, k)) / 2 + moved(i, k);
+        at(k, i) = (at(k, i - half) + at(k, i + half)) / 2 + moved(k, i);
+      }
+    for (std::size_t k = half; k < side; k += size)
+      for (std::size_t i = half; i < side; i += size)
+        at(i, k) = (at(i - half, k - half) + at(i + half, k - half) + at(i - half, k + half) +
+                    at(i + half, k + half)) /
+                       4 +
+                   moved(i, k);
+  }
+  for (const Real h : *heights) top = std::max(top, h);
+  s.base = std::min(s.base, static_cast<double>(top) - 0.1);
+  return {"terrain",
+          {s},
+          [s, heights, side, row](const Vec3l& p) {
+            const auto place = [&](Real x) { return std::clamp((x + 1) / 2, 0.0L, 1.0L) * side; };
+            const Real x = place(p.x), z = place(p.z);
+            const std::size_t i = std::min(static_cast<std::size_t>(x), side - 1),
+                              k = std::min(static_cast<std::size_t>(z), side - 1);
+            const Real u = x - i, v = z - k, *h = &(*heights)[k * row + i];
+            const Real height = u >= v ? h[0] * (1 - u) + h[1] * (u - v) + h[row + 1] * v
+                                       : h[0] * (1 - v) + h[row] * (v - u) + h[row + 1] * u;
+            return std::max({p.y - height, s.base - p.y, std::abs(p.x) - 1, std::abs(p.z) - 1});
+          },
+          {-1, s.base, -1},
+          {1, static_cast<double>(top), 1},
+          {}};
+}
+
+}  // namespace
+
+std::vector<DrawExact> fractal_oracles() { return {sphereflake, menger, ifs, julia, terrain}; }
+
+}  // namespace oktett

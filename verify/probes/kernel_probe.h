@@ -1,0 +1,52 @@
+#pragma once
+/// \file Single kernels by themselves, for verification and benchmarks.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/isa_select.h"
+#include "core/ray.h"
+
+namespace oktett {
+
+/// A kernel to be run by itself on `count` pairs of a ray and a shape, for verification and benchmarks. All
+/// columns hold `count` elements; hit[i] becomes 1 or 0, and t, u, v are defined where it is 1.
+struct KernelProbe {
+  std::size_t count = 0;
+  RaySpan rays;
+  const float* corner[3][3] = {};  ///< triangles: [corner][axis]
+  const double* shape[12] = {};    ///< other shapes: the columns of their pool, in its order
+  float* t = nullptr;
+  float* u = nullptr;
+  float* v = nullptr;
+  std::uint8_t* hit = nullptr;
+};
+
+/// The kernels that can be run by themselves.
+enum class KernelId : std::uint8_t {
+  triangle_watertight,
+  triangle_moller_trumbore,
+  triangle_badouel,
+  triangle_segura_feito,
+  sphere_geometric,
+  sphere_algebraic,
+  plane,
+  disk,
+  box,
+  slab,
+};
+
+struct KernelProbeCode {
+  /// `width` is 1, 4, 8 or 16.
+  void (*run)(KernelId, int width, const KernelProbe&);
+};
+
+template <class A>
+const KernelProbeCode& kernel_probe_code();
+
+/// Runs a kernel on the code of `isa`, `width` (1, 4, 8 or 16) pairs at a time.
+inline void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe) {
+  with_isa(isa, [&]<class A>() { kernel_probe_code<A>().run(id, width, probe); });
+}
+
+}  // namespace oktett
