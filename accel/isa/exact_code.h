@@ -9,12 +9,7 @@ namespace oktett {
 /// The rays in the own space of the cell's element.
 template <class D, class F>
 OKTETT_INLINE Line<D> own_line(const Affine& to_own, const RayLanes<F>& rays) {
-  const Vec3<D> o = to_double(rays.o), d = to_double(rays.d);
-  const auto linear = [&](int k, const Vec3<D>& v) {
-    return (D(to_own.m[k][0]) * v.x + D(to_own.m[k][1]) * v.y) + D(to_own.m[k][2]) * v.z;
-  };
-  const auto point = [&](int k) { return linear(k, o) + D(to_own.m[k][3]); };
-  return {{point(0), point(1), point(2)}, {linear(0, d), linear(1, d), linear(2, d)}};
+  return {map_point(to_own, to_double(rays.o)), map_vector(to_own, to_double(rays.d))};
 }
 
 /// What a ray may hit begins here: a little beyond tmin, so that it does not round to tmin.
@@ -159,11 +154,6 @@ void ExactShapeCode<S, A>::rows(const Pool& pool, std::uint32_t index, const Ray
   }
 }
 
-template <class D>
-OKTETT_INLINE Vec3<D> select_each(const typename D::M& m, const Vec3<D>& a, const Vec3<D>& b) {
-  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
-}
-
 /// settle and exact_surface of kernels/exact/exact_surface.h.
 template <class S, class D>
 void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
@@ -185,13 +175,13 @@ void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
       const D step = value / dot_lanes(g, g);
       p = {p.x - g.x * step, p.y - g.y * step, p.z - g.z * step};
       near = near & (length_lanes(sub_lanes(p, start)) <= reach);
-      p = select_each(near, p, start);
+      p = select_lanes(near, p, start);
     }
     S::slope(pool, element, part, p, value, g);
     Vec3<D> n = map_normal(frame.to_own, g);
     D l = length_lanes(n);
     const auto known = (D(0.0) < l) & (l <= D(1.7976931348623157e308));
-    n = select_each(known, n, Vec3<D>{-hit.d.x, -hit.d.y, -hit.d.z});
+    n = select_lanes(known, n, Vec3<D>{-hit.d.x, -hit.d.y, -hit.d.z});
     l = select(known, l, length_lanes(hit.d));
     const Vec3<D> point = map_point(frame.to_world, p);
     const D size = length_lanes(point) + extent;

@@ -4,7 +4,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/shape_hits.h"
-#include "core/lanes.h"
+#include "core/affine_lanes.h"
 
 namespace oktett {
 
@@ -25,29 +25,6 @@ struct HitPoints {
   }
 };
 
-template <class D>
-OKTETT_INLINE D length_lanes(const Vec3<D>& v) {
-  return sqrt(dot_lanes(v, v));
-}
-
-/// Affine::vector, Affine::point and Affine::normal_by_inverse.
-template <class D>
-OKTETT_INLINE Vec3<D> map_vector(const Affine& a, const Vec3<D>& v) {
-  const auto row = [&](int i) { return D(a.m[i][0]) * v.x + D(a.m[i][1]) * v.y + D(a.m[i][2]) * v.z; };
-  return {row(0), row(1), row(2)};
-}
-template <class D>
-OKTETT_INLINE Vec3<D> map_point(const Affine& a, const Vec3<D>& p) {
-  const Vec3<D> v = map_vector(a, p);
-  return {v.x + D(a.m[0][3]), v.y + D(a.m[1][3]), v.z + D(a.m[2][3])};
-}
-template <class D>
-OKTETT_INLINE Vec3<D> map_normal(const Affine& inverse, const Vec3<D>& n) {
-  const auto column = [&](int i) {
-    return D(inverse.m[0][i]) * n.x + D(inverse.m[1][i]) * n.y + D(inverse.m[2][i]) * n.z;
-  };
-  return {column(0), column(1), column(2)};
-}
 /// The least floats that are not below `x`, which must be no less than 1e-37: round_up of core/box.h.
 template <class D>
 OKTETT_INLINE Simd<float, D::kWidth, typename D::Isa> round_up_lanes(const D& x) {
