@@ -24,12 +24,12 @@ bool keeps_all_planes(const std::string& path);
 /// kind io if that fails; then nothing is left behind and what stood at `path` before still does.
 ///
 /// - EXR: every plane with its own type, zip compression, data window in the full frame, all metadata. Values
-/// are stored
-///   as they are, NaN and infinities included; finite values too large for half become the largest half.
+///   are stored as they are, NaN and infinities included; finite values too large for half become the largest
+///   half.
 /// - HDR and other formats of floating point: linear R, G, B.
-/// - All others: 8-bit sRGB of R, G, B and, where the format has it, A. Colours are divided by alpha if A is
-/// stored and
-///   stay as they are (over black) if not. NaN and infinities become 0. The data window alone is written.
+/// - All others: 8-bit sRGB of R, G, B and, where the format has it, A. If A is stored, colours are divided by
+///   it; if not, they stay as they are (over black). NaN and infinities become 0. Only the data window is
+///   written.
 void write_image(const std::string& path, const Picture& picture, const ImageMetadata& metadata = {});
 
 /// Reads any image that OpenImageIO can. Colours become linear, premultiplied by A; 8-bit ones are taken as

@@ -14,17 +14,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Where to look, from the folder of what this code is part of.
+/// Folders to look in, relative to that of the file which holds this code (see own_file).
 constexpr const char* kPlaces[] = {
     OKTETT_LIBRARIES_FROM_PROGRAMS,  // an installed program
-    "../lib",                        // one that was only built
-    ".",                             // a shared library beside its like
+    "../lib",                        // a program in its build folder
+    ".",                             // a shared Oktett, beside its library of images
 #ifdef OKTETT_BUILT_LIBRARIES
-    OKTETT_BUILT_LIBRARIES,  // a program of a project that Oktett is a part of
+    OKTETT_BUILT_LIBRARIES,  // a program of another project that builds Oktett as a part
 #endif
 };
 
-/// The file that this code is part of: a program, or Oktett itself where that is a shared library.
+/// The file that holds this code: the program, or liboktett.so if Oktett is a shared library.
 fs::path own_file() {
   std::error_code error;
 #ifdef OKTETT_SHARED
@@ -35,8 +35,8 @@ fs::path own_file() {
   return fs::read_symlink("/proc/self/exe", error);
 }
 
-/// Where the system looks for libraries that this code asks for, run paths first; without what its cache
-/// adds.
+/// The folders in which the dynamic linker looks for libraries, run paths first. The folders of its cache
+/// (ld.so.cache) are not among them.
 std::vector<fs::path> system_folders() {
   std::vector<fs::path> folders;
 #ifdef __GLIBC__
@@ -57,7 +57,7 @@ std::vector<fs::path> system_folders() {
 
 bool can_read(const fs::path& file) { return access(file.c_str(), R_OK) == 0; }
 
-/// The path of the library's file, or nothing if only the system may know it.
+/// The path of the library's file, or nothing if it is in none of the folders known here.
 fs::path find_file() {
   const fs::path own = own_file();
   for (const char* place : kPlaces) {
@@ -70,7 +70,7 @@ fs::path find_file() {
 }
 
 const ImageLibrary* load() {
-  // What is found by name alone is found as the system finds all libraries.
+  // Without a path, the dynamic linker searches by name, its cache included.
   const fs::path found = find_file();
   const std::string name = found.empty() ? std::string(OKTETT_IMAGE_LIBRARY) : found.string();
   const auto fail = [] {
@@ -79,8 +79,8 @@ const ImageLibrary* load() {
                     ", which reads and writes images: " + (why != nullptr ? why : "unknown reason"),
                 ErrorKind::io);
   };
-  // Lazy, as programs are linked: of all those libraries few functions are called. It stays: objects with
-  // code of its own outlive any call.
+  // RTLD_LAZY: only the functions that are called are looked up, few of those in 250 libraries. RTLD_NODELETE:
+  // objects that the library made may outlive every handle, and their destructors are in it.
   void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
   if (library == nullptr) fail();
   void* const entry = dlsym(library, kImageLibraryEntry);

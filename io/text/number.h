@@ -74,10 +74,10 @@ inline bool round_to_float(std::uint64_t significand, int exponent, float& value
 /// Why a number could not be read.
 enum class NumberProblem { none, malformed, overflow };
 
-/// Reads the float at `p`: an optional sign, then a decimal number, `inf` or `nan`, also as some C libraries
-/// print them
-/// (`-1.#IND`). Rounds to nearest, too small a number to 0. Returns past the number, which a delimiter must
-/// follow, or null with the reason in `problem`.
+/// Reads the float at `p`: an optional sign, then a decimal number, `inf` or `nan`, or what old Windows C
+/// libraries print for these (`-1.#IND`). The value is rounded to the nearest float; numbers too small for a
+/// float become 0. Returns the place behind the number, where a delimiter must stand, or null with the reason
+/// in `problem`.
 const char* scan_float_exactly(const char* p, float& value, NumberProblem& problem);
 
 /// The same, fast for numbers with up to 19 digits and a small exponent.

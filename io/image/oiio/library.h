@@ -5,7 +5,7 @@
 
 namespace oktett::oiio {
 
-/// Its members stand in the files named after what they do.
+/// Each member function is defined in the file named after it.
 class OpenImageIoLibrary final : public ImageLibrary {
  public:
   std::optional<PictureLayout> layout(const std::string& path) const override;
