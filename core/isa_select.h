@@ -1,8 +1,9 @@
 #pragma once
 /// \file The one way from an instruction set chosen at run time to code that was compiled for it.
 ///
-/// A layer compiles such code as templates over the set, in units of its folder `isa/`, and reaches it through a
-/// table of functions: `template <class A> const XCode& x_code();` is defined for each set in those units only.
+/// A layer compiles such code as templates over the set, in units of its folder `isa/`, and reaches it
+/// through a table of functions: `template <class A> const XCode& x_code();` is defined for each set in those
+/// units only.
 
 #include "core/error.h"
 #include "core/isa.h"

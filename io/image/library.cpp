@@ -79,8 +79,8 @@ const ImageLibrary* load() {
                     ", which reads and writes images: " + (why != nullptr ? why : "unknown reason"),
                 ErrorKind::io);
   };
-  // RTLD_LAZY: only the functions that are called are looked up, few of those in 250 libraries. RTLD_NODELETE:
-  // objects that the library made may outlive every handle, and their destructors are in it.
+  // RTLD_LAZY: only the functions that are called are looked up, few of those in 250 libraries.
+  // RTLD_NODELETE: objects that the library made may outlive every handle, and their destructors are in it.
   void* const library = dlopen(name.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NODELETE);
   if (library == nullptr) fail();
   void* const entry = dlsym(library, kImageLibraryEntry);
