@@ -83,16 +83,9 @@ enum class BuildQuality : std::uint8_t {
   best,      ///< also splits space: triangles may stand in several leaves; several times slower to build
 };
 
-/// How nodes lie in memory. The hits are the same for each.
-enum class NodeLayout : std::uint8_t {
-  full,     ///< 256 bytes: boxes in float
-  compact,  ///< 96 bytes: boxes in steps of a grid of 8 bits, up to one step larger
-};
-
 struct BuildOptions {
   BuildQuality quality = BuildQuality::balanced;
   bool parallel = true;  ///< use TBB tasks; the structure is the same
-  NodeLayout nodes = NodeLayout::full;
 };
 
 /// Sizes and quality of a built structure.

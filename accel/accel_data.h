@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "accel/compact_node.h"
 #include "accel/csg/csg.h"
 #include "accel/node.h"
 #include "core/platform.h"
@@ -67,9 +66,7 @@ class Accel {
 
   NodeRef root = NodeRef::none();
   Box bounds;
-  bool compact = false;  ///< which of the two lists of nodes is in use
   VirtualArray<BvhNode> nodes;
-  VirtualArray<CompactNode> compact_nodes;
   VirtualArray<TriangleBlock> blocks;
   std::vector<LeafEntry> leaves;
   ShapePools pools;
@@ -97,14 +94,5 @@ class Accel {
                                       first_item.begin() - 1);
   }
 };
-
-/// f(node) for node `index` of a tree, which is a BvhNode or a CompactNode.
-template <class Function>
-OKTETT_INLINE void with_node(const Accel& accel, std::uint32_t index, Function&& f) {
-  if (accel.compact)
-    f(accel.compact_nodes[index]);
-  else
-    f(accel.nodes[index]);
-}
 
 }  // namespace oktett

@@ -29,7 +29,7 @@ namespace {
 struct InfoArguments {
   std::string file;
   std::vector<std::string> definitions;
-  TreeWords tree;
+  std::string bvh;
   bool json = false;
   bool trace = false;
 };
@@ -73,7 +73,7 @@ RayBatch camera_rays(const Scene& scene, const Box& bounds) {
 }
 
 TreeSummary build_trees(const Scene& scene, const InfoArguments& arguments) {
-  const BuildOptions options = parse_tree_options(arguments.tree);
+  const BuildOptions options = parse_bvh_option(arguments.bvh);
   const auto start = std::chrono::steady_clock::now();
   const World world = build_world(scene, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -183,7 +183,7 @@ void add_info_command(CLI::App& app, Command& command) {
   verb->add_option("-D", arguments->definitions, "Define ${k} of the scene file; may be repeated")
       ->type_name("k=v")
       ->allow_extra_args(false);
-  add_tree_options(*verb, arguments->tree);
+  add_bvh_option(*verb, arguments->bvh);
   verb->add_flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->callback([&command, arguments] { command.run = [arguments] { return run_info(*arguments); }; });

@@ -144,7 +144,7 @@ int run_render(const Command& command, const RenderArguments& arguments) {
   RenderOptions options;
   options.isa = choose_isa(arguments.isa);
   options.threads = arguments.threads;
-  options.build = parse_tree_options(arguments.tree);
+  options.build = parse_bvh_option(arguments.bvh);
   options.data_layers = keeps_all_planes(output);
 
   Stopwatch watch;

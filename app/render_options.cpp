@@ -17,9 +17,8 @@ namespace oktett {
 namespace {
 
 constexpr const char* kIntegrators[] = {"whitted", "path", "ao", "normal", "depth"};
-/// In the order of BuildQuality and NodeLayout.
+/// In the order of BuildQuality.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
-constexpr const char* kLayouts[] = {"full", "compact"};
 // The same bounds as in a scene file.
 constexpr std::uint32_t kMaxSide = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
@@ -87,7 +86,7 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
   verb.add_option("--seed", a.seed, "Seed of the random numbers")->type_name("N");
   verb.add_option("--integrator", a.integrator, "whitted, path, ao, normal or depth")->type_name("K");
   verb.add_option("--isa", a.isa, "Instruction set: auto, sse4.2, avx2, avx512 or scalar")->type_name("NAME");
-  add_tree_options(verb, a.tree);
+  add_bvh_option(verb, a.bvh);
   verb.add_option("-D", a.definitions, "Define ${k} of the scene file; may be repeated")
       ->type_name("k=v")
       ->allow_extra_args(false);
@@ -99,21 +98,16 @@ void add_render_options(CLI::App& verb, RenderArguments& a) {
       ->type_name("HOST:PORT");
 }
 
-void add_tree_options(CLI::App& verb, TreeWords& words) {
-  verb.add_option("--bvh", words.quality, "How hard to build the tree: fast, balanced or best")
+void add_bvh_option(CLI::App& verb, std::string& quality) {
+  verb.add_option("--bvh", quality, "How hard to build the tree: fast, balanced or best")
       ->type_name("QUALITY");
-  verb.add_option("--nodes", words.nodes, "Nodes of the tree: full, or compact, which are smaller and slower")
-      ->type_name("LAYOUT");
 }
 
-BuildOptions parse_tree_options(const TreeWords& words) {
+BuildOptions parse_bvh_option(const std::string& quality) {
   BuildOptions options;
-  if (!words.quality.empty())
+  if (!quality.empty())
     options.quality = static_cast<BuildQuality>(
-        index_of("--bvh: unknown quality", words.quality, kQualities, "fast, balanced or best"));
-  if (!words.nodes.empty())
-    options.nodes = static_cast<NodeLayout>(
-        index_of("--nodes: unknown layout", words.nodes, kLayouts, "full or compact"));
+        index_of("--bvh: unknown quality", quality, kQualities, "fast, balanced or best"));
   return options;
 }
 

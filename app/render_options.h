@@ -16,11 +16,6 @@ class App;
 
 namespace oktett {
 
-/// How trees are to be built, in words; empty: the default.
-struct TreeWords {
-  std::string quality, nodes;
-};
-
 /// The words of the command line, not yet checked beyond being numbers where numbers belong.
 struct RenderArguments {
   std::string scene;
@@ -32,7 +27,7 @@ struct RenderArguments {
   std::string crop;
   std::string integrator;
   std::string isa;
-  TreeWords tree;
+  std::string bvh;  ///< quality of the trees; empty: the default
   std::vector<std::string> definitions;
   std::string stats;  ///< "", "text" or "json"
   std::string display_server;
@@ -47,10 +42,9 @@ void add_render_options(CLI::App& verb, RenderArguments& arguments);
 void override_scene(const RenderArguments& arguments, Scene& scene);
 /// Splits `name=value` words; the last of a name counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
-/// Adds --bvh and --nodes.
-void add_tree_options(CLI::App& verb, TreeWords& words);
-/// Throws Error for words that mean nothing.
-BuildOptions parse_tree_options(const TreeWords& words);
+void add_bvh_option(CLI::App& verb, std::string& quality);
+/// Build options of the quality that --bvh names; empty: the default. Throws Error for an unknown word.
+BuildOptions parse_bvh_option(const std::string& quality);
 /// `outfile`, or the scene's name with .png in the current directory.
 std::string output_path(const RenderArguments& arguments);
 

@@ -31,7 +31,7 @@ struct VerifyArguments {
   std::vector<std::string> meshes;
   std::vector<std::string> surfaces;
   std::string isa;
-  TreeWords tree;
+  std::string bvh;
   bool quick = false;
   bool json = false;
 
@@ -187,7 +187,7 @@ void verify_meshes(const VerifyArguments& arguments, const std::vector<OracleMes
   report.heading(fmt::format("\n{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}", "mesh",
                              "placement", "", "rays", "hits", "leaks", "parity", "doubled", "differing",
                              "inconsistent"));
-  const BuildOptions build = parse_tree_options(arguments.tree);
+  const BuildOptions build = parse_bvh_option(arguments.bvh);
   for (const OracleMesh& mesh : meshes)
     for (const MeshPlacement& placement : mesh_placements())
       report.mesh(mesh.name, placement,
@@ -218,7 +218,7 @@ void check_surfaces(const std::vector<std::string>& asked) {
 int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   // Complains before the work begins.
-  parse_tree_options(arguments.tree);
+  parse_bvh_option(arguments.bvh);
   chosen_isas(arguments.isa);
   check_surfaces(arguments.surfaces);
   const bool all = arguments.surfaces.empty();
@@ -253,7 +253,7 @@ void add_verify_command(CLI::App& app, Command& command) {
   verb->add_option("--isa", arguments->isa,
                    "One instruction set instead of all: scalar, sse4.2, avx2, avx512")
       ->type_name("NAME");
-  add_tree_options(*verb, arguments->tree);
+  add_bvh_option(*verb, arguments->bvh);
   verb->add_flag("--quick", arguments->quick, "100 000 rays per kernel");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   verb->footer("Exits with status 3 if anything is found wrong.");

@@ -16,7 +16,6 @@ const char* const kPeerUsage =
     "  --seconds S              time for measuring a row; 3\n"
     "  --runs N                 most rounds per row; 15\n"
     "  --build NAME             how Oktett builds the tree that it traces; its default\n"
-    "  --nodes full|compact     how nodes of the tree lie in memory; full\n"
     "  --isa NAME               instruction set\n"
     "  --json FILE              all figures with their spread";
 
@@ -110,11 +109,6 @@ PeerOptions parse_peer_options(int argc, char** argv) {
       o.runs = static_cast<int>(number(a, value(), 1));
     } else if (a == "--build") {
       o.build = value();
-    } else if (a == "--nodes") {
-      const std::string layout = value();
-      if (layout != "full" && layout != "compact")
-        throw Error(a + ": '" + layout + "' is not full or compact");
-      o.compact = layout == "compact";
     } else if (a == "--isa") {
       o.isa = value();
     } else if (a == "--json") {

@@ -20,7 +20,6 @@ struct PeerOptions {
   double seconds = 3;       ///< time for measuring a row, beside the search for Embree's best mode
   int runs = 15;            ///< greatest number of rounds per row
   std::string build;        ///< which of build_variants() the rows trace; empty: the first
-  bool compact = false;     ///< nodes of 96 bytes
   std::string isa, json;
   std::vector<std::string> meshes;
 

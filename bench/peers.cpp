@@ -67,15 +67,10 @@ class Comparison {
   }
 
  private:
-  BuildOptions tree_options(const BuildVariant& variant) const {
-    BuildOptions o = variant.options;
-    o.nodes = options_.compact ? NodeLayout::compact : NodeLayout::full;
-    return o;
-  }
   std::shared_ptr<const Accel> build(const BuildVariant& variant) const {
     Geometry g;
     g.shape = MeshGeometry{&mesh_};
-    return build_accel({g}, tree_options(variant));
+    return build_accel({g}, variant.options);
   }
   std::unique_ptr<EmbreeScene> embree_build(int quality) const {
     return std::make_unique<EmbreeScene>(mesh_, quality, config_.c_str());
@@ -240,7 +235,7 @@ class Comparison {
   }
 
   void picture_row(const View& view, const Workload& primary, int threads) {
-    PictureTask task{path_, view, threads, isa_, tree_options(find_variant(options_.build)), {}, config_};
+    PictureTask task{path_, view, threads, isa_, find_variant(options_.build).options, {}, config_};
     task.mode = fastest_mode({medium()}, primary).mode;
     forget_embree();
     Row r = row(view, threads, "time to first picture", "s");

@@ -369,15 +369,14 @@ double sah_cost(const Accel& accel) {
   const double root = half_area(extent.x, extent.y, extent.z);
   double area = root;
   for (std::size_t n = 0; n < accel.stats.nodes; ++n) {
-    with_node(accel, static_cast<std::uint32_t>(n), [&](const auto& node) {
-      for (int i = 0; i < BvhNode::kWidth; ++i) {
-        if (node.child[i].is_none()) continue;
-        const auto width = [&](int axis) {
-          return double(node_plane(node, 2 * axis + 1, i)) - node_plane(node, 2 * axis, i);
-        };
-        area += half_area(width(0), width(1), width(2));
-      }
-    });
+    const BvhNode& node = accel.nodes[n];
+    for (int i = 0; i < BvhNode::kWidth; ++i) {
+      if (node.child[i].is_none()) continue;
+      const auto width = [&](int axis) {
+        return double(node.plane[2 * axis + 1][i]) - node.plane[2 * axis][i];
+      };
+      area += half_area(width(0), width(1), width(2));
+    }
   }
   return root > 0 ? area / root : 0;
 }

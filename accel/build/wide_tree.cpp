@@ -21,12 +21,10 @@ struct Sizes {
   int depth = 0;  ///< of nodes, counted from the root
 };
 
-template <class Node>
 class WideBuilder {
  public:
-  WideBuilder(Accel& accel, VirtualArray<Node>& nodes, const BinaryTree& tree,
-              const TriangleSource& triangles, bool parallel)
-      : accel_(accel), nodes_(nodes), tree_(tree), triangles_(triangles), parallel_(parallel) {}
+  WideBuilder(Accel& accel, const BinaryTree& tree, const TriangleSource& triangles, bool parallel)
+      : accel_(accel), tree_(tree), triangles_(triangles), parallel_(parallel) {}
 
   void run() {
     std::vector<Entry> top, parts;
@@ -43,13 +41,13 @@ class WideBuilder {
       blocks += sizes[i].blocks;
     }
     if (blocks > NodeRef::kMaxBlocks) throw Error("too many triangles for one structure");
-    nodes_ = VirtualArray<Node>(at.back().nodes);
+    accel_.nodes = VirtualArray<BvhNode>(at.back().nodes);
     accel_.blocks = VirtualArray<TriangleBlock>(at.back().blocks);
     accel_.leaves.resize(at.back().leaves);
     for (std::uint32_t i = 0; i < top.size(); ++i) {
       std::uint32_t child[BvhNode::kWidth];
       const NodeRef none[BvhNode::kWidth] = {};
-      write_node(nodes_[i], child, none, children(tree_.nodes[top[i].index], child));
+      write_node(accel_.nodes[i], child, none, children(tree_.nodes[top[i].index], child));
       attach(top[i], NodeRef::node(i));
     }
     each(parts.size(), [&](std::size_t i) {
@@ -69,7 +67,7 @@ class WideBuilder {
   };
 
   void attach(const Entry& e, NodeRef ref) const {
-    (e.parent == kNoId ? accel_.root : nodes_[e.parent].child[e.slot]) = ref;
+    (e.parent == kNoId ? accel_.root : accel_.nodes[e.parent].child[e.slot]) = ref;
   }
 
   template <class Body>
@@ -145,7 +143,7 @@ class WideBuilder {
     }
     NodeRef refs[BvhNode::kWidth];
     for (int i = 0; i < count; ++i) refs[i] = write(child[i], next);
-    write_node(nodes_[at], child, refs, count);
+    write_node(accel_.nodes[at], child, refs, count);
     return NodeRef::node(at);
   }
 
@@ -161,17 +159,6 @@ class WideBuilder {
   }
 
   /// Boxes and references of `count` children.
-  void write_node(CompactNode& node, const std::uint32_t* child, const NodeRef* refs, int count) const {
-    Box boxes[CompactNode::kWidth];
-    for (int i = 0; i < CompactNode::kWidth; ++i) {
-      node.child[i] = i < count ? refs[i] : NodeRef::none();
-      if (i >= count) continue;
-      const BinaryNode& c = tree_.nodes[child[i]];
-      boxes[i] = {{-c.negative_lo[0], -c.negative_lo[1], -c.negative_lo[2]}, {c.hi[0], c.hi[1], c.hi[2]}};
-    }
-    set_boxes(node, boxes, count);
-  }
-
   void write_node(BvhNode& node, const std::uint32_t* child, const NodeRef* refs, int count) const {
     for (int i = 0; i < BvhNode::kWidth; ++i) {
       const BinaryNode* c = i < count ? &tree_.nodes[child[i]] : nullptr;
@@ -190,12 +177,11 @@ class WideBuilder {
     s.leaves = accel_.leaves.size();
     for (const LeafEntry& l : accel_.leaves) s.leaves -= l.kind == Kind::triangle;
     s.leaves += all.blocks;
-    s.node_bytes = all.nodes * sizeof(Node);
+    s.node_bytes = all.nodes * sizeof(BvhNode);
     s.leaf_bytes = all.blocks * sizeof(TriangleBlock) + accel_.leaves.size() * sizeof(LeafEntry);
   }
 
   Accel& accel_;
-  VirtualArray<Node>& nodes_;
   const BinaryTree& tree_;
   const TriangleSource& triangles_;
   const bool parallel_;
@@ -221,11 +207,7 @@ void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& trian
   const BinaryTree tree = build_binary(refs, triangles, accel.bounds, options, kernels);
   accel.pieces = tree.pieces;
   refs.clear();
-  accel.compact = options.nodes == NodeLayout::compact;
-  if (accel.compact)
-    WideBuilder(accel, accel.compact_nodes, tree, triangles, options.parallel).run();
-  else
-    WideBuilder(accel, accel.nodes, tree, triangles, options.parallel).run();
+  WideBuilder(accel, tree, triangles, options.parallel).run();
   order_pools(accel, tree, order);
 }
 

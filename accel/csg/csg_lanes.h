@@ -6,7 +6,6 @@
 #include "accel/csg/csg.h"
 #include "accel/csg/csg_solids.h"
 #include "accel/exact.h"
-#include "accel/traverse/node_planes.h"
 
 namespace oktett {
 
@@ -118,22 +117,19 @@ class CsgLanes {
           return false;
         continue;
       }
-      with_node(solids, e.ref.node_index(), [&](const auto& node) {
-        for (unsigned rest = present_children(node); rest != 0; rest &= rest - 1) {
-          const int c = __builtin_ctz(rest);
-          F near_planes[3], far_planes[3];
-          for (int k = 0; k < 3; ++k) {
-            const F lo(node_plane(node, 2 * k, c)), hi(node_plane(node, 2 * k + 1, c));
-            near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
-          }
-          // A solid that begins behind the end of a ray matters to no crossing before it.
-          F near, far;
-          slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
-                        far);
-          const unsigned met = e.lanes & lanes_ & bits(near <= far);
-          if (met != 0) stack[size++] = {node.child[c], met};
+      const BvhNode& node = solids.nodes[e.ref.node_index()];
+      for (int c = 0; c < BvhNode::kWidth; ++c) {
+        F near_planes[3], far_planes[3];
+        for (int k = 0; k < 3; ++k) {
+          const F lo(node.plane[2 * k][c]), hi(node.plane[2 * k + 1][c]);
+          near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
         }
-      });
+        // A solid that begins behind the end of a ray matters to no crossing before it.
+        F near, far;
+        slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near, far);
+        const unsigned met = e.lanes & lanes_ & bits(near <= far);
+        if (met != 0) stack[size++] = {node.child[c], met};
+      }
     }
     return true;
   }

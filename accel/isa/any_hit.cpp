@@ -3,7 +3,8 @@
 namespace oktett {
 
 template <class A>
-void TraceFunctions<A>::any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, TraceMode mode) {
+void TraceFunctions<A>::any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded,
+                                TraceMode mode) {
   trace<Query::any, A>(accel, rays, occluded, mode);
 }
 

@@ -30,14 +30,14 @@ OKTETT_INLINE void with_width(TraceMode mode, Function&& f) {
 
 template <Query Q, class A>
 void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
-    if constexpr (!std::is_same_v<A, ScalarIsa>)
-      if (mode == TraceMode::interleaved) return trace_interleaved<Q, A>(accel, rays, out);
-    with_width<A>(mode, [&]<int W>() {
-      if constexpr (W > 1)
-        if (mode == TraceMode::automatic || mode == TraceMode::beam)
-          return trace_automatic<Q, W, A>(accel, rays, out, mode == TraceMode::beam);
-      trace_batch<Q, W, A>(accel, rays, out, mode);
-    });
-  }
+  if constexpr (!std::is_same_v<A, ScalarIsa>)
+    if (mode == TraceMode::interleaved) return trace_interleaved<Q, A>(accel, rays, out);
+  with_width<A>(mode, [&]<int W>() {
+    if constexpr (W > 1)
+      if (mode == TraceMode::automatic || mode == TraceMode::beam)
+        return trace_automatic<Q, W, A>(accel, rays, out, mode == TraceMode::beam);
+    trace_batch<Q, W, A>(accel, rays, out, mode);
+  });
+}
 
 }  // namespace oktett

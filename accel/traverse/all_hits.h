@@ -144,10 +144,9 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
     } else if (ref.is_leaf()) {
       collect_leaf(accel, accel.leaves[ref.table_index()], r, hits);
     } else {
-      with_node(accel, ref.node_index(), [&](const auto& node) {
-        for (unsigned hit = node_single(node, r, 0, near); hit != 0; hit &= hit - 1)
-          stack[size++] = node.child[__builtin_ctz(hit)];
-      });
+      const BvhNode& node = accel.nodes[ref.node_index()];
+      for (unsigned hit = node_single(node, r, 0, near); hit != 0; hit &= hit - 1)
+        stack[size++] = node.child[__builtin_ctz(hit)];
     }
   }
   if (accel.pieces) drop_repeated(accel, hits, first);

@@ -58,27 +58,26 @@ OKTETT_INLINE PacketInterval packet_interval(const RayState<W, A>& r, unsigned l
 }
 
 /// Children of `node` that any ray of the packet might meet; near[k] bounds their distance below.
-template <class A, class Node>
-OKTETT_INLINE unsigned node_interval(const Node& node, const PacketInterval& p, float tmax, float* near) {
+template <class A>
+OKTETT_INLINE unsigned node_interval(const BvhNode& node, const PacketInterval& p, float tmax, float* near) {
   using F = Simd<float, BvhNode::kWidth, A>;
   F n(p.tmin), f(tmax);
   for (int k = 0; k < 3; ++k) {
-    n = max((node_planes<A>(node, p.near_plane[k]) - F(p.near_o[k])) * F(p.near_inv[k]), n);
-    f = min((node_planes<A>(node, p.far_plane[k]) - F(p.far_o[k])) * F(p.far_inv[k]), f);
+    n = max((F::load(node.plane[p.near_plane[k]]) - F(p.near_o[k])) * F(p.near_inv[k]), n);
+    f = min((F::load(node.plane[p.far_plane[k]]) - F(p.far_o[k])) * F(p.far_inv[k]), f);
   }
   n.store(near);
-  return bits(n <= fast_fma(f, F(kSlabRelativeSlack), F(p.slack))) & present_children(node);
+  return bits(n <= fast_fma(f, F(kSlabRelativeSlack), F(p.slack)));
 }
 
 /// Rays that meet child `c` of `node`.
-template <class Node, int W, class A>
-OKTETT_INLINE unsigned child_packet(const Node& node, int c, const RayState<W, A>& r,
+template <int W, class A>
+OKTETT_INLINE unsigned child_packet(const BvhNode& node, int c, const RayState<W, A>& r,
                                     const PacketInterval& p) {
   using F = Simd<float, W, A>;
   F near_planes[3], far_planes[3];
   for (int k = 0; k < 3; ++k)
-    near_planes[k] = F(node_plane(node, p.near_plane[k], c)),
-    far_planes[k] = F(node_plane(node, p.far_plane[k], c));
+    near_planes[k] = F(node.plane[p.near_plane[k]][c]), far_planes[k] = F(node.plane[p.far_plane[k]][c]);
   F n, f;
   slab_interval({F::load(r.o[0]), F::load(r.o[1]), F::load(r.o[2])},
                 {F::load(r.inv[0]), F::load(r.inv[1]), F::load(r.inv[2])}, near_planes, far_planes,
@@ -175,17 +174,16 @@ OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsi
       for (unsigned rest = active; rest != 0; rest &= rest - 1)
         traverse_single<Q>(accel, r, __builtin_ctz(rest), e.ref);
     } else if (!e.ref.is_leaf()) {
-      with_node(accel, e.ref.node_index(), [&](const auto& node) {
-        const int base = size;
-        for (unsigned hit = node_interval<A>(node, interval, tmax, near); hit != 0; hit &= hit - 1) {
-          const int c = __builtin_ctz(hit);
-          const unsigned met = child_packet(node, c, r, interval) & active;
-          if (met == 0) continue;
-          int at = size++;
-          while (at > base && stack[at - 1].near < near[c]) stack[at] = stack[at - 1], --at;
-          stack[at] = {node.child[c], near[c], met};
-        }
-      });
+      const BvhNode& node = accel.nodes[e.ref.node_index()];
+      const int base = size;
+      for (unsigned hit = node_interval<A>(node, interval, tmax, near); hit != 0; hit &= hit - 1) {
+        const int c = __builtin_ctz(hit);
+        const unsigned met = child_packet(node, c, r, interval) & active;
+        if (met == 0) continue;
+        int at = size++;
+        while (at > base && stack[at - 1].near < near[c]) stack[at] = stack[at - 1], --at;
+        stack[at] = {node.child[c], near[c], met};
+      }
       continue;
     } else if (e.ref.is_triangles()) {
       const TriangleBlock& block = accel.blocks[e.ref.block()];

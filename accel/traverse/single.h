@@ -4,7 +4,6 @@
 #include "accel/csg/csg_trace.h"
 #include "accel/exact.h"
 #include "accel/traverse/leaf.h"
-#include "accel/traverse/node_planes.h"
 
 namespace oktett {
 
@@ -56,20 +55,20 @@ OKTETT_NOINLINE void table_leaf_single(const Accel& accel, const LeafEntry& leaf
 }
 
 /// The boxes of `node` against ray `i`: bit k set if child k is met, its distance in near[k].
-template <class Node, int W, class A>
-OKTETT_INLINE unsigned node_single(const Node& node, const RayState<W, A>& r, int i, float* near) {
+template <int W, class A>
+OKTETT_INLINE unsigned node_single(const BvhNode& node, const RayState<W, A>& r, int i, float* near) {
   using F = Simd<float, BvhNode::kWidth, A>;
   F near_planes[3], far_planes[3];
   for (int k = 0; k < 3; ++k) {
     const unsigned negative = r.negative[k] >> i & 1;
-    near_planes[k] = node_planes<A>(node, 2 * k + static_cast<int>(negative));
-    far_planes[k] = node_planes<A>(node, 2 * k + static_cast<int>(negative ^ 1));
+    near_planes[k] = F::load(node.plane[2 * k + static_cast<int>(negative)]);
+    far_planes[k] = F::load(node.plane[2 * k + static_cast<int>(negative ^ 1)]);
   }
   F n, f;
   slab_interval({F(r.o[0][i]), F(r.o[1][i]), F(r.o[2][i])}, {F(r.inv[0][i]), F(r.inv[1][i]), F(r.inv[2][i])},
                 near_planes, far_planes, F(r.tmin[i]), F(r.tmax[i]), F(r.slack[i]), n, f);
   n.store(near);
-  return bits(n <= f) & present_children(node);
+  return bits(n <= f);
 }
 
 /// Puts the children in `hit` on the stack, the nearest last.
@@ -94,18 +93,14 @@ OKTETT_NOINLINE void traverse_single(const Accel& accel, RayState<W, A>& r, int 
   alignas(64) float near[BvhNode::kWidth];
   for (;;) {
     if (!ref.is_leaf()) {
-      unsigned hit = 0;
-      const NodeRef* child = nullptr;
-      with_node(accel, ref.node_index(), [&](const auto& node) {
-        hit = node_single(node, r, i, near);
-        child = node.child;
-      });
+      const BvhNode& node = accel.nodes[ref.node_index()];
+      const unsigned hit = node_single(node, r, i, near);
       if (hit != 0) {
         if ((hit & (hit - 1)) == 0) {
-          ref = child[__builtin_ctz(hit)];
+          ref = node.child[__builtin_ctz(hit)];
           continue;
         }
-        size = push_sorted(child, hit, near, stack, size);
+        size = push_sorted(node.child, hit, near, stack, size);
         ref = stack[--size].ref;
         continue;
       }

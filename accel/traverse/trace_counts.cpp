@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "accel/instance.h"
-#include "accel/traverse/node_planes.h"
 #include "kernels/exact_shapes.h"
 
 namespace oktett {
@@ -36,7 +35,7 @@ class Walk {
       else if (p.ref.is_leaf())
         entry(accel, accel.leaves[p.ref.table_index()]);
       else
-        with_node(accel, p.ref.node_index(), [&](const auto& n) { node(n, stack); });
+        node(accel.nodes[p.ref.node_index()], stack);
     }
   }
 
@@ -46,15 +45,14 @@ class Walk {
     double near;
   };
 
-  template <class Node>
-  void node(const Node& node, std::vector<Pending>& stack) {
+  void node(const BvhNode& node, std::vector<Pending>& stack) {
     ++counts_.nodes;
     const std::size_t base = stack.size();
     for (int i = 0; i < BvhNode::kWidth; ++i) {
       if (node.child[i].is_none()) continue;
       double near = tmin_, far = tmax_;
       for (int k = 0; k < 3; ++k) {
-        const double lo = node_plane(node, 2 * k, i) - o_[k], hi = node_plane(node, 2 * k + 1, i) - o_[k];
+        const double lo = node.plane[2 * k][i] - o_[k], hi = node.plane[2 * k + 1][i] - o_[k];
         if (d_[k] == 0) {
           if (lo > 0 || hi < 0) far = -std::numeric_limits<double>::infinity();
           continue;

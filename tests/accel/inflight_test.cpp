@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <vector>
 
 #include "accel/query.h"
+#include "accel/traverse/inflight/inflight_ray.h"
 #include "tests/support/triangle_cases.h"
+#include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {
@@ -17,17 +22,17 @@ bool same_bits(const Hit& a, const Hit& b) {
          std::memcmp(&a.v, &b.v, sizeof a.v) == 0 && a.item == b.item && a.instance == b.instance;
 }
 
-/// Interleaved rays of every instruction set find what single rays of the scalar code find in `plain`, which
-/// holds the same.
-int expect_same_hits(const Accel& accel, const Accel& plain, const RayBatch& rays) {
+/// Interleaved rays of every instruction set find what single rays of the scalar code find.
+int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
+  const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
   HitBatch expected, hits;
   expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
   std::vector<std::uint8_t> occluded(rays.size());
-  closest_hit(plain, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
+  closest_hit(*accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
   for (const Isa isa : available_isas())
     for (const TraceMode mode : {TraceMode::interleaved, TraceMode::automatic}) {
-      closest_hit(accel, rays.span(), hits.span(), isa, mode);
-      any_hit(accel, rays.span(), occluded.data(), isa, mode);
+      closest_hit(*accel, rays.span(), hits.span(), isa, mode);
+      any_hit(*accel, rays.span(), occluded.data(), isa, mode);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         EXPECT_TRUE(same_bits(hits[i], expected[i])) << to_string(isa) << " ray " << i;
         EXPECT_EQ(occluded[i] != 0, expected[i].valid()) << to_string(isa) << " ray " << i;
@@ -37,15 +42,6 @@ int expect_same_hits(const Accel& accel, const Accel& plain, const RayBatch& ray
   int count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
   return count;
-}
-
-/// In nodes of either layout.
-int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
-  const std::vector<Geometry> geometries = {{MeshGeometry{&mesh}, {}, kNoId}};
-  const auto plain = build_accel(geometries);
-  const auto compact = build_accel(geometries, {BuildQuality::balanced, true, NodeLayout::compact});
-  expect_same_hits(*plain, *plain, rays);
-  return expect_same_hits(*compact, *plain, rays);
 }
 
 /// Slivers, needles and pairs of the same triangle, which tie, with rays that meet or just miss them.
@@ -183,6 +179,82 @@ TEST(Interleaved, BatchesOfAnySize) {
     for (std::size_t i = 0; i < size; ++i) rays.push_back(soup[i]);
     expect_same_hits(mesh, rays);
   }
+}
+
+/// Whether the line of `r` meets a box within the ray's range, in extended precision.
+bool meets(const Ray& r, const Box& box) {
+  long double near = r.tmin, far = r.tmax;
+  for (int k = 0; k < 3; ++k) {
+    const long double lo = static_cast<long double>(box.lo[k]) - r.origin[k],
+                      hi = static_cast<long double>(box.hi[k]) - r.origin[k], d = r.direction[k];
+    if (d == 0) {
+      if (lo > 0 || hi < 0) return false;
+      continue;
+    }
+    near = std::max(near, std::min(lo / d, hi / d)), far = std::min(far, std::max(lo / d, hi / d));
+  }
+  return near <= far;
+}
+
+/// The node over eight boxes.
+BvhNode node_of(const std::vector<Box>& boxes) {
+  BvhNode node;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      node.plane[2 * k][i] = boxes[i].lo[k], node.plane[2 * k + 1][i] = boxes[i].hi[k];
+  return node;
+}
+
+// The fused slab test meets every box that the ray meets, at every scale, also if it only touches a corner.
+TEST(Interleaved, NodesMissNoBox) {
+  constexpr int kRays = 8;
+  using A = ScalarIsa;
+  CaseRandom r(21);
+  int met = 0, more = 0;
+  const auto slot = std::make_unique<InflightRay>();
+  const auto chunk = std::make_unique<RayChunk<kRays, A>>();
+  for (int round = 0; round < 6000; ++round) {
+    const double scale = r.magnitude(-10, 10), shift = round % 2 == 0 ? r.magnitude(-2, 4) : 0;
+    std::vector<Box> boxes;
+    float extent = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3d at = (r.vector() + Vec3d{1, -0.7, 0.2} * shift) * scale;
+      const double size = r.magnitude(-6, 0) * scale;
+      const Vec3f a(at), b(at + r.vector() * size);
+      boxes.push_back({min(a, b), max(a, b)});
+      if (i % 3 == 0) boxes.back().hi.z = boxes.back().lo.z;
+      extent = std::max({extent, max_component(abs(boxes.back().lo)), max_component(abs(boxes.back().hi))});
+    }
+    const BvhNode node = node_of(boxes);
+    RayBatch rays;
+    for (int i = 0; i < kRays; ++i) {
+      const Box& b = boxes[r.bits() % 8];
+      Vec3f corner;
+      for (int k = 0; k < 3; ++k) corner[k] = r.bits() % 2 == 0 ? b.lo[k] : b.hi[k];
+      const double far = i % 2 == 0 ? 2 : r.magnitude(0, 5);
+      Vec3f from = corner + Vec3f(r.vector() * (scale * far));
+      // Exactly in a face or along an edge.
+      for (int k = 0; k < 3; ++k)
+        if (r.bits() % 4 == 0) from[k] = corner[k];
+      Ray ray{from, 0, corner - from, kInf};
+      if (i % 3 == 0) ray.direction = ray.direction * static_cast<float>(r.magnitude(-6, 6) / scale);
+      rays.push_back(ray);
+    }
+    chunk->set(rays.span(), 0, extent);
+    for (int i = 0; i < kRays; ++i) {
+      if ((chunk->tame >> i & 1) == 0) continue;
+      fill_slot(*slot, *chunk, i, NodeRef::none());
+      Simd<float, BvhNode::kWidth, A> near;
+      const unsigned found = slot_node<A>(*slot, node, near);
+      for (int c = 0; c < 8; ++c) {
+        const bool should = meets(rays[static_cast<std::size_t>(i)], boxes[static_cast<std::size_t>(c)]);
+        ASSERT_TRUE(!should || (found >> c & 1) != 0) << round << " ray " << i << " child " << c;
+        met += should, more += !should && (found >> c & 1) != 0;
+      }
+    }
+  }
+  EXPECT_GT(met, 20000);
+  EXPECT_LT(more, 2 * met);
 }
 
 }  // namespace

@@ -50,11 +50,6 @@ TEST(InfoCommand, TraceCountsWhatCameraRaysMeet) {
     EXPECT_FALSE(contains(traced.out, "\"hits\": 0,"));
   }
   EXPECT_TRUE(contains(run_command(dir, {"info", "--trace", "tetra.obj"}).out, "per ray"));
-  for (const char* nodes : {"full", "compact"})
-    EXPECT_EQ(run_command(dir, {"info", "--nodes", nodes, "tetra.obj"}).status, 0);
-  const CommandResult unknown = run_command(dir, {"info", "--nodes", "fill", "tetra.obj"});
-  EXPECT_EQ(unknown.status, 2);
-  EXPECT_TRUE(contains(unknown.err, "did you mean 'full'")) << unknown.err;
   const CommandResult wrong = run_command(dir, {"info", "--bvh", "bast", "tetra.obj"});
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(contains(wrong.err, "did you mean")) << wrong.err;

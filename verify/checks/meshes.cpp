@@ -184,7 +184,7 @@ MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, st
   subject.mesh =
       placed(mesh.mesh, placement.size > 0 && extent > 0 ? placement.size / extent : 1, placement.offset);
   subject.accel = build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}}, build);
-  const bool plain = build.quality == BuildQuality::balanced && build.nodes == NodeLayout::full;
+  const bool plain = build.quality == BuildQuality::balanced;
   subject.plain = plain ? subject.accel : build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}});
   MeshTally total;
   total.open_edges = open_edge_count(mesh.mesh);

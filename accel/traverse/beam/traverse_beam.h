@@ -26,15 +26,15 @@ struct alignas(32) ChildWindows {
 };
 
 /// Children of `node` whose boxes meet the window.
-template <class A, class Node>
-OKTETT_INLINE unsigned node_beam(const Node& node, const BeamRays<A>& beam, const BeamWindow& w,
+template <class A>
+OKTETT_INLINE unsigned node_beam(const BvhNode& node, const BeamRays<A>& beam, const BeamWindow& w,
                                  ChildWindows& out) {
   using B = Simd<float, BvhNode::kWidth, A>;
   const int kx = 2 * beam.axis[0], ky = 2 * beam.axis[1], kz = 2 * beam.axis[2];
   const B ox(beam.apex[0]), oy(beam.apex[1]), oz(beam.apex[2]);
-  const B xl = node_planes<A>(node, kx) - ox, xh = node_planes<A>(node, kx + 1) - ox;
-  const B yl = node_planes<A>(node, ky) - oy, yh = node_planes<A>(node, ky + 1) - oy;
-  const B z_low = node_planes<A>(node, kz) - oz, z_high = node_planes<A>(node, kz + 1) - oz;
+  const B xl = B::load(node.plane[kx]) - ox, xh = B::load(node.plane[kx + 1]) - ox;
+  const B yl = B::load(node.plane[ky]) - oy, yh = B::load(node.plane[ky + 1]) - oy;
+  const B z_low = B::load(node.plane[kz]) - oz, z_high = B::load(node.plane[kz + 1]) - oz;
   const B zn = beam.mirrored ? -z_high : z_low, zf = beam.mirrored ? -z_low : z_high;
   const B margin(beam.margin + beam.slip), infinity(std::numeric_limits<float>::infinity());
   // So near the plane of the apex that rounding counts for more than kBeamSlack, or behind it.
@@ -61,7 +61,7 @@ OKTETT_INLINE unsigned node_beam(const Node& node, const BeamRays<A>& beam, cons
         (-behind <= zf) & side(xh, w.x_lo) & side(-xl, -w.x_hi) & side(yh, w.y_lo) & side(-yl, -w.y_hi);
     hit = hit & (front | inside);
   }
-  const unsigned children = bits(hit) & present_children(node);
+  const unsigned children = bits(hit);
   if (children != 0)
     near.store(out.near), px_lo.store(out.x_lo), px_hi.store(out.x_hi), py_lo.store(out.y_lo),
         py_hi.store(out.y_hi);
@@ -239,10 +239,9 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
       }
     }
     if (!e.ref.is_leaf()) {
-      with_node(accel, e.ref.node_index(), [&](const auto& node) {
-        const unsigned met = node_beam(node, beam, window, children);
-        size = push_windows(node.child, met, children, groups, stack, size);
-      });
+      const BvhNode& node = accel.nodes[e.ref.node_index()];
+      const unsigned met = node_beam(node, beam, window, children);
+      size = push_windows(node.child, met, children, groups, stack, size);
     } else {
       tests += leaf_beam(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && beam.may_sort) {

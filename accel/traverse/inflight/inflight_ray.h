@@ -3,7 +3,6 @@
 
 #include "accel/traverse/inflight/ray_chunk.h"
 #include "accel/traverse/leaf.h"
-#include "accel/traverse/node_planes.h"
 #include "core/simd_order.h"
 
 namespace oktett {
@@ -86,37 +85,9 @@ OKTETT_INLINE unsigned slot_node(const InflightRay& s, const BvhNode& node,
   return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
 }
 
-/// The same for boxes on a grid, where a plane is never made: with o and s the grid's origin and scale,
-/// (o + q s) i + shift = q (s i) + (o i + shift). RayChunk's shifts pay for the roundings if they are told.
-template <class A>
-OKTETT_INLINE unsigned slot_node(const InflightRay& s, const CompactNode& node,
-                                 Simd<float, BvhNode::kWidth, A>& near) {
-  using F = Simd<float, BvhNode::kWidth, A>;
-  using Axes = Simd<float, 4, A>;
-  constexpr std::uint32_t kOther = BvhNode::kWidth;
-  const Axes inv = Axes::load(s.inv);
-  // What stands behind the three axes must not become a denormal.
-  const Axes origin = select(Axes::M::from_bits(7), Axes::load(node.origin), Axes(0.0f));
-  alignas(16) float step[4], near_shift[4], far_shift[4];
-  (inv * load_powers3<A>(node.exponent)).store(step);
-  fast_fma(origin, inv, Axes::load(s.near_shift)).store(near_shift);
-  fast_fma(origin, inv, Axes::load(s.far_shift)).store(far_shift);
-  reload(step), reload(near_shift), reload(far_shift);
-  const std::uint8_t* rows = &node.plane[0][0];
-  F n[3], f[3];
-  for (int k = 0; k < 3; ++k) {
-    const F per_step(step[k]);
-    n[k] = fast_fma(load_bytes<A>(rows + s.near_row[k]), per_step, F(near_shift[k]));
-    f[k] = fast_fma(load_bytes<A>(rows + (s.near_row[k] ^ kOther)), per_step, F(far_shift[k]));
-  }
-  near = max(max(n[0], n[1]), max(n[2], F(s.tmin)));
-  const F far = min(min(f[0], f[1]), min(f[2], F(s.limit)));
-  return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack)) & node.present;
-}
-
 /// Puts the children that the ray meets on its stack, the nearest last, and takes the last entry off.
-template <Query Q, class A, class Node>
-OKTETT_INLINE NodeRef step_node(InflightRay& s, const Node& node) {
+template <Query Q, class A>
+OKTETT_INLINE NodeRef step_node(InflightRay& s, const BvhNode& node) {
   Simd<float, BvhNode::kWidth, A> near;
   const unsigned met = slot_node<A>(s, node, near);
   const int size = s.size;

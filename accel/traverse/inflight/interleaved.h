@@ -26,8 +26,8 @@ inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_byte
 template <Query Q>
 using HitSink = std::conditional_t<Q == Query::any, std::uint8_t*, HitSpan>;
 
-/// `Node`: of the tree. `kPrefetch`: asks for the memory of a step when it is chosen.
-template <Query Q, class A, class Node, bool kPrefetch>
+/// `kPrefetch`: asks for the memory of a step when it is chosen.
+template <Query Q, class A, bool kPrefetch>
 class InterleavedTraversal {
  public:
   InterleavedTraversal(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out)
@@ -46,7 +46,6 @@ class InterleavedTraversal {
   }
 
  private:
-  static constexpr bool kGrid = std::is_same_v<Node, CompactNode>;
   static constexpr int kBlock = TriangleBlock::kSize;
   static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
   /// Rays whose leaves are visited at once.
@@ -77,10 +76,10 @@ class InterleavedTraversal {
     const std::uint32_t bits = ref.bits(), is_leaf = bits >> 31;
     if constexpr (kPrefetch) {
       const std::size_t index = bits & (NodeRef::kMaxBlocks - 1);
-      const char* at = base_[is_leaf] + index * sizeof(Node) +
-                       (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(Node));
+      const char* at = base_[is_leaf] + index * sizeof(BvhNode) +
+                       (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(BvhNode));
       for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
-        __builtin_prefetch(at + (line < sizeof(Node) ? line : is_leaf * line));
+        __builtin_prefetch(at + (line < sizeof(BvhNode) ? line : is_leaf * line));
     }
     // Arithmetic on the two top bits of NodeRef::bits, as compilers turn comparisons into jumps.
     const std::uint32_t is_other = is_leaf & (bits >> 30);
@@ -95,18 +94,11 @@ class InterleavedTraversal {
     enqueue(slot, ref, t);
   }
 
-  const Node* node_array() const {
-    if constexpr (kGrid)
-      return accel_.compact_nodes.data();
-    else
-      return accel_.nodes.data();
-  }
-
   void node_round() {
     const Queue now = nodes_;
     nodes_.size = 0;
     Tails t = tails();
-    const Node* nodes = node_array();
+    const BvhNode* nodes = accel_.nodes.data();
     for (int i = 0; i < now.size; ++i) {
       InflightRay& slot = *now.slot[i];
       enqueue(slot, step_node<Q, A>(slot, nodes[slot.current.bits()]), t);
@@ -281,7 +273,7 @@ class InterleavedTraversal {
   void refill(InflightRay& slot, Tails& tail) {
     for (; next_ < rays_.size; ++next_) {
       const int i = static_cast<int>(next_ % kChunk);
-      if (i == 0) chunk_.set(rays_, next_, extent_, kGrid);
+      if (i == 0) chunk_.set(rays_, next_, extent_);
       if ((chunk_.tame >> i & 1) != 0) {
         start(slot, i, tail);
         ++next_;
@@ -347,7 +339,7 @@ class InterleavedTraversal {
   const RaySpan rays_;
   const HitSink<Q> out_;
   const float extent_;
-  const char* const base_[2] = {reinterpret_cast<const char*>(node_array()),
+  const char* const base_[2] = {reinterpret_cast<const char*>(accel_.nodes.data()),
                                 reinterpret_cast<const char*>(accel_.blocks.data())};
   std::size_t next_ = 0;
   Queue nodes_, leaves_, others_;
@@ -358,26 +350,18 @@ class InterleavedTraversal {
   RayState<1, A> states_[kInflightRays];
 };
 
-template <Query Q, class A, class Node, bool kPrefetch>
+template <Query Q, class A, bool kPrefetch>
 OKTETT_NOINLINE void run_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  InterleavedTraversal<Q, A, Node, kPrefetch>(accel, rays, out).run();
-}
-
-template <Query Q, class A, class Node>
-void run_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  if (tree_bytes(accel) > kPrefetchBytes)
-    run_interleaved<Q, A, Node, true>(accel, rays, out);
-  else
-    run_interleaved<Q, A, Node, false>(accel, rays, out);
+  InterleavedTraversal<Q, A, kPrefetch>(accel, rays, out).run();
 }
 
 /// All rays of a span against everything; results in the order of the rays.
 template <Query Q, class A>
 void trace_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  if (accel.compact)
-    run_interleaved<Q, A, CompactNode>(accel, rays, out);
+  if (tree_bytes(accel) > kPrefetchBytes)
+    run_interleaved<Q, A, true>(accel, rays, out);
   else
-    run_interleaved<Q, A, BvhNode>(accel, rays, out);
+    run_interleaved<Q, A, false>(accel, rays, out);
 }
 
 }  // namespace oktett

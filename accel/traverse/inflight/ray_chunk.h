@@ -14,8 +14,6 @@ namespace oktett {
 inline constexpr float kChunkMinExtent = 0x1p-36f;
 /// A direction component below this part of the greatest is replaced by it.
 inline constexpr float kChunkMinComponent = 0x1p-40f;
-/// Products with a grid's scale may underflow 255-fold.
-inline constexpr float kChunkGridUnderflow = 1e-35f;
 /// Relative error of o * (1/d), of its sum with the error, and a reserve.
 inline constexpr float kChunkShiftError = 0x1p-21f;
 
@@ -35,8 +33,7 @@ struct alignas(64) RayChunk {
   unsigned tame;   ///< of them: those whose numbers are neither so great nor so small that bounds break
 
   /// The W rays from position `b` on of a structure within `extent` of zero; past the end none is valid.
-  /// `grid`: for planes of CompactNode, whose origin and steps are multiplied one by one.
-  OKTETT_INLINE void set(const RaySpan& rays, std::size_t b, float extent, bool grid) {
+  OKTETT_INLINE void set(const RaySpan& rays, std::size_t b, float extent) {
     const std::size_t rest = rays.size - b;
     const RayLanes<F> r = load_span<F>(rays, b);
     const F zero(0.0f), big(std::numeric_limits<float>::max());
@@ -53,9 +50,9 @@ struct alignas(64) RayChunk {
     tame = valid & bits((F(kChunkMinExtent) <= span) & (span <= F(kClassifyMaxExtent)) &
                         (F(1 / kClassifyMaxDirection) <= dm) & (dm <= F(kClassifyMaxDirection)));
     const F reach = span / dm, least = dm * F(kChunkMinComponent);
-    set_axis(0, r.o.x, dir.x, reach, least, extent, grid);
-    set_axis(1, r.o.y, dir.y, reach, least, extent, grid);
-    set_axis(2, r.o.z, dir.z, reach, least, extent, grid);
+    set_axis(0, r.o.x, dir.x, reach, least, extent);
+    set_axis(1, r.o.y, dir.y, reach, least, extent);
+    set_axis(2, r.o.z, dir.z, reach, least, extent);
     dm.store(d_max);
     // Zero added: a negative zero would not sort as a key.
     (r.tmin + zero).store(tmin), r.tmax.store(tmax), slack_of(reach).store(slack);
@@ -66,15 +63,14 @@ struct alignas(64) RayChunk {
     return fast_fma(reach, F(2 * kSlabAbsoluteSlack), F(2 * kSlabUnderflow));
   }
   OKTETT_INLINE void set_axis(int k, const F& origin, const F& direction, const F& reach, const F& least,
-                              float extent, bool grid) {
+                              float extent) {
     const auto tiny = abs(direction) < least;
     const F inverse = F(1.0f) / select(tiny, flip_sign(least, direction + F(0.0f)), direction);
     const F shift = origin * inverse;
-    // Without fusing, the product with the plane rounds too; on a grid, that with its origin.
-    const F size = kHasFma<A> && W > 1 && !grid ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
+    // Without fusing, the product with the plane rounds too.
+    const F size = kHasFma<A> && W > 1 ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
     // A ray turned by replacing its component strays no farther than the new component carries it twice.
-    const F error = fast_fma(size, F(kChunkShiftError),
-                             select(tiny, F(4.0f) * reach, F(grid ? kChunkGridUnderflow : 0.0f)));
+    const F error = fast_fma(size, F(kChunkShiftError), select(tiny, F(4.0f) * reach, F(0.0f)));
     origin.store(o[k]), direction.store(d[k]), inverse.store(inv[k]);
     (-(shift + error)).store(near_shift[k]);
     ((error + slack_of(reach)) - shift).store(far_shift[k]);

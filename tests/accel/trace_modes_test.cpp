@@ -1,0 +1,156 @@
+/// \file Every trace mode and instruction set finds the same hits.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "accel/query.h"
+#include "core/isa.h"
+#include "verify/cases/kernel_cases.h"
+
+namespace oktett {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::best};
+
+TriangleMesh soup(int count, std::uint64_t seed, double scale, const Vec3d& shift = {}) {
+  TriangleMesh m;
+  CaseRandom r(seed);
+  for (int i = 0; i < count; ++i) {
+    const Vec3d c = r.vector();
+    const double size = i % 10 == 0 ? 0.6 : 0.05;
+    for (int k = 0; k < 3; ++k) {
+      Vec3d p = c + r.vector() * size;
+      if (i % 7 == 0) p.z = 0.25;  // flat boxes
+      m.indices.push_back(static_cast<std::uint32_t>(m.positions.size()));
+      m.positions.push_back(Vec3f(p * scale + shift));
+    }
+  }
+  return m;
+}
+
+/// Towards vertices, edges and faces, along axes, and past everything; from near, from far, and with ranges
+/// that end at what they aim at.
+RayBatch rays_at(const TriangleMesh& m, int count, std::uint64_t seed, double scale, const Vec3d& shift) {
+  RayBatch rays;
+  CaseRandom r(seed);
+  for (int i = 0; i < count; ++i) {
+    const std::size_t t = 3 * (r.bits() % m.triangle_count());
+    const auto corner = [&](std::size_t k) { return Vec3d(m.positions[m.indices[t + k]]); };
+    const double u = i % 3 == 0 ? 0 : r.unit(), v = i % 4 == 0 ? 0 : r.unit() * (1 - u);
+    const Vec3d target = corner(0) * (1 - u - v) + corner(1) * u + corner(2) * v;
+    Vec3d from = r.vector() * (scale * (i % 5 == 0 ? 40 : 1.5)) + shift;
+    if (i / 16 % 3 == 0) from = Vec3d{1.5, 0.5, 1} * scale + shift;  // many from one point
+    Ray ray{Vec3f(from), 0, Vec3f(target) - Vec3f(from), i % 6 == 0 ? 1.0f : kInf};
+    if (i % 11 == 0) ray.direction[static_cast<int>(r.bits() % 3)] = i % 2 == 0 ? 0.0f : -0.0f;
+    if (i % 13 == 0) ray.direction = {0, 0, static_cast<float>(-scale)};
+    if (i % 17 == 0) ray.direction = ray.direction / static_cast<float>(scale);
+    if (i % 97 == 0) ray.direction.y = std::numeric_limits<float>::quiet_NaN();
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+/// The hits in `other`, in every mode, are those of single rays of the scalar code in `plain`. Returns the
+/// number of hits.
+int expect_same(const Accel& plain, const Accel& other, const RayBatch& rays, const std::string& what) {
+  HitBatch expected, hits;
+  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
+  std::vector<std::uint8_t> dark(rays.size());
+  closest_hit(plain, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
+  int found = 0;
+  for (const Isa isa : available_isas()) {
+    for (const TraceMode mode :
+         {TraceMode::automatic, TraceMode::single, TraceMode::packet4, TraceMode::packet8,
+          TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
+      closest_hit(other, rays.span(), hits.span(), isa, mode);
+      any_hit(other, rays.span(), dark.data(), isa, mode);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_EQ(hits[i], expected[i])
+            << what << ' ' << to_string(isa) << " mode " << int(mode) << " ray " << i;
+        EXPECT_EQ(dark[i] != 0, expected[i].valid()) << what << ' ' << to_string(isa) << " ray " << i;
+        if (testing::Test::HasFailure()) return 0;
+        found += hits[i].valid();
+      }
+    }
+    std::vector<Hit> a, b;
+    for (std::size_t i = 0; i < rays.size(); i += 7) {
+      all_hits(plain, rays[i], a, Isa::scalar), all_hits(other, rays[i], b, isa);
+      EXPECT_EQ(a, b) << what << ' ' << to_string(isa) << " ray " << i;
+    }
+  }
+  return found;
+}
+
+TEST(TraceModes, SameHitsAtEveryScale) {
+  struct Place {
+    double scale;
+    Vec3d shift;
+  };
+  const Place places[] = {
+      {1, {}},    {1, {3000, -70000, 5}}, {1e-9, {}}, {1e-20, {}}, {1e-25, {}}, {1e10, {}}, {1e20, {}},
+      {1e30, {}}, {1e-3, {1, 1, 1}},      {1e38, {}}};
+  for (const Place& p : places)
+    for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best}) {
+      const TriangleMesh m = soup(900, 3, p.scale, p.shift);
+      const std::vector<Geometry> geometries = {{MeshGeometry{&m}, {}, kNoId}};
+      const auto plain = build_accel(geometries), other = build_accel(geometries, {quality});
+      const RayBatch rays = rays_at(m, 1500, 4, p.scale, p.shift);
+      const int found = expect_same(*plain, *other, rays, "scale " + std::to_string(p.scale));
+      if (HasFailure()) return;
+      if (p.scale < 1e35) {
+        EXPECT_GT(found, 5000) << p.scale;
+      }
+    }
+}
+
+// Meshes of both kinds of triangle test, closed-form shapes, a plane and instances in one tree; instances of
+// trees of another quality change nothing.
+TEST(TraceModes, SameHitsOfMixedKinds) {
+  const TriangleMesh m = soup(300, 5, 1), textbook = soup(60, 6, 1);
+  std::shared_ptr<const Accel> child[2];
+  for (int i = 0; i < 2; ++i) child[i] = build_accel({{MeshGeometry{&m}, {}, kNoId}}, {kQualities[i]});
+  std::vector<Geometry> geometries = {{MeshGeometry{&m}, {}, kNoId}};
+  geometries.push_back({MeshGeometry{&textbook, true, TriangleTest::moller_trumbore}, {}, kNoId});
+  geometries.push_back({PlaneShape{{0, 0, 1}, -0.7}, {}, kNoId});
+  CaseRandom r(7);
+  std::vector<Geometry> others = geometries;
+  for (int i = 0; i < 90; ++i) {
+    const Vec3d c = r.vector();
+    const Affine at = Affine::translation(c) * Affine::scaling({0.3, 0.2, 0.1});
+    for (std::vector<Geometry>* list : {&geometries, &others}) {
+      const auto& inner = child[list == &others ? i / 4 % 2 : 0];
+      if (i % 4 == 0)
+        list->push_back({SpheresShape{{{c, 0.05}}}, {}, kNoId});
+      else if (i % 4 == 1)
+        list->push_back({BoxShape{c, c + Vec3d{0.1, 0.1, 0.01}}, {}, kNoId});
+      else if (i % 4 == 2)
+        list->push_back({DiskShape{c, {0, 0, 1}, 0.1}, {}, kNoId});
+      else
+        list->push_back({InstanceGeometry{inner}, at, kNoId});
+    }
+  }
+  const auto plain = build_accel(geometries);
+  const RayBatch rays = rays_at(m, 1500, 8, 1, {});
+  for (const BuildQuality quality : kQualities) {
+    const auto other = build_accel(others, {quality});
+    EXPECT_GT(expect_same(*plain, *other, rays, "mixed"), 5000);
+  }
+}
+
+TEST(TraceModes, SameHitsOfFewTriangles) {
+  const TriangleMesh targets = soup(100, 10, 1);
+  for (const int count : {0, 1, 8, 9}) {
+    const TriangleMesh few = soup(count, 11, 1);
+    const std::vector<Geometry> one = {{MeshGeometry{&few}, {}, kNoId}};
+    const auto plain = build_accel(one), fast = build_accel(one, {BuildQuality::fast});
+    expect_same(*plain, *fast, rays_at(targets, 200, 12, 1, {}), "few");
+  }
+}
+
+}  // namespace
+}  // namespace oktett
