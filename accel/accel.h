@@ -16,7 +16,7 @@
 #include "core/surface_interaction.h"
 #include "core/transform.h"
 #include "kernels/closed/shape_data.h"
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact_form.h"
 
 namespace oktett {
 

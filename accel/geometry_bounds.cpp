@@ -83,7 +83,7 @@ bool is_unbounded(const Geometry& g) {
     ExactPools pools;
     bool unbounded = false;
     visit_exact(kind_of(exact->form), pools, [&](auto tag, auto& pool) {
-      decltype(tag)::add(pool, *exact, g.transform, 0);
+      add_exact<decltype(tag)>(pool, *exact, g.transform, 0);
       for (const ExactCell& cell : pool.cells) unbounded |= cell_bounds<decltype(tag)>(pool, cell).empty();
     });
     return unbounded;

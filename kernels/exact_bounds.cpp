@@ -25,7 +25,7 @@ Box exact_bounds(const ExactShape& shape, const Affine& to_world) {
   ExactPools pools;
   Box bounds;
   visit_exact(kind_of(shape.form), pools, [&](auto tag, auto& pool) {
-    decltype(tag)::add(pool, shape, to_world, 0);
+    add_exact<decltype(tag)>(pool, shape, to_world, 0);
     for (const ExactCell& cell : pool.cells) {
       const Box b = cell_bounds<decltype(tag)>(pool, cell);
       if (b.empty()) return void(bounds = {});

@@ -3,6 +3,7 @@
 
 #include "core/box.h"
 #include "kernels/exact/exact.h"
+#include "kernels/exact_form.h"
 
 namespace oktett {
 

@@ -49,6 +49,12 @@ struct ExactPools {
   PoolsOf<ExactShapes>::type pools;
 };
 
+/// Appends `shape`, whose form is of S, to its pool.
+template <class S>
+void add_exact(typename S::Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
+  S::add(pool, std::get<typename S::Data>(shape.form), {to_world, item, shape.normals});
+}
+
 /// Calls f(shape tag, pool) for the exact `kind`; `Pools` is ExactPools, const or not.
 template <int K = 0, class Pools, class Function>
 OKTETT_INLINE void visit_exact(Kind kind, Pools& pools, Function&& f) {

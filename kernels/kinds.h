@@ -12,7 +12,7 @@
 #include "kernels/closed/plane.h"
 #include "kernels/closed/polygon.h"
 #include "kernels/closed/sphere.h"
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact_form.h"
 #include "kernels/triangle/triangle.h"
 
 namespace oktett {
@@ -21,7 +21,7 @@ namespace oktett {
 using ClosedFormShapes = std::tuple<Sphere, Disk, BoxSolid, Polygon, Plane>;
 
 /// What a leaf holds. The closed-form kinds come first and number the entries of ClosedFormShapes; the exact
-/// ones follow and number those of ExactForm (exact_data.h) and ExactShapes (exact_shapes.h).
+/// ones follow and number those of ExactForm (exact_form.h) and ExactShapes (exact_shapes.h).
 enum class Kind : std::uint8_t {
   sphere,
   disk,

@@ -13,7 +13,7 @@
 #include "core/transform.h"
 #include "core/vec3.h"
 #include "kernels/closed/shape_data.h"
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact_form.h"
 #include "render/material.h"
 
 namespace oktett {

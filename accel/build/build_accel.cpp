@@ -239,13 +239,13 @@ void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
 }
 
 /// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
-void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world, std::uint32_t item,
-               Column<PrimRef>& refs, ItemOrder& order) {
+void add_exact_cells(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world,
+                     std::uint32_t item, Column<PrimRef>& refs, ItemOrder& order) {
   if (!accel.exact) accel.exact = std::make_unique<ExactPools>();
   visit_exact(kind, *accel.exact, [&](auto tag, auto& pool) {
     using S = decltype(tag);
     const std::size_t first = pool.cells.size();
-    S::add(pool, shape, to_world, item);
+    add_exact<S>(pool, shape, to_world, item);
     for (std::size_t cell = first; cell < pool.cells.size(); ++cell) {
       const Box box = cell_bounds<S>(pool, pool.cells[cell]);
       const auto index = static_cast<std::uint32_t>(cell);
@@ -338,7 +338,7 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
       continue;
     }
     if (const auto* exact = std::get_if<ExactShape>(&geometry.shape)) {
-      add_exact(accel, *exact, kind, geometry.transform, first, refs, order);
+      add_exact_cells(accel, *exact, kind, geometry.transform, first, refs, order);
       continue;
     }
     for (std::uint32_t item = first; item < end; ++item) {

@@ -154,7 +154,7 @@ void ExactShapeCode<S, A>::rows(const Pool& pool, std::uint32_t index, const Ray
   }
 }
 
-/// settle and exact_surface of kernels/exact/exact_surface.h.
+/// settle and exact_surface of kernels/exact_surface.h.
 template <class S, class D>
 void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
   using F = Simd<float, D::kWidth, typename D::Isa>;

@@ -5,8 +5,8 @@
 #include "accel/accel_data.h"
 #include "accel/hit_place.h"
 #include "accel/surface/offset_origin.h"
-#include "kernels/exact/exact_surface.h"
 #include "kernels/exact_shapes.h"
+#include "kernels/exact_surface.h"
 
 namespace oktett {
 namespace {

@@ -4,8 +4,8 @@
 #include "accel/shape_hits.h"
 #include "accel/surface/interaction_code.h"
 #include "accel/surface/mesh_interactions.h"
-#include "kernels/exact/exact_surface.h"
 #include "kernels/exact_shapes.h"
+#include "kernels/exact_surface.h"
 
 namespace oktett {
 namespace {

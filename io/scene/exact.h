@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/scene/load.h"
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact_form.h"
 
 namespace oktett {
 

@@ -76,7 +76,7 @@ MaybeForm read_julia(SceneLoad& load, const YamlNode& key, const YamlNode& node)
   if (const YamlNode* n = fields["iterations"])
     shape.iterations = load.values.integer(*n, 1, static_cast<std::uint32_t>(kMaxJuliaIterations));
   Julia::Pool pool;
-  Julia::add(pool, ExactShape{shape}, {}, 0);
+  Julia::add(pool, shape, {});
   if (pool.elements.empty()) return skip_exact(load, key, "nothing of the set is in this slice");
   return shape;
 }
@@ -91,7 +91,7 @@ MaybeForm read_terrain(SceneLoad& load, const YamlNode& key, const YamlNode& nod
   load.values.read(fields["roughness"], shape.roughness, {0, 1, false, true});
   load.values.read(fields["base"], shape.base, kAnyNumber);
   Terrain::Pool pool;
-  Terrain::add(pool, ExactShape{shape}, {}, 0);
+  Terrain::add(pool, shape, {});
   if (pool.elements.empty()) return skip_exact(load, key, "the landscape lies below its base");
   return shape;
 }

@@ -51,8 +51,7 @@ std::optional<std::array<Vec3d, 2>> blob_box(const BlobShape& s) {
   return box;
 }
 
-void Blob::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<BlobShape>(shape.form);
+void Blob::add(Pool& pool, const BlobShape& s, const ExactPlace& place) {
   const auto box = blob_box(s);
   if (!box || s.sources.empty() || s.sources.size() > kMaxBlobSources || !(s.iso > 0)) return;
   const Vec3d middle = ((*box)[0] + (*box)[1]) * 0.5, half = ((*box)[1] - (*box)[0]) * 0.5;
@@ -82,7 +81,7 @@ void Blob::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std:
   e.root_finder = s.root_finder;
   e.lo = half * (-1 / size), e.hi = half * (1 / size);
   const Affine own = Affine::translation(middle) * Affine::scaling({size, size, size});
-  add_element(pool, e, to_world * own, item, shape.normals);
+  add_element(pool, e, place.to_world * own, place);
   add_cell(pool, e.lo, e.hi);
 }
 

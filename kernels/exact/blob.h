@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 
+#include "kernels/exact/blob_data.h"
 #include "kernels/exact/ray_polynomial.h"
 
 namespace oktett {
@@ -40,7 +41,7 @@ struct Blob {
   /// lose a factor of (1 + length / d)^2 each.
   static constexpr int kWholeSources = 4;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const BlobShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

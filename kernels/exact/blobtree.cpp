@@ -370,8 +370,7 @@ FieldPart make_part(const FieldElement& element, const Vec3d& middle, double siz
 
 }  // namespace
 
-void BlobTree::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const BlobTreeShape& s = std::get<BlobTreeShape>(shape.form);
+void BlobTree::add(Pool& pool, const BlobTreeShape& s, const ExactPlace& place) {
   std::vector<std::uint32_t> code = program(s);
   if (code.empty() || !(s.iso > 0 && std::isfinite(s.iso))) return;
   // No blend exceeds the sum of the positive elements. Of n that never end one must be iso / n at least.
@@ -407,8 +406,8 @@ void BlobTree::add(Pool& pool, const ExactShape& shape, const Affine& to_world, 
   const Vec3d half = extent * (0.5 / size);
   e.root = pool.tree.divide(rule, {-half, half}, code, static_cast<std::uint32_t>(pool.elements.size()),
                             pool.cells);
-  add_element(pool, e, to_world * Affine::translation(middle) * Affine::scaling({size, size, size}), item,
-              shape.normals);
+  add_element(pool, e, place.to_world * Affine::translation(middle) * Affine::scaling({size, size, size}),
+              place);
 }
 
 double BlobTree::value(const Pool& pool, std::size_t i, int, const Vec3d& p) {

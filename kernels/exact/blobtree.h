@@ -5,6 +5,7 @@
 /// The tree is a program for a stack machine, cut down in each cell to what matters there: elements that are
 /// zero, and branches that are surely below or above what they are blended with, are left out.
 
+#include "kernels/exact/blobtree_data.h"
 #include "kernels/exact/cell_tree.h"
 #include "kernels/exact/march.h"
 #include "kernels/exact/potential_lanes.h"
@@ -144,7 +145,7 @@ struct BlobTree {
   using Pool = BlobTreePool;
   static constexpr int kMaxCrossings = 8;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const BlobTreeShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

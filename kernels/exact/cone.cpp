@@ -7,14 +7,13 @@
 
 namespace oktett {
 
-void Cone::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const ConeShape& s = std::get<ConeShape>(shape.form);
+void Cone::add(Pool& pool, const ConeShape& s, const ExactPlace& place) {
   const double axis = length(s.to - s.from), radius = std::max(s.from_radius, s.to_radius);
   if (!(s.from_radius >= 0 && s.to_radius >= 0 && radius > 0 && axis > 0)) return;
   if (!std::isfinite(radius) || !std::isfinite(axis)) return;
   const double r0 = s.from_radius / radius, r1 = s.to_radius / radius;
-  add_element(pool, {0.5 * (r0 + r1), 0.5 * (r1 - r0), s.open}, to_world * along_axis(s.from, s.to, radius),
-              item, shape.normals);
+  add_element(pool, {0.5 * (r0 + r1), 0.5 * (r1 - r0), s.open},
+              place.to_world * along_axis(s.from, s.to, radius), place);
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 

@@ -2,6 +2,7 @@
 /// \file Cones and frusta. In the own space x^2 + y^2 = w^2, -1 <= z <= 1, where w = middle + slope z is the
 /// radius at z.
 
+#include "kernels/exact/cone_data.h"
 #include "kernels/exact/quadratic.h"
 
 namespace oktett {
@@ -19,7 +20,7 @@ struct Cone {
   static constexpr int kMaxCrossings = 2;
   static constexpr bool kWholeLines = true;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const ConeShape& shape, const ExactPlace& place);
   static Box world_bounds(const Pool& pool, std::size_t i);
 
   /// Along the ray x, y and w are linear, so the equation is a s^2 + 2 b s + c = 0. Its discriminant b^2 - a

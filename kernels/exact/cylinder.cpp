@@ -40,11 +40,10 @@ void frustum_uv(int part, double radius, const Vec3d& p, SurfaceInteraction& s) 
   s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
 }
 
-void Cylinder::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const CylinderShape& s = std::get<CylinderShape>(shape.form);
+void Cylinder::add(Pool& pool, const CylinderShape& s, const ExactPlace& place) {
   const double axis = length(s.to - s.from);
   if (!(s.radius > 0 && axis > 0 && std::isfinite(s.radius) && std::isfinite(axis))) return;
-  add_element(pool, {s.open}, to_world * along_axis(s.from, s.to, s.radius), item, shape.normals);
+  add_element(pool, {s.open}, place.to_world * along_axis(s.from, s.to, s.radius), place);
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Cylinders with ends. In the own space x^2 + y^2 = 1, -1 <= z <= 1 (slides: x^2 + y^2 = 1).
 
+#include "kernels/exact/cylinder_data.h"
 #include "kernels/exact/quadratic.h"
 
 namespace oktett {
@@ -16,7 +17,7 @@ struct Cylinder {
   static constexpr int kMaxCrossings = 2;
   static constexpr bool kWholeLines = true;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const CylinderShape& shape, const ExactPlace& place);
   static Box world_bounds(const Pool& pool, std::size_t i);
 
   /// In the plane z = 0, with d of the ray and c = o x d, the ray passes the axis at the distance |c| / |d|

@@ -9,9 +9,9 @@
 /// order of visits finds the same bits.
 ///
 /// A shape S (one header and one source file each) has
-/// - `S::Data`: what describes it (exact_data.h);
-/// - `S::Pool`: an ExactPool of its elements; `S::add(pool, data, to_world, item)` appends an element with
-///   its frame and cells, or nothing if the shape is degenerate;
+/// - `S::Data`: what describes it, in a header of its own (e.g. torus_data.h);
+/// - `S::Pool`: an ExactPool of its elements; `S::add(pool, data, place)` appends an element with its frame
+///   and cells, or nothing if the shape is degenerate;
 /// - `S::kMaxCrossings`: room for all crossings with a line, or as many as are listed at a time;
 /// - `S::crossings<K>(pool, cell, line, range, active, out)`: the first K crossings, see Crossings;
 /// - `S::value(pool, i, part, p)` and `S::gradient(pool, i, part, p)`: the function whose zeros the part is,
@@ -37,7 +37,7 @@
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 #include "core/transform.h"
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact/normal_method.h"
 #include "kernels/roots/roots.h"
 
 namespace oktett {
@@ -47,6 +47,13 @@ struct ExactCell {
   Vec3d lo, hi;
   std::uint32_t element = 0;
   std::uint32_t begin = 0, count = 0;  ///< for the shape's own use, e.g. what matters in this cell
+};
+
+/// Where a shape stands in the world, and how its normals are computed.
+struct ExactPlace {
+  Affine to_world;
+  std::uint32_t item = 0;
+  NormalMethod normals = NormalMethod::gradient;
 };
 
 /// How an element lies in the world.
@@ -69,11 +76,11 @@ struct ExactPool {
   }
 };
 
-/// Appends an element whose own space the map `to_world` takes to the world.
+/// Appends an element of the shape at `place`. `to_world` takes the element's own space to the world.
 template <class Pool>
 void add_element(Pool& pool, const typename Pool::Element& element, const Affine& to_world,
-                 std::uint32_t item, NormalMethod normals) {
-  pool.frames.push_back({to_world.inverse(), to_world, item, normals});
+                 const ExactPlace& place) {
+  pool.frames.push_back({to_world.inverse(), to_world, place.item, place.normals});
   pool.elements.push_back(element);
 }
 

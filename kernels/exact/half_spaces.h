@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact/polyhedron_data.h"
 
 namespace oktett {
 

@@ -5,8 +5,7 @@
 
 namespace oktett {
 
-void Implicit::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<ImplicitShape>(shape.form);
+void Implicit::add(Pool& pool, const ImplicitShape& s, const ExactPlace& place) {
   const Vec3d half = (s.hi - s.lo) * 0.5;
   if (!(half.x > 0 && half.y > 0 && half.z > 0) || !s.function.varies) return;
   for (int k = 0; k < 3; ++k)
@@ -15,7 +14,7 @@ void Implicit::add(Pool& pool, const ExactShape& shape, const Affine& to_world, 
   std::frexp(std::max({half.x, half.y, half.z}), &shift);
   const double size = std::ldexp(1.0, shift), per_size = std::ldexp(1.0, -shift);
   const ImplicitElement e{s.function, size, s.open, s.lo * per_size, s.hi * per_size};
-  add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
+  add_element(pool, e, place.to_world * Affine::scaling({size, size, size}), place);
   add_cell(pool, e.lo, e.hi);
 }
 

@@ -2,6 +2,7 @@
 /// \file Functions of x, y and z inside of a box, solved by intervals along the ray
 /// (kernels/exact/march.h; D. P. Mitchell: Robust ray intersection with interval arithmetic, 1990).
 
+#include "kernels/exact/implicit_data.h"
 #include "kernels/exact/march.h"
 #include "kernels/functions/function_tape.h"
 
@@ -38,7 +39,7 @@ struct Implicit {
   using Pool = ExactPool<ImplicitElement>;
   static constexpr int kMaxCrossings = 18;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const ImplicitShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

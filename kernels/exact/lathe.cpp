@@ -182,8 +182,7 @@ const char* why_bad_profile(const LatheShape& shape) {
   return "";
 }
 
-void Lathe::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<LatheShape>(shape.form);
+void Lathe::add(Pool& pool, const LatheShape& s, const ExactPlace& place) {
   if (s.points.size() < 4 || s.points.size() % 3 != 1) return;
   double lo = HUGE_VAL, hi = -HUGE_VAL, most = 0;
   for (const Piece& p : pieces_of(s.points))
@@ -203,7 +202,7 @@ void Lathe::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std
   e.pieces.back().cap[1] = !s.open && !loop && last.radius > 0;
   const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
   for (Piece& p : e.pieces) p.most = p.most * (1 + 0x1p-20) + 0x1p-40;
-  add_element(pool, e, to_world * own, item, shape.normals);
+  add_element(pool, e, place.to_world * own, place);
   for (std::size_t k = 0; k < e.pieces.size(); ++k) {
     const Piece& p = e.pieces[k];
     const double pad = 0x1p-40;

@@ -6,6 +6,7 @@
 /// height, of degree 3, and then a circle. Whether the ray is inside of the circle where two pieces meet is
 /// decided once, by numbers that both have in common.
 
+#include "kernels/exact/lathe_data.h"
 #include "kernels/exact/ray_polynomial.h"
 
 namespace oktett {
@@ -27,7 +28,7 @@ struct Lathe {
   using Pool = ExactPool<LatheElement>;
   static constexpr int kMaxCrossings = 8;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const LatheShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

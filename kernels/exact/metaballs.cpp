@@ -62,8 +62,7 @@ class BallRule : public CellRule {
 
 }  // namespace
 
-void Metaballs::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const MetaballsShape& s = std::get<MetaballsShape>(shape.form);
+void Metaballs::add(Pool& pool, const MetaballsShape& s, const ExactPlace& place) {
   const auto counts = [](const MetaBall& b) { return b.radius > 0 && b.strength != 0; };
   Vec3d lo, hi;
   bool any = false;
@@ -98,8 +97,8 @@ void Metaballs::add(Pool& pool, const ExactShape& shape, const Affine& to_world,
   const Vec3d half = extent * (0.5 / size);
   const auto element = static_cast<std::uint32_t>(pool.elements.size());
   e.root = pool.tree.divide(rule, {-half, half}, all, element, pool.cells);
-  add_element(pool, e, to_world * Affine::translation(middle) * Affine::scaling({size, size, size}), item,
-              shape.normals);
+  add_element(pool, e, place.to_world * Affine::translation(middle) * Affine::scaling({size, size, size}),
+              place);
 }
 
 double Metaballs::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {

@@ -8,6 +8,7 @@
 /// are solved at once.
 
 #include "kernels/exact/cell_tree.h"
+#include "kernels/exact/metaballs_data.h"
 #include "kernels/roots/bernstein_lanes.h"
 
 namespace oktett {
@@ -200,7 +201,7 @@ struct Metaballs {
   using Pool = MetaballsPool;
   static constexpr int kMaxCrossings = 8;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const MetaballsShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

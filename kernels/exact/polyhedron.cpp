@@ -6,8 +6,7 @@
 
 namespace oktett {
 
-void Polyhedron::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const PolyhedronShape& s = std::get<PolyhedronShape>(shape.form);
+void Polyhedron::add(Pool& pool, const PolyhedronShape& s, const ExactPlace& place) {
   for (const HalfSpace& h : s.planes)
     if (!(length(h.normal) > 0 && std::isfinite(length(h.normal)) && std::isfinite(h.offset))) return;
   if (s.planes.size() > kMaxHalfSpaces) return;
@@ -35,15 +34,16 @@ void Polyhedron::add(Pool& pool, const ExactShape& shape, const Affine& to_world
     }
     pool.slabs.push_back(slab), ++e.count;
   }
-  const Affine own_to_world = to_world * Affine::translation(center) * Affine::scaling({size, size, size});
+  const Affine own_to_world =
+      place.to_world * Affine::translation(center) * Affine::scaling({size, size, size});
   // Corners are known to 2^-40 of the size; taking a ray into the own space costs a few roundings more.
   const double span = 0x1p-38 * length(own_to_world.vector({1, 1, 1}));
   for (const Vec3d& p : solid.vertices) {
-    const Vec3d q = to_world.point(p);
+    const Vec3d q = place.to_world.point(p);
     const double pad = span + 0x1p-45 * length(q);
     e.bounds.grow(Box{round_down(q - Vec3d{pad, pad, pad}), round_up(q + Vec3d{pad, pad, pad})});
   }
-  add_element(pool, e, own_to_world, item, shape.normals);
+  add_element(pool, e, own_to_world, place);
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 

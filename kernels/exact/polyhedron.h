@@ -3,6 +3,7 @@
 /// Ray Tracing Complex Scenes, SIGGRAPH 1986).
 
 #include "core/box.h"
+#include "kernels/exact/polyhedron_data.h"
 #include "kernels/exact/quadratic.h"
 
 namespace oktett {
@@ -30,7 +31,7 @@ struct Polyhedron {
   static constexpr int kMaxCrossings = 2;
   static constexpr bool kWholeLines = true;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const PolyhedronShape& shape, const ExactPlace& place);
   static Box world_bounds(const Pool& pool, std::size_t i) { return pool.elements[i].bounds; }
 
   template <int K, class D>

@@ -143,8 +143,7 @@ std::vector<Step> cheapest_steps(const std::vector<Monomial>& terms) {
 
 }  // namespace
 
-void PolynomialSurface::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<PolynomialShape>(shape.form);
+void PolynomialSurface::add(Pool& pool, const PolynomialShape& s, const ExactPlace& place) {
   const Vec3d half = (s.hi - s.lo) * 0.5, middle = (s.lo + s.hi) * 0.5;
   const double extent = max_component(half);
   double off = 0;
@@ -170,7 +169,7 @@ void PolynomialSurface::add(Pool& pool, const ExactShape& shape, const Affine& t
   e.open = s.open;
   e.lo = s.lo * per_size - center, e.hi = s.hi * per_size - center;
   const Affine own = Affine::scaling({size, size, size}) * Affine::translation(center);
-  add_element(pool, e, to_world * own, item, shape.normals);
+  add_element(pool, e, place.to_world * own, place);
   add_cell(pool, e.lo, e.hi);
 }
 

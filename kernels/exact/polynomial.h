@@ -5,6 +5,7 @@
 /// steps that is made once per surface, in the order of coordinates that takes the fewest operations. Powers
 /// that are all even are taken in squares.
 
+#include "kernels/exact/polynomial_data.h"
 #include "kernels/exact/ray_polynomial.h"
 
 namespace oktett {
@@ -39,7 +40,7 @@ struct PolynomialSurface {
   using Pool = ExactPool<PolynomialElement>;
   static constexpr int kMaxCrossings = roots::kMaxDegree + 2;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const PolynomialShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

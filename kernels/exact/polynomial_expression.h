@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact/polynomial_data.h"
 
 namespace oktett {
 

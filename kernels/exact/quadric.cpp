@@ -137,8 +137,7 @@ Form<double> negative(Form<double> f) {
 
 }  // namespace
 
-void Quadric::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const QuadricShape& s = std::get<QuadricShape>(shape.form);
+void Quadric::add(Pool& pool, const QuadricShape& s, const ExactPlace& place) {
   for (const double c : s.coefficients)
     if (!std::isfinite(c)) return;
   if (std::all_of(s.coefficients.begin(), s.coefficients.end() - 1, [](double c) { return c == 0; })) return;
@@ -181,7 +180,7 @@ void Quadric::add(Pool& pool, const ExactShape& shape, const Affine& to_world, s
   }
   e.j = std::ldexp(own.j.hi, exponent);
   e.closed = closed, e.clipped = s.clipped;
-  add_element(pool, e, to_world * Affine::translation(center) * Affine::scaling(scale), item, shape.normals);
+  add_element(pool, e, place.to_world * Affine::translation(center) * Affine::scaling(scale), place);
   add_cell(pool, e.lo, e.hi);
 }
 

@@ -2,6 +2,7 @@
 /// \file Quadrics (slides: x^2 + y^2 = 1, x^2 + y^2 - z = 0, x^2 + y^2 - z^2 = 1), also cut by a box.
 
 #include "kernels/exact/quadratic.h"
+#include "kernels/exact/quadric_data.h"
 
 namespace oktett {
 
@@ -22,7 +23,7 @@ struct Quadric {
   using Pool = ExactPool<QuadricElement>;
   static constexpr int kMaxCrossings = 4;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const QuadricShape& shape, const ExactPlace& place);
 
   /// a s^2 + 2 b s + c = 0 where s = 0 is the point nearest to the own origin.
   template <int K, class D>

@@ -89,8 +89,7 @@ std::optional<double> profile_crosses_axis(const RevolutionShape& s) {
   return std::nullopt;
 }
 
-void Revolution::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& described = std::get<RevolutionShape>(shape.form);
+void Revolution::add(Pool& pool, const RevolutionShape& described, const ExactPlace& place) {
   const Span span = surface_points(described);
   if (span.begin == span.end) return;
   // Own space: heights about the middle, everything about 1 in size.
@@ -135,7 +134,7 @@ void Revolution::add(Pool& pool, const ExactShape& shape, const Affine& to_world
   }
   const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
   for (std::size_t k = 0; k < e.pieces.size(); ++k) {
-    if (k == 0) add_element(pool, e, to_world * own, item, shape.normals);
+    if (k == 0) add_element(pool, e, place.to_world * own, place);
     const Piece& piece = e.pieces[k];
     const double r = std::sqrt(piece.greatest2);
     add_cell(pool, {-r, piece.ends[0].height, -r}, {r, piece.ends[1].height, r}).begin =

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "kernels/exact/ray_polynomial.h"
+#include "kernels/exact/revolution_data.h"
 
 namespace oktett {
 
@@ -36,7 +37,7 @@ struct Revolution {
   using Pool = ExactPool<RevolutionElement>;
   static constexpr int kMaxCrossings = 9;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const RevolutionShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

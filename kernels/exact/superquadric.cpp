@@ -64,8 +64,7 @@ Vec3d Superquadric::reach(const SuperquadricShape& s) {
          kGrow;
 }
 
-void Superquadric::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const SuperquadricShape& s = std::get<SuperquadricShape>(shape.form);
+void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace& place) {
   const Vec3d far = reach(s);
   Vec3d lo = -far, hi = far;
   if (s.form == Form::hyperboloid)
@@ -87,7 +86,7 @@ void Superquadric::add(Pool& pool, const ExactShape& shape, const Affine& to_wor
   e.convex = s.form == Form::ellipsoid && s.p >= 1 && s.q >= 1 && s.r >= 1;
   for (int k = 0; k < 3 && e.convex; ++k) e.rounding[k] = rounding(p[k], e.ratio, e.inverse[k]);
   e.lo = lo * (1 / size), e.hi = hi * (1 / size);
-  add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
+  add_element(pool, e, place.to_world * Affine::scaling({size, size, size}), place);
   add_cell(pool, e.lo, e.hi);
 }
 

@@ -3,6 +3,7 @@
 /// Transformations, 1981; C. Blanc, C. Schlick: Ratioquadrics, 1996).
 
 #include "kernels/exact/exact.h"
+#include "kernels/exact/superquadric_data.h"
 #include "kernels/exact/superquadric_power.h"
 
 namespace oktett {
@@ -89,7 +90,7 @@ struct Superquadric {
   using Form = SuperquadricShape::Form;
   static constexpr int kMaxCrossings = 8;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const SuperquadricShape& shape, const ExactPlace& place);
   /// How far |x|, |y| and |z| reach; infinite if there is no end, NaN if the parameters are out of range.
   static Vec3d reach(const SuperquadricShape& shape);
 

@@ -7,12 +7,11 @@
 
 namespace oktett {
 
-void Torus::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const TorusShape& s = std::get<TorusShape>(shape.form);
+void Torus::add(Pool& pool, const TorusShape& s, const ExactPlace& place) {
   const double size = s.major + s.minor;
   if (!(s.major >= 0 && s.minor > 0 && std::isfinite(size))) return;
   const TorusElement e{s.major / size, s.minor / size};
-  add_element(pool, e, to_world * Affine::scaling({size, size, size}), item, shape.normals);
+  add_element(pool, e, place.to_world * Affine::scaling({size, size, size}), place);
   add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
 }
 

@@ -2,6 +2,7 @@
 /// \file Tori (slides: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
 
 #include "kernels/exact/exact.h"
+#include "kernels/exact/torus_data.h"
 #include "kernels/roots/bernstein_lanes.h"
 
 namespace oktett {
@@ -15,7 +16,7 @@ struct Torus {
   using Pool = ExactPool<TorusElement>;
   static constexpr int kMaxCrossings = 4;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const TorusShape& shape, const ExactPlace& place);
 
   /// With p the point of the line nearest to the centre, p.u = 0 and the quartic has no cubic term:
   /// s^4 + 2 (k + 2 R^2 u_z^2) s^2 + 8 R^2 p_z u_z s + k^2 + 4 R^2 (p_z^2 - r^2), k = p.p - R^2 - r^2.

@@ -261,8 +261,7 @@ double Ifs::norm(const Affine& map) {
   return portable::exp(0.5 * log_scale) * (1 + 0x1p-40);
 }
 
-void Ifs::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<IfsShape>(shape.form);
+void Ifs::add(Pool& pool, const IfsShape& s, const ExactPlace& place) {
   if (s.maps.empty() || s.maps.size() > kMaxIfsMaps || s.depth > kMaxIfsDepth || !(s.least >= 0)) return;
   Element e{s.base, s.every_level, s.least, {}, {}, 0};
   for (const Affine& map : s.maps) {
@@ -284,7 +283,7 @@ void Ifs::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::
   double size = 0;
   for (const Ball& b : e.balls) size = std::max(size, b.radius + length(b.center));
   e.rounding = 0x1p-49 * size;
-  add_element(pool, e, to_world, item, shape.normals);
+  add_element(pool, e, place.to_world, place);
   const Ball& all = e.balls.back();
   const Vec3d r = Vec3d{1, 1, 1} * (all.radius + e.rounding);
   add_cell(pool, all.center - r, all.center + r);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/fractals/fractal.h"
+#include "kernels/fractals/ifs_data.h"
 
 namespace oktett {
 
@@ -34,7 +35,7 @@ struct IfsElement {
 };
 
 struct Ifs : Fractal<Ifs, IfsShape, IfsElement> {
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const IfsShape& shape, const ExactPlace& place);
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   static Box world_bounds(const Pool& pool, std::size_t i);

@@ -38,8 +38,7 @@ void grow_bounds(const JuliaElement& e, const Vec3d& middle, double half, int le
 
 }  // namespace
 
-void Julia::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<JuliaShape>(shape.form);
+void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
   const double size = std::sqrt(s.c[0] * s.c[0] + s.c[1] * s.c[1] + s.c[2] * s.c[2] + s.c[3] * s.c[3]);
   if (!(size <= 2) || !std::isfinite(s.slice) || s.iterations < 1 || s.iterations > kMaxJuliaIterations)
     return;
@@ -51,7 +50,7 @@ void Julia::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std
   Vec3d lo{inf, inf, inf}, hi{-inf, -inf, -inf};
   grow_bounds(e, {0, 0, 0}, e.radius * (1 + 0x1p-20), kBoundLevels, lo, hi);
   if (!(lo.x < hi.x)) return;
-  add_element(pool, e, to_world, item, shape.normals);
+  add_element(pool, e, place.to_world, place);
   add_cell(pool, lo, hi);
 }
 

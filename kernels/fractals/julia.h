@@ -12,6 +12,7 @@
 /// no estimate of a distance is trusted, and no step is made that is not proved.
 
 #include "kernels/exact/march.h"
+#include "kernels/fractals/julia_data.h"
 
 namespace oktett {
 
@@ -91,7 +92,7 @@ struct Julia {
   using Pool = ExactPool<JuliaElement>;
   static constexpr int kMaxCrossings = 16;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const JuliaShape& shape, const ExactPlace& place);
 
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,

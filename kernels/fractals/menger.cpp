@@ -164,11 +164,10 @@ class MengerWalk {
 
 }  // namespace
 
-void Menger::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<MengerShape>(shape.form);
+void Menger::add(Pool& pool, const MengerShape& s, const ExactPlace& place) {
   if (s.depth > kMaxMengerDepth) return;
   const Element e{static_cast<int>(s.depth), kPowers.at[s.depth]};
-  add_element(pool, e, to_world, item, shape.normals);
+  add_element(pool, e, place.to_world, place);
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kernels/fractals/fractal.h"
+#include "kernels/fractals/menger_data.h"
 
 namespace oktett {
 
@@ -22,7 +23,7 @@ struct MengerElement {
 struct Menger : Fractal<Menger, MengerShape, MengerElement> {
   static constexpr int kMaxCrossings = 64;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const MengerShape& shape, const ExactPlace& place);
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
 };

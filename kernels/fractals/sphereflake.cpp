@@ -118,8 +118,7 @@ bool holds(const SphereflakeElement& e, int generation, const Vec3d& p) {
 
 }  // namespace
 
-void Sphereflake::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<SphereflakeShape>(shape.form);
+void Sphereflake::add(Pool& pool, const SphereflakeShape& s, const ExactPlace& place) {
   if (!(s.ratio > 0 && s.ratio <= 0.5) || s.depth > kMaxSphereflakeDepth) return;
   Element e{};
   e.ratio = s.ratio, e.radius[0] = 1;
@@ -131,7 +130,7 @@ void Sphereflake::add(Pool& pool, const ExactShape& shape, const Affine& to_worl
   e.reach[e.depth] = with_margin(1, e.radius[e.depth]);
   for (int g = e.depth; g-- > 0;)
     e.reach[g] = with_margin(1 + e.ratio + e.ratio * e.reach[g + 1], e.radius[g]);
-  add_element(pool, e, to_world, item, shape.normals);
+  add_element(pool, e, place.to_world, place);
   const auto side = [&](const Vec3d& w) { return support(pool.elements.back(), w); };
   add_cell(pool, {-side({-1, 0, 0}), -side({0, -1, 0}), -side({0, 0, -1})},
            {side({1, 0, 0}), side({0, 1, 0}), side({0, 0, 1})});

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/fractals/fractal.h"
+#include "kernels/fractals/sphereflake_data.h"
 
 namespace oktett {
 
@@ -21,7 +22,7 @@ struct SphereflakeElement {
 };
 
 struct Sphereflake : Fractal<Sphereflake, SphereflakeShape, SphereflakeElement> {
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const SphereflakeShape& shape, const ExactPlace& place);
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// How far it reaches along `direction`, from its centre in lengths of the direction: no less, and more by

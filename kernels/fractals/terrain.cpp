@@ -293,8 +293,7 @@ double Terrain::displacement(std::uint32_t seed, int level, std::uint64_t i, std
   return static_cast<double>(mix_bits(mix_bits(key + i) + k) >> 11) * 0x1p-52 - 1;
 }
 
-void Terrain::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<TerrainShape>(shape.form);
+void Terrain::add(Pool& pool, const TerrainShape& s, const ExactPlace& place) {
   if (s.depth > kMaxTerrainDepth || !(s.height >= 0 && s.roughness >= 0 && s.roughness < 1)) return;
   if (!std::isfinite(s.height) || !std::isfinite(s.base)) return;
   Element e{};
@@ -305,7 +304,7 @@ void Terrain::add(Pool& pool, const ExactShape& shape, const Affine& to_world, s
   for (int k = e.depth; k-- > 0;) e.rest[k] = e.rest[k + 1] + e.step[k + 1];
   e.high = highest(e);
   if (!(e.base < e.high)) return;
-  add_element(pool, e, to_world, item, shape.normals);
+  add_element(pool, e, place.to_world, place);
   add_cell(pool, {-1, e.base, -1}, {1, e.high, 1});
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/fractals/fractal.h"
+#include "kernels/fractals/terrain_data.h"
 
 namespace oktett {
 
@@ -23,7 +24,7 @@ struct TerrainElement {
 
 /// Parts: 0 the landscape, else walls and floor as faces as in LineRange.
 struct Terrain : Fractal<Terrain, TerrainShape, TerrainElement> {
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const TerrainShape& shape, const ExactPlace& place);
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// How far point (i, k) of the grid of 2^level cells to the side is moved, for a step of 1: from -1 to 1.

@@ -18,8 +18,7 @@ std::size_t HeightFieldPool::bytes() const {
   return sum;
 }
 
-void HeightField::add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item) {
-  const auto& s = std::get<HeightFieldShape>(shape.form);
+void HeightField::add(Pool& pool, const HeightFieldShape& s, const ExactPlace& place) {
   if (!s.grid || s.grid->columns() < 2 || s.grid->rows() < 2) return;
   const HeightGrid& grid = *s.grid;
   for (int k = 0; k < 3; ++k)
@@ -46,7 +45,7 @@ void HeightField::add(Pool& pool, const ExactShape& shape, const Affine& to_worl
   e.lo = {-half_x, s.open ? own_height(least) - 2 * room : own_height(s.base), -half_z};
   e.hi = {half_x, own_height(greatest) + 2 * room, half_z};
   const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
-  add_element(pool, e, to_world * own, item, shape.normals);
+  add_element(pool, e, place.to_world * own, place);
   add_cell(pool, e.lo, e.hi);
 }
 

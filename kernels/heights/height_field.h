@@ -3,6 +3,7 @@
 /// (slides; F. K. Musgrave: Grid Tracing, 1988).
 
 #include "kernels/exact/exact.h"
+#include "kernels/heights/height_field_data.h"
 #include "kernels/heights/height_grid.h"
 
 namespace oktett {
@@ -42,7 +43,7 @@ struct HeightField {
   /// A ray on its own is faster as a number than in lanes that have nothing else to do.
   static constexpr bool kLoneLanes = true;
 
-  static void add(Pool& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  static void add(Pool& pool, const HeightFieldShape& shape, const ExactPlace& place);
 
   /// Defined in height_crossings.h, which only the code of the instruction sets needs.
   template <int K, class D>

@@ -10,7 +10,7 @@
 #include "core/simd_gather.h"
 #include "core/soa.h"
 #include "core/virtual_array.h"
-#include "kernels/heights/height_data.h"
+#include "kernels/heights/height_field_data.h"
 
 namespace oktett {
 

@@ -277,7 +277,7 @@ TEST(Julia, MissesNothingThatSamplesFind) {
   for (const std::uint32_t iterations : {1u, 4u, 9u, 16u}) {
     const JuliaShape s = julia(iterations);
     Julia::Pool pool;
-    Julia::add(pool, ExactShape{s}, {}, 0);
+    Julia::add(pool, s, {});
     const auto accel = build_accel({{ExactShape{s}, {}}});
     int inside = 0;
     for (int i = 0; i < 60; ++i) {

@@ -11,7 +11,7 @@ namespace {
 template <class S>
 bool holds(const typename S::Data& data, const Vec3d& p) {
   typename S::Pool pool;
-  S::add(pool, ExactShape{data}, {}, 0);
+  S::add(pool, data, {});
   return S::inside(pool, 0, p);
 }
 
@@ -35,7 +35,7 @@ void expect_operand(const typename S::Data& data) {
   const Vec3d center{0.4, 0.3, 0.2};
   const double radius = 0.8;
   typename S::Pool pool;
-  S::add(pool, ExactShape{data}, {}, 0);
+  S::add(pool, data, {});
   for (const CsgOp op : {CsgOp::unite, CsgOp::intersect, CsgOp::subtract}) {
     auto e = std::make_shared<CsgExpression>();
     e->op = op;
@@ -196,7 +196,7 @@ TEST(Fractals, MemoryDoesNotGrowWithDepth) {
   for (const std::uint32_t n : {2u, 10u, 24u}) EXPECT_EQ(bytes(julia(n)), set);
   // A ball of bounds per level.
   Ifs::Pool pool;
-  Ifs::add(pool, ExactShape{tetrahedron(32)}, {}, 0);
+  Ifs::add(pool, tetrahedron(32), {});
   EXPECT_EQ(pool.elements[0].balls.size(), 33u);
   EXPECT_EQ(pool.elements[0].maps.size(), 4u);
   for (const std::uint32_t depth : {1u, 6u, 12u, 24u}) EXPECT_EQ(bytes(flake(depth)), one_ball);

@@ -125,7 +125,7 @@ double tests_per_ray(int count) {
   const double radius = 1.2 / std::cbrt(count);
   for (int i = 0; i < count; ++i) shape.balls.push_back({random.vector(), radius, 0.9});
   MetaballsPool pool;
-  Metaballs::add(pool, ExactShape{shape}, {}, 0);
+  Metaballs::add(pool, shape, {});
   using D = Simd<double, 1, ScalarIsa>;
   double tests = 0;
   constexpr int kRays = 300;

@@ -41,8 +41,8 @@ template <class S, class Shape>
 typename S::Pool pool_of(const Shape& shape, std::size_t threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   typename S::Pool pool;
-  S::add(pool, ExactShape{shape}, Affine{}, 0);
-  S::add(pool, ExactShape{shape}, Affine::translation({20, 0, 0}), 1);
+  S::add(pool, shape, {});
+  S::add(pool, shape, {Affine::translation({20, 0, 0}), 1});
   return pool;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/exact/exact_data.h"
+#include "kernels/exact_form.h"
 #include "verify/cases/kernel_cases.h"
 
 namespace oktett {

@@ -1,6 +1,5 @@
 #pragma once
-/// \file What describes surfaces on which a sum of potentials, or a tree of blends of them, has a given
-/// value: metaballs and blob trees.
+/// \file What describes a blob tree: blends of the potentials around skeletons.
 
 #include <cstdint>
 #include <variant>
@@ -9,19 +8,6 @@
 #include "core/vec3.h"
 
 namespace oktett {
-
-/// strength (1 - a^2 / radius^2)^2 at the distance a < radius from the centre, 0 beyond.
-struct MetaBall {
-  Vec3d center{0, 0, 0};
-  double radius = 1;    ///< > 0
-  double strength = 1;  ///< of either sign
-};
-
-/// The sum of the balls' potentials is `iso` on the surface and greater inside (M. Melcher: Blobs II).
-struct MetaballsShape {
-  double iso = 0.5;  ///< > 0
-  std::vector<MetaBall> balls;
-};
 
 /// How an influence falls with the distance r from a skeleton. All fall from their greatest value at r = 0,
 /// and are convex in r^2.

@@ -1,0 +1,34 @@
+#pragma once
+/// \file What describes a blob of points, lines and planes.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/vec3.h"
+#include "kernels/roots/roots.h"
+
+namespace oktett {
+
+/// weight / p, where p is the squared distance from a point, a line or a plane.
+struct BlobSource {
+  enum class Kind : std::uint8_t { point, line, plane };
+  Kind kind = Kind::point;
+  Vec3d at{0, 0, 0};         ///< the point, or one on the line
+  Vec3d direction{0, 1, 0};  ///< of the line, or the plane's normal; not zero
+  double offset = 0;         ///< direction . x = offset on the plane, with the direction's unit vector
+  double weight = 1;
+};
+inline constexpr std::size_t kMaxBlobSources = roots::kMaxDegree / 2;
+
+/// Where the sources add up to more than `iso` (Melcher, "Blobs, Typ I").
+struct BlobShape {
+  std::vector<BlobSource> sources;  ///< at most kMaxBlobSources
+  double iso = 1;                   ///< > 0
+  bool bounded = false;             ///< whether it is cut by the box; needed unless all sources are points
+  Vec3d lo{-1, -1, -1}, hi{1, 1, 1};
+  bool open = false;  ///< without the faces of the box
+  roots::Method root_finder = roots::Method::automatic;
+};
+
+}  // namespace oktett

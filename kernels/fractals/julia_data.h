@@ -1,0 +1,20 @@
+#pragma once
+/// \file What describes a quaternion Julia set.
+
+#include <cstdint>
+
+namespace oktett {
+
+/// Most iterations; more would be finer than a float can tell apart.
+inline constexpr int kMaxJuliaIterations = 24;
+
+/// The points q = x + y i + z j + slice k whose first `iterations` images under q -> q^2 + c stay in the ball
+/// of radius (1 + sqrt(1 + 4 |c|)) / 2, from outside of which none returns: for ever more of them, the filled
+/// Julia set (A. Norton: Generation and Display of Geometric Fractals in 3-D, 1982).
+struct JuliaShape {
+  double c[4] = {-0.2, 0.8, 0, 0};  ///< |c| <= 2
+  double slice = 0;
+  std::uint32_t iterations = 10;  ///< 1 to kMaxJuliaIterations
+};
+
+}  // namespace oktett

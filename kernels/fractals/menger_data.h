@@ -1,0 +1,18 @@
+#pragma once
+/// \file What describes a Menger sponge.
+
+#include <cstdint>
+
+namespace oktett {
+
+/// Most levels; finer ones would be smaller than a float can tell apart.
+inline constexpr int kMaxMengerDepth = 16;
+
+/// The cube [-1, 1]^3, cut into 27 equal ones, without those in the middles of the faces and of the whole;
+/// the same again with each of the others, `depth` times (K. Menger: Allgemeine Räume und Cartesische Räume,
+/// 1926).
+struct MengerShape {
+  std::uint32_t depth = 4;  ///< at most kMaxMengerDepth; 0 is the cube
+};
+
+}  // namespace oktett
