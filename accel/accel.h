@@ -1,5 +1,6 @@
 #pragma once
-/// \file The acceleration structure: build it from geometries, then ask it with batches of rays.
+/// \file The acceleration structure: built from geometries, then asked with rays, one at a time or in
+/// batches.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,121 +21,143 @@
 
 namespace oktett {
 
+/// A tree of bounding volumes over geometries, made by build_accel. It never changes, so any number of
+/// threads may ask it at the same time.
 class Accel;
 
-/// A mesh to trace. The mesh must outlive the acceleration structure: shading reads its normals and uvs.
+/// A mesh to trace. The mesh must outlive the acceleration structure, which refers to its normals and uvs.
 struct MeshGeometry {
-  const TriangleMesh* mesh = nullptr;
-  bool smooth = true;
-  TriangleTest test = TriangleTest::watertight;
+  const TriangleMesh* mesh = nullptr;            ///< not null
+  bool smooth = true;                            ///< shading normals are interpolated from those of the mesh
+  TriangleTest test = TriangleTest::watertight;  ///< how a ray is tested against a triangle
 };
 
-/// Everything `child` holds, seen through the geometry's transform.
+/// Everything that `child` holds, moved by the geometry's transform, which is applied in double.
 struct InstanceGeometry {
-  std::shared_ptr<const Accel> child;
+  std::shared_ptr<const Accel> child;  ///< not null
 };
 
-/// One of many instances, in 56 bytes. The place of what it shows is that of these floats.
+/// One instance of a list, in 56 bytes. It is traced with exactly these float values.
 struct InstancePlace {
-  float to_list[12];    ///< row-major 3x4: from the child to the space of the list
-  std::uint32_t child;  ///< index into InstanceList::children
-  /// If it is not kNoId, it overrides those of the geometries below.
-  std::uint32_t user = kNoId;
+  float to_list[12];           ///< row-major 3x4 matrix [M | t] from the child's space to that of the list
+  std::uint32_t child;         ///< index into InstanceList::children
+  std::uint32_t user = kNoId;  ///< if not kNoId, it replaces the `user` of everything in the child
 };
 
-/// Many instances, an item each, that take 64 bytes besides their share of the tree. The children may have
-/// several levels of instances; the numbers of their paths are as far apart as the deepest child needs.
+/// Many instances as one geometry. Each takes 64 bytes besides its share of the tree and counts as one item
+/// and one primitive. The children may hold instances themselves.
 struct InstanceList {
-  std::vector<std::shared_ptr<const Accel>> children;
-  std::vector<InstancePlace> places;  ///< given up when the structure is built
+  std::vector<std::shared_ptr<const Accel>> children;  ///< none is null
+  std::vector<InstancePlace> places;
 };
 
 struct CsgExpression;
 
-/// A Boolean combination of solids. Each solid keeps its own `user`.
+/// A Boolean combination of solids. Hits name the solid whose surface was met: `user` is that of the solid.
 struct CsgGeometry {
-  std::shared_ptr<const CsgExpression> expression;
+  std::shared_ptr<const CsgExpression> expression;  ///< not null
 };
 
-/// One thing to trace. `transform` maps it to the space of the structure. `user` is handed back with each
-/// hit; an instance whose `user` is not kNoId overrides those of the geometries below it.
+/// One thing to trace: a shape, in its own space.
 struct Geometry {
   std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, ExactShape,
                CsgGeometry, InstanceGeometry, InstanceList>
       shape;
-  Affine transform;
+  Affine transform;  ///< maps the shape's space to that of the structure; invertible
+  /// A number of the caller's own, found again in SurfaceInteraction::user. That of an instance, if not
+  /// kNoId, replaces those of everything inside it; of nested instances the outermost counts.
   std::uint32_t user = kNoId;
 };
 
-/// A node of a Boolean expression: either solids whose union is an operand, or children to be combined.
-/// Closed meshes, spheres, boxes, planes (the half-space below),
-/// exact surfaces, and instances and combinations of these are solids; anything else has no inside and is
-/// left out.
+/// A node of a Boolean expression: an operand, or a combination of other nodes. Spheres, boxes, planes (the
+/// half-space dot(normal, p) <= offset), closed meshes, exact surfaces that have an inside, and instances and
+/// combinations of these are solids. All other geometries have no inside and are left out.
 struct CsgExpression {
   CsgOp op = CsgOp::operand;
-  std::vector<Geometry> solids;
-  std::vector<CsgExpression> children;
+  std::vector<Geometry> solids;         ///< of CsgOp::operand: it is their union
+  std::vector<CsgExpression> children;  ///< of all others: what is combined, in order
 };
 
-/// How hard the builder tries. The hits are the same for each.
+/// How much work the builder does. The hits are the same bits for each.
 enum class BuildQuality : std::uint8_t {
-  fast,      ///< few candidates for splits
-  balanced,  ///< full blocks and an exact search near the leaves
-  best,      ///< also splits space: triangles may stand in several leaves; several times slower to build
+  fast,      ///< the fastest to build
+  balanced,  ///< between the two
+  best,      ///< the fastest to trace: a triangle may be in several leaves; several times slower to build
 };
 
+/// How a structure is built. No hit depends on it.
 struct BuildOptions {
   BuildQuality quality = BuildQuality::balanced;
-  bool parallel = true;  ///< use TBB tasks; the structure is the same
+  bool parallel = true;  ///< use several threads; the structure is the same bytes
 };
 
-/// Sizes and quality of a built structure.
+/// Sizes and quality of a built structure, without those of the structures it holds instances of.
 struct AccelStats {
-  std::size_t items = 0;  ///< primitives, instances counted as one each
-  std::size_t triangles = 0;
-  std::size_t unbounded = 0;  ///< of the items: those in the list beside the tree
+  std::size_t items = 0;      ///< primitives; an instance counts as one
+  std::size_t triangles = 0;  ///< of the items
+  std::size_t unbounded = 0;  ///< of the items: those without bounds, e.g. planes, which are in no leaf
   std::size_t nodes = 0, leaves = 0;
   std::size_t node_bytes = 0, leaf_bytes = 0, other_bytes = 0;
-  double sah_cost = 0;  ///< expected node visits + leaf visits of a random ray that meets the bounds
-  int depth = 0;
+  double sah_cost = 0;  ///< nodes plus leaves that a random ray through the bounds is expected to visit
+  int depth = 0;        ///< nodes from the root to the deepest leaf
+  /// All memory of the structure.
   std::size_t bytes() const { return node_bytes + leaf_bytes + other_bytes; }
 };
 
-/// Geometry i of `geometries` keeps its index. Shapes that are degenerate (zero area or size, non-finite
-/// numbers, singular transform) are left out. Throws Error if there are more than 2^32 - 2 primitives or
-/// instance paths.
+/// Builds a structure. Geometry i of `geometries` has the index i in SurfaceInteraction::geometry. Degenerate
+/// shapes are left out: those of zero area or size, with numbers that are not finite, or with a singular
+/// transform. Throws Error if there are more than 2^32 - 2 primitives or chains of instances.
 std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const BuildOptions& options = {});
 
+/// Sizes and quality of `accel`.
 AccelStats stats(const Accel& accel);
-/// Bounds of all that is bounded; empty if there is nothing.
+/// The bounds of everything that has bounds (a plane has none); the empty box if nothing has.
 Box bounds(const Accel& accel);
 
-/// For each ray the nearest hit; at equal distance the one with the lowest (instance, item). Bit-identical
-/// for every instruction set, thread count and order of rays. Uses TBB tasks for large batches. `hits.size`
-/// >= `rays.size`.
-void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa);
+// Queries. The hits are the same bits for every instruction set, number of threads, order of rays and size of
+// a batch, and for rays asked one at a time. Batches of more than 4096 rays are shared out among TBB tasks.
+// Rays that start at one point or end at one point, and rays that run together, are traced faster if they are
+// neighbours in the batch. Throws Error if the arrays of one call differ in size, or if this build has no
+// code for `isa`.
 
-/// occluded[i] = 1 if ray i hits anything, else 0.
-void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa);
+/// hits[i] becomes the nearest hit of ray i, a miss if there is none. Of hits at equal distance the one with
+/// the lowest (instance, item) counts, where no instance is lower than any.
+void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa = default_isa());
+/// The same for arrays of structures. They are turned into columns piece by piece.
+void closest_hit(const Accel& accel, std::span<const Ray> rays, std::span<Hit> hits, Isa isa = default_isa());
+/// The nearest hit of one ray.
+Hit closest_hit(const Accel& accel, const Ray& ray, Isa isa = default_isa());
 
-/// Every hit of one ray, nearest first, ties by (instance, item). A closed mesh contributes each crossing
-/// exactly once, also at shared edges and vertices.
-void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa);
+/// occluded[i] becomes 1 if ray i hits anything, else 0.
+void any_hit(const Accel& accel, const RaySpan& rays, std::span<std::uint8_t> occluded,
+             Isa isa = default_isa());
+/// The same for an array of structures, which is turned into columns piece by piece.
+void any_hit(const Accel& accel, std::span<const Ray> rays, std::span<std::uint8_t> occluded,
+             Isa isa = default_isa());
+/// Whether one ray hits anything.
+bool any_hit(const Accel& accel, const Ray& ray, Isa isa = default_isa());
 
-/// Shading data of a hit that `ray` had with `accel`.
+/// Replaces `hits` by every hit of one ray, nearest first, those at equal distance by (instance, item). A
+/// closed mesh contributes each crossing exactly once, also at shared edges and vertices.
+void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa = default_isa());
+
+/// What shading needs to know of a hit, which is valid and was found by asking `accel` with `ray`.
 SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const Hit& hit);
 
-/// Only what names the surface of a hit: geometry, primitive, user and material_slot.
+/// Names what was hit: sets only `geometry`, `primitive`, `user` and `material_slot`. Faster than
+/// surface_interaction.
 SurfaceInteraction identify(const Accel& accel, const Hit& hit);
 
-/// The surfaces of hits `which[0]` ... `which[count - 1]` of a batch, at most InteractionBlock::kMost, with
-/// the bits that surface_interaction() gives but without uv and tangent; found in lanes.
+/// out[k] becomes the surface interaction of ray and hit number which[k], for at most InteractionBlock::kMost
+/// of them: the bits that surface_interaction gives, except that uv and tangent are left out. Throws Error if
+/// there are more.
 void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
-                          const std::uint32_t* which, std::size_t count, Isa isa, InteractionBlock& out);
+                          std::span<const std::uint32_t> which, InteractionBlock& out,
+                          Isa isa = default_isa());
 
 /// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the
-/// hit, so that the surface neither shadows itself nor is passed through (Pharr, Jakob, Humphreys 2016,
-/// section 3.9).
+/// position, so that the ray neither meets the same surface again at its start nor begins behind it (Pharr,
+/// Jakob, Humphreys: Physically Based Rendering, 3rd edition, section 3.9).
 Vec3f offset_origin(const SurfaceInteraction& s, const Vec3f& direction);
 
 }  // namespace oktett

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Surfaces of many hits in columns, for those who shade them together.
+/// \file The surface interactions of many hits, in columns.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +8,8 @@
 
 namespace oktett {
 
-/// Up to 64 surfaces. The columns mean what SurfaceInteraction says; uv and tangent are missing.
+/// Up to 64 surface interactions. The columns are the members of SurfaceInteraction; there is none for uv and
+/// tangent. Component k of a vector stands in row k.
 struct InteractionBlock {
   static constexpr std::size_t kMost = 64;
 
@@ -16,6 +17,7 @@ struct InteractionBlock {
   float geometric_normal[3][kMost], shading_normal[3][kMost];
   std::uint32_t geometry[kMost], primitive[kMost], user[kMost], material_slot[kMost];
 
+  /// Entry i, with uv and tangent zero.
   SurfaceInteraction operator[](std::size_t i) const {
     SurfaceInteraction s;
     s.position = get(position, i), s.position_error = get(position_error, i);
@@ -24,16 +26,18 @@ struct InteractionBlock {
     s.user = user[i], s.material_slot = material_slot[i];
     return s;
   }
-  /// All but the names.
+  /// Sets position, its error and the normals of entry i.
   void set_shape(std::size_t i, const SurfaceInteraction& s) {
     put(position, i, s.position), put(position_error, i, s.position_error);
     put(geometric_normal, i, s.geometric_normal), put(shading_normal, i, s.shading_normal);
   }
 
+  /// Entry i of three columns.
   template <class T>
   static Vec3<T> get(const T (&column)[3][kMost], std::size_t i) {
     return {column[0][i], column[1][i], column[2][i]};
   }
+  /// Sets entry i of three columns.
   template <class T>
   static void put(T (&column)[3][kMost], std::size_t i, const Vec3<T>& v) {
     column[0][i] = v.x, column[1][i] = v.y, column[2][i] = v.z;

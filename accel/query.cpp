@@ -2,11 +2,13 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <string>
 
 #include "accel/accel_data.h"
 #include "accel/hit_list.h"
 #include "accel/query.h"
 #include "accel/trace_code.h"
+#include "core/error.h"
 
 namespace oktett {
 
@@ -78,12 +80,72 @@ void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Is
   });
 }
 
+static void require_same_size(std::size_t rays, std::size_t answers, const char* query) {
+  if (rays != answers)
+    throw Error(std::string(query) + ": " + std::to_string(rays) + " rays, but room for " +
+                std::to_string(answers) + " answers");
+}
+
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa) {
+  require_same_size(rays.size, hits.size, "closest_hit");
   closest_hit(accel, rays, hits, isa, TraceMode::automatic);
 }
 
-void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa) {
-  any_hit(accel, rays, occluded, isa, TraceMode::automatic);
+void any_hit(const Accel& accel, const RaySpan& rays, std::span<std::uint8_t> occluded, Isa isa) {
+  require_same_size(rays.size, occluded.size(), "any_hit");
+  any_hit(accel, rays, occluded.data(), isa, TraceMode::automatic);
+}
+
+/// The rays as columns.
+static RaySpan to_columns(std::span<const Ray> rays, RayBatch& columns) {
+  columns.resize_uninitialized(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) columns.set(i, rays[i]);
+  return columns.span();
+}
+
+void closest_hit(const Accel& accel, std::span<const Ray> rays, std::span<Hit> hits, Isa isa) {
+  require_same_size(rays.size(), hits.size(), "closest_hit");
+  const TraceCode& code = trace_code(isa);
+  for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
+    RayBatch ray_columns;
+    HitBatch hit_columns;
+    hit_columns.resize_uninitialized(count);
+    code.closest_hit(accel, to_columns(rays.subspan(begin, count), ray_columns), hit_columns.span(),
+                     TraceMode::automatic);
+    for (std::size_t i = 0; i < count; ++i) hits[begin + i] = hit_columns[i];
+  });
+}
+
+void any_hit(const Accel& accel, std::span<const Ray> rays, std::span<std::uint8_t> occluded, Isa isa) {
+  require_same_size(rays.size(), occluded.size(), "any_hit");
+  const TraceCode& code = trace_code(isa);
+  for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
+    RayBatch columns;
+    code.any_hit(accel, to_columns(rays.subspan(begin, count), columns), occluded.data() + begin,
+                 TraceMode::automatic);
+  });
+}
+
+/// A batch of the one ray.
+static RaySpan one_ray(const Ray& ray) {
+  return {{&ray.origin.x, &ray.origin.y, &ray.origin.z},
+          {&ray.direction.x, &ray.direction.y, &ray.direction.z},
+          &ray.tmin,
+          &ray.tmax,
+          1};
+}
+
+Hit closest_hit(const Accel& accel, const Ray& ray, Isa isa) {
+  Hit hit;
+  trace_code(isa).closest_hit(accel, one_ray(ray), {&hit.t, &hit.u, &hit.v, &hit.item, &hit.instance, 1},
+                              TraceMode::single);
+  return hit;
+}
+
+bool any_hit(const Accel& accel, const Ray& ray, Isa isa) {
+  std::uint8_t occluded = 0;
+  trace_code(isa).any_hit(accel, one_ray(ray), &occluded, TraceMode::single);
+  return occluded != 0;
 }
 
 void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {

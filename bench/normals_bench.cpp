@@ -98,8 +98,9 @@ void normals(benchmark::State& state, const Subject& subject, NormalMethod metho
   InteractionBlock block;
   for (auto _ : state)
     for (std::size_t first = 0; first < which.size(); first += InteractionBlock::kMost) {
-      surface_interactions(*accel, rays.span(), hits.span(), which.data() + first,
-                           std::min(InteractionBlock::kMost, which.size() - first), default_isa(), block);
+      surface_interactions(*accel, rays, hits,
+                           {which.data() + first, std::min(InteractionBlock::kMost, which.size() - first)},
+                           block);
       benchmark::DoNotOptimize(block);
     }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(which.size()));

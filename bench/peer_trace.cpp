@@ -41,7 +41,7 @@ void trace(const Accel& accel, const Workload& work, Isa isa, int threads, Answe
   const HitSpan hits = answers.hits.span();
   in_pieces(threads, span.size, [&](std::size_t b, std::size_t n) {
     if (work.any)
-      any_hit(accel, span.part(b, n), answers.occluded.data() + b, isa);
+      any_hit(accel, span.part(b, n), {answers.occluded.data() + b, n}, isa);
     else
       closest_hit(accel, span.part(b, n), hits.part(b, n), isa);
   });

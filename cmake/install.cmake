@@ -1,8 +1,8 @@
-# Installs the library, its headers and a CMake package: find_package(oktett CONFIG) gives oktett::oktett.
+# Installs the library, its public headers and a CMake package: find_package(oktett CONFIG) gives oktett::oktett.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
-target_include_directories(oktett PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/oktett>)
+target_include_directories(oktett PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
 install(TARGETS oktett EXPORT oktett-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -11,10 +11,7 @@ install(TARGETS oktett_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELI
 if(TARGET oktett_app)
   install(TARGETS oktett_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
-foreach(layer core kernels accel render io)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${layer} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/oktett
-    FILES_MATCHING PATTERN "*.h" PATTERN oiio EXCLUDE)
-endforeach()
+install(DIRECTORY ${OKTETT_PUBLIC_INCLUDE_DIR}/oktett DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 install(EXPORT oktett-targets NAMESPACE oktett:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/oktett-config.cmake.in ${PROJECT_BINARY_DIR}/oktett-config.cmake

@@ -1,4 +1,12 @@
 # The library oktett::oktett. Sources are found by folder: a new file needs no edit here.
+include(cmake/public_headers.cmake)
+
+# What the project's own targets are compiled with. Programs that use the library know the public headers alone.
+add_library(oktett_internal INTERFACE)
+target_include_directories(oktett_internal INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(oktett_internal SYSTEM INTERFACE ${xsimd_INCLUDE_DIRS})
+target_link_libraries(oktett_internal INTERFACE TBB::tbb Threads::Threads)
+
 file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp accel/*.cpp render/*.cpp io/*.cpp)
 list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/|/io/image/oiio/")
 
@@ -9,12 +17,10 @@ target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
 set_target_properties(oktett PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
-target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
-  PUBLIC TBB::tbb Threads::Threads
-  PRIVATE yaml-cpp fmt::fmt ${CMAKE_DL_LIBS})
-target_include_directories(oktett SYSTEM PUBLIC $<BUILD_INTERFACE:${xsimd_INCLUDE_DIRS}>)
+  PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt ${CMAKE_DL_LIBS})
 
 # Loops over columns become vector code only where nobody asks for errno and traps; the values are the same.
 set_source_files_properties(
@@ -31,9 +37,7 @@ add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp io/image
 target_compile_features(oktett_images PRIVATE cxx_std_20)
 target_compile_options(oktett_images PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett_images)
-target_include_directories(oktett_images PRIVATE ${PROJECT_SOURCE_DIR})
-target_include_directories(oktett_images SYSTEM PRIVATE ${xsimd_INCLUDE_DIRS})
-target_link_libraries(oktett_images PRIVATE OpenImageIO::OpenImageIO TBB::tbb fmt::fmt Threads::Threads)
+target_link_libraries(oktett_images PRIVATE oktett_internal OpenImageIO::OpenImageIO fmt::fmt)
 if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   target_link_options(oktett_images PRIVATE LINKER:--no-undefined)
 endif()
@@ -60,7 +64,7 @@ if(OKTETT_BUILD_APP OR OKTETT_BUILD_TESTS OR OKTETT_BUILD_BENCH)
   file(GLOB OKTETT_VERIFY_ISA_SOURCES CONFIGURE_DEPENDS verify/isa/*.cpp)
   add_library(oktett_verify STATIC ${OKTETT_VERIFY_SOURCES})
   target_compile_options(oktett_verify PRIVATE -ffp-contract=off)
-  target_link_libraries(oktett_verify PUBLIC oktett::oktett fmt::fmt)
+  target_link_libraries(oktett_verify PUBLIC oktett::oktett oktett_internal fmt::fmt)
   oktett_target_warnings(oktett_verify)
   oktett_compile_per_set(oktett_verify ${OKTETT_VERIFY_ISA_SOURCES})
 endif()

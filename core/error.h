@@ -1,5 +1,5 @@
 #pragma once
-/// \file Errors that a user can act on: what is wrong, where, and what was expected. Hot code never throws.
+/// \file Errors and warnings: what is wrong, where, and what was expected.
 
 #include <stdexcept>
 #include <string>
@@ -18,10 +18,14 @@ struct Location {
 /// `file`, `file:line` or `file:line:column`.
 std::string to_string(const Location& where);
 
-/// What went wrong, which decides the exit status of the command: bad input 2, input/output 1.
-enum class ErrorKind { bad_input, io };
+/// What went wrong. The command exits with 2 for bad input and with 1 for failed input or output.
+enum class ErrorKind {
+  bad_input,  ///< arguments, or what a file says
+  io,         ///< reading or writing
+};
 
-/// `what()` is one line: `FILE:LINE:COLUMN: message`, or just the message if there is no file.
+/// What the library throws, apart from std::bad_alloc. `what()` is one line: `FILE:LINE:COLUMN: message`, or
+/// just the message if there is no file.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, ErrorKind kind = ErrorKind::bad_input);

@@ -78,15 +78,18 @@ static Isa require(const std::string& name, const std::string& source) {
   return *isa;
 }
 
-Isa default_isa() {
+static bool is_automatic(std::string_view name) { return name.empty() || name == "auto"; }
+
+Isa choose_isa(const std::string& name) {
+  if (!is_automatic(name)) return require(name, "--isa");
   const char* variable = std::getenv("OKTETT_ISA");
-  if (variable != nullptr && *variable != 0 && std::string_view(variable) != "auto")
-    return require(variable, "OKTETT_ISA");
+  if (variable != nullptr && !is_automatic(variable)) return require(variable, "OKTETT_ISA");
   return available_isas().back();
 }
 
-Isa choose_isa(const std::string& name) {
-  return name.empty() || name == "auto" ? default_isa() : require(name, "--isa");
+Isa default_isa() {
+  static const Isa isa = choose_isa("auto");
+  return isa;
 }
 
 }  // namespace oktett

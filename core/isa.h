@@ -8,8 +8,14 @@
 
 namespace oktett {
 
-/// Ordered from the narrowest to the widest.
-enum class Isa { scalar, sse42, avx2, avx512 };
+/// Instruction sets that hot code is compiled for, from the narrowest to the widest. Every query gives the
+/// same bits with each of them; only the speed differs.
+enum class Isa {
+  scalar,  ///< no vector instructions
+  sse42,   ///< SSE4.2, 4 floats at a time
+  avx2,    ///< AVX2 with FMA, 8 floats at a time
+  avx512,  ///< AVX-512 F, CD, DQ, BW and VL, 16 floats at a time
+};
 
 /// "scalar", "sse4.2", "avx2", "avx512".
 const char* to_string(Isa isa);
@@ -18,10 +24,11 @@ std::optional<Isa> parse_isa(std::string_view name);
 /// Those that this processor has and this build holds code for, narrowest first; `scalar` is always among
 /// them.
 std::vector<Isa> available_isas();
-/// The choice of the environment variable OKTETT_ISA if it is set ("auto" or empty count as not set), else
-/// the widest available. Throws Error if the variable names an unknown or unavailable set.
+/// The instruction set that queries use unless told otherwise: choose_isa("auto"). It is determined by the
+/// first call and stays the same from then on. Throws Error as choose_isa does.
 Isa default_isa();
-/// Resolves a user's word: "auto" or "" gives default_isa(). Throws Error for an unknown or unavailable set.
+/// The set called `name`. For "auto" and "" it is the set that the environment variable OKTETT_ISA names, or,
+/// if that is not set, empty or "auto", the widest available. Throws Error for an unknown or unavailable set.
 Isa choose_isa(const std::string& name);
 
 }  // namespace oktett

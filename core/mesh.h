@@ -11,20 +11,20 @@ namespace oktett {
 /// Marks an absent index or id everywhere in the project.
 inline constexpr std::uint32_t kNoId = 0xffffffffu;
 
-/// An indexed triangle mesh. `indices` holds three position indices per triangle. `normal_indices` and
-/// `uv_indices` are each either empty (no triangle has any) or hold three indices per triangle, kNoId where a
-/// corner has none. `material_slots` is either empty (all triangles use slot 0) or holds one slot per
-/// triangle.
+/// An indexed triangle mesh. The corners of a triangle run counter-clockwise seen from its front, the outside
+/// of a closed mesh.
 struct TriangleMesh {
   Column<Vec3f> positions;
-  Column<Vec3f> normals;  ///< not necessarily of unit length
+  Column<Vec3f> normals;  ///< of any length but zero
   Column<Vec2f> uvs;
-  Column<std::uint32_t> indices;
-  Column<std::uint32_t> normal_indices;
-  Column<std::uint32_t> uv_indices;
-  Column<std::uint16_t> material_slots;
+  Column<std::uint32_t> indices;  ///< three per triangle, into positions
+  Column<std::uint32_t>
+      normal_indices;                ///< three per triangle, kNoId for a corner without a normal; or empty
+  Column<std::uint32_t> uv_indices;  ///< three per triangle, kNoId for a corner without uv; or empty
+  Column<std::uint16_t> material_slots;  ///< one per triangle; or empty if all are in slot 0
 
   std::size_t triangle_count() const { return indices.size() / 3; }
+  /// Memory of all columns.
   std::size_t bytes() const {
     return positions.bytes() + normals.bytes() + uvs.bytes() + indices.bytes() + normal_indices.bytes() +
            uv_indices.bytes() + material_slots.bytes();

@@ -11,30 +11,32 @@
 
 namespace oktett {
 
-/// The points origin + t * direction with tmin < t <= tmax. The direction need not be of unit length; t
-/// counts in its length. 0 <= tmin. A ray with a NaN anywhere, a zero direction or tmax <= tmin hits nothing.
+/// The points origin + t direction with tmin < t <= tmax. t counts in lengths of the direction, which need
+/// not be 1. A ray with a NaN anywhere, a zero direction or tmax <= tmin hits nothing.
 struct Ray {
   Vec3f origin;
-  float tmin = 0;
+  float tmin = 0;  ///< >= 0
   Vec3f direction;
   float tmax = std::numeric_limits<float>::infinity();
 };
 
-/// Where a ray meets a shape. `item` is the primitive's index in the acceleration structure that holds it,
-/// counted through all geometries in order; `instance` numbers the chain of instances that leads there (kNoId
-/// = none). `u`, `v` are the shape's own parameters (barycentric coordinates of the triangle's second and
-/// third corner). item == kNoId is a miss.
+/// Where a ray meets a shape, or a miss: what the members are set to here.
 struct Hit {
-  float t = std::numeric_limits<float>::infinity();
-  float u = 0, v = 0;
+  float t = std::numeric_limits<float>::infinity();  ///< the hit is at origin + t direction
+  float u = 0, v = 0;  ///< of a triangle: barycentric coordinates of its second and third corner
+  /// The primitive's number in the acceleration structure that holds it, counted through all geometries in
+  /// order.
   std::uint32_t item = kNoId;
+  /// The number of the chain of instances that leads to that structure; kNoId if there is none.
   std::uint32_t instance = kNoId;
 
+  /// False for a miss.
   bool valid() const { return item != kNoId; }
   bool operator==(const Hit&) const = default;
 };
 
-/// Borrowed columns of `size` rays, see Ray.
+/// Borrowed columns of `size` rays: component k of ray i's origin is origin[k][i], and so on. They need no
+/// alignment.
 struct RaySpan {
   const float* origin[3] = {};
   const float* direction[3] = {};
@@ -48,6 +50,7 @@ struct RaySpan {
             {direction[0][i], direction[1][i], direction[2][i]},
             tmax[i]};
   }
+  /// Rays `begin` to `begin + count - 1`.
   RaySpan part(std::size_t begin, std::size_t count) const {
     RaySpan s = *this;
     for (int k = 0; k < 3; ++k) s.origin[k] += begin, s.direction[k] += begin;
@@ -56,7 +59,7 @@ struct RaySpan {
   }
 };
 
-/// Borrowed columns for as many hits, see Hit.
+/// Borrowed columns of `size` hits.
 struct HitSpan {
   float* t = nullptr;
   float* u = nullptr;
@@ -69,16 +72,18 @@ struct HitSpan {
   void set(std::size_t i, const Hit& h) const {
     t[i] = h.t, u[i] = h.u, v[i] = h.v, item[i] = h.item, instance[i] = h.instance;
   }
+  /// Hits `begin` to `begin + count - 1`.
   HitSpan part(std::size_t begin, std::size_t count) const {
     return {t + begin, u + begin, v + begin, item + begin, instance + begin, count};
   }
 };
 
-/// Owned columns of rays.
+/// Owned columns of rays, all of the same size.
 struct RayBatch {
   Column<float> origin[3], direction[3], tmin, tmax;
 
   std::size_t size() const { return tmin.size(); }
+  /// Rays that are new hold no defined value.
   void resize_uninitialized(std::size_t n) {
     for (int k = 0; k < 3; ++k) origin[k].resize_uninitialized(n), direction[k].resize_uninitialized(n);
     tmin.resize_uninitialized(n), tmax.resize_uninitialized(n);
@@ -98,20 +103,23 @@ struct RayBatch {
     s.tmin = tmin.data(), s.tmax = tmax.data(), s.size = size();
     return s;
   }
+  operator RaySpan() const { return span(); }
 };
 
-/// Owned columns of hits.
+/// Owned columns of hits, all of the same size.
 struct HitBatch {
   Column<float> t, u, v;
   Column<std::uint32_t> item, instance;
 
   std::size_t size() const { return t.size(); }
+  /// Hits that are new hold no defined value.
   void resize_uninitialized(std::size_t n) {
     t.resize_uninitialized(n), u.resize_uninitialized(n), v.resize_uninitialized(n);
     item.resize_uninitialized(n), instance.resize_uninitialized(n);
   }
   Hit operator[](std::size_t i) const { return {t[i], u[i], v[i], item[i], instance[i]}; }
   HitSpan span() { return {t.data(), u.data(), v.data(), item.data(), instance.data(), size()}; }
+  operator HitSpan() { return span(); }
 };
 
 }  // namespace oktett

@@ -1,6 +1,5 @@
 #pragma once
-/// \file Storage for structures of arrays: aligned, padded columns that a vector kernel may read past their
-/// end.
+/// \file Storage for structures of arrays: one aligned, padded column per member.
 
 #include <cstddef>
 #include <cstdint>
@@ -57,6 +56,7 @@ class Column {
 
   operator std::span<const T>() const { return {data(), size_}; }
 
+  /// Removes all elements and gives back the storage.
   void clear() { data_.reset(), size_ = capacity_ = 0; }
 
   /// Changes the size and keeps what fits; elements that are new hold no defined value.

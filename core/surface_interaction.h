@@ -1,5 +1,5 @@
 #pragma once
-/// \file What shading needs to know about a hit point.
+/// \file What shading needs to know about a hit.
 
 #include <cstdint>
 
@@ -19,9 +19,8 @@ struct SurfaceInteraction {
   Vec2f uv;
   std::uint32_t geometry = kNoId;   ///< index of the geometry in the structure that holds it
   std::uint32_t primitive = kNoId;  ///< index inside the geometry, e.g. the triangle of a mesh
-  std::uint32_t user =
-      kNoId;  ///< the geometry's `user` number, or that of the outermost instance that has one
-  std::uint32_t material_slot = 0;  ///< slot of the triangle in its mesh
+  std::uint32_t user = kNoId;       ///< the geometry's `user`, or that of the outermost instance that has one
+  std::uint32_t material_slot = 0;  ///< of a triangle: its entry in TriangleMesh::material_slots
 };
 
 }  // namespace oktett

@@ -15,7 +15,9 @@ struct Affine {
 
   bool operator==(const Affine&) const = default;
 
+  /// p -> p + t.
   static Affine translation(const Vec3d& t);
+  /// Multiplies component k by s[k].
   static Affine scaling(const Vec3d& s);
   /// Rotation about the x, then the y, then the z axis; angles in degrees, right-handed.
   static Affine rotation(const Vec3d& degrees);
@@ -34,10 +36,11 @@ struct Affine {
     for (std::size_t k = 0; k < 12; ++k) rows[k] = static_cast<T>(m[k / 4][k % 4]);
   }
 
+  /// M p + t.
   Vec3d point(const Vec3d& p) const;
+  /// M v, for directions and differences of points.
   Vec3d vector(const Vec3d& v) const;
-  /// Maps a normal, given that *this* is the inverse of the map that moves the surface: M^T n. Not
-  /// normalised.
+  /// M^T n, not normalised: if *this is the inverse of the map that moves a surface, this maps its normals.
   Vec3d normal_by_inverse(const Vec3d& n) const;
 
   /// Determinant of the linear part; negative for a mirror.
@@ -46,6 +49,7 @@ struct Affine {
   Affine inverse() const;
   /// True if all entries are finite and the map has a finite inverse.
   bool is_invertible() const;
+  /// True if all entries are exactly those of the identity.
   bool is_identity() const { return *this == Affine{}; }
   /// If the map is a uniform scale, possibly with rotation, mirror and translation, its scale factor; else 0.
   double uniform_scale() const;

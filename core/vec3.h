@@ -1,11 +1,11 @@
 #pragma once
-/// \file Plain vectors for points, directions, normals and colours. Scalar code only; packets keep one column
-/// per component.
+/// \file Vectors of two and three components, for points, directions, normals and colours.
 
 #include <cmath>
 
 namespace oktett {
 
+/// Three components, zero unless given.
 template <class T>
 struct Vec3 {
   T x{}, y{}, z{};
@@ -39,21 +39,25 @@ using Vec3d = Vec3<double>;
 /// Linear Rec.709 colour.
 using Color = Vec3<float>;
 
+/// Two components, zero unless given; for uv.
 struct Vec2f {
   float x{}, y{};
   constexpr bool operator==(const Vec2f&) const = default;
 };
 
+/// The scalar product.
 template <class T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// The vector product, right-handed.
 template <class T>
 constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// The Euclidean length.
 template <class T>
 T length(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
@@ -65,27 +69,32 @@ Vec3<T> normalize(const Vec3<T>& a) {
   return a / length(a);
 }
 
+/// The lesser of each component; where either is NaN, that of `b`.
 template <class T>
 constexpr Vec3<T> min(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
 }
 
+/// The greater of each component; where either is NaN, that of `b`.
 template <class T>
 constexpr Vec3<T> max(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
 
+/// The magnitude of each component.
 template <class T>
 Vec3<T> abs(const Vec3<T>& a) {
   return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};
 }
 
+/// The greatest of the components.
 template <class T>
 constexpr T max_component(const Vec3<T>& a) {
   const T xy = a.x > a.y ? a.x : a.y;
   return xy > a.z ? xy : a.z;
 }
 
+/// Whether no component is infinite or NaN.
 template <class T>
 bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

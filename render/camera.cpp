@@ -72,7 +72,7 @@ Ray camera_ray(const CameraFrame& camera, double x, double y) {
   return ray;
 }
 
-void camera_rays(const CameraFrame& camera, const FilmPoints& points, Isa isa, RayBatch& rays) {
+void camera_rays(const CameraFrame& camera, const FilmPoints& points, RayBatch& rays, Isa isa) {
   const std::size_t count = rays.size();
   if (camera.projection != Projection::perspective) {
     for (std::size_t i = 0; i < count; ++i) rays.set(i, camera_ray(camera, points.x[i], points.y[i]));

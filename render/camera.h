@@ -1,5 +1,5 @@
 #pragma once
-/// \file From places on the film to rays.
+/// \file Rays through places of the film.
 
 #include <cstdint>
 
@@ -22,31 +22,32 @@ struct PixelWindow {
 /// one pixel wide.
 PixelWindow crop_window(const Film& film);
 
-/// A camera ready to make rays. The film point (x, y) counts in pixels of the full frame from its upper left
-/// corner. A film point's ray passes through origin + (x * per_pixel_x + y * per_pixel_y) + corner: for
-/// perspective that is a direction at distance 1 along the view axis, for orthographic views an offset of the
-/// ray's origin.
+/// A camera with all that its rays have in common. A film point (x, y) counts pixels of the full frame from
+/// its upper left corner; v(x, y) = corner + x per_pixel_x + y per_pixel_y. A perspective ray starts at
+/// `origin` in the direction v(x, y); an orthographic one starts at origin + v(x, y) in the direction
+/// `forward`.
 struct CameraFrame {
   Projection projection = Projection::perspective;
   Vec3d origin;
   Vec3d right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  ///< orthonormal
   Vec3d corner, per_pixel_x, per_pixel_y;
   double pixel_size =
-      0;  ///< height of a pixel: at distance 1 (perspective), or in world units (orthographic)
+      0;  ///< height of a pixel in world units: at distance 1 (perspective), everywhere (orthographic)
 };
 
-/// Any camera gives a frame: an `up` along the view axis or a zero view direction is replaced by some valid
-/// choice.
+/// The frame of a camera. An `up` along the view axis, or a view direction of zero, is replaced by a valid
+/// one.
 CameraFrame camera_frame(const Camera& camera, const Film& film);
 
-/// Film points and the rays through them, in columns of equal length.
+/// Film points, in columns of the same size.
 struct FilmPoints {
   const Column<double>& x;
   const Column<double>& y;
 };
 
-/// The rays through all `points`, each the same bits as `camera_ray` gives. `rays` has their size.
-void camera_rays(const CameraFrame& camera, const FilmPoints& points, Isa isa, RayBatch& rays);
+/// Sets `rays`, which has the size of the points, to the rays through them: the bits that camera_ray gives.
+void camera_rays(const CameraFrame& camera, const FilmPoints& points, RayBatch& rays,
+                 Isa isa = default_isa());
 
 /// The ray through a film point, of unit direction.
 Ray camera_ray(const CameraFrame& camera, double x, double y);
@@ -54,9 +55,9 @@ Ray camera_ray(const CameraFrame& camera, double x, double y);
 /// Distance of `p` in front of the camera along its view axis.
 double camera_depth(const CameraFrame& camera, const Vec3f& p);
 
-/// Where the rays through the film points one pixel to the right and one down, relative to that of `ray`,
-/// meet the plane through `p` with normal `n`, as vectors from `p`: the footprint of a pixel. `ray` is a
-/// camera ray that hits `p`. Zero where such a ray does not meet the plane.
+/// The footprint of a pixel on the plane through `p` with the normal `n`, where `ray` is a camera ray that
+/// hits `p`: `dx` leads from `p` to where the ray one pixel to the right meets the plane, `dy` to where the
+/// ray one pixel down does. Zero for a ray that does not meet it.
 void pixel_footprint(const CameraFrame& camera, const Ray& ray, const Vec3f& p, const Vec3f& n, Vec3f& dx,
                      Vec3f& dy);
 

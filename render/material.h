@@ -1,5 +1,5 @@
 #pragma once
-/// \file Materials and textures as data, in the terms of the classic Whitted model.
+/// \file Materials and textures as data.
 
 #include <string>
 
@@ -8,8 +8,7 @@
 
 namespace oktett {
 
-/// An image on disk and how it is laid over the uv square. The file is opened by the renderer, not by the
-/// parser.
+/// An image file and how it is laid over the uv square. ImageTextures reads the file.
 struct Texture {
   std::string path;
   bool clamp = false;     ///< clamp to the edge instead of repeating (MTL `-clamp on`)
@@ -20,10 +19,12 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-/// A material of the Whitted model: light leaving a point is
-/// emission + color * (ambient * ambient light + diffuse * sum over lights) + specular_color * specular *
-/// highlights
-/// + reflection * reflected ray + transparency * (refracted and reflected ray, split by Fresnel's equations).
+/// A material of the Whitted model. The light that leaves a point is the sum of
+/// - emission,
+/// - color * (ambient * ambient light + diffuse * sum over lights),
+/// - specular_color * specular * highlights,
+/// - reflection * reflected ray,
+/// - transparency * (refracted and reflected ray, split by Fresnel's equations).
 struct Material {
   std::string name;
   Color color{0.8f, 0.8f, 0.8f};  ///< colour of diffuse and ambient light, and of light that passes through
@@ -36,16 +37,15 @@ struct Material {
   float reflection = 0;                    ///< weight of the mirror ray, [0, 1]
   float transparency = 0;                  ///< weight of light that passes through, [0, 1]; 0 = opaque
   float ior = 1.5f;                        ///< index of refraction inside relative to outside, > 0
-  float roughness = 0;                     ///< PBR `Pr`; kept for integrators that use it
-  float metallic = 0;                      ///< PBR `Pm`; kept for integrators that use it
+  float roughness = 0;                     ///< PBR `Pr`; no integrator uses it yet
+  float metallic = 0;                      ///< PBR `Pm`; no integrator uses it yet
   std::uint32_t color_texture = kNoId;     ///< index into Scene::textures; multiplies `color` (map_Kd)
   std::uint32_t specular_texture = kNoId;  ///< multiplies `specular_color` (map_Ks)
   std::uint32_t emission_texture = kNoId;  ///< multiplies `emission` (map_Ke)
-  std::uint32_t opacity_texture =
-      kNoId;                           ///< multiplies opacity: 0 in the image means fully see-through (map_d)
-  std::uint32_t bump_texture = kNoId;  ///< height, perturbs the shading normal (map_Bump)
-  std::uint32_t normal_texture = kNoId;  ///< tangent-space normal (norm)
-  float bump_scale = 1;                  ///< MTL `-bm`
+  std::uint32_t opacity_texture = kNoId;  ///< multiplies opacity, 0 in the image is fully see-through (map_d)
+  std::uint32_t bump_texture = kNoId;     ///< height, perturbs the shading normal (map_Bump)
+  std::uint32_t normal_texture = kNoId;   ///< tangent-space normal (norm)
+  float bump_scale = 1;                   ///< MTL `-bm`
   bool operator==(const Material&) const = default;
 };
 

@@ -13,10 +13,10 @@
 
 namespace oktett {
 
-/// How far a render is; handed to RenderOptions::progress from one thread at a time.
+/// How far a render is; handed to RenderOptions::progress by one thread at a time.
 struct RenderProgress {
   std::uint64_t pixels_done = 0, pixels_total = 0;
-  std::uint64_t rays = 0;  ///< rays traced so far, of all kinds
+  std::uint64_t rays = 0;  ///< traced so far, of all kinds
   double seconds = 0;      ///< since tracing began
 };
 
@@ -25,44 +25,46 @@ struct FinishedTile {
   std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
+/// How a scene is rendered. The picture depends on `textures` and `data_layers` alone.
 struct RenderOptions {
-  Isa isa = Isa::scalar;                     ///< callers usually pass default_isa()
-  unsigned threads = 0;                      ///< 0 = all that the process may use
-  const TextureSampler* textures = nullptr;  ///< null: textures are white
-  const std::atomic<bool>* stop =
-      nullptr;  ///< when it becomes true, tiles not yet begun are left black and alpha 0
-  std::function<void(const RenderProgress&)> progress;  ///< may be empty; called about ten times a second
-  /// May be empty; called for each finished tile, one at a time, with the picture as it stands (colour planes
-  /// only).
+  Isa isa = default_isa();
+  unsigned threads = 0;  ///< 0: as many as the process may use
+  const TextureSampler* textures =
+      nullptr;  ///< of the scene, e.g. ImageTextures; null: all textures are white
+  /// May be null. When it becomes true, tiles not yet begun are left black with alpha 0.
+  const std::atomic<bool>* stop = nullptr;
+  /// May be empty. Called about ten times a second.
+  std::function<void(const RenderProgress&)> progress;
+  /// May be empty. Called for each finished tile, by one thread at a time, with the picture so far, of which
+  /// only R, G, B and A are filled.
   std::function<void(const Picture&, const FinishedTile&)> tile_finished;
-  BuildOptions build;  ///< of the acceleration structures; the picture does not depend on it
-  std::uint32_t tile_size =
-      32;                   ///< pixels along the edge of a tile, [1, 256]; the picture does not depend on it
-  bool data_layers = true;  ///< also fill Z, N, P, Albedo, u, v, ids and Variance planes
+  BuildOptions build;            ///< of the acceleration structures
+  std::uint32_t tile_size = 32;  ///< pixels along the edge of a tile, [1, 256]
+  bool data_layers = true;       ///< also fill the planes Z, N, P, Albedo, u, v, ids and Variance
 };
 
-/// What a render took and met.
+/// What a render took, and what it met.
 struct RenderReport {
   double build_seconds = 0, render_seconds = 0;
   std::uint64_t camera_rays = 0, shadow_rays = 0, reflected_rays = 0, refracted_rays = 0;
   std::uint64_t bad_samples = 0;     ///< NaN or infinite samples that were left out
-  std::uint64_t triangles = 0;       ///< unique, before instancing
-  std::uint64_t primitives = 0;      ///< unique primitives of all kinds
+  std::uint64_t triangles = 0;       ///< each counted once, however many instances show it
+  std::uint64_t primitives = 0;      ///< of all kinds, counted likewise
   std::uint64_t geometry_bytes = 0;  ///< meshes
   std::uint64_t bvh_bytes = 0;       ///< nodes and leaves
-  double sah_cost = 0;
-  bool stopped = false;  ///< not all tiles were rendered
+  double sah_cost = 0;               ///< AccelStats::sah_cost of the whole scene's structure
+  bool stopped = false;              ///< not all tiles were rendered
 };
 
 struct RenderResult {
   Picture picture;
   RenderReport report;
-  Scene scene;  ///< with camera and lights filled in where the scene gave none
+  Scene scene;  ///< the scene given, with camera and lights filled in if it had none
 };
 
-/// Builds the acceleration structure and renders. The picture depends on the scene alone: not on threads,
-/// instruction set or timing. Never throws for what a scene can hold; throws std::bad_alloc when memory runs
-/// out.
-RenderResult render(Scene scene, const RenderOptions& options);
+/// Builds the acceleration structures and renders. The picture's bits do not depend on the number of threads,
+/// the instruction set or timing. Throws std::bad_alloc if memory runs out, and Error if this build has no
+/// code for `options.isa`.
+RenderResult render(Scene scene, const RenderOptions& options = {});
 
 }  // namespace oktett

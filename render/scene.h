@@ -1,6 +1,5 @@
 #pragma once
-/// \file The scene as data only: what the scene file says, resolved to numbers and indices, before anything
-/// is built.
+/// \file A scene as data: what a scene file says, or what a program puts together, before anything is built.
 
 #include <cstdint>
 #include <memory>
@@ -18,36 +17,46 @@
 
 namespace oktett {
 
+/// How a camera projects.
 enum class Projection { perspective, orthographic };
 
-/// Right-handed, looks from `from` to `at`. Pixel (0, 0) is the upper left one.
+/// Looks from `from` to `at` in right-handed world space. Pixel (0, 0) is the upper left one.
 struct Camera {
   Projection projection = Projection::perspective;
   Vec3d from{0, 0, 5};
   Vec3d at{0, 0, 0};
-  Vec3d up{0, 1, 0};
+  Vec3d up{0, 1, 0};  ///< the direction that points up in the picture, of any length
   double fov = 40;    ///< full vertical angle in degrees, (0, 180); perspective only
   double height = 2;  ///< height of the view volume in world units; orthographic only
   bool operator==(const Camera&) const = default;
 };
 
+/// The size of the picture in pixels, and the part of it that is rendered.
 struct Film {
-  std::uint32_t width = 960;
-  std::uint32_t height = 540;
+  std::uint32_t width = 960;   ///< > 0
+  std::uint32_t height = 540;  ///< > 0
   /// Part of the picture to render, as fractions [0, 1] of width and height: x0, x1, y0, y1 (pbrt's order).
   double crop[4] = {0, 1, 0, 1};
   bool operator==(const Film&) const = default;
 };
 
-enum class IntegratorKind { whitted, path, ao, normal, depth };
+/// How light is computed.
+enum class IntegratorKind {
+  whitted,  ///< Whitted 1980: lights, shadows, mirrors and glass
+  path,     ///< path tracing, with light from diffuse surfaces, too
+  ao,       ///< ambient occlusion: the unoccluded part of the hemisphere
+  normal,   ///< shading normals as colours
+  depth,    ///< distances as grey
+};
 
+/// How light is computed, and with how many samples.
 struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
   std::uint32_t samples = 4;  ///< per pixel, [1, 65536]
   std::uint32_t depth = 6;    ///< greatest number of bounces after the camera ray, [0, 64]
   std::uint32_t seed = 0;
   double ao_radius =
-      0;  ///< reach of ambient-occlusion rays in world units; 0 = a tenth of the scene's diagonal
+      0;  ///< reach of ambient-occlusion rays in world units; 0: a tenth of the scene's diagonal
   bool operator==(const IntegratorSettings&) const = default;
 };
 
@@ -65,6 +74,7 @@ struct DirectionalLight {
   Color color{1, 1, 1};
 };
 
+/// A light of any kind.
 using Light = std::variant<PointLight, DirectionalLight>;
 
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.
@@ -72,50 +82,51 @@ struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<std::uint32_t>
       slot_materials;  ///< index into Scene::materials per slot of the mesh; may be empty
-  bool smooth = true;  ///< interpolate the mesh's normals; false = flat shading
+  bool smooth = true;  ///< interpolate the mesh's normals; false: flat shading
   TriangleTest test = TriangleTest::watertight;
-  bool by_winding = false;  ///< in combinations: inside is where crossings say so, closed or not
+  bool by_winding = false;  ///< take part in combinations even if the mesh is not closed
 };
 
-/// Everything that prototype `prototype` holds, moved by the object's transform.
+/// All objects of a prototype, moved by the object's transform.
 struct InstanceShape {
   std::uint32_t prototype = kNoId;  ///< index into Scene::prototypes
 };
 
 struct Object;
 
-/// Operands combined; `subtract` takes the others from the first. An operand's transform leads to the space
-/// of the object that this is the shape of, and each keeps its own material.
+/// A Boolean combination of objects. An operand's transform maps to the space of the object that has this
+/// shape. Each operand keeps its own material.
 struct CsgShape {
-  CsgOp op = CsgOp::unite;
+  CsgOp op = CsgOp::unite;  ///< not CsgOp::operand
   std::shared_ptr<const std::vector<Object>> operands;
 };
 
-/// Any shape an object can have. The plain shapes are listed in kernels/closed/shape_data.h.
+/// Any shape that an object can have.
 using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape,
                            PolygonShape, TriangleShape, ExactShape, CsgShape, InstanceShape>;
 
-/// A thing in the scene: groups are flattened into objects while the file is read, their transforms
-/// multiplied out.
+/// A thing in the scene. The groups of a scene file are already multiplied into the transforms of their
+/// objects.
 struct Object {
   Shape shape;
   std::uint32_t material =
-      kNoId;         ///< index into Scene::materials; kNoId = the mesh's own, or the default material
-  Affine transform;  ///< object space to the space of the prototype or world
-  std::string name;
-  Location where;  ///< where the scene file defines it
+      kNoId;         ///< index into Scene::materials; kNoId: the mesh's own, or the default material
+  Affine transform;  ///< from the shape's space to that of the prototype or the world
+  std::string name;  ///< may be empty
+  Location where;    ///< where a scene file defines it; else empty
 };
 
-/// Objects that are rendered only through instances. A prototype may hold instances of prototypes before it
-/// in the list.
+/// Objects that are rendered only through instances. A prototype may hold instances of prototypes that stand
+/// before it in Scene::prototypes.
 struct Prototype {
   std::string name;
   std::vector<Object> objects;
 };
 
+/// Everything that render() needs. Its indices must be in range; they are not checked.
 struct Scene {
   Camera camera;
-  bool camera_given = false;  ///< false: frame the whole scene from a three-quarter view
+  bool camera_given = false;  ///< false: render() chooses a three-quarter view of the whole scene
   Film film;
   IntegratorSettings integrator;
   Color background{0, 0, 0};
@@ -123,11 +134,11 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
-  bool lights_given = false;  ///< false: a key and a fill light placed relative to the camera
+  bool lights_given = false;  ///< false: render() adds a key and a fill light beside the camera
   std::vector<Prototype> prototypes;
   std::vector<Object> objects;
-  std::vector<Warning> warnings;  ///< what was skipped or defaulted while reading
-  std::string source;             ///< path of the file the scene was read from
+  std::vector<Warning> warnings;  ///< what was skipped or given a default while a file was read
+  std::string source;             ///< path of the file that the scene was read from; else empty
 };
 
 }  // namespace oktett

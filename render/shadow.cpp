@@ -1,5 +1,6 @@
 #include "render/shadow.h"
 
+#include <span>
 #include <vector>
 
 #include "accel/accel.h"
@@ -52,7 +53,7 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
     rest.resize_uninitialized(0);
     for (std::size_t first = 0; first < kept.size(); first += InteractionBlock::kMost) {
       const std::size_t count = std::min(InteractionBlock::kMost, kept.size() - first);
-      surface_interactions(accel, rays.span(), hits.span(), kept.data() + first, count, context.isa, behind);
+      surface_interactions(accel, rays, hits, std::span(kept).subspan(first, count), behind, context.isa);
       for (std::size_t k = 0; k < count; ++k) {
         rest.push_back(continue_behind(rays[kept[first + k]], behind[k]));
         left[first + k] = left[kept[first + k]];
@@ -68,7 +69,7 @@ void trace_shadows(const RenderContext& context, ShadowQueue& queue, Column<Colo
   if (queue.size() == 0) return;
   Column<std::uint8_t>& occluded = queue.occluded;
   occluded.resize_uninitialized(queue.size());
-  any_hit(*context.world->accel, queue.rays.span(), occluded.data(), context.isa);
+  any_hit(*context.world->accel, queue.rays, occluded, context.isa);
   if (!context.world->see_through) {
     for (std::size_t i = 0; i < queue.size(); ++i)
       if (!occluded[i]) radiance[queue.owner[i]] += queue.light[i];

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the renderer asks of textures; io/ implements it on top of an image library.
+/// \file What the renderer asks of textures.
 
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace oktett {
 
-/// Looks up the textures of a scene. Implementations are safe to call from many threads, and a lookup depends
-/// on its arguments alone.
+/// Looks up the textures of a scene. Many threads call it at the same time, and a lookup must depend on its
+/// arguments alone; then so does the picture. ImageTextures does it for image files.
 class TextureSampler {
  public:
   virtual ~TextureSampler() = default;
@@ -17,8 +17,8 @@ class TextureSampler {
   virtual Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
   /// The same for data that carries no colour space (opacity, height): the first channel as stored.
   virtual float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
-  /// The same for tangent-space normals: the first three channels as stored, (0.5, 0.5, 1) for one that is
-  /// not bent. A sampler that does not know normal maps leaves all normals as they are.
+  /// The same for tangent-space normals: the first three channels as stored. (0.5, 0.5, 1), the answer of
+  /// samplers without normal maps, leaves the normal as it is.
   virtual Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
     static_cast<void>(index), static_cast<void>(uv), static_cast<void>(dx), static_cast<void>(dy);
     return {0.5f, 0.5f, 1};

@@ -95,8 +95,8 @@ void shade_hits(const RenderContext& context, Wavefront& wavefront) {
   for (std::size_t first = 0; first < wavefront.hit_rays.size(); first += kShadeBlock) {
     const std::size_t count = std::min(kShadeBlock, wavefront.hit_rays.size() - first);
     const std::uint32_t* which = wavefront.hit_rays.data() + first;
-    surface_interactions(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), which,
-                         count, context.isa, found);
+    surface_interactions(*context.world->accel, wavefront.rays.rays, wavefront.hits, {which, count}, found,
+                         context.isa);
     if (in_blocks) {
       shade_whitted_block(context, wavefront, which, count, found);
       if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
@@ -179,7 +179,7 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
     const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
     for (std::uint32_t number = first; number < last; ++number) add(pixel, number, key, pattern[number]);
   }
-  camera_rays(context.camera, {wavefront.film_x, wavefront.film_y}, context.isa, wavefront.rays.rays);
+  camera_rays(context.camera, {wavefront.film_x, wavefront.film_y}, wavefront.rays.rays, context.isa);
   wavefront.counts.camera += count;
 }
 

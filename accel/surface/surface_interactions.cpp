@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <span>
+#include <string>
 
 #include "accel/hit_place.h"
 #include "accel/shape_hits.h"
 #include "accel/surface/interaction_code.h"
 #include "accel/surface/mesh_interactions.h"
+#include "core/error.h"
 #include "kernels/exact_shapes.h"
 #include "kernels/exact_surface.h"
 
@@ -229,13 +232,16 @@ class ShapeGroups {
 }  // namespace
 
 void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
-                          const std::uint32_t* which, std::size_t count, Isa isa, InteractionBlock& out) {
+                          std::span<const std::uint32_t> which, InteractionBlock& out, Isa isa) {
+  if (which.size() > InteractionBlock::kMost)
+    throw Error("surface_interactions: " + std::to_string(which.size()) + " hits, but room for " +
+                std::to_string(InteractionBlock::kMost));
   const InteractionCode& code = interaction_code(isa);
-  MeshRun run(rays, hits, which, code, out);
-  ShapeGroups groups(rays, hits, which, code, out);
+  MeshRun run(rays, hits, which.data(), code, out);
+  ShapeGroups groups(rays, hits, which.data(), code, out);
   HitPlace place;
   std::uint32_t path = kNoId;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < which.size(); ++i) {
     const Hit hit = hits[which[i]];
     if (place.accel == nullptr || hit.instance != path) {
       run.finish(place);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Heights from image files.
+/// \file Heights for height fields from image files.
 
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace oktett {
 
-/// One number per pixel, row by row from the top. One of the columns is filled.
+/// One number per pixel, row by row from the top, in one of the two columns; the other is empty.
 struct HeightImage {
   std::uint32_t columns = 0, rows = 0;
-  Column<std::uint16_t> words;  ///< of 8-bit and 16-bit files; 65535 is one
-  Column<float> floats;         ///< of all others, as stored
+  Column<std::uint16_t> words;  ///< of 8-bit and 16-bit files: 65535 times the value
+  Column<float> floats;         ///< of all others: the values as stored
 };
 
 /// Reads a grey image, or one whose red, green and blue are the same; alpha is ignored. The numbers are taken

@@ -14,22 +14,23 @@ namespace oktett {
 /// is the convention of RenderMan and OpenEXR.
 using Matrix4 = std::array<float, 16>;
 
-/// Where the camera stood, as OpenEXR's standard attributes of the same names state it.
+/// The camera as OpenEXR's standard attributes of the same names state it.
 struct CameraMatrices {
   /// World to camera space: left-handed, origin at the camera, x to the right, y up, z the viewing direction.
   Matrix4 world_to_camera{};
   /// World to normalised device coordinates: after division by w, (0, 0) is the upper left and (1, 1) the
-  /// lower right corner of the full frame. z is to be discarded: it is 1 - 1 / depth for perspective, depth
-  /// for orthographic.
+  /// lower right corner of the full frame; z is 1 - 1 / depth for perspective, depth for orthographic, and of
+  /// no further meaning.
   Matrix4 world_to_ndc{};
 };
 
-/// The matrices of a camera that fills a frame of `width` x `height` pixels; nothing if the camera is
-/// degenerate.
+/// The matrices of a camera that fills a frame of `width` x `height` pixels; nothing for a camera whose view
+/// direction or `up` is degenerate.
 std::optional<CameraMatrices> camera_matrices(const Camera& camera, std::uint32_t width,
                                               std::uint32_t height);
 
-/// Empty and zero members are left out of the file. All are written to EXR; PNG and TIFF take the texts.
+/// What is stored with a picture: everything in EXR, the texts in PNG and TIFF. Empty and zero members are
+/// left out.
 struct ImageMetadata {
   std::string software;       ///< "oktett 1.2.3"; attribute `Software`
   std::string command_line;   ///< attribute `commandLine`

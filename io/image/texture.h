@@ -10,17 +10,15 @@
 
 namespace oktett {
 
-/// Looks up image files through OpenImageIO's texture system: bilinear within a MIP level, trilinear and
-/// anisotropic across levels when the footprint is known.
+/// Textures from image files: bilinear within a MIP level, trilinear and anisotropic across levels when the
+/// footprint is known.
 ///
 /// Colours are made linear before they are filtered: 8-bit images count as sRGB unless the file says
 /// otherwise. `value` gives the first channel as stored, `normal` the first three. Unassociated alpha is
 /// ignored. uv is multiplied by `scale`, moved by `offset`, then repeated or clamped; (0, 0) is the lower
 /// left corner of the image. The result is base + gain * texel.
 ///
-/// A lookup depends on its arguments alone: every level is computed from the image by a fixed rule (each from
-/// the one above), whoever asks first, and a level that was dropped from memory is computed again to the same
-/// numbers.
+/// A lookup depends on its arguments alone: each MIP level is computed from the one above by a fixed rule.
 class ImageTextures : public TextureSampler {
  public:
   /// Reads all images, in parallel. One that is missing or damaged gives a warning and is white (value 1)
@@ -33,7 +31,7 @@ class ImageTextures : public TextureSampler {
   /// An index beyond the textures gives white. Non-finite uv count as 0.
   Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
   float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
-  /// Without gain and base. A texture that could not be used bends nothing.
+  /// Gain and base are not applied. A texture that could not be used gives (0.5, 0.5, 1).
   Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
 
  private:

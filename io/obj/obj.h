@@ -10,22 +10,20 @@
 
 namespace oktett {
 
-/// Everything an OBJ file holds that can be rendered.
+/// Everything in an OBJ file that can be rendered.
 struct ObjFile {
-  /// Polygons are triangulated; mesh.material_slots indexes `materials`.
-  TriangleMesh mesh;
-  /// One per slot, in order of first use; empty if no face names a material.
-  std::vector<Material> materials;
-  /// What the materials' texture indices refer to.
-  std::vector<Texture> textures;
-  std::vector<Warning> warnings;
+  TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
+  std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
+  std::vector<Texture> textures;    ///< what the materials' texture indices refer to
+  std::vector<Warning> warnings;    ///< what was skipped
 };
 
-/// Reads `path`, and the MTL files it names from the same directory. Throws Error with file and line for what
-/// the format does not allow, with ErrorKind::io if the file cannot be read.
+/// Reads `path` and the MTL files that it names, which are looked for in the same directory. Throws Error
+/// with file and line for what the format does not allow, with ErrorKind::io if the file cannot be read.
 ObjFile load_obj(const std::string& path);
 
-/// Reads an MTL file. Texture paths are made relative to its directory.
+/// Reads the MTL file `path` and appends what is in it. Texture paths, which the file states relative to
+/// itself, are joined to its directory. Throws Error as load_obj does.
 void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
               std::vector<Warning>& warnings);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Scene files (docs/scene-format.md) and meshes given alone.
+/// \file Reading scenes: scene files in YAML, and meshes alone.
 
 #include <map>
 #include <string>
@@ -8,19 +8,18 @@
 
 namespace oktett {
 
-/// Values for `${name}` given on the command line as `-D name=value`.
+/// Values for `${name}` in scene files, by name. They replace those that the file itself states.
 using Definitions = std::map<std::string, std::string>;
 
-/// Reads a YAML scene file with all it includes and all meshes it names. Throws Error with file, line and
-/// column.
+/// Reads a scene file with all that it includes and all meshes that it names. Image files of textures are not
+/// read, see ImageTextures. Throws Error with file, line and column.
 Scene load_scene_file(const std::string& path, const Definitions& definitions = {});
 
-/// A scene around one mesh file: camera and lights are left to the renderer (camera_given, lights_given =
-/// false).
+/// A scene of one mesh file. Camera and lights are left to render(): camera_given and lights_given are false.
+/// Throws Error as load_obj does.
 Scene scene_from_mesh(const std::string& path);
 
-/// Chooses by the file's extension: .yaml and .yml are scenes, .obj a mesh; anything else is an error that
-/// says so.
+/// Calls load_scene_file for .yaml and .yml, scene_from_mesh for .obj; throws Error for any other extension.
 Scene load_scene(const std::string& path, const Definitions& definitions = {});
 
 }  // namespace oktett

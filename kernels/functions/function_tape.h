@@ -5,20 +5,10 @@
 /// What is the same is computed once, what has no x, y or z in it is computed when the text is read, and a
 /// sine and a cosine of the same angle are one step.
 
-#include <string_view>
-
 #include "kernels/functions/gradient.h"
 #include "kernels/functions/tape_data.h"
 
 namespace oktett {
-
-/// Compiles what parse_expression reads, in x, y and z. Constants are rounded to double, their functions and
-/// inverses as well; x^y, where y is not a constant, is exp(y log x), and no whole number of at most
-/// kMaxTapePower in magnitude as an exponent asks for x >= 0.
-///
-/// Throws Error as parse_expression does (`where().column` counts bytes from 1), also for constants without
-/// a finite value, as 1/0, and what is too long.
-FunctionTape compile_function(std::string_view text);
 
 // What tapes need of the kinds of values beyond their operators.
 

@@ -1,18 +1,21 @@
 #pragma once
-/// \file What a function tape is made of (function_tape.h).
+/// \file Functions of x, y and z, as tapes: lists of steps over a few registers, compiled from a text.
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace oktett {
 
-/// Longest tape, and how many values it may need at a time besides x, y and z.
+/// Most steps of a tape, and most values that it needs at a time besides x, y and z.
 inline constexpr std::size_t kMaxTapeSteps = 1024;
 inline constexpr int kMaxTapeRegisters = 48;
-/// Whole exponents up to this are powers by squaring, defined for negative numbers, too.
+/// Powers with a whole exponent of at most this magnitude are computed by squaring and defined for negative
+/// numbers.
 inline constexpr int kMaxTapePower = 256;
 
+/// What a step computes from the registers a and b and the numbers c and n.
 enum class TapeOp : std::uint8_t {
   constant,  ///< c
   negate,
@@ -45,7 +48,7 @@ enum class TapeOp : std::uint8_t {
   sign,
 };
 
-/// Registers 0 to 2 hold x, y and z.
+/// One step: register `out` becomes the result. Registers 0 to 2 hold x, y and z.
 struct TapeStep {
   TapeOp op = TapeOp::constant;
   std::uint8_t out = 0, a = 0, b = 0;
@@ -53,11 +56,22 @@ struct TapeStep {
   double c = 0;
 };
 
+/// A function as its steps in order. compile_function makes one.
 struct FunctionTape {
   std::vector<TapeStep> steps;
-  std::uint8_t result = 0;  ///< the register
+  std::uint8_t result = 0;  ///< the register that holds the value after the last step
   int registers = 3;        ///< how many are used
-  bool varies = false;      ///< whether x, y or z matter
+  bool varies = false;      ///< whether the value depends on x, y or z
 };
+
+/// Compiles a text: numbers, + - * / ^, parentheses, the variables x, y and z, the constants pi and e, and
+/// the functions sqrt abs sin cos tan asin acos atan atan2 exp log log2 log10 pow min max floor ceil round
+/// sign hypot (angles in radians). Constants are rounded to double. a^b, where b is no constant, is exp(b log
+/// a); it and powers with an exponent that is not whole, or greater than kMaxTapePower, are defined for a >=
+/// 0 only.
+///
+/// Throws Error if the text cannot be read, holds a constant without a finite value, such as 1/0, or is too
+/// long. Error::where().column counts bytes in `text` from 1.
+FunctionTape compile_function(std::string_view text);
 
 }  // namespace oktett

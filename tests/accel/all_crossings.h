@@ -22,7 +22,7 @@ inline std::vector<Hit> all_crossings(const Accel& accel, const Ray& ray) {
     hits.resize_uninitialized(rays.size());
     std::vector<std::uint8_t> occluded(rays.size());
     closest_hit(accel, rays.span(), hits.span(), isa);
-    any_hit(accel, rays.span(), occluded.data(), isa);
+    any_hit(accel, rays.span(), occluded, isa);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(hits[i], all.empty() ? Hit{} : all[0]) << to_string(isa);
       EXPECT_EQ(occluded[i], all.empty() ? 0 : 1) << to_string(isa);

@@ -52,7 +52,7 @@ std::vector<float> crossings(const Accel& accel, const Ray& ray) {
     hits.resize_uninitialized(1);
     closest_hit(accel, rays.span(), hits.span(), isa);
     std::uint8_t occluded;
-    any_hit(accel, rays.span(), &occluded, isa);
+    any_hit(accel, rays.span(), {&occluded, 1}, isa);
     EXPECT_EQ(hits[0].valid(), !list.empty());
     EXPECT_EQ(occluded != 0, !list.empty());
     if (!list.empty()) {
@@ -166,7 +166,7 @@ TEST(Csg, BlocksOfSurfacesHaveTheSameBits) {
     InteractionBlock block;
     for (std::size_t at = 0; at < which.size(); at += InteractionBlock::kMost) {
       const std::size_t count = std::min(which.size() - at, InteractionBlock::kMost);
-      surface_interactions(*accel, rays.span(), hits.span(), &which[at], count, isa, block);
+      surface_interactions(*accel, rays, hits, {&which[at], count}, block, isa);
       for (std::size_t k = 0; k < count; ++k, ++found) {
         const std::uint32_t i = which[at + k];
         const SurfaceInteraction one = surface_interaction(*accel, rays[i], hits[i]), many = block[k];
@@ -193,7 +193,7 @@ TEST(Csg, ShadowsAreOfTheCombinationOnly) {
     RayBatch rays;
     rays.push_back(ray);
     std::uint8_t answer;
-    any_hit(*accel, rays.span(), &answer, available_isas().front());
+    any_hit(*accel, rays.span(), {&answer, 1}, available_isas().front());
     return answer != 0;
   };
   // Through the left ball alone.

@@ -39,7 +39,7 @@ std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const R
     hits.resize_uninitialized(rays.size());
     closest_hit(*accel, rays.span(), hits.span(), isa);
     std::vector<std::uint8_t> occluded(rays.size());
-    any_hit(*accel, rays.span(), occluded.data(), isa);
+    any_hit(*accel, rays.span(), occluded, isa);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (first.size() < rays.size())
         first.push_back(hits[i]);

@@ -40,7 +40,7 @@ void expect_like_surface(const Accel& accel, const RayBatch& rays, HitBatch& hit
     for (std::size_t first = 0; first < which.size(); first += InteractionBlock::kMost) {
       InteractionBlock block;
       const std::size_t count = std::min(InteractionBlock::kMost, which.size() - first);
-      surface_interactions(accel, rays.span(), hits.span(), which.data() + first, count, isa, block);
+      surface_interactions(accel, rays, hits, {which.data() + first, count}, block, isa);
       for (std::size_t i = 0; i < count; ++i) found.push_back(block[i]);
     }
     for (std::size_t i = 0; i < which.size(); ++i) {
