@@ -115,7 +115,7 @@ AccelStats stats(const Accel& accel);
 Box bounds(const Accel& accel);
 
 // Queries. The hits are the same bits for every instruction set, number of threads, order of rays and size of
-// a batch, and for rays asked one at a time. Batches of more than 4096 rays are shared out among TBB tasks.
+// a batch, and for rays asked one at a time. Batches of more than 4096 rays are shared out among threads.
 // Rays that start at one point or end at one point, and rays that run together, are traced faster if they are
 // neighbours in the batch. Throws Error if the arrays of one call differ in size, or if this build has no
 // code for `isa`.

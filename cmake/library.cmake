@@ -16,7 +16,7 @@ target_compile_features(oktett PUBLIC cxx_std_20)
 target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
 set_target_properties(oktett PROPERTIES
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett

@@ -5,6 +5,7 @@ set(OKTETT_PUBLIC_HEADERS
   core/vec3.h core/box.h core/transform.h core/soa.h core/mesh.h core/ray.h core/isa.h core/error.h
   core/surface_interaction.h
   kernels/closed/shape_data.h kernels/exact/polynomial_expression.h kernels/roots/roots.h
+  kernels/heights/make_height_grid.h
   accel/accel.h accel/interaction_block.h
   render/scene.h render/material.h render/camera.h render/picture.h render/render.h render/texture_sampler.h
   io/scene/scene_file.h io/obj/obj.h io/image/image.h io/image/metadata.h io/image/texture.h io/image/heights.h)

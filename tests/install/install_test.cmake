@@ -1,5 +1,6 @@
-# Installs into a prefix inside the build tree, then builds and runs a separate program against it: with CMake's package,
-# and with the pkg-config file if there is a pkg-config.
+# Installs into a prefix inside the build tree, looks at the headers there, then builds and runs separate programs against
+# it: with CMake's package, and with the pkg-config file if there is a pkg-config. The last steps use the library from its
+# source folder, and compare the example of README.md with the program that is run.
 if(TARGET oktett_app)
   set(install_needs oktett_app)
 endif()
@@ -10,6 +11,7 @@ function(add_install_test name)
   add_test(NAME install.${name} COMMAND ${CMAKE_COMMAND}
     -D STEP=${name} -D SOURCE=${CMAKE_CURRENT_LIST_DIR} -D ROOT=${PROJECT_SOURCE_DIR} -D BUILD=${PROJECT_BINARY_DIR}
     -D WORK=${CMAKE_CURRENT_BINARY_DIR}/install -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
+    -D INCLUDEDIR=${CMAKE_INSTALL_INCLUDEDIR}
     -D GENERATOR=${CMAKE_GENERATOR} -D CXX=${CMAKE_CXX_COMPILER} -D CXX_FLAGS=${CMAKE_CXX_FLAGS}
     -D PKG_CONFIG=${OKTETT_PKG_CONFIG} -P ${CMAKE_CURRENT_LIST_DIR}/run_install_test.cmake)
   set_tests_properties(install.${name} PROPERTIES TIMEOUT 600)
@@ -18,10 +20,12 @@ endfunction()
 include(GNUInstallDirs)
 add_install_test(prefix)
 set_tests_properties(install.prefix PROPERTIES FIXTURES_SETUP installed)
+add_install_test(headers)
 add_install_test(cmake_package)
-set_tests_properties(install.cmake_package PROPERTIES FIXTURES_REQUIRED installed)
+set_tests_properties(install.headers install.cmake_package PROPERTIES FIXTURES_REQUIRED installed)
 if(OKTETT_PKG_CONFIG)
   add_install_test(pkg_config)
   set_tests_properties(install.pkg_config PROPERTIES FIXTURES_REQUIRED installed)
 endif()
+add_install_test(subdirectory)
 add_install_test(readme)
