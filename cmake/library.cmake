@@ -1,5 +1,4 @@
 # The library oktett::oktett. Sources are found by folder: a new file needs no edit here.
-include(cmake/public_headers.cmake)
 
 # What the project's own targets are compiled with. Programs that use the library know the public headers alone.
 add_library(oktett_internal INTERFACE)
@@ -17,6 +16,7 @@ target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
 set_target_properties(oktett PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+include(cmake/public_headers.cmake)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett

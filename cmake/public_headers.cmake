@@ -4,15 +4,14 @@
 set(OKTETT_PUBLIC_HEADERS
   core/vec3.h core/box.h core/transform.h core/soa.h core/mesh.h core/ray.h core/isa.h core/error.h
   core/surface_interaction.h
-  kernels/closed/shape_data.h kernels/exact/polynomial_expression.h kernels/roots/roots.h
+  kernels/closed/shape_data.h kernels/exact/polynomial_expression.h kernels/roots/root_method.h
   kernels/heights/make_height_grid.h
   accel/accel.h accel/interaction_block.h
   render/scene.h render/material.h render/camera.h render/picture.h render/render.h render/texture_sampler.h
   io/scene/scene_file.h io/obj/obj.h io/image/image.h io/image/metadata.h io/image/texture.h io/image/heights.h)
 # What describes the exact surfaces.
-file(GLOB exact_headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
-  kernels/*/*_data.h kernels/exact_form.h kernels/exact/normal_method.h)
-list(APPEND OKTETT_PUBLIC_HEADERS ${exact_headers})
+file(GLOB data_headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS core/description.h kernels/*/*_data.h)
+list(APPEND OKTETT_PUBLIC_HEADERS kernels/exact_form.h kernels/exact/normal_method.h ${data_headers})
 list(REMOVE_DUPLICATES OKTETT_PUBLIC_HEADERS)
 
 set(OKTETT_PUBLIC_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
@@ -34,7 +33,11 @@ function(oktett_write_public_headers)
   set(names "")
   set(umbrella "#pragma once\n/// \\file All public headers of Oktett.\n\n")
   foreach(header IN LISTS OKTETT_PUBLIC_HEADERS)
-    set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+    set(source ${PROJECT_SOURCE_DIR}/${header})
+    if(NOT EXISTS ${source} AND OKTETT_GENERATED)
+      set(source ${OKTETT_GENERATED}/${header})
+    endif()
+    set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
     get_filename_component(name ${header} NAME)
     if(name IN_LIST names OR name STREQUAL "oktett.h")
       message(FATAL_ERROR "${header}: there is another public header of the name ${name}")
@@ -42,7 +45,7 @@ function(oktett_write_public_headers)
     list(APPEND names ${name})
     string(APPEND umbrella "#include <oktett/${name}>\n")
 
-    file(READ ${PROJECT_SOURCE_DIR}/${header} text)
+    file(READ ${source} text)
     string(REGEX MATCHALL "#include \"[^\"]*\"" includes "${text}")
     foreach(include IN LISTS includes)
       string(REGEX REPLACE "#include \"(.*)\"" "\\1" included "${include}")

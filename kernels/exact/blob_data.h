@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/vec3.h"
-#include "kernels/roots/roots.h"
+#include "kernels/roots/root_method.h"
 
 namespace oktett {
 

@@ -7,7 +7,7 @@ namespace oktett {
 
 /// How the normal of an exact surface is computed.
 enum class NormalMethod : std::uint8_t {
-  gradient,  ///< exact
+  gradient,  ///< the gradient of the function
   forward,   ///< forward differences of the function
   central,   ///< central differences
 };

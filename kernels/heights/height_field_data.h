@@ -8,18 +8,20 @@
 
 namespace oktett {
 
+/// The samples of a height field; make_height_grid makes one.
 class HeightGrid;
 
-/// What lies between four samples.
+/// The surface between four neighbouring samples.
 enum class HeightInterpolation : std::uint8_t {
   nearest,    ///< a level square at their mean height, with upright walls to its neighbours (slides)
   triangles,  ///< two, which meet on the line from the corner (column + 1, row) to (column, row + 1)
   bilinear,   ///< a patch of a hyperbolic paraboloid (slides)
 };
 
-/// How a ray finds its way over the cells. All ways lead to the same hits.
+/// How a ray passes over the cells between samples. The hits are the same for each.
 enum class HeightWalk : std::uint8_t {
-  pyramid,  ///< blocks of cells between their least and greatest height are passed at once
+  pyramid,  ///< in blocks of cells, skipping those whose least and greatest height the ray does not come
+            ///< between
   cells,    ///< one cell after the other, by a digital differential analyser
   spans,    ///< runs of cells of one row (C. Henning, P. Stephenson 2004)
 };

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/soa.h"
-#include "kernels/heights/height_data.h"
+#include "kernels/heights/height_field_data.h"
 
 namespace oktett {
 

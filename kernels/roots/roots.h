@@ -2,9 +2,10 @@
 /// \file Real roots of a polynomial in an interval: what goes in and what comes out. `solve` (solve.h) is the
 /// entrance; docs/roots.md states what "certified" promises and describes the methods.
 
+#include "kernels/roots/root_method.h"
+
 namespace oktett::roots {
 
-inline constexpr int kMaxDegree = 32;
 /// In answers in lanes, stands for a root that is not there; sorts behind all others.
 inline constexpr double kNoRoot = __builtin_huge_val();
 
@@ -14,8 +15,8 @@ struct Polynomial {
   double c[kMaxDegree + 1];
 };
 
-/// A root, or several too close to each other to be told apart. All that is meant lies in
-/// [x - error, x + error].
+/// A root, or several too close to each other to be told apart. All that is meant lies in [x - error, x +
+/// error].
 struct Root {
   double x;
   double error;
@@ -24,8 +25,6 @@ struct Root {
   /// zero there as docs/roots.md, "Clusters", says.
   int multiplicity;
 };
-
-enum class Method { automatic, closed, bernstein, sturm, laguerre, bisection, newton };
 
 /// The answer: roots in ascending order. Fixed capacity, nothing is allocated.
 struct Roots {
