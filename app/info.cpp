@@ -39,7 +39,7 @@ std::string closed_text(const SceneSummary& summary) {
   return summary.open_edges == 0 ? "closed" : grouped(summary.open_edges) + " open edges";
 }
 
-/// Recursive instances can show more than an integer counts.
+/// A double, because recursive instances can show more triangles than an integer holds.
 std::string count_text(double count) {
   return count < 1e15 ? grouped(static_cast<std::uint64_t>(count)) : fmt::format("{:.3g}", count);
 }
@@ -50,7 +50,7 @@ std::string bounds_text(const Box& box) {
                      box.hi.y, box.hi.z);
 }
 
-/// Figures of the trees, all prototypes' included.
+/// Figures of the trees, including those of all prototypes.
 struct TreeSummary {
   std::optional<TraceCounts> counts;
   double build_seconds = 0;
@@ -59,7 +59,7 @@ struct TreeSummary {
   std::uint64_t triangles = 0;
 };
 
-/// The rays through the centres of a frame's pixels, at most about a million.
+/// The rays through the centres of the pixels of a frame, at most about a million.
 RayBatch camera_rays(const Scene& scene, const Box& bounds) {
   Film film = scene.film;
   constexpr std::uint32_t kMostPixels = 1024;

@@ -28,11 +28,11 @@ StopOnSignal::StopOnSignal() {
   stop_signal = 0;
   struct sigaction action {};
   action.sa_handler = &on_signal;
-  // The second signal may be of the other kind: neither is blocked while the first is handled.
+  // Neither signal is blocked while the first is handled, because the second may be of the other kind.
   action.sa_flags = SA_RESTART | SA_NODEFER;
   for (int i = 0; i < 2; ++i) {
     sigaction(kSignals[i], nullptr, &previous[i]);
-    // A parent that made us ignore a signal (nohup, background jobs) means it.
+    // A signal that the parent made us ignore (nohup, background jobs) stays ignored.
     if (previous[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
   }
 }

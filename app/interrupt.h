@@ -1,12 +1,12 @@
 #pragma once
-/// \file Ending a render early, on the user's demand.
+/// \file Ending a render early when a signal arrives.
 
 #include <atomic>
 
 namespace oktett {
 
-/// While it lives, the first SIGINT or SIGTERM sets a flag and the second ends the process at once. One at a
-/// time.
+/// While an object of this class exists, the first SIGINT or SIGTERM sets a flag and the second ends the
+/// process at once. Only one may exist at a time.
 class StopOnSignal {
  public:
   StopOnSignal();

@@ -33,7 +33,7 @@ const CLI::App* current(const CLI::App& app) {
   return verbs.empty() ? &app : verbs.front();
 }
 
-/// The long option of `app` that `typed` may have been meant to be; empty if none is near.
+/// The long option of `app` that is nearest to the mistyped word `typed`; empty if none is near.
 std::string nearest_option(const CLI::App& app, const std::string& typed) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
@@ -72,7 +72,7 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return kExitBadInput;
 }
 
-/// Errors that know their place begin with it, so that editors can jump there.
+/// An error with a location begins with it, so that editors can jump there.
 void print_error(const Error& error) {
   const char* prefix = error.where().file.empty() ? "oktett: " : "";
   fmt::print(stderr, "{}{}\n", prefix, error.what());

@@ -35,7 +35,7 @@ void ProgressLine::show(const RenderProgress& progress) {
 }
 
 void ProgressLine::print(const RenderProgress& progress) {
-  // The escape sequence clears what a longer line before this one left to the right.
+  // The escape sequence clears the rest of a longer previous line.
   fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", progress_text(progress), terminal_ ? "\x1b[K" : "\n");
   std::fflush(stderr);
   line_open_ = terminal_;

@@ -21,7 +21,7 @@ class ProgressLine {
   void show(const RenderProgress& progress);
   /// Leaves room for a message: on a terminal, clears the line.
   void clear();
-  /// Shows the last state if it was held back, and ends the line.
+  /// Shows the last state if it was not shown yet, and ends the line.
   void finish();
 
  private:

@@ -105,7 +105,7 @@ class Watch {
     line_.finish();
   }
 
-  /// Of the pixels asked for, as far as was told.
+  /// Finished share of the pixels, by the last progress report.
   double percent_done() const {
     if (last_.pixels_total == 0) return 0;
     return 100 * static_cast<double>(last_.pixels_done) / static_cast<double>(last_.pixels_total);
@@ -129,7 +129,7 @@ void print_summary(const RenderArguments& arguments, const StageTimes& times, co
   const bool json = arguments.stats == "json";
   if (arguments.stats == "text") fmt::print("{}", stats_text(report));
   if (json) fmt::print("{}\n", stats_json(times, report, output));
-  // Standard output is all JSON or none.
+  // With --stats=json standard output holds nothing but JSON.
   if (!arguments.quiet)
     fmt::print(json ? stderr : stdout, "{}\nwrote {}\n", times_text(times, report), output);
   std::fflush(stdout);
@@ -168,7 +168,7 @@ int run_render(const Command& command, const RenderArguments& arguments) {
   times.render = result.report.render_seconds;
   watch.lap();
   const ImageMetadata metadata = metadata_of(command, arguments, result);
-  // To load what writes images takes as much memory as a large scene; they need not meet.
+  // The library that writes images takes as much memory as a large scene: free the scene before it is loaded.
   result.scene = Scene{};
   write_image(output, result.picture, metadata);
   times.write = watch.lap();

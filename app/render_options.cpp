@@ -24,7 +24,7 @@ constexpr std::uint32_t kMaxSide = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
 constexpr std::uint32_t kMaxSamples = 65536;
 
-/// Reads a number that is all of `text`.
+/// Reads a number. All of `text` must belong to it.
 template <class T>
 bool parse_number(std::string_view text, T& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -58,7 +58,7 @@ void parse_crop(const std::string& text, double (&crop)[4]) {
         text));
 }
 
-/// The place of `word` in a list of names. Throws Error if it is not there.
+/// The index of `word` in a list of names. Throws Error if it is not in the list.
 template <std::size_t N>
 std::size_t index_of(const char* complaint, const std::string& word, const char* const (&names)[N],
                      const char* all) {

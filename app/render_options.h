@@ -16,7 +16,7 @@ class App;
 
 namespace oktett {
 
-/// The words of the command line, not yet checked beyond being numbers where numbers belong.
+/// The words of the command line. Numbers are read, words are not checked yet.
 struct RenderArguments {
   std::string scene;
   std::string outfile;
@@ -38,9 +38,9 @@ struct RenderArguments {
 
 void add_render_options(CLI::App& verb, RenderArguments& arguments);
 
-/// Puts what the arguments say in place of what the scene says. Throws Error for words that mean nothing.
+/// Overrides settings of the scene by the arguments. Throws Error for unknown words.
 void override_scene(const RenderArguments& arguments, Scene& scene);
-/// Splits `name=value` words; the last of a name counts.
+/// Splits `name=value` words; of several with one name the last counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
 void add_bvh_option(CLI::App& verb, std::string& quality);
 /// Build options of the quality that --bvh names; empty: the default. Throws Error for an unknown word.

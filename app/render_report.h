@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a render took, for people and for programs.
+/// \file Times and counts of a render, as text and as JSON.
 
 #include <string>
 

@@ -76,14 +76,14 @@ Box object_bounds(const Object& object, const std::vector<Box>& prototypes) {
   return box;
 }
 
-/// Operands are bounded one by one: what the combination leaves out of them is not known without building it.
+/// Bounds of all operands together: what remains of them is known only after building the combination.
 Box ShapeBounds::operator()(const CsgShape& shape) const {
   Box box;
   for (const Object& object : *shape.operands) box.grow(object_bounds(object, prototypes));
   return box;
 }
 
-/// What a list of objects shows, its instances followed.
+/// What a list of objects shows, including the contents of its instances.
 struct Shown {
   Box bounds;
   double triangles = 0;

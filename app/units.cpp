@@ -16,7 +16,7 @@ std::string with_prefix(double value) {
   if (value < 1000) return fmt::format("{:.0f} ", value);
   const char* prefix = "kMGTPE";
   value /= 1000;
-  // 999.6 would be printed as 1000 of the smaller unit.
+  // Otherwise 999.6 would be printed as 1000 of the smaller unit.
   for (; value >= 999.5 && prefix[1] != '\0'; ++prefix) value /= 1000;
   return three_digits(value) + " " + *prefix;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Numbers as people read them.
+/// \file Numbers with units, for people.
 
 #include <cstdint>
 #include <string>

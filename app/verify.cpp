@@ -40,7 +40,7 @@ struct VerifyArguments {
   }
 };
 
-/// What was checked so far: printed as it comes, and gathered for --json.
+/// The results so far: each is printed as soon as it is known, or gathered for --json.
 class Report {
  public:
   explicit Report(bool json) : json_(json) {}
@@ -116,7 +116,7 @@ class Report {
     note("combinations", t.failure);
   }
 
-  /// Prints the end of the report; the exit status.
+  /// Prints the end of the report and returns the exit status.
   int finish(double seconds) const {
     if (json_) {
       JsonObject all;
@@ -174,7 +174,7 @@ void verify_surfaces(const VerifyArguments& arguments, std::uint64_t rays, Repor
       report.exact(names[form], verify_exact(form, rays, chosen_isas(arguments.isa)));
 }
 
-/// The closed meshes that are made up, and those of files.
+/// The generated closed meshes and the meshes of files.
 std::vector<OracleMesh> oracle_meshes(const VerifyArguments& arguments) {
   std::vector<OracleMesh> meshes = make_closed_meshes();
   for (const std::string& file : arguments.meshes)
@@ -200,7 +200,7 @@ void verify_combinations(const VerifyArguments& arguments, std::uint64_t rays, R
   report.csg(verify_csg(rays, chosen_isas(arguments.isa)));
 }
 
-/// Throws Error if one of the surfaces that were asked for is not there.
+/// Throws Error if one of the requested surfaces does not exist.
 void check_surfaces(const std::vector<std::string>& asked) {
   std::vector<std::string> names = exact_oracle_names();
   names.push_back("combinations");

@@ -8,7 +8,7 @@
 
 namespace oktett {
 
-/// Prints the first `most` warnings to stderr and how many more there are.
+/// Prints the first `most` warnings to stderr, and the number of the others.
 void print_warnings(const std::vector<Warning>& warnings, std::size_t most = 20);
 
 }  // namespace oktett

@@ -8,7 +8,7 @@ namespace {
 
 float radius_of(const Box& b) { return 0.5f * length(b.extent()); }
 
-/// The hit point, a little off the surface on the side of the ray, and the normal on that side.
+/// The hit point, moved a little off the surface to the side of the ray, and the normal on that side.
 SurfaceInteraction lifted_surface(const Accel& accel, const Ray& ray, const Hit& hit, float lift) {
   SurfaceInteraction s = surface_interaction(accel, ray, hit);
   if (dot(s.geometric_normal, ray.direction) > 0) s.geometric_normal = -s.geometric_normal;

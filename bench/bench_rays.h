@@ -1,5 +1,5 @@
 #pragma once
-/// \file The rays that benchmarks trace: camera rays over a framed mesh and what follows from their hits.
+/// \file The rays that benchmarks trace: camera rays over a framed mesh, and rays from their hits.
 
 #include "accel/accel.h"
 #include "core/random.h"

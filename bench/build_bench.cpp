@@ -24,7 +24,7 @@ void build(benchmark::State& state) {
   state.counters["sah_cost"] = s.sah_cost;
 }
 
-/// Boxes of a box's structure, turned and scaled, all over a cube.
+/// Instances of one box, turned and scaled, all over a cube.
 InstanceList scattered_instances(std::uint32_t count) {
   InstanceList list{{build_accel({{BoxShape{}, {}, 0}})}, std::vector<InstancePlace>(count)};
   const std::uint64_t key = mix_bits(1);

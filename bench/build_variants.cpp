@@ -7,7 +7,7 @@
 namespace oktett::bench {
 
 const std::vector<BuildVariant>& build_variants() {
-  // New qualities of build are added here and nowhere else.
+  // A new build quality is added here only.
   static const std::vector<BuildVariant> variants = {
       {"balanced", {BuildQuality::balanced}}, {"fast", {BuildQuality::fast}}, {"best", {BuildQuality::best}}};
   return variants;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The ways of building a tree that the comparison knows.
+/// \file The ways of building a tree that the comparison measures.
 
 #include <string>
 #include <vector>

@@ -35,7 +35,7 @@ struct Types<16> {
   using Ray = RTCRay16;
 };
 
-/// Embree 3's context and Embree 4's arguments behind one face.
+/// Embree 3's context or Embree 4's arguments, with one interface.
 struct Context {
 #if defined(OKTETT_EMBREE4)
   RTCIntersectArguments intersect;

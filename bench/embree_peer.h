@@ -17,7 +17,7 @@ struct EmbreeMode {
   bool coherent = false;
 };
 
-/// All modes that are tried; the best one counts.
+/// All modes that are tried; the fastest one counts.
 const std::vector<EmbreeMode>& embree_modes();
 
 /// One mesh in one Embree scene.

@@ -2,9 +2,8 @@
 /// pyramid. One thread; the time of one item is that of one ray.
 ///
 /// - all: from points above the terrain in directions of the whole sphere;
-/// - level: horizontal, in all directions, through a field in which one sample alone is high: what it costs
-/// to
-///   pass cells that have nothing to hit;
+/// - level: horizontal, in all directions, through a field with one high sample. This measures the cost of
+///   cells without a hit;
 /// - camera: a picture from above one edge.
 ///
 /// The mesh needs about 65 bytes per triangle and twice that while it is built; it is left out above
@@ -49,7 +48,7 @@ struct Field {
   std::size_t bytes = 0;
 };
 
-/// The last field that was asked for; one at a time is in memory.
+/// The field that was used last. Only one is in memory at a time.
 const Field& field(std::uint32_t n, Method method, bool level) {
   static std::map<std::tuple<std::uint32_t, Method, bool>, Field> fields;
   const auto key = std::tuple{n, method, level};

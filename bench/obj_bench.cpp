@@ -43,7 +43,7 @@ void write_sheet(const std::string& path) {
   }
 }
 
-/// The file to read; a generated one is removed at the end of the program.
+/// The file to read. A generated file is removed at the end of the program.
 class Mesh {
  public:
   Mesh() {

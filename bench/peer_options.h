@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the comparison with Embree is asked to do.
+/// \file Options of the comparison with Embree.
 
 #include <string>
 #include <vector>
@@ -28,7 +28,7 @@ struct PeerOptions {
   bool wants_tracing() const;
 };
 
-/// Throws Error for what cannot be understood.
+/// Throws Error for unknown options and words.
 PeerOptions parse_peer_options(int argc, char** argv);
 
 extern const char* const kPeerUsage;

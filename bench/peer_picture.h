@@ -11,7 +11,7 @@
 
 namespace oktett::bench {
 
-/// What the row needs to know beside its options.
+/// What the row needs besides its options.
 struct PictureTask {
   std::string path;
   View view;

@@ -20,7 +20,7 @@ struct Row {
   Quartiles oktett, embree, null;
   Quartiles ratio;  ///< above 1: Oktett is faster; bytes: Oktett's over Embree's
   std::string mode;
-  std::vector<std::pair<std::string, double>> parts;  ///< what makes up the figures, in seconds
+  std::vector<std::pair<std::string, double>> parts;  ///< the parts of the figures, in seconds
 };
 
 /// Rays of one work whose answers were compared.

@@ -37,7 +37,7 @@ Quartiles quartiles(std::vector<double> values) {
 }
 
 void on_threads(int threads, const std::function<void()>& f) {
-  // The limit holds for rivals that bring an arena of their own, too.
+  // The limit also holds for peers with an arena of their own.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
   tbb::task_arena arena(threads);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Clocks, medians and threads for programs that compare rivals in turn.
+/// \file Clocks, medians and threads for programs that compare with peers in turn.
 
 #include <cstddef>
 #include <functional>
@@ -10,7 +10,7 @@ namespace oktett::bench {
 /// Wall time that `f` takes.
 double seconds(const std::function<void()>& f);
 
-/// A middle value and the quarter points around it.
+/// The median and the quartiles.
 struct Quartiles {
   double low = 0, median = 0, high = 0;
   /// Half of all values lie within this much of each other.
@@ -24,16 +24,16 @@ Quartiles quartiles(std::vector<double> values);
 /// TBB may not give out all of them: make it inside.
 void on_threads(int threads, const std::function<void()>& f);
 
-/// Makes the processor treat denormal floats of this thread as zero, as tracers ask for.
+/// Makes the processor treat denormal floats of this thread as zero, as Embree recommends.
 void flush_denormals();
 
-/// Shares a batch out in pieces of 4096 among `threads` threads, the same for every rival, with denormals
-/// flushed. The threads are not TBB's, which rivals configure in their own ways.
+/// Splits a batch into pieces of 4096 for `threads` threads, the same for every program, with denormals
+/// flushed. The threads are not TBB's, because each program configures TBB differently.
 void in_pieces(int threads, std::size_t size,
                const std::function<void(std::size_t begin, std::size_t count)>& f);
 
-/// Says when enough has been measured: at least `least` rounds, at most `most`, and within that none that
-/// begins when `budget` seconds are over.
+/// Tells when enough has been measured: at least `least` rounds, at most `most`, and in between no round
+/// begins after `budget` seconds.
 class Rounds {
  public:
   Rounds(double budget, int least, int most);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file One batch of rays through Oktett, through Embree and through nothing at all.
+/// \file One batch of rays through Oktett, Embree and the null tracer.
 
 #include <cstdint>
 #include <string>
@@ -21,11 +21,11 @@ struct Workload {
   bool any = false;  ///< occlusion only
 };
 
-/// The primary rays of a view and the rays that leave their hits, for those works that `options` asks for.
+/// The primary rays of a view and the rays that leave their hits, for the works in `options`.
 std::vector<Workload> make_workloads(const Accel& accel, const View& view, const PeerOptions& options,
                                      Isa isa);
 
-/// What a tracer found out: `hits`, or `occluded` if the workload asks for that only.
+/// The answers of a tracer: `hits`, or `occluded` if the workload needs no more.
 struct Answers {
   explicit Answers(const Workload& work) {
     if (work.any)
@@ -39,10 +39,10 @@ struct Answers {
 
 void trace(const Accel& accel, const Workload& work, Isa isa, int threads, Answers& answers);
 void trace(const EmbreeScene& scene, EmbreeMode mode, const Workload& work, int threads, Answers& answers);
-/// Reads the rays and stores misses: the bound that no tracer can pass.
+/// The null tracer: reads the rays and stores misses. No tracer can be faster.
 void trace_nothing(const Workload& work, int threads, Answers& answers);
 
-/// A scene of Embree's and the mode in which it traces a workload fastest.
+/// An Embree scene and its fastest mode for a workload.
 struct EmbreeChoice {
   const EmbreeScene* scene = nullptr;
   EmbreeMode mode;

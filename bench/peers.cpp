@@ -1,5 +1,5 @@
 /// \file Oktett against Embree: the same mesh, the same rays in the same order, runs interleaved, medians of
-/// the ratios. `peers` without arguments tells the options.
+/// the ratios. `peers` without arguments lists its options.
 ///
 /// Embree runs in the best of its modes (1, 8 or 16 rays, coherent or not, medium or high build quality);
 /// denormals are flushed for both.
@@ -39,7 +39,7 @@ Quartiles rates(const std::vector<double>& seconds, double count) {
   return quartiles(rates);
 }
 
-/// The seconds that the same thing took the two rivals (and nothing at all), in turn.
+/// Seconds that the same work took Oktett, Embree and the null tracer, in turn.
 struct Times {
   std::vector<double> oktett, embree, null, ratio;
   void add(double ours, double theirs) {
@@ -76,7 +76,7 @@ class Comparison {
     return std::make_unique<EmbreeScene>(mesh_, quality, config_.c_str());
   }
 
-  /// Embree's trees; made when they are asked for.
+  /// Embree's trees, made when they are first needed.
   const EmbreeScene* medium() { return (medium_ ? medium_ : medium_ = embree_build(1)).get(); }
   const EmbreeScene* high() { return (high_ ? high_ : high_ = embree_build(2)).get(); }
   /// Their devices keep TBB from giving out all threads.
@@ -121,7 +121,7 @@ class Comparison {
     }
     if (accel_ == nullptr) accel_ = build(variant);
     if (!options_.wants(Work::bytes)) return;
-    // Embree was given positions and indices alone, so ours are counted without normals and uvs.
+    // Embree gets positions and indices only, so our normals and uvs are not counted.
     const std::size_t buffers =
         mesh_.positions.size() * sizeof(mesh_.positions[0]) + mesh_.indices.size() * sizeof(mesh_.indices[0]);
     const double ours = static_cast<double>(stats(*accel_).bytes() + buffers) / triangles;
@@ -170,7 +170,7 @@ class Comparison {
     report_.agreements.push_back(agreement);
   }
 
-  /// How much faster each further number of threads is than the first.
+  /// Speed on each number of threads relative to the first.
   void scaling_rows(const View& view, const Workload& work, std::map<int, Times>& times) {
     const int first = options_.threads.front();
     const auto gain = [](const std::vector<double>& few, const std::vector<double>& many) {

@@ -17,12 +17,12 @@ struct Habit {
   double lean;               ///< of stems from the vertical, at most
   int levels;                ///< of branches above the stems
   int branches;              ///< of each stem or branch
-  double first;              ///< how far up they begin
+  double first;              ///< where along it they begin, as a fraction
   double length, angle;
   double bend;  ///< towards the ground, per segment
   double leaf_length, leaf_width;
   double leaves_from;    ///< how far along a branch leaves begin
-  double blossom_share;  ///< of what is not wood
+  double blossom_share;  ///< of the triangles that are not wood
 };
 
 Habit habit_of(PlantKind kind) {
@@ -134,7 +134,7 @@ class Grower {
     model_.faces[static_cast<int>(part)].push_back({a, b, c});
   }
 
-  /// Tubes, as round as two fifths of the triangles allow; where they do not allow any, the thickest.
+  /// Tubes, as round as two fifths of the triangles allow. If these are too few, only the thickest.
   void make_wood() {
     std::stable_sort(branches_.begin(), branches_.end(),
                      [](const Branch& a, const Branch& b) { return a.radius > b.radius; });

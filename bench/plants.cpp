@@ -1,5 +1,5 @@
 /// \file Writes a scene of many plants from few models: 61 models of 1.1 million triangles together, 4000
-/// plants that show 19.5 million (slides on instancing).
+/// plants that show 19.5 million, the sizes of the forest in the slides on instancing.
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ struct Model {
   std::size_t triangles = 0, plants = 0;
 };
 
-/// x in [lo, hi] with f(x) = value, f growing.
+/// The x in [lo, hi] with f(x) = value; f must grow.
 template <class F>
 double solve(double lo, double hi, double value, const F& f) {
   for (int i = 0; i < 100; ++i) {
@@ -38,7 +38,7 @@ double solve(double lo, double hi, double value, const F& f) {
   return 0.5 * (lo + hi);
 }
 
-/// Sizes in geometric progression, and the more plants the smaller a model is, so that the sums come out.
+/// Sizes of the models in geometric progression; smaller models get more plants, so that all sums are right.
 std::vector<Model> plan_models() {
   const auto size = [](double ratio, std::size_t i) {
     return kSmallest * std::pow(ratio, static_cast<double>(i));

@@ -57,8 +57,8 @@ void write_text(const fs::path& path, const std::string& text) {
   if (!out) throw Error({path.string(), 0, 0}, "cannot be written", ErrorKind::io);
 }
 
-/// Runs POV-Ray on `scene`.pov in `dir`; the seconds that it says it traced. `bounding`: 1 = its tree of
-/// boxes, 2 = its BSP tree.
+/// Runs POV-Ray on `scene`.pov in `dir`. Returns the trace time that it reports, in seconds. `bounding`:
+/// 1 = its tree of boxes, 2 = its BSP tree.
 double run_povray(const fs::path& dir, const std::string& scene, const Options& o, int bounding) {
   const std::string log = (dir / (scene + ".log")).string();
   const std::string command = fmt::format(
@@ -72,7 +72,7 @@ double run_povray(const fs::path& dir, const std::string& scene, const Options& 
   return std::strtod(text.c_str() + open + 1, nullptr);
 }
 
-/// The numbers that a picture's colours stand for, row by row, mirrored to Oktett's side.
+/// The object numbers that a picture's colours stand for, row by row, mirrored as Oktett's picture is.
 std::vector<std::uint32_t> read_ids(const fs::path& path, const Options& o) {
   const std::string text = read_text(path);
   const std::size_t size = std::size_t{o.width} * o.height;
@@ -96,8 +96,8 @@ RayBatch pixel_rays(const Field& field) {
   return rays;
 }
 
-/// Where the ray first crosses the object by dense sampling and bisection; infinity if nowhere. What is
-/// thinner than a step may escape the samples, so they are joined by `hint`, which may be inside.
+/// Where the ray first crosses the object, by dense sampling and bisection; infinity if nowhere. Samples may
+/// miss parts thinner than a step, so `hint`, a place that may be inside, is sampled too.
 long double first_crossing(const FieldObject& object, const Affine& to_world, const Ray& ray,
                            long double hint) {
   const Affine inverse = to_world.inverse();
@@ -129,7 +129,7 @@ long double first_crossing(const FieldObject& object, const Affine& to_world, co
   return HUGE_VALL;
 }
 
-/// How many pixels show different objects, and whom the oracle sides with there.
+/// How many pixels show different objects, and which program is right there according to the oracle.
 struct Silhouettes {
   std::uint64_t pixels = 0, differ = 0, ours = 0, theirs = 0, neither = 0;
 };
@@ -194,7 +194,7 @@ Row compare(const FieldKind& kind, const Options& o, const fs::path& dir) {
   write_text(dir / (kind.name + "_ids.pov"), field.pov_ids);
   Row row;
   row.kind = kind.name;
-  // POV-Ray at the better of its two structures.
+  // POV-Ray with the faster of its two structures.
   const double boxes = run_povray(dir, kind.name, o, 1), bsp = run_povray(dir, kind.name, o, 2);
   row.bounding = bsp < boxes ? 2 : 1;
   std::vector<double> ours, theirs, ratio;

@@ -112,7 +112,7 @@ FieldObject revolution(const double (&)[6]) {
   return {pov + " }", ExactShape{shape}, outside_profile};
 }
 
-/// POV-Ray's (|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1 is ours where e = n.
+/// POV-Ray's (|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1 is the same surface as ours if e = n.
 FieldObject superellipsoid(const double (&r)[6]) {
   const double e = std::round((0.2 + 1.6 * r[0]) * 1000) / 1000;
   SuperquadricShape shape;

@@ -27,7 +27,7 @@ std::string field_head(bool ids) {
       ids ? 0 : 0.1, ids ? "ambient 1 diffuse 0" : "ambient 0.1 diffuse 0.7 phong 0.3 phong_size 40");
 }
 
-/// Object `id` in a colour that says so; 0 is the background.
+/// Object `id` in a colour that encodes the number; 0 is the background.
 std::string id_color(std::uint32_t id) {
   return fmt::format("rgb <{}/255, {}/255, {}/255>", id & 255, id >> 8 & 255, id >> 16);
 }
@@ -72,7 +72,7 @@ Field make_field(const FieldKind& kind, std::uint32_t width, std::uint32_t heigh
   const double pitch = kEdge / side, size = pitch * 0.45;
   std::uint32_t dimension = 0;
   const auto random = [&] {
-    // Four decimals, so that both read the same numbers.
+    // Four decimals, so that both programs read the same numbers.
     return std::floor(random_float(7, 0, dimension++) * 1e4) / 1e4;
   };
   for (int i = 0; i < side; ++i)

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Fields of one kind of shape over a floor, described for POV-Ray and for Oktett alike.
+/// \file Fields of one kind of shape over a floor, described for both POV-Ray and Oktett.
 
 #include <cstdint>
 #include <functional>
@@ -14,7 +14,7 @@ namespace oktett::bench {
 
 using Vec3l = Vec3<long double>;
 
-/// One object of a field: what POV-Ray reads, what Oktett traces, and what both should be.
+/// One object of a field: as POV-Ray reads it, as Oktett traces it, and its equation.
 struct FieldObject {
   std::string pov;  ///< in its own space, without texture
   Shape shape;
@@ -30,7 +30,7 @@ struct FieldKind {
 };
 
 std::vector<FieldKind> field_kinds();
-/// The kind that is no field of objects but one of heights: a terrain of kTerrainSide^2 samples.
+/// The kind that is a height field instead of a field of objects: a terrain of kTerrainSide^2 samples.
 inline constexpr const char* kTerrainKind = "heightfield";
 inline constexpr std::uint32_t kTerrainSide = 4096;
 
@@ -39,7 +39,7 @@ FieldObject rounded_cube(const double (&r)[6]);
 /// A plate with a thousand holes.
 FieldObject drilled_plate(const double (&r)[6]);
 
-/// A field seen by both. POV-Ray's space is left-handed: its picture is Oktett's mirrored from left to right.
+/// A field for both. POV-Ray's space is left-handed, so its picture is Oktett's, mirrored from left to right.
 struct Field {
   Scene scene;               ///< for Oktett; objects 0, 1, ... and the floor last, each with its own material
   std::string pov, pov_ids;  ///< the same for POV-Ray, lit; and each object in a colour that numbers it

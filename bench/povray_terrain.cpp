@@ -15,7 +15,7 @@ namespace oktett::bench {
 namespace {
 
 constexpr double kSide = 24, kTall = 5;
-/// The colour tells which square of a chequered pattern was hit: so many along a side.
+/// The colour tells which square of a chequered pattern was hit. Squares along a side:
 constexpr double kSquares = 512;
 
 /// POV-Ray reads the picture from the bottom up.
@@ -38,7 +38,7 @@ std::uint32_t square_at(long double x, long double z) {
   return 1 + static_cast<std::uint32_t>((whole(x) + whole(z)) & 1);
 }
 
-/// Where a ray first meets the triangles: every cell over which it passes is asked in turn.
+/// Where a ray first meets the triangles, testing every cell that it passes over.
 class Oracle {
  public:
   explicit Oracle(std::shared_ptr<const HeightGrid> grid)

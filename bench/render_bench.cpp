@@ -10,7 +10,7 @@
 namespace oktett::bench {
 namespace {
 
-/// The scene owns its mesh by sharing; the benchmark's lives as long as the program.
+/// The scene shares ownership of its mesh; that of the benchmark lives until the program ends.
 Scene make_scene() {
   Scene s;
   s.materials.resize(2);

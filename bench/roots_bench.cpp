@@ -2,9 +2,9 @@
 ///
 ///     bench_roots [--benchmark_filter=REGEX]
 ///
-/// `solve/METHOD/DEGREE` asks for all roots in [0, 1], `first/...` for the least; half of the roots are real
-/// and spread over a little more than the interval. `torus/...` are rays against a torus. How often the
-/// answers are right is measured by roots_verify (docs/roots.md).
+/// `solve/METHOD/DEGREE` finds all roots in [0, 1], `first/...` the least; half of the roots are real and
+/// spread over a little more than the interval. `torus/...` are rays against a torus. roots_verify counts how
+/// often the answers are right (docs/roots.md).
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -51,7 +51,7 @@ Problem spread(int degree, std::size_t i) {
   return q;
 }
 
-/// A ray from outside towards the box around a torus; the interval is the ray's way through its bounding
+/// A ray from outside towards the box around a torus. The interval is where the ray is inside of the bounding
 /// sphere.
 Problem torus(std::size_t i) {
   const double major = 1, minor = 0.35, f = 4 * major * major, radius = major + minor;

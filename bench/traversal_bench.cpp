@@ -1,4 +1,4 @@
-/// \file Rays through the tree: primary, shadow and diffuse, by instruction set and by the way they are sent.
+/// \file Rays through the tree: primary, shadow and diffuse, by instruction set and by traversal.
 /// One thread. The mesh is OKTETT_BENCH_MESH or a generated one.
 
 #include <benchmark/benchmark.h>
