@@ -1,5 +1,5 @@
 #pragma once
-/// \file All crossings of a ray, as every query and instruction set sees them.
+/// \file All crossings of a ray, checked on every instruction set.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 namespace oktett {
 
-/// What all_hits lists, after a check that the first of them is what closest_hit and any_hit find, on every
+/// The list of all_hits, after a check that closest_hit and any_hit agree with its first entry on every
 /// instruction set.
 inline std::vector<Hit> all_crossings(const Accel& accel, const Ray& ray) {
   std::vector<Hit> all;

@@ -1,5 +1,5 @@
-/// Rays that share a point, in beams: the same bits as one ray at a time by the scalar path, whatever the
-/// meshes, the point and the rays are like.
+/// \file Beams give the same bits as one ray at a time by the scalar path, for all kinds of meshes, apexes
+/// and rays.
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TriangleMesh scaled(TriangleMesh m, float scale, const Vec3f& shift) {
   return m;
 }
 
-/// A structure and the points that rays are aimed at.
+/// A structure, and the points at which rays are aimed.
 struct Subject {
   std::vector<TriangleMesh> meshes;
   std::shared_ptr<const Accel> accel;
@@ -169,7 +169,7 @@ Vec3f bundle_direction(int kind, int i, const Vec3f& from, const Vec3f& target, 
   return to + (u * dice.range(-0.5f, 0.5f) + v * dice.range(-0.5f, 0.5f)) * (side * reach);
 }
 
-/// Now and then a ray that hits nothing, or only in part of its range.
+/// Some rays that hit nothing, or only in a part of their range.
 void trouble(Ray& r, Dice& dice) {
   const int what = dice.below(40);
   if (what == 0) r.direction.y = kNan;

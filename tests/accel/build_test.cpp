@@ -38,8 +38,8 @@ TriangleMesh random_triangles(int count, double spread, double size, std::uint64
   return m;
 }
 
-/// Walks the tree and counts in how many leaves each triangle stands; checks that boxes enclose what is
-/// below.
+/// Walks the tree and counts in how many leaves each triangle stands. Checks that boxes enclose their
+/// children.
 class TreeWalk {
  public:
   TreeWalk(const Accel& accel, std::size_t items) : count(items, 0), accel_(accel) {

@@ -75,7 +75,7 @@ TEST(Cylinder, RaysThatStartOnIt) {
   expect_crossings(*accel, {0, 1, 0}, {0, 1, 0}, {});
 }
 
-/// Nothing depends on the scale: a power of two leaves every bit.
+/// Scaling by a power of two changes no bit.
 template <class Shape, class Scaled>
 void expect_same_at_all_scales(const Shape& shape, const Scaled& scaled) {
   const auto unit = accel_of(shape);
@@ -136,7 +136,7 @@ TEST(ClosedForms, BadRaysHitNothing) {
   }
 }
 
-/// From the middle of a solid there is one way out, whatever the length of the direction.
+/// A ray from the middle of a solid has one crossing, for any length of the direction.
 TEST(ClosedForms, DirectionsOfAnyLength) {
   for (const ExactForm& form : all_forms()) {
     const auto accel = accel_of(form);
@@ -152,7 +152,7 @@ TEST(ClosedForms, DirectionsOfAnyLength) {
   }
 }
 
-/// 131072 away, where a float knows 1/64: moved by what is exact, hits move along.
+/// At a distance of 131072 a float resolves 1/64. A shift that is exact there shifts hits exactly.
 TEST(ClosedForms, FarAway) {
   for (const ExactForm& form : all_forms()) {
     const auto near = accel_of(form), far = accel_of(form, Affine::translation({131072, -131072, 131072}));
@@ -189,7 +189,7 @@ TEST(Cone, RaysThroughTheTip) {
   EXPECT_EQ(crossings(*accel, {-5, kBelow1, 0}, {1, 0, 0}).size(), 2u);
 }
 
-/// Rays along a generator: on the surface nothing is crossed; inside, the base and the side once each.
+/// A ray along a generator on the surface crosses nothing; one inside crosses base and side once each.
 TEST(Cone, RaysAlongGenerators) {
   const auto accel = accel_of(ConeShape{});
   expect_crossings(*accel, {2, -3, 0}, {-1, 2, 0}, {});
@@ -235,7 +235,7 @@ TEST(Polyhedron, EdgesAndCornersOfACube) {
   EXPECT_EQ(crossings(*accel, {-2, kBelow1, kBelow1}, {1, 0, 0}).size(), 2u);
 }
 
-/// Bounds are those of the corners, tight also when turned, where the image of the own box would be larger.
+/// Bounds are those of the corners. They are tight for turned shapes too, unlike the image of the own box.
 TEST(ClosedForms, BoundsAreTight) {
   const auto expect_box = [](const Accel& accel, const Vec3d& lo, const Vec3d& hi) {
     const Box b = bounds(accel);
@@ -264,7 +264,8 @@ TEST(ClosedForms, BoundsAreTight) {
              {-2, -2, 0}, {2, 2, 4});
 }
 
-/// Straight lines that lie in x^2 + y^2 - z^2 = 1 cross nothing; beside them, only the faces of the box are.
+/// Straight lines that lie in x^2 + y^2 - z^2 = 1 cross nothing; lines beside them cross faces of the box
+/// only.
 TEST(Quadric, LinesThatLieInAHyperboloid) {
   const auto accel = accel_of(QuadricShape{{1, 1, -1, 0, 0, 0, 0, 0, 0, -1}, true, {-4, -4, -2}, {4, 4, 2}});
   expect_crossings(*accel, {1, -5, -5}, {0, 1, 1}, {});

@@ -90,8 +90,8 @@ TEST(Csg, TwoBoxesInEachCombination) {
   EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {b, a}))), ray), (Distances{10, 11}));
 }
 
-/// Faces that coincide leave nothing between them: neither skin where equals are subtracted, nor a seam where
-/// neighbours are united.
+/// Faces that coincide leave no skin where equal solids are subtracted and no seam where neighbours are
+/// united.
 TEST(Csg, CoincidentFacesLeaveNoSlivers) {
   const Geometry a = cube({0, -1, -1}, {1, 1, 1}, 0), b = cube({1, -1, -1}, {2, 1, 1}, 1),
                  tall = cube({0, -2, -2}, {1, 2, 2}, 2);
@@ -112,7 +112,7 @@ TEST(Csg, CoincidentFacesLeaveNoSlivers) {
   EXPECT_EQ(crossings(*built(whole(combine(CsgOp::subtract, {a, most}))), ray).size(), 2u);
 }
 
-/// What is subtracted shows its own surface, turned round.
+/// A subtracted solid shows its own surface with reversed normals.
 TEST(Csg, SubtractedSurfacesAreTurnedRoundAndKeepTheirUser) {
   const auto accel =
       built(whole(combine(CsgOp::subtract, {cube({-1, -1, -1}, {1, 1, 1}, 7), ball({0, 0, 0}, 0.5, 9)})));
@@ -128,7 +128,7 @@ TEST(Csg, SubtractedSurfacesAreTurnedRoundAndKeepTheirUser) {
   }
 }
 
-/// A double negation turns twice.
+/// A solid that is subtracted twice over has its normals reversed twice.
 TEST(Csg, WhatIsTakenFromWhatIsTakenComesBack) {
   CsgExpression inner = combine(CsgOp::subtract, {ball({0, 0, 0}, 1, 1), ball({0, 0, 0}, 0.5, 2)});
   CsgExpression outer = combine(CsgOp::subtract, {ball({0, 0, 0}, 2, 0)});
@@ -139,7 +139,7 @@ TEST(Csg, WhatIsTakenFromWhatIsTakenComesBack) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(seen[i].geometric_normal.x, normal[i], 1e-6f) << i;
 }
 
-/// Surfaces found in blocks are those found one by one.
+/// Surface interactions found in blocks have the bits of those found one by one.
 TEST(Csg, BlocksOfSurfacesHaveTheSameBits) {
   Geometry turned = whole(combine(CsgOp::subtract, {cube({-1, -1, -1}, {1, 1, 1}, 7), ball({0, 0, 1}, 0.5, 9),
                                                     solid(ExactShape{TorusShape{0.8, 0.2}}, 3)}),
@@ -185,8 +185,8 @@ TEST(Csg, BlocksOfSurfacesHaveTheSameBits) {
   EXPECT_GT(flipped, 40u);
 }
 
-/// Shadow rays stop at the first true transition: surfaces that the combination leaves out cast no shadow,
-/// nor does what lies beyond the light.
+/// Shadow rays stop at the first change of the whole combination. Removed surfaces cast no shadow, and
+/// neither do surfaces beyond the light.
 TEST(Csg, ShadowsAreOfTheCombinationOnly) {
   const auto accel = built(whole(combine(CsgOp::intersect, {ball({-1, 0, 0}, 2, 0), ball({1, 0, 0}, 2, 1)})));
   const auto occluded = [&](Ray ray) {
@@ -268,7 +268,7 @@ TEST(Csg, InsideOutAndMirroredMeshesAreSolidsToo) {
             expected);
 }
 
-/// A mesh wound inside out is noted once, though a thousand chains of instances lead to it.
+/// A mesh wound inside out is listed once, even if a thousand chains of instances lead to it.
 TEST(Csg, LooksAtSharedStructuresOnce) {
   OracleMesh block = make_cube();
   for (std::size_t k = 0; k < block.mesh.indices.size(); k += 3)

@@ -5,7 +5,7 @@
 namespace oktett {
 
 /// Every form against its oracle: no first hit missed or invented, positions within their bounds, all
-/// crossings listed in turn, the same bits in every mode, width and instruction set.
+/// crossings entering and leaving in turn, the same bits in every mode, width and instruction set.
 TEST(Exact, AgreesWithItsOracle) {
   const std::vector<std::string> names = exact_oracle_names();
   for (std::size_t form = 0; form < names.size(); ++form) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Fractals and rays for their tests, and what fractals of few parts are made of.
+/// \file Fractals and rays for their tests, and the parts of small fractals.
 
 #include <cmath>
 #include <limits>
@@ -109,7 +109,7 @@ inline ConvexUnion explicit_cubes(const MengerShape& s) {
   return all;
 }
 
-/// Numbers in [-1, 1] that depend on where they stand alone.
+/// Numbers in [-1, 1] that depend on their position only.
 struct Numbers {
   std::uint64_t key, at = 0;
   double next() { return static_cast<double>(mix_bits(key * 0x10001 + ++at) >> 11) * 0x1p-52 - 1; }

@@ -8,7 +8,7 @@
 namespace oktett {
 namespace {
 
-/// Every crossing at its place, in and out in turn, but for what is thinner than rounding.
+/// Every crossing is at its place, entering and leaving in turn, except for parts thinner than rounding.
 void expect_agreement(const ExactForm& form, const ConvexUnion& truth, int count, double size) {
   const auto accel = build_accel({{ExactShape{form}, {}}});
   int met = 0, index = 0;
@@ -69,7 +69,7 @@ TEST(Ifs, AgreesWithAllItsPieces) {
     }
 }
 
-/// The sponge walked cell by cell, and the one whose pieces know nothing of each other.
+/// The sponge by its walk from cell to cell and as an iterated function system give the same hits.
 TEST(Ifs, MengersSpongeByMapsIsTheSponge) {
   for (const std::uint32_t depth : {1u, 3u, 5u}) {
     const auto a = build_accel({{ExactShape{sponge_by_maps(depth)}, {}}});
@@ -88,8 +88,8 @@ TEST(Ifs, MengersSpongeByMapsIsTheSponge) {
   }
 }
 
-/// Barnsley's fern has a stem almost without thickness. That the stem's pieces soon are too thin to be
-/// divided does not end the leaves.
+/// Barnsley's fern has a stem of almost no thickness. Its pieces soon are too thin to be divided; the leaves
+/// are still divided to full depth.
 TEST(Ifs, FlatMapsLeaveTheOthersTheirDepth) {
   IfsShape s;
   s.maps = {Affine::scaling({0.001, 0.16, 0.001}),
@@ -128,7 +128,7 @@ TEST(Ifs, NormIsTheLargestStretch) {
   }
 }
 
-/// What bounds promise: no point that the maps lead to is outside of them.
+/// No point that the maps lead to is outside of the bounds.
 TEST(Ifs, BoundsHoldEveryPiece) {
   for (const std::uint32_t depth : {0u, 3u, 9u, 32u}) {
     const Affine place = Affine::rotation({10, 20, 30}) * Affine::scaling({2, 1, 0.5});
@@ -261,7 +261,7 @@ TEST(Terrain, HasNoCracks) {
     }
 }
 
-/// Coarse and fine agree where both have points: detail is added, nothing is drawn anew.
+/// A finer terrain has all points of a coarser one.
 TEST(Terrain, DepthRefines) {
   const auto coarse = build_accel({{ExactShape{terrain(4)}, {}}}),
              fine = build_accel({{ExactShape{terrain(20)}, {}}});
@@ -271,8 +271,7 @@ TEST(Terrain, DepthRefines) {
   }
 }
 
-/// What iterations say of points along the ray: none inside lies outside of the listed spans, but near their
-/// ends.
+/// Iteration at points along the ray: a point inside lies in a listed span, except near the ends of spans.
 TEST(Julia, MissesNothingThatSamplesFind) {
   for (const std::uint32_t iterations : {1u, 4u, 9u, 16u}) {
     const JuliaShape s = julia(iterations);

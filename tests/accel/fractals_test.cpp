@@ -29,7 +29,7 @@ TEST(Fractals, InsideIsInsideOfAPart) {
   EXPECT_GT(in_cubes, 50);
 }
 
-/// Rays through a combination of a fractal and a ball, against what both hold at samples along them.
+/// Rays through a combination of a fractal and a ball, compared with samples of both along the ray.
 template <class S>
 void expect_operand(const typename S::Data& data) {
   const Vec3d center{0.4, 0.3, 0.2};
@@ -102,7 +102,7 @@ TEST(Fractals, BadRaysHitNothing) {
   }
 }
 
-/// Powers of two leave every bit: of the size and of the length of the direction.
+/// Scaling the fractal or the direction by a power of two changes no bit.
 TEST(Fractals, TinyAndHuge) {
   for (const ExactForm& form : all_forms()) {
     const auto unit = build_accel({{ExactShape{form}, {}}});
@@ -124,7 +124,7 @@ TEST(Fractals, TinyAndHuge) {
   }
 }
 
-/// A ray that comes from far away hits where one does that starts near; t is as good as a float can tell.
+/// A ray from far away hits the same point as one that starts near, up to the rounding of t to float.
 TEST(Fractals, RaysFromFarAway) {
   for (const ExactForm& form : all_forms()) {
     const auto accel = build_accel({{ExactShape{form}, {}}});
@@ -142,7 +142,7 @@ TEST(Fractals, RaysFromFarAway) {
   }
 }
 
-/// Positions lie on a part, no farther than their bounds say; normals are those of that part.
+/// Positions lie on a part of the fractal within their error bounds; normals are those of that part.
 TEST(Fractals, SurfacesLieOnParts) {
   for (const bool balls : {true, false}) {
     const ConvexUnion truth = balls ? explicit_balls(flake(3)) : explicit_cubes(sponge(3));
@@ -181,7 +181,7 @@ TEST(Fractals, SurfacesLieOnParts) {
   }
 }
 
-/// Nothing is stored per part.
+/// Memory does not grow with the number of parts.
 TEST(Fractals, MemoryDoesNotGrowWithDepth) {
   const auto bytes = [](const ExactForm& form) {
     return stats(*build_accel({{ExactShape{form}, {}}})).bytes();

@@ -88,9 +88,9 @@ TEST(HeightFields, SolidsHaveSidesAndABottom) {
   }
 }
 
-/// Where a ray meets the field by looking at each cell alone: the equation of its patch in long double,
-/// solved and kept inside of the cell. `near` are the crossings that are so close to the border of a cell
-/// that either side may have them, or neither.
+/// Where a ray meets the field, cell by cell: solves the equation of the patch in long double and keeps
+/// solutions inside of the cell. `near` are crossings so close to the border of a cell that either cell may
+/// report them, or neither.
 struct ByCell {
   std::vector<Real> sure, near;
 
@@ -203,8 +203,8 @@ TEST(HeightFields, AgreesWithEveryCellOnItsOwn) {
       }
 }
 
-/// Along the diagonal of a chequerboard of steps a ray meets two walls in each corner, at one t; the list has
-/// both also where it is continued after as many as it has room for.
+/// Along the diagonal of a chequerboard of steps a ray meets two walls at one t in each corner. The list
+/// contains both, even where a full list is continued between them.
 TEST(HeightFields, CornersOfStepsAreCrossedTwice) {
   constexpr int n = 41;
   std::vector<float> heights;
@@ -225,7 +225,7 @@ TEST(HeightFields, CornersOfStepsAreCrossedTwice) {
     }
 }
 
-/// The exact normal against central differences, out of the inside, and uv as in an image seen from above.
+/// Normals agree with central differences and point outwards; uv is that of an image seen from above.
 TEST(HeightFields, SurfacesHaveNormalsAndCoordinates) {
   for (const Interpolation interpolation : {Interpolation::triangles, Interpolation::bilinear}) {
     const auto s = rough(8, 6, interpolation);

@@ -9,7 +9,7 @@
 namespace oktett {
 namespace {
 
-/// Hills over which rays pass closely, and sharp peaks that they may miss; of words or of floats.
+/// Hills that rays pass closely, and sharp peaks that they may miss; as 16-bit words or as floats.
 HeightFieldShape hills(std::uint32_t columns, std::uint32_t rows, Interpolation interpolation, bool words) {
   std::vector<float> heights;
   for (std::uint32_t j = 0; j < rows; ++j)
@@ -28,7 +28,7 @@ HeightFieldShape hills(std::uint32_t columns, std::uint32_t rows, Interpolation 
   return s;
 }
 
-/// What a batch of rays hits, on each instruction set: the same on all.
+/// The hits of a batch of rays, after a check that they are the same on all instruction sets.
 std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const RayBatch& rays) {
   HeightFieldShape s = shape;
   s.walk = walk;
@@ -51,8 +51,8 @@ std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const R
   return first;
 }
 
-/// Over every level of the pyramid: rays that keep close together, from near and far, along the axes and
-/// across them, and rays on their own, find what a walk over every cell finds.
+/// At every level of the pyramid, packets of close rays (from near and far, along the axes and across them)
+/// and single rays find what a walk over every cell finds.
 TEST(HeightWalks, PyramidsLeaveNothingOut) {
   const std::pair<std::uint32_t, std::uint32_t> sizes[] = {{300, 700}, {kMaxHeightSide, 4}, {3, 5000}};
   for (const auto& [columns, rows] : sizes)
@@ -92,7 +92,7 @@ TEST(HeightWalks, PyramidsLeaveNothingOut) {
       }
 }
 
-/// No walk leaves out a cell, whatever the ray.
+/// No walk leaves out a cell, for any ray.
 TEST(HeightWalks, AllWalksFindTheSame) {
   for (const Interpolation interpolation : kAll)
     for (const auto& [columns, rows] : {std::pair{2u, 3u}, {9u, 9u}, {23u, 40u}})
@@ -122,8 +122,8 @@ TEST(HeightWalks, AllWalksFindTheSame) {
       }
 }
 
-/// From far below to far above, inside of the rectangle all the way, a ray crosses an odd number of times:
-/// also through samples, along edges and diagonals.
+/// A ray from far below to far above that stays inside of the rectangle crosses an odd number of times, also
+/// through samples and along edges and diagonals.
 TEST(HeightWalks, NoRaySlipsThrough) {
   for (const Interpolation interpolation : kAll)
     for (const std::uint32_t size : {9u, 14u}) {
@@ -152,7 +152,7 @@ TEST(HeightWalks, NoRaySlipsThrough) {
     }
 }
 
-/// The same after transforms that leave nothing on the grid exactly.
+/// The same after transforms that round all grid points.
 TEST(HeightWalks, ClosedOnesAreEnteredAsOftenAsLeft) {
   for (const Interpolation interpolation : kAll) {
     const auto s = solid(rough(12, 7, interpolation), -1);
@@ -194,7 +194,7 @@ TEST(HeightWalks, BadRaysHitNothing) {
     }
 }
 
-/// Powers of two leave every bit: of the size and of the length of the direction.
+/// Scaling the field or the direction by a power of two changes no bit.
 TEST(HeightWalks, TinyAndHuge) {
   for (const Interpolation interpolation : kAll) {
     const auto s = solid(rough(9, 6, interpolation), -1);
@@ -215,8 +215,8 @@ TEST(HeightWalks, TinyAndHuge) {
   }
 }
 
-/// From so far away that a cell is less than what a float can tell apart: the ray may miss, but what it finds
-/// is on it and the search ends.
+/// From so far away that a float cannot resolve a cell, the ray may miss, but a hit lies on the ray, and the
+/// search ends.
 TEST(HeightWalks, FarAway) {
   for (const Interpolation interpolation : kAll)
     for (const HeightWalk walk : kWalks) {

@@ -44,7 +44,7 @@ void expect_at(const std::vector<Hit>& hits, std::initializer_list<float> places
 
 const char* const kBall = "x^2 + y^2 + z^2 - 1";
 
-/// Where a ray touches, the function does not change its sign; a little beside, all or nothing is met.
+/// At a touch the function does not change its sign. A ray a little beside it meets two crossings or none.
 TEST(Implicit, Tangents) {
   const ImplicitShape ball = function(kBall, 2);
   EXPECT_TRUE(crossings(ball, {-3, 1, 0}, {1, 0, 0}).empty());
@@ -86,7 +86,7 @@ TEST(Implicit, EdgesOfTheBox) {
   expect_at(crossings(function("y - 1", 1), {0, 3, 0}, {0, -1, 0}), {2, 4});
 }
 
-/// Directions with zeros of either sign, short, long and slanting by next to nothing.
+/// Directions with zeros of either sign, short and long ones, and almost axis-parallel ones.
 TEST(Implicit, Directions) {
   const ImplicitShape ball = function(kBall, 2);
   for (const float zero : {0.0f, -0.0f, 1e-30f, -1e-30f}) {
@@ -104,7 +104,7 @@ TEST(Implicit, Directions) {
   EXPECT_EQ(leaving[0].v, 1);
 }
 
-/// Far origins, and the same surface huge and tiny, by the function's own scale and by a transform.
+/// Far origins; the same surface huge and tiny, by the scale of its function and by a transform.
 TEST(Implicit, AnyScaleAndPlace) {
   expect_at(crossings(function(kBall, 2), {1e5f, 0, 0}, {-1, 0, 0}), {99999, 100001}, 0.01f);
   const Ray ray{{1e5f, 3, 0}, 0, {0, -1, 0}, kInf};
@@ -132,7 +132,7 @@ TEST(Implicit, NothingForNan) {
   }
 }
 
-/// Many crossings in a row, of which rays beginning anywhere miss none.
+/// Rays that begin anywhere miss none of many crossings in a row.
 TEST(Implicit, ListsAllOfMany) {
   const ImplicitShape waves = function("sin(40*x)", 1, true);
   const auto hits = crossings(waves, {-2, 0.1f, 0.2f}, {1, 0, 0});
@@ -141,7 +141,7 @@ TEST(Implicit, ListsAllOfMany) {
     EXPECT_NEAR(hits[i].t, 2 + M_PI / 40 * (static_cast<double>(i) - 12), 1e-6);
 }
 
-/// The surface where a ray meets it first.
+/// The surface interaction at the first hit of a ray.
 SurfaceInteraction first_surface(const ImplicitShape& shape, const Ray& ray) {
   const auto accel = build_accel({{ExactShape{shape}, {}}});
   const std::vector<Hit> hits = all_crossings(*accel, ray);
@@ -149,8 +149,8 @@ SurfaceInteraction first_surface(const ImplicitShape& shape, const Ray& ray) {
   return hits.empty() ? SurfaceInteraction{} : surface_interaction(*accel, ray, hits[0]);
 }
 
-/// Where the function has a pole, a step or an end, the normal stands on the wall and points outwards,
-/// however the ray comes.
+/// At a pole, a step or the end of the domain, the normal is that of the wall and points outwards, from
+/// whichever side the ray comes.
 TEST(Implicit, NormalsOfWalls) {
   const struct {
     const char* text;

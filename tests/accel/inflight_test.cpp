@@ -72,7 +72,7 @@ TEST_P(InterleavedScale, AdversarialTrianglesGiveTheSameHits) {
 INSTANTIATE_TEST_SUITE_P(Scales, InterleavedScale,
                          testing::Values(1.0f, 1e-4f, 1e-9f, 1e-12f, 1e-20f, 1e5f, 1e10f, 1e12f, 1e20f));
 
-/// A ray that is wrong or strange in one way, by number.
+/// Invalid or unusual rays, by number.
 Ray strange_ray(int kind, Ray r) {
   switch (kind) {
     case 0:

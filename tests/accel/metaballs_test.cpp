@@ -57,8 +57,7 @@ TEST(Metaballs, OneWayOutFromInside) {
   EXPECT_EQ(hits[0].v, 1);
 }
 
-/// Balls at one place add up to one that is stronger, in one piece of the ray; a negative one makes it
-/// weaker.
+/// Balls at one place add up to one stronger ball in one piece of the ray; a negative one makes it weaker.
 TEST(Metaballs, CoincidentBallsAddUp) {
   MetaballsShape s{0.5, {}};
   for (int i = 0; i < 30; ++i) s.balls.push_back({{1, 2, 3}, 1, i % 3 == 2 ? -0.05 : 0.1});
@@ -78,7 +77,7 @@ TEST(Metaballs, NegativeBallMakesAHole) {
   expect_at(crossings(s, {0, 0, 3}, {0, 0, -1}), {3 - kHalf, 3 - lo, 3 + lo, 3 + kHalf});
 }
 
-/// A ray that misses the surface by little, one that meets it by little, and one along the border of a ball.
+/// A ray that narrowly misses the surface, one that narrowly meets it, and one along the border of a ball.
 TEST(Metaballs, Tangents) {
   const float below = static_cast<float>(kHalf * (1 - 1e-6)), above = static_cast<float>(kHalf * (1 + 1e-6));
   EXPECT_EQ(crossings(one_ball(), {-3, below, 0}, {1, 0, 0}).size(), 2u);
@@ -118,7 +117,7 @@ TEST(Metaballs, NothingForNanAndDegenerate) {
     EXPECT_EQ(crossings(form, {-3, 0, 0}, {1, 0, 0}).size(), 0u);
 }
 
-/// N balls in a box, as dense whatever N: the balls that a ray through the box is tested with.
+/// The number of balls that a ray through a box of N balls is tested with; the density is the same for all N.
 double tests_per_ray(int count) {
   CaseRandom random(7);
   MetaballsShape shape{0.5, {}};
@@ -141,8 +140,8 @@ double tests_per_ray(int count) {
   return tests / kRays;
 }
 
-/// Cells keep the number of balls that a whole line is tested with far below their number: it grows as the
-/// cube root, as the number of balls along the line does.
+/// Thanks to cells, a line is tested with far fewer balls than there are: the number grows as the cube root,
+/// like the number of balls along the line.
 TEST(Metaballs, FewBallsPerRay) {
   const double hundred = tests_per_ray(100), ten_thousand = tests_per_ray(10000);
   RecordProperty("hundred", std::to_string(hundred));
@@ -217,7 +216,7 @@ TEST(BlobTrees, Blends) {
   EXPECT_EQ(crossings(blend(Blend::Op::difference, {a, a}), from, along).size(), 0u);
 }
 
-/// Of points with the one potential that metaballs know, a sum is what they are.
+/// A blob tree that sums points with the potential of metaballs gives the same hits as metaballs.
 TEST(BlobTrees, SumsAgreeWithMetaballs) {
   CaseRandom random(3);
   MetaballsShape balls{0.4, {}};

@@ -46,8 +46,8 @@ TEST(PolynomialSurfaces, CommonFactorsCountOnce) {
   expect_at(crossings(polynomial("-x^2 = 0", 1, true), {-3, 0.3f, 0.2f}, {1, 0, 0}), {});
 }
 
-/// What is left without its even factors may be a constant: of one sign it is the whole box, of the other
-/// nothing, with or without another term that is too small to matter.
+/// Without its even factors a polynomial may be a constant. With one sign it is the whole box, with the other
+/// nothing, with or without another term that is negligibly small.
 TEST(PolynomialSurfaces, EvenFactorsAloneFillTheBox) {
   for (const char* equation : {"-x^2", "-3*x^4*y^2*z^6", "-x^2 - 1e-9*y^4", "1 = 2"}) {
     SCOPED_TRACE(equation);
@@ -171,7 +171,7 @@ TEST(Revolutions, EdgesAndAxis) {
   EXPECT_EQ(through[0].v, 1);
 }
 
-/// A cylinder as Bezier curve has the crossings of one; the profile may turn back.
+/// A cylinder given as a Bezier curve has the crossings of a cylinder; a profile may turn back.
 TEST(Revolutions, Curves) {
   LatheShape tube;
   tube.points = {{1, 0}, {1, 1}, {1, 2}, {1, 3}};

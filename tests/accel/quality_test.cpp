@@ -30,7 +30,7 @@ void add(TriangleMesh& m, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   }
 }
 
-/// Small triangles with a few long, slanted ones between them: what makes cutting worth while.
+/// Small triangles with a few long, slanted ones between them, for which splitting pays.
 TriangleMesh mixed_sizes(int count, std::uint64_t seed, double scale = 1) {
   TriangleMesh m;
   CaseRandom r(seed);

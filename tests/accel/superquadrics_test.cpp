@@ -28,7 +28,7 @@ std::vector<Hit> crossings(const Accel& accel, const Vec3f& from, const Vec3f& d
   return all_crossings(accel, {from, 0, direction, kInf});
 }
 
-/// Crossings lie at `places`; they go in and out in turn, the last one out.
+/// Crossings lie at `places`, entering and leaving in turn; the last one leaves.
 void expect_at(const SuperquadricShape& s, const Vec3f& from, const Vec3f& direction,
                std::initializer_list<double> places) {
   const std::vector<Hit> all = crossings(*accel_of(s), from, direction);
@@ -78,7 +78,8 @@ TEST(Superquadrics, RadiiStretch) {
   expect_at(s, {0, 0, -6}, {0, 0, 2}, {1.5, 4.5});
 }
 
-/// The smooth cases against what a sphere has: also where rays nearly touch.
+/// A ray that touches does not hit, and one that enters by next to nothing has both crossings: on a sphere,
+/// on a body that is nearly a cube, and on an octahedron.
 TEST(Superquadrics, TangentsTouchAndDoNotHit) {
   const float below = std::nextafter(1.0f, 0.0f);
   const double half = std::sqrt(1 - below * static_cast<double>(below));
@@ -140,7 +141,7 @@ Vec3f direction_of(int i) {
          origin_of(i);
 }
 
-/// Powers of two leave every bit: of the size and of the length of the direction.
+/// Scaling the shape or the direction by a power of two changes no bit.
 TEST(Superquadrics, TinyAndHuge) {
   for (const SuperquadricShape& s : all_shapes()) {
     const auto unit = accel_of(s);

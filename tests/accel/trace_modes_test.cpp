@@ -33,8 +33,8 @@ TriangleMesh soup(int count, std::uint64_t seed, double scale, const Vec3d& shif
   return m;
 }
 
-/// Towards vertices, edges and faces, along axes, and past everything; from near, from far, and with ranges
-/// that end at what they aim at.
+/// Rays towards vertices, edges and faces, along axes, and past everything; from near, from far, and with
+/// ranges that end at their target.
 RayBatch rays_at(const TriangleMesh& m, int count, std::uint64_t seed, double scale, const Vec3d& shift) {
   RayBatch rays;
   CaseRandom r(seed);

@@ -30,7 +30,7 @@ TEST(VerifyCommand, ChecksWhatItIsAskedFor) {
   EXPECT_TRUE(contains(trees.out, "\"wrong_spans\": 0"));
 }
 
-/// Before any work is done.
+/// Errors are reported before any work is done.
 TEST(VerifyCommand, BadArgumentsAreErrors) {
   const TempDir dir;
   const auto error = [&](const std::vector<std::string>& arguments, int status = 2) {

@@ -16,8 +16,7 @@ struct Width {
   static constexpr int value = W;
 };
 
-/// Vector registers are reached through the kernels; here the semantics are fixed on the scalar instruction
-/// set.
+/// Tests of the semantics on the scalar instruction set. Vector registers are tested through the kernels.
 template <class W>
 class SimdTest : public testing::Test {
  protected:

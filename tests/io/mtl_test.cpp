@@ -26,7 +26,7 @@ Mtl load(const std::string& text, const ObjFiles& files = {}) {
   return mtl;
 }
 
-/// The only material of a file that says nothing but this about it, and gives no warning.
+/// The only material of a file with the given statement. Expects no warning.
 Material material(const std::string& statements) {
   const Mtl mtl = load("newmtl a\n" + statements);
   EXPECT_EQ(mtl.warnings, std::vector<std::string>{}) << statements;

@@ -14,7 +14,7 @@
 namespace oktett::test {
 namespace {
 
-/// What a file of triangles holds, as read by the plainest of readers.
+/// The contents of a file of triangles, as read by a simple reader.
 struct Reference {
   std::vector<Vec3f> positions, normals;
   std::vector<Vec2f> uvs;

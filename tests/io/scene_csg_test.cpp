@@ -111,7 +111,7 @@ TEST(SceneCsg, VerticesAtOnePlaceCloseAMesh) {
   EXPECT_EQ(files.error_v1("objects:\n  - union: [{mesh: {file: split.obj}}]\n"), "no error");
 }
 
-/// A skipped operand is nothing: what it is taken from stays, what is intersected with it goes.
+/// A skipped operand is empty: a difference keeps its first operand, an intersection becomes empty.
 TEST(SceneCsg, SkippedOperandsAreNothing) {
   const auto load = [](const std::string& shape) {
     return SceneFiles().load_v1("objects:\n  - " + shape + "\n  - sphere:\n");

@@ -96,7 +96,7 @@ TEST(SceneLimit, PolygonVertices) {
   expect_starts(SceneFiles().error_v1(text), "scene.yaml:2:32: expected 3 to 4096 vertices, found 5001");
 }
 
-/// Long lines, long names, many keys: nothing takes quadratic time.
+/// Long lines, long names and many keys take less than quadratic time.
 TEST(SceneLimit, LongFilesLoadInTime) {
   const auto start = std::chrono::steady_clock::now();
   SceneFiles files;

@@ -111,7 +111,7 @@ TEST(SceneMetaballs, ErrorsHaveTheirPlace) {
       std::string::npos);
 }
 
-/// What has nothing to show is skipped with a warning.
+/// A shape without any surface is skipped with a warning.
 TEST(SceneMetaballs, DegenerateOnesAreSkipped) {
   for (const char* object :
        {"metaballs: {balls: [{strength: -1}]}", "metaballs: {elements: [{point: [0, 0, 0], weight: -1}]}",

@@ -104,7 +104,7 @@ TEST(ScenePolynomial, ErrorsHaveTheirPlace) {
   }
 }
 
-/// What has nothing to show is skipped with a warning.
+/// A shape without any surface is skipped with a warning.
 TEST(ScenePolynomial, DegenerateOnesAreSkipped) {
   const struct {
     std::string object, warning;

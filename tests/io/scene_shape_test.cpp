@@ -71,7 +71,7 @@ TEST(SceneShape, SphereFileErrorsHaveTheirPlace) {
   EXPECT_EQ(error("1 2 3,4\n"), "s.txt:1:5: expected a number");
 }
 
-/// What has nothing to hit is skipped with a warning at its place, and the rest is kept.
+/// A shape that cannot be hit is skipped with a warning that names its line; the others are kept.
 TEST(SceneShape, DegenerateShapesAreSkipped) {
   const struct {
     const char* object;

@@ -24,7 +24,7 @@ class Padded {
   std::string text_;
 };
 
-/// The bits that scan_float reads from `text`, all of which it must take.
+/// The bits that scan_float reads from `text`. It must read all of it.
 std::uint32_t scanned(const std::string& text) {
   const Padded padded(text);
   float value = 0;

@@ -101,8 +101,7 @@ TEST(FunctionTape, IntervalsHoldTheValues) {
   EXPECT_LT(poles, bounded / 10);
 }
 
-/// Where a derivative over an interval is bounded, it holds the slope between any two places in there, across
-/// kinks as well.
+/// A bounded derivative over an interval contains the slope between any two places in it, also across kinks.
 TEST(FunctionTape, DerivativesHoldTheSlopes) {
   std::mt19937 random(3);
   const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
@@ -175,7 +174,7 @@ TEST(FunctionTape, ValuesAndGradientsOfSmoothFunctions) {
   }
 }
 
-/// Undefined is NaN, through everything that follows.
+/// Undefined is NaN and stays NaN through all following operations.
 TEST(FunctionTape, UndefinedIsNan) {
   for (const char* text : {"sqrt(x - 1)",
                            "log(x - 1)",
@@ -201,7 +200,7 @@ TEST(FunctionTape, UndefinedIsNan) {
     EXPECT_TRUE(std::isnan(number(slope(compile_function(text), 0, 0, 0).v))) << text;
 }
 
-/// What is the same is computed once.
+/// Common subexpressions are computed once.
 TEST(FunctionTape, SharesAndFolds) {
   EXPECT_EQ(compile_function("x").steps.size(), 0u);
   EXPECT_EQ(compile_function("x + 0").steps.size(), 0u);

@@ -115,7 +115,7 @@ struct CaseNumbers {
   }
 };
 
-/// Against exact integers, where the terms cancel to nothing or all but nothing.
+/// Compared with exact integers where the terms cancel completely or almost completely.
 TEST(Quadratic, DiscriminantsHaveTheRightSign) {
   __extension__ typedef __int128 Wide;
   CaseNumbers random;

@@ -65,7 +65,8 @@ class Arguments {
   std::mt19937_64 random_{1};
 };
 
-/// What must not be less certain than the oracle is: x87 functions are good to 2^-62.
+/// The interval contains the true value, up to the error of the oracle, whose x87 functions are good to
+/// 2^-62.
 void expect_held(const I& result, L truth, const std::string& what) {
   if (std::isnan(truth)) {
     // Beside a pole the values are unbounded to one side.
@@ -124,8 +125,8 @@ std::vector<Unary> unaries() {
   };
 }
 
-/// Every value of a function on an interval is in what the interval version returns; at points that is tight,
-/// and what may be undefined is never taken for certain.
+/// The interval version contains every value of the function on the interval. At points it is tight. A result
+/// that may be undefined is never certain.
 TEST(Interval, UnaryFunctionsHoldEveryValue) {
   for (const Unary& u : unaries()) {
     Arguments arguments;
@@ -182,7 +183,7 @@ TEST(Interval, BinaryFunctionsHoldEveryValue) {
   }
 }
 
-/// Entire and void arguments are passed on by everything: nothing certain follows from them.
+/// Every function passes entire and void arguments on, so nothing certain follows from them.
 TEST(Interval, UndefinedStaysUndefined) {
   const I entire = I::entire(), none = I::nothing(), zero{D(0.0)}, one{D(1.0)};
   for (const Unary& u : unaries()) {
@@ -207,7 +208,7 @@ TEST(Interval, UndefinedStaysUndefined) {
   EXPECT_TRUE(is_void(zero / zero) && is_void(one / zero));
 }
 
-/// Sums and products of what is not negative are not, so that roots of them are defined: sqrt(x^2 + y^2).
+/// Sums and products of non-negative intervals are not negative, so sqrt(x^2 + y^2) is defined.
 TEST(Interval, KeepsTheSignOfZero) {
   const I zero{D(0.0)}, one(D(0.0), D(1.0));
   EXPECT_EQ(number((sqr(zero) + sqr(one)).lo), 0);
@@ -216,7 +217,7 @@ TEST(Interval, KeepsTheSignOfZero) {
   EXPECT_FALSE(is_entire(sqrt(sqr(zero) + sqr(one))));
 }
 
-/// The derivative over an interval holds the slope of every chord: what the mean value theorem needs.
+/// The derivative over an interval contains the slope of every chord, as the mean value theorem needs.
 TEST(Interval, DerivativesHoldEverySlope) {
   struct Case {
     const char* name;

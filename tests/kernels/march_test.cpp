@@ -74,7 +74,7 @@ TEST(March, FindsKnownRoots) {
                 10 * M_PI, 11 * M_PI, 12 * M_PI, 13 * M_PI, 14 * M_PI, 15 * M_PI});
 }
 
-/// Beside a pole what is enclosed is wide, though its sign is certain: that is not the noise of a touch.
+/// Beside a pole the enclosure is wide but its sign is certain. That is not the rounding noise of a touch.
 TEST(March, PolesInTheMiddleAreNoNoise) {
   const double root = std::sqrt(0.01 / 0.6);
   expect_roots(find(
@@ -86,7 +86,7 @@ TEST(March, PolesInTheMiddleAreNoNoise) {
                {-root, root});
 }
 
-/// Random roots, far apart or close together, are all found, within what doubles tell.
+/// Random roots, far apart or close together, are all found, as far as doubles can resolve them.
 TEST(March, FindsRandomRoots) {
   std::mt19937 random(3);
   for (int k = 0; k < 2000; ++k) {
@@ -114,7 +114,7 @@ TEST(March, PassesOverTouching) {
   EXPECT_TRUE(find(product({0.3, 0.3, 0.3, 0.3}), 0, 1).t.empty());
 }
 
-/// A flat crossing counts once, somewhere in where the sign cannot be told.
+/// A flat crossing counts once, anywhere in the range where rounding hides the sign.
 TEST(March, FindsFlatCrossings) {
   expect_roots(find(product({0.3, 0.3, 0.3}), 0, 1), {0.3}, 1e-4);
   expect_roots(find(product({0.3, 0.3, 0.3, 0.3, 0.3}), 0, 1), {0.3}, 1e-2);
@@ -193,7 +193,7 @@ TEST(March, ResumesWhereItStopped) {
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_NEAR(all[i], (i + 1.0) * M_PI / 40, 1e-11);
 }
 
-/// A crossing at the end of the range is followed beyond it, if that is allowed.
+/// A crossing at the end of the range is followed beyond the end if that is allowed.
 TEST(March, SettlesTheEnd) {
   const Field field{[](const J& t) {
     const J s = t - constant(0.5);
@@ -206,7 +206,7 @@ TEST(March, SettlesTheEnd) {
   }
 }
 
-/// Steps and infinite slopes are told from other crossings, if that is asked for.
+/// Steps and infinite slopes are distinguished from other crossings on request.
 TEST(March, TellsSteps) {
   const auto step = [](const J& t) { return floor(t + constant(0.3)) - constant(0.5); };
   const auto root = [](const J& t) {
@@ -223,7 +223,7 @@ TEST(March, TellsSteps) {
   EXPECT_EQ(find([](const J& t) { return t - constant(0.3); }, 0, 1, interval::Jumps::list_steep).part[0], 0);
 }
 
-/// Into the wall of a logarithm at a small angle: steps are eight hundredths of a per cent of what is left.
+/// A ray into the wall of a logarithm at a small angle: each step is 0.08 % of the remaining way.
 TEST(March, ReachesWallsAtSmallAngles) {
   const std::uint64_t before = interval::uncertified_count();
   const Found found = find(

@@ -89,7 +89,7 @@ TEST(PolynomialExpression, HasBounds) {
   EXPECT_EQ(failure_of("x+" + std::string(kMaxExpressionLength, '1')).substr(0, 3), "1: ");
 }
 
-/// Multiplied out, it has the values of what was written.
+/// The multiplied-out polynomial has the values of the expression as written.
 TEST(PolynomialExpression, HasTheValuesOfWhatWasWritten) {
   rc::check([] {
     const auto piece = [] {

@@ -83,8 +83,8 @@ class RootsInLanes : public testing::TestWithParam<int> {
   }
 };
 
-/// Eight lanes of every instruction set give the bits of one, also where columns are not aligned or do not
-/// fill the lanes.
+/// Eight lanes of every instruction set give the bits of a single lane, also where columns are not aligned or
+/// do not fill the lanes.
 TEST_P(RootsInLanes, BitsAreTheSameEverywhere) {
   Columns one = columns(3000);
   const std::size_t all = one.a.size();

@@ -74,7 +74,7 @@ TEST(ExactRoots, JudgeSeesWrongAnswers) {
 
 class CertifiedMethod : public testing::TestWithParam<Method> {};
 
-/// What is certified is right, over all classes of polynomials; and Bernstein certifies nearly everything.
+/// Certified answers are right for all classes of polynomials, and Bernstein certifies nearly all of them.
 TEST_P(CertifiedMethod, MissesAndInventsNothing) {
   int uncertified = 0, clusters = 0, problems = 0;
   for (const int degree : {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 16, 20, 32}) {
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Roots, CertifiedMethod,
 
 class AnyMethod : public testing::TestWithParam<Method> {};
 
-/// Roots far apart are found by all.
+/// All methods find roots that are far apart.
 TEST_P(AnyMethod, FindsWellSeparatedRoots) {
   for (int degree = 1; degree <= 8; ++degree) {
     Polynomial p = polynomial({1});
@@ -194,7 +194,7 @@ TEST(Roots, ExactDoubleRootIsOneCluster) {
   EXPECT_EQ(answer.root[1].multiplicity, 1);
 }
 
-/// (x - 1/2)^2 +- d: told apart far below the resolution of values in double.
+/// (x - 1/2)^2 +- d: the two cases are distinguished for d far below the resolution of values in double.
 TEST(Roots, NearTangentIsDecidedExactly) {
   for (const double d : {1e-10, 1e-16, 1e-22, 1e-26}) {
     // x^2 - x + 1/4 +- d, times a power of two that lets d survive next to 1/4: shift the root to 2^-20.

@@ -51,7 +51,7 @@ struct Tally {
   int hits = 0, sure = 0, missed = 0;
 };
 
-/// What is called sure is so, for the ray as it is and for ranges that end at or beside the hit.
+/// A sure answer agrees with the decision, for the ray itself and for ranges that end at or beside the hit.
 void expect_sure_is_true(TriangleCase c, Tally& tally, int number) {
   const Exact whole = decide(c);
   if (!whole.valid) return;

@@ -20,7 +20,7 @@ CsgShape combine(CsgOp op, std::vector<Object> operands) {
   return {op, std::make_shared<const std::vector<Object>>(std::move(operands))};
 }
 
-/// Straight and oblique: there faces that are meant to coincide do so up to rounding only.
+/// Straight and oblique views. In oblique ones, faces that should coincide do so only up to rounding.
 const Affine kPlacements[] = {
     {},
     Affine::rotation({25, 31, 8}) * Affine::scaling({0.7, 0.7, 0.7}),
@@ -45,7 +45,7 @@ Picture picture_of(const Shape& shape, std::uint32_t material, const Affine& tra
   return run(scene).picture;
 }
 
-/// Pixels whose colours, depths or normals are apart by more than `tolerance`.
+/// Pixels whose colours, depths or normals differ by more than `tolerance`.
 int different_pixels(const Picture& a, const Picture& b, float tolerance) {
   int count = 0;
   for (std::uint32_t y = 0; y < a.height; ++y)
@@ -72,7 +72,7 @@ TEST(CsgPicture, HolesOfTheSameHeightAreOpen) {
   }
 }
 
-/// What remains of a solid without itself is nothing, for every kind of solid.
+/// A solid less itself is empty, for every kind of solid.
 TEST(CsgPicture, NothingIsLeftOfASolidWithoutItself) {
   const Scene empty = stage();
   const Picture expected = run(empty).picture;
@@ -87,7 +87,7 @@ TEST(CsgPicture, NothingIsLeftOfASolidWithoutItself) {
     }
 }
 
-/// Two halves of a ball: the plane between them is not seen, from without, nor through glass.
+/// Two halves of a ball: the plane between them is invisible, from outside and through glass.
 TEST(CsgPicture, HalvesMakeAWhole) {
   const auto ball = [](std::uint32_t material) {
     const auto half = [&](double up) {
@@ -103,7 +103,7 @@ TEST(CsgPicture, HalvesMakeAWhole) {
   }
 }
 
-/// Boxes side by side in glass: light passes the common face as if it were not there.
+/// Glass boxes side by side: light passes the common face as if there were none.
 TEST(CsgPicture, GlassHasNoSeams) {
   for (const Affine& place : kPlacements) {
     const auto picture = [&](std::vector<Object> parts) {

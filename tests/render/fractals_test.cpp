@@ -20,7 +20,7 @@ Scene scene_of(const ExactForm& form) {
   return scene;
 }
 
-/// More parts than any memory holds: the picture is there, has light and shadow, and is the same on every
+/// Fractals of more parts than any memory holds are rendered with light and shadow, to the same bits on every
 /// instruction set and number of threads.
 TEST(Fractals, DeepOnesRender) {
   for (const ExactForm& form : {ExactForm(SphereflakeShape{12}), ExactForm(MengerShape{10})}) {

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-/// Something of everything: mesh, closed-form shapes, instances, mirror, glass, tinted shadows.
+/// A scene with a mesh, closed-form shapes, instances, a mirror, glass and tinted shadows.
 Scene busy_scene(IntegratorKind kind) {
   Scene scene = bare_scene();
   scene.film.width = 53, scene.film.height = 37;
@@ -47,7 +47,7 @@ Scene busy_scene(IntegratorKind kind) {
 constexpr IntegratorKind kAllKinds[] = {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::ao,
                                         IntegratorKind::normal, IntegratorKind::depth};
 
-/// Without data layers, hits are shaded in blocks and found without uv; the colours must not show it.
+/// Without data layers, hits are shaded in blocks and without uv. The colours must be the same.
 TEST(Render, ColoursAreTheSameWithoutDataLayers) {
   for (const IntegratorKind kind : kAllKinds) {
     Scene scene = busy_scene(kind);

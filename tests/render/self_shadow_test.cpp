@@ -9,8 +9,8 @@ namespace {
 
 using namespace test;
 
-/// Of the pixels that see a convex body lit from the camera, how many are black though well turned to the
-/// light? `normal` of each pixel comes from the picture.
+/// Counts the pixels of a convex body lit from the camera that are black although they face the light. The
+/// normal of each pixel comes from the picture.
 int black_pixels(Scene scene, const Vec3d& center, double radius, int& lit) {
   scene.camera.from = center + Vec3d{0.3, 0.2, 3} * radius;
   scene.camera.at = center;
@@ -30,7 +30,7 @@ int black_pixels(Scene scene, const Vec3d& center, double radius, int& lit) {
   return black;
 }
 
-/// Where bodies stand and how large they are: near and far from the origin, tiny and huge.
+/// Places and sizes of bodies: near and far from the origin, tiny and huge.
 struct Place {
   Vec3d center;
   double radius;
