@@ -22,10 +22,6 @@ target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
   PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt ${CMAKE_DL_LIBS})
 
-# Loops over columns become vector code only where nobody asks for errno and traps; the values are the same.
-set_source_files_properties(
-  ${PROJECT_SOURCE_DIR}/accel/surface/surface_interactions.cpp ${PROJECT_SOURCE_DIR}/render/whitted_block.cpp
-  PROPERTIES COMPILE_OPTIONS "-O3;-fno-math-errno;-fno-trapping-math")
 include(cmake/instruction_sets.cmake)
 file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp render/isa/*.cpp)
 oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES})

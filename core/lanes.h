@@ -1,7 +1,8 @@
 #pragma once
-/// \file Rays and hits spread over lanes. A kernel pairs lane i of the rays with lane i of the shapes; either
-/// side may be one thing broadcast to all lanes, so the same kernel serves a packet against one shape and one
-/// ray against many.
+/// \file Rays, hits and vectors in lanes.
+///
+/// A kernel pairs lane i of the rays with lane i of the shapes. Either side may be one element broadcast to
+/// all lanes, so one kernel tests a packet against one shape and one ray against several shapes.
 
 #include "core/simd.h"
 #include "core/vec3.h"
@@ -26,6 +27,12 @@ OKTETT_INLINE Vec3<Simd<double, W, A>> to_double(const Vec3<Simd<float, W, A>>& 
   return {to_double(v.x), to_double(v.y), to_double(v.z)};
 }
 
+/// Each component rounded to the nearest float.
+template <int W, class A>
+OKTETT_INLINE Vec3<Simd<float, W, A>> to_float(const Vec3<Simd<double, W, A>>& v) {
+  return {to_float(v.x), to_float(v.y), to_float(v.z)};
+}
+
 /// The same rays in double, exactly.
 template <int W, class A>
 OKTETT_INLINE RayLanes<Simd<double, W, A>> to_double(const RayLanes<Simd<float, W, A>>& r) {
@@ -39,8 +46,14 @@ OKTETT_INLINE Vec3<F> broadcast(const Vec3<T>& v) {
           F(static_cast<typename F::Element>(v.z))};
 }
 
-/// dot and cross with a fixed order of operations and no fusing: the same bits in every width and instruction
-/// set.
+/// Vectors of one lane as plain vectors.
+template <class T, class A>
+OKTETT_INLINE Vec3<T> only_lane(const Vec3<Simd<T, 1, A>>& v) {
+  return {v.x.part[0].v, v.y.part[0].v, v.z.part[0].v};
+}
+
+/// dot, cross and so on with a fixed order of operations and no fusing: the same bits in every width and
+/// instruction set.
 template <class F>
 OKTETT_INLINE F dot_lanes(const Vec3<F>& a, const Vec3<F>& b) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
@@ -52,6 +65,15 @@ OKTETT_INLINE Vec3<F> cross_lanes(const Vec3<F>& a, const Vec3<F>& b) {
 template <class F>
 OKTETT_INLINE Vec3<F> sub_lanes(const Vec3<F>& a, const Vec3<F>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+template <class F>
+OKTETT_INLINE Vec3<F> add_lanes(const Vec3<F>& a, const Vec3<F>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class F>
+OKTETT_INLINE Vec3<F> scale_lanes(const Vec3<F>& a, const F& s) {
+  return {a.x * s, a.y * s, a.z * s};
 }
 
 /// dot and cross for filters, where any rounding will do.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/affine_lanes.h"
 #include "core/math.h"
 
 namespace oktett {
@@ -60,38 +61,15 @@ Affine Affine::rotation(const Vec3d& axis, double degrees) {
   return r;
 }
 
-Vec3d Affine::point(const Vec3d& p) const {
-  Vec3d r;
-  for (int i = 0; i < 3; ++i) r[i] = m[i][0] * p.x + m[i][1] * p.y + m[i][2] * p.z + m[i][3];
-  return r;
-}
-
-Vec3d Affine::vector(const Vec3d& v) const {
-  Vec3d r;
-  for (int i = 0; i < 3; ++i) r[i] = m[i][0] * v.x + m[i][1] * v.y + m[i][2] * v.z;
-  return r;
-}
-
-Vec3d Affine::normal_by_inverse(const Vec3d& n) const {
-  Vec3d r;
-  for (int i = 0; i < 3; ++i) r[i] = m[0][i] * n.x + m[1][i] * n.y + m[2][i] * n.z;
-  return r;
-}
+Vec3d Affine::point(const Vec3d& p) const { return map_point(*this, p); }
+Vec3d Affine::vector(const Vec3d& v) const { return map_vector(*this, v); }
+Vec3d Affine::normal_by_inverse(const Vec3d& n) const { return map_normal(*this, n); }
+Affine Affine::inverse() const { return inverse_map<double>(*this); }
 
 static Vec3d column(const Affine& a, int j) { return {a.m[0][j], a.m[1][j], a.m[2][j]}; }
 
 double Affine::determinant() const {
   return dot(column(*this, 0), cross(column(*this, 1), column(*this, 2)));
-}
-
-Affine Affine::inverse() const {
-  const Vec3d c0 = column(*this, 0), c1 = column(*this, 1), c2 = column(*this, 2);
-  const double scale = 1 / determinant();
-  const Vec3d rows[3] = {cross(c1, c2) * scale, cross(c2, c0) * scale, cross(c0, c1) * scale};
-  const Vec3d t = column(*this, 3);
-  Affine r;
-  for (int i = 0; i < 3; ++i) r.m[i] = {rows[i].x, rows[i].y, rows[i].z, -dot(rows[i], t)};
-  return r;
 }
 
 static bool all_finite(const Affine& a) {

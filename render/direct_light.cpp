@@ -5,6 +5,7 @@
 #include "accel/surface/offset_origin.h"
 #include "core/math.h"
 #include "core/platform.h"
+#include "render/shading_lanes.h"
 
 namespace oktett {
 
@@ -14,11 +15,14 @@ float highlight_power(float cosine, float exponent) {
   return static_cast<float>(portable::pow(cosine, exponent));
 }
 
+using Lane = Simd<float, 1, ScalarIsa>;
+
 static OKTETT_INLINE Color phong_here(const ShadingPoint& p, const Vec3f& l) {
-  const float cosine = dot(p.ns, l);
-  // Comparisons are such that NaN goes on to the picture, where it is counted.
-  if (cosine <= 0 || dot(p.ng, l) <= 0) return {0, 0, 0};
-  const float highlight = dot(l, p.direction) - 2 * cosine * dot(p.ns, p.direction);
+  const auto cosines = phong_cosines(broadcast<Lane>(p.direction), broadcast<Lane>(p.ng),
+                                     broadcast<Lane>(p.ns), broadcast<Lane>(l));
+  const float cosine = cosines.cosine.part[0].v, highlight = cosines.highlight.part[0].v;
+  // NaN is not left out: it goes on to the picture, where it is counted.
+  if (cosine <= 0) return {0, 0, 0};
   return phong_sum(*p.material, p.color, p.specular_color, cosine, highlight,
                    [&] { return highlight_power(std::min(highlight, 1.0f), p.material->phong); });
 }
@@ -34,10 +38,11 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
     offset_origin(p.surface, l, ray.origin);
     return ray;
   }
-  const Vec3d towards = Vec3d(light.place) - Vec3d(p.surface.position);
-  const double square = dot(towards, towards);
-  l = Vec3f(towards / std::sqrt(square));
-  if (light.falloff) color = color * static_cast<float>(1 / square);
+  Vec3<Lane> towards;
+  Lane falloff;
+  turn_to_light(light.place, broadcast<Lane>(p.surface.position), towards, falloff);
+  l = only_lane(towards);
+  if (light.falloff) color = color * falloff.part[0].v;
   offset_origin(p.surface, l, ray.origin);
   ray.direction = light.place - ray.origin;
   ray.tmax = kBeforeLight;

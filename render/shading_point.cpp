@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accel/accel.h"
+#include "render/shading_lanes.h"
 
 namespace oktett {
 namespace {
@@ -80,16 +81,13 @@ Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction
   return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
 }
 
-/// Turns the normals towards the ray's origin and keeps the shading normal visible from there.
-void face_ray(ShadingPoint& p, Vec3f ns) {
-  const Vec3f& n = p.surface.geometric_normal;
-  p.front = !(dot(p.direction, n) > 0);
-  p.ng = p.front ? n : -n;
-  p.ns = dot(ns, p.ng) < 0 ? -ns : ns;
-  // An interpolated normal may lean away at a silhouette; it is bent back until the ray just sees its front.
-  constexpr float kLeast = 1e-3f;
-  const float away = dot(p.direction, p.ns);
-  if (away > -kLeast) p.ns = normalize(p.ns - p.direction * (away + kLeast));
+/// Sets `front`, `ng` and `ns`.
+void face_ray(ShadingPoint& p, const Vec3f& shading_normal) {
+  using F = Simd<float, 1, ScalarIsa>;
+  Vec3<F> ng, ns;
+  p.front = none(face_ray(broadcast<F>(p.direction), broadcast<F>(p.surface.geometric_normal),
+                          broadcast<F>(shading_normal), ng, ns));
+  p.ng = only_lane(ng), p.ns = only_lane(ns);
 }
 
 }  // namespace

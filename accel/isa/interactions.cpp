@@ -7,7 +7,7 @@ namespace oktett {
 
 template <class A>
 const InteractionCode& interaction_code() {
-  static constexpr InteractionCode code = {mesh_interactions_code<A>, closed_form_surfaces_code<A>,
+  static constexpr InteractionCode code = {mesh_surfaces_code<A>, closed_surfaces_code<A>,
                                            ExactCode<A>::surfaces};
   return code;
 }

@@ -1,18 +1,19 @@
 #pragma once
-/// \file Surface interactions of many hits, as they are compiled for each instruction set in accel/isa.
+/// \file Code for the surfaces of groups of hits, compiled for each instruction set in accel/isa.
 
 #include "accel/accel_data.h"
 #include "accel/shape_hits.h"
-#include "accel/surface/mesh_interactions.h"
+#include "accel/surface/mesh_hits.h"
 #include "core/isa_select.h"
 
 namespace oktett {
 
 struct InteractionCode {
-  void (*mesh)(MeshInteractions&);
-  /// Spheres, planes, or one box.
+  /// Hits of one mesh.
+  void (*mesh)(MeshHits&);
+  /// Hits of one closed-form kind.
   void (*closed_form)(const Accel&, Kind, ShapeHits&);
-  /// One element of an exact surface; false if the kind has no code for lanes.
+  /// Hits of one element of an exact surface; false if the kind has no code for lanes.
   bool (*exact)(const Accel&, Kind, ShapeHits&);
 };
 

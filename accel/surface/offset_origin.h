@@ -1,35 +1,31 @@
 #pragma once
-/// \file offset_origin for those who shade many hits: inline and without branches.
+/// \file offset_origin in lanes, and inline for single rays.
 
-#include <bit>
-#include <cmath>
-#include <cstdint>
-
-#include "core/box.h"
+#include "core/lanes.h"
+#include "core/simd_floats.h"
 #include "core/surface_interaction.h"
 
 namespace oktett {
 
-/// `p` + `offset`, rounded away from `p` by one float more. The signs of offsets cannot be foretold.
-inline float move_away(float p, float offset) {
-  const float sum = p + offset;
-  const int direction = (offset > 0) - (offset < 0);
-  const auto bits = std::bit_cast<std::int32_t>(sum);
-  // Around zero and infinity numbers have other neighbours.
-  if (sum == 0 || !std::isfinite(sum)) return offset > 0 ? next_up(sum) : offset < 0 ? next_down(sum) : sum;
-  return std::bit_cast<float>(bits + (bits < 0 ? -direction : direction));
+/// Origins for rays that leave surfaces towards `direction`: moved along the geometric normal `n` by the
+/// error bound of the position, and rounded away from the position by one more float. See offset_origin in
+/// accel/accel.h.
+template <class F>
+OKTETT_INLINE Vec3<F> offset_lanes(const Vec3<F>& position, const Vec3<F>& error, const Vec3<F>& n,
+                                   const Vec3<F>& direction) {
+  const F reach = abs(n.x) * error.x + abs(n.y) * error.y + abs(n.z) * error.z;
+  const Vec3<F> offset = scale_lanes(n, select(dot_lanes(direction, n) < F(0.0f), -reach, reach));
+  return {next_float(position.x + offset.x, offset.x), next_float(position.y + offset.y, offset.y),
+          next_float(position.z + offset.z, offset.z)};
 }
 
-/// offset_origin(s, direction) of accel/accel.h, written where it is needed: compilers return three floats by
-/// way of memory, for which the processor waits.
+/// offset_origin(s, direction) of accel/accel.h for callers in hot loops. It writes to `origin` because
+/// compilers return three floats through memory, and reading them back at once stalls the processor.
 inline void offset_origin(const SurfaceInteraction& s, const Vec3f& direction, Vec3f& origin) {
-  const Vec3f n = s.geometric_normal;
-  const float reach = std::abs(n.x) * s.position_error.x + std::abs(n.y) * s.position_error.y +
-                      std::abs(n.z) * s.position_error.z;
-  const Vec3f offset = n * (dot(direction, n) < 0 ? -reach : reach);
-  origin.x = move_away(s.position.x, offset.x);
-  origin.y = move_away(s.position.y, offset.y);
-  origin.z = move_away(s.position.z, offset.z);
+  using F = Simd<float, 1, ScalarIsa>;
+  const Vec3<F> moved = offset_lanes(broadcast<F>(s.position), broadcast<F>(s.position_error),
+                                     broadcast<F>(s.geometric_normal), broadcast<F>(direction));
+  origin.x = moved.x.part[0].v, origin.y = moved.y.part[0].v, origin.z = moved.z.part[0].v;
 }
 
 }  // namespace oktett

@@ -5,7 +5,7 @@
 #include "accel/hit_place.h"
 #include "accel/shape_hits.h"
 #include "accel/surface/interaction_code.h"
-#include "accel/surface/mesh_interactions.h"
+#include "accel/surface/mesh_hits.h"
 #include "core/error.h"
 #include "kernels/exact_shapes.h"
 #include "kernels/exact_surface.h"
@@ -13,24 +13,12 @@
 namespace oktett {
 namespace {
 
-void set_column(float (&column)[3][MeshInteractions::kMost], std::size_t i, const Vec3f& v) {
+void set_column(float (&column)[3][MeshHits::kMost], std::size_t i, const Vec3f& v) {
   for (int k = 0; k < 3; ++k) column[k][i] = v[k];
 }
 
-Vec3f get_column(const float (&column)[3][MeshInteractions::kMost], std::size_t i) {
+Vec3f get_column(const float (&column)[3][MeshHits::kMost], std::size_t i) {
   return {column[0][i], column[1][i], column[2][i]};
-}
-
-/// Puts a hit of triangle `triangle` into place `i` of the columns.
-void gather(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, MeshInteractions& s,
-            std::size_t i) {
-  const std::uint32_t* index = &mesh.indices[3 * std::size_t{triangle}];
-  for (int k = 0; k < 3; ++k) set_column(s.corner[k], i, mesh.positions[index[k]]);
-  s.u[i] = u, s.v[i] = v;
-  if (!s.smooth) return;
-  index = &mesh.normal_indices[3 * std::size_t{triangle}];
-  const bool known = index[0] != kNoId && index[1] != kNoId && index[2] != kNoId;
-  for (int k = 0; k < 3; ++k) set_column(s.normal[k], i, known ? mesh.normals[index[k]] : Vec3f{});
 }
 
 /// Hits of one mesh that wait for their surfaces.
@@ -43,10 +31,8 @@ class MeshRun {
   /// Takes entry `i`, a hit of the mesh `names`.
   void add(const HitPlace& place, const HitNames& names, std::size_t i) {
     const Geometry& geometry = place.accel->geometries[names.geometry];
-    if (columns_.count == MeshInteractions::kMost || geometry_ != &geometry) begin(place, geometry, names);
-    const Hit hit = hits_[which_[i]];
-    gather(*std::get<MeshGeometry>(geometry.shape).mesh, names.primitive, hit.u, hit.v, columns_,
-           columns_.count);
+    if (columns_.count == MeshHits::kMost || geometry_ != &geometry) begin(place, geometry, names);
+    gather(*std::get<MeshGeometry>(geometry.shape).mesh, names.primitive, which_[i], columns_.count);
     entry_[columns_.count++] = i;
   }
 
@@ -76,12 +62,17 @@ class MeshRun {
   void begin(const HitPlace& place, const Geometry& geometry, const HitNames& names) {
     finish(place);
     geometry_ = &geometry;
-    const auto& shape = std::get<MeshGeometry>(geometry.shape);
-    const GeometryFrame& frame = place.accel->frames[names.geometry];
-    columns_.smooth = shape.smooth && !shape.mesh->normal_indices.empty();
-    columns_.to_world = frame.identity ? nullptr : &geometry_->transform;
-    columns_.inverse = frame.identity ? nullptr : &frame.inverse;
-    columns_.mirrored = frame.mirrored;
+    columns_.frame = mesh_frame(geometry, place.accel->frames[names.geometry]);
+  }
+
+  /// Puts hit `i` of the batch, which is on `triangle`, into entry `to` of the columns.
+  void gather(const TriangleMesh& mesh, std::uint32_t triangle, std::uint32_t i, std::size_t to) {
+    for (int k = 0; k < 3; ++k) set_column(columns_.corner[k], to, corner_position(mesh, triangle, k));
+    columns_.u[to] = hits_.u[i], columns_.v[to] = hits_.v[i];
+    if (!columns_.frame.smooth) return;
+    Vec3f normals[3];
+    corner_normals(mesh, triangle, normals);
+    for (int k = 0; k < 3; ++k) set_column(columns_.normal[k], to, normals[k]);
   }
 
   /// Fills the last group of lanes.
@@ -90,7 +81,7 @@ class MeshRun {
     for (std::size_t i = last + 1; i < end; ++i) {
       for (int k = 0; k < 3; ++k) {
         set_column(columns_.corner[k], i, get_column(columns_.corner[k], last));
-        if (columns_.smooth) set_column(columns_.normal[k], i, get_column(columns_.normal[k], last));
+        if (columns_.frame.smooth) set_column(columns_.normal[k], i, get_column(columns_.normal[k], last));
       }
       columns_.u[i] = columns_.u[last], columns_.v[i] = columns_.v[last];
     }
@@ -102,8 +93,8 @@ class MeshRun {
   const InteractionCode& code_;
   InteractionBlock& out_;
   const Geometry* geometry_ = nullptr;
-  std::size_t entry_[MeshInteractions::kMost];
-  MeshInteractions columns_;
+  std::size_t entry_[MeshHits::kMost];
+  MeshHits columns_;
 };
 
 /// Hits of shapes that stand in the world itself, also in combinations there, sorted by what can be worked on
@@ -114,23 +105,15 @@ class ShapeGroups {
               const InteractionCode& code, InteractionBlock& out)
       : rays_(rays), hits_(hits), which_(which), code_(code), out_(out) {}
 
-  /// Takes entry `i`; false if its kind has no code for groups.
-  bool add(const HitPlace& place, const HitNames& names, std::size_t i) {
+  /// Takes entry `i`, which is not a hit of a mesh.
+  void add(const HitPlace& place, const HitNames& names, std::size_t i) {
     const Accel& accel = *place.accel;
-    const Kind kind = names.kind;
-    std::uint32_t element, group = 0;
-    if (is_exact(kind) || kind == Kind::box) {
-      group = element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
-    } else if (kind == Kind::sphere || kind == Kind::plane) {
-      element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
-    } else {
-      return false;
-    }
+    const std::uint32_t element = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
+    const std::uint32_t group = is_exact(names.kind) ? element : 0;
     entry_[count_] = static_cast<std::uint32_t>(i), element_[count_] = element;
     accel_[count_] = &accel;
-    group_[count_++] = std::uint64_t{group} << 8 | static_cast<std::uint64_t>(kind);
+    group_[count_++] = std::uint64_t{group} << 8 | static_cast<std::uint64_t>(names.kind);
     if (place.combined != nullptr) combined_[combinations_++] = {place.combined, i, place.flipped};
-    return true;
   }
 
   void finish() {
@@ -253,7 +236,9 @@ void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan
     out.user[i] = names.user, out.material_slot[i] = names.material_slot;
     if (names.kind == Kind::triangle) {
       run.add(place, names, i);
-    } else if (place.moved || !groups.add(place, names, i)) {
+    } else if (!place.moved) {
+      groups.add(place, names, i);
+    } else {
       SurfaceInteraction s;
       surface_at(place, names, rays[which[i]], hit, false, s);
       out.set_shape(i, s);

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Solid boxes, oriented or not, by slabs in the box's own space (slides: the interval of a ray inside
-/// a box).
+/// \file Solid boxes, axis-aligned or oriented: the slab method of Kay and Kajiya 1986 in the space where the
+/// box is a cube (slides: the interval of a ray inside a box).
 
 #include "core/transform.h"
 #include "kernels/closed/contract.h"
@@ -50,7 +50,7 @@ struct BoxSolid {
     return l;
   }
 
-  /// A ray parallel to a slab lies in it or not: no threshold, and a ray inside a face counts as inside.
+  /// A ray exactly parallel to a slab is inside it throughout or never; a ray in a face counts as inside.
   template <class D>
   OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
     const D one(1.0), zero(0.0);
@@ -84,26 +84,32 @@ struct BoxSolid {
     return max_component(abs(to_cube(p, i).point(q))) < 1;
   }
 
+  template <class D, class Fetch>
+  OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
+    AffineLanes<D> to_cube;
+    for (int k = 0; k < 12; ++k) to_cube.m[k / 4][k % 4] = fetch(p.m[k]);
+    const AffineLanes<D> to_world = inverse_map<D>(to_cube);
+    const Vec3<D> q = map_point(to_cube, hit.point()), m{abs(q.x), abs(q.y), abs(q.z)};
+    // The face met is the nearest one; the lowest axis wins ties.
+    const auto x = (m.x >= m.y) & (m.x >= m.z), y = ~x & (m.y >= m.z), z = ~(x | y);
+    const D zero(0.0);
+    const auto side = [](const D& v) { return select(v < D(0.0), D(-1.0), D(1.0)); };
+    const Vec3<D> face{select(x, side(q.x), zero), select(y, side(q.y), zero), select(z, side(q.z), zero)};
+    const Vec3<D> on_face{select(x, face.x, q.x), select(y, face.y, q.y), select(z, face.z, q.z)};
+    const Vec3<D> point = map_point(to_world, on_face);
+    const D one(1.0), extent = length_lanes(map_vector(to_world, Vec3<D>{one, one, one}));
+    return {point, D(0x1p-46) * (length_lanes(point) + extent), unit_lanes(map_normal(to_cube, face))};
+  }
+
   /// uv: position on the face, [0, 1]^2.
-  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
-    const Affine to_local = to_cube(p, i);
-    Vec3d q = to_local.point(point_at(ray, t));
-    const int k = dominant_axis(q);
-    const double side = q[k] < 0 ? -1 : 1;
-    q[k] = side;
-    const Affine to_world = to_local.inverse();
-    const Vec3d point = to_world.point(q);
-    Vec3d normal{0, 0, 0};
-    normal[k] = side;
-    SurfaceInteraction s;
-    set_position(s, point, ray, t, 0x1p-46 * (length(point) + length(to_world.vector({1, 1, 1}))));
-    s.geometric_normal = s.shading_normal = Vec3f(normalize(to_local.normal_by_inverse(normal)));
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
+  static void uv(const Pool& p, std::size_t i, const Vec3d& hit, const Vec3d&, SurfaceInteraction& s) {
+    const Affine cube = to_cube(p, i);
+    const Vec3d q = cube.point(hit);
+    const int k = dominant_axis(q), a = (k + 1) % 3, b = (k + 2) % 3;
     s.uv = {static_cast<float>(0.5 + 0.5 * q[a]), static_cast<float>(0.5 + 0.5 * q[b])};
     Vec3d tangent{0, 0, 0};
     tangent[a] = 2;
-    s.tangent = Vec3f(to_world.vector(tangent));
-    return s;
+    s.tangent = Vec3f(cube.inverse().vector(tangent));
   }
 };
 

@@ -1,32 +1,33 @@
 #pragma once
-/// \file What a closed-form shape is to the tracer, and how its roots become hits.
+/// \file What a closed-form shape offers the tracer, and how its roots become hits.
 ///
 /// A shape S (one file each) has
-/// - `S::Pool`: columns of double, one element per primitive, plus `item` numbers; `S::add` appends,
-///   `S::finish` pads with primitives that can never be hit, so that lanes may be loaded past the end;
-/// - `S::Lanes<D>`, `S::load<D>(pool, i)`: primitives i, i+1, ... in lanes; `S::broadcast<D>(pool, i)`: one
-///   in all lanes;
+/// - `S::Pool`: columns of double, one element per primitive, plus `item` numbers. `S::add` appends a
+///   primitive; `S::finish` pads with primitives that are never hit, so that lanes may be loaded past the
+///   end;
+/// - `S::Lanes<D>`, `S::load<D>(pool, i)`: primitives i, i + 1, ... in lanes; `S::broadcast<D>(pool, i)`: one
+///   primitive in all lanes;
 /// - `S::kRoots` and `S::roots(ray, lanes, t)`: where the ray's whole line meets the shape, t[0] <= t[1], and
-///   a mask of the lanes where it does. In double, with a fixed order of operations: everywhere the same
-///   bits;
-/// - `S::bounds(pool, i)` (not for unbounded shapes) and `S::interaction(pool, i, ray, t)`; where uv costs
-/// much,
-///   also `S::interaction_without_uv(pool, i, ray, t)`, the same without uv and tangent;
-/// - `S::kSolid`: has an inside; then `S::inside(pool, i, point)`.
+///   a mask of the lanes where it does. Computed in double in a fixed order of operations, so that every
+///   width and instruction set gives the same bits;
+/// - `S::surface(pool, fetch, hits)`: the surface points at HitPoints, where fetch(column) returns the
+/// elements
+///   of a pool's column in lanes; `S::uv(pool, i, hit, point, s)`: uv and tangent of a
+///   single hit from its place on the ray and its place on the surface;
+/// - `S::bounds(pool, i)`, except for unbounded shapes;
+/// - `S::kSolid`: whether it has an inside; if so, `S::inside(pool, i, point)`.
 
 #include "core/box.h"
-#include "core/lanes.h"
-#include "core/ray.h"
 #include "core/soa.h"
-#include "core/surface_interaction.h"
+#include "kernels/closed/surface_points.h"
 
 namespace oktett {
 
-/// Lanes that a pool must be readable past its last element.
+/// How many lanes past its last element a pool must be readable.
 inline constexpr int kPoolPadding = 16;
 
-/// Takes the first root of each lane inside (tmin, tmax] as the hit. Distances are compared after rounding to
-/// float, which is how they are stored, so that the choice does not depend on who asks.
+/// Takes the first root of each lane inside (tmin, tmax] as the hit. Distances are rounded to float, as hits
+/// store them, before they are compared, so that every traversal makes the same choice.
 template <class S, int W, class A>
 OKTETT_INLINE Mask<float, W, A> first_root(const RayLanes<Simd<float, W, A>>& ray,
                                            const RayLanes<Simd<double, W, A>>& ray_d,
@@ -49,18 +50,19 @@ OKTETT_INLINE Mask<float, W, A> first_root(const RayLanes<Simd<float, W, A>>& ra
   return found;
 }
 
-/// The point at distance t and a bound on its error: half an ulp of t along the ray, the rounding of the
-/// point itself to float, and `surface_error`, the shape's own uncertainty.
-inline void set_position(SurfaceInteraction& s, const Vec3d& p, const Ray& ray, double t,
-                         double surface_error) {
-  s.position = Vec3f(p);
-  const double ulp = 0x1p-23;
-  for (int k = 0; k < 3; ++k)
-    s.position_error[k] =
-        round_up(ulp * std::abs(t * ray.direction[k]) + ulp * std::abs(p[k]) + surface_error + 1e-37);
+/// A single hit of primitive i at distance t; without uv and tangent unless `with_uv`. Does not set the
+/// names.
+template <class S>
+void closed_interaction(const typename S::Pool& pool, std::size_t i, const Ray& ray, double t, bool with_uv,
+                        SurfaceInteraction& s) {
+  using D = Simd<double, 1, ScalarIsa>;
+  const HitPoints<D> hit(ray, t);
+  const SurfacePoints<D> surface = S::surface(
+      pool, [i](const Column<double>& column) { return D(column[i]); }, hit);
+  s.position = Vec3f(only_lane(surface.point));
+  s.position_error = only_lane(position_error(hit, surface.point, surface.error));
+  s.geometric_normal = s.shading_normal = Vec3f(only_lane(surface.normal));
+  if (with_uv) S::uv(pool, i, only_lane(hit.point()), only_lane(surface.point), s);
 }
-
-/// origin + t * direction in double.
-inline Vec3d point_at(const Ray& ray, double t) { return Vec3d(ray.origin) + Vec3d(ray.direction) * t; }
 
 }  // namespace oktett

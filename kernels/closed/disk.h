@@ -67,21 +67,23 @@ struct Disk {
     return {round_down(c - e - pad), round_up(c + e + pad)};
   }
 
+  template <class D, class Fetch>
+  OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
+    const Vec3<D> c{fetch(p.cx), fetch(p.cy), fetch(p.cz)}, n{fetch(p.nx), fetch(p.ny), fetch(p.nz)};
+    const Vec3<D> q = hit.point();
+    const Vec3<D> point = sub_lanes(q, scale_lanes(n, dot_lanes(n, sub_lanes(q, c))));
+    return {point, D(0x1p-50) * (length_lanes(point) + length_lanes(c)), n};
+  }
+
   /// uv: angle about the normal and distance from the centre, both scaled to [0, 1].
-  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+  static void uv(const Pool& p, std::size_t i, const Vec3d&, const Vec3d& point, SurfaceInteraction& s) {
     const Vec3d c{p.cx[i], p.cy[i], p.cz[i]}, n{p.nx[i], p.ny[i], p.nz[i]};
-    Vec3d point = point_at(ray, t);
-    point -= n * dot(n, point - c);
-    SurfaceInteraction s;
-    set_position(s, point, ray, t, 0x1p-50 * (length(point) + length(c)));
-    s.geometric_normal = s.shading_normal = Vec3f(n);
     Vec3d a, b;
     make_basis(n, a, b);
     const Vec3d q = point - c;
     s.uv = {static_cast<float>(0.5 + portable::atan2(dot(q, b), dot(q, a)) * 0.5 / std::numbers::pi),
             static_cast<float>(length(q) / p.radius[i])};
     s.tangent = Vec3f(cross(n, q) * (2 * std::numbers::pi));
-    return s;
   }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Infinite planes. Unbounded: they stand in a list beside the tree.
+/// \file Infinite planes. They have no bounds, so they stand in a list beside the tree.
 
 #include "kernels/closed/contract.h"
 #include "kernels/closed/shape_data.h"
@@ -12,6 +12,14 @@ OKTETT_INLINE typename D::M plane_root(const RayLanes<D>& ray, const Vec3<D>& n,
   const D speed = dot_lanes(n, ray.d);
   t = (offset - dot_lanes(n, ray.o)) / speed;
   return ~(speed == D(0.0));
+}
+
+/// Hits moved onto the plane dot(n, p) = offset, of which `n` is the unit normal.
+template <class D>
+OKTETT_INLINE SurfacePoints<D> plane_surface(const Vec3<D>& n, const D& offset, const HitPoints<D>& hit) {
+  const Vec3<D> p = hit.point();
+  const Vec3<D> point = sub_lanes(p, scale_lanes(n, dot_lanes(n, p) - offset));
+  return {point, D(0x1p-50) * (length_lanes(point) + abs(offset)), n};
 }
 
 struct Plane {
@@ -59,20 +67,19 @@ struct Plane {
     return dot(Vec3d{p.nx[i], p.ny[i], p.nz[i]}, q) < p.offset[i];
   }
 
+  template <class D, class Fetch>
+  OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
+    return plane_surface({fetch(p.nx), fetch(p.ny), fetch(p.nz)}, fetch(p.offset), hit);
+  }
+
   /// uv: coordinates in the plane, in world units, along a basis that for the ground (0, 1, 0) is (x, -z).
-  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+  static void uv(const Pool& p, std::size_t i, const Vec3d&, const Vec3d& point, SurfaceInteraction& s) {
     const Vec3d n{p.nx[i], p.ny[i], p.nz[i]};
-    Vec3d point = point_at(ray, t);
-    point -= n * (dot(n, point) - p.offset[i]);
-    SurfaceInteraction s;
-    set_position(s, point, ray, t, 0x1p-50 * (length(point) + std::abs(p.offset[i])));
-    s.geometric_normal = s.shading_normal = Vec3f(n);
     const int k = dominant_axis(n);
     const Vec3d u = normalize(k == 1 ? cross(n, Vec3d{0, 0, -1}) * -1.0 : cross(Vec3d{0, 1, 0}, n));
     const Vec3d v = cross(n, u);
     s.uv = {static_cast<float>(dot(u, point)), static_cast<float>(dot(v, point))};
     s.tangent = Vec3f(u);
-    return s;
   }
 };
 

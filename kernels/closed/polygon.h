@@ -23,7 +23,7 @@ struct Polygon {
     }
   };
 
-  /// A polygon has its own number of vertices, so lanes of rays meet one polygon at a time.
+  /// Polygons differ in their number of vertices, so rays in lanes are tested against one polygon at a time.
   template <class D>
   struct Lanes {
     Vec3<D> n;
@@ -57,7 +57,7 @@ struct Polygon {
     Box box;
     for (const Vec3d& q : s.vertices) {
       p.u.push_back(q[(axis + 1) % 3]), p.v.push_back(q[(axis + 2) % 3]);
-      // Vertices may stand off the common plane by rounding, and hits lie on the plane.
+      // Rounding may move vertices off the common plane, on which the hits lie.
       const Vec3d pad = Vec3d{1, 1, 1} * (std::abs(dot(n, q - centroid)) + 0x1p-45 * max_component(abs(q)));
       box.grow(round_down(q - pad)), box.grow(round_up(q + pad));
     }
@@ -91,8 +91,8 @@ struct Polygon {
     for (std::uint32_t i = 0, j = s.count - 1; i < s.count; j = i++) {
       const D ui(s.u[i]), vi(s.v[i]), uj(s.u[j]), vj(s.v[j]);
       const auto straddles = ((vi > pv) & ~(vj > pv)) | (~(vi > pv) & (vj > pv));
-      // The edge is always evaluated from its lower to its upper end: neighbours that share it agree to the
-      // bit.
+      // The edge is always evaluated from its lower to its upper end, so that neighbours which share it agree
+      // to the last bit.
       const auto upward = vi < vj;
       const D u0 = select(upward, ui, uj), v0 = select(upward, vi, vj);
       const D u1 = select(upward, uj, ui), v1 = select(upward, vj, vi);
@@ -105,14 +105,14 @@ struct Polygon {
 
   static Box bounds(const Pool& p, std::size_t i) { return p.boxes[i]; }
 
+  template <class D, class Fetch>
+  OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
+    return plane_surface({fetch(p.nx), fetch(p.ny), fetch(p.nz)}, fetch(p.offset), hit);
+  }
+
   /// uv: position in the polygon's projected bounding rectangle, [0, 1]^2.
-  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
+  static void uv(const Pool& p, std::size_t i, const Vec3d&, const Vec3d&, SurfaceInteraction& s) {
     const Vec3d n{p.nx[i], p.ny[i], p.nz[i]};
-    Vec3d point = point_at(ray, t);
-    point -= n * (dot(n, point) - p.offset[i]);
-    SurfaceInteraction s;
-    set_position(s, point, ray, t, 0x1p-50 * (length(point) + std::abs(p.offset[i])));
-    s.geometric_normal = s.shading_normal = Vec3f(n);
     const int a = (p.axis[i] + 1) % 3, b = (p.axis[i] + 2) % 3;
     const Box& box = p.boxes[i];
     const Vec3f e = box.extent();
@@ -122,7 +122,6 @@ struct Polygon {
     tangent[a] = e[a];
     tangent[p.axis[i]] = -n[a] * e[a] / n[p.axis[i]];
     s.tangent = Vec3f(tangent);
-    return s;
   }
 };
 

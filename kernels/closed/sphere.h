@@ -96,26 +96,22 @@ struct Sphere {
     return dot(m, m) < p.radius[i] * p.radius[i];
   }
 
-  /// Without uv, whose angles cost more than all the rest.
-  static SurfaceInteraction interaction_without_uv(const Pool& p, std::size_t i, const Ray& ray, double t) {
-    const Vec3d c{p.x[i], p.y[i], p.z[i]};
-    const Vec3d n = normalize(point_at(ray, t) - c);
-    SurfaceInteraction s;
-    // Moving the point onto the sphere removes the error along the normal.
-    set_position(s, c + n * p.radius[i], ray, t, 0x1p-48 * (length(c) + p.radius[i]));
-    s.geometric_normal = s.shading_normal = Vec3f(n);
-    return s;
+  /// Moving the point onto the sphere removes the error along the normal.
+  template <class D, class Fetch>
+  OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
+    const Vec3<D> c{fetch(p.x), fetch(p.y), fetch(p.z)};
+    const D radius = fetch(p.radius);
+    const Vec3<D> n = unit_lanes(sub_lanes(hit.point(), c));
+    return {add_lanes(c, scale_lanes(n, radius)), D(0x1p-48) * (length_lanes(c) + radius), n};
   }
 
   /// uv: longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1].
-  static SurfaceInteraction interaction(const Pool& p, std::size_t i, const Ray& ray, double t) {
-    SurfaceInteraction s = interaction_without_uv(p, i, ray, t);
-    const Vec3d n = normalize(point_at(ray, t) - Vec3d{p.x[i], p.y[i], p.z[i]});
+  static void uv(const Pool& p, std::size_t i, const Vec3d& hit, const Vec3d&, SurfaceInteraction& s) {
+    const Vec3d n = normalize(hit - Vec3d{p.x[i], p.y[i], p.z[i]});
     const double phi = portable::atan2(n.z, n.x), theta = portable::asin(n.y < -1 ? -1 : n.y > 1 ? 1 : n.y);
     s.uv = {static_cast<float>(0.5 + phi * 0.5 / std::numbers::pi),
             static_cast<float>(0.5 + theta / std::numbers::pi)};
     s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * p.radius[i]));
-    return s;
   }
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/lanes.h"
-#include "render/view_code.h"
+#include "render/view_directions.h"
 
 namespace oktett {
 
@@ -37,12 +37,6 @@ void view_directions_code(const ViewPlane& plane, const ViewPoints& points) {
   directions(x, y, d[0], d[1], d[2]);
   for (std::size_t k = 0; k < rest; ++k)
     for (int axis = 0; axis < 3; ++axis) out[axis][i + k] = d[axis][k];
-}
-
-template <class A>
-const ViewCode& view_code() {
-  static constexpr ViewCode code = {view_directions_code<A>};
-  return code;
 }
 
 }  // namespace oktett

@@ -1,0 +1,97 @@
+#pragma once
+/// \file The surface at hits of a mesh, in lanes. Single hits use the same functions with one lane, so a hit gets
+/// the same bits alone and in a group.
+
+#include "accel/accel_data.h"
+#include "core/affine_lanes.h"
+
+namespace oktett {
+
+/// What the surface of a mesh depends on, beyond the triangle hit.
+struct MeshFrame {
+  const Affine* to_world = nullptr;  ///< null if the mesh stands as it is
+  const Affine* inverse = nullptr;   ///< of `to_world`
+  bool mirrored = false;             ///< `to_world` is a mirror
+  bool smooth = false;               ///< shading normals are interpolated from normals at the corners
+};
+
+inline MeshFrame mesh_frame(const Geometry& geometry, const GeometryFrame& frame) {
+  const auto& shape = std::get<MeshGeometry>(geometry.shape);
+  const bool smooth = shape.smooth && !shape.mesh->normal_indices.empty();
+  if (frame.identity) return {nullptr, nullptr, frame.mirrored, smooth};
+  return {&geometry.transform, &frame.inverse, frame.mirrored, smooth};
+}
+
+/// Corner `k` of a triangle, in the mesh's own space.
+inline const Vec3f& corner_position(const TriangleMesh& mesh, std::uint32_t triangle, int k) {
+  return mesh.positions[mesh.indices[3 * std::size_t{triangle} + k]];
+}
+
+/// The normals at the corners of a triangle of a mesh that has normals; zero if any of them is missing.
+inline void corner_normals(const TriangleMesh& mesh, std::uint32_t triangle, Vec3f (&normals)[3]) {
+  const std::uint32_t* index = &mesh.normal_indices[3 * std::size_t{triangle}];
+  const bool known = index[0] != kNoId && index[1] != kNoId && index[2] != kNoId;
+  for (int k = 0; k < 3; ++k) normals[k] = known ? mesh.normals[index[k]] : Vec3f{};
+}
+
+/// Surfaces of mesh hits in lanes; the members are those of SurfaceInteraction.
+template <class F>
+struct MeshSurface {
+  Vec3<F> position, position_error, geometric_normal, shading_normal;
+};
+
+/// A corner where the frame puts it.
+template <int W, class A>
+OKTETT_INLINE Vec3<Simd<float, W, A>> place_corner(const MeshFrame& frame, const Vec3<Simd<float, W, A>>& p) {
+  return frame.to_world == nullptr ? p : to_float(map_point(*frame.to_world, to_double(p)));
+}
+
+/// a wa + b wb + c wc in each component.
+template <class F>
+OKTETT_INLINE Vec3<F> weigh(const Vec3<F> (&p)[3], const F& wa, const F& wb, const F& wc) {
+  return {p[0].x * wa + p[1].x * wb + p[2].x * wc, p[0].y * wa + p[1].y * wb + p[2].y * wc,
+          p[0].z * wa + p[1].z * wb + p[2].z * wc};
+}
+
+/// Bound on the error of the interpolated coordinate a wa + b wb + c wc: gamma(7) bounds the rounding of the
+/// interpolation (Pharr, Jakob, Humphreys 2016, section 3.9.4); the weights, which are rounded to float, add two
+/// more units.
+template <class F>
+OKTETT_INLINE F weighted_error(const F& a, const F& b, const F& c, const F& wa, const F& wb, const F& wc) {
+  const F magnitude = abs(a * wa) + abs(b * wb) + abs(c * wc);
+  const F spread = abs(b - a) + abs(c - a);
+  return F(0x1p-21f) * magnitude + F(0x1p-22f) * spread + F(1e-37f);
+}
+
+/// The surface of triangles with corners `p`, in their place, at barycentric coordinates u, v. `normals` are those
+/// of the corners in the mesh's own space, zero where unknown; they count only if frame.smooth.
+template <int W, class A>
+OKTETT_INLINE MeshSurface<Simd<float, W, A>> mesh_surface(const MeshFrame& frame,
+                                                          const Vec3<Simd<float, W, A>> (&p)[3],
+                                                          const Vec3<Simd<float, W, A>> (&normals)[3],
+                                                          const Simd<float, W, A>& u,
+                                                          const Simd<float, W, A>& v) {
+  using F = Simd<float, W, A>;
+  using D = Simd<double, W, A>;
+  const F w = F(1.0f) - u - v;
+  MeshSurface<F> s;
+  s.position = weigh(p, w, u, v);
+  s.position_error = {weighted_error(p[0].x, p[1].x, p[2].x, w, u, v),
+                      weighted_error(p[0].y, p[1].y, p[2].y, w, u, v),
+                      weighted_error(p[0].z, p[1].z, p[2].z, w, u, v)};
+  const Vec3<D> a = to_double(p[0]);
+  const Vec3<D> n = cross_lanes(sub_lanes(to_double(p[1]), a), sub_lanes(to_double(p[2]), a));
+  // A mirror reverses the winding of the corners, but what was outside stays outside.
+  s.geometric_normal = to_float(scale_lanes(unit_lanes(n), D(frame.mirrored ? -1.0 : 1.0)));
+  s.shading_normal = s.geometric_normal;
+  if (!frame.smooth) return s;
+  Vec3<D> m = to_double(weigh(normals, w, u, v));
+  if (frame.inverse != nullptr) m = map_normal(*frame.inverse, m);
+  const D size = length_lanes(m);
+  const auto known = mask_cast<float>((D(0.0) < size) & (size <= D(std::numeric_limits<double>::max())));
+  s.shading_normal =
+      select_lanes(known, to_float(Vec3<D>{m.x / size, m.y / size, m.z / size}), s.geometric_normal);
+  return s;
+}
+
+}  // namespace oktett

@@ -1,0 +1,16 @@
+#include "render/render_code.h"
+
+#include "render/isa/shading.h"
+#include "render/isa/view_directions.h"
+
+namespace oktett {
+
+template <class A>
+const RenderCode& render_code() {
+  static constexpr RenderCode code = {view_directions_code<A>, face_rays_code<A>, meet_light_code<A>};
+  return code;
+}
+
+template const RenderCode& render_code<OKTETT_ISA>();
+
+}  // namespace oktett

@@ -1,7 +1,0 @@
-#include "render/isa/view_directions.h"
-
-namespace oktett {
-
-template const ViewCode& view_code<OKTETT_ISA>();
-
-}  // namespace oktett

@@ -1,0 +1,54 @@
+#pragma once
+/// \file The formulas of local shading, in lanes: which way normals face, the way to a light, Phong's cosines.
+/// Single hits use them with one lane, so a hit gets the same bits alone and in a group.
+
+#include "core/affine_lanes.h"
+
+namespace oktett {
+
+/// Turns the normals of surfaces towards the origins of rays along `direction`: `n` to `ng`, `shading` to `ns`.
+/// Returns the lanes in which `n` pointed away from the origin.
+template <class F>
+OKTETT_INLINE typename F::M face_ray(const Vec3<F>& direction, const Vec3<F>& n, const Vec3<F>& shading,
+                                     Vec3<F>& ng, Vec3<F>& ns) {
+  const F zero(0.0f), one(1.0f), least(1e-3f);
+  const auto behind = dot_lanes(direction, n) > zero;
+  ng = scale_lanes(n, select(behind, -one, one));
+  ns = scale_lanes(shading, select(dot_lanes(shading, ng) < zero, -one, one));
+  // An interpolated normal may lean away from the ray at a silhouette. It is bent back until the ray just sees the
+  // front of the surface.
+  const F away = dot_lanes(direction, ns);
+  const auto leans = away > -least;
+  if (any(leans))
+    ns = select_lanes(leans, unit_lanes(sub_lanes(ns, scale_lanes(direction, away + least))), ns);
+  return behind;
+}
+
+/// Unit vectors `l` from `position` to a light at `place`, and 1 / squared distance, computed in double.
+template <int W, class A>
+OKTETT_INLINE void turn_to_light(const Vec3f& place, const Vec3<Simd<float, W, A>>& position,
+                                 Vec3<Simd<float, W, A>>& l, Simd<float, W, A>& falloff) {
+  using D = Simd<double, W, A>;
+  const Vec3<D> towards = sub_lanes(broadcast<D>(place), to_double(position));
+  const D square = dot_lanes(towards, towards), distance = sqrt(square);
+  l = to_float(Vec3<D>{towards.x / distance, towards.y / distance, towards.z / distance});
+  falloff = to_float(D(1.0) / square);
+}
+
+/// What Phong's model needs of the directions at a surface.
+template <class F>
+struct PhongCosines {
+  F cosine;     ///< between shading normal and light; 0 where the light is behind the true surface
+  F highlight;  ///< between the mirrored light and the viewer
+};
+
+/// The light is in the unit direction `l`; the viewer's ray travels along `direction`. NaN stays NaN.
+template <class F>
+OKTETT_INLINE PhongCosines<F> phong_cosines(const Vec3<F>& direction, const Vec3<F>& ng, const Vec3<F>& ns,
+                                            const Vec3<F>& l) {
+  const F zero(0.0f), cosine = dot_lanes(ns, l);
+  return {select(dot_lanes(ng, l) <= zero, zero, cosine),
+          dot_lanes(l, direction) - F(2.0f) * cosine * dot_lanes(ns, direction)};
+}
+
+}  // namespace oktett
