@@ -53,8 +53,8 @@ OKTETT_INLINE Mask<std::int32_t, W, A> has_bits(const Simd<std::int32_t, W, A>& 
   return ~(common == I(0));
 }
 
-/// The next float above `a` where `direction` > 0, the next below where it is < 0, and `a` where it is 0. Beyond
-/// an infinity it stays; NaN stays NaN.
+/// The next float above `a` where `direction` > 0, the next below where it is < 0, and `a` where it is 0.
+/// Beyond an infinity it stays; NaN stays NaN.
 template <int W, class A>
 OKTETT_INLINE Simd<float, W, A> next_float(const Simd<float, W, A>& a, const Simd<float, W, A>& direction) {
   using I = Simd<std::int32_t, W, A>;

@@ -10,7 +10,7 @@
 namespace oktett {
 
 static void crop_axis(std::uint32_t size, double from, double to, std::uint32_t& begin, std::uint32_t& end) {
-  // A hair less than the product, lest rounding in the fraction adds a pixel.
+  // Slightly less than the product, so that rounding in the fraction does not add a pixel.
   const auto pixel = [&](double fraction) {
     const double at = std::ceil(fraction * size - 1e-6);
     return static_cast<std::uint32_t>(std::clamp(at, 0.0, static_cast<double>(size)));

@@ -45,7 +45,8 @@ RenderContext make_context(const Scene& scene, const World& world, const Texture
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;
   c.ao_radius = radius > 0 ? static_cast<float>(radius) : 1;
   set_depth_range(world.bounds, c);
-  // Finer samples may look finer textures up, but no further than an eighth of a pixel (pbrt's bound).
+  // With more samples per pixel each looks up a smaller part of a texture, but not below an eighth of a pixel
+  // (pbrt's bound).
   c.footprint_scale = std::max(0.125f, 1 / std::sqrt(static_cast<float>(c.settings.samples)));
   return c;
 }

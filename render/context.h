@@ -1,5 +1,5 @@
 #pragma once
-/// \file What is the same for all pixels of a render, prepared once.
+/// \file Data that all pixels of a render share, prepared once.
 
 #include <vector>
 

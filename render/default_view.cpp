@@ -17,7 +17,7 @@ Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film) {
   const Vec3d center = (lo + hi) * 0.5;
   Camera camera = given;
   camera.at = center;
-  // Right of the front, somewhat from above; `from` serves as a direction until the distance is known.
+  // From the right of the front and slightly above. Until the distance is known, `from` is only a direction.
   const Vec3d front = std::abs(camera.up.z) > std::abs(camera.up.y) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
   camera.from = center + Vec3d{0.55, 0, 0} + camera.up * (0.45 / length(camera.up)) + front;
 
@@ -49,7 +49,7 @@ Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film) {
 /// Share of the surface that faces down `axis` within the lowest 2 % of it.
 static double base_share(const TriangleMesh& mesh, int axis, double low, double extent) {
   double base = 0, total = 0;
-  // A hundred thousand triangles are sample enough.
+  // A sample of a hundred thousand triangles is enough.
   const std::size_t stride = 1 + mesh.triangle_count() / 100000;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3 * stride) {
     const Vec3d a(mesh.positions[mesh.indices[i]]), b(mesh.positions[mesh.indices[i + 1]]),

@@ -10,10 +10,10 @@
 
 namespace oktett {
 
-/// How far shadow rays reach whose direction is the way to the light: just not to it.
+/// tmax of shadow rays whose direction is the vector to the light: they end just before it.
 inline constexpr float kBeforeLight = 1 - 0x1p-24f;
 
-/// Greatest exponent that is raised to by squaring, if it is whole: those of materials mostly are.
+/// Powers with whole exponents up to this one are computed by squaring; most materials have such exponents.
 inline constexpr float kMostBySquaring = 1024;
 inline bool by_squaring(float exponent) {
   return exponent <= kMostBySquaring && exponent >= 0 &&
@@ -23,14 +23,14 @@ inline bool by_squaring(float exponent) {
 /// `cosine`, in [0, 1] or NaN, to the power of a material's exponent.
 float highlight_power(float cosine, float exponent);
 
-/// The sum of `phong` where the light is before the surface: `cosine` > 0 or NaN is that between shading
-/// normal and light, `highlight` that between the mirrored light and the viewer, `power()` the
-/// highlight_power of the latter, not above 1.
+/// The sum that `phong` returns where the light is in front of the surface. `cosine`, > 0 or NaN, is the
+/// cosine between shading normal and light; `highlight` is that between the mirrored light and the viewer;
+/// `power()` returns the highlight_power of min(highlight, 1).
 template <class Power>
 OKTETT_INLINE Color phong_sum(const Material& m, const Color& color, const Color& specular_color,
                               float cosine, float highlight, Power&& power) {
   Color sum = color * (m.diffuse * cosine);
-  // NaN is not left out.
+  // The comparison keeps NaN in the sum.
   if (m.specular != 0 && !(highlight <= 0)) sum += specular_color * (m.specular * power());
   return sum;
 }

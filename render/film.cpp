@@ -7,7 +7,7 @@
 namespace oktett {
 namespace {
 
-/// Planes in the order in which make_picture adds them.
+/// Indices of planes, in the order in which make_picture adds them.
 enum PlaneIndex {
   kR,
   kG,
@@ -131,7 +131,7 @@ void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const Pixel
     picture.planes[kGeomId].ids[at] = pixel.object;
   }
   const bool empty = pixel.color[0] == 0 && pixel.color[1] == 0 && pixel.color[2] == 0 && pixel.alpha == 0;
-  // Pixels are empty to begin with.
+  // make_picture left the pixel empty.
   if (pixel.good == 0 || (pixel.hits == 0 && empty)) return;
   for (int k = 0; k < 3; ++k) set(kR + k, pixel.color[k], pixel.good);
   set(kA, pixel.alpha, pixel.good);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file From samples to pixels.
+/// \file Sums the samples of a pixel and writes pixels to the picture.
 
 #include <cmath>
 #include <cstdint>
@@ -25,25 +25,22 @@ struct PixelSum {
 /// Adds sample `i`; false if it is left out because it holds NaN or infinity.
 bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 
-/// The planes of a render, black and transparent, Z at infinity, ids kNoId.
+/// An empty picture with the planes of a render: black and transparent, Z infinite, all ids kNoId.
 ///
-/// Beauty: R, G, B, A are means over the samples, A the fraction covered: a background that gives light
-/// counts as covering, a black one does not, so colours are always premultiplied by A. Data layers (if
+/// Beauty: R, G, B and A are means over the samples. A is the fraction covered. A background that gives light
+/// counts as covering and a black one does not, so colours are always premultiplied by A. Data layers (if
 /// `data_layers`) describe the first surface that each camera ray meets:
-/// - Z is the distance along the view axis (as compositing programs expect, not the length of the ray),
-/// infinite where there is
-///   no surface; P the position in world space, u and v the texture coordinates: means over the samples that
-///   met a surface.
-/// - N is the shading normal in world space, out of solids, and Albedo the base colour: means over all
-/// samples (0 for
-///   those that met nothing), as denoisers expect.
-/// - primID.I and geomID.I are the primitive in its geometry and the object in the scene (as World counts
-/// them), of the
-///   sample nearest to the pixel's centre: never filtered.
+/// - Z is the distance along the view axis, not along the ray, as compositing programs expect; infinite where
+///   there is no surface. P is the position in world space; u and v are the texture coordinates. All of them
+///   are means over the samples that met a surface.
+/// - N is the shading normal in world space, which points out of solids. Albedo is the base colour. Both are
+///   means over all samples, with 0 for those that met nothing, as denoisers expect.
+/// - primID.I is the primitive in its geometry, geomID.I the object in the scene (as World counts them). They
+///   are those of the sample nearest to the pixel's centre, never filtered.
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 Picture make_picture(const RenderContext& context);
 
-/// Writes pixels of one sample without data layers, as write_pixel does.
+/// Writes pixels that have one sample and no data layers; faster than write_pixel, with the same result.
 class SampleWriter {
  public:
   explicit SampleWriter(Picture& picture);

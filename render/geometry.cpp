@@ -7,7 +7,7 @@
 namespace oktett {
 namespace {
 
-/// So many instances in a row become a list, which takes less memory.
+/// At least this many instances in a row become a list, which takes less memory.
 constexpr std::size_t kLeastList = 64;
 
 /// Turns lists of objects into acceleration structures, one list after the other.
@@ -92,7 +92,7 @@ class WorldBuilder {
     return true;
   }
 
-  /// For the shapes that the acceleration structure knows as they are.
+  /// Shapes that the acceleration structure takes as they are.
   template <class Shape>
   bool convert(const Shape& shape, Geometry& geometry) {
     geometry.shape = shape;
@@ -119,7 +119,7 @@ class WorldBuilder {
       mesh->positions.push_back(Vec3f(geometry.transform.point(shape.v[k])));
       mesh->indices.push_back(k);
     }
-    // A mirror turns the winding around, but not the front.
+    // A mirror reverses the winding of the corners, but the front stays the front.
     if (geometry.transform.determinant() < 0) std::swap(mesh->indices[1], mesh->indices[2]);
     geometry.transform = {};
     geometry.shape = MeshGeometry{mesh.get(), false, TriangleTest::watertight};

@@ -1,5 +1,5 @@
 #pragma once
-/// \file From the scene as data to what rays are traced against.
+/// \file The scene made ready for tracing: acceleration structures and materials.
 
 #include <cstdint>
 #include <memory>

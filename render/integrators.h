@@ -1,13 +1,13 @@
 #pragma once
-/// \file What happens at a surface that a ray has found: one function per kind of picture.
+/// \file Integrators: what happens where a ray has hit a surface, one function per kind of picture.
 
 #include "render/wavefront.h"
 
 namespace oktett {
 
-/// Shades the hit `p` of entry `ray` of `wavefront.rays`: adds what is known at once to
-/// `wavefront.radiance[ray]`, queues shadow rays for what depends on visibility, and queues rays of the next
-/// level.
+/// Shades the hit `p` of entry `ray` of `wavefront.rays`. Light that needs no further ray is added to
+/// `wavefront.radiance[ray]`. Shadow rays are queued for light that depends on visibility, and rays of the
+/// next bounce are queued.
 using Integrator = void (*)(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                             const ShadingPoint& p);
 
@@ -18,18 +18,20 @@ Integrator integrator_for(IntegratorKind kind);
 void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                    const ShadingPoint& p);
 
-/// The mirror and refracted rays of a hit in Whitted's model; `throughput` is that of the part of the surface
-/// that is there.
+/// Queues the mirror and refracted rays of a hit in Whitted's model. `throughput` includes the opacity of the
+/// surface.
 void push_specular(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                    const Color& throughput);
 
 /// Unidirectional path tracing (Kajiya 1986). The scene's lights are sampled at each hit; emission and
-/// background are met by chance. Diffuse, mirror and glass take turns at random by their weights. Lights are
+/// background are found by rays that happen to meet them. Each hit chooses at random, by their weights, among
+/// diffuse, mirror and glass. Lights are
 /// scaled as in Whitted's model: a white diffuse surface that faces a light of colour c shows c. Ambient
-/// light is left out, as it stands for what is computed here.
+/// light is left out, since it stands for the indirect light that path tracing computes.
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
 
-/// White times the cosine-weighted fraction of directions that meet nothing within the radius.
+/// Ambient occlusion: white times the cosine-weighted fraction of directions that meet nothing within the
+/// radius.
 void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                              const ShadingPoint& p);
 

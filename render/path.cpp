@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kSureBounces = 3;
 constexpr float kMostSurvival = 0.95f;
 
-/// What the random numbers of a level are for. Dimension 0 is the place on the film.
+/// The uses of a bounce's random numbers. Dimension 0 is the place on the film.
 enum Dimension : std::uint32_t { hole, lobe, roulette, direction, per_level };
 
 std::uint32_t dimension(const Wavefront& wavefront, Dimension d) {
@@ -25,7 +25,8 @@ float random_number(const Wavefront& wavefront, std::uint32_t sample, Dimension 
                       dimension(wavefront, d));
 }
 
-/// Ends paths of little weight and raises the others', so that the mean stays. False if the path ends.
+/// Russian roulette: ends paths of small weight at random and raises the weight of the others, so that the
+/// mean does not change. False if the path ends.
 bool survives(const Wavefront& wavefront, std::size_t ray, Color& throughput) {
   if (wavefront.rays.bounces[ray] + 1u <= kSureBounces) return true;
   const float chance = std::min(kMostSurvival, max_component(throughput));
@@ -44,7 +45,7 @@ void push_diffuse(const RenderContext& context, Wavefront& wavefront, std::size_
   const std::uint32_t sample = wavefront.rays.sample[ray];
   const std::uint64_t pattern = pattern_key(wavefront.samples.key[sample], dimension(wavefront, direction));
   SquareSample at = stratified_sample(wavefront.samples.number[sample], context.settings.samples, pattern);
-  // The pattern of one is its centre, which would give all pixels the same direction.
+  // A pattern of one point is always its centre, which would give all pixels the same direction.
   if (context.settings.samples == 1) at = {random_float(pattern, 0, 2), random_float(pattern, 0, 3)};
   const Vec3f towards = cosine_direction(p.ns, at);
   if (dot(towards, p.ng) <= 0) return;

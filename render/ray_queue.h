@@ -1,5 +1,5 @@
 #pragma once
-/// \file Rays on their way, and which sample each of them works for.
+/// \file Queues of rays to trace, each with the sample that it belongs to.
 
 #include <cstdint>
 
@@ -9,11 +9,11 @@
 
 namespace oktett {
 
-/// Columns of rays of unit direction with their state. Emptying a queue keeps its storage.
+/// Rays of unit direction with their state, in columns. Clearing a queue keeps its memory.
 struct RayQueue {
   RayBatch rays;
   Column<std::uint32_t> sample;      ///< index into the wavefront's samples
-  Column<Color> throughput;          ///< factor on whatever light the ray finds
+  Column<Color> throughput;          ///< factor on the light that the ray finds
   Column<float> distance;            ///< length of the path up to the ray's origin
   Column<std::uint8_t> bounces;      ///< reflections and refractions so far
   Column<std::uint8_t> from_camera;  ///< 1 for camera rays and their straight continuations through holes
@@ -47,13 +47,12 @@ struct RayQueue {
   }
 };
 
-/// Shadow rays: what each adds to the radiance of its owner, an entry of a RayQueue, if nothing is in the
-/// way.
+/// Shadow rays. Each adds `light` to the radiance of its owner, an entry of a RayQueue, if nothing blocks it.
 struct ShadowQueue {
   RayBatch rays;
   Column<std::uint32_t> owner;
   Column<Color> light;
-  Column<std::uint8_t> occluded;  ///< for the tracer: what it found
+  Column<std::uint8_t> occluded;  ///< written by trace_shadows
 
   std::size_t size() const { return owner.size(); }
 

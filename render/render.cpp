@@ -25,7 +25,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Collects what tiles report and passes it on to the caller's functions, one thread at a time.
+/// Collects the reports of tiles and calls the caller's functions, one thread at a time.
 class Monitor {
  public:
   Monitor(const RenderOptions& options, const Picture& picture, Clock::time_point start)
@@ -87,7 +87,7 @@ void describe_world(const World& world, RenderReport& report) {
 void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture& picture, Monitor& monitor) {
   const std::vector<FinishedTile> tiles = cut_tiles(picture.width, picture.height, tile_size);
   tbb::enumerable_thread_specific<TileWorkspace> workspaces;
-  // One tile per task: tiles differ much in cost, and a stop should not wait for a block of them.
+  // One tile per task: their costs differ greatly, and stopping should not wait for a block of tiles.
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
@@ -130,7 +130,7 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
 RenderResult render(Scene scene, const RenderOptions& options) {
   if (options.threads == 0) return render_here(std::move(scene), options);
   std::optional<tbb::global_control> more;
-  // An arena alone gets no more threads than the machine has.
+  // By itself an arena gets at most as many threads as the machine has.
   if (static_cast<int>(options.threads) > tbb::info::default_concurrency())
     more.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   tbb::task_arena arena(static_cast<int>(options.threads));

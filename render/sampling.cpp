@@ -43,7 +43,7 @@ SquareSample StratifiedPattern::operator[](std::uint32_t sample) const {
 }
 
 std::uint64_t pattern_key(std::uint64_t pixel, std::uint32_t dimension) {
-  // No sample has this number, so patterns share no random bits with the samples themselves.
+  // No sample has this number, so patterns share no random bits with samples.
   return random_bits(pixel, 0xffffffffu, dimension);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Points that are spread evenly over the unit square, and what they are mapped to.
+/// \file Sample points spread evenly over the unit square, and directions made from them.
 
 #include <cstdint>
 
@@ -13,20 +13,20 @@ struct SquareSample {
   double x = 0, y = 0;
 };
 
-/// What every pattern of a single point consists of.
+/// The only point of every pattern of one point.
 inline constexpr SquareSample kSquareCentre{0.5, 0.5};
 
 /// A pattern of `count` points chosen by `key`: correlated multi-jittered sampling (Kensler 2013).
 ///
 /// The pattern has m = floor(sqrt(count)) columns and ceil(count / m) rows. If they multiply to `count`, each
-/// cell of that grid holds exactly one point; and for any count, each of `count` equal intervals of y and at
-/// most one point each of the cells' sub-columns of x. Points come in random order. A single point is the
-/// centre of the square.
+/// cell of that grid holds exactly one point. For any count, each of `count` equal intervals of y holds
+/// exactly one point, and each sub-column of a cell's x range holds at most one. Points come in random order.
+/// A single point is the centre of the square.
 ///
 /// Departs from the paper in its hash functions: permutations and jitter are those of core/random.h.
 class StratifiedPattern {
  public:
-  /// `whole` prepares for most of the points to be asked for.
+  /// `whole`: most of the points will be asked for, so tables are prepared.
   StratifiedPattern(std::uint32_t count, std::uint64_t key, bool whole = true);
   /// Point `sample` < count.
   SquareSample operator[](std::uint32_t sample) const;
@@ -39,7 +39,7 @@ class StratifiedPattern {
   double per_row_, per_column_, per_count_;  ///< one over the number
   Permutation order_, column_, sub_column_;
   bool tabulated_;
-  /// Where the permutations of few columns and rows lead.
+  /// The permutations, as tables, if columns and rows are few.
   std::uint8_t column_at_[kTabulated], sub_column_at_[kTabulated];
 };
 
@@ -48,8 +48,7 @@ inline SquareSample stratified_sample(std::uint32_t sample, std::uint32_t count,
   return StratifiedPattern(count, key, false)[sample];
 }
 
-/// The key of the pattern that a pixel uses for its dimension `dimension` (its random numbers' key being
-/// `pixel`).
+/// The key of the pattern for dimension `dimension` of the pixel whose random numbers have the key `pixel`.
 std::uint64_t pattern_key(std::uint64_t pixel, std::uint32_t dimension);
 
 /// A unit vector about the unit normal `n` with density cos(angle) / pi.

@@ -7,17 +7,17 @@
 
 namespace oktett {
 
-/// Beside the hits' InteractionBlock: their rays, and one light as the hits see it. Lanes read and write whole
-/// groups of eight, so the entries between the last hit and the end of its group must hold numbers, whatever
-/// their values; zeros are fast.
+/// Beside the hits' InteractionBlock: their rays, and one light as the hits see it. Lanes read and write
+/// whole groups of eight, so the entries between the last hit and the end of its group must hold numbers,
+/// whatever their values; zeros are fast.
 struct ShadingColumns {
   static constexpr std::size_t kMost = InteractionBlock::kMost;
 
   std::size_t count = 0;
-  float direction[3][kMost];          ///< unit direction in which the ray travels
-  std::int32_t exponent[kMost];       ///< to which the highlight is raised, 0 if not by squaring
+  float direction[3][kMost];     ///< unit direction in which the ray travels
+  std::int32_t exponent[kMost];  ///< to which the highlight is raised, 0 if not by squaring
   std::int32_t greatest_exponent = 0;
-  float ng[3][kMost], ns[3][kMost];   ///< as in ShadingPoint
+  float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
 
   float origin[3][kMost];  ///< of the ray to the light
   float falloff[kMost];    ///< 1 / squared distance; not set for directional lights

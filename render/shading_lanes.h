@@ -1,13 +1,13 @@
 #pragma once
-/// \file The formulas of local shading, in lanes: which way normals face, the way to a light, Phong's cosines.
-/// Single hits use them with one lane, so a hit gets the same bits alone and in a group.
+/// \file The formulas of local shading, in lanes: which way normals face, the way to a light, Phong's
+/// cosines. Single hits use them with one lane, so a hit gets the same bits alone and in a group.
 
 #include "core/affine_lanes.h"
 
 namespace oktett {
 
-/// Turns the normals of surfaces towards the origins of rays along `direction`: `n` to `ng`, `shading` to `ns`.
-/// Returns the lanes in which `n` pointed away from the origin.
+/// Turns the normals of surfaces towards the origins of rays along `direction`: `n` to `ng`, `shading` to
+/// `ns`. Returns the lanes in which `n` pointed away from the origin.
 template <class F>
 OKTETT_INLINE typename F::M face_ray(const Vec3<F>& direction, const Vec3<F>& n, const Vec3<F>& shading,
                                      Vec3<F>& ng, Vec3<F>& ns) {
@@ -15,8 +15,8 @@ OKTETT_INLINE typename F::M face_ray(const Vec3<F>& direction, const Vec3<F>& n,
   const auto behind = dot_lanes(direction, n) > zero;
   ng = scale_lanes(n, select(behind, -one, one));
   ns = scale_lanes(shading, select(dot_lanes(shading, ng) < zero, -one, one));
-  // An interpolated normal may lean away from the ray at a silhouette. It is bent back until the ray just sees the
-  // front of the surface.
+  // An interpolated normal may lean away from the ray at a silhouette. It is bent back until the ray just
+  // sees the front of the surface.
   const F away = dot_lanes(direction, ns);
   const auto leans = away > -least;
   if (any(leans))

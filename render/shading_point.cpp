@@ -14,8 +14,8 @@ struct Footprint {
   Vec2f dx, dy;
 };
 
-/// The footprint from vectors on the tangent plane. dp/dv is not known; it is taken to be as long as dp/du
-/// and at right angles to it, which is exact for textures that are laid on without distortion.
+/// The footprint from vectors in the tangent plane. dp/dv is not known; it is assumed to be as long as dp/du
+/// and perpendicular to it, which is exact for textures without distortion.
 Footprint footprint(const SurfaceInteraction& s, const Vec3f& x, const Vec3f& y, float scale) {
   const float square = dot(s.tangent, s.tangent);
   const Vec3f du = s.tangent * (scale / square);
@@ -26,7 +26,7 @@ Footprint footprint(const SurfaceInteraction& s, const Vec3f& x, const Vec3f& y,
   return known ? f : Footprint{};
 }
 
-/// Camera rays know their neighbours; other rays are taken for cones that open as wide as a pixel does.
+/// The neighbours of a camera ray are known. Other rays count as cones with the angle of a pixel.
 Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& hit,
                             const SurfaceInteraction& s, const RayHistory& history) {
   Vec3f x, y;
@@ -70,7 +70,7 @@ Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction
   return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
 }
 
-/// The normal that a tangent-space normal map states.
+/// The normal from a tangent-space normal map.
 Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const Footprint& f) {
   const Vec3f flat = s.tangent - n * dot(s.tangent, n);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A hit with its material looked up: all that the integrators ask about a surface.
+/// \file Shading points: a hit's surface interaction with its material looked up, as the integrators need it.
 
 #include "core/ray.h"
 #include "core/surface_interaction.h"
@@ -8,7 +8,7 @@
 
 namespace oktett {
 
-/// How a ray came to its hit, which decides how finely textures are looked up.
+/// What is known of a ray's path; it decides how finely textures are looked up.
 struct RayHistory {
   float distance = 0;        ///< length of the path up to the ray's origin
   bool from_camera = false;  ///< a camera ray, or its straight continuation
@@ -22,22 +22,22 @@ struct ShadingPoint {
   Vec3f ng, ns;     ///< geometric and shading normal, turned towards the ray's origin; dot(direction, ns) < 0
   bool front = true;  ///< the ray comes from the side that the surface's own normal points to
   Color color, specular_color, emission;  ///< textures included
-  float opacity = 1;                      ///< share of the surface that is there at all; the rest is a hole
+  float opacity = 1;                      ///< fraction that is surface; the rest is a hole
 };
 
-/// `ray` is of unit direction and has the valid hit `hit`, whose surface is `s`; of that, uv and tangent may
-/// be missing: they are found if textures or the picture's data layers ask for them.
+/// `ray` has unit direction, and `hit` is its valid hit, with the surface interaction `s`. uv and tangent of
+/// `s` may be missing; they are computed if textures or the picture's data layers need them.
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);
 
 /// The fraction of light that passes straight through the surface at a hit of a shadow ray: through holes
-/// unchanged, else material colour * transparency. Of `s` only the names count.
+/// unchanged, else material colour * transparency. Uses only the names of `s`.
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit,
                     const SurfaceInteraction& s);
 
 bool has_textures(const Material& material);
 
-/// True if `transmittance` is black, whatever the place of the hit.
+/// True if `transmittance` is black at every hit.
 bool is_opaque(const Material& material);
 
 }  // namespace oktett

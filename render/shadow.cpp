@@ -13,14 +13,14 @@ static constexpr int kMostLayers = 128;
 
 static bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
-/// The rest of a shadow ray behind the surface `s`. It still ends where `ray` does.
+/// The part of a shadow ray behind the surface `s`. It ends where `ray` ends.
 static Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
   Ray rest = ray;
   rest.origin = offset_origin(s, ray.direction);
   if (ray.tmax < std::numeric_limits<float>::infinity()) {
     rest.direction = ray.origin + ray.direction * ray.tmax - rest.origin;
     rest.tmax = 1 - 0x1p-24f;
-    // The surface may lie so close to the end that the offset passes it.
+    // The surface may be so close to the end of the ray that the offset moves past the end.
     if (!(dot(rest.direction, ray.direction) > 0)) rest.tmax = 0;
   }
   return rest;
@@ -44,7 +44,7 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
       const Hit hit = hits[k];
       if (!hit.valid()) continue;
       Color& light = passed[left[k]];
-      // Most surfaces let nothing pass, which their names tell.
+      // Most materials are opaque, and the names are enough to find the material.
       const SurfaceInteraction names = identify(accel, hit);
       const bool opaque = is_opaque(material_at(*context.world, names));
       light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names);

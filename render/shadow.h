@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which lights a point sees.
+/// \file Shadow rays: how much light arrives from each light.
 
 #include "render/context.h"
 #include "render/ray_queue.h"

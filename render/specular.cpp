@@ -4,8 +4,8 @@
 
 namespace oktett {
 
-/// The refracted direction, which must end up below the true surface: if the shading normal bends it back
-/// above, the geometric normal decides.
+/// The refracted direction. It must lead below the true surface: if refraction by the shading normal leads
+/// above, the geometric normal is used.
 static std::optional<Vec3f> refract_below(const ShadingPoint& p, float eta) {
   const std::optional<Vec3f> direction = refract(p.direction, p.ns, eta);
   if (direction && dot(*direction, p.ng) >= 0) return refract(p.direction, p.ng, eta);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The directions in which a mirror or a transparent surface sends a ray on, and with what weights.
+/// \file The mirror and refracted rays of a surface: directions and weights.
 
 #include "render/shading_point.h"
 
@@ -12,7 +12,7 @@ struct SpecularRays {
   Color refracted{0, 0, 0};  ///< transparency * colour * (1 - Fresnel reflectance)
 };
 
-/// The ray enters the material if it comes from the front, else it leaves.
+/// A ray from the front enters the material; a ray from behind leaves it.
 SpecularRays specular_rays(const ShadingPoint& p);
 
 }  // namespace oktett

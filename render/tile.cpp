@@ -8,11 +8,11 @@
 namespace oktett {
 namespace {
 
-/// Most camera samples per wavefront: enough to keep packets full after some bounces, few enough to stay in
-/// the cache.
+/// Greatest number of camera samples in a wavefront: enough to keep packets full after some bounces, few
+/// enough to stay in the cache.
 constexpr std::uint32_t kWavefrontSamples = 4096;
 
-/// The even bits of `code`, closed up.
+/// The even bits of `code`, packed together.
 std::uint32_t even_bits(std::uint32_t code) {
   std::uint32_t bits = 0;
   for (int i = 0; i < 16; ++i) bits |= ((code >> (2 * i)) & 1u) << i;
@@ -51,7 +51,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
   for (const WavefrontPixel& p : work.order)
     work.pixels.push_back({p.number, context.window.x0 + tile.x + p.x, context.window.y0 + tile.y + p.y});
   const std::uint32_t samples = context.settings.samples;
-  // Wavefronts of equal size: a small rest would not fill tiles of rays.
+  // Wavefronts of equal size: a small remainder would leave packets partly empty.
   const std::size_t most_pixels = std::max(1u, kWavefrontSamples / samples);
   const std::size_t wavefronts = (work.pixels.size() + most_pixels - 1) / most_pixels;
   const std::size_t pixels_per_wavefront = (work.pixels.size() + wavefronts - 1) / wavefronts;
@@ -66,7 +66,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
   for (std::size_t p = 0; p < work.pixels.size(); p += pixels_per_wavefront) {
     const auto pixels =
         std::span(work.pixels).subspan(p, std::min(pixels_per_wavefront, work.pixels.size() - p));
-    // A pixel's samples follow each other; if they fill several wavefronts, the pixel is alone in them.
+    // The samples of a pixel are consecutive. If they fill several wavefronts, these hold no other pixel.
     std::uint32_t number = pixels.front().number;
     PixelSum sum;
     for (std::uint32_t s = 0; s < samples; s += samples_per_wavefront) {
@@ -90,7 +90,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
         if (!add_to_pixel(sum, wavefront.samples, i)) ++counts.bad_samples;
       }
     }
-    // Pixels are black to begin with, those that were skipped stay so.
+    // Pixels are black at first; those that were skipped stay black.
     if (!single) write(number, sum);
   }
   counts.rays = wavefront.counts;

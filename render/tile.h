@@ -1,5 +1,5 @@
 #pragma once
-/// \file The picture cut into tiles, and the work on one of them.
+/// \file Tiles of a picture, and how one of them is rendered.
 
 #include <cstdint>
 #include <vector>
@@ -19,7 +19,7 @@ struct TileCounts {
   std::uint64_t bad_samples = 0;
 };
 
-/// Storage that a thread keeps from one tile to the next.
+/// Memory that a thread reuses from tile to tile.
 struct TileWorkspace {
   Wavefront wavefront;
   std::vector<WavefrontPixel> pixels;  ///< of the tile

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Directions of camera rays, many at a time.
+/// \file Directions of camera rays, computed in lanes.
 
 #include <cstddef>
 
@@ -8,13 +8,13 @@
 
 namespace oktett {
 
-/// Points of an image plane before a pinhole.
+/// The image plane in front of a pinhole camera.
 struct ViewPlane {
   Vec3d corner;                    ///< from the pinhole to the point (0, 0)
   Vec3d per_pixel_x, per_pixel_y;  ///< from a point to its neighbours
 };
 
-/// Points (x[i], y[i]) of a plane, and where the components of the unit vectors from the pinhole to them go.
+/// Points (x[i], y[i]) of a plane, and the columns that receive the unit vectors from the pinhole to them.
 struct ViewPoints {
   const double* x = nullptr;
   const double* y = nullptr;

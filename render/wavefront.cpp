@@ -16,12 +16,12 @@ namespace {
 
 /// Holes that a camera path may lead through, in addition to its bounces.
 constexpr unsigned kMostHoles = 128;
-/// Bound on the growth of a tree of rays where materials give out more light than they receive.
+/// Limits the rays of a sample where materials reflect more light than they receive.
 constexpr std::uint16_t kMostRaysPerLevel = 256;
 constexpr float kLeastThroughput = 1 / 4096.0f;
 /// Shadow rays are traced when this many have gathered.
 constexpr std::size_t kShadowBatch = 4096;
-/// Hits whose surfaces are found together.
+/// Number of hits that are shaded together.
 constexpr std::size_t kShadeBlock = InteractionBlock::kMost;
 
 void find_hits(const RenderContext& context, Wavefront& wavefront) {
@@ -29,7 +29,8 @@ void find_hits(const RenderContext& context, Wavefront& wavefront) {
   closest_hit(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), context.isa);
 }
 
-/// Gives every ray its radiance if it escapes, none yet if not, and lists those that do not.
+/// Sets the radiance of each ray, the background's if it hit nothing and 0 if it did, and lists the rays that
+/// hit.
 void start_level(const RenderContext& context, Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
   wavefront.radiance.resize_uninitialized(count);
@@ -46,7 +47,7 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
   wavefront.next.clear();
 }
 
-/// A background that is part of the picture covers it.
+/// A background that is part of the picture counts as covering.
 void cover_background(const RenderContext& context, Wavefront& wavefront) {
   if (!context.opaque_background) return;
   for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
@@ -72,7 +73,8 @@ void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::s
            s.user};
 }
 
-/// The order of the lights, and within a light that of the rays, is that in which each ray gets its light.
+/// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
+/// entry.
 void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
   for (ShadowQueue& queue : wavefront.shadows) {
     trace_shadows(context, queue, wavefront.radiance);
@@ -87,7 +89,7 @@ bool shadows_are_full(const Wavefront& wavefront) {
   return false;
 }
 
-/// In blocks, so that what is known of a hit stays in the nearest cache until it has been shaded.
+/// Shades hits in blocks, so that their surface interactions stay in the nearest cache until they are used.
 void shade_hits(const RenderContext& context, Wavefront& wavefront) {
   const Integrator integrator = integrator_for(context.settings.kind);
   const bool in_blocks = context.settings.kind == IntegratorKind::whitted && !context.data_layers;
@@ -126,7 +128,7 @@ bool meets_anything(const Wavefront& wavefront) {
   return false;
 }
 
-/// Columns in which all camera rays are alike.
+/// Fills the columns whose value is the same for all camera rays.
 void fill_camera_rays(Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
   const RayQueue::Entry like;
@@ -138,13 +140,13 @@ void fill_camera_rays(Wavefront& wavefront) {
   std::fill_n(rays.from_camera.data(), count, std::uint8_t{1});
 }
 
-/// Samples that have found nothing yet.
+/// Resets the results of samples.
 void fill_samples(SampleBatch& samples) {
   const std::size_t count = samples.size();
   std::fill_n(samples.color.data(), count, Color{});
   std::fill_n(samples.alpha.data(), count, 0.0f);
   for (FirstHit& first : samples.first) {
-    // The rest of a first hit is written when it is found.
+    // The other members are written when a hit is found.
     first.found = false, first.primitive = first.object = kNoId;
   }
 }
@@ -188,7 +190,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
   for (wavefront.level = 0; wavefront.level <= most_levels && !wavefront.rays.empty(); ++wavefront.level) {
     find_hits(context, wavefront);
     if (wavefront.level == 0) {
-      // Wavefronts that share a pixel are all needed for its mean.
+      // If several wavefronts share a pixel, all of them are needed for its mean.
       if (wavefront.whole_pixels && !context.opaque_background && !meets_anything(wavefront)) return false;
       fill_samples(wavefront.samples);
       fill_camera_rays(wavefront);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A wavefront: the camera samples of some pixels, traced together level by level.
+/// \file A wavefront: the rays of one bounce in a tile, traced and shaded together.
 
 #include <cstdint>
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace oktett {
 
-/// What the data layers show: the nearest surface that a sample's camera ray meets. The rest counts only if
-/// one is `found`.
+/// The surface that a sample's camera ray meets first, for the data layers. The other members hold values
+/// only if `found`.
 struct FirstHit {
   bool found = false;
   float depth = 0;  ///< along the view axis
@@ -22,7 +22,7 @@ struct FirstHit {
   std::uint32_t primitive = kNoId, object = kNoId;
 };
 
-/// Camera samples: where they come from and what they found.
+/// Camera samples in columns: their places and their results.
 struct SampleBatch {
   Column<std::uint32_t> pixel;   ///< the caller's number of the pixel
   Column<std::uint32_t> number;  ///< of the sample in its pixel
@@ -30,7 +30,7 @@ struct SampleBatch {
   Column<Vec2f> offset;          ///< from the pixel's centre, in pixels
   Column<Color> color;
   Column<float> alpha;
-  Column<std::uint16_t> spawned;  ///< rays of the next level so far
+  Column<std::uint16_t> spawned;  ///< number of rays queued for the next bounce
   Column<FirstHit> first;         ///< empty unless data layers are wanted
 
   std::size_t size() const { return pixel.size(); }
@@ -53,43 +53,42 @@ struct RayCounts {
   std::uint64_t total() const { return camera + shadow + reflected + refracted; }
 };
 
-/// A sample's result depends on the sample alone, not on what else is in its wavefront: each of its rays sums
-/// its own light in a fixed order, and a sample sums its rays in the order of the queue, which the others
-/// cannot change.
+/// The rays of one bounce of some samples, and what is kept for the next bounce. The result of a sample does
+/// not depend on the other samples of its wavefront: each ray sums its light in a fixed order, and a sample
+/// sums its rays in the order of the queue, which other samples do not change.
 struct Wavefront {
   SampleBatch samples;
-  RayQueue rays, next;     ///< of this level and the next
+  RayQueue rays, next;     ///< of this bounce and the next
   HitBatch hits;           ///< of `rays`
   Column<Color> radiance;  ///< light found by each of `rays`, throughput included
-  /// One queue per light, so that the rays of a queue share an end; owners are entries of `rays`. Rays to no
-  /// light in particular stand in the first.
+  /// One queue per light, so that all rays of a queue lead to the same light. Owners are entries of `rays`.
+  /// Rays that lead to no light, such as those of ambient occlusion, are in the first queue.
   std::vector<ShadowQueue> shadows;
   Column<std::uint32_t> hit_rays;  ///< entries of `rays` that hit something
   Column<double> film_x, film_y;   ///< where the camera rays pass the film
-  unsigned level = 0;              ///< 0 = camera rays
+  unsigned level = 0;              ///< number of the bounce; 0 = camera rays
   bool whole_pixels = true;        ///< all samples of each of its pixels are in this wavefront
   RayCounts counts;
 };
 
-/// Begins a wavefront, empty or finished, with the camera rays of samples [first, last) of each of the
-/// pixels.
+/// Fills a wavefront, which may be new or finished, with the camera rays of samples [first, last) of each
+/// pixel.
 void start_wavefront(const RenderContext& context, std::span<const WavefrontPixel> pixels,
                      std::uint32_t first, std::uint32_t last, Wavefront& wavefront);
 
-/// Traces the samples to the end: fills their colour, alpha and first hit. False if there is nothing to fill
-/// in, since whole pixels met nothing and the background is black.
+/// Traces all bounces and fills the samples' colour, alpha and first hit. False if nothing was filled in
+/// because no sample of the pixels met anything and the background is black.
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront);
 
-/// How a ray goes on from a surface.
+/// How a ray continues at a surface.
 enum class Bounce {
   reflected,
   refracted,
   straight,  ///< through a hole: not counted as a bounce
 };
 
-/// Adds to the next level the ray that leaves `p`, found by entry `ray` of this level, in `direction`. Rays
-/// that could change the picture by less than anyone can see are dropped, and so are those beyond 256 of one
-/// sample in one level.
+/// Queues for the next bounce the ray that leaves `p`, the hit of entry `ray`, in `direction`. Drops rays
+/// whose effect on the picture would be invisible, and all rays beyond 256 of one sample in one bounce.
 void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
                  const Color& throughput, Bounce bounce);
 

@@ -23,7 +23,7 @@ Ray shadow_ray(const ShadingColumns& c, std::size_t k, const LightSource& light)
   return ray;
 }
 
-/// Hit `i` by itself: all of it, or if it is plain, and thus lit already, its mirror and what shines through.
+/// Shades hit `i` alone. A plain hit is already lit, so only its mirror and refracted rays are queued.
 OKTETT_NOINLINE void shade_alone(const RenderContext& context, Wavefront& wavefront, std::uint32_t i,
                                  const SurfaceInteraction& found, bool plain) {
   const ShadingPoint p =
@@ -60,7 +60,7 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   for (std::size_t n = 0; n < context.lights.size(); ++n) {
     const LightSource& light = context.lights[n];
     code.meet_light(found, light, c);
-    // Room for all of them: asking for it ray by ray and column by column takes longer than writing.
+    // Memory for all of them at once: push_back checks the capacity of each column for each ray.
     ShadowQueue& queue = wavefront.shadows[n];
     std::size_t end = queue.size();
     queue.resize_uninitialized(end + count);

@@ -9,9 +9,9 @@
 
 namespace oktett {
 
-/// What shade_whitted does for each of the rays `which[0]` ... `which[count - 1]` of the wavefront, whose
-/// surfaces are `found`, to the same bits. None of them may need the picture's data layers. Hits of materials
-/// with textures are shaded one by one.
+/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
+/// `found`, with the same bits as shade_whitted. For pictures without data layers. Hits of materials with
+/// textures are shaded one by one.
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// \file The surface at hits of a mesh, in lanes. Single hits use the same functions with one lane, so a hit gets
-/// the same bits alone and in a group.
+/// \file The surface at hits of a mesh, in lanes. Single hits use the same functions with one lane, so a hit
+/// gets the same bits alone and in a group.
 
 #include "accel/accel_data.h"
 #include "core/affine_lanes.h"
@@ -54,8 +54,8 @@ OKTETT_INLINE Vec3<F> weigh(const Vec3<F> (&p)[3], const F& wa, const F& wb, con
 }
 
 /// Bound on the error of the interpolated coordinate a wa + b wb + c wc: gamma(7) bounds the rounding of the
-/// interpolation (Pharr, Jakob, Humphreys 2016, section 3.9.4); the weights, which are rounded to float, add two
-/// more units.
+/// interpolation (Pharr, Jakob, Humphreys 2016, section 3.9.4); the weights, which are rounded to float, add
+/// two more units.
 template <class F>
 OKTETT_INLINE F weighted_error(const F& a, const F& b, const F& c, const F& wa, const F& wb, const F& wc) {
   const F magnitude = abs(a * wa) + abs(b * wb) + abs(c * wc);
@@ -63,8 +63,8 @@ OKTETT_INLINE F weighted_error(const F& a, const F& b, const F& c, const F& wa, 
   return F(0x1p-21f) * magnitude + F(0x1p-22f) * spread + F(1e-37f);
 }
 
-/// The surface of triangles with corners `p`, in their place, at barycentric coordinates u, v. `normals` are those
-/// of the corners in the mesh's own space, zero where unknown; they count only if frame.smooth.
+/// The surface of triangles with corners `p`, in their place, at barycentric coordinates u, v. `normals` are
+/// those of the corners in the mesh's own space, zero where unknown; they count only if frame.smooth.
 template <int W, class A>
 OKTETT_INLINE MeshSurface<Simd<float, W, A>> mesh_surface(const MeshFrame& frame,
                                                           const Vec3<Simd<float, W, A>> (&p)[3],

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Surface points at hits, in lanes: what the formulas of all shapes share. Single hits use them with one
-/// lane, so a hit gets the same bits alone and in a group.
+/// \file Surface points at hits, in lanes: what the formulas of all shapes share. Single hits use them with
+/// one lane, so a hit gets the same bits alone and in a group.
 
 #include "core/affine_lanes.h"
 #include "core/ray.h"
@@ -50,8 +50,9 @@ OKTETT_INLINE Simd<float, W, A> round_up_lanes(const Simd<double, W, A>& x) {
   return select(mask_cast<float>(to_double(nearest) < x), next, nearest);
 }
 
-/// Bound on |position - true hit point| per component where `point`, rounded to float, is the position: half an
-/// ulp of t along the ray, the rounding of the point itself, and `surface_error`, the shape's own uncertainty.
+/// Bound on |position - true hit point| per component where `point`, rounded to float, is the position: half
+/// an ulp of t along the ray, the rounding of the point itself, and `surface_error`, the shape's own
+/// uncertainty.
 template <int W, class A>
 OKTETT_INLINE Vec3<Simd<float, W, A>> position_error(const HitPoints<Simd<double, W, A>>& hit,
                                                      const Vec3<Simd<double, W, A>>& point,

@@ -55,11 +55,11 @@ void meet_light_code(const InteractionBlock& s, const LightSource& light, Shadin
       turn_to_light(light.place, position, l, falloff);
       falloff.store(c.falloff + i);
     }
-    const Vec3<F> origin = offset_lanes(position, load_lanes<F>(s.position_error, i),
-                                        load_lanes<F>(s.geometric_normal, i), l);
+    const Vec3<F> origin =
+        offset_lanes(position, load_lanes<F>(s.position_error, i), load_lanes<F>(s.geometric_normal, i), l);
     store_lanes(origin, c.origin, i);
-    const auto cosines = phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i),
-                                       load_lanes<F>(c.ns, i), l);
+    const auto cosines =
+        phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);
     cosines.cosine.store(c.cosine + i), cosines.highlight.store(c.highlight + i);
     const auto x = to_double(min(F(1.0f), cosines.highlight));
     to_float(whole_powers(x, I::load(c.exponent + i), c.greatest_exponent)).store(c.power + i);

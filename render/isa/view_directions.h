@@ -8,7 +8,7 @@
 
 namespace oktett {
 
-/// Without vector registers one point at a time.
+/// In groups of eight points; one at a time without vector registers.
 template <class A>
 void view_directions_code(const ViewPlane& plane, const ViewPoints& points) {
   constexpr int W = std::is_same_v<A, ScalarIsa> ? 1 : 8;
