@@ -45,7 +45,7 @@ static std::size_t edit_distance(const std::string& a, const char* b) {
 }
 
 std::string nearest_name(const std::string& name, const char* const* known, std::size_t known_count) {
-  // A name of thousands of characters is no typing error, and its distance would cost quadratic time.
+  // A name of thousands of characters is not a typing error, and computing its distance takes quadratic time.
   if (name.size() > 64) return {};
   std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
   std::string nearest;

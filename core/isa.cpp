@@ -28,7 +28,7 @@ std::optional<Isa> parse_isa(std::string_view name) {
   return std::nullopt;
 }
 
-/// This build holds code for it (see OKTETT_INSTRUCTION_SETS) and this processor runs it.
+/// True if this build has code for the set (see OKTETT_INSTRUCTION_SETS) and this processor can run it.
 static bool is_available(Isa isa) {
   switch (isa) {
     case Isa::scalar:

@@ -48,7 +48,7 @@ double exp2(double x) {
   const double whole = std::floor(x + 0.5);
   const int n = static_cast<int>(whole);
   const double fraction = polynomial(kTaylor, (x - whole) * std::numbers::ln2);
-  // In two steps, as 2^n alone may be out of range where the product is not.
+  // In two steps, since 2^n may be out of range although the product is not.
   return fraction * power_of_two(n / 2) * power_of_two(n - n / 2);
 }
 
@@ -69,7 +69,7 @@ static double log_mantissa(double x, double& exponent) {
   return s * polynomial(kSeries, s * s);
 }
 
-/// The logarithm of what has no mantissa: 0, negative, infinite and NaN. False if `x` is none of these.
+/// Logarithms of special arguments: 0, negative, infinite and NaN. False if `x` is none of these.
 static bool special_log(double x, double& result) {
   if (x > 0 && x < kInfinity) return false;
   result = x == 0 ? -kInfinity : x > 0 ? x : kNan;

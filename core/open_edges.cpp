@@ -13,9 +13,9 @@ namespace oktett {
 
 namespace {
 
-/// For each vertex, the least vertex at its position.
+/// For each vertex, the lowest index of a vertex at the same position.
 std::vector<std::uint32_t> weld(const TriangleMesh& mesh) {
-  // Bits order NaN too. Adding zero makes one of both zeros.
+  // Compared as bits, NaN has a place in the order. Adding zero turns -0 into 0.
   const auto key = [&](std::uint32_t i) {
     const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x + 0.0f); };
     const Vec3f& p = mesh.positions[i];

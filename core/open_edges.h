@@ -1,5 +1,5 @@
 #pragma once
-/// \file Whether a mesh is closed.
+/// \file Open edges: checks whether a mesh is closed.
 
 #include <cstdint>
 
@@ -7,14 +7,14 @@
 
 namespace oktett {
 
-/// Edges that triangles do not pass in both directions equally often.
+/// Edges that the triangles do not traverse equally often in both directions.
 struct OpenEdges {
   std::uint64_t count = 0;
-  Vec3f from, to;  ///< the first of them, by the triangles' order
+  Vec3f from, to;  ///< the first such edge, in the order of the triangles
 };
 
-/// Vertices at the same position count as one, as files often repeat them. 0 for a closed mesh whose
-/// triangles are wound alike.
+/// Vertices at the same position count as one, since files often repeat them. 0 for a closed mesh whose
+/// triangles have consistent winding.
 OpenEdges find_open_edges(const TriangleMesh& mesh);
 
 }  // namespace oktett

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Work that may be done at the same time.
+/// \file Two tasks in parallel.
 
 #include <tbb/parallel_invoke.h>
 
@@ -7,7 +7,7 @@
 
 namespace oktett {
 
-/// Calls f() and g(), if a thread is free at the same time.
+/// Calls f() and g(), in parallel if a thread is free.
 template <class F, class G>
 void run_both(F&& f, G&& g) {
   tbb::parallel_invoke(std::forward<F>(f), std::forward<G>(g));

@@ -9,9 +9,9 @@
 #endif
 #endif
 
-/// For functions on the hot path that must not survive as calls.
+/// For functions on the hot path that must always be inlined.
 #if defined(OKTETT_SANITIZED)
-// Instrumented code is many times larger; forced inlining would make it take minutes to compile.
+// Instrumented code is many times larger; with forced inlining it would take minutes to compile.
 #define OKTETT_INLINE inline
 #else
 #define OKTETT_INLINE inline __attribute__((always_inline))

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Random numbers without state: each is a function of its place, so that a picture does not depend on
-/// the order in which its pixels are computed.
+/// \file Random numbers without state: each is a function of pixel, sample and dimension, so a picture does
+/// not depend on the order in which its pixels are computed.
 
 #include <cstdint>
 
@@ -14,7 +14,7 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// 2^64 divided by the golden ratio: multiples of it spread evenly.
+/// 2^64 divided by the golden ratio: its multiples modulo 2^64 are spread evenly.
 inline constexpr std::uint64_t kGoldenBits = 0x9e3779b97f4a7c15ull;
 
 /// The key of all random numbers of one pixel. `pixel` counts through the full frame, so a crop shows the
@@ -31,7 +31,7 @@ inline std::uint64_t random_bits(std::uint64_t key, std::uint32_t sample, std::u
 
 /// Uniform in [0, 1): a multiple of 2^-24.
 inline float random_float(std::uint64_t key, std::uint32_t sample, std::uint32_t dimension) {
-  // In 32 bits signed, which processors convert at once.
+  // As a signed 32-bit integer, which processors convert in one instruction.
   return static_cast<float>(static_cast<std::int32_t>(random_bits(key, sample, dimension) >> 40)) * 0x1p-24f;
 }
 
@@ -40,11 +40,11 @@ class Permutation {
  public:
   Permutation(std::uint32_t n, std::uint64_t key);
 
-  /// Where `i` < n goes.
+  /// The image of `i` < n.
   std::uint32_t operator()(std::uint32_t i) const {
     if (n_ < 2) return 0;
-    // Each step is a bijection on the bits of `mask_`; walking its cycle until it returns to the range
-    // restricts it to n numbers.
+    // Each step is a bijection on the bits of `mask_`. Repeating it until the result is below n restricts it
+    // to n numbers ("cycle walking").
     do {
       for (const std::uint64_t bits : round_) {
         i = (i + static_cast<std::uint32_t>(bits)) & mask_;
@@ -62,7 +62,7 @@ class Permutation {
   std::uint64_t round_[3] = {};
 };
 
-/// Where a random permutation of 0 ... n-1, chosen by `key`, sends `i`. `i` < `n`.
+/// The image of `i` < `n` under a random permutation of 0 ... n-1 chosen by `key`.
 inline std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
   return Permutation(n, key)(i);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The parts of a double in lanes, exactly: exponents and significands, for elementary functions.
+/// \file Exponents and significands of doubles in lanes, exactly, for elementary functions.
 
 #include <bit>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Lanes from anywhere in memory.
+/// \file Gathers: loads of lanes from arbitrary indices.
 
 #include <cstdint>
 
@@ -58,8 +58,8 @@ OKTETT_INLINE batch<double, Avx5> gather(const std::uint16_t* base, batch<double
 
 }  // namespace native
 
-/// base[index[i]] in lane i, for floats and 16-bit numbers; the indices are whole, from 0 to 2^31 - 1. Of
-/// 16-bit numbers it may read the next one too.
+/// base[index[i]] in lane i, for floats and 16-bit numbers. The indices are whole numbers from 0 to 2^31 - 1.
+/// With 16-bit numbers it may also read the element that follows.
 template <class T, int W, class A>
 OKTETT_INLINE Simd<double, W, A> gather(const T* base, const Simd<double, W, A>& index) {
   Simd<double, W, A> r;

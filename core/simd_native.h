@@ -1,7 +1,7 @@
 #pragma once
-/// \file What the SIMD layer needs of one register: xsimd batches, plus the few operations that xsimd does
-/// not offer or whose treatment of NaN differs between its versions. A lone lane is a batch too, so that
-/// width 1 is the same source.
+/// \file Operations of the SIMD layer on one register: those of xsimd batches, and those that xsimd lacks or
+/// whose treatment of NaN differs between its versions. A single lane has the same operations, so that width
+/// 1 is the same source.
 
 #include <cmath>
 #include <cstdint>
@@ -37,15 +37,15 @@ struct LaneBool {
   bool v;
 };
 
-/// How a batch type is called for: element, lanes wanted, instruction set. `type` has at most that many
-/// lanes.
+/// Chooses the batch type for elements T, W lanes and instruction set A. `type` has at most W lanes; several
+/// are used if it has fewer.
 template <class T, int W, class A>
 struct Choose {
   using type = Lane<T, A>;
   using mask = LaneBool<T, A>;
 };
 
-// Each choice names an xsimd architecture; several lines share one.
+// Each choice names the xsimd architecture of its registers.
 #define OKTETT_CHOOSE(T, W, A, ARCH)         \
   template <>                                \
   struct Choose<T, W, A> {                   \
@@ -89,8 +89,8 @@ OKTETT_CHOOSE(std::int32_t, 16, Avx512Isa, xsimd::avx512bw)
 #endif
 #undef OKTETT_CHOOSE
 
-// --- one lane
-// -------------------------------------------------------------------------------------------------------
+// Operations on one lane, by plain arithmetic. Each gives the same bits as the operation of the same name on
+// a batch.
 
 template <class T, class A>
 OKTETT_INLINE Lane<T, A> operator+(Lane<T, A> a, Lane<T, A> b) {
@@ -186,8 +186,8 @@ OKTETT_INLINE void from_bits(LaneBool<T, A>& m, unsigned b) {
   m.v = b & 1;
 }
 
-// --- xsimd batches: the plain operations
-// ----------------------------------------------------------------------------
+// Operations on xsimd batches of any instruction set. Those that differ between sets are in
+// core/simd_x86.h.
 
 template <class T, class X>
 OKTETT_INLINE void load(xsimd::batch<T, X>& r, const T* p) {
@@ -216,7 +216,7 @@ OKTETT_INLINE xsimd::batch<float, X> flip_sign(xsimd::batch<float, X> a, xsimd::
   return a ^ (s & xsimd::batch<float, X>(-0.0f));
 }
 
-// Named here so that templates may mention them; instruction sets that have them overload them.
+// Declared here so that templates can name them; instruction sets that have them provide overloads.
 template <class B>
 B fma(B, B, B) = delete;
 template <class B>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Eight lanes put in order or moved together: what a traversal needs to push the children of a node.
+/// \file Sorting and compacting lanes: how a traversal pushes the children of a node in order.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace oktett {
 namespace native {
 
 #if defined(OKTETT_COMPILED_AVX2)
-/// Entry m lists the lanes that are set in m, lowest first, a byte each.
+/// Entry m lists the lanes that are set in m, lowest first, one byte each.
 struct CompactTable {
   std::uint64_t lanes[256] = {};
   constexpr CompactTable() {
@@ -19,7 +19,7 @@ struct CompactTable {
         if (m >> lane & 1) lanes[m] |= std::uint64_t{lane} << (8 * to++);
   }
 };
-// Not inline: a copy for each instruction set keeps its code to itself.
+// Not inline: each instruction set has its own copy, so that no code is shared between sets.
 constexpr CompactTable kCompact;
 
 /// The index vector that brings the lanes of `m` to the front.
@@ -62,7 +62,7 @@ OKTETT_INLINE __m128i first_lanes(int count) {
   return _mm_cmpgt_epi32(_mm_set1_epi32(count), _mm_setr_epi32(0, 1, 2, 3));
 }
 
-/// The lanes in `m`, of which there are at most four, in front; 0 behind them.
+/// The lanes in `m`, at most four, moved to the front and followed by zeros.
 template <class A>
 OKTETT_INLINE __m128i front(__m256i a, unsigned m) {
 #if defined(OKTETT_COMPILED_AVX512)
@@ -93,14 +93,14 @@ OKTETT_INLINE int store_descending(const Simd<float, 8, A>& keys, unsigned lanes
                                    std::uint32_t* out_values, float* out_keys) {
 #if defined(OKTETT_COMPILED_AVX2)
   if constexpr (kHasFma<A>) {
-    // The lane number in the last bits of the key makes it its own permutation.
+    // The last bits of a key are replaced by its lane number, so the sorted keys contain the permutation.
     const __m256i low = _mm256_set1_epi32(7);
     const __m256i key = _mm256_or_si256(_mm256_andnot_si256(low, _mm256_castps_si256(keys.part[0])),
                                         _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
     const int count = __builtin_popcount(lanes);
     if (OKTETT_LIKELY(count <= 4)) {
-      // Moved to the front, four need half a network. What stands behind them is less: 0, or a lane number.
+      // Four keys, moved to the front, need half a network. The entries behind them are 0 or lane numbers.
       const __m128i sorted = native::sort_descending(native::front<A>(key, lanes));
       const __m256i order = _mm256_castsi128_si256(sorted);
       _mm_storeu_si128(reinterpret_cast<__m128i*>(out_values),

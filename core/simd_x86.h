@@ -10,7 +10,7 @@ using xsimd::batch;
 using xsimd::batch_bool;
 using Sse = xsimd::sse4_2;
 
-// min(a, b) is a < b ? a : b and max(a, b) is a > b ? a : b, hence b if either is NaN: the accumulator stands
+// min(a, b) is a < b ? a : b and max(a, b) is a > b ? a : b, hence b if either is NaN: pass the accumulator
 // second.
 OKTETT_INLINE batch<float, Sse> min(batch<float, Sse> a, batch<float, Sse> b) { return _mm_min_ps(a, b); }
 OKTETT_INLINE batch<float, Sse> max(batch<float, Sse> a, batch<float, Sse> b) { return _mm_max_ps(a, b); }

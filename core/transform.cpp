@@ -81,7 +81,7 @@ static bool all_finite(const Affine& a) {
 
 bool Affine::is_invertible() const {
   if (!all_finite(*this)) return false;
-  // Relative to the columns' lengths the determinant measures how flat the image of the unit cube is.
+  // The determinant divided by the lengths of the columns measures how flat the image of the unit cube is.
   const double lengths = length(column(*this, 0)) * length(column(*this, 1)) * length(column(*this, 2));
   const double det = std::abs(determinant());
   return det > 1e-14 * lengths && det > 0 && all_finite(inverse());

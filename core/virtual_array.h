@@ -10,8 +10,8 @@
 
 namespace oktett {
 
-/// Reserves address space for `capacity` elements; pages become memory when first written. `truncate` gives
-/// the rest back, so neither growing nor shrinking copies anything. Fresh elements read as zero bytes.
+/// Reserves address space for `capacity` elements; pages are allocated when first written. `truncate`
+/// releases the rest. Neither growing nor shrinking copies elements. New elements read as zero bytes.
 template <class T>
 class VirtualArray {
   static_assert(std::is_trivially_copyable_v<T>);

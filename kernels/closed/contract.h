@@ -10,10 +10,10 @@
 /// - `S::kRoots` and `S::roots(ray, lanes, t)`: where the ray's whole line meets the shape, t[0] <= t[1], and
 ///   a mask of the lanes where it does. Computed in double in a fixed order of operations, so that every
 ///   width and instruction set gives the same bits;
-/// - `S::surface(pool, fetch, hits)`: the surface points at HitPoints, where fetch(column) returns the
-/// elements
-///   of a pool's column in lanes; `S::uv(pool, i, hit, point, s)`: uv and tangent of a
-///   single hit from its place on the ray and its place on the surface;
+/// - `S::surface(pool, fetch, hits)`: SurfacePoints at HitPoints; fetch(column) returns the elements of a
+///   pool's column in lanes;
+/// - `S::uv(pool, i, hit, point, s)`: uv and tangent of a single hit, from its place on the ray and its place
+///   on the surface;
 /// - `S::bounds(pool, i)`, except for unbounded shapes;
 /// - `S::kSolid`: whether it has an inside; if so, `S::inside(pool, i, point)`.
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Triangles of meshes as the tree stores them: blocks of eight in columns.
+/// \file The triangles of meshes in leaves of the tree: blocks of eight, stored in columns.
 
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 
 namespace oktett {
 
-/// Eight triangles: 320 bytes. `v[corner][axis][lane]`; unused lanes repeat a vertex three times, which
-/// nothing hits, and hold kNoId as item.
+/// Eight triangles: 320 bytes. `v[corner][axis][lane]`; unused lanes repeat a vertex three times, so no ray
+/// hits them, and have the item kNoId.
 struct alignas(64) TriangleBlock {
   static constexpr int kSize = 8;
   float v[3][3][kSize];

@@ -1,35 +1,35 @@
 #pragma once
-/// \file What float arithmetic can tell about a ray and a triangle: surely missed, surely hit with t within
-/// bounds, or unclear. "Surely" is about `decide_watertight`: whatever is called sure it would confirm, so a
-/// traversal may put its decision off. The error bounds are derived in docs/numerics.md.
+/// \file Classifies a ray and a triangle in float: surely missed, surely hit with t in bounds, or unclear.
+/// A sure answer is one that `decide_watertight` would confirm, so a traversal need not call that at once.
+/// The error bounds are derived in docs/numerics.md.
 
 #include "kernels/triangle/triangle_watertight.h"
 
 namespace oktett {
 
-/// In units of (size + shear)(reach) d_max: rounding errors of the scaled weights, 9 of 2^-24 and twice the
-/// determinant's.
+/// Bound on the rounding errors of the scaled weights in units of (size + shear)(reach) d_max: nine roundings
+/// of 2^-24 and twice the error of the determinant.
 inline constexpr float kWeightError = 0x1p-20f;
-/// In units of (size + shear)^2: rounding errors of the determinant and of t's numerator, 4 of 2^-24 where
-/// the determinant's sign may be wrong.
+/// Bound on the rounding errors of the determinant and of t's numerator in units of (size + shear)^2: four
+/// roundings of 2^-24 where the determinant's sign may be wrong.
 inline constexpr float kVolumeError = 0x1p-21f;
-/// In units of the reach, added to the size: what the decision may displace a vertex, relative to 2^-24.
+/// How far the decision may displace a vertex, in units of the reach, relative to 2^-24; added to the size.
 inline constexpr float kShearSize = 0x1p-24f;
-/// Added to squares of lengths: a triangle so small that its products may underflow is never called sure.
+/// Added to squares of lengths, so that a triangle whose products may underflow is never called sure.
 inline constexpr float kUnderflowArea = 0x1p-80f;
-/// Rounding of the quotient, of the interval's ends and of the decision's t to float.
+/// Bound on the rounding of the quotient, of the interval's ends and of the decision's t to float.
 inline constexpr float kQuotientError = 0x1p-21f;
 
-/// The bounds hold for rays with a greatest |direction component| between the inverse of this and this ...
+/// The bounds hold if the greatest |component| of the direction is between the inverse of this and this ...
 inline constexpr float kClassifyMaxDirection = 0x1p40f;
-/// ... whose origin lies, like the triangles, within this distance from zero, along each axis.
+/// ... and if the ray's origin and the triangles lie within this distance from zero along each axis.
 inline constexpr float kClassifyMaxExtent = 0x1p36f;
 
 /// A ray against triangles in lanes, by Möller and Trumbore's scaled weights; all signs as if the
 /// determinant were positive.
 template <class F>
 struct TriangleGuess {
-  F least;   ///< of the three weights
+  F least;   ///< least of the three weights
   F det, t;  ///< t * det is the distance
   F weight_error, det_error, t_error;
 };
@@ -65,7 +65,7 @@ OKTETT_INLINE typename F::M maybe_hit(const TriangleGuess<F>& g, const F& tmax) 
   return F(0.0f) <= min(g.least + g.weight_error, min(g.t + g.t_error, beyond));
 }
 
-/// `sure`: lanes that are hit at tmin < lo <= t <= hi <= tmax. The bounds are defined there alone.
+/// `sure`: lanes that are hit at tmin < lo <= t <= hi <= tmax. lo and hi are defined only in these lanes.
 template <class F>
 struct HitInterval {
   F lo, hi;
@@ -76,8 +76,8 @@ template <class F>
 OKTETT_INLINE HitInterval<F> hit_interval(const TriangleGuess<F>& g, const F& tmin, const F& tmax) {
   const F inverse = F(1.0f) / g.det;
   const F t = g.t * inverse;
-  // Where all weights are above their errors, det is above three of its own: the factor 2 covers dividing
-  // by a determinant that is too small by one.
+  // Where all weights are above their errors, det is above three times its error. The factor 2 covers
+  // dividing by a determinant that is too small by its error.
   const F radius = fast_fma(fast_fma(t, g.det_error, g.t_error), inverse + inverse, t * F(kQuotientError));
   HitInterval<F> h;
   h.lo = t - radius, h.hi = t + radius;

@@ -1,7 +1,7 @@
 #pragma once
-/// \file The textbook ray-triangle tests, in float: Möller-Trumbore, Badouel, Segura-Feito. Fast and simple;
-/// neighbours may disagree about a shared edge. Each has a fixed order of operations, so its hits too are the
-/// same bits everywhere.
+/// \file The textbook ray-triangle tests, in float: Möller-Trumbore, Badouel, Segura-Feito. They are fast and
+/// simple, but neighbours may disagree about a shared edge. Each has a fixed order of operations, so its hits
+/// have the same bits in every width and instruction set.
 
 #include "core/lanes.h"
 #include "kernels/triangle/triangle_watertight.h"
@@ -27,8 +27,8 @@ OKTETT_INLINE typename F::M moller_trumbore(const RayLanes<F>& ray, const Triang
 }
 
 /// Badouel, "An Efficient Ray-Polygon Intersection" (Graphics Gems, 1990): the hit point on the plane, then
-/// barycentric coordinates of its projection along the normal's dominant axis. A ratio of areas of
-/// projections is that of the areas.
+/// barycentric coordinates of its projection along the normal's dominant axis. Projection keeps the ratios of
+/// areas.
 template <class F>
 OKTETT_INLINE typename F::M badouel(const RayLanes<F>& ray, const TriangleLanes<F>& tri, HitLanes<F>& hit) {
   const F zero(0.0f), one(1.0f);

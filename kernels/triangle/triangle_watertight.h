@@ -5,14 +5,14 @@
 /// The vertices are moved to the ray's origin and sheared so that the ray becomes the z axis; the triangle is
 /// hit if the origin of the xy plane lies inside its projection. Departures from the paper:
 /// - The shear is done in double, so a vertex is displaced by some 2^-52 of its distance instead of 2^-23.
-/// - The signs of the three edge functions are exact for the sheared vertices: two products are compared, and
-/// where they round
-///   to the same number, their rounding errors are. The weights are corrected by the same errors, so t, u and
-///   v are accurate on slivers seen edge-on.
+/// - The signs of the three edge functions are exact for the sheared vertices. Two products are compared; if
+///   they round to the same number, their rounding errors are compared.
+/// - The weights are corrected by the same errors, so t, u and v are accurate on slivers seen edge-on.
 /// - If an edge function is exactly zero, the query point is moved by (e, e^2) with infinitesimal e. Hence
-/// each point of the
-///   plane belongs to exactly one triangle around any edge or vertex, and a closed mesh is crossed exactly
-///   once there.
+///   each point of the plane belongs to exactly one of the triangles around an edge or vertex.
+///
+/// So a ray crosses a closed mesh exactly once at an edge or vertex.
+///
 /// A sheared vertex depends on the ray and the vertex alone, so neighbours agree about it and no gap can
 /// open.
 ///
@@ -23,8 +23,8 @@
 
 namespace oktett {
 
-/// What the decision needs of a ray: the axis of greatest |d| becomes z, the next two in cyclic order x and
-/// y. `inv_dz` = 1/dz, `shear_x` = dx * inv_dz and `shear_y` = dy * inv_dz in double.
+/// A ray prepared for the decision. The axis of greatest |d| becomes z, the next two in cyclic order x and y.
+/// `inv_dz` = 1/dz, `shear_x` = dx * inv_dz and `shear_y` = dy * inv_dz in double.
 template <class D>
 struct ShearLanes {
   Vec3<D> o;  ///< permuted
@@ -69,9 +69,9 @@ OKTETT_INLINE EdgeFunction<D> edge_function(const D& px, const D& py, const D& q
 }
 
 /// The decision, bit-identical in every width and instruction set. `tri` is permuted like the ray. Lanes must
-/// hold finite numbers. u and v are the weights of b and c. `clockwise`, of lanes that are hit: the displaced
-/// corners run clockwise around the sheared axis. A line crosses a closed displaced mesh as often one way as
-/// the other.
+/// hold finite numbers. u and v are the weights of b and c. `clockwise` is defined in lanes that are hit: the
+/// displaced corners run clockwise around the sheared axis. A line crosses a closed mesh, so displaced,
+/// equally often either way.
 template <int W, class A>
 OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, W, A>>& ray,
                                                   const TriangleLanes<Simd<float, W, A>>& tri,
@@ -95,7 +95,7 @@ OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, 
   clockwise = mask_cast<float>(u.positive);
   if (none(inside)) return mask_cast<float>(inside);
 
-  // One division serves all three; each result is within two roundings of 2^-53 of its quotient.
+  // One division for all three quotients; each result is within two roundings of 2^-53 of its quotient.
   const D inv_det = D(1.0) / ((u.value + v.value) + w.value);
   const D t = (((u.value * a.z + v.value * b.z) + w.value * c.z) * inv_det) * ray.inv_dz;
   hit.t = to_float(t);
@@ -115,7 +115,7 @@ OKTETT_INLINE Mask<float, W, A> decide_watertight(const ShearLanes<Simd<double, 
   return decide_watertight(ray, tri, tmin, tmax, hit, clockwise);
 }
 
-/// A triangle made ready for the filter: edges from a, their cross product and their greatest size.
+/// A triangle prepared for the filter: its edges from a, their cross product and their size.
 template <class F>
 struct FilterTriangle {
   Vec3<F> a, e1, e2, n;
@@ -134,17 +134,17 @@ OKTETT_INLINE FilterTriangle<F> filter_triangle(const TriangleLanes<F>& t) {
 /// Rounding errors of the filter in units of the products' magnitudes: about 16 roundings of 2^-24, and a
 /// factor for a determinant whose sign is in doubt.
 inline constexpr float kFilterError = 0x1p-18f;
-/// What the decision itself may displace a vertex, in units of its distance, relative to kFilterError: counts
-/// where a triangle is tiny against its distance.
+/// How far the decision may displace a vertex, in units of its distance and relative to kFilterError. Matters
+/// if a triangle is tiny compared with its distance.
 inline constexpr float kFilterShear = 0x1p-30f;
 /// Covers products that underflow.
 inline constexpr float kFilterUnderflow = 1e-37f;
-/// A direction with a greater component lets products overflow that the error bound does not see.
+/// A direction with a greater component may make products overflow that the error bound does not contain.
 inline constexpr float kFilterMaxDirection = 0x1p60f;
 
 /// Lanes that `decide_watertight` might accept, from the scaled barycentric coordinates u, v, the determinant
-/// and the scaled distance (as in Möller and Trumbore 1997, but with either sign of det). NaN and overflow
-/// keep a lane: the sum that holds all three is the accumulator of the minimum.
+/// and the scaled distance (as in Möller and Trumbore 1997, but with either sign of det). Keeps lanes with
+/// NaN or overflow: the sum that contains all three weights is the accumulator of the minimum.
 template <class F>
 OKTETT_INLINE typename F::M filter_decide(const F& det, const F& u, const F& v, const F& t, const F& error,
                                           const F& t_error, const F& tmax) {
@@ -156,11 +156,11 @@ OKTETT_INLINE typename F::M filter_decide(const F& det, const F& u, const F& v, 
   return ~reject;
 }
 
-/// Bounds on the errors of u, v, det and of t, for a triangle whose first corner is `c` away from the origin
-/// of a ray. `d_max` = greatest |component| of the ray's direction, infinity if that is above
+/// Bounds on the errors of u, v, det and t. `c` is the vector from the ray's origin to the triangle's first
+/// corner. `d_max` = greatest |component| of the ray's direction, infinity if that is above
 /// kFilterMaxDirection.
 ///
-/// `magnitude` is twice a bound on every partial sum of the products, so that one that overflows makes the
+/// `magnitude` is twice a bound on every partial sum of the products. So an overflow in one of them makes the
 /// error infinite, which keeps the lane.
 template <class F>
 OKTETT_INLINE void filter_error(const Vec3<F>& c, const F& triangle_size, const F& d_max, F& error,
@@ -185,8 +185,8 @@ OKTETT_INLINE typename F::M filter_watertight(const RayLanes<F>& ray, const F& d
   return filter_decide(det, u, v, t, error, t_error, ray.tmax);
 }
 
-/// For rays from one point `o`: what u, v, det and t are as linear functions of the direction, for triangles
-/// in lanes.
+/// For rays from one point `o` and triangles in lanes: u, v, det and t as linear functions of the rays'
+/// direction.
 template <class F>
 struct OriginTriangle {
   Vec3<F> u, v, det;
