@@ -17,11 +17,7 @@ void set_column(float (&column)[3][MeshHits::kMost], std::size_t i, const Vec3f&
   for (int k = 0; k < 3; ++k) column[k][i] = v[k];
 }
 
-Vec3f get_column(const float (&column)[3][MeshHits::kMost], std::size_t i) {
-  return {column[0][i], column[1][i], column[2][i]};
-}
-
-/// Hits of one mesh that wait for their surfaces.
+/// Collects consecutive hits of one mesh and finds their surfaces together.
 class MeshRun {
  public:
   MeshRun(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which, const InteractionCode& code,
@@ -32,14 +28,16 @@ class MeshRun {
   void add(const HitPlace& place, const HitNames& names, std::size_t i) {
     const Geometry& geometry = place.accel->geometries[names.geometry];
     if (columns_.count == MeshHits::kMost || geometry_ != &geometry) begin(place, geometry, names);
-    gather(*std::get<MeshGeometry>(geometry.shape).mesh, names.primitive, which_[i], columns_.count);
+    triangle_ = names.primitive, hit_ = which_[i];
+    gather(columns_.count);
     entry_[columns_.count++] = i;
   }
 
   /// Must be called before `place` changes, and in the end.
   void finish(const HitPlace& place) {
     if (columns_.count == 0) return;
-    repeat_last();
+    // Repeats the last hit to the end of its group of lanes.
+    for (std::size_t to = columns_.count; to % 8 != 0; ++to) gather(to);
     code_.mesh(columns_);
     for (std::size_t k = 0; k < columns_.count; ++k) {
       const std::size_t i = entry_[k];
@@ -65,26 +63,15 @@ class MeshRun {
     columns_.frame = mesh_frame(geometry, place.accel->frames[names.geometry]);
   }
 
-  /// Puts hit `i` of the batch, which is on `triangle`, into entry `to` of the columns.
-  void gather(const TriangleMesh& mesh, std::uint32_t triangle, std::uint32_t i, std::size_t to) {
-    for (int k = 0; k < 3; ++k) set_column(columns_.corner[k], to, corner_position(mesh, triangle, k));
-    columns_.u[to] = hits_.u[i], columns_.v[to] = hits_.v[i];
+  /// Puts the latest hit into entry `to` of the columns.
+  void gather(std::size_t to) {
+    const TriangleMesh& mesh = *std::get<MeshGeometry>(geometry_->shape).mesh;
+    for (int k = 0; k < 3; ++k) set_column(columns_.corner[k], to, corner_position(mesh, triangle_, k));
+    columns_.u[to] = hits_.u[hit_], columns_.v[to] = hits_.v[hit_];
     if (!columns_.frame.smooth) return;
     Vec3f normals[3];
-    corner_normals(mesh, triangle, normals);
+    corner_normals(mesh, triangle_, normals);
     for (int k = 0; k < 3; ++k) set_column(columns_.normal[k], to, normals[k]);
-  }
-
-  /// Fills the last group of lanes.
-  void repeat_last() {
-    const std::size_t last = columns_.count - 1, end = (columns_.count + 7) / 8 * 8;
-    for (std::size_t i = last + 1; i < end; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        set_column(columns_.corner[k], i, get_column(columns_.corner[k], last));
-        if (columns_.frame.smooth) set_column(columns_.normal[k], i, get_column(columns_.normal[k], last));
-      }
-      columns_.u[i] = columns_.u[last], columns_.v[i] = columns_.v[last];
-    }
   }
 
   const RaySpan& rays_;
@@ -93,12 +80,13 @@ class MeshRun {
   const InteractionCode& code_;
   InteractionBlock& out_;
   const Geometry* geometry_ = nullptr;
+  std::uint32_t triangle_ = 0, hit_ = 0;  ///< of the latest hit
   std::size_t entry_[MeshHits::kMost];
   MeshHits columns_;
 };
 
-/// Hits of shapes that stand in the world itself, also in combinations there, sorted by what can be worked on
-/// together.
+/// Collects hits of closed-form and exact shapes outside instances, also in combinations there, and finds the
+/// surfaces of each group together: those of one closed-form kind or of one element of an exact kind.
 class ShapeGroups {
  public:
   ShapeGroups(const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
@@ -123,12 +111,16 @@ class ShapeGroups {
       const Accel* accel = accel_[first];
       std::uint32_t members[InteractionBlock::kMost];
       columns_.count = 0;
+      std::size_t last = first;
       for (std::size_t k = first; k < count_; ++k) {
         if (group_[k] != group || accel_[k] != accel) continue;
         group_[k] = kDone;
         members[columns_.count] = entry_[k];
         gather(k, columns_.count++);
+        last = k;
       }
+      // Repeats the last hit to the end of its group of lanes.
+      for (std::size_t to = columns_.count; to % 8 != 0; ++to) gather(last, to);
       find(*accel, static_cast<Kind>(group & 0xff), members);
     }
     for (std::size_t k = 0; k < combinations_; ++k) {
@@ -156,20 +148,7 @@ class ShapeGroups {
     columns_.t[to] = hits_.t[i], columns_.part[to] = hits_.u[i], columns_.element[to] = element_[k];
   }
 
-  /// Fills the last group of lanes.
-  void repeat_last() {
-    const std::size_t last = columns_.count - 1, end = (columns_.count + 7) / 8 * 8;
-    for (std::size_t i = last + 1; i < end; ++i) {
-      for (int axis = 0; axis < 3; ++axis)
-        columns_.origin[axis][i] = columns_.origin[axis][last],
-        columns_.direction[axis][i] = columns_.direction[axis][last];
-      columns_.t[i] = columns_.t[last], columns_.part[i] = columns_.part[last];
-      columns_.element[i] = columns_.element[last];
-    }
-  }
-
   void find(const Accel& accel, Kind kind, const std::uint32_t* members) {
-    repeat_last();
     if (!is_exact(kind)) {
       code_.closed_form(accel, kind, columns_);
     } else if (!code_.exact(accel, kind, columns_)) {
