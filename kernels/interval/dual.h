@@ -35,7 +35,7 @@ OKTETT_INLINE Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
   return {q, (a.d - q * b.d) / b.v};
 }
 
-/// A number that is a factor: exact twofold and the like.
+/// a times the number b.
 template <class D>
 OKTETT_INLINE Interval<D> times(const Interval<D>& a, double b) {
   return a * D(b);

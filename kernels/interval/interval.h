@@ -3,9 +3,9 @@
 ///
 /// An interval holds every value that a function takes for arguments in the given intervals, where it is
 /// defined. Where it may be undefined for some of them the result is *entire*, [-infinity, infinity], and
-/// stays so through every further operation, even sqr or sin; where it is undefined for all of them it is
-/// *void*, both ends NaN, and stays so, too. Hence an interval that is neither tells that the function is
-/// defined throughout.
+/// remains so in every further operation, even sqr or sin. Where it is undefined for all of them the result
+/// is *void*, both ends NaN, and also remains so. Hence, if a result is neither, the function is defined for
+/// all arguments.
 ///
 /// A rounded result x is off by at most 2^-53 |x|, or by 2^-1075 where it underflows: moved by
 /// 2^-52 |x| + 2^-1000 it lies beyond the true one (docs/interval.md).
@@ -45,8 +45,8 @@ namespace interval {
 inline constexpr double kRound = 0x1p-52, kTiny = 0x1p-1000;
 inline constexpr double kGreatest = std::numeric_limits<double>::max();
 
-/// [lo, hi] moved outwards by `relative` of the ends and 2^-1000. An overflow inwards becomes the greatest
-/// number.
+/// [lo, hi] with both ends moved outwards by `relative` times their size plus 2^-1000. A lower end of
+/// +infinity becomes the greatest number, an upper end of -infinity the least.
 template <class D>
 OKTETT_INLINE Interval<D> outward(D lo, D hi, const D& relative) {
   lo = min(D(kGreatest), lo), hi = max(D(-kGreatest), hi);
@@ -56,13 +56,13 @@ template <class D>
 OKTETT_INLINE Interval<D> outward(const D& lo, const D& hi) {
   return outward(lo, hi, D(kRound));
 }
-/// The same for sums, which never underflow: the sign of an end is that of the true one.
+/// The same for sums. They never underflow, so each end has the sign of the true one.
 template <class D>
 OKTETT_INLINE Interval<D> outward_sum(D lo, D hi) {
   lo = min(D(kGreatest), lo), hi = max(D(-kGreatest), hi);
   return {lo - abs(lo) * D(kRound), hi + abs(hi) * D(kRound)};
 }
-/// As `outward`, for what is known not to be negative.
+/// As `outward`, for results that cannot be negative.
 template <class D>
 OKTETT_INLINE Interval<D> outward_positive(const D& lo, const D& hi, const D& relative) {
   const Interval<D> r = outward(lo, hi, relative);
@@ -113,7 +113,7 @@ template <class D>
 OKTETT_INLINE Interval<D> operator*(const Interval<D>& a, const Interval<D>& b) {
   const D p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
   Interval<D> x = interval::outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)));
-  // A product of non-negative numbers is none, though it underflows.
+  // A product of non-negative numbers is not negative, even if it underflows.
   const auto positive = (D(0.0) <= a.lo) & (D(0.0) <= b.lo);
   x.lo = select(positive & (x.lo < D(0.0)), D(0.0), x.lo);
   const auto sound = (p == p) & (q == q) & (r == r) & (s == s);
@@ -144,19 +144,19 @@ OKTETT_INLINE Interval<D> inverse(const Interval<D>& a) {
   const Interval<D> x = interval::carry(a, select(pole, Interval<D>::entire(), r));
   return select(nowhere, Interval<D>::nothing(), x);
 }
-/// Entire where the divisor may be zero on both sides or the dividend may be zero with it, void where it is
-/// zero throughout.
+/// Entire where the divisor contains zero in its interior, or zero that the dividend contains too; void where
+/// the divisor is zero throughout.
 template <class D>
 OKTETT_INLINE Interval<D> operator/(const Interval<D>& a, const Interval<D>& b) {
   return a * inverse(b);
 }
 
-/// The least interval that holds both, and what both hold; void if one is.
+/// The least interval that contains both; void if one of them is.
 template <class D>
 OKTETT_INLINE Interval<D> hull(const Interval<D>& a, const Interval<D>& b) {
   return interval::carry(a, b, {min(a.lo, b.lo), max(a.hi, b.hi)});
 }
-/// What both hold, for two enclosures of the same values.
+/// The intersection of two enclosures of the same values.
 template <class D>
 OKTETT_INLINE Interval<D> intersect(const Interval<D>& a, const Interval<D>& b) {
   return {max(a.lo, b.lo), min(a.hi, b.hi)};
@@ -200,7 +200,7 @@ OKTETT_INLINE Interval<D> exp(const Interval<D>& a) {
   const Interval<D> x = interval::outward(a.lo * log2e, a.hi * log2e, D(0x1p-51));
   return exp2(interval::carry(a, x));
 }
-/// Void for what is at most 0, entire where the argument reaches so far.
+/// Void where the argument is at most 0, entire where part of it is.
 template <class D, class F>
 OKTETT_INLINE Interval<D> log_by(const Interval<D>& a, F&& f) {
   const Interval<D> r = interval::outward(f(max(a.lo, D(0.0))), f(max(a.hi, D(0.0))), D(lane::kLogError * 2));

@@ -8,20 +8,20 @@
 namespace oktett::roots {
 namespace {
 
-/// A part of the interval about which something is known.
+/// A part of the interval that is isolated (holds one root) or doubtful.
 struct Piece {
   enum Kind { isolated, doubtful } kind;
   double l, r;
-  /// The right end of the interval it was cut from, if doubtful.
+  /// If doubtful: the right end of the interval from which it was cut.
   double reach;
-  /// Of p just above l, and a guess of the root, if isolated.
+  /// If isolated: the sign of p just above l, and an estimate of the root.
   int sign;
   double start;
 };
 
 constexpr int kMaxPieces = 8 * kMaxDegree;
 
-/// Pieces from left to right; adjacent doubtful ones become one.
+/// Lists pieces from left to right and joins adjacent doubtful ones.
 struct Pieces {
   int count = 0, isolated = 0;
   bool overflow = false;
@@ -58,7 +58,7 @@ int sign_of(const T& b, double error) {
   return to_double(b) > error ? 1 : to_double(b) < -error ? -1 : 0;
 }
 
-/// With unknown signs. Fewest and most so far, by what sign the last coefficient is given.
+/// The same with unknown signs: fewest and most changes so far, for either sign of the last coefficient.
 template <class T>
 Count count_unsure(const T* b, int n, double error) {
   constexpr int kNever = 1000;
@@ -96,7 +96,7 @@ double greatest(const T* b, int n) {
   return m;
 }
 
-/// Cuts at `at` of the way: `part` becomes the right, `left` gets the rest (de Casteljau).
+/// Cuts at the fraction `at`: `part` becomes the right part, `left` the left one (de Casteljau).
 template <class T>
 void split(Part<T>& part, Part<T>& left, int n, double at, double size) {
   T* b = part.b;
@@ -112,7 +112,7 @@ void split(Part<T>& part, Part<T>& left, int n, double at, double size) {
       left.b[k] = b[0];
     }
   }
-  // Three roundings at each of n levels; the exact operations are convex and do not enlarge errors.
+  // Three roundings at each of n levels; exact convex combinations do not increase errors.
   part.error = left.error = part.error + 3 * n * kUnit<T> * size + kUnderflow;
   left.u = part.u;
   left.h = part.h * at;
@@ -120,7 +120,7 @@ void split(Part<T>& part, Part<T>& left, int n, double at, double size) {
   part.h *= 1 - at;
 }
 
-/// How far an interval is divided, relative to its length.
+/// Intervals are not divided below this fraction of their original length.
 template <class T>
 inline constexpr double kFinest = 0x1p-40;
 template <>
@@ -154,7 +154,7 @@ void isolate(const Polynomial& p, double l, double r, int wanted, Pieces& out) {
     if (count.least == 1 && count.most == 1) {
       const double first = to_double(part.b[0]), last = to_double(part.b[n]);
       const double start = from + (to - from) * (first / (first - last));
-      // Rounding the ends to doubles changes no sign that is sure in double. In double-double it may.
+      // Rounding the ends to doubles cannot change a sign that is sure in double, but one in double-double.
       const double slack = kUnit<T> < 0x1p-60 ? kSlack * to : 0.0;
       out.add({Piece::isolated, from - slack, to + slack, 0, first > 0 ? 1 : -1, start});
       --top;
@@ -167,7 +167,7 @@ void isolate(const Polynomial& p, double l, double r, int wanted, Pieces& out) {
       --top;
       continue;
     }
-    // A root at the cut would make both sides doubtful: another cut is tried.
+    // A root at the cut makes both sides doubtful, so another cut is tried.
     Part<T>& left = stack[++top];
     T whole[kMaxDegree + 1];
     std::copy(part.b, part.b + n + 1, whole);
@@ -182,9 +182,9 @@ void isolate(const Polynomial& p, double l, double r, int wanted, Pieces& out) {
   }
 }
 
-/// Examines doubtful pieces once more, in arithmetic of T: all of them if `all`, else those that a fresh
-/// conversion may see clearer because the terms of the polynomial are smaller there than where the pieces
-/// were cut from. What lies behind `wanted` isolated roots is dropped. True if there was such a one.
+/// Examines doubtful pieces again, in arithmetic of T: all of them if `all`, else those where converting the
+/// polynomial anew may help because its terms are smaller there than in the interval they were cut from.
+/// Drops pieces behind `wanted` isolated roots. True if a piece was examined.
 template <class T>
 bool examine(const Polynomial& p, bool all, int wanted, const Pieces& in, Pieces& out) {
   bool found = false;
@@ -203,7 +203,7 @@ bool examine(const Polynomial& p, bool all, int wanted, const Pieces& in, Pieces
       const double last = std::abs(p.c[0]);
       l = piece.r;
       while (l > 0x1p-800 && last < 2 * (absolute_sum(p, l) - last)) l *= 0.0625;
-      // What is left then is so small that the last coefficient has underflowed.
+      // The remaining piece is so small that the last coefficient has underflowed.
       if (l <= 0x1p-800) out.add({Piece::doubtful, 0, l, l, 0, 0});
       for (; l * 16 < piece.r && out.isolated < wanted; l *= 16) {
         isolate<T>(p, l, l * 16, wanted - out.isolated, out);
@@ -214,8 +214,8 @@ bool examine(const Polynomial& p, bool all, int wanted, const Pieces& in, Pieces
   return found;
 }
 
-/// A doubtful piece after double-double: widens it into the gap between `floor` and `ceiling` until the count
-/// is sure, and adds what it turns out to be. Sets `sure` to false where even that fails.
+/// For a piece that is doubtful in double-double: widens it into the gap between `floor` and `ceiling` until
+/// the count is sure, and adds the root or cluster. Sets `sure` to false if the count stays unsure.
 void settle(const Polynomial& p, Piece piece, double floor, double ceiling, Roots& out, bool& sure) {
   DoubleDouble b[kMaxDegree + 1];
   const int n = p.degree;
@@ -250,7 +250,7 @@ void settle(const Polynomial& p, Piece piece, double floor, double ceiling, Root
   out.add({x, std::max(x - piece.l, piece.r - x) * (1 + 0x1p-50) + 0x1p-53 * x, count.most});
 }
 
-/// What to do if some of the pieces, from double, are doubtful.
+/// Handles pieces that are doubtful in double.
 OKTETT_NOINLINE void resolve(const Polynomial& p, double a, int wanted, const Pieces& rough, Roots& out,
                              bool& sure) {
   constexpr int kRounds = 6;
@@ -297,7 +297,7 @@ Roots solve_bernstein(const Normalized& n, int wanted) {
   Roots out;
   out.certified = true;
   if (n.a < 0) {
-    // The negative side, mirrored: its roots come out from the greatest down.
+    // The negative side, mirrored: its roots are found in descending order.
     Roots mirrored;
     solve_positive(reflect(n.p), std::max(0.0, -n.b), -n.a, kMaxDegree, mirrored, out.certified);
     for (int i = mirrored.count; i-- > 0;) {

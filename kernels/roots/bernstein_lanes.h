@@ -1,6 +1,6 @@
 #pragma once
-/// \file Certified roots in an interval for a fixed degree, many polynomials at once: D is a Simd of double
-/// and each lane its own polynomial, with the bits of the same source at width 1.
+/// \file Certified roots in an interval for a fixed degree, many polynomials at once. D is a Simd of double;
+/// each lane holds its own polynomial and gets the same bits as at width 1.
 ///
 /// The method is that of bernstein.h. Instead of a stack, each lane marches along its interval: a step that
 /// surely holds no root or one is taken, any other is halved. What cannot be decided in double is left to
@@ -15,12 +15,12 @@ namespace oktett::roots {
 template <class D, int K>
 struct LaneRoots {
   D x[K], error[K];
-  /// Lanes in which nothing else is valid.
+  /// Lanes that could not be decided; their other members are not valid.
   typename D::M unsure;
 };
 
-/// What becomes of clusters of even multiplicity, where the polynomial touches zero or nearly so, and its
-/// sign is the same on both sides.
+/// How to treat clusters of even multiplicity: there the polynomial touches or nearly touches zero and has
+/// the same sign on both sides.
 enum class Touching { keep, drop };
 
 namespace lanes {
@@ -39,7 +39,7 @@ OKTETT_INLINE void shift(const D* c, const D& l, const D& w, D* out) {
   }
 }
 
-/// 1 / binomial(N, i), rounded. Named after D so that no instruction set shares it with another.
+/// 1 / binomial(N, i), rounded. A template over D, so that each instruction set has its own copy.
 template <int N, class D>
 struct InverseBinomials {
   double at[N + 1] = {};
@@ -69,7 +69,7 @@ OKTETT_INLINE D absolute_sum(const D* c, const D& x) {
   return y;
 }
 
-/// The same everywhere: N products and sums of at most 2^(30 N) times what underflows.
+/// Bound on the error by underflow, the same for all lanes: N products and sums, scaled by at most 2^(30 N).
 inline constexpr double kLaneUnderflow = 0x1p-700, kGreatestEnd = 0x1p30;
 
 /// p(x), its error bound and p'(x); see evaluate in polynomial.cpp.
@@ -86,7 +86,7 @@ OKTETT_INLINE void evaluate(const D* c, const D& x, D& value, D& error, D& slope
   error = D(0x1p-53 * (1 + 0x1p-40)) * (D(2.0) * m - abs(y)) + D(kLaneUnderflow);
 }
 
-/// What the coefficients say about their interval.
+/// What the coefficients prove about their interval.
 template <class D>
 struct Finding {
   /// Surely no root; surely one, simple, and none at the ends.
@@ -97,7 +97,7 @@ template <int N, class D>
 OKTETT_INLINE Finding<D> examine(const D* b, const D& error) {
   typename D::M above[N + 1], below[N + 1];
   for (int i = 0; i <= N; ++i) above[i] = b[i] > error, below[i] = b[i] < -error;
-  // In one falling sequence: all before k above, all after k below; b[k] itself does not matter.
+  // One change of sign: all before b[k] are above, all after it below; the sign of b[k] does not matter.
   auto all_above = above[0], all_below = below[0];
   for (int i = 1; i <= N; ++i) all_above = all_above & above[i], all_below = all_below & below[i];
   const auto end_below = above[0] & below[N], end_above = below[0] & above[N];
@@ -188,11 +188,11 @@ OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
                       (lanes::absolute_sum<N>(c, reach) + lanes::absolute_sum<N>(q, D(1.0))) +
                   D(lanes::kLaneUnderflow);
   LaneRoots<D, K> out;
-  // Idle lanes compute along; harmless numbers keep them from being slow.
+  // Idle lanes compute too; harmless numbers avoid slow operations on subnormals.
   lanes::Bracket<D> bracket[K];
   for (int k = 0; k < K; ++k) bracket[k] = {a, b, b, D(1.0)};
   D l(0.0), h(1.0), count(0.0);
-  // Where nothing can be told at all, steps would only get shorter.
+  // If nothing can be decided at all, steps would only become shorter.
   const auto sane = (a <= b) & (error < D(0x1p900)) & (reach <= D(lanes::kGreatestEnd));
   auto open = active & sane;
   out.unsure = active & ~sane;
@@ -212,7 +212,7 @@ OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
     }
     count = select(found, count + D(1.0), count);
     l = select(pass, r, l);
-    // Growing by less than was halved before never leads back to a cut that lies on a root.
+    // Steps grow by less than they were halved, so they never return to a cut that lies on a root.
     h = select(pass, min(h * D(1.75), D(1.0) - l), h * D(0.5));
     open = open & (l < D(1.0)) & (count < D(K));
     const auto tiny = open & ~(h > D(0x1p-24)) & ~pass;
@@ -233,8 +233,8 @@ OKTETT_INLINE LaneRoots<D, K> roots_in_lanes(const D* c, const D& a, const D& b,
   return out;
 }
 
-/// As roots_in_lanes, with `solve` for unsure lanes. A cluster is listed once, or not at all if it is even
-/// and so is wished. Lanes that even `solve` does not certify are still `unsure`, with its best guess.
+/// Like roots_in_lanes, but calls `solve` for unsure lanes. A cluster is listed once; an even one is left out
+/// if the caller wishes. Lanes that `solve` cannot certify stay `unsure` and hold its best guess.
 template <int N, int K, Touching kTouching = Touching::keep, class D>
 OKTETT_INLINE LaneRoots<D, K> certified_roots(const D* c, const D& a, const D& b,
                                               const typename D::M& active) {

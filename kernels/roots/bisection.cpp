@@ -15,7 +15,7 @@ Root refine_bisection(const Polynomial& p, double lo, double hi, int sign_lo) {
     }
     ((v > 0) == (sign_lo > 0) ? lo : hi) = m;
   }
-  // Beyond the last interval, the computed sign may have been wrong within the error of the value.
+  // Besides the last interval, the bound covers the points where the computed sign may be wrong.
   double slope;
   const Value v = evaluate(p, lo, slope);
   const double error = (hi - lo) + 0x1p-52 * std::abs(lo) + 2 * v.error / std::abs(slope);

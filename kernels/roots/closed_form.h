@@ -1,9 +1,9 @@
 #pragma once
-/// \file Closed forms for degree 1 to 4, in lanes: D is a Simd of double, each lane its own polynomial, and
-/// every lane has the bits of the same source at width 1. Only + - * / and sqrt.
+/// \file Closed forms for degree 1 to 4, in lanes. D is a Simd of double; each lane holds its own polynomial
+/// and gets the same bits as at width 1. Only + - * / and sqrt are used.
 ///
-/// A missing root is kNoRoot, which sorts behind all others. Roots are polished by Newton steps, but nothing
-/// proves that their number is right: `solve` does that afterwards. Coefficients should be about 1 (scale
+/// A missing root is kNoRoot, which sorts behind all others. Newton steps polish the roots, but nothing here
+/// proves that their number is right: `solve` proves that afterwards. Coefficients should be about 1 (scale
 /// first); a NaN gives no roots.
 
 #include "core/simd.h"
@@ -27,7 +27,7 @@ OKTETT_INLINE D rounding_error(const D& a, const D& b, const D& p) {
   return al * bl - (((p - ah * bh) - al * bh) - ah * bl);
 }
 
-/// a b - c d with the rounding errors of the products made good (Kahan's method).
+/// a b - c d, corrected by the rounding errors of the products (Kahan's method).
 template <class D>
 OKTETT_INLINE D difference_of_products(const D& a, const D& b, const D& c, const D& d) {
   const D p = a * b, q = c * d;
@@ -41,7 +41,7 @@ OKTETT_INLINE void order(D& a, D& b) {
   a = low;
 }
 
-/// About the cube root of x >= 0, never far too small: x^(1/4 + 1/16 + 1/64 + 1/256) by square roots, then
+/// Approximate cube root of x >= 0, never far too small: x^(1/4 + 1/16 + 1/64 + 1/256) by square roots, then
 /// one step of Halley's method.
 template <class D>
 OKTETT_INLINE D rough_cube_root(const D& x) {
@@ -51,7 +51,7 @@ OKTETT_INLINE D rough_cube_root(const D& x) {
   return select(x > D(0.0), better, D(0.0));
 }
 
-/// One Newton step on the polynomial of degree N, left out where it leads far away.
+/// One Newton step on the polynomial of degree N, omitted in lanes where it would lead far away.
 template <int N, class D>
 OKTETT_INLINE D polish(const D* c, const D& x) {
   D y = c[N], d(0.0);
@@ -125,8 +125,8 @@ OKTETT_INLINE void order(D* x, int n) {
 }
 
 /// Lanes in which the reversed polynomial, whose roots are the reciprocals, has the greater leading
-/// coefficient, and the coefficients to use, divided by that. So a leading coefficient that is tiny or zero
-/// does no harm.
+/// coefficient. Returns the coefficients to use, divided by that one, so that a tiny or zero leading
+/// coefficient does no harm.
 template <int N, class D>
 OKTETT_INLINE typename D::M monic(const D* c, D* out) {
   const auto reversed = abs(c[0]) > abs(c[N]);

@@ -11,7 +11,7 @@ namespace {
 
 using Lane = Simd<double, 1, ScalarIsa>;
 
-/// x +- error with a sure change of sign; false if the signs do not show one.
+/// Finds an error such that p surely changes its sign between x - error and x + error; false if it cannot.
 bool prove(const Polynomial& p, double x, Root& out) {
   double slope;
   const Value v = evaluate(p, x, slope);
@@ -47,7 +47,7 @@ Roots solve_closed(const Normalized& n) {
     const bool sure = prove(n.p, x, root);
     if (root.x + root.error < n.a || root.x - root.error > n.b) continue;
     if (!sure && !(root.x >= n.a && root.x <= n.b)) continue;
-    // An end within the bounds, or another root: the count cannot be right for sure.
+    // With an end of the interval or another root within the bounds, the count is not sure.
     proved &= sure && root.x - root.error > n.a && root.x + root.error < n.b;
     if (out.count) {
       const Root& last = out.root[out.count - 1];

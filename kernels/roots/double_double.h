@@ -12,7 +12,7 @@
 
 namespace oktett::roots {
 
-/// hi + lo, unevaluated; |lo| is at most half an ulp of hi.
+/// The number hi + lo; |lo| is at most half an ulp of hi.
 struct DoubleDouble {
   double hi, lo;
   DoubleDouble() = default;

@@ -16,7 +16,7 @@ Complex operator*(Complex a, Complex b) { return {a.re * b.re - a.im * b.im, a.r
 Complex operator*(double s, Complex a) { return {s * a.re, s * a.im}; }
 double norm(Complex a) { return std::sqrt(a.re * a.re + a.im * a.im); }
 Complex operator/(Complex a, Complex b) {
-  // Smith's way: no overflow while the quotient itself is in range.
+  // Smith's method: no overflow if the quotient itself is in range.
   if (std::abs(b.re) >= std::abs(b.im)) {
     const double r = b.im / b.re, d = b.re + r * b.im;
     return {(a.re + r * a.im) / d, (a.im - r * a.re) / d};
@@ -37,7 +37,7 @@ struct ComplexPolynomial {
   Complex c[kMaxDegree + 1];
 };
 
-/// Laguerre steps from x until nothing more can be gained.
+/// Laguerre steps from x until they no longer improve it.
 Complex laguerre(const ComplexPolynomial& p, Complex x) {
   const int n = p.degree;
   for (int i = 1; i <= 80; ++i) {
@@ -58,7 +58,7 @@ Complex laguerre(const ComplexPolynomial& p, Complex x) {
     const double m = norm(larger);
     // At a stationary point any direction will do.
     Complex step = m > 0 ? Complex{static_cast<double>(n), 0} / larger : Complex{0.1 * (1 + size), 0.07 * i};
-    // Cycles are rare, and are broken by a shorter step now and then.
+    // Cycles are rare; an occasional shorter step breaks them.
     if (i % 10 == 0) step = (0.1 * (i / 10)) * step;
     const Complex next = x - step;
     if (next.re == x.re && next.im == x.im) return x;

@@ -6,8 +6,8 @@
 namespace oktett::roots {
 namespace {
 
-/// Newton steps from `y` in (l, r), which shrinks, halving where they do not converge. Ends where the step is
-/// below the resolution or the sign is in doubt; returns the last value and slope.
+/// Newton steps from `y` in (l, r), which shrinks; bisection where they do not converge. Ends when the step
+/// is below the resolution or the sign is in doubt. Returns the last value and slope.
 struct Iterate {
   double y;
   Value value;
@@ -33,12 +33,12 @@ Iterate newton_steps(const Polynomial& p, double y, double& l, double& r, int si
   return at;
 }
 
-/// Bounds above this part of the interval's greater end are worth double-double arithmetic.
+/// Bounds above this fraction of the interval's greater end are improved in double-double arithmetic.
 constexpr double kFineEnough = 0x1p-40;
 
 double ulp(double x) { return 0x1p-52 * std::abs(x) + 0x1p-1000; }
 
-/// Goes on where the sign in double was in doubt. The slope in double is good enough for the steps.
+/// Continues where the sign was in doubt in double. The slope in double is accurate enough for the steps.
 OKTETT_NOINLINE Root refine_accurately(const Polynomial& p, Iterate at, double l, double r, int sign_lo) {
   double step = r - l;
   for (int i = 0; i < 60; ++i) {
@@ -90,8 +90,8 @@ Root refine_newton(const Polynomial& p, double lo, double hi, int sign_lo, doubl
 }
 
 Roots solve_newton(const Normalized& n) {
-  // Derivatives of p, then their roots from the lowest degree up: each lot is the critical points of the
-  // next.
+  // Derivatives of p, then their roots from the lowest degree up: the roots of each are the critical points
+  // of the next.
   Polynomial d[kMaxDegree];
   const int degree = n.p.degree;
   d[degree - 1] = n.p;

@@ -1,18 +1,18 @@
 #pragma once
-/// \file Newton's method kept inside a bracket, and bounds on what it finds; between critical points it makes
-/// a root finder of its own.
+/// \file Newton's method within a bracket, with bounds on its result; and a root finder that applies it
+/// between critical points.
 
 #include "kernels/roots/normalize.h"
 
 namespace oktett::roots {
 
 /// The one root of p in (lo, hi), given that p has the sign `sign_lo` just above lo and the opposite just
-/// below hi. `start` is a first guess. The bound is proved by the signs of p at its ends, or is the bracket
-/// itself where these cannot be told. Within [-1, 1], see polynomial.h.
+/// below hi. `start` is a first guess. The signs of p at its ends prove the bound; if they are unsure, the
+/// bound is the bracket itself. Within [-1, 1], see polynomial.h.
 Root refine_newton(const Polynomial& p, double lo, double hi, int sign_lo, double start);
 
-/// The tightest x +- error that contains the root which refine_newton speaks of, given x near it and a guess
-/// of the error.
+/// The tightest interval x +- error that contains the root described at refine_newton, given x near it and a
+/// guess of the error.
 Root enclose(const Polynomial& p, double x, double error, double lo, double hi, int sign_lo);
 
 /// Roots between critical points, which are the roots of the derivative, and so on down to degree 1 (C.

@@ -1,6 +1,6 @@
 #pragma once
-/// \file A change of variable by powers of two, exact, after which interval and coefficients are about 1. No
-/// later step can overflow, and what underflows does not matter.
+/// \file An exact change of variable by powers of two, after which interval and coefficients are about 1.
+/// Then no later step overflows, and underflow does not matter.
 
 #include "kernels/roots/polynomial.h"
 
@@ -8,12 +8,12 @@ namespace oktett::roots {
 
 /// p(2^shift y) up to a power of two as factor, for y in [a, b] within [-1, 1]; p(0) != 0.
 struct Normalized {
-  /// What is left to solve; for all but `ready` the answer is settled.
+  /// Whether there is something left to solve (`ready`) or the answer is already known.
   enum State { ready, bad_input, empty_interval, zero_polynomial, no_root } state;
   Polynomial p;
   double a, b;
   int shift;
-  /// How many roots at exactly 0 have been divided out, whether the interval holds 0 or not.
+  /// Number of roots at exactly 0 that were divided out, whether or not the interval contains 0.
   int zeros;
 };
 

@@ -5,7 +5,7 @@
 namespace oktett::roots {
 namespace {
 
-// Covers the roundings of the bound's own computation, for degrees up to 32.
+// Covers the roundings in computing the bound itself, for degrees up to 32.
 constexpr double kRoundUp = 1 + 0x1p-40;
 
 /// Pascal's triangle, exactly, and its reciprocals, rounded.

@@ -2,8 +2,8 @@
 /// \file Polynomials in one variable: values with error bounds, derivatives, changes of variable.
 ///
 /// Bounds are running bounds (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition 2002,
-/// section 5.1). All of them take coefficients of at most about 1 and |x| <= 1 for granted, as `normalize`
-/// (normalize.h) provides: then underflow amounts to less than kUnderflow.
+/// section 5.1). All functions assume coefficients of at most about 1 and |x| <= 1, as `normalize`
+/// (normalize.h) provides; then errors by underflow are below kUnderflow.
 
 #include "core/platform.h"
 #include "kernels/roots/double_double.h"
@@ -11,7 +11,7 @@
 
 namespace oktett::roots {
 
-/// More than what products that underflow, flushed to zero or not, can do to a value.
+/// Bound on the error of a value by products that underflow, flushed to zero or not.
 inline constexpr double kUnderflow = 0x1p-900;
 
 /// A computed value and a bound on its error.
@@ -23,7 +23,7 @@ struct Value {
 double horner(const Polynomial& p, double x);
 /// p(x) with its error bound.
 Value evaluate(const Polynomial& p, double x);
-/// p(x) with its error bound; also the derivative, without.
+/// p(x) with its error bound; also the derivative, without a bound.
 Value evaluate(const Polynomial& p, double x, double& slope);
 /// p(x) in double-double arithmetic with its error bound.
 Value evaluate_accurately(const Polynomial& p, double x);

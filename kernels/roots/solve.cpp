@@ -40,7 +40,7 @@ Roots run(const Normalized& n, Method method, int wanted) {
 /// A root in [-1, 1] as one of the problem before it was scaled, moved into [a, b].
 Root restore(Root r, int shift, double a, double b) {
   r.x = scale_by_power(r.x, shift);
-  // Rounding of a subnormal is made good by the least of them.
+  // Adds the least subnormal, which covers the rounding of subnormals.
   r.error = scale_by_power(r.error, shift) + (shift < -900 ? 0x1p-1074 : 0);
   const double inside = std::clamp(r.x, a, b);
   if (inside != r.x) r.error = (r.error + std::abs(inside - r.x)) * (1 + 0x1p-50), r.x = inside;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file One entrance to all root finders.
+/// \file solve(): the common interface of all root finders.
 
 #include "kernels/roots/roots.h"
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRoundUp = 1 + 0x1p-45;
 
-/// A number known within `error`.
+/// A number with a bound on its error.
 struct Ball {
   DoubleDouble x;
   double error;
@@ -30,7 +30,7 @@ Ball operator*(const Ball& a, const Ball& b) {
                      kRoundUp +
                  kUnderflow};
 }
-/// b must be surely different from 0.
+/// b must surely differ from 0.
 Ball operator/(const Ball& a, const Ball& b) {
   const DoubleDouble q = a.x / b.x;
   const double least = std::abs(b.x.hi) * (1 - 0x1p-50) - b.error;
@@ -122,7 +122,7 @@ Changes changes_at(const Chain& chain, const Polynomial& p, double x) {
       ++unknown;
       continue;
     }
-    // One unknown between opposite signs makes one change whatever it is.
+    // An unknown sign between opposite signs makes one change, whichever it is.
     if (unknown) out.sure &= unknown == 1 && s == -last;
     unknown = 0;
     out.count += s != last && last != 0;
