@@ -90,7 +90,7 @@ static Ray moved_ray(const Affine& m, const Ray& ray) {
   return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
 }
 
-void move_surface(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
+void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
   if (place.moved) move_by_instances(place, ray, t, s);
   if (place.combined == nullptr) return;
   const float reach = coincidence(t, coincidence_slack(*place.combined, moved_ray(place.to_combined, ray)));

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Where in a structure, and through which instances, a hit lies: the parts of surface_interaction().
+/// \file Follows a hit through instances and combinations to the structure that holds its item, and brings
+/// its surface interaction back to the world.
 
 #include <cmath>
 
@@ -27,8 +28,8 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path);
 /// The ray as the structure at `place` sees it.
 Ray ray_inside(const HitPlace& place, const Ray& ray);
 
-/// Brings a surface found inside instances and combinations to the world.
-void move_surface(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s);
+/// Brings a surface interaction found inside instances and combinations to the world.
+void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s);
 
 /// The error of a position on a combination of which faces within `reach` along the ray count as one: rays
 /// that leave must clear them all. Rounded up.
@@ -44,8 +45,8 @@ struct HitNames {
 };
 HitNames identify_in(const HitPlace& place, const Hit& hit);
 
-/// The surface at a hit whose place is known; uv and tangent may be missing if they are not wanted.
-void surface_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
-                SurfaceInteraction& s);
+/// The surface interaction of a hit whose place is known. uv and tangent may be missing unless `uv`.
+void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
+                    SurfaceInteraction& s);
 
 }  // namespace oktett

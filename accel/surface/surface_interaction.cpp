@@ -57,8 +57,8 @@ SurfaceInteraction identify(const Accel& accel, const Hit& hit) {
 
 /// The surface in the space of the structure that holds the item; `uv` says whether uv and tangent are
 /// wanted.
-static void surface_inside(const HitNames& names, const Accel& a, const Ray& inner, const Hit& hit, bool uv,
-                           SurfaceInteraction& s) {
+static void interaction_inside(const HitNames& names, const Accel& a, const Ray& inner, const Hit& hit,
+                               bool uv, SurfaceInteraction& s) {
   const Geometry& g = a.geometries[names.geometry];
   if (names.kind == Kind::triangle) {
     mesh_interaction(g, a.frames[names.geometry], names.primitive, hit, s);
@@ -77,17 +77,17 @@ static void surface_inside(const HitNames& names, const Accel& a, const Ray& inn
   s.material_slot = names.material_slot;
 }
 
-void surface_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
-                SurfaceInteraction& s) {
-  if (!place.changes()) return surface_inside(names, *place.accel, ray, hit, uv, s);
-  surface_inside(names, *place.accel, place.moved ? ray_inside(place, ray) : ray, hit, uv, s);
-  move_surface(place, ray, hit.t, s);
+void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
+                    SurfaceInteraction& s) {
+  if (!place.changes()) return interaction_inside(names, *place.accel, ray, hit, uv, s);
+  interaction_inside(names, *place.accel, place.moved ? ray_inside(place, ray) : ray, hit, uv, s);
+  move_interaction(place, ray, hit.t, s);
 }
 
 SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const Hit& hit) {
   const HitPlace place = follow_path(accel, hit.instance);
   SurfaceInteraction s;
-  surface_at(place, identify_in(place, hit), ray, hit, true, s);
+  interaction_at(place, identify_in(place, hit), ray, hit, true, s);
   return s;
 }
 

@@ -49,7 +49,7 @@ class MeshRun {
       }
       if (!place.changes()) continue;
       SurfaceInteraction s = out_[i];
-      move_surface(place, rays_[which_[i]], hits_.t[which_[i]], s);
+      move_interaction(place, rays_[which_[i]], hits_.t[which_[i]], s);
       out_.set_shape(i, s);
     }
     columns_.count = 0;
@@ -219,7 +219,7 @@ void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan
       groups.add(place, names, i);
     } else {
       SurfaceInteraction s;
-      surface_at(place, names, rays[which[i]], hit, false, s);
+      interaction_at(place, names, rays[which[i]], hit, false, s);
       out.set_shape(i, s);
     }
   }
