@@ -18,6 +18,7 @@
 #include "app/units.h"
 #include "app/warnings.h"
 #include "io/scene/scene_file.h"
+#include "io/scene/surface_table.h"
 #include "render/camera.h"
 #include "render/default_view.h"
 #include "render/geometry.h"
@@ -186,6 +187,12 @@ void add_info_command(CLI::App& app, Command& command) {
   add_bvh_option(*verb, arguments->bvh);
   verb->add_flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
+  const auto print_shapes = [](std::int64_t) {
+    fmt::print("{}", surface_table());
+    throw CLI::Success();
+  };
+  verb->add_flag_function("--shapes", print_shapes, "Print the shapes of scene files as a table and exit")
+      ->trigger_on_parse();
   verb->callback([&command, arguments] { command.run = [arguments] { return run_info(*arguments); }; });
 }
 

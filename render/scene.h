@@ -85,6 +85,20 @@ struct MeshShape {
   bool smooth = true;  ///< interpolate the mesh's normals; false: flat shading
   TriangleTest test = TriangleTest::watertight;
   bool by_winding = false;  ///< take part in combinations even if the mesh is not closed
+
+  static constexpr Surface kSurface{"mesh", "the triangles of a file"};
+  void describe(auto& p) {
+    p.required("file", ByHand{"file (`.obj`)"}, "triangles and, in its MTL file, their materials");
+    p.field("smooth", smooth, "interpolates the normals of the file");
+    p.choice("test", test,
+             {{"watertight", TriangleTest::watertight},
+              {"moller_trumbore", TriangleTest::moller_trumbore},
+              {"badouel", TriangleTest::badouel},
+              {"segura_feito", TriangleTest::segura_feito}},
+             "how a ray is tested against a triangle");
+    p.choice("solid", by_winding, {{"closed", false}, {"winding", true}},
+             "which meshes have an inside: closed ones, or any, see below");
+  }
 };
 
 /// All objects of a prototype, moved by the object's transform.
@@ -102,8 +116,8 @@ struct CsgShape {
 };
 
 /// Any shape that an object can have.
-using Shape = std::variant<MeshShape, SphereShape, SpheresShape, PlaneShape, DiskShape, BoxShape,
-                           PolygonShape, TriangleShape, ExactShape, CsgShape, InstanceShape>;
+using Shape = std::variant<MeshShape, TriangleShape, SphereShape, SpheresShape, PlaneShape, DiskShape,
+                           BoxShape, PolygonShape, ExactShape, CsgShape, InstanceShape>;
 
 /// A thing in the scene. The groups of a scene file are already multiplied into the transforms of their
 /// objects.

@@ -1,7 +1,6 @@
 #include "io/scene/degenerate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -10,8 +9,6 @@
 
 namespace oktett {
 namespace {
-
-bool is_zero(const Vec3d& v) { return v == Vec3d{0, 0, 0}; }
 
 struct Point2 {
   double x, y;
@@ -65,33 +62,6 @@ bool is_simple(const std::vector<Point2>& points) {
 }
 
 }  // namespace
-
-std::string why_degenerate(const TriangleShape& triangle) {
-  const Vec3d ab = triangle.v[1] - triangle.v[0], ac = triangle.v[2] - triangle.v[0];
-  const Vec3d bc = triangle.v[2] - triangle.v[1];
-  const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)});
-  // Below this the area is all rounding error.
-  return length(cross(ab, ac)) > 1e-12 * longest ? "" : "the triangle has no area";
-}
-
-std::string why_degenerate(const SphereShape& sphere) {
-  return sphere.radius > 0 ? "" : "the radius is zero";
-}
-
-std::string why_degenerate(const PlaneShape& plane) {
-  return is_zero(plane.normal) ? "the normal is zero" : "";
-}
-
-std::string why_degenerate(const DiskShape& disk) {
-  if (is_zero(disk.normal)) return "the normal is zero";
-  return disk.radius > 0 ? "" : "the radius is zero";
-}
-
-std::string why_degenerate(const BoxShape& box) {
-  const Vec3d extent = box.max - box.min;
-  const int flat = int(extent.x == 0) + int(extent.y == 0) + int(extent.z == 0);
-  return flat >= 2 ? "the box has no area" : "";
-}
 
 std::string why_degenerate(const PolygonShape& polygon) {
   const std::vector<Vec3d>& v = polygon.vertices;

@@ -3,92 +3,110 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "io/scene/utf8.h"
+#include "kernels/exact/half_spaces.h"
+#include "kernels/exact/lathe.h"
+#include "kernels/exact/revolution.h"
+#include "kernels/exact/superquadric.h"
+#include "kernels/fractals/julia.h"
+#include "kernels/fractals/terrain.h"
 
 namespace oktett {
 namespace {
 
 using MaybeForm = std::optional<ExactForm>;
+using Kind = TurnedProfile::Kind;
 
-MaybeForm read_torus(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "torus", {"major", "minor", "normals"});
-  TorusShape shape;
-  load.values.read(fields["major"], shape.major, kNonNegative);
-  load.values.read(fields["minor"], shape.minor, kNonNegative);
-  if (shape.minor == 0) return skip_exact(load, key, "the minor radius is zero");
-  return shape;
+/// Whether point `i` of a profile lies on the surface; the others only shape it.
+bool is_on_surface(const TurnedProfile& profile, std::size_t i) {
+  if (profile.kind == Kind::linear) return true;
+  if (profile.kind == Kind::bezier) return i % 3 == 0;
+  return i > 0 && i + 1 < profile.points.size();
 }
 
-constexpr ExactReader kReaders[] = {{"torus", read_torus}};
-
-std::vector<ExactReader> all_readers() {
-  std::vector<ExactReader> all;
-  for (const std::span<const ExactReader> family :
-       {std::span<const ExactReader>(kReaders), closed_form_readers(), polynomial_readers(),
-        superquadric_readers(), metaball_readers(), function_readers(), fractal_readers(), height_readers()})
-    all.insert(all.end(), family.begin(), family.end());
-  return all;
-}
-
-const std::vector<ExactReader>& readers() {
-  static const std::vector<ExactReader> all = all_readers();
-  return all;
+/// Throws Error at `places`, those of the points, for a radius below 0 and for heights that do not ascend
+/// where they must.
+void check_points(const TurnedProfile& profile, std::span<const YamlNode* const> places) {
+  const bool ascends = profile.kind != Kind::curve && profile.kind != Kind::bezier;
+  for (std::size_t i = 0; i < profile.points.size(); ++i) {
+    const ProfilePoint& p = profile.points[i];
+    if (is_on_surface(profile, i) && p.radius < 0)
+      throw Error(places[i]->where(), "the profile crosses the axis: the radius is negative");
+    if (!ascends || i == 0) continue;
+    const double before = profile.points[i - 1].height;
+    if (profile.kind == Kind::linear ? p.height < before : p.height <= before)
+      throw Error(places[i]->where(),
+                  fmt::format("heights must ascend: {} comes after {}; for other profiles "
+                              "there is 'profile: curve'",
+                              p.height, before));
+  }
 }
 
 }  // namespace
 
-std::nullopt_t skip_exact(SceneLoad& load, const YamlNode& place, const std::string& reason) {
-  load.warn(place.where(), reason + "; the object is skipped");
-  return std::nullopt;
-}
-
-void fail_in_text(const char* what, const YamlNode& node, const std::string& text, const Error& error) {
-  const auto at = std::min(static_cast<std::size_t>(error.where().column) - 1, text.size());
-  std::string message = fmt::format("bad {}: {} (column {})", what, error.what(), error.where().column);
-  // The part of a long text around the place.
-  const std::size_t begin = at > 100 ? at - 100 : 0, length = std::min<std::size_t>(text.size() - begin, 200);
-  if (text.find('\n') == std::string::npos && character_count(text) == text.size())
-    message += fmt::format("\n  {}\n  {}^", text.substr(begin, length), std::string(at - begin, ' '));
-  throw Error(text == node.text ? node.where(at) : node.where(), message);
-}
-
-void read_bounds(SceneLoad& load, const YamlNode& node, Vec3d& lo, Vec3d& hi) {
-  const Fields fields(node, "bounds", {"min", "max"});
-  lo = load.values.vector(fields.require("min")), hi = load.values.vector(fields.require("max"));
-  for (int k = 0; k < 3; ++k)
-    if (!(lo[k] < hi[k]))
-      throw Error(fields.require("max").where(),
-                  fmt::format("the {} of max must be greater than that of min", "xyz"[k]));
-}
-
-std::vector<std::string> exact_keys() {
-  std::vector<std::string> keys;
-  for (const ExactReader& reader : readers()) keys.push_back(reader.key);
-  return keys;
-}
-
-std::optional<ExactShape> read_exact(SceneLoad& load, const YamlNode& key, const YamlNode& node,
-                                     bool& known) {
-  for (const ExactReader& reader : readers()) {
-    if (key.text != reader.key) continue;
-    known = true;
-    const MaybeForm form = reader.read(load, key, node);
-    if (!form) return std::nullopt;
-    ExactShape shape{*form};
-    if (node.kind == YamlKind::map) {
-      const auto entries = map_entries(node, key.text);
-      for (const MapEntry& entry : entries)
-        if (entry.key->text == "normals")
-          shape.normals =
-              load.values.choice<NormalMethod>(*entry.value, {{"gradient", NormalMethod::gradient},
-                                                              {"forward", NormalMethod::forward},
-                                                              {"central", NormalMethod::central}});
-    }
-    return shape;
+MaybeForm finish(const ShapeNode& at, PolyhedronShape& shape) {
+  switch (intersect(shape.planes).kind) {
+    case ConvexSolid::Kind::unbounded:
+      throw Error(at.fields.require("planes").where(), "the planes do not bound a solid on all sides");
+    case ConvexSolid::Kind::empty:
+      return at.skip("there is nothing inside of all planes");
+    case ConvexSolid::Kind::solid:
+      break;
   }
-  known = false;
-  return std::nullopt;
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, SuperquadricShape& shape) {
+  if (const Vec3d far = Superquadric::reach(shape);
+      shape.form == SuperquadricShape::Form::toroid && !std::isfinite(far.x + far.y + far.z))
+    throw Error(at.key.where(),
+                "the toroid has no end: a pseudo-power stays below what it would have to reach");
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, TurnedProfile& profile) {
+  const YamlNode& node = at.fields.require("points");
+  const std::size_t n = profile.points.size();
+  if (profile.kind == Kind::bezier && n % 3 != 1)
+    throw Error(node.where(), fmt::format("expected 4, 7, 10, … points, 3 more for each piece; found {}", n));
+  check_points(profile, list_items(node, "points"));
+  bool has_radius = false;
+  for (std::size_t i = 0; i < n; ++i) has_radius |= is_on_surface(profile, i) && profile.points[i].radius > 0;
+  if (!has_radius) return at.skip("all radii are zero");
+  if (profile.kind == Kind::curve || profile.kind == Kind::bezier) {
+    const LatheShape lathe{profile.kind == Kind::curve ? curve_through(profile.points) : profile.points,
+                           profile.open};
+    if (const std::string wrong = why_bad_profile(lathe); !wrong.empty()) throw Error(node.where(), wrong);
+    return lathe;
+  }
+  if (!(profile.points.front().height < profile.points.back().height))
+    return at.skip("all heights are the same");
+  using Profile = RevolutionShape::Profile;
+  const RevolutionShape shape{profile.points,
+                              profile.kind == Kind::linear ? Profile::linear
+                              : profile.kind == Kind::sor  ? Profile::sor
+                                                           : Profile::spline,
+                              profile.open};
+  if (const auto height = profile_crosses_axis(shape))
+    throw Error(
+        node.where(),
+        fmt::format("the profile crosses the axis: at height {:.6g} the radius is negative", *height));
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, JuliaShape& shape) {
+  Julia::Pool pool;
+  Julia::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip("nothing of the set is in this slice");
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, TerrainShape& shape) {
+  Terrain::Pool pool;
+  Terrain::add(pool, shape, {});
+  if (pool.elements.empty()) return at.skip("the landscape lies below its base");
+  return shape;
 }
 
 }  // namespace oktett

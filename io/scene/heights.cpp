@@ -8,6 +8,7 @@
 
 #include "io/image/heights.h"
 #include "io/scene/exact.h"
+#include "io/scene/shape_reader.h"
 #include "io/scene/utf8.h"
 #include "kernels/functions/function_tape.h"
 #include "kernels/heights/height_grid.h"
@@ -74,15 +75,10 @@ Column<float> sample(const FunctionTape& f, std::uint32_t columns, std::uint32_t
   return samples;
 }
 
-std::shared_ptr<const HeightGrid> read_function(SceneLoad& load, const YamlNode& node, const YamlNode* counts,
-                                                const Vec3d& size, HeightInterpolation interpolation) {
-  const std::string text = load.values.text(node);
-  FunctionTape f;
-  try {
-    f = compile_function(text);
-  } catch (const Error& e) {
-    fail_in_text("function", node, text, e);
-  }
+std::shared_ptr<const HeightGrid> sample_function(SceneLoad& load, const YamlNode& node,
+                                                  const YamlNode* counts, const Vec3d& size,
+                                                  HeightInterpolation interpolation) {
+  const FunctionTape f = read_function(load, node);
   if (depends_on_y(f))
     throw Error(node.where(), "the function of a height field is one of x and z, not of y");
   std::uint32_t columns = 512, rows = 512;
@@ -107,53 +103,36 @@ std::shared_ptr<const HeightGrid> read_function(SceneLoad& load, const YamlNode&
   return HeightGrid::from_floats(columns, rows, std::move(samples), interpolation);
 }
 
-MaybeForm read_height_field(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "height_field",
-                      {"file", "function", "samples", "size", "interpolation", "base", "walk", "normals"});
-  HeightFieldShape shape;
-  load.values.read(fields["size"], shape.size);
-  for (int k = 0; k < 3; ++k)
-    if (shape.size[k] < 0) throw Error(fields["size"]->where(), "the size must not be negative");
+}  // namespace
+
+MaybeForm finish(const ShapeNode& at, HeightFieldShape& shape) {
+  const Fields& fields = at.fields;
   HeightInterpolation interpolation = HeightInterpolation::bilinear;
   if (const YamlNode* choice = fields["interpolation"])
     interpolation =
-        load.values.choice<HeightInterpolation>(*choice, {{"nearest", HeightInterpolation::nearest},
-                                                          {"triangles", HeightInterpolation::triangles},
-                                                          {"bilinear", HeightInterpolation::bilinear}});
-  if (const YamlNode* walk = fields["walk"])
-    shape.walk = load.values.choice<HeightWalk>(
-        *walk,
-        {{"pyramid", HeightWalk::pyramid}, {"cells", HeightWalk::cells}, {"spans", HeightWalk::spans}});
+        at.load.values.choice<HeightInterpolation>(*choice, {{"nearest", HeightInterpolation::nearest},
+                                                             {"triangles", HeightInterpolation::triangles},
+                                                             {"bilinear", HeightInterpolation::bilinear}});
   const YamlNode *file = fields["file"], *function = fields["function"];
-  if (!file && !function) throw Error(key.where(), "height_field needs 'file' or 'function'");
+  if (!file && !function) throw Error(at.key.where(), "height_field needs 'file' or 'function'");
   if (file && function) throw Error(function->where(), "height_field has either 'file' or 'function'");
   if (file && fields["samples"])
     throw Error(fields["samples"]->where(), "a height field from a file has no 'samples'");
-  shape.grid = file ? read_file(load, *file, interpolation)
-                    : read_function(load, *function, fields["samples"], shape.size, interpolation);
+  shape.grid = file ? read_file(at.load, *file, interpolation)
+                    : sample_function(at.load, *function, fields["samples"], shape.size, interpolation);
   const double unit = shape.size.y * shape.grid->unit();
   const double least = shape.grid->least() * unit, greatest = shape.grid->greatest() * unit;
   if (!(std::max(std::abs(least), std::abs(greatest)) <= kMostHeight))
-    throw Error(key.where(), fmt::format("the heights are from {:g} to {:g}; expected a magnitude of at most "
-                                         "{:g}",
-                                         least, greatest, kMostHeight));
-  if (const YamlNode* base = fields["base"]) {
-    shape.open = false;
-    shape.base = load.values.number(*base);
-    if (shape.size.y > 0 && !(shape.base < least))
-      throw Error(base->where(),
-                  fmt::format("the base must be below all heights, of which the least is {:g}", least));
-  }
+    throw Error(at.key.where(), fmt::format("the heights are from {:g} to {:g}; expected a magnitude of at "
+                                            "most {:g}",
+                                            least, greatest, kMostHeight));
+  if (!shape.open && shape.size.y > 0 && !(shape.base < least))
+    throw Error(fields.require("base").where(),
+                fmt::format("the base must be below all heights, of which the least is {:g}", least));
   for (int k = 0; k < 3; ++k)
     if (shape.size[k] == 0)
-      return skip_exact(load, key, fmt::format("the size of the height field is zero along {}", "xyz"[k]));
+      return at.skip(fmt::format("the size of the height field is zero along {}", "xyz"[k]));
   return shape;
 }
-
-constexpr ExactReader kReaders[] = {{"height_field", read_height_field}};
-
-}  // namespace
-
-std::span<const ExactReader> height_readers() { return kReaders; }
 
 }  // namespace oktett

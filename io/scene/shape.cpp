@@ -1,9 +1,12 @@
 #include "io/scene/shape.h"
 
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "io/scene/degenerate.h"
 #include "io/scene/exact.h"
+#include "io/scene/shape_reader.h"
 #include "io/scene/spheres.h"
 #include "io/scene/utf8.h"
 
@@ -12,51 +15,24 @@ namespace {
 
 using MaybeShape = std::optional<Shape>;
 
-/// The shape, or nothing after a warning at `place` if it is degenerate.
-template <class T>
-MaybeShape unless_degenerate(SceneLoad& load, const YamlNode& place, T shape) {
-  const std::string reason = why_degenerate(shape);
-  if (reason.empty()) return Shape(std::move(shape));
-  load.warn(place.where(), reason + "; the object is skipped");
-  return std::nullopt;
-}
-
-MaybeShape read_mesh(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "mesh", {"file", "smooth", "test", "solid"});
-  const YamlNode& file = fields.require("file");
-  MeshShape shape;
-  load.values.read(fields["smooth"], shape.smooth);
-  if (const YamlNode* test = fields["test"])
-    shape.test = load.values.choice<TriangleTest>(*test, {{"watertight", TriangleTest::watertight},
-                                                          {"moller_trumbore", TriangleTest::moller_trumbore},
-                                                          {"badouel", TriangleTest::badouel},
-                                                          {"segura_feito", TriangleTest::segura_feito}});
-  if (const YamlNode* solid = fields["solid"])
-    shape.by_winding = load.values.choice<bool>(*solid, {{"closed", false}, {"winding", true}});
-  const std::string path = load.values.existing_file(file);
+/// Loads the file of a mesh. Returns whether it has triangles.
+bool finish(const ShapeNode& at, MeshShape& shape) {
+  const YamlNode& file = at.fields.require("file");
+  const std::string path = at.load.values.existing_file(file);
   if (!is_mesh_file(path)) throw Error(file.where(), "unknown kind of mesh file; expected .obj");
-  const MeshLibrary::Entry& entry = load.meshes.load(path, load.scene);
+  const MeshLibrary::Entry& entry = at.load.meshes.load(path, at.load.scene);
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
-  if (shape.mesh->triangle_count() > 0) return shape;
-  load.warn(key.where(), "the mesh has no triangles; the object is skipped");
-  return std::nullopt;
+  if (shape.mesh->triangle_count() == 0) at.skip("the mesh has no triangles");
+  return shape.mesh->triangle_count() > 0;
 }
 
-MaybeShape read_triangle(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "triangle", {"vertices"});
-  TriangleShape shape;
-  if (const YamlNode* vertices = fields["vertices"]) {
-    const auto corners = list_items(*vertices, "vertices");
-    if (corners.size() != 3)
-      throw Error(vertices->where(), "expected 3 vertices, found " + std::to_string(corners.size()));
-    for (std::size_t i = 0; i < 3; ++i) shape.v[i] = load.values.vector(*corners[i]);
-  }
-  return unless_degenerate(load, key, shape);
-}
-
-MaybeShape read_sphere_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  return unless_degenerate(load, key, read_sphere(load.values, node));
+/// Returns whether a polygon can be shown.
+bool finish(const ShapeNode& at, PolygonShape& shape) {
+  remove_repeated_vertices(shape);
+  const std::string reason = why_degenerate(shape);
+  if (!reason.empty()) at.skip(reason);
+  return reason.empty();
 }
 
 MaybeShape read_spheres_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
@@ -66,79 +42,75 @@ MaybeShape read_spheres_shape(SceneLoad& load, const YamlNode& key, const YamlNo
   return std::nullopt;
 }
 
-MaybeShape read_plane(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "plane", {"normal", "offset"});
-  PlaneShape shape;
-  load.values.read(fields["normal"], shape.normal);
-  load.values.read(fields["offset"], shape.offset);
-  return unless_degenerate(load, key, shape);
+template <class T, class... U>
+constexpr bool is_one_of(std::type_identity<std::variant<U...>>) {
+  return (std::is_same_v<T, U> || ...);
 }
 
-MaybeShape read_disk(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "disk", {"center", "normal", "radius"});
-  DiskShape shape;
-  load.values.read(fields["center"], shape.center);
-  load.values.read(fields["normal"], shape.normal);
-  load.values.read(fields["radius"], shape.radius, kNonNegative);
-  return unless_degenerate(load, key, shape);
-}
+/// Reads the shape whose key is that of `at`.
+class ShapeReader {
+ public:
+  ShapeReader(SceneLoad& load, const YamlNode& key, const YamlNode& node)
+      : load_(load), key_(key), node_(node) {}
 
-MaybeShape read_box(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "box", {"min", "max"});
-  BoxShape shape;
-  load.values.read(fields["min"], shape.min);
-  load.values.read(fields["max"], shape.max);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (shape.min[axis] <= shape.max[axis]) continue;
-    const YamlNode& place = fields["max"] ? *fields["max"] : fields.require("min");
-    throw Error(place.where(), std::string("the box has min > max along ") + "xyz"[axis]);
+  template <class T>
+  void surface(const Surface& surface, T shape) {
+    if (known || key_.text != surface.key) return;
+    known = true;
+    const KeyList list(shape);
+    const Fields fields(node_, surface.key, list.keys);
+    ParameterReader reader(load_, node_, fields);
+    shape.describe(reader);
+    const ShapeNode at{load_, key_, node_, fields};
+    if (reader.why_nothing) {
+      at.skip(reader.why_nothing);
+    } else if constexpr (is_one_of<T>(std::type_identity<Shape>{})) {
+      if constexpr (requires { finish(at, shape); })
+        if (!finish(at, shape)) return;
+      result = std::move(shape);
+    } else if (std::optional<ExactForm> form = form_of(at, shape)) {
+      result = ExactShape{std::move(*form), reader.normal_method};
+    }
   }
-  return unless_degenerate(load, key, shape);
-}
 
-MaybeShape read_polygon(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "polygon", {"vertices"});
-  const YamlNode& vertices = fields.require("vertices");
-  const auto corners = list_items(vertices, "vertices");
-  if (corners.size() < 3 || corners.size() > kMaxPolygonVertices)
-    throw Error(vertices.where(), "expected 3 to " + std::to_string(kMaxPolygonVertices) +
-                                      " vertices, found " + std::to_string(corners.size()));
-  PolygonShape shape;
-  for (const YamlNode* corner : corners) shape.vertices.push_back(load.values.vector(*corner));
-  remove_repeated_vertices(shape);
-  return unless_degenerate(load, key, std::move(shape));
-}
+  bool known = false;
+  MaybeShape result;
 
-struct Reader {
-  const char* key;
-  MaybeShape (*read)(SceneLoad&, const YamlNode& key, const YamlNode& node);
+ private:
+  template <class T>
+  static std::optional<ExactForm> form_of(const ShapeNode& at, T& shape) {
+    if constexpr (requires { finish(at, shape); })
+      return finish(at, shape);
+    else
+      return ExactForm(std::move(shape));
+  }
+
+  SceneLoad& load_;
+  const YamlNode &key_, &node_;
 };
 
-constexpr Reader kReaders[] = {
-    {"mesh", read_mesh},   {"triangle", read_triangle},     {"sphere", read_sphere_shape},
-    {"plane", read_plane}, {"spheres", read_spheres_shape}, {"disk", read_disk},
-    {"box", read_box},     {"polygon", read_polygon},
+struct SurfaceNames {
+  void surface(const Surface& surface, const auto&) { names.push_back(surface.key); }
+  std::vector<std::string> names;
 };
 
 }  // namespace
 
 const std::vector<std::string>& shape_keys() {
   static const std::vector<std::string> keys = [] {
-    std::vector<std::string> names;
-    for (const Reader& reader : kReaders) names.push_back(reader.key);
-    for (std::string& key : exact_keys()) names.push_back(std::move(key));
-    return names;
+    SurfaceNames all;
+    visit_surfaces(all);
+    all.names.emplace_back("spheres");
+    return all.names;
   }();
   return keys;
 }
 
-std::optional<Shape> read_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  for (const Reader& reader : kReaders)
-    if (key.text == reader.key) return reader.read(load, key, node);
-  bool known = false;
-  const std::optional<ExactShape> exact = read_exact(load, key, node, known);
-  if (exact) return Shape(*exact);
-  if (known) return std::nullopt;
+MaybeShape read_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
+  if (key.text == "spheres") return read_spheres_shape(load, key, node);
+  ShapeReader reader(load, key, node);
+  visit_surfaces(reader);
+  if (reader.known) return std::move(reader.result);
   throw Error(key.where(), "unknown shape " + quote(key.text));
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/scene/number_line.h"
+#include "io/scene/shape_reader.h"
 
 namespace oktett {
 namespace {
@@ -86,20 +87,14 @@ SpheresShape read_centers(SceneLoad& load, const Fields& fields) {
 
 }  // namespace
 
-SphereShape read_sphere(SceneValues& values, const YamlNode& node) {
-  const Fields fields(node, "sphere", {"center", "radius"});
-  SphereShape sphere;
-  values.read(fields["center"], sphere.center);
-  values.read(fields["radius"], sphere.radius, kNonNegative);
-  return sphere;
-}
-
 SpheresShape read_spheres(SceneLoad& load, const YamlNode& node) {
   if (node.kind == YamlKind::sequence) {
     SphereList list(load);
     for (const YamlNode* item : node.items) {
       count_spheres(load, 1, item->where());
-      list.add(read_sphere(load.values, *item), item->where());
+      SphereShape sphere;
+      read_described(load, *item, "sphere", sphere);
+      list.add(sphere, item->where());
     }
     return list.finish();
   }

@@ -6,9 +6,6 @@
 
 namespace oktett {
 
-/// {center, radius}; the radius may be 0.
-SphereShape read_sphere(SceneValues& values, const YamlNode& node);
-
 /// A list of spheres, {centers, radius} or {file}. Spheres of radius 0 are left out with a warning.
 SpheresShape read_spheres(SceneLoad& load, const YamlNode& node);
 

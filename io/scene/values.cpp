@@ -13,7 +13,8 @@
 
 namespace oktett {
 
-std::string Range::describe(const char* noun) const {
+std::string describe(const Range& range, const char* noun) {
+  const auto& [lo, hi, lo_open, hi_open, unit] = range;
   const bool has_lo = lo > -kMaxCoordinate, has_hi = hi < kMaxCoordinate;
   if (has_lo && has_hi && !lo_open && !hi_open) return fmt::format("{} from {} to {}", noun, lo, hi);
   const std::string least = fmt::format("{} {}", lo_open ? "greater than" : "of at least", lo);
@@ -21,10 +22,6 @@ std::string Range::describe(const char* noun) const {
   if (has_lo && has_hi) return fmt::format("{} {} and {}", noun, least, greatest);
   if (has_lo) return fmt::format("{} {}", noun, least);
   return has_hi ? fmt::format("{} {}", noun, greatest) : noun;
-}
-
-bool Range::contains(double value) const {
-  return (lo_open ? value > lo : value >= lo) && (hi_open ? value < hi : value <= hi);
 }
 
 std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what) {
@@ -53,7 +50,7 @@ std::string suggest(const std::string& name, std::span<const std::string> known)
   return nearest.empty() ? "" : "; did you mean " + quote(nearest) + "?";
 }
 
-Fields::Fields(const YamlNode& node, const std::string& what, std::initializer_list<const char*> known)
+Fields::Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known)
     : node_(node), what_(what) {
   if (node.kind == YamlKind::null) return;
   if (node.kind != YamlKind::map)
@@ -131,7 +128,8 @@ double SceneValues::number(const YamlNode& node, const Range& range) {
   if (std::abs(value) > kMaxCoordinate)
     throw Error(node.where(), fmt::format("number out of range: {} (magnitude at most {:g})", quote(written),
                                           kMaxCoordinate));
-  throw Error(node.where(), fmt::format("expected {}, found {}", range.describe("a number"), quote(written)));
+  throw Error(node.where(),
+              fmt::format("expected {}, found {}", describe(range, "a number"), quote(written)));
 }
 
 std::uint32_t SceneValues::integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi) {
@@ -208,7 +206,7 @@ void SceneValues::read(const YamlNode* node, float& out, const Range& range) {
   out = static_cast<float>(number(*node, range));
   // A tiny number may become a zero that is not allowed.
   if (!range.contains(out))
-    throw Error(node->where(), "expected " + range.describe("a number") + ", found " + node->describe());
+    throw Error(node->where(), "expected " + describe(range, "a number") + ", found " + node->describe());
 }
 
 void SceneValues::read(const YamlNode* node, Vec3d& out) {

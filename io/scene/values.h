@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/description.h"
 #include "core/transform.h"
 #include "core/vec3.h"
 #include "io/scene/parameters.h"
@@ -16,27 +17,8 @@
 
 namespace oktett {
 
-/// Greatest magnitude of a coordinate or length: its square still fits a float.
-inline constexpr double kMaxCoordinate = 1e18;
-
-/// The numbers that are allowed.
-struct Range {
-  double lo = -kMaxCoordinate;
-  double hi = kMaxCoordinate;
-  bool lo_open = false;  ///< `lo` itself is not allowed
-  bool hi_open = false;
-
-  /// E.g. "a number greater than 0".
-  std::string describe(const char* noun) const;
-  bool contains(double value) const;
-};
-
-/// Any coordinate.
-inline constexpr Range kAnyNumber{};
-/// Lengths and weights without a bound of their own.
-inline constexpr Range kNonNegative{0, kMaxCoordinate};
-inline constexpr Range kPositive{0, kMaxCoordinate, true};
-inline constexpr Range kUnitInterval{0, 1};
+/// What `range` allows, e.g. "a number greater than 0" for the noun "a number".
+std::string describe(const Range& range, const char* noun);
 
 struct MapEntry {
   const YamlNode* key;
@@ -58,7 +40,9 @@ class Fields {
  public:
   /// Throws Error if `node` is no map or has a key that is not in `known`; `what` names it. An empty node is
   /// an empty map.
-  Fields(const YamlNode& node, const std::string& what, std::initializer_list<const char*> known);
+  Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known);
+  Fields(const YamlNode& node, const std::string& what, std::initializer_list<const char*> known)
+      : Fields(node, what, std::span(known.begin(), known.size())) {}
 
   /// The value of `key`, or null if the map does not have it.
   const YamlNode* operator[](const char* key) const;
@@ -68,13 +52,6 @@ class Fields {
  private:
   const YamlNode& node_;
   std::string what_;
-};
-
-/// A choice from a fixed list of words.
-template <class T>
-struct Choice {
-  const char* name;
-  T value;
 };
 
 /// Reads values; `${name}` is replaced in every scalar.

@@ -5,7 +5,9 @@
 #include <variant>
 #include <vector>
 
+#include "core/description.h"
 #include "core/vec3.h"
+#include "kernels/exact/metaballs_data.h"
 
 namespace oktett {
 
@@ -28,9 +30,16 @@ struct Potential {
 
 struct PointSkeleton {
   Vec3d center{0, 0, 0};
+
+  void describe(auto& p) { p.field("center", center, kCoordinate, "the point"); }
 };
 struct SegmentSkeleton {
   Vec3d from{0, -1, 0}, to{0, 1, 0};
+
+  void describe(auto& p) {
+    p.field("from", from, kCoordinate, "one end");
+    p.field("to", to, kCoordinate, "the other end");
+  }
 };
 /// Plane and simple; at least three vertices.
 struct PolygonSkeleton {
@@ -41,6 +50,12 @@ struct PolygonSkeleton {
 struct EllipsoidSkeleton {
   Vec3d center{0, 0, 0}, radii{1, 1, 1};
   Vec3d rotation{0, 0, 0};  ///< degrees about x, then y, then z
+
+  void describe(auto& p) {
+    p.field("center", center, kCoordinate, "the centre");
+    p.field("radii", radii, kPositiveLength, "along the axes");
+    p.field("rotate", rotation, kAngle, "about the x, then the y, then the z axis");
+  }
 };
 using Skeleton = std::variant<PointSkeleton, SegmentSkeleton, PolygonSkeleton, EllipsoidSkeleton>;
 
@@ -61,9 +76,23 @@ struct Blend {
 
 /// The last of `blends`, which are in postfix order, is `iso` on the surface and greater inside.
 struct BlobTreeShape {
-  double iso = 0.5;  ///< > 0
+  double iso = 0.5;
   std::vector<FieldElement> elements;
   std::vector<Blend> blends;
+
+  static constexpr Surface kSurface{
+      "blobtree",
+      "where the blend of potentials, one of the four, exceeds `iso`; at most 32 levels of blends in "
+      "blends"};
+  void describe(auto& p) {
+    constexpr ByHand kList{"list of [elements](#skeletons-and-potentials) and blends"};
+    p.field("iso", iso, kIso, "the value on the surface");
+    p.optional("sum", kList, "a blend: the sum of all");
+    p.optional("max", kList, "a blend: the greatest of all");
+    p.optional("min", kList, "a blend: the least of all");
+    p.optional("difference", kList, "a blend: the first without all others");
+    p.normals();
+  }
 };
 /// Most levels of blends inside blends.
 inline constexpr int kMaxBlendLevels = 32;

@@ -9,9 +9,6 @@
 
 namespace oktett {
 
-/// Most half-spaces of a polyhedron: finding its vertices takes quadratic time.
-inline constexpr std::size_t kMaxHalfSpaces = 1024;
-
 struct ConvexSolid {
   enum class Kind {
     solid,

@@ -12,4 +12,13 @@ enum class NormalMethod : std::uint8_t {
   central,   ///< central differences
 };
 
+/// The parameter of the surfaces that have a choice.
+void describe_normals(auto& p, NormalMethod& method) {
+  p.choice("normals", method,
+           {{"gradient", NormalMethod::gradient},
+            {"forward", NormalMethod::forward},
+            {"central", NormalMethod::central}},
+           "from the gradient of the function, or from its differences");
+}
+
 }  // namespace oktett

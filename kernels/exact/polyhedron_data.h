@@ -1,8 +1,10 @@
 #pragma once
 /// \file What describes a convex polyhedron.
 
+#include <cstdint>
 #include <vector>
 
+#include "core/description.h"
 #include "core/vec3.h"
 
 namespace oktett {
@@ -13,9 +15,19 @@ struct HalfSpace {
   double offset;
 };
 
+/// Most half-spaces of a polyhedron: finding its vertices takes quadratic time.
+inline constexpr std::uint32_t kMaxHalfSpaces = 1024;
+
 /// What all of the half-spaces have in common; bounded, with an inside.
 struct PolyhedronShape {
   std::vector<HalfSpace> planes;
+
+  static constexpr Surface kSurface{"polyhedron",
+                                    "what is inside of all planes; they must bound it on all sides"};
+  void describe(auto& p) {
+    p.required("planes", planes, whole(0, kMaxHalfSpaces), "each n · p <= d; n need not be of unit length");
+    p.normals();
+  }
 };
 
 }  // namespace oktett

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/description.h"
 #include "core/transform.h"
 
 namespace oktett {
@@ -19,11 +20,22 @@ struct IfsShape {
     ball,  ///< of radius 1 about the origin
     box,   ///< [-1, 1]^3
   };
-  std::vector<Affine> maps;  ///< 1 to kMaxIfsMaps, invertible contractions
-  std::uint32_t depth = 8;   ///< at most kMaxIfsDepth
+  std::vector<Affine> maps;
+  std::uint32_t depth = 8;
   Base base = Base::ball;
-  double least = 0;          ///< pieces of no more than this part of the base's size are not divided; >= 0
-  bool every_level = false;  ///< with the pieces that have been divided, too
+  double least = 0;
+  bool every_level = false;
+
+  static constexpr Surface kSurface{"ifs", "the base, moved by `depth` of the maps in all orders"};
+  void describe(auto& p) {
+    p.required("maps", maps, whole(1, kMaxIfsMaps), "each a contraction with an inverse");
+    p.field("depth", depth, whole(0, kMaxIfsDepth), "how many maps follow each other");
+    p.choice("base", base, {{"ball", Base::ball}, {"box", Base::box}},
+             "a ball of radius 1, or the cube [-1, 1]³");
+    p.field("least", least, kUnitInterval,
+            "pieces of at most this part of the base's size are not divided further");
+    p.field("every_level", every_level, "shows the pieces that were divided, too");
+  }
 };
 
 }  // namespace oktett

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "core/description.h"
+
 namespace oktett {
 
 /// Most levels; finer ones would be smaller than a float can tell apart.
@@ -12,7 +14,12 @@ inline constexpr int kMaxMengerDepth = 16;
 /// the same again with each of the others, `depth` times (K. Menger: Allgemeine Räume und Cartesische Räume,
 /// 1926).
 struct MengerShape {
-  std::uint32_t depth = 4;  ///< at most kMaxMengerDepth; 0 is the cube
+  std::uint32_t depth = 4;
+
+  static constexpr Surface kSurface{"menger", "Menger's sponge in the cube [-1, 1]³"};
+  void describe(auto& p) {
+    p.field("depth", depth, whole(0, kMaxMengerDepth), "how often holes are cut; 0 is the cube");
+  }
 };
 
 }  // namespace oktett

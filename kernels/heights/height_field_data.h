@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/description.h"
 #include "core/vec3.h"
 
 namespace oktett {
@@ -34,6 +35,29 @@ struct HeightFieldShape {
   bool open = true;     ///< without the sides and the bottom at y = base, which make it a solid
   double base = 0;      ///< below all heights, unless open
   HeightWalk walk = HeightWalk::pyramid;
+
+  static constexpr Surface kSurface{"height_field",
+                                    "heights over a rectangle, from one of `file` and `function`"};
+  void describe(auto& p) {
+    p.optional("file", ByHand{"file"},
+               "a grey image. 8 and 16 bits have values from 0 to 1, all others (EXR, TIFF) those that are "
+               "stored; the top row lies at the least z");
+    p.optional("function", ByHand{"[expression](#values) in x and z"}, "the heights where there is no file");
+    p.field("samples", ByHand{"whole number or `[columns, rows]`, at least 2", "512"},
+            "at how many places along each side the function is taken");
+    p.field("size", size, kLength,
+            "the rectangle lies about the y axis, x from -size.x / 2 to size.x / 2 and z likewise; the value "
+            "of a sample times size.y is y");
+    p.field("interpolation", ByHand{"`nearest`, `triangles` or `bilinear`", "bilinear"},
+            "what is between four samples; `nearest` makes level steps");
+    open &=
+        !p.optional("base", base, kCoordinate,
+                    "a y below all heights, which makes it a solid with upright sides and a bottom there");
+    p.choice("walk", walk,
+             {{"pyramid", HeightWalk::pyramid}, {"cells", HeightWalk::cells}, {"spans", HeightWalk::spans}},
+             "[which find the same](surfaces.md#height-fields)");
+    p.normals();
+  }
 };
 
 }  // namespace oktett

@@ -17,4 +17,17 @@ enum class Method {
   newton,     ///< Newton's method between critical points
 };
 
+/// How the zeros of a polynomial along a ray are found.
+void describe_root_finder(auto& p, Method& method) {
+  p.choice("root_finder", method,
+           {{"auto", Method::automatic},
+            {"closed", Method::closed},
+            {"bernstein", Method::bernstein},
+            {"sturm", Method::sturm},
+            {"laguerre", Method::laguerre},
+            {"bisection", Method::bisection},
+            {"newton", Method::newton}},
+           "how zeros along a ray are found; [which of them prove what](roots.md)");
+}
+
 }  // namespace oktett::roots

@@ -3,50 +3,28 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "io/scene/degenerate.h"
 #include "io/scene/exact.h"
 #include "io/scene/number_line.h"
+#include "io/scene/shape_reader.h"
 
 namespace oktett {
 namespace {
 
 using MaybeForm = std::optional<ExactForm>;
 
-/// Most balls or elements of one object, and most bytes of a file of them.
-constexpr std::size_t kMaxBalls = std::size_t{1} << 20;
+/// Most bytes of a file of balls.
 constexpr std::size_t kMaxBallFileBytes = std::size_t{1} << 28;
-constexpr Range kStrength{-1e9, 1e9};
-constexpr Range kIso{0, 1e9, true};
 
 void check_count(std::size_t count, const Location& place) {
   if (count > kMaxBalls)
     throw Error(place, "more than " + std::to_string(kMaxBalls) + " elements in one object");
 }
 
-double read_iso(SceneLoad& load, const YamlNode* node) {
-  double iso = 0.5;
-  load.values.read(node, iso, kIso);
-  return iso;
-}
-
 // Skeletons
-
-PointSkeleton read_point(SceneLoad& load, const YamlNode& node) {
-  if (node.kind == YamlKind::sequence) return {load.values.vector(node)};
-  const Fields fields(node, "point", {"center"});
-  PointSkeleton s;
-  load.values.read(fields["center"], s.center);
-  return s;
-}
-
-SegmentSkeleton read_segment(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "segment", {"from", "to"});
-  SegmentSkeleton s;
-  load.values.read(fields["from"], s.from);
-  load.values.read(fields["to"], s.to);
-  return s;
-}
 
 PolygonSkeleton read_polygon(SceneLoad& load, const YamlNode& node) {
   const YamlNode& list =
@@ -61,22 +39,29 @@ PolygonSkeleton read_polygon(SceneLoad& load, const YamlNode& node) {
   return {polygon.vertices};
 }
 
-EllipsoidSkeleton read_ellipsoid(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "ellipsoid", {"center", "radii", "rotate"});
-  EllipsoidSkeleton s;
-  load.values.read(fields["center"], s.center);
-  if (const YamlNode* radii = fields["radii"]) {
-    double r[3];
-    load.values.numbers(*radii, r, kPositive);
-    s.radii = {r[0], r[1], r[2]};
-  }
-  load.values.read(fields["rotate"], s.rotation);
-  return s;
-}
-
 // Elements
 
-const char* const kSkeletons[] = {"point", "segment", "polygon", "ellipsoid"};
+/// A map of the parameters of T, or a list of its points.
+template <class T>
+void read_skeleton(SceneLoad& load, const YamlNode& node, const char* what, Skeleton& out) {
+  T skeleton;
+  if constexpr (std::is_same_v<T, PolygonSkeleton>) {
+    skeleton = read_polygon(load, node);
+  } else if (std::is_same_v<T, PointSkeleton> && node.kind == YamlKind::sequence) {
+    skeleton = {load.values.vector(node)};
+  } else {
+    read_described(load, node, what, skeleton);
+  }
+  out = std::move(skeleton);
+}
+
+constexpr struct {
+  const char* key;
+  void (*read)(SceneLoad&, const YamlNode&, const char* what, Skeleton&);
+} kSkeletons[] = {{"point", read_skeleton<PointSkeleton>},
+                  {"segment", read_skeleton<SegmentSkeleton>},
+                  {"polygon", read_skeleton<PolygonSkeleton>},
+                  {"ellipsoid", read_skeleton<EllipsoidSkeleton>}};
 
 const YamlNode* find(const std::vector<MapEntry>& entries, std::string_view key) {
   for (const MapEntry& entry : entries)
@@ -112,26 +97,14 @@ FieldElement read_element(SceneLoad& load, const YamlNode& node) {
   const std::vector<MapEntry> entries = map_entries(node, "element");
   FieldElement element;
   const char* found = nullptr;
-  for (const char* key : kSkeletons) {
-    const YamlNode* value = fields[key];
+  for (const auto& skeleton : kSkeletons) {
+    const YamlNode* value = fields[skeleton.key];
     if (!value) continue;
     if (found)
       throw Error(value->where(),
-                  std::string("an element has one skeleton: '") + found + "' or '" + key + "'");
-    found = key;
-    switch (key[1] == 'l' ? 'e' : key[2]) {
-      case 'i':
-        element.skeleton = read_point(load, *value);
-        break;
-      case 'g':
-        element.skeleton = read_segment(load, *value);
-        break;
-      case 'l':
-        element.skeleton = read_polygon(load, *value);
-        break;
-      default:
-        element.skeleton = read_ellipsoid(load, *value);
-    }
+                  std::string("an element has one skeleton: '") + found + "' or '" + skeleton.key + "'");
+    found = skeleton.key;
+    skeleton.read(load, *value, found, element.skeleton);
   }
   if (!found) throw Error(node.where(), "expected a skeleton: point, segment, polygon or ellipsoid");
   element.potential = read_potential(load, entries);
@@ -142,15 +115,6 @@ bool all_metaballs(const std::vector<FieldElement>& elements) {
   return std::all_of(elements.begin(), elements.end(), [](const FieldElement& e) {
     return std::holds_alternative<PointSkeleton>(e.skeleton) && e.potential.kind == PotentialKind::wyvill;
   });
-}
-
-MetaBall read_ball(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "ball", {"center", "radius", "strength"});
-  MetaBall ball;
-  load.values.read(fields["center"], ball.center);
-  load.values.read(fields["radius"], ball.radius, kPositive);
-  load.values.read(fields["strength"], ball.strength, kStrength);
-  return ball;
 }
 
 std::vector<MetaBall> read_ball_file(SceneLoad& load, const YamlNode& node) {
@@ -187,14 +151,14 @@ bool none_positive(const BlobTreeShape& tree) {
                       [](const FieldElement& e) { return e.potential.weight > 0; });
 }
 
-MaybeForm read_elements(SceneLoad& load, const YamlNode& key, const YamlNode& list, double iso) {
+MaybeForm read_elements(const ShapeNode& at, const YamlNode& list, double iso) {
   BlobTreeShape tree;
   tree.iso = iso;
   const auto items = list_items(list, "elements");
   if (items.empty()) throw Error(list.where(), "the list of elements is empty");
   check_count(items.size(), list.where());
-  for (const YamlNode* item : items) tree.elements.push_back(read_element(load, *item));
-  if (none_positive(tree)) return skip_exact(load, key, "no element has a positive weight");
+  for (const YamlNode* item : items) tree.elements.push_back(read_element(at.load, *item));
+  if (none_positive(tree)) return at.skip("no element has a positive weight");
   if (all_metaballs(tree.elements)) {
     MetaballsShape shape{iso, {}};
     for (const FieldElement& e : tree.elements)
@@ -205,33 +169,6 @@ MaybeForm read_elements(SceneLoad& load, const YamlNode& key, const YamlNode& li
   for (std::uint32_t i = 0; i < tree.elements.size(); ++i) tree.blends.push_back({Blend::Op::element, i, 0});
   tree.blends.push_back({Blend::Op::sum, 0, static_cast<std::uint32_t>(tree.elements.size())});
   return tree;
-}
-
-MaybeForm read_metaballs(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "metaballs", {"iso", "balls", "file", "elements", "normals"});
-  const double iso = read_iso(load, fields["iso"]);
-  const YamlNode* source = nullptr;
-  for (const char* name : {"balls", "file", "elements"}) {
-    if (const YamlNode* value = fields[name]) {
-      if (source) throw Error(value->where(), "metaballs have one of 'balls', 'file' and 'elements'");
-      source = value;
-    }
-  }
-  if (!source) throw Error(node.where(), "metaballs need 'balls', 'file' or 'elements'");
-  if (const YamlNode* elements = fields["elements"]) return read_elements(load, key, *elements, iso);
-  MetaballsShape shape;
-  shape.iso = iso;
-  if (const YamlNode* balls = fields["balls"]) {
-    const auto items = list_items(*balls, "balls");
-    check_count(items.size(), balls->where());
-    for (const YamlNode* item : items) shape.balls.push_back(read_ball(load, *item));
-  } else {
-    shape.balls = read_ball_file(load, *source);
-  }
-  if (shape.balls.empty()) throw Error(source->where(), "there are no balls");
-  if (std::none_of(shape.balls.begin(), shape.balls.end(), [](const MetaBall& b) { return b.strength > 0; }))
-    return skip_exact(load, key, "no ball has a positive strength");
-  return shape;
 }
 
 // Trees
@@ -265,22 +202,32 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
   tree.blends.push_back({Blend::Op::element, static_cast<std::uint32_t>(tree.elements.size() - 1), 0});
 }
 
-MaybeForm read_blobtree(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  const Fields fields(node, "blobtree", {"iso", "sum", "max", "min", "difference", "normals"});
-  BlobTreeShape tree;
-  tree.iso = read_iso(load, fields["iso"]);
-  bool found = false;
-  for (const Choice<Blend::Op>& blend : kBlends) found |= fields[blend.name] != nullptr;
-  if (!found) throw Error(node.where(), "a blobtree needs one of 'sum', 'max', 'min' and 'difference'");
-  read_blend(load, node, 1, tree);
-  if (none_positive(tree)) return skip_exact(load, key, "no element has a positive weight");
-  return tree;
-}
-
-constexpr ExactReader kReaders[] = {{"metaballs", read_metaballs}, {"blobtree", read_blobtree}};
-
 }  // namespace
 
-std::span<const ExactReader> metaball_readers() { return kReaders; }
+MaybeForm finish(const ShapeNode& at, MetaballsShape& shape) {
+  const YamlNode* source = nullptr;
+  for (const char* name : {"balls", "file", "elements"}) {
+    if (const YamlNode* value = at.fields[name]) {
+      if (source) throw Error(value->where(), "metaballs have one of 'balls', 'file' and 'elements'");
+      source = value;
+    }
+  }
+  if (!source) throw Error(at.node.where(), "metaballs need 'balls', 'file' or 'elements'");
+  if (source == at.fields["elements"]) return read_elements(at, *source, shape.iso);
+  if (source == at.fields["file"]) shape.balls = read_ball_file(at.load, *source);
+  if (shape.balls.empty()) throw Error(source->where(), "there are no balls");
+  if (std::none_of(shape.balls.begin(), shape.balls.end(), [](const MetaBall& b) { return b.strength > 0; }))
+    return at.skip("no ball has a positive strength");
+  return shape;
+}
+
+MaybeForm finish(const ShapeNode& at, BlobTreeShape& tree) {
+  bool found = false;
+  for (const Choice<Blend::Op>& blend : kBlends) found |= at.fields[blend.name] != nullptr;
+  if (!found) throw Error(at.node.where(), "a blobtree needs one of 'sum', 'max', 'min' and 'difference'");
+  read_blend(at.load, at.node, 1, tree);
+  if (none_positive(tree)) return at.skip("no element has a positive weight");
+  return tree;
+}
 
 }  // namespace oktett

@@ -1,0 +1,182 @@
+#include "io/scene/shape_reader.h"
+
+#include "io/scene/transform.h"
+#include "io/scene/utf8.h"
+#include "kernels/exact/polynomial_expression.h"
+#include "kernels/fractals/ifs.h"
+#include "kernels/functions/function_tape.h"
+
+namespace oktett {
+namespace {
+
+/// Throws what is wrong with a text such as an equation, found in `error`, whose column counts bytes in
+/// `text`, at its place in the file, and shows it. `text` is what `node` stands for.
+[[noreturn]] void fail_in_text(const char* what, const YamlNode& node, const std::string& text,
+                               const Error& error) {
+  const auto at = std::min(static_cast<std::size_t>(error.where().column) - 1, text.size());
+  std::string message = fmt::format("bad {}: {} (column {})", what, error.what(), error.where().column);
+  // The part of a long text around the place.
+  const std::size_t begin = at > 100 ? at - 100 : 0, length = std::min<std::size_t>(text.size() - begin, 200);
+  if (text.find('\n') == std::string::npos && character_count(text) == text.size())
+    message += fmt::format("\n  {}\n  {}^", text.substr(begin, length), std::string(at - begin, ' '));
+  throw Error(text == node.text ? node.where(at) : node.where(), message);
+}
+
+}  // namespace
+
+void ParameterReader::check(bool ok, const char* key, const char* message, const double* found) const {
+  if (ok || why_nothing) return;
+  const YamlNode* value = key ? fields_[key] : &node_;
+  if (!value) value = last_ ? last_ : &node_;
+  throw Error(value->where(), found ? fmt::format("{}, found {:.6g}", message, *found) : message);
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, double& value) {
+  value = load_.values.number(node, parameter.range);
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::uint32_t& value) {
+  value = load_.values.integer(node, static_cast<std::uint32_t>(parameter.range.lo),
+                               static_cast<std::uint32_t>(parameter.range.hi));
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter&, bool& value) {
+  value = load_.values.boolean(node);
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, Vec3d& value) {
+  const bool may_be_zero = parameter.range.contains(0);
+  double v[3];
+  load_.values.numbers(node, v, may_be_zero ? kAnyNumber : parameter.range);
+  for (const double x : v)
+    if (!parameter.range.contains(x))
+      throw Error(node.where(), fmt::format("the {} must not be negative", parameter.key));
+  value = {v[0], v[1], v[2]};
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::span<double> values) {
+  load_.values.numbers(node, values, parameter.range);
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points) {
+  const auto items = items_of(node, parameter);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = load_.values.vector(*items[i]);
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, SolidBox& box) {
+  const Fields fields(node, parameter.key, {"min", "max"});
+  box.lo = load_.values.vector(fields.require("min")), box.hi = load_.values.vector(fields.require("max"));
+  for (int k = 0; k < 3; ++k)
+    if (!(box.lo[k] < box.hi[k]))
+      throw Error(fields.require("max").where(),
+                  fmt::format("the {} of max must be greater than that of min", "xyz"[k]));
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, ClipBox& box) {
+  const Fields fields(node, parameter.key, {"min", "max"});
+  load_.values.read(fields["min"], box.lo);
+  load_.values.read(fields["max"], box.hi);
+  for (int k = 0; k < 3; ++k)
+    if (box.lo[k] > box.hi[k])
+      throw Error((fields["max"] ? *fields["max"] : node).where(),
+                  fmt::format("the {} box has min > max along {}", parameter.key, "xyz"[k]));
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter&, std::vector<Monomial>& terms) {
+  const std::string text = load_.values.text(node);
+  try {
+    terms = expand_polynomial(text);
+  } catch (const Error& e) {
+    fail_in_text("equation", node, text, e);
+  }
+}
+
+void ParameterReader::read(const YamlNode& node, const Parameter&, FunctionTape& function) {
+  function = read_function(load_, node);
+}
+
+std::span<const YamlNode* const> ParameterReader::items_of(const YamlNode& node, const Parameter& parameter) {
+  const auto items = list_items(node, parameter.key);
+  const Range& counts = parameter.range;
+  if (counts.contains(static_cast<double>(items.size()))) return items;
+  const std::string expected = counts.lo == counts.hi ? fmt::format("{}", counts.lo)
+                               : counts.lo == 0       ? fmt::format("at most {}", counts.hi)
+                                                      : fmt::format("{} to {}", counts.lo, counts.hi);
+  throw Error(node.where(), fmt::format("expected {} {}, found {}", expected, parameter.key, items.size()));
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point) {
+  point = load.values.vector(node);
+  return true;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane) {
+  double p[4];
+  load.values.numbers(node, p);
+  plane = {{p[0], p[1], p[2]}, p[3]};
+  if (!(length(plane.normal) > 0)) throw Error(node.where(), "the normal of a plane must not be zero");
+  return true;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point) {
+  double p[2];
+  load.values.numbers(node, p);
+  point = {p[0], p[1]};
+  return true;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, Affine& map) {
+  map = read_transform(load.values, node);
+  if (!map.is_invertible()) throw Error(node.where(), "expected a map with an inverse, found a singular one");
+  if (const double norm = Ifs::norm(map); !(norm < 1))
+    throw Error(
+        node.where(),
+        fmt::format("expected a contraction, found a map that makes lengths up to {:.6g} times as long",
+                    norm));
+  return true;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source) {
+  const Fields fields(node, "a source", {"point", "line", "plane", "weight"});
+  load.values.read(fields["weight"], source.weight);
+  const YamlNode *point = fields["point"], *line = fields["line"], *plane = fields["plane"];
+  if ((point != nullptr) + (line != nullptr) + (plane != nullptr) != 1)
+    throw Error(node.where(), "a source is one of 'point', 'line' and 'plane'");
+  const YamlNode* direction = nullptr;
+  if (point) {
+    source.kind = BlobSource::Kind::point;
+    source.at = load.values.vector(*point);
+  } else if (line) {
+    const Fields of(*line, "line", {"point", "direction"});
+    source.kind = BlobSource::Kind::line;
+    load.values.read(of["point"], source.at);
+    direction = &of.require("direction");
+  } else {
+    const Fields of(*plane, "plane", {"normal", "offset"});
+    source.kind = BlobSource::Kind::plane;
+    direction = &of.require("normal");
+    load.values.read(of["offset"], source.offset);
+  }
+  if (direction) {
+    source.direction = load.values.vector(*direction);
+    if (!(length(source.direction) > 0)) throw Error(direction->where(), "the direction must not be zero");
+  }
+  if (source.weight == 0) load.warn(node.where(), "the weight is zero; the source is skipped");
+  return source.weight != 0;
+}
+
+bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball) {
+  read_described(load, node, "ball", ball);
+  return true;
+}
+
+FunctionTape read_function(SceneLoad& load, const YamlNode& node) {
+  const std::string text = load.values.text(node);
+  try {
+    return compile_function(text);
+  } catch (const Error& e) {
+    fail_in_text("function", node, text, e);
+  }
+}
+
+}  // namespace oktett

@@ -1,0 +1,127 @@
+#pragma once
+/// \file Reads a shape by what it says of its parameters (core/description.h). Within io/ only.
+
+#include <fmt/format.h>
+
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/description.h"
+#include "io/scene/load.h"
+#include "kernels/exact_form.h"
+
+namespace oktett {
+
+/// Calls v.surface(surface, shape) for each shape of scene files that describes its parameters.
+template <class V, class... T>
+void visit_surfaces_of(V& v, std::type_identity<std::variant<T...>>) {
+  const auto visit = [&]<class S>(std::type_identity<S>) {
+    if constexpr (requires { S::kSurface; })
+      v.surface(S::kSurface, S{});
+    else if constexpr (requires { S::surfaces(v); })
+      S::surfaces(v);
+  };
+  (visit(std::type_identity<T>{}), ...);
+}
+void visit_surfaces(auto& v) {
+  visit_surfaces_of(v, std::type_identity<Shape>{});
+  visit_surfaces_of(v, std::type_identity<ExactForm>{});
+}
+
+/// The keys of a shape's parameters.
+class KeyList : public ParameterVisitor<KeyList> {
+ public:
+  template <class T>
+  explicit KeyList(T shape) {
+    shape.describe(*this);
+  }
+  template <class T>
+  bool visit(const Parameter& parameter, T&) {
+    keys.push_back(parameter.key);
+    return false;
+  }
+  void normals() { keys.push_back("normals"); }
+
+  std::vector<const char*> keys;
+};
+
+/// Reads the values of the fields of a map into the members that they describe.
+class ParameterReader : public ParameterVisitor<ParameterReader> {
+ public:
+  ParameterReader(SceneLoad& load, const YamlNode& node, const Fields& fields)
+      : load_(load), node_(node), fields_(fields) {}
+
+  template <class T>
+  bool visit(const Parameter& parameter, T& value) {
+    const bool required = parameter.need == Parameter::Need::required;
+    const YamlNode* const node = required ? &fields_.require(parameter.key) : fields_[parameter.key];
+    if (!node) return false;
+    read(*node, parameter, value);
+    last_ = node;
+    return true;
+  }
+  void normals() { describe_normals(*this, normal_method); }
+  void check(bool ok, const char* key, const char* message, const double* found = nullptr) const;
+  void nothing_if(bool is_empty, const char* reason) {
+    if (is_empty && !why_nothing) why_nothing = reason;
+  }
+
+  NormalMethod normal_method = NormalMethod::gradient;
+  const char* why_nothing = nullptr;  ///< why the shape has no points, if so
+
+ private:
+  void read(const YamlNode& node, const Parameter& parameter, double& value);
+  void read(const YamlNode& node, const Parameter& parameter, std::uint32_t& value);
+  void read(const YamlNode& node, const Parameter& parameter, bool& value);
+  void read(const YamlNode& node, const Parameter& parameter, Vec3d& value);
+  void read(const YamlNode& node, const Parameter& parameter, std::span<double> values);
+  void read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points);
+  void read(const YamlNode& node, const Parameter& parameter, SolidBox& box);
+  void read(const YamlNode& node, const Parameter& parameter, ClipBox& box);
+  void read(const YamlNode& node, const Parameter& parameter, std::vector<Monomial>& terms);
+  void read(const YamlNode& node, const Parameter& parameter, FunctionTape& function);
+  void read(const YamlNode&, const Parameter&, const ByHand&) {}
+  template <class T>
+  void read(const YamlNode& node, const Parameter&, ChoiceOf<T>& choice) {
+    choice.value = load_.values.choice<T>(node, choice.choices);
+  }
+  template <class T>
+  void read(const YamlNode& node, const Parameter& parameter, std::vector<T>& list) {
+    for (const YamlNode* item : items_of(node, parameter)) {
+      T value{};
+      if (read_item(load_, *item, value)) list.push_back(std::move(value));
+    }
+  }
+  /// The items of a list whose length is checked.
+  static std::span<const YamlNode* const> items_of(const YamlNode& node, const Parameter& parameter);
+
+  SceneLoad& load_;
+  const YamlNode& node_;
+  const Fields& fields_;
+  const YamlNode* last_ = nullptr;  ///< the value that was read last
+};
+
+/// Reads a map of parameters that has no special cases; `what` names it.
+template <class T>
+void read_described(SceneLoad& load, const YamlNode& node, const char* what, T& value) {
+  static const KeyList known{T{}};
+  const Fields fields(node, what, known.keys);
+  ParameterReader reader(load, node, fields);
+  value.describe(reader);
+}
+
+// Items of lists. Each returns whether the item is kept; it warns of those that are not.
+bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point);
+bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane);
+bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point);
+bool read_item(SceneLoad& load, const YamlNode& node, Affine& map);
+bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source);
+bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball);
+
+/// A function of x, y and z.
+FunctionTape read_function(SceneLoad& load, const YamlNode& node);
+
+}  // namespace oktett

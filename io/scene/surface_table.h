@@ -1,0 +1,31 @@
+#pragma once
+/// \file The shapes of scene files and their parameters, as docs/scene-format.md lists them.
+
+#include <string>
+#include <vector>
+
+#include "core/description.h"
+
+namespace oktett {
+
+struct DescribedParameter {
+  Parameter parameter;
+  enum class Type : std::uint8_t { number, whole_number, other } type;
+  std::string text;   ///< what is allowed, in Markdown
+  std::string usual;  ///< the default as it is written in a file; "required" or "none"
+
+  bool operator==(const DescribedParameter& other) const;
+};
+
+struct DescribedSurface {
+  Surface surface;
+  std::vector<DescribedParameter> parameters;
+};
+
+/// Each shape that describes its parameters.
+std::vector<DescribedSurface> described_surfaces();
+
+/// The same as a Markdown table. Shapes with the same parameters share their rows.
+std::string surface_table();
+
+}  // namespace oktett
