@@ -13,6 +13,7 @@ if(TARGET oktett_app)
 endif()
 install(DIRECTORY ${OKTETT_PUBLIC_INCLUDE_DIR}/oktett DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
+get_target_property(oktett_type oktett TYPE)
 install(EXPORT oktett-targets NAMESPACE oktett:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/oktett-config.cmake.in ${PROJECT_BINARY_DIR}/oktett-config.cmake
   INSTALL_DESTINATION ${package_dir})
@@ -22,7 +23,6 @@ install(FILES ${PROJECT_BINARY_DIR}/oktett-config.cmake ${PROJECT_BINARY_DIR}/ok
 
 # The pkg-config file finds its prefix from where it lies, so the whole tree may be moved. Whoever links the static
 # library links what it uses; a shared library brings that itself.
-get_target_property(oktett_type oktett TYPE)
 if(oktett_type STREQUAL "STATIC_LIBRARY")
   set(OKTETT_PC_REQUIRES "Requires")
   set(OKTETT_PC_THREADS " -pthread")
