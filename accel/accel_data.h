@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
-#include "accel/csg/csg.h"
+#include "accel/csg_item.h"
 #include "accel/node.h"
 #include "core/platform.h"
 #include "core/virtual_array.h"

@@ -92,6 +92,23 @@ struct alignas(64) RayState {
                 (abs(origin.z) <= big) & (zero < max(az, max(ay, ax))) & (zero <= t0) & (t0 < t1));
   }
 
+  /// Ray i by itself.
+  OKTETT_INLINE RayState<1, A> lane(int i) const {
+    RayState<1, A> one;
+    for (int k = 0; k < 3; ++k) {
+      one.o[k][0] = o[k][i], one.d[k][0] = d[k][i], one.inv[k][0] = inv[k][i];
+      one.negative[k] = negative[k] >> i & 1, one.z_axis[k] = z_axis[k] >> i & 1;
+    }
+    one.tmin[0] = tmin[i], one.slack[0] = slack[i], one.d_max[0] = d_max[i];
+    one.inv_dz[0] = inv_dz[i], one.shear_x[0] = shear_x[i], one.shear_y[0] = shear_y[i];
+    one.tmax[0] = tmax[i], one.u[0] = u[i], one.v[0] = v[i], one.item[0] = item[i], one.path[0] = path[i];
+    return one;
+  }
+  /// Takes over the hit of ray i, which has gone on by itself.
+  OKTETT_INLINE void take(int i, const RayState<1, A>& one) {
+    tmax[i] = one.tmax[0], u[i] = one.u[0], v[i] = one.v[0], item[i] = one.item[0], path[i] = one.path[0];
+  }
+
   OKTETT_INLINE Hit hit(int i) const {
     Hit h;
     if (item[i] != kNoId) h = {tmax[i], u[i], v[i], item[i], path[i]};

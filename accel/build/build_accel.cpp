@@ -5,6 +5,7 @@
 
 #include "accel/build/mesh_source.h"
 #include "accel/build/wide_tree.h"
+#include "accel/csg/csg.h"
 #include "accel/geometry_bounds.h"
 #include "core/error.h"
 #include "kernels/exact_bounds.h"

@@ -65,10 +65,10 @@ void trace_batch(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out,
     if constexpr (kVectors) trace_run<Q, A>(accel, rays, out, run, b);
     run = b + count;
     unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & ((1u << count) - 1);
-    if (kVectors) {
+    if constexpr (kVectors) {
       if (lanes != 0) trace_packet<Q>(accel, state, lanes);
     } else if (lanes != 0) {
-      trace_single<Q>(accel, state, 0);
+      trace_single<Q>(accel, state);
     }
     for (std::size_t i = 0; i < count; ++i) store_hit<Q>(state, static_cast<int>(i), out, b + i);
   }

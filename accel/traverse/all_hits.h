@@ -27,14 +27,14 @@ void collect_triangles(const Accel& accel, const TriangleBlock& block, int count
                        const RayState<1, A>& r, HitList& hits) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
-  const auto ray = broadcast_ray<N>(r, 0);
+  const auto ray = broadcast_ray<N>(r);
   HitLanes<F> h;
   unsigned lanes = (1u << count) - 1, front = 0;
   if (test == TriangleTest::watertight) {
     lanes &= bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(load_triangles<F>(block))));
     if (lanes == 0) return;
     typename F::M clockwise;
-    lanes &= bits(decide_watertight(broadcast_shear<N>(r, 0), load_triangles<F>(block, 0, r.z_axis_of(0)),
+    lanes &= bits(decide_watertight(broadcast_shear<N>(r), load_triangles<F>(block, 0, r.z_axis_of(0)),
                                     ray.tmin, ray.tmax, h, clockwise));
     front = r.inv_dz[0] > 0 ? bits(clockwise) : ~bits(clockwise);
   } else {
@@ -64,7 +64,7 @@ template <class S, class A>
 void collect_shape(const typename S::Pool& pool, const LeafEntry& leaf, const RayState<1, A>& r,
                    HitList& hits) {
   using D = Simd<double, 1, A>;
-  const auto ray = to_double(broadcast_ray<1>(r, 0));
+  const auto ray = to_double(load_rays(r));
   for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
     D t[S::kRoots];
     if (none(S::roots(ray, S::template broadcast<D>(pool, k), t))) continue;
@@ -87,7 +87,7 @@ void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A
     collect_triangles(accel, accel.blocks[leaf.begin], leaf.count, leaf.test, r, hits);
   } else if (holds_instances(leaf.kind)) {
     each_instance(accel, leaf, [&](const auto& instance, const Accel& inner) {
-      const auto outer = broadcast_ray<1>(r, 0);
+      const auto outer = load_rays(r);
       Vec3<Simd<float, 1, A>> o, d;
       transform_rays(instance, outer, o, d);
       RayState<1, A> child;
@@ -131,24 +131,20 @@ template <class A>
 void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
   const std::size_t first = hits.size();
   for (const LeafEntry& leaf : accel.unbounded) collect_leaf(accel, leaf, r, hits);
-  if (accel.root.is_none()) return;
-  NodeRef stack[kStackSize];
-  int size = 0;
-  stack[size++] = accel.root;
   alignas(64) float near[BvhNode::kWidth];
-  while (size > 0) {
-    const NodeRef ref = stack[--size];
-    if (ref.is_triangles()) {
-      collect_triangles(accel, accel.blocks[ref.block()], ref.triangle_count(), TriangleTest::watertight, r,
-                        hits);
-    } else if (ref.is_leaf()) {
-      collect_leaf(accel, accel.leaves[ref.table_index()], r, hits);
-    } else {
-      const BvhNode& node = accel.nodes[ref.node_index()];
-      for (unsigned hit = node_single(node, r, 0, near); hit != 0; hit &= hit - 1)
-        stack[size++] = node.child[__builtin_ctz(hit)];
-    }
-  }
+  visit_leaves(
+      accel, 1,
+      [&](const BvhNode& node, unsigned, auto&& push) {
+        for (unsigned hit = node_single(node, r, near); hit != 0; hit &= hit - 1) push(__builtin_ctz(hit), 1);
+      },
+      [&](NodeRef leaf, unsigned) {
+        if (leaf.is_triangles())
+          collect_triangles(accel, accel.blocks[leaf.block()], leaf.triangle_count(),
+                            TriangleTest::watertight, r, hits);
+        else
+          collect_leaf(accel, accel.leaves[leaf.table_index()], r, hits);
+        return true;
+      });
   if (accel.pieces) drop_repeated(accel, hits, first);
   if (accel.exact) merge_crossings(accel, hits, first);
 }

@@ -31,24 +31,25 @@ OKTETT_INLINE ShearLanes<Simd<double, W, A>> load_shear(const RayState<W, A>& r,
           D::load(r.shear_y)};
 }
 
-/// Ray `i` in all N lanes.
-template <int N, int W, class A>
-OKTETT_INLINE RayLanes<Simd<float, N, A>> broadcast_ray(const RayState<W, A>& r, int i) {
+/// One ray in all N lanes.
+template <int N, class A>
+OKTETT_INLINE RayLanes<Simd<float, N, A>> broadcast_ray(const RayState<1, A>& r) {
   using F = Simd<float, N, A>;
-  return {{F(r.o[0][i]), F(r.o[1][i]), F(r.o[2][i])},
-          {F(r.d[0][i]), F(r.d[1][i]), F(r.d[2][i])},
-          F(r.tmin[i]),
-          F(r.tmax[i])};
+  return {{F(r.o[0][0]), F(r.o[1][0]), F(r.o[2][0])},
+          {F(r.d[0][0]), F(r.d[1][0]), F(r.d[2][0])},
+          F(r.tmin[0]),
+          F(r.tmax[0])};
 }
 
-template <int N, int W, class A>
-OKTETT_INLINE ShearLanes<Simd<double, N, A>> broadcast_shear(const RayState<W, A>& r, int i) {
+/// The shear of one ray in all N lanes.
+template <int N, class A>
+OKTETT_INLINE ShearLanes<Simd<double, N, A>> broadcast_shear(const RayState<1, A>& r) {
   using D = Simd<double, N, A>;
-  const int z = r.z_axis_of(i);
-  return {{D(r.o[(z + 1) % 3][i]), D(r.o[(z + 2) % 3][i]), D(r.o[z][i])},
-          D(r.inv_dz[i]),
-          D(r.shear_x[i]),
-          D(r.shear_y[i])};
+  const int z = r.z_axis_of(0);
+  return {{D(r.o[(z + 1) % 3][0]), D(r.o[(z + 2) % 3][0]), D(r.o[z][0])},
+          D(r.inv_dz[0]),
+          D(r.shear_x[0]),
+          D(r.shear_y[0])};
 }
 
 /// Hits of W rays with one item, for the rays in `lanes`.
@@ -75,15 +76,15 @@ OKTETT_INLINE void accept_packet(RayState<W, A>& r, unsigned lanes, const HitLan
   name(r.item, item), name(r.path, kNoId);
 }
 
-/// Hits of ray `i` with N items; for Query::any one is enough.
-template <int N, int W, class A>
-OKTETT_INLINE void accept_single(RayState<W, A>& r, int i, unsigned lanes,
-                                 const HitLanes<Simd<float, N, A>>& h, const std::uint32_t* items) {
+/// Hits of one ray with the items in `lanes`.
+template <int N, class A>
+OKTETT_INLINE void accept_single(RayState<1, A>& r, unsigned lanes, const HitLanes<Simd<float, N, A>>& h,
+                                 const std::uint32_t* items) {
   alignas(64) float t[N], u[N], v[N];
   h.t.store(t), h.u.store(u), h.v.store(v);
   for (; lanes != 0; lanes &= lanes - 1) {
     const int k = __builtin_ctz(lanes);
-    accept_hit(r, i, t[k], u[k], v[k], items[k], kNoId);
+    accept_hit(r, 0, t[k], u[k], v[k], items[k], kNoId);
   }
 }
 
@@ -96,59 +97,55 @@ OKTETT_INLINE typename F::M textbook_test(TriangleTest test, const RayLanes<F>& 
   return segura_feito(ray, tri, hit);
 }
 
-// --- one ray
-// ----------------------------------------------------------------------------------------------------------
-
-/// Ray `i` against the first `count` triangles of a block, eight at a time.
-template <int W, class A>
-OKTETT_INLINE void leaf_triangles_single(const TriangleBlock& block, int count, RayState<W, A>& r, int i) {
+/// One ray against the first `count` triangles of a block, all at once.
+template <class A>
+OKTETT_INLINE void leaf_triangles_single(const TriangleBlock& block, int count, RayState<1, A>& r) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
-  const auto ray = broadcast_ray<N>(r, i);
+  const auto ray = broadcast_ray<N>(r);
   const auto tri = load_triangles<F>(block);
-  unsigned lanes = bits(filter_watertight(ray, F(r.d_max[i]), filter_triangle(tri))) & ((1u << count) - 1);
+  unsigned lanes = bits(filter_watertight(ray, F(r.d_max[0]), filter_triangle(tri))) & ((1u << count) - 1);
   if (lanes == 0) return;
   HitLanes<F> hit;
-  lanes &= bits(decide_watertight(broadcast_shear<N>(r, i), load_triangles<F>(block, 0, r.z_axis_of(i)),
+  lanes &= bits(decide_watertight(broadcast_shear<N>(r), load_triangles<F>(block, 0, r.z_axis_of(0)),
                                   ray.tmin, ray.tmax, hit));
-  if (lanes != 0) accept_single<N>(r, i, lanes, hit, block.item);
+  if (lanes != 0) accept_single<N>(r, lanes, hit, block.item);
 }
 
-template <int W, class A>
+/// The same by one of the textbook tests.
+template <class A>
 OKTETT_NOINLINE void leaf_textbook_single(TriangleTest test, const TriangleBlock& block, int count,
-                                          RayState<W, A>& r, int i) {
+                                          RayState<1, A>& r) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
   HitLanes<F> hit;
   const unsigned lanes =
-      bits(textbook_test(test, broadcast_ray<N>(r, i), load_triangles<F>(block), hit)) & ((1u << count) - 1);
-  if (lanes != 0) accept_single<N>(r, i, lanes, hit, block.item);
+      bits(textbook_test(test, broadcast_ray<N>(r), load_triangles<F>(block), hit)) & ((1u << count) - 1);
+  if (lanes != 0) accept_single<N>(r, lanes, hit, block.item);
 }
 
-/// How many primitives of S one ray meets at once.
+/// How many primitives of S are tested against one ray at once.
 template <class S>
 inline constexpr int kShapeLanes = 8;
 template <>
 inline constexpr int kShapeLanes<Polygon> = 1;
 
-template <class S, int W, class A>
+/// One ray against `count` primitives of closed-form shape S from `begin` on.
+template <class S, class A>
 OKTETT_INLINE void leaf_shape_single(const typename S::Pool& pool, std::uint32_t begin, int count,
-                                     RayState<W, A>& r, int i) {
+                                     RayState<1, A>& r) {
   constexpr int N = kShapeLanes<S>;
   using F = Simd<float, N, A>;
   using D = Simd<double, N, A>;
   for (int k = 0; k < count; k += N) {
-    const auto ray = broadcast_ray<N>(r, i);
+    const auto ray = broadcast_ray<N>(r);
     HitLanes<F> hit;
     const auto found = first_root<S>(ray, to_double(ray), S::template load<D>(pool, begin + k), hit);
     const int rest = count - k;
     const unsigned lanes = bits(found) & (rest >= N ? (1u << N) - 1 : (1u << rest) - 1);
-    if (lanes != 0) accept_single<N>(r, i, lanes, hit, &pool.item[begin + k]);
+    if (lanes != 0) accept_single<N>(r, lanes, hit, &pool.item[begin + k]);
   }
 }
-
-// --- a packet
-// -----------------------------------------------------------------------------------------------------------
 
 /// Decides triangle `k` of a block for the rays in `maybe`, which share the greatest axis `z`.
 template <int W, class A>

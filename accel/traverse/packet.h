@@ -112,6 +112,17 @@ OKTETT_NOINLINE void instance_packet(const Instance& instance, const Accel& inne
   }
 }
 
+/// The rays in `lanes`, each alone, through the part of the tree below `start`.
+template <Query Q, int W, class A>
+OKTETT_INLINE void traverse_each(const Accel& accel, RayState<W, A>& r, unsigned lanes, NodeRef start) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    RayState<1, A> one = r.lane(i);
+    traverse_single<Q>(accel, one, start);
+    r.take(i, one);
+  }
+}
+
 /// Bit i set if ray i has found anything.
 template <int W, class A>
 OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
@@ -171,8 +182,7 @@ OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsi
     if (Q == Query::any) active &= lanes;
     if (active == 0) continue;
     if (__builtin_popcount(active) < kMinPacketRays<W>) {
-      for (unsigned rest = active; rest != 0; rest &= rest - 1)
-        traverse_single<Q>(accel, r, __builtin_ctz(rest), e.ref);
+      traverse_each<Q>(accel, r, active, e.ref);
     } else if (!e.ref.is_leaf()) {
       const BvhNode& node = accel.nodes[e.ref.node_index()];
       const int base = size;
@@ -215,11 +225,10 @@ void trace_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes) {
     unsigned group = lanes & r.z_axis[r.z_axis_of(first)];
     for (int k = 0; k < 3; ++k) group &= r.negative[k] >> first & 1 ? r.negative[k] : ~r.negative[k];
     lanes &= ~group;
-    if (__builtin_popcount(group) >= kMinPacketRays<W>) {
+    if (__builtin_popcount(group) >= kMinPacketRays<W>)
       traverse_packet<Q>(accel, r, group);
-    } else {
-      for (; group != 0; group &= group - 1) traverse_single<Q>(accel, r, __builtin_ctz(group), accel.root);
-    }
+    else
+      traverse_each<Q>(accel, r, group, accel.root);
   }
 }
 

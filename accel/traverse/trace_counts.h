@@ -1,5 +1,5 @@
 #pragma once
-/// \file How much work rays make in a tree: what the surface-area cost predicts, counted.
+/// \file Counts of the steps that rays take through a tree, which its surface-area cost predicts.
 
 #include <cstdint>
 
@@ -19,9 +19,9 @@ struct TraceCounts {
   std::uint64_t hits = 0;       ///< rays that hit something
 };
 
-/// Walks every ray by itself to its nearest hit, nearest child first, and counts. A walk of its own, in plain
-/// code, so that the queries carry no counters; packets visit fewer nodes per ray. Uses TBB tasks; the sums
-/// do not depend on them.
+/// Finds the nearest hit of each ray by itself, nearest child first, with the scalar code, and counts its
+/// steps. Packets and beams visit fewer nodes per ray. What happens inside a Boolean combination is not
+/// counted. Uses TBB tasks; the sums do not depend on them.
 TraceCounts trace_counts(const Accel& accel, const RaySpan& rays);
 
 }  // namespace oktett

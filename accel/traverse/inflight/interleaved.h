@@ -216,8 +216,7 @@ class InterleavedTraversal {
       slot.exact = 1;
     }
     if (slot.held < kHoldsExact)
-      leaf_triangles_single(accel_.blocks[slot.held / kBlock], static_cast<int>(slot.held % kBlock) + 1, r,
-                            0);
+      leaf_triangles_single(accel_.blocks[slot.held / kBlock], static_cast<int>(slot.held % kBlock) + 1, r);
     return r;
   }
 
@@ -234,7 +233,7 @@ class InterleavedTraversal {
   OKTETT_NOINLINE void decide_leaf(InflightRay& slot) {
     RayState<1, A>& r = exact_state(slot);
     const NodeRef leaf = slot.current;
-    leaf_triangles_single(accel_.blocks[leaf.block()], leaf.triangle_count(), r, 0);
+    leaf_triangles_single(accel_.blocks[leaf.block()], leaf.triangle_count(), r);
     adopt(slot);
   }
 
@@ -250,7 +249,7 @@ class InterleavedTraversal {
         finish(slot);
         refill(slot, tail);
       } else {
-        table_leaf_single<Q>(accel_, accel_.leaves[ref.table_index()], exact_state(slot), 0);
+        table_leaf_single<Q>(accel_, accel_.leaves[ref.table_index()], exact_state(slot));
         adopt(slot);
         pop(slot, tail);
       }
@@ -288,7 +287,7 @@ class InterleavedTraversal {
     slot.ray = static_cast<std::uint32_t>(next_);
     if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
       RayState<1, A>& r = exact_state(slot);
-      for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, r, 0);
+      for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, r);
       adopt(slot);
     }
     pop(slot, tail);
@@ -301,7 +300,7 @@ class InterleavedTraversal {
     const Ray source = rays_[ray];
     r.set(broadcast<One>(source.origin), broadcast<One>(source.direction), One(source.tmin), One(source.tmax),
           accel_.bounds);
-    if (valid) trace_single<Q>(accel_, r, 0);
+    if (valid) trace_single<Q>(accel_, r);
     if constexpr (Q == Query::any)
       out_[ray] = r.item[0] != kNoId;
     else

@@ -6,6 +6,7 @@
 #include "accel/csg/csg.h"
 #include "accel/csg/csg_solids.h"
 #include "accel/exact.h"
+#include "accel/traverse/node_boxes.h"
 
 namespace oktett {
 
@@ -99,39 +100,29 @@ class CsgLanes {
     return select(s <= F(std::numeric_limits<float>::max()), F(0x1p-22f) * (s / speed), F(0.0f));
   }
 
-  /// Leads to the leaves along the rays.
+  /// Gathers from the leaves along the rays.
   OKTETT_NOINLINE bool walk() {
     const Accel& solids = *csg_.solids;
-    struct Entry {
-      NodeRef ref;
-      unsigned lanes;
-    };
-    Entry stack[kStackSize];
-    int size = 0;
-    stack[size++] = {solids.root, lanes_};
     const typename F::M negative[3] = {rays_.d.x < F(0.0f), rays_.d.y < F(0.0f), rays_.d.z < F(0.0f)};
-    while (size > 0) {
-      const Entry e = stack[--size];
-      if (e.ref.is_leaf()) {
-        if (!e.ref.is_none() && !gather_leaf(solids.leaves[e.ref.table_index()], e.lanes & lanes_, false))
-          return false;
-        continue;
-      }
-      const BvhNode& node = solids.nodes[e.ref.node_index()];
-      for (int c = 0; c < BvhNode::kWidth; ++c) {
-        F near_planes[3], far_planes[3];
-        for (int k = 0; k < 3; ++k) {
-          const F lo(node.plane[2 * k][c]), hi(node.plane[2 * k + 1][c]);
-          near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
-        }
-        // A solid that begins behind the end of a ray matters to no crossing before it.
-        F near, far;
-        slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near, far);
-        const unsigned met = e.lanes & lanes_ & bits(near <= far);
-        if (met != 0) stack[size++] = {node.child[c], met};
-      }
-    }
-    return true;
+    return visit_leaves(
+        solids, lanes_,
+        [&](const BvhNode& node, unsigned lanes, auto&& push) {
+          for (int c = 0; c < BvhNode::kWidth; ++c) {
+            F near_planes[3], far_planes[3];
+            for (int k = 0; k < 3; ++k) {
+              const F lo(node.plane[2 * k][c]), hi(node.plane[2 * k + 1][c]);
+              near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
+            }
+            // A solid that begins behind the end of a ray matters to no crossing before it.
+            F near, far;
+            slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
+                          far);
+            push(c, lanes & lanes_ & bits(near <= far));
+          }
+        },
+        [&](NodeRef leaf, unsigned lanes) {
+          return gather_leaf(solids.leaves[leaf.table_index()], lanes & lanes_, false);
+        });
   }
 
   OKTETT_INLINE bool gather_leaf(const LeafEntry& leaf, unsigned lanes, bool unbounded) {

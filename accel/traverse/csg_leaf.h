@@ -2,8 +2,7 @@
 /// \file Rays against Boolean combinations: gather, sweep, take the first.
 
 #include "accel/csg/csg.h"
-#include "accel/csg/csg_lanes.h"
-#include "accel/ray_state.h"
+#include "accel/traverse/csg_lanes.h"
 
 namespace oktett {
 
