@@ -21,20 +21,20 @@ struct CsgNode {
 };
 
 /// One step of evaluating an expression for up to 32 rays at once, a bit each. The state of a node starts as
-/// `initial`. From the last node to the first, each node's value, which is its state ^ flip, is and-ed into the
-/// state of its parent. Unions hold complements, so that `and` serves them too (De Morgan).
+/// `initial`. From the last node to the first, each node's value, which is its state ^ flip, is and-ed into
+/// the state of its parent. Unions hold complements, so that `and` serves them too (De Morgan).
 struct CsgStep {
   std::uint32_t parent;
   std::uint32_t flip;
   std::uint32_t initial;
 };
 
-/// Expressions of at most this many nodes are evaluated as a whole, larger ones only for the operands that a ray
-/// meets.
+/// Expressions of at most this many nodes are evaluated as a whole, larger ones only for the operands that a
+/// ray meets.
 inline constexpr std::size_t kMaxCsgSteps = 32;
 
-/// A combination in the tree. A *solid* of it is either one primitive of a shape, or a whole mesh, instance or
-/// combination. A ray may be inside a solid of the second kind several times.
+/// A combination in the tree. A *solid* of it is either one primitive of a shape, or a whole mesh, instance
+/// or combination. A ray may be inside a solid of the second kind several times.
 struct CsgItem {
   std::shared_ptr<const Accel> solids;    ///< a structure over all solids
   std::vector<std::uint32_t> operand_of;  ///< node of each geometry of `solids`
@@ -43,9 +43,10 @@ struct CsgItem {
   std::vector<std::uint8_t> inverted;  ///< per geometry: 1 for a mesh that is wound inside out
   /// Such meshes inside instances: structure and geometry, sorted.
   std::vector<std::pair<const Accel*, std::uint32_t>> inverted_inside;
-  std::vector<CsgNode> nodes;            ///< the root first
-  std::vector<std::uint32_t> unbounded;  ///< geometries of `solids` that a ray may be inside without a crossing
-  std::vector<std::uint8_t> needed;      ///< per geometry: 1 if no point outside of it is in the combination
+  std::vector<CsgNode> nodes;  ///< the root first
+  std::vector<std::uint32_t>
+      unbounded;                     ///< geometries of `solids` that a ray may be inside without a crossing
+  std::vector<std::uint8_t> needed;  ///< per geometry: 1 if no point outside of it is in the combination
   /// The crossings of all solids can be listed for several rays at once (accel/traverse/csg_lanes.h).
   bool in_lanes = false;
   std::vector<std::uint32_t> leaf_order;  ///< leaves of `solids`, those with needed geometries first

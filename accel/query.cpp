@@ -69,14 +69,14 @@ static void for_each_piece(std::size_t size, Trace&& trace) {
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode) {
   const TraceCode& code = trace_code(isa);
   for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
-    code.closest_hit(accel, rays.part(begin, count), hits.part(begin, count), mode);
+    code.closest_hit(accel, rays.part(begin, count), {hits.part(begin, count)}, mode);
   });
 }
 
 void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa, TraceMode mode) {
   const TraceCode& code = trace_code(isa);
   for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
-    code.any_hit(accel, rays.part(begin, count), occluded + begin, mode);
+    code.any_hit(accel, rays.part(begin, count), {occluded + begin}, mode);
   });
 }
 
@@ -110,7 +110,7 @@ void closest_hit(const Accel& accel, std::span<const Ray> rays, std::span<Hit> h
     RayBatch ray_columns;
     HitBatch hit_columns;
     hit_columns.resize_uninitialized(count);
-    code.closest_hit(accel, to_columns(rays.subspan(begin, count), ray_columns), hit_columns.span(),
+    code.closest_hit(accel, to_columns(rays.subspan(begin, count), ray_columns), {hit_columns.span()},
                      TraceMode::automatic);
     for (std::size_t i = 0; i < count; ++i) hits[begin + i] = hit_columns[i];
   });
@@ -121,7 +121,7 @@ void any_hit(const Accel& accel, std::span<const Ray> rays, std::span<std::uint8
   const TraceCode& code = trace_code(isa);
   for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
     RayBatch columns;
-    code.any_hit(accel, to_columns(rays.subspan(begin, count), columns), occluded.data() + begin,
+    code.any_hit(accel, to_columns(rays.subspan(begin, count), columns), {occluded.data() + begin},
                  TraceMode::automatic);
   });
 }
@@ -137,14 +137,14 @@ static RaySpan one_ray(const Ray& ray) {
 
 Hit closest_hit(const Accel& accel, const Ray& ray, Isa isa) {
   Hit hit;
-  trace_code(isa).closest_hit(accel, one_ray(ray), {&hit.t, &hit.u, &hit.v, &hit.item, &hit.instance, 1},
+  trace_code(isa).closest_hit(accel, one_ray(ray), {{&hit.t, &hit.u, &hit.v, &hit.item, &hit.instance, 1}},
                               TraceMode::single);
   return hit;
 }
 
 bool any_hit(const Accel& accel, const Ray& ray, Isa isa) {
   std::uint8_t occluded = 0;
-  trace_code(isa).any_hit(accel, one_ray(ray), &occluded, TraceMode::single);
+  trace_code(isa).any_hit(accel, one_ray(ray), {&occluded}, TraceMode::single);
   return occluded != 0;
 }
 

@@ -3,14 +3,15 @@
 
 #include "accel/accel.h"
 #include "accel/hit_list.h"
+#include "accel/hit_sink.h"
 #include "accel/trace_mode.h"
 #include "core/isa_select.h"
 
 namespace oktett {
 
 struct TraceCode {
-  void (*closest_hit)(const Accel&, const RaySpan&, const HitSpan&, TraceMode);
-  void (*any_hit)(const Accel&, const RaySpan&, std::uint8_t*, TraceMode);
+  void (*closest_hit)(const Accel&, const RaySpan&, const HitSink<Query::closest>&, TraceMode);
+  void (*any_hit)(const Accel&, const RaySpan&, const HitSink<Query::any>&, TraceMode);
   void (*all_hits)(const Accel&, const Ray&, HitList&);
 };
 

@@ -5,7 +5,7 @@
 namespace oktett {
 
 template <class A>
-void TraceFunctions<A>::all_hits(const Accel& accel, const Ray& ray, HitList& hits) {
+void trace_all_hits(const Accel& accel, const Ray& ray, HitList& hits) {
   using F = Simd<float, 1, A>;
   RayState<1, A> state;
   if (state.set(broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax),
@@ -13,6 +13,6 @@ void TraceFunctions<A>::all_hits(const Accel& accel, const Ray& ray, HitList& hi
     collect(accel, state, hits);
 }
 
-template void TraceFunctions<OKTETT_ISA>::all_hits(const Accel&, const Ray&, HitList&);
+template void trace_all_hits<OKTETT_ISA>(const Accel&, const Ray&, HitList&);
 
 }  // namespace oktett

@@ -1,13 +1,8 @@
-#include "accel/isa/trace_query.h"
+#include "accel/isa/trace_batch.h"
 
 namespace oktett {
 
-template <class A>
-void TraceFunctions<A>::any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded,
-                                TraceMode mode) {
-  trace<Query::any, A>(accel, rays, occluded, mode);
-}
-
-template void TraceFunctions<OKTETT_ISA>::any_hit(const Accel&, const RaySpan&, std::uint8_t*, TraceMode);
+template void trace<Query::any, OKTETT_ISA>(const Accel&, const RaySpan&, const HitSink<Query::any>&,
+                                            TraceMode);
 
 }  // namespace oktett

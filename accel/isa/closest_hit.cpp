@@ -1,14 +1,8 @@
-#include "accel/isa/trace_query.h"
+#include "accel/isa/trace_batch.h"
 
 namespace oktett {
 
-template <class A>
-void TraceFunctions<A>::closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
-                                    TraceMode mode) {
-  trace<Query::closest, A>(accel, rays, hits, mode);
-}
-
-template void TraceFunctions<OKTETT_ISA>::closest_hit(const Accel&, const RaySpan&, const HitSpan&,
-                                                      TraceMode);
+template void trace<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, const HitSink<Query::closest>&,
+                                                TraceMode);
 
 }  // namespace oktett

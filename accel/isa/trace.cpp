@@ -1,11 +1,11 @@
 #include "accel/isa/trace_query.h"
+#include "accel/trace_code.h"
 
 namespace oktett {
 
 template <class A>
 const TraceCode& trace_code() {
-  using Functions = TraceFunctions<A>;
-  static constexpr TraceCode code = {Functions::closest_hit, Functions::any_hit, Functions::all_hits};
+  static constexpr TraceCode code = {trace<Query::closest, A>, trace<Query::any, A>, trace_all_hits<A>};
   return code;
 }
 

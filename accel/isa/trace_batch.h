@@ -2,13 +2,20 @@
 /// \file Batches of rays through one structure: which traversal takes which rays. The choice changes the
 /// speed, never a hit.
 
-#include "accel/trace_mode.h"
+#include <algorithm>
+#include <limits>
+
+#include "accel/isa/trace_query.h"
 #include "accel/traverse/beam/traverse_beam.h"
 #include "accel/traverse/inflight/interleaved.h"
 
 namespace oktett {
 
-/// Rays run together if all of them keep within about 25 degrees of the first.
+/// Rays of a packet where the mode does not say.
+template <class A>
+inline constexpr int kPacketRays = std::is_same_v<A, Avx512Isa> ? 16 : 8;
+
+/// Rays are coherent if all of them keep within about 25 degrees of the first.
 template <int W, class A>
 OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, unsigned lanes) {
   using F = Simd<float, W, A>;
@@ -21,58 +28,40 @@ OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, unsigned la
   return (lanes & ~bits((F(0.0f) < along) & (F(0.8f) * square <= along * along))) == 0;
 }
 
-/// Writes what ray `i` of `state` has found to position `at`.
-template <Query Q, int W, class A>
-OKTETT_INLINE void store_hit(const RayState<W, A>& state, int i, const HitSink<Q>& out, std::size_t at) {
-  if constexpr (Q == Query::any) {
-    out[at] = state.item[i] != kNoId;
-  } else {
-    const bool hit = state.item[i] != kNoId;
-    out.t[at] = hit ? state.tmax[i] : std::numeric_limits<float>::infinity();
-    out.u[at] = state.u[i], out.v[at] = state.v[i];
-    out.item[at] = state.item[i], out.instance[at] = state.path[i];
+/// All rays, one after the other.
+template <Query Q, class A>
+void trace_each(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    RayState<1, A> state;
+    const RayLanes<Simd<float, 1, A>> r = load_span<Simd<float, 1, A>>(rays, i);
+    if (state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) != 0) trace_single<Q>(accel, state);
+    out.set(i, state.hit(0));
   }
 }
 
-/// The places of `count` results from `begin` on.
-template <Query Q>
-OKTETT_INLINE HitSink<Q> sink_from(const HitSink<Q>& out, std::size_t begin, std::size_t count) {
-  if constexpr (Q == Query::any)
-    return out + begin;
-  else
-    return out.part(begin, count);
-}
-
-/// Rays [begin, end) of a span, which do not run together.
-template <Query Q, class A>
-OKTETT_INLINE void trace_run(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out,
-                             std::size_t begin, std::size_t end) {
-  if (begin < end)
-    trace_interleaved<Q, A>(accel, rays.part(begin, end - begin), sink_from<Q>(out, begin, end - begin));
-}
-
-/// All rays of a span: those that run together in packets of W, the runs between them interleaved.
+/// All rays in packets of W. With `coherent_only`, packets whose rays are not coherent go interleaved
+/// instead, together with their neighbours of this kind.
 template <Query Q, int W, class A>
-void trace_batch(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
+void trace_packets(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool coherent_only) {
   using F = Simd<float, W, A>;
-  constexpr bool kVectors = W > 1;
+  std::size_t begin = 0;  // of the rays that are to go interleaved
+  const auto interleave_until = [&](std::size_t end) {
+    if (begin < end)
+      trace_interleaved<Q, A>(accel, rays.part(begin, end - begin), out.part(begin, end - begin));
+  };
   RayState<W, A> state;
-  std::size_t run = 0;
   for (std::size_t b = 0; b < rays.size; b += W) {
     const RayLanes<F> r = load_span<F>(rays, b);
-    const std::size_t count = rays.size - b < W ? rays.size - b : W;
-    if (kVectors && mode == TraceMode::automatic && !is_coherent(r, (1u << count) - 1)) continue;
-    if constexpr (kVectors) trace_run<Q, A>(accel, rays, out, run, b);
-    run = b + count;
-    unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & ((1u << count) - 1);
-    if constexpr (kVectors) {
-      if (lanes != 0) trace_packet<Q>(accel, state, lanes);
-    } else if (lanes != 0) {
-      trace_single<Q>(accel, state);
-    }
-    for (std::size_t i = 0; i < count; ++i) store_hit<Q>(state, static_cast<int>(i), out, b + i);
+    const std::size_t count = std::min<std::size_t>(rays.size - b, W);
+    const unsigned present = (1u << count) - 1;
+    if (coherent_only && !is_coherent(r, present)) continue;
+    interleave_until(b);
+    begin = b + count;
+    const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & present;
+    if (lanes != 0) trace_packet<Q>(accel, state, lanes);
+    for (std::size_t i = 0; i < count; ++i) out.set(b + i, state.hit(static_cast<int>(i)));
   }
-  if constexpr (kVectors) trace_run<Q, A>(accel, rays, out, run, rays.size);
+  interleave_until(rays.size);
 }
 
 /// The point that the rays seem to share: where all start, or, for shadow rays, where all end.
@@ -93,8 +82,9 @@ OKTETT_INLINE bool common_point(const RaySpan& rays, Apex& apex) {
          max_component(abs(end(rays.size - 1) - middle)) <= near;
 }
 
-/// Nodes and leaves that a beam may come to. Where it would be more, the triangles are smaller than the rays
-/// are apart, and rays are faster alone; in trees that the caches do not hold, sooner.
+/// Nodes and leaves that a beam may visit before it is given up. Where it would be more, triangles are
+/// smaller than the distance between rays, and interleaved rays are faster; in trees that the caches do not
+/// hold, sooner.
 template <Query Q>
 int max_beam_steps(const Accel& accel) {
   constexpr std::size_t kCached = std::size_t{64} << 20;
@@ -102,58 +92,68 @@ int max_beam_steps(const Accel& accel) {
   return Q == Query::any ? 256 : 384;
 }
 
-/// How the rays of a block are traced where no mode is asked for.
-enum class Way { beam, packets, interleaved };
-
-/// Traces the rays as a beam if they share a point and take few steps for their number; else says what suits
-/// them better.
+/// Rays that share a point in beams, other coherent ones in packets, the rest interleaved. When a beam is
+/// given up, its rays go interleaved; when several in a row are, so do the next ones without a trial: one
+/// beam after the second, three after the third, then seven. With `insist` no beam is given up.
 template <Query Q, class A>
-Way try_beam(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, int max_steps) {
-  Apex apex;
-  if (!common_point<Q>(rays, apex)) return Way::packets;
-  BeamOutcome outcome;
-  if constexpr (Q == Query::closest)
-    outcome = trace_beam<Q, A>(accel, rays, apex, &out, nullptr, max_steps);
-  else
-    outcome = trace_beam<Q, A>(accel, rays, apex, nullptr, out, max_steps);
-  return outcome == BeamOutcome::traced    ? Way::beam
-         : outcome == BeamOutcome::no_beam ? Way::packets
-                                           : Way::interleaved;
-}
-
-/// How `automatic` traces a batch: rays that share a point in beams, others that run together as packets of
-/// W, the rest interleaved. Where a beam took too many steps, triangles are smaller than rays are apart; its
-/// rays go interleaved, and so do its neighbours untried, twice as many each time, unless the caller insists.
-template <Query Q, int W, class A>
 void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
   const int max_steps = insist ? std::numeric_limits<int>::max() : max_beam_steps<Q>(accel);
-  std::size_t begin = 0;  // of a run of rays that wait to be traced the same way
-  Way way = Way::packets;
+  // Rays from `begin` on wait to be traced the same way, so that long runs go interleaved together.
+  std::size_t begin = 0;
+  BeamOutcome waiting = BeamOutcome::no_beam;
   const auto catch_up = [&](std::size_t end) {
     if (end <= begin) return;
     const RaySpan part = rays.part(begin, end - begin);
-    const HitSink<Q> sink = sink_from<Q>(out, begin, end - begin);
-    if (way == Way::interleaved)
+    const HitSink<Q> sink = out.part(begin, end - begin);
+    if (waiting == BeamOutcome::given_up)
       trace_interleaved<Q, A>(accel, part, sink);
     else
-      trace_batch<Q, W, A>(accel, part, sink, TraceMode::automatic);
+      trace_packets<Q, kPacketRays<A>, A>(accel, part, sink, true);
   };
   int skip = 0, failures = 0;
   for (std::size_t b = 0; b < rays.size; b += kBeamRays) {
-    const std::size_t count = std::min<std::size_t>(kBeamRays, rays.size - b);
     if (skip > 0) {
       --skip;
       continue;
     }
-    const Way suits = try_beam<Q, A>(accel, rays.part(b, count), sink_from<Q>(out, b, count), max_steps);
-    failures = suits == Way::interleaved ? failures + 1 : 0;
-    if (suits == Way::interleaved && !insist) skip = (1 << std::min(failures - 1, 3)) - 1;
-    if (suits == way) continue;
+    const std::size_t count = std::min<std::size_t>(kBeamRays, rays.size - b);
+    const RaySpan part = rays.part(b, count);
+    Apex apex;
+    const BeamOutcome outcome = common_point<Q>(part, apex)
+                                    ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps)
+                                    : BeamOutcome::no_beam;
+    failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
+    if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;
+    if (outcome == waiting) continue;
     catch_up(b);
-    begin = suits == Way::beam ? b + count : b;
-    if (suits != Way::beam) way = suits;
+    begin = outcome == BeamOutcome::traced ? b + count : b;
+    if (outcome != BeamOutcome::traced) waiting = outcome;
   }
   catch_up(rays.size);
+}
+
+template <Query Q, class A>
+void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
+  if constexpr (std::is_same_v<A, ScalarIsa>) {
+    trace_each<Q, A>(accel, rays, out);
+  } else {
+    switch (mode) {
+      case TraceMode::automatic:
+        return trace_automatic<Q, A>(accel, rays, out, false);
+      case TraceMode::beam:
+        return trace_automatic<Q, A>(accel, rays, out, true);
+      case TraceMode::single:
+        return trace_each<Q, A>(accel, rays, out);
+      case TraceMode::interleaved:
+        return trace_interleaved<Q, A>(accel, rays, out);
+      case TraceMode::packet4:
+        return trace_packets<Q, 4, A>(accel, rays, out, false);
+      case TraceMode::packet8:
+        return trace_packets<Q, 8, A>(accel, rays, out, false);
+      case TraceMode::packet16:
+        return trace_packets<Q, 16, A>(accel, rays, out, false);
+    }
+  }
 }
 
 }  // namespace oktett

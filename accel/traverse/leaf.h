@@ -2,13 +2,11 @@
 /// \file Rays against the contents of a leaf. Every function here either finds the hits that the shapes'
 /// kernels decide, or rejects conservatively; the order of visits cannot change a result.
 
+#include "accel/hit_sink.h"
 #include "accel/instance.h"
 #include "accel/ray_state.h"
 
 namespace oktett {
-
-/// What a traversal looks for.
-enum class Query { closest, any };
 
 template <int W, class A>
 OKTETT_INLINE RayLanes<Simd<float, W, A>> load_rays(const RayState<W, A>& r) {

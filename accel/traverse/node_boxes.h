@@ -1,11 +1,13 @@
 #pragma once
-/// \file The eight boxes of a node against one ray, and the loop over nodes of queries that want every crossing.
+/// \file The eight boxes of a node against one ray, and the loop over nodes of queries that want every
+/// crossing.
 
 #include "accel/ray_state.h"
 
 namespace oktett {
 
-/// The boxes of `node` against one ray: bit k is set if child k is met; near[k] is where the ray enters its box.
+/// The boxes of `node` against one ray: bit k is set if child k is met; near[k] is where the ray enters its
+/// box.
 template <class A>
 OKTETT_INLINE unsigned node_single(const BvhNode& node, const RayState<1, A>& r, float* near) {
   using F = Simd<float, BvhNode::kWidth, A>;
@@ -23,8 +25,8 @@ OKTETT_INLINE unsigned node_single(const BvhNode& node, const RayState<1, A>& r,
 }
 
 /// Visits all leaves of a tree that rays meet, in no particular order. `lanes` are the rays, a bit each.
-/// `meet(node, lanes, push)` calls push(child, rays) for each child of a node, with the rays of `lanes` that meet
-/// its box; `visit(leaf, lanes)` returns false to end the loop. Returns false if it was ended.
+/// `meet(node, lanes, push)` calls push(child, rays) for each child of a node, with the rays of `lanes` that
+/// meet its box; `visit(leaf, lanes)` returns false to end the loop. Returns false if it was ended.
 template <class Meet, class Visit>
 OKTETT_INLINE bool visit_leaves(const Accel& accel, unsigned lanes, Meet&& meet, Visit&& visit) {
   struct Entry {

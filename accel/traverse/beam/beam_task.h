@@ -39,13 +39,12 @@ template <Query Q, class A>
 struct BeamTask {
   const Accel& accel;
   const RaySpan& rays;
-  const HitSpan* hits;     ///< for Query::closest; complete only when the beam is finished
-  std::uint8_t* occluded;  ///< for Query::any
+  const HitSink<Q>& out;  ///< complete only when the beam is finished
   BeamRays<A> beam;
   UnclearList unclear;
   int max_steps;          ///< nodes and leaves to come to before the beam is given up
   MetTriangles met = {};  ///< in use if triangles stand in several leaves
-  bool decided = false;   ///< some hits have been decided and stand in `hits`
+  bool decided = false;   ///< some hits have been decided and stand in `out`
 };
 
 /// Lets a decided hit of ray i count.
@@ -110,7 +109,7 @@ template <Query Q, class A>
 OKTETT_INLINE void begin_decisions(BeamTask<Q, A>& task) {
   if (Q == Query::any || task.decided) return;
   task.decided = true;
-  for (std::size_t i = 0; i < task.rays.size; ++i) task.hits->set(i, Hit{});
+  for (std::size_t i = 0; i < task.rays.size; ++i) task.out.set(i, Hit{});
 }
 
 /// Decides `count` (up to 16) pairs.
@@ -142,7 +141,7 @@ OKTETT_NOINLINE void decide_listed(BeamTask<Q, A>& task, const std::uint8_t* ray
     } else {
       const std::uint32_t item =
           task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
-      accept_beam(*task.hits, task.beam, __builtin_fabsf(column[3 + task.beam.axis[2]][i]), ray[i],
+      accept_beam(task.out.hits, task.beam, __builtin_fabsf(column[3 + task.beam.axis[2]][i]), ray[i],
                   {t[i], u[i], v[i], item, kNoId});
     }
   }
@@ -211,7 +210,7 @@ OKTETT_INLINE void finish_group(BeamTask<Query::closest, A>& task, std::size_t b
   using F = Simd<float, kBeamGroup, A>;
   using I = Simd<std::int32_t, kBeamGroup, A>;
   constexpr std::uint32_t kSize = TriangleBlock::kSize;
-  const HitSpan& hits = *task.hits;
+  const HitSpan& hits = task.out.hits;
   const std::uint32_t* held = task.beam.held + base;
   const TriangleBlock* blocks = task.accel.blocks.data();
   const auto as_int = [](auto* p) { return reinterpret_cast<std::int32_t*>(p); };
@@ -240,7 +239,7 @@ OKTETT_INLINE void finish_beam(BeamTask<Query::closest, A>& task) {
   const std::size_t whole = task.decided ? 0 : task.rays.size / kBeamGroup * kBeamGroup;
   for (std::size_t base = 0; base < whole; base += kBeamGroup) finish_group(task, base);
   if (!task.decided)
-    for (std::size_t i = whole; i < task.rays.size; ++i) task.hits->set(i, Hit{});
+    for (std::size_t i = whole; i < task.rays.size; ++i) task.out.set(i, Hit{});
   task.decided = true;
   for (std::size_t base = whole; base < task.rays.size; base += kBeamGroup)
     decide_held(task, static_cast<int>(base / kBeamGroup));
@@ -261,9 +260,9 @@ OKTETT_INLINE void finish_beam(BeamTask<Query::any, A>& task) {
     for (int i = 0; i < kBeamGroup; ++i) found[base + i] = static_cast<std::uint8_t>(done >> i & 1);
   }
   if (beam.sorted) {
-    for (int i = 0; i < kBeamRays; ++i) task.occluded[beam.order[i]] = found[i];
+    for (int i = 0; i < kBeamRays; ++i) task.out.occluded[beam.order[i]] = found[i];
   } else {
-    std::memcpy(task.occluded, found, task.rays.size);
+    std::memcpy(task.out.occluded, found, task.rays.size);
   }
 }
 

@@ -150,7 +150,7 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   if (rays == 0) return;
   if constexpr (Q == Query::closest) {
     decide_held(task, g);
-    take_held(*task.hits, base, state);
+    take_held(task.out.hits, base, state);
   }
   table_leaf_packet<Q>(task.accel, leaf, state, rays);
   const unsigned found = found_lanes(state, rays);
@@ -158,7 +158,7 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   if constexpr (Q == Query::any)
     select(F::M::from_bits(found), infinity, F::load(beam.held_lo + base)).store(beam.held_lo + base);
   else
-    give_held(state, found, *task.hits, base, beam);
+    give_held(state, found, task.out.hits, base, beam);
   beam.refresh(g);
 }
 
@@ -267,8 +267,8 @@ enum class BeamOutcome {
 /// traversal would not overwrite.
 template <Query Q, class A>
 OKTETT_NOINLINE BeamOutcome trace_beam(const Accel& accel, const RaySpan& rays, const Apex& apex,
-                                       const HitSpan* hits, std::uint8_t* occluded, int max_steps) {
-  BeamTask<Q, A> task{accel, rays, hits, occluded, {}, {}, max_steps};
+                                       const HitSink<Q>& out, int max_steps) {
+  BeamTask<Q, A> task{accel, rays, out, {}, {}, max_steps};
   if (!task.beam.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return BeamOutcome::no_beam;
   if (task.beam.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded)

@@ -22,10 +22,6 @@ inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20;
 
 inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
 
-/// Where results go.
-template <Query Q>
-using HitSink = std::conditional_t<Q == Query::any, std::uint8_t*, HitSpan>;
-
 /// `kPrefetch`: asks for the memory of a step when it is chosen.
 template <Query Q, class A, bool kPrefetch>
 class InterleavedTraversal {
@@ -259,7 +255,7 @@ class InterleavedTraversal {
 
   void finish(const InflightRay& slot) {
     if constexpr (Q == Query::any) {
-      out_[slot.ray] = slot.held != kHoldsNothing;
+      out_.occluded[slot.ray] = slot.held != kHoldsNothing;
     } else if (slot.held < kHoldsExact) {
       candidate_ray_[candidates_] = slot.ray, candidate_[candidates_] = slot.held;
       if (++candidates_ == kChunk) decide_candidates();
@@ -301,10 +297,7 @@ class InterleavedTraversal {
     r.set(broadcast<One>(source.origin), broadcast<One>(source.direction), One(source.tmin), One(source.tmax),
           accel_.bounds);
     if (valid) trace_single<Q>(accel_, r);
-    if constexpr (Q == Query::any)
-      out_[ray] = r.item[0] != kNoId;
-    else
-      out_.set(ray, r.hit(0));
+    out_.set(ray, r.hit(0));
   }
 
   /// Decides what has gathered, all lanes at once. Only what surely is hit has been put off.

@@ -1,0 +1,34 @@
+#pragma once
+/// \file What a traversal looks for, and where its results go.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/ray.h"
+
+namespace oktett {
+
+/// The nearest hit of each ray, or only whether there is one.
+enum class Query { closest, any };
+
+/// The results of a batch of rays: hits for Query::closest, a byte per ray for Query::any, 1 if it hits anything.
+template <Query Q>
+struct HitSink;
+
+template <>
+struct HitSink<Query::closest> {
+  HitSpan hits;
+
+  void set(std::size_t i, const Hit& h) const { hits.set(i, h); }
+  HitSink part(std::size_t begin, std::size_t count) const { return {hits.part(begin, count)}; }
+};
+
+template <>
+struct HitSink<Query::any> {
+  std::uint8_t* occluded;
+
+  void set(std::size_t i, const Hit& h) const { occluded[i] = h.valid(); }
+  HitSink part(std::size_t begin, std::size_t) const { return {occluded + begin}; }
+};
+
+}  // namespace oktett
