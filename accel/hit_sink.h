@@ -11,7 +11,8 @@ namespace oktett {
 /// The nearest hit of each ray, or only whether there is one.
 enum class Query { closest, any };
 
-/// The results of a batch of rays: hits for Query::closest, a byte per ray for Query::any, 1 if it hits anything.
+/// The results of a batch of rays: hits for Query::closest, a byte per ray for Query::any, 1 if it hits
+/// anything.
 template <Query Q>
 struct HitSink;
 

@@ -78,6 +78,11 @@ struct alignas(64) RayState {
     return lanes;
   }
 
+  /// The same for a single ray.
+  OKTETT_INLINE unsigned set(const Ray& ray, const Box& box) requires(W == 1) {
+    return set(broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax), box);
+  }
+
   /// `set` without what only boxes, triangles and instances ask for: origin, direction, range, nothing found.
   OKTETT_INLINE unsigned set_rays(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1) {
     const F zero(0.0f), big(std::numeric_limits<float>::max());

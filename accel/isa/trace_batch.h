@@ -33,8 +33,7 @@ template <Query Q, class A>
 void trace_each(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
   for (std::size_t i = 0; i < rays.size; ++i) {
     RayState<1, A> state;
-    const RayLanes<Simd<float, 1, A>> r = load_span<Simd<float, 1, A>>(rays, i);
-    if (state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) != 0) trace_single<Q>(accel, state);
+    if (state.set(rays[i], accel.bounds) != 0) trace_single<Q>(accel, state);
     out.set(i, state.hit(0));
   }
 }

@@ -13,10 +13,9 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
 /// they tell where it begins.
 template <class A>
 OKTETT_NOINLINE bool gather_solids(const CsgItem& csg, const Ray& ray, HitList& crossings) {
-  using F = Simd<float, 1, A>;
   RayState<1, A> state;
-  if (state.set(broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin),
-                F(std::numeric_limits<float>::infinity()), csg.solids->bounds) == 0)
+  if (state.set({ray.origin, ray.tmin, ray.direction, std::numeric_limits<float>::infinity()},
+                csg.solids->bounds) == 0)
     return false;
   collect(*csg.solids, state, crossings);
   return true;

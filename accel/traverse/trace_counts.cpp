@@ -30,12 +30,9 @@ struct CountSteps {
 };
 
 void count_ray(const Accel& accel, const Ray& ray, TraceCounts& counts) {
-  using One = Simd<float, 1, ScalarIsa>;
   RayState<1, ScalarIsa> state;
   ++counts.rays;
-  if (state.set(broadcast<One>(ray.origin), broadcast<One>(ray.direction), One(ray.tmin), One(ray.tmax),
-                accel.bounds) == 0)
-    return;
+  if (state.set(ray, accel.bounds) == 0) return;
   trace_single<Query::closest>(accel, state, CountSteps{&counts});
   counts.hits += state.item[0] != kNoId;
 }

@@ -168,7 +168,7 @@ TEST(Interleaved, AxisParallelRaysOnAGrid) {
   EXPECT_GT(expect_same_hits(mesh, rays), 800);
 }
 
-// Batches that fill no slot, some, all and more.
+// Batches that fill no place for a ray in flight, some, all and more.
 TEST(Interleaved, BatchesOfAnySize) {
   TriangleRandom random(23);
   TriangleMesh mesh;
@@ -211,7 +211,7 @@ TEST(Interleaved, NodesMissNoBox) {
   using A = ScalarIsa;
   CaseRandom r(21);
   int met = 0, more = 0;
-  const auto slot = std::make_unique<InflightRay>();
+  const auto inflight = std::make_unique<InflightRay>();
   const auto chunk = std::make_unique<RayChunk<kRays, A>>();
   for (int round = 0; round < 6000; ++round) {
     const double scale = r.magnitude(-10, 10), shift = round % 2 == 0 ? r.magnitude(-2, 4) : 0;
@@ -243,9 +243,9 @@ TEST(Interleaved, NodesMissNoBox) {
     chunk->set(rays.span(), 0, extent);
     for (int i = 0; i < kRays; ++i) {
       if ((chunk->tame >> i & 1) == 0) continue;
-      fill_slot(*slot, *chunk, i, NodeRef::none());
+      start_ray(*inflight, *chunk, i, NodeRef::none());
       Simd<float, BvhNode::kWidth, A> near;
-      const unsigned found = slot_node<A>(*slot, node, near);
+      const unsigned found = node_inflight<A>(*inflight, node, near);
       for (int c = 0; c < 8; ++c) {
         const bool should = meets(rays[static_cast<std::size_t>(i)], boxes[static_cast<std::size_t>(c)]);
         ASSERT_TRUE(!should || (found >> c & 1) != 0) << round << " ray " << i << " child " << c;

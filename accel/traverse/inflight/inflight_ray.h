@@ -1,5 +1,5 @@
 #pragma once
-/// \file The rays in flight of an interleaved traversal: what each needs at a node, at a leaf, and its stack.
+/// \file One of the rays in flight of an interleaved traversal, and its step through a node.
 
 #include "accel/traverse/inflight/ray_chunk.h"
 #include "accel/traverse/leaf.h"
@@ -7,96 +7,101 @@
 
 namespace oktett {
 
-/// What is held of a ray's nearest hit so far, where it is not a triangle that surely is hit and has not been
-/// decided: then block * TriangleBlock::kSize + lane.
-inline constexpr std::uint32_t kHoldsNothing = 0xffffffffu;
-inline constexpr std::uint32_t kHoldsExact = 0xfffffffeu;
+/// Values of InflightRay::candidate that are no triangle: nothing has been hit so far, or the nearest hit so
+/// far is decided and stands in the ray's RayState.
+inline constexpr std::uint32_t kNoCandidate = 0xffffffffu;
+inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
 
-/// One ray in flight and its stack: the nodes and leaves that it has yet to visit, the next one last; entry 0
-/// ends every stack. The first 64 bytes are what a node needs. An odd number of cache lines, so that slots do
-/// not fall into the same sets.
+/// One ray in flight and its stack. The first 64 bytes are what a node needs. The size is an odd number of
+/// cache lines, so that the rays do not fall into the same sets of the cache.
 struct alignas(64) InflightRay {
   static constexpr int kCapacity = (kStackSize + BvhNode::kWidth + 15) / 16 * 16;
   float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
   float tmin, limit;                          ///< limit = tmax + slack
   std::uint32_t near_row[3];                  ///< offset in a node's planes of the near ones, per axis
-  NodeRef current;
-  std::int32_t size;  ///< of the stack
+  NodeRef current;                            ///< the node or leaf to visit next
+  std::int32_t size;                          ///< of the stack
   float o[3], d[3], slack;
   float weight_scale, det_scale;  ///< see guess_triangle
-  float tmax, held_lo;  ///< bounds on the distance of the hit that is held; if none, the end of the ray
-  std::uint32_t held;
-  std::uint32_t ray;    ///< position in the span
-  std::uint32_t exact;  ///< the slot's RayState is filled in
+  float tmax,
+      hit_lo;  ///< bounds on the distance of the nearest hit so far; without one, both the end of the ray
+  /// The nearest hit so far: a triangle that is surely hit and not decided yet, as block *
+  /// TriangleBlock::kSize + lane; or kNoCandidate or kDecidedHit.
+  std::uint32_t candidate;
+  std::uint32_t index;      ///< of the ray in its batch
+  std::uint32_t has_state;  ///< the ray's RayState is filled in
   std::uint32_t padding[2];
+  /// Stack entries: nodes and leaves yet to visit, the next one last, and their near distances. Entry 0 is
+  /// NodeRef::none(), which ends the ray.
   std::uint32_t ref[kCapacity];
   float near[kCapacity];
   char odd[64];
 };
 static_assert(sizeof(InflightRay) / 64 % 2 == 1);
 
-/// Copies ray `i` of a chunk into a slot, to start at `root`.
+/// Starts ray `i` of a chunk at `root`.
 template <int W, class A>
-OKTETT_INLINE void fill_slot(InflightRay& s, const RayChunk<W, A>& c, int i, NodeRef root) {
+OKTETT_INLINE void start_ray(InflightRay& ray, const RayChunk<W, A>& c, int i, NodeRef root) {
   for (int k = 0; k < 3; ++k) {
-    s.inv[k] = c.inv[k][i], s.near_shift[k] = c.near_shift[k][i], s.far_shift[k] = c.far_shift[k][i];
-    s.near_row[k] = static_cast<std::uint32_t>(BvhNode::kWidth) *
-                    (2 * static_cast<std::uint32_t>(k) + (c.negative[k] >> i & 1));
-    s.o[k] = c.o[k][i], s.d[k] = c.d[k][i];
+    ray.inv[k] = c.inv[k][i], ray.near_shift[k] = c.near_shift[k][i], ray.far_shift[k] = c.far_shift[k][i];
+    ray.near_row[k] = static_cast<std::uint32_t>(BvhNode::kWidth) *
+                      (2 * static_cast<std::uint32_t>(k) + (c.negative[k] >> i & 1));
+    ray.o[k] = c.o[k][i], ray.d[k] = c.d[k][i];
   }
-  s.tmin = c.tmin[i], s.slack = c.slack[i], s.weight_scale = c.d_max[i] * kWeightError,
-  s.det_scale = c.d_max[i] * kVolumeError;
-  s.tmax = s.held_lo = c.tmax[i], s.limit = s.tmax + s.slack;
-  s.held = kHoldsNothing, s.exact = 0;
-  s.ref[0] = NodeRef::none().bits(), s.near[0] = -1;
-  s.ref[1] = root.bits(), s.near[1] = 0;
-  s.size = 2;
+  ray.tmin = c.tmin[i], ray.slack = c.slack[i];
+  ray.weight_scale = c.d_max[i] * kWeightError, ray.det_scale = c.d_max[i] * kVolumeError;
+  ray.tmax = ray.hit_lo = c.tmax[i], ray.limit = ray.tmax + ray.slack;
+  ray.candidate = kNoCandidate, ray.has_state = 0;
+  ray.ref[0] = NodeRef::none().bits(), ray.near[0] = -1;
+  ray.ref[1] = root.bits(), ray.near[1] = 0;
+  ray.size = 2;
 }
 
-/// Moves the end of the ray closer and drops what now lies behind it from the stack.
-OKTETT_INLINE void shorten(InflightRay& s, float tmax) {
-  s.tmax = tmax, s.limit = tmax + s.slack;
-  const float limit = s.limit * kSlabRelativeSlack;
+/// Ends the ray at `tmax` and removes the stack entries that lie beyond.
+OKTETT_INLINE void shorten(InflightRay& ray, float tmax) {
+  ray.tmax = tmax, ray.limit = tmax + ray.slack;
+  const float limit = ray.limit * kSlabRelativeSlack;
   int size = 0;
-  for (int k = 0; k < s.size; ++k) {
-    const std::uint32_t ref = s.ref[k];
-    const float near = s.near[k];
-    s.ref[size] = ref, s.near[size] = near;
+  for (int k = 0; k < ray.size; ++k) {
+    const std::uint32_t ref = ray.ref[k];
+    const float near = ray.near[k];
+    ray.ref[size] = ref, ray.near[size] = near;
     size += near <= limit;
   }
-  s.size = size;
+  ray.size = size;
 }
 
-/// The children of `node` that the ray meets, as bits, and the near distances.
+/// The slab test in fused form: the children of `node` that the ray meets, as bits, and their near distances.
 template <class A>
-OKTETT_INLINE unsigned slot_node(const InflightRay& s, const BvhNode& node,
-                                 Simd<float, BvhNode::kWidth, A>& near) {
+OKTETT_INLINE unsigned node_inflight(const InflightRay& ray, const BvhNode& node,
+                                     Simd<float, BvhNode::kWidth, A>& near) {
   using F = Simd<float, BvhNode::kWidth, A>;
   constexpr std::uint32_t kOther = BvhNode::kWidth;
   const float* rows = &node.plane[0][0];
   F n[3], f[3];
   for (int k = 0; k < 3; ++k) {
-    const F inv(s.inv[k]);
-    n[k] = fast_fma(F::load(rows + s.near_row[k]), inv, F(s.near_shift[k]));
-    f[k] = fast_fma(F::load(rows + (s.near_row[k] ^ kOther)), inv, F(s.far_shift[k]));
+    const F inv(ray.inv[k]);
+    n[k] = fast_fma(F::load(rows + ray.near_row[k]), inv, F(ray.near_shift[k]));
+    f[k] = fast_fma(F::load(rows + (ray.near_row[k] ^ kOther)), inv, F(ray.far_shift[k]));
   }
-  near = max(max(n[0], n[1]), max(n[2], F(s.tmin)));
-  const F far = min(min(f[0], f[1]), min(f[2], F(s.limit)));
+  near = max(max(n[0], n[1]), max(n[2], F(ray.tmin)));
+  const F far = min(min(f[0], f[1]), min(f[2], F(ray.limit)));
   return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
 }
 
-/// Puts the children that the ray meets on its stack, the nearest last, and takes the last entry off.
+/// Pushes the children that the ray meets, the nearest last (for Query::any in any order), and pops the next
+/// node or leaf.
 template <Query Q, class A>
-OKTETT_INLINE NodeRef step_node(InflightRay& s, const BvhNode& node) {
+OKTETT_INLINE NodeRef step_node(InflightRay& ray, const BvhNode& node) {
   Simd<float, BvhNode::kWidth, A> near;
-  const unsigned met = slot_node<A>(s, node, near);
-  const int size = s.size;
+  const unsigned met = node_inflight<A>(ray, node, near);
+  const int size = ray.size;
   const int count = Q == Query::any
-                        ? store_compact<A>(met, node.child_bits(), s.ref + size)
-                        : store_descending<A>(near, met, node.child_bits(), s.ref + size, s.near + size);
-  s.size = size + count - 1;
-  const NodeRef next = NodeRef::from_bits(s.ref[size + count - 1]);
-  s.current = next;
+                        ? store_compact<A>(met, node.child_bits(), ray.ref + size)
+                        : store_descending<A>(near, met, node.child_bits(), ray.ref + size, ray.near + size);
+  ray.size = size + count - 1;
+  const NodeRef next = NodeRef::from_bits(ray.ref[size + count - 1]);
+  ray.current = next;
   return next;
 }
 

@@ -1,11 +1,12 @@
 #pragma once
-/// \file Many single rays in flight: each step takes one ray through one node or one leaf, asks for the
-/// memory of its next step and goes on with another ray, so that a miss in the caches costs no time. Nothing
-/// is shared between the rays, so their directions do not matter.
+/// \file Many single rays in flight: each step takes one ray through one node or one leaf, prefetches the
+/// memory of its next step and goes on with another ray, which hides the latency of cache misses. The rays
+/// share nothing, so it does not matter whether they are coherent.
 ///
-/// Triangles are classified in float (kernels/triangle/triangle_classify.h). A triangle that is surely hit
-/// and surely nearer than what is held becomes the ray's candidate, to be decided with those of other rays at
-/// the end; only what is unclear is decided at once.
+/// Triangles are classified in float (kernels/triangle/triangle_classify.h). A triangle that is surely hit,
+/// and surely nearer than the nearest hit so far, becomes the ray's candidate hit. Candidates of finished
+/// rays are decided together, one in each lane; only a triangle that the classification leaves open is
+/// decided at once.
 
 #include "accel/traverse/inflight/decide_pairs.h"
 #include "accel/traverse/inflight/inflight_ray.h"
@@ -13,16 +14,18 @@
 
 namespace oktett {
 
-/// Rays in flight, and how many must wait for a leaf before leaves are visited while nodes can be.
+/// Rays in flight, and the number of rays that must wait at leaves before leaves are visited while other rays
+/// are at nodes.
 inline constexpr int kInflightRays = 32;
 inline constexpr int kLeafThreshold = 8;
 
-/// Trees above this size are prefetched; in smaller ones the caches answer faster than asking takes.
+/// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
+/// saves.
 inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20;
 
 inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
 
-/// `kPrefetch`: asks for the memory of a step when it is chosen.
+/// Traces a batch of rays; see the top of the file. `kPrefetch`: prefetch the memory of each ray's next step.
 template <Query Q, class A, bool kPrefetch>
 class InterleavedTraversal {
  public:
@@ -31,44 +34,45 @@ class InterleavedTraversal {
 
   void run() {
     Tails tail = tails();
-    for (InflightRay& slot : inflight_) refill(slot, tail);
+    for (InflightRay& ray : inflight_) refill(ray, tail);
     keep(tail);
     while (nodes_.size + leaves_.size + others_.size > 0) {
       node_round();
       if (leaves_.size >= kLeafThreshold || nodes_.size == 0) leaf_round();
       if (others_.size >= kLeafThreshold || nodes_.size + leaves_.size == 0) other_round();
     }
-    if constexpr (Q == Query::closest) decide_candidates();
+    if constexpr (Q == Query::closest) decide_pending();
   }
 
  private:
   static constexpr int kBlock = TriangleBlock::kSize;
   static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
-  /// Rays whose leaves are visited at once.
+  /// Rays whose blocks of triangles are classified together.
   static constexpr int kLeafRays = std::is_same_v<A, Avx512Isa> ? 2 : 1;
 
-  /// Slots that wait for one kind of step.
+  /// Rays that wait for one kind of step.
   struct Queue {
     int size = 0;
-    InflightRay* slot[kInflightRays + 1];  ///< one more: entries that are not kept are written too
+    InflightRay* ray[kInflightRays + 1];  ///< one more, because enqueue() writes past the end
   };
 
-  /// The ends of the three queues while a round fills them, to be kept in registers.
+  /// The ends of the three queues while a round fills them, kept in registers.
   struct Tails {
     InflightRay **node, **leaf, **other;
   };
   OKTETT_INLINE Tails tails() {
-    return {nodes_.slot + nodes_.size, leaves_.slot + leaves_.size, others_.slot + others_.size};
+    return {nodes_.ray + nodes_.size, leaves_.ray + leaves_.size, others_.ray + others_.size};
   }
   OKTETT_INLINE void keep(const Tails& t) {
-    nodes_.size = static_cast<int>(t.node - nodes_.slot),
-    leaves_.size = static_cast<int>(t.leaf - leaves_.slot);
-    others_.size = static_cast<int>(t.other - others_.slot);
+    nodes_.size = static_cast<int>(t.node - nodes_.ray),
+    leaves_.size = static_cast<int>(t.leaf - leaves_.ray);
+    others_.size = static_cast<int>(t.other - others_.ray);
   }
 
-  /// `slot` goes on to `ref`: asks for its memory, whose address does not matter for an end, and queues it
-  /// for its kind of step, all without a branch.
-  OKTETT_INLINE void enqueue(InflightRay& slot, NodeRef ref, Tails& t) const {
+  /// Queues `ray` for the kind of step that `ref` needs, and prefetches the node or block. Has no branches:
+  /// the pointer is written to the ends of all three queues, and one of the ends moves on. For a finished ray
+  /// the prefetched address means nothing.
+  OKTETT_INLINE void enqueue(InflightRay& ray, NodeRef ref, Tails& t) const {
     const std::uint32_t bits = ref.bits(), is_leaf = bits >> 31;
     if constexpr (kPrefetch) {
       const std::size_t index = bits & (NodeRef::kMaxBlocks - 1);
@@ -77,17 +81,17 @@ class InterleavedTraversal {
       for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
         __builtin_prefetch(at + (line < sizeof(BvhNode) ? line : is_leaf * line));
     }
-    // Arithmetic on the two top bits of NodeRef::bits, as compilers turn comparisons into jumps.
+    // Arithmetic on the two top bits of NodeRef::bits: compilers turn comparisons into jumps.
     const std::uint32_t is_other = is_leaf & (bits >> 30);
-    *t.node = &slot, t.node += 1 - is_leaf;
-    *t.leaf = &slot, t.leaf += is_leaf - is_other;
-    *t.other = &slot, t.other += is_other;
+    *t.node = &ray, t.node += 1 - is_leaf;
+    *t.leaf = &ray, t.leaf += is_leaf - is_other;
+    *t.other = &ray, t.other += is_other;
   }
 
-  OKTETT_INLINE void pop(InflightRay& slot, Tails& t) {
-    const NodeRef ref = NodeRef::from_bits(slot.ref[--slot.size]);
-    slot.current = ref;
-    enqueue(slot, ref, t);
+  OKTETT_INLINE void pop(InflightRay& ray, Tails& t) {
+    const NodeRef ref = NodeRef::from_bits(ray.ref[--ray.size]);
+    ray.current = ref;
+    enqueue(ray, ref, t);
   }
 
   void node_round() {
@@ -96,8 +100,8 @@ class InterleavedTraversal {
     Tails t = tails();
     const BvhNode* nodes = accel_.nodes.data();
     for (int i = 0; i < now.size; ++i) {
-      InflightRay& slot = *now.slot[i];
-      enqueue(slot, step_node<Q, A>(slot, nodes[slot.current.bits()]), t);
+      InflightRay& ray = *now.ray[i];
+      enqueue(ray, step_node<Q, A>(ray, nodes[ray.current.bits()]), t);
     }
     keep(t);
   }
@@ -107,63 +111,64 @@ class InterleavedTraversal {
     leaves_.size = 0;
     Tails tail = tails();
     int i = 0;
-    for (; i + kLeafRays <= now.size; i += kLeafRays) leaf_step<kLeafRays>(now.slot + i, tail);
-    for (; i < now.size; ++i) leaf_step<1>(now.slot + i, tail);
+    for (; i + kLeafRays <= now.size; i += kLeafRays) leaf_step<kLeafRays>(now.ray + i, tail);
+    for (; i < now.size; ++i) leaf_step<1>(now.ray + i, tail);
     keep(tail);
   }
 
-  /// N rays, each against its own block.
+  /// N rays, each against its own block of triangles.
   template <int N>
-  OKTETT_INLINE void leaf_step(InflightRay* const* slots, Tails& tail) {
+  OKTETT_INLINE void leaf_step(InflightRay* const* rays, Tails& tail) {
     using F = Simd<float, N * kBlock, A>;
     using B = Simd<float, kBlock, A>;
     const TriangleBlock* blocks = accel_.blocks.data();
-    // f(slot) for all rays side by side.
+    // f(ray) of all rays, side by side in lanes.
     const auto each = [&](auto&& f) {
       if constexpr (N == 1)
-        return f(*slots[0]);
+        return f(*rays[0]);
       else
-        return concat(f(*slots[0]), f(*slots[1]));
+        return concat(f(*rays[0]), f(*rays[1]));
     };
-    const auto ray = [&](auto&& f) { return each([&](const InflightRay& s) { return B(f(s)); }); };
+    const auto number = [&](auto&& f) { return each([&](const InflightRay& r) { return B(f(r)); }); };
+    const auto vector = [&](auto&& v) {
+      return Vec3<F>{number([&](const InflightRay& r) { return v(r)[0]; }),
+                     number([&](const InflightRay& r) { return v(r)[1]; }),
+                     number([&](const InflightRay& r) { return v(r)[2]; })};
+    };
     const auto corner = [&](int c) {
       const auto axis = [&](int k) {
-        return each([&](const InflightRay& s) { return B::load(blocks[s.current.block()].v[c][k]); });
+        return each([&](const InflightRay& r) { return B::load(blocks[r.current.block()].v[c][k]); });
       };
       return Vec3<F>{axis(0), axis(1), axis(2)};
     };
-    const auto vec = [&](auto&& v) {
-      return Vec3<F>{ray([&](const InflightRay& s) { return v(s)[0]; }),
-                     ray([&](const InflightRay& s) { return v(s)[1]; }),
-                     ray([&](const InflightRay& s) { return v(s)[2]; })};
-    };
-    const auto guess = guess_triangle(vec([](const InflightRay& s) { return s.o; }),
-                                      vec([](const InflightRay& s) { return s.d; }),
-                                      ray([](const InflightRay& s) { return s.weight_scale; }),
-                                      ray([](const InflightRay& s) { return s.det_scale; }),
+    const auto guess = guess_triangle(vector([](const InflightRay& r) { return r.o; }),
+                                      vector([](const InflightRay& r) { return r.d; }),
+                                      number([](const InflightRay& r) { return r.weight_scale; }),
+                                      number([](const InflightRay& r) { return r.det_scale; }),
                                       filter_triangle(TriangleLanes<F>{corner(0), corner(1), corner(2)}));
-    const F tmax = ray([](const InflightRay& s) { return s.tmax; });
+    const F tmax = number([](const InflightRay& r) { return r.tmax; });
     unsigned present = 0;
     for (int j = 0; j < N; ++j)
-      present |= ((2u << (slots[j]->current.triangle_count() - 1)) - 1) << (j * kBlock);
+      present |= ((2u << (rays[j]->current.triangle_count() - 1)) - 1) << (j * kBlock);
     const unsigned maybe = bits(maybe_hit(guess, tmax)) & present;
     if (OKTETT_UNLIKELY(maybe != 0)) {
-      const HitInterval<F> h = hit_interval(guess, ray([](const InflightRay& s) { return s.tmin; }), tmax);
-      for (int j = 0; j < N; ++j) take(*slots[j], guess, h, maybe, j * kBlock);
+      const HitInterval<F> h = hit_interval(guess, number([](const InflightRay& r) { return r.tmin; }), tmax);
+      for (int j = 0; j < N; ++j) take(*rays[j], guess, h, maybe, j * kBlock);
     }
-    for (int j = 0; j < N; ++j) pop(*slots[j], tail);
+    for (int j = 0; j < N; ++j) pop(*rays[j], tail);
   }
 
-  /// What is not surely missed of the leaf that `slot` is at, the block in lanes `first`, ... of the guess.
+  /// Takes the triangles of the ray's block that the filter did not reject, the bits of `maybe`. The block is
+  /// in lanes `first`, `first` + 1, ... of `guess`, `h` and `maybe`.
   template <class F>
-  OKTETT_INLINE void take(InflightRay& slot, const TriangleGuess<F>& guess, const HitInterval<F>& h,
+  OKTETT_INLINE void take(InflightRay& ray, const TriangleGuess<F>& guess, const HitInterval<F>& h,
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
-    if (maybe != 0 && accel_.pieces) maybe &= ~held_again(slot);
+    if (maybe != 0 && accel_.pieces) maybe &= ~repeated(ray);
     if (maybe == 0) return;
     const unsigned sure = bits(h.sure) >> first & maybe;
     if (sure != 0) {
-      if constexpr (Q == Query::any) return found(slot);
+      if constexpr (Q == Query::any) return found(ray);
       alignas(64) float lo[F::kWidth], hi[F::kWidth];
       h.lo.store(lo), h.hi.store(hi);
       int nearest = __builtin_ctz(sure);
@@ -171,106 +176,105 @@ class InterleavedTraversal {
         if (hi[first + __builtin_ctz(rest)] < hi[first + nearest]) nearest = __builtin_ctz(rest);
       const float least = lo[first + nearest], most = hi[first + nearest];
       if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(most))) >> first;
-      if (maybe == 1u << nearest && most < slot.held_lo) {
-        slot.held = slot.current.block() * kBlock + static_cast<std::uint32_t>(nearest);
-        slot.held_lo = least;
-        return shorten(slot, most);
+      if (maybe == 1u << nearest && most < ray.hit_lo) {
+        ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(nearest);
+        ray.hit_lo = least;
+        return shorten(ray, most);
       }
     }
-    decide_leaf(slot);
+    decide_leaf(ray);
   }
 
-  /// The lane of the leaf that `slot` is at which holds the triangle that the ray holds already: a triangle
-  /// in pieces stands in several leaves, and deciding it twice would tell nothing new.
-  OKTETT_INLINE unsigned held_again(const InflightRay& slot) const {
+  /// The lane, as a bit, of the ray's block that holds the triangle which is its nearest hit so far. A
+  /// triangle that was split stands in several leaves, and need not be tested again.
+  OKTETT_INLINE unsigned repeated(const InflightRay& ray) const {
     std::uint32_t item = kNoId;
-    if (slot.held < kHoldsExact) {
-      item = accel_.blocks[slot.held / kBlock].item[slot.held % kBlock];
-    } else if (slot.held == kHoldsExact) {
-      const RayState<1, A>& r = states_[&slot - inflight_];
+    if (ray.candidate < kDecidedHit) {
+      item = accel_.blocks[ray.candidate / kBlock].item[ray.candidate % kBlock];
+    } else if (ray.candidate == kDecidedHit) {
+      const RayState<1, A>& r = states_[&ray - inflight_];
       if (r.path[0] == kNoId) item = r.item[0];
     }
     using I = Simd<std::int32_t, kBlock, A>;
-    const auto* items = reinterpret_cast<const std::int32_t*>(accel_.blocks[slot.current.block()].item);
+    const auto* items = reinterpret_cast<const std::int32_t*>(accel_.blocks[ray.current.block()].item);
     return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
   }
 
-  /// For Query::any: nothing is left to do.
-  OKTETT_INLINE void found(InflightRay& slot) {
-    slot.held = kHoldsExact;
-    slot.size = 1;
+  /// For Query::any: the ray has hit something and is finished.
+  OKTETT_INLINE void found(InflightRay& ray) {
+    ray.candidate = kDecidedHit;
+    ray.size = 1;
   }
 
-  /// The state of `slot` for exact tests, with a candidate decided.
-  OKTETT_NOINLINE RayState<1, A>& exact_state(InflightRay& slot) {
-    using One = Simd<float, 1, A>;
-    RayState<1, A>& r = states_[&slot - inflight_];
-    if (slot.exact == 0) {
-      const Ray ray = rays_[slot.ray];
-      r.set(broadcast<One>(ray.origin), broadcast<One>(ray.direction), One(ray.tmin), One(ray.tmax),
-            accel_.bounds);
-      slot.exact = 1;
+  /// The ray's state for exact tests, in which its candidate has been decided.
+  OKTETT_NOINLINE RayState<1, A>& exact_state(InflightRay& ray) {
+    RayState<1, A>& r = states_[&ray - inflight_];
+    if (ray.has_state == 0) {
+      r.set(rays_[ray.index], accel_.bounds);
+      ray.has_state = 1;
     }
-    if (slot.held < kHoldsExact)
-      leaf_triangles_single(accel_.blocks[slot.held / kBlock], static_cast<int>(slot.held % kBlock) + 1, r);
+    if (ray.candidate < kDecidedHit)
+      leaf_triangles_single(accel_.blocks[ray.candidate / kBlock],
+                            static_cast<int>(ray.candidate % kBlock) + 1, r);
     return r;
   }
 
-  /// Takes over what exact tests have found.
-  OKTETT_INLINE void adopt(InflightRay& slot) {
-    const RayState<1, A>& r = states_[&slot - inflight_];
+  /// Takes over the nearest hit from the exact tests.
+  OKTETT_INLINE void adopt(InflightRay& ray) {
+    const RayState<1, A>& r = states_[&ray - inflight_];
     if (r.item[0] == kNoId) return;
-    if constexpr (Q == Query::any) return found(slot);
-    slot.held = kHoldsExact;
-    slot.held_lo = r.tmax[0];
-    shorten(slot, r.tmax[0]);
+    if constexpr (Q == Query::any) return found(ray);
+    ray.candidate = kDecidedHit;
+    ray.hit_lo = r.tmax[0];
+    shorten(ray, r.tmax[0]);
   }
 
-  OKTETT_NOINLINE void decide_leaf(InflightRay& slot) {
-    RayState<1, A>& r = exact_state(slot);
-    const NodeRef leaf = slot.current;
+  /// Tests the ray's block of triangles exactly.
+  OKTETT_NOINLINE void decide_leaf(InflightRay& ray) {
+    RayState<1, A>& r = exact_state(ray);
+    const NodeRef leaf = ray.current;
     leaf_triangles_single(accel_.blocks[leaf.block()], leaf.triangle_count(), r);
-    adopt(slot);
+    adopt(ray);
   }
 
-  /// Finished rays, and leaves of the table.
+  /// Rays that are finished or at a leaf of the table.
   OKTETT_NOINLINE void other_round() {
     const Queue now = others_;
     others_.size = 0;
     Tails tail = tails();
     for (int i = 0; i < now.size; ++i) {
-      InflightRay& slot = *now.slot[i];
-      const NodeRef ref = slot.current;
+      InflightRay& ray = *now.ray[i];
+      const NodeRef ref = ray.current;
       if (ref.is_none()) {
-        finish(slot);
-        refill(slot, tail);
+        finish(ray);
+        refill(ray, tail);
       } else {
-        table_leaf_single<Q>(accel_, accel_.leaves[ref.table_index()], exact_state(slot));
-        adopt(slot);
-        pop(slot, tail);
+        table_leaf_single<Q>(accel_, accel_.leaves[ref.table_index()], exact_state(ray));
+        adopt(ray);
+        pop(ray, tail);
       }
     }
     keep(tail);
   }
 
-  void finish(const InflightRay& slot) {
+  void finish(const InflightRay& ray) {
     if constexpr (Q == Query::any) {
-      out_.occluded[slot.ray] = slot.held != kHoldsNothing;
-    } else if (slot.held < kHoldsExact) {
-      candidate_ray_[candidates_] = slot.ray, candidate_[candidates_] = slot.held;
-      if (++candidates_ == kChunk) decide_candidates();
+      out_.occluded[ray.index] = ray.candidate != kNoCandidate;
+    } else if (ray.candidate < kDecidedHit) {
+      pending_ray_[pending_] = ray.index, pending_triangle_[pending_] = ray.candidate;
+      if (++pending_ == kChunk) decide_pending();
     } else {
-      out_.set(slot.ray, slot.held == kHoldsExact ? states_[&slot - inflight_].hit(0) : Hit{});
+      out_.set(ray.index, ray.candidate == kDecidedHit ? states_[&ray - inflight_].hit(0) : Hit{});
     }
   }
 
-  /// Puts the next ray that needs the tree into `slot`.
-  void refill(InflightRay& slot, Tails& tail) {
+  /// Starts the next ray of the batch in the place of a finished one.
+  void refill(InflightRay& ray, Tails& tail) {
     for (; next_ < rays_.size; ++next_) {
       const int i = static_cast<int>(next_ % kChunk);
       if (i == 0) chunk_.set(rays_, next_, extent_);
       if ((chunk_.tame >> i & 1) != 0) {
-        start(slot, i, tail);
+        start(ray, i, tail);
         ++next_;
         return;
       }
@@ -278,36 +282,33 @@ class InterleavedTraversal {
     }
   }
 
-  OKTETT_INLINE void start(InflightRay& slot, int i, Tails& tail) {
-    fill_slot(slot, chunk_, i, accel_.root);
-    slot.ray = static_cast<std::uint32_t>(next_);
+  OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
+    start_ray(ray, chunk_, i, accel_.root);
+    ray.index = static_cast<std::uint32_t>(next_);
     if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
-      RayState<1, A>& r = exact_state(slot);
+      RayState<1, A>& r = exact_state(ray);
       for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, r);
-      adopt(slot);
+      adopt(ray);
     }
-    pop(slot, tail);
+    pop(ray, tail);
   }
 
-  /// A ray whose numbers the fast arithmetic is not made for.
-  OKTETT_NOINLINE void trace_alone(std::size_t ray, bool valid) {
-    using One = Simd<float, 1, A>;
+  /// Traces a ray whose numbers are too large or too small for the fast arithmetic.
+  OKTETT_NOINLINE void trace_alone(std::size_t index, bool valid) {
     RayState<1, A> r;
-    const Ray source = rays_[ray];
-    r.set(broadcast<One>(source.origin), broadcast<One>(source.direction), One(source.tmin), One(source.tmax),
-          accel_.bounds);
+    r.set(rays_[index], accel_.bounds);
     if (valid) trace_single<Q>(accel_, r);
-    out_.set(ray, r.hit(0));
+    out_.set(index, r.hit(0));
   }
 
-  /// Decides what has gathered, all lanes at once. Only what surely is hit has been put off.
-  OKTETT_NOINLINE void decide_candidates() {
-    if (candidates_ == 0) return;
+  /// Decides the candidates of finished rays, one in each lane, and stores the hits.
+  OKTETT_NOINLINE void decide_pending() {
+    if (pending_ == 0) return;
     using C = Simd<float, kChunk, A>;
     alignas(64) float column[8][kChunk];
     for (int i = 0; i < kChunk; ++i) {
-      if (i >= candidates_) candidate_ray_[i] = candidate_ray_[0], candidate_[i] = candidate_[0];
-      const std::size_t ray = candidate_ray_[i];
+      if (i >= pending_) pending_ray_[i] = pending_ray_[0], pending_triangle_[i] = pending_triangle_[0];
+      const std::size_t ray = pending_ray_[i];
       for (int k = 0; k < 3; ++k)
         column[k][i] = rays_.origin[k][ray], column[3 + k][i] = rays_.direction[k][ray];
       column[6][i] = rays_.tmin[ray], column[7][i] = rays_.tmax[ray];
@@ -317,14 +318,15 @@ class InterleavedTraversal {
     };
     const RayLanes<C> rays{vec(0), vec(3), C::load(column[6]), C::load(column[7])};
     HitLanes<C> h;
-    const unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), candidate_, h);
+    const unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), pending_triangle_, h);
     alignas(64) float t[kChunk], u[kChunk], v[kChunk];
     h.t.store(t), h.u.store(u), h.v.store(v);
-    for (int i = 0; i < candidates_; ++i) {
-      const std::uint32_t item = accel_.blocks[candidate_[i] / kBlock].item[candidate_[i] % kBlock];
-      out_.set(candidate_ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, kNoId} : Hit{});
+    for (int i = 0; i < pending_; ++i) {
+      const std::uint32_t item =
+          accel_.blocks[pending_triangle_[i] / kBlock].item[pending_triangle_[i] % kBlock];
+      out_.set(pending_ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, kNoId} : Hit{});
     }
-    candidates_ = 0;
+    pending_ = 0;
   }
 
   const Accel& accel_;
@@ -335,8 +337,8 @@ class InterleavedTraversal {
                                 reinterpret_cast<const char*>(accel_.blocks.data())};
   std::size_t next_ = 0;
   Queue nodes_, leaves_, others_;
-  int candidates_ = 0;
-  std::uint32_t candidate_[kChunk], candidate_ray_[kChunk];
+  int pending_ = 0;
+  std::uint32_t pending_triangle_[kChunk], pending_ray_[kChunk];
   RayChunk<kChunk, A> chunk_;
   InflightRay inflight_[kInflightRays];
   RayState<1, A> states_[kInflightRays];
