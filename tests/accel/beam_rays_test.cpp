@@ -92,7 +92,7 @@ TEST(BeamRays, RaysOfNoLengthDoNotCount) {
     EXPECT_EQ(beam.slip, expected.slip);
     EXPECT_EQ(beam.behind, expected.behind);
     for (std::size_t i = 0; i < rays.size(); i += 21)
-      EXPECT_EQ(beam.held_lo[i], std::numeric_limits<float>::infinity());
+      EXPECT_EQ(beam.hit_lo[i], std::numeric_limits<float>::infinity());
   }
   EXPECT_GT(beams, 20);
 }
@@ -119,11 +119,11 @@ TEST(BeamRays, SortingKeepsTheRaysAndMakesGroupsSmall) {
         seen.insert(from);
         ASSERT_EQ(beam.x[i], before.x[from]);
         ASSERT_EQ(beam.y[i], before.y[from]);
-        ASSERT_EQ(beam.held_lo[i], before.held_lo[from]);
-        ASSERT_EQ(beam.held_hi[i], before.held_hi[from]);
+        ASSERT_EQ(beam.hit_lo[i], before.hit_lo[from]);
+        ASSERT_EQ(beam.hit_hi[i], before.hit_hi[from]);
         ASSERT_TRUE(beam.x_lo[g] <= beam.x[i] && beam.x[i] <= beam.x_hi[g] && beam.y_lo[g] <= beam.y[i] &&
                     beam.y[i] <= beam.y_hi[g]);
-        least = std::min(least, beam.held_lo[i]);
+        least = std::min(least, beam.hit_lo[i]);
       }
       ASSERT_EQ(beam.least[g], least);
       area += (beam.x_hi[g] - beam.x_lo[g]) * (beam.y_hi[g] - beam.y_lo[g]);

@@ -1,11 +1,11 @@
 #pragma once
-/// \file A block of triangles as a beam sees it: filter functions that are linear in the plane of the beam.
+/// \file A block of triangles against a beam: filter functions that are linear in the plane of the beam.
 ///
 /// With c the first corner seen from the apex, e1, e2 the edges and n = e1 x e2, a ray (x, y) has the scaled
 /// weights u = (e2 x c) . (x, y, 1), v = (c x e1) . (x, y, 1) and w = det - u - v with det = n . (x, y, 1)
-/// (Möller and Trumbore 1997, with the products regrouped for a common origin). Divided by t = n . c, which
-/// no ray changes, they keep their signs, a hit has all three positive, and det becomes the inverse depth of
-/// the hit. The bounds are derived in docs/numerics.md.
+/// (Möller and Trumbore 1997, with the products regrouped for a common origin). All are divided by t = n . c,
+/// which is the same for all rays: then a hit has all three weights positive, and det becomes the inverse
+/// depth of the hit. The bounds are derived in docs/numerics.md.
 
 #include "accel/traverse/beam/beam_rays.h"
 
@@ -17,26 +17,26 @@ inline constexpr float kBeamError = 20 * 0x1p-24f;
 inline constexpr float kBeamDepthError = 10 * 0x1p-24f;
 /// Relative error of an inverse depth on top of that of t, and of comparing it with a decided t.
 inline constexpr float kBeamInverseError = 4 * 0x1p-24f;
-/// What the decision may displace a vertex, in units of its distance and relative to kBeamError.
+/// How far the exact decision may displace a vertex, in units of its distance and relative to kBeamError.
 inline constexpr float kBeamShear = 0x1p-28f;
 inline constexpr float kBeamUnderflow = 1e-36f;
 
-/// Eight triangles. `c[3 * f + k]`: function f (u, v, w, s) is c[0] + c[1] x + c[2] y, raised by its error
+/// Eight triangles. Function f, of (u, v, w, s), is c[3 f] + c[3 f + 1] x + c[3 f + 2] y, raised by its error
 /// bound.
 template <class A>
 struct alignas(64) ProjectedTriangles {
   static constexpr int kSize = TriangleBlock::kSize;
   float c[12][kSize];
-  float group[4][kSize];  ///< c[3 * f] + the most that the function grows from the middle of a regular group
-  float sure[kSize];      ///< a ray surely hits if u, v and w are all above this
+  float group[4][kSize];     ///< c[3 f] + the most that function f grows from the middle of a regular group
+  float sure[kSize];         ///< a ray surely hits if u, v and w are all above this
   float lower_scale[kSize];  ///< then its inverse depth is at least s * lower_scale - lower_gap
   float lower_gap[kSize];
 };
 
-/// Which triangles of a block a beam has to look at.
+/// The triangles of a block that a beam may hit, a bit each.
 struct BlockCandidates {
   unsigned projected;  ///< those that may be hit by a ray of the window
-  unsigned edge_on;    ///< those whose plane passes by the apex so closely that they cannot be projected
+  unsigned edge_on;    ///< those whose plane passes so close to the apex that they cannot be projected
 };
 
 /// Upper bound of the linear function (a, b, c) in the rectangle around (mx, my) with half sides (hx, hy).
@@ -46,6 +46,7 @@ OKTETT_INLINE F greatest(const F& a, const F& b, const F& c, const F& mx, const 
   return fast_fma(abs(b), hx, fast_fma(abs(c), hy, fast_fma(b, mx, fast_fma(c, my, a))));
 }
 
+/// Projects the triangles of a block, and rejects those that no ray in `w` hits.
 template <class A>
 OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int count, const BeamRays<A>& beam,
                                             const BeamWindow& w, ProjectedTriangles<A>& out) {
@@ -94,7 +95,7 @@ OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int coun
   };
   const B s_top = top(f[3]);
   const B zero(0.0f);
-  // A lane is dropped only by a comparison that is true: NaN keeps it.
+  // A lane is rejected only by a comparison that is true, so NaN keeps it.
   const auto reject = (top(f[0]) < zero) | (top(f[1]) < zero) | (top(f[2]) < zero) | (s_top <= B(w.least));
   const unsigned all = (1u << count) - 1, flat = all & ~bits(projectable);
   const unsigned keep = all & ~flat & ~bits(reject);
@@ -103,7 +104,7 @@ OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int coun
       f[k].x.store(out.c[3 * k]), f[k].y.store(out.c[3 * k + 1]), f[k].z.store(out.c[3 * k + 2]);
       if (beam.regular) (f[k].x + within(f[k], beam.shape)).store(out.group[k]);
     }
-    // Where a hit may lie outside a ray's range at the near end, or a product may overflow, nothing is sure.
+    // No hit is sure where it may lie before the beginning of a ray, or where a product may overflow.
     const auto plain = (s_top < B(beam.near_s)) & (scale * size * reach < B(1e30f));
     select(plain, error * B(2.25f), B(std::numeric_limits<float>::infinity())).store(out.sure);
     (B(1.0f) - fast_fma(depth_error, B(2.0f), B(kBeamInverseError))).store(out.lower_scale);
@@ -112,7 +113,7 @@ OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int coun
   return {keep, flat};
 }
 
-/// The groups of `groups` in whose rectangle triangle `k` may be hit.
+/// Those of `groups` that may hit triangle `k`.
 template <class A>
 OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, const BeamRays<A>& beam,
                                       unsigned groups) {
@@ -127,15 +128,15 @@ OKTETT_INLINE unsigned groups_meeting(const ProjectedTriangles<A>& p, int k, con
   return groups & ~bits(reject);
 }
 
-/// What the filter finds about a group and a triangle. Bit i is ray i of the group.
+/// What the filter says of a triangle and the rays of a group, a bit each.
 struct GroupVerdict {
-  unsigned sure;     ///< hit, and nearer than what was held
-  unsigned unclear;  ///< may be hit, and may be nearer: to be decided
+  unsigned sure;     ///< surely hit, and surely nearer than the nearest hit so far
+  unsigned unclear;  ///< may be hit and may be nearer: to be decided
 };
 
-/// Triangle `k` against the rays of one group; sure hits are put down as held. For an any-hit query a ray
-/// that surely hits something needs nothing more. Whether a camera ray hits is hard to foretell, so nothing
-/// branches on it; that a shadow ray misses is not.
+/// Triangle `k` against the rays of one group. A sure hit becomes the candidate of its ray; for an any-hit
+/// query it ends the ray. Only any-hit queries branch on whether all rays miss: shadow rays mostly do, while
+/// for camera rays the branch would often be mispredicted.
 template <bool kAny, class A>
 OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std::uint32_t id,
                                       BeamRays<A>& beam, int group) {
@@ -146,17 +147,17 @@ OKTETT_INLINE GroupVerdict meet_group(const ProjectedTriangles<A>& p, int k, std
     return fast_fma(F(p.c[3 * f + 1][k]), x, fast_fma(F(p.c[3 * f + 2][k]), y, F(p.c[3 * f][k])));
   };
   const F least = min(value(0), min(value(1), value(2))), s = value(3);
-  const F held_lo = F::load(beam.held_lo + base);
-  const auto reject = (least < F(0.0f)) | (s <= held_lo);
+  const F hit_lo = F::load(beam.hit_lo + base);
+  const auto reject = (least < F(0.0f)) | (s <= hit_lo);
   if (kAny && (~bits(reject) & 0xffff) == 0) return {0, 0};
-  const F held_hi = F::load(beam.held_hi + base), s_lo = fast_fma(s, F(p.lower_scale[k]), F(-p.lower_gap[k]));
-  // Where s <= held_lo, s_lo is below held_hi too.
-  const auto sure = (F(p.sure[k]) < least) & (held_hi < s_lo);
-  select(sure, kAny ? F(std::numeric_limits<float>::infinity()) : s_lo, held_lo).store(beam.held_lo + base);
+  const F hit_hi = F::load(beam.hit_hi + base), s_lo = fast_fma(s, F(p.lower_scale[k]), F(-p.lower_gap[k]));
+  // Rays with s <= hit_lo are not sure: their s_lo is below hit_hi.
+  const auto sure = (F(p.sure[k]) < least) & (hit_hi < s_lo);
+  select(sure, kAny ? F(std::numeric_limits<float>::infinity()) : s_lo, hit_lo).store(beam.hit_lo + base);
   if (!kAny) {
     using I = Simd<std::int32_t, kBeamGroup, A>;
-    select(sure, s, held_hi).store(beam.held_hi + base);
-    std::int32_t* ids = reinterpret_cast<std::int32_t*>(beam.held + base);
+    select(sure, s, hit_hi).store(beam.hit_hi + base);
+    std::int32_t* ids = reinterpret_cast<std::int32_t*>(beam.candidate + base);
     select(mask_cast<std::int32_t>(sure), I(static_cast<std::int32_t>(id)), I::load(ids)).store(ids);
   }
   return {bits(sure), bits(~(reject | sure)) & 0xffff};

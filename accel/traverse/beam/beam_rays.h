@@ -1,14 +1,14 @@
 #pragma once
-/// \file A beam: up to 256 rays whose lines pass through one point, seen as points of a plane.
+/// \file A beam: up to 256 rays whose lines pass through one point, the apex, as points of a plane.
 ///
-/// With the apex as origin and z the axis along which the first ray is steepest (mirrored so that the rays go
-/// towards +z), a ray becomes (x, y) = (dx/dz, dy/dz), and a point on it is told by its inverse depth s =
-/// 1/z. A box becomes a rectangle and a greatest s; the barycentric coordinates of a triangle and its s are
-/// linear functions of (x, y). No axis is rotated: a projected coordinate carries two roundings, not those of
-/// a change of basis.
+/// The apex is the origin. z is the axis along which the middle ray is steepest, mirrored so that the rays go
+/// towards +z. A ray becomes the point (x, y) = (dx/dz, dy/dz), and a point on it has the inverse depth s =
+/// 1/z. A box becomes a rectangle with a greatest s. The barycentric coordinates of a triangle and its s are
+/// linear functions of (x, y). The axes are only exchanged, not rotated, so a projected coordinate has two
+/// roundings.
 ///
-/// The apex is the common origin of the rays, or the point where all of them end (a point light). In the
-/// second case the lines miss it by rounding; `slip` bounds by how much.
+/// The apex is the common origin of the rays, or the point where all of them end, as shadow rays do at a
+/// point light. In the second case rounding moves their lines off the apex by at most `slip`.
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +35,8 @@ struct BeamPatch {
   float x1 = 0, y1 = 0, x2 = 0, y2 = 0;
 };
 
-/// The part of the plane that is asked about: a rectangle and a patch that both hold the rays, and the least
-/// inverse depth that is still of interest to any of them.
+/// The part of the plane that some rays cover: a rectangle and a patch that each contain all of them, and the
+/// least inverse depth at which one of them may still find a nearer hit.
 struct BeamWindow {
   float x_lo, x_hi, y_lo, y_hi, least;
   BeamPatch patch;
@@ -47,21 +47,22 @@ struct alignas(64) BeamRays {
   using F = Simd<float, kBeamGroup, A>;
 
   float x[kBeamRays], y[kBeamRays];
-  /// Bounds on the inverse depth of the nearest hit held so far (of the end of the ray's range if there is
-  /// none): whatever is surely below held_lo is of no interest, whatever is surely above held_hi is nearer.
-  float held_lo[kBeamRays], held_hi[kBeamRays];
-  /// 8 * block + lane of a triangle that the ray surely hits and that is not decided yet, or kNoId.
-  std::uint32_t held[kBeamRays];
-  /// Rectangles around the groups, and the least held_lo in each.
+  /// Bounds on the inverse depth of the nearest hit so far; before the first hit, of the end of the ray. What
+  /// is surely below hit_lo is farther away, what is surely above hit_hi is nearer.
+  float hit_lo[kBeamRays], hit_hi[kBeamRays];
+  /// The candidate hit of each ray: a triangle, 8 * block + lane, that the ray surely hits and that is not
+  /// decided yet. kNoId: none.
+  std::uint32_t candidate[kBeamRays];
+  /// Rectangles around the groups, and the least hit_lo in each.
   float x_lo[kBeamGroups], x_hi[kBeamGroups], y_lo[kBeamGroups], y_hi[kBeamGroups], least[kBeamGroups];
-  /// Middles of the groups. Where `regular`, all have the shape of `shape`; else a group is a rectangle of
-  /// its own half sides.
+  /// Middles of the groups. If `regular`, all groups have the shape of `shape`; otherwise each is a rectangle
+  /// with half sides of its own.
   float x_mid[kBeamGroups], y_mid[kBeamGroups], x_half[kBeamGroups], y_half[kBeamGroups];
   bool regular;
-  bool ranged;  ///< some ray ends somewhere
+  bool ranged;  ///< some ray has a finite end
   BeamPatch shape;
-  bool may_sort;  ///< the groups of a whole beam overlap: sorting would make them smaller
-  /// Where `sorted`, ray i of the beam is ray order[i] of the batch.
+  bool may_sort;  ///< the groups of a full beam overlap, so sorting the rays would make them smaller
+  /// If `sorted`, ray i of the beam is ray order[i] of the batch.
   bool sorted = false;
   std::uint8_t order[kBeamRays];
   unsigned groups;  ///< groups that hold a ray that can hit anything
@@ -71,22 +72,22 @@ struct alignas(64) BeamRays {
   bool mirrored;  ///< z runs against the scene's axis
   float apex[3];  ///< in the order of `axis`
   float slip;     ///< how far, in x and y, a line passes from the apex at its depth
-  float behind;   ///< the rays may reach this far beyond the apex
+  float behind;   ///< how far beyond the apex the rays may reach
   float near_s;   ///< hits with an inverse depth above this may lie outside a ray's range
-  float margin;   ///< by how much rounding may displace a vertex in a decision
+  float margin;   ///< how far rounding may displace a vertex in the exact decision
   float spread;   ///< max(1, |x|, |y|)
 
   /// Prepares up to kBeamRays rays. False if they are no beam: they do not share the apex, fan out too far,
-  /// or their numbers are so large or small that the bounds here do not hold. `extent` = greatest
-  /// |coordinate| of the scene.
-  /// `may_be_sorted`: whether the caller can live with rays in another order.
+  /// or their numbers are too large or too small for the error bounds. `extent` is the greatest |coordinate|
+  /// of the scene. `may_be_sorted`: the rays may be put into another order later.
   bool set(const RaySpan& rays, const Apex& at, float extent, bool may_be_sorted);
 
-  /// Puts the rays into an order that makes groups small.
+  /// Puts the rays into an order that makes the groups small.
   void sort();
 
+  /// Updates least[group] after hits.
   OKTETT_INLINE void refresh(int group) {
-    least[group] = horizontal_min(F::load(held_lo + group * kBeamGroup));
+    least[group] = horizontal_min(F::load(hit_lo + group * kBeamGroup));
   }
   OKTETT_INLINE void refresh_groups() {
     if (ranged) {
@@ -107,7 +108,7 @@ struct alignas(64) BeamRays {
 
 /// Scales between which products of three lengths and their inverses neither overflow nor underflow in float.
 inline constexpr float kBeamLeast = 0x1p-40f, kBeamMost = 0x1p40f;
-/// Slack for the few roundings of a projected box.
+/// Relative slack for the few roundings of a projected box.
 inline constexpr float kBeamSlack = 0x1p-20f;
 /// The same for the inverse depth of one point.
 inline constexpr float kBeamPointSlack = 0x1p-22f;
@@ -129,7 +130,7 @@ bool BeamRays<A>::set_frame(const RaySpan& rays, const Apex& at, float extent) {
   return std::fabs(d[z]) > 0;
 }
 
-/// Fills x, y, held_* and what the ends of the rays say about the apex.
+/// Fills x, y, hit_lo, hit_hi and candidate, and bounds slip, behind and near_s.
 template <class A>
 bool BeamRays<A>::project(const RaySpan& rays, const Apex& at) {
   const F zero(0.0f), one(1.0f), infinity(std::numeric_limits<float>::infinity());
@@ -158,8 +159,8 @@ bool BeamRays<A>::project(const RaySpan& rays, const Apex& at) {
       usable = usable & (s <= most_s);
       nears = max(r.tmin * dz, nears);
     } else {
-      // Where the ray ends, seen from the apex: in double, because it is a rounding error of the caller. At
-      // the apex's depth the line is as far away, but for what it goes sideways on the way there.
+      // The end of the ray relative to the apex, in double, because the difference is a rounding error of the
+      // caller. Followed along its line to the apex's depth, it gives the slip.
       using D = Simd<double, kBeamGroup, A>;
       const D length = to_double(r.tmax);
       const auto end = [&](int k) {
@@ -180,7 +181,8 @@ bool BeamRays<A>::project(const RaySpan& rays, const Apex& at) {
     const unsigned inside = count - base >= kBeamGroup ? 0xffffu : (1u << (count - base)) - 1;
     unsigned valid = inside & bits((zero <= r.tmin) & (r.tmin < r.tmax));
     if (OKTETT_UNLIKELY((valid & ~bits(usable)) != 0)) {
-      // Rays that hit nothing whatever they meet may stay, others not. False on NaN, so each is asked.
+      // Rays that can hit nothing may stay in the beam, other unusable ones not. Each comparison is false on
+      // NaN.
       const F ex = abs(r.d.x), ey = abs(r.d.y), ez = abs(r.d.z);
       valid &= bits((abs(r.o.x) <= big) & (abs(r.o.y) <= big) & (abs(r.o.z) <= big) & (ex <= big) &
                     (ey <= big) & (ez <= big) & (zero < max(ex, max(ey, ez))));
@@ -197,26 +199,25 @@ bool BeamRays<A>::project(const RaySpan& rays, const Apex& at) {
       select(m, px, F(first_x)).store(x + base), select(m, py, F(first_y)).store(y + base);
       lo = select(m, lo, infinity), hi = select(m, hi, infinity);  // what makes a ray idle
     }
-    lo.store(held_lo + base), hi.store(held_hi + base);
-    std::memset(held + base, 0xff, kBeamGroup * sizeof held[0]);
+    lo.store(hit_lo + base), hi.store(hit_hi + base);
+    std::memset(candidate + base, 0xff, kBeamGroup * sizeof candidate[0]);
   }
-  // Lanes and groups without a ray stand at the first ray, so that they widen nothing.
+  // Lanes and groups without a ray take the place of the first ray, so that they widen no bounds.
   const int ends = (count + kBeamGroup - 1) / kBeamGroup * kBeamGroup;
   for (int i = 0; i < kBeamRays; i += kBeamGroup) {
     if (i < ends && (groups & ((2u << i / kBeamGroup) - 1)) != 0) continue;
-    F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(held_lo + i),
-        infinity.store(held_hi + i);
+    F(first_x).store(x + i), F(first_y).store(y + i), infinity.store(hit_lo + i), infinity.store(hit_hi + i);
   }
   behind = at.at_end ? horizontal_max(behinds) * (1 + kBeamSlack) + margin : 0.0f;
   slip = at.at_end ? horizontal_max(slips) * (1 + kBeamSlack) + behind * kBeamSlack + margin : 0.0f;
   const float near = at.at_end ? behind : horizontal_max(nears);
   near_s = near > kBeamLeast * kBeamLeast ? (1 - kBeamSlack) / near : 1 / (kBeamLeast * kBeamLeast);
-  // A slip that is no rounding error means that the rays do not meet.
+  // A slip greater than rounding errors means that the rays do not share the apex.
   return slip + behind <= margin * 0x1p28f;
 }
 
-/// Two directions in which the rays of the first group lie in rows, as the columns of pixels do; the axes if
-/// there are none.
+/// Two directions along which the rays of the first group lie in rows, as pixels do; the axes if there are
+/// none.
 OKTETT_INLINE void group_axes(const float* x, const float* y, float (&e)[2][2]) {
   e[0][0] = e[1][1] = 1, e[0][1] = e[1][0] = 0;
   const float ax = x[1] - x[0], ay = y[1] - y[0], a = std::sqrt(ax * ax + ay * ay);
@@ -226,7 +227,7 @@ OKTETT_INLINE void group_axes(const float* x, const float* y, float (&e)[2][2]) 
     if (distance > far * 1.01f) far = distance, bx = dx, by = dy;
   }
   const float b = std::sqrt(bx * bx + by * by);
-  // Too near each other, the two say nothing.
+  // Directions that are nearly parallel are useless.
   if (!(a > 0) || !(far > 0.2f * a * b)) return;
   e[0][0] = ax / a, e[0][1] = ay / a, e[1][0] = bx / b, e[1][1] = by / b;
 }
@@ -257,7 +258,7 @@ void BeamRays<A>::bound() {
     wa = max(abs(ux * ax + uy * ay), wa), wb = max(abs(ux * bx + uy * by), wb);
     least_x = min(px, least_x), most_x = max(px, most_x), least_y = min(py, least_y),
     most_y = max(py, most_y);
-    any_range = max(F::load(held_lo + base), any_range);
+    any_range = max(F::load(hit_lo + base), any_range);
   }
   window.x_lo = horizontal_min(least_x), window.x_hi = horizontal_max(most_x);
   window.y_lo = horizontal_min(least_y), window.y_hi = horizontal_max(most_y);
@@ -280,7 +281,7 @@ void BeamRays<A>::bound() {
   ranged = horizontal_max(any_range) != 0;
 }
 
-/// Rectangles around groups of no common shape. Returns the sum of their areas.
+/// Rectangles around groups that have no common shape. Returns the sum of their areas.
 template <class A>
 float BeamRays<A>::bound_groups() {
   using G = Simd<float, kBeamGroups, A>;
@@ -299,27 +300,27 @@ float BeamRays<A>::bound_groups() {
   return sum;
 }
 
-/// In rows that are run through in turn to the right and to the left, so that each group becomes a small
-/// patch.
+/// A counting sort by cells of a grid, row by row, in turn to the right and to the left, so that consecutive
+/// rays make small groups.
 template <class A>
 void BeamRays<A>::sort() {
   constexpr int kCells = 64, kMostRows = 8;
   const float width = std::max(window.x_hi - window.x_lo, 1e-30f),
               height = std::max(window.y_hi - window.y_lo, 1e-30f);
-  // As many rows as make groups square.
+  // So many rows that groups are about square.
   const int rows = std::clamp(static_cast<int>(4 * std::sqrt(height / width) + 0.5f), 1, kMostRows);
   const int columns = kCells / rows;
   const float down = (static_cast<float>(rows) - 0.01f) / height, x0 = window.x_lo, y0 = window.y_lo;
   const float along = (static_cast<float>(columns) - 0.01f) / width;
   alignas(64) float cx[kBeamRays], cy[kBeamRays], lo[kBeamRays], hi[kBeamRays];
   std::memcpy(cx, x, sizeof x), std::memcpy(cy, y, sizeof y);
-  std::memcpy(lo, held_lo, sizeof lo), std::memcpy(hi, held_hi, sizeof hi);
+  std::memcpy(lo, hit_lo, sizeof lo), std::memcpy(hi, hit_hi, sizeof hi);
   alignas(64) std::int32_t key[kBeamRays];
   for (int i = 0; i < kBeamRays; ++i) {
     const int row = static_cast<int>((cy[i] - y0) * down), column = static_cast<int>((cx[i] - x0) * along);
     key[i] = row * columns + ((row & 1) != 0 ? columns - 1 - column : column);
   }
-  // Two halves with a table each: neighbours that fall into one cell would wait for each other.
+  // Two halves with a table each, because successive rays of one cell wait for each other.
   constexpr int kHalf = kBeamRays / 2;
   std::uint8_t next[kCells][2] = {};
   for (int i = 0; i < kHalf; ++i) ++next[key[i]][0], ++next[key[kHalf + i]][1];
@@ -332,7 +333,7 @@ void BeamRays<A>::sort() {
   const auto move = [&](int i, int half) {
     const int to = next[key[i]][half]++;
     order[to] = static_cast<std::uint8_t>(i);
-    x[to] = cx[i], y[to] = cy[i], held_lo[to] = lo[i], held_hi[to] = hi[i];
+    x[to] = cx[i], y[to] = cy[i], hit_lo[to] = lo[i], hit_hi[to] = hi[i];
   };
   for (int i = 0; i < kHalf; ++i) move(i, 0), move(kHalf + i, 1);
   sorted = true, may_sort = false, regular = false;
@@ -348,7 +349,7 @@ bool BeamRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool ma
   if (groups == 0) return true;
   bound();
   if (window.x_hi - window.x_lo > 1 || window.y_hi - window.y_lo > 1) return false;
-  // Groups that part the window cover it once.
+  // Groups that do not overlap cover the window about once.
   const float area = (window.x_hi - window.x_lo) * (window.y_hi - window.y_lo);
   const float covered = regular ? patch_area(shape) * kBeamGroups : bound_groups();
   may_sort = may_be_sorted && rays.size == kBeamRays && covered > area;

@@ -1,12 +1,12 @@
 #pragma once
-/// \file A beam at work: what its rays hold, what is unclear, and the decisions at the end.
+/// \file The state of a beam on its way through the tree, and the exact decisions of its candidates.
 
 #include "accel/traverse/beam/beam_leaf.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 
 namespace oktett {
 
-/// Candidates that the filter could not tell.
+/// Pairs of a triangle and a ray that the filter could neither reject nor accept.
 struct UnclearList {
   static constexpr int kSize = 512;
   std::uint32_t triangle[kSize + kBeamGroup];  ///< 8 * block + lane
@@ -14,14 +14,15 @@ struct UnclearList {
   int size = 0;
 };
 
-/// Which groups have met a triangle that stands in several leaves ("mailboxes", Amanatides and Woo 1987). An
-/// entry may be lost to another triangle; then the triangle is met twice, which does no harm.
+/// Mailboxes (Amanatides and Woo 1987) for triangles that stand in several leaves: which groups have been
+/// tested against a triangle. Another triangle may take over an entry; then the first is tested twice, which
+/// does no harm.
 class MetTriangles {
  public:
   MetTriangles() { clear(); }
-  /// For groups of other rays.
+  /// Forgets everything, for groups of other rays.
   void clear() { std::fill_n(item_, kSize, kNoId); }
-  /// Those of `groups` that have not met `item` yet; from now on they have.
+  /// Those of `groups` that have not been tested against `item`, and notes that they now are.
   OKTETT_INLINE unsigned add(std::uint32_t item, unsigned groups) {
     const std::uint32_t at = item * 0x9e3779b1u >> 26;
     const unsigned met = item_[at] == item ? groups_[at] : 0;
@@ -34,7 +35,7 @@ class MetTriangles {
   std::uint32_t item_[kSize], groups_[kSize];
 };
 
-/// A beam on its way through the tree, and where its results go.
+/// A beam, what it has found, and where its results go.
 template <Query Q, class A>
 struct BeamTask {
   const Accel& accel;
@@ -42,12 +43,12 @@ struct BeamTask {
   const HitSink<Q>& out;  ///< complete only when the beam is finished
   BeamRays<A> beam;
   UnclearList unclear;
-  int max_steps;          ///< nodes and leaves to come to before the beam is given up
+  int max_steps;          ///< nodes and leaves that it may visit before it is given up
   MetTriangles met = {};  ///< in use if triangles stand in several leaves
   bool decided = false;   ///< some hits have been decided and stand in `out`
 };
 
-/// Lets a decided hit of ray i count.
+/// Stores the decided hit `h` of ray i if it is the nearest so far. `dz`: the |direction| of the ray along z.
 template <class A>
 OKTETT_INLINE void accept_beam(const HitSpan& hits, BeamRays<A>& beam, float dz, std::size_t i,
                                const Hit& h) {
@@ -58,13 +59,13 @@ OKTETT_INLINE void accept_beam(const HitSpan& hits, BeamRays<A>& beam, float dz,
   hits.set(i, h);
   const float s = 1 / (h.t * dz);
   const float lo = s * (1 - kBeamPointSlack), hi = s * (1 + kBeamPointSlack);
-  beam.held_lo[i] = lo > beam.held_lo[i] ? lo : beam.held_lo[i];
-  beam.held_hi[i] = hi > beam.held_hi[i] ? hi : beam.held_hi[i];
+  beam.hit_lo[i] = lo > beam.hit_lo[i] ? lo : beam.hit_lo[i];
+  beam.hit_hi[i] = hi > beam.hit_hi[i] ? hi : beam.hit_hi[i];
 }
 
-/// What the rays of a group hold, for other shapes to be compared with it.
+/// Loads the decided hits of a group into `r`, so that hits of other shapes are compared with them.
 template <class A>
-OKTETT_INLINE void take_held(const HitSpan& hits, std::size_t base, RayState<kBeamGroup, A>& r) {
+OKTETT_INLINE void load_hits(const HitSpan& hits, std::size_t base, RayState<kBeamGroup, A>& r) {
   for (std::size_t i = 0; i < kBeamGroup && base + i < hits.size; ++i) {
     if (hits.item[base + i] == kNoId) continue;
     r.tmax[i] = hits.t[base + i], r.u[i] = hits.u[base + i], r.v[i] = hits.v[base + i];
@@ -72,10 +73,10 @@ OKTETT_INLINE void take_held(const HitSpan& hits, std::size_t base, RayState<kBe
   }
 }
 
-/// Gives back what take_held took, for the rays in `lanes`, which hold something.
+/// Stores the hits of `r` for the rays in `lanes`, which have one.
 template <class A>
-OKTETT_INLINE void give_held(const RayState<kBeamGroup, A>& r, unsigned lanes, const HitSpan& hits,
-                             std::size_t base, BeamRays<A>& beam) {
+OKTETT_INLINE void store_hits(const RayState<kBeamGroup, A>& r, unsigned lanes, const HitSpan& hits,
+                              std::size_t base, BeamRays<A>& beam) {
   using F = Simd<float, kBeamGroup, A>;
   using I = Simd<std::int32_t, kBeamGroup, A>;
   const auto found = F::M::from_bits(lanes);
@@ -101,10 +102,10 @@ OKTETT_INLINE void give_held(const RayState<kBeamGroup, A>& r, unsigned lanes, c
     const F was = F::load(column + base);
     select(found, max(s * F(slack), was), was).store(column + base);
   };
-  raise(beam.held_lo, 1 - kBeamPointSlack), raise(beam.held_hi, 1 + kBeamPointSlack);
+  raise(beam.hit_lo, 1 - kBeamPointSlack), raise(beam.hit_hi, 1 + kBeamPointSlack);
 }
 
-/// Before the first decision, all rays have hit nothing.
+/// Before the first decision: stores a miss for every ray.
 template <Query Q, class A>
 OKTETT_INLINE void begin_decisions(BeamTask<Q, A>& task) {
   if (Q == Query::any || task.decided) return;
@@ -112,7 +113,7 @@ OKTETT_INLINE void begin_decisions(BeamTask<Q, A>& task) {
   for (std::size_t i = 0; i < task.rays.size; ++i) task.out.set(i, Hit{});
 }
 
-/// Decides `count` (up to 16) pairs.
+/// Decides `count` (up to 16) pairs of a ray and a triangle.
 template <Query Q, class A>
 OKTETT_NOINLINE void decide_listed(BeamTask<Q, A>& task, const std::uint8_t* ray,
                                    const std::uint32_t* triangle, int count) {
@@ -137,7 +138,7 @@ OKTETT_NOINLINE void decide_listed(BeamTask<Q, A>& task, const std::uint8_t* ray
   for (; met != 0; met &= met - 1) {
     const int i = __builtin_ctz(met);
     if constexpr (Q == Query::any) {
-      task.beam.held_lo[ray[i]] = std::numeric_limits<float>::infinity();
+      task.beam.hit_lo[ray[i]] = std::numeric_limits<float>::infinity();
     } else {
       const std::uint32_t item =
           task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
@@ -158,7 +159,7 @@ OKTETT_NOINLINE void decide_unclear(BeamTask<Q, A>& task) {
       int kept = 0;
       const int end = std::min(list.size, i + kBeamGroup);
       for (int k = i; k < end; ++k) {
-        if (task.beam.held_lo[list.ray[k]] == std::numeric_limits<float>::infinity()) continue;
+        if (task.beam.hit_lo[list.ray[k]] == std::numeric_limits<float>::infinity()) continue;
         list.ray[i + kept] = list.ray[k], list.triangle[i + kept] = list.triangle[k], ++kept;
       }
       if (kept > 0) decide_listed(task, list.ray + i, list.triangle + i, kept);
@@ -179,16 +180,16 @@ OKTETT_INLINE void note_unclear(BeamTask<Q, A>& task, unsigned rays, int group, 
   if (OKTETT_UNLIKELY(list.size >= UnclearList::kSize)) decide_unclear(task);
 }
 
-/// Decides what the rays of a group hold, so that other shapes can be compared with it.
+/// Decides the candidates of a group, so that hits of other shapes can be compared with them.
 template <Query Q, class A>
-OKTETT_NOINLINE void decide_held(BeamTask<Q, A>& task, int group) {
+OKTETT_NOINLINE void decide_candidates(BeamTask<Q, A>& task, int group) {
   std::uint8_t ray[kBeamGroup];
   std::uint32_t ids[kBeamGroup];
   int count = 0;
   for (int i = group * kBeamGroup; i < (group + 1) * kBeamGroup; ++i) {
-    if (task.beam.held[i] == kNoId) continue;
-    ray[count] = static_cast<std::uint8_t>(i), ids[count++] = task.beam.held[i];
-    task.beam.held[i] = kNoId;
+    if (task.beam.candidate[i] == kNoId) continue;
+    ray[count] = static_cast<std::uint8_t>(i), ids[count++] = task.beam.candidate[i];
+    task.beam.candidate[i] = kNoId;
   }
   if (count > 0) decide_listed(task, ray, ids, count);
 }
@@ -204,21 +205,21 @@ OKTETT_INLINE void store_misses(const HitSpan& hits, std::size_t base) {
   std::memset(hits.instance + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
 }
 
-/// Decides what the rays of a whole group hold and writes it.
+/// Decides the candidates of a whole group and stores the hits.
 template <class A>
 OKTETT_INLINE void finish_group(BeamTask<Query::closest, A>& task, std::size_t base) {
   using F = Simd<float, kBeamGroup, A>;
   using I = Simd<std::int32_t, kBeamGroup, A>;
   constexpr std::uint32_t kSize = TriangleBlock::kSize;
   const HitSpan& hits = task.out.hits;
-  const std::uint32_t* held = task.beam.held + base;
+  const std::uint32_t* candidates = task.beam.candidate + base;
   const TriangleBlock* blocks = task.accel.blocks.data();
   const auto as_int = [](auto* p) { return reinterpret_cast<std::int32_t*>(p); };
-  const I notes = I::load(reinterpret_cast<const std::int32_t*>(held)), nothing(-1);
+  const I notes = I::load(reinterpret_cast<const std::int32_t*>(candidates)), nothing(-1);
   const auto none = notes == nothing;
   const unsigned missing = bits(none);
   if (missing == (1u << kBeamGroup) - 1) return store_misses<A>(hits, base);
-  const std::uint32_t some = held[__builtin_ctz(~missing)];
+  const std::uint32_t some = candidates[__builtin_ctz(~missing)];
   alignas(64) std::uint32_t ids[kBeamGroup];
   select(none, I(static_cast<std::int32_t>(some)), notes).store(as_int(ids));
   HitLanes<F> h;
@@ -242,7 +243,7 @@ OKTETT_INLINE void finish_beam(BeamTask<Query::closest, A>& task) {
     for (std::size_t i = whole; i < task.rays.size; ++i) task.out.set(i, Hit{});
   task.decided = true;
   for (std::size_t base = whole; base < task.rays.size; base += kBeamGroup)
-    decide_held(task, static_cast<int>(base / kBeamGroup));
+    decide_candidates(task, static_cast<int>(base / kBeamGroup));
   if (task.unclear.size > 0) decide_unclear(task);
 }
 
@@ -256,7 +257,7 @@ OKTETT_INLINE void finish_beam(BeamTask<Query::any, A>& task) {
   for (int base = 0; base < kBeamRays; base += kBeamGroup) {
     // Rays that could not hit anything from the start have no end either.
     const unsigned done =
-        bits((F::load(beam.held_lo + base) == infinity) & (F::load(beam.held_hi + base) < infinity));
+        bits((F::load(beam.hit_lo + base) == infinity) & (F::load(beam.hit_hi + base) < infinity));
     for (int i = 0; i < kBeamGroup; ++i) found[base + i] = static_cast<std::uint8_t>(done >> i & 1);
   }
   if (beam.sorted) {

@@ -1,10 +1,11 @@
 #pragma once
-/// \file A beam of rays through the tree: nodes and triangles are culled against the whole beam first, then
-/// against its groups of sixteen; decisions are put off until the end.
+/// \file A beam through the tree: nodes and triangles are culled against the whole beam first, then against
+/// its groups of sixteen rays.
 ///
-/// The filter tells sure hits from unclear ones. A sure hit that is surely nearer than what a ray holds is
-/// only noted; unclear ones go to a list. Each ray's note and the list are decided exactly at the end, with
-/// all lanes busy, so that the hits are those of every other traversal, bit by bit.
+/// A conservative filter in float tells sure hits from unclear ones. A sure hit that is surely nearer than
+/// the nearest so far becomes the candidate of its ray; unclear ones go to a list. Candidates and list are
+/// decided exactly at the end, all lanes busy, so the hits have the same bits as those of every other
+/// traversal.
 
 #include "accel/traverse/beam/beam_task.h"
 #include "accel/traverse/packet.h"
@@ -12,6 +13,7 @@
 
 namespace oktett {
 
+/// A stack entry: a node or leaf, its box in the plane of the beam, and the groups that may meet it.
 struct BeamEntry {
   NodeRef ref;
   float near;  ///< greatest inverse depth in the box
@@ -19,7 +21,7 @@ struct BeamEntry {
   unsigned groups;
 };
 
-/// Where the boxes of a node's children lie in the plane of a beam.
+/// The boxes of a node's children in the plane of a beam.
 struct alignas(32) ChildWindows {
   float near[BvhNode::kWidth], x_lo[BvhNode::kWidth], x_hi[BvhNode::kWidth], y_lo[BvhNode::kWidth],
       y_hi[BvhNode::kWidth];
@@ -37,7 +39,7 @@ OKTETT_INLINE unsigned node_beam(const BvhNode& node, const BeamRays<A>& beam, c
   const B z_low = B::load(node.plane[kz]) - oz, z_high = B::load(node.plane[kz + 1]) - oz;
   const B zn = beam.mirrored ? -z_high : z_low, zf = beam.mirrored ? -z_low : z_high;
   const B margin(beam.margin + beam.slip), infinity(std::numeric_limits<float>::infinity());
-  // So near the plane of the apex that rounding counts for more than kBeamSlack, or behind it.
+  // False for boxes behind the apex, or so near its plane that rounding counts for more than kBeamSlack.
   const auto front = zn > B(beam.margin * 0x1p20f + 4 * beam.behind);
   const B rn = B(1 + kBeamSlack) / zn, rf = B(1 - kBeamSlack) / zf, wide = margin * rn;
   const B px_lo = select(front, min(xl * rn, xl * rf) - wide, -infinity);
@@ -68,7 +70,7 @@ OKTETT_INLINE unsigned node_beam(const BvhNode& node, const BeamRays<A>& beam, c
   return children;
 }
 
-/// The groups of `e` that its box may concern.
+/// The groups of `e` that may meet its box.
 template <class A>
 OKTETT_INLINE unsigned entry_groups(const BeamEntry& e, const BeamRays<A>& beam) {
   using G = Simd<float, kBeamGroups, A>;
@@ -77,18 +79,17 @@ OKTETT_INLINE unsigned entry_groups(const BeamEntry& e, const BeamRays<A>& beam)
                          (G::load(beam.least) < G(e.near)));
 }
 
-/// The rays of one group that the box of `e` may concern.
+/// The rays of one group that may meet the box of `e`.
 template <class A>
 OKTETT_INLINE unsigned entry_rays(const BeamEntry& e, const BeamRays<A>& beam, int group) {
   using F = Simd<float, kBeamGroup, A>;
   const int base = group * kBeamGroup;
   const F x = F::load(beam.x + base), y = F::load(beam.y + base);
   return bits((x <= F(e.x_hi)) & (F(e.x_lo) <= x) & (y <= F(e.y_hi)) & (F(e.y_lo) <= y) &
-              (F::load(beam.held_lo + base) < F(e.near)));
+              (F::load(beam.hit_lo + base) < F(e.near)));
 }
 
-/// A triangle whose plane passes by the apex, against the rays of some groups, by the filter that knows no
-/// beam.
+/// The rays of some groups against a triangle that cannot be projected, by the filter for single triangles.
 template <Query Q, class A>
 OKTETT_NOINLINE void meet_edge_on(BeamTask<Q, A>& task, std::uint32_t id, unsigned groups) {
   using F = Simd<float, kBeamGroup, A>;
@@ -99,11 +100,13 @@ OKTETT_NOINLINE void meet_edge_on(BeamTask<Q, A>& task, std::uint32_t id, unsign
     const RayLanes<F> r = load_group(task.beam, task.rays, g);
     const F d_max = max(abs(r.d.x), max(abs(r.d.y), abs(r.d.z)));
     const F infinity(std::numeric_limits<float>::infinity());
-    const unsigned open = bits(F::load(task.beam.held_lo + g * kBeamGroup) < infinity);
+    const unsigned open = bits(F::load(task.beam.hit_lo + g * kBeamGroup) < infinity);
     note_unclear(task, open & bits(filter_watertight(r, d_max, tri)), g, id);
   }
 }
 
+/// Groups of a beam against a block of triangles. Sets the bits of groups with new hits in `dirty`; returns
+/// the number of pairs of a triangle and a group that were tested.
 template <Query Q, class A>
 OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, const BeamWindow& window,
                             unsigned& dirty) {
@@ -112,7 +115,7 @@ OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, 
   const BlockCandidates found =
       project_block(task.accel.blocks[ref.block()], ref.triangle_count(), beam, window, projected);
   const std::uint32_t base = ref.block() * TriangleBlock::kSize;
-  // All pairs first: one loop whose end is foretold wrongly once instead of eight.
+  // All pairs first: one loop, whose end is mispredicted once, instead of eight.
   std::int32_t pairs[(TriangleBlock::kSize + 1) * kBeamGroups];
   int size = 0;
   const bool lone = (groups & (groups - 1)) == 0;
@@ -143,26 +146,26 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   const std::size_t base = static_cast<std::size_t>(g) * kBeamGroup;
   const F infinity(std::numeric_limits<float>::infinity());
   const RayLanes<F> r = load_group(beam, task.rays, g);
-  rays &= bits(F::load(beam.held_lo + base) < infinity);
+  rays &= bits(F::load(beam.hit_lo + base) < infinity);
   RayState<kBeamGroup, A> state;
   rays &= leaf.kind < Kind::triangle ? state.set_rays(r.o, r.d, r.tmin, r.tmax)
                                      : state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
   if (rays == 0) return;
   if constexpr (Q == Query::closest) {
-    decide_held(task, g);
-    take_held(task.out.hits, base, state);
+    decide_candidates(task, g);
+    load_hits(task.out.hits, base, state);
   }
   table_leaf_packet<Q>(task.accel, leaf, state, rays);
   const unsigned found = found_lanes(state, rays);
   if (found == 0) return;
   if constexpr (Q == Query::any)
-    select(F::M::from_bits(found), infinity, F::load(beam.held_lo + base)).store(beam.held_lo + base);
+    select(F::M::from_bits(found), infinity, F::load(beam.hit_lo + base)).store(beam.hit_lo + base);
   else
-    give_held(state, found, task.out.hits, base, beam);
+    store_hits(state, found, task.out.hits, base, beam);
   beam.refresh(g);
 }
 
-/// The same for several groups; `met(g)` are the rays of group `g` that the leaf may concern.
+/// The same for several groups; `met(g)` are the rays of group `g` that may meet the leaf.
 template <Query Q, class A, class Met>
 OKTETT_INLINE void table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
   for (; groups != 0; groups &= groups - 1) {
@@ -172,7 +175,7 @@ OKTETT_INLINE void table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, 
   }
 }
 
-/// Children in the order of their distance, the nearest on top.
+/// Pushes children in the order of their distance, the nearest last.
 OKTETT_INLINE int push_windows(const NodeRef* child, unsigned children, const ChildWindows& w,
                                unsigned groups, BeamEntry* stack, int size) {
   const int base = size;
@@ -185,20 +188,20 @@ OKTETT_INLINE int push_windows(const NodeRef* child, unsigned children, const Ch
   return size;
 }
 
-/// Of so few groups, each is asked whether one of its rays is in the box at all.
+/// At leaves, with at most so many groups, those without a ray in the box are left out.
 inline constexpr int kRefinedGroups = 8;
 
-/// Tests of a group after which it is worth it to put the rays of a beam into a better order.
+/// Tests of a group after which sorting the rays of a beam pays.
 inline constexpr int kTestsBeforeSort = 64;
 
-/// False if the beam was given up because it took too many steps.
+/// Takes the beam through the tree. False if it is given up because it takes too many steps.
 template <Query Q, class A>
 OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
   const Accel& accel = task.accel;
   BeamRays<A>& beam = task.beam;
   BeamEntry stack[kStackSize];
   int size = 0, steps = 0, tests = 0;
-  unsigned dirty = 0;  // groups whose least[] is out of date, which is harmless
+  unsigned dirty = 0;  // groups whose least[] is out of date: too low, which is conservative
   stack[size++] = {accel.root,       std::numeric_limits<float>::infinity(),
                    beam.window.x_lo, beam.window.x_hi,
                    beam.window.y_lo, beam.window.y_hi,
@@ -233,7 +236,7 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
       if (rays == 0) continue;
       if ((rays & (rays - 1)) == 0) {
         const int i = g * kBeamGroup + __builtin_ctz(rays);
-        window = {beam.x[i], beam.x[i], beam.y[i], beam.y[i], beam.held_lo[i], {beam.x[i], beam.y[i]}};
+        window = {beam.x[i], beam.x[i], beam.y[i], beam.y[i], beam.hit_lo[i], {beam.x[i], beam.y[i]}};
       } else {
         window = group_window(beam, g);
       }
@@ -245,7 +248,7 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
     } else {
       tests += leaf_beam(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && beam.may_sort) {
-        // What is listed and what waits knows the rays by their old places.
+        // The list and the mailboxes refer to rays by their old places.
         decide_unclear(task);
         task.met.clear();
         beam.sort();
