@@ -1,6 +1,5 @@
 #pragma once
-/// \file What an acceleration structure consists of. Data only; accel/build*.cpp makes it, accel/traverse_*.h
-/// walk it.
+/// \file The acceleration structure. Data only; accel/build makes it, accel/traverse traces rays through it.
 
 #include <algorithm>
 #include <memory>
@@ -16,8 +15,8 @@ namespace oktett {
 
 struct ExactPools;
 
-/// An instance in the tree: world to child, the child, its item number, and its place in the numbering of
-/// instance paths.
+/// An instance in the tree: its map into the child, the child, its item number, and the first of its instance
+/// paths.
 struct InstanceItem {
   double to_child[12];  ///< row-major 3x4
   const Accel* child;
@@ -25,16 +24,16 @@ struct InstanceItem {
   std::uint32_t first_path;  ///< paths through this instance are first_path + 1 + (path inside the child + 1)
 };
 
-/// An instance of a list. What is traced is what the floats say.
+/// An instance of a list. Its map is exactly that of its floats.
 struct ListedInstance {
   float to_child[12];              ///< row-major 3x4
   std::uint32_t child;             ///< index into Accel::listed_children
   std::uint32_t item, first_path;  ///< as in InstanceItem
-  std::uint32_t user;              ///< kNoId if it has none
+  std::uint32_t user;              ///< InstancePlace::user
 };
 static_assert(sizeof(ListedInstance) == 64);
 
-/// Where the paths through one instance or combination begin, or those through a list of instances.
+/// The first of the paths through an instance, a combination or a list of instances.
 struct PathStep {
   std::uint32_t first_path, item;
   const Accel* child;    ///< null for a list
@@ -42,7 +41,7 @@ struct PathStep {
   bool is_combination;
 };
 
-/// What shading needs of a geometry's transform, computed once.
+/// A geometry's transform as shading needs it, computed once.
 struct GeometryFrame {
   Affine inverse;
   bool identity = true;
@@ -74,14 +73,14 @@ class Accel {
   std::vector<InstanceItem> instances;
   std::vector<ListedInstance> listed_instances;
   std::vector<const Accel*> listed_children;
-  bool pieces = false;                ///< a triangle may stand in more than one block
+  bool pieces = false;                ///< triangles were split, so one may stand in more than one block
   std::vector<LeafEntry> unbounded;   ///< tested against every ray
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
   std::vector<std::uint32_t> users;   ///< Geometry::user of each
-  /// Where primitive k of geometry g, of a closed-form or exact shape or in a list of instances, stands in
-  /// its pool: pool_index[first_pool_index[g] + k]. Both empty if there are no such shapes.
+  /// Index in its pool of primitive k of geometry g, a closed-form or exact shape or an instance of a list:
+  /// pool_index[first_pool_index[g] + k]. Both are empty if there are no such shapes.
   std::vector<std::uint32_t> pool_index, first_pool_index;
   std::vector<CsgItem> combinations;
   std::vector<PathStep> path_steps;  ///< ordered by first_path

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Crossings of several rays with several solids in columns.
+/// \file Crossings of several rays with several solids, in columns.
 
 #include <cstdint>
 
@@ -8,8 +8,9 @@
 
 namespace oktett {
 
-/// Rows of crossings of up to W rays: a row is what one of a solid's crossings is for each of the rays, its
-/// distance infinite where there is none. The rows of a solid stand together, in the order of the ray.
+/// Crossings of up to W rays. Row k of a solid has the k-th crossing of each ray with it; its distance is
+/// infinite for rays that have no such crossing. The rows of a solid stand together, in the order of
+/// distance.
 template <int W>
 struct CrossingLanes {
   static constexpr int kMost = 96;  ///< rows
@@ -19,11 +20,11 @@ struct CrossingLanes {
   alignas(64) float turn[kMost][W];  ///< -1 enters, 1 leaves
   alignas(64) float part[kMost][W];  ///< Hit::u
   std::uint32_t item[kMost];
-  bool exact[kMost];  ///< Hit::v is the turn
+  bool exact[kMost];  ///< of an exact surface: Hit::v is the turn
   int rows = 0;
 };
 
-/// Appends a row unless it is empty: crossings in the lanes of `valid`.
+/// Appends a row with crossings in the lanes of `valid`, unless there are none.
 template <int W, class A>
 OKTETT_INLINE void push_row(CrossingLanes<W>& out, const Mask<float, W, A>& valid, const Simd<float, W, A>& t,
                             const Simd<float, W, A>& turn, const Simd<float, W, A>& part, std::uint32_t item,

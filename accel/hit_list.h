@@ -1,6 +1,7 @@
 #pragma once
-/// \file A growing list of crossings for code that is compiled per instruction set: it calls out to grow, so
-/// that no template of the standard library is instantiated there with instructions that the baseline lacks.
+/// \file A list of crossings for code that is compiled per instruction set. Its functions are compiled for
+/// the baseline, so that no template of the standard library is instantiated with instructions that the
+/// baseline lacks.
 
 #include <cstddef>
 #include <vector>
@@ -11,13 +12,14 @@ namespace oktett {
 
 class Accel;
 
-/// Whether an item of the structure, not of one inside, is a triangle of a mesh.
+/// Whether an item of the structure itself is a triangle of a mesh.
 bool is_triangle(const Accel& accel, std::uint32_t item);
 
-/// Whether a mirroring transform has turned the winding of a triangle round.
+/// Whether the transform of a mesh mirrors it, which reverses the winding of its triangles.
 bool is_mirrored(const Accel& accel, std::uint32_t item);
 
-/// A hit, and whether the ray enters (-1) or leaves (1) a solid there; 0 for what is no solid.
+/// A hit, and its turn: -1 if the ray enters a solid there, 1 if it leaves it; 0 for shapes without an
+/// inside.
 struct Crossing {
   Hit hit;
   float turn = 0;
@@ -36,9 +38,9 @@ class HitList {
   std::vector<Crossing>& hits_;
 };
 
-/// Of the hits from `first` on with exact surfaces that are not inside an instance, makes one list per item:
-/// sorted, in and out in turn. Cells of an element may each list a crossing where they meet; what overlaps is
-/// taken together.
+/// Merges the crossings of exact surfaces among the hits from `first` on. The cells of a surface may each
+/// list a crossing where they meet; afterwards the crossings of an item are sorted and alternate between in
+/// and out. Hits inside instances are left alone.
 void merge_crossings(const Accel& accel, HitList& hits, std::size_t first);
 
 }  // namespace oktett

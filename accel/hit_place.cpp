@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/csg/csg.h"
 #include "accel/csg/csg_solids.h"
 #include "accel/geometry_bounds.h"
 

@@ -1,13 +1,14 @@
 #pragma once
-/// \file A ray's way into an instance: transformed in double, its direction not normalised, so that t means
-/// the same inside.
+/// \file Rays into instances. They are transformed in double and rounded to float. The direction is not
+/// normalised, so t means the same inside.
 
 #include "accel/accel_data.h"
 #include "core/lanes.h"
 
 namespace oktett {
 
-/// `Instance` is an InstanceItem or a ListedInstance.
+/// Origins `o` and directions `d` of rays in the child's space. `Instance` is an InstanceItem or a
+/// ListedInstance.
 template <class Instance, int W, class A>
 OKTETT_INLINE void transform_rays(const Instance& instance, const RayLanes<Simd<float, W, A>>& ray,
                                   Vec3<Simd<float, W, A>>& o, Vec3<Simd<float, W, A>>& d) {
@@ -30,13 +31,14 @@ OKTETT_INLINE std::uint32_t outer_path(const Instance& instance, std::uint32_t c
   return instance.first_path + (child_path + 1);
 }
 
+/// What an instance of `accel` shows.
 OKTETT_INLINE const Accel& child_of(const Accel&, const InstanceItem& instance) { return *instance.child; }
 OKTETT_INLINE const Accel& child_of(const Accel& accel, const ListedInstance& instance) {
   return *accel.listed_children[instance.child];
 }
 
 OKTETT_INLINE bool holds_instances(Kind kind) { return kind >= Kind::instance; }
-/// f(instance, child) for those of a leaf until it returns false.
+/// Calls f(instance, child) for the instances of a leaf until it returns false.
 template <class Function>
 OKTETT_INLINE void each_instance(const Accel& accel, const LeafEntry& leaf, Function&& f) {
   const auto run = [&](const auto& list) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file How the tree lies in memory.
+/// \file The nodes and leaves of the tree in memory.
 
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace oktett {
 
-/// Where a child of a node is: another node, a block of triangles, or an entry of the leaf table. Blocks of
-/// triangles are by far the most frequent leaves, so they are reached without a table.
+/// The number of a child: of a node, of a block of triangles, or of an entry in the leaf table. Blocks of
+/// triangles are by far the most frequent leaves, so they need no table.
 class NodeRef {
  public:
   static constexpr std::uint32_t kMaxBlocks = 1u << 27;
@@ -29,7 +29,7 @@ class NodeRef {
   std::uint32_t block() const { return bits_ & (kMaxBlocks - 1); }
   int triangle_count() const { return static_cast<int>(bits_ >> 27 & 7) + 1; }
   std::uint32_t table_index() const { return bits_ & (kTable - 1); }
-  /// The number as it is stored: nodes from 0, blocks from 2^31, the rest from 3 * 2^30.
+  /// The number as it is stored: nodes from 0 on, blocks from 2^31 on, table entries from 3 * 2^30 on.
   std::uint32_t bits() const { return bits_; }
   static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
 
@@ -62,7 +62,7 @@ struct LeafEntry {
 };
 static_assert(sizeof(LeafEntry) == 8);
 
-/// Deepest tree the builder makes, so that a stack of (kWidth - 1) * kMaxDepth + 1 entries suffices.
+/// The builder makes no deeper tree, so a stack of (kWidth - 1) * kMaxDepth + 1 entries suffices.
 inline constexpr int kMaxDepth = 64;
 inline constexpr int kStackSize = (BvhNode::kWidth - 1) * kMaxDepth + 1;
 

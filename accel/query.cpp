@@ -21,7 +21,7 @@ bool is_triangle(const Accel& accel, std::uint32_t item) {
 }
 
 void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
-  // Elements of one cell, and height fields, list theirs as they are.
+  // Surfaces of one cell and height fields list their crossings correctly by themselves.
   const auto own_exact = [&](const Hit& h) {
     if (h.instance != kNoId) return false;
     const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
@@ -40,7 +40,7 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
     if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
     return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
   });
-  // Of several ways in the first counts, of several ways out the last.
+  // Of several crossings inwards in a row the first counts, of several outwards the last.
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const auto same = [&](std::size_t k) {
       return k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
@@ -55,7 +55,7 @@ bool is_mirrored(const Accel& accel, std::uint32_t item) {
   return accel.frames[accel.geometry_of(item)].mirrored;
 }
 
-/// Batches above this size are shared out in pieces of it.
+/// Larger batches are traced in pieces of this size, each a task.
 static constexpr std::size_t kGrain = 4096;
 
 template <class Trace>

@@ -1,6 +1,5 @@
 #pragma once
-/// \file The queries of accel/accel.h with the way through the tree prescribed, for verification and
-/// benchmarks.
+/// \file The queries of accel/accel.h with a prescribed traversal, for verification and benchmarks.
 
 #include "accel/accel.h"
 #include "accel/trace_mode.h"

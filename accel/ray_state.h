@@ -1,5 +1,5 @@
 #pragma once
-/// \file Rays on their way through a tree: what is computed once per ray and what is found so far.
+/// \file Rays on their way through a tree: what is computed once per ray, and the nearest hit so far.
 
 #include <cstring>
 
@@ -20,7 +20,7 @@ OKTETT_INLINE float box_extent(const Box& b) {
   return e;
 }
 
-/// A component whose reciprocal would overflow counts as zero: the slab test and the triangle test must see
+/// Sets components whose reciprocal would overflow to zero, so that the slab test and the triangle test see
 /// the same ray. -0 becomes +0, so that the sign of the reciprocal agrees with the comparison with zero.
 template <class F>
 OKTETT_INLINE Vec3<F> flush_direction(const Vec3<F>& d) {
@@ -30,8 +30,8 @@ OKTETT_INLINE Vec3<F> flush_direction(const Vec3<F>& d) {
   return {flush(d.x), flush(d.y), flush(d.z)};
 }
 
-/// What is kept of W rays, in columns; a single ray is the case W = 1. `tmax` shrinks to the nearest hit so
-/// far; `item`, `path`, `u`, `v` describe it (item = kNoId: none yet). Masks have bit i for lane i.
+/// W rays in columns; a single ray is the case W = 1. `tmax` shrinks to the distance of the nearest hit so
+/// far, which `item`, `path`, `u` and `v` describe (item = kNoId: none yet). Masks have bit i for lane i.
 template <int W, class A>
 struct alignas(64) RayState {
   using F = Simd<float, W, A>;
@@ -45,13 +45,13 @@ struct alignas(64) RayState {
   float u[W], v[W];
   std::uint32_t item[W], path[W];
   unsigned negative[3];  ///< lanes whose direction component is negative
-  unsigned z_axis[3];    ///< lanes whose direction is greatest along the axis
+  unsigned z_axis[3];    ///< lanes whose direction is greatest along the axis, for the triangle test
 
   /// Index of the axis along which ray i's direction is greatest.
   OKTETT_INLINE int z_axis_of(int i) const { return z_axis[0] >> i & 1 ? 0 : z_axis[1] >> i & 1 ? 1 : 2; }
 
-  /// Sets all lanes and returns those that can hit anything at all: finite, with a direction and a non-empty
-  /// range (see Ray).
+  /// Sets all lanes. Returns those that can hit anything: finite, with a direction and a range that is not
+  /// empty (see Ray). `box`: bounds of what will be traced.
   OKTETT_INLINE unsigned set(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1,
                              const Box& box) {
     const unsigned lanes = set_rays(origin, direction, t0, t1);
@@ -83,7 +83,7 @@ struct alignas(64) RayState {
     return set(broadcast<F>(ray.origin), broadcast<F>(ray.direction), F(ray.tmin), F(ray.tmax), box);
   }
 
-  /// `set` without what only boxes, triangles and instances ask for: origin, direction, range, nothing found.
+  /// Like `set`, but only origin, direction, range and hit: all that closed-form shapes need.
   OKTETT_INLINE unsigned set_rays(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1) {
     const F zero(0.0f), big(std::numeric_limits<float>::max());
     direction = flush_direction(direction);
@@ -92,7 +92,7 @@ struct alignas(64) RayState {
     t0.store(tmin), t1.store(tmax);
     zero.store(u), zero.store(v);
     std::memset(item, 0xff, sizeof item), std::memset(path, 0xff, sizeof path);
-    // Each comparison is false on NaN, and max() may drop one, so every component is asked.
+    // Every component is compared, because a comparison is false on NaN while max() may lose it.
     return bits((ax <= big) & (ay <= big) & (az <= big) & (abs(origin.x) <= big) & (abs(origin.y) <= big) &
                 (abs(origin.z) <= big) & (zero < max(az, max(ay, ax))) & (zero <= t0) & (t0 < t1));
   }
@@ -133,7 +133,8 @@ OKTETT_INLINE bool id_before(std::uint32_t path, std::uint32_t item, std::uint32
   return p != q ? p < q : item < item_b;
 }
 
-/// Lane `i` has met `item` at distance t: kept if it is nearer, or as near and first in order.
+/// Keeps the hit of lane `i` with `item` at distance t if it is the nearest so far, or as near and first in
+/// order.
 template <int W, class A>
 OKTETT_INLINE void accept_hit(RayState<W, A>& r, int i, float t, float u, float v, std::uint32_t item,
                               std::uint32_t path) {

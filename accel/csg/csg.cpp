@@ -26,7 +26,7 @@ double signed_volume(const TriangleMesh& mesh) {
   return volume;
 }
 
-/// What instances show.
+/// The structures that an instance or a list of instances shows.
 std::vector<const Accel*> children_of(const Geometry& g) {
   std::vector<const Accel*> children;
   if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape))
@@ -41,7 +41,8 @@ bool is_inside_out(const Geometry& g) {
   return mesh != nullptr && signed_volume(*mesh->mesh) < 0;
 }
 
-/// Looks at each structure once, however many instances show it: `seen` holds those that have been looked at.
+/// Appends the meshes wound inside out in `accel` and its instances. `seen`: structures that have been
+/// visited, so that each is visited once however many instances show it.
 void find_inverted(const Accel& accel, std::set<const Accel*>& seen,
                    std::vector<std::pair<const Accel*, std::uint32_t>>& found) {
   if (!seen.insert(&accel).second) return;
@@ -51,8 +52,8 @@ void find_inverted(const Accel& accel, std::set<const Accel*>& seen,
   }
 }
 
-/// Whether the crossings of all solids can be listed in lanes: they are primitives that one call lists all
-/// crossings of.
+/// Whether the crossings of all solids can be listed in lanes: all are primitives whose crossings one call
+/// lists.
 bool fits_lanes(const CsgItem& csg) {
   const Accel& solids = *csg.solids;
   if (solids.first_item.back() > 0x7fffffff) return false;
@@ -74,7 +75,7 @@ void number_solids(CsgItem& csg) {
   csg.first_solid.push_back(count);
 }
 
-/// Nodes that hold all of the combination.
+/// Nodes outside of which there is nothing of the combination.
 std::vector<bool> needed_nodes(const CsgItem& csg) {
   std::vector<bool> needed(csg.nodes.size());
   // Parents stand before their children.
@@ -85,14 +86,15 @@ std::vector<bool> needed_nodes(const CsgItem& csg) {
       continue;
     }
     const CsgNode& above = csg.nodes[n.parent];
-    const bool holds_it =
+    const bool contains_all =
         above.op == CsgOp::intersect || (above.op == CsgOp::subtract && n.is_first) || above.children == 1;
-    needed[node] = needed[n.parent] && holds_it;
+    needed[node] = needed[n.parent] && contains_all;
   }
   return needed;
 }
 
-/// Operands of one solid each that all of the combination is inside of, and the leaves where these are.
+/// Finds the needed geometries: operands of one solid outside of which there is nothing of the combination.
+/// Orders the leaves so that theirs come first.
 void find_needed(CsgItem& csg) {
   const Accel& solids = *csg.solids;
   const std::vector<bool> nodes = needed_nodes(csg);
@@ -133,7 +135,7 @@ CsgExpression moved(CsgExpression e, const Affine& m) {
   return e;
 }
 
-/// An operand that holds combinations is the union of these and of what else it holds.
+/// An operand with combinations among its solids, as the union of these and of its other solids.
 static CsgExpression expanded(const CsgExpression& operand) {
   CsgExpression all;
   all.op = CsgOp::unite;
@@ -218,7 +220,7 @@ std::vector<CsgStep>& csg_steps(const CsgItem& csg, std::uint32_t* operands, int
     const CsgNode& n = csg.nodes[node];
     CsgStep step = step_of(csg, node);
     step.parent = n.parent == kNoId ? 0 : place[n.parent];
-    // An intersection counts those that are met, a difference whether its first operand is.
+    // An intersection needs a step for each of its children, a difference for the first.
     if (n.parent != kNoId && (csg.nodes[n.parent].op == CsgOp::intersect || n.is_first)) ++met[step.parent];
     steps.push_back(step);
   }

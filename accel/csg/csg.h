@@ -1,11 +1,11 @@
 #pragma once
 /// \file Boolean combinations of solids (slides: intervals along the ray, combined up the tree). The solids
-/// of one combination stand in a structure of their own; a ray's crossings with all of them are gathered
-/// there, sorted, and swept once.
+/// of one combination stand in a structure of their own. A ray's crossings with all of them are gathered,
+/// sorted, and swept once from near to far.
 ///
-/// Departs from the slides in that no intervals are built: each crossing turns the state of one operand, and
-/// only the nodes above it whose state turns with it are looked at, so that k crossings among any number of
-/// operands cost about k log k.
+/// Departs from the slides: no intervals are built. Each crossing changes the state of one operand, and the
+/// change is followed up the expression only as far as states change, so k crossings take about k log k steps
+/// however many operands there are.
 
 #include <cstdint>
 #include <vector>
@@ -26,19 +26,22 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options);
 /// is nothing, infinite if it is unbounded.
 Box csg_bounds(const CsgItem& csg);
 
-/// Distances by which crossings count as coincident: what rounding t to float, and the surfaces themselves,
-/// leave open.
+/// The distance within which crossings from `t` on count as coincident: it covers the rounding of t to float
+/// and the errors of the surfaces.
 inline float coincidence(float t, float slack) { return t * 0x1p-21f + slack; }
 
 /// The slack for a ray: a few roundings of the coordinates in `accel`, in units of t.
 float coincidence_slack(const Accel& accel, const Ray& ray);
 
-/// The steps for the operands `operands` (nodes, `count` of them) and all nodes above them; each operand is
-/// replaced by its place among the steps. The root comes first. Valid until the next call on this thread.
+/// The steps that evaluate an expression whose operands are empty but for the `count` nodes `operands`; each
+/// of these is replaced by the index of its step. The root comes first. Valid until the next call on this
+/// thread.
 std::vector<CsgStep>& csg_steps(const CsgItem& csg, std::uint32_t* operands, int count);
 
-/// One ray's way through a combination. Crossings that coincide are applied together, so that spans without
-/// length vanish; of those that turn the whole, the one of the same turn with the least item counts.
+/// One ray through a combination. Crossings that coincide are applied together, so that spans without length
+/// vanish. If they change whether the ray is inside the combination, the hit is one of them: the nearest that
+/// enters or leaves its solid as the ray does the combination, at equal distance the one with the lowest
+/// (instance, item).
 class CsgSweep {
  public:
   CsgSweep();
@@ -46,10 +49,10 @@ class CsgSweep {
   CsgSweep(const CsgSweep&) = delete;
   CsgSweep& operator=(const CsgSweep&) = delete;
 
-  /// To be filled with the crossings of the ray, from its beginning to infinity, with csg.solids, in any
-  /// order.
+  /// The caller appends here all crossings of the ray with csg.solids, from tmin to infinity, in any order.
   HitList& solids() { return list_; }
-  /// The first crossing of the combination; its path in `csg` says which surface is seen, and from what side.
+  /// The first crossing of the combination, or false if there is none. Its path says which surface is hit,
+  /// and whether its normal is turned round (csg_path()).
   bool first(const CsgItem& csg, const Ray& ray, Crossing& found);
   /// Appends all crossings within the ray's range.
   void all(const CsgItem& csg, const Ray& ray, HitList& out);

@@ -1,15 +1,15 @@
 #pragma once
-/// \file What the sweep along a ray asks of the solids of a Boolean combination.
+/// \file Questions of the sweep along a ray about the solids of a Boolean combination.
 
 #include "accel/accel.h"
 
 namespace oktett {
 
-/// Item, in the structure itself, of the outermost instance or combination that path `path` leads through.
+/// Item of the outermost instance or combination on `path`.
 std::uint32_t top_item(const Accel& accel, std::uint32_t path);
 
-/// True if a ray that meets no boundary of `geometry`, which is not bounded, runs inside of it. `ray.tmin` is
-/// where it begins.
+/// Whether a ray that does not cross the boundary of `geometry`, which is unbounded, runs inside it from
+/// ray.tmin on.
 bool runs_inside(const Accel& accel, std::uint32_t geometry, const Ray& ray);
 
 }  // namespace oktett

@@ -8,6 +8,7 @@
 namespace oktett {
 namespace {
 
+/// A crossing of the ray with one solid.
 struct Event {
   float t;
   float turn;
@@ -15,7 +16,8 @@ struct Event {
   std::uint32_t crossing;
 };
 
-/// Which solids, operands and nodes the ray is inside of. Only what was touched is put back afterwards.
+/// Which solids, operands and nodes the ray is inside of. end() resets only what was changed, so that a large
+/// expression costs nothing where a ray meets little of it.
 class States {
  public:
   void begin(const CsgItem& csg) {
@@ -30,7 +32,7 @@ class States {
     touched_nodes_.clear(), touched_solids_.clear();
   }
 
-  /// The ray is inside of `solid`, of the given geometry, so many times more.
+  /// The ray has entered `solid`, of the given geometry, `turns` times more.
   void add(std::uint32_t solid, std::uint32_t geometry, int turns) {
     touched_solids_.push_back(solid);
     const bool before = depth_[solid] > 0;
@@ -58,12 +60,12 @@ class States {
       case CsgOp::intersect:
         return inside_[node] == static_cast<int>(n.children);
       case CsgOp::subtract:
-        // Bit 0: inside of the first; the others count in twos.
+        // Bit 0: inside the first operand; each of the others counts 2.
         return inside_[node] == 1;
     }
     return false;
   }
-  /// Operand or node `node` has become inside or outside.
+  /// The ray has come to be inside or outside of `node`: follows the change up the expression.
   void turn(std::uint32_t node, bool inside) {
     for (std::uint32_t parent = nodes_[node].parent; parent != kNoId; parent = nodes_[node].parent) {
       const bool before = is_inside(parent);
@@ -82,16 +84,16 @@ class States {
   std::vector<std::uint32_t> touched_nodes_, touched_solids_;
 };
 
-/// What is known of one solid's crossings.
+/// What the crossings of one solid tell about where the ray begins.
 struct Begin {
-  int sum = 0, least = 0;  ///< of the turns so far
+  int sum = 0, least = 0;  ///< sum of the turns so far, and the least sum
   bool met = false;
 };
 
-/// Room for one ray's sweep, kept between rays.
+/// Memory for one ray's sweep, kept between rays.
 struct Scratch {
   std::vector<Event> events;
-  std::vector<Begin> begin;  ///< per solid; all as new between rays
+  std::vector<Begin> begin;  ///< per solid; reset between rays
   States states;
 };
 
@@ -103,9 +105,10 @@ std::size_t group_end(const std::vector<Event>& events, std::size_t first, float
   return end;
 }
 
-/// Where the ray begins. It is inside of a primitive whose first crossing leaves it. Meshes and instances,
-/// which it may be inside of several times, have been left more often than entered; there, crossings that
-/// coincide have no order. What is not met at all and not bounded is asked.
+/// Sets the states at the beginning of the ray. It begins inside a primitive if the first crossing leaves it.
+/// It begins inside a mesh, instance or combination as many times as the crossings up to some distance leave
+/// it more often than they enter; coincident crossings have no order there. Unbounded solids without a
+/// crossing are asked.
 void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   const Accel& solids = *csg.solids;
   if (s.begin.size() < csg.first_solid.back()) s.begin.resize(csg.first_solid.back());
@@ -136,7 +139,7 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   }
 }
 
-/// Whether the hit, inside of an instance, is with a mesh that is wound inside out.
+/// Whether the hit is with a mesh inside an instance that is wound inside out.
 bool is_inverted_inside(const CsgItem& csg, const Hit& hit) {
   if (csg.inverted_inside.empty() || hit.instance == kNoId) return false;
   const Accel* accel = follow_path(*csg.solids, hit.instance).accel;
@@ -180,12 +183,13 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
     const bool now = s.states.whole();
     if (now == inside) continue;
     inside = now;
-    // The surface that is seen: one that turns as the whole does, if there is one; its normal then is right.
+    // The hit is with a solid that is entered or left as the combination is, if there is one: its normal is
+    // right.
     const float turn = now ? -1.0f : 1.0f;
     std::size_t seen = first;
     for (std::size_t k = i; k-- > first;)
       if (s.events[k].turn == turn) seen = k;
-    // The normal goes by the winding, whether that is inside out or not.
+    // found.turn follows the winding, as the normal does, also for meshes wound inside out.
     Crossing found = crossings[s.events[seen].crossing];
     found.hit.instance = csg_path(csg, found.hit.instance, found.turn != turn);
     found.turn = turn;
@@ -194,7 +198,7 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   s.states.end();
 }
 
-/// Lists of crossings for combinations within combinations, kept between rays.
+/// Lists of crossings, one per level of combinations inside combinations, kept between rays.
 struct Lists {
   std::vector<std::unique_ptr<std::vector<Crossing>>> lists;
   std::size_t used = 0;

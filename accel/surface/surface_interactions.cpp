@@ -2,6 +2,7 @@
 #include <span>
 #include <string>
 
+#include "accel/csg/csg.h"
 #include "accel/hit_place.h"
 #include "accel/shape_hits.h"
 #include "accel/surface/interaction_code.h"

@@ -1,13 +1,13 @@
 #pragma once
-/// \file Every crossing of one ray, in order.
+/// \file Every crossing of one ray, in no particular order.
 
 #include "accel/hit_list.h"
 #include "accel/traverse/single.h"
 
 namespace oktett {
 
-/// Whether the ray meets triangle `k` of a block from its front (-1) or from behind (1); for the textbook
-/// tests, which give no more.
+/// -1 if the ray meets triangle `k` of a block from its front, 1 if from behind. The textbook tests do not
+/// tell.
 template <class A>
 OKTETT_INLINE float turn_of(const TriangleBlock& block, int k, const RayState<1, A>& r) {
   const auto corner = [&](int c, int axis) { return static_cast<double>(block.v[c][axis][k]); };
@@ -21,7 +21,7 @@ OKTETT_INLINE float turn_of(const TriangleBlock& block, int k, const RayState<1,
   return side < 0 ? -1.0f : 1.0f;
 }
 
-/// Collects all hits of ray 0 of `r` with a block's triangles.
+/// Appends all hits of a ray with the triangles of a block.
 template <class A>
 void collect_triangles(const Accel& accel, const TriangleBlock& block, int count, TriangleTest test,
                        const RayState<1, A>& r, HitList& hits) {
@@ -51,7 +51,7 @@ void collect_triangles(const Accel& accel, const TriangleBlock& block, int count
   }
 }
 
-/// Whether root `j` of a shape enters (-1) or leaves (1) it; 0 for what has no inside.
+/// -1 if the ray enters the shape at root `j`, 1 if it leaves it; 0 for shapes without an inside.
 template <class S, class A>
 OKTETT_INLINE float turn_of(const typename S::Pool& pool, std::uint32_t k, int j, const RayState<1, A>& r) {
   if constexpr (std::is_same_v<S, Plane>)
@@ -59,7 +59,7 @@ OKTETT_INLINE float turn_of(const typename S::Pool& pool, std::uint32_t k, int j
   return !S::kSolid ? 0.0f : j == 0 ? -1.0f : 1.0f;
 }
 
-/// Collects all roots of a closed-form shape inside the ray's range.
+/// Appends all hits of a ray with the closed-form shapes of a leaf.
 template <class S, class A>
 void collect_shape(const typename S::Pool& pool, const LeafEntry& leaf, const RayState<1, A>& r,
                    HitList& hits) {
@@ -81,6 +81,7 @@ void collect_shape(const typename S::Pool& pool, const LeafEntry& leaf, const Ra
 template <class A>
 void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
 
+/// Appends all hits of a ray with a leaf of the table.
 template <class A>
 void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A>& r, HitList& hits) {
   if (leaf.kind == Kind::triangle) {
@@ -112,7 +113,8 @@ void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A
   }
 }
 
-/// Drops repetitions of triangles among the hits from `first` on: those that are not inside an instance.
+/// Removes repeated hits of a triangle, which may stand in several leaves, from those from `first` on. Hits
+/// inside instances are left alone: the instance has removed its own.
 OKTETT_INLINE void drop_repeated(const Accel& accel, HitList& hits, std::size_t first) {
   std::size_t kept = first;
   for (std::size_t i = first; i < hits.size(); ++i) {
@@ -126,7 +128,7 @@ OKTETT_INLINE void drop_repeated(const Accel& accel, HitList& hits, std::size_t 
   hits.shrink(kept);
 }
 
-/// Appends all hits of ray 0 of `r`, unsorted.
+/// Appends all hits of one ray, unsorted.
 template <class A>
 void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
   const std::size_t first = hits.size();

@@ -1,7 +1,6 @@
 #pragma once
-/// \file Several rays at once against a combination of primitives: the crossings of all rays with a solid
-/// side by side, swept side by side. The same crossings, states and hits as those of accel/csg/csg_sweep.cpp,
-/// bit by bit.
+/// \file Several rays at once against a combination of primitives: their crossings are gathered in lanes and
+/// swept in lanes. The hits have the same bits as those of accel/csg/csg_sweep.cpp.
 
 #include "accel/csg/csg.h"
 #include "accel/csg/csg_solids.h"
@@ -10,10 +9,10 @@
 
 namespace oktett {
 
-/// Trees of at most this many leaves are not walked: all solids are asked.
+/// In trees of at most this many leaves all leaves are visited, without a look at the nodes.
 inline constexpr std::size_t kAllCsgLeaves = 6;
 
-/// Rays on their way through one combination.
+/// Up to N rays through one combination.
 template <class A>
 class CsgLanes {
  public:
@@ -22,7 +21,7 @@ class CsgLanes {
   using D = Simd<double, N, A>;
   using I = Simd<std::int32_t, N, A>;
 
-  /// What the rays in `lanes` meet first.
+  /// The first crossings of the combination by the rays in `lanes`.
   struct Found {
     alignas(64) float t[N];
     alignas(64) std::int32_t row[N];
@@ -47,7 +46,7 @@ class CsgLanes {
     slab_slack_ = load(r.slack);
   }
 
-  /// Lists the crossings; false if there is no room for all.
+  /// Gathers the crossings with all solids. False if there are too many.
   bool gather() {
     const Accel& solids = *csg_.solids;
     doubles_ = to_double(rays_);
@@ -61,8 +60,8 @@ class CsgLanes {
     return walk();
   }
 
-  /// Sweeps the crossings in their order until each ray has met the combination or come to its end.
-  /// False if the expression is too large.
+  /// Sweeps the crossings from near to far until each ray enters or leaves the combination, or ends. False if
+  /// the expression is too large.
   OKTETT_INLINE bool sweep(Found& found) {
     if (rows_.rows == 0 || lanes_ == 0) return true;
     const std::vector<CsgStep>& steps = csg_.steps.empty() ? csg_steps(csg_, operand_, solids_) : csg_.steps;
@@ -113,7 +112,7 @@ class CsgLanes {
               const F lo(node.plane[2 * k][c]), hi(node.plane[2 * k + 1][c]);
               near_planes[k] = select(negative[k], hi, lo), far_planes[k] = select(negative[k], lo, hi);
             }
-            // A solid that begins behind the end of a ray matters to no crossing before it.
+            // A solid beyond the end of a ray has no effect on the crossings before it.
             F near, far;
             slab_interval(rays_.o, inv_, near_planes, far_planes, rays_.tmin, rays_.tmax, slab_slack_, near,
                           far);
@@ -163,7 +162,7 @@ class CsgLanes {
     return pool.item[k];
   }
 
-  /// A solid whose rows begin at `first`: where its first crossing leaves it, the rays begin inside.
+  /// Notes a solid whose rows begin at `first`. Rays whose first crossing leaves it begin inside.
   OKTETT_INLINE void begin_solid(int first, std::uint32_t item, unsigned lanes, bool unbounded) {
     unsigned met = 0, begun = 0;
     for (int row = first; row < rows_.rows; ++row) {
@@ -173,7 +172,7 @@ class CsgLanes {
     }
     const std::uint32_t geometry = csg_.solids->geometry_of(item);
     if (unbounded) begun |= asked(geometry, lanes & ~met);
-    // Rays that never are inside of what holds all of the combination have no more to ask.
+    // Rays that are never inside a needed solid do not hit the combination.
     const bool needed = csg_.needed[geometry] != 0;
     if (needed) lanes_ &= ~(lanes & ~(met | begun));
     if (rows_.rows == first && begun == 0) return;
@@ -185,7 +184,7 @@ class CsgLanes {
     inside_[s] = begun;
   }
 
-  /// Those of `lanes` that run inside of a solid that they do not cross.
+  /// Those of `lanes` that run inside an unbounded solid whose boundary they do not cross.
   OKTETT_NOINLINE unsigned asked(std::uint32_t geometry, unsigned lanes) const {
     unsigned inside = 0;
     float o[3][N], d[3][N], tmin[N];
@@ -201,7 +200,7 @@ class CsgLanes {
     return inside;
   }
 
-  /// Applies the crossings in (limit, end]; the nearest distance behind.
+  /// Applies the crossings in (limit, end]; returns the nearest distance beyond.
   OKTETT_INLINE F advance(const F& limit, const F& end) {
     const F inf(std::numeric_limits<float>::infinity());
     F after = inf;
@@ -221,7 +220,7 @@ class CsgLanes {
     return after;
   }
 
-  /// The rays that are inside of the combination.
+  /// The rays that are inside the combination.
   OKTETT_INLINE unsigned evaluate(const std::vector<CsgStep>& steps) const {
     unsigned possible = lanes_;
     for (int i = 0; i < needed_count_; ++i) possible &= inside_[needed_[i]];
@@ -235,7 +234,8 @@ class CsgLanes {
     return (state[0] ^ step[0].flip) & possible;
   }
 
-  /// Notes what the rays in `turned` see of the crossings in (limit, end], the first of which is at `next`.
+  /// Chooses the hits of the rays in `turned` among the crossings in (limit, end], the first of which is at
+  /// `next`; see CsgSweep. `now`: the rays that enter the combination.
   OKTETT_NOINLINE void resolve(const F& limit, const F& end, const F& next, unsigned turned, unsigned now,
                                Found& found) const {
     const F inf(std::numeric_limits<float>::infinity());
@@ -265,10 +265,10 @@ class CsgLanes {
     found.flipped |= turned & ~bits(matched);
   }
 
-  /// Steps that are evaluated at a time: those of an expression, or what its solids lead to.
+  /// Greatest number of steps of an expression.
   static constexpr std::size_t kMaxPlaces = 512;
 
-  /// Solids that are looked at before a whole expression is.
+  /// Greatest number of needed solids that are checked before the expression is evaluated.
   static constexpr int kMostNeeded = 4;
 
   const CsgItem& csg_;
@@ -279,7 +279,7 @@ class CsgLanes {
   F slab_slack_;
   int solids_ = 0, needed_count_ = 0;
   int needed_[kMostNeeded];
-  std::uint32_t operand_[CrossingLanes<N>::kMost];  ///< per solid; in the end its place among the steps
+  std::uint32_t operand_[CrossingLanes<N>::kMost];  ///< per solid: its node, in sweep() the index of its step
   int end_[CrossingLanes<N>::kMost];                ///< one past its last row
   unsigned inside_[CrossingLanes<N>::kMost];        ///< the rays inside of it
   alignas(64) float depth_[CrossingLanes<N>::kMost][N];

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Rays against Boolean combinations: gather, sweep, take the first.
+/// \file Rays against Boolean combinations: gathers the crossings with all solids, sweeps them, takes the
+/// first.
 
 #include "accel/csg/csg.h"
 #include "accel/traverse/csg_lanes.h"
@@ -9,8 +10,8 @@ namespace oktett {
 template <class A>
 void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
 
-/// All crossings of a ray with the solids of a combination, from its beginning to infinity: only together
-/// they tell where it begins.
+/// Appends all crossings of a ray with the solids of a combination, from tmin to infinity: crossings beyond
+/// tmax also tell whether the ray begins inside a solid. False for a ray that can hit nothing.
 template <class A>
 OKTETT_NOINLINE bool gather_solids(const CsgItem& csg, const Ray& ray, HitList& crossings) {
   RayState<1, A> state;
@@ -21,7 +22,7 @@ OKTETT_NOINLINE bool gather_solids(const CsgItem& csg, const Ray& ray, HitList& 
   return true;
 }
 
-/// The rays in `lanes`, each alone.
+/// The rays in `lanes` against a combination, one by one.
 template <int W, class A>
 OKTETT_NOINLINE void csg_singly(const CsgItem& csg, RayState<W, A>& r, unsigned lanes) {
   for (; lanes != 0; lanes &= lanes - 1) {
@@ -34,7 +35,7 @@ OKTETT_NOINLINE void csg_singly(const CsgItem& csg, RayState<W, A>& r, unsigned 
   }
 }
 
-/// The rays in `lanes`, which are no more than CsgLanes<A>::N from `base` on, at once.
+/// The rays in `lanes` of the CsgLanes<A>::N rays from `base` on against a combination, at once.
 template <int W, class A>
 OKTETT_NOINLINE void csg_together(const CsgItem& csg, RayState<W, A>& r, int base, unsigned lanes) {
   CsgLanes<A> packet(csg, r, base, lanes);
@@ -65,7 +66,7 @@ OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayStat
   }
 }
 
-/// Every crossing of ray 0 of `r` with a combination.
+/// Appends every crossing of a ray with a combination.
 template <class A>
 OKTETT_NOINLINE void collect_csg(const CsgItem& csg, const Ray& ray, HitList& hits) {
   CsgSweep sweep;

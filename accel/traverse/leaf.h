@@ -1,6 +1,6 @@
 #pragma once
-/// \file Rays against the contents of a leaf. Every function here either finds the hits that the shapes'
-/// kernels decide, or rejects conservatively; the order of visits cannot change a result.
+/// \file Rays against the shapes of a leaf. A hit is always decided by the shape's kernel, after filters that
+/// reject conservatively, so the order in which leaves are visited changes no result.
 
 #include "accel/hit_sink.h"
 #include "accel/instance.h"
@@ -8,6 +8,7 @@
 
 namespace oktett {
 
+/// The rays of a state, in lanes.
 template <int W, class A>
 OKTETT_INLINE RayLanes<Simd<float, W, A>> load_rays(const RayState<W, A>& r) {
   using F = Simd<float, W, A>;
@@ -17,7 +18,7 @@ OKTETT_INLINE RayLanes<Simd<float, W, A>> load_rays(const RayState<W, A>& r) {
           F::load(r.tmax)};
 }
 
-/// The shear of W rays that share the axis `z`.
+/// The shear of W rays whose directions are greatest along axis `z`.
 template <int W, class A>
 OKTETT_INLINE ShearLanes<Simd<double, W, A>> load_shear(const RayState<W, A>& r, int z) {
   using F = Simd<float, W, A>;
@@ -50,22 +51,22 @@ OKTETT_INLINE ShearLanes<Simd<double, N, A>> broadcast_shear(const RayState<1, A
           D(r.shear_y[0])};
 }
 
-/// Hits of W rays with one item, for the rays in `lanes`.
+/// Keeps the hits of the rays in `lanes` with one item where they are the nearest so far.
 template <int W, class A>
 OKTETT_INLINE void accept_packet(RayState<W, A>& r, unsigned lanes, const HitLanes<Simd<float, W, A>>& h,
                                  std::uint32_t item) {
   using F = Simd<float, W, A>;
   using I = Simd<std::int32_t, W, A>;
-  const F held = F::load(r.tmax);
-  // Hits at the very distance that is held are told apart by their numbers.
-  for (unsigned same = lanes & bits(h.t == held); OKTETT_UNLIKELY(same != 0); same &= same - 1) {
+  const F nearest = F::load(r.tmax);
+  // At equal distance the numbers of the items decide.
+  for (unsigned same = lanes & bits(h.t == nearest); OKTETT_UNLIKELY(same != 0); same &= same - 1) {
     const int i = __builtin_ctz(same);
     alignas(64) float t[W], u[W], v[W];
     h.t.store(t), h.u.store(u), h.v.store(v);
     accept_hit(r, i, t[i], u[i], v[i], item, kNoId);
   }
-  const auto nearer = F::M::from_bits(lanes) & (h.t < held);
-  select(nearer, h.t, held).store(r.tmax);
+  const auto nearer = F::M::from_bits(lanes) & (h.t < nearest);
+  select(nearer, h.t, nearest).store(r.tmax);
   select(nearer, h.u, F::load(r.u)).store(r.u), select(nearer, h.v, F::load(r.v)).store(r.v);
   const auto name = [&](std::uint32_t(&column)[W], std::uint32_t value) {
     auto* ids = reinterpret_cast<std::int32_t*>(column);
@@ -74,7 +75,7 @@ OKTETT_INLINE void accept_packet(RayState<W, A>& r, unsigned lanes, const HitLan
   name(r.item, item), name(r.path, kNoId);
 }
 
-/// Hits of one ray with the items in `lanes`.
+/// Keeps the nearest of one ray's hits with the items in `lanes`, if it is the nearest so far.
 template <int N, class A>
 OKTETT_INLINE void accept_single(RayState<1, A>& r, unsigned lanes, const HitLanes<Simd<float, N, A>>& h,
                                  const std::uint32_t* items) {
@@ -156,8 +157,8 @@ OKTETT_INLINE void decide_packet(const TriangleBlock& block, int k, RayState<W, 
   if (hits != 0) accept_packet(r, hits, hit, block.item[k]);
 }
 
-/// The rays in `lanes` against the triangles of a block. All eight triangles are made ready for the filter at
-/// once, then each meets all rays.
+/// The rays in `lanes` against the triangles of a block. All triangles are prepared for the filter at once,
+/// in lanes; then each is tested against all rays.
 template <int W, class A>
 OKTETT_INLINE void leaf_triangles_packet(const TriangleBlock& block, int count, RayState<W, A>& r,
                                          unsigned lanes, int z) {
@@ -180,7 +181,8 @@ OKTETT_INLINE void leaf_triangles_packet(const TriangleBlock& block, int count, 
   }
 }
 
-/// The same for rays that all start at `o`: per ray only three dot products with the direction remain.
+/// The same for rays that all start at `o`: the filter takes only three dot products with the direction per
+/// ray.
 template <int W, class A>
 OKTETT_INLINE void leaf_triangles_origin(const TriangleBlock& block, int count, RayState<W, A>& r,
                                          unsigned lanes, int z, const Vec3f& o, float d_max) {
@@ -204,6 +206,7 @@ OKTETT_INLINE void leaf_triangles_origin(const TriangleBlock& block, int count, 
   }
 }
 
+/// The rays in `lanes` against the triangles of a block by one of the textbook tests.
 template <int W, class A>
 OKTETT_NOINLINE void leaf_textbook_packet(TriangleTest test, const TriangleBlock& block, int count,
                                           RayState<W, A>& r, unsigned lanes) {
@@ -216,6 +219,7 @@ OKTETT_NOINLINE void leaf_textbook_packet(TriangleTest test, const TriangleBlock
   }
 }
 
+/// The rays in `lanes` against `count` primitives of closed-form shape S from `begin` on.
 template <class S, int W, class A>
 OKTETT_INLINE void leaf_shape_packet(const typename S::Pool& pool, std::uint32_t begin, int count,
                                      RayState<W, A>& r, unsigned lanes) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Rays from columns into lanes.
+/// \file Loads rays from columns into lanes.
 
 #include "core/lanes.h"
 #include "core/ray.h"

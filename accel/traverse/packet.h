@@ -1,9 +1,9 @@
 #pragma once
 /// \file A packet of W rays through the tree.
 ///
-/// A node first rejects children for the whole packet: one slab test with intervals of origins and
-/// reciprocals against its eight boxes. Children that remain are tested ray by ray, W at a time. Where few
-/// rays are left, each goes on alone.
+/// At a node, one slab test with intervals of origins and reciprocal directions rejects children for the
+/// whole packet, all eight boxes at once. Each child that remains is tested against the W rays. When few rays
+/// of a packet are left, each goes on alone.
 
 #include <algorithm>
 
@@ -11,23 +11,24 @@
 
 namespace oktett {
 
-/// Rays of one octant and one greatest axis have common near planes and one shear; below this many, packets
-/// do not pay.
+/// Packets of fewer rays do not pay. The rays of a packet share an octant, so that near planes are the same
+/// for all, and the axis of their greatest direction component, so that triangles are sheared alike.
 template <int W>
 inline constexpr int kMinPacketRays = W >= 16  ? 4
                                       : W >= 8 ? 3
                                                : 2;
 
-/// Intervals over a packet's rays, so chosen that near distances are bounded below and far ones above
-/// (rounding is monotone, so the bounds hold for the rounded per-ray distances too).
+/// Intervals over the rays of a packet, from which near distances come out too small and far ones too great,
+/// if anything. Rounding is monotone, so this holds for the rounded distances of each ray too.
 struct PacketInterval {
   float near_o[3], far_o[3], near_inv[3], far_inv[3];
   float tmin, slack;
   float d_max;
   int near_plane[3], far_plane[3];
-  bool one_origin;  ///< all rays start at the same point
+  bool one_origin;  ///< all rays start at one point
 };
 
+/// The intervals over the rays in `lanes`.
 template <int W, class A>
 OKTETT_INLINE PacketInterval packet_interval(const RayState<W, A>& r, unsigned lanes) {
   PacketInterval p;
@@ -50,14 +51,14 @@ OKTETT_INLINE PacketInterval packet_interval(const RayState<W, A>& r, unsigned l
     const bool negative = r.negative[k] >> first & 1;
     p.near_plane[k] = 2 * k + negative, p.far_plane[k] = 2 * k + !negative;
     p.near_o[k] = negative ? lo_o[k] : hi_o[k], p.far_o[k] = negative ? hi_o[k] : lo_o[k];
-    // Of the reciprocals the near side takes the least magnitude, the far side the greatest.
+    // The near side takes the reciprocal of least magnitude, the far side that of greatest.
     p.near_inv[k] = negative ? hi_i[k] : lo_i[k], p.far_inv[k] = negative ? lo_i[k] : hi_i[k];
   }
   p.one_origin = lo_o[0] == hi_o[0] && lo_o[1] == hi_o[1] && lo_o[2] == hi_o[2];
   return p;
 }
 
-/// Children of `node` that any ray of the packet might meet; near[k] bounds their distance below.
+/// Children of `node` that a ray of the packet may meet; near[k] is a lower bound on the near distances.
 template <class A>
 OKTETT_INLINE unsigned node_interval(const BvhNode& node, const PacketInterval& p, float tmax, float* near) {
   using F = Simd<float, BvhNode::kWidth, A>;
@@ -85,6 +86,7 @@ OKTETT_INLINE unsigned child_packet(const BvhNode& node, int c, const RayState<W
   return bits(n <= f);
 }
 
+/// A stack entry: a node or leaf, a lower bound on its near distances, and the rays that meet its box.
 struct PacketEntry {
   NodeRef ref;
   float near;
@@ -94,7 +96,8 @@ struct PacketEntry {
 template <Query Q, int W, class A>
 void trace_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes);
 
-/// The rays in `lanes` through one instance: they may part ways there, so they are sorted into groups anew.
+/// The rays in `lanes` through one instance. The transform may put them into different octants, so they are
+/// grouped anew.
 template <Query Q, class Instance, int W, class A>
 OKTETT_NOINLINE void instance_packet(const Instance& instance, const Accel& inner, RayState<W, A>& r,
                                      unsigned lanes) {
@@ -123,7 +126,7 @@ OKTETT_INLINE void traverse_each(const Accel& accel, RayState<W, A>& r, unsigned
   }
 }
 
-/// Bit i set if ray i has found anything.
+/// Those of `lanes` whose rays have a hit.
 template <int W, class A>
 OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
   unsigned found = 0;
@@ -134,6 +137,7 @@ OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
   return found;
 }
 
+/// The rays in `lanes` against a leaf of the table.
 template <Query Q, int W, class A>
 OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r,
                                        unsigned lanes) {
@@ -163,7 +167,7 @@ OKTETT_INLINE float farthest(const RayState<W, A>& r, unsigned lanes) {
   return horizontal_max(select(F::M::from_bits(lanes), F::load(r.tmax), F(0.0f)));
 }
 
-/// The rays in `lanes`, all of one octant and one greatest axis, through the tree.
+/// The rays in `lanes` through the tree; all are of one octant and have the same axis of greatest direction.
 template <Query Q, int W, class A>
 OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes) {
   using F = Simd<float, W, A>;
@@ -214,7 +218,7 @@ OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsi
 }
 
 /// The rays in `lanes` against everything: the list of unbounded shapes, then the tree, in groups that share
-/// an octant and a greatest axis. Idle lanes must hold finite numbers.
+/// an octant and the axis of greatest direction. The other lanes must contain finite numbers.
 template <Query Q, int W, class A>
 void trace_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes) {
   for (const LeafEntry& leaf : accel.unbounded) table_leaf_packet<Q>(accel, leaf, r, lanes);

@@ -1,17 +1,19 @@
 #pragma once
-/// \file The exact decision for pairs: each lane has a ray and a triangle of its own. Traversals that put
-/// decisions off keep one candidate per ray and decide them here, all lanes busy.
+/// \file The exact decision for pairs: each lane has a ray and a triangle of its own. Traversals that keep
+/// one candidate hit per ray decide the candidates of many rays here at once.
 
 #include "accel/traverse/leaf.h"
 #include "core/simd_gather.h"
 
 namespace oktett {
 
-/// Numbers of triangles that agree in all bits above this one are less than 2^31 floats apart.
+/// Triangles whose numbers agree above this bit lie less than 2^31 floats apart, so 32-bit offsets reach
+/// them.
 inline constexpr std::uint32_t kNearTriangles = std::uint32_t{1} << 27;
 
-/// The triangles `ids` = block * TriangleBlock::kSize + lane of `blocks`, one in each lane. `kNear`, a power
-/// of two up to kNearTriangles: those that agree above it are fetched by one index.
+/// Triangles of `blocks`, one in each lane, by their numbers `ids` = block * TriangleBlock::kSize + lane. If
+/// the numbers agree above bit `kNear`, a power of two up to kNearTriangles, they are gathered with one index
+/// vector.
 template <int N, class A, std::uint32_t kNear = kNearTriangles>
 OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* blocks,
                                                                 const std::uint32_t* ids) {
@@ -44,10 +46,10 @@ OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBl
   });
 }
 
-/// Ray i of `ray` against triangle `ids[i]` = block * TriangleBlock::kSize + lane, for all i at once: the
-/// same bits as decide_watertight of the two alone. The rays may differ in their axes of greatest direction.
-/// Returns a bit for each ray that meets its triangle at tmin < t <= tmax; lanes that serve nothing may name
-/// any triangle and any finite ray.
+/// Ray i of `ray` against triangle `ids[i]` = block * TriangleBlock::kSize + lane, for all i at once, with
+/// the same bits as decide_watertight of each pair alone. The rays may differ in the axis of their greatest
+/// direction component. Returns a bit for each ray that meets its triangle at tmin < t <= tmax. Unused lanes
+/// may have any triangle of `blocks` and any finite ray.
 template <int N, class A>
 OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, const TriangleBlock* blocks,
                                     const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit) {

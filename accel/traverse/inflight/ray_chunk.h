@@ -1,6 +1,6 @@
 #pragma once
-/// \file Rays made ready for boxes in fused form: plane * (1/d) - o * (1/d), all roundings paid for once per
-/// ray.
+/// \file Rays prepared for the slab test in fused form, plane * (1/d) - o * (1/d). The bounds on its rounding
+/// errors are part of the ray.
 
 #include "accel/ray_state.h"
 #include "accel/traverse/load_span.h"
@@ -10,18 +10,18 @@
 
 namespace oktett {
 
-/// Rays nearer to zero than this to all there is underflow; they are not ready either.
+/// Least extent of scene and origin for which products do not underflow; other rays are not tame.
 inline constexpr float kChunkMinExtent = 0x1p-36f;
 /// A direction component below this part of the greatest is replaced by it.
 inline constexpr float kChunkMinComponent = 0x1p-40f;
 /// Relative error of o * (1/d), of its sum with the error, and a reserve.
 inline constexpr float kChunkShiftError = 0x1p-21f;
 
-/// W rays from a span in columns. A box is met where
+/// W rays in columns. A box is met if
 ///     max(near plane * inv + near_shift, tmin) <= min(far plane * inv + far_shift, tmax + slack)
 ///                                                 * kSlabRelativeSlack
-/// and this rejects no box that holds a hit with t <= tmax (docs/numerics.md). The planes on the near side
-/// are the low ones where `negative` is 0, else the high ones.
+/// This rejects no box that contains a hit with t <= tmax (docs/numerics.md). The near planes are the low
+/// ones where `negative` is 0, else the high ones.
 template <int W, class A>
 struct alignas(64) RayChunk {
   using F = Simd<float, W, A>;
@@ -30,9 +30,10 @@ struct alignas(64) RayChunk {
   float tmin[W], tmax[W], slack[W];
   unsigned negative[3];
   unsigned valid;  ///< rays that can hit anything, see Ray
-  unsigned tame;   ///< of them: those whose numbers are neither so great nor so small that bounds break
+  unsigned tame;   ///< those of `valid` whose numbers are not too large or small for the error bounds
 
-  /// The W rays from position `b` on of a structure within `extent` of zero; past the end none is valid.
+  /// Sets the W rays from position `b` of a batch on; lanes past its end are not valid. `extent` is the
+  /// greatest |coordinate| of the scene.
   OKTETT_INLINE void set(const RaySpan& rays, std::size_t b, float extent) {
     const std::size_t rest = rays.size - b;
     const RayLanes<F> r = load_span<F>(rays, b);
@@ -41,7 +42,7 @@ struct alignas(64) RayChunk {
     const F ax = abs(dir.x), ay = abs(dir.y), az = abs(dir.z);
     const F dm = max(az, max(ay, ax));
     const F om = max(abs(r.o.z), max(abs(r.o.y), abs(r.o.x)));
-    // Each comparison is false on NaN, and max() may drop one, so every component is asked.
+    // Every component is compared, because a comparison is false on NaN while max() may lose it.
     const auto finite = (ax <= big) & (ay <= big) & (az <= big) & (abs(r.o.x) <= big) & (abs(r.o.y) <= big) &
                         (abs(r.o.z) <= big);
     const auto usable = finite & (zero < dm) & (zero <= r.tmin) & (r.tmin < r.tmax);
@@ -54,7 +55,7 @@ struct alignas(64) RayChunk {
     set_axis(1, r.o.y, dir.y, reach, least, extent);
     set_axis(2, r.o.z, dir.z, reach, least, extent);
     dm.store(d_max);
-    // Zero added: a negative zero would not sort as a key.
+    // Adding zero turns -0 into 0, because near distances are sorted by their bits.
     (r.tmin + zero).store(tmin), r.tmax.store(tmax), slack_of(reach).store(slack);
   }
 
@@ -67,9 +68,9 @@ struct alignas(64) RayChunk {
     const auto tiny = abs(direction) < least;
     const F inverse = F(1.0f) / select(tiny, flip_sign(least, direction + F(0.0f)), direction);
     const F shift = origin * inverse;
-    // Without fusing, the product with the plane rounds too.
+    // Without a fused operation, the product with the plane rounds too.
     const F size = kHasFma<A> && W > 1 ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
-    // A ray turned by replacing its component strays no farther than the new component carries it twice.
+    // Replacing a tiny component turns the ray; it strays no farther than twice the way of the new component.
     const F error = fast_fma(size, F(kChunkShiftError), select(tiny, F(4.0f) * reach, F(0.0f)));
     origin.store(o[k]), direction.store(d[k]), inverse.store(inv[k]);
     (-(shift + error)).store(near_shift[k]);
