@@ -17,15 +17,15 @@
 namespace oktett {
 namespace {
 
-/// Ranges below this many references are built by one task; above kParallelSplit, binning and partitioning
-/// are shared out too, in at most kMaxChunks pieces.
+/// Smaller ranges are built by one task. In ranges above kParallelSplit binning and partitioning are tasks
+/// too, of at most kMaxChunks chunks.
 constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
 
-/// Space is split where the children of the best other split overlap by more than this part of the scene's
-/// surface (Stich et al. 2009, section 4.5).
+/// A spatial split is tried if the children of the best object split overlap by more than this part of the
+/// scene's surface (Stich et al. 2009, section 4.5).
 constexpr double kLeastOverlap = 1e-3;
 
 /// Half the surface of a box in the {-lo, hi} form, scaled.
@@ -46,8 +46,8 @@ struct Extent {
   Box box() const { return {{-v[0], -v[1], -v[2]}, {v[4], v[5], v[6]}}; }
 };
 
-/// A range of references that stands in `from`. Its children may stand in [first, last) of `to`, which has
-/// room for those that splits of space add, and theirs in the same place of `from`.
+/// A range of references in `from`. Its children are written to [first, last) of `to`, which has room for
+/// references that spatial splits add; their children are written to the same place of `from`.
 struct Range {
   std::size_t begin = 0, end = 0;
   PrimRef *from = nullptr, *to = nullptr;
@@ -57,7 +57,7 @@ struct Range {
   std::size_t room() const { return last - first; }
 };
 
-/// How a large range is cut for threads; it depends on the size alone.
+/// How a large range is cut into chunks for threads. It depends on the size alone, so that the tree does too.
 struct Chunks {
   std::size_t size, count;
   explicit Chunks(std::size_t n)
@@ -85,7 +85,7 @@ class Builder {
   BinaryTree run() {
     const std::size_t n = refs_.size();
     const std::size_t room = n + static_cast<std::size_t>(effort_.spatial * static_cast<double>(n));
-    // A leaf holds at least one item; pages that stay empty cost nothing.
+    // A leaf has at least one item. Pages that are never written take no memory.
     tree_.nodes = VirtualArray<BinaryNode>(2 * room + 2 * kMaxSweep);
     tree_.items.resize_uninitialized(room);
     refs_.resize_uninitialized(room);
@@ -135,8 +135,8 @@ class Builder {
     });
   }
 
-  /// A range in the order of its cells: divided where the highest bit of their numbers changes, which halves
-  /// space (Lauterbach et al. 2009). What is left in one cell goes the usual way.
+  /// Builds a range that is sorted by cells: splits it where the highest bit of their numbers changes, which
+  /// halves space (Lauterbach et al. 2009). Ranges within one cell are built by build().
   void build_cells(Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
     if (r.size() <= effort_.sweep) return sweep(r, depth, at, cost);
     const std::uint32_t *first = cells_.data() + r.begin, *last = cells_.data() + r.end - 1;
@@ -212,7 +212,7 @@ class Builder {
     Bins first;
     const auto bins = [&](std::size_t c) -> Bins& { return c == 0 ? first : more[c - 1]; };
     Split best;
-    // What is left of the depth must do for halving.
+    // The remaining depth must suffice for splits in half.
     if (depth + std::bit_width(r.size()) + 7 < kMaxDepth) {
       if (chunks.count == 1)
         kernels_.bin({r.from + r.begin, r.size(), grid, &first});
@@ -234,7 +234,7 @@ class Builder {
     bound(left), bound(right);
   }
 
-  /// The children of `r`, which stand at either end of its place in `to`; what room is left is shared in
+  /// The children of `r`, at either end of its place in `to`. They share the free room between them in
   /// proportion to their sizes.
   static void share_room(const Range& r, std::size_t l, std::size_t rr, Range& left, Range& right) {
     const std::size_t spare = r.room() - l - rr;
@@ -245,7 +245,7 @@ class Builder {
     right = {r.last - rr, r.last, r.to, r.from, {}, middle, r.last};
   }
 
-  /// Splits space instead of the range, where the children of `object` would overlap and it costs less.
+  /// Makes a spatial split if the children of the object split `object` would overlap and it costs less.
   template <class BinsOf>
   bool split_space(const Range& r, const Grid& grid, const Split& object, std::size_t chunks,
                    const BinsOf& bins, Range& left, Range& right) {

@@ -1,21 +1,22 @@
 #pragma once
 /// \file Which binary nodes become wide ones: the choice of least surface-area cost, by dynamic programming
-/// (Ylitie, Karras and Laine 2017, section 3). Leaves are blocks already, so only the places in wide nodes
-/// are shared out. Costs are made bottom-up while the binary tree is built; a node keeps only its choices.
+/// (Ylitie, Karras and Laine 2017, section 3). Leaves are whole blocks already, so only the places in wide
+/// nodes are distributed. Costs are computed bottom-up while the binary tree is built; a node keeps only its
+/// choices.
 
 #include "accel/build/sah.h"
 #include "core/platform.h"
 
 namespace oktett {
 
-/// A leaf needs one place, however many there are.
+/// Cost of a leaf: it takes one place, however many there are.
 OKTETT_INLINE SubtreeCost leaf_cost(float area) {
   SubtreeCost c;
   for (float& p : c.places) p = area;
   return c;
 }
 
-/// Cost of an inner node of area `area` from those of its children; returns BinaryNode::info.
+/// Cost of an inner node of surface `area`, from the costs of its children. Returns BinaryNode::info.
 OKTETT_INLINE std::uint32_t collapse(const SubtreeCost& l, const SubtreeCost& r, float area,
                                      SubtreeCost& out) {
   constexpr int W = BvhNode::kWidth;

@@ -12,7 +12,7 @@ struct BuildCode {
   using F = Simd<float, 4, A>;
   using B = Simd<float, 8, A>;
 
-  // The numbers in the gaps of a reference look like denormals, which are slow to multiply: they are set to
+  // Item number and kind in the gaps of a reference look like denormals, which are slow to multiply: set to
   // 0.
 
   /// (centre - origin) * scale, clamped to [0, bins - 1].
@@ -31,7 +31,8 @@ struct BuildCode {
   }
 
   static void bin(const BinJob& job) {
-    // Neighbours tend to fall into the same bin, and a bin is slow to reread at once: two sets take turns.
+    // Successive references tend to fall into the same bin, and reading what was just written is slow: two
+    // sets of bins take turns.
     Bins other;
     Bins* const sets[2] = {job.out, &other};
     const B empty(-std::numeric_limits<float>::infinity());
@@ -80,7 +81,7 @@ struct BuildCode {
   }
 
   static void partition(PartitionJob& job) {
-    constexpr std::size_t kPiece = 256;  // what was just written is bounded while it is in the cache
+    constexpr std::size_t kPiece = 256;  // bounds are computed of pieces that are still in the cache
     const int axis = job.split.axis;
     const float plane = static_cast<float>(job.split.bin + 1);
     const float origin = job.grid.origin[axis], scale = job.grid.scale[axis];
@@ -93,7 +94,7 @@ struct BuildCode {
       const std::size_t end = count - i > kPiece ? i + kPiece : count;
       for (; i < end; ++i) {
         const float c = (refs[i].hi[axis] - refs[i].negative_lo[axis] - origin) * scale;
-        // All by arithmetic: a branch would be mispredicted half the time.
+        // Without a branch, which would be mispredicted half the time.
         const std::ptrdiff_t is_left = c < plane;
         const std::ptrdiff_t to = (right - 1) ^ (((right - 1) ^ left) & -is_left);
         B::load(refs[i].negative_lo).store(job.left[to].negative_lo);

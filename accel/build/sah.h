@@ -1,6 +1,5 @@
 #pragma once
-/// \file What the builder works on: primitive references, bins, and the binary tree that comes before the
-/// wide one.
+/// \file The data of the builder: primitive references, bins, and the binary tree that becomes the wide one.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +20,7 @@ struct alignas(32) PrimRef {
 };
 static_assert(sizeof(PrimRef) == 32);
 
-/// Boxes in the same form, and a count, for every candidate interval of one axis.
+/// A box in the same form and a count for every bin of one axis.
 struct alignas(32) BinBox {
   float v[8];  ///< {-lo.xyz, any, hi.xyz, any}
 };
@@ -111,14 +110,14 @@ struct SubtreeCost {
 /// The largest range that may be built by sorting instead of binning.
 inline constexpr std::uint32_t kMaxSweep = 256;
 
-/// What a BuildQuality means.
+/// The parameters of a BuildQuality.
 struct Effort {
   int bins;             ///< candidate intervals per axis, [2, kMaxBins]
   std::uint32_t sweep;  ///< ranges up to this size are swept, [8, kMaxSweep]
   std::uint32_t
       every_place;  ///< of these, ranges up to this size are tried at every place, others at full blocks
-  bool cells;       ///< larger ranges are divided by a space-filling curve
-  double spatial;   ///< references that splits of space may add, per reference
+  bool cells;       ///< larger ranges are split along a space-filling curve
+  double spatial;   ///< references that spatial splits may add, per reference
 };
 
 /// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].
@@ -144,8 +143,7 @@ struct BuildKernels {
   void (*sweep)(SweepJob&);
 };
 
-/// Blocks of eight that n primitives fill: what leaves cost, and why splits fall at multiples of eight where
-/// they can.
+/// Blocks of eight that n primitives fill, which is what leaves cost.
 constexpr std::uint32_t blocks_of(std::uint32_t n) {
   return (n + TriangleBlock::kSize - 1) / TriangleBlock::kSize;
 }

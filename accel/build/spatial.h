@@ -1,5 +1,5 @@
 #pragma once
-/// \file Splits of space: a triangle that crosses the plane becomes two references with tighter boxes (Stich,
+/// \file Spatial splits: a triangle that crosses the plane becomes two references with tighter boxes (Stich,
 /// Friedrich and Dietrich, "Spatial Splits in Bounding Volume Hierarchies", 2009).
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace oktett {
 
-/// The plane at `place` across an axis, and what the two sides come to; axis < 0: none.
+/// The plane at `place` across an axis, and the cost of the split there; axis < 0: none.
 struct SpatialSplit {
   int axis = -1;
   float place = 0;
@@ -20,14 +20,14 @@ struct SpatialSplit {
 /// Half the surface of a box in double, where no float overflows.
 double half_area(const Box& box);
 
-/// Of planes at equal distances, the one of least surface-area cost. `box` bounds refs[0, count).
+/// The plane of least surface-area cost among equidistant ones. `box` bounds refs[0, count).
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
                           const TriangleSource& triangles, bool parallel);
 
-/// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]). Of a
-/// triangle that crosses the plane both parts are kept, or, where that is cheaper, the whole on one side.
-/// At most `room` - 1 references are left on each side together; where they would be more, or one side would
-/// be empty, nothing is done. Returns how many went left and right, {0, 0} for nothing.
+/// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]). A triangle
+/// that crosses the plane becomes a reference on each side or, where that is cheaper, a whole one on one
+/// side. Returns the numbers of references on the left and on the right. Returns {0, 0}, without a split, if
+/// there would be `room` or more together or none on one side.
 struct SpatialParts {
   std::size_t left = 0, right = 0;
 };

@@ -37,8 +37,9 @@ class Sweep {
     float v[8];  ///< {-lo.xyz, any, hi.xyz, any}
   };
 
-  /// Boxes halved and scaled to a scene of size 1 (a power of two: exact), and the bounds of centres. The
-  /// gaps become 0: what stands there looks like denormals, which are slow to multiply.
+  /// Loads the boxes, halved and scaled to a scene of size 1 by a power of two, which is exact, and the
+  /// bounds of centres. Item number and kind in the gaps look like denormals, which are slow to multiply: set
+  /// to 0.
   void load() {
     const B unit(0.5f * job_.unit);
     F lo(Centers::kInf), hi(-Centers::kInf);
@@ -52,8 +53,8 @@ class Sweep {
     for (std::uint32_t i = 0; i < TriangleBlock::kSize; ++i) order_start_[i] = static_cast<std::uint8_t>(i);
   }
 
-  /// order_[axis]: the references by centre. Keys are unique, so a reference's place is the number of smaller
-  /// keys: no branches, and the lanes are full.
+  /// Sorts the references by centre along each axis into order_[axis]. Keys are unique, so a reference's
+  /// place is the number of smaller keys, which is counted in lanes and without branches.
   void sort(int axis) {
     constexpr float kSteps = 0x1p23f - 1;
     const float extent = hi_[axis] - lo_[axis];
@@ -77,7 +78,8 @@ class Sweep {
     }
   }
 
-  /// Few enough and of one kind. What costs more to test than a node does stands alone.
+  /// Whether a range is a leaf: few enough items, all of one kind. Shapes that cost more to test than a node
+  /// are leaves of their own.
   bool one_leaf(std::uint32_t begin, std::uint32_t end, const std::uint8_t* order) const {
     if (end - begin > TriangleBlock::kSize) return false;
     const std::uint32_t kind = job_.refs[order[begin]].kind;
@@ -87,7 +89,7 @@ class Sweep {
     return true;
   }
 
-  /// A measure of the surface of a box whose corners were halved.
+  /// Half the surface of the box with these corners.
   OKTETT_INLINE static float area(const F& negative_lo, const F& hi) {
     alignas(16) float e[4];
     (negative_lo + hi).store(e);
@@ -132,7 +134,7 @@ class Sweep {
     node.info = BinaryNode::leaf_info(count, job_.refs[order[begin]].kind);
   }
 
-  /// Drops repetitions; returns how many items are left.
+  /// Removes repeated items; returns the number of those left.
   static std::uint32_t distinct(std::uint32_t* items, std::uint32_t count) {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < count; ++i) {

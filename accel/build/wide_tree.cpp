@@ -1,5 +1,5 @@
-/// \file From the binary tree to the wide one: nodes, blocks and the leaf table, each at a place that is
-/// known before anything is written.
+/// \file From the binary tree to the wide one. The places of all nodes, blocks and table entries are known
+/// before anything is written, so parts are written in parallel.
 
 #include "accel/build/wide_tree.h"
 
@@ -187,7 +187,8 @@ class WideBuilder {
   const bool parallel_;
 };
 
-/// Entries of shapes other than triangles point to places in tree.items; they get their ranges of the pools.
+/// Gives the leaf table its ranges of the pools: until now entries of shapes other than triangles refer to
+/// tree.items.
 void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t> (&order)[kKinds]) {
   for (LeafEntry& leaf : accel.leaves) {
     if (leaf.kind == Kind::triangle) continue;

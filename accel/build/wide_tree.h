@@ -9,22 +9,22 @@
 
 namespace oktett {
 
-/// Where blocks get their triangles from; called from many threads.
+/// The triangles of the scene, for the builder. Called from many threads.
 class TriangleSource {
  public:
   virtual ~TriangleSource() = default;
   /// Fills a block with 1 to 8 items.
   virtual void fill(const std::uint32_t* items, int count, TriangleBlock& block) const = 0;
-  /// Says that `fill` will soon be asked for these.
+  /// Prefetches the memory that fill() will need for these items.
   virtual void prefetch(const std::uint32_t* items, int count) const = 0;
   virtual void corners(std::uint32_t item, Vec3f (&v)[3]) const = 0;
 };
 
-/// A binary tree down to leaves of a block, and the order of the items in them. The root is node 0.
+/// A binary tree whose leaves are blocks, and the items in the order of the leaves. The root is node 0.
 struct BinaryTree {
   VirtualArray<BinaryNode> nodes;
   Column<std::uint32_t> items;
-  bool pieces = false;  ///< an item may stand in several leaves
+  bool pieces = false;  ///< triangles were split, so an item may stand in several leaves
 };
 
 /// Builds the binary tree over `refs`, which it uses up; `bounds` are theirs. The same tree for any number of
