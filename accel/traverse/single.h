@@ -8,8 +8,8 @@
 
 namespace oktett {
 
-/// Is told of each step of a ray through the tree and ignores it: what queries pass. trace_counts() passes
-/// one that counts.
+/// The policy of queries: does nothing at the steps of a ray through the tree. trace_counts() has one that
+/// counts them.
 struct IgnoreSteps {
   void node(unsigned) const {}  ///< a node, and its children whose boxes the ray meets, a bit each
   void triangles(int) const {}  ///< a block of so many triangles
