@@ -46,6 +46,12 @@ class CsgLanes {
     slab_slack_ = load(r.slack);
   }
 
+  /// Finds the first crossings. False if there are too many crossings or the expression is too large.
+  OKTETT_NOINLINE bool first(Found& found) { return gather() && sweep(found); }
+
+  const CrossingLanes<N>& rows() const { return rows_; }
+
+ private:
   /// Gathers the crossings with all solids. False if there are too many.
   bool gather() {
     const Accel& solids = *csg_.solids;
@@ -87,9 +93,6 @@ class CsgLanes {
     }
   }
 
-  const CrossingLanes<N>& rows() const { return rows_; }
-
- private:
   OKTETT_INLINE F coincidence_slack() const {
     const Box& box = csg_.solids->bounds;
     float size = 0;

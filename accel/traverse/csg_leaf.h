@@ -40,7 +40,7 @@ template <int W, class A>
 OKTETT_NOINLINE void csg_together(const CsgItem& csg, RayState<W, A>& r, int base, unsigned lanes) {
   CsgLanes<A> packet(csg, r, base, lanes);
   typename CsgLanes<A>::Found found;
-  if (!packet.gather() || !packet.sweep(found)) return csg_singly(csg, r, lanes << base);
+  if (!packet.first(found)) return csg_singly(csg, r, lanes << base);
   const auto& rows = packet.rows();
   for (unsigned rest = found.lanes; rest != 0; rest &= rest - 1) {
     const int i = __builtin_ctz(rest), row = found.row[i];
