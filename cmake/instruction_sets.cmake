@@ -43,5 +43,6 @@ function(oktett_compile_set target set sources tag)
   endif()
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:${code}>)
   string(TOUPPER ${set} upper)
-  target_compile_definitions(oktett_internal INTERFACE OKTETT_WITH_${upper})
+  # Not for the code of a set itself: that must not instantiate the code of another one.
+  target_compile_definitions(${target} PUBLIC $<BUILD_INTERFACE:OKTETT_WITH_${upper}>)
 endfunction()
