@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -11,7 +10,7 @@
 #include <vector>
 
 #include "accel/traverse/trace_counts.h"
-#include "app/command.h"
+#include "app/command_line.h"
 #include "app/json.h"
 #include "app/render_options.h"
 #include "app/scene_summary.h"
@@ -174,26 +173,16 @@ int run_info(const InfoArguments& arguments) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app, Command& command) {
-  CLI::App* verb = app.add_subcommand("info", "Print what a scene file or a mesh holds");
-  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+void add_info_command(CommandLine& line) {
   const auto arguments = std::make_shared<InfoArguments>();
-  verb->add_option("file", arguments->file, "Scene file (.yaml) or mesh (.obj)")
-      ->required()
-      ->type_name("FILE");
-  verb->add_option("-D", arguments->definitions, "Define ${k} of the scene file; may be repeated")
-      ->type_name("k=v")
-      ->allow_extra_args(false);
-  add_bvh_option(*verb, arguments->bvh);
-  verb->add_flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
-  verb->add_flag("--json", arguments->json, "Print one JSON object");
-  const auto print_shapes = [](std::int64_t) {
-    fmt::print("{}", surface_table());
-    throw CLI::Success();
-  };
-  verb->add_flag_function("--shapes", print_shapes, "Print the shapes of scene files as a table and exit")
-      ->trigger_on_parse();
-  verb->callback([&command, arguments] { command.run = [arguments] { return run_info(*arguments); }; });
+  Verb verb = line.add_verb("info", "Print what a scene file or a mesh holds",
+                            [arguments] { return run_info(*arguments); });
+  verb.positional("file", arguments->file, "FILE", "Scene file (.yaml) or mesh (.obj)");
+  verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene file; may be repeated");
+  add_bvh_option(verb, arguments->bvh);
+  verb.flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
+  verb.flag("--json", arguments->json, "Print one JSON object");
+  verb.notice("--shapes", surface_table, "Print the shapes of scene files as a table and exit");
 }
 
 }  // namespace oktett

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -11,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "app/command.h"
+#include "app/command_line.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/render_options.h"
@@ -64,11 +63,11 @@ void print_plan(const Scene& scene, const RenderOptions& options, const std::str
              to_string(options.isa), options.threads == 0 ? "all" : std::to_string(options.threads), output);
 }
 
-ImageMetadata metadata_of(const Command& command, const RenderArguments& arguments,
+ImageMetadata metadata_of(const CommandLine& line, const RenderArguments& arguments,
                           const RenderResult& result) {
   ImageMetadata metadata;
   metadata.software = program_version();
-  metadata.command_line = command.line;
+  metadata.command_line = line.text();
   metadata.scene = arguments.scene;
   metadata.samples = result.scene.integrator.samples;
   metadata.render_seconds = result.report.render_seconds;
@@ -137,7 +136,7 @@ void print_summary(const RenderArguments& arguments, const StageTimes& times, co
     fmt::print(stderr, "warning: {} samples were NaN or infinite and were left out\n", report.bad_samples);
 }
 
-int run_render(const Command& command, const RenderArguments& arguments) {
+int run_render(const CommandLine& line, const RenderArguments& arguments) {
   check_stats(arguments.stats);
   const std::string output = output_path(arguments);
   check_output(output);
@@ -167,7 +166,7 @@ int run_render(const Command& command, const RenderArguments& arguments) {
   times.build = result.report.build_seconds;
   times.render = result.report.render_seconds;
   watch.lap();
-  const ImageMetadata metadata = metadata_of(command, arguments, result);
+  const ImageMetadata metadata = metadata_of(line, arguments, result);
   // The library that writes images takes as much memory as a large scene: free the scene before it is loaded.
   result.scene = Scene{};
   write_image(output, result.picture, metadata);
@@ -181,14 +180,11 @@ int run_render(const Command& command, const RenderArguments& arguments) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app, Command& command) {
-  CLI::App* verb = app.add_subcommand("render", "Render a scene file or a mesh to a picture");
-  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+void add_render_command(CommandLine& line) {
   const auto arguments = std::make_shared<RenderArguments>();
-  add_render_options(*verb, *arguments);
-  verb->callback([&command, arguments] {
-    command.run = [&command, arguments] { return run_render(command, *arguments); };
-  });
+  Verb verb = line.add_verb("render", "Render a scene file or a mesh to a picture",
+                            [&line, arguments] { return run_render(line, *arguments); });
+  add_render_options(verb, *arguments);
 }
 
 }  // namespace oktett

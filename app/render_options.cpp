@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -74,33 +73,29 @@ std::size_t index_of(const char* complaint, const std::string& word, const char*
 
 const char* to_string(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
 
-void add_render_options(CLI::App& verb, RenderArguments& a) {
-  verb.add_option("scene", a.scene, "Scene file (.yaml) or mesh (.obj)")->required()->type_name("SCENE|MESH");
-  verb.add_option("-o,--outfile", a.outfile, "Picture to write; default: the scene's name with .png, here")
-      ->type_name("FILE");
-  verb.add_option("-t,--nthreads", a.threads, "Threads; default: all processors")->type_name("N");
-  verb.add_option("--spp", a.samples, "Samples per pixel")->type_name("N");
-  verb.add_option("--size", a.size, "Size of the full frame in pixels")->type_name("WxH");
-  verb.add_option("--cropwindow", a.crop, "Part of the frame to render, as fractions of it")
-      ->type_name("x0,x1,y0,y1");
-  verb.add_option("--seed", a.seed, "Seed of the random numbers")->type_name("N");
-  verb.add_option("--integrator", a.integrator, "whitted, path, ao, normal or depth")->type_name("K");
-  verb.add_option("--isa", a.isa, "Instruction set: auto, sse4.2, avx2, avx512 or scalar")->type_name("NAME");
+void add_render_options(Verb& verb, RenderArguments& a) {
+  verb.positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh (.obj)");
+  verb.option("-o,--outfile", &a.outfile, "FILE",
+              "Picture to write; default: the scene's name with .png, here");
+  verb.option("-t,--nthreads", &a.threads, "N", "Threads; default: all processors");
+  verb.option("--spp", &a.samples, "N", "Samples per pixel");
+  verb.option("--size", &a.size, "WxH", "Size of the full frame in pixels");
+  verb.option("--cropwindow", &a.crop, "x0,x1,y0,y1", "Part of the frame to render, as fractions of it");
+  verb.option("--seed", &a.seed, "N", "Seed of the random numbers");
+  verb.option("--integrator", &a.integrator, "K", "whitted, path, ao, normal or depth");
+  verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
   add_bvh_option(verb, a.bvh);
-  verb.add_option("-D", a.definitions, "Define ${k} of the scene file; may be repeated")
-      ->type_name("k=v")
-      ->allow_extra_args(false);
-  verb.add_flag("--stats{text}", a.stats, "Print counts; --stats=json prints them as one JSON object");
-  verb.add_flag("--quiet", a.quiet, "Print nothing but warnings and errors");
-  verb.add_flag("-v,--verbose", a.verbose, "Print more, and all warnings");
-  verb.add_flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
-  verb.add_option("--display-server", a.display_server, "Live preview in a viewer that speaks tev's protocol")
-      ->type_name("HOST:PORT");
+  verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
+  verb.flag("--stats{text}", a.stats, "Print counts; --stats=json prints them as one JSON object");
+  verb.flag("--quiet", a.quiet, "Print nothing but warnings and errors");
+  verb.flag("-v,--verbose", a.verbose, "Print more, and all warnings");
+  verb.flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
+  verb.option("--display-server", &a.display_server, "HOST:PORT",
+              "Live preview in a viewer that speaks tev's protocol");
 }
 
-void add_bvh_option(CLI::App& verb, std::string& quality) {
-  verb.add_option("--bvh", quality, "How hard to build the tree: fast, balanced or best")
-      ->type_name("QUALITY");
+void add_bvh_option(Verb& verb, std::string& quality) {
+  verb.option("--bvh", &quality, "QUALITY", "How hard to build the tree: fast, balanced or best");
 }
 
 BuildOptions parse_bvh_option(const std::string& quality) {

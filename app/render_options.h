@@ -7,12 +7,9 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "app/command_line.h"
 #include "io/scene/scene_file.h"
 #include "render/scene.h"
-
-namespace CLI {
-class App;
-}
 
 namespace oktett {
 
@@ -36,13 +33,13 @@ struct RenderArguments {
   bool progress = false;
 };
 
-void add_render_options(CLI::App& verb, RenderArguments& arguments);
+void add_render_options(Verb& verb, RenderArguments& arguments);
 
 /// Overrides settings of the scene by the arguments. Throws Error for unknown words.
 void override_scene(const RenderArguments& arguments, Scene& scene);
 /// Splits `name=value` words; of several with one name the last counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
-void add_bvh_option(CLI::App& verb, std::string& quality);
+void add_bvh_option(Verb& verb, std::string& quality);
 /// Build options of the quality that --bvh names; empty: the default. Throws Error for an unknown word.
 BuildOptions parse_bvh_option(const std::string& quality);
 /// `outfile`, or the scene's name with .png in the current directory.

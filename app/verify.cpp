@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -10,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/command.h"
+#include "app/command_line.h"
 #include "app/json.h"
 #include "app/render_options.h"
 #include "core/error.h"
@@ -235,29 +234,21 @@ int run_verify(const VerifyArguments& arguments) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, Command& command) {
-  CLI::App* verb = app.add_subcommand("verify", "Check kernels and tracing against exact arithmetic");
-  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+void add_verify_command(CommandLine& line) {
   const auto arguments = std::make_shared<VerifyArguments>();
-  verb->add_option("--rays", arguments->rays,
-                   "Rays per kernel; a hundredth of it per mesh and placement (default 10 million)")
-      ->type_name("N");
-  verb->add_option("--mesh", arguments->meshes, "Check this mesh too; may be repeated")
-      ->type_name("FILE.obj")
-      ->allow_extra_args(false);
-  verb->add_option(
-          "--surface", arguments->surfaces,
-          "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  verb->add_option("--isa", arguments->isa,
-                   "One instruction set instead of all: scalar, sse4.2, avx2, avx512")
-      ->type_name("NAME");
-  add_bvh_option(*verb, arguments->bvh);
-  verb->add_flag("--quick", arguments->quick, "100 000 rays per kernel");
-  verb->add_flag("--json", arguments->json, "Print one JSON object");
-  verb->footer("Exits with status 3 if anything is found wrong.");
-  verb->callback([&command, arguments] { command.run = [arguments] { return run_verify(*arguments); }; });
+  Verb verb = line.add_verb("verify", "Check kernels and tracing against exact arithmetic",
+                            [arguments] { return run_verify(*arguments); });
+  verb.option("--rays", &arguments->rays, "N",
+              "Rays per kernel; a hundredth of it per mesh and placement (default 10 million)");
+  verb.option("--mesh", &arguments->meshes, "FILE.obj", "Check this mesh too; may be repeated");
+  verb.option("--surface", &arguments->surfaces, "NAME",
+              "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated");
+  verb.option("--isa", &arguments->isa, "NAME",
+              "One instruction set instead of all: scalar, sse4.2, avx2, avx512");
+  add_bvh_option(verb, arguments->bvh);
+  verb.flag("--quick", arguments->quick, "100 000 rays per kernel");
+  verb.flag("--json", arguments->json, "Print one JSON object");
+  verb.footer("Exits with status 3 if anything is found wrong.");
 }
 
 }  // namespace oktett

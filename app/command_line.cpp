@@ -1,0 +1,128 @@
+#include "app/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <utility>
+
+#include "core/error.h"
+
+namespace oktett {
+
+std::string program_version() { return "oktett " OKTETT_VERSION; }
+
+namespace {
+
+std::string joined(int argc, char** argv) {
+  std::string line = "oktett";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
+
+/// The verb that was being parsed, or the program itself.
+const CLI::App* current(const CLI::App& app) {
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  return verbs.empty() ? &app : verbs.front();
+}
+
+/// The long option of `app` that is nearest to the mistyped word `typed`; empty if none is near.
+std::string nearest_option(const CLI::App& app, const std::string& typed) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  std::vector<const char*> known;
+  for (const std::string& name : names) known.push_back(name.c_str());
+  return nearest_name(typed.substr(0, typed.find('=')), known.data(), known.size());
+}
+
+std::string nearest_verb(const CLI::App& app, const std::string& typed) {
+  std::vector<const char*> known;
+  const std::vector<const CLI::App*> verbs = app.get_subcommands([](const CLI::App*) { return true; });
+  for (const CLI::App* verb : verbs) known.push_back(verb->get_name().c_str());
+  return nearest_name(typed, known.data(), known.size());
+}
+
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& verb = *current(app);
+  const std::vector<std::string> extra = verb.remaining(true);
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError) || extra.empty()) {
+    if (&verb != &app || app.remaining(true).empty()) return error.what();
+  }
+  const std::string typed = extra.empty() ? app.remaining(true).front() : extra.front();
+  const bool option = typed.starts_with('-') && typed != "-";
+  const std::string near = option          ? nearest_option(verb, typed)
+                           : &verb == &app ? nearest_verb(app, typed)
+                                           : "";
+  const char* what = option ? "unknown option" : &verb == &app ? "unknown command" : "unexpected argument";
+  return fmt::format("{} '{}'{}", what, typed, near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
+}
+
+int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* verb = current(app);
+  const std::string help = verb == &app ? "oktett --help" : "oktett " + verb->get_name() + " --help";
+  fmt::print(stderr, "oktett: {}\nRun '{}' for a list of what there is.\n", explain(app, error), help);
+  return kExitBadInput;
+}
+
+}  // namespace
+
+void Verb::option(const char* names, OptionTarget target, const char* value, const char* help) {
+  std::visit(
+      [&](auto* variable) {
+        CLI::Option* option = app_->add_option(names, *variable, help)->type_name(value);
+        if constexpr (std::is_same_v<decltype(variable), std::vector<std::string>*>)
+          option->allow_extra_args(false);
+      },
+      target);
+}
+
+void Verb::positional(const char* name, std::string& target, const char* value, const char* help) {
+  app_->add_option(name, target, help)->required()->type_name(value);
+}
+
+void Verb::flag(const char* names, bool& target, const char* help) { app_->add_flag(names, target, help); }
+
+void Verb::flag(const char* names, std::string& target, const char* help) {
+  app_->add_flag(names, target, help);
+}
+
+void Verb::notice(const char* names, std::function<std::string()> text, const char* help) {
+  const auto print = [text = std::move(text)](std::int64_t) {
+    fmt::print("{}", text());
+    throw CLI::Success();
+  };
+  app_->add_flag_function(names, print, help)->trigger_on_parse();
+}
+
+void Verb::footer(const char* text) { app_->footer(text); }
+
+CommandLine::CommandLine(int argc, char** argv)
+    : argc_(argc),
+      argv_(argv),
+      text_(joined(argc, argv)),
+      app_(std::make_unique<CLI::App>("A data-oriented SIMD packet ray tracer for CPUs.", "oktett")) {
+  app_->set_version_flag("--version", program_version(), "Print the version and exit");
+  app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+Verb CommandLine::add_verb(const char* name, const char* help, std::function<int()> run) {
+  CLI::App* verb = app_->add_subcommand(name, help);
+  verb->set_version_flag("--version", program_version(), "Print the version and exit");
+  verb->callback([this, run = std::move(run)] { run_ = run; });
+  return Verb(*verb);
+}
+
+std::optional<int> CommandLine::parse() {
+  try {
+    app_->parse(argc_, argv_);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    return asked ? app_->exit(error) : usage_error(*app_, error);
+  }
+}
+
+}  // namespace oktett

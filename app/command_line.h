@@ -1,0 +1,79 @@
+#pragma once
+/// \file The words after `oktett`: verbs, their options, help texts and complaints. Only command_line.cpp
+/// knows the library that parses them.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace oktett {
+
+/// The variable that an option's value goes to. An option for a vector may be repeated.
+using OptionTarget = std::variant<std::string*, unsigned*, std::uint64_t*, std::optional<std::uint32_t>*,
+                                  std::vector<std::string>*>;
+
+/// A verb, while its options are added. `names` are separated by commas, as in "-o,--outfile"; `value` is the
+/// word for the option's value in the help text. Targets must live as long as the CommandLine.
+class Verb {
+ public:
+  explicit Verb(CLI::App& app) : app_(&app) {}
+
+  void option(const char* names, OptionTarget target, const char* value, const char* help);
+  /// A word that must be given and that no option's name precedes.
+  void positional(const char* name, std::string& target, const char* value, const char* help);
+  void flag(const char* names, bool& target, const char* help);
+  /// A flag that may have a value, as in --stats=json. `names` ends with the value that the flag alone stands
+  /// for, as in "--stats{text}".
+  void flag(const char* names, std::string& target, const char* help);
+  /// A flag that prints `text()` and ends the program, as --version does.
+  void notice(const char* names, std::function<std::string()> text, const char* help);
+  /// Text below the options in the verb's help.
+  void footer(const char* text);
+
+ private:
+  CLI::App* app_;
+};
+
+class CommandLine {
+ public:
+  CommandLine(int argc, char** argv);
+  ~CommandLine();
+
+  /// `run` does the verb's work after the options are set, and returns the program's exit status.
+  Verb add_verb(const char* name, const char* help, std::function<int()> run);
+  /// Reads the words. Returns nothing if run() is to follow. Otherwise the program ends with the status
+  /// returned: help or the version was asked for and has been printed, or a complaint has been.
+  std::optional<int> parse();
+  int run() const { return run_(); }
+
+  /// All words as they were typed.
+  const std::string& text() const { return text_; }
+
+ private:
+  int argc_;
+  char** argv_;
+  std::string text_;
+  std::unique_ptr<CLI::App> app_;
+  std::function<int()> run_;
+};
+
+/// "oktett 1.2.3".
+std::string program_version();
+
+// The verbs, each in a file of its own.
+void add_render_command(CommandLine& line);
+void add_info_command(CommandLine& line);
+void add_verify_command(CommandLine& line);
+
+/// Exit status for wrong words and for files that say something wrong.
+inline constexpr int kExitBadInput = 2;
+
+}  // namespace oktett
