@@ -6,13 +6,14 @@
 #include "accel/hit_list.h"
 #include "accel/ray_state.h"
 #include "accel/shape_hits.h"
+#include "core/double_lanes.h"
 
 namespace oktett {
 
 template <class A>
 struct ExactCode {
   /// Rays that are solved at once.
-  static constexpr int kLanes = std::is_same_v<A, ScalarIsa> ? 1 : 8;
+  static constexpr int kLanes = kDoubleLanes<A>;
   using F = Simd<float, kLanes, A>;
 
   /// The first crossing of each ray in `lanes` with the cell, if it is within the ray's range. Returns the
@@ -20,8 +21,10 @@ struct ExactCode {
   /// the turn in v (see Crossings).
   static unsigned first(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,
                         unsigned lanes, HitLanes<F>& hits, std::uint32_t& item);
-  /// Appends every crossing of one ray with the cell.
-  static void all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray, HitList& hits);
+  /// Appends every crossing of one ray with the cell. One ray gives the same bits in every set, so only the
+  /// scalar code has this function.
+  static void all(const Accel& accel, Kind kind, std::uint32_t cell, const Ray& ray,
+                  HitList& hits) requires std::is_same_v<A, ScalarIsa>;
   /// Appends every crossing of the rays in `lanes` with the cell, for kinds that has_one_cell. Returns the
   /// item that the cell belongs to.
   static std::uint32_t rows(const Accel& accel, Kind kind, std::uint32_t cell, const RayLanes<F>& rays,

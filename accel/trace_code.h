@@ -5,7 +5,7 @@
 #include "accel/hit_list.h"
 #include "accel/hit_sink.h"
 #include "accel/trace_mode.h"
-#include "core/isa_select.h"
+#include "core/isa.h"
 
 namespace oktett {
 
@@ -18,8 +18,7 @@ struct TraceCode {
 template <class A>
 const TraceCode& trace_code();
 
-inline const TraceCode& trace_code(Isa isa) {
-  return with_isa(isa, []<class A>() -> const TraceCode& { return trace_code<A>(); });
-}
+/// Throws Error if this build holds no code for the set.
+const TraceCode& trace_code(Isa isa);
 
 }  // namespace oktett

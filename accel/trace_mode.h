@@ -1,5 +1,8 @@
 #pragma once
-/// \file The traversal that a query uses. Hits have the same bits in every mode; only the speed differs.
+/// \file The traversal that a query uses. Hits have the same bits in every mode; only the speed differs. Each
+/// set has packets of the widths that suit its registers: the scalar set none, so that every ray goes alone;
+/// the others packets of 8, SSE4.2 also of 4 and AVX-512 also of 16. Where a set lacks the packets that are
+/// asked for, those of 8 are used.
 
 #include <cstdint>
 

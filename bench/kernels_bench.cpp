@@ -101,7 +101,7 @@ void register_kernels() {
   };
   for (const auto& [id, name] : kernels)
     for (Isa isa : available_isas())
-      for (int width : {1, 4, 8, 16})
+      for (int width : probe_widths(isa))
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", name, to_string(isa), width).c_str(),
             [id = id, isa, width](benchmark::State& s) { run_kernel(s, id, isa, width); });

@@ -71,6 +71,8 @@ void register_traversals() {
     for (Isa isa : available_isas())
       for (const auto& [mode, mode_name] : modes) {
         if (isa == Isa::scalar && mode != TraceMode::single) continue;
+        if (isa != Isa::sse42 && mode == TraceMode::packet4) continue;
+        if (isa != Isa::avx512 && mode == TraceMode::packet16) continue;
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", name, to_string(isa), mode_name).c_str(),
             [work = work, isa, mode = mode](benchmark::State& s) { trace(s, work, isa, mode); })

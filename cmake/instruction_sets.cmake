@@ -1,20 +1,58 @@
 # The hot code is compiled once per instruction set, all else for the baseline, so one binary runs everywhere.
 
+# The widest set that this machine has, in `result`; all sets where the machine does not tell.
+function(oktett_native_set result)
+  set(${result} sse42 avx2 avx512 PARENT_SCOPE)
+  if(NOT EXISTS /proc/cpuinfo)
+    return()
+  endif()
+  file(STRINGS /proc/cpuinfo line REGEX "^flags" LIMIT_COUNT 1)
+  string(REGEX MATCHALL "[a-z0-9_]+" flags "${line}")
+  set(needs_sse42 sse4_2)
+  set(needs_avx2 avx2 fma bmi1 bmi2 popcnt)
+  set(needs_avx512 ${needs_avx2} avx512f avx512cd avx512dq avx512bw avx512vl)
+  set(widest "")
+  foreach(set sse42 avx2 avx512)
+    set(missing ${needs_${set}})
+    list(REMOVE_ITEM missing ${flags})
+    if(NOT missing)
+      set(widest ${set})
+    endif()
+  endforeach()
+  set(${result} ${widest} PARENT_SCOPE)
+endfunction()
+
+# OKTETT_SETS: what OKTETT_INSTRUCTION_SETS asks for, as a list.
+if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(OKTETT_SETS "")
+elseif(OKTETT_INSTRUCTION_SETS STREQUAL "native")
+  oktett_native_set(OKTETT_SETS)
+else()
+  set(OKTETT_SETS ${OKTETT_INSTRUCTION_SETS})
+endif()
+set(oktett_with "")
+foreach(set IN LISTS OKTETT_SETS)
+  if(NOT set MATCHES "^(sse42|avx2|avx512)$")
+    message(FATAL_ERROR "OKTETT_INSTRUCTION_SETS: unknown set '${set}'; known are sse42, avx2, avx512, and native alone")
+  endif()
+  string(TOUPPER OKTETT_WITH_${set} definition)
+  list(APPEND oktett_with ${definition})
+endforeach()
+# Only these files depend on the list, so that a build folder can get more sets without compiling anything twice.
+set_source_files_properties(
+  ${PROJECT_SOURCE_DIR}/core/isa.cpp ${PROJECT_SOURCE_DIR}/accel/isa_tables.cpp
+  ${PROJECT_SOURCE_DIR}/render/isa_tables.cpp ${PROJECT_SOURCE_DIR}/verify/isa_tables.cpp
+  PROPERTIES COMPILE_DEFINITIONS "${oktett_with}")
+
 # Compiles the sources given once for each set, with OKTETT_ISA as its tag, and adds the objects to `target`. Code for the
 # set is chosen at run time by core/isa_select.h.
 function(oktett_compile_per_set target)
   oktett_compile_set(${target} scalar "${ARGN}" ScalarIsa -O2 -fno-tree-vectorize)
-  if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    return()
-  endif()
   set(flags_sse42 Sse42Isa -msse4.2)
   set(flags_avx2 Avx2Isa -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
   set(flags_avx512 Avx512Isa -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mbmi -mbmi2
     -mlzcnt -mpopcnt -mf16c -mprefer-vector-width=512)
-  foreach(set IN LISTS OKTETT_INSTRUCTION_SETS)
-    if(NOT set MATCHES "^(sse42|avx2|avx512)$")
-      message(FATAL_ERROR "OKTETT_INSTRUCTION_SETS: unknown set '${set}'; known are sse42, avx2 and avx512")
-    endif()
+  foreach(set IN LISTS OKTETT_SETS)
     oktett_compile_set(${target} ${set} "${ARGN}" ${flags_${set}})
   endforeach()
 endfunction()
@@ -42,7 +80,4 @@ function(oktett_compile_set target set sources tag)
     set_target_properties(${code} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:${code}>)
-  string(TOUPPER ${set} upper)
-  # Not for the code of a set itself: that must not instantiate the code of another one.
-  target_compile_definitions(${target} PUBLIC $<BUILD_INTERFACE:OKTETT_WITH_${upper}>)
 endfunction()

@@ -3,7 +3,9 @@
 ///
 /// A layer compiles such code as templates over the set, in units of its folder `isa/`, and reaches it
 /// through a table of functions: `template <class A> const XCode& x_code();` is defined for each set in those
-/// units only.
+/// units only. `const XCode& x_code(Isa)` is defined in the layer's isa_tables.cpp. Only these files and
+/// core/isa.cpp are told which sets the build holds (cmake/instruction_sets.cmake), so that a longer list
+/// recompiles nothing else.
 
 #include "core/error.h"
 #include "core/isa.h"

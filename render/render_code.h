@@ -1,7 +1,7 @@
 #pragma once
 /// \file Code of the renderer that is compiled for each instruction set in render/isa.
 
-#include "core/isa_select.h"
+#include "core/isa.h"
 #include "render/context.h"
 #include "render/shading_columns.h"
 #include "render/view_directions.h"
@@ -19,8 +19,7 @@ struct RenderCode {
 template <class A>
 const RenderCode& render_code();
 
-inline const RenderCode& render_code(Isa isa) {
-  return with_isa(isa, []<class A>() -> const RenderCode& { return render_code<A>(); });
-}
+/// Throws Error if this build holds no code for the set.
+const RenderCode& render_code(Isa isa);
 
 }  // namespace oktett

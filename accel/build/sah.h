@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "accel/node.h"
-#include "core/isa_select.h"
+#include "core/isa.h"
 
 namespace oktett {
 
@@ -157,8 +157,7 @@ constexpr std::size_t balanced_half(std::size_t n) {
 template <class A>
 const BuildKernels& build_kernels();
 
-inline const BuildKernels& build_kernels(Isa isa) {
-  return with_isa(isa, []<class A>() -> const BuildKernels& { return build_kernels<A>(); });
-}
+/// Throws Error if this build holds no code for the set.
+const BuildKernels& build_kernels(Isa isa);
 
 }  // namespace oktett

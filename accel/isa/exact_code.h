@@ -80,30 +80,12 @@ OKTETT_INLINE unsigned first_crossings(const typename S::Pool& pool, std::uint32
 template <class S, class A>
 unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
                                      unsigned lanes, HitLanes<F>& hits) {
-  if constexpr (requires { S::kLoneLanes; } && F::kWidth > 1) {
-    if ((lanes & (lanes - 1)) == 0) {
-      using One = Simd<float, 1, A>;
-      const int k = __builtin_ctz(lanes);
-      const auto lone = [&](const F& x) {
-        float column[F::kWidth];
-        x.store(column);
-        return One(column[k]);
-      };
-      const RayLanes<One> ray{{lone(rays.o.x), lone(rays.o.y), lone(rays.o.z)},
-                              {lone(rays.d.x), lone(rays.d.y), lone(rays.d.z)},
-                              lone(rays.tmin),
-                              lone(rays.tmax)};
-      HitLanes<One> hit;
-      const unsigned met = first_crossings<S>(pool, index, ray, 1, hit);
-      hits.t = F(hit.t.part[0].v), hits.u = F(hit.u.part[0].v), hits.v = F(hit.v.part[0].v);
-      return met << k;
-    }
-  }
   return first_crossings<S>(pool, index, rays, lanes, hits);
 }
 
 template <class S, class A>
-void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray& ray, HitList& hits) {
+void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray& ray,
+                               HitList& hits) requires std::is_same_v<A, ScalarIsa> {
   using One = Simd<float, 1, A>;
   using D = Simd<double, 1, A>;
   constexpr int K = S::kMaxCrossings;

@@ -3,13 +3,14 @@
 
 #include "accel/accel_data.h"
 #include "accel/shape_hits.h"
+#include "core/double_lanes.h"
 #include "kernels/closed/surface_points.h"
 
 namespace oktett {
 
 /// Lanes for surfaces; one hit at a time without vector registers.
 template <class A>
-using SurfaceLanes = Simd<double, std::is_same_v<A, ScalarIsa> ? 1 : 8, A>;
+using SurfaceLanes = Simd<double, kDoubleLanes<A>, A>;
 
 template <class S, class D>
 OKTETT_INLINE void closed_surfaces(const typename S::Pool& pool, ShapeHits& hits) {

@@ -1,5 +1,6 @@
 #include "accel/isa/trace_query.h"
 #include "accel/trace_code.h"
+#include "core/simd_native.h"
 
 namespace oktett {
 

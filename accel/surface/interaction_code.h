@@ -4,7 +4,7 @@
 #include "accel/accel_data.h"
 #include "accel/shape_hits.h"
 #include "accel/surface/mesh_hits.h"
-#include "core/isa_select.h"
+#include "core/isa.h"
 
 namespace oktett {
 
@@ -20,8 +20,7 @@ struct InteractionCode {
 template <class A>
 const InteractionCode& interaction_code();
 
-inline const InteractionCode& interaction_code(Isa isa) {
-  return with_isa(isa, []<class A>() -> const InteractionCode& { return interaction_code<A>(); });
-}
+/// Throws Error if this build holds no code for the set.
+const InteractionCode& interaction_code(Isa isa);
 
 }  // namespace oktett

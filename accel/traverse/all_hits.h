@@ -106,7 +106,7 @@ void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A
         collect_csg<A>(accel.combinations[leaf.begin + k], ray, hits);
     else
       for (std::uint32_t k = 0; k < leaf.count; ++k)
-        ExactCode<A>::all(accel, leaf.kind, leaf.begin + k, ray, hits);
+        ExactCode<ScalarIsa>::all(accel, leaf.kind, leaf.begin + k, ray, hits);
   } else {
     visit_pool(leaf.kind, accel.pools,
                [&](auto shape, const auto& pool) { collect_shape<decltype(shape)>(pool, leaf, r, hits); });

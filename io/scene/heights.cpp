@@ -10,7 +10,7 @@
 #include "io/scene/exact.h"
 #include "io/scene/shape_reader.h"
 #include "io/scene/utf8.h"
-#include "kernels/functions/function_tape.h"
+#include "kernels/functions/tape_data.h"
 #include "kernels/heights/height_grid.h"
 
 namespace oktett {
@@ -44,31 +44,21 @@ bool depends_on_y(const FunctionTape& f) {
   return false;
 }
 
-/// The function of x and z at the places of the samples, several at a time; the number of the first sample
-/// that has no finite value goes to `bad`.
+/// The function of x and z at the places of the samples. The number of the first sample that has no finite
+/// value goes to `bad`.
 Column<float> sample(const FunctionTape& f, std::uint32_t columns, std::uint32_t rows, const Vec3d& size,
                      std::size_t& bad) {
-  constexpr std::uint32_t W = 8;
-  using D = Simd<double, W, ScalarIsa>;
-  using G = Gradient<D>;
   const std::size_t count = std::size_t{columns} * rows;
   Column<float> samples(count);
   std::atomic<std::size_t> first_bad = count;
-  const D zero(0.0);
-  const Vec3<D> flat{zero, zero, zero};
   tbb::parallel_for(std::uint32_t{0}, rows, [&](std::uint32_t row) {
-    const D z((row / (rows - 1.0) - 0.5) * size.z);
-    for (std::uint32_t column = 0; column < columns; column += W) {
-      double x[W], y[W];
-      for (std::uint32_t k = 0; k < W; ++k)
-        x[k] = (std::min(column + k, columns - 1) / (columns - 1.0) - 0.5) * size.x;
-      run_tape(f, G{D::load(x), flat}, G{zero, flat}, G{z, flat}).v.store(y);
-      for (std::uint32_t k = 0; k < W && column + k < columns; ++k) {
-        const std::size_t i = std::size_t{row} * columns + column + k;
-        samples[i] = static_cast<float>(y[k]);
-        if (std::abs(y[k]) <= kMostHeight) continue;
-        for (std::size_t before = first_bad; i < before && !first_bad.compare_exchange_weak(before, i);) {}
-      }
+    const double z = (row / (rows - 1.0) - 0.5) * size.z;
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const double x = (column / (columns - 1.0) - 0.5) * size.x, y = value_at(f, x, 0, z);
+      const std::size_t i = std::size_t{row} * columns + column;
+      samples[i] = static_cast<float>(y);
+      if (std::abs(y) <= kMostHeight) continue;
+      for (std::size_t before = first_bad; i < before && !first_bad.compare_exchange_weak(before, i);) {}
     }
   });
   bad = first_bad;

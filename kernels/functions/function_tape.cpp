@@ -273,4 +273,13 @@ FunctionTape compile_function(std::string_view text) {
   return tape;
 }
 
+double value_at(const FunctionTape& tape, double x, double y, double z) {
+  using D = Simd<double, 1, ScalarIsa>;
+  const Vec3<D> flat = gradient::zero<D>();
+  const auto constant = [&](double c) { return Gradient<D>{D(c), flat}; };
+  double value;
+  run_tape(tape, constant(x), constant(y), constant(z)).v.store(&value);
+  return value;
+}
+
 }  // namespace oktett

@@ -121,13 +121,13 @@ OKTETT_INLINE Gradient<D, W> max(const Gradient<D, W>& a, const Gradient<D, W>& 
   return gradient::choose((b.v <= a.v) | ~(a.v == a.v), a, b);
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> exp(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> exp(const Gradient<D, W>& a) {
   const D e = lane::exp2(a.v * D(std::numbers::log2e));
   // x^z is exp(z log(x)).
   return gradient::chain(a, e, W == Walls::flat ? e : max(e, D(1.0)));
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> log(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> log(const Gradient<D, W>& a) {
   if (W == Walls::steep) {
     const D x = gradient::divisor<W>(abs(a.v));
     return gradient::chain(a, lane::log(x), D(1.0) / x);
@@ -137,7 +137,7 @@ OKTETT_INLINE Gradient<D, W> log(const Gradient<D, W>& a) {
 }
 /// For whole n.
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> pow(const Gradient<D, W>& a, int exponent) {
+OKTETT_NOINLINE Gradient<D, W> pow(const Gradient<D, W>& a, int exponent) {
   const int n = exponent < 0 ? -exponent : exponent;
   const D one(1.0);
   if (n == 0) return {select(a.v == a.v, one, a.v), gradient::zero<D>()};
@@ -147,7 +147,7 @@ OKTETT_INLINE Gradient<D, W> pow(const Gradient<D, W>& a, int exponent) {
 }
 /// For a.v >= 0 and y that is not 0.
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> pow(const Gradient<D, W>& a, double y) {
+OKTETT_NOINLINE Gradient<D, W> pow(const Gradient<D, W>& a, double y) {
   D exponent;
   const D x = W == Walls::flat ? a.v : gradient::divisor<W>(abs(a.v));
   const D magnitude = lane::pow(max(x, D(0.0)), D(y < 0 ? -y : y), exponent);
@@ -156,7 +156,7 @@ OKTETT_INLINE Gradient<D, W> pow(const Gradient<D, W>& a, double y) {
   return gradient::chain(a, p, D(y) * (W == Walls::flat ? p : max(p, D(1.0))) / x);
 }
 template <class D, Walls W>
-OKTETT_INLINE void sin_cos(const Gradient<D, W>& a, Gradient<D, W>& sin, Gradient<D, W>& cos) {
+OKTETT_NOINLINE void sin_cos(const Gradient<D, W>& a, Gradient<D, W>& sin, Gradient<D, W>& cos) {
   D s, c;
   lane::sin_cos(interval::clamp_angle(a.v), s, c);
   const auto defined = a.v == a.v;
@@ -176,13 +176,13 @@ OKTETT_INLINE Gradient<D, W> cos(const Gradient<D, W>& a) {
   return c;
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> tan(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> tan(const Gradient<D, W>& a) {
   Gradient<D, W> s, c;
   sin_cos(a, s, c);
   return s / c;
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> atan(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> atan(const Gradient<D, W>& a) {
   return gradient::chain(a, lane::atan(a.v), D(1.0) / (D(1.0) + a.v * a.v));
 }
 namespace gradient {
@@ -201,17 +201,17 @@ OKTETT_INLINE D sine_range(const D& x) {
 }  // namespace gradient
 
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> asin(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> asin(const Gradient<D, W>& a) {
   return gradient::chain(a, lane::asin(gradient::sine_range<W>(a.v)),
                          D(1.0) / gradient::cosine_of_asin<W>(a.v));
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> acos(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> acos(const Gradient<D, W>& a) {
   return gradient::chain(a, lane::acos(gradient::sine_range<W>(a.v)),
                          D(-1.0) / gradient::cosine_of_asin<W>(a.v));
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> atan2(const Gradient<D, W>& y, const Gradient<D, W>& x) {
+OKTETT_NOINLINE Gradient<D, W> atan2(const Gradient<D, W>& y, const Gradient<D, W>& x) {
   const D zero(0.0), pi(std::numbers::pi);
   const D quadrant = lane::atan2_quadrant(abs(y.v), abs(x.v));
   const D upper = select(x.v < zero, pi - quadrant, quadrant);
@@ -222,19 +222,19 @@ OKTETT_INLINE Gradient<D, W> atan2(const Gradient<D, W>& y, const Gradient<D, W>
   return {angle, gradient::sum(gradient::scaled(y.d, by_y), gradient::scaled(x.d, -y.v / rr))};
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> floor(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> floor(const Gradient<D, W>& a) {
   return gradient::stepped(a, interval::floor_lanes(a.v), interval::round_lanes(a.v));
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> ceil(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> ceil(const Gradient<D, W>& a) {
   return gradient::stepped(a, -interval::floor_lanes(-a.v), interval::round_lanes(a.v));
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> round(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> round(const Gradient<D, W>& a) {
   return gradient::stepped(a, interval::round_lanes(a.v), interval::floor_lanes(a.v) + D(0.5));
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> sign(const Gradient<D, W>& a) {
+OKTETT_NOINLINE Gradient<D, W> sign(const Gradient<D, W>& a) {
   return gradient::stepped(a, interval::sign_lanes(a.v), D(0.0));
 }
 

@@ -74,4 +74,8 @@ struct FunctionTape {
 /// long. Error::where().column counts bytes in `text` from 1.
 FunctionTape compile_function(std::string_view text);
 
+/// The function at one point; NaN where it is not defined. Code for many points runs the tape in lanes
+/// instead.
+double value_at(const FunctionTape& tape, double x, double y, double z);
+
 }  // namespace oktett

@@ -30,7 +30,7 @@ OKTETT_INLINE Dual<T> operator*(const Dual<T>& a, const Dual<T>& b) {
   return {a.v * b.v, a.d * b.v + a.v * b.d};
 }
 template <class T>
-OKTETT_INLINE Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
+OKTETT_NOINLINE Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
   const T q = a.v / b.v;
   return {q, (a.d - q * b.d) / b.v};
 }
@@ -54,19 +54,19 @@ OKTETT_INLINE Dual<T> sqr(const Dual<T>& a) {
   return {sqr(a.v), times(a.v * a.d, 2)};
 }
 template <class T>
-OKTETT_INLINE Dual<T> sqrt(const Dual<T>& a) {
+OKTETT_NOINLINE Dual<T> sqrt(const Dual<T>& a) {
   const T r = sqrt(a.v);
   return {r, times(a.d / r, 0.5)};
 }
 
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> abs(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> abs(const Dual<Interval<D>>& a) {
   const Interval<D> turned = -a.d;
   const Interval<D> d = select(D(0.0) <= a.v.lo, a.d, select(a.v.hi <= D(0.0), turned, hull(a.d, turned)));
   return {abs(a.v), interval::carry(a.v, d)};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> min(const Dual<Interval<D>>& a, const Dual<Interval<D>>& b) {
+OKTETT_NOINLINE Dual<Interval<D>> min(const Dual<Interval<D>>& a, const Dual<Interval<D>>& b) {
   const Interval<D> d = select(a.v.hi < b.v.lo, a.d, select(b.v.hi < a.v.lo, b.d, hull(a.d, b.d)));
   return {min(a.v, b.v), interval::carry(a.v, b.v, d)};
 }
@@ -75,21 +75,21 @@ OKTETT_INLINE Dual<Interval<D>> max(const Dual<Interval<D>>& a, const Dual<Inter
   return -min(-a, -b);
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> exp(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> exp(const Dual<Interval<D>>& a) {
   const Interval<D> e = exp(a.v);
   return {e, e * a.d};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> log(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> log(const Dual<Interval<D>>& a) {
   return {log(a.v), a.d / a.v};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> pow(const Dual<Interval<D>>& a, int n) {
+OKTETT_NOINLINE Dual<Interval<D>> pow(const Dual<Interval<D>>& a, int n) {
   if (n == 0) return {pow(a.v, 0), interval::carry(a.v, Interval<D>(D(0.0)))};
   return {pow(a.v, n), times(pow(a.v, n - 1) * a.d, n)};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> pow(const Dual<Interval<D>>& a, double y) {
+OKTETT_NOINLINE Dual<Interval<D>> pow(const Dual<Interval<D>>& a, double y) {
   return {pow(a.v, y), pow(a.v, y - 1) * Interval<D>(D(y)) * a.d};
 }
 template <class D>
@@ -105,24 +105,24 @@ OKTETT_INLINE Dual<Interval<D>> cos(const Dual<Interval<D>>& a) {
   return {c, -s * a.d};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> tan(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> tan(const Dual<Interval<D>>& a) {
   const Interval<D> t = tan(a.v);
   return {t, (Interval<D>(D(1.0)) + sqr(t)) * a.d};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> atan(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> atan(const Dual<Interval<D>>& a) {
   return {atan(a.v), a.d / (Interval<D>(D(1.0)) + sqr(a.v))};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> asin(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> asin(const Dual<Interval<D>>& a) {
   return {asin(a.v), a.d / sqrt(Interval<D>(D(1.0)) - sqr(a.v))};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> acos(const Dual<Interval<D>>& a) {
+OKTETT_NOINLINE Dual<Interval<D>> acos(const Dual<Interval<D>>& a) {
   return {acos(a.v), -(a.d / sqrt(Interval<D>(D(1.0)) - sqr(a.v)))};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> atan2(const Dual<Interval<D>>& y, const Dual<Interval<D>>& x) {
+OKTETT_NOINLINE Dual<Interval<D>> atan2(const Dual<Interval<D>>& y, const Dual<Interval<D>>& x) {
   const D zero(0.0);
   const auto smooth = (zero < x.v.lo) | (zero < y.v.lo) | (y.v.hi < zero);
   const Interval<D> d = (y.d * x.v - x.d * y.v) / (sqr(x.v) + sqr(y.v));

@@ -134,7 +134,7 @@ OKTETT_INLINE Interval<D> operator*(const Interval<D>& a, const D& b) {
 }
 /// 1 / a, void for zero itself.
 template <class D>
-OKTETT_INLINE Interval<D> inverse(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> inverse(const Interval<D>& a) {
   const D zero(0.0), inf = Interval<D>::infinity();
   Interval<D> r = interval::outward(D(1.0) / a.hi, D(1.0) / a.lo);
   r.lo = select(a.hi == zero, -inf, r.lo), r.hi = select(a.lo == zero, inf, r.hi);
@@ -188,13 +188,13 @@ OKTETT_INLINE Interval<D> sqrt(const Interval<D>& a) {
 }
 
 template <class D>
-OKTETT_INLINE Interval<D> exp2(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> exp2(const Interval<D>& a) {
   // The argument is exact; the series has its error.
   return interval::carry(
       a, interval::outward_positive(lane::exp2(a.lo), lane::exp2(a.hi), D(lane::kExp2Error * 2)));
 }
 template <class D>
-OKTETT_INLINE Interval<D> exp(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> exp(const Interval<D>& a) {
   // log2(e) as a double is low by less than 2^-54 of itself.
   const D log2e(std::numbers::log2e);
   const Interval<D> x = interval::outward(a.lo * log2e, a.hi * log2e, D(0x1p-51));
@@ -210,17 +210,17 @@ OKTETT_INLINE Interval<D> log_by(const Interval<D>& a, F&& f) {
   return select((a.lo == D(0.0)) & (a.hi == D(0.0)), Interval<D>::nothing(), x);
 }
 template <class D>
-OKTETT_INLINE Interval<D> log(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> log(const Interval<D>& a) {
   return log_by(a, [](const D& x) { return lane::log(x); });
 }
 template <class D>
-OKTETT_INLINE Interval<D> log2(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> log2(const Interval<D>& a) {
   return log_by(a, [](const D& x) { return lane::log2(x); });
 }
 
 /// x^y for a number y > 0 and x >= 0; elsewhere as sqrt.
 template <class D>
-OKTETT_INLINE Interval<D> pow_positive(const Interval<D>& a, double exponent) {
+OKTETT_NOINLINE Interval<D> pow_positive(const Interval<D>& a, double exponent) {
   const D y(exponent);
   D e_lo, e_hi;
   const D l = lane::pow(max(a.lo, D(0.0)), y, e_lo), h = lane::pow(max(a.hi, D(0.0)), y, e_hi);
@@ -230,14 +230,14 @@ OKTETT_INLINE Interval<D> pow_positive(const Interval<D>& a, double exponent) {
 }
 /// x^y for any number y and x >= 0; elsewhere as sqrt. 0^y = 0 for y > 0, and a pole for y < 0.
 template <class D>
-OKTETT_INLINE Interval<D> pow(const Interval<D>& a, double exponent) {
+OKTETT_NOINLINE Interval<D> pow(const Interval<D>& a, double exponent) {
   if (exponent == 0) return interval::inside_domain(a, D(0.0), Interval<D>::infinity(), Interval<D>(D(1.0)));
   const Interval<D> r = pow_positive(a, exponent < 0 ? -exponent : exponent);
   return exponent < 0 ? inverse(r) : r;
 }
 /// x^n for whole n > 0.
 template <class D>
-OKTETT_INLINE Interval<D> pow_positive(const Interval<D>& a, int n) {
+OKTETT_NOINLINE Interval<D> pow_positive(const Interval<D>& a, int n) {
   if (n == 1) return a;
   if (n == 2) return sqr(a);
   const D error(n * interval::kRound);
@@ -252,7 +252,7 @@ OKTETT_INLINE Interval<D> pow_positive(const Interval<D>& a, int n) {
 }
 /// x^n for whole n, for n < 0 with a pole at 0.
 template <class D>
-OKTETT_INLINE Interval<D> pow(const Interval<D>& a, int n) {
+OKTETT_NOINLINE Interval<D> pow(const Interval<D>& a, int n) {
   if (n == 0) return interval::carry(a, Interval<D>(D(1.0)));
   const Interval<D> r = pow_positive(a, n < 0 ? -n : n);
   return n < 0 ? inverse(r) : r;

@@ -33,7 +33,7 @@ OKTETT_INLINE D clamp_angle(const D& x) {
 }  // namespace interval
 
 template <class D>
-OKTETT_INLINE void sin_cos(const Interval<D>& a, Interval<D>& sin, Interval<D>& cos) {
+OKTETT_NOINLINE void sin_cos(const Interval<D>& a, Interval<D>& sin, Interval<D>& cos) {
   D sl, cl, sh, ch;
   lane::sin_cos(interval::clamp_angle(a.lo), sl, cl);
   lane::sin_cos(interval::clamp_angle(a.hi), sh, ch);
@@ -54,7 +54,7 @@ OKTETT_INLINE Interval<D> cos(const Interval<D>& a) {
 }
 /// Entire where a pole may be in the argument.
 template <class D>
-OKTETT_INLINE Interval<D> tan(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> tan(const Interval<D>& a) {
   D sl, cl, sh, ch;
   lane::sin_cos(interval::clamp_angle(a.lo), sl, cl);
   lane::sin_cos(interval::clamp_angle(a.hi), sh, ch);
@@ -68,18 +68,18 @@ OKTETT_INLINE Interval<D> tan(const Interval<D>& a) {
 }
 
 template <class D>
-OKTETT_INLINE Interval<D> atan(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> atan(const Interval<D>& a) {
   return interval::carry(a, interval::outward(lane::atan(a.lo), lane::atan(a.hi), D(lane::kAtanError)));
 }
 /// Void outside [-1, 1], entire where the argument reaches out of it.
 template <class D>
-OKTETT_INLINE Interval<D> asin(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> asin(const Interval<D>& a) {
   const D one(1.0);
   const D l = lane::asin(max(min(a.lo, one), -one)), h = lane::asin(max(min(a.hi, one), -one));
   return interval::inside_domain(a, -one, one, interval::outward(l, h, D(lane::kAtanError)));
 }
 template <class D>
-OKTETT_INLINE Interval<D> acos(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> acos(const Interval<D>& a) {
   const D one(1.0);
   const D l = lane::acos(max(min(a.hi, one), -one)), h = lane::acos(max(min(a.lo, one), -one));
   return interval::inside_domain(a, -one, one, interval::outward_positive(l, h, D(lane::kAtanError)));
@@ -87,7 +87,7 @@ OKTETT_INLINE Interval<D> acos(const Interval<D>& a) {
 /// Angle of the points (x, y); all of [-pi, pi] where the origin or the cut along the negative x axis is
 /// among them.
 template <class D>
-OKTETT_INLINE Interval<D> atan2(const Interval<D>& y, const Interval<D>& x) {
+OKTETT_NOINLINE Interval<D> atan2(const Interval<D>& y, const Interval<D>& x) {
   const D zero(0.0);
   const auto right = zero < x.lo, above = zero < y.lo, below = y.hi < zero;
   const Interval<D> half_pi(D(std::numbers::pi / 2), D(std::numbers::pi / 2 * (1 + 0x1p-52)));
@@ -127,19 +127,19 @@ OKTETT_INLINE D sign_lanes(const D& x) {
 }  // namespace interval
 
 template <class D>
-OKTETT_INLINE Interval<D> floor(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> floor(const Interval<D>& a) {
   return interval::carry(a, {interval::floor_lanes(a.lo), interval::floor_lanes(a.hi)});
 }
 template <class D>
-OKTETT_INLINE Interval<D> ceil(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> ceil(const Interval<D>& a) {
   return interval::carry(a, {-interval::floor_lanes(-a.lo), -interval::floor_lanes(-a.hi)});
 }
 template <class D>
-OKTETT_INLINE Interval<D> round(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> round(const Interval<D>& a) {
   return interval::carry(a, {interval::round_lanes(a.lo), interval::round_lanes(a.hi)});
 }
 template <class D>
-OKTETT_INLINE Interval<D> sign(const Interval<D>& a) {
+OKTETT_NOINLINE Interval<D> sign(const Interval<D>& a) {
   return interval::carry(a, {interval::sign_lanes(a.lo), interval::sign_lanes(a.hi)});
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/double_lanes.h"
 #include "core/lanes.h"
 #include "render/view_directions.h"
 
@@ -11,7 +12,7 @@ namespace oktett {
 /// In groups of eight points; one at a time without vector registers.
 template <class A>
 void view_directions_code(const ViewPlane& plane, const ViewPoints& points) {
-  constexpr int W = std::is_same_v<A, ScalarIsa> ? 1 : 8;
+  constexpr int W = kDoubleLanes<A>;
   using D = Simd<double, W, A>;
   const Vec3<D> corner = broadcast<D>(plane.corner), across = broadcast<D>(plane.per_pixel_x),
                 down = broadcast<D>(plane.per_pixel_y);

@@ -59,7 +59,7 @@ TEST_P(Kernel, CountsAndAlignmentDoNotMatter) {
   cases.fill(id(), CaseClass::random, 0, 64);
   const std::vector<Outcome> all = run(id(), cases, 0, 64, Isa::scalar, 1);
   for (const Isa isa : available_isas())
-    for (const int width : {1, 4, 8, 16})
+    for (const int width : probe_widths(isa))
       for (const std::size_t begin : {0u, 1u, 3u, 7u})
         for (const std::size_t count : {width - 1, width, width + 1, 2 * width + 1}) {
           if (count == 0) continue;
@@ -134,7 +134,7 @@ TEST_P(Kernel, UnusableRaysHitNothing) {
   }
   cases.rays = rays;
   for (const Isa isa : available_isas())
-    for (const int width : {1, 4, 8, 16}) {
+    for (const int width : probe_widths(isa)) {
       const std::vector<Outcome> out = run(id(), cases, 0, 16, isa, width);
       for (std::size_t i = 0; i < 16; ++i)
         EXPECT_FALSE(out[i].hit) << to_string(isa) << ' ' << width << " case " << i;

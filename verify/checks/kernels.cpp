@@ -127,7 +127,7 @@ KernelTally verify_chunk(KernelId id, CaseClass c, std::uint64_t first, std::siz
   };
   run(Isa::scalar, 1, reference);
   for (const Isa isa : isas)
-    for (const int width : {1, 4, 8, 16}) {
+    for (const int width : probe_widths(isa)) {
       run(isa, width, other);
       for (std::size_t i = 0; i < count; ++i) {
         // The slab test is held to be conservative, not identical.

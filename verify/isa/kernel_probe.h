@@ -157,18 +157,24 @@ void run_kernel_width(KernelId id, const KernelProbe& run) {
   }
 }
 
-template <class A>
-void run_kernel(KernelId id, int width, const KernelProbe& run) {
-  if (width == 1) return run_kernel_width<1, A>(id, run);
-  if (width == 4) return run_kernel_width<4, A>(id, run);
-  if (width == 8) return run_kernel_width<8, A>(id, run);
-  run_kernel_width<16, A>(id, run);
-}
+/// Code for the widths W of one set.
+template <class A, int... W>
+struct KernelProbeWidths {
+  static constexpr int kWidths[] = {W...};
+  static void run(KernelId id, int width, const KernelProbe& run) {
+    ((width == W ? run_kernel_width<W, A>(id, run) : void()), ...);
+  }
+  static constexpr KernelProbeCode code = {run, kWidths};
+};
 
+/// One ray at a time is the same code in every set, so only the scalar set is probed at width 1. The other
+/// sets are probed at the widths of the registers and packets that their traversal uses.
 template <class A>
 const KernelProbeCode& kernel_probe_code() {
-  static constexpr KernelProbeCode code = {run_kernel<A>};
-  return code;
+  if constexpr (std::is_same_v<A, ScalarIsa>) return KernelProbeWidths<A, 1>::code;
+  if constexpr (std::is_same_v<A, Sse42Isa>) return KernelProbeWidths<A, 4, 8>::code;
+  if constexpr (std::is_same_v<A, Avx2Isa>) return KernelProbeWidths<A, 8>::code;
+  if constexpr (std::is_same_v<A, Avx512Isa>) return KernelProbeWidths<A, 8, 16>::code;
 }
 
 }  // namespace oktett

@@ -3,8 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
-#include "core/isa_select.h"
+#include "core/isa.h"
 #include "core/ray.h"
 
 namespace oktett {
@@ -37,16 +38,17 @@ enum class KernelId : std::uint8_t {
 };
 
 struct KernelProbeCode {
-  /// `width` is 1, 4, 8 or 16.
   void (*run)(KernelId, int width, const KernelProbe&);
+  std::span<const int> widths;
 };
 
 template <class A>
 const KernelProbeCode& kernel_probe_code();
 
-/// Runs a kernel on the code of `isa`, `width` (1, 4, 8 or 16) pairs at a time.
-inline void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe) {
-  with_isa(isa, [&]<class A>() { kernel_probe_code<A>().run(id, width, probe); });
-}
+/// How many pairs at a time the kernels of `isa` can be run: 1 for the scalar set, else some of 4, 8 and 16.
+/// Throws Error if this build holds no code for the set.
+std::span<const int> probe_widths(Isa isa);
+/// Runs a kernel on the code of `isa`, `width` pairs at a time, which must be one of probe_widths(isa).
+void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe);
 
 }  // namespace oktett

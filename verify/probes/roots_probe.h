@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/isa_select.h"
+#include "core/isa.h"
 
 namespace oktett {
 
@@ -31,9 +31,7 @@ struct RootsProbeCode {
 template <class A>
 const RootsProbeCode& roots_probe_code();
 
-/// Eight polynomials at a time; one on the scalar path.
-inline void probe_roots(Isa isa, RootsKernel id, const RootsProbe& probe) {
-  with_isa(isa, [&]<class A>() { roots_probe_code<A>().run(id, probe); });
-}
+/// Eight polynomials at a time; one on the scalar path. Throws Error if this build holds no code for the set.
+void probe_roots(Isa isa, RootsKernel id, const RootsProbe& probe);
 
 }  // namespace oktett

@@ -1,0 +1,22 @@
+/// \file The tables of this layer's code by instruction set.
+
+#include "accel/build/sah.h"
+#include "accel/surface/interaction_code.h"
+#include "accel/trace_code.h"
+#include "core/isa_select.h"
+
+namespace oktett {
+
+const TraceCode& trace_code(Isa isa) {
+  return with_isa(isa, []<class A>() -> const TraceCode& { return trace_code<A>(); });
+}
+
+const BuildKernels& build_kernels(Isa isa) {
+  return with_isa(isa, []<class A>() -> const BuildKernels& { return build_kernels<A>(); });
+}
+
+const InteractionCode& interaction_code(Isa isa) {
+  return with_isa(isa, []<class A>() -> const InteractionCode& { return interaction_code<A>(); });
+}
+
+}  // namespace oktett
