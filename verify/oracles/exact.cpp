@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "verify/cases/random_parameters.h"
 #include "verify/oracles/exact_families.h"
 
 namespace oktett {
@@ -9,7 +10,7 @@ namespace oktett {
 namespace {
 
 ExactOracle torus(CaseRandom& random) {
-  const TorusShape s{0.2 + random.unit(), 0.05 + random.unit()};
+  const auto s = draw_shape<TorusShape>(random);
   const double r = s.major + s.minor;
   return {"torus",
           {s},

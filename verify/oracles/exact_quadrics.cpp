@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verify/cases/random_parameters.h"
 #include "verify/oracles/exact_families.h"
 
 namespace oktett {
@@ -20,10 +21,8 @@ AxisPosition along(const Vec3d& from, const Vec3d& to, const Vec3l& p) {
   return {h, std::sqrt(dot(off, off)) / l, l};
 }
 
-/// Two ends, along an axis of the world now and then.
-void draw_axis(CaseRandom& random, Vec3d& from, Vec3d& to) {
-  from = random.vector();
-  to = random.vector();
+/// Moves the ends of an axis, so that it is parallel to one of the world now and then and not too short.
+void draw_axis(CaseRandom& random, const Vec3d& from, Vec3d& to) {
   if (random.unit() < 0.3) {
     const int axis = static_cast<int>(random.unit() * 3);
     const double end = to[axis];
@@ -60,18 +59,17 @@ ExactOracle frustum(std::string name, ExactForm form, const Vec3d& from, const V
 }
 
 ExactOracle draw_cylinder(CaseRandom& random, const char* name, bool open) {
-  CylinderShape s;
+  auto s = draw_shape<CylinderShape>(random);
   draw_axis(random, s.from, s.to);
-  s.radius = random.magnitude(-1.3, 0.3), s.open = open;
+  s.open = open;
   return frustum(name, s, s.from, s.to, s.radius, s.radius, open);
 }
 ExactOracle cylinder(CaseRandom& random) { return draw_cylinder(random, "cylinder", false); }
 ExactOracle open_cylinder(CaseRandom& random) { return draw_cylinder(random, "cylinder_open", true); }
 
 ExactOracle draw_cone(CaseRandom& random, const char* name, bool open) {
-  ConeShape s;
+  auto s = draw_shape<ConeShape>(random);
   draw_axis(random, s.from, s.to);
-  s.from_radius = random.magnitude(-1.3, 0.3), s.to_radius = random.magnitude(-1.3, 0.3);
   const double kind = random.unit();
   if (kind < 0.3) s.to_radius = 0;
   if (kind > 0.8) s.from_radius = 0;
