@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a geometry is and where it lies, before anything is built of it.
+/// \file The kind and the bounds of geometries, for the builder.
 
 #include "accel/accel.h"
 #include "kernels/kinds.h"
@@ -8,7 +8,7 @@ namespace oktett {
 
 Kind kind_of(const Geometry& geometry);
 
-/// An infinite plane or surface, or an instance of something that holds one.
+/// Whether it is an infinite plane or surface, or an instance of a structure with one.
 bool is_unbounded(const Geometry& geometry);
 
 /// The sphere's image under a similarity.
