@@ -10,10 +10,11 @@
 #include "accel/node.h"
 #include "core/platform.h"
 #include "core/virtual_array.h"
+#include "kernels/closed_forms.h"
+#include "kernels/exact/exact_pool.h"
+#include "kernels/triangle/triangle.h"
 
 namespace oktett {
-
-struct ExactPools;
 
 /// An instance in the tree: its map into the child, the child, its item number, and the first of its instance
 /// paths.
@@ -69,7 +70,8 @@ class Accel {
   VirtualArray<TriangleBlock> blocks;
   std::vector<LeafEntry> leaves;
   ShapePools pools;
-  std::unique_ptr<ExactPools> exact;  ///< null if there are no exact surfaces
+  std::unique_ptr<ExactPoolBase> exact[kKinds];  ///< by kind; null if there are none of it
+  bool has_exact = false;
   std::vector<InstanceItem> instances;
   std::vector<ListedInstance> listed_instances;
   std::vector<const Accel*> listed_children;
@@ -85,6 +87,8 @@ class Accel {
   std::vector<CsgItem> combinations;
   std::vector<PathStep> path_steps;  ///< ordered by first_path
   AccelStats stats;
+
+  OKTETT_INLINE const ExactPoolBase& exact_pool(Kind kind) const { return *exact[static_cast<int>(kind)]; }
 
   /// Index of the geometry that item belongs to.
   std::uint32_t geometry_of(std::uint32_t item) const {

@@ -5,7 +5,6 @@
 
 #include "accel/accel_data.h"
 #include "kernels/exact_bounds.h"
-#include "kernels/exact_shapes.h"
 
 namespace oktett {
 
@@ -79,15 +78,7 @@ bool is_unbounded(const Geometry& g) {
   if (const auto* list = std::get_if<InstanceList>(&g.shape))
     return std::any_of(list->children.begin(), list->children.end(),
                        [](const auto& child) { return !child->unbounded.empty(); });
-  if (const auto* exact = std::get_if<ExactShape>(&g.shape)) {
-    ExactPools pools;
-    bool unbounded = false;
-    visit_exact(kind_of(exact->form), pools, [&](auto tag, auto& pool) {
-      add_exact<decltype(tag)>(pool, *exact, g.transform, 0);
-      for (const ExactCell& cell : pool.cells) unbounded |= cell_bounds<decltype(tag)>(pool, cell).empty();
-    });
-    return unbounded;
-  }
+  if (const auto* exact = std::get_if<ExactShape>(&g.shape)) return is_unbounded(*exact, g.transform);
   return std::holds_alternative<PlaneShape>(g.shape);
 }
 

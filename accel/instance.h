@@ -37,7 +37,6 @@ OKTETT_INLINE const Accel& child_of(const Accel& accel, const ListedInstance& in
   return *accel.listed_children[instance.child];
 }
 
-OKTETT_INLINE bool holds_instances(Kind kind) { return kind >= Kind::instance; }
 /// Calls f(instance, child) for the instances of a leaf until it returns false.
 template <class Function>
 OKTETT_INLINE void each_instance(const Accel& accel, const LeafEntry& leaf, Function&& f) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "kernels/closed/shape_data.h"
 #include "kernels/kinds.h"
 
 namespace oktett {

@@ -9,6 +9,7 @@
 #include "accel/query.h"
 #include "accel/trace_code.h"
 #include "core/error.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 
@@ -21,11 +22,11 @@ bool is_triangle(const Accel& accel, std::uint32_t item) {
 }
 
 void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
-  // Surfaces of one cell and height fields list their crossings correctly by themselves.
+  // Surfaces of one cell list their crossings correctly by themselves.
   const auto own_exact = [&](const Hit& h) {
     if (h.instance != kNoId) return false;
     const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
-    return is_exact(kind) && !has_one_cell(kind) && kind != Kind::height_field;
+    return is_exact(kind) && !exact_ops(kind).one_cell;
   };
   std::vector<Crossing> crossings;
   std::size_t kept = first;

@@ -1,15 +1,17 @@
 # The library oktett::oktett. Sources are found by folder: a new file needs no edit here.
 
 # What the project's own targets are compiled with. Programs that use the library know the public headers alone.
+set(OKTETT_GENERATED ${PROJECT_BINARY_DIR}/generated)
+include(cmake/surfaces.cmake)
 add_library(oktett_internal INTERFACE)
-target_include_directories(oktett_internal INTERFACE ${PROJECT_SOURCE_DIR})
+target_include_directories(oktett_internal INTERFACE ${PROJECT_SOURCE_DIR} ${OKTETT_GENERATED})
 target_include_directories(oktett_internal SYSTEM INTERFACE ${xsimd_INCLUDE_DIRS})
 target_link_libraries(oktett_internal INTERFACE TBB::tbb Threads::Threads)
 
 file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp accel/*.cpp render/*.cpp io/*.cpp)
 list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/|/io/image/oiio/")
 
-add_library(oktett ${OKTETT_SOURCES})
+add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES})
 add_library(oktett::oktett ALIAS oktett)
 target_compile_features(oktett PUBLIC cxx_std_20)
 target_compile_options(oktett PRIVATE -ffp-contract=off)
@@ -27,7 +29,7 @@ set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cp
   PROPERTIES COMPILE_OPTIONS -Wno-maybe-uninitialized)
 include(cmake/instruction_sets.cmake)
 file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp render/isa/*.cpp)
-oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES})
+oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES})
 
 # What uses OpenImageIO, see io/image/library.h: a shared library that oktett loads when it is needed, and finds from where
 # the program or itself lies. It shows one symbol and has its own copy of the little that both need.

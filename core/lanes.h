@@ -46,10 +46,15 @@ OKTETT_INLINE Vec3<F> broadcast(const Vec3<T>& v) {
           F(static_cast<typename F::Element>(v.z))};
 }
 
+/// The number in a vector of one lane.
+template <class T, class A>
+OKTETT_INLINE T only_lane(const Simd<T, 1, A>& x) {
+  return x.part[0].v;
+}
 /// Vectors of one lane as plain vectors.
 template <class T, class A>
 OKTETT_INLINE Vec3<T> only_lane(const Vec3<Simd<T, 1, A>>& v) {
-  return {v.x.part[0].v, v.y.part[0].v, v.z.part[0].v};
+  return {only_lane(v.x), only_lane(v.y), only_lane(v.z)};
 }
 
 /// dot, cross and so on with a fixed order of operations and no fusing: the same bits in every width and

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "kernels/exact_shapes.h"
-
 namespace oktett {
 
 Box cell_bounds(const Affine& to_world, const ExactCell& cell) {
@@ -22,17 +20,19 @@ Box cell_bounds(const Affine& to_world, const ExactCell& cell) {
 }
 
 Box exact_bounds(const ExactShape& shape, const Affine& to_world) {
-  ExactPools pools;
   Box bounds;
-  visit_exact(kind_of(shape.form), pools, [&](auto tag, auto& pool) {
-    add_exact<decltype(tag)>(pool, shape, to_world, 0);
-    for (const ExactCell& cell : pool.cells) {
-      const Box b = cell_bounds<decltype(tag)>(pool, cell);
-      if (b.empty()) return void(bounds = {});
-      bounds.grow(b);
-    }
+  bool bounded = true;
+  each_cell_bounds(shape, to_world, [&](const Box& b) {
+    bounded &= !b.empty();
+    bounds.grow(b);
   });
-  return bounds;
+  return bounded ? bounds : Box{};
+}
+
+bool is_unbounded(const ExactShape& shape, const Affine& to_world) {
+  bool unbounded = false;
+  each_cell_bounds(shape, to_world, [&](const Box& b) { unbounded |= b.empty(); });
+  return unbounded;
 }
 
 }  // namespace oktett

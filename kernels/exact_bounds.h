@@ -2,8 +2,7 @@
 /// \file Bounds of exact surfaces in the world.
 
 #include "core/box.h"
-#include "kernels/exact/exact.h"
-#include "kernels/exact_form.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 
@@ -11,16 +10,17 @@ namespace oktett {
 /// not bounded.
 Box cell_bounds(const Affine& to_world, const ExactCell& cell);
 
-/// Bounds of a cell of shape S in the world.
-template <class S>
-Box cell_bounds(const typename S::Pool& pool, const ExactCell& cell) {
-  if constexpr (requires { S::world_bounds(pool, std::size_t{0}); })
-    return S::world_bounds(pool, cell.element);
-  else
-    return cell_bounds(pool.frames[cell.element].to_world, cell);
+/// Calls f(bounds) for each cell of `shape`; empty bounds are those of a cell that is not bounded.
+template <class Function>
+void each_cell_bounds(const ExactShape& shape, const Affine& to_world, Function&& f) {
+  const ExactOps& ops = exact_ops(kind_of(shape.form));
+  const auto pool = ops.make_pool();
+  ops.add(*pool, shape, to_world, 0);
+  for (const ExactCell& cell : pool->cells) f(ops.cell_bounds(*pool, cell));
 }
 
 /// Bounds of `shape`; empty if it is degenerate or not bounded.
 Box exact_bounds(const ExactShape& shape, const Affine& to_world);
+bool is_unbounded(const ExactShape& shape, const Affine& to_world);
 
 }  // namespace oktett

@@ -1,21 +1,18 @@
-/// \file From geometries to a tree: numbers the items, drops degenerate ones, lays out the pools.
+/// \file From geometries to a tree: numbers the items and drops degenerate ones.
 
 #include <algorithm>
 #include <cmath>
 
+#include "accel/build/fill_pools.h"
 #include "accel/build/mesh_source.h"
 #include "accel/build/wide_tree.h"
 #include "accel/csg/csg.h"
 #include "accel/geometry_bounds.h"
 #include "core/error.h"
-#include "kernels/exact_bounds.h"
-#include "kernels/exact_shapes.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 namespace {
-
-/// order[k] collects the items of kind k in leaf order; for exact kinds, the cells.
-using ItemOrder = std::vector<std::uint32_t>[kKinds];
 
 std::size_t item_count(const Geometry& g) {
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) return mesh->mesh->triangle_count();
@@ -29,197 +26,6 @@ bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite
 PrimRef make_ref(const Box& b, std::uint32_t item, Kind kind) {
   return {{-b.lo.x, -b.lo.y, -b.lo.z}, item, {b.hi.x, b.hi.y, b.hi.z}, static_cast<std::uint32_t>(kind)};
 }
-
-/// Fills the pools in the order in which the leaves refer to them.
-class PoolFiller {
- public:
-  PoolFiller(Accel& accel, const ItemOrder& order) : accel_(accel), order_(order) {}
-
-  void run() {
-    number_primitives();
-    each(
-        Kind::sphere,
-        [&](auto& pool, const Geometry& g, std::uint32_t local, std::uint32_t item) {
-          Sphere::add(pool, moved_sphere(std::get<SpheresShape>(g.shape).spheres[local], g.transform), item);
-        },
-        std::get<Sphere::Pool>(accel_.pools));
-    each(
-        Kind::disk,
-        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-          const DiskShape& s = std::get<DiskShape>(g.shape);
-          const Vec3d n = g.transform.inverse().normal_by_inverse(s.normal);
-          Disk::add(pool, {g.transform.point(s.center), n, s.radius * g.transform.uniform_scale()}, item);
-        },
-        std::get<Disk::Pool>(accel_.pools));
-    each(
-        Kind::box,
-        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-          BoxSolid::add(pool, std::get<BoxShape>(g.shape), g.transform, item);
-        },
-        std::get<BoxSolid::Pool>(accel_.pools));
-    each(
-        Kind::polygon,
-        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-          PolygonShape s = std::get<PolygonShape>(g.shape);
-          for (Vec3d& v : s.vertices) v = g.transform.point(v);
-          if (g.transform.determinant() < 0) std::reverse(s.vertices.begin(), s.vertices.end());
-          Polygon::add(pool, s, item);
-        },
-        std::get<Polygon::Pool>(accel_.pools));
-    each(
-        Kind::plane,
-        [&](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-          Plane::add(pool, moved_plane(std::get<PlaneShape>(g.shape), g.transform), item);
-        },
-        std::get<Plane::Pool>(accel_.pools));
-    if (accel_.exact) std::apply([&](auto&... pool) { (arrange_cells(pool), ...); }, accel_.exact->pools);
-    number_paths();
-    fill_instances();
-    arrange_listed();
-    arrange_combinations();
-  }
-
- private:
-  /// Gives every primitive of a closed-form or exact shape and every listed instance a place in pool_index.
-  void number_primitives() {
-    std::uint32_t count = 0;
-    std::vector<std::uint32_t> first(accel_.geometries.size());
-    for (std::uint32_t g = 0; g < first.size(); ++g) {
-      first[g] = count;
-      if (accel_.kinds[g] < static_cast<int>(Kind::triangle) ||
-          accel_.kinds[g] == static_cast<int>(Kind::instance_list))
-        count += accel_.first_item[g + 1] - accel_.first_item[g];
-    }
-    if (count == 0) return;
-    accel_.first_pool_index = std::move(first);
-    accel_.pool_index.resize(count, kNoId);
-  }
-
-  template <class Add, class Pool>
-  void each(Kind kind, Add&& add, Pool& pool) {
-    for (std::uint32_t item : order_[static_cast<int>(kind)]) {
-      const std::uint32_t g = accel_.geometry_of(item);
-      add(pool, accel_.geometries[g], item - accel_.first_item[g], item);
-    }
-    for (std::uint32_t i = 0; i < pool.item.size(); ++i) {
-      const std::uint32_t item = pool.item[i], g = accel_.geometry_of(item);
-      accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = i;
-    }
-    finish(pool);
-    accel_.stats.other_bytes += pool.bytes();
-  }
-  template <class Pool>
-  static void finish(Pool& pool) {
-    std::apply([&](auto... shape) { (finish_if<decltype(shape)>(pool), ...); }, ClosedFormShapes{});
-  }
-  template <class S, class Pool>
-  static void finish_if(Pool& pool) {
-    if constexpr (std::is_same_v<Pool, typename S::Pool>) S::finish(pool);
-  }
-
-  /// Brings the cells of an exact kind into leaf order.
-  template <class Pool>
-  void arrange_cells(Pool& pool) {
-    std::vector<ExactCell> cells;
-    for (std::uint32_t cell : order_[kind_of_pool(pool)]) cells.push_back(pool.cells[cell]);
-    pool.cells = std::move(cells);
-    for (std::uint32_t i = 0; i < pool.frames.size(); ++i)
-      accel_.pool_index[accel_.first_pool_index[accel_.geometry_of(pool.frames[i].item)]] = i;
-    accel_.stats.other_bytes += pool.bytes();
-  }
-  template <class Pool>
-  int kind_of_pool(const Pool& pool) const {
-    int kind = kClosedFormKinds;
-    const auto matches = [&](const auto& other) { return static_cast<const void*>(&other) == &pool; };
-    std::apply([&](const auto&... other) { static_cast<void>(((matches(other) || (++kind, false)) || ...)); },
-               accel_.exact->pools);
-    return kind;
-  }
-
-  /// Numbers the paths in the order of items, so that hits at equal distance keep the order of the scene.
-  void number_paths() {
-    std::vector<PathStep>& steps = accel_.path_steps;
-    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)])
-      steps.push_back({0, item, std::get<InstanceGeometry>(geometry(item).shape).child.get(), 0, false});
-    for (const CsgItem& csg : accel_.combinations) steps.push_back({0, csg.item, csg.solids.get(), 0, true});
-    for (std::uint32_t g = 0; g < accel_.geometries.size(); ++g)
-      if (accel_.kinds[g] == static_cast<int>(Kind::instance_list) &&
-          accel_.first_item[g] < accel_.first_item[g + 1])
-        steps.push_back({0, accel_.first_item[g], nullptr, 1, false});
-    std::sort(steps.begin(), steps.end(),
-              [](const PathStep& a, const PathStep& b) { return a.item < b.item; });
-    // Children that no instance shows need no numbers.
-    for (const ListedInstance& listed : accel_.listed_instances) {
-      std::uint32_t& stride = step_of(accel_.first_item[accel_.geometry_of(listed.item)]).stride;
-      stride = std::max(stride, 1 + accel_.listed_children[listed.child]->path_count);
-    }
-    std::uint64_t paths = 0;
-    for (PathStep& step : steps) {
-      step.first_path = static_cast<std::uint32_t>(paths);
-      if (step.stride != 0) {
-        const std::uint32_t g = accel_.geometry_of(step.item);
-        paths += std::uint64_t{step.stride} * (accel_.first_item[g + 1] - step.item);
-      } else {
-        paths += (1 + std::uint64_t{step.child->path_count}) * (step.is_combination ? 2 : 1);
-      }
-      if (paths >= kNoId) throw Error("more than 2^32 - 2 nested instances");
-    }
-    accel_.path_count = static_cast<std::uint32_t>(paths);
-  }
-
-  PathStep& step_of(std::uint32_t item) const {
-    std::vector<PathStep>& steps = accel_.path_steps;
-    return *std::lower_bound(steps.begin(), steps.end(), item,
-                             [](const PathStep& step, std::uint32_t value) { return step.item < value; });
-  }
-  std::uint32_t first_path(std::uint32_t item) const { return step_of(item).first_path; }
-
-  void fill_instances() {
-    for (std::uint32_t item : order_[static_cast<int>(Kind::instance)]) {
-      const Geometry& g = geometry(item);
-      InstanceItem instance{};
-      g.transform.inverse().to_rows(instance.to_child);
-      instance.child = std::get<InstanceGeometry>(g.shape).child.get();
-      instance.item = item;
-      instance.first_path = first_path(item);
-      accel_.instances.push_back(instance);
-    }
-    accel_.stats.other_bytes += accel_.instances.size() * sizeof(InstanceItem);
-  }
-
-  /// Brings the listed instances into leaf order.
-  void arrange_listed() {
-    const std::vector<std::uint32_t>& order = order_[static_cast<int>(Kind::instance_list)];
-    std::vector<ListedInstance> ordered;
-    ordered.reserve(order.size());
-    for (const std::uint32_t index : order) {
-      ListedInstance& listed = ordered.emplace_back(accel_.listed_instances[index]);
-      const std::uint32_t g = accel_.geometry_of(listed.item), local = listed.item - accel_.first_item[g];
-      const PathStep& step = step_of(accel_.first_item[g]);
-      listed.first_path = step.first_path + local * step.stride;
-      accel_.pool_index[accel_.first_pool_index[g] + local] = static_cast<std::uint32_t>(ordered.size() - 1);
-    }
-    accel_.listed_instances = std::move(ordered);
-    accel_.stats.other_bytes += accel_.listed_instances.size() * sizeof(ListedInstance);
-  }
-
-  /// Brings the combinations into leaf order.
-  void arrange_combinations() {
-    std::vector<CsgItem> ordered;
-    for (std::uint32_t index : order_[static_cast<int>(Kind::csg)]) {
-      ordered.push_back(std::move(accel_.combinations[index]));
-      ordered.back().first_path = first_path(ordered.back().item);
-      accel_.stats.other_bytes += sizeof(CsgItem) + ordered.back().nodes.size() * sizeof(CsgNode) +
-                                  stats(*ordered.back().solids).bytes();
-    }
-    accel_.combinations = std::move(ordered);
-  }
-
-  const Geometry& geometry(std::uint32_t item) const { return accel_.geometries[accel_.geometry_of(item)]; }
-
-  Accel& accel_;
-  const ItemOrder& order_;
-};
 
 /// A shape of its own structure, seen through an instance: for maps under which its kind is not closed (an
 /// ellipsoid).
@@ -239,28 +45,32 @@ void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
   }
 }
 
+/// An entry of the list beside the tree, which every ray is tested against: the next item of its kind.
+void add_unbounded(Accel& accel, Kind kind, std::uint32_t item, ItemOrder& order) {
+  std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
+  accel.unbounded.push_back({static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
+  list.push_back(item);
+}
+
 /// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
-void add_exact_cells(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world,
-                     std::uint32_t item, Column<PrimRef>& refs, ItemOrder& order) {
-  if (!accel.exact) accel.exact = std::make_unique<ExactPools>();
-  visit_exact(kind, *accel.exact, [&](auto tag, auto& pool) {
-    using S = decltype(tag);
-    const std::size_t first = pool.cells.size();
-    add_exact<S>(pool, shape, to_world, item);
-    for (std::size_t cell = first; cell < pool.cells.size(); ++cell) {
-      const Box box = cell_bounds<S>(pool, pool.cells[cell]);
-      const auto index = static_cast<std::uint32_t>(cell);
-      if (is_usable(box)) {
-        refs.push_back(make_ref(box, index, kind));
-        accel.bounds.grow(box);
-      } else {
-        std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
-        accel.unbounded.push_back(
-            {static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
-        list.push_back(index);
-      }
+void add_exact(Accel& accel, const ExactShape& shape, Kind kind, const Affine& to_world, std::uint32_t item,
+               Column<PrimRef>& refs, ItemOrder& order) {
+  const ExactOps& ops = exact_ops(kind);
+  auto& pool = accel.exact[static_cast<int>(kind)];
+  if (!pool) pool = ops.make_pool();
+  accel.has_exact = true;
+  const std::size_t first = pool->cells.size();
+  ops.add(*pool, shape, to_world, item);
+  for (std::size_t cell = first; cell < pool->cells.size(); ++cell) {
+    const Box box = ops.cell_bounds(*pool, pool->cells[cell]);
+    const auto index = static_cast<std::uint32_t>(cell);
+    if (is_usable(box)) {
+      refs.push_back(make_ref(box, index, kind));
+      accel.bounds.grow(box);
+    } else {
+      add_unbounded(accel, kind, index, order);
     }
-  });
+  }
 }
 
 /// Builds one combination. Its number takes the place of the item number, as cells do.
@@ -277,10 +87,7 @@ void add_combination(Accel& accel, const Geometry& geometry, std::uint32_t item,
     refs.push_back(make_ref(box, index, Kind::csg));
     accel.bounds.grow(box);
   } else {
-    std::vector<std::uint32_t>& list = order[static_cast<int>(Kind::csg)];
-    accel.unbounded.push_back(
-        {static_cast<std::uint32_t>(list.size()), 1, Kind::csg, TriangleTest::watertight});
-    list.push_back(index);
+    add_unbounded(accel, Kind::csg, index, order);
   }
   accel.combinations.push_back(std::move(csg));
 }
@@ -304,10 +111,7 @@ void add_listed(Accel& accel, Geometry& geometry, std::uint32_t first, Column<Pr
     const Box box = instance_bounds(to_child.inverse(), child);
     const auto index = static_cast<std::uint32_t>(accel.listed_instances.size());
     if (!child.unbounded.empty()) {
-      std::vector<std::uint32_t>& all = order[static_cast<int>(Kind::instance_list)];
-      accel.unbounded.push_back(
-          {static_cast<std::uint32_t>(all.size()), 1, Kind::instance_list, TriangleTest::watertight});
-      all.push_back(index);
+      add_unbounded(accel, Kind::instance_list, index, order);
     } else if (is_usable(box)) {
       refs.push_back(make_ref(box, index, Kind::instance_list));
       accel.bounds.grow(box);
@@ -339,16 +143,13 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
       continue;
     }
     if (const auto* exact = std::get_if<ExactShape>(&geometry.shape)) {
-      add_exact_cells(accel, *exact, kind, geometry.transform, first, refs, order);
+      add_exact(accel, *exact, kind, geometry.transform, first, refs, order);
       continue;
     }
     for (std::uint32_t item = first; item < end; ++item) {
       if (is_unbounded(geometry)) {
         if (kind == Kind::plane && !(length(std::get<PlaneShape>(geometry.shape).normal) > 0)) continue;
-        std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
-        accel.unbounded.push_back(
-            {static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
-        list.push_back(item);
+        add_unbounded(accel, kind, item, order);
         continue;
       }
       const Box box =
@@ -413,7 +214,7 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   const MeshSource meshes(*accel);
   add_references(*accel, meshes, refs, order, options);
   build_tree(*accel, refs, meshes, order, options, build_kernels(available_isas().back()));
-  PoolFiller(*accel, order).run();
+  fill_pools(*accel, order);
   accel->stats.unbounded = accel->unbounded.size();
   accel->stats.sah_cost = sah_cost(*accel);
   return accel;

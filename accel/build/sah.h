@@ -7,6 +7,7 @@
 
 #include "accel/node.h"
 #include "core/isa.h"
+#include "kernels/triangle/triangle.h"
 
 namespace oktett {
 

@@ -189,7 +189,7 @@ class WideBuilder {
 
 /// Gives the leaf table its ranges of the pools: until now entries of shapes other than triangles refer to
 /// tree.items.
-void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t> (&order)[kKinds]) {
+void order_pools(Accel& accel, const BinaryTree& tree, ItemOrder& order) {
   for (LeafEntry& leaf : accel.leaves) {
     if (leaf.kind == Kind::triangle) continue;
     std::vector<std::uint32_t>& list = order[static_cast<int>(leaf.kind)];
@@ -201,9 +201,8 @@ void order_pools(Accel& accel, const BinaryTree& tree, std::vector<std::uint32_t
 
 }  // namespace
 
-void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles,
-                std::vector<std::uint32_t> (&order)[kKinds], const BuildOptions& options,
-                const BuildKernels& kernels) {
+void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles, ItemOrder& order,
+                const BuildOptions& options, const BuildKernels& kernels) {
   if (refs.empty()) return;
   const BinaryTree tree = build_binary(refs, triangles, accel.bounds, options, kernels);
   accel.pieces = tree.pieces;

@@ -36,11 +36,14 @@ BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, 
 /// vanish.
 float scene_unit(const Box& bounds);
 
+/// order[k] collects the items of kind k in leaf order: for exact kinds their cells, for combinations and
+/// listed instances their places in the structure.
+using ItemOrder = std::vector<std::uint32_t>[kKinds];
+
 /// Builds the tree over `refs` (which it uses up) into accel.nodes, accel.blocks, accel.leaves, accel.root,
 /// accel.bounds and accel.stats. Leaves of closed-form shapes and instances are given as ranges of `order`:
 /// the caller lays out the pools so that element i of kind k is item order[k][i].
-void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles,
-                std::vector<std::uint32_t> (&order)[kKinds], const BuildOptions& options,
-                const BuildKernels& kernels);
+void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles, ItemOrder& order,
+                const BuildOptions& options, const BuildKernels& kernels);
 
 }  // namespace oktett

@@ -9,6 +9,7 @@
 #include "accel/accel_data.h"
 #include "accel/csg/csg_solids.h"
 #include "accel/geometry_bounds.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 
@@ -59,7 +60,8 @@ bool fits_lanes(const CsgItem& csg) {
   if (solids.first_item.back() > 0x7fffffff) return false;
   return std::all_of(solids.kinds.begin(), solids.kinds.end(), [](std::uint8_t k) {
     const auto kind = static_cast<Kind>(k);
-    return kind == Kind::sphere || kind == Kind::box || kind == Kind::plane || has_one_cell(kind);
+    return kind == Kind::sphere || kind == Kind::box || kind == Kind::plane ||
+           (is_exact(kind) && exact_ops(kind).lists_at_once());
   });
 }
 
@@ -68,9 +70,8 @@ void number_solids(CsgItem& csg) {
   std::uint32_t count = 0;
   for (std::size_t g = 0; g < solids.kinds.size(); ++g) {
     csg.first_solid.push_back(count);
-    count += static_cast<Kind>(solids.kinds[g]) < Kind::triangle
-                 ? solids.first_item[g + 1] - solids.first_item[g]
-                 : 1;
+    count +=
+        is_shape(static_cast<Kind>(solids.kinds[g])) ? solids.first_item[g + 1] - solids.first_item[g] : 1;
   }
   csg.first_solid.push_back(count);
 }

@@ -5,7 +5,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/geometry_bounds.h"
-#include "kernels/exact_shapes.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 namespace {
@@ -74,16 +74,14 @@ bool is_inside(const Accel& accel, std::uint32_t geometry, const HalfLine& line)
     return false;
   }
   const Kind kind = static_cast<Kind>(accel.kinds[geometry]);
-  if (kind >= Kind::triangle) return false;
+  if (!is_shape(kind)) return false;
   const std::uint32_t i = accel.pool_index[accel.first_pool_index[geometry]];
   if (i == kNoId) return false;
-  bool inside = false;
   if (is_exact(kind)) {
-    visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
-      inside = decltype(shape)::inside(pool, i, pool.frames[i].to_own.point(line.origin));
-    });
-    return inside;
+    const ExactPoolBase& pool = accel.exact_pool(kind);
+    return exact_ops(kind).inside(pool, i, pool.frames[i].to_own.point(line.origin));
   }
+  bool inside = false;
   visit_pool(kind, accel.pools, [&](auto shape, const auto& pool) {
     using S = decltype(shape);
     if constexpr (S::kSolid) inside = S::inside(pool, i, line.origin);

@@ -113,7 +113,7 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   const Accel& solids = *csg.solids;
   if (s.begin.size() < csg.first_solid.back()) s.begin.resize(csg.first_solid.back());
   const auto is_primitive = [&](const Event& e) {
-    return static_cast<Kind>(solids.kinds[e.geometry]) < Kind::triangle;
+    return is_shape(static_cast<Kind>(solids.kinds[e.geometry]));
   };
   for (std::size_t i = 0; i < s.events.size();) {
     const std::size_t first = i, end = group_end(s.events, first, slack);

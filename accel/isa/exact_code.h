@@ -1,8 +1,10 @@
 #pragma once
-/// \file ExactShapeCode for one instruction set. Included by accel/isa/exact_*.cpp.
+/// \file ExactSurfaceCode of one surface for one instruction set. Included by the units that the build makes
+/// of accel/isa/exact_surface.cpp.in.
 
-#include "accel/isa/exact_shape.h"
+#include "accel/exact_table.h"
 #include "accel/isa/shape_interactions.h"
+#include "kernels/exact/exact_interaction.h"
 
 namespace oktett {
 
@@ -78,14 +80,35 @@ OKTETT_INLINE unsigned first_crossings(const typename S::Pool& pool, std::uint32
 }
 
 template <class S, class A>
-unsigned ExactShapeCode<S, A>::first(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
-                                     unsigned lanes, HitLanes<F>& hits) {
+unsigned ExactSurfaceCode<S, A>::first(const ExactPoolBase& base, std::uint32_t index,
+                                       const RayLanes<F>& rays, unsigned lanes, HitLanes<F>& hits) {
+  const auto& pool = static_cast<const typename S::Pool&>(base);
+  if constexpr (requires { S::kLoneLanes; } && F::kWidth > 1) {
+    if ((lanes & (lanes - 1)) == 0) {
+      using One = Simd<float, 1, A>;
+      const int k = __builtin_ctz(lanes);
+      const auto lone = [&](const F& x) {
+        float column[F::kWidth];
+        x.store(column);
+        return One(column[k]);
+      };
+      const RayLanes<One> ray{{lone(rays.o.x), lone(rays.o.y), lone(rays.o.z)},
+                              {lone(rays.d.x), lone(rays.d.y), lone(rays.d.z)},
+                              lone(rays.tmin),
+                              lone(rays.tmax)};
+      HitLanes<One> hit;
+      const unsigned met = first_crossings<S>(pool, index, ray, 1, hit);
+      hits.t = F(only_lane(hit.t)), hits.u = F(only_lane(hit.u)), hits.v = F(only_lane(hit.v));
+      return met << k;
+    }
+  }
   return first_crossings<S>(pool, index, rays, lanes, hits);
 }
 
 template <class S, class A>
-void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray& ray,
-                               HitList& hits) requires std::is_same_v<A, ScalarIsa> {
+void ExactSurfaceCode<S, A>::all(const ExactPoolBase& base, std::uint32_t index, const Ray& ray,
+                                 HitList& hits) requires std::is_same_v<A, ScalarIsa> {
+  const auto& pool = static_cast<const typename S::Pool&>(base);
   using One = Simd<float, 1, A>;
   using D = Simd<double, 1, A>;
   constexpr int K = S::kMaxCrossings;
@@ -113,10 +136,11 @@ void ExactShapeCode<S, A>::all(const Pool& pool, std::uint32_t index, const Ray&
 }
 
 template <class S, class A>
-void ExactShapeCode<S, A>::rows(const Pool& pool, std::uint32_t index, const RayLanes<F>& rays,
-                                unsigned lanes, CrossingLanes<F::kWidth>& out) {
+void ExactSurfaceCode<S, A>::rows(const ExactPoolBase& base, std::uint32_t index, const RayLanes<F>& rays,
+                                  unsigned lanes, CrossingLanes<kLanes>& out) {
   constexpr int K = S::kMaxCrossings;
-  if constexpr (K <= CrossingLanes<F::kWidth>::kMostPerSolid) {
+  if constexpr (K <= CrossingLanes<kLanes>::kMostPerSolid) {
+    const auto& pool = static_cast<const typename S::Pool&>(base);
     using D = Simd<double, F::kWidth, A>;
     const ExactCell& cell = pool.cells[index];
     const Line<D> line = own_line<D>(pool.frames[cell.element].to_own, rays);
@@ -136,49 +160,24 @@ void ExactShapeCode<S, A>::rows(const Pool& pool, std::uint32_t index, const Ray
   }
 }
 
-/// settle and exact_surface of kernels/exact_surface.h.
-template <class S, class D>
-void slope_surfaces(const typename S::Pool& pool, ShapeHits& hits) {
-  using F = Simd<float, D::kWidth, typename D::Isa>;
-  const std::size_t element = hits.element[0];
-  const ExactFrame& frame = pool.frames[element];
-  const Vec3d diagonal = frame.to_world.vector({1, 1, 1});
-  const D extent(length(diagonal));
-  for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
-    const HitPoints<D> hit(hits, i);
-    const D part = to_double(F::load(hits.part + i));
-    const Vec3<D> start = map_point(frame.to_own, hit.point());
-    const D reach = D(0x1p-22) * length_lanes(map_vector(frame.to_own, hit.d)) * hit.t + D(0x1p-40);
-    Vec3<D> p = start, g;
-    D value;
-    auto near = D::M::all_true();
-    for (int k = 0; k < 3; ++k) {
-      S::slope(pool, element, part, p, value, g);
-      const D step = value / dot_lanes(g, g);
-      p = {p.x - g.x * step, p.y - g.y * step, p.z - g.z * step};
-      near = near & (length_lanes(sub_lanes(p, start)) <= reach);
-      p = select_lanes(near, p, start);
-    }
-    S::slope(pool, element, part, p, value, g);
-    Vec3<D> n = map_normal(frame.to_own, g);
-    D l = length_lanes(n);
-    const auto known = (D(0.0) < l) & (l <= D(1.7976931348623157e308));
-    n = select_lanes(known, n, Vec3<D>{-hit.d.x, -hit.d.y, -hit.d.z});
-    l = select(known, l, length_lanes(hit.d));
-    const Vec3<D> point = map_point(frame.to_world, p);
-    const D size = length_lanes(point) + extent;
-    store_surface(hit, point, D(0x1p-44) * size, Vec3<D>{n.x / l, n.y / l, n.z / l}, hits, i);
-  }
-}
-
 template <class S, class A>
-bool ExactShapeCode<S, A>::surfaces(const Pool& pool, ShapeHits& hits) {
+bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, ShapeHits& hits) {
   using D = SurfaceLanes<A>;
-  D value;
-  Vec3<D> gradient;
-  constexpr bool has_slope = requires { S::slope(pool, 0, D(), Vec3<D>(), value, gradient); };
-  if constexpr (has_slope) slope_surfaces<S, D>(pool, hits);
-  return has_slope;
+  if constexpr (HasSlope<S, D>) {
+    using F = Simd<float, D::kWidth, A>;
+    const auto& pool = static_cast<const typename S::Pool&>(base);
+    const std::size_t element = hits.element[0];
+    if (pool.frames[element].normals != NormalMethod::gradient) return false;
+    for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
+      const HitPoints<D> hit(hits, i);
+      const D part = to_double(F::load(hits.part + i));
+      Vec3<D> own;
+      const SurfacePoints<D> at = exact_surface_points<S>(pool, element, part, hit, own);
+      store_surface(hit, at.point, at.error, at.normal, hits, i);
+    }
+    return true;
+  }
+  return false;
 }
 
 }  // namespace oktett

@@ -14,7 +14,7 @@ struct InteractionCode {
   /// Hits of one closed-form kind.
   void (*closed_form)(const Accel&, Kind, ShapeHits&);
   /// Hits of one element of an exact surface; false if the kind has no code for lanes.
-  bool (*exact)(const Accel&, Kind, ShapeHits&);
+  bool (*exact)(Kind, const ExactPoolBase&, ShapeHits&);
 };
 
 template <class A>

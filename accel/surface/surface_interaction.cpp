@@ -2,8 +2,7 @@
 #include "accel/hit_place.h"
 #include "accel/surface/mesh_surface.h"
 #include "accel/surface/offset_origin.h"
-#include "kernels/exact_shapes.h"
-#include "kernels/exact_surface.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 namespace {
@@ -62,16 +61,15 @@ static void interaction_inside(const HitNames& names, const Accel& a, const Ray&
   const Geometry& g = a.geometries[names.geometry];
   if (names.kind == Kind::triangle) {
     mesh_interaction(g, a.frames[names.geometry], names.primitive, hit, s);
+  } else if (is_exact(names.kind)) {
+    const ExactOps& ops = exact_ops(names.kind);
+    const std::size_t i = a.pool_index[a.first_pool_index[names.geometry]];
+    (uv ? ops.interaction : ops.interaction_without_uv)(a.exact_pool(names.kind), i, inner, hit, s);
   } else {
     const std::size_t i = a.pool_index[a.first_pool_index[names.geometry] + names.primitive];
     visit_pool(names.kind, a.pools, [&](auto shape, const auto& pool) {
       closed_interaction<decltype(shape)>(pool, i, inner, hit.t, uv, s);
     });
-    if (is_exact(names.kind))
-      visit_exact(names.kind, *a.exact, [&](auto shape, const auto& pool) {
-        using S = decltype(shape);
-        s = uv ? exact_surface<S>(pool, i, hit, inner) : exact_surface_without_uv<S>(pool, i, hit, inner);
-      });
   }
   s.geometry = names.geometry, s.primitive = names.primitive, s.user = names.user;
   s.material_slot = names.material_slot;

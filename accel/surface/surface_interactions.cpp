@@ -8,8 +8,7 @@
 #include "accel/surface/interaction_code.h"
 #include "accel/surface/mesh_hits.h"
 #include "core/error.h"
-#include "kernels/exact_shapes.h"
-#include "kernels/exact_surface.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 namespace {
@@ -152,14 +151,14 @@ class ShapeGroups {
   void find(const Accel& accel, Kind kind, const std::uint32_t* members) {
     if (!is_exact(kind)) {
       code_.closed_form(accel, kind, columns_);
-    } else if (!code_.exact(accel, kind, columns_)) {
-      visit_exact(kind, *accel.exact, [&](auto shape, const auto& pool) {
-        for (std::size_t k = 0; k < columns_.count; ++k) {
-          const std::uint32_t i = which_[members[k]];
-          out_.set_shape(members[k], exact_surface_without_uv<decltype(shape)>(pool, columns_.element[k],
-                                                                               hits_[i], rays_[i]));
-        }
-      });
+    } else if (!code_.exact(kind, accel.exact_pool(kind), columns_)) {
+      const ExactOps& ops = exact_ops(kind);
+      for (std::size_t k = 0; k < columns_.count; ++k) {
+        const std::uint32_t i = which_[members[k]];
+        SurfaceInteraction s;
+        ops.interaction_without_uv(accel.exact_pool(kind), columns_.element[k], rays_[i], hits_[i], s);
+        out_.set_shape(members[k], s);
+      }
       return;
     }
     for (std::size_t k = 0; k < columns_.count; ++k) {

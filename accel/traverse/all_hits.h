@@ -106,7 +106,7 @@ void collect_leaf(const Accel& accel, const LeafEntry& leaf, const RayState<1, A
         collect_csg<A>(accel.combinations[leaf.begin + k], ray, hits);
     else
       for (std::uint32_t k = 0; k < leaf.count; ++k)
-        ExactCode<ScalarIsa>::all(accel, leaf.kind, leaf.begin + k, ray, hits);
+        exact_code<A>(leaf.kind).all(accel.exact_pool(leaf.kind), leaf.begin + k, ray, hits);
   } else {
     visit_pool(leaf.kind, accel.pools,
                [&](auto shape, const auto& pool) { collect_shape<decltype(shape)>(pool, leaf, r, hits); });
@@ -148,7 +148,7 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
         return true;
       });
   if (accel.pieces) drop_repeated(accel, hits, first);
-  if (accel.exact) merge_crossings(accel, hits, first);
+  if (accel.has_exact) merge_crossings(accel, hits, first);
 }
 
 }  // namespace oktett

@@ -4,7 +4,8 @@
 
 #include "accel/csg/csg.h"
 #include "accel/csg/csg_solids.h"
-#include "accel/exact.h"
+#include "accel/exact_table.h"
+#include "accel/ray_state.h"
 #include "accel/traverse/node_boxes.h"
 
 namespace oktett {
@@ -132,13 +133,18 @@ class CsgLanes {
       const int first = rows_.rows;
       if (first + CrossingLanes<N>::kMostPerSolid > CrossingLanes<N>::kMost) return false;
       if (solids_ == CrossingLanes<N>::kMost) return false;
-      const std::uint32_t item = is_exact(leaf.kind)
-                                     ? ExactCode<A>::rows(*csg_.solids, leaf.kind, k, rays_, lanes, rows_)
-                                     : gather_shape(leaf.kind, k, lanes);
+      const std::uint32_t item =
+          is_exact(leaf.kind) ? gather_exact(leaf.kind, k, lanes) : gather_shape(leaf.kind, k, lanes);
       begin_solid(first, item, lanes, unbounded);
       lanes &= lanes_;
     }
     return true;
+  }
+
+  OKTETT_INLINE std::uint32_t gather_exact(Kind kind, std::uint32_t k, unsigned lanes) {
+    const ExactPoolBase& pool = csg_.solids->exact_pool(kind);
+    exact_code<A>(kind).rows(pool, k, rays_, lanes, rows_);
+    return pool.item_of_cell(k);
   }
 
   OKTETT_INLINE std::uint32_t gather_shape(Kind kind, std::uint32_t k, unsigned lanes) {

@@ -115,6 +115,4 @@ bool Blob::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return value(pool, i, 0, p) < 0;
 }
 
-void Blob::uv(const Pool&, std::size_t, int, const Vec3d&, SurfaceInteraction&) {}
-
 }  // namespace oktett

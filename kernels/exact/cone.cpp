@@ -22,16 +22,8 @@ Box Cone::world_bounds(const Pool& pool, std::size_t i) {
   return frustum_bounds(pool.frames[i].to_world, e.middle - e.slope, e.middle + e.slope);
 }
 
-double Cone::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Cone>(pool, i, part, p).value;
-}
-
-Vec3d Cone::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Cone>(pool, i, part, p).gradient;
-}
-
 bool Cone::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  return value(pool, i, 0, p) < 0 && std::abs(p.z) < 1;
+  return slope_at<Cone>(pool, i, 0, p).value < 0 && std::abs(p.z) < 1;
 }
 
 void Cone::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {

@@ -18,6 +18,7 @@ struct Cone {
   using Data = ConeShape;
   using Pool = ExactPool<ConeElement>;
   static constexpr int kMaxCrossings = 2;
+  static constexpr bool kOneCell = true;
   static constexpr bool kWholeLines = true;
 
   static void add(Pool& pool, const ConeShape& shape, const ExactPlace& place);
@@ -88,8 +89,6 @@ struct Cone {
     gradient = {select(side, p.x * D(2.0), D(0.0)), select(side, p.y * D(2.0), D(0.0)),
                 select(side, D(-e.slope) * w * D(2.0), select(low, D(-1.0), D(1.0)))};
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// As for a cylinder.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

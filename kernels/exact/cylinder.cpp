@@ -51,14 +51,6 @@ Box Cylinder::world_bounds(const Pool& pool, std::size_t i) {
   return frustum_bounds(pool.frames[i].to_world, 1, 1);
 }
 
-double Cylinder::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Cylinder>(pool, i, part, p).value;
-}
-
-Vec3d Cylinder::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Cylinder>(pool, i, part, p).gradient;
-}
-
 bool Cylinder::inside(const Pool&, std::size_t, const Vec3d& p) {
   return p.x * p.x + p.y * p.y < 1 && std::abs(p.z) < 1;
 }

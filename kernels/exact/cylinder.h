@@ -15,6 +15,7 @@ struct Cylinder {
   using Data = CylinderShape;
   using Pool = ExactPool<CylinderElement>;
   static constexpr int kMaxCrossings = 2;
+  static constexpr bool kOneCell = true;
   static constexpr bool kWholeLines = true;
 
   static void add(Pool& pool, const CylinderShape& shape, const ExactPlace& place);
@@ -64,8 +65,6 @@ struct Cylinder {
     gradient = {select(side, D(2.0) * p.x, D(0.0)), select(side, D(2.0) * p.y, D(0.0)),
                 select(side, D(0.0), select(low, D(-1.0), D(1.0)))};
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis; v on the side from `from` to `to`, on an end the distance from its centre. All in
   /// [0, 1].

@@ -8,87 +8,39 @@
 /// hold. What is found depends on the ray and the cell only, never on how near other hits are, so that every
 /// order of visits finds the same bits.
 ///
-/// A shape S (one header and one source file each) has
+/// A surface S (one header and one source file each, and one line in surfaces.def) has
 /// - `S::Data`: what describes it, in a header of its own (e.g. torus_data.h);
 /// - `S::Pool`: an ExactPool of its elements; `S::add(pool, data, place)` appends an element with its frame
 ///   and cells, or nothing if the shape is degenerate;
 /// - `S::kMaxCrossings`: room for all crossings with a line, or as many as are listed at a time;
 /// - `S::crossings<K>(pool, cell, line, range, active, out)`: the first K crossings, see Crossings;
-/// - `S::value(pool, i, part, p)` and `S::gradient(pool, i, part, p)`: the function whose zeros the part is,
-///   negative inside, and its gradient;
-/// - `S::inside(pool, i, p)`; `S::uv(pool, i, part, p, surface)` sets uv and tangent in its own space.
+/// - `S::slope(pool, i, part, p, value, gradient)` in lanes: the function whose zeros the part is, negative
+///   inside, and its gradient. Or `S::value(pool, i, part, p)` and `S::gradient(pool, i, part, p)` for one
+///   point; then the interactions of its hits are found one by one;
+/// - `S::inside(pool, i, p)`.
 /// It may have
+/// - `S::uv(pool, i, part, p, surface)`: sets uv and tangent in its own space;
+/// - `S::kOneCell`: each element is one cell, and crossings are listed as they are. Otherwise an element's
+/// cells
+///   may each list a crossing where they meet, and lists are merged;
 /// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only to
 ///   where the ray begins; `crossings` bears NaN and infinities;
 /// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;
 /// - `S::kStopsAtLimit`: crossings up to some t do not depend on where the range ends, which then is where
 ///   the ray does;
-/// - `S::find` in place of value, gradient and uv: a fractal (fractal.h);
-/// - `S::slope(pool, i, part, p, value, gradient)`: both in lanes, and then value and gradient are made of it
-///   by slope_at: surfaces of many hits are found together;
+/// - `S::interaction(pool, i, ray, hit)` in place of value, gradient and uv: a fractal (fractal.h);
 /// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
 ///   than the image of the cell.
 
-#include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "core/lanes.h"
 #include "core/ray.h"
 #include "core/surface_interaction.h"
-#include "core/transform.h"
-#include "kernels/exact/normal_method.h"
+#include "kernels/exact/exact_pool.h"
 #include "kernels/roots/roots.h"
 
 namespace oktett {
-
-/// Where one element is looked for: a box of its own space, possibly infinite.
-struct ExactCell {
-  Vec3d lo, hi;
-  std::uint32_t element = 0;
-  std::uint32_t begin = 0, count = 0;  ///< for the shape's own use, e.g. what matters in this cell
-};
-
-/// Where a shape stands in the world, and how its normals are computed.
-struct ExactPlace {
-  Affine to_world;
-  std::uint32_t item = 0;
-  NormalMethod normals = NormalMethod::gradient;
-};
-
-/// How an element lies in the world.
-struct ExactFrame {
-  Affine to_own, to_world;
-  std::uint32_t item = 0;
-  NormalMethod normals = NormalMethod::gradient;
-};
-
-template <class E>
-struct ExactPool {
-  using Element = E;
-  std::vector<ExactFrame> frames;  ///< per element; their items ascend
-  std::vector<Element> elements;
-  std::vector<ExactCell> cells;
-
-  std::size_t bytes() const {
-    return frames.size() * sizeof(ExactFrame) + elements.size() * sizeof(Element) +
-           cells.size() * sizeof(ExactCell);
-  }
-};
-
-/// Appends an element of the shape at `place`. `to_world` takes the element's own space to the world.
-template <class Pool>
-void add_element(Pool& pool, const typename Pool::Element& element, const Affine& to_world,
-                 const ExactPlace& place) {
-  pool.frames.push_back({to_world.inverse(), to_world, place.item, place.normals});
-  pool.elements.push_back(element);
-}
-
-/// Appends a cell of the last element.
-template <class Pool>
-ExactCell& add_cell(Pool& pool, const Vec3d& lo, const Vec3d& hi) {
-  return pool.cells.emplace_back(ExactCell{lo, hi, static_cast<std::uint32_t>(pool.elements.size() - 1)});
-}
 
 /// The points o + t d in an element's own space. d is the ray's direction, not normalised: t means the same
 /// as in the world.
@@ -117,6 +69,30 @@ struct Crossings {
   OKTETT_INLINE void clear() {
     for (int k = 0; k < K; ++k) t[k] = D(roots::kNoRoot), turn[k] = part[k] = D(0.0);
     up_to = D(roots::kNoRoot);
+  }
+};
+
+/// Crossings in columns of numbers, for what finds them one lane after the other. They begin as empty lists,
+/// or as those of `from`.
+template <int K, class D>
+struct CrossingColumns {
+  static constexpr int W = D::kWidth;
+  double t[K][W], turn[K][W], part[K][W], up_to[W];
+
+  CrossingColumns() {
+    Crossings<K, D> none;
+    none.clear();
+    *this = CrossingColumns(none);
+  }
+  explicit CrossingColumns(const Crossings<K, D>& from) {
+    for (int k = 0; k < K; ++k)
+      from.t[k].store(t[k]), from.turn[k].store(turn[k]), from.part[k].store(part[k]);
+    from.up_to.store(up_to);
+  }
+  void load(Crossings<K, D>& out) const {
+    for (int k = 0; k < K; ++k)
+      out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
+    out.up_to = D::load(up_to);
   }
 };
 
@@ -192,19 +168,38 @@ OKTETT_INLINE void select_faces(const Vec3d& lo, const Vec3d& hi, const D& part,
   }
 }
 
+/// Whether S has a slope for lanes of D.
+template <class S, class D>
+concept HasSlope = requires(const typename S::Pool& pool, D& value, Vec3<D>& gradient) {
+  S::slope(pool, std::size_t{0}, D(), Vec3<D>(), value, gradient);
+};
+
+/// The function of a part of element i, and its gradient.
+template <class S, class D>
+OKTETT_INLINE void slope_lanes(const typename S::Pool& pool, std::size_t i, const D& part, const Vec3<D>& p,
+                               D& value, Vec3<D>& gradient) {
+  if constexpr (HasSlope<S, D>) {
+    S::slope(pool, i, part, p, value, gradient);
+  } else {
+    const int number = static_cast<int>(only_lane(part));
+    value = D(S::value(pool, i, number, only_lane(p)));
+    gradient = broadcast<D>(S::gradient(pool, i, number, only_lane(p)));
+  }
+}
+
 struct Slope {
   double value;
   Vec3d gradient;
 };
 
-/// S::slope at one point.
+/// The same at one point.
 template <class S>
 Slope slope_at(const typename S::Pool& pool, std::size_t i, int part, const Vec3d& p) {
   using D = Simd<double, 1, ScalarIsa>;
   D value;
   Vec3<D> gradient;
-  S::slope(pool, i, D(part), broadcast<D>(p), value, gradient);
-  return {value.part[0].v, {gradient.x.part[0].v, gradient.y.part[0].v, gradient.z.part[0].v}};
+  slope_lanes<S>(pool, i, D(part), broadcast<D>(p), value, gradient);
+  return {only_lane(value), only_lane(gradient)};
 }
 
 /// The part of a line that is in a box. A line parallel to a slab lies in it or not: no threshold. The ends

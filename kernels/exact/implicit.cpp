@@ -18,21 +18,11 @@ void Implicit::add(Pool& pool, const ImplicitShape& s, const ExactPlace& place) 
   add_cell(pool, e.lo, e.hi);
 }
 
-double Implicit::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Implicit>(pool, i, part, p).value;
-}
-
-Vec3d Implicit::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Implicit>(pool, i, part, p).gradient;
-}
-
 bool Implicit::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   const ImplicitElement& e = pool.elements[i];
   for (int k = 0; k < 3; ++k)
     if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return value(pool, i, 0, p) < 0;
+  return slope_at<Implicit>(pool, i, 0, p).value < 0;
 }
-
-void Implicit::uv(const Pool&, std::size_t, int, const Vec3d&, SurfaceInteraction&) {}
 
 }  // namespace oktett

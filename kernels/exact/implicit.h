@@ -66,6 +66,7 @@ struct Implicit {
     list.finish(own.up_to);
   }
 
+  /// NaN where the function is not defined.
   template <class D>
   OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
                                   Vec3<D>& gradient) {
@@ -83,12 +84,7 @@ struct Implicit {
     }
     select_faces(e.lo, e.hi, select(wall, zero, part), p, value, gradient);
   }
-  /// NaN where the function is not defined.
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
-  /// None.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
 
  private:
   template <Walls W, class D>

@@ -54,13 +54,13 @@ struct Lathe {
     const unsigned doubtful = bits(there & ~settled),
                    lanes = piece.cap[0] || piece.cap[1] ? bits(there) : doubtful;
     if (lanes == 0) return;
-    double ray[6][W], a[W], b[W], columns[7][W], begins[W], t[K][W], turn[K][W], part[K][W];
+    double ray[6][W], a[W], b[W], columns[7][W], begins[W];
     const D* from[6] = {&line.o.x, &line.o.y, &line.o.z, &line.d.x, &line.d.y, &line.d.z};
     for (int i = 0; i < 6; ++i) from[i]->store(ray[i]);
     for (int i = 0; i < 7; ++i) c[i].store(columns[i]);
     range.a.store(a), range.b.store(b);
     select(range.enter_face == D(0.0), range.a, D(-roots::kNoRoot)).store(begins);
-    for (int k = 0; k < K; ++k) out.t[k].store(t[k]), out.turn[k].store(turn[k]), out.part[k].store(part[k]);
+    CrossingColumns<K, D> lists(out);
     for (int i = 0; i < W; ++i) {
       if (!(lanes >> i & 1)) continue;
       OneRay one;
@@ -71,10 +71,9 @@ struct Lathe {
       Found found;
       find(e, piece, one, found);
       for (int k = 0; k < K && k < found.count; ++k)
-        t[k][i] = found.t[k], turn[k][i] = found.turn[k], part[k][i] = found.part[k];
+        lists.t[k][i] = found.t[k], lists.turn[k][i] = found.turn[k], lists.part[k][i] = found.part[k];
     }
-    for (int k = 0; k < K; ++k)
-      out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
+    lists.load(out);
   }
 
   /// About the distance from the surface.

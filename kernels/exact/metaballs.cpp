@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
-#include "core/math.h"
+#include "kernels/exact/globe_uv.h"
 
 namespace oktett {
 
@@ -101,21 +100,8 @@ void Metaballs::add(Pool& pool, const MetaballsShape& s, const ExactPlace& place
               place);
 }
 
-double Metaballs::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Metaballs>(pool, i, part, p).value;
-}
-
-Vec3d Metaballs::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Metaballs>(pool, i, part, p).gradient;
-}
-
-bool Metaballs::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
-
-void set_globe_uv(const Vec3d& p, SurfaceInteraction& s) {
-  const double l = length(p), sine = l > 0 ? std::clamp(p.y / l, -1.0, 1.0) : 0;
-  s.uv = {static_cast<float>(0.5 + portable::atan2(p.z, p.x) * 0.5 / std::numbers::pi),
-          static_cast<float>(0.5 + portable::asin(sine) / std::numbers::pi)};
-  s.tangent = Vec3f(Vec3d{-p.z, 0, p.x} * (2 * std::numbers::pi));
+bool Metaballs::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  return slope_at<Metaballs>(pool, i, 0, p).value < 0;
 }
 
 void Metaballs::uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) {

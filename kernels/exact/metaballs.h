@@ -193,9 +193,6 @@ OKTETT_INLINE typename D::M surely_clear(const Piece<D>& p, const PieceRoots<1, 
 
 }  // namespace metaballs
 
-/// Longitude and latitude as of a sphere about the origin.
-void set_globe_uv(const Vec3d& p, SurfaceInteraction& s);
-
 struct Metaballs {
   using Data = MetaballsShape;
   using Pool = MetaballsPool;
@@ -285,8 +282,6 @@ struct Metaballs {
       }
     });
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

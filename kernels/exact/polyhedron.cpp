@@ -47,14 +47,6 @@ void Polyhedron::add(Pool& pool, const PolyhedronShape& s, const ExactPlace& pla
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 
-double Polyhedron::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Polyhedron>(pool, i, part, p).value;
-}
-
-Vec3d Polyhedron::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Polyhedron>(pool, i, part, p).gradient;
-}
-
 bool Polyhedron::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   const PolyhedronElement& e = pool.elements[i];
   for (std::uint32_t k = e.begin; k < e.begin + e.count; ++k) {
@@ -66,7 +58,7 @@ bool Polyhedron::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 
 void Polyhedron::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
   Vec3d u, v;
-  make_basis(gradient(pool, i, part, p), u, v);
+  make_basis(slope_at<Polyhedron>(pool, i, part, p).gradient, u, v);
   s.uv = {static_cast<float>(0.5 + 0.5 * dot(u, p)), static_cast<float>(0.5 + 0.5 * dot(v, p))};
   s.tangent = Vec3f(u * 2.0);
 }

@@ -29,6 +29,7 @@ struct Polyhedron {
   using Data = PolyhedronShape;
   using Pool = PolyhedronPool;
   static constexpr int kMaxCrossings = 2;
+  static constexpr bool kOneCell = true;
   static constexpr bool kWholeLines = true;
 
   static void add(Pool& pool, const PolyhedronShape& shape, const ExactPlace& place);
@@ -78,8 +79,6 @@ struct Polyhedron {
     gradient = {D::load(nx), D::load(ny), D::load(nz)};
     value = dot_lanes(gradient, p) - D::load(offset);
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// Position in the plane of the face, in [0, 1] over the size of the solid.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

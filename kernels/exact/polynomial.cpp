@@ -143,7 +143,7 @@ std::vector<Step> cheapest_steps(const std::vector<Monomial>& terms) {
 
 }  // namespace
 
-void PolynomialSurface::add(Pool& pool, const PolynomialShape& s, const ExactPlace& place) {
+void Polynomial::add(Pool& pool, const PolynomialShape& s, const ExactPlace& place) {
   const Vec3d half = (s.hi - s.lo) * 0.5, middle = (s.lo + s.hi) * 0.5;
   const double extent = max_component(half);
   double off = 0;
@@ -173,21 +173,11 @@ void PolynomialSurface::add(Pool& pool, const PolynomialShape& s, const ExactPla
   add_cell(pool, e.lo, e.hi);
 }
 
-double PolynomialSurface::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<PolynomialSurface>(pool, i, part, p).value;
-}
-
-Vec3d PolynomialSurface::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<PolynomialSurface>(pool, i, part, p).gradient;
-}
-
-bool PolynomialSurface::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+bool Polynomial::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   const PolynomialElement& e = pool.elements[i];
   for (int k = 0; k < 3; ++k)
     if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return value(pool, i, 0, p) < 0;
+  return slope_at<Polynomial>(pool, i, 0, p).value < 0;
 }
-
-void PolynomialSurface::uv(const Pool&, std::size_t, int, const Vec3d&, SurfaceInteraction&) {}
 
 }  // namespace oktett

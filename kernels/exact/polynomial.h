@@ -35,7 +35,7 @@ struct PolynomialElement {
 };
 
 /// Parts: 0 the surface, 1 to 6 the faces of the box.
-struct PolynomialSurface {
+struct Polynomial {
   using Data = PolynomialShape;
   using Pool = ExactPool<PolynomialElement>;
   static constexpr int kMaxCrossings = roots::kMaxDegree + 2;
@@ -74,11 +74,7 @@ struct PolynomialSurface {
     }
     select_faces(e.lo, e.hi, part, p, value, gradient);
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
-  /// None.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
 
  private:
   template <class D>

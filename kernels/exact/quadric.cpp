@@ -201,19 +201,11 @@ void Quadric::equation(const QuadricElement& e, const double (&in)[6], double (&
   out[3] = (b * b - a * c).hi;
 }
 
-double Quadric::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Quadric>(pool, i, part, p).value;
-}
-
-Vec3d Quadric::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Quadric>(pool, i, part, p).gradient;
-}
-
 bool Quadric::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   const QuadricElement& e = pool.elements[i];
   for (int face = 1; e.clipped && face <= 6; ++face)
     if (!(face_value(e.lo, e.hi, face, p) < 0)) return false;
-  return value(pool, i, 0, p) < 0;
+  return slope_at<Quadric>(pool, i, 0, p).value < 0;
 }
 
 void Quadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
@@ -233,7 +225,7 @@ void Quadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, Surf
   s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
           static_cast<float>(along(2))};
   // Around z on the surface at one height.
-  const Vec3d g = gradient(pool, i, 0, p);
+  const Vec3d g = slope_at<Quadric>(pool, i, 0, p).gradient;
   const double speed = p.x * g.x + p.y * g.y;
   if (speed == 0) return;
   s.tangent = Vec3f(Vec3d{-g.y, g.x, 0} * (2 * std::numbers::pi * (p.x * p.x + p.y * p.y) / speed));

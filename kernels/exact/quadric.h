@@ -22,6 +22,7 @@ struct Quadric {
   using Data = QuadricShape;
   using Pool = ExactPool<QuadricElement>;
   static constexpr int kMaxCrossings = 4;
+  static constexpr bool kOneCell = true;
 
   static void add(Pool& pool, const QuadricShape& shape, const ExactPlace& place);
 
@@ -86,8 +87,6 @@ struct Quadric {
     gradient = {(g.x + h.x) * D(2.0), (g.y + h.y) * D(2.0), (g.z + h.z) * D(2.0)};
     select_faces(e.lo, e.hi, part, p, value, gradient);
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// On the surface, u around z and v the height in the box, both in [0, 1]; v = z where the box is infinite.
   /// On a face of the box, the position on it.

@@ -142,18 +142,10 @@ void Revolution::add(Pool& pool, const RevolutionShape& described, const ExactPl
   }
 }
 
-double Revolution::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Revolution>(pool, i, part, p).value;
-}
-
-Vec3d Revolution::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Revolution>(pool, i, part, p).gradient;
-}
-
 bool Revolution::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   const RevolutionElement& e = pool.elements[i];
   if (!(e.pieces.front().ends[0].height <= p.y && p.y <= e.pieces.back().ends[1].height)) return false;
-  return value(pool, i, 0, p) < 0;
+  return slope_at<Revolution>(pool, i, 0, p).value < 0;
 }
 
 void Revolution::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {

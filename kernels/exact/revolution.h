@@ -132,8 +132,6 @@ struct Revolution {
     gradient = {select(plane, D(0.0), gradient.x), select(plane, side, gradient.y),
                 select(plane, D(0.0), gradient.z)};
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +z towards +x, v the height, both in [0, 1].
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

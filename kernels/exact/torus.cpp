@@ -15,15 +15,9 @@ void Torus::add(Pool& pool, const TorusShape& s, const ExactPlace& place) {
   add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
 }
 
-double Torus::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Torus>(pool, i, part, p).value;
+bool Torus::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  return slope_at<Torus>(pool, i, 0, p).value < 0;
 }
-
-Vec3d Torus::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Torus>(pool, i, part, p).gradient;
-}
-
-bool Torus::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
 
 void Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
   const TorusElement& e = pool.elements[i];

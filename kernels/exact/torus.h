@@ -15,6 +15,7 @@ struct Torus {
   using Data = TorusShape;
   using Pool = ExactPool<TorusElement>;
   static constexpr int kMaxCrossings = 4;
+  static constexpr bool kOneCell = true;
 
   static void add(Pool& pool, const TorusShape& shape, const ExactPlace& place);
 
@@ -58,8 +59,6 @@ struct Torus {
     const D k = select(rho > D(0.0), D(e.major) / rho, D(0.0));
     gradient = {(p.x - k * p.x) * D(2.0), (p.y - k * p.y) * D(2.0), p.z * D(2.0)};
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +x towards +y, v around the tube from the outside upwards, both in [0, 1].
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

@@ -10,14 +10,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
 
 namespace oktett {
-
-template <class S>
-inline constexpr bool kIsFractal = requires {
-  S::find;
-};
 
 /// Where to look for crossings: at a < t <= b on the line o + t d in the element's own space. What lies at a
 /// itself says whether the line starts inside.
@@ -86,10 +82,7 @@ void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, cons
   line.o.x.store(o[0]), line.o.y.store(o[1]), line.o.z.store(o[2]);
   line.d.x.store(d[0]), line.d.y.store(d[1]), line.d.z.store(d[2]);
   range.a.store(a), range.b.store(b);
-  double t[K][W], turn[K][W], part[K][W], up_to[W];
-  for (int i = 0; i < W; ++i) up_to[i] = roots::kNoRoot;
-  for (int k = 0; k < K; ++k)
-    for (int i = 0; i < W; ++i) t[k][i] = roots::kNoRoot, turn[k][i] = part[k][i] = 0;
+  CrossingColumns<K, D> columns;
   for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
     const int i = __builtin_ctz(lanes);
     FractalCrossing found[K];
@@ -97,29 +90,11 @@ void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, cons
         F::find(pool.elements[cell.element],
                 {{o[0][i], o[1][i], o[2][i]}, {d[0][i], d[1][i], d[2][i]}, a[i], b[i]}, found, K);
     for (int k = 0; k < count; ++k)
-      t[k][i] = found[k].t, turn[k][i] = found[k].turn, part[k][i] = found[k].part;
-    if (count == K) up_to[i] = found[K - 1].t;
+      columns.t[k][i] = found[k].t, columns.turn[k][i] = found[k].turn, columns.part[k][i] = found[k].part;
+    if (count == K) columns.up_to[i] = found[K - 1].t;
   }
-  for (int k = 0; k < K; ++k)
-    out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
-  out.up_to = D::load(up_to);
+  columns.load(out);
 }
-
-/// What all fractals declare alike.
-template <class F, class Shape, class E>
-struct Fractal {
-  using Data = Shape;
-  using Element = E;
-  using Pool = ExactPool<Element>;
-  static constexpr int kMaxCrossings = 32;
-  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
-
-  template <int K, class D>
-  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
-                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    fractal_crossings<F, K>(pool, cell, line, range, active, out);
-  }
-};
 
 /// The crossing that `hit` was before its t was rounded to float, on the line of `query`, whose range is not
 /// looked at. If rounding took the line itself past it, a point on the line that faces the ray.
@@ -145,5 +120,36 @@ FractalCrossing resolve_crossing(const typename F::Element& element, FractalQuer
   best.point = query.o + query.d * t, best.normal = query.d * turn;
   return best;
 }
+
+/// What all fractals have alike: F is the fractal, Shape its data, E its element.
+template <class F, class Shape, class E>
+struct Fractal {
+  using Data = Shape;
+  using Element = E;
+  using Pool = ExactPool<Element>;
+  static constexpr int kMaxCrossings = 32;
+  static constexpr bool kWholeLines = true, kStopsAtLimit = true;
+
+  template <int K, class D>
+  static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
+                        const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
+    fractal_crossings<F, K>(pool, cell, line, range, active, out);
+  }
+
+  static SurfaceInteraction interaction(const Pool& pool, std::size_t i, const Ray& ray, const Hit& hit) {
+    const ExactFrame& frame = pool.frames[i];
+    const FractalQuery query{frame.to_own.point(Vec3d(ray.origin)),
+                             frame.to_own.vector(Vec3d(ray.direction))};
+    const FractalCrossing c = resolve_crossing<F>(pool.elements[i], query, hit.t, hit.v);
+    SurfaceInteraction s;
+    const Vec3d point = frame.to_world.point(c.point);
+    set_position(s, point, ray, c.t, 0x1p-44 * (length(point) + length(frame.to_world.vector({1, 1, 1}))));
+    const Vec3d n = frame.to_own.normal_by_inverse(c.normal);
+    s.geometric_normal = s.shading_normal = Vec3f(n / length(n));
+    s.uv = {static_cast<float>(c.u), static_cast<float>(c.v)};
+    s.tangent = Vec3f(frame.to_world.vector(c.tangent));
+    return s;
+  }
+};
 
 }  // namespace oktett

@@ -54,16 +54,8 @@ void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
   add_cell(pool, lo, hi);
 }
 
-double Julia::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Julia>(pool, i, part, p).value;
+bool Julia::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
+  return slope_at<Julia>(pool, i, 0, p).value < 0;
 }
-
-Vec3d Julia::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<Julia>(pool, i, part, p).gradient;
-}
-
-bool Julia::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
-
-void Julia::uv(const Pool&, std::size_t, int, const Vec3d&, SurfaceInteraction&) {}
 
 }  // namespace oktett

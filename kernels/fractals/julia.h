@@ -139,11 +139,7 @@ struct Julia {
     value = z.norm2() - D(e.radius * e.radius);
     gradient = {along(w[0]), along(w[1]), along(w[2])};
   }
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
-  /// None.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
 };
 
 }  // namespace oktett

@@ -7,7 +7,7 @@
 /// the line enters and leaves it and finds as many crossings between as they ask for, so what two neighbours
 /// find fits together whatever rounding does: no ray slips through an edge or a corner.
 
-#include "kernels/heights/height_field.h"
+#include "kernels/heights/height_element.h"
 
 namespace oktett {
 

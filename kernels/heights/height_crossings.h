@@ -1,12 +1,9 @@
 #pragma once
-/// \file HeightField::crossings. For accel/isa/ alone, so that a change to the walks recompiles little.
+/// \file Crossings of lines with a height field.
 
 #include "kernels/heights/height_pyramid.h"
-#include "kernels/heights/height_slope.h"
 
-namespace oktett {
-
-namespace height {
+namespace oktett::height {
 
 template <int K, class D>
 void find_in_lanes(const HeightFieldElement& e, const GridLines<D>& g, const LineRange<D>& range,
@@ -24,21 +21,18 @@ template <int K, class D>
 void find_one_by_one(const HeightFieldElement& e, const GridLines<D>& g, const LineRange<D>& range,
                      const typename D::M& active, Crossings<K, D>& out) {
   using One = Simd<double, 1, typename D::Isa>;
-  constexpr int W = D::kWidth;
-  double t[K][W], turn[K][W], part[K][W], up_to[W];
-  for (int lane = 0; lane < W; ++lane) {
+  CrossingColumns<K, D> columns;
+  for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
+    const int lane = __builtin_ctz(lanes);
     Crossings<K, One> c;
-    c.clear();
-    if ((bits(active) >> lane & 1) != 0)
-      find_in_lanes(e, GridLines<One>(g, lane), {lane_of(range.a, lane), lane_of(range.b, lane), {}, {}},
-                    One::M::all_true(), c);
+    find_in_lanes(e, GridLines<One>(g, lane), {lane_of(range.a, lane), lane_of(range.b, lane), {}, {}},
+                  One::M::all_true(), c);
     for (int k = 0; k < K; ++k)
-      t[k][lane] = c.t[k].part[0].v, turn[k][lane] = c.turn[k].part[0].v, part[k][lane] = c.part[k].part[0].v;
-    up_to[lane] = c.up_to.part[0].v;
+      columns.t[k][lane] = only_lane(c.t[k]), columns.turn[k][lane] = only_lane(c.turn[k]),
+      columns.part[k][lane] = only_lane(c.part[k]);
+    columns.up_to[lane] = only_lane(c.up_to);
   }
-  for (int k = 0; k < K; ++k)
-    out.t[k] = D::load(t[k]), out.turn[k] = D::load(turn[k]), out.part[k] = D::load(part[k]);
-  out.up_to = D::load(up_to);
+  columns.load(out);
 }
 
 template <int K, class D>
@@ -55,6 +49,9 @@ OKTETT_INLINE void find(const HeightFieldElement& e, const GridLines<D>& g, cons
   }
 }
 
+/// Whether (x, y, z), in the space of the grid, is below the surface's edge over a side of the box.
+bool below_rim(const HeightGrid& grid, int face, double x, double y, double z);
+
 /// Whether lines of `asked`, which do not cross the surface, are below it: by the face through which they
 /// enter, or else leave.
 template <class D>
@@ -70,27 +67,24 @@ OKTETT_INLINE typename D::M starts_inside(const HeightFieldElement& e, const Gri
   double faces[W], x[W], y[W], z[W], below[W];
   face.store(faces), (g.o.x + t * g.d.x).store(x), g.height(t).store(y), (g.o.z + t * g.d.z).store(z);
   for (int k = 0; k < W; ++k)
-    below[k] = (bits(side) >> k & 1) != 0 &&
-                       HeightField::below_rim(*e.grid, static_cast<int>(faces[k]), x[k], y[k], z[k])
+    below[k] = (bits(side) >> k & 1) != 0 && below_rim(*e.grid, static_cast<int>(faces[k]), x[k], y[k], z[k])
                    ? 1.0
                    : 0.0;
   return asked & (bottom | (D(0.0) < D::load(below)));
 }
 
-}  // namespace height
-
+/// The first K crossings with the element.
 template <int K, class D>
-void HeightField::crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
-                            const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-  const HeightFieldElement& e = pool.elements[cell.element];
+void crossings(const HeightFieldElement& e, const Line<D>& line, const LineRange<D>& range,
+               const typename D::M& active, Crossings<K, D>& out) {
   const GridLines<D> g(*e.grid, e.frame, e.margin, line);
-  if (!e.solid) return height::find(e, g, range, active, out);
+  if (!e.solid) return find(e, g, range, active, out);
   constexpr int kOwn = K > 2 ? K - 2 : K;
   Crossings<kOwn, D> own;
-  height::find(e, g, range, active, own);
+  find(e, g, range, active, own);
   // Without a crossing it is inside all the way or not at all.
   const auto silent = active & ~(own.t[0] < D(roots::kNoRoot));
-  close_by_cell(own, height::starts_inside(e, g, range, silent), range, active, out);
+  close_by_cell(own, starts_inside(e, g, range, silent), range, active, out);
 }
 
-}  // namespace oktett
+}  // namespace oktett::height

@@ -3,14 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/heights/height_slope.h"
-
 namespace oktett {
-
-// For those who do not include height_slope.h.
-using LoneLane = Simd<double, 1, ScalarIsa>;
-template void HeightField::slope(const Pool&, std::size_t, const LoneLane&, const Vec3<LoneLane>&, LoneLane&,
-                                 Vec3<LoneLane>&);
 
 std::size_t HeightFieldPool::bytes() const {
   std::size_t sum = ExactPool<HeightFieldElement>::bytes();
@@ -49,19 +42,12 @@ void HeightField::add(Pool& pool, const HeightFieldShape& s, const ExactPlace& p
   add_cell(pool, e.lo, e.hi);
 }
 
-bool HeightField::below_rim(const HeightGrid& grid, int face, double x, double y, double z) {
+bool height::below_rim(const HeightGrid& grid, int face, double x, double y, double z) {
   // Edges are straight, but for steps, which end upright there.
   if (face <= 2) x = face == 1 ? 0 : static_cast<double>(grid.columns()) - 1;
   if (face >= 5) z = face == 5 ? 0 : static_cast<double>(grid.rows()) - 1;
-  return y < HeightPatch<LoneLane>(grid, LoneLane(x), LoneLane(z)).height.part[0].v;
-}
-
-double HeightField::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<HeightField>(pool, i, part, p).value;
-}
-
-Vec3d HeightField::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  return slope_at<HeightField>(pool, i, part, p).gradient;
+  using D = Simd<double, 1, ScalarIsa>;
+  return y < only_lane(HeightPatch<D>(grid, D(x), D(z)).height);
 }
 
 bool HeightField::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
@@ -69,14 +55,14 @@ bool HeightField::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   if (!e.solid) return false;
   for (int k = 0; k < 3; ++k)
     if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return value(pool, i, 0, p) < 0;
+  return slope_at<HeightField>(pool, i, 0, p).value < 0;
 }
 
 void HeightField::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
   const HeightFieldElement& e = pool.elements[i];
   const double width = e.hi.x - e.lo.x, depth = e.hi.z - e.lo.z;
   s.uv = {static_cast<float>((p.x - e.lo.x) / width), static_cast<float>((e.hi.z - p.z) / depth)};
-  const Vec3d g = part == 0 ? gradient(pool, i, part, p) : Vec3d{0, 1, 0};
+  const Vec3d g = part == 0 ? slope_at<HeightField>(pool, i, part, p).gradient : Vec3d{0, 1, 0};
   s.tangent = Vec3f(Vec3d{width, -g.x * width, 0});
 }
 

@@ -1,14 +1,13 @@
 #pragma once
-/// \file HeightField::slope, apart from height_field.h so that a change to it recompiles little.
+/// \file How far points are above a height field, and how that changes.
 
 #include "kernels/heights/height_cell.h"
 
-namespace oktett {
+namespace oktett::height {
 
+/// The function whose zeros a part of the element is, negative inside, and its gradient.
 template <class D>
-void HeightField::slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
-                        Vec3<D>& gradient) {
-  const HeightFieldElement& e = pool.elements[i];
+void slope(const HeightFieldElement& e, const D& part, const Vec3<D>& p, D& value, Vec3<D>& gradient) {
   const Vec3d &scale = e.frame.scale, &shift = e.frame.shift;
   const HeightPatch<D> patch(*e.grid, p.x * D(scale.x) + D(shift.x), p.z * D(scale.z) + D(shift.z));
   value = p.y - (patch.height - D(shift.y)) / D(scale.y);
@@ -36,4 +35,4 @@ void HeightField::slope(const Pool& pool, std::size_t i, const D& part, const Ve
     }
 }
 
-}  // namespace oktett
+}  // namespace oktett::height

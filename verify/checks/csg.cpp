@@ -11,7 +11,7 @@
 #include "accel/query.h"
 #include "accel/trace_mode.h"
 #include "core/random.h"
-#include "kernels/kinds.h"
+#include "kernels/exact_ops.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/checks/kernels.h"
 #include "verify/oracles/exact.h"
@@ -157,7 +157,7 @@ class TreeMaker {
     std::vector<ExactOracle> all = draw_exact_oracles(random_);
     ExactOracle oracle;
     do oracle = all[static_cast<std::size_t>(random_.unit() * static_cast<double>(all.size()))];
-    while (oracle.where || (simple_ && !has_one_cell(kind_of(oracle.shape.form))));
+    while (oracle.where || (simple_ && !exact_ops(kind_of(oracle.shape.form)).lists_at_once()));
     const Affine m = Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
     add(e, oracle.shape, m);
     return [inverse = m.inverse(), f = oracle.f](const Vec3l& p) { return f(mapped(inverse, p)) < 0; };

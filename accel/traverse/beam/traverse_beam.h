@@ -148,8 +148,8 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   const RayLanes<F> r = load_group(beam, task.rays, g);
   rays &= bits(F::load(beam.hit_lo + base) < infinity);
   RayState<kBeamGroup, A> state;
-  rays &= leaf.kind < Kind::triangle ? state.set_rays(r.o, r.d, r.tmin, r.tmax)
-                                     : state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
+  rays &= is_shape(leaf.kind) ? state.set_rays(r.o, r.d, r.tmin, r.tmax)
+                              : state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
   if (rays == 0) return;
   if constexpr (Q == Query::closest) {
     decide_candidates(task, g);

@@ -1,0 +1,90 @@
+#pragma once
+/// \file The surface interaction at hits of an exact surface: one formula for one hit and for many in lanes.
+
+#include <cmath>
+#include <limits>
+
+#include "kernels/closed/surface_points.h"
+#include "kernels/exact/exact.h"
+
+namespace oktett {
+
+/// The gradient by differences of the function, which step by `h` along each axis. Forward ones are off by
+/// about h |f''| / 2, central ones by h^2 |f'''| / 6, and both by the rounding of f over h.
+template <class S>
+Vec3d gradient_by_differences(const typename S::Pool& pool, std::size_t i, int part, const Vec3d& p) {
+  const auto value = [&](const Vec3d& at) {
+    if constexpr (requires { S::value(pool, i, part, at); })
+      return S::value(pool, i, part, at);
+    else
+      return slope_at<S>(pool, i, part, at).value;
+  };
+  const bool central = pool.frames[i].normals == NormalMethod::central;
+  const double h = central ? 0x1p-17 : 0x1p-26, here = value(p);
+  Vec3d g;
+  for (int k = 0; k < 3; ++k) {
+    Vec3d ahead = p, behind = p;
+    ahead[k] += h, behind[k] -= h;
+    g[k] = central ? (value(ahead) - value(behind)) / (2 * h) : (value(ahead) - here) / h;
+  }
+  return g;
+}
+
+/// The surface near hits with element `i`: points moved onto it along the gradient by Newton's method. A
+/// point that would go farther than rounding can have brought it stays where it is: the function has no slope
+/// to go by there. `own` gets the points in the element's own space.
+///
+/// Several lanes ask for S::slope and NormalMethod::gradient.
+template <class S, class D>
+OKTETT_INLINE SurfacePoints<D> exact_surface_points(const typename S::Pool& pool, std::size_t i,
+                                                    const D& part, const HitPoints<D>& hit, Vec3<D>& own) {
+  const ExactFrame& frame = pool.frames[i];
+  const Vec3<D> start = map_point(frame.to_own, hit.point());
+  // t was rounded to float: so far may the true point be; a slanting ray may lead twice as far.
+  const D reach = D(0x1p-22) * length_lanes(map_vector(frame.to_own, hit.d)) * hit.t + D(0x1p-40);
+  Vec3<D> p = start, g;
+  D value;
+  auto stays_near = D::M::all_true();
+  for (int k = 0; k < 3; ++k) {
+    slope_lanes<S>(pool, i, part, p, value, g);
+    const D step = value / dot_lanes(g, g);
+    p = {p.x - g.x * step, p.y - g.y * step, p.z - g.z * step};
+    stays_near = stays_near & (length_lanes(sub_lanes(p, start)) <= reach);
+    p = select_lanes(stays_near, p, start);
+  }
+  slope_lanes<S>(pool, i, part, p, value, g);
+  if constexpr (D::kWidth == 1)
+    if (frame.normals != NormalMethod::gradient)
+      g = broadcast<D>(gradient_by_differences<S>(pool, i, static_cast<int>(only_lane(part)), only_lane(p)));
+  Vec3<D> n = map_normal(frame.to_own, g);
+  D l = length_lanes(n);
+  // At a singular point any normal is as good as another.
+  const auto known = (D(0.0) < l) & (l <= D(std::numeric_limits<double>::max()));
+  n = select_lanes(known, n, Vec3<D>{-hit.d.x, -hit.d.y, -hit.d.z});
+  l = select(known, l, length_lanes(hit.d));
+  const Vec3<D> point = map_point(frame.to_world, p);
+  const D size = length_lanes(point) + D(length(frame.to_world.vector({1, 1, 1})));
+  own = p;
+  return {point, D(0x1p-44) * size, {n.x / l, n.y / l, n.z / l}};
+}
+
+/// All but the names of the interaction of a hit that `ray` had with element `i`.
+template <class S, bool kWithUv>
+SurfaceInteraction exact_interaction(const typename S::Pool& pool, std::size_t i, const Ray& ray,
+                                     const Hit& hit) {
+  using D = Simd<double, 1, ScalarIsa>;
+  Vec3<D> own;
+  const SurfacePoints<D> at =
+      exact_surface_points<S>(pool, i, D(static_cast<double>(hit.u)), HitPoints<D>(ray, hit.t), own);
+  SurfaceInteraction s;
+  set_position(s, only_lane(at.point), ray, hit.t, only_lane(at.error));
+  s.geometric_normal = s.shading_normal = Vec3f(only_lane(at.normal));
+  if constexpr (kWithUv) {
+    if constexpr (requires { S::uv(pool, i, 0, Vec3d{}, s); })
+      S::uv(pool, i, static_cast<int>(hit.u), only_lane(own), s);
+    s.tangent = Vec3f(pool.frames[i].to_world.vector(Vec3d(s.tangent)));
+  }
+  return s;
+}
+
+}  // namespace oktett

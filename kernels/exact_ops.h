@@ -1,0 +1,44 @@
+#pragma once
+/// \file What can be asked of any exact surface without knowing which it is: one table of functions for each
+/// line of kernels/exact/surfaces.def.
+
+#include <memory>
+
+#include "core/box.h"
+#include "kernels/exact/exact.h"
+#include "kernels/exact_form.h"
+#include "kernels/kinds.h"
+
+namespace oktett {
+
+/// Pools that are passed here must come from `make_pool` of the same table.
+struct ExactOps {
+  const char* name;    ///< as in surfaces.def
+  int most_crossings;  ///< S::kMaxCrossings
+  bool one_cell;       ///< S::kOneCell
+
+  std::unique_ptr<ExactPoolBase> (*make_pool)();
+  /// Appends the element that `shape`, which must be of this surface, describes, and its cells; nothing if
+  /// the shape is degenerate.
+  void (*add)(ExactPoolBase& pool, const ExactShape& shape, const Affine& to_world, std::uint32_t item);
+  /// Bounds of a cell in the world; empty if it is not bounded.
+  Box (*cell_bounds)(const ExactPoolBase& pool, const ExactCell& cell);
+  /// Whether p, in the element's own space, is inside.
+  bool (*inside)(const ExactPoolBase& pool, std::size_t element, const Vec3d& p);
+  /// Sets all but the names of the interaction of a hit that `ray` had with the element.
+  void (*interaction)(const ExactPoolBase& pool, std::size_t element, const Ray& ray, const Hit& hit,
+                      SurfaceInteraction& s);
+  /// The same; uv and tangent may be missing.
+  void (*interaction_without_uv)(const ExactPoolBase& pool, std::size_t element, const Ray& ray,
+                                 const Hit& hit, SurfaceInteraction& s);
+  std::size_t (*bytes)(const ExactPoolBase& pool);
+
+  /// Whether a cell lists all of its crossings, at most four, at once.
+  bool lists_at_once() const { return one_cell && most_crossings <= 4; }
+};
+
+/// The table of an exact kind.
+const ExactOps& exact_ops(Kind kind);
+Kind kind_of(const ExactForm& form);
+
+}  // namespace oktett
