@@ -14,7 +14,8 @@ foreach(surface IN LISTS surfaces)
   endif()
   set(SURFACE_TYPE ${CMAKE_MATCH_1})
   set(SURFACE_NAME ${CMAKE_MATCH_2})
-  file(GLOB SURFACE_HEADER RELATIVE ${oktett_root} ${oktett_root}/kernels/exact/${SURFACE_NAME}.h
+  file(GLOB SURFACE_HEADER RELATIVE ${oktett_root}
+    ${oktett_root}/kernels/exact/${SURFACE_NAME}.h ${oktett_root}/kernels/fields/${SURFACE_NAME}.h
     ${oktett_root}/kernels/heights/${SURFACE_NAME}.h ${oktett_root}/kernels/fractals/${SURFACE_NAME}.h)
   if(NOT SURFACE_HEADER MATCHES "^[^;]+$")
     message(FATAL_ERROR "kernels/exact/surfaces.def: one header ${SURFACE_NAME}.h is needed, found: ${SURFACE_HEADER}")

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "accel/accel.h"
-#include "kernels/exact/blobtree.h"
-#include "kernels/exact/metaballs.h"
+#include "kernels/fields/blobtree.h"
+#include "kernels/fields/metaballs.h"
 #include "tests/accel/all_crossings.h"
 #include "verify/cases/kernel_cases.h"
 

@@ -1,4 +1,4 @@
-#include "kernels/exact/cell_tree.h"
+#include "kernels/fields/cell_tree.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <random>
 
-#include "kernels/exact/blobtree.h"
-#include "kernels/exact/metaballs.h"
+#include "kernels/fields/blobtree.h"
+#include "kernels/fields/metaballs.h"
 
 namespace oktett {
 namespace {

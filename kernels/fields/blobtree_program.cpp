@@ -1,4 +1,4 @@
-#include "kernels/exact/blobtree_program.h"
+#include "kernels/fields/blobtree_program.h"
 
 #include <algorithm>
 #include <cmath>

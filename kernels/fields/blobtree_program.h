@@ -1,7 +1,7 @@
 #pragma once
 /// \file From the description of a blob tree to the program and the elements that its pool holds.
 
-#include "kernels/exact/blobtree.h"
+#include "kernels/fields/blobtree.h"
 
 namespace oktett::field {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/exact/blobtree_data.h"
 #include "kernels/exact/exact.h"
+#include "kernels/fields/blobtree_data.h"
 #include "kernels/interval/dual.h"
 
 namespace oktett {

@@ -1,4 +1,4 @@
-#include "kernels/exact/metaballs.h"
+#include "kernels/fields/metaballs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kernels/exact/blob.h"
+#include "kernels/fields/blob.h"
 
 #include <algorithm>
 #include <cmath>

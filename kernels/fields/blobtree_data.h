@@ -7,7 +7,7 @@
 
 #include "core/description.h"
 #include "core/vec3.h"
-#include "kernels/exact/metaballs_data.h"
+#include "kernels/fields/metaballs_data.h"
 
 namespace oktett {
 

@@ -1,12 +1,12 @@
-#include "kernels/exact/blobtree.h"
+#include "kernels/fields/blobtree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/math.h"
-#include "kernels/exact/blobtree_program.h"
 #include "kernels/exact/globe_uv.h"
+#include "kernels/fields/blobtree_program.h"
 
 namespace oktett {
 

@@ -8,8 +8,8 @@
 #include <array>
 #include <optional>
 
-#include "kernels/exact/blob_data.h"
 #include "kernels/exact/ray_polynomial.h"
+#include "kernels/fields/blob_data.h"
 
 namespace oktett {
 
