@@ -73,7 +73,9 @@ function(oktett_compile_set target set sources tag)
   set(code ${target}_${set})
   add_library(${code} OBJECT ${sources})
   target_compile_definitions(${code} PRIVATE OKTETT_ISA=${tag})
-  target_compile_options(${code} PRIVATE -ffp-contract=off ${optimization} -g0 ${warnings} ${ARGN})
+  # Hot functions begin with a cache line: their speed does not depend on what the linker puts before them.
+  target_compile_options(${code} PRIVATE
+    -ffp-contract=off ${optimization} -falign-functions=64 -g0 ${warnings} ${ARGN})
   oktett_target_warnings(${code})
   target_link_libraries(${code} PRIVATE oktett_internal)
   if(BUILD_SHARED_LIBS)
