@@ -4,9 +4,8 @@
 /// With a = major, c = taper, d = minor and b^2 = a^2 - c^2 the equation has a second form, which a line
 /// turns into a quartic that cancels less: (x^2 + y^2 + z^2 - b^2 - d^2)^2 = 4 (c x - a d)^2 - 4 b^2 z^2.
 
+#include "kernels/exact/centered_quartic.h"
 #include "kernels/exact/cyclide_data.h"
-#include "kernels/exact/exact.h"
-#include "kernels/roots/bernstein_lanes.h"
 
 namespace oktett {
 
@@ -37,19 +36,11 @@ struct Cyclide {
     const D c0 = k * k + D(4.0) * (h - e) * (h + e);
     const D c[5] = {c0, c1, c2, D(0.0), D(1.0)};
     // Everything lies in the unit sphere.
-    const D reach2 = D(1 + 0x1p-40) - pp;
-    const D reach = sqrt(max(reach2, D(0.0)));
-    const D from = max(l.to_s(range.a), -reach), to = min(l.to_s(range.b), reach);
-    const auto there = active & (reach2 >= D(0.0)) & (from <= to);
+    const BallRange<D> ball(l, D(1 + 0x1p-40), range, active);
     out.clear();
-    if (none(there)) return;
-    const auto roots = roots::certified_roots<4, K, roots::Touching::drop>(c, from, to, there);
-    CrossingList<K, D> list(out);
-    for (int i = 0; i < K; ++i) {
-      const D s = roots.x[i], slope = (D(4.0) * s * s + D(2.0) * c2) * s + c1;
-      list.push(there & (s < D(roots::kNoRoot)), l.to_t(s), select(slope < D(0.0), D(-1.0), D(1.0)), D(0.0));
-    }
-    list.finish(K < 4 ? out.t[K - 1] : D(roots::kNoRoot));
+    if (none(ball.there)) return;
+    list_quartic_roots(roots::certified_roots<4, K, roots::Touching::drop>(c, ball.a, ball.b, ball.there), l,
+                       c, ball.there, out);
   }
 
   template <class D>

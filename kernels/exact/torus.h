@@ -1,9 +1,8 @@
 #pragma once
 /// \file Tori (slides: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
 
-#include "kernels/exact/exact.h"
+#include "kernels/exact/centered_quartic.h"
 #include "kernels/exact/torus_data.h"
-#include "kernels/roots/bernstein_lanes.h"
 
 namespace oktett {
 
@@ -32,22 +31,21 @@ struct Torus {
     const D c0 = k * k + D(4.0) * rr * (l.p.z * l.p.z - D(e.minor * e.minor));
     const D c[5] = {c0, c1, c2, D(0.0), D(1.0)};
     // Everything lies in the sphere around the torus.
-    const D reach2 = outer * outer * D(1 + 0x1p-40) - pp;
-    const D reach = sqrt(max(reach2, D(0.0)));
-    const D a = max(l.to_s(range.a), -reach), b = min(l.to_s(range.b), reach);
-    const auto there = active & (reach2 >= D(0.0)) & (a <= b);
+    const BallRange<D> ball(l, outer * outer * D(1 + 0x1p-40), range, active);
+    const auto there = ball.there;
     out.clear();
     if (none(there)) return;
     if (e.minor <= e.major)
-      return list<K>(roots::certified_roots<4, K, roots::Touching::drop>(c, a, b, there), l, c, there, out);
+      return list_quartic_roots(roots::certified_roots<4, K, roots::Touching::drop>(c, ball.a, ball.b, there),
+                                l, c, there, out);
     // The quartic is zero, too, on the lemon inside that the square root of the equation leaves out.
-    auto all = roots::certified_roots<4, 4, roots::Touching::drop>(c, a, b, there);
+    auto all = roots::certified_roots<4, 4, roots::Touching::drop>(c, ball.a, ball.b, there);
     for (int i = 0; i < 4; ++i) {
       const D s = select(all.x[i] < D(roots::kNoRoot), all.x[i], D(0.0));
       const auto lemon = (pp + s * s) + rr < D(e.minor * e.minor);
       all.x[i] = select(lemon, D(roots::kNoRoot), all.x[i]);
     }
-    list<K>(all, l, c, there, out);
+    list_quartic_roots(all, l, c, there, out);
   }
 
   template <class D>
@@ -62,20 +60,6 @@ struct Torus {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +x towards +y, v around the tube from the outside upwards, both in [0, 1].
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
-
- private:
-  /// The first K of the roots that are there, which need not stand side by side.
-  template <int K, int N, class D>
-  OKTETT_INLINE static void list(const roots::LaneRoots<D, N>& roots, const CenteredLine<D>& l,
-                                 const D (&c)[5], const typename D::M& there, Crossings<K, D>& out) {
-    CrossingList<K, D> list(out);
-    for (int i = 0; i < N; ++i) {
-      const D s = roots.x[i];
-      const D slope = (D(4.0) * s * s + D(2.0) * c[2]) * s + c[1];
-      list.push(there & (s < D(roots::kNoRoot)), l.to_t(s), select(slope < D(0.0), D(-1.0), D(1.0)), D(0.0));
-    }
-    list.finish(K < N || N == 4 ? D(roots::kNoRoot) : out.t[K - 1]);
-  }
 };
 
 }  // namespace oktett
