@@ -6,9 +6,9 @@
 /// - `void describe(auto& p)`, which visits its parameters in order, e.g. `p.field("radius", radius, kLength,
 ///   "distance of the surface from the centre")`, see ParameterVisitor. The default of a parameter is the
 ///   value that its member has before the visit;
-/// - `kSurface`, its key in scene files. One that has several keys has `static void surfaces(auto& v)`
-/// instead,
-///   which calls `v.surface(key, shape)` for each, with the values that it starts from.
+/// - `kSurface`, its key in scene files. A struct with several keys has
+///   `static void surfaces(auto& v)` instead, which calls `v.surface(key, shape)` for each, with the values
+///   that it starts from.
 
 #include <cstdint>
 #include <initializer_list>

@@ -20,9 +20,9 @@
 /// - `S::inside(pool, i, p)`.
 /// It may have
 /// - `S::uv(pool, i, part, p, surface)`: sets uv and tangent in its own space;
-/// - `S::kOneCell`: each element is one cell, and crossings are listed as they are. Otherwise an element's
-/// cells
-///   may each list a crossing where they meet, and lists are merged;
+/// - `S::kOneCell`: each element is one cell, and its crossings are listed as they are. Without it an
+///   element may have several cells. Two cells that meet may both list the crossing there, so the lists are
+///   merged;
 /// - `S::kWholeLines`: its only cell is no more than bounds. The range is not cut to the cell then, only to
 ///   where the ray begins; `crossings` bears NaN and infinities;
 /// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;

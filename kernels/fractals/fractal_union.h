@@ -5,9 +5,8 @@
 /// A tree T has
 /// - `T::Node`: a part, as the ray sees it; `T::kMaxChildren`;
 /// - `tree.solid(node, span)`: whether the node has a solid of its own that the line meets, and where;
-/// - `tree.children(node, spans)`: how many children may matter, and which; each span contains all of what
-/// the
-///   line meets of the child and its descendants;
+/// - `tree.children(node, spans)`: how many children the line may meet, and which ones. Each span contains
+///   everything that the line meets of the child and its descendants;
 /// - `tree.child(node, number)`.
 /// Everything is a function of the line alone.
 
