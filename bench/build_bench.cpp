@@ -56,5 +56,3 @@ BENCHMARK(build)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMilliseco
 
 }  // namespace
 }  // namespace oktett::bench
-
-BENCHMARK_MAIN();

@@ -8,9 +8,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstring>
 #include <limits>
+
+#include "bench/peer_timing.h"
 
 namespace oktett::bench {
 namespace {
@@ -23,17 +24,7 @@ bool count_memory(void*, ssize_t bytes, bool) {
 }
 
 template <int W>
-struct Types;
-template <>
-struct Types<8> {
-  using RayHit = RTCRayHit8;
-  using Ray = RTCRay8;
-};
-template <>
-struct Types<16> {
-  using RayHit = RTCRayHit16;
-  using Ray = RTCRay16;
-};
+using RayHitPacket = std::conditional_t<W == 8, RTCRayHit8, RTCRayHit16>;
 
 /// Embree 3's context or Embree 4's arguments, with one interface.
 struct Context {
@@ -85,7 +76,7 @@ void closest_packets(RTCScene scene, const RaySpan& rays, const HitSpan& hits, b
   Context context(coherent);
   alignas(64) int valid[W];
   for (std::size_t b = 0; b < rays.size; b += W) {
-    alignas(64) typename Types<W>::RayHit p;
+    alignas(64) RayHitPacket<W> p;
     fill<W>(p.ray, valid, rays, b);
     for (int i = 0; i < W; ++i) p.hit.geomID[i] = p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     context.closest(valid, scene, &p);
@@ -103,7 +94,7 @@ void any_packets(RTCScene scene, const RaySpan& rays, std::uint8_t* occluded, bo
   Context context(coherent);
   alignas(64) int valid[W];
   for (std::size_t b = 0; b < rays.size; b += W) {
-    alignas(64) typename Types<W>::Ray p;
+    alignas(64) decltype(RayHitPacket<W>::ray) p;
     fill<W>(p, valid, rays, b);
     context.any(valid, scene, &p);
     for (int i = 0; i < W && b + i < rays.size; ++i) occluded[b + i] = p.tfar[i] < 0;
@@ -126,20 +117,12 @@ const std::vector<EmbreeMode>& embree_modes() {
   return modes;
 }
 
-struct EmbreeScene::Impl {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  double build_seconds = 0;
-  std::size_t bytes = 0;
-};
-
-EmbreeScene::EmbreeScene(const TriangleMesh& mesh, int quality, const char* config)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->device = rtcNewDevice(config);
-  rtcSetDeviceMemoryMonitorFunction(impl_->device, count_memory, nullptr);
+EmbreeScene::EmbreeScene(const TriangleMesh& mesh, int quality, const char* config) {
+  device_ = rtcNewDevice(config);
+  rtcSetDeviceMemoryMonitorFunction(device_, count_memory, nullptr);
   const std::ptrdiff_t before = allocated;
-  impl_->scene = rtcNewScene(impl_->device);
-  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  scene_ = rtcNewScene(device_);
+  RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   void* v =
       rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size());
   std::memcpy(v, mesh.positions.data(), mesh.positions.size() * 12);
@@ -147,32 +130,27 @@ EmbreeScene::EmbreeScene(const TriangleMesh& mesh, int quality, const char* conf
   std::memcpy(i, mesh.indices.data(), mesh.triangle_count() * 12);
   rtcSetGeometryBuildQuality(g, static_cast<RTCBuildQuality>(quality));
   rtcCommitGeometry(g);
-  rtcAttachGeometry(impl_->scene, g);
+  rtcAttachGeometry(scene_, g);
   rtcReleaseGeometry(g);
-  rtcSetSceneBuildQuality(impl_->scene, static_cast<RTCBuildQuality>(quality));
-  const auto start = std::chrono::steady_clock::now();
-  rtcCommitScene(impl_->scene);
-  impl_->build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  impl_->bytes = static_cast<std::size_t>(allocated - before);
+  rtcSetSceneBuildQuality(scene_, static_cast<RTCBuildQuality>(quality));
+  build_seconds_ = seconds([&] { rtcCommitScene(scene_); });
+  bytes_ = static_cast<std::size_t>(allocated - before);
 }
 
 EmbreeScene::~EmbreeScene() {
-  rtcReleaseScene(impl_->scene);
-  rtcReleaseDevice(impl_->device);
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
 }
 
-double EmbreeScene::build_seconds() const { return impl_->build_seconds; }
-std::size_t EmbreeScene::bytes() const { return impl_->bytes; }
-
 void EmbreeScene::closest_hit(const RaySpan& rays, const HitSpan& hits, EmbreeMode mode) const {
-  if (mode.width == 8) return closest_packets<8>(impl_->scene, rays, hits, mode.coherent);
-  if (mode.width == 16) return closest_packets<16>(impl_->scene, rays, hits, mode.coherent);
+  if (mode.width == 8) return closest_packets<8>(scene_, rays, hits, mode.coherent);
+  if (mode.width == 16) return closest_packets<16>(scene_, rays, hits, mode.coherent);
   Context context(mode.coherent);
   for (std::size_t i = 0; i < rays.size; ++i) {
     RTCRayHit r;
     r.ray = one_ray(rays, i);
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    context.closest(impl_->scene, &r);
+    context.closest(scene_, &r);
     const bool hit = r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
     hits.t[i] = hit ? r.ray.tfar : std::numeric_limits<float>::infinity();
     hits.u[i] = r.hit.u, hits.v[i] = r.hit.v, hits.item[i] = hit ? r.hit.primID : kNoId;
@@ -180,12 +158,12 @@ void EmbreeScene::closest_hit(const RaySpan& rays, const HitSpan& hits, EmbreeMo
 }
 
 void EmbreeScene::any_hit(const RaySpan& rays, std::uint8_t* occluded, EmbreeMode mode) const {
-  if (mode.width == 8) return any_packets<8>(impl_->scene, rays, occluded, mode.coherent);
-  if (mode.width == 16) return any_packets<16>(impl_->scene, rays, occluded, mode.coherent);
+  if (mode.width == 8) return any_packets<8>(scene_, rays, occluded, mode.coherent);
+  if (mode.width == 16) return any_packets<16>(scene_, rays, occluded, mode.coherent);
   Context context(mode.coherent);
   for (std::size_t i = 0; i < rays.size; ++i) {
     RTCRay r = one_ray(rays, i);
-    context.any(impl_->scene, &r);
+    context.any(scene_, &r);
     occluded[i] = r.tfar < 0;
   }
 }

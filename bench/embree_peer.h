@@ -3,11 +3,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "core/mesh.h"
 #include "core/ray.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
 
 namespace oktett::bench {
 
@@ -30,17 +32,19 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  double build_seconds() const;
+  double build_seconds() const { return build_seconds_; }
   /// Bytes that Embree allocated, its copies of vertices and indices included.
-  std::size_t bytes() const;
+  std::size_t bytes() const { return bytes_; }
 
   /// Rays [begin, begin + count); results as Oktett's own: t = inf and item = kNoId for misses.
   void closest_hit(const RaySpan& rays, const HitSpan& hits, EmbreeMode mode) const;
   void any_hit(const RaySpan& rays, std::uint8_t* occluded, EmbreeMode mode) const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  RTCDeviceTy* device_;
+  RTCSceneTy* scene_;
+  double build_seconds_;
+  std::size_t bytes_;
 };
 
 /// "3.13.5" or the like.

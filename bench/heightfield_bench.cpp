@@ -122,9 +122,8 @@ void trace(benchmark::State& state, std::uint32_t n, Method method, Work work) {
   state.counters["hit"] = static_cast<double>(met) / static_cast<double>(rays.size());
 }
 
-}  // namespace
-
-void register_fields() {
+/// Runs before main().
+[[maybe_unused]] const bool registered = [] {
   const std::pair<Work, const char*> works[] = {
       {Work::all, "all"}, {Work::level, "level"}, {Work::camera, "camera"}};
   const std::pair<Method, const char*> methods[] = {{Method::mesh, "mesh"},
@@ -138,14 +137,8 @@ void register_fields() {
             fmt::format("{}/{}/{}", work_name, n, method_name).c_str(),
             [n, method = method, work = work](benchmark::State& s) { trace(s, n, method, work); })
             ->Unit(benchmark::kMillisecond);
-}
+  return true;
+}();
 
+}  // namespace
 }  // namespace oktett::bench
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  oktett::bench::register_fields();
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}

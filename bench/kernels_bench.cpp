@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "core/ray.h"
-#include "verify/probes/kernel_probe.h"
+#include "verify/cases/kernel_cases.h"
 
 namespace oktett::bench {
 namespace {
@@ -15,10 +14,7 @@ namespace {
 constexpr std::size_t kPairs = 4096;
 
 /// Rays from around the unit ball towards shapes in it; about half of them hit.
-struct KernelData {
-  RayBatch rays;
-  Column<float> corner[3][3];
-  Column<double> shape[12];
+struct KernelData : KernelCases {
   Column<float> t{kPairs}, u{kPairs}, v{kPairs};
   Column<std::uint8_t> hit{kPairs};
 
@@ -60,12 +56,8 @@ struct KernelData {
     for (int k = 0; k < 12; ++k) shape[k].push_back(value[k]);
   }
 
-  KernelProbe run() {
-    KernelProbe r;
-    r.count = kPairs, r.rays = rays.span();
-    for (int k = 0; k < 3; ++k)
-      for (int axis = 0; axis < 3; ++axis) r.corner[k][axis] = corner[k][axis].data();
-    for (int k = 0; k < 12; ++k) r.shape[k] = shape[k].data();
+  KernelProbe probe() {
+    KernelProbe r = run(0, kPairs);
     r.t = t.data(), r.u = u.data(), r.v = v.data(), r.hit = hit.data();
     return r;
   }
@@ -73,9 +65,9 @@ struct KernelData {
 
 void run_kernel(benchmark::State& state, KernelId id, Isa isa, int width) {
   KernelData data(id);
-  const KernelProbe run = data.run();
+  const KernelProbe probe = data.probe();
   for (auto _ : state) {
-    probe_kernel(isa, id, width, run);
+    probe_kernel(isa, id, width, probe);
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPairs));
@@ -84,9 +76,8 @@ void run_kernel(benchmark::State& state, KernelId id, Isa isa, int width) {
   state.counters["hit_share"] = static_cast<double>(hits) / kPairs;
 }
 
-}  // namespace
-
-void register_kernels() {
+/// Runs before main().
+[[maybe_unused]] const bool registered = [] {
   const std::pair<KernelId, const char*> kernels[] = {
       {KernelId::triangle_watertight, "triangle/watertight"},
       {KernelId::triangle_moller_trumbore, "triangle/moller_trumbore"},
@@ -105,14 +96,8 @@ void register_kernels() {
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", name, to_string(isa), width).c_str(),
             [id = id, isa, width](benchmark::State& s) { run_kernel(s, id, isa, width); });
-}
+  return true;
+}();
 
+}  // namespace
 }  // namespace oktett::bench
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  oktett::bench::register_kernels();
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}

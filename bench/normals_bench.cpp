@@ -108,18 +108,16 @@ void normals(benchmark::State& state, const Subject& subject, NormalMethod metho
   state.counters["mean"] = sum / static_cast<double>(which.size());
 }
 
-}  // namespace
-}  // namespace oktett::bench
-
-int main(int argc, char** argv) {
-  using namespace oktett;
-  for (const bench::Subject& subject : bench::subjects())
+/// Runs before main().
+[[maybe_unused]] const bool registered = [] {
+  for (const Subject& subject : subjects())
     for (const auto& [name, method] :
          {std::pair<const char*, NormalMethod>{"gradient", NormalMethod::gradient},
           {"forward", NormalMethod::forward},
           {"central", NormalMethod::central}})
-      benchmark::RegisterBenchmark((subject.name + "/" + name).c_str(), bench::normals, subject, method);
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  benchmark::RunSpecifiedBenchmarks();
-}
+      benchmark::RegisterBenchmark((subject.name + "/" + name).c_str(), normals, subject, method);
+  return true;
+}();
+
+}  // namespace
+}  // namespace oktett::bench

@@ -117,5 +117,3 @@ BENCHMARK(load_with_tinyobjloader)->Unit(benchmark::kMillisecond)->UseRealTime()
 
 }  // namespace
 }  // namespace oktett::bench
-
-BENCHMARK_MAIN();

@@ -1,125 +1,75 @@
 #include "bench/peer_options.h"
 
 #include <algorithm>
-#include <charconv>
+#include <ranges>
 
-#include "core/error.h"
+#include "bench/program.h"
 
 namespace oktett::bench {
 
-const char* const kPeerUsage =
-    "usage: peers [option]... MESH.obj...\n"
-    "  --threads N,...          1\n"
-    "  --resolution N,...       edges of the pictures in pixels, multiples of 16; 1024\n"
-    "  --view outside,inside    where the camera stands; outside (--inside: only inside)\n"
-    "  --works W,...            build, bytes, primary, shadow, diffuse, ao, equal, picture; all\n"
-    "  --seconds S              time for measuring a row; 3\n"
-    "  --runs N                 most rounds per row; 15\n"
-    "  --build NAME             how Oktett builds the tree that it traces; its default\n"
-    "  --isa NAME               instruction set\n"
-    "  --json FILE              all figures with their spread";
+/// In the order of Work.
+static const std::vector<std::string> kWorks = {"build",   "bytes", "primary", "shadow",
+                                                "diffuse", "ao",    "equal",   "picture"};
 
-static constexpr Work kWorks[] = {Work::build,  Work::bytes,   Work::primary,
-                                  Work::shadow, Work::diffuse, Work::ambient_occlusion,
-                                  Work::equal,  Work::picture};
-
-const char* to_string(Work work) {
-  static constexpr const char* kNames[] = {"build",   "bytes", "primary", "shadow",
-                                           "diffuse", "ao",    "equal",   "picture"};
-  return kNames[static_cast<int>(work)];
-}
+const std::string& to_string(Work work) { return kWorks[static_cast<std::size_t>(work)]; }
 
 bool PeerOptions::wants(Work work) const {
-  return works.empty() || std::find(works.begin(), works.end(), work) != works.end();
+  return works.empty() || std::ranges::find(works, work) != works.end();
 }
 
 bool PeerOptions::wants_tracing() const {
-  for (const Work work : kWorks)
-    if (work != Work::build && work != Work::bytes && wants(work)) return true;
-  return false;
+  return works.empty() ||
+         std::ranges::any_of(works, [](Work work) { return work != Work::build && work != Work::bytes; });
 }
 
-static std::vector<std::string> words(const std::string& list) {
-  std::vector<std::string> words(1);
-  for (const char c : list) {
-    if (c == ',')
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
-}
-
-static double number(const std::string& option, const std::string& word, double least) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !(value >= least) || value > 1e6)
-    throw Error(option + ": '" + word + "' is not a number of at least " + std::to_string(least));
-  return value;
-}
-
-static std::vector<int> integers(const std::string& option, const std::string& list, int least) {
-  std::vector<int> values;
-  for (const std::string& word : words(list)) values.push_back(static_cast<int>(number(option, word, least)));
+/// What `parse` makes of each word of a list with commas.
+template <class F>
+static auto each(const std::string& list, const F& parse) {
+  std::vector<decltype(parse(list))> values;
+  for (const auto word : std::views::split(list, ','))
+    values.push_back(parse(std::string(word.begin(), word.end())));
   return values;
 }
 
-static std::vector<bool> views(const std::string& list) {
-  std::vector<bool> inside;
-  for (const std::string& word : words(list)) {
-    if (word != "inside" && word != "outside") throw Error("--view: '" + word + "' is not inside or outside");
-    inside.push_back(word == "inside");
-  }
-  return inside;
+static std::vector<int> integers(const std::string& list, int least) {
+  return each(list, [&](const std::string& word) { return number(word, least, 1'000'000); });
 }
 
-static std::vector<Work> parse_works(const std::string& list) {
-  std::vector<Work> works;
-  for (const std::string& word : words(list)) {
-    const auto* at = std::find_if(std::begin(kWorks), std::end(kWorks),
-                                  [&](Work work) { return word == to_string(work); });
-    if (at == std::end(kWorks)) throw Error("--works: there is no '" + word + "'");
-    works.push_back(*at);
-  }
-  return works;
+/// Which of `known` a word is.
+static std::size_t index_of(const std::string& word, const std::vector<std::string>& known) {
+  const auto at = std::ranges::find(known, word);
+  if (at == known.end()) throw Error("there is no '" + word + "'");
+  return static_cast<std::size_t>(at - known.begin());
 }
 
 PeerOptions parse_peer_options(int argc, char** argv) {
   PeerOptions o;
-  for (int i = 1; i < argc; ++i) {
-    const std::string a = argv[i];
-    const auto value = [&]() -> std::string {
-      if (++i >= argc) throw Error(a + " needs a value");
-      return argv[i];
-    };
-    if (a == "--inside") {
-      o.inside = {true};
-    } else if (a == "--view") {
-      o.inside = views(value());
-    } else if (a == "--resolution") {
-      o.resolutions = integers(a, value(), 16);
-      for (int& n : o.resolutions) n = n / 16 * 16;
-    } else if (a == "--threads") {
-      o.threads = integers(a, value(), 1);
-    } else if (a == "--works") {
-      o.works = parse_works(value());
-    } else if (a == "--seconds") {
-      o.seconds = number(a, value(), 0);
-    } else if (a == "--runs") {
-      o.runs = static_cast<int>(number(a, value(), 1));
-    } else if (a == "--build") {
-      o.build = value();
-    } else if (a == "--isa") {
-      o.isa = value();
-    } else if (a == "--json") {
-      o.json = value();
-    } else if (a.starts_with("--")) {
-      throw Error("unknown option " + a + "\n" + kPeerUsage);
-    } else {
-      o.meshes.push_back(a);
-    }
-  }
-  if (o.meshes.empty()) throw Error(kPeerUsage);
+  const std::string head = "usage: peers [option]... MESH.obj...";
+  using Text = const std::string&;
+  const std::vector<Option> options = {
+      {"--threads", "N,...", "1", [&](Text v) { o.threads = integers(v, 1); }},
+      {"--resolution", "N,...", "edges of the pictures in pixels, multiples of 16; 1024",
+       [&](Text v) {
+         o.resolutions = integers(v, 16);
+         for (int& n : o.resolutions) n = n / 16 * 16;
+       }},
+      {"--view", "outside,inside", "where the camera stands; outside",
+       [&](Text v) {
+         o.inside = each(v, [](Text word) { return index_of(word, {"outside", "inside"}) == 1; });
+       }},
+      {"--inside", "", "only inside", [&](Text) { o.inside = {true}; }},
+      {"--works", "W,...", "build, bytes, primary, shadow, diffuse, ao, equal, picture; all",
+       [&](Text v) {
+         o.works = each(v, [](Text word) { return static_cast<Work>(index_of(word, kWorks)); });
+       }},
+      {"--seconds", "S", "time for measuring a row; 3", [&](Text v) { o.seconds = number(v, 0.0, 1e6); }},
+      {"--runs", "N", "most rounds per row; 15", [&](Text v) { o.runs = number(v, 1, 1'000'000); }},
+      {"--build", "NAME", "how Oktett builds the tree that it traces; its default",
+       [&](Text v) { o.build = v; }},
+      {"--isa", "NAME", "instruction set", [&](Text v) { o.isa = v; }},
+      {"--json", "FILE", "all figures with their spread", [&](Text v) { o.json = v; }}};
+  o.meshes = parse_options(argc, argv, head, options);
+  if (o.meshes.empty()) throw Error(usage_text(head, options));
   return o;
 }
 

@@ -10,7 +10,7 @@ namespace oktett::bench {
 enum class Work { build, bytes, primary, shadow, diffuse, ambient_occlusion, equal, picture };
 
 /// "build", "bytes", "primary", "shadow", "diffuse", "ao", "equal", "picture".
-const char* to_string(Work work);
+const std::string& to_string(Work work);
 
 struct PeerOptions {
   std::vector<int> resolutions = {1024};  ///< edges of the square pictures, multiples of 16
@@ -19,7 +19,7 @@ struct PeerOptions {
   std::vector<Work> works;  ///< empty: all
   double seconds = 3;       ///< time for measuring a row, beside the search for Embree's best mode
   int runs = 15;            ///< greatest number of rounds per row
-  std::string build;        ///< which of build_variants() the rows trace; empty: the first
+  std::string build;        ///< the build quality that the rows trace; empty: the default
   std::string isa, json;
   std::vector<std::string> meshes;
 
@@ -28,9 +28,7 @@ struct PeerOptions {
   bool wants_tracing() const;
 };
 
-/// Throws Error for unknown options and words.
+/// Throws Error for unknown options and words; its text is the usage if there is no mesh.
 PeerOptions parse_peer_options(int argc, char** argv);
-
-extern const char* const kPeerUsage;
 
 }  // namespace oktett::bench

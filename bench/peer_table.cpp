@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "bench/embree_peer.h"
-#include "core/error.h"
+#include "bench/program.h"
 
 namespace oktett::bench {
 
@@ -82,22 +82,15 @@ static std::string json(const Agreement& a) {
 }
 
 template <class T>
-static void print_list(std::FILE* file, const char* name, const std::vector<T>& list) {
-  fmt::print(file, "\"{}\": [", name);
-  for (std::size_t i = 0; i < list.size(); ++i) fmt::print(file, "{}\n  {}", i ? "," : "", json(list[i]));
-  fmt::print(file, "\n]");
+static std::string json_list(const char* name, const std::vector<T>& list) {
+  std::string text = fmt::format("\"{}\": [", name);
+  for (const T& item : list) text += fmt::format("{}\n  {}", &item == &list.front() ? "" : ",", json(item));
+  return text + "\n]";
 }
 
 void write_json(const std::string& path, const PeerReport& report, const std::string& isa) {
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  if (file == nullptr) throw Error({path, 0, 0}, "cannot be written", ErrorKind::io);
-  fmt::print(file, "{{\"embree\": \"{}\", \"isa\": \"{}\",\n", embree_version(), isa);
-  print_list(file, "rows", report.rows);
-  fmt::print(file, ",\n");
-  print_list(file, "agreement", report.agreements);
-  fmt::print(file, "}}\n");
-  const bool written = std::ferror(file) == 0;
-  if (std::fclose(file) != 0 || !written) throw Error({path, 0, 0}, "cannot be written", ErrorKind::io);
+  write_text(path, fmt::format("{{\"embree\": \"{}\", \"isa\": \"{}\",\n{},\n{}}}\n", embree_version(), isa,
+                               json_list("rows", report.rows), json_list("agreement", report.agreements)));
 }
 
 }  // namespace oktett::bench

@@ -16,18 +16,35 @@
 
 #include "accel/accel.h"
 #include "bench/bench_rays.h"
-#include "bench/build_variants.h"
 #include "bench/embree_peer.h"
 #include "bench/peer_options.h"
 #include "bench/peer_picture.h"
 #include "bench/peer_table.h"
 #include "bench/peer_timing.h"
 #include "bench/peer_trace.h"
-#include "core/error.h"
+#include "bench/program.h"
 #include "io/obj/obj.h"
 
 namespace oktett::bench {
 namespace {
+
+/// A way of building a tree.
+struct BuildVariant {
+  std::string name;
+  BuildOptions options;
+};
+
+/// All that the comparison measures; the first is Oktett's default.
+const BuildVariant kBuildVariants[] = {
+    {"balanced", {BuildQuality::balanced}}, {"fast", {BuildQuality::fast}}, {"best", {BuildQuality::best}}};
+
+/// The variant called `name`, the first for an empty name. Throws Error if there is none.
+const BuildVariant& find_variant(const std::string& name) {
+  if (name.empty()) return kBuildVariants[0];
+  const auto* at = std::ranges::find(kBuildVariants, name, &BuildVariant::name);
+  if (at == std::end(kBuildVariants)) throw Error("there is no way to build called '" + name + "'");
+  return *at;
+}
 
 std::string embree_config(Isa isa) {
   return isa == Isa::avx2 ? "isa=avx2" : isa == Isa::sse42 ? "isa=sse4.2" : "";
@@ -194,7 +211,7 @@ class Comparison {
     r.mode = "no build of Oktett's is traced as fast";
     double best = std::numeric_limits<double>::infinity();
     const std::shared_ptr<const Accel> kept = accel_;
-    for (const BuildVariant& variant : build_variants()) {
+    for (const BuildVariant& variant : kBuildVariants) {
       const Times built = race_build(variant, threads), traced = race_traces(works, threads);
       const Quartiles time = quartiles(built.oktett), trace_ratio = quartiles(traced.ratio);
       r.parts.emplace_back(variant.name + " build", time.median);
@@ -266,11 +283,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace oktett::bench
 
-int main(int argc, char** argv) {
-  try {
-    return oktett::bench::run(argc, argv);
-  } catch (const oktett::Error& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return e.kind() == oktett::ErrorKind::io ? 1 : 2;
-  }
-}
+int main(int argc, char** argv) { return oktett::bench::run_program(oktett::bench::run, argc, argv); }

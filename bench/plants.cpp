@@ -7,12 +7,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <string>
 
 #include "bench/plant_models.h"
-#include "core/error.h"
+#include "bench/program.h"
 #include "core/random.h"
 
 namespace fs = std::filesystem;
@@ -78,12 +77,6 @@ PlantKind kind_of(std::size_t model) {
   return model % 3 == 0 ? PlantKind::conifer : PlantKind::tree;
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text << std::flush;
-  if (!out) throw Error({path.string(), 0, 0}, "cannot be written", ErrorKind::io);
-}
-
 std::string name_of(std::size_t model) { return fmt::format("plant{:02}", model); }
 
 void write_model(const fs::path& dir, std::size_t model, const PlantModel& plant) {
@@ -97,7 +90,7 @@ void write_model(const fs::path& dir, std::size_t model, const PlantModel& plant
     text += "usemtl " + materials[part] + "\n";
     for (const auto& f : plant.faces[part]) text += fmt::format("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1);
   }
-  write_text(dir / (name_of(model) + ".obj"), text);
+  write_text((dir / (name_of(model) + ".obj")).string(), text);
 }
 
 constexpr const char* kMaterials =
@@ -163,8 +156,8 @@ int run(int argc, char** argv) {
     scene += fmt::format("  {0}: {{mesh: {{file: {0}.obj, smooth: false}}}}\n", name_of(i));
     unique += plant.triangles(), plants += models[i].plants, shown += plant.triangles() * models[i].plants;
   }
-  write_text(dir / "plants.mtl", kMaterials);
-  write_text(dir / "plants.yaml", scene + scatter(models));
+  write_text((dir / "plants.mtl").string(), kMaterials);
+  write_text((dir / "plants.yaml").string(), scene + scatter(models));
   fmt::print("{} models, {} triangles; {} plants that show {}\n", models.size(), unique, plants, shown);
   return 0;
 }
@@ -173,11 +166,4 @@ int run(int argc, char** argv) {
 
 }  // namespace oktett::bench
 
-int main(int argc, char** argv) {
-  try {
-    return oktett::bench::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s\n", e.what());
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return oktett::bench::run_program(oktett::bench::run, argc, argv); }

@@ -2,9 +2,8 @@
 /// whether both see the same objects.
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +15,7 @@
 
 #include "bench/peer_timing.h"
 #include "bench/povray_scene.h"
-#include "core/error.h"
+#include "bench/program.h"
 #include "render/camera.h"
 #include "render/geometry.h"
 #include "render/render.h"
@@ -26,15 +25,6 @@ namespace fs = std::filesystem;
 namespace oktett::bench {
 
 namespace {
-
-constexpr const char* kUsage =
-    "usage: povray_peers [option]... [KIND]...\n"
-    "  KIND               one of the kinds of shape; all\n"
-    "  --size WxH         2048x1536\n"
-    "  --threads N        2\n"
-    "  --runs N           rounds in which both trace in turn; 5\n"
-    "  --json FILE        all figures\n"
-    "  --keep DIR         leave scenes and pictures there";
 
 struct Options {
   std::uint32_t width = 2048, height = 1536;
@@ -49,12 +39,6 @@ std::string read_text(const fs::path& path) {
   text << in.rdbuf();
   if (!in) throw Error({path.string(), 0, 0}, "cannot be read", ErrorKind::io);
   return text.str();
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text << std::flush;
-  if (!out) throw Error({path.string(), 0, 0}, "cannot be written", ErrorKind::io);
 }
 
 /// Runs POV-Ray on `scene`.pov in `dir`. Returns the trace time that it reports, in seconds. `bounding`:
@@ -190,8 +174,8 @@ struct Row {
 Row compare(const FieldKind& kind, const Options& o, const fs::path& dir) {
   const Field field = kind.name == kTerrainKind ? make_terrain_field(o.width, o.height, dir.string())
                                                 : make_field(kind, o.width, o.height);
-  write_text(dir / (kind.name + ".pov"), field.pov);
-  write_text(dir / (kind.name + "_ids.pov"), field.pov_ids);
+  write_text((dir / (kind.name + ".pov")).string(), field.pov);
+  write_text((dir / (kind.name + "_ids.pov")).string(), field.pov_ids);
   Row row;
   row.kind = kind.name;
   // POV-Ray with the faster of its two structures.
@@ -229,46 +213,29 @@ std::string json_of(const std::vector<Row>& rows) {
   return text + "]\n";
 }
 
+void parse_size(const std::string& value, Options& o) {
+  char rest;
+  if (std::sscanf(value.c_str(), "%ux%u%c", &o.width, &o.height, &rest) != 2 || o.width < 1 || o.height < 1 ||
+      o.width > 16384 || o.height > 16384)
+    throw Error("expected WxH, found '" + value + "'");
+}
+
 Options parse(int argc, char** argv) {
   Options o;
-  const auto fail = [](const std::string& why) { throw Error(why + "\n" + kUsage); };
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    if (name.rfind("--", 0) != 0) {
-      o.kinds.push_back(name);
-      continue;
-    }
-    if (i + 1 == argc) fail("there is no value after " + name);
-    const std::string value = argv[++i];
-    const auto number = [&] {
-      int n = 0;
-      const auto end = std::from_chars(value.data(), value.data() + value.size(), n);
-      if (end.ec != std::errc() || end.ptr != value.data() + value.size() || n < 1 || n > 1000)
-        fail(name + ": expected a number from 1 to 1000, found '" + value + "'");
-      return n;
-    };
-    if (name == "--size") {
-      char rest;
-      if (std::sscanf(value.c_str(), "%ux%u%c", &o.width, &o.height, &rest) != 2 || o.width < 1 ||
-          o.height < 1 || o.width > 16384 || o.height > 16384)
-        fail("--size: expected WxH, found '" + value + "'");
-    } else if (name == "--threads") {
-      o.threads = number();
-    } else if (name == "--runs") {
-      o.runs = number();
-    } else if (name == "--json") {
-      o.json = value;
-    } else if (name == "--keep") {
-      o.keep = value;
-    } else {
-      fail("unknown option " + name);
-    }
-  }
-  for (const std::string& name : o.kinds) {
-    bool known = false;
-    for (const FieldKind& kind : field_kinds()) known |= kind.name == name;
-    if (!known) fail("unknown kind '" + name + "'");
-  }
+  const std::string head =
+      "usage: povray_peers [option]... [KIND]...\n  KIND                     one of the kinds of shape; all";
+  using Text = const std::string&;
+  const std::vector<Option> options = {
+      {"--size", "WxH", "2048x1536", [&](Text v) { parse_size(v, o); }},
+      {"--threads", "N", "2", [&](Text v) { o.threads = number(v, 1, 1000); }},
+      {"--runs", "N", "rounds in which both trace in turn; 5", [&](Text v) { o.runs = number(v, 1, 1000); }},
+      {"--json", "FILE", "all figures", [&](Text v) { o.json = v; }},
+      {"--keep", "DIR", "leave scenes and pictures there", [&](Text v) { o.keep = v; }}};
+  o.kinds = parse_options(argc, argv, head, options);
+  const std::vector<FieldKind> kinds = field_kinds();
+  for (const std::string& name : o.kinds)
+    if (std::ranges::find(kinds, name, &FieldKind::name) == kinds.end())
+      throw Error("unknown kind '" + name + "'\n" + usage_text(head, options));
   return o;
 }
 
@@ -303,11 +270,4 @@ int run(int argc, char** argv) {
 
 }  // namespace oktett::bench
 
-int main(int argc, char** argv) {
-  try {
-    return oktett::bench::run(argc, argv);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s\n", e.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return oktett::bench::run_program(oktett::bench::run, argc, argv); }

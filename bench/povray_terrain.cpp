@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
 
 #include "bench/povray_scene.h"
+#include "bench/program.h"
 #include "bench/terrain.h"
-#include "core/error.h"
 #include "kernels/heights/height_grid.h"
 
 namespace oktett::bench {
@@ -18,19 +17,15 @@ constexpr double kSide = 24, kTall = 5;
 /// The colour tells which square of a chequered pattern was hit. Squares along a side:
 constexpr double kSquares = 512;
 
-/// POV-Ray reads the picture from the bottom up.
-void write_pgm(const std::string& path, const Column<std::uint16_t>& heights, std::uint32_t n) {
-  std::ofstream out(path, std::ios::binary);
-  out << fmt::format("P5\n{} {}\n65535\n", n, n);
-  for (std::uint32_t row = n; row-- > 0;) {
-    std::string line;
+/// A PGM picture. POV-Ray reads it from the bottom up.
+std::string pgm_text(const Column<std::uint16_t>& heights, std::uint32_t n) {
+  std::string text = fmt::format("P5\n{} {}\n65535\n", n, n);
+  for (std::uint32_t row = n; row-- > 0;)
     for (std::uint32_t column = 0; column < n; ++column) {
       const std::uint16_t h = heights[column + std::size_t{row} * n];
-      line += {static_cast<char>(h >> 8), static_cast<char>(h & 255)};
+      text += {static_cast<char>(h >> 8), static_cast<char>(h & 255)};
     }
-    out << line;
-  }
-  if (!(out << std::flush)) throw Error({path, 0, 0}, "cannot be written", ErrorKind::io);
+  return text;
 }
 
 std::uint32_t square_at(long double x, long double z) {
@@ -99,7 +94,7 @@ class Oracle {
 Field make_terrain_field(std::uint32_t width, std::uint32_t height, const std::string& directory) {
   Field field{empty_field(width, height), field_head(false), field_head(true), {}, {}, {}};
   Column<std::uint16_t> heights = terrain(kTerrainSide);
-  write_pgm(directory + "/terrain.pgm", heights, kTerrainSide);
+  write_text(directory + "/terrain.pgm", pgm_text(heights, kTerrainSide));
   const auto text = [](const std::string& pigment) {
     return fmt::format(
         "height_field {{ pgm \"terrain.pgm\" gamma 1.0 scale <{0}, {1}, {0}> translate <{2}, 0, {2}> pigment "

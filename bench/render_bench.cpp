@@ -52,5 +52,3 @@ BENCHMARK(whitted)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace oktett::bench
-
-BENCHMARK_MAIN();

@@ -127,9 +127,8 @@ void register_solve(const std::string& name, Method method, int degree, bool ray
                                [=](benchmark::State& s) { run_solve(s, method, degree, rays, wanted); });
 }
 
-}  // namespace
-
-void register_roots() {
+/// Runs before main().
+[[maybe_unused]] const bool registered = [] {
   constexpr Method kMethods[] = {Method::automatic, Method::closed,    Method::bernstein, Method::sturm,
                                  Method::laguerre,  Method::bisection, Method::newton};
   for (const int degree : {2, 3, 4, 6, 8, 12, 16, 24, 32}) {
@@ -161,14 +160,8 @@ void register_roots() {
       }
     }
   }
-}
+  return true;
+}();
 
+}  // namespace
 }  // namespace oktett::bench
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  oktett::bench::register_roots();
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}

@@ -58,9 +58,8 @@ void trace(benchmark::State& state, Work work, Isa isa, TraceMode mode) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
 }
 
-}  // namespace
-
-void register_traversals() {
+/// Runs before main().
+[[maybe_unused]] const bool registered = [] {
   const std::pair<Work, const char*> works[] = {
       {Work::primary, "primary"}, {Work::shadow, "shadow"}, {Work::diffuse, "diffuse"}};
   const std::pair<TraceMode, const char*> modes[] = {
@@ -78,14 +77,8 @@ void register_traversals() {
             [work = work, isa, mode = mode](benchmark::State& s) { trace(s, work, isa, mode); })
             ->Unit(benchmark::kMillisecond);
       }
-}
+  return true;
+}();
 
+}  // namespace
 }  // namespace oktett::bench
-
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  oktett::bench::register_traversals();
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}
