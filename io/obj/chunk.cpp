@@ -1,7 +1,6 @@
 #include "io/obj/chunk.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace oktett {
 namespace {
@@ -13,22 +12,17 @@ bool is_printable_word(std::string_view word) {
   return std::all_of(word.begin(), word.end(), [](char c) { return c > ' ' && c < '\x7f'; });
 }
 
-/// Lines come in order, so the first failure noted is the first in the chunk.
-void note_failure(ObjChunk& chunk, const char* where, std::string message) {
-  if (!chunk.failure) chunk.failure = ObjFailure{where, std::move(message)};
-}
-
 /// The brace of the statement at `where`; `rest` is what follows it on its line.
 void note_brace(ObjChunk& chunk, const char* where, bool open, const char* rest) {
   const ObjBrace brace{where, open};
   if (chunk.first_brace.where == nullptr)
     chunk.first_brace = brace;
   else if (chunk.last_brace.open == open)
-    note_failure(chunk, where, open ? kBraceInBlock : kBraceAlone);
+    keep_first(chunk.failure, where, open ? kBraceInBlock : kBraceAlone);
   chunk.last_brace = brace;
   rest = next_word(rest);
   if (!is_line_end(*rest))
-    note_failure(chunk, rest, "expected the end of the line, found " + quote_word(rest));
+    keep_first(chunk.failure, rest, "expected the end of the line, found " + quote_word(rest));
 }
 
 void note_skipped(ObjChunk& chunk, const char* where, std::string_view keyword) {
@@ -44,7 +38,7 @@ void note_statement(ObjChunk& chunk, const char* p) {
   const std::string_view keyword = word_at(p);
   const char* rest = p + keyword.size();
   if (!is_printable_word(keyword)) {
-    note_failure(chunk, p, "expected an OBJ keyword, found " + quote_word(p));
+    keep_first(chunk.failure, p, "expected an OBJ keyword, found " + quote_word(p));
   } else if (keyword == "usemtl") {
     chunk.material_uses.push_back({p, trimmed(rest, find_joined_line_end(p)), chunk.counts.triangles});
   } else if (keyword == "mtllib") {
@@ -94,9 +88,8 @@ std::vector<ObjChunk> cut_into_chunks(std::string_view text, std::size_t chunk_b
   const char* const text_end = text.data() + text.size();
   const char* begin = text.data();
   while (begin < text_end) {
-    const auto left = static_cast<std::size_t>(text_end - begin);
     const char* end = text_end;
-    if (left > chunk_bytes) {
+    if (static_cast<std::size_t>(text_end - begin) > chunk_bytes) {
       // Going on behind every backslash may make a chunk longer than need be, but never cuts a joined line.
       const char* nominal = begin + chunk_bytes;
       if (nominal[-1] == '\r' && nominal[0] == '\n') --nominal;
@@ -107,11 +100,9 @@ std::vector<ObjChunk> cut_into_chunks(std::string_view text, std::size_t chunk_b
         end = next_line(line_end, text_end);
       }
     }
-    ObjChunk chunk;
+    ObjChunk& chunk = chunks.emplace_back();
     chunk.begin = begin;
-    chunk.end = end;
-    chunks.push_back(std::move(chunk));
-    begin = end;
+    chunk.end = begin = end;
   }
   return chunks;
 }
@@ -120,7 +111,7 @@ void count_chunk(ObjChunk& chunk) {
   for (const char* p = chunk.begin; p < chunk.end;) {
     p = skip_blanks(p);
     const char* end = count_line(chunk, p);
-    if (*end == '\0' && end < chunk.end) note_failure(chunk, end, "unexpected zero byte");
+    if (*end == '\0' && end < chunk.end) keep_first(chunk.failure, end, "unexpected zero byte");
     p = next_line(end, chunk.end);
   }
 }

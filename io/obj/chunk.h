@@ -1,16 +1,29 @@
 #pragma once
-/// \file The first pass over an OBJ file: the text is cut into chunks of whole lines, and each is counted, so
-/// that the second pass can write every element straight to its place. Statements that are rare are collected
-/// on the way.
+/// \file The two passes over an OBJ file. The text is cut into chunks of whole lines, and each is counted, so
+/// that the second pass can write every element straight to its place. The first pass collects rare
+/// statements on the way.
 
 #include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "core/mesh.h"
 #include "io/obj/failure.h"
+#include "io/obj/obj.h"
 
 namespace oktett {
+
+/// How an OBJ file is taken apart. The result does not depend on it; tests use it to reach corner cases.
+struct ObjOptions {
+  /// Bytes that one task reads at a time, rounded up to whole lines.
+  std::size_t chunk_bytes = std::size_t{1} << 20;
+  /// The most positions, normals, uvs or triangles there may be: what 32-bit indices reach beside kNoId.
+  std::size_t max_elements = 0xfffffffeu;
+};
+
+/// As load_obj(path).
+ObjFile load_obj(const std::string& path, const ObjOptions& options);
 
 struct ObjCounts {
   std::uint64_t positions = 0;
@@ -82,5 +95,34 @@ ObjCounts sum_counts(std::vector<ObjChunk>& chunks);
 
 /// A brace that does not pair with another, if there is one.
 std::optional<ObjFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks);
+
+/// Calls `read` with the start of each line of the chunk; it returns where it stopped in the line. Ends at
+/// the first failure and keeps it.
+template <class Read>
+void read_lines(ObjChunk& chunk, const Read& read) {
+  try {
+    for (const char* p = chunk.begin; p < chunk.end;) {
+      const char* rest = read(skip_blanks(p));
+      p = next_line(is_line_end(*rest) ? rest : find_joined_line_end(rest), chunk.end);
+    }
+  } catch (const ObjFailure& failure) {
+    keep_first(chunk.failure, failure.where, failure.message);
+  }
+}
+
+/// Reads `v`, `vt` and `vn` of a counted chunk to their place in `mesh`, whose columns have their final size.
+/// Stops at the first failure in the chunk.
+void read_vertices(ObjChunk& chunk, TriangleMesh& mesh);
+
+struct ObjFaceOptions {
+  /// Whether the positions are all there, so that polygons can be cut properly. If not, faces are only
+  /// checked.
+  bool positions_known = true;
+};
+
+/// Reads the faces of a counted chunk to their place in the index columns of `mesh`, which have their final
+/// size (those of normals and uvs may be empty if the file has none). Stops at the first failure in the
+/// chunk.
+void read_faces(ObjChunk& chunk, const ObjCounts& total, TriangleMesh& mesh, const ObjFaceOptions& options);
 
 }  // namespace oktett

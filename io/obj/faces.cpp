@@ -1,11 +1,9 @@
-#include "io/obj/faces.h"
-
 #include <span>
 #include <string>
 #include <vector>
 
+#include "io/obj/chunk.h"
 #include "io/obj/polygon.h"
-#include "io/obj/statement.h"
 #include "io/text/number.h"
 
 namespace oktett {
@@ -30,15 +28,11 @@ class FaceReader {
         last_triangle_(chunk.before.triangles + chunk.counts.triangles) {}
 
   void run() {
-    for (const char* p = chunk_.begin; p < chunk_.end;) {
-      p = skip_blanks(p);
-      const char* rest = p;
-      if (p[0] == 'f' && is_delimiter(p + 1))
-        rest = read_face(p);
-      else if (p[0] == 'v')
-        count_vertex(p);
-      p = next_line(is_line_end(*rest) ? rest : find_joined_line_end(rest), chunk_.end);
-    }
+    read_lines(chunk_, [this](const char* p) {
+      if (p[0] == 'f' && is_delimiter(p + 1)) return read_face(p);
+      if (p[0] == 'v') count_vertex(p);
+      return p;
+    });
   }
 
  private:
@@ -166,11 +160,7 @@ class FaceReader {
 }  // namespace
 
 void read_faces(ObjChunk& chunk, const ObjCounts& total, TriangleMesh& mesh, const ObjFaceOptions& options) {
-  try {
-    FaceReader(chunk, total, mesh, options).run();
-  } catch (const ObjStop& stop) {
-    keep_first(chunk.failure, stop.failure);
-  }
+  FaceReader(chunk, total, mesh, options).run();
 }
 
 }  // namespace oktett

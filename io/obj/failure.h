@@ -11,7 +11,8 @@
 
 namespace oktett {
 
-/// What is wrong at a place in the text. Lines are counted only when the failure is reported.
+/// What is wrong at a place in the text, thrown by the readers of a chunk. Lines are counted only when the
+/// failure is reported.
 struct ObjFailure {
   const char* where = nullptr;
   std::string message;
@@ -23,6 +24,14 @@ inline void keep_first(std::optional<ObjFailure>& first, const char* where, std:
 }
 inline void keep_first(std::optional<ObjFailure>& first, const std::optional<ObjFailure>& other) {
   if (other) keep_first(first, other->where, other->message);
+}
+
+[[noreturn]] inline void stop_at(const char* where, std::string message) {
+  throw ObjFailure{where, std::move(message)};
+}
+/// The passes read the same bytes unless someone writes to the file at the same time.
+[[noreturn]] inline void stop_changed(const char* where) {
+  stop_at(where, "the file changed while it was read");
 }
 
 /// A name between quotes for a message, shortened, with a `?` for each control character.

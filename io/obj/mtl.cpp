@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "io/obj/failure.h"
@@ -23,8 +25,20 @@ float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f
 struct Statements {
   std::optional<Color> ka, kd, ks, ke, tf;
   std::optional<float> d, tr;
-  int illum = 2;
+  float illum = 2;
 };
+
+constexpr std::pair<const char*, std::optional<Color> Statements::*> kColors[] = {{"ka", &Statements::ka},
+                                                                                  {"kd", &Statements::kd},
+                                                                                  {"ks", &Statements::ks},
+                                                                                  {"ke", &Statements::ke},
+                                                                                  {"tf", &Statements::tf}};
+
+constexpr std::pair<const char*, std::uint32_t Material::*> kTextures[] = {
+    {"map_kd", &Material::color_texture},    {"map_ks", &Material::specular_texture},
+    {"map_ke", &Material::emission_texture}, {"map_d", &Material::opacity_texture},
+    {"map_bump", &Material::bump_texture},   {"bump", &Material::bump_texture},
+    {"norm", &Material::normal_texture},     {"map_normal", &Material::normal_texture}};
 
 class MtlReader {
  public:
@@ -71,87 +85,53 @@ class MtlReader {
   void read_statement(MtlLine& line) {
     const std::string& key = line.keyword();
     Material& material = materials_.back();
-    if (key == "ka")
-      read(line.take_color(), said_.ka);
-    else if (key == "kd")
-      read(line.take_color(), said_.kd);
-    else if (key == "ks")
-      read(line.take_color(), said_.ks);
-    else if (key == "ke")
-      read(line.take_color(), said_.ke);
-    else if (key == "tf")
-      read(line.take_color(), said_.tf);
-    else if (key == "d")
-      read_dissolve(line);
-    else if (key == "tr")
+    for (const auto& [name, color] : kColors)
+      if (key == name) read(line.take_color(), said_.*color);
+    for (const auto& [name, slot] : kTextures)
+      if (key == name) read_texture(line, slot, material);
+    if (key == "d") {
+      // The halo, which depends on the angle of view, is not reproduced.
+      if (line.peek() == "-halo") line.take();
+      read(line.take_number(), said_.d);
+    } else if (key == "tr") {
       read(line.take_number(), said_.tr);
-    else if (key == "ns")
-      read_phong(line, material);
-    else if (key == "ni")
-      read_ior(line, material);
-    else if (key == "illum")
-      read_illum(line);
-    else if (key == "pr")
+    } else if (key == "ns") {
+      read(take(
+               line, [](float x) { return x >= 0; }, "Ns must not be negative"),
+           material.phong);
+    } else if (key == "ni") {
+      read(take(
+               line, [](float x) { return x > 0; }, "Ni must be greater than 0"),
+           material.ior);
+    } else if (key == "illum") {
+      const auto is_model = [](float x) { return x >= 0 && x <= 10 && x == std::floor(x); };
+      read(take(line, is_model, "illum must be a whole number from 0 to 10"), said_.illum);
+    } else if (key == "pr") {
       material.roughness = clamp_unit(line.take_number().value_or(material.roughness));
-    else if (key == "pm")
+    } else if (key == "pm") {
       material.metallic = clamp_unit(line.take_number().value_or(material.metallic));
-    else
-      read_texture(line, material);
+    }
   }
 
   /// A malformed value leaves what was there.
   template <class T>
-  static void read(const std::optional<T>& value, std::optional<T>& target) {
-    if (value) target = value;
+  static void read(const std::optional<T>& value, auto& target) {
+    if (value) target = *value;
   }
 
-  void read_dissolve(MtlLine& line) {
-    // The halo, which depends on the angle of view, is not reproduced.
-    if (line.peek() == "-halo") line.take();
-    read(line.take_number(), said_.d);
-  }
-
-  static void read_phong(MtlLine& line, Material& material) {
+  /// The number that follows; nothing, after a warning, if there is none or it is not allowed.
+  static std::optional<float> take(MtlLine& line, bool (*allowed)(float), const std::string& rule) {
     const std::optional<float> value = line.take_number();
-    if (!value) return;
-    if (*value >= 0)
-      material.phong = *value;
-    else
-      line.warn("Ns must not be negative; the default is kept");
+    if (!value || allowed(*value)) return value;
+    line.warn(rule + "; the default is kept");
+    return std::nullopt;
   }
 
-  static void read_ior(MtlLine& line, Material& material) {
-    const std::optional<float> value = line.take_number();
-    if (!value) return;
-    if (*value > 0)
-      material.ior = *value;
-    else
-      line.warn("Ni must be greater than 0; the default is kept");
-  }
-
-  void read_illum(MtlLine& line) {
-    const std::optional<float> value = line.take_number();
-    if (!value) return;
-    if (*value >= 0 && *value <= 10 && *value == static_cast<float>(static_cast<int>(*value)))
-      said_.illum = static_cast<int>(*value);
-    else
-      line.warn("illum must be a whole number from 0 to 10; the default is kept");
-  }
-
-  void read_texture(MtlLine& line, Material& material) {
-    const std::string& key = line.keyword();
-    std::uint32_t* const slot = key == "map_kd"                        ? &material.color_texture
-                                : key == "map_ks"                      ? &material.specular_texture
-                                : key == "map_ke"                      ? &material.emission_texture
-                                : key == "map_d"                       ? &material.opacity_texture
-                                : key == "map_bump" || key == "bump"   ? &material.bump_texture
-                                : key == "norm" || key == "map_normal" ? &material.normal_texture
-                                                                       : nullptr;
-    if (slot == nullptr) return;
+  void read_texture(MtlLine& line, std::uint32_t Material::*slot, Material& material) {
     const std::optional<MtlTexture> texture = read_mtl_texture(line, directory_);
     if (!texture) return;
-    *slot = textures_.add(texture->texture);
-    if (slot == &material.bump_texture) material.bump_scale = texture->bump_scale;
+    material.*slot = textures_.add(texture->texture);
+    if (slot == &Material::bump_texture) material.bump_scale = texture->bump_scale;
   }
 
   void finish_material() {

@@ -7,10 +7,7 @@
 #include <utility>
 
 #include "io/obj/chunk.h"
-#include "io/obj/faces.h"
 #include "io/obj/materials.h"
-#include "io/obj/options.h"
-#include "io/obj/vertices.h"
 #include "io/text/mapped_file.h"
 
 namespace oktett {
