@@ -1,20 +1,10 @@
-#include "io/scene/csg.h"
-
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "core/open_edges.h"
+#include "io/scene/readers.h"
 
 namespace oktett {
 namespace {
-
-struct CsgKey {
-  const char* name;
-  CsgOp op;
-};
-constexpr CsgKey kKeys[] = {
-    {"union", CsgOp::unite}, {"intersection", CsgOp::intersect}, {"difference", CsgOp::subtract}};
 
 /// Why a shape has no inside; empty if it has one.
 struct WhyFlat {
@@ -26,8 +16,7 @@ struct WhyFlat {
     if (open.count == 0) return "";
     return fmt::format(
         "the mesh is not closed: {} open edges, the first from ({}, {}, {}) to ({}, {}, {}); only solids can "
-        "be "
-        "combined (`solid: winding` takes it as it is)",
+        "be combined (`solid: winding` takes it as it is)",
         open.count, open.from.x, open.from.y, open.from.z, open.to.x, open.to.y, open.to.z);
   }
   std::string operator()(const DiskShape&) const { return flat("a disk"); }
@@ -69,37 +58,9 @@ struct WhyFlat {
 
 }  // namespace
 
-bool is_csg_key(const std::string& key) {
-  for (const CsgKey& k : kKeys)
-    if (key == k.name) return true;
-  return false;
-}
-
-std::vector<std::string> csg_keys() {
-  std::vector<std::string> keys;
-  for (const CsgKey& k : kKeys) keys.push_back(k.name);
-  return keys;
-}
-
 void require_solid(const SceneLoad& load, const Object& object) {
   const std::string why = std::visit(WhyFlat{load}, object.shape);
   if (!why.empty()) throw Error(object.where, why);
-}
-
-CsgShape make_csg(const std::string& key, std::vector<Object> operands) {
-  CsgShape shape;
-  for (const CsgKey& k : kKeys)
-    if (key == k.name) shape.op = k.op;
-  shape.operands = std::make_shared<const std::vector<Object>>(std::move(operands));
-  return shape;
-}
-
-Object unite(std::vector<Object> members, const Location& where) {
-  if (members.size() == 1) return std::move(members.front());
-  Object object;
-  object.shape = CsgShape{CsgOp::unite, std::make_shared<const std::vector<Object>>(std::move(members))};
-  object.where = where;
-  return object;
 }
 
 }  // namespace oktett

@@ -1,11 +1,9 @@
-#include "io/scene/degenerate.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "io/scene/values.h"
+#include "io/scene/readers.h"
 
 namespace oktett {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "io/obj/mtl_texture.h"
 #include "io/scene/meshes.h"
 #include "io/scene/parameters.h"
 #include "io/scene/values.h"
@@ -46,8 +46,8 @@ struct SceneLoad {
   SceneValues values;
   MeshLibrary meshes;
   NameTable materials, prototypes, objects;
-  std::map<std::string, std::uint32_t> textures;  ///< by path and layout
-  std::vector<int> prototype_levels;              ///< of instances, its own included, per prototype
+  TextureList textures{scene.textures};
+  std::vector<int> prototype_levels;  ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;
 
   /// Adds a warning; after the first thousand only says that there are more.

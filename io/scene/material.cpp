@@ -1,10 +1,6 @@
-#include "io/scene/material.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <utility>
 
+#include "io/scene/readers.h"
 #include "io/scene/utf8.h"
 
 namespace oktett {
@@ -19,16 +15,6 @@ void read_layout(SceneValues& values, const YamlNode* node, Vec3f& out, bool sin
   else
     values.numbers(*node, {v, node->kind == YamlKind::sequence && node->items.size() == 3 ? 3u : 2u});
   out = static_cast<Vec3f>(Vec3d{v[0], v[1], v[2]});
-}
-
-std::uint32_t add_texture(SceneLoad& load, Texture texture) {
-  const std::string key = fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", texture.clamp, texture.offset.x,
-                                      texture.offset.y, texture.offset.z, texture.scale.x, texture.scale.y,
-                                      texture.scale.z, texture.gain, texture.base, texture.path);
-  const auto [place, is_new] =
-      load.textures.try_emplace(key, static_cast<std::uint32_t>(load.scene.textures.size()));
-  if (is_new) load.scene.textures.push_back(std::move(texture));
-  return place->second;
 }
 
 /// A file, or a map with the file and how it lies on the surface.
@@ -47,7 +33,7 @@ void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
     values.read(fields["gain"], texture.gain, kAnyNumber);
     values.read(fields["base"], texture.base, kAnyNumber);
   }
-  out = add_texture(load, std::move(texture));
+  out = load.textures.add(texture);
 }
 
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {

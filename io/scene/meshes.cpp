@@ -30,16 +30,20 @@ std::vector<std::uint32_t> append_materials(ObjFile& obj, Scene& scene) {
 
 }  // namespace
 
-bool is_mesh_file(const std::string& path) {
+std::string lower_case_extension(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".obj";
+  return extension;
+}
+
+std::string canonical_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path canonical = std::filesystem::canonical(path, error);
+  return error ? path : canonical.string();
 }
 
 const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, Scene& scene) {
-  std::error_code error;
-  const std::filesystem::path canonical = std::filesystem::canonical(path, error);
-  const std::string key = error ? path : canonical.string();
+  const std::string key = canonical_path(path);
   const auto found = entries_.find(key);
   if (found != entries_.end()) return found->second;
   ObjFile obj = load_obj(path);

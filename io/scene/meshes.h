@@ -12,8 +12,13 @@
 
 namespace oktett {
 
+/// ".obj" of "a.OBJ".
+std::string lower_case_extension(const std::string& path);
+/// One path for all that lead to the same file; `path` itself if there is no such file.
+std::string canonical_path(const std::string& path);
+
 /// True if `path` ends like a mesh file that can be read.
-bool is_mesh_file(const std::string& path);
+inline bool is_mesh_file(const std::string& path) { return lower_case_extension(path) == ".obj"; }
 
 class MeshLibrary {
  public:

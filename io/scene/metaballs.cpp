@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <optional>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 
-#include "io/scene/degenerate.h"
 #include "io/scene/exact.h"
 #include "io/scene/number_line.h"
+#include "io/scene/readers.h"
 #include "io/scene/shape_reader.h"
 
 namespace oktett {
@@ -63,26 +62,20 @@ constexpr struct {
                   {"polygon", read_skeleton<PolygonSkeleton>},
                   {"ellipsoid", read_skeleton<EllipsoidSkeleton>}};
 
-const YamlNode* find(const std::vector<MapEntry>& entries, std::string_view key) {
-  for (const MapEntry& entry : entries)
-    if (entry.key->text == key) return entry.value;
-  return nullptr;
-}
-
-Potential read_potential(SceneLoad& load, const std::vector<MapEntry>& entries) {
+Potential read_potential(SceneLoad& load, const Fields& fields) {
   Potential p;
-  if (const YamlNode* kind = find(entries, "potential"))
+  if (const YamlNode* kind = fields["potential"])
     p.kind = load.values.choice<PotentialKind>(*kind, {{"inverse_square", PotentialKind::inverse_square},
                                                        {"gaussian", PotentialKind::gaussian},
                                                        {"quadratic", PotentialKind::quadratic},
                                                        {"rational", PotentialKind::rational},
                                                        {"wyvill", PotentialKind::wyvill}});
   const bool by_b = p.kind == PotentialKind::gaussian || p.kind == PotentialKind::quadratic;
-  load.values.read(find(entries, by_b ? "b" : "radius"), p.scale, kPositive);
-  if (p.kind == PotentialKind::rational) load.values.read(find(entries, "d"), p.d, kNonNegative);
-  load.values.read(find(entries, "weight"), p.weight, kStrength);
+  load.values.read(fields[by_b ? "b" : "radius"], p.scale, kPositive);
+  if (p.kind == PotentialKind::rational) load.values.read(fields["d"], p.d, kNonNegative);
+  load.values.read(fields["weight"], p.weight, kStrength);
   for (const char* key : {"b", "radius", "d"}) {
-    const YamlNode* value = find(entries, key);
+    const YamlNode* value = fields[key];
     const bool meant = key[0] == 'd' ? p.kind == PotentialKind::rational : (key[0] == 'b') == by_b;
     if (value && !meant) throw Error(value->where(), std::string("this potential has no '") + key + "'");
   }
@@ -94,7 +87,6 @@ FieldElement read_element(SceneLoad& load, const YamlNode& node) {
   const Fields fields(
       node, "element",
       {"point", "segment", "polygon", "ellipsoid", "potential", "radius", "b", "d", "weight"});
-  const std::vector<MapEntry> entries = map_entries(node, "element");
   FieldElement element;
   const char* found = nullptr;
   for (const auto& skeleton : kSkeletons) {
@@ -107,7 +99,7 @@ FieldElement read_element(SceneLoad& load, const YamlNode& node) {
     skeleton.read(load, *value, found, element.skeleton);
   }
   if (!found) throw Error(node.where(), "expected a skeleton: point, segment, polygon or ellipsoid");
-  element.potential = read_potential(load, entries);
+  element.potential = read_potential(load, fields);
   return element;
 }
 
@@ -117,33 +109,15 @@ bool all_metaballs(const std::vector<FieldElement>& elements) {
   });
 }
 
-std::vector<MetaBall> read_ball_file(SceneLoad& load, const YamlNode& node) {
-  const std::string path = load.values.existing_file(node);
-  const std::string text = read_text_file(path, kMaxBallFileBytes);
-  load.sphere_file_bytes += text.size();
-  if (load.sphere_file_bytes > kMaxSphereFileBytes)
-    throw Error(node.where(), "the files of spheres and balls are larger than " +
-                                  std::to_string(kMaxSphereFileBytes >> 20) + " MiB in all");
-  std::vector<MetaBall> balls;
-  Location place{path, 0, 1};
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    ++place.line;
-    NumberLine line(std::string_view(text).substr(begin, end - begin), place,
-                    "4 or 5 numbers (x y z radius strength)");
-    begin = end + 1;
-    if (line.empty()) continue;
-    MetaBall ball;
-    for (int axis = 0; axis < 3; ++axis) ball.center[axis] = line.number();
-    ball.radius = line.number();
-    if (!(ball.radius > 0)) line.reject("expected a radius greater than 0");
-    if (!line.empty()) ball.strength = line.number();
-    if (!kStrength.contains(ball.strength)) line.reject("the strength is out of range");
-    line.finish();
-    balls.push_back(ball);
-    check_count(balls.size(), place);
-  }
-  return balls;
+MetaBall ball_of(NumberLine& line) {
+  MetaBall ball;
+  for (int axis = 0; axis < 3; ++axis) ball.center[axis] = line.number();
+  ball.radius = line.number();
+  if (!(ball.radius > 0)) line.reject("expected a radius greater than 0");
+  if (!line.empty()) ball.strength = line.number();
+  if (!kStrength.contains(ball.strength)) line.reject("the strength is out of range");
+  line.finish();
+  return ball;
 }
 
 bool none_positive(const BlobTreeShape& tree) {
@@ -182,8 +156,10 @@ constexpr Choice<Blend::Op> kBlends[] = {{"sum", Blend::Op::sum},
 void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape& tree) {
   const std::vector<MapEntry> entries = map_entries(node, "blend");
   for (const Choice<Blend::Op>& blend : kBlends) {
-    const YamlNode* list = find(entries, blend.name);
-    if (!list) continue;
+    const auto found =
+        std::ranges::find_if(entries, [&](const MapEntry& e) { return e.key->text == blend.name; });
+    if (found == entries.end()) continue;
+    const YamlNode* const list = found->value;
     for (const MapEntry& entry : entries)
       if (entry.value != list && (level > 1 || (entry.key->text != "iso" && entry.key->text != "normals")))
         throw Error(entry.key->where(),
@@ -214,7 +190,12 @@ MaybeForm finish(const ShapeNode& at, MetaballsShape& shape) {
   }
   if (!source) throw Error(at.node.where(), "metaballs need 'balls', 'file' or 'elements'");
   if (source == at.fields["elements"]) return read_elements(at, *source, shape.iso);
-  if (source == at.fields["file"]) shape.balls = read_ball_file(at.load, *source);
+  if (source == at.fields["file"])
+    read_number_file(at.load, *source, kMaxBallFileBytes, "the files of spheres and balls",
+                     "4 or 5 numbers (x y z radius strength)", [&](NumberLine& line) {
+                       shape.balls.push_back(ball_of(line));
+                       check_count(shape.balls.size(), line.place());
+                     });
   if (shape.balls.empty()) throw Error(source->where(), "there are no balls");
   if (std::none_of(shape.balls.begin(), shape.balls.end(), [](const MetaBall& b) { return b.strength > 0; }))
     return at.skip("no ball has a positive strength");

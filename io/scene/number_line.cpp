@@ -1,10 +1,9 @@
 #include "io/scene/number_line.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
-
-#include "io/scene/values.h"
 
 namespace oktett {
 namespace {
@@ -46,6 +45,23 @@ void NumberLine::fail(std::size_t at, const std::string& message) const {
   Location place = place_;
   place.column = static_cast<int>(at) + 1;
   throw Error(place, message);
+}
+
+void read_number_file(SceneLoad& load, const YamlNode& node, std::size_t max_bytes, const char* files,
+                      const char* expected, const std::function<void(NumberLine&)>& read) {
+  const std::string path = load.values.existing_file(node);
+  const std::string text = read_text_file(path, max_bytes);
+  load.sphere_file_bytes += text.size();
+  if (load.sphere_file_bytes > kMaxSphereFileBytes)
+    throw Error(node.where(), std::string(files) + " are larger than " +
+                                  std::to_string(kMaxSphereFileBytes >> 20) + " MiB in all");
+  Location place{path, 0, 1};
+  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+    end = std::min(text.find('\n', begin), text.size());
+    ++place.line;
+    NumberLine line(std::string_view(text).substr(begin, end - begin), place, expected);
+    if (!line.empty()) read(line);
+  }
 }
 
 }  // namespace oktett

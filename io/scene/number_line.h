@@ -1,10 +1,11 @@
 #pragma once
 /// \file Lines of numbers in text files beside a scene. Within io/ only.
 
+#include <functional>
 #include <string>
 #include <string_view>
 
-#include "core/error.h"
+#include "io/scene/load.h"
 
 namespace oktett {
 
@@ -14,6 +15,7 @@ class NumberLine {
   /// `expected` says what a line holds, e.g. "4 numbers (x y z radius)".
   NumberLine(std::string_view line, const Location& place, const char* expected);
 
+  const Location& place() const { return place_; }
   /// Whether nothing is left.
   bool empty() const { return at_ == line_.size() || line_[at_] == '#'; }
   /// The next number. Throws Error if there is none or it is out of range.
@@ -32,5 +34,11 @@ class NumberLine {
   const char* expected_;
   std::size_t at_ = 0, previous_ = 0;
 };
+
+/// Calls `read` for each line with numbers in the file that `node` names. `expected` is as above. Throws
+/// Error if the file has more than `max_bytes`, or all such files of the scene, which `files` names, more
+/// than kMaxSphereFileBytes.
+void read_number_file(SceneLoad& load, const YamlNode& node, std::size_t max_bytes, const char* files,
+                      const char* expected, const std::function<void(NumberLine&)>& read);
 
 }  // namespace oktett

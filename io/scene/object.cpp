@@ -1,16 +1,10 @@
-#include "io/scene/object.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
-#include "io/scene/csg.h"
-#include "io/scene/degenerate.h"
-#include "io/scene/material.h"
-#include "io/scene/shape.h"
-#include "io/scene/transform.h"
+#include "io/scene/readers.h"
 #include "io/scene/utf8.h"
 
 namespace oktett {
@@ -36,8 +30,8 @@ class ObjectReader {
   int levels() const { return levels_; }
 
  private:
-  void read_group(const YamlNode& members, const Surroundings& inner);
-  std::optional<Shape> read_csg(const YamlNode& key, const YamlNode& operands, const Surroundings& inner);
+  std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
+                                const Surroundings& inner);
   std::optional<Shape> read_instance(const YamlNode& node);
   [[noreturn]] void fail_unknown_prototype(const YamlNode& node, const std::string& name) const;
 
@@ -48,27 +42,30 @@ class ObjectReader {
   int levels_ = 0;
 };
 
-bool is_shape_key(const std::string& key) {
-  if (key == "group" || key == "instance" || is_csg_key(key)) return true;
-  return std::find(shape_keys().begin(), shape_keys().end(), key) != shape_keys().end();
+/// Several objects as one operand: their union.
+Object unite(std::vector<Object> members, const Location& where) {
+  if (members.size() == 1) return std::move(members.front());
+  Object object;
+  object.shape = CsgShape{CsgOp::unite, std::make_shared<const std::vector<Object>>(std::move(members))};
+  object.where = where;
+  return object;
 }
 
 /// The one entry of an object that says what it is. Throws Error for keys that no object has.
 MapEntry find_shape(const YamlNode& node) {
-  std::vector<std::string> known = shape_keys();
-  for (const std::string& key : csg_keys()) known.push_back(key);
-  known.insert(known.end(), {"group", "instance"});
-  const std::string shape_names = fmt::format("{}", fmt::join(known, ", "));
+  const std::vector<std::string>& shapes = object_keys();
+  const std::string shape_names = fmt::format("{}", fmt::join(shapes, ", "));
+  std::vector<std::string> known = shapes;
   known.insert(known.end(), {"material", "transform", "name"});
   MapEntry shape{nullptr, nullptr};
   for (const MapEntry& entry : map_entries(node, "an object")) {
     const std::string& key = entry.key->text;
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
+    if (std::ranges::find(known, key) == known.end()) {
       const std::string hint = suggest(key, known);
       throw Error(entry.key->where(), "unknown key " + quote(key) + " in an object" +
                                           (hint.empty() ? "; shapes are " + shape_names : hint));
     }
-    if (!is_shape_key(key)) continue;
+    if (std::ranges::find(shapes, key) == shapes.end()) continue;
     if (shape.key)
       throw Error(entry.key->where(), "an object has one shape, but " + quote(shape.key->text) + " and " +
                                           quote(key) + " are given");
@@ -79,9 +76,9 @@ MapEntry find_shape(const YamlNode& node) {
 }
 
 void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
-  const MapEntry shape_entry = find_shape(node);
-  const Fields fields(node, "an object", {shape_entry.key->text.c_str(), "material", "transform", "name"});
-  const bool is_group = shape_entry.key->text == "group", is_instance = shape_entry.key->text == "instance";
+  const auto [key, value] = find_shape(node);
+  const Fields fields(node, "an object", {key->text.c_str(), "material", "transform", "name"});
+  const bool is_group = key->text == "group", is_instance = key->text == "instance";
 
   Object object;
   object.where = node.where();
@@ -103,11 +100,14 @@ void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
                  reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
     }
   }
-  if (is_group) return read_group(*shape_entry.value, inner);
-  std::optional<Shape> shape = is_csg_key(shape_entry.key->text)
-                                   ? read_csg(*shape_entry.key, *shape_entry.value, inner)
-                               : is_instance ? read_instance(*shape_entry.value)
-                                             : read_shape(load_, *shape_entry.key, *shape_entry.value);
+  if (is_group) {
+    for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
+    return;
+  }
+  const auto* const csg = std::ranges::find(kCsgKeys, key->text, &Choice<CsgOp>::name);
+  std::optional<Shape> shape = csg != std::end(kCsgKeys) ? read_csg(csg->value, *key, *value, inner)
+                               : is_instance             ? read_instance(*value)
+                                                         : read_shape(load_, *key, *value);
   if (!shape || inner.is_dropped) return;
   object.shape = std::move(*shape);
   object.material = inner.material;
@@ -115,11 +115,7 @@ void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
   out_.push_back(std::move(object));
 }
 
-void ObjectReader::read_group(const YamlNode& members, const Surroundings& inner) {
-  for (const YamlNode* member : list_items(members, "group")) read(*member, inner);
-}
-
-std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode& operands,
+std::optional<Shape> ObjectReader::read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
                                             const Surroundings& outer) {
   const auto nodes = list_items(operands, key.text);
   if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
@@ -134,7 +130,7 @@ std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode&
     levels_ = std::max(levels_, reader.levels_);
     for (const Object& member : members) require_solid(load_, member);
     // What was skipped is nothing, and so is what it is intersected with or taken from.
-    const bool is_needed = key.text == "intersection" || (key.text == "difference" && node == nodes.front());
+    const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
     if (members.empty())
       is_nothing |= is_needed;
     else
@@ -145,7 +141,7 @@ std::optional<Shape> ObjectReader::read_csg(const YamlNode& key, const YamlNode&
       load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
     return std::nullopt;
   }
-  return make_csg(key.text, std::move(solids));
+  return CsgShape{op, std::make_shared<const std::vector<Object>>(std::move(solids))};
 }
 
 std::optional<Shape> ObjectReader::read_instance(const YamlNode& node) {

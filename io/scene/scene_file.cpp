@@ -1,17 +1,12 @@
 #include "io/scene/scene_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "io/scene/load.h"
-#include "io/scene/material.h"
-#include "io/scene/object.h"
-#include "io/scene/settings.h"
+#include "io/scene/readers.h"
 #include "io/scene/utf8.h"
 #include "io/scene/yaml.h"
 #include "render/default_view.h"
@@ -21,12 +16,6 @@ namespace {
 
 constexpr std::size_t kMaxIncludeDepth = 16;
 constexpr std::size_t kMaxIncludedFiles = 256;
-
-std::string canonical_path(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::path canonical = std::filesystem::canonical(path, error);
-  return error ? path : canonical.string();
-}
 
 /// Reads a scene file and, before its own sections, those that it includes.
 class FileReader {
@@ -113,12 +102,6 @@ class FileReader {
 void expect_readable(const std::string& path) {
   if (const std::string reason = why_unreadable(path); !reason.empty())
     throw Error(Location{path, 0, 0}, reason, ErrorKind::io);
-}
-
-std::string lower_case_extension(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "io/scene/settings.h"
-
 #include <limits>
+
+#include "io/scene/readers.h"
 
 namespace oktett {
 namespace {

@@ -1,13 +1,10 @@
-#include "io/scene/shape.h"
-
 #include <type_traits>
 #include <utility>
 #include <variant>
 
-#include "io/scene/degenerate.h"
 #include "io/scene/exact.h"
+#include "io/scene/readers.h"
 #include "io/scene/shape_reader.h"
-#include "io/scene/spheres.h"
 #include "io/scene/utf8.h"
 
 namespace oktett {
@@ -33,13 +30,6 @@ bool finish(const ShapeNode& at, PolygonShape& shape) {
   const std::string reason = why_degenerate(shape);
   if (!reason.empty()) at.skip(reason);
   return reason.empty();
-}
-
-MaybeShape read_spheres_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  SpheresShape shape = read_spheres(load, node);
-  if (!shape.spheres.empty()) return shape;
-  load.warn(key.where(), "there are no spheres; the object is skipped");
-  return std::nullopt;
 }
 
 template <class T, class... U>
@@ -96,18 +86,20 @@ struct SurfaceNames {
 
 }  // namespace
 
-const std::vector<std::string>& shape_keys() {
+const std::vector<std::string>& object_keys() {
   static const std::vector<std::string> keys = [] {
     SurfaceNames all;
     visit_surfaces(all);
     all.names.emplace_back("spheres");
+    for (const auto& csg : kCsgKeys) all.names.emplace_back(csg.name);
+    all.names.insert(all.names.end(), {"group", "instance"});
     return all.names;
   }();
   return keys;
 }
 
 MaybeShape read_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
-  if (key.text == "spheres") return read_spheres_shape(load, key, node);
+  if (key.text == "spheres") return read_spheres(load, key, node);
   ShapeReader reader(load, key, node);
   visit_surfaces(reader);
   if (reader.known) return std::move(reader.result);

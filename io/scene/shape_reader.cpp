@@ -1,6 +1,5 @@
 #include "io/scene/shape_reader.h"
 
-#include "io/scene/transform.h"
 #include "io/scene/utf8.h"
 #include "kernels/exact/polynomial_expression.h"
 #include "kernels/fractals/ifs.h"

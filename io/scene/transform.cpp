@@ -1,6 +1,8 @@
-#include "io/scene/transform.h"
+#include "core/transform.h"
 
 #include <string>
+
+#include "io/scene/values.h"
 
 namespace oktett {
 namespace {

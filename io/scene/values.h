@@ -99,4 +99,8 @@ class SceneValues {
   SceneParameters& parameters_;
 };
 
+/// A list of operations, applied in order, or a single one: translate, scale, rotate or matrix. The result
+/// may be singular.
+Affine read_transform(SceneValues& values, const YamlNode& node);
+
 }  // namespace oktett

@@ -1,0 +1,55 @@
+#pragma once
+/// \file The readers of the sections of a scene file and of what stands in them. Within io/ only.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/description.h"
+#include "io/scene/load.h"
+
+namespace oktett {
+
+// Each changes only what its node gives, so that a file overrides what it includes key by key.
+void read_camera(SceneLoad& load, const YamlNode& node);
+void read_film(SceneLoad& load, const YamlNode& node);
+void read_integrator(SceneLoad& load, const YamlNode& node);
+
+/// Adds the lights in a list.
+void read_lights(SceneLoad& load, const YamlNode& node);
+/// Adds the named materials in the map `materials` to the scene.
+void define_materials(SceneLoad& load, const YamlNode& materials);
+/// Adds the prototypes in the map `define` to the scene. Each may hold instances of those before it.
+void define_prototypes(SceneLoad& load, const YamlNode& define);
+/// Adds the objects in the list `objects` to the scene.
+void read_objects(SceneLoad& load, const YamlNode& objects);
+
+/// Index into Scene::materials for a name, or for an inline map, which is appended.
+std::uint32_t read_material(SceneLoad& load, const YamlNode& node);
+
+/// The boolean combinations by their keys.
+inline constexpr Choice<CsgOp> kCsgKeys[] = {
+    {"union", CsgOp::unite}, {"intersection", CsgOp::intersect}, {"difference", CsgOp::subtract}};
+/// Every key that says what an object is: shapes, boolean combinations, `group` and `instance`.
+const std::vector<std::string>& object_keys();
+
+/// The shape that `node`, the value of `key`, describes. Nothing, after a warning, if it is degenerate.
+std::optional<Shape> read_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node);
+/// A list of spheres, {centers, radius} or {file}. Spheres of radius 0 are left out with a warning; nothing,
+/// after another one, if no sphere is left.
+std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const YamlNode& node);
+
+/// Throws Error at the object's place if it has no inside: if it is flat, open, or a mesh that is not closed.
+void require_solid(const SceneLoad& load, const Object& object);
+
+// Each says why nothing of the shape or the transform can be seen, or nothing if it is usable.
+/// Zero area, edges that touch each other, or a vertex further from the plane than 1e-5 of the polygon's
+/// size.
+std::string why_degenerate(const PolygonShape& polygon);
+/// Singular, or with numbers beyond kMaxCoordinate.
+std::string why_degenerate(const Affine& transform);
+
+/// Removes each vertex that repeats the one before it, and a last one that repeats the first.
+void remove_repeated_vertices(PolygonShape& polygon);
+
+}  // namespace oktett
