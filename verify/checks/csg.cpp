@@ -29,13 +29,6 @@ constexpr int kMaxOperands = 64, kMaxDepth = 12;
 constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::interleaved, TraceMode::packet8,
                                 TraceMode::packet16, TraceMode::beam};
 
-Vec3l mapped(const Affine& m, const Vec3l& p) {
-  Vec3l q;
-  for (int k = 0; k < 3; ++k)
-    q[k] = m.m[k][0] * p.x + m.m[k][1] * p.y + m.m[k][2] * p.z + static_cast<long double>(m.m[k][3]);
-  return q;
-}
-
 /// A convex mesh is the intersection of the half-spaces of its triangles.
 Inside inside_convex(const TriangleMesh& mesh, const Affine& to_world) {
   struct Face {

@@ -29,23 +29,17 @@ constexpr int kSamples = 768;
 /// Samples within the rounding of a hit at which three do not show a crossing.
 constexpr int kFineSamples = 1024;
 
-Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
-
 /// The function along a ray, in the space of the shape's description.
 class AlongRay {
  public:
   AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray)
-      : f_(oracle.f), where_(oracle.where) {
-    for (int k = 0; k < 3; ++k) {
-      o_[k] = to_own.m[k][3], d_[k] = 0;
-      for (int j = 0; j < 3; ++j) {
-        o_[k] += static_cast<long double>(to_own.m[k][j]) * ray.origin[j];
-        d_[k] += static_cast<long double>(to_own.m[k][j]) * ray.direction[j];
-      }
-    }
+      : f_(oracle.f),
+        where_(oracle.where),
+        o_(mapped(to_own, Vec3l(ray.origin))),
+        d_(mapped(to_own, Vec3l(ray.direction), 0)) {
     // The sphere around the box, a little larger.
-    const Vec3l c = (widen(oracle.lo) + widen(oracle.hi)) * 0.5L, m = o_ - c;
-    const Vec3l half = (widen(oracle.hi) - widen(oracle.lo)) * 0.5L;
+    const Vec3l c = (Vec3l(oracle.lo) + Vec3l(oracle.hi)) * 0.5L, m = o_ - c;
+    const Vec3l half = (Vec3l(oracle.hi) - Vec3l(oracle.lo)) * 0.5L;
     const long double dd = dot(d_, d_), b = dot(m, d_) / dd;
     const long double h = dot(half, half) * 1.02L - (dot(m, m) - b * b * dd);
     size_ = std::sqrt(dot(half, half) / dd);
@@ -140,7 +134,7 @@ class AlongRay {
     }
     return false;
   }
-  const std::function<long double(const Vec3l&)>&f_, &where_;
+  const SurfaceFunction &f_, &where_;
   Vec3l o_, d_;
   long double size_ = 0;
 };
@@ -283,14 +277,7 @@ class Checker {
   /// Moved off the surface by its error bound, the position must be off it.
   void check_surface(const Ray& ray, const Hit& hit, RayBatch* next) {
     const SurfaceInteraction s = surface_interaction(*trial_.accel, ray, hit);
-    const auto f = [&](const auto& p) {
-      Vec3l q;
-      for (int k = 0; k < 3; ++k) {
-        q[k] = trial_.to_own.m[k][3];
-        for (int j = 0; j < 3; ++j) q[k] += static_cast<long double>(trial_.to_own.m[k][j]) * p[j];
-      }
-      return trial_.oracle.f(q);
-    };
+    const auto f = [&](const auto& p) { return trial_.oracle.f(mapped(trial_.to_own, Vec3l(p))); };
     const Vec3f n = s.geometric_normal;
     const Vec3f out = offset_origin(s, n), in = offset_origin(s, -n);
     const long double here = f(s.position), above = f(out), below = f(in);

@@ -8,21 +8,48 @@
 
 namespace oktett {
 
+Vec3l mapped(const Affine& m, const Vec3l& p, Real one) {
+  Vec3l q;
+  for (int k = 0; k < 3; ++k) q[k] = m.m[k][0] * p.x + m.m[k][1] * p.y + m.m[k][2] * p.z + m.m[k][3] * one;
+  return q;
+}
+
+void ExactOracle::grow(const Vec3d& center, double radius) {
+  const Vec3d by{radius, radius, radius};
+  lo = min(lo, center - by), hi = max(hi, center + by);
+}
+
+Real outside(const Vec3d& lo, const Vec3d& hi, const Vec3l& p) {
+  Real d = -HUGE_VALL;
+  for (int k = 0; k < 3; ++k) d = std::max({d, lo[k] - p[k], p[k] - hi[k]});
+  return d;
+}
+
+void cut(ExactOracle& oracle, const SurfaceFunction& where, bool open) {
+  if (open)
+    oracle.where = where;
+  else
+    oracle.f = [f = oracle.f, where](const Vec3l& p) { return std::max(f(p), where(p)); };
+}
+
+void cut_by_box(ExactOracle& oracle, const Vec3d& lo, const Vec3d& hi, bool open) {
+  const auto beyond = [lo, hi](const Vec3l& p) { return outside(lo, hi, p); };
+  cut(oracle, beyond, open);
+  oracle.lo = lo, oracle.hi = hi;
+}
+
+ExactOracle oracle_of(const TorusShape& s) {
+  const double r = s.major + s.minor;
+  const auto f = [s](const Vec3l& p) {
+    const Real d = s.major - std::sqrt(p.x * p.x + p.y * p.y);
+    return d * d + p.z * p.z - static_cast<Real>(s.minor) * s.minor;
+  };
+  return {{s}, f, {-r, -r, -s.minor}, {r, r, s.minor}};
+}
+
 namespace {
 
-ExactOracle torus(CaseRandom& random) {
-  const auto s = draw_shape<TorusShape>(random);
-  const double r = s.major + s.minor;
-  return {"torus",
-          {s},
-          [s](const Vec3l& p) {
-            const long double d = s.major - std::sqrt(p.x * p.x + p.y * p.y);
-            return d * d + p.z * p.z - static_cast<long double>(s.minor) * s.minor;
-          },
-          {-r, -r, -s.minor},
-          {r, r, s.minor},
-          {}};
-}
+ExactOracle torus(CaseRandom& random) { return oracle_of(draw_shape<TorusShape>(random)); }
 
 /// By the other of the two equations that a cyclide has: the kernel solves the one with z.
 ExactOracle cyclide(CaseRandom& random) {
@@ -33,24 +60,19 @@ ExactOracle cyclide(CaseRandom& random) {
   if (kind > 0.8) s.minor = s.taper;
   if (kind > 0.9) s.minor = 0, s.taper = std::max(s.taper, 0.1 * s.major);
   const double a = s.major, c = s.taper, d = s.minor;
-  return {"cyclide",
-          {s},
-          [a, c, d](const Vec3l& p) {
-            const long double bb = static_cast<long double>(a) * a - static_cast<long double>(c) * c;
-            const long double r = dot(p, p) + bb - static_cast<long double>(d) * d;
-            const long double x = a * p.x - static_cast<long double>(c) * d;
-            return r * r - 4 * (x * x + bb * p.y * p.y);
-          },
-          {-a - c - d, -a - d, -c - d},
-          {std::max(a + d - c, a - d + c), a + d, c + d},
-          {}};
+  const auto f = [a, c, d](const Vec3l& p) {
+    const Real bb = static_cast<Real>(a) * a - static_cast<Real>(c) * c;
+    const Real r = dot(p, p) + bb - static_cast<Real>(d) * d;
+    const Real x = a * p.x - static_cast<Real>(c) * d;
+    return r * r - 4 * (x * x + bb * p.y * p.y);
+  };
+  return {{s}, f, {-a - c - d, -a - d, -c - d}, {std::max(a + d - c, a - d + c), a + d, c + d}};
 }
 
-std::vector<DrawExact> all_families() {
-  std::vector<DrawExact> all{torus, cyclide};
-  for (const auto& family :
-       {quadric_oracles(), polynomial_oracles(), superquadric_oracles(), metaball_oracles(),
-        blobtree_oracles(), function_oracles(), fractal_oracles(), height_oracles()})
+std::vector<ExactCase> all_cases() {
+  std::vector<ExactCase> all{{"torus", torus}, {"cyclide", cyclide}};
+  for (const auto& family : {quadric_cases(), polynomial_cases(), superquadric_cases(), metaball_cases(),
+                             blobtree_cases(), function_cases(), fractal_cases(), height_cases()})
     all.insert(all.end(), family.begin(), family.end());
   return all;
 }
@@ -59,14 +81,13 @@ std::vector<DrawExact> all_families() {
 
 std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random) {
   std::vector<ExactOracle> oracles;
-  for (const DrawExact draw : all_families()) oracles.push_back(draw(random));
+  for (const ExactCase& one : all_cases()) oracles.emplace_back(one.draw(random)).name = one.name;
   return oracles;
 }
 
 std::vector<std::string> exact_oracle_names() {
-  CaseRandom random(0);
   std::vector<std::string> names;
-  for (const ExactOracle& oracle : draw_exact_oracles(random)) names.push_back(oracle.name);
+  for (const ExactCase& one : all_cases()) names.push_back(one.name);
   return names;
 }
 

@@ -12,20 +12,39 @@
 namespace oktett {
 
 using Vec3l = Vec3<long double>;
+using SurfaceFunction = std::function<long double(const Vec3l&)>;
+
+/// M p + t; with `one` = 0 the vector M p.
+Vec3l mapped(const Affine& m, const Vec3l& p, long double one = 1);
 
 /// An exact surface and what it should be.
 struct ExactOracle {
-  std::string name;
   ExactShape shape;
   /// Negative inside, positive outside, for points in the space in which the shape is described. Written from
   /// the source's equation, not from the kernel.
-  std::function<long double(const Vec3l&)> f;
-  Vec3d lo, hi;  ///< the surface lies in this box, or what of it is looked at
+  SurfaceFunction f;
+  Vec3d lo{1e9, 1e9, 1e9}, hi = -lo;  ///< the surface lies in this box, or what of it is looked at
   /// If set, the surface is only where this is not positive: what is open ends there.
-  std::function<long double(const Vec3l&)> where;
+  SurfaceFunction where = {};
+  std::string name = {};
+
+  /// Makes the box hold a ball.
+  void grow(const Vec3d& center, double radius);
 };
 
-/// One of each form, with parameters from `random`. Grows by one line per form.
+// What shapes should be.
+ExactOracle oracle_of(const TorusShape& shape);
+ExactOracle oracle_of(const CylinderShape& shape);
+ExactOracle oracle_of(const ConeShape& shape);
+/// The box is left to the caller.
+ExactOracle oracle_of(const PolyhedronShape& shape);
+ExactOracle oracle_of(const QuadricShape& shape);
+ExactOracle oracle_of(const PolynomialShape& shape);
+ExactOracle oracle_of(const RevolutionShape& shape);
+ExactOracle oracle_of(const SuperquadricShape& shape);
+ExactOracle oracle_of(const MetaballsShape& shape);
+
+/// One of each form, with parameters from `random`.
 std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random);
 /// Names of what draw_exact_oracles draws, in its order.
 std::vector<std::string> exact_oracle_names();

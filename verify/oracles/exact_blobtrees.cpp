@@ -11,10 +11,6 @@ namespace oktett {
 
 namespace {
 
-using Real = long double;
-
-Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
-
 Real square(const Vec3l& v) { return dot(v, v); }
 
 Real segment_square(const Vec3l& a, const Vec3l& b, const Vec3l& p) {
@@ -44,10 +40,10 @@ Body body_of(const decltype(FieldElement::skeleton)& skeleton) {
     }
   } else if (const auto* polygon = std::get_if<PolygonSkeleton>(&skeleton)) {
     Vec3l n{0, 0, 0};
-    const Vec3l first = widen(polygon->vertices[0]);
+    const Vec3l first = Vec3l(polygon->vertices[0]);
     for (std::size_t i = 1; i + 1 < polygon->vertices.size(); ++i)
-      n += cross(widen(polygon->vertices[i]) - first, widen(polygon->vertices[i + 1]) - first);
-    const Vec3l along = widen(polygon->vertices[1]) - first;
+      n += cross(Vec3l(polygon->vertices[i]) - first, Vec3l(polygon->vertices[i + 1]) - first);
+    const Vec3l along = Vec3l(polygon->vertices[1]) - first;
     body.axis[2] = n / std::sqrt(square(n));
     body.axis[0] = along / std::sqrt(square(along));
     body.axis[1] = cross(body.axis[2], body.axis[0]);
@@ -56,11 +52,11 @@ Body body_of(const decltype(FieldElement::skeleton)& skeleton) {
 }
 
 Real skeleton_square(const PointSkeleton& s, const Body&, const Vec3l& p) {
-  return square(p - widen(s.center));
+  return square(p - Vec3l(s.center));
 }
 
 Real skeleton_square(const SegmentSkeleton& s, const Body&, const Vec3l& p) {
-  return segment_square(widen(s.from), widen(s.to), p);
+  return segment_square(Vec3l(s.from), Vec3l(s.to), p);
 }
 
 /// The border winds about the foot of p if that is inside: it passes the half-line from there to the right,
@@ -70,7 +66,7 @@ Real skeleton_square(const PolygonSkeleton& s, const Body& body, const Vec3l& p)
   int winding = 0;
   const std::size_t count = s.vertices.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3l a = widen(s.vertices[i]), b = widen(s.vertices[(i + 1) % count]);
+    const Vec3l a = Vec3l(s.vertices[i]), b = Vec3l(s.vertices[(i + 1) % count]);
     edge = std::min(edge, segment_square(a, b, p));
     const Real ax = dot(a - p, body.axis[0]), ay = dot(a - p, body.axis[1]);
     const Real bx = dot(b - p, body.axis[0]), by = dot(b - p, body.axis[1]);
@@ -78,12 +74,12 @@ Real skeleton_square(const PolygonSkeleton& s, const Body& body, const Vec3l& p)
     if (ay <= 0 && by > 0 && side > 0) ++winding;
     if (by <= 0 && ay > 0 && side < 0) --winding;
   }
-  const Real height = dot(p - widen(s.vertices[0]), body.axis[2]);
+  const Real height = dot(p - Vec3l(s.vertices[0]), body.axis[2]);
   return winding != 0 ? height * height : edge;
 }
 
 Real skeleton_square(const EllipsoidSkeleton& s, const Body& body, const Vec3l& p) {
-  const Vec3l q = p - widen(s.center);
+  const Vec3l q = p - Vec3l(s.center);
   return square(
       {dot(q, body.axis[0]) / s.radii.x, dot(q, body.axis[1]) / s.radii.y, dot(q, body.axis[2]) / s.radii.z});
 }
@@ -154,25 +150,18 @@ double reach_of(const Potential& p, double share) {
   return p.scale;
 }
 
-double extent_of(const EllipsoidSkeleton& s) { return std::max({s.radii.x, s.radii.y, s.radii.z}); }
-
-ExactOracle oracle_of(std::string name, const BlobTreeShape& shape) {
-  ExactOracle o;
-  o.name = std::move(name), o.shape = {shape};
-  o.lo = {1e9, 1e9, 1e9}, o.hi = -o.lo;
+ExactOracle oracle_of(const BlobTreeShape& shape) {
+  ExactOracle o{{shape}, {}};
   const double share = shape.iso / static_cast<double>(shape.elements.size());
   for (const FieldElement& e : shape.elements) {
     if (e.potential.weight <= 0) continue;
-    double r = reach_of(e.potential, share);
-    const auto add = [&](const Vec3d& c) {
-      const Vec3d by{r, r, r};
-      o.lo = min(o.lo, c - by), o.hi = max(o.hi, c + by);
-    };
-    if (const auto* s = std::get_if<PointSkeleton>(&e.skeleton)) add(s->center);
-    if (const auto* s = std::get_if<SegmentSkeleton>(&e.skeleton)) add(s->from), add(s->to);
+    const double r = reach_of(e.potential, share);
+    if (const auto* s = std::get_if<PointSkeleton>(&e.skeleton)) o.grow(s->center, r);
+    if (const auto* s = std::get_if<SegmentSkeleton>(&e.skeleton)) o.grow(s->from, r), o.grow(s->to, r);
     if (const auto* s = std::get_if<PolygonSkeleton>(&e.skeleton))
-      for (const Vec3d& v : s->vertices) add(v);
-    if (const auto* s = std::get_if<EllipsoidSkeleton>(&e.skeleton)) r *= extent_of(*s), add(s->center);
+      for (const Vec3d& v : s->vertices) o.grow(v, r);
+    if (const auto* s = std::get_if<EllipsoidSkeleton>(&e.skeleton))
+      o.grow(s->center, r * std::max({s->radii.x, s->radii.y, s->radii.z}));
   }
   const auto data = std::make_shared<const Field>(shape);
   o.f = [data](const Vec3l& p) {
@@ -233,7 +222,7 @@ ExactOracle skeletons(CaseRandom& random) {
     s.blends.push_back({Blend::Op::element, index(static_cast<std::size_t>(i)), 0});
   }
   s.blends.push_back({Blend::Op::sum, 0, index(s.elements.size())});
-  return oracle_of("metaballs_skeletons", s);
+  return oracle_of(s);
 }
 
 void random_blend(CaseRandom& random, int level, BlobTreeShape& s) {
@@ -256,11 +245,11 @@ ExactOracle tree(CaseRandom& random) {
   s.blends.push_back({Blend::Op::element, 0, 0});
   random_blend(random, 0, s);
   s.blends.push_back({random.unit() < 0.5 ? Blend::Op::max : Blend::Op::difference, 0, 2});
-  return oracle_of("blobtree", s);
+  return oracle_of(s);
 }
 
 }  // namespace
 
-std::vector<DrawExact> blobtree_oracles() { return {skeletons, tree}; }
+std::vector<ExactCase> blobtree_cases() { return {{"metaballs_skeletons", skeletons}, {"blobtree", tree}}; }
 
 }  // namespace oktett

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The oracles of each family of exact surfaces.
+/// \file The random surfaces of each family, and what their oracles share.
 
 #include <vector>
 
@@ -7,22 +7,36 @@
 
 namespace oktett {
 
-using DrawExact = ExactOracle (*)(CaseRandom&);
+using Real = long double;
+
+/// How far outside of a box p is, negative inside.
+Real outside(const Vec3d& lo, const Vec3d& hi, const Vec3l& p);
+
+/// Cuts off what is where `where` is positive; what is `open` gets no lid there.
+void cut(ExactOracle& oracle, const SurfaceFunction& where, bool open);
+/// The same for what is outside of a box, which becomes the oracle's.
+void cut_by_box(ExactOracle& oracle, const Vec3d& lo, const Vec3d& hi, bool open);
+
+/// A random surface of one form, the same for the same numbers.
+struct ExactCase {
+  const char* name;
+  ExactOracle (*draw)(CaseRandom&);
+};
 
 /// Cylinders, cones, polyhedra and quadrics.
-std::vector<DrawExact> quadric_oracles();
+std::vector<ExactCase> quadric_cases();
 /// Polynomials, blobs of inverse squares and surfaces of revolution.
-std::vector<DrawExact> polynomial_oracles();
+std::vector<ExactCase> polynomial_cases();
 /// Superquadrics and ratioquadrics.
-std::vector<DrawExact> superquadric_oracles();
+std::vector<ExactCase> superquadric_cases();
 /// Metaballs and blob trees.
-std::vector<DrawExact> metaball_oracles();
-std::vector<DrawExact> blobtree_oracles();
+std::vector<ExactCase> metaball_cases();
+std::vector<ExactCase> blobtree_cases();
 /// Functions of the user's own.
-std::vector<DrawExact> function_oracles();
+std::vector<ExactCase> function_cases();
 /// Fractals.
-std::vector<DrawExact> fractal_oracles();
+std::vector<ExactCase> fractal_cases();
 /// Height fields, open and solid.
-std::vector<DrawExact> height_oracles();
+std::vector<ExactCase> height_cases();
 
 }  // namespace oktett

@@ -9,8 +9,6 @@ namespace oktett {
 
 namespace {
 
-using Real = long double;
-
 Vec3l unit(const Vec3l& v) { return v / std::sqrt(dot(v, v)); }
 
 /// A ball of a sphereflake with all balls that grow on it, written down in the space of the first one.
@@ -54,26 +52,23 @@ ExactOracle sphereflake(CaseRandom& random) {
   const auto balls =
       std::make_shared<const Balls>(grow({0, 0, 0}, 1, s.ratio, {1, 0, 0}, {0, 1, 0}, s.depth));
   const double r = static_cast<double>(balls->reach);
-  return {"sphereflake",
-          {s},
+  return {{s},
           [balls](const Vec3l& p) {
             Real least = HUGE_VALL;
             nearest(*balls, p, least);
             return least;
           },
           {-r, -r, -r},
-          {r, r, r},
-          {}};
+          {r, r, r}};
 }
 
 /// The cube less an infinite cross of bars per level, each level repeated all over space.
 ExactOracle menger(CaseRandom& random) {
   MengerShape s;
   s.depth = static_cast<std::uint32_t>(random.unit() * 5);
-  return {"menger",
-          {s},
+  return {{s},
           [s](const Vec3l& p) {
-            Real f = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 1, size = 2;
+            Real f = outside({-1, -1, -1}, {1, 1, 1}, p), size = 2;
             for (unsigned level = 0; level < s.depth; ++level, size /= 3) {
               // Distances from the middle of the bars along each axis.
               Real m[3];
@@ -87,8 +82,7 @@ ExactOracle menger(CaseRandom& random) {
             return f;
           },
           {-1, -1, -1},
-          {1, 1, 1},
-          {}};
+          {1, 1, 1}};
 }
 
 /// All pieces, by the maps' products.
@@ -121,25 +115,18 @@ ExactOracle ifs(CaseRandom& random) {
     }
     piece = piece.inverse();
   }
-  return {"ifs",
-          {s},
+  return {{s},
           [s, pieces](const Vec3l& p) {
             Real least = HUGE_VALL;
             for (const Affine& to_piece : *pieces) {
-              Vec3l q;
-              for (int k = 0; k < 3; ++k) {
-                const auto& m = to_piece.m[k];
-                q[k] = m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3];
-              }
-              least = std::min(least, s.base == IfsShape::Base::ball
-                                          ? std::sqrt(dot(q, q)) - 1
-                                          : std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) - 1);
+              const Vec3l q = mapped(to_piece, p);
+              least = std::min(least, s.base == IfsShape::Base::ball ? std::sqrt(dot(q, q)) - 1
+                                                                     : outside({-1, -1, -1}, {1, 1, 1}, q));
             }
             return least;
           },
           lo,
-          hi,
-          {}};
+          hi};
 }
 
 ExactOracle julia(CaseRandom& random) {
@@ -151,8 +138,7 @@ ExactOracle julia(CaseRandom& random) {
   for (const double c : s.c) size += static_cast<Real>(c) * c;
   const Real r = (1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2;
   const double side = static_cast<double>(r);
-  return {"julia",
-          {s},
+  return {{s},
           [s, r](const Vec3l& p) {
             Real a = p.x, b = p.y, c = p.z, d = s.slice;
             for (std::uint32_t n = 0; n < s.iterations && a * a + b * b + c * c + d * d < 1e30L; ++n) {
@@ -162,8 +148,7 @@ ExactOracle julia(CaseRandom& random) {
             return a * a + b * b + c * c + d * d - r * r;
           },
           {-side, -side, -side},
-          {side, side, side},
-          {}};
+          {side, side, side}};
 }
 
 /// All heights, level by level.
@@ -198,8 +183,7 @@ ExactOracle terrain(CaseRandom& random) {
   }
   for (const Real h : *heights) top = std::max(top, h);
   s.base = std::min(s.base, static_cast<double>(top) - 0.1);
-  return {"terrain",
-          {s},
+  return {{s},
           [s, heights, side, row](const Vec3l& p) {
             const auto place = [&](Real x) { return std::clamp((x + 1) / 2, 0.0L, 1.0L) * side; };
             const Real x = place(p.x), z = place(p.z);
@@ -211,12 +195,14 @@ ExactOracle terrain(CaseRandom& random) {
             return std::max({p.y - height, s.base - p.y, std::abs(p.x) - 1, std::abs(p.z) - 1});
           },
           {-1, s.base, -1},
-          {1, static_cast<double>(top), 1},
-          {}};
+          {1, static_cast<double>(top), 1}};
 }
 
 }  // namespace
 
-std::vector<DrawExact> fractal_oracles() { return {sphereflake, menger, ifs, julia, terrain}; }
+std::vector<ExactCase> fractal_cases() {
+  return {
+      {"sphereflake", sphereflake}, {"menger", menger}, {"ifs", ifs}, {"julia", julia}, {"terrain", terrain}};
+}
 
 }  // namespace oktett

@@ -13,41 +13,34 @@ namespace oktett {
 
 namespace {
 
-using Function = std::function<long double(const Vec3l&)>;
-
 /// A text and what it means.
 struct Named {
   std::string text;
-  Function f;
+  SurfaceFunction f;
   double size;  ///< half the side of the box
 };
 
-ExactOracle oracle(const char* name, const Named& named, bool open) {
+ExactOracle oracle(const Named& named, bool open) {
+  const Vec3d hi{named.size, named.size, named.size};
   ImplicitShape s;
   s.function = compile_function(named.text);
-  const double r = named.size;
-  s.lo = {-r, -r, -r}, s.hi = {r, r, r}, s.open = open;
-  ExactOracle o;
-  o.name = name, o.shape = {s}, o.lo = s.lo, o.hi = s.hi;
-  const auto box = [r](const Vec3l& p) {
-    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - r;
-  };
+  s.lo = -hi, s.hi = hi, s.open = open;
   // Where the function is not defined is outside.
-  const auto f = [f = named.f](const Vec3l& p) {
-    const long double v = f(p);
-    return std::isnan(v) ? 1.0L : v;
-  };
-  if (open) {
-    o.f = f, o.where = box;
-  } else {
-    o.f = [f, box](const Vec3l& p) { return std::max(f(p), box(p)); };
-  }
+  ExactOracle o{{s}, [f = named.f](const Vec3l& p) {
+                  const Real v = f(p);
+                  return std::isnan(v) ? 1 : v;
+                }};
+  cut_by_box(o, s.lo, s.hi, open);
   return o;
 }
 
+/// A number as an expression reads it.
+std::string text(double v) { return fmt::format("({:.17g})", v); }
+
+Real square(Real v) { return v * v; }
+
 std::vector<Named> periodic(CaseRandom& random) {
   const double c = random.sign(), k = 1 + 6 * random.unit();
-  const auto text = [](double v) { return fmt::format("({:.17g})", v); };
   return {
       {"sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x) - " + text(0.5 * c),
        [c](const Vec3l& p) {
@@ -61,7 +54,7 @@ std::vector<Named> periodic(CaseRandom& random) {
        [k](const Vec3l& p) { return p.y - 0.3L * std::sin(k * p.x) * std::cos(k * p.z); }, 1},
       {"y - 0.3*cos(" + text(2 * k) + "*hypot(x, z))*exp(-(x^2+z^2))",
        [k](const Vec3l& p) {
-         const long double q = p.x * p.x + p.z * p.z;
+         const Real q = p.x * p.x + p.z * p.z;
          return p.y - 0.3L * std::cos(2 * k * std::sqrt(q)) * std::exp(-q);
        },
        1.5},
@@ -71,7 +64,7 @@ std::vector<Named> periodic(CaseRandom& random) {
       // Twisted by the angle around the axis.
       {"sqrt((hypot(x, y) - 1)^2 + z^2) - 0.3 - 0.1*sin(3*atan2(y, x) + 2*atan2(z, hypot(x, y) - 1))",
        [](const Vec3l& p) {
-         const long double r = std::sqrt(p.x * p.x + p.y * p.y) - 1;
+         const Real r = std::sqrt(p.x * p.x + p.y * p.y) - 1;
          return std::sqrt(r * r + p.z * p.z) - 0.3L -
                 0.1L * std::sin(3 * std::atan2(p.y, p.x) + 2 * std::atan2(p.z, r));
        },
@@ -81,46 +74,44 @@ std::vector<Named> periodic(CaseRandom& random) {
 
 std::vector<Named> algebraic(CaseRandom& random) {
   const double c = random.sign();
-  const auto text = [](double v) { return fmt::format("({:.17g})", v); };
-  const auto q = [](long double v) { return v * v; };
   return {
       {"x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8 + " + text(c),
        [c](const Vec3l& p) {
-         long double sum = 11.8L + c;
+         Real sum = 11.8L + c;
          for (int k = 0; k < 3; ++k) sum += p[k] * p[k] * (p[k] * p[k] - 5);
          return sum;
        },
        3},
       {"(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
        [](const Vec3l& p) {
-         const long double a = p.x * p.x + 2.25L * p.y * p.y + p.z * p.z - 1, b = p.z * p.z * p.z;
+         const Real a = p.x * p.x + 2.25L * p.y * p.y + p.z * p.z - 1, b = p.z * p.z * p.z;
          return a * a * a - p.x * p.x * b - 9.0L / 80 * p.y * p.y * b;
        },
        1.5},
       {"((x^2+y^2-0.64)^2+(z^2-1)^2)*((y^2+z^2-0.64)^2+(x^2-1)^2)*((z^2+x^2-0.64)^2+(y^2-1)^2) - 0.02",
-       [q](const Vec3l& p) {
-         const long double x = p.x * p.x, y = p.y * p.y, z = p.z * p.z;
-         return (q(x + y - 0.64L) + q(z - 1)) * (q(y + z - 0.64L) + q(x - 1)) *
-                    (q(z + x - 0.64L) + q(y - 1)) -
+       [](const Vec3l& p) {
+         const Real x = p.x * p.x, y = p.y * p.y, z = p.z * p.z;
+         return (square(x + y - 0.64L) + square(z - 1)) * (square(y + z - 0.64L) + square(x - 1)) *
+                    (square(z + x - 0.64L) + square(y - 1)) -
                 0.02L;
        },
        1.3},
       // Klein's bottle.
       {"(x^2+y^2+z^2+2*y-1)*((x^2+y^2+z^2-2*y-1)^2-8*z^2)+16*x*z*(x^2+y^2+z^2-2*y-1)",
-       [q](const Vec3l& p) {
-         const long double r = dot(p, p), a = r - 2 * p.y - 1;
-         return (r + 2 * p.y - 1) * (q(a) - 8 * p.z * p.z) + 16 * p.x * p.z * a;
+       [](const Vec3l& p) {
+         const Real r = dot(p, p), a = r - 2 * p.y - 1;
+         return (r + 2 * p.y - 1) * (square(a) - 8 * p.z * p.z) + 16 * p.x * p.z * a;
        },
        4},
       {"sqrt((sqrt(x^2 + y^2) - 0.7)^2 + z^2) - 0.25",
-       [q](const Vec3l& p) {
-         return std::sqrt(q(std::sqrt(p.x * p.x + p.y * p.y) - 0.7L) + p.z * p.z) - 0.25L;
+       [](const Vec3l& p) {
+         return std::sqrt(square(std::sqrt(p.x * p.x + p.y * p.y) - 0.7L) + p.z * p.z) - 0.25L;
        },
        1},
       {"abs(x)^2.5 + abs(y)^2.5 + abs(z)^1.3 - 1",
        [](const Vec3l& p) {
          return std::pow(std::abs(p.x), 2.5L) + std::pow(std::abs(p.y), 2.5L) +
-                std::pow(std::abs(p.z), static_cast<long double>(1.3)) - 1;
+                std::pow(std::abs(p.z), static_cast<Real>(1.3)) - 1;
        },
        1.1},
       {"x^2 + z^2/(1 + y^2) - 0.5*2^y/(1 + 3^(-y))",
@@ -134,10 +125,7 @@ std::vector<Named> algebraic(CaseRandom& random) {
 
 std::vector<Named> combined(CaseRandom& random) {
   const double c = random.sign();
-  const auto text = [](double v) { return fmt::format("({:.17g})", v); };
-  const auto blob = [](long double x, long double y, long double z) {
-    return std::exp(-3 * (x * x + y * y + z * z));
-  };
+  const auto blob = [](Real x, Real y, Real z) { return std::exp(-3 * (x * x + y * y + z * z)); };
   return {
       {"0.5 - exp(-3*((x-0.5)^2+y^2+z^2)) - exp(-3*((x+0.5)^2+(y-" + text(c) + ")^2+z^2))",
        [c, blob](const Vec3l& p) {
@@ -146,9 +134,8 @@ std::vector<Named> combined(CaseRandom& random) {
        2},
       {"max(abs(x) - 0.8, abs(y) - 0.8, abs(z) - 0.8, 1 - sqrt(x^2 + y^2 + z^2))",
        [](const Vec3l& p) {
-         return std::max({std::abs(p.x) - static_cast<long double>(0.8),
-                          std::abs(p.y) - static_cast<long double>(0.8),
-                          std::abs(p.z) - static_cast<long double>(0.8), 1 - std::sqrt(dot(p, p))});
+         return std::max({std::abs(p.x) - static_cast<Real>(0.8), std::abs(p.y) - static_cast<Real>(0.8),
+                          std::abs(p.z) - static_cast<Real>(0.8), 1 - std::sqrt(dot(p, p))});
        },
        1},
       {"min(x^2 + y^2 + z^2 - 0.5, max(hypot(x, z) - 0.2, abs(y) - 0.9), hypot(y, z) - 0.15)",
@@ -160,7 +147,7 @@ std::vector<Named> combined(CaseRandom& random) {
        1},
       {"-log(0.1 + 0.3/(0.05 + (x-0.4)^2 + y^2 + z^2) + 0.3/(0.05 + (x+0.4)^2 + y^2 + z^2)) + 0.5",
        [](const Vec3l& p) {
-         const auto at = [&](long double d) {
+         const auto at = [&](Real d) {
            return 0.3L / (0.05L + (p.x + d) * (p.x + d) + p.y * p.y + p.z * p.z);
          };
          return 0.5L - std::log(0.1L + at(-0.4L) + at(0.4L));
@@ -210,77 +197,61 @@ Named draw(CaseRandom& random, int depth) {
     const int k = pick(4);
     if (k < 3) return {std::string(1, "xyz"[k]), [k](const Vec3l& p) { return p[k]; }, 1};
     const double c = 2 * random.sign();
-    return {fmt::format("({:.17g})", c), [c](const Vec3l&) { return static_cast<long double>(c); }, 1};
+    return {text(c), [c](const Vec3l&) { return static_cast<Real>(c); }, 1};
   }
   const Named a = draw(random, depth - 1);
-  const auto unary = [&](const char* before, const char* after, auto f) {
-    return Named{before + a.text + after, [f, g = a.f](const Vec3l& p) { return f(g(p)); }, 1};
-  };
-  using L = long double;
   if (random.unit() < 0.4) {
-    switch (pick(6)) {
-      case 0:
-        return unary("sin(2*(", "))", [](L v) { return std::sin(2 * v); });
-      case 1:
-        return unary("cos(", ")", [](L v) { return std::cos(v); });
-      case 2:
-        return unary("exp(-(", ")^2)", [](L v) { return std::exp(-v * v); });
-      case 3:
-        return unary("sqrt(1+(", ")^2)", [](L v) { return std::sqrt(1 + v * v); });
-      case 4:
-        return unary("abs(", ")", [](L v) { return std::abs(v); });
-      default:
-        return unary("(", ")^3", [](L v) { return v * v * v; });
-    }
+    static constexpr struct {
+      const char *before, *after;
+      Real (*f)(Real);
+    } kUnary[] = {{"sin(2*(", "))", [](Real v) { return std::sin(2 * v); }},
+                  {"cos(", ")", [](Real v) { return std::cos(v); }},
+                  {"exp(-(", ")^2)", [](Real v) { return std::exp(-v * v); }},
+                  {"sqrt(1+(", ")^2)", [](Real v) { return std::sqrt(1 + v * v); }},
+                  {"abs(", ")", [](Real v) { return std::abs(v); }},
+                  {"(", ")^3", [](Real v) { return v * v * v; }}};
+    const auto& [before, after, f] = kUnary[pick(6)];
+    return {before + a.text + after, [f = f, g = a.f](const Vec3l& p) { return f(g(p)); }, 1};
   }
   const Named b = draw(random, depth - 1);
-  const auto binary = [&](const char* before, const char* between, auto f) {
-    return Named{before + a.text + between + b.text + ")",
-                 [f, g = a.f, h = b.f](const Vec3l& p) { return f(g(p), h(p)); }, 1};
-  };
-  switch (pick(6)) {
-    case 0:
-      return binary("(", "-", [](L v, L w) { return v - w; });
-    case 1:
-    case 2:
-      return binary("(", "*", [](L v, L w) { return v * w; });
-    case 3:
-      return binary("max(", ",", [](L v, L w) { return std::max(v, w); });
-    case 4:
-      return binary("min(", ",", [](L v, L w) { return std::min(v, w); });
-    default:
-      return binary("(", "+", [](L v, L w) { return v + w; });
-  }
+  static constexpr struct {
+    const char *before, *between;
+    Real (*f)(Real, Real);
+  } kBinary[] = {{"(", "-", [](Real v, Real w) { return v - w; }},
+                 {"(", "*", [](Real v, Real w) { return v * w; }},
+                 {"(", "*", [](Real v, Real w) { return v * w; }},
+                 {"max(", ",", [](Real v, Real w) { return std::max(v, w); }},
+                 {"min(", ",", [](Real v, Real w) { return std::min(v, w); }},
+                 {"(", "+", [](Real v, Real w) { return v + w; }}};
+  const auto& [before, between, f] = kBinary[pick(6)];
+  return {before + a.text + between + b.text + ")",
+          [f = f, g = a.f, h = b.f](const Vec3l& p) { return f(g(p), h(p)); }, 1};
 }
 
-ExactOracle one_of(const char* name, const std::vector<Named>& all, CaseRandom& random) {
+template <std::vector<Named> (*kAll)(CaseRandom&)>
+ExactOracle one_of(CaseRandom& random) {
+  const std::vector<Named> all = kAll(random);
   const auto k = static_cast<std::size_t>(random.unit() * static_cast<double>(all.size()));
-  return oracle(name, all[k], random.unit() < 0.4);
+  return oracle(all[k], random.unit() < 0.4);
 }
-ExactOracle draw_periodic(CaseRandom& random) {
-  return one_of("implicit_periodic", periodic(random), random);
-}
-ExactOracle draw_algebraic(CaseRandom& random) {
-  return one_of("implicit_algebraic", algebraic(random), random);
-}
-ExactOracle draw_combined(CaseRandom& random) {
-  return one_of("implicit_combined", combined(random), random);
-}
-ExactOracle draw_torn(CaseRandom& random) { return one_of("implicit_torn", torn(random), random); }
 
 ExactOracle draw_random(CaseRandom& random) {
   // Around a sphere, so that there is something to see.
-  Named e = draw(random, 3);
-  e.text = "x^2 + y^2 + z^2 - 1 + 0.5*(" + e.text + ")";
-  e.f = [f = e.f](const Vec3l& p) { return dot(p, p) - 1 + 0.5L * f(p); };
-  e.size = 1 + random.unit();
-  return oracle("implicit", e, random.unit() < 0.4);
+  const Named e = draw(random, 3);
+  const double size = 1 + random.unit();
+  return oracle({"x^2 + y^2 + z^2 - 1 + 0.5*(" + e.text + ")",
+                 [f = e.f](const Vec3l& p) { return dot(p, p) - 1 + 0.5L * f(p); }, size},
+                random.unit() < 0.4);
 }
 
 }  // namespace
 
-std::vector<DrawExact> function_oracles() {
-  return {draw_random, draw_periodic, draw_algebraic, draw_combined, draw_torn};
+std::vector<ExactCase> function_cases() {
+  return {{"implicit", draw_random},
+          {"implicit_periodic", one_of<periodic>},
+          {"implicit_algebraic", one_of<algebraic>},
+          {"implicit_combined", one_of<combined>},
+          {"implicit_torn", one_of<torn>}};
 }
 
 }  // namespace oktett

@@ -8,8 +8,6 @@ namespace oktett {
 
 namespace {
 
-using Real = long double;
-
 /// A small field and what it means, sample by sample.
 struct Samples {
   std::uint32_t columns, rows;
@@ -81,32 +79,22 @@ ExactOracle oracle(CaseRandom& random) {
   shape.grid = words ? HeightGrid::from_words(s.columns, s.rows, std::move(w), kInterpolation)
                      : HeightGrid::from_floats(s.columns, s.rows, std::move(f), kInterpolation);
   const Vec3d half = s.size * 0.5;
-  const auto beyond = [half](const Vec3l& p) {
-    return std::max(std::abs(p.x) - Real(half.x), std::abs(p.z) - Real(half.z));
-  };
-  static constexpr const char* kNames[2][3] = {
-      {"heightfield_nearest", "heightfield_triangles", "heightfield"},
-      {"heightfield_solid_nearest", "heightfield_solid_triangles", "heightfield_solid"}};
-  ExactOracle o{kNames[kSolid][static_cast<int>(kInterpolation)], {shape}, {}, {}, {}, {}};
+  ExactOracle o{{shape}, [s](const Vec3l& p) { return p.y - s.height(p.x, p.z); }};
   const double room = 0.02;
-  o.lo = {-half.x, kSolid ? shape.base : low - room, -half.z}, o.hi = {half.x, high + room, half.z};
-  if (kSolid) {
-    o.f = [s, beyond, base = shape.base](const Vec3l& p) {
-      return std::max({p.y - s.height(p.x, p.z), Real(base) - p.y, beyond(p)});
-    };
-  } else {
-    o.f = [s](const Vec3l& p) { return p.y - s.height(p.x, p.z); };
-    o.where = beyond;
-  }
+  cut_by_box(o, {-half.x, kSolid ? shape.base : low - room, -half.z}, {half.x, high + room, half.z}, !kSolid);
   return o;
 }
 
 }  // namespace
 
-std::vector<DrawExact> height_oracles() {
+std::vector<ExactCase> height_cases() {
   using enum HeightInterpolation;
-  return {oracle<bilinear, false>, oracle<triangles, false>, oracle<nearest, false>,
-          oracle<bilinear, true>,  oracle<triangles, true>,  oracle<nearest, true>};
+  return {{"heightfield", oracle<bilinear, false>},
+          {"heightfield_triangles", oracle<triangles, false>},
+          {"heightfield_nearest", oracle<nearest, false>},
+          {"heightfield_solid", oracle<bilinear, true>},
+          {"heightfield_solid_triangles", oracle<triangles, true>},
+          {"heightfield_solid_nearest", oracle<nearest, true>}};
 }
 
 }  // namespace oktett

@@ -8,17 +8,14 @@ namespace oktett {
 
 namespace {
 
-Vec3l widen(const Vec3d& v) { return {v.x, v.y, v.z}; }
-
 /// Height above `from` along the axis, and the distance from the axis.
 struct AxisPosition {
-  long double height, radius, length;
+  Real height, radius, length;
 };
 AxisPosition along(const Vec3d& from, const Vec3d& to, const Vec3l& p) {
-  const Vec3l a = widen(to) - widen(from), q = p - widen(from);
-  const long double l = std::sqrt(dot(a, a)), h = dot(q, a) / l;
-  const Vec3l off = cross(q, a);
-  return {h, std::sqrt(dot(off, off)) / l, l};
+  const Vec3l a = Vec3l(to) - Vec3l(from), q = p - Vec3l(from), off = cross(q, a);
+  const Real l = std::sqrt(dot(a, a));
+  return {dot(q, a) / l, std::sqrt(dot(off, off)) / l, l};
 }
 
 /// Moves the ends of an axis, so that it is parallel to one of the world now and then and not too short.
@@ -31,53 +28,38 @@ void draw_axis(CaseRandom& random, const Vec3d& from, Vec3d& to) {
   if (length(to - from) < 0.1) to = from + Vec3d{0.5, 0.25, -0.5};
 }
 
-/// The box of two balls.
-void bound(ExactOracle& oracle, const Vec3d& a, double ra, const Vec3d& b, double rb) {
-  oracle.lo = min(a - Vec3d{ra, ra, ra}, b - Vec3d{rb, rb, rb});
-  oracle.hi = max(a + Vec3d{ra, ra, ra}, b + Vec3d{rb, rb, rb});
-}
-
-ExactOracle frustum(std::string name, ExactForm form, const Vec3d& from, const Vec3d& to, double r0,
-                    double r1, bool open) {
-  ExactOracle oracle;
-  oracle.name = std::move(name), oracle.shape = {std::move(form)};
-  const auto side = [=](const Vec3l& p) {
-    const AxisPosition at = along(from, to, p);
-    return at.radius - (r0 + (static_cast<long double>(r1) - r0) * (at.height / at.length));
-  };
+ExactOracle frustum(ExactForm form, const Vec3d& from, const Vec3d& to, double r0, double r1, bool open) {
+  ExactOracle oracle{{std::move(form)}, [=](const Vec3l& p) {
+                       const AxisPosition at = along(from, to, p);
+                       return at.radius - (r0 + (static_cast<Real>(r1) - r0) * (at.height / at.length));
+                     }};
   const auto ends = [=](const Vec3l& p) {
     const AxisPosition at = along(from, to, p);
     return std::max(-at.height, at.height - at.length);
   };
-  if (open) {
-    oracle.f = side, oracle.where = ends;
-  } else {
-    oracle.f = [=](const Vec3l& p) { return std::max(side(p), ends(p)); };
-  }
-  bound(oracle, from, r0, to, r1);
+  cut(oracle, ends, open);
+  oracle.grow(from, r0), oracle.grow(to, r1);
   return oracle;
 }
 
-ExactOracle draw_cylinder(CaseRandom& random, const char* name, bool open) {
+template <bool kOpen>
+ExactOracle cylinder(CaseRandom& random) {
   auto s = draw_shape<CylinderShape>(random);
   draw_axis(random, s.from, s.to);
-  s.open = open;
-  return frustum(name, s, s.from, s.to, s.radius, s.radius, open);
+  s.open = kOpen;
+  return oracle_of(s);
 }
-ExactOracle cylinder(CaseRandom& random) { return draw_cylinder(random, "cylinder", false); }
-ExactOracle open_cylinder(CaseRandom& random) { return draw_cylinder(random, "cylinder_open", true); }
 
-ExactOracle draw_cone(CaseRandom& random, const char* name, bool open) {
+template <bool kOpen>
+ExactOracle cone(CaseRandom& random) {
   auto s = draw_shape<ConeShape>(random);
   draw_axis(random, s.from, s.to);
   const double kind = random.unit();
   if (kind < 0.3) s.to_radius = 0;
   if (kind > 0.8) s.from_radius = 0;
-  s.open = open;
-  return frustum(name, s, s.from, s.to, s.from_radius, s.to_radius, open);
+  s.open = kOpen;
+  return oracle_of(s);
 }
-ExactOracle cone(CaseRandom& random) { return draw_cone(random, "cone", false); }
-ExactOracle open_cone(CaseRandom& random) { return draw_cone(random, "cone_open", true); }
 
 ExactOracle polyhedron(CaseRandom& random) {
   PolyhedronShape s;
@@ -93,40 +75,8 @@ ExactOracle polyhedron(CaseRandom& random) {
     const Vec3d n = random.vector();
     s.planes.push_back({n, dot(n, center) + length(n) * (0.4 + random.unit())});
   }
-  ExactOracle oracle;
-  oracle.name = "polyhedron";
-  oracle.shape = {s};
-  oracle.f = [s](const Vec3l& p) {
-    long double f = -1e30L;
-    for (const HalfSpace& h : s.planes) {
-      const Vec3l n = widen(h.normal);
-      f = std::max(f, (dot(n, p) - h.offset) / std::sqrt(dot(n, n)));
-    }
-    return f;
-  };
-  oracle.lo = center - Vec3d{1, 1, 1}, oracle.hi = center + Vec3d{1, 1, 1};
-  return oracle;
-}
-
-/// The equation as it is written, within the box if there is one.
-ExactOracle quadric_oracle(const char* name, const QuadricShape& s) {
-  ExactOracle oracle;
-  oracle.name = name;
-  oracle.shape = {s};
-  const auto f = [s](const Vec3l& p) {
-    const auto& c = s.coefficients;
-    return c[0] * p.x * p.x + c[1] * p.y * p.y + c[2] * p.z * p.z + c[3] * p.x * p.y + c[4] * p.x * p.z +
-           c[5] * p.y * p.z + c[6] * p.x + c[7] * p.y + c[8] * p.z + c[9];
-  };
-  const auto box = [s](const Vec3l& p) {
-    long double outside = -1e30L;
-    for (int k = 0; k < 3; ++k) outside = std::max({outside, s.lo[k] - p[k], p[k] - s.hi[k]});
-    return outside;
-  };
-  oracle.f = f;
-  if (s.clipped && s.open) oracle.where = box;
-  if (s.clipped && !s.open) oracle.f = [=](const Vec3l& p) { return std::max(f(p), box(p)); };
-  oracle.lo = s.lo, oracle.hi = s.hi;
+  ExactOracle oracle = oracle_of(s);
+  oracle.grow(center, 1);
   return oracle;
 }
 
@@ -137,7 +87,8 @@ void draw_clip(CaseRandom& random, QuadricShape& s) {
   s.lo.z *= 0.5 + random.unit(), s.hi.y *= 0.5 + random.unit();
 }
 
-QuadricShape draw_quadric(CaseRandom& random) {
+template <bool kOpen>
+ExactOracle quadric(CaseRandom& random) {
   QuadricShape s;
   for (double& c : s.coefficients) c = random.sign();
   const double kind = random.unit();
@@ -150,40 +101,60 @@ QuadricShape draw_quadric(CaseRandom& random) {
     for (int k = 0; k < 3; ++k)
       s.coefficients[k] = 1.2 + random.unit(), s.coefficients[9] = -random.unit() - 0.1;
   draw_clip(random, s);
-  return s;
+  s.open = kOpen;
+  return oracle_of(s);
 }
 
-ExactOracle quadric(CaseRandom& random) { return quadric_oracle("quadric", draw_quadric(random)); }
-ExactOracle open_quadric(CaseRandom& random) {
-  QuadricShape s = draw_quadric(random);
-  s.open = true;
-  return quadric_oracle("quadric_open", s);
+ExactOracle named_quadric(CaseRandom& random, const std::array<double, 10>& coefficients, double size = 1) {
+  QuadricShape s{coefficients};
+  draw_clip(random, s);
+  s.lo *= size, s.hi *= size;
+  return oracle_of(s);
 }
 ExactOracle infinite_cylinder(CaseRandom& random) {
-  QuadricShape s;
-  s.coefficients = {1, 1, 0, 0, 0, 0, 0, 0, 0, -1};
-  draw_clip(random, s);
-  return quadric_oracle("infinite_cylinder", s);
+  return named_quadric(random, {1, 1, 0, 0, 0, 0, 0, 0, 0, -1});
 }
-ExactOracle paraboloid(CaseRandom& random) {
-  QuadricShape s;
-  s.coefficients = {1, 1, 0, 0, 0, 0, 0, 0, -1, 0};
-  draw_clip(random, s);
-  return quadric_oracle("paraboloid", s);
-}
+ExactOracle paraboloid(CaseRandom& random) { return named_quadric(random, {1, 1, 0, 0, 0, 0, 0, 0, -1, 0}); }
 ExactOracle hyperboloid(CaseRandom& random) {
-  QuadricShape s;
-  s.coefficients = {1, 1, -1, 0, 0, 0, 0, 0, 0, random.unit() < 0.5 ? 1.0 : -1.0};
-  draw_clip(random, s);
-  s.lo = s.lo * 1.5, s.hi = s.hi * 1.5;
-  return quadric_oracle("hyperboloid", s);
+  return named_quadric(random, {1, 1, -1, 0, 0, 0, 0, 0, 0, random.unit() < 0.5 ? 1.0 : -1.0}, 1.5);
 }
 
 }  // namespace
 
-std::vector<DrawExact> quadric_oracles() {
-  return {cylinder,     open_cylinder,     cone,       open_cone,  polyhedron, quadric,
-          open_quadric, infinite_cylinder, paraboloid, hyperboloid};
+ExactOracle oracle_of(const CylinderShape& s) { return frustum(s, s.from, s.to, s.radius, s.radius, s.open); }
+
+ExactOracle oracle_of(const ConeShape& s) {
+  return frustum(s, s.from, s.to, s.from_radius, s.to_radius, s.open);
+}
+
+ExactOracle oracle_of(const PolyhedronShape& s) {
+  return {{s}, [s](const Vec3l& p) {
+            Real f = -HUGE_VALL;
+            for (const HalfSpace& h : s.planes) {
+              const Vec3l n(h.normal);
+              f = std::max(f, (dot(n, p) - h.offset) / std::sqrt(dot(n, n)));
+            }
+            return f;
+          }};
+}
+
+/// The equation as it is written, within the box if there is one.
+ExactOracle oracle_of(const QuadricShape& s) {
+  const auto f = [c = s.coefficients](const Vec3l& p) {
+    return c[0] * p.x * p.x + c[1] * p.y * p.y + c[2] * p.z * p.z + c[3] * p.x * p.y + c[4] * p.x * p.z +
+           c[5] * p.y * p.z + c[6] * p.x + c[7] * p.y + c[8] * p.z + c[9];
+  };
+  ExactOracle oracle{{s}, f, s.lo, s.hi};
+  if (s.clipped) cut_by_box(oracle, s.lo, s.hi, s.open);
+  return oracle;
+}
+
+std::vector<ExactCase> quadric_cases() {
+  return {{"cylinder", cylinder<false>},   {"cylinder_open", cylinder<true>},
+          {"cone", cone<false>},           {"cone_open", cone<true>},
+          {"polyhedron", polyhedron},      {"quadric", quadric<false>},
+          {"quadric_open", quadric<true>}, {"infinite_cylinder", infinite_cylinder},
+          {"paraboloid", paraboloid},      {"hyperboloid", hyperboloid}};
 }
 
 }  // namespace oktett

@@ -31,9 +31,6 @@ Real equation(const SuperquadricShape& s, const Vec3<Real>& p) {
       f = power(x, s.p, s.ratio) + power(y, s.q, s.ratio) - power(z, s.r, s.ratio) - 1;
       // Beyond a pole nothing is inside.
       if (s.ratio && s.r > 1) f = std::max(f, std::abs(z) - static_cast<Real>(s.r) / (s.r - 1));
-      if (!std::isfinite(f)) f = HUGE_VALL;
-      for (int k = 0; k < 3; ++k)
-        f = std::max({f, static_cast<Real>(s.lo[k]) - p[k], p[k] - static_cast<Real>(s.hi[k])});
       break;
     case Form::toroid: {
       const Real w = power(power(x, s.m, s.ratio) + power(y, s.n, s.ratio), s.q, s.ratio);
@@ -42,7 +39,7 @@ Real equation(const SuperquadricShape& s, const Vec3<Real>& p) {
       break;
     }
   }
-  return std::isnan(f) ? HUGE_VALL : f;
+  return std::isfinite(f) ? f : HUGE_VALL;
 }
 
 /// In `long double` where `double` might not tell the sign: the steepest power, of exponent 0.3, makes 1e-17
@@ -58,47 +55,42 @@ double exponent(CaseRandom& random) {
   return kind < 0.6 ? 1 + 7 * random.unit() : 0.4 + random.unit();
 }
 
-SuperquadricShape draw(CaseRandom& random, Form form, bool ratio) {
+template <Form kForm, bool kRatio>
+ExactOracle draw(CaseRandom& random) {
   SuperquadricShape s;
-  s.form = form, s.ratio = ratio;
+  s.form = kForm, s.ratio = kRatio;
   s.radii = {0.5 + random.unit(), 0.5 + random.unit(), 0.5 + random.unit()};
   s.p = exponent(random), s.q = exponent(random), s.r = exponent(random);
   if (random.unit() < 0.4) s.q = s.r = s.p;
-  return s;
-}
-
-template <Form kForm, bool kRatio>
-ExactOracle oracle(CaseRandom& random) {
-  SuperquadricShape s = draw(random, kForm, kRatio);
-  Vec3d lo = -s.radii, hi = s.radii;
-  if (kForm == Form::hyperboloid) {
+  if (kForm == Form::hyperboloid)
     s.lo = Vec3d{-1, -1, -1} * (1 + random.unit()), s.hi = Vec3d{1, 1, 1} * (1 + random.unit());
-    lo = s.lo, hi = s.hi;
-  }
   if (kForm == Form::toroid) {
     s.m = exponent(random), s.n = exponent(random);
     s.q = kRatio ? 0.5 + random.unit() : 0.3 + 0.7 * random.unit(), s.r = 1 + 2 * random.unit();
     s.d = 0.5 + 0.4 * random.unit(), s.e = 0.2 + 0.3 * random.unit();
     // Where the equation has no bound there is nothing to compare.
-    while (!std::isfinite(Superquadric::reach(s).x + Superquadric::reach(s).y + Superquadric::reach(s).z))
+    while (!is_finite(Superquadric::reach(s)))
       s.m = 1 + random.unit(), s.n = 1 + random.unit(), s.q = 1, s.p = 1 + random.unit();
-    hi = Superquadric::reach(s), lo = -hi;
   }
-  static constexpr const char* kNames[2][3] = {{"superellipsoid", "superhyperboloid", "supertoroid"},
-                                               {"ratioellipsoid", "ratiohyperboloid", "ratiotoroid"}};
-  return {kNames[kRatio][static_cast<int>(kForm)],
-          {s},
-          [s](const Vec3l& p) { return equation_value(s, p); },
-          lo,
-          hi,
-          {}};
+  return oracle_of(s);
 }
 
 }  // namespace
 
-std::vector<DrawExact> superquadric_oracles() {
-  return {oracle<Form::ellipsoid, false>, oracle<Form::hyperboloid, false>, oracle<Form::toroid, false>,
-          oracle<Form::ellipsoid, true>,  oracle<Form::hyperboloid, true>,  oracle<Form::toroid, true>};
+ExactOracle oracle_of(const SuperquadricShape& s) {
+  const Vec3d reach = s.form == Form::toroid ? Superquadric::reach(s) : s.radii;
+  ExactOracle oracle{{s}, [s](const Vec3l& p) { return equation_value(s, p); }, -reach, reach};
+  if (s.form == Form::hyperboloid) cut_by_box(oracle, s.lo, s.hi, false);
+  return oracle;
+}
+
+std::vector<ExactCase> superquadric_cases() {
+  return {{"superellipsoid", draw<Form::ellipsoid, false>},
+          {"superhyperboloid", draw<Form::hyperboloid, false>},
+          {"supertoroid", draw<Form::toroid, false>},
+          {"ratioellipsoid", draw<Form::ellipsoid, true>},
+          {"ratiohyperboloid", draw<Form::hyperboloid, true>},
+          {"ratiotoroid", draw<Form::toroid, true>}};
 }
 
 }  // namespace oktett
