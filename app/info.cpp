@@ -14,8 +14,7 @@
 #include "app/json.h"
 #include "app/render_options.h"
 #include "app/scene_summary.h"
-#include "app/units.h"
-#include "app/warnings.h"
+#include "app/text.h"
 #include "io/scene/scene_file.h"
 #include "io/scene/surface_table.h"
 #include "render/camera.h"
@@ -125,34 +124,30 @@ void print_text(const Scene& scene, const SceneSummary& summary, const TreeSumma
 }
 
 void print_json(const Scene& scene, const SceneSummary& summary, const TreeSummary& tree) {
-  JsonObject all;
-  all.add("file", scene.source);
-  all.add("meshes", summary.meshes);
-  all.add("triangles", summary.triangles);
-  all.add("triangles_shown", summary.triangles_shown);
-  all.add("vertices", summary.vertices);
-  all.add("open_edges", summary.open_edges);
-  all.add("closed", summary.meshes > 0 && summary.open_edges == 0);
-  all.add("other_shapes", summary.other_shapes);
-  all.add("unbounded", summary.unbounded);
-  all.add("instances", summary.instances);
-  all.add("prototypes", std::uint64_t{scene.prototypes.size()});
-  all.add("materials", std::uint64_t{scene.materials.size()});
-  all.add("textures", std::uint64_t{scene.textures.size()});
-  all.add("lights", std::uint64_t{scene.lights.size()});
-  all.add("camera_given", scene.camera_given);
-  if (!summary.bounds.empty()) {
-    const Box& box = summary.bounds;
-    all.add("bounds_min", std::vector<double>{box.lo.x, box.lo.y, box.lo.z});
-    all.add("bounds_max", std::vector<double>{box.hi.x, box.hi.y, box.hi.z});
-  }
-  all.add("mesh_bytes", summary.mesh_bytes);
-  all.add("bvh_bytes", tree.bytes);
-  all.add("sah_cost", tree.sah_cost);
-  all.add("build_seconds", tree.build_seconds);
+  JsonObject all{{"file", scene.source},
+                 {"meshes", summary.meshes},
+                 {"triangles", summary.triangles},
+                 {"triangles_shown", summary.triangles_shown},
+                 {"vertices", summary.vertices},
+                 {"open_edges", summary.open_edges},
+                 {"closed", summary.meshes > 0 && summary.open_edges == 0},
+                 {"other_shapes", summary.other_shapes},
+                 {"unbounded", summary.unbounded},
+                 {"instances", summary.instances},
+                 {"prototypes", scene.prototypes.size()},
+                 {"materials", scene.materials.size()},
+                 {"textures", scene.textures.size()},
+                 {"lights", scene.lights.size()},
+                 {"camera_given", scene.camera_given}};
+  if (const Box& box = summary.bounds; !box.empty())
+    all.add({{"bounds_min", std::vector<double>{box.lo.x, box.lo.y, box.lo.z}},
+             {"bounds_max", std::vector<double>{box.hi.x, box.hi.y, box.hi.z}}});
+  all.add({{"mesh_bytes", summary.mesh_bytes},
+           {"bvh_bytes", tree.bytes},
+           {"sah_cost", tree.sah_cost},
+           {"build_seconds", tree.build_seconds}});
   if (tree.counts) {
-    JsonObject counts;
-    counts.add("rays", tree.counts->rays);
+    JsonObject counts{{"rays", tree.counts->rays}};
     for (const auto& [name, mean] : per_ray(*tree.counts)) counts.add(name, mean);
     all.add("per_camera_ray", counts);
   }

@@ -21,25 +21,17 @@ static std::string quoted(const std::string& text) {
   return s + '"';
 }
 
-static std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+JsonValue::JsonValue(const std::string& value) : text(quoted(value)) {}
+JsonValue::JsonValue(double value) : text(std::isfinite(value) ? fmt::format("{}", value) : "null") {}
+JsonValue::JsonValue(const JsonObject& object) : text(object.text()) {}
+JsonValue::JsonValue(const std::vector<double>& values) {
+  for (const double v : values) text += (text.empty() ? "[" : ", ") + JsonValue(v).text;
+  text += text.empty() ? "[]" : "]";
+}
 
-void JsonObject::add_member(const std::string& name, const std::string& value) {
+void JsonObject::add(const std::string& name, const JsonValue& value) {
   if (!members_.empty()) members_ += ", ";
-  members_ += quoted(name) + ": " + value;
-}
-
-void JsonObject::add(const std::string& name, const std::string& text) { add_member(name, quoted(text)); }
-void JsonObject::add(const std::string& name, bool value) { add_member(name, value ? "true" : "false"); }
-void JsonObject::add(const std::string& name, std::uint64_t value) {
-  add_member(name, std::to_string(value));
-}
-void JsonObject::add(const std::string& name, double value) { add_member(name, number(value)); }
-void JsonObject::add(const std::string& name, const JsonObject& value) { add_member(name, value.text()); }
-
-void JsonObject::add(const std::string& name, const std::vector<double>& values) {
-  std::string list;
-  for (const double v : values) list += (list.empty() ? "" : ", ") + number(v);
-  add_member(name, "[" + list + "]");
+  members_ += quoted(name) + ": " + value.text;
 }
 
 }  // namespace oktett

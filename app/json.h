@@ -1,30 +1,47 @@
 #pragma once
 /// \file Writing JSON objects.
 
+#include <concepts>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 namespace oktett {
 
+class JsonObject;
+
+/// A value as JSON text. NaN and infinities, which JSON does not have, become null.
+struct JsonValue {
+  JsonValue(const std::string& value);
+  JsonValue(const char* value) : JsonValue(std::string(value)) {}
+  JsonValue(std::same_as<bool> auto value) : text(value ? "true" : "false") {}
+  JsonValue(std::uint64_t value) : text(std::to_string(value)) {}
+  JsonValue(double value);
+  JsonValue(const std::vector<double>& values);
+  JsonValue(const JsonObject& object);
+
+  std::string text;
+};
+
 /// One JSON object, its members in the order in which they were added.
 class JsonObject {
  public:
-  void add(const std::string& name, const std::string& text);
-  void add(const std::string& name, const char* text) { add(name, std::string(text)); }
-  void add(const std::string& name, bool value);
-  void add(const std::string& name, std::uint64_t value);
-  /// NaN and infinities, which JSON does not have, become null.
-  void add(const std::string& name, double value);
-  void add(const std::string& name, const std::vector<double>& values);
-  void add(const std::string& name, const JsonObject& value);
+  struct Member {
+    std::string name;
+    JsonValue value;
+  };
+  JsonObject(std::initializer_list<Member> members = {}) { add(members); }
+
+  void add(const std::string& name, const JsonValue& value);
+  void add(std::initializer_list<Member> members) {
+    for (const auto& [name, value] : members) add(name, value);
+  }
 
   /// On one line.
   std::string text() const { return "{" + members_ + "}"; }
 
  private:
-  void add_member(const std::string& name, const std::string& value);
-
   std::string members_;
 };
 

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "app/units.h"
+#include "app/text.h"
 
 namespace oktett {
 

@@ -12,11 +12,10 @@
 
 #include "app/command_line.h"
 #include "app/interrupt.h"
+#include "app/json.h"
 #include "app/progress.h"
 #include "app/render_options.h"
-#include "app/render_report.h"
-#include "app/units.h"
-#include "app/warnings.h"
+#include "app/text.h"
 #include "core/error.h"
 #include "core/isa.h"
 #include "io/display/display.h"
@@ -122,6 +121,76 @@ class Watch {
   std::unique_ptr<Display> display_;
   RenderProgress last_;
 };
+
+/// Wall-clock seconds of the stages of the command.
+struct StageTimes {
+  double load = 0, build = 0, render = 0, write = 0;
+};
+
+std::uint64_t rays_of(const RenderReport& r) {
+  return r.camera_rays + r.shadow_rays + r.reflected_rays + r.refracted_rays;
+}
+
+double rays_per_second(const RenderReport& report) {
+  return report.render_seconds > 0 ? static_cast<double>(rays_of(report)) / report.render_seconds : 0;
+}
+
+double bytes_per_triangle(const RenderReport& report) {
+  const double bytes = static_cast<double>(report.geometry_bytes) + static_cast<double>(report.bvh_bytes);
+  return report.triangles > 0 ? bytes / static_cast<double>(report.triangles) : 0;
+}
+
+/// "load 0.012 s, build 0.345 s, render 1.23 s (12.3 Mrays/s), write 0.056 s".
+std::string times_text(const StageTimes& times, const RenderReport& report) {
+  return fmt::format("load {}, build {}, render {} ({}rays/s), write {}", duration_text(times.load),
+                     duration_text(times.build), duration_text(times.render),
+                     with_prefix(rays_per_second(report)), duration_text(times.write));
+}
+
+/// A table of counts, one per line.
+std::string stats_text(const RenderReport& report) {
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += fmt::format("{:<20}{:>16}\n", name, value);
+  };
+  line("rays", grouped(rays_of(report)));
+  line("  camera", grouped(report.camera_rays));
+  line("  shadow", grouped(report.shadow_rays));
+  line("  reflected", grouped(report.reflected_rays));
+  line("  refracted", grouped(report.refracted_rays));
+  line("triangles", grouped(report.triangles));
+  line("primitives", grouped(report.primitives));
+  line("geometry", bytes_text(report.geometry_bytes));
+  line("bvh", bytes_text(report.bvh_bytes));
+  line("bytes per triangle", fmt::format("{:.1f}", bytes_per_triangle(report)));
+  line("sah cost", fmt::format("{:.2f}", report.sah_cost));
+  line("bad samples", grouped(report.bad_samples));
+  return text;
+}
+
+/// The same counts and the times as one JSON object on one line. `output` is the picture that was written.
+std::string stats_json(const StageTimes& times, const RenderReport& report, const std::string& output) {
+  const JsonObject seconds{
+      {"load", times.load}, {"build", times.build}, {"render", times.render}, {"write", times.write}};
+  const JsonObject rays{{"camera", report.camera_rays},
+                        {"shadow", report.shadow_rays},
+                        {"reflected", report.reflected_rays},
+                        {"refracted", report.refracted_rays},
+                        {"total", rays_of(report)}};
+  const JsonObject all{{"output", output},
+                       {"seconds", seconds},
+                       {"rays", rays},
+                       {"rays_per_second", rays_per_second(report)},
+                       {"triangles", report.triangles},
+                       {"primitives", report.primitives},
+                       {"geometry_bytes", report.geometry_bytes},
+                       {"bvh_bytes", report.bvh_bytes},
+                       {"bytes_per_triangle", bytes_per_triangle(report)},
+                       {"sah_cost", report.sah_cost},
+                       {"bad_samples", report.bad_samples},
+                       {"stopped", report.stopped}};
+  return all.text();
+}
 
 void print_summary(const RenderArguments& arguments, const StageTimes& times, const RenderReport& report,
                    const std::string& output) {

@@ -49,70 +49,52 @@ class Report {
   }
 
   void kernel(KernelId id, CaseClass c, const KernelTally& t) {
-    const bool slab = id == KernelId::slab;
-    if (!json_) {
-      fmt::print("{:<25}{:<8}{:>10}{:>10}{:>10}{:>9}{:>10}{:>10}  {}\n", to_string(id), to_string(c), t.rays,
-                 t.hits, t.undecided, t.wrong, t.differing, t.excess,
-                 t.worst_ulps > 0 ? fmt::format("{:.3f}", t.worst_ulps) : "-");
-      std::fflush(stdout);
-    }
-    JsonObject row;
-    row.add("rays", t.rays), row.add("hits", t.hits), row.add("undecided", t.undecided);
-    row.add("wrong", t.wrong), row.add("differing", t.differing);
-    if (slab) row.add("excess", t.excess);
-    row.add("must_be_right", must_be_right(id, c));
-    row.add("worst_ulps", t.worst_ulps);
-    kernels_.add(fmt::format("{}/{}", to_string(id), to_string(c)), row);
-    rays_ += t.rays;
-    note(fmt::format("{} {} pair {}", to_string(id), to_string(c), t.first_failure), t.failure);
+    row(t, fmt::format("{} {} pair {}", to_string(id), to_string(c), t.first_failure),
+        fmt::format("{:<25}{:<8}{:>10}{:>10}{:>10}{:>9}{:>10}{:>10}  {}", to_string(id), to_string(c), t.rays,
+                    t.hits, t.undecided, t.wrong, t.differing, t.excess,
+                    t.worst_ulps > 0 ? fmt::format("{:.3f}", t.worst_ulps) : "-"));
+    JsonObject json;
+    json.add("rays", t.rays), json.add("hits", t.hits), json.add("undecided", t.undecided);
+    json.add("wrong", t.wrong), json.add("differing", t.differing);
+    if (id == KernelId::slab) json.add("excess", t.excess);
+    json.add("must_be_right", must_be_right(id, c));
+    json.add("worst_ulps", t.worst_ulps);
+    kernels_.add(fmt::format("{}/{}", to_string(id), to_string(c)), json);
   }
 
   void exact(const std::string& name, const ExactTally& t) {
-    if (!json_) {
-      fmt::print("{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>11}{:>9}{:>10.3f}\n", name, t.rays,
-                 t.hits, t.missed, t.invented, t.touched, t.creased, t.off_surface, t.lists, t.differing,
-                 t.uncertified, t.worst_residual);
-      std::fflush(stdout);
-    }
-    JsonObject row;
-    row.add("rays", t.rays), row.add("hits", t.hits), row.add("missed", t.missed);
-    row.add("invented", t.invented), row.add("touched", t.touched), row.add("creased", t.creased),
-        row.add("off_surface", t.off_surface);
-    row.add("lists", t.lists), row.add("differing", t.differing);
-    row.add("uncertified", t.uncertified), row.add("worst_residual", t.worst_residual);
-    surfaces_.add(name, row);
-    rays_ += t.rays;
-    note(name, t.failure);
+    row(t, name,
+        fmt::format("{:<25}{:>10}{:>10}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>11}{:>9}{:>10.3f}", name, t.rays,
+                    t.hits, t.missed, t.invented, t.touched, t.creased, t.off_surface, t.lists, t.differing,
+                    t.uncertified, t.worst_residual));
+    JsonObject json;
+    json.add("rays", t.rays), json.add("hits", t.hits), json.add("missed", t.missed);
+    json.add("invented", t.invented), json.add("touched", t.touched), json.add("creased", t.creased);
+    json.add("off_surface", t.off_surface), json.add("lists", t.lists), json.add("differing", t.differing);
+    json.add("uncertified", t.uncertified), json.add("worst_residual", t.worst_residual);
+    surfaces_.add(name, json);
   }
 
   void mesh(const std::string& name, const MeshPlacement& p, const MeshTally& t) {
     const std::string state = t.open_edges == 0 ? "closed" : fmt::format("open: {} edges", t.open_edges);
-    if (!json_) {
-      fmt::print("{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}\n", name, p.name, state, t.rays,
-                 t.hits, t.leaks, t.parity, t.doubled, t.differing, t.inconsistent);
-      std::fflush(stdout);
-    }
-    JsonObject row;
-    row.add("open_edges", t.open_edges), row.add("rays", t.rays), row.add("hits", t.hits);
-    row.add("leaks", t.leaks), row.add("parity", t.parity), row.add("doubled", t.doubled);
-    row.add("differing", t.differing), row.add("inconsistent", t.inconsistent);
-    meshes_.add(fmt::format("{}/{}", name, p.name), row);
-    rays_ += t.rays;
-    note(fmt::format("{} {} ray {}", name, p.name, t.first_failure), t.failure);
+    row(t, fmt::format("{} {} ray {}", name, p.name, t.first_failure),
+        fmt::format("{:<18}{:<12}{:<20}{:>9}{:>10}{:>7}{:>8}{:>9}{:>10}{:>13}", name, p.name, state, t.rays,
+                    t.hits, t.leaks, t.parity, t.doubled, t.differing, t.inconsistent));
+    JsonObject json;
+    json.add("open_edges", t.open_edges), json.add("rays", t.rays), json.add("hits", t.hits);
+    json.add("leaks", t.leaks), json.add("parity", t.parity), json.add("doubled", t.doubled);
+    json.add("differing", t.differing), json.add("inconsistent", t.inconsistent);
+    meshes_.add(fmt::format("{}/{}", name, p.name), json);
   }
 
   void csg(const CsgTally& t) {
-    if (!json_) {
-      fmt::print("{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>9}{:>11}\n", "random trees", t.rays, t.crossings,
-                 t.samples, t.wrong_spans, t.wrong_first, t.wrong_normal, t.differing);
-      std::fflush(stdout);
-    }
+    row(t, "combinations",
+        fmt::format("{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>9}{:>11}", "random trees", t.rays, t.crossings,
+                    t.samples, t.wrong_spans, t.wrong_first, t.wrong_normal, t.differing));
     combinations_.add("rays", t.rays), combinations_.add("crossings", t.crossings);
     combinations_.add("samples", t.samples), combinations_.add("wrong_spans", t.wrong_spans);
     combinations_.add("wrong_first", t.wrong_first), combinations_.add("wrong_normal", t.wrong_normal);
     combinations_.add("differing", t.differing);
-    rays_ += t.rays;
-    note("combinations", t.failure);
   }
 
   /// Prints the end of the report and returns the exit status.
@@ -133,10 +115,14 @@ class Report {
   }
 
  private:
-  void note(const std::string& place, const std::string& failure) {
-    if (failure.empty()) return;
+  /// Prints `line`; `place` says where the tally's failure is.
+  void row(const auto& tally, const std::string& place, const std::string& line) {
+    heading(line);
+    if (!json_) std::fflush(stdout);
+    rays_ += tally.rays;
+    if (tally.failure.empty()) return;
     ++failed_rows_;
-    if (failure_.empty()) failure_ = place + ": " + failure;
+    if (failure_.empty()) failure_ = place + ": " + tally.failure;
   }
 
   bool json_;

@@ -1,8 +1,10 @@
-#include "app/units.h"
+#include "app/text.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace oktett {
 
@@ -34,6 +36,12 @@ std::string duration_text(double seconds) {
   const auto whole = static_cast<std::uint64_t>(std::lround(seconds));
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+void print_warnings(const std::vector<Warning>& warnings, std::size_t most) {
+  const std::size_t shown = std::min(warnings.size(), most);
+  for (std::size_t i = 0; i < shown; ++i) fmt::print(stderr, "{}\n", to_string(warnings[i]));
+  if (warnings.size() > shown) fmt::print(stderr, "... and {} more warnings\n", warnings.size() - shown);
 }
 
 }  // namespace oktett

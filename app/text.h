@@ -1,8 +1,11 @@
 #pragma once
-/// \file Numbers with units, for people.
+/// \file Text for people: numbers with units, warnings.
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "core/error.h"
 
 namespace oktett {
 
@@ -14,5 +17,8 @@ inline std::string bytes_text(std::uint64_t bytes) { return with_prefix(static_c
 std::string grouped(std::uint64_t value);
 /// "0.123 s", "12.3 s", "2 min 05 s", "3 h 07 min".
 std::string duration_text(double seconds);
+
+/// Prints the first `most` warnings to stderr, and the number of the others.
+void print_warnings(const std::vector<Warning>& warnings, std::size_t most = 20);
 
 }  // namespace oktett
