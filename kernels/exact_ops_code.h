@@ -24,7 +24,7 @@ struct ExactOpsCode {
       return cell_bounds(pool.frames[cell.element].to_world, cell);
   }
   static bool inside(const ExactPoolBase& pool, std::size_t element, const Vec3d& p) {
-    return S::inside(cast(pool), element, p);
+    return is_inside<S>(cast(pool), element, p);
   }
   template <bool kWithUv>
   static void interaction(const ExactPoolBase& pool, std::size_t element, const Ray& ray, const Hit& hit,

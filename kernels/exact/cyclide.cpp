@@ -19,10 +19,6 @@ void Cyclide::add(Pool& pool, const CyclideShape& s, const ExactPlace& place) {
   add_cell(pool, {-1, -(a + d), -(c + d)}, {std::max(a + d - c, a - d + c), a + d, c + d});
 }
 
-bool Cyclide::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  return slope_at<Cyclide>(pool, i, 0, p).value < 0;
-}
-
 void Cyclide::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
   const CyclideElement& e = pool.elements[i];
   const double across = e.a * p.x - e.c * e.d, along = e.b * p.y;

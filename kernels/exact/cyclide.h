@@ -54,7 +54,6 @@ struct Cyclide {
     gradient = {D(4.0) * (r * p.x) - D(8.0) * (c * e), D(4.0) * (r * p.y),
                 D(4.0) * (r * p.z) + D(8.0) * (bb * p.z)};
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// Along the lines of curvature, which are circles: u around the axis from +x towards +y, v around the tube
   /// from the outside upwards, both in [0, 1].
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

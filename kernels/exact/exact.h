@@ -15,10 +15,11 @@
 /// - `S::kMaxCrossings`: room for all crossings with a line, or as many as are listed at a time;
 /// - `S::crossings<K>(pool, cell, line, range, active, out)`: the first K crossings, see Crossings;
 /// - `S::slope(pool, i, part, p, value, gradient)` in lanes: the function whose zeros the part is, negative
-///   inside, and its gradient. Or `S::value(pool, i, part, p)` and `S::gradient(pool, i, part, p)` for one
-///   point; then the interactions of its hits are found one by one;
-/// - `S::inside(pool, i, p)`.
+///   inside, and its gradient. Or `S::slope_at(pool, i, part, p)`, which returns both as a Slope for one
+///   point; then the interactions of its hits are found one by one.
 /// It may have
+/// - `S::inside(pool, i, p)`, where what is inside is not the points of the element's box `lo`, `hi` (if it
+///   has one) at which the function of part 0 is negative;
 /// - `S::uv(pool, i, part, p, surface)`: sets uv and tangent in its own space;
 /// - `S::kOneCell`: each element is one cell, and its crossings are listed as they are. Without it an
 ///   element may have several cells. Two cells that meet may both list the crossing there, so the lists are
@@ -28,7 +29,7 @@
 /// - `S::kLoneLanes`: a ray on its own is traced as numbers rather than in one of many lanes;
 /// - `S::kStopsAtLimit`: crossings up to some t do not depend on where the range ends, which then is where
 ///   the ray does;
-/// - `S::interaction(pool, i, ray, hit)` in place of value, gradient and uv: a fractal (fractal.h);
+/// - `S::interaction(pool, i, ray, hit)` in place of slope and uv: a fractal (fractal.h);
 /// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
 ///   than the image of the cell.
 
@@ -174,6 +175,12 @@ concept HasSlope = requires(const typename S::Pool& pool, D& value, Vec3<D>& gra
   S::slope(pool, std::size_t{0}, D(), Vec3<D>(), value, gradient);
 };
 
+/// The value and the gradient of a function at one point.
+struct Slope {
+  double value;
+  Vec3d gradient;
+};
+
 /// The function of a part of element i, and its gradient.
 template <class S, class D>
 OKTETT_INLINE void slope_lanes(const typename S::Pool& pool, std::size_t i, const D& part, const Vec3<D>& p,
@@ -181,16 +188,10 @@ OKTETT_INLINE void slope_lanes(const typename S::Pool& pool, std::size_t i, cons
   if constexpr (HasSlope<S, D>) {
     S::slope(pool, i, part, p, value, gradient);
   } else {
-    const int number = static_cast<int>(only_lane(part));
-    value = D(S::value(pool, i, number, only_lane(p)));
-    gradient = broadcast<D>(S::gradient(pool, i, number, only_lane(p)));
+    const Slope at = S::slope_at(pool, i, static_cast<int>(only_lane(part)), only_lane(p));
+    value = D(at.value), gradient = broadcast<D>(at.gradient);
   }
 }
-
-struct Slope {
-  double value;
-  Vec3d gradient;
-};
 
 /// The same at one point.
 template <class S>
@@ -200,6 +201,20 @@ Slope slope_at(const typename S::Pool& pool, std::size_t i, int part, const Vec3
   Vec3<D> gradient;
   slope_lanes<S>(pool, i, D(part), broadcast<D>(p), value, gradient);
   return {only_lane(value), only_lane(gradient)};
+}
+
+/// Whether p, in the own space of element i, is inside.
+template <class S>
+bool is_inside(const typename S::Pool& pool, std::size_t i, const Vec3d& p) {
+  if constexpr (requires { S::inside(pool, i, p); }) {
+    return S::inside(pool, i, p);
+  } else {
+    const auto& e = pool.elements[i];
+    if constexpr (requires { e.lo; })
+      for (int k = 0; k < 3; ++k)
+        if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
+    return slope_at<S>(pool, i, 0, p).value < 0;
+  }
 }
 
 /// The part of a line that is in a box. A line parallel to a slab lies in it or not: no threshold. The ends

@@ -13,12 +13,7 @@ namespace oktett {
 /// about h |f''| / 2, central ones by h^2 |f'''| / 6, and both by the rounding of f over h.
 template <class S>
 Vec3d gradient_by_differences(const typename S::Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const auto value = [&](const Vec3d& at) {
-    if constexpr (requires { S::value(pool, i, part, at); })
-      return S::value(pool, i, part, at);
-    else
-      return slope_at<S>(pool, i, part, at).value;
-  };
+  const auto value = [&](const Vec3d& at) { return slope_at<S>(pool, i, part, at).value; };
   const bool central = pool.frames[i].normals == NormalMethod::central;
   const double h = central ? 0x1p-17 : 0x1p-26, here = value(p);
   Vec3d g;

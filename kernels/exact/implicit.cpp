@@ -18,11 +18,4 @@ void Implicit::add(Pool& pool, const ImplicitShape& s, const ExactPlace& place) 
   add_cell(pool, e.lo, e.hi);
 }
 
-bool Implicit::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  const ImplicitElement& e = pool.elements[i];
-  for (int k = 0; k < 3; ++k)
-    if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return slope_at<Implicit>(pool, i, 0, p).value < 0;
-}
-
 }  // namespace oktett

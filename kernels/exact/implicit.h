@@ -84,7 +84,6 @@ struct Implicit {
     }
     select_faces(e.lo, e.hi, select(wall, zero, part), p, value, gradient);
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
 
  private:
   template <Walls W, class D>

@@ -320,25 +320,17 @@ void Lathe::find_level(const LatheElement& e, const Piece& piece, const OneRay& 
   }
 }
 
-double Lathe::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+Slope Lathe::slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   const LatheElement& e = pool.elements[i];
-  if (part == 1) return -e.side * (p.y - e.pieces.front().height[0]);
-  if (part == 2) return e.side * (p.y - e.pieces.back().height[1]);
+  if (part == 1) return {-e.side * (p.y - e.pieces.front().height[0]), {0, -e.side, 0}};
+  if (part == 2) return {e.side * (p.y - e.pieces.back().height[1]), {0, e.side, 0}};
   const double rho = std::sqrt(p.x * p.x + p.z * p.z);
   const Nearest at = nearest_point(e, rho, p.y);
   const Normal2 n = normal_at(e, at);
   const Piece& piece = e.pieces[at.piece];
-  return (rho - cubic(piece.r, at.v)) * n.r + (p.y - cubic(piece.y, at.v)) * n.y;
-}
-
-Vec3d Lathe::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  const LatheElement& e = pool.elements[i];
-  if (part == 1) return {0, -e.side, 0};
-  if (part == 2) return {0, e.side, 0};
-  const double rho = std::sqrt(p.x * p.x + p.z * p.z);
-  const Normal2 n = normal_at(e, nearest_point(e, rho, p.y));
   const double per_rho = rho > 0 ? n.r / rho : 0;
-  return {p.x * per_rho, n.y, p.z * per_rho};
+  return {(rho - cubic(piece.r, at.v)) * n.r + (p.y - cubic(piece.y, at.v)) * n.y,
+          {p.x * per_rho, n.y, p.z * per_rho}};
 }
 
 bool Lathe::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

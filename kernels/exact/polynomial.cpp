@@ -173,11 +173,4 @@ void Polynomial::add(Pool& pool, const PolynomialShape& s, const ExactPlace& pla
   add_cell(pool, e.lo, e.hi);
 }
 
-bool Polynomial::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  const PolynomialElement& e = pool.elements[i];
-  for (int k = 0; k < 3; ++k)
-    if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return slope_at<Polynomial>(pool, i, 0, p).value < 0;
-}
-
 }  // namespace oktett

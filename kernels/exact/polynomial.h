@@ -74,7 +74,6 @@ struct Polynomial {
     }
     select_faces(e.lo, e.hi, part, p, value, gradient);
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
 
  private:
   template <class D>

@@ -90,13 +90,6 @@ void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace&
   add_cell(pool, e.lo, e.hi);
 }
 
-bool Superquadric::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  const SuperquadricElement& e = pool.elements[i];
-  for (int k = 0; k < 3; ++k)
-    if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return slope_at<Superquadric>(pool, i, 0, p).value < 0;
-}
-
 void Superquadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
   const SuperquadricElement& e = pool.elements[i];
   if (part > 0) {

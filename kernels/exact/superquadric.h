@@ -152,7 +152,6 @@ struct Superquadric {
     gradient = {g[0], g[1], g[2]};
     if (e.closed) select_faces(e.lo, e.hi, part, p, value, gradient);
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around z; v from bottom to top of an ellipsoid, around the tube of a toroid, the height z of a
   /// hyperboloid. On a face of the box the position on it.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);

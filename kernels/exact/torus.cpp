@@ -15,10 +15,6 @@ void Torus::add(Pool& pool, const TorusShape& s, const ExactPlace& place) {
   add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
 }
 
-bool Torus::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  return slope_at<Torus>(pool, i, 0, p).value < 0;
-}
-
 void Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
   const TorusElement& e = pool.elements[i];
   const double rho = std::sqrt(p.x * p.x + p.y * p.y);

@@ -57,7 +57,6 @@ struct Torus {
     const D k = select(rho > D(0.0), D(e.major) / rho, D(0.0));
     gradient = {(p.x - k * p.x) * D(2.0), (p.y - k * p.y) * D(2.0), p.z * D(2.0)};
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +x towards +y, v around the tube from the outside upwards, both in [0, 1].
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
 };

@@ -85,34 +85,17 @@ void Blob::add(Pool& pool, const BlobShape& s, const ExactPlace& place) {
   add_cell(pool, e.lo, e.hi);
 }
 
-double Blob::value(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
+Slope Blob::slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   const BlobElement& e = pool.elements[i];
-  if (part > 0) return face_value(e.lo, e.hi, part, p);
-  double sum = e.iso;
-  for (int k = 0; k < e.count; ++k) {
-    const Vec3d v = from_source(e.sources[k], p);
-    sum -= e.sources[k].weight / dot(v, v);
-  }
-  return sum;
-}
-
-Vec3d Blob::gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
-  if (part > 0) return face_gradient(part);
-  const BlobElement& e = pool.elements[i];
-  Vec3d g{0, 0, 0};
+  if (part > 0) return {face_value(e.lo, e.hi, part, p), face_gradient(part)};
+  Slope s{e.iso, {0, 0, 0}};
   for (int k = 0; k < e.count; ++k) {
     const Vec3d v = from_source(e.sources[k], p);
     const double q = dot(v, v);
-    g += v * (2 * e.sources[k].weight / (q * q));
+    s.value -= e.sources[k].weight / q;
+    s.gradient += v * (2 * e.sources[k].weight / (q * q));
   }
-  return g;
-}
-
-bool Blob::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  const BlobElement& e = pool.elements[i];
-  for (int k = 0; k < 3; ++k)
-    if (!(e.lo[k] <= p[k] && p[k] <= e.hi[k])) return false;
-  return value(pool, i, 0, p) < 0;
+  return s;
 }
 
 }  // namespace oktett

@@ -64,10 +64,8 @@ struct Blob {
     list_sign_changes(s, turn, sign, !e.open, segment, range, active, out);
   }
 
-  /// The value is I minus the sum.
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  /// The function is I minus the sum.
+  static Slope slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 
  private:
   template <class D>

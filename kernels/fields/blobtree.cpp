@@ -219,44 +219,6 @@ class BlobRule : public CellRule {
   double iso_;
 };
 
-struct ValueGradient {
-  double v;
-  Vec3d g;
-};
-
-ValueGradient evaluate(const BlobTreePool& pool, std::size_t i, const Vec3d& p) {
-  const BlobTreeElement& e = pool.elements[i];
-  const CellNode& node = pool.tree.leaf_at(e.root, p);
-  const bool leaf = node.kind == CellNode::Kind::leaf;
-  const std::uint32_t* code = leaf ? pool.tree.lists.data() + node.first : pool.codes.data() + e.begin;
-  const std::uint32_t count = leaf ? node.second : e.count;
-  ValueGradient stack[kBlobStack];
-  int top = -1;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const auto op = BlobCode::op(code[k]);
-    if (op == BlobCode::zero) {
-      stack[++top] = {0, {0, 0, 0}};
-    } else if (op == BlobCode::element) {
-      const FieldPart& part = pool.parts[BlobCode::index(code[k])];
-      Vec3d half;
-      double slope;
-      const double v = potential(part, square_at(pool, part, p, half), slope);
-      stack[++top] = {part.weight * v, half * (2 * part.weight * slope)};
-    } else {
-      const ValueGradient b = stack[top--];
-      ValueGradient& a = stack[top];
-      if (op == BlobCode::sum) {
-        a = {a.v + b.v, a.g + b.g};
-      } else if (op == BlobCode::difference) {
-        if (2 * e.iso - b.v < a.v) a = {2 * e.iso - b.v, -b.g};
-      } else if (op == BlobCode::max ? b.v > a.v : b.v < a.v) {
-        a = b;
-      }
-    }
-  }
-  return {e.iso - stack[0].v, -stack[0].g};
-}
-
 }  // namespace
 
 void BlobTree::add(Pool& pool, const BlobTreeShape& s, const ExactPlace& place) {
@@ -300,15 +262,38 @@ void BlobTree::add(Pool& pool, const BlobTreeShape& s, const ExactPlace& place) 
               place);
 }
 
-double BlobTree::value(const Pool& pool, std::size_t i, int, const Vec3d& p) {
-  return evaluate(pool, i, p).v;
+Slope BlobTree::slope_at(const Pool& pool, std::size_t i, int, const Vec3d& p) {
+  const BlobTreeElement& e = pool.elements[i];
+  const CellNode& node = pool.tree.leaf_at(e.root, p);
+  const bool leaf = node.kind == CellNode::Kind::leaf;
+  const std::uint32_t* code = leaf ? pool.tree.lists.data() + node.first : pool.codes.data() + e.begin;
+  const std::uint32_t count = leaf ? node.second : e.count;
+  Slope stack[kBlobStack];
+  int top = -1;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const auto op = BlobCode::op(code[k]);
+    if (op == BlobCode::zero) {
+      stack[++top] = {0, {0, 0, 0}};
+    } else if (op == BlobCode::element) {
+      const FieldPart& part = pool.parts[BlobCode::index(code[k])];
+      Vec3d half;
+      double slope;
+      const double v = potential(part, square_at(pool, part, p, half), slope);
+      stack[++top] = {part.weight * v, half * (2 * part.weight * slope)};
+    } else {
+      const Slope b = stack[top--];
+      Slope& a = stack[top];
+      if (op == BlobCode::sum) {
+        a = {a.value + b.value, a.gradient + b.gradient};
+      } else if (op == BlobCode::difference) {
+        if (2 * e.iso - b.value < a.value) a = {2 * e.iso - b.value, -b.gradient};
+      } else if (op == BlobCode::max ? b.value > a.value : b.value < a.value) {
+        a = b;
+      }
+    }
+  }
+  return {e.iso - stack[0].value, -stack[0].gradient};
 }
-
-Vec3d BlobTree::gradient(const Pool& pool, std::size_t i, int, const Vec3d& p) {
-  return evaluate(pool, i, p).g;
-}
-
-bool BlobTree::inside(const Pool& pool, std::size_t i, const Vec3d& p) { return value(pool, i, 0, p) < 0; }
 
 void BlobTree::uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) {
   set_globe_uv(p, s);

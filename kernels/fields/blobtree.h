@@ -167,9 +167,7 @@ struct BlobTree {
     out.up_to = select(out.up_to < D(roots::kNoRoot), l.to_t(out.up_to), out.up_to);
   }
 
-  static double value(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static Vec3d gradient(const Pool& pool, std::size_t i, int part, const Vec3d& p);
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
+  static Slope slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
 };

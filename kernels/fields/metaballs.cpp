@@ -100,10 +100,6 @@ void Metaballs::add(Pool& pool, const MetaballsShape& s, const ExactPlace& place
               place);
 }
 
-bool Metaballs::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  return slope_at<Metaballs>(pool, i, 0, p).value < 0;
-}
-
 void Metaballs::uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) {
   set_globe_uv(p, s);
 }

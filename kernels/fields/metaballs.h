@@ -282,7 +282,6 @@ struct Metaballs {
       }
     });
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
   static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
 };

@@ -54,8 +54,4 @@ void Julia::add(Pool& pool, const JuliaShape& s, const ExactPlace& place) {
   add_cell(pool, lo, hi);
 }
 
-bool Julia::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  return slope_at<Julia>(pool, i, 0, p).value < 0;
-}
-
 }  // namespace oktett

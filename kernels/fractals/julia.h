@@ -139,7 +139,6 @@ struct Julia {
     value = z.norm2() - D(e.radius * e.radius);
     gradient = {along(w[0]), along(w[1]), along(w[2])};
   }
-  static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
 };
 
 }  // namespace oktett

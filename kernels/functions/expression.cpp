@@ -10,26 +10,45 @@
 namespace oktett {
 namespace {
 
+// fmin and fmax drop a NaN, which would hide a mistake in the other operand.
+double min_of(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::min(a, b);
+}
+double max_of(double a, double b) {
+  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
+}
+
 struct Function {
   const char* name;
   ExpressionOp op;
+  double (*apply)(double, double);  ///< the second number is ignored by functions of one
 };
 
 constexpr Function kFunctions[] = {
-    {"sqrt", ExpressionOp::sqrt},   {"abs", ExpressionOp::abs},     {"sin", ExpressionOp::sin},
-    {"cos", ExpressionOp::cos},     {"tan", ExpressionOp::tan},     {"asin", ExpressionOp::asin},
-    {"acos", ExpressionOp::acos},   {"atan", ExpressionOp::atan},   {"atan2", ExpressionOp::atan2},
-    {"exp", ExpressionOp::exp},     {"log", ExpressionOp::log},     {"log2", ExpressionOp::log2},
-    {"log10", ExpressionOp::log10}, {"pow", ExpressionOp::power},   {"min", ExpressionOp::min},
-    {"max", ExpressionOp::max},     {"floor", ExpressionOp::floor}, {"ceil", ExpressionOp::ceil},
-    {"round", ExpressionOp::round}, {"sign", ExpressionOp::sign},   {"hypot", ExpressionOp::hypot},
+    {"sqrt", ExpressionOp::sqrt, [](double a, double) { return std::sqrt(a); }},
+    {"abs", ExpressionOp::abs, [](double a, double) { return std::abs(a); }},
+    {"sin", ExpressionOp::sin, [](double a, double) { return std::sin(a); }},
+    {"cos", ExpressionOp::cos, [](double a, double) { return std::cos(a); }},
+    {"tan", ExpressionOp::tan, [](double a, double) { return std::tan(a); }},
+    {"asin", ExpressionOp::asin, [](double a, double) { return std::asin(a); }},
+    {"acos", ExpressionOp::acos, [](double a, double) { return std::acos(a); }},
+    {"atan", ExpressionOp::atan, [](double a, double) { return std::atan(a); }},
+    {"atan2", ExpressionOp::atan2, [](double a, double b) { return std::atan2(a, b); }},
+    {"exp", ExpressionOp::exp, [](double a, double) { return std::exp(a); }},
+    {"log", ExpressionOp::log, [](double a, double) { return std::log(a); }},
+    {"log2", ExpressionOp::log2, [](double a, double) { return std::log2(a); }},
+    {"log10", ExpressionOp::log10, [](double a, double) { return std::log10(a); }},
+    {"pow", ExpressionOp::power, [](double a, double b) { return std::pow(a, b); }},
+    {"min", ExpressionOp::min, min_of},
+    {"max", ExpressionOp::max, max_of},
+    {"floor", ExpressionOp::floor, [](double a, double) { return std::floor(a); }},
+    {"ceil", ExpressionOp::ceil, [](double a, double) { return std::ceil(a); }},
+    {"round", ExpressionOp::round, [](double a, double) { return std::round(a); }},
+    {"sign", ExpressionOp::sign, [](double a, double) { return a > 0   ? 1
+                                                               : a < 0 ? -1
+                                                                       : a; }},
+    {"hypot", ExpressionOp::hypot, [](double a, double b) { return std::hypot(a, b); }},
 };
-
-const Function* find_function(std::string_view name) {
-  for (const Function& f : kFunctions)
-    if (name == f.name) return &f;
-  return nullptr;
-}
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool starts_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -151,7 +170,8 @@ class Parser {
         return add(begin, {ExpressionOp::variable, static_cast<std::uint32_t>(i), kNoId, 0});
     if (word == "pi") return add(begin, {ExpressionOp::constant, kNoId, kNoId, std::numbers::pi});
     if (word == "e") return add(begin, {ExpressionOp::constant, kNoId, kNoId, std::numbers::e});
-    if (const Function* function = find_function(word)) return call(begin, *function);
+    for (const Function& function : kFunctions)
+      if (word == function.name) return call(begin, function);
     fail(begin, "unknown name '" + std::string(word) + "'" + suggestion(word));
   }
 
@@ -196,16 +216,6 @@ class Parser {
   int depth_ = 0;
 };
 
-double sign_of(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }
-
-// fmin and fmax drop a NaN, which would hide a mistake in the other operand.
-double min_of(double a, double b) {
-  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::min(a, b);
-}
-double max_of(double a, double b) {
-  return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
-}
-
 }  // namespace
 
 int operand_count(ExpressionOp op) {
@@ -234,9 +244,6 @@ Expression parse_expression(std::string_view text, std::span<const std::string_v
 
 double apply(ExpressionOp op, double a, double b) {
   switch (op) {
-    case ExpressionOp::constant:
-    case ExpressionOp::variable:
-      break;
     case ExpressionOp::negate:
       return -a;
     case ExpressionOp::add:
@@ -247,48 +254,9 @@ double apply(ExpressionOp op, double a, double b) {
       return a * b;
     case ExpressionOp::divide:
       return a / b;
-    case ExpressionOp::power:
-      return std::pow(a, b);
-    case ExpressionOp::sqrt:
-      return std::sqrt(a);
-    case ExpressionOp::abs:
-      return std::abs(a);
-    case ExpressionOp::sin:
-      return std::sin(a);
-    case ExpressionOp::cos:
-      return std::cos(a);
-    case ExpressionOp::tan:
-      return std::tan(a);
-    case ExpressionOp::asin:
-      return std::asin(a);
-    case ExpressionOp::acos:
-      return std::acos(a);
-    case ExpressionOp::atan:
-      return std::atan(a);
-    case ExpressionOp::atan2:
-      return std::atan2(a, b);
-    case ExpressionOp::exp:
-      return std::exp(a);
-    case ExpressionOp::log:
-      return std::log(a);
-    case ExpressionOp::log2:
-      return std::log2(a);
-    case ExpressionOp::log10:
-      return std::log10(a);
-    case ExpressionOp::min:
-      return min_of(a, b);
-    case ExpressionOp::max:
-      return max_of(a, b);
-    case ExpressionOp::floor:
-      return std::floor(a);
-    case ExpressionOp::ceil:
-      return std::ceil(a);
-    case ExpressionOp::round:
-      return std::round(a);
-    case ExpressionOp::sign:
-      return sign_of(a);
-    case ExpressionOp::hypot:
-      return std::hypot(a, b);
+    default:
+      for (const Function& f : kFunctions)
+        if (f.op == op) return f.apply(a, b);
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

@@ -1,5 +1,6 @@
 #include "kernels/functions/function_tape.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -143,43 +144,20 @@ class Values {
     return make(TapeOp::real_power, place, a, kNoId, 0, y);
   }
 
+  /// The operation of the same name.
   static TapeOp simple(ExpressionOp op) {
-    switch (op) {
-      case ExpressionOp::sqrt:
-        return TapeOp::sqrt;
-      case ExpressionOp::abs:
-        return TapeOp::abs;
-      case ExpressionOp::sin:
-        return TapeOp::sin;
-      case ExpressionOp::cos:
-        return TapeOp::cos;
-      case ExpressionOp::tan:
-        return TapeOp::tan;
-      case ExpressionOp::asin:
-        return TapeOp::asin;
-      case ExpressionOp::acos:
-        return TapeOp::acos;
-      case ExpressionOp::atan:
-        return TapeOp::atan;
-      case ExpressionOp::atan2:
-        return TapeOp::atan2;
-      case ExpressionOp::exp:
-        return TapeOp::exp;
-      case ExpressionOp::log:
-        return TapeOp::log;
-      case ExpressionOp::min:
-        return TapeOp::min;
-      case ExpressionOp::max:
-        return TapeOp::max;
-      case ExpressionOp::floor:
-        return TapeOp::floor;
-      case ExpressionOp::ceil:
-        return TapeOp::ceil;
-      case ExpressionOp::round:
-        return TapeOp::round;
-      default:
-        return TapeOp::sign;
-    }
+    static constexpr std::pair<ExpressionOp, TapeOp> kSame[] = {
+        {ExpressionOp::sqrt, TapeOp::sqrt},   {ExpressionOp::abs, TapeOp::abs},
+        {ExpressionOp::sin, TapeOp::sin},     {ExpressionOp::cos, TapeOp::cos},
+        {ExpressionOp::tan, TapeOp::tan},     {ExpressionOp::asin, TapeOp::asin},
+        {ExpressionOp::acos, TapeOp::acos},   {ExpressionOp::atan, TapeOp::atan},
+        {ExpressionOp::atan2, TapeOp::atan2}, {ExpressionOp::exp, TapeOp::exp},
+        {ExpressionOp::log, TapeOp::log},     {ExpressionOp::min, TapeOp::min},
+        {ExpressionOp::max, TapeOp::max},     {ExpressionOp::floor, TapeOp::floor},
+        {ExpressionOp::ceil, TapeOp::ceil},   {ExpressionOp::round, TapeOp::round},
+        {ExpressionOp::sign, TapeOp::sign}};
+    return std::find_if(std::begin(kSame), std::end(kSame), [op](const auto& s) { return s.first == op; })
+        ->second;
   }
 
   std::vector<Value> list_;  ///< x, y and z first

@@ -24,12 +24,6 @@ template <class D>
 OKTETT_INLINE Dual<Interval<D>> times(const Dual<Interval<D>>& a, double c) {
   return {times(a.v, c), times(a.d, c)};
 }
-template <class D>
-OKTETT_INLINE void sin_cos(const Dual<Interval<D>>& a, Dual<Interval<D>>& sin, Dual<Interval<D>>& cos) {
-  Interval<D> s, c;
-  sin_cos(a.v, s, c);
-  sin = {s, c * a.d}, cos = {c, -s * a.d};
-}
 
 namespace tape {
 

@@ -164,18 +164,6 @@ OKTETT_NOINLINE void sin_cos(const Gradient<D, W>& a, Gradient<D, W>& sin, Gradi
   sin = gradient::chain(a, s, c), cos = gradient::chain(a, c, -s);
 }
 template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> sin(const Gradient<D, W>& a) {
-  Gradient<D, W> s, c;
-  sin_cos(a, s, c);
-  return s;
-}
-template <class D, Walls W>
-OKTETT_INLINE Gradient<D, W> cos(const Gradient<D, W>& a) {
-  Gradient<D, W> s, c;
-  sin_cos(a, s, c);
-  return c;
-}
-template <class D, Walls W>
 OKTETT_NOINLINE Gradient<D, W> tan(const Gradient<D, W>& a) {
   Gradient<D, W> s, c;
   sin_cos(a, s, c);

@@ -1,6 +1,6 @@
 #pragma once
-/// \file A value with its derivative by one variable, for intervals and for numbers in lanes. Where a
-/// function has a kink its derivative is the hull of those on both sides; where it has a step it is entire.
+/// \file Intervals with their derivatives by one variable. Where a function has a kink its derivative is the
+/// hull of those on both sides; where it has a step it is entire.
 /// With that a bounded derivative over an interval X proves the mean value theorem on X:
 /// f(X) is within f(m) + f'(X) (X - m).
 
@@ -39,14 +39,6 @@ OKTETT_NOINLINE Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
 template <class D>
 OKTETT_INLINE Interval<D> times(const Interval<D>& a, double b) {
   return a * D(b);
-}
-template <int W, class A>
-OKTETT_INLINE Simd<double, W, A> times(const Simd<double, W, A>& a, double b) {
-  return a * Simd<double, W, A>(b);
-}
-template <int W, class A>
-OKTETT_INLINE Simd<double, W, A> sqr(const Simd<double, W, A>& a) {
-  return a * a;
 }
 
 template <class T>
@@ -93,16 +85,10 @@ OKTETT_NOINLINE Dual<Interval<D>> pow(const Dual<Interval<D>>& a, double y) {
   return {pow(a.v, y), pow(a.v, y - 1) * Interval<D>(D(y)) * a.d};
 }
 template <class D>
-OKTETT_INLINE Dual<Interval<D>> sin(const Dual<Interval<D>>& a) {
+OKTETT_INLINE void sin_cos(const Dual<Interval<D>>& a, Dual<Interval<D>>& sin, Dual<Interval<D>>& cos) {
   Interval<D> s, c;
   sin_cos(a.v, s, c);
-  return {s, c * a.d};
-}
-template <class D>
-OKTETT_INLINE Dual<Interval<D>> cos(const Dual<Interval<D>>& a) {
-  Interval<D> s, c;
-  sin_cos(a.v, s, c);
-  return {c, -s * a.d};
+  sin = {s, c * a.d}, cos = {c, -s * a.d};
 }
 template <class D>
 OKTETT_NOINLINE Dual<Interval<D>> tan(const Dual<Interval<D>>& a) {

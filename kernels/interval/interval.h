@@ -201,21 +201,13 @@ OKTETT_NOINLINE Interval<D> exp(const Interval<D>& a) {
   return exp2(interval::carry(a, x));
 }
 /// Void where the argument is at most 0, entire where part of it is.
-template <class D, class F>
-OKTETT_INLINE Interval<D> log_by(const Interval<D>& a, F&& f) {
-  const Interval<D> r = interval::outward(f(max(a.lo, D(0.0))), f(max(a.hi, D(0.0))), D(lane::kLogError * 2));
-  const D inf = Interval<D>::infinity();
-  const Interval<D> x = interval::inside_domain(a, D(0.0), inf, r);
-  // At 0 the logarithm is -infinity, whatever the rounding; only [0, 0] holds nothing else.
-  return select((a.lo == D(0.0)) & (a.hi == D(0.0)), Interval<D>::nothing(), x);
-}
 template <class D>
 OKTETT_NOINLINE Interval<D> log(const Interval<D>& a) {
-  return log_by(a, [](const D& x) { return lane::log(x); });
-}
-template <class D>
-OKTETT_NOINLINE Interval<D> log2(const Interval<D>& a) {
-  return log_by(a, [](const D& x) { return lane::log2(x); });
+  const D zero(0.0), l = lane::log(max(a.lo, zero)), h = lane::log(max(a.hi, zero));
+  const Interval<D> r = interval::outward(l, h, D(lane::kLogError * 2));
+  const Interval<D> x = interval::inside_domain(a, zero, Interval<D>::infinity(), r);
+  // At 0 the logarithm is -infinity, whatever the rounding; only [0, 0] holds nothing else.
+  return select((a.lo == zero) & (a.hi == zero), Interval<D>::nothing(), x);
 }
 
 /// x^y for a number y > 0 and x >= 0; elsewhere as sqrt.

@@ -40,15 +40,20 @@ OKTETT_NOINLINE void sin_cos(const Interval<D>& a, Interval<D>& sin, Interval<D>
   sin = interval::wave(a, sl, sh, 0.25);
   cos = interval::wave(a, cl, ch, 0.0);
 }
-template <class D>
-OKTETT_INLINE Interval<D> sin(const Interval<D>& a) {
-  Interval<D> s, c;
+/// Sine and cosine of what has a `sin_cos`: intervals, those with derivatives, and numbers with gradients.
+template <class T>
+concept HasSinCos = requires(const T& a, T& out) {
+  sin_cos(a, out, out);
+};
+template <HasSinCos T>
+OKTETT_INLINE T sin(const T& a) {
+  T s, c;
   sin_cos(a, s, c);
   return s;
 }
-template <class D>
-OKTETT_INLINE Interval<D> cos(const Interval<D>& a) {
-  Interval<D> s, c;
+template <HasSinCos T>
+OKTETT_INLINE T cos(const T& a) {
+  T s, c;
   sin_cos(a, s, c);
   return c;
 }

@@ -286,7 +286,7 @@ TEST(Julia, MissesNothingThatSamplesFind) {
       const std::vector<Hit> hits = all_crossings(*accel, ray);
       for (int k = 0; k < 3000; ++k) {
         const double t = 2.0 * k / 3000;
-        if (!Julia::inside(pool, 0, Vec3d(ray.origin) + Vec3d(ray.direction) * t)) continue;
+        if (!is_inside<Julia>(pool, 0, Vec3d(ray.origin) + Vec3d(ray.direction) * t)) continue;
         ++inside;
         bool listed = false;
         for (std::size_t j = 0; j + 1 < hits.size(); j += 2)

@@ -12,7 +12,7 @@ template <class S>
 bool holds(const typename S::Data& data, const Vec3d& p) {
   typename S::Pool pool;
   S::add(pool, data, {});
-  return S::inside(pool, 0, p);
+  return is_inside<S>(pool, 0, p);
 }
 
 TEST(Fractals, InsideIsInsideOfAPart) {
@@ -46,7 +46,7 @@ void expect_operand(const typename S::Data& data) {
     for (const Ray& ray : rays_about(60, 1)) {
       const auto inside = [&](double t) {
         const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * t;
-        const bool f = S::inside(pool, 0, p), b = length(p - center) < radius;
+        const bool f = is_inside<S>(pool, 0, p), b = length(p - center) < radius;
         return op == CsgOp::unite ? f || b : op == CsgOp::intersect ? f && b : f && !b;
       };
       std::vector<Hit> hits;

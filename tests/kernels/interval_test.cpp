@@ -102,7 +102,6 @@ std::vector<Unary> unaries() {
       {"exp", [](const I& a) { return exp(a); }, [](L x) { return std::exp(x); }, 0x1p-36},
       {"exp2", [](const I& a) { return exp2(a); }, [](L x) { return std::exp2(x); }},
       {"log", [](const I& a) { return log(a); }, [](L x) { return only(x > 0, std::log(x)); }},
-      {"log2", [](const I& a) { return log2(a); }, [](L x) { return only(x > 0, std::log2(x)); }},
       {"sin", [](const I& a) { return sin(a); }, [](L x) { return std::sin(x); }, 0x1p-45, 1},
       {"cos", [](const I& a) { return cos(a); }, [](L x) { return std::cos(x); }, 0x1p-45, 1},
       {"tan", [](const I& a) { return tan(a); }, [](L x) { return std::tan(x); }, 1e300, 1},
