@@ -85,7 +85,7 @@ RayBatch pixel_rays(const Field& field) {
 long double first_crossing(const FieldObject& object, const Affine& to_world, const Ray& ray,
                            long double hint) {
   const Affine inverse = to_world.inverse();
-  const Vec3l o(inverse.point(Vec3d(ray.origin))), d(inverse.vector(Vec3d(ray.direction)));
+  const Vec3l o = mapped(inverse, Vec3l(ray.origin)), d = mapped(inverse, Vec3l(ray.direction), 0);
   const long double dd = dot(d, d), middle = -dot(o, d) / dd;
   const Vec3l nearest = o + d * middle;
   // Every object of a field lies within a ball of radius 2.
@@ -100,14 +100,7 @@ long double first_crossing(const FieldObject& object, const Affine& to_world, co
       const long double f = object.f(o + d * hint);
       if ((f < 0) != (f0 < 0)) t1 = hint, f1 = f;
     }
-    if ((f0 < 0) != (f1 < 0)) {
-      long double lo = t0, hi = t1;
-      for (int k = 0; k < 64; ++k) {
-        const long double mid = lo + (hi - lo) / 2;
-        (((object.f(o + d * mid) < 0) == (f0 < 0)) ? lo : hi) = mid;
-      }
-      return lo;
-    }
+    if ((f0 < 0) != (f1 < 0)) return bisected([&](long double t) { return object.f(o + d * t); }, t0, t1);
     t0 = t1, f0 = f1;
   }
   return HUGE_VALL;
@@ -154,12 +147,7 @@ Silhouettes compare_ids(const Field& field, const std::vector<std::uint32_t>& th
       return first_crossing(field.objects[id - 1], field.scene.objects[id - 1].transform, rays[i], hint);
     };
     const long double a = distance(ours), b = distance(theirs[i]);
-    if (a < b)
-      ++s.ours;
-    else if (b < a)
-      ++s.theirs;
-    else
-      ++s.neither;
+    ++(a < b ? s.ours : b < a ? s.theirs : s.neither);
   }
   return s;
 }

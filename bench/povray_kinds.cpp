@@ -4,17 +4,17 @@
 #include <cmath>
 
 #include "bench/povray_scene.h"
+#include "kernels/exact/polynomial_expression.h"
 #include "kernels/functions/function_tape.h"
 
 namespace oktett::bench {
 
 namespace {
 
-FieldObject torus(const double (&)[6]) {
-  return {"torus { 0.7, 0.3 rotate <90, 0, 0> }", ExactShape{TorusShape{0.7, 0.3}}, [](const Vec3l& p) {
-            const long double d = std::hypot(p.x, p.y) - 0.7L;
-            return d * d + p.z * p.z - 0.3L * 0.3L;
-          }};
+/// The equation is that of the shape's oracle.
+template <class S>
+FieldObject exact_object(std::string pov, const S& shape) {
+  return {std::move(pov), ExactShape{shape}, oracle_of(shape).f};
 }
 
 FieldObject sphere(const double (&)[6]) {
@@ -22,30 +22,28 @@ FieldObject sphere(const double (&)[6]) {
           [](const Vec3l& p) { return dot(p, p) - 0.9L * 0.9L; }};
 }
 
+FieldObject torus(const double (&)[6]) {
+  return exact_object("torus { 0.7, 0.3 rotate <90, 0, 0> }", TorusShape{0.7, 0.3});
+}
+
 FieldObject cylinder(const double (&)[6]) {
-  return {"cylinder { <0, -0.8, 0>, <0, 0.8, 0>, 0.6 }",
-          ExactShape{CylinderShape{{0, -0.8, 0}, {0, 0.8, 0}, 0.6}},
-          [](const Vec3l& p) { return std::max(std::hypot(p.x, p.z) - 0.6L, std::abs(p.y) - 0.8L); }};
+  return exact_object("cylinder { <0, -0.8, 0>, <0, 0.8, 0>, 0.6 }",
+                      CylinderShape{{0, -0.8, 0}, {0, 0.8, 0}, 0.6});
 }
 
 FieldObject cone(const double (&)[6]) {
-  return {"cone { <0, -0.8, 0>, 0.7, <0, 0.8, 0>, 0.2 }",
-          ExactShape{ConeShape{{0, -0.8, 0}, {0, 0.8, 0}, 0.7, 0.2}}, [](const Vec3l& p) {
-            return std::max(std::hypot(p.x, p.z) - (0.45L - 0.3125L * p.y), std::abs(p.y) - 0.8L);
-          }};
+  return exact_object("cone { <0, -0.8, 0>, 0.7, <0, 0.8, 0>, 0.2 }",
+                      ConeShape{{0, -0.8, 0}, {0, 0.8, 0}, 0.7, 0.2});
 }
 
 FieldObject quadric(const double (&)[6]) {
-  return {"intersection { quadric { <1, -1, 1>, <0, 0, 0>, <0, 0, 0>, -0.2 } box { -1, 1 } }",
-          ExactShape{QuadricShape{{1, -1, 1, 0, 0, 0, 0, 0, 0, -0.2}, true}}, [](const Vec3l& p) {
-            return std::max({p.x * p.x - p.y * p.y + p.z * p.z - 0.2L, std::abs(p.x) - 1, std::abs(p.y) - 1,
-                             std::abs(p.z) - 1});
-          }};
+  return exact_object("intersection { quadric { <1, -1, 1>, <0, 0, 0>, <0, 0, 0>, -0.2 } box { -1, 1 } }",
+                      QuadricShape{{1, -1, 1, 0, 0, 0, 0, 0, 0, -0.2}, true});
 }
 
 /// A dodecahedron.
 FieldObject polyhedron(const double (&)[6]) {
-  FieldObject object{"intersection {", ExactShape{}, {}};
+  std::string pov = "intersection {";
   PolyhedronShape shape;
   const double phi = (1 + std::sqrt(5.0)) / 2, inverse = 1 / std::sqrt(1 + phi * phi);
   for (int k = 0; k < 12; ++k) {
@@ -53,63 +51,26 @@ FieldObject polyhedron(const double (&)[6]) {
     n[k / 4] = (k & 1) != 0 ? inverse : -inverse,
           n[(k / 4 + 1) % 3] = (k & 2) != 0 ? phi * inverse : -phi * inverse;
     shape.planes.push_back({n, 0.75});
-    object.pov += fmt::format(" plane {{ <{}, {}, {}>, 0.75 }}", n.x, n.y, n.z);
+    pov += fmt::format(" plane {{ <{}, {}, {}>, 0.75 }}", n.x, n.y, n.z);
   }
-  object.pov += " bounded_by { sphere { 0, 0.95 } } }";
-  object.shape = ExactShape{shape};
-  object.f = [shape](const Vec3l& p) {
-    long double f = -1;
-    for (const HalfSpace& h : shape.planes)
-      f = std::max(f, h.normal.x * p.x + h.normal.y * p.y + h.normal.z * p.z - h.offset);
-    return f;
-  };
-  return object;
+  return exact_object(pov + " bounded_by { sphere { 0, 0.95 } } }", shape);
 }
 
 FieldObject quartic(const double (&)[6]) {
-  PolynomialShape shape;
-  shape.terms = {{4, 0, 0, 1},   {0, 4, 0, 1},    {0, 0, 4, 1},    {2, 2, 0, 2.2},  {2, 0, 2, 2.2},
-                 {0, 2, 2, 2.2}, {2, 0, 0, -2.3}, {0, 2, 0, -2.3}, {0, 0, 2, -2.3}, {0, 0, 0, 1.3}};
-  return {
+  return exact_object(
       "intersection { poly { 4, <1,0,0,0,2.2,0,0,2.2,0,-2.3,0,0,0,0,0,0,0,0,0,0,"
       "1,0,0,2.2,0,-2.3,0,0,0,0,1,0,-2.3,0,1.3> } box { -1, 1 } }",
-      ExactShape{shape}, [](const Vec3l& p) {
-        const long double x = p.x * p.x, y = p.y * p.y, z = p.z * p.z;
-        const long double f =
-            x * x + y * y + z * z + 2.2L * (x * y + x * z + y * z) - 2.3L * (x + y + z) + 1.3L;
-        return std::max({f, std::abs(p.x) - 1, std::abs(p.y) - 1, std::abs(p.z) - 1});
-      }};
-}
-
-constexpr ProfilePoint kProfile[] = {{0.2, -1.1}, {0.5, -1.0}, {0.8, -0.4},
-                                     {0.3, 0.3},  {0.5, 0.9},  {0.6, 1.2}};
-
-/// The square of the radius is cubic between the points, with the slope between their neighbours.
-long double outside_profile(const Vec3l& p) {
-  std::size_t k = 1;
-  while (k < 3 && p.y > kProfile[k + 1].height) ++k;
-  const auto slope = [&](std::size_t i) {
-    return 2 * static_cast<long double>(kProfile[i].radius) *
-           (kProfile[i + 1].radius - kProfile[i - 1].radius) /
-           (kProfile[i + 1].height - kProfile[i - 1].height);
-  };
-  const auto [r0, y0] = kProfile[k];
-  const auto [r1, y1] = kProfile[k + 1];
-  const long double h = y1 - y0, u = std::clamp((p.y - y0) / h, 0.0L, 1.0L), w = 1 - u;
-  const long double square = r0 * r0 * w * w * (1 + 2 * u) + r1 * r1 * u * u * (1 + 2 * w) +
-                             h * u * w * (slope(k) * w - slope(k + 1) * u);
-  return std::max({p.x * p.x + p.z * p.z - square, kProfile[1].height - p.y, p.y - kProfile[4].height});
+      PolynomialShape{expand_polynomial("x^4 + y^4 + z^4 + 2.2*(x^2*y^2 + x^2*z^2 + y^2*z^2)"
+                                        " - 2.3*(x^2 + y^2 + z^2) + 1.3")});
 }
 
 FieldObject revolution(const double (&)[6]) {
   RevolutionShape shape;
   shape.profile = RevolutionShape::Profile::sor;
+  shape.points = {{0.2, -1.1}, {0.5, -1.0}, {0.8, -0.4}, {0.3, 0.3}, {0.5, 0.9}, {0.6, 1.2}};
   std::string pov = "sor { 6";
-  for (const ProfilePoint& p : kProfile) {
-    shape.points.push_back(p);
-    pov += fmt::format(", <{}, {}>", p.radius, p.height);
-  }
-  return {pov + " }", ExactShape{shape}, outside_profile};
+  for (const ProfilePoint& p : shape.points) pov += fmt::format(", <{}, {}>", p.radius, p.height);
+  return exact_object(pov + " }", shape);
 }
 
 /// POV-Ray's (|x|^(2/e) + |y|^(2/e))^(e/n) + |z|^(2/n) = 1 is the same surface as ours if e = n.
@@ -117,33 +78,20 @@ FieldObject superellipsoid(const double (&r)[6]) {
   const double e = std::round((0.2 + 1.6 * r[0]) * 1000) / 1000;
   SuperquadricShape shape;
   shape.p = shape.q = shape.r = 2 / e;
-  return {fmt::format("superellipsoid {{ <{}, {}> }}", e, e), ExactShape{shape}, [p = 2 / e](const Vec3l& x) {
-            return std::pow(std::abs(x.x), p) + std::pow(std::abs(x.y), p) + std::pow(std::abs(x.z), p) - 1;
-          }};
+  return exact_object(fmt::format("superellipsoid {{ <{}, {}> }}", e, e), shape);
 }
 
 /// Six balls about the middle.
 FieldObject metaballs(const double (&random)[6]) {
-  FieldObject object{"blob { threshold 0.5", ExactShape{}, {}};
+  std::string pov = "blob { threshold 0.5";
   MetaballsShape shape{0.5, {}};
   for (int k = 0; k < 6; ++k) {
     const auto at = [&](double step, int axis) { return k * step + random[axis] * 6; };
     const Vec3d c{0.5 * std::cos(at(2.4, 0)), 0.5 * std::cos(at(1.7, 1)), 0.5 * std::sin(at(2.1, 2))};
     shape.balls.push_back({c, 0.75, 1});
-    object.pov += fmt::format(" sphere {{ <{}, {}, {}>, 0.75, 1 }}", c.x, c.y, c.z);
+    pov += fmt::format(" sphere {{ <{}, {}, {}>, 0.75, 1 }}", c.x, c.y, c.z);
   }
-  object.pov += " }";
-  object.shape = ExactShape{shape};
-  object.f = [shape](const Vec3l& p) {
-    long double f = shape.iso;
-    for (const MetaBall& ball : shape.balls) {
-      const Vec3l d = p - Vec3l(ball.center);
-      const long double q = 1 - dot(d, d) / (0.75L * 0.75L);
-      if (q > 0) f -= q * q;
-    }
-    return f;
-  };
-  return object;
+  return exact_object(pov + " }", shape);
 }
 
 /// A piece of a gyroid in a box. Its gradient is nowhere longer than 4 sqrt(12).

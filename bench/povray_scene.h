@@ -9,17 +9,16 @@
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 #include "render/scene.h"
+#include "verify/oracles/exact.h"
 
 namespace oktett::bench {
-
-using Vec3l = Vec3<long double>;
 
 /// One object of a field: as POV-Ray reads it, as Oktett traces it, and its equation.
 struct FieldObject {
   std::string pov;  ///< in its own space, without texture
   Shape shape;
   /// Negative inside, in the space of the shape.
-  std::function<long double(const Vec3l&)> f;
+  SurfaceFunction f;
 };
 
 /// A kind of shape. `make` describes one with parameters that depend on six random numbers of [0, 1).

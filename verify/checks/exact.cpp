@@ -62,12 +62,7 @@ class AlongRay {
     for (int i = 1; i <= kSamples; ++i) {
       const long double t1 = begin + (end - begin) * i / kSamples, f1 = (*this)(t1);
       if ((f0 < 0) != (f1 < 0)) {
-        long double lo = t0, hi = t1;
-        for (int k = 0; k < 64; ++k) {
-          const long double mid = lo + (hi - lo) / 2;
-          ((((*this)(mid) < 0) == (f0 < 0)) ? lo : hi) = mid;
-        }
-        const long double t = lo + (hi - lo) / 2;
+        const long double t = bisected(*this, t0, t1);
         if (ends(t) < 0) found.push_back(t);
       }
       t0 = t1, f0 = f1;

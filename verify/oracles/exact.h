@@ -17,6 +17,17 @@ using SurfaceFunction = std::function<long double(const Vec3l&)>;
 /// M p + t; with `one` = 0 the vector M p.
 Vec3l mapped(const Affine& m, const Vec3l& p, long double one = 1);
 
+/// Where f changes its sign between t0 and t1, by bisection.
+template <class F>
+long double bisected(const F& f, long double t0, long double t1) {
+  const bool negative = f(t0) < 0;
+  for (int k = 0; k < 64; ++k) {
+    const long double mid = t0 + (t1 - t0) / 2;
+    ((f(mid) < 0) == negative ? t0 : t1) = mid;
+  }
+  return t0 + (t1 - t0) / 2;
+}
+
 /// An exact surface and what it should be.
 struct ExactOracle {
   ExactShape shape;

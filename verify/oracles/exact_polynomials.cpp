@@ -255,16 +255,9 @@ ExactOracle lathe(CaseRandom& random) {
   LatheShape s;
   if (kind < 0.4) {
     // A vessel with an inner wall.
-    for (const ProfilePoint& p : std::initializer_list<ProfilePoint>{{0, -1},
-                                                                     {0.3, -0.8},
-                                                                     {0.8, -0.3},
-                                                                     {0.6, 0.4},
-                                                                     {0.85, 0.9},
-                                                                     {0.5, 0.6},
-                                                                     {0.4, 0},
-                                                                     {0.2, -0.4},
-                                                                     {0, -0.4}})
-      points.push_back({about(p.radius, 0.04), about(p.height, 0.04)});
+    constexpr ProfilePoint kVessel[] = {{0, -1},    {0.3, -0.8}, {0.8, -0.3}, {0.6, 0.4}, {0.85, 0.9},
+                                        {0.5, 0.6}, {0.4, 0},    {0.2, -0.4}, {0, -0.4}};
+    for (const ProfilePoint& p : kVessel) points.push_back({about(p.radius, 0.04), about(p.height, 0.04)});
     s.points = curve_through(points);
   } else if (kind < 0.7) {
     // A ring.
@@ -290,11 +283,11 @@ ExactOracle lathe(CaseRandom& random) {
     rough.emplace_back(&s.points[i]);
     pieces.emplace_back(&s.points[i]);
   }
-  const ProfilePoint ends[2] = {s.points.front(), s.points.back()};
+  const std::array ends{s.points.front(), s.points.back()};
   const bool loop = ends[0].radius == ends[1].radius && ends[0].height == ends[1].height;
   ExactOracle o{{s}, {}};
   // In `Real` where `double` might not tell the sign.
-  o.f = [rough, pieces, ends = std::array{ends[0], ends[1]}, loop](const Vec3l& p) {
+  o.f = [rough, pieces, ends, loop](const Vec3l& p) {
     const Real rho = std::sqrt(p.x * p.x + p.z * p.z);
     const double distance =
         outside_profile<double>(rough, ends, loop, static_cast<double>(rho), static_cast<double>(p.y));
@@ -302,7 +295,7 @@ ExactOracle lathe(CaseRandom& random) {
   };
   // The disks at the ends are not there.
   if (s.open) {
-    o.where = [ends = std::array{ends[0], ends[1]}](const Vec3l& p) {
+    o.where = [ends](const Vec3l& p) {
       const Real rho = std::sqrt(p.x * p.x + p.z * p.z);
       Real d = -1;
       for (const ProfilePoint& end : ends)
