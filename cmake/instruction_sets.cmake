@@ -77,6 +77,7 @@ function(oktett_compile_set target set sources tag)
   target_compile_options(${code} PRIVATE
     -ffp-contract=off ${optimization} -falign-functions=64 -g0 ${warnings} ${ARGN})
   oktett_target_warnings(${code})
+  oktett_precompile(${code} <xsimd/xsimd.hpp>)
   target_link_libraries(${code} PRIVATE oktett_internal)
   if(BUILD_SHARED_LIBS)
     set_target_properties(${code} PROPERTIES POSITION_INDEPENDENT_CODE ON)

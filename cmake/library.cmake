@@ -16,6 +16,7 @@ add_library(oktett::oktett ALIAS oktett)
 target_compile_features(oktett PUBLIC cxx_std_20)
 target_compile_options(oktett PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett)
+oktett_precompile(oktett)
 set_target_properties(oktett PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 include(cmake/public_headers.cmake)
@@ -24,9 +25,9 @@ target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
   PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt ${CMAKE_DL_LIBS})
 
-# Holds a copy of the scalar traversal, in which GCC 12 warns of lanes that a mask leaves out.
+# Holds a copy of the scalar traversal: compiled as that is. GCC 12 warns of lanes that a mask leaves out.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp
-  PROPERTIES COMPILE_OPTIONS -Wno-maybe-uninitialized)
+  PROPERTIES COMPILE_OPTIONS "-O2;-fno-tree-vectorize;-Wno-maybe-uninitialized")
 include(cmake/instruction_sets.cmake)
 file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp render/isa/*.cpp)
 oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES})
@@ -38,6 +39,7 @@ add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp io/image
 target_compile_features(oktett_images PRIVATE cxx_std_20)
 target_compile_options(oktett_images PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett_images)
+oktett_precompile(oktett_images <OpenImageIO/imageio.h> <fmt/format.h>)
 target_link_libraries(oktett_images PRIVATE oktett_internal OpenImageIO::OpenImageIO fmt::fmt)
 if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
   target_link_options(oktett_images PRIVATE LINKER:--no-undefined)
@@ -67,5 +69,6 @@ if(OKTETT_BUILD_APP OR OKTETT_BUILD_TESTS OR OKTETT_BUILD_BENCH)
   target_compile_options(oktett_verify PRIVATE -ffp-contract=off)
   target_link_libraries(oktett_verify PUBLIC oktett::oktett oktett_internal fmt::fmt)
   oktett_target_warnings(oktett_verify)
+  oktett_precompile(oktett_verify <fmt/format.h>)
   oktett_compile_per_set(oktett_verify ${OKTETT_VERIFY_ISA_SOURCES})
 endif()
