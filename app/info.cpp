@@ -22,7 +22,6 @@
 #include "render/geometry.h"
 
 namespace oktett {
-
 namespace {
 
 struct InfoArguments {
@@ -49,13 +48,10 @@ std::string bounds_text(const Box& box) {
                      box.hi.y, box.hi.z);
 }
 
-/// Figures of the trees, including those of all prototypes.
 struct TreeSummary {
-  std::optional<TraceCounts> counts;
+  World world;
   double build_seconds = 0;
-  std::uint64_t bytes = 0;
-  double sah_cost = 0;
-  std::uint64_t triangles = 0;
+  std::optional<TraceCounts> counts;
 };
 
 /// The rays through the centres of the pixels of a frame, at most about a million.
@@ -74,10 +70,11 @@ RayBatch camera_rays(const Scene& scene, const Box& bounds) {
 TreeSummary build_trees(const Scene& scene, const InfoArguments& arguments) {
   const BuildOptions options = parse_bvh_option(arguments.bvh);
   const auto start = std::chrono::steady_clock::now();
-  const World world = build_world(scene, options);
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  TreeSummary tree{{}, taken.count(), world.bvh_bytes, world.sah_cost, world.triangles};
-  if (arguments.trace) tree.counts = trace_counts(*world.accel, camera_rays(scene, world.bounds).span());
+  TreeSummary tree;
+  tree.world = build_world(scene, options);
+  tree.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (arguments.trace)
+    tree.counts = trace_counts(*tree.world.accel, camera_rays(scene, tree.world.bounds).span());
   return tree;
 }
 
@@ -109,13 +106,13 @@ void print_text(const Scene& scene, const SceneSummary& summary, const TreeSumma
   line("camera", scene.camera_given ? "given" : "default");
   line("bounds", bounds_text(summary.bounds));
   line("mesh memory", bytes_text(summary.mesh_bytes));
-  line("BVH memory", bytes_text(tree.bytes));
-  if (tree.triangles > 0) {
-    const double all = static_cast<double>(tree.bytes + summary.mesh_bytes);
+  line("BVH memory", bytes_text(tree.world.bvh_bytes));
+  if (tree.world.triangles > 0) {
+    const double all = static_cast<double>(tree.world.bvh_bytes + summary.mesh_bytes);
     line("  per triangle",
-         fmt::format("{:.1f} bytes with the mesh", all / static_cast<double>(tree.triangles)));
+         fmt::format("{:.1f} bytes with the mesh", all / static_cast<double>(tree.world.triangles)));
   }
-  line("BVH cost", fmt::format("{:.2f} (expected nodes and leaves per ray)", tree.sah_cost));
+  line("BVH cost", fmt::format("{:.2f} (expected nodes and leaves per ray)", tree.world.sah_cost));
   line("BVH build", fmt::format("{:.3g} s", tree.build_seconds));
   if (!tree.counts) return;
   line("camera rays", grouped(tree.counts->rays));
@@ -143,8 +140,8 @@ void print_json(const Scene& scene, const SceneSummary& summary, const TreeSumma
     all.add({{"bounds_min", std::vector<double>{box.lo.x, box.lo.y, box.lo.z}},
              {"bounds_max", std::vector<double>{box.hi.x, box.hi.y, box.hi.z}}});
   all.add({{"mesh_bytes", summary.mesh_bytes},
-           {"bvh_bytes", tree.bytes},
-           {"sah_cost", tree.sah_cost},
+           {"bvh_bytes", tree.world.bvh_bytes},
+           {"sah_cost", tree.world.sah_cost},
            {"build_seconds", tree.build_seconds}});
   if (tree.counts) {
     JsonObject counts{{"rays", tree.counts->rays}};

@@ -3,7 +3,6 @@
 #include <csignal>
 
 namespace oktett {
-
 namespace {
 
 std::atomic<bool> stop_flag{false};

@@ -25,7 +25,6 @@
 #include "render/render.h"
 
 namespace oktett {
-
 namespace {
 
 class Stopwatch {

@@ -12,7 +12,6 @@
 #include "core/error.h"
 
 namespace oktett {
-
 namespace {
 
 constexpr const char* kIntegrators[] = {"whitted", "path", "ao", "normal", "depth"};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -10,10 +11,15 @@
 #include "kernels/exact_bounds.h"
 
 namespace oktett {
-
 namespace {
 
-void grow(Box& box, const Vec3d& low, const Vec3d& high) { box.grow(Box{round_down(low), round_up(high)}); }
+void grow(Box& box, const Vec3d& p) { box.grow(Box{round_down(p), round_up(p)}); }
+
+Box points_bounds(const auto& points) {
+  Box box;
+  for (const Vec3d& p : points) grow(box, p);
+  return box;
+}
 
 Box sphere_bounds(const SphereShape& sphere) {
   const Vec3d r{sphere.radius, sphere.radius, sphere.radius};
@@ -44,16 +50,8 @@ struct ShapeBounds {
     return {round_down(shape.center - extent), round_up(shape.center + extent)};
   }
   Box operator()(const BoxShape& shape) const { return {round_down(shape.min), round_up(shape.max)}; }
-  Box operator()(const PolygonShape& shape) const {
-    Box box;
-    for (const Vec3d& v : shape.vertices) grow(box, v, v);
-    return box;
-  }
-  Box operator()(const TriangleShape& shape) const {
-    Box box;
-    for (const Vec3d& v : shape.v) grow(box, v, v);
-    return box;
-  }
+  Box operator()(const PolygonShape& shape) const { return points_bounds(shape.vertices); }
+  Box operator()(const TriangleShape& shape) const { return points_bounds(shape.v); }
   Box operator()(const ExactShape& shape) const { return exact_bounds(shape, {}); }
   Box operator()(const CsgShape& shape) const;
   Box operator()(const InstanceShape& shape) const {
@@ -69,10 +67,7 @@ Box object_bounds(const Object& object, const std::vector<Box>& prototypes) {
     return box.empty() || object.transform.is_identity() ? box : transform_bounds(object.transform, box);
   }
   Box box;
-  for (const Vec3f& p : shape->mesh->positions) {
-    const Vec3d moved = object.transform.point(static_cast<Vec3d>(p));
-    grow(box, moved, moved);
-  }
+  for (const Vec3f& p : shape->mesh->positions) grow(box, object.transform.point(static_cast<Vec3d>(p)));
   return box;
 }
 
@@ -83,36 +78,28 @@ Box ShapeBounds::operator()(const CsgShape& shape) const {
   return box;
 }
 
-/// What a list of objects shows, including the contents of its instances.
-struct Shown {
-  Box bounds;
-  double triangles = 0;
-};
-
 class Counter {
  public:
   explicit Counter(const Scene& scene) {
     // A prototype holds instances of those before it only.
     for (const Prototype& prototype : scene.prototypes) {
-      const Shown shown = count(prototype.objects);
-      prototype_bounds_.push_back(shown.bounds);
-      prototype_triangles_.push_back(shown.triangles);
+      prototype_triangles_.push_back(count(prototype.objects));
+      prototype_bounds_.push_back(std::exchange(summary_.bounds, {}));
     }
-    const Shown shown = count(scene.objects);
-    summary_.bounds = shown.bounds;
-    summary_.triangles_shown = shown.triangles;
+    summary_.triangles_shown = count(scene.objects);
   }
 
   const SceneSummary& summary() const { return summary_; }
 
  private:
-  Shown count(const std::vector<Object>& objects) {
-    Shown shown;
+  /// Returns the triangles that the objects show, including the contents of instances, and grows the bounds.
+  double count(const std::vector<Object>& objects) {
+    double triangles = 0;
     for (const Object& object : objects) {
-      shown.bounds.grow(object_bounds(object, prototype_bounds_));
-      shown.triangles += count_shape(object.shape);
+      summary_.bounds.grow(object_bounds(object, prototype_bounds_));
+      triangles += count_shape(object.shape);
     }
-    return shown;
+    return triangles;
   }
 
   /// Returns the triangles that the shape shows.

@@ -20,7 +20,6 @@
 #include "verify/checks/meshes.h"
 
 namespace oktett {
-
 namespace {
 
 constexpr int kExitFailed = 3;

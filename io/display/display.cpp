@@ -2,21 +2,23 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cctype>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
-#include "io/display/packet.h"
 #include "io/display/socket.h"
 
 namespace oktett {
-
 namespace {
 
 constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
@@ -41,6 +43,75 @@ Address parse_address(const std::string& server) {
   if (server.empty() || !digits || std::stoi(address.port) < 1 || std::stoi(address.port) > 65535)
     throw Error("the display server '" + server + "' is not of the form host:port");
   return address;
+}
+
+using Packet = std::vector<std::byte>;
+
+enum class PacketType : std::uint8_t { create_image = 4, update_image_v2 = 5 };
+
+/// Writes a packet of tev's protocol, after the source of tev (include/tev/Ipc.h): its own size in bytes as
+/// 32 bits, an 8-bit type, then fields: integers and floats little-endian, flags as one byte, texts ended by
+/// a zero.
+class Writer {
+ public:
+  Writer(PacketType type, bool flag, const std::string& title) {
+    number(0u);
+    byte(static_cast<std::uint8_t>(type));
+    byte(flag ? 1 : 0);
+    text(title);
+  }
+
+  void byte(std::uint8_t v) { packet_.push_back(static_cast<std::byte>(v)); }
+  void number(std::uint32_t v) {
+    for (int shift = 0; shift < 32; shift += 8) byte(static_cast<std::uint8_t>(v >> shift));
+  }
+  void number(float v) { number(std::bit_cast<std::uint32_t>(v)); }
+  void text(const std::string& s) {
+    // A zero byte in a title would shift all that follows.
+    for (const char c : s)
+      if (c != '\0') byte(static_cast<std::uint8_t>(c));
+    byte(0);
+  }
+  void channels(std::span<const PicturePlane* const> planes) {
+    number(static_cast<std::uint32_t>(planes.size()));
+    for (const PicturePlane* plane : planes) text(plane->name);
+  }
+  void reserve(std::size_t more) { packet_.reserve(packet_.size() + more); }
+
+  Packet finished() {
+    const auto size = static_cast<std::uint32_t>(packet_.size());
+    for (std::size_t i = 0; i < 4; ++i) packet_[i] = static_cast<std::byte>(size >> (8 * i));
+    return std::move(packet_);
+  }
+
+ private:
+  Packet packet_;
+};
+
+/// Announces an image of `width` x `height` pixels with these channels, all black; brings it to the front.
+Packet create_image_packet(const std::string& title, std::uint32_t width, std::uint32_t height,
+                           std::span<const PicturePlane* const> planes) {
+  Writer writer(PacketType::create_image, true, title);
+  writer.number(width);
+  writer.number(height);
+  writer.channels(planes);
+  return writer.finished();
+}
+
+/// Fills a rectangle of several channels at once. `tile` is in the picture's own coordinates, the packet in
+/// those of the full frame.
+Packet update_image_packet(const std::string& title, const Picture& picture, const FinishedTile& tile,
+                           std::span<const PicturePlane* const> planes) {
+  Writer writer(PacketType::update_image_v2, false, title);
+  writer.channels(planes);
+  for (const std::uint32_t v : {picture.x + tile.x, picture.y + tile.y, tile.width, tile.height})
+    writer.number(v);
+  writer.reserve(sizeof(float) * planes.size() * tile.width * tile.height);
+  for (const PicturePlane* plane : planes)
+    for (std::size_t y = tile.y; y < std::size_t{tile.y} + tile.height; ++y)
+      for (std::size_t x = tile.x; x < std::size_t{tile.x} + tile.width; ++x)
+        writer.number(plane->values[y * picture.width + x]);
+  return writer.finished();
 }
 
 std::vector<const PicturePlane*> shown_planes(const Picture& picture) {
@@ -68,56 +139,51 @@ struct Display::Link {
   bool ended = false;    ///< the thread has left, for good or bad
   std::string problem;
 
-  void run();
-  bool next(Packet& packet);
-  void end(const std::string& what);
-  void push(Packet packet);
-};
-
-/// The thread: connect, then send packets as they come.
-void Display::Link::run() {
-  ClientSocket socket(&stop);
-  std::string what = socket.connect(address.host, address.port, timeouts.connect);
-  Packet packet;
-  while (what.empty() && next(packet)) what = socket.send(packet, timeouts.stall);
-  end(what);
-}
-
-bool Display::Link::next(Packet& packet) {
-  std::unique_lock lock(mutex);
-  changed.wait(lock, [this] { return !queue.empty() || closing || stop; });
-  if (queue.empty() || stop) return false;
-  packet = std::move(queue.front());
-  queue.pop_front();
-  queued_bytes -= packet.size();
-  return true;
-}
-
-/// Ends the preview, with a reason or without; the first reason stays.
-void Display::Link::end(const std::string& what) {
-  const std::lock_guard lock(mutex);
-  ended = true;
-  queue.clear();
-  queued_bytes = 0;
-  if (!what.empty() && !stop)
-    problem = "no live preview: display server " + address.host + ":" + address.port + ": " + what;
-  stop = true;
-  changed.notify_all();
-}
-
-void Display::Link::push(Packet packet) {
-  {
-    const std::lock_guard lock(mutex);
-    if (ended || stop) return;
-    if (queued_bytes + packet.size() <= kMostQueuedBytes) {
-      queued_bytes += packet.size();
-      queue.push_back(std::move(packet));
-      changed.notify_all();
-      return;
-    }
+  /// The thread: connect, then send packets as they come.
+  void run() {
+    ClientSocket socket(&stop);
+    std::string what = socket.connect(address.host, address.port, timeouts.connect);
+    Packet packet;
+    while (what.empty() && next(packet)) what = socket.send(packet, timeouts.stall);
+    end(what);
   }
-  end("it is too slow");
-}
+
+  bool next(Packet& packet) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [this] { return !queue.empty() || closing || stop; });
+    if (queue.empty() || stop) return false;
+    packet = std::move(queue.front());
+    queue.pop_front();
+    queued_bytes -= packet.size();
+    return true;
+  }
+
+  /// Ends the preview, with a reason or without; the first reason stays.
+  void end(const std::string& what) {
+    const std::lock_guard lock(mutex);
+    ended = true;
+    queue.clear();
+    queued_bytes = 0;
+    if (!what.empty() && !stop)
+      problem = "no live preview: display server " + address.host + ":" + address.port + ": " + what;
+    stop = true;
+    changed.notify_all();
+  }
+
+  void push(Packet packet) {
+    {
+      const std::lock_guard lock(mutex);
+      if (ended || stop) return;
+      if (queued_bytes + packet.size() <= kMostQueuedBytes) {
+        queued_bytes += packet.size();
+        queue.push_back(std::move(packet));
+        changed.notify_all();
+        return;
+      }
+    }
+    end("it is too slow");
+  }
+};
 
 Display::Display(const std::string& server, const std::string& title, const DisplayTimeouts& timeouts)
     : link_(std::make_shared<Link>()), title_(title) {

@@ -14,7 +14,6 @@
 #include <system_error>
 
 namespace oktett {
-
 namespace {
 
 constexpr int kSliceMilliseconds = 50;

@@ -15,15 +15,9 @@ float srgb_to_linear(float encoded) {
 }
 
 float decode(const ColorEncoding& encoding, float stored) {
-  switch (encoding.curve) {
-    case TransferCurve::srgb:
-      return srgb_to_linear(stored);
-    case TransferCurve::gamma:
-      return stored <= 0 ? stored : std::pow(stored, encoding.exponent);
-    case TransferCurve::linear:
-      break;
-  }
-  return stored;
+  if (encoding.curve == TransferCurve::srgb) return srgb_to_linear(stored);
+  return encoding.curve == TransferCurve::gamma && !(stored <= 0) ? std::pow(stored, encoding.exponent)
+                                                                  : stored;
 }
 
 std::uint8_t linear_to_srgb8(float linear) {

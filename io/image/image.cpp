@@ -11,7 +11,6 @@
 #include "io/image/output.h"
 
 namespace oktett {
-
 namespace {
 
 using Format = std::pair<const char*, PictureLayout>;

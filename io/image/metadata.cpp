@@ -4,7 +4,6 @@
 #include <numbers>
 
 namespace oktett {
-
 namespace {
 
 using Matrix4d = std::array<std::array<double, 4>, 4>;

@@ -18,9 +18,6 @@ namespace {
 
 using MaybeForm = std::optional<ExactForm>;
 
-/// Greatest magnitude of a float that is still a length.
-constexpr double kMostHeight = kMaxCoordinate;
-
 std::shared_ptr<const HeightGrid> read_file(SceneLoad& load, const YamlNode& node,
                                             HeightInterpolation interpolation) {
   const std::string path = load.values.existing_file(node);
@@ -57,7 +54,7 @@ Column<float> sample(const FunctionTape& f, std::uint32_t columns, std::uint32_t
       const double x = (column / (columns - 1.0) - 0.5) * size.x, y = value_at(f, x, 0, z);
       const std::size_t i = std::size_t{row} * columns + column;
       samples[i] = static_cast<float>(y);
-      if (std::abs(y) <= kMostHeight) continue;
+      if (std::abs(y) <= kMaxCoordinate) continue;
       for (std::size_t before = first_bad; i < before && !first_bad.compare_exchange_weak(before, i);) {}
     }
   });
@@ -112,10 +109,10 @@ MaybeForm finish(const ShapeNode& at, HeightFieldShape& shape) {
                     : sample_function(at.load, *function, fields["samples"], shape.size, interpolation);
   const double unit = shape.size.y * shape.grid->unit();
   const double least = shape.grid->least() * unit, greatest = shape.grid->greatest() * unit;
-  if (!(std::max(std::abs(least), std::abs(greatest)) <= kMostHeight))
+  if (!(std::max(std::abs(least), std::abs(greatest)) <= kMaxCoordinate))
     throw Error(at.key.where(), fmt::format("the heights are from {:g} to {:g}; expected a magnitude of at "
                                             "most {:g}",
-                                            least, greatest, kMostHeight));
+                                            least, greatest, kMaxCoordinate));
   if (!shape.open && shape.size.y > 0 && !(shape.base < least))
     throw Error(fields.require("base").where(),
                 fmt::format("the base must be below all heights, of which the least is {:g}", least));

@@ -17,31 +17,6 @@ struct Surroundings {
   bool is_dropped = false;  ///< the members are checked but not kept
 };
 
-/// Reads the objects of the world or of one prototype, groups flattened.
-class ObjectReader {
- public:
-  /// `defining` is the map of prototypes that is being read, `name` the one in it that the objects belong to;
-  /// null and empty for the world.
-  ObjectReader(SceneLoad& load, std::vector<Object>& out, const YamlNode* defining, std::string name)
-      : load_(load), out_(out), defining_(defining), name_(std::move(name)) {}
-
-  void read(const YamlNode& node, const Surroundings& outer);
-  /// Levels of instances below what has been read.
-  int levels() const { return levels_; }
-
- private:
-  std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
-                                const Surroundings& inner);
-  std::optional<Shape> read_instance(const YamlNode& node);
-  [[noreturn]] void fail_unknown_prototype(const YamlNode& node, const std::string& name) const;
-
-  SceneLoad& load_;
-  std::vector<Object>& out_;
-  const YamlNode* defining_;
-  std::string name_;
-  int levels_ = 0;
-};
-
 /// Several objects as one operand: their union.
 Object unite(std::vector<Object> members, const Location& where) {
   if (members.size() == 1) return std::move(members.front());
@@ -75,96 +50,117 @@ MapEntry find_shape(const YamlNode& node) {
   return shape;
 }
 
-void ObjectReader::read(const YamlNode& node, const Surroundings& outer) {
-  const auto [key, value] = find_shape(node);
-  const Fields fields(node, "an object", {key->text.c_str(), "material", "transform", "name"});
-  const bool is_group = key->text == "group", is_instance = key->text == "instance";
+/// Reads the objects of the world or of one prototype, groups flattened.
+class ObjectReader {
+ public:
+  /// `defining` is the map of prototypes that is being read, `name` the one in it that the objects belong to;
+  /// null and empty for the world.
+  ObjectReader(SceneLoad& load, std::vector<Object>& out, const YamlNode* defining, std::string name)
+      : load_(load), out_(out), defining_(defining), name_(std::move(name)) {}
 
-  Object object;
-  object.where = node.where();
-  if (const YamlNode* name = fields["name"]) {
-    object.name = load_.values.text(*name);
-    load_.objects.add(object.name, 0, name->where(), "object");
-  }
-  // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
-  Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped};
-  if (const YamlNode* material = fields["material"]) inner.material = read_material(load_, *material);
-  if (const YamlNode* transform = fields["transform"]) {
-    const Affine own = read_transform(load_.values, *transform);
-    inner.transform = outer.transform * own;
-    std::string reason = why_degenerate(own);
-    if (reason.empty() && !outer.is_dropped) reason = why_degenerate(inner.transform);
-    if (!reason.empty()) {
-      inner.is_dropped = true;
-      load_.warn(transform->where(),
-                 reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
+  void read(const YamlNode& node, const Surroundings& outer) {
+    const auto [key, value] = find_shape(node);
+    const Fields fields(node, "an object", {key->text.c_str(), "material", "transform", "name"});
+    const bool is_group = key->text == "group", is_instance = key->text == "instance";
+
+    Object object;
+    object.where = node.where();
+    if (const YamlNode* name = fields["name"]) {
+      object.name = load_.values.text(*name);
+      load_.objects.add(object.name, 0, name->where(), "object");
     }
+    // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
+    Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped};
+    if (const YamlNode* material = fields["material"]) inner.material = read_material(load_, *material);
+    if (const YamlNode* transform = fields["transform"]) {
+      const Affine own = read_transform(load_.values, *transform);
+      inner.transform = outer.transform * own;
+      std::string reason = why_degenerate(own);
+      if (reason.empty() && !outer.is_dropped) reason = why_degenerate(inner.transform);
+      if (!reason.empty()) {
+        inner.is_dropped = true;
+        load_.warn(transform->where(),
+                   reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
+      }
+    }
+    if (is_group) {
+      for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
+      return;
+    }
+    const auto* const csg = std::ranges::find(kCsgKeys, key->text, &Choice<CsgOp>::name);
+    std::optional<Shape> shape = csg != std::end(kCsgKeys) ? read_csg(csg->value, *key, *value, inner)
+                                 : is_instance             ? read_instance(*value)
+                                                           : read_shape(load_, *key, *value);
+    if (!shape || inner.is_dropped) return;
+    object.shape = std::move(*shape);
+    object.material = inner.material;
+    object.transform = inner.transform;
+    out_.push_back(std::move(object));
   }
-  if (is_group) {
-    for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
-    return;
-  }
-  const auto* const csg = std::ranges::find(kCsgKeys, key->text, &Choice<CsgOp>::name);
-  std::optional<Shape> shape = csg != std::end(kCsgKeys) ? read_csg(csg->value, *key, *value, inner)
-                               : is_instance             ? read_instance(*value)
-                                                         : read_shape(load_, *key, *value);
-  if (!shape || inner.is_dropped) return;
-  object.shape = std::move(*shape);
-  object.material = inner.material;
-  object.transform = inner.transform;
-  out_.push_back(std::move(object));
-}
 
-std::optional<Shape> ObjectReader::read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
-                                            const Surroundings& outer) {
-  const auto nodes = list_items(operands, key.text);
-  if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
-  // Operands stand in the space of the combination, whose transform applies to all.
-  const Surroundings inner{{}, outer.material, outer.is_dropped};
-  std::vector<Object> solids;
-  bool is_nothing = false;
-  for (const YamlNode* node : nodes) {
-    std::vector<Object> members;
-    ObjectReader reader(load_, members, defining_, name_);
-    reader.read(*node, inner);
-    levels_ = std::max(levels_, reader.levels_);
-    for (const Object& member : members) require_solid(load_, member);
-    // What was skipped is nothing, and so is what it is intersected with or taken from.
-    const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
-    if (members.empty())
-      is_nothing |= is_needed;
-    else
-      solids.push_back(unite(std::move(members), node->where()));
-  }
-  if (is_nothing || solids.empty()) {
-    if (!outer.is_dropped)
-      load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
-    return std::nullopt;
-  }
-  return CsgShape{op, std::make_shared<const std::vector<Object>>(std::move(solids))};
-}
+  /// Levels of instances below what has been read.
+  int levels() const { return levels_; }
 
-std::optional<Shape> ObjectReader::read_instance(const YamlNode& node) {
-  const std::string name = load_.values.text(node);
-  const NameTable::Entry* prototype = load_.prototypes.find(name);
-  if (!prototype) fail_unknown_prototype(node, name);
-  levels_ = std::max(levels_, load_.prototype_levels[prototype->index] + 1);
-  if (levels_ > kMaxInstanceLevels)
-    throw Error(node.where(), fmt::format("instances are nested deeper than {} levels", kMaxInstanceLevels));
-  return InstanceShape{prototype->index};
-}
+ private:
+  std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
+                                const Surroundings& outer) {
+    const auto nodes = list_items(operands, key.text);
+    if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
+    // Operands stand in the space of the combination, whose transform applies to all.
+    const Surroundings inner{{}, outer.material, outer.is_dropped};
+    std::vector<Object> solids;
+    bool is_nothing = false;
+    for (const YamlNode* node : nodes) {
+      std::vector<Object> members;
+      ObjectReader reader(load_, members, defining_, name_);
+      reader.read(*node, inner);
+      levels_ = std::max(levels_, reader.levels_);
+      for (const Object& member : members) require_solid(load_, member);
+      // What was skipped is nothing, and so is what it is intersected with or taken from.
+      const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
+      if (members.empty())
+        is_nothing |= is_needed;
+      else
+        solids.push_back(unite(std::move(members), node->where()));
+    }
+    if (is_nothing || solids.empty()) {
+      if (!outer.is_dropped)
+        load_.warn(key.where(), "nothing is left of the " + key.text + "; the object is skipped");
+      return std::nullopt;
+    }
+    return CsgShape{op, std::make_shared<const std::vector<Object>>(std::move(solids))};
+  }
 
-void ObjectReader::fail_unknown_prototype(const YamlNode& node, const std::string& name) const {
-  if (defining_ && name == name_) throw Error(node.where(), "prototype " + quote(name) + " contains itself");
-  if (defining_)
-    for (const auto& [key, value] : map_entries(*defining_, "define"))
-      if (key->text == name)
-        throw Error(node.where(),
-                    fmt::format("prototype {} is defined only later, at line {}; a prototype may hold "
-                                "instances of those before it",
-                                quote(name), key->line));
-  throw Error(node.where(), "unknown prototype " + quote(name) + load_.prototypes.suggestion(name));
-}
+  std::optional<Shape> read_instance(const YamlNode& node) {
+    const std::string name = load_.values.text(node);
+    const NameTable::Entry* prototype = load_.prototypes.find(name);
+    if (!prototype) fail_unknown_prototype(node, name);
+    levels_ = std::max(levels_, load_.prototype_levels[prototype->index] + 1);
+    if (levels_ > kMaxInstanceLevels)
+      throw Error(node.where(),
+                  fmt::format("instances are nested deeper than {} levels", kMaxInstanceLevels));
+    return InstanceShape{prototype->index};
+  }
+
+  [[noreturn]] void fail_unknown_prototype(const YamlNode& node, const std::string& name) const {
+    if (defining_ && name == name_)
+      throw Error(node.where(), "prototype " + quote(name) + " contains itself");
+    if (defining_)
+      for (const auto& [key, value] : map_entries(*defining_, "define"))
+        if (key->text == name)
+          throw Error(node.where(),
+                      fmt::format("prototype {} is defined only later, at line {}; a prototype may hold "
+                                  "instances of those before it",
+                                  quote(name), key->line));
+    throw Error(node.where(), "unknown prototype " + quote(name) + load_.prototypes.suggestion(name));
+  }
+
+  SceneLoad& load_;
+  std::vector<Object>& out_;
+  const YamlNode* defining_;
+  std::string name_;
+  int levels_ = 0;
+};
 
 }  // namespace
 

@@ -30,17 +30,9 @@ void ParameterReader::check(bool ok, const char* key, const char* message, const
   throw Error(value->where(), found ? fmt::format("{}, found {:.6g}", message, *found) : message);
 }
 
-void ParameterReader::read(const YamlNode& node, const Parameter& parameter, double& value) {
-  value = load_.values.number(node, parameter.range);
-}
-
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::uint32_t& value) {
   value = load_.values.integer(node, static_cast<std::uint32_t>(parameter.range.lo),
                                static_cast<std::uint32_t>(parameter.range.hi));
-}
-
-void ParameterReader::read(const YamlNode& node, const Parameter&, bool& value) {
-  value = load_.values.boolean(node);
 }
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, Vec3d& value) {
@@ -51,10 +43,6 @@ void ParameterReader::read(const YamlNode& node, const Parameter& parameter, Vec
     if (!parameter.range.contains(x))
       throw Error(node.where(), fmt::format("the {} must not be negative", parameter.key));
   value = {v[0], v[1], v[2]};
-}
-
-void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::span<double> values) {
-  load_.values.numbers(node, values, parameter.range);
 }
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points) {
@@ -88,10 +76,6 @@ void ParameterReader::read(const YamlNode& node, const Parameter&, std::vector<M
   } catch (const Error& e) {
     fail_in_text("equation", node, text, e);
   }
-}
-
-void ParameterReader::read(const YamlNode& node, const Parameter&, FunctionTape& function) {
-  function = read_function(load_, node);
 }
 
 std::span<const YamlNode* const> ParameterReader::items_of(const YamlNode& node, const Parameter& parameter) {

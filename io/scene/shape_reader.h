@@ -48,6 +48,9 @@ class KeyList : public ParameterVisitor<KeyList> {
   std::vector<const char*> keys;
 };
 
+/// A function of x, y and z.
+FunctionTape read_function(SceneLoad& load, const YamlNode& node);
+
 /// Reads the values of the fields of a map into the members that they describe.
 class ParameterReader : public ParameterVisitor<ParameterReader> {
  public:
@@ -73,16 +76,20 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   const char* why_nothing = nullptr;  ///< why the shape has no points, if so
 
  private:
-  void read(const YamlNode& node, const Parameter& parameter, double& value);
+  void read(const YamlNode& node, const Parameter& parameter, double& value) {
+    value = load_.values.number(node, parameter.range);
+  }
   void read(const YamlNode& node, const Parameter& parameter, std::uint32_t& value);
-  void read(const YamlNode& node, const Parameter& parameter, bool& value);
+  void read(const YamlNode& node, const Parameter&, bool& value) { value = load_.values.boolean(node); }
   void read(const YamlNode& node, const Parameter& parameter, Vec3d& value);
-  void read(const YamlNode& node, const Parameter& parameter, std::span<double> values);
+  void read(const YamlNode& node, const Parameter& parameter, std::span<double> values) {
+    load_.values.numbers(node, values, parameter.range);
+  }
   void read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points);
   void read(const YamlNode& node, const Parameter& parameter, SolidBox& box);
   void read(const YamlNode& node, const Parameter& parameter, ClipBox& box);
   void read(const YamlNode& node, const Parameter& parameter, std::vector<Monomial>& terms);
-  void read(const YamlNode& node, const Parameter& parameter, FunctionTape& function);
+  void read(const YamlNode& node, const Parameter&, FunctionTape& f) { f = read_function(load_, node); }
   void read(const YamlNode&, const Parameter&, const ByHand&) {}
   template <class T>
   void read(const YamlNode& node, const Parameter&, ChoiceOf<T>& choice) {
@@ -120,8 +127,5 @@ bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point);
 bool read_item(SceneLoad& load, const YamlNode& node, Affine& map);
 bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source);
 bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball);
-
-/// A function of x, y and z.
-FunctionTape read_function(SceneLoad& load, const YamlNode& node);
 
 }  // namespace oktett

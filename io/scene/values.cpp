@@ -52,16 +52,12 @@ std::string suggest(const std::string& name, std::span<const std::string> known)
 
 Fields::Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known)
     : node_(node), what_(what) {
-  if (node.kind == YamlKind::null) return;
-  if (node.kind != YamlKind::map)
-    throw Error(node.where(), "expected a map for " + what + ", found " + node.describe());
-  for (std::size_t i = 0; i < node.items.size(); i += 2) {
-    const YamlNode& key = *node.items[i];
-    if (std::find(known.begin(), known.end(), key.text) != known.end()) continue;
+  for (const auto& [key, value] : map_entries(node, what)) {
+    if (std::find(known.begin(), known.end(), key->text) != known.end()) continue;
     const std::vector<std::string> names(known.begin(), known.end());
-    std::string message = "unknown key " + quote(key.text) + " in " + what + suggest(key.text, names);
+    std::string message = "unknown key " + quote(key->text) + " in " + what + suggest(key->text, names);
     if (message.back() != '?') message += fmt::format("; known are {}", fmt::join(names, ", "));
-    throw Error(key.where(), message);
+    throw Error(key->where(), message);
   }
 }
 

@@ -185,17 +185,8 @@ Location YamlNode::where(std::size_t i) const {
 }
 
 std::string YamlNode::describe() const {
-  switch (kind) {
-    case YamlKind::null:
-      return "nothing";
-    case YamlKind::sequence:
-      return "a list";
-    case YamlKind::map:
-      return "a map";
-    case YamlKind::scalar:
-      break;
-  }
-  return quote(text);
+  if (kind == YamlKind::scalar) return quote(text);
+  return kind == YamlKind::null ? "nothing" : kind == YamlKind::sequence ? "a list" : "a map";
 }
 
 std::string why_unreadable(const std::string& path) {

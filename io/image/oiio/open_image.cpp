@@ -14,7 +14,6 @@
 #include "core/error.h"
 
 namespace oktett::oiio {
-
 namespace {
 
 constexpr int kMaxChannels = 1024;
@@ -103,3 +102,11 @@ void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, 
 }
 
 }  // namespace oktett::oiio
+
+/// The one symbol that the shared library shows; kImageLibraryEntry names it.
+extern "C" __attribute__((visibility("default"))) const oktett::ImageLibrary* oktett_image_library();
+
+const oktett::ImageLibrary* oktett_image_library() {
+  static const oktett::oiio::OpenImageIoLibrary library;
+  return &library;
+}

@@ -1,5 +1,6 @@
 #pragma once
-/// \file What all who deal with OpenImageIO share. Not for other folders.
+/// \file The shared library of images, see io/image/library.h, and what its parts share. Not for other
+/// folders.
 
 #include <OpenImageIO/imageio.h>
 
@@ -7,8 +8,22 @@
 #include <string>
 
 #include "io/image/color.h"
+#include "io/image/library.h"
 
 namespace oktett::oiio {
+
+/// The library, whose reading and writing functions are defined in files of their own.
+class OpenImageIoLibrary final : public ImageLibrary {
+ public:
+  std::optional<PictureLayout> layout(const std::string& path) const override;
+  void write(const std::string& path, const std::string& temporary, const Picture& picture,
+             const ImageMetadata& metadata) const override;
+  Picture read(const std::string& path) const override;
+  HeightImage read_heights(const std::string& path, std::uint32_t most_side,
+                           std::size_t most_pixels) const override;
+  std::unique_ptr<TextureSampler> load_textures(std::vector<Texture> textures,
+                                                std::vector<Warning>& warnings) const override;
+};
 
 /// The first line of an error text, without a full stop at its end; `fallback` if there is none.
 std::string first_line(const std::string& text, const std::string& fallback);

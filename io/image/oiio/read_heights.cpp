@@ -6,11 +6,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/image/oiio/library.h"
 #include "io/image/oiio/open_image.h"
 
 namespace oktett::oiio {
-
 namespace {
 
 using OIIO::ImageSpec;

@@ -7,11 +7,9 @@
 
 #include "core/error.h"
 #include "io/image/color.h"
-#include "io/image/oiio/library.h"
 #include "io/image/oiio/open_image.h"
 
 namespace oktett::oiio {
-
 namespace {
 
 using OIIO::ImageSpec;

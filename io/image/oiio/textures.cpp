@@ -13,12 +13,10 @@
 #include <string>
 #include <utility>
 
-#include "io/image/oiio/library.h"
 #include "io/image/oiio/open_image.h"
 #include "io/image/oiio/texture_input.h"
 
 namespace oktett::oiio {
-
 namespace {
 
 using OIIO::TextureSystem;
@@ -100,42 +98,8 @@ OIIO::TextureOpt lookup_options(bool clamp, int first_channel) {
   return options;
 }
 
-class FileTextures final : public TextureSampler {
- public:
-  FileTextures(std::vector<Texture> textures, std::vector<Warning>& warnings);
-  ~FileTextures() override;
-  FileTextures(const FileTextures&) = delete;
-  FileTextures& operator=(const FileTextures&) = delete;
-
-  Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
-  float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
-  Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override;
-
- private:
-  void list_files();
-  /// Reads the header only.
-  static void inspect(ImageFile& file);
-  /// Brings the finest level into the cache, which is also how damage beyond the header is found.
-  static void load(ImageFile& file);
-  /// False if the texture is white.
-  bool look_up(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy, int first_channel, int channels,
-               float* result) const;
-
-  std::vector<Texture> textures_;
-  std::vector<ImageFile> files_;
-  std::vector<std::size_t> file_of_;  ///< per texture
-};
-
-void FileTextures::list_files() {
-  std::map<std::string, std::size_t> known;
-  for (const Texture& texture : textures_) {
-    const auto [place, is_new] = known.try_emplace(texture.path, files_.size());
-    if (is_new) files_.push_back({texture.path, nullptr, {}, {}, 0});
-    file_of_.push_back(place->second);
-  }
-}
-
-void FileTextures::inspect(ImageFile& file) {
+/// Reads the header only.
+void inspect(ImageFile& file) {
   try {
     const OIIO::ImageSpec spec = open_image(file.path)->spec();
     const double channel_bytes = spec.format.size() == 1 ? 2 : 4;
@@ -147,7 +111,8 @@ void FileTextures::inspect(ImageFile& file) {
   }
 }
 
-void FileTextures::load(ImageFile& file) {
+/// Brings the finest level into the cache, which is also how damage beyond the header is found.
+void load(ImageFile& file) {
   TextureSystem& system = texture_system();
   file.name = new_name();
   OIIO::ImageSpec config;
@@ -164,61 +129,80 @@ void FileTextures::load(ImageFile& file) {
   }
 }
 
-FileTextures::~FileTextures() {
-  for (const ImageFile& file : files_)
-    if (!file.name.empty()) texture_system().invalidate(file.name);
-  double bytes = 0;
-  for (const ImageFile& file : files_) bytes += file.bytes;
-  reserve_memory(-bytes);
-}
-
-FileTextures::FileTextures(std::vector<Texture> textures, std::vector<Warning>& warnings)
-    : textures_(std::move(textures)) {
-  list_files();
-  double bytes = 0;
-  for (ImageFile& file : files_) {
-    inspect(file);
-    bytes += file.bytes;
+class FileTextures final : public TextureSampler {
+ public:
+  FileTextures(std::vector<Texture> textures, std::vector<Warning>& warnings)
+      : textures_(std::move(textures)) {
+    list_files();
+    double bytes = 0;
+    for (ImageFile& file : files_) {
+      inspect(file);
+      bytes += file.bytes;
+    }
+    reserve_memory(bytes);
+    tbb::parallel_for(std::size_t{0}, files_.size(), [this](std::size_t i) {
+      if (files_[i].problem.empty()) load(files_[i]);
+    });
+    for (const ImageFile& file : files_)
+      if (file.handle == nullptr)
+        warnings.push_back({Location{file.path}, "texture not used: " + file.problem + "; white instead"});
   }
-  reserve_memory(bytes);
-  tbb::parallel_for(std::size_t{0}, files_.size(), [this](std::size_t i) {
-    if (files_[i].problem.empty()) load(files_[i]);
-  });
-  for (const ImageFile& file : files_)
-    if (file.handle == nullptr)
-      warnings.push_back({Location{file.path}, "texture not used: " + file.problem + "; white instead"});
-}
+  ~FileTextures() override {
+    for (const ImageFile& file : files_)
+      if (!file.name.empty()) texture_system().invalidate(file.name);
+    double bytes = 0;
+    for (const ImageFile& file : files_) bytes += file.bytes;
+    reserve_memory(-bytes);
+  }
+  FileTextures(const FileTextures&) = delete;
+  FileTextures& operator=(const FileTextures&) = delete;
 
-bool FileTextures::look_up(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy, int first_channel, int channels,
-                           float* result) const {
-  if (index >= textures_.size()) return false;
-  const Texture& texture = textures_[index];
-  TextureSystem::TextureHandle* handle = files_[file_of_[index]].handle;
-  if (handle == nullptr) return false;
-  const Footprint at = footprint(texture, uv, dx, dy);
-  OIIO::TextureOpt options = lookup_options(texture.clamp, first_channel);
-  return texture_system().texture(handle, nullptr, options, at.s, at.t, at.dsdx, at.dtdx, at.dsdy, at.dtdy,
-                                  channels, result);
-}
+  Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    float rgb[3];
+    if (!look_up(index, uv, dx, dy, 0, 3, rgb)) return {1, 1, 1};
+    const Texture& texture = textures_[index];
+    return Color{rgb[0], rgb[1], rgb[2]} * texture.gain + Color{texture.base, texture.base, texture.base};
+  }
 
-Color FileTextures::color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
-  float rgb[3];
-  if (!look_up(index, uv, dx, dy, 0, 3, rgb)) return {1, 1, 1};
-  const Texture& texture = textures_[index];
-  return Color{rgb[0], rgb[1], rgb[2]} * texture.gain + Color{texture.base, texture.base, texture.base};
-}
+  float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    float texel;
+    if (!look_up(index, uv, dx, dy, TextureInput::kStoredChannel, 1, &texel)) return 1;
+    return texel * textures_[index].gain + textures_[index].base;
+  }
 
-float FileTextures::value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
-  float texel;
-  if (!look_up(index, uv, dx, dy, TextureInput::kStoredChannel, 1, &texel)) return 1;
-  return texel * textures_[index].gain + textures_[index].base;
-}
+  Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    float xyz[3];
+    if (!look_up(index, uv, dx, dy, TextureInput::kStoredChannel, 3, xyz)) return {0.5f, 0.5f, 1};
+    return {xyz[0], xyz[1], xyz[2]};
+  }
 
-Vec3f FileTextures::normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
-  float xyz[3];
-  if (!look_up(index, uv, dx, dy, TextureInput::kStoredChannel, 3, xyz)) return {0.5f, 0.5f, 1};
-  return {xyz[0], xyz[1], xyz[2]};
-}
+ private:
+  void list_files() {
+    std::map<std::string, std::size_t> known;
+    for (const Texture& texture : textures_) {
+      const auto [place, is_new] = known.try_emplace(texture.path, files_.size());
+      if (is_new) files_.push_back({texture.path, nullptr, {}, {}, 0});
+      file_of_.push_back(place->second);
+    }
+  }
+
+  /// False if the texture is white.
+  bool look_up(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy, int first_channel, int channels,
+               float* result) const {
+    if (index >= textures_.size()) return false;
+    const Texture& texture = textures_[index];
+    TextureSystem::TextureHandle* handle = files_[file_of_[index]].handle;
+    if (handle == nullptr) return false;
+    const Footprint at = footprint(texture, uv, dx, dy);
+    OIIO::TextureOpt options = lookup_options(texture.clamp, first_channel);
+    return texture_system().texture(handle, nullptr, options, at.s, at.t, at.dsdx, at.dtdx, at.dsdy, at.dtdy,
+                                    channels, result);
+  }
+
+  std::vector<Texture> textures_;
+  std::vector<ImageFile> files_;
+  std::vector<std::size_t> file_of_;  ///< per texture
+};
 
 }  // namespace
 

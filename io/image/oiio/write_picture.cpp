@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -9,11 +10,9 @@
 
 #include "core/error.h"
 #include "io/image/color.h"
-#include "io/image/oiio/library.h"
 #include "io/image/oiio/open_image.h"
 
 namespace oktett::oiio {
-
 namespace {
 
 using OIIO::ImageOutput;
@@ -63,14 +62,11 @@ void add_metadata(ImageSpec& spec, const ImageMetadata& metadata) {
 /// Copies `count` pixels of a plane to every `stride` bytes of `out`, in the type the file has.
 void pack_plane(const PicturePlane& plane, std::size_t first, std::size_t count, std::byte* out,
                 std::size_t stride) {
-  if (plane.type == PlaneType::unsigned_int) {
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * stride, &plane.ids[first + i], 4);
-    return;
-  }
-  if (plane.type == PlaneType::single_float) {
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * stride, &plane.values[first + i], 4);
-    return;
-  }
+  const auto copy = [&](const auto* numbers) {
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * stride, numbers + i, sizeof *numbers);
+  };
+  if (plane.type == PlaneType::unsigned_int) return copy(&plane.ids[first]);
+  if (plane.type == PlaneType::single_float) return copy(&plane.values[first]);
   std::vector<float> finite(count);
   std::vector<std::uint16_t> halves(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -79,7 +75,7 @@ void pack_plane(const PicturePlane& plane, std::size_t first, std::size_t count,
   }
   OIIO::convert_pixel_values(TypeDesc::FLOAT, finite.data(), TypeDesc::HALF, halves.data(),
                              static_cast<int>(count));
-  for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * stride, &halves[i], 2);
+  copy(halves.data());
 }
 
 /// All planes of a row, pixel after pixel. A row stays in the cache while plane after plane is added.
@@ -135,6 +131,10 @@ const PicturePlane& color_plane(const Picture& picture, const char* name) {
   return *plane;
 }
 
+std::array<const PicturePlane*, 3> color_planes(const Picture& picture) {
+  return {&color_plane(picture, "R"), &color_plane(picture, "G"), &color_plane(picture, "B")};
+}
+
 ImageSpec flat_spec(const Picture& picture, int channels, TypeDesc type, const ImageMetadata& metadata) {
   ImageSpec spec(static_cast<int>(picture.width), static_cast<int>(picture.height), channels, type);
   spec.attribute("oiio:ColorSpace", type == TypeDesc::UINT8 ? "sRGB" : "Linear");
@@ -146,8 +146,7 @@ ImageSpec flat_spec(const Picture& picture, int channels, TypeDesc type, const I
 
 bool write_float_rgb(ImageOutput& output, const std::string& path, const Picture& picture,
                      const ImageMetadata& metadata) {
-  const PicturePlane* planes[3] = {&color_plane(picture, "R"), &color_plane(picture, "G"),
-                                   &color_plane(picture, "B")};
+  const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   std::vector<float> rgb(pixels * 3);
   for (std::size_t i = 0; i < pixels; ++i)
@@ -164,8 +163,7 @@ float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0
 
 bool write_srgb8(ImageOutput& output, const std::string& path, const Picture& picture,
                  const ImageMetadata& metadata) {
-  const PicturePlane* planes[3] = {&color_plane(picture, "R"), &color_plane(picture, "G"),
-                                   &color_plane(picture, "B")};
+  const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const PicturePlane* alpha =
       output.supports("alpha") && picture.find("A") != nullptr ? &color_plane(picture, "A") : nullptr;
   const std::size_t channels = alpha != nullptr ? 4 : 3;
@@ -199,17 +197,11 @@ void OpenImageIoLibrary::write(const std::string& path, const std::string& tempo
   bool written = false;
   std::string why;
   try {
-    switch (layout_of(output)) {
-      case PictureLayout::all_planes:
-        written = write_planes(output, temporary, picture, metadata);
-        break;
-      case PictureLayout::float_rgb:
-        written = write_float_rgb(output, temporary, picture, metadata);
-        break;
-      case PictureLayout::srgb8:
-        written = write_srgb8(output, temporary, picture, metadata);
-        break;
-    }
+    const PictureLayout layout = layout_of(output);
+    const auto write_as = layout == PictureLayout::all_planes  ? write_planes
+                          : layout == PictureLayout::float_rgb ? write_float_rgb
+                                                               : write_srgb8;
+    written = write_as(output, temporary, picture, metadata);
     if (!written) why = output.geterror();
   } catch (const Error&) {
     throw;
