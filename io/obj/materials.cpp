@@ -1,11 +1,11 @@
-#include "io/obj/materials.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 #include <unordered_map>
 #include <utility>
+
+#include "io/obj/chunk.h"
 
 namespace oktett {
 namespace {

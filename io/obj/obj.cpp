@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "io/obj/chunk.h"
-#include "io/obj/materials.h"
 #include "io/text/mapped_file.h"
 
 namespace oktett {

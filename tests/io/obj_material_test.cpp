@@ -1,4 +1,4 @@
-#include "io/obj/materials.h"
+#include "io/obj/chunk.h"
 
 #include <gtest/gtest.h>
 

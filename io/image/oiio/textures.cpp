@@ -8,18 +8,115 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "io/image/oiio/open_image.h"
-#include "io/image/oiio/texture_input.h"
 
 namespace oktett::oiio {
 namespace {
 
 using OIIO::TextureSystem;
+using OIIO::TypeDesc;
+
+/// Presents an image file to a texture cache as six channels: linear R, G, B, then the first three as
+/// stored (a grey one repeated). Halves for 8-bit files, which lose nothing that 8 bits hold, floats for all
+/// others. The path is handed over as the string attribute `oktett:path` of the configuration, so no
+/// character of it has a meaning to the cache.
+class TextureInput final : public OIIO::ImageInput {
+ public:
+  static constexpr int kChannels = 6;
+  static constexpr int kStoredChannel = 3;  ///< the first of those as stored
+
+  /// In the form the cache's add_file wants.
+  static OIIO::ImageInput* create() { return new TextureInput; }
+
+  const char* format_name() const override { return "oktett-texture"; }
+  bool open(const std::string&, OIIO::ImageSpec&) override {
+    errorfmt("a texture is opened by its configuration only");
+    return false;
+  }
+
+  bool open(const std::string&, OIIO::ImageSpec& spec, const OIIO::ImageSpec& config) override {
+    try {
+      input_ = open_image(std::string(config.get_string_attribute("oktett:path")));
+    } catch (const Error& error) {
+      errorfmt("{}", error.what());
+      return false;
+    }
+    const OIIO::ImageSpec& file = input_->spec();
+    encoding_ = color_encoding(file);
+    file_channels_ = file.nchannels < 3 ? 1 : 3;
+    curve_.clear();
+    const bool eight_bit = file.format.basetype == TypeDesc::UINT8;
+    if (eight_bit)
+      for (int v = 0; v < 256; ++v) curve_.push_back(decode(encoding_, static_cast<float>(v) / 255.0f));
+    m_spec =
+        OIIO::ImageSpec(file.width, file.height, kChannels, eight_bit ? TypeDesc::HALF : TypeDesc::FLOAT);
+    spec = m_spec;
+    return true;
+  }
+
+  bool close() override {
+    input_.reset();
+    pixels_ = {};
+    return true;
+  }
+
+  bool read_native_scanline(int subimage, int miplevel, int y, int z, void* data) override {
+    if (!input_ || subimage != 0 || miplevel != 0 || z != 0 || y < 0 || y >= m_spec.height) return false;
+    if (pixels_.empty() && !read_pixels()) return false;
+    std::vector<float> row(static_cast<std::size_t>(m_spec.width) * kChannels);
+    decode_row(y, row.data());
+    const int numbers = static_cast<int>(row.size());
+    OIIO::convert_pixel_values(TypeDesc::FLOAT, row.data(), m_spec.format, data, numbers);
+    // The cache reads the image once, from the top down, and keeps what it needs.
+    if (y == m_spec.height - 1) pixels_ = {};
+    return true;
+  }
+
+ private:
+  /// Decodes the whole file: it may be compressed in a way that has no rows.
+  bool read_pixels() {
+    const std::size_t count = static_cast<std::size_t>(m_spec.width) *
+                              static_cast<std::size_t>(m_spec.height) *
+                              static_cast<std::size_t>(file_channels_);
+    std::string why;
+    try {
+      pixels_.resize(count);
+      if (input_->read_image(0, 0, 0, file_channels_, TypeDesc::FLOAT, pixels_.data())) return true;
+      why = input_->geterror();
+    } catch (const std::exception& error) {
+      why = error.what();
+    }
+    pixels_ = {};
+    errorfmt("cannot read the image: {}", first_line(why, "damaged file"));
+    return false;
+  }
+
+  void decode_row(int y, float* row) const {
+    const std::size_t width = static_cast<std::size_t>(m_spec.width);
+    const std::size_t stored = static_cast<std::size_t>(file_channels_);
+    const float* in = pixels_.data() + static_cast<std::size_t>(y) * width * stored;
+    for (std::size_t x = 0; x < width; ++x, in += stored, row += kChannels) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float v = in[stored == 3 ? c : 0];
+        row[c] = curve_.empty() ? decode(encoding_, v) : curve_[static_cast<std::uint8_t>(v * 255.0f + 0.5f)];
+        row[kStoredChannel + c] = v;
+      }
+    }
+  }
+
+  OIIO::ImageInput::unique_ptr input_;
+  ColorEncoding encoding_;
+  std::vector<float> curve_;   ///< decoded value of each 8-bit number; empty for other types
+  std::vector<float> pixels_;  ///< the file's channels, from the first row read to the last
+  int file_channels_ = 0;
+};
 
 /// The one texture system of the process, with a cache of its own. It lives until the process ends:
 /// version 2.4 of the library frees it in a way that memory checkers refuse.
