@@ -73,6 +73,64 @@ class TurnList {
   FractalCrossing left_;
 };
 
+/// A line in units of a grid, whose cells are boxes. What is asked of it is one formula of the plane's
+/// number, which grows with it: so neighbouring cells agree on where one ends and the other begins.
+struct GridLine {
+  /// Where the line leaves a box, or enters it.
+  struct Gate {
+    double t = HUGE_VAL;
+    int axis = 0;
+    double plane = 0;
+  };
+  Vec3d o, d, inverse;
+  int way[3];  ///< 1 or -1; 0 where the line is closer to parallel to the planes than a double can resolve
+
+  /// The point p of the element's own space is (p + shift) * scale in the grid.
+  GridLine(const FractalQuery& query, const Vec3d& shift, const Vec3d& scale)
+      : o((query.o + shift) * scale), d(query.d * scale) {
+    for (int k = 0; k < 3; ++k) {
+      inverse[k] = 1 / d[k];
+      way[k] = !(std::abs(inverse[k]) < HUGE_VAL) || inverse[k] == 0 ? 0 : d[k] > 0 ? 1 : -1;
+    }
+  }
+  /// Where it meets a plane that it is not parallel to.
+  double at(int axis, double plane) const { return (plane - o[axis]) * inverse[axis]; }
+  double place(int axis, double t) const { return o[axis] + t * d[axis]; }
+  /// Whether right after t it is on the side of the plane where coordinates are greater.
+  bool is_beyond(int axis, double plane, double t) const {
+    if (way[axis] == 0) return plane <= o[axis];
+    return way[axis] > 0 ? at(axis, plane) <= t : !(at(axis, plane) <= t);
+  }
+  /// The part in a box; false if there is none.
+  bool clip(const Vec3d& lo, const Vec3d& hi, Gate& in, Gate& out) const {
+    in = {-HUGE_VAL}, out = {};
+    for (int k = 0; k < 3; ++k) {
+      if (way[k] == 0) {
+        if (!(lo[k] <= o[k] && o[k] < hi[k])) return false;
+        continue;
+      }
+      const double near = way[k] > 0 ? lo[k] : hi[k], far = way[k] > 0 ? hi[k] : lo[k];
+      if (at(k, near) > in.t) in = {at(k, near), k, near};
+      if (at(k, far) < out.t) out = {at(k, far), k, far};
+    }
+    return in.t < out.t && -HUGE_VAL < in.t && out.t < HUGE_VAL;
+  }
+};
+
+/// The crossing at `gate` with the plane across its axis at `place` in the element's own space, whose normal
+/// has the sign `out`; its part is the number of a face as in LineRange. uv as on the square [-1, 1]^2.
+inline FractalCrossing wall_crossing(const FractalQuery& query, const GridLine::Gate& gate, double place,
+                                     double out, double turn) {
+  const int axis = gate.axis, u = (axis + 1) % 3, v = (axis + 2) % 3;
+  FractalCrossing c;
+  c.t = gate.t, c.turn = turn, c.part = 1 + 2 * axis + (out > 0);
+  if (!query.with_surface) return c;
+  c.point = query.o + query.d * gate.t;
+  c.point[axis] = place, c.normal[axis] = out;
+  c.u = 0.5 * (c.point[u] + 1), c.v = 0.5 * (c.point[v] + 1), c.tangent[u] = 2;
+  return c;
+}
+
 /// F::find for each lane: up to K crossings in ascending order.
 template <class F, int K, class D>
 void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, const Line<D>& line,

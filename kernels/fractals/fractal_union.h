@@ -159,6 +159,20 @@ class UnionWalk {
   std::uint8_t path_[kMaxDepth];
 };
 
+/// Bounds in the world of what reaches as far as support(w) along w, both in the element's own space, with
+/// room for rounding by `slack` times the coordinates; `radius` is about its size there.
+template <class Support>
+Box bounds_by_support(const Affine& to_world, double slack, double radius, Support&& support) {
+  Vec3d lo, hi;
+  for (int k = 0; k < 3; ++k) {
+    const auto& row = to_world.m[k];
+    const Vec3d w{row[0], row[1], row[2]};
+    const double middle = row[3], pad = slack * (std::abs(middle) + length(w) * radius);
+    lo[k] = middle - support(-w) - pad, hi[k] = middle + support(w) + pad;
+  }
+  return {round_down(lo), round_up(hi)};
+}
+
 /// F::find for a union: `tell(place, crossing)` adds the point and the normal.
 template <class Walk, class Tell>
 int find_in_union(Walk& walk, const FractalQuery& query, FractalCrossing* out, int room, Tell&& tell) {

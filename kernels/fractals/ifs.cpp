@@ -155,13 +155,7 @@ struct Support {
     std::pair<double, int> order[kMaxIfsMaps];
     const int n = static_cast<int>(e.maps.size());
     const Ball& below = e.balls[e.depth() - depth.level - 1];
-    const auto turned = [&](int k) {
-      // The transposed linear part.
-      const auto& m = e.maps[k].to_parent.m;
-      return Vec3d{m[0][0] * w.x + m[1][0] * w.y + m[2][0] * w.z,
-                   m[0][1] * w.x + m[1][1] * w.y + m[2][1] * w.z,
-                   m[0][2] * w.x + m[1][2] * w.y + m[2][2] * w.z};
-    };
+    const auto turned = [&](int k) { return e.maps[k].to_parent.normal_by_inverse(w); };
     const auto start = [&](int k) {
       const auto& m = e.maps[k].to_parent.m;
       return from + (m[0][3] * w.x + m[1][3] * w.y + m[2][3] * w.z);
@@ -309,16 +303,9 @@ bool Ifs::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 }
 
 Box Ifs::world_bounds(const Pool& pool, std::size_t i) {
-  const Affine& m = pool.frames[i].to_world;
-  Vec3d lo, hi;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3d w{m.m[k][0], m.m[k][1], m.m[k][2]};
-    const double middle = m.m[k][3],
-                 pad = 0x1p-44 * (std::abs(middle) + length(w) * pool.elements[i].balls.back().radius);
-    lo[k] = middle - support(pool.elements[i], -w) - pad;
-    hi[k] = middle + support(pool.elements[i], w) + pad;
-  }
-  return {round_down(lo), round_up(hi)};
+  const Element& e = pool.elements[i];
+  return bounds_by_support(pool.frames[i].to_world, 0x1p-44, e.balls.back().radius,
+                           [&](const Vec3d& w) { return support(e, w); });
 }
 
 }  // namespace oktett

@@ -1,70 +1,28 @@
 #include "kernels/fractals/menger.h"
 
 #include <algorithm>
-#include <limits>
+#include <array>
 
 namespace oktett {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-/// A line through the grid; cells have size 1.
-class GridLine {
- public:
-  GridLine(const FractalQuery& query, double side) {
-    for (int k = 0; k < 3; ++k) {
-      o_[k] = (query.o[k] + 1) * (side * 0.5);
-      const double d = query.d[k] * (side * 0.5);
-      inverse_[k] = 1 / d;
-      // What no double can tell from parallel is.
-      way_[k] = !(std::abs(inverse_[k]) < kInf) || inverse_[k] == 0 ? 0 : d > 0 ? 1 : -1;
-    }
-  }
-  int way(int axis) const { return way_[axis]; }
-  /// Where the line meets a plane that it is not parallel to. Monotonous in the plane.
-  double at(int axis, double plane) const { return (plane - o_[axis]) * inverse_[axis]; }
-  /// Which of the three slabs of width `size` from `low` on the line is in right after t.
-  int slab(int axis, double low, double size, double t) const {
-    const double first = low + size, second = first + size;
-    if (way_[axis] > 0) return (at(axis, first) <= t) + (at(axis, second) <= t);
-    if (way_[axis] < 0) return 2 - (at(axis, second) <= t) - (at(axis, first) <= t);
-    return (first <= o_[axis]) + (second <= o_[axis]);
-  }
-  bool is_between(int axis, double low, double high) const { return low <= o_[axis] && o_[axis] < high; }
-  /// The part that looks against the line, or along it, on a plane across `axis`.
-  double face(int axis, double turn) const { return 1 + 2 * axis + (way_[axis] * turn > 0); }
-
- private:
-  Vec3d o_, inverse_;
-  int way_[3];
-};
-
-/// Where the line leaves a cell, or enters it.
-struct Gate {
-  double t = kInf;
-  int axis = 0;
-  double plane = 0;
-};
+using Gate = GridLine::Gate;
 
 struct Cell {
   Vec3d low;
   Gate exit;
 };
 
-/// Powers of 3.
-struct Powers {
-  double at[kMaxMengerDepth + 1];
-  constexpr Powers() : at{} {
-    at[0] = 1;
-    for (int k = 1; k <= kMaxMengerDepth; ++k) at[k] = 3 * at[k - 1];
-  }
-};
-constexpr Powers kPowers;
+constexpr auto kPowersOf3 = [] {
+  std::array<double, kMaxMengerDepth + 1> at{1};
+  for (int k = 1; k <= kMaxMengerDepth; ++k) at[k] = 3 * at[k - 1];
+  return at;
+}();
 
 class MengerWalk {
  public:
   MengerWalk(const MengerElement& e, const FractalQuery& query)
-      : e_(e), query_(query), line_(query, e.side) {}
+      : e_(e), query_(query), line_(query, {1, 1, 1}, Vec3d{0.5, 0.5, 0.5} * e.side) {}
 
   int find(FractalCrossing* out, int room) {
     TurnList turns(out, room);
@@ -94,26 +52,14 @@ class MengerWalk {
  private:
   /// The way into the whole; false if there is none.
   bool enter(Gate& in) {
-    in.t = -kInf;
-    Cell& root = path_[0];
-    root = {{0, 0, 0}, {}};
-    for (int k = 0; k < 3; ++k) {
-      const int way = line_.way(k);
-      if (way == 0) {
-        if (!line_.is_between(k, 0, e_.side)) return false;
-        continue;
-      }
-      const double near = way > 0 ? 0 : e_.side, t = line_.at(k, near);
-      if (!(t <= in.t)) in = {t, k, near};
-    }
-    set_exit(root, e_.side);
-    return in.t < root.exit.t && root.exit.t < kInf && query_.a < root.exit.t;
+    path_[0] = {};
+    return line_.clip({0, 0, 0}, Vec3d{1, 1, 1} * e_.side, in, path_[0].exit) && query_.a < path_[0].exit.t;
   }
 
   void set_exit(Cell& cell, double size) const {
     cell.exit = {};
     for (int k = 0; k < 3; ++k) {
-      const int way = line_.way(k);
+      const int way = line_.way[k];
       if (way == 0) continue;
       const double plane = way > 0 ? cell.low[k] + size : cell.low[k], t = line_.at(k, plane);
       if (t < cell.exit.t) cell.exit = {t, k, plane};
@@ -131,9 +77,11 @@ class MengerWalk {
       const double size = size_of(level + 1);
       int middles = 0;
       for (int k = 0; k < 3; ++k) {
-        const int slab = line_.slab(k, path_[level].low[k], size, t);
+        // Which of the three slabs of this width the line is in.
+        const double low = path_[level].low[k], first = low + size;
+        const int slab = line_.is_beyond(k, first, t) + line_.is_beyond(k, first + size, t);
         middles += slab == 1;
-        cell.low[k] = path_[level].low[k] + slab * size;
+        cell.low[k] = low + slab * size;
       }
       set_exit(cell, size);
       if (middles >= 2) return false;
@@ -141,19 +89,10 @@ class MengerWalk {
     }
   }
 
-  double size_of(int level) const { return kPowers.at[e_.depth - level]; }
+  double size_of(int level) const { return kPowersOf3[e_.depth - level]; }
 
   FractalCrossing turn_at(const Gate& gate, double turn) const {
-    FractalCrossing c;
-    c.t = gate.t, c.turn = turn, c.part = line_.face(gate.axis, turn);
-    if (!query_.with_surface) return c;
-    c.point = query_.o + query_.d * gate.t;
-    c.point[gate.axis] = gate.plane * (2 / e_.side) - 1;
-    c.normal[gate.axis] = line_.way(gate.axis) * turn;
-    const int u = (gate.axis + 1) % 3, v = (gate.axis + 2) % 3;
-    c.u = 0.5 * (c.point[u] + 1), c.v = 0.5 * (c.point[v] + 1);
-    c.tangent[u] = 2;
-    return c;
+    return wall_crossing(query_, gate, gate.plane * (2 / e_.side) - 1, line_.way[gate.axis] * turn, turn);
   }
 
   const MengerElement& e_;
@@ -166,7 +105,7 @@ class MengerWalk {
 
 void Menger::add(Pool& pool, const MengerShape& s, const ExactPlace& place) {
   if (s.depth > kMaxMengerDepth) return;
-  const Element e{static_cast<int>(s.depth), kPowers.at[s.depth]};
+  const Element e{static_cast<int>(s.depth), kPowersOf3[s.depth]};
   add_element(pool, e, place.to_world, place);
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }

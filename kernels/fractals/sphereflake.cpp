@@ -176,15 +176,8 @@ double Sphereflake::support(const Element& e, const Vec3d& direction) {
 }
 
 Box Sphereflake::world_bounds(const Pool& pool, std::size_t i) {
-  const Affine& m = pool.frames[i].to_world;
-  Vec3d lo, hi;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3d w{m.m[k][0], m.m[k][1], m.m[k][2]};
-    const double l = length(w), middle = m.m[k][3], pad = 0x1p-45 * (std::abs(middle) + l);
-    lo[k] = middle - support(pool.elements[i], -w) * l - pad;
-    hi[k] = middle + support(pool.elements[i], w) * l + pad;
-  }
-  return {round_down(lo), round_up(hi)};
+  return bounds_by_support(pool.frames[i].to_world, 0x1p-45, 1,
+                           [&](const Vec3d& w) { return support(pool.elements[i], w) * length(w); });
 }
 
 double Sphereflake::count(const SphereflakeShape& shape) {

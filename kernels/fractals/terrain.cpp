@@ -101,26 +101,16 @@ struct Triangles {
   double on_diagonal(double x) const { return between(c.h[0], c.h[3], x - c.x); }
 };
 
-/// Where the line passes a plane.
-struct Gate {
-  double t;
-  int axis;
-};
+using Gate = GridLine::Gate;
 
 class TerrainWalk {
  public:
   TerrainWalk(const TerrainElement& e, const FractalQuery& query, FractalCrossing* out, int room)
-      : e_(e), query_(query), turns_(out, room) {
-    for (int k = 0; k < 3; ++k) {
-      const double grow = k == 1 ? 1 : e.side * 0.5;
-      o_[k] = k == 1 ? query.o.y : (query.o[k] + 1) * grow;
-      d_[k] = query.d[k] * grow, inverse_[k] = 1 / d_[k];
-      way_[k] = !(std::abs(inverse_[k]) < kInf) || inverse_[k] == 0 ? 0 : d_[k] > 0 ? 1 : -1;
-    }
-  }
+      : e_(e), query_(query), line_(query, {1, 0, 1}, {e.side * 0.5, 1, e.side * 0.5}), turns_(out, room) {}
 
   int find() {
-    if (!enter() || !(query_.a < end_.t)) return 0;
+    if (!line_.clip({0, e_.base, 0}, {e_.side, e_.high, e_.side}, begin_, end_) || !(query_.a < end_.t))
+      return 0;
     double t = std::max(query_.a, begin_.t);
     known_ = query_.a < begin_.t;
     path_[0] = whole(e_), exits_[0] = exit_of(path_[0]);
@@ -140,39 +130,16 @@ class TerrainWalk {
   }
 
  private:
-  double at(int axis, double plane) const { return (plane - o_[axis]) * inverse_[axis]; }
-  double place(int axis, double t) const { return o_[axis] + t * d_[axis]; }
-
-  /// The part of the line in the box around everything.
-  bool enter() {
-    begin_ = {-kInf, 0}, end_ = {kInf, 0};
-    for (int k = 0; k < 3; ++k) {
-      const double lo = k == 1 ? e_.base : 0, hi = k == 1 ? e_.high : e_.side;
-      if (way_[k] == 0) {
-        if (!(lo <= o_[k] && o_[k] < hi)) return false;
-        continue;
-      }
-      const Gate in{at(k, way_[k] > 0 ? lo : hi), k}, out{at(k, way_[k] > 0 ? hi : lo), k};
-      if (in.t > begin_.t) begin_ = in;
-      if (out.t < end_.t) end_ = out;
-    }
-    return begin_.t < end_.t && -kInf < begin_.t && end_.t < kInf;
-  }
-
   Gate exit_of(const TerrainCell& c) const {
     const double size = std::ldexp(e_.side, -c.level);
-    Gate out{kInf, 0};
+    Gate out;
     for (const int k : {0, 2}) {
       const double low = k == 0 ? c.x : c.z;
-      if (way_[k] == 0) continue;
-      const double t = at(k, way_[k] > 0 ? low + size : low);
+      if (line_.way[k] == 0) continue;
+      const double t = line_.at(k, line_.way[k] > 0 ? low + size : low);
       if (t < out.t) out = {t, k};
     }
     return out;
-  }
-  bool is_beyond(int axis, double plane, double t) const {
-    if (way_[axis] == 0) return plane <= o_[axis];
-    return way_[axis] > 0 ? at(axis, plane) <= t : !(at(axis, plane) <= t);
   }
 
   /// To the largest cell that the line, right after t, is surely above (1) or below (-1) of, or else to the
@@ -180,13 +147,13 @@ class TerrainWalk {
   int descend(double t, int& level) {
     for (;; ++level) {
       const TerrainCell& c = path_[level];
-      const double u = place(1, t), v = place(1, std::min(exits_[level].t, end_.t));
+      const double u = line_.place(1, t), v = line_.place(1, std::min(exits_[level].t, end_.t));
       const double slack = 0x1p-44 * (std::abs(u) + std::abs(v) + e_.step[0] + e_.rest[0]);
       if (std::min(u, v) > c.highest() + e_.rest[level] + slack) return 1;
       if (std::max(u, v) < c.lowest() - e_.rest[level] - slack) return -1;
       if (level == e_.depth) return 0;
       const double half = std::ldexp(e_.side, -level - 1);
-      path_[level + 1] = part(e_, c, is_beyond(0, c.x + half, t), is_beyond(2, c.z + half, t));
+      path_[level + 1] = part(e_, c, line_.is_beyond(0, c.x + half, t), line_.is_beyond(2, c.z + half, t));
       exits_[level + 1] = exit_of(path_[level + 1]);
     }
   }
@@ -215,30 +182,31 @@ class TerrainWalk {
   /// linear. The ends of the pieces are on edges, where all who share them find the same.
   void cross(const TerrainCell& c, const Gate& exit) {
     const Triangles triangles{c};
-    Gate near{-kInf, 0};
+    Gate near{-kInf};
     for (const int k : {0, 2}) {
       const double low = k == 0 ? c.x : c.z;
-      if (way_[k] == 0) continue;
-      const double t = at(k, way_[k] > 0 ? low : low + 1);
+      if (line_.way[k] == 0) continue;
+      const double t = line_.at(k, line_.way[k] > 0 ? low : low + 1);
       if (t > near.t) near = {t, k};
     }
     const double first = std::max(near.t, begin_.t), last = std::min(exit.t, end_.t);
-    const auto is_right = [&](double t) { return triangles.is_right(place(0, t), place(2, t)); };
+    const auto is_right = [&](double t) { return triangles.is_right(line_.place(0, t), line_.place(2, t)); };
     const auto above = [&](double t, bool right) {
-      return place(1, t) - triangles.height(place(0, t), place(2, t), right);
+      return line_.place(1, t) - triangles.height(line_.place(0, t), line_.place(2, t), right);
     };
     const auto above_edge = [&](const Gate& gate, int side) {
-      return place(1, gate.t) - triangles.on_edge(gate.axis, side, place(0, gate.t), place(2, gate.t));
+      return line_.place(1, gate.t) -
+             triangles.on_edge(gate.axis, side, line_.place(0, gate.t), line_.place(2, gate.t));
     };
     double t[3] = {first, last, last}, f[3];
     int pieces = 1;
-    const double diagonal = ((c.x - c.z) - (o_.x - o_.z)) / (d_.x - d_.z);
+    const double diagonal = ((c.x - c.z) - (line_.o.x - line_.o.z)) / (line_.d.x - line_.d.z);
     if (first < diagonal && diagonal < last) t[1] = diagonal, pieces = 2;
     const auto in_piece = [&](int k) { return is_right(t[k] + (t[k + 1] - t[k]) * 0.5); };
-    f[0] = near.t == first ? above_edge(near, way_[near.axis] > 0 ? 0 : 1) : above(first, in_piece(0));
-    if (pieces == 2) f[1] = place(1, t[1]) - triangles.on_diagonal(place(0, t[1]));
-    f[pieces] =
-        exit.t == last ? above_edge(exit, way_[exit.axis] > 0 ? 1 : 0) : above(last, in_piece(pieces - 1));
+    f[0] = near.t == first ? above_edge(near, line_.way[near.axis] > 0 ? 0 : 1) : above(first, in_piece(0));
+    if (pieces == 2) f[1] = line_.place(1, t[1]) - triangles.on_diagonal(line_.place(0, t[1]));
+    f[pieces] = exit.t == last ? above_edge(exit, line_.way[exit.axis] > 0 ? 1 : 0)
+                               : above(last, in_piece(pieces - 1));
     settle(f[0] < 0, first, c);
     for (int k = 0; k < pieces; ++k) {
       if ((f[k] < 0) == (f[k + 1] < 0)) continue;
@@ -251,17 +219,9 @@ class TerrainWalk {
   }
 
   FractalCrossing wall(const Gate& gate, double turn) const {
-    FractalCrossing found;
-    found.t = gate.t, found.turn = turn;
-    const double out = way_[gate.axis] * turn;
-    found.part = 1 + 2 * gate.axis + (out > 0);
-    if (!query_.with_surface) return found;
-    const int u = (gate.axis + 1) % 3, v = (gate.axis + 2) % 3;
-    found.point = query_.o + query_.d * gate.t;
+    const double out = line_.way[gate.axis] * turn;
     const double lo = gate.axis == 1 ? e_.base : -1, hi = gate.axis == 1 ? e_.high : 1;
-    found.point[gate.axis] = out > 0 ? hi : lo, found.normal[gate.axis] = out;
-    found.u = 0.5 * (found.point[u] + 1), found.v = 0.5 * (found.point[v] + 1), found.tangent[u] = 2;
-    return found;
+    return wall_crossing(query_, gate, out > 0 ? hi : lo, out, turn);
   }
 
   FractalCrossing slope(const TerrainCell& c, bool right, double t, double turn) const {
@@ -277,10 +237,9 @@ class TerrainWalk {
 
   const TerrainElement& e_;
   const FractalQuery& query_;
+  const GridLine line_;
   TurnList turns_;
   bool known_ = false;  // whether the list knows where it begins
-  Vec3d o_, d_, inverse_;
-  int way_[3];
   Gate begin_, end_;
   TerrainCell path_[kMaxTerrainDepth + 1];
   Gate exits_[kMaxTerrainDepth + 1];

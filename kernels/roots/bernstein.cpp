@@ -1,9 +1,7 @@
-#include "kernels/roots/bernstein.h"
+#include "kernels/roots/methods.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "kernels/roots/newton.h"
 
 namespace oktett::roots {
 namespace {

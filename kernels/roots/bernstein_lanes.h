@@ -2,7 +2,7 @@
 /// \file Certified roots in an interval for a fixed degree, many polynomials at once. D is a Simd of double;
 /// each lane holds its own polynomial and gets the same bits as at width 1.
 ///
-/// The method is that of bernstein.h. Instead of a stack, each lane marches along its interval: a step that
+/// The method is that of bernstein.cpp. Instead of a stack, each lane marches along its interval: a step that
 /// surely holds no root or one is taken, any other is halved. What cannot be decided in double is left to
 /// `solve`, which can use double-double, one lane at a time.
 

@@ -1,10 +1,11 @@
-#include "kernels/roots/bisection.h"
+#include "kernels/roots/methods.h"
 
 #include <cmath>
 
 namespace oktett::roots {
 
-Root refine_bisection(const Polynomial& p, double lo, double hi, int sign_lo) {
+/// The root of p in (lo, hi), given the signs just inside the ends.
+static Root refine_bisection(const Polynomial& p, double lo, double hi, int sign_lo) {
   for (;;) {
     const double m = lo + 0.5 * (hi - lo);
     if (!(m > lo && m < hi)) break;

@@ -1,9 +1,8 @@
-#include "kernels/roots/closed_solve.h"
+#include "kernels/roots/methods.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/roots/bernstein.h"
 #include "kernels/roots/closed_form.h"
 
 namespace oktett::roots {

@@ -1,4 +1,4 @@
-#include "kernels/roots/laguerre.h"
+#include "kernels/roots/methods.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "kernels/roots/newton.h"
+#include "kernels/roots/methods.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +38,19 @@ constexpr double kFineEnough = 0x1p-40;
 
 double ulp(double x) { return 0x1p-52 * std::abs(x) + 0x1p-1000; }
 
+/// The tightest interval x +- error that contains the root described at refine_newton, given x near it and a
+/// guess of the error.
+Root enclose(const Polynomial& p, double x, double error, double lo, double hi, int sign_lo) {
+  for (error = std::max(error, ulp(x));; error *= 4) {
+    const double l = x - error, r = x + error;
+    const bool left = l <= lo || sign_at(p, l) == sign_lo, right = r >= hi || sign_at(p, r) == -sign_lo;
+    if (left && right) {
+      const double e = std::max(x - std::max(l, lo), std::min(r, hi) - x);
+      return {x, e * (1 + 0x1p-50), 1};
+    }
+  }
+}
+
 /// Continues where the sign was in doubt in double. The slope in double is accurate enough for the steps.
 OKTETT_NOINLINE Root refine_accurately(const Polynomial& p, Iterate at, double l, double r, int sign_lo) {
   double step = r - l;
@@ -65,17 +78,6 @@ OKTETT_NOINLINE Root refine_accurately(const Polynomial& p, Iterate at, double l
 }
 
 }  // namespace
-
-Root enclose(const Polynomial& p, double x, double error, double lo, double hi, int sign_lo) {
-  for (error = std::max(error, ulp(x));; error *= 4) {
-    const double l = x - error, r = x + error;
-    const bool left = l <= lo || sign_at(p, l) == sign_lo, right = r >= hi || sign_at(p, r) == -sign_lo;
-    if (left && right) {
-      const double e = std::max(x - std::max(l, lo), std::min(r, hi) - x);
-      return {x, e * (1 + 0x1p-50), 1};
-    }
-  }
-}
 
 Root refine_newton(const Polynomial& p, double lo, double hi, int sign_lo, double start) {
   double l = lo, r = hi;

@@ -38,16 +38,6 @@ double horner(const Polynomial& p, double x) {
   return y;
 }
 
-Value evaluate(const Polynomial& p, double x) {
-  const double ax = std::abs(x);
-  double y = p.c[p.degree], m = 0.5 * std::abs(y);
-  for (int i = p.degree - 1; i >= 0; --i) {
-    y = y * x + p.c[i];
-    m = m * ax + std::abs(y);
-  }
-  return {y, 0x1p-53 * kRoundUp * (2 * m - std::abs(y)) + kUnderflow};
-}
-
 Value evaluate(const Polynomial& p, double x, double& slope) {
   const double ax = std::abs(x);
   double y = p.c[p.degree], m = 0.5 * std::abs(y), d = 0;
@@ -78,7 +68,8 @@ double absolute_sum(const Polynomial& p, double x) {
 }
 
 int sign_at(const Polynomial& p, double x) {
-  Value v = evaluate(p, x);
+  double slope;
+  Value v = evaluate(p, x, slope);
   if (!(std::abs(v.value) > v.error)) {
     v = evaluate_accurately(p, x);
     if (!(std::abs(v.value) > v.error)) return 0;
@@ -97,21 +88,6 @@ Polynomial reflect(const Polynomial& p) {
   Polynomial q;
   q.degree = p.degree;
   for (int i = 0; i <= p.degree; ++i) q.c[i] = i % 2 ? -p.c[i] : p.c[i];
-  return q;
-}
-
-Polynomial deflate(const Polynomial& p, double r) {
-  Polynomial q;
-  q.degree = p.degree - 1;
-  double y = 0;
-  for (int i = p.degree; i > 0; --i) q.c[i - 1] = y = y * r + p.c[i];
-  return q;
-}
-
-Polynomial divide_by_power(const Polynomial& p, int n) {
-  Polynomial q;
-  q.degree = p.degree - n;
-  for (int i = 0; i <= q.degree; ++i) q.c[i] = p.c[i + n];
   return q;
 }
 

@@ -21,8 +21,6 @@ struct Value {
 
 /// p(x), by Horner's rule.
 double horner(const Polynomial& p, double x);
-/// p(x) with its error bound.
-Value evaluate(const Polynomial& p, double x);
 /// p(x) with its error bound; also the derivative, without a bound.
 Value evaluate(const Polynomial& p, double x, double& slope);
 /// p(x) in double-double arithmetic with its error bound.
@@ -37,10 +35,6 @@ int sign_at(const Polynomial& p, double x);
 Polynomial derivative(const Polynomial& p);
 /// p(-x), exactly.
 Polynomial reflect(const Polynomial& p);
-/// p / (x - r), the remainder dropped: by synthetic division from the leading coefficient down.
-Polynomial deflate(const Polynomial& p, double r);
-/// p without its last `n` coefficients, which are zero: p / x^n.
-Polynomial divide_by_power(const Polynomial& p, int n);
 
 /// p(l + w x) in the Bernstein basis of degree p.degree: b[0] = p(l), b[degree] = p(l + w). T is double or
 /// DoubleDouble. Returns a bound on the error of each coefficient, for w >= 0 rounded by one unit of T.

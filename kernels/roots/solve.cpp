@@ -3,12 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/roots/bernstein.h"
-#include "kernels/roots/bisection.h"
-#include "kernels/roots/closed_solve.h"
-#include "kernels/roots/laguerre.h"
-#include "kernels/roots/newton.h"
-#include "kernels/roots/sturm.h"
+#include "kernels/roots/methods.h"
 
 namespace oktett::roots {
 namespace {

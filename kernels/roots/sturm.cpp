@@ -1,9 +1,7 @@
-#include "kernels/roots/sturm.h"
+#include "kernels/roots/methods.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "kernels/roots/newton.h"
 
 namespace oktett::roots {
 namespace {
@@ -15,14 +13,11 @@ struct Ball {
   DoubleDouble x;
   double error;
 };
-Ball operator-(const Ball& a, const Ball& b) {
-  const DoubleDouble d = a.x - b.x;
-  return {d, (a.error + b.error + kUnit<DoubleDouble> * std::abs(d.hi)) * kRoundUp + kUnderflow};
-}
 Ball operator+(const Ball& a, const Ball& b) {
   const DoubleDouble d = a.x + b.x;
   return {d, (a.error + b.error + kUnit<DoubleDouble> * std::abs(d.hi)) * kRoundUp + kUnderflow};
 }
+Ball operator-(const Ball& a, const Ball& b) { return a + Ball{-b.x, b.error}; }
 Ball operator*(const Ball& a, const Ball& b) {
   const DoubleDouble p = a.x * b.x;
   return {p, (std::abs(a.x.hi) * b.error + a.error * (std::abs(b.x.hi) + b.error) +
