@@ -73,6 +73,14 @@ struct Crossings {
   }
 };
 
+/// Turns the places of crossings and their end into distances by to_t.
+template <int K, class D, class F>
+OKTETT_INLINE void place_crossings(Crossings<K, D>& list, const F& to_t) {
+  const D none(roots::kNoRoot);
+  for (int k = 0; k < K; ++k) list.t[k] = select(list.t[k] < none, to_t(list.t[k]), none);
+  list.up_to = select(list.up_to < none, to_t(list.up_to), none);
+}
+
 /// Crossings in columns of numbers, for what finds them one lane after the other. They begin as empty lists,
 /// or as those of `from`.
 template <int K, class D>

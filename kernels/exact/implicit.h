@@ -56,9 +56,7 @@ struct Implicit {
     Crossings<kOwn, D> own;
     const D sign =
         interval::march<kOwn>(field, zero, length, length, active, interval::Jumps::list_steep, own);
-    const auto to_t = [&](const D& s) { return select(s < D(roots::kNoRoot), range.a + s, s); };
-    for (int k = 0; k < kOwn; ++k) own.t[k] = to_t(own.t[k]);
-    own.up_to = to_t(own.up_to);
+    place_crossings(own, [&](const D& s) { return range.a + s; });
     if (!e.open) return close_by_cell(own, sign < zero, range, active, out);
     CrossingList<K, D> list(out);
     for (int k = 0; k < kOwn; ++k)

@@ -100,7 +100,7 @@ struct Superquadric {
     const SuperquadricElement& e = pool.elements[cell.element];
     const CenteredLine<D> centered(line);
     const SuperquadricField<D> field{e, centered};
-    const D a = centered.to_s(range.a), b = centered.to_s(range.b), no_root(roots::kNoRoot);
+    const D a = centered.to_s(range.a), b = centered.to_s(range.b);
     Crossings<K, D> found;
     D first_sign(0.0);
     if (e.convex && e.ratio)
@@ -109,12 +109,9 @@ struct Superquadric {
       interval::convex_crossings<K>(ConvexSuperquadricField<false, D>{field}, a, b, active, found);
     else
       first_sign = interval::march<K>(field, a, b, b, active, interval::Jumps::list, found);
-    for (int k = 0; k < K; ++k) {
-      found.t[k] = select(found.t[k] < no_root, centered.to_t(found.t[k]), no_root);
-      // Where the function jumps is surface as well.
-      found.part[k] = D(0.0);
-    }
-    found.up_to = select(found.up_to < no_root, centered.to_t(found.up_to), no_root);
+    place_crossings(found, [&](const D& s) { return centered.to_t(s); });
+    // Where the function jumps is surface as well.
+    for (D& part : found.part) part = D(0.0);
     if (e.closed)
       close_by_cell(found, first_sign < D(0.0), range, active, out);
     else

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/math.h"
-#include "kernels/exact/globe_uv.h"
 #include "kernels/fields/blobtree_program.h"
 
 namespace oktett {
@@ -18,8 +17,6 @@ constexpr double kLeastSize = 0.25;
 constexpr double kCellCost = 20, kPartCost = 20;
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-double clamp_square(double x) { return x > 0 ? x * x : 0; }
-
 double square_end(PotentialKind kind) {
   return kind == PotentialKind::inverse_square ? kInf
          : kind == PotentialKind::gaussian     ? field::kGaussianEnd
@@ -29,31 +26,16 @@ double square_end(PotentialKind kind) {
 /// The potential without its weight.
 double potential(const FieldPart& part, double square, double& slope) {
   if (square >= square_end(part.kind)) return slope = 0;
-  switch (part.kind) {
-    case PotentialKind::inverse_square: {
-      const double v = 1 / std::max(square, field::kLeastSquare);
-      slope = -(v * v);
-      return v;
-    }
-    case PotentialKind::gaussian: {
-      const double v = portable::exp(-square);
-      slope = -v;
-      return v;
-    }
-    case PotentialKind::quadratic: {
-      const double r = std::sqrt(square);
-      slope = 9 * square <= 1 ? -3.0 : -1.5 * (1 - r) / r;
-      return 9 * square <= 1 ? 1 - 3 * square : 1.5 * (1 - r) * (1 - r);
-    }
-    case PotentialKind::rational: {
-      const double q = 1 - square, r = 1 / (1 + part.d * square);
-      slope = -(q * (2 + part.d + part.d * square) * r * r);
-      return q * q * r;
-    }
-    default:
-      slope = -2 * (1 - square);
-      return (1 - square) * (1 - square);
+  if (part.kind == PotentialKind::gaussian) {
+    const double v = portable::exp(-square);
+    slope = -v;
+    return v;
   }
+  using D = Simd<double, 1, ScalarIsa>;
+  D value, by_square;
+  field::potential_at(part.kind, part.d, D(square), value, by_square);
+  slope = only_lane(by_square);
+  return only_lane(value);
 }
 
 /// What leads from the nearest place in the polygon to (x, y).
@@ -293,10 +275,6 @@ Slope BlobTree::slope_at(const Pool& pool, std::size_t i, int, const Vec3d& p) {
     }
   }
   return {e.iso - stack[0].value, -stack[0].gradient};
-}
-
-void BlobTree::uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) {
-  set_globe_uv(p, s);
 }
 
 }  // namespace oktett

@@ -5,6 +5,7 @@
 /// The tree is a program for a stack machine, cut down in each cell to what matters there: elements that are
 /// zero, and branches that are surely below or above what they are blended with, are left out.
 
+#include "kernels/exact/globe_uv.h"
 #include "kernels/exact/march.h"
 #include "kernels/fields/blobtree_data.h"
 #include "kernels/fields/cell_tree.h"
@@ -67,10 +68,6 @@ class CellField {
   OKTETT_NOINLINE Interval<D> at(const D& s) const { return run<Interval<D>>(Interval<D>(s)); }
 
  private:
-  static OKTETT_INLINE void set_constant(Interval<D>& v, double c) { v = Interval<D>(D(c)); }
-  static OKTETT_INLINE void set_constant(Dual<Interval<D>>& v, double c) {
-    v = {Interval<D>(D(c)), Interval<D>(D(0.0))};
-  }
   /// c - v.
   static OKTETT_INLINE Interval<D> from_constant(double c, const Interval<D>& v) {
     return Interval<D>(D(c)) - v;
@@ -98,7 +95,7 @@ class CellField {
     for (std::uint32_t i = 0; i < count_; ++i) {
       const BlobCode::Op op = BlobCode::op(code_[i]);
       if (op == BlobCode::zero) {
-        set_constant(stack[++top], 0);
+        set(stack[++top], 0);
       } else if (op == BlobCode::element) {
         const FieldPart& p = part(i);
         const Track<D> track = k < kKept ? kept_[k] : Track<D>(p, line_);
@@ -159,17 +156,13 @@ struct BlobTree {
     const D from = select(sound, a, D(0.0)), to = select(sound, b, D(0.0));
     const field::CellField<D> f(pool, cell, l);
     interval::march(f, from, to, to, sound, interval::Jumps::list, out);
-    for (int k = 0; k < K; ++k) {
-      const auto found = sound & (out.t[k] < D(roots::kNoRoot));
-      out.t[k] = select(found, l.to_t(out.t[k]), D(roots::kNoRoot));
-      out.part[k] = D(0.0);
-    }
-    out.up_to = select(out.up_to < D(roots::kNoRoot), l.to_t(out.up_to), out.up_to);
+    place_crossings(out, [&](const D& s) { return l.to_t(s); });
+    for (D& part : out.part) part = D(0.0);
   }
 
   static Slope slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static void uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) { set_globe_uv(p, s); }
 };
 
 }  // namespace oktett

@@ -20,6 +20,9 @@ struct CellBox {
   Vec3d lo, hi;
 };
 
+/// The square of x, 0 below 0: of distances that are negative inside.
+inline double clamp_square(double x) { return x > 0 ? x * x : 0; }
+
 /// A function's values in a box.
 struct CellRange {
   double lo, hi;

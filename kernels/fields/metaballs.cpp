@@ -5,8 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "kernels/exact/globe_uv.h"
-
 namespace oktett {
 
 namespace {
@@ -15,8 +13,6 @@ namespace {
 constexpr double kLeastSize = 0.5;
 /// Times relative to that of a node, measured with 8 rays at once: a cell, and each of its balls.
 constexpr double kCellCost = 6, kBallCost = 2;
-
-double clamp_square(double x) { return x > 0 ? x * x : 0; }
 
 class BallRule : public CellRule {
  public:
@@ -98,10 +94,6 @@ void Metaballs::add(Pool& pool, const MetaballsShape& s, const ExactPlace& place
   e.root = pool.tree.divide(rule, {-half, half}, all, element, pool.cells);
   add_element(pool, e, place.to_world * Affine::translation(middle) * Affine::scaling({size, size, size}),
               place);
-}
-
-void Metaballs::uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) {
-  set_globe_uv(p, s);
 }
 
 }  // namespace oktett

@@ -102,13 +102,9 @@ struct Julia {
     const auto place = [&](const D& o, const D& d) { return o + range.a * d; };
     const JuliaField<D> field{
         e, {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)}, line.d};
-    Crossings<K, D> own;
-    interval::march<K>(field, zero, length, length, active, interval::Jumps::list, own);
-    const auto to_t = [&](const D& s) { return select(s < D(roots::kNoRoot), range.a + s, s); };
-    CrossingList<K, D> list(out);
-    for (int k = 0; k < K; ++k)
-      list.push(active & (own.t[k] < D(roots::kNoRoot)), to_t(own.t[k]), own.turn[k], zero);
-    list.finish(to_t(own.up_to));
+    interval::march<K>(field, zero, length, length, active, interval::Jumps::list, out);
+    place_crossings(out, [&](const D& s) { return range.a + s; });
+    for (D& part : out.part) part = D(0.0);
   }
 
   /// |z_n|^2 - R^2 and its gradient; farther out, those of the iterate that leaves.

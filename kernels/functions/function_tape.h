@@ -10,31 +10,8 @@
 
 namespace oktett {
 
-// What tapes need of the kinds of values beyond their operators.
-
-template <class D>
-OKTETT_INLINE Interval<D> plus(const Interval<D>& a, double c) {
-  return interval::outward_sum(a.lo + D(c), a.hi + D(c));
-}
-template <class D>
-OKTETT_INLINE Dual<Interval<D>> plus(const Dual<Interval<D>>& a, double c) {
-  return {plus(a.v, c), a.d};
-}
-template <class D>
-OKTETT_INLINE Dual<Interval<D>> times(const Dual<Interval<D>>& a, double c) {
-  return {times(a.v, c), times(a.d, c)};
-}
-
 namespace tape {
 
-template <class D>
-OKTETT_INLINE void set(Interval<D>& r, double c) {
-  r = Interval<D>(D(c));
-}
-template <class D>
-OKTETT_INLINE void set(Dual<Interval<D>>& r, double c) {
-  r = {Interval<D>(D(c)), Interval<D>(D(0.0))};
-}
 template <class D, Walls W>
 OKTETT_INLINE void set(Gradient<D, W>& r, double c) {
   r = {D(c), gradient::zero<D>()};

@@ -35,10 +35,31 @@ OKTETT_NOINLINE Dual<T> operator/(const Dual<T>& a, const Dual<T>& b) {
   return {q, (a.d - q * b.d) / b.v};
 }
 
-/// a times the number b.
+// With a number.
+
 template <class D>
 OKTETT_INLINE Interval<D> times(const Interval<D>& a, double b) {
   return a * D(b);
+}
+template <class D>
+OKTETT_INLINE Interval<D> plus(const Interval<D>& a, double c) {
+  return interval::outward_sum(a.lo + D(c), a.hi + D(c));
+}
+template <class D>
+OKTETT_INLINE Dual<Interval<D>> plus(const Dual<Interval<D>>& a, double c) {
+  return {plus(a.v, c), a.d};
+}
+template <class D>
+OKTETT_INLINE Dual<Interval<D>> times(const Dual<Interval<D>>& a, double c) {
+  return {times(a.v, c), times(a.d, c)};
+}
+template <class D>
+OKTETT_INLINE void set(Interval<D>& r, double c) {
+  r = Interval<D>(D(c));
+}
+template <class D>
+OKTETT_INLINE void set(Dual<Interval<D>>& r, double c) {
+  r = {Interval<D>(D(c)), Interval<D>(D(0.0))};
 }
 
 template <class T>

@@ -21,16 +21,16 @@ Roots solve_bernstein(const Normalized& n, int wanted = kMaxDegree);
 /// or complex pairs near the interval, are close together.
 Roots solve_closed(const Normalized& n);
 
-/// Sturm chains (J. C. F. Sturm, Mémoire sur la résolution des équations numériques, 1829): isolates the roots
-/// by halving until the chain counts one, then refines. The chain is computed in double-double with a bound on
-/// the error of each coefficient, which tells the sure signs. Certified if all signs that were needed are
-/// sure. Multiple roots end the chain early and are never certified.
+/// Sturm chains (J. C. F. Sturm, Mémoire sur la résolution des équations numériques, 1829): isolates the
+/// roots by halving until the chain counts one, then refines. The chain is computed in double-double with a
+/// bound on the error of each coefficient, which tells the sure signs. Certified if all signs that were
+/// needed are sure. Multiple roots end the chain early and are never certified.
 Roots solve_sturm(const Normalized& n);
 
-/// Laguerre's method with deflation: finds one complex root after another from 0, divides it out, and polishes
-/// it against the whole polynomial. Stops when the value is below the error of its computation (D. A. Adams: A
-/// stopping criterion for polynomial root finding, Comm. ACM 10(10), 1967). Roots with a small imaginary part
-/// count as real. Bounds are estimates, so nothing is certified.
+/// Laguerre's method with deflation: finds one complex root after another from 0, divides it out, and
+/// polishes it against the whole polynomial. Stops when the value is below the error of its computation (D.
+/// A. Adams: A stopping criterion for polynomial root finding, Comm. ACM 10(10), 1967). Roots with a small
+/// imaginary part count as real. Bounds are estimates, so nothing is certified.
 Roots solve_laguerre(const Normalized& n);
 
 /// Samples the interval at 8 points per degree and bisects where the sign changes, until the ends are
