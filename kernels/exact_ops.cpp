@@ -9,6 +9,9 @@ namespace oktett {
 #include "kernels/exact/surfaces.def"
 #undef SURFACE
 
+// Here, so that no unit of a wider instruction set defines it.
+ExactPoolBase::~ExactPoolBase() = default;
+
 const ExactOps& exact_ops(Kind kind) {
   switch (kind) {
 #define SURFACE(Type, name) \

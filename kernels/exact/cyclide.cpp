@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 
 namespace oktett {
 
@@ -23,8 +22,7 @@ void Cyclide::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceIn
   const CyclideElement& e = pool.elements[i];
   const double across = e.a * p.x - e.c * e.d, along = e.b * p.y;
   const double out = 0.5 * (dot(p, p) - e.b * e.b - e.d * e.d);
-  s.uv = {static_cast<float>(0.5 + portable::atan2(along, across) * 0.5 / std::numbers::pi),
-          static_cast<float>(0.5 + portable::atan2(e.b * p.z, out) * 0.5 / std::numbers::pi)};
+  set_uv(s, turn_of(along, across), turn_of(e.b * p.z, out));
   // Circles of equal u lie in planes through the line x = c d / a, y = 0; those of equal v are perpendicular
   // to them. So the tangent is the normal of the plane without its part along that of the surface.
   const Vec3d plane{-e.a * along, e.b * across, 0}, n = slope_at<Cyclide>(pool, i, 0, p).gradient;

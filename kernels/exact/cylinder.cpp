@@ -1,9 +1,8 @@
 #include "kernels/exact/cylinder.h"
 
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 
 namespace oktett {
 
@@ -34,10 +33,7 @@ Box frustum_bounds(const Affine& to_world, double r0, double r1) {
 }
 
 void frustum_uv(int part, double radius, const Vec3d& p, SurfaceInteraction& s) {
-  const double v = part == 0 ? 0.5 + 0.5 * p.z : std::sqrt(p.x * p.x + p.y * p.y) / radius;
-  s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
-          static_cast<float>(v)};
-  s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
+  set_uv_around_z(s, p, part == 0 ? 0.5 + 0.5 * p.z : std::sqrt(p.x * p.x + p.y * p.y) / radius);
 }
 
 void Cylinder::add(Pool& pool, const CylinderShape& s, const ExactPlace& place) {

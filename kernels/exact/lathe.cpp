@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/cubic.h"
+#include "kernels/exact/round_uv.h"
 
 namespace oktett {
 namespace {
 
 using Piece = LatheElement::Piece;
 
-double cubic(const double (&c)[4], double v) { return ((c[3] * v + c[2]) * v + c[1]) * v + c[0]; }
 double cubic_slope(const double (&c)[4], double v) { return (3 * c[3] * v + 2 * c[2]) * v + c[1]; }
 double cubic_curve(const double (&c)[4], double v) { return 6 * c[3] * v + 2 * c[2]; }
 
@@ -28,12 +27,8 @@ struct Interval {
   double lo, hi;
 };
 Interval range_of(const double (&c)[4]) {
-  Interval i{std::min(cubic(c, -1), cubic(c, 1)), std::max(cubic(c, -1), cubic(c, 1))};
-  const double a = 3 * c[3], b = c[2], d = b * b - a * c[1];
-  if (!(d >= 0)) return i;
-  const double q = -(b + std::copysign(std::sqrt(d), b));
-  for (const double v : {q / a, c[1] / q})
-    if (v > -1 && v < 1) i = {std::min(i.lo, cubic(c, v)), std::max(i.hi, cubic(c, v))};
+  Interval i{HUGE_VAL, -HUGE_VAL};
+  for_extremes(c, [&](double, double f) { i = {std::min(i.lo, f), std::max(i.hi, f)}; });
   return i;
 }
 
@@ -353,9 +348,7 @@ bool Lathe::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 void Lathe::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
   const LatheElement& e = pool.elements[i];
   const Nearest at = nearest_point(e, std::sqrt(p.x * p.x + p.z * p.z), p.y);
-  s.uv = {static_cast<float>(0.5 + portable::atan2(p.x, p.z) * 0.5 / std::numbers::pi),
-          static_cast<float>((static_cast<double>(at.piece) + 0.5 * (at.v + 1)) / e.pieces.size())};
-  s.tangent = Vec3f(Vec3d{p.z, 0, -p.x} * (2 * std::numbers::pi));
+  set_uv_around_y(s, p, (static_cast<double>(at.piece) + 0.5 * (at.v + 1)) / e.pieces.size());
 }
 
 }  // namespace oktett

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 #include "kernels/roots/double_double.h"
 
 namespace oktett {
@@ -210,20 +209,9 @@ bool Quadric::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 
 void Quadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
   const QuadricElement& e = pool.elements[i];
-  const auto along = [&](int k) {
-    const double width = e.hi[k] - e.lo[k];
-    return std::isfinite(width) ? (p[k] - e.lo[k]) / width : p[k];
-  };
-  if (part > 0) {
-    const int a = ((part - 1) / 2 + 1) % 3, b = ((part - 1) / 2 + 2) % 3;
-    s.uv = {static_cast<float>(along(a)), static_cast<float>(along(b))};
-    Vec3d tangent{0, 0, 0};
-    tangent[a] = std::isfinite(e.hi[a] - e.lo[a]) ? e.hi[a] - e.lo[a] : 1;
-    s.tangent = Vec3f(tangent);
-    return;
-  }
-  s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
-          static_cast<float>(along(2))};
+  if (part > 0) return set_face_uv(s, part, e.lo, e.hi, p);
+  const double height = e.hi.z - e.lo.z;
+  set_uv(s, turn_of(p.y, p.x), std::isfinite(height) ? (p.z - e.lo.z) / height : p.z);
   // Around z on the surface at one height.
   const Vec3d g = slope_at<Quadric>(pool, i, 0, p).gradient;
   const double speed = p.x * g.x + p.y * g.y;

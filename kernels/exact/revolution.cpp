@@ -2,33 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/cubic.h"
+#include "kernels/exact/round_uv.h"
 
 namespace oktett {
 namespace {
 
 using Piece = RevolutionElement::Piece;
 using Profile = RevolutionShape::Profile;
-
-double horner(const double* c, int degree, double v) {
-  double y = c[degree];
-  for (int i = degree - 1; i >= 0; --i) y = y * v + c[i];
-  return y;
-}
-
-/// Calls f(v, value) at the ends of -1 <= v <= 1 and where a cubic is greatest or least between them.
-template <class F>
-void for_extremes(const double* c, int degree, F&& f) {
-  f(-1.0, horner(c, degree, -1)), f(1.0, horner(c, degree, 1));
-  if (degree < 2) return;
-  const double a = degree > 2 ? 3 * c[3] : 0, b = c[2], d = b * b - a * c[1];
-  if (!(d >= 0)) return;
-  const double q = -(b + std::copysign(std::sqrt(d), b));
-  for (const double v : {q / a, c[1] / q})
-    if (v > -1 && v < 1) f(v, horner(c, degree, v));
-}
 
 /// Whether the points from the first to the last are on the surface.
 bool all_on_surface(const RevolutionShape& s) { return s.profile == Profile::linear; }
@@ -77,7 +59,7 @@ std::optional<double> profile_crosses_axis(const RevolutionShape& s) {
   for (std::size_t i = span.begin; i + 1 < span.end; ++i) {
     double c[4], least = 0, at = 0;
     piece_powers(s, i, c);
-    for_extremes(c, piece_degree(s), [&](double v, double f) {
+    for_extremes(c, [&](double v, double f) {
       // What touches the axis may be rounded to the other side.
       if (f < -0x1p-40 * greatest && f < least) least = f, at = v;
     });
@@ -115,7 +97,7 @@ void Revolution::add(Pool& pool, const RevolutionShape& described, const ExactPl
     piece.ends[0] = {p.height, p.radius * p.radius, 0, false, 0};
     piece.ends[1] = {q.height, q.radius * q.radius, 0, false, 0};
     double greatest = 0;
-    for_extremes(piece.c, e.degree, [&](double, double f) { greatest = std::max(greatest, f); });
+    for_extremes(piece.c, [&](double, double f) { greatest = std::max(greatest, f); });
     piece.greatest2 = (e.squared ? greatest : greatest * greatest) * (1 + 0x1p-20) + 0x1p-80;
     e.pieces.push_back(piece);
   }
@@ -151,9 +133,7 @@ bool Revolution::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 void Revolution::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
   const RevolutionElement& e = pool.elements[i];
   const double lo = e.pieces.front().ends[0].height, hi = e.pieces.back().ends[1].height;
-  s.uv = {static_cast<float>(0.5 + portable::atan2(p.x, p.z) * 0.5 / std::numbers::pi),
-          static_cast<float>((p.y - lo) / (hi - lo))};
-  s.tangent = Vec3f(Vec3d{p.z, 0, -p.x} * (2 * std::numbers::pi));
+  set_uv_around_y(s, p, (p.y - lo) / (hi - lo));
 }
 
 }  // namespace oktett

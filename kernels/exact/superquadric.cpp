@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 
 namespace oktett {
 
@@ -92,22 +91,13 @@ void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace&
 
 void Superquadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
   const SuperquadricElement& e = pool.elements[i];
-  if (part > 0) {
-    const int axis = (part - 1) / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    s.uv = {static_cast<float>((p[u] - e.lo[u]) / (e.hi[u] - e.lo[u])),
-            static_cast<float>((p[v] - e.lo[v]) / (e.hi[v] - e.lo[v]))};
-    Vec3d tangent{0, 0, 0};
-    tangent[u] = e.hi[u] - e.lo[u];
-    s.tangent = Vec3f(tangent);
-    return;
-  }
+  if (part > 0) return set_face_uv(s, part, e.lo, e.hi, p);
   const double x = p.x * e.inverse[0], y = p.y * e.inverse[1], z = p.z * e.inverse[2];
   const double rho = std::sqrt(x * x + y * y), turn = 0.5 / std::numbers::pi;
-  const double around = 0.5 + portable::atan2(y, x) * turn;
   double v = (p.z - e.lo.z) / (e.hi.z - e.lo.z);
   if (e.form == Form::ellipsoid) v = 0.5 + portable::atan2(z, rho) * 2 * turn;
   if (e.form == Form::toroid) v = 0.5 + portable::atan2(z, rho - e.d) * turn;
-  s.uv = {static_cast<float>(around), static_cast<float>(v)};
+  set_uv(s, 0.5 + portable::atan2(y, x) * turn, v);
   s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
 }
 

@@ -1,9 +1,8 @@
 #include "kernels/exact/torus.h"
 
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 
 namespace oktett {
 
@@ -18,9 +17,7 @@ void Torus::add(Pool& pool, const TorusShape& s, const ExactPlace& place) {
 void Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
   const TorusElement& e = pool.elements[i];
   const double rho = std::sqrt(p.x * p.x + p.y * p.y);
-  s.uv = {static_cast<float>(0.5 + portable::atan2(p.y, p.x) * 0.5 / std::numbers::pi),
-          static_cast<float>(0.5 + portable::atan2(p.z, rho - e.major) * 0.5 / std::numbers::pi)};
-  s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
+  set_uv_around_z(s, p, turn_of(p.z, rho - e.major));
 }
 
 }  // namespace oktett

@@ -5,8 +5,8 @@
 /// The tree is a program for a stack machine, cut down in each cell to what matters there: elements that are
 /// zero, and branches that are surely below or above what they are blended with, are left out.
 
-#include "kernels/exact/globe_uv.h"
 #include "kernels/exact/march.h"
+#include "kernels/exact/round_uv.h"
 #include "kernels/fields/blobtree_data.h"
 #include "kernels/fields/cell_tree.h"
 #include "kernels/fields/potential_lanes.h"
@@ -162,7 +162,7 @@ struct BlobTree {
 
   static Slope slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
-  static void uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) { set_globe_uv(p, s); }
+  static void uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) { set_globe_uv(s, p); }
 };
 
 }  // namespace oktett

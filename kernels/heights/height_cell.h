@@ -7,9 +7,19 @@
 /// the line enters and leaves it and finds as many crossings between as they ask for, so what two neighbours
 /// find fits together whatever rounding does: no ray slips through an edge or a corner.
 
-#include "kernels/heights/height_element.h"
+#include "kernels/exact/exact.h"
+#include "kernels/heights/height_grid.h"
 
 namespace oktett {
+
+/// Upright walls of `nearest`; the others are parts of the surface (0) and faces of the box (1 to 6).
+enum HeightPart { kWallLowX = 7, kWallHighX = 8, kWallLowZ = 9, kWallHighZ = 10 };
+
+/// How the element's own space lies to the grid: column = x * scale.x + shift.x, sample as stored =
+/// y * scale.y + shift.y, row = z * scale.z + shift.z.
+struct HeightFrame {
+  Vec3d scale, shift;
+};
 
 /// Lane `k` alone.
 template <int W, class A>
