@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "accel/accel_data.h"
-#include "kernels/exact_bounds.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/open_edges.h"
-#include "kernels/exact_bounds.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
 namespace {

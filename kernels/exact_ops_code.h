@@ -3,7 +3,6 @@
 /// of kernels/exact_surface.cpp.in.
 
 #include "kernels/exact/exact_interaction.h"
-#include "kernels/exact_bounds.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {

@@ -126,6 +126,16 @@ void make_agree(SignChanges& found, double before, double after, double certaint
 
 double sign_of(double x) { return x < 0 ? -1 : 1; }
 
+/// Where the piece is at the height y.
+SignChanges places_at_height(const Piece& piece, double y) {
+  const double c[4] = {piece.y[0] - y, piece.y[1], piece.y[2], piece.y[3]};
+  SignChanges found;
+  find_sign_changes(c, 3, roots::Method::automatic, kMaxRayDegree, found);
+  const double before = piece.height[0] - y, after = piece.height[1] - y;
+  make_agree(found, sign_of(before), sign_of(after), std::abs(before), std::abs(after));
+  return found;
+}
+
 /// The t at which a line meets the circle of a piece at v, given that by its height. If the curve is steep
 /// the radius is the better guide: then t is moved less by what v is off.
 double place_on(const double (&line)[6], const Piece& piece, double v, double t) {
@@ -298,12 +308,7 @@ void Lathe::find_level(const LatheElement& e, const Piece& piece, const OneRay& 
   const double ox = ray.line[0], oz = ray.line[2], dx = ray.line[3], dz = ray.line[5];
   const double dd = dx * dx + dz * dz, nearest = -(ox * dx + oz * dz) / dd;
   const double x = ox + nearest * dx, z = oz + nearest * dz, y = ray.line[1] + nearest * ray.line[4];
-  double above[2];
-  for (int k = 0; k < 2; ++k) above[k] = piece.height[k] - y;
-  const double c[4] = {piece.y[0] - y, piece.y[1], piece.y[2], piece.y[3]};
-  SignChanges found;
-  find_sign_changes(c, 3, roots::Method::automatic, kMaxRayDegree, found);
-  make_agree(found, sign_of(above[0]), sign_of(above[1]), std::abs(above[0]), std::abs(above[1]));
+  const SignChanges found = places_at_height(piece, y);
   for (int i = 0; i < found.count; ++i) {
     const double r = cubic(piece.r, found.s[i]), room = r * r - (x * x + z * z);
     if (!(room > 0)) continue;
@@ -335,11 +340,7 @@ bool Lathe::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   bool odd = false;
   for (const Piece& piece : e.pieces) {
     if (p.y < piece.least_y || p.y > piece.greatest_y || rho > piece.most) continue;
-    const double c[4] = {piece.y[0] - p.y, piece.y[1], piece.y[2], piece.y[3]};
-    SignChanges found;
-    find_sign_changes(c, 3, roots::Method::automatic, kMaxRayDegree, found);
-    const double before = piece.height[0] - p.y, after = piece.height[1] - p.y;
-    make_agree(found, sign_of(before), sign_of(after), std::abs(before), std::abs(after));
+    const SignChanges found = places_at_height(piece, p.y);
     for (int k = 0; k < found.count; ++k) odd ^= cubic(piece.r, found.s[k]) > rho;
   }
   return odd;

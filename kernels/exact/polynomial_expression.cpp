@@ -90,7 +90,7 @@ class Expansion {
       case ExpressionOp::variable:
         return {{node.a == 0 ? make_key(1, 0, 0) : node.a == 1 ? make_key(0, 1, 0) : make_key(0, 0, 1), 1}};
       case ExpressionOp::negate:
-        return times(a, DoubleDouble(-1));
+        return map(a, [](const DoubleDouble& c) { return c * DoubleDouble(-1); });
       case ExpressionOp::add:
         return sum(a, b, DoubleDouble(1));
       case ExpressionOp::subtract:
@@ -100,7 +100,7 @@ class Expansion {
       case ExpressionOp::divide:
         if (!is_constant(b)) fail("not a polynomial: the divisor has x, y or z in it");
         if (b.empty()) fail("division by zero");
-        return divided(a, constant_of(b));
+        return map(a, [&](const DoubleDouble& c) { return c / constant_of(b); });
       case ExpressionOp::power:
         return power(a, b);
       default:
@@ -115,15 +115,11 @@ class Expansion {
     return constant(value);
   }
 
-  static Terms times(const Terms& a, const DoubleDouble& s) {
-    Terms out;
-    for (const Term& t : a) out.push_back({t.key, t.c * s});
-    return out;
-  }
-  static Terms divided(const Terms& a, const DoubleDouble& s) {
-    Terms out;
-    for (const Term& t : a) out.push_back({t.key, t.c / s});
-    return out;
+  /// Each coefficient c as f(c).
+  template <class F>
+  static Terms map(Terms terms, const F& f) {
+    for (Term& t : terms) t.c = f(t.c);
+    return terms;
   }
 
   Terms product(const Terms& a, const Terms& b) {

@@ -7,6 +7,8 @@
 /// all coefficients, and with it every rounding error, stays below what the same polynomial with positive
 /// signs has at the far corner of the box that the ray is in. docs/numerics.md draws the bound from this.
 
+#include <utility>
+
 #include "kernels/exact/exact.h"
 #include "kernels/roots/bernstein_lanes.h"
 
@@ -128,24 +130,10 @@ OKTETT_NOINLINE void sign_changes(const D* c, int degree, roots::Method method, 
   if (none(active) || degree < 1) return;
   if constexpr (K == 1) {
     if (method == roots::Method::automatic && degree <= 8) {
-      switch (degree) {
-        case 1:
-          return first_of_degree<1>(c, active, s[0], turn[0]);
-        case 2:
-          return first_of_degree<2>(c, active, s[0], turn[0]);
-        case 3:
-          return first_of_degree<3>(c, active, s[0], turn[0]);
-        case 4:
-          return first_of_degree<4>(c, active, s[0], turn[0]);
-        case 5:
-          return first_of_degree<5>(c, active, s[0], turn[0]);
-        case 6:
-          return first_of_degree<6>(c, active, s[0], turn[0]);
-        case 7:
-          return first_of_degree<7>(c, active, s[0], turn[0]);
-        default:
-          return first_of_degree<8>(c, active, s[0], turn[0]);
-      }
+      const auto solve = [&]<int... N>(std::integer_sequence<int, N...>) {
+        ((degree == N + 1 ? first_of_degree<N + 1>(c, active, s[0], turn[0]) : void()), ...);
+      };
+      return solve(std::make_integer_sequence<int, 8>());
     }
   }
   constexpr int W = D::kWidth;

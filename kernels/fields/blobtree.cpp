@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/math.h"
-#include "kernels/fields/blobtree_program.h"
 
 namespace oktett {
 

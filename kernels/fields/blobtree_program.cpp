@@ -1,4 +1,4 @@
-#include "kernels/fields/blobtree_program.h"
+#include "kernels/fields/blobtree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -180,10 +180,4 @@ Box Sphereflake::world_bounds(const Pool& pool, std::size_t i) {
                            [&](const Vec3d& w) { return support(pool.elements[i], w) * length(w); });
 }
 
-double Sphereflake::count(const SphereflakeShape& shape) {
-  double balls = 1;
-  for (std::uint32_t g = 0; g < shape.depth; ++g) balls = balls * kChildren + 1;
-  return balls;
-}
-
 }  // namespace oktett

@@ -29,8 +29,6 @@ struct Sphereflake : Fractal<Sphereflake, SphereflakeShape, SphereflakeElement> 
   /// no more than 1/1000.
   static double support(const Element& element, const Vec3d& direction);
   static Box world_bounds(const Pool& pool, std::size_t i);
-  /// Balls of all generations.
-  static double count(const SphereflakeShape& shape);
 };
 
 }  // namespace oktett

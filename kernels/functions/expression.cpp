@@ -219,23 +219,10 @@ class Parser {
 }  // namespace
 
 int operand_count(ExpressionOp op) {
-  switch (op) {
-    case ExpressionOp::constant:
-    case ExpressionOp::variable:
-      return 0;
-    case ExpressionOp::add:
-    case ExpressionOp::subtract:
-    case ExpressionOp::multiply:
-    case ExpressionOp::divide:
-    case ExpressionOp::power:
-    case ExpressionOp::atan2:
-    case ExpressionOp::min:
-    case ExpressionOp::max:
-    case ExpressionOp::hypot:
-      return 2;
-    default:
-      return 1;
-  }
+  using enum ExpressionOp;
+  if (op == constant || op == variable) return 0;
+  const auto pairs = {add, subtract, multiply, divide, power, atan2, min, max, hypot};
+  return std::find(pairs.begin(), pairs.end(), op) != pairs.end() ? 2 : 1;
 }
 
 Expression parse_expression(std::string_view text, std::span<const std::string_view> variables) {

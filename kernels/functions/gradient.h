@@ -3,7 +3,7 @@
 /// a function is not defined, at the poles of quotients and for the logarithm of 0, too. At kinks the
 /// derivative is that of one side, at steps it is 0.
 
-#include "core/vec3.h"
+#include "core/affine_lanes.h"
 #include "kernels/interval/dual.h"
 
 namespace oktett {
@@ -28,26 +28,18 @@ OKTETT_INLINE D nan() {
   return D(std::numeric_limits<double>::quiet_NaN());
 }
 template <class D>
-OKTETT_INLINE Vec3<D> scaled(const Vec3<D>& d, const D& by) {
-  return {d.x * by, d.y * by, d.z * by};
-}
-template <class D>
-OKTETT_INLINE Vec3<D> sum(const Vec3<D>& a, const Vec3<D>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class D>
 OKTETT_INLINE Vec3<D> zero() {
   return {D(0.0), D(0.0), D(0.0)};
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> choose(const typename D::M& m, const Gradient<D, W>& a,
                                     const Gradient<D, W>& b) {
-  return {select(m, a.v, b.v), {select(m, a.d.x, b.d.x), select(m, a.d.y, b.d.y), select(m, a.d.z, b.d.z)}};
+  return {select(m, a.v, b.v), select_lanes(m, a.d, b.d)};
 }
 /// f(a) with the slope f'.
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> chain(const Gradient<D, W>& a, const D& value, const D& slope) {
-  return {value, scaled(a.d, slope)};
+  return {value, scale_lanes(a.d, slope)};
 }
 /// Keeps what one divides by away from zero.
 template <Walls W, class D>
@@ -63,7 +55,7 @@ OKTETT_INLINE D steepness(const D& distance) {
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> stepped(const Gradient<D, W>& a, const D& value, const D& jump) {
   const D v = select(a.v == a.v, value, a.v);
-  return {v, W == Walls::flat ? zero<D>() : scaled(a.d, steepness(a.v - jump))};
+  return {v, W == Walls::flat ? zero<D>() : scale_lanes(a.d, steepness(a.v - jump))};
 }
 
 }  // namespace gradient
@@ -74,7 +66,7 @@ OKTETT_INLINE Gradient<D, W> operator-(const Gradient<D, W>& a) {
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> operator+(const Gradient<D, W>& a, const Gradient<D, W>& b) {
-  return {a.v + b.v, gradient::sum(a.d, b.d)};
+  return {a.v + b.v, add_lanes(a.d, b.d)};
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> operator-(const Gradient<D, W>& a, const Gradient<D, W>& b) {
@@ -82,13 +74,13 @@ OKTETT_INLINE Gradient<D, W> operator-(const Gradient<D, W>& a, const Gradient<D
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> operator*(const Gradient<D, W>& a, const Gradient<D, W>& b) {
-  return {a.v * b.v, gradient::sum(gradient::scaled(a.d, b.v), gradient::scaled(b.d, a.v))};
+  return {a.v * b.v, add_lanes(scale_lanes(a.d, b.v), scale_lanes(b.d, a.v))};
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> operator/(const Gradient<D, W>& a, const Gradient<D, W>& b) {
   const D below = gradient::divisor<W>(b.v), inverse = D(1.0) / below;
   const D q = select(below == D(0.0), gradient::nan<D>(), a.v / below);
-  return {q, gradient::scaled(gradient::sum(a.d, gradient::scaled(b.d, -q)), inverse)};
+  return {q, scale_lanes(add_lanes(a.d, scale_lanes(b.d, -q)), inverse)};
 }
 template <class D, Walls W>
 OKTETT_INLINE Gradient<D, W> times(const Gradient<D, W>& a, double b) {
@@ -207,7 +199,7 @@ OKTETT_NOINLINE Gradient<D, W> atan2(const Gradient<D, W>& y, const Gradient<D, 
   const D rr = gradient::divisor<W>(x.v * x.v + y.v * y.v);
   D by_y = x.v / rr;
   if (W == Walls::steep) by_y = select(x.v < zero, -gradient::steepness(y.v), by_y);
-  return {angle, gradient::sum(gradient::scaled(y.d, by_y), gradient::scaled(x.d, -y.v / rr))};
+  return {angle, add_lanes(scale_lanes(y.d, by_y), scale_lanes(x.d, -y.v / rr))};
 }
 template <class D, Walls W>
 OKTETT_NOINLINE Gradient<D, W> floor(const Gradient<D, W>& a) {

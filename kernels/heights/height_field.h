@@ -2,6 +2,7 @@
 /// \file Height fields: surfaces y = h(x, z) over a grid of samples, traced as a grid and not as a mesh
 /// (slides; F. K. Musgrave: Grid Tracing, 1988).
 
+#include "core/affine_lanes.h"
 #include "kernels/heights/height_pyramid.h"
 
 namespace oktett {
@@ -129,27 +130,19 @@ struct HeightField {
     const HeightPatch<D> patch(*e.grid, p.x * D(scale.x) + D(shift.x), p.z * D(scale.z) + D(shift.z));
     value = p.y - (patch.height - D(shift.y)) / D(scale.y);
     gradient = {-patch.by_x * D(scale.x / scale.y), D(1.0), -patch.by_z * D(scale.z / scale.y)};
-
-    const D zero(0.0);
-    const auto others = zero < part;
-    if (none(others)) return;
-    const auto set = [&](const typename D::M& where, const D& to, const D& x, const D& y, const D& z) {
-      value = select(where, to, value);
-      gradient = {select(where, x, gradient.x), select(where, y, gradient.y), select(where, z, gradient.z)};
+    select_faces(e.lo, e.hi, part, p, value, gradient);
+    if (none(part > D(6.0))) return;
+    // Walls stand at the nearest line of the grid.
+    const auto wall = [&](int number, int axis, const D& at, double side) {
+      const D shifter(0x1.8p52), line = at * D(scale[axis]) + D(shift[axis]), zero(0.0);
+      const D place = (((line + shifter) - shifter) - D(shift[axis])) / D(scale[axis]);
+      const auto here = part == D(number);
+      value = select(here, (at - place) * D(side), value);
+      const Vec3<D> normal{axis == 0 ? D(side) : zero, zero, axis == 2 ? D(side) : zero};
+      gradient = select_lanes(here, normal, gradient);
     };
-    const D* at[3] = {&p.x, &p.y, &p.z};
-    for (int axis = 0; axis < 3; ++axis)
-      for (const bool high : {false, true}) {
-        const D side(high ? 1.0 : -1.0), bound(high ? e.hi[axis] : e.lo[axis]);
-        const D x = axis == 0 ? side : zero, y = axis == 1 ? side : zero, z = axis == 2 ? side : zero;
-        set(part == D(1.0 + 2 * axis + (high ? 1 : 0)), (*at[axis] - bound) * side, x, y, z);
-        if (axis == 1) continue;
-        // The line of the grid that is nearest.
-        const D shifter(0x1.8p52), line = *at[axis] * D(scale[axis]) + D(shift[axis]);
-        const D wall = (((line + shifter) - shifter) - D(shift[axis])) / D(scale[axis]);
-        const int number = axis == 0 ? (high ? kWallHighX : kWallLowX) : (high ? kWallHighZ : kWallLowZ);
-        set(part == D(number), (*at[axis] - wall) * side, x, y, z);
-      }
+    wall(kWallLowX, 0, p.x, -1), wall(kWallHighX, 0, p.x, 1);
+    wall(kWallLowZ, 2, p.z, -1), wall(kWallHighZ, 2, p.z, 1);
   }
   /// Below the surface and above the bottom of a solid; nothing is inside of an open surface.
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);

@@ -48,13 +48,9 @@ inline constexpr double kGreatest = std::numeric_limits<double>::max();
 /// [lo, hi] with both ends moved outwards by `relative` times their size plus 2^-1000. A lower end of
 /// +infinity becomes the greatest number, an upper end of -infinity the least.
 template <class D>
-OKTETT_INLINE Interval<D> outward(D lo, D hi, const D& relative) {
+OKTETT_INLINE Interval<D> outward(D lo, D hi, const D& relative = D(kRound)) {
   lo = min(D(kGreatest), lo), hi = max(D(-kGreatest), hi);
   return {lo - (abs(lo) * relative + D(kTiny)), hi + (abs(hi) * relative + D(kTiny))};
-}
-template <class D>
-OKTETT_INLINE Interval<D> outward(const D& lo, const D& hi) {
-  return outward(lo, hi, D(kRound));
 }
 /// The same for sums. They never underflow, so each end has the sign of the true one.
 template <class D>
@@ -64,13 +60,9 @@ OKTETT_INLINE Interval<D> outward_sum(D lo, D hi) {
 }
 /// As `outward`, for results that cannot be negative.
 template <class D>
-OKTETT_INLINE Interval<D> outward_positive(const D& lo, const D& hi, const D& relative) {
+OKTETT_INLINE Interval<D> outward_positive(const D& lo, const D& hi, const D& relative = D(kRound)) {
   const Interval<D> r = outward(lo, hi, relative);
   return {max(r.lo, D(0.0)), r.hi};
-}
-template <class D>
-OKTETT_INLINE Interval<D> outward_positive(const D& lo, const D& hi) {
-  return outward_positive(lo, hi, D(kRound));
 }
 
 /// `r`, made entire or void where the argument `a` is.

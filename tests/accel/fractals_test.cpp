@@ -201,7 +201,6 @@ TEST(Fractals, MemoryDoesNotGrowWithDepth) {
   EXPECT_EQ(pool.elements[0].maps.size(), 4u);
   for (const std::uint32_t depth : {1u, 6u, 12u, 24u}) EXPECT_EQ(bytes(flake(depth)), one_ball);
   for (const std::uint32_t depth : {1u, 5u, 10u, 16u}) EXPECT_EQ(bytes(sponge(depth)), cube);
-  EXPECT_GT(Sphereflake::count(flake(12)), 3e11);
 }
 
 TEST(Fractals, BoundsAreTight) {
