@@ -1,7 +1,10 @@
 #include "kernels/exact_ops.h"
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
+
+#include "kernels/exact/march.h"
 
 namespace oktett {
 
@@ -10,8 +13,12 @@ namespace oktett {
 #include "kernels/exact/surfaces.def"
 #undef SURFACE
 
-// Here, so that no unit of a wider instruction set defines it.
+// What no unit of a wider instruction set may define.
 ExactPoolBase::~ExactPoolBase() = default;
+
+static std::atomic<std::uint64_t> uncertified{0};
+void interval::count_uncertified(int rays) { uncertified += static_cast<std::uint64_t>(rays); }
+std::uint64_t interval::uncertified_count() { return uncertified; }
 
 const ExactOps& exact_ops(Kind kind) {
   switch (kind) {

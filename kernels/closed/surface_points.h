@@ -86,7 +86,4 @@ inline void set_position(SurfaceInteraction& s, const Vec3d& p, const Ray& ray, 
   s.position_error = only_lane(position_error(HitPoints<D>(ray, t), broadcast<D>(p), D(surface_error)));
 }
 
-/// origin + t * direction in double.
-inline Vec3d point_at(const Ray& ray, double t) { return Vec3d(ray.origin) + Vec3d(ray.direction) * t; }
-
 }  // namespace oktett

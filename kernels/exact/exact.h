@@ -35,7 +35,7 @@
 
 #include <limits>
 
-#include "core/lanes.h"
+#include "core/affine_lanes.h"
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 #include "kernels/exact/exact_pool.h"
@@ -153,7 +153,7 @@ inline double face_value(const Vec3d& lo, const Vec3d& hi, int face, const Vec3d
   const int axis = (face - 1) / 2;
   return (face - 1) % 2 == 1 ? p[axis] - hi[axis] : lo[axis] - p[axis];
 }
-inline Vec3d face_gradient(int face) {
+OKTETT_INLINE Vec3d face_gradient(int face) {
   Vec3d g{0, 0, 0};
   g[(face - 1) / 2] = (face - 1) % 2 == 1 ? 1 : -1;
   return g;
@@ -170,10 +170,7 @@ OKTETT_INLINE void select_faces(const Vec3d& lo, const Vec3d& hi, const D& part,
     const int axis = (face - 1) / 2;
     const bool high = (face - 1) % 2 == 1;
     value = select(here, high ? at[axis] - D(hi[axis]) : D(lo[axis]) - at[axis], value);
-    const D side(high ? 1.0 : -1.0), zero(0.0);
-    gradient = {select(here, axis == 0 ? side : zero, gradient.x),
-                select(here, axis == 1 ? side : zero, gradient.y),
-                select(here, axis == 2 ? side : zero, gradient.z)};
+    gradient = select_lanes(here, broadcast<D>(face_gradient(face)), gradient);
   }
 }
 

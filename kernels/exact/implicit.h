@@ -77,8 +77,7 @@ struct Implicit {
       // No value tells how far away a wall is.
       const Vec3<D> n = wall_normal(e, p);
       value = select(wall, zero, value);
-      gradient = {select(wall, n.x, gradient.x), select(wall, n.y, gradient.y),
-                  select(wall, n.z, gradient.z)};
+      gradient = select_lanes(wall, n, gradient);
     }
     select_faces(e.lo, e.hi, select(wall, zero, part), p, value, gradient);
   }

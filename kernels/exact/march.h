@@ -15,16 +15,15 @@
 /// which f is not bounded hold a pole or the border of where f is defined. Undefined counts as
 /// positive.
 
-#include <atomic>
-
 #include "kernels/exact/exact.h"
 #include "kernels/interval/dual.h"
 
 namespace oktett::interval {
 
-/// How many rays were not followed to their ends in this process, as they would have taken too many steps.
-inline std::atomic<std::uint64_t> uncertified{0};
-inline std::uint64_t uncertified_count() { return uncertified; }
+/// Notes that so many rays were not followed to their ends, as they would have taken too many steps.
+void count_uncertified(int rays);
+/// How many there have been in this process.
+std::uint64_t uncertified_count();
 
 /// Steps after which a ray is given up.
 inline constexpr int kMaxSteps = 1 << 16;
@@ -195,7 +194,7 @@ OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit
   }
   list.finish(select(walk.count < D(K), D(roots::kNoRoot), walk.t));
   const unsigned lost = bits(walk.uncertified);
-  if (OKTETT_UNLIKELY(lost != 0)) interval::uncertified += static_cast<unsigned>(__builtin_popcount(lost));
+  if (OKTETT_UNLIKELY(lost != 0)) count_uncertified(__builtin_popcount(lost));
   return walk.first_sign;
 }
 

@@ -62,17 +62,15 @@ struct Quadric {
     const D turn = select(enter_first, D(-1.0), D(1.0));
     const auto at0 = (enter_first & enters) | (~enter_first & exits);
     const auto at1 = (enter_first & exits) | (~enter_first & enters);
-    if (!e.closed) {
-      CrossingList<K, D> list(out);
+    const auto list_both = [&](auto& crossings) {
+      CrossingList list(crossings);
       list.push(at0, t0, turn, D(0.0));
       list.push(at1, t1, -turn, D(0.0));
-      return list.finish(D(roots::kNoRoot));
-    }
+      list.finish(inf);
+    };
+    if (!e.closed) return list_both(out);
     Crossings<2, D> open;
-    CrossingList<2, D> list(open);
-    list.push(at0, t0, turn, D(0.0));
-    list.push(at1, t1, -turn, D(0.0));
-    list.finish(D(roots::kNoRoot));
+    list_both(open);
     const D s = D(0.5) * (range.a + range.b) - shift;
     const auto inside = (f[0] * s + D(2.0) * f[1]) * s + f[2] < D(0.0);
     close_by_cell(open, inside, range, active, out);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernels/roots/polynomial.h"
 #include "kernels/roots/solve.h"
 
 namespace oktett {
@@ -16,12 +17,6 @@ struct Weighed {
 Weighed value_at(const roots::Polynomial& p, double x) {
   double y = 0, m = 0;
   for (int i = p.degree; i >= 0; --i) y = y * x + p.c[i], m = m * std::abs(x) + std::abs(p.c[i]);
-  return {y, m};
-}
-
-Weighed slope_at(const roots::Polynomial& p, double x) {
-  double y = 0, m = 0;
-  for (int i = p.degree; i > 0; --i) y = y * x + i * p.c[i], m = m * std::abs(x) + std::abs(i * p.c[i]);
   return {y, m};
 }
 
@@ -45,8 +40,9 @@ void find_sign_changes(const double* c, int degree, roots::Method method, int wa
   // The turns follow from any one of them, or from the sign before the first.
   const Weighed before = value_at(p, -1);
   double certainty = before.certainty(), first = before.value > 0 ? -1 : 1;
+  const roots::Polynomial derivative = roots::derivative(p);
   for (int i = 0; i < out.count; ++i) {
-    const Weighed slope = slope_at(p, out.s[i]);
+    const Weighed slope = value_at(derivative, out.s[i]);
     const double turn = slope.value < 0 ? -1 : 1;
     if (slope.certainty() > certainty) certainty = slope.certainty(), first = i % 2 == 0 ? turn : -turn;
   }

@@ -129,8 +129,7 @@ struct Revolution {
     for (int k = 0; k < W; ++k) down[k] = static_cast<int>(parts[k]) % 2 == 1 ? -1 : 1;
     const D side = D::load(down);
     value = select(plane, side * level, value);
-    gradient = {select(plane, D(0.0), gradient.x), select(plane, side, gradient.y),
-                select(plane, D(0.0), gradient.z)};
+    gradient = select_lanes(plane, Vec3<D>{D(0.0), side, D(0.0)}, gradient);
   }
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +z towards +x, v the height, both in [0, 1].

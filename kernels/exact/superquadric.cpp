@@ -34,8 +34,6 @@ SuperRounding rounding(double p, bool ratio, double inverse) {
   return {vague, bend, 2.1 * slope.part[0].v};
 }
 
-double greatest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
-
 /// A little more than computed, for the box that holds everything.
 constexpr double kGrow = 1 + 0x1p-36;
 
@@ -72,7 +70,7 @@ void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace&
     if (!(lo[k] < hi[k] && std::isfinite(hi[k] - lo[k]))) return;
   Vec3d extent;
   for (int k = 0; k < 3; ++k) extent[k] = std::max(std::abs(lo[k]), std::abs(hi[k]));
-  const double size = greatest(extent);
+  const double size = max_component(extent);
   SuperquadricElement e{};
   const bool toroid = s.form == Form::toroid;
   const double p[3] = {toroid ? s.m : s.p, toroid ? s.n : s.q, toroid ? s.p : s.r};

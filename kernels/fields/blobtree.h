@@ -82,13 +82,6 @@ class CellField {
   OKTETT_NOINLINE Interval<D> at(const D& s) const { return run<Interval<D>>(Interval<D>(s)); }
 
  private:
-  /// c - v.
-  static OKTETT_INLINE Interval<D> from_constant(double c, const Interval<D>& v) {
-    return Interval<D>(D(c)) - v;
-  }
-  static OKTETT_INLINE Dual<Interval<D>> from_constant(double c, const Dual<Interval<D>>& v) {
-    return {Interval<D>(D(c)) - v.v, -v.d};
-  }
   OKTETT_INLINE void square(const FieldPart& p, const Track<D>& track, const Interval<D>& x,
                             Dual<Interval<D>>& out) const {
     const bool flat = p.shape == FieldPart::Shape::polygon;
@@ -127,11 +120,11 @@ class CellField {
         } else if (op == BlobCode::min) {
           a = oktett::min(a, b);
         } else {
-          a = oktett::min(a, from_constant(2 * iso_, b));
+          a = oktett::min(a, plus(-b, 2 * iso_));
         }
       }
     }
-    return from_constant(iso_, stack[0]);
+    return plus(-stack[0], iso_);
   }
 
   OKTETT_INLINE const FieldPart& part(std::uint32_t i) const {

@@ -63,33 +63,30 @@ struct CellTree {
   /// Calls f(leaf, lanes) for each of the leaves that the points of lanes are in. Their lanes go down
   /// together as far as they have the same way.
   template <class D, class Function>
-  OKTETT_INLINE void each_leaf(std::uint32_t root, const Vec3<D>& p, Function&& f) const;
+  OKTETT_INLINE void each_leaf(std::uint32_t root, const Vec3<D>& p, Function&& f) const {
+    struct Group {
+      std::uint32_t node;
+      unsigned lanes;
+    };
+    const D* axes[3] = {&p.x, &p.y, &p.z};
+    // What waits has other lanes than what goes down.
+    Group waiting[D::kWidth];
+    int size = 0;
+    for (Group group{root, bits(D::M::all_true())};; group = waiting[--size]) {
+      const CellNode* node = &nodes[group.node];
+      while (node->kind <= CellNode::Kind::z) {
+        const unsigned first = group.lanes & bits(*axes[static_cast<int>(node->kind)] < D(node->split));
+        if (first != 0 && first != group.lanes) {
+          waiting[size++] = {node->second, group.lanes & ~first};
+          group.lanes = first;
+        }
+        node = &nodes[first != 0 ? node->first : node->second];
+      }
+      f(*node, D::M::from_bits(group.lanes));
+      if (size == 0) return;
+    }
+  }
   std::size_t bytes() const { return nodes.size() * sizeof(CellNode) + lists.size() * sizeof(std::uint32_t); }
 };
-
-template <class D, class Function>
-OKTETT_INLINE void CellTree::each_leaf(std::uint32_t root, const Vec3<D>& p, Function&& f) const {
-  struct Group {
-    std::uint32_t node;
-    unsigned lanes;
-  };
-  const D* axes[3] = {&p.x, &p.y, &p.z};
-  // What waits has other lanes than what goes down.
-  Group waiting[D::kWidth];
-  int size = 0;
-  for (Group group{root, bits(D::M::all_true())};; group = waiting[--size]) {
-    const CellNode* node = &nodes[group.node];
-    while (node->kind <= CellNode::Kind::z) {
-      const unsigned first = group.lanes & bits(*axes[static_cast<int>(node->kind)] < D(node->split));
-      if (first != 0 && first != group.lanes) {
-        waiting[size++] = {node->second, group.lanes & ~first};
-        group.lanes = first;
-      }
-      node = &nodes[first != 0 ? node->first : node->second];
-    }
-    f(*node, D::M::from_bits(group.lanes));
-    if (size == 0) return;
-  }
-}
 
 }  // namespace oktett

@@ -273,13 +273,11 @@ struct Metaballs {
       const std::uint32_t* list = pool.tree.lists.data() + node.first;
       for (std::uint32_t k = 0; k < (listed ? node.second : e.count); ++k) {
         const Ball& ball = pool.balls[listed ? list[k] : e.begin + k];
-        const Vec3<D> d{p.x - D(ball.center.x), p.y - D(ball.center.y), p.z - D(ball.center.z)};
+        const Vec3<D> d = sub_lanes(p, broadcast<D>(ball.center));
         const D q = max(D(1.0) - dot_lanes(d, d) * D(ball.inverse_square), D(0.0));
         const D falls = D(4 * ball.strength * ball.inverse_square) * q;
         value = select(lanes, value - D(ball.strength) * (q * q), value);
-        gradient = {select(lanes, gradient.x + d.x * falls, gradient.x),
-                    select(lanes, gradient.y + d.y * falls, gradient.y),
-                    select(lanes, gradient.z + d.z * falls, gradient.z)};
+        gradient = select_lanes(lanes, add_lanes(gradient, scale_lanes(d, falls)), gradient);
       }
     });
   }

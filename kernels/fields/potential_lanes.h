@@ -66,11 +66,6 @@ OKTETT_INLINE Dual<Interval<D>> square_over(const SegmentTrack<D>& t, const Inte
   return {square_values(t, x), (q * t.a + over * t.h1 * t.length) * D(2.0)};
 }
 
-template <class D>
-OKTETT_INLINE D along(const D& zero_at, const D& speed_square) {
-  return select(speed_square > D(0.0), zero_at / speed_square, D(0.0));
-}
-
 /// R along a line.
 template <class D>
 struct Track {
@@ -106,7 +101,7 @@ struct Track {
   static OKTETT_INLINE SegmentTrack<D> across(const Vec3<D>& p, const Vec3<D>& v) {
     SegmentTrack<D> t;
     t.a = dot_lanes(v, v);
-    t.s0 = -along(dot_lanes(p, v), t.a);
+    t.s0 = -select(t.a > D(0.0), dot_lanes(p, v) / t.a, D(0.0));
     const Vec3<D> n{p.x + t.s0 * v.x, p.y + t.s0 * v.y, p.z + t.s0 * v.z};
     t.m = dot_lanes(n, n);
     t.h0 = t.h1 = t.length = D(0.0);

@@ -131,29 +131,6 @@ inline FractalCrossing wall_crossing(const FractalQuery& query, const GridLine::
   return c;
 }
 
-/// F::find for each lane: up to K crossings in ascending order.
-template <class F, int K, class D>
-void fractal_crossings(const typename F::Pool& pool, const ExactCell& cell, const Line<D>& line,
-                       const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-  constexpr int W = D::kWidth;
-  double o[3][W], d[3][W], a[W], b[W];
-  line.o.x.store(o[0]), line.o.y.store(o[1]), line.o.z.store(o[2]);
-  line.d.x.store(d[0]), line.d.y.store(d[1]), line.d.z.store(d[2]);
-  range.a.store(a), range.b.store(b);
-  CrossingColumns<K, D> columns;
-  for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
-    const int i = __builtin_ctz(lanes);
-    FractalCrossing found[K];
-    const int count =
-        F::find(pool.elements[cell.element],
-                {{o[0][i], o[1][i], o[2][i]}, {d[0][i], d[1][i], d[2][i]}, a[i], b[i]}, found, K);
-    for (int k = 0; k < count; ++k)
-      columns.t[k][i] = found[k].t, columns.turn[k][i] = found[k].turn, columns.part[k][i] = found[k].part;
-    if (count == K) columns.up_to[i] = found[K - 1].t;
-  }
-  columns.load(out);
-}
-
 /// The crossing that `hit` was before its t was rounded to float, on the line of `query`, whose range is not
 /// looked at. If rounding took the line itself past it, a point on the line that faces the ray.
 template <class F>
@@ -188,10 +165,27 @@ struct Fractal {
   static constexpr int kMaxCrossings = 32;
   static constexpr bool kWholeLines = true, kStopsAtLimit = true;
 
+  /// F::find for each lane: up to K crossings in ascending order.
   template <int K, class D>
   static void crossings(const Pool& pool, const ExactCell& cell, const Line<D>& line,
                         const LineRange<D>& range, const typename D::M& active, Crossings<K, D>& out) {
-    fractal_crossings<F, K>(pool, cell, line, range, active, out);
+    constexpr int W = D::kWidth;
+    double o[3][W], d[3][W], a[W], b[W];
+    line.o.x.store(o[0]), line.o.y.store(o[1]), line.o.z.store(o[2]);
+    line.d.x.store(d[0]), line.d.y.store(d[1]), line.d.z.store(d[2]);
+    range.a.store(a), range.b.store(b);
+    CrossingColumns<K, D> columns;
+    for (unsigned lanes = bits(active); lanes != 0; lanes &= lanes - 1) {
+      const int i = __builtin_ctz(lanes);
+      FractalCrossing found[K];
+      const int count =
+          F::find(pool.elements[cell.element],
+                  {{o[0][i], o[1][i], o[2][i]}, {d[0][i], d[1][i], d[2][i]}, a[i], b[i]}, found, K);
+      for (int k = 0; k < count; ++k)
+        columns.t[k][i] = found[k].t, columns.turn[k][i] = found[k].turn, columns.part[k][i] = found[k].part;
+      if (count == K) columns.up_to[i] = found[K - 1].t;
+    }
+    columns.load(out);
   }
 
   static SurfaceInteraction interaction(const Pool& pool, std::size_t i, const Ray& ray, const Hit& hit) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 #include "kernels/fractals/fractal_union.h"
 
 namespace oktett {
@@ -209,7 +209,7 @@ void tell_surface(const IfsElement& e, const FractalQuery& query, const Walk::Pl
   Vec3d n = p, tangent;
   if (face == 0) {
     const double across = std::sqrt(p.x * p.x + p.z * p.z);
-    c.u = 0.5 + portable::atan2(p.z, p.x) * 0.5 / std::numbers::pi;
+    c.u = turn_of(p.z, p.x);
     c.v = 0.5 + portable::atan2(p.y, across) / std::numbers::pi;
     tangent = Vec3d{-p.z, 0, p.x} * (2 * std::numbers::pi);
   } else {

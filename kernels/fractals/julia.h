@@ -36,6 +36,25 @@ struct JuliaField {
   struct Quaternion {
     D r, i, j, k;
     OKTETT_INLINE D norm2() const { return (r * r + i * i) + (j * j + k * k); }
+    /// Twice the part along w.
+    OKTETT_INLINE D twice_along(const Quaternion& w) const {
+      return D(2.0) * ((r * w.r + i * w.i) + (j * w.j + k * w.k));
+    }
+    /// The derivative of the square where that of the quaternion is w.
+    OKTETT_INLINE Quaternion square_slope(const Quaternion& w) const {
+      const D two(2.0);
+      return {two * ((r * w.r - i * w.i) - (j * w.j + k * w.k)), two * (r * w.i + w.r * i),
+              two * (r * w.j + w.r * j), two * (r * w.k + w.r * k)};
+    }
+    OKTETT_INLINE Quaternion square_plus(const double (&c)[4]) const {
+      const D two(2.0);
+      return {((r * r - i * i) - (j * j + k * k)) + D(c[0]), two * (r * i) + D(c[1]), two * (r * j) + D(c[2]),
+              two * (r * k) + D(c[3])};
+    }
+    OKTETT_INLINE void set(const typename D::M& where, const Quaternion& q) {
+      r = select(where, q.r, r), i = select(where, q.i, i), j = select(where, q.j, j),
+      k = select(where, q.k, k);
+    }
   };
 
   /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what is
@@ -58,19 +77,10 @@ struct JuliaField {
       if (n == e.iterations || none(stays)) break;
       eps = select(stays, two * length * eps + r * r + u * (zz + cc + length * slope * half), eps);
       phi = select(stays, two * (length * phi + r * (slope + phi)) + u * length * slope, phi);
-      const Quaternion s{((z.r * z.r - z.i * z.i) - (z.j * z.j + z.k * z.k)) + D(e.c[0]),
-                         two * (z.r * z.i) + D(e.c[1]), two * (z.r * z.j) + D(e.c[2]),
-                         two * (z.r * z.k) + D(e.c[3])};
-      const Quaternion v{two * ((z.r * w.r - z.i * w.i) - (z.j * w.j + z.k * w.k)),
-                         two * (z.r * w.i + w.r * z.i), two * (z.r * w.j + w.r * z.j),
-                         two * (z.r * w.k + w.r * z.k)};
-      z = {select(stays, s.r, z.r), select(stays, s.i, z.i), select(stays, s.j, z.j),
-           select(stays, s.k, z.k)};
-      w = {select(stays, v.r, w.r), select(stays, v.i, w.i), select(stays, v.j, w.j),
-           select(stays, v.k, w.k)};
+      w.set(stays, z.square_slope(w)), z.set(stays, z.square_plus(e.c));
     }
     const D zz = z.norm2(), length = sqrt(zz), slope = sqrt(w.norm2()), r = slope * half + eps;
-    const D by_h = two * ((z.r * w.r + z.i * w.i) + (z.j * w.j + z.k * w.k));
+    const D by_h = z.twice_along(w);
     const D off = abs(by_h) * half + two * length * eps + u * (zz + limit) + u * length * slope * half;
     const D turn = two * (slope * r + (length + r) * phi) + u * length * slope;
     const D value = zz - limit, huge(kHuge * kHuge);
@@ -112,28 +122,18 @@ struct Julia {
   OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D&, const Vec3<D>& p, D& value,
                                   Vec3<D>& gradient) {
     const JuliaElement& e = pool.elements[i];
-    const D zero(0.0), one(1.0), two(2.0);
+    const D zero(0.0), one(1.0);
     using Q = typename JuliaField<D>::Quaternion;
     Q z{p.x, p.y, p.z, D(e.slice)},
         w[3] = {{one, zero, zero, zero}, {zero, one, zero, zero}, {zero, zero, one, zero}};
     for (int n = 0; n < e.iterations; ++n) {
       const auto stays = z.norm2() < D(0x1p20);
       if (none(stays)) break;
-      const auto keep = [&](const Q& to, Q& from) {
-        from = {select(stays, to.r, from.r), select(stays, to.i, from.i), select(stays, to.j, from.j),
-                select(stays, to.k, from.k)};
-      };
-      for (Q& v : w)
-        keep({two * ((z.r * v.r - z.i * v.i) - (z.j * v.j + z.k * v.k)), two * (z.r * v.i + v.r * z.i),
-              two * (z.r * v.j + v.r * z.j), two * (z.r * v.k + v.r * z.k)},
-             v);
-      keep({((z.r * z.r - z.i * z.i) - (z.j * z.j + z.k * z.k)) + D(e.c[0]), two * (z.r * z.i) + D(e.c[1]),
-            two * (z.r * z.j) + D(e.c[2]), two * (z.r * z.k) + D(e.c[3])},
-           z);
+      for (Q& v : w) v.set(stays, z.square_slope(v));
+      z.set(stays, z.square_plus(e.c));
     }
-    const auto along = [&](const Q& v) { return two * ((z.r * v.r + z.i * v.i) + (z.j * v.j + z.k * v.k)); };
     value = z.norm2() - D(e.radius * e.radius);
-    gradient = {along(w[0]), along(w[1]), along(w[2])};
+    gradient = {z.twice_along(w[0]), z.twice_along(w[1]), z.twice_along(w[2])};
   }
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <numbers>
 
-#include "core/math.h"
+#include "kernels/exact/round_uv.h"
 #include "kernels/fractals/fractal_union.h"
 
 namespace oktett {
@@ -107,6 +107,16 @@ void grow_support(const SphereflakeElement& e, int generation, double from, cons
   }
 }
 
+/// How far it reaches along `direction`, from its centre in lengths of the direction: no less, and more by
+/// no more than 1/1000.
+double support(const SphereflakeElement& e, const Vec3d& direction) {
+  const double l = length(direction);
+  if (!(l > 0)) return 0;
+  double best = 0;
+  grow_support(e, 0, 0, direction / l, best);
+  return best + 0x1p-11 + 0x1p-40;
+}
+
 bool holds(const SphereflakeElement& e, int generation, const Vec3d& p) {
   const double d2 = dot(p, p);
   if (d2 < 1) return true;
@@ -149,8 +159,8 @@ int Sphereflake::find(const Element& e, const FractalQuery& query, FractalCrossi
   return find_in_union(walk, query, out, room, [&](const Walk::Place& place, FractalCrossing& c) {
     const double h = std::sqrt(1 - dot(place.node.p, place.node.p));
     Vec3d n = place.node.p + place.node.u * (h * c.turn);
-    const double longitude = portable::atan2(n.z, n.x), across = std::sqrt(n.x * n.x + n.z * n.z);
-    c.u = 0.5 + longitude * 0.5 / std::numbers::pi;
+    const double across = std::sqrt(n.x * n.x + n.z * n.z);
+    c.u = turn_of(n.z, n.x);
     c.v = 0.5 + portable::atan2(n.y, across) / std::numbers::pi;
     Vec3d east{-n.z, 0, n.x}, at{0, 0, 0};
     for (int g = place.level; g-- > 0;) {
@@ -165,14 +175,6 @@ int Sphereflake::find(const Element& e, const FractalQuery& query, FractalCrossi
 
 bool Sphereflake::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return holds(pool.elements[i], 0, p);
-}
-
-double Sphereflake::support(const Element& e, const Vec3d& direction) {
-  const double l = length(direction);
-  if (!(l > 0)) return 0;
-  double best = 0;
-  grow_support(e, 0, 0, direction / l, best);
-  return best + 0x1p-11 + 0x1p-40;
 }
 
 Box Sphereflake::world_bounds(const Pool& pool, std::size_t i) {

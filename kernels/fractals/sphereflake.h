@@ -25,9 +25,6 @@ struct Sphereflake : Fractal<Sphereflake, SphereflakeShape, SphereflakeElement> 
   static void add(Pool& pool, const SphereflakeShape& shape, const ExactPlace& place);
   static int find(const Element& element, const FractalQuery& query, FractalCrossing* out, int room);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
-  /// How far it reaches along `direction`, from its centre in lengths of the direction: no less, and more by
-  /// no more than 1/1000.
-  static double support(const Element& element, const Vec3d& direction);
   static Box world_bounds(const Pool& pool, std::size_t i);
 };
 

@@ -18,6 +18,8 @@ double max_of(double a, double b) {
   return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN() : std::max(a, b);
 }
 
+double sign_of(double a, double) { return a > 0 ? 1 : a < 0 ? -1 : a; }
+
 struct Function {
   const char* name;
   ExpressionOp op;
@@ -44,9 +46,7 @@ constexpr Function kFunctions[] = {
     {"floor", ExpressionOp::floor, [](double a, double) { return std::floor(a); }},
     {"ceil", ExpressionOp::ceil, [](double a, double) { return std::ceil(a); }},
     {"round", ExpressionOp::round, [](double a, double) { return std::round(a); }},
-    {"sign", ExpressionOp::sign, [](double a, double) { return a > 0   ? 1
-                                                               : a < 0 ? -1
-                                                                       : a; }},
+    {"sign", ExpressionOp::sign, sign_of},
     {"hypot", ExpressionOp::hypot, [](double a, double b) { return std::hypot(a, b); }},
 };
 
@@ -106,23 +106,19 @@ class Parser {
     return add(place, {op, a, b, 0});
   }
 
-  std::uint32_t sum() {
-    std::uint32_t left = product();
-    while (true) {
-      const bool plus = accept('+');
-      if (!plus && !accept('-')) return left;
-      const std::size_t place = pos_ - 1;
-      left = add(place, plus ? ExpressionOp::add : ExpressionOp::subtract, left, product());
-    }
-  }
-
+  std::uint32_t sum() { return chain('+', ExpressionOp::add, '-', ExpressionOp::subtract, &Parser::product); }
   std::uint32_t product() {
-    std::uint32_t left = signed_factor();
+    return chain('*', ExpressionOp::multiply, '/', ExpressionOp::divide, &Parser::signed_factor);
+  }
+  /// Operands joined by two operators, from the left.
+  std::uint32_t chain(char first, ExpressionOp first_op, char second, ExpressionOp second_op,
+                      std::uint32_t (Parser::*operand)()) {
+    std::uint32_t left = (this->*operand)();
     while (true) {
-      const bool times = accept('*');
-      if (!times && !accept('/')) return left;
+      const bool is_first = accept(first);
+      if (!is_first && !accept(second)) return left;
       const std::size_t place = pos_ - 1;
-      left = add(place, times ? ExpressionOp::multiply : ExpressionOp::divide, left, signed_factor());
+      left = add(place, is_first ? first_op : second_op, left, (this->*operand)());
     }
   }
 

@@ -253,11 +253,8 @@ FunctionTape compile_function(std::string_view text) {
 
 double value_at(const FunctionTape& tape, double x, double y, double z) {
   using D = Simd<double, 1, ScalarIsa>;
-  const Vec3<D> flat = gradient::zero<D>();
-  const auto constant = [&](double c) { return Gradient<D>{D(c), flat}; };
-  double value;
-  run_tape(tape, constant(x), constant(y), constant(z)).v.store(&value);
-  return value;
+  const auto constant = [&](double c) { return Gradient<D>{D(c), gradient::zero<D>()}; };
+  return only_lane(run_tape(tape, constant(x), constant(y), constant(z)).v);
 }
 
 }  // namespace oktett

@@ -2,7 +2,6 @@
 /// \file Height fields: surfaces y = h(x, z) over a grid of samples, traced as a grid and not as a mesh
 /// (slides; F. K. Musgrave: Grid Tracing, 1988).
 
-#include "core/affine_lanes.h"
 #include "kernels/heights/height_pyramid.h"
 
 namespace oktett {

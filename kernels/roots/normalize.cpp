@@ -1,4 +1,4 @@
-#include "kernels/roots/normalize.h"
+#include "kernels/roots/methods.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,7 @@
 ///
 /// Bounds are running bounds (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition 2002,
 /// section 5.1). All functions assume coefficients of at most about 1 and |x| <= 1, as `normalize`
-/// (normalize.h) provides; then errors by underflow are below kUnderflow.
+/// (methods.h) provides; then errors by underflow are below kUnderflow.
 
 #include "core/platform.h"
 #include "kernels/roots/double_double.h"

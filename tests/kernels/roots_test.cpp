@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "kernels/roots/normalize.h"
+#include "kernels/roots/methods.h"
 #include "kernels/roots/solve.h"
 #include "tests/support/exact_roots.h"
 #include "tests/support/random_polynomials.h"
