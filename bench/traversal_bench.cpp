@@ -62,15 +62,15 @@ void trace(benchmark::State& state, Work work, Isa isa, TraceMode mode) {
 [[maybe_unused]] const bool registered = [] {
   const std::pair<Work, const char*> works[] = {
       {Work::primary, "primary"}, {Work::shadow, "shadow"}, {Work::diffuse, "diffuse"}};
-  const std::pair<TraceMode, const char*> modes[] = {
-      {TraceMode::automatic, "automatic"},     {TraceMode::single, "single"},
-      {TraceMode::interleaved, "interleaved"}, {TraceMode::packet4, "packet4"},
-      {TraceMode::packet8, "packet8"},         {TraceMode::packet16, "packet16"}};
+  const std::pair<TraceMode, const char*> modes[] = {{TraceMode::automatic, "automatic"},
+                                                     {TraceMode::single, "single"},
+                                                     {TraceMode::interleaved, "interleaved"},
+                                                     {TraceMode::packet8, "packet8"},
+                                                     {TraceMode::packet16, "packet16"}};
   for (const auto& [work, name] : works)
     for (Isa isa : available_isas())
       for (const auto& [mode, mode_name] : modes) {
         if (isa == Isa::scalar && mode != TraceMode::single) continue;
-        if (isa != Isa::sse42 && mode == TraceMode::packet4) continue;
         if (isa != Isa::avx512 && mode == TraceMode::packet16) continue;
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", name, to_string(isa), mode_name).c_str(),

@@ -1,14 +1,16 @@
 #pragma once
 /// \file How many doubles code works on at once.
 
-#include <type_traits>
-
 #include "core/simd_native.h"
 
 namespace oktett {
 
-/// Lanes of double for set A; one without vector registers.
+/// Lanes of double for set A. SSE4.2 has registers of two: with eight lanes most values would live in memory.
 template <class A>
-inline constexpr int kDoubleLanes = std::is_same_v<A, ScalarIsa> ? 1 : 8;
+inline constexpr int kDoubleLanes = 8;
+template <>
+inline constexpr int kDoubleLanes<Sse42Isa> = 4;
+template <>
+inline constexpr int kDoubleLanes<ScalarIsa> = 1;
 
 }  // namespace oktett

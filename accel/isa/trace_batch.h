@@ -145,12 +145,10 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
         return trace_each<Q, A>(accel, rays, out);
       case TraceMode::interleaved:
         return trace_interleaved<Q, A>(accel, rays, out);
-      case TraceMode::packet4:
-        return trace_packets < Q, std::is_same_v<A, Sse42Isa> ? 4 : 8, A > (accel, rays, out, false);
       case TraceMode::packet8:
         return trace_packets<Q, 8, A>(accel, rays, out, false);
       case TraceMode::packet16:
-        return trace_packets < Q, std::is_same_v<A, Avx512Isa> ? 16 : 8, A > (accel, rays, out, false);
+        return trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, false);
     }
   }
 }

@@ -126,9 +126,8 @@ TEST(Build, LowestOfIdenticalTrianglesIsHit) {
   HitBatch hits;
   hits.resize_uninitialized(16);
   for (const Isa isa : available_isas())
-    for (const TraceMode mode :
-         {TraceMode::automatic, TraceMode::single, TraceMode::packet4, TraceMode::packet8,
-          TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
+    for (const TraceMode mode : {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
+                                 TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
       closest_hit(*accel, rays.span(), hits.span(), isa, mode);
       for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(hits[i].item, 0u);
     }

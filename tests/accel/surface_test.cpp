@@ -13,9 +13,8 @@ namespace oktett {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr TraceMode kModes[] = {TraceMode::automatic,  TraceMode::single,   TraceMode::packet4,
-                                TraceMode::packet8,    TraceMode::packet16, TraceMode::beam,
-                                TraceMode::interleaved};
+constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
+                                TraceMode::packet16,  TraceMode::beam,   TraceMode::interleaved};
 
 Hit trace(const Accel& accel, const Ray& ray) {
   RayBatch rays;

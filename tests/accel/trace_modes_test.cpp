@@ -64,9 +64,8 @@ int expect_same(const Accel& plain, const Accel& other, const RayBatch& rays, co
   closest_hit(plain, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
   int found = 0;
   for (const Isa isa : available_isas()) {
-    for (const TraceMode mode :
-         {TraceMode::automatic, TraceMode::single, TraceMode::packet4, TraceMode::packet8,
-          TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
+    for (const TraceMode mode : {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
+                                 TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
       closest_hit(other, rays.span(), hits.span(), isa, mode);
       any_hit(other, rays.span(), dark.data(), isa, mode);
       for (std::size_t i = 0; i < rays.size(); ++i) {

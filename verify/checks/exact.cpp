@@ -19,9 +19,8 @@ namespace oktett {
 
 namespace {
 
-constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,  TraceMode::interleaved,
-                                TraceMode::packet4,   TraceMode::packet8, TraceMode::packet16,
-                                TraceMode::beam};
+constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,   TraceMode::interleaved,
+                                TraceMode::packet8,   TraceMode::packet16, TraceMode::beam};
 /// Rays against one shape: a camera's worth, so that beams and packets are formed.
 constexpr std::size_t kRaysPerShape = 512;
 /// Samples along a ray; what is thinner than a step may escape the oracle, never the tracer.

@@ -34,9 +34,8 @@ void MeshTally::fail(std::uint64_t number, const std::string& text) {
 namespace {
 
 constexpr std::size_t kChunk = 2048;
-constexpr TraceMode kModes[] = {TraceMode::automatic,  TraceMode::single,   TraceMode::packet4,
-                                TraceMode::packet8,    TraceMode::packet16, TraceMode::beam,
-                                TraceMode::interleaved};
+constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
+                                TraceMode::packet16,  TraceMode::beam,   TraceMode::interleaved};
 
 /// A point that rays start at, and how often the mesh winds around it.
 struct Viewpoint {
