@@ -2,15 +2,15 @@
 /// OKTETT_BENCH_MESH names, or a generated one of about 100,000 triangles.
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
-#include "core/error.h"
+#include "bench/program.h"
 #include "io/obj/obj.h"
 
 #ifdef OKTETT_HAVE_TINYOBJLOADER
@@ -23,57 +23,39 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A wavy sheet of 224 x 224 squares.
-void write_sheet(const std::string& path) {
+std::string sheet_text() {
   constexpr int n = 225;
-  std::ofstream stream(path);
-  char line[128];
-  for (int y = 0; y < n; ++y) {
-    for (int x = 0; x < n; ++x) {
-      const double height = 5 * std::sin(0.11 * x) * std::cos(0.07 * y);
-      std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", 0.731 * x, 0.617 * y, height);
-      stream << line;
-    }
-  }
-  for (int y = 0; y + 1 < n; ++y) {
+  std::string text;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x)
+      text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", 0.731 * x, 0.617 * y,
+                          5 * std::sin(0.11 * x) * std::cos(0.07 * y));
+  for (int y = 0; y + 1 < n; ++y)
     for (int x = 0; x + 1 < n; ++x) {
       const int i = y * n + x + 1;
-      std::snprintf(line, sizeof line, "f %d %d %d\nf %d %d %d\n", i, i + 1, i + n + 1, i, i + n + 1, i + n);
-      stream << line;
+      text += fmt::format("f {0} {1} {2}\nf {0} {2} {3}\n", i, i + 1, i + n + 1, i + n);
     }
-  }
+  return text;
 }
 
 /// The file to read. A generated file is removed at the end of the program.
-class Mesh {
- public:
+struct Mesh {
+  const char* given = std::getenv("OKTETT_BENCH_MESH");
+  std::string path =
+      given != nullptr ? given
+                       : (fs::temp_directory_path() / fmt::format("oktett-bench-{}.obj", getpid())).string();
   Mesh() {
-    if (const char* given = std::getenv("OKTETT_BENCH_MESH")) {
-      path_ = given;
-      return;
-    }
-    std::string pattern = (fs::temp_directory_path() / "oktett-bench-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw Error("cannot create a directory for the mesh");
-    directory_ = pattern;
-    path_ = directory_ + "/sheet.obj";
-    write_sheet(path_);
+    if (given == nullptr) write_text(path, sheet_text());
   }
   ~Mesh() {
     std::error_code ignored;
-    if (!directory_.empty()) fs::remove_all(directory_, ignored);
+    if (given == nullptr) fs::remove(path, ignored);
   }
-  Mesh(const Mesh&) = delete;
-  Mesh& operator=(const Mesh&) = delete;
-
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  std::string directory_;
 };
 
 const std::string& mesh_path() {
   static const Mesh mesh;
-  return mesh.path();
+  return mesh.path;
 }
 
 void report(benchmark::State& state, std::size_t triangles) {

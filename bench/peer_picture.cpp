@@ -1,5 +1,6 @@
 #include "bench/peer_picture.h"
 
+#include <array>
 #include <memory>
 
 #include "accel/accel.h"
@@ -18,10 +19,8 @@ namespace oktett::bench {
 
 namespace {
 
-struct Stages {
-  double load = 0, build = 0, trace = 0;
-  double total() const { return load + build + trace; }
-};
+constexpr const char* kStages[] = {"load", "build", "trace"};
+using Stages = std::array<double, 3>;
 
 /// Triangles of a file as Embree takes them: only positions and their indices.
 TriangleMesh load_with_tinyobjloader(const std::string& path) {
@@ -43,37 +42,31 @@ TriangleMesh load_with_tinyobjloader(const std::string& path) {
 }
 
 Stages with_oktett(const PictureTask& task, const Workload& work, Answers& answers) {
-  Stages s;
   ObjFile file;
-  s.load = seconds([&] { file = load_obj(task.path); });
   std::shared_ptr<const Accel> accel;
-  Geometry g;
-  g.shape = MeshGeometry{&file.mesh};
-  s.build = seconds([&] { accel = build_accel({g}, task.build); });
-  s.trace = seconds([&] { trace(*accel, work, task.isa, task.threads, answers); });
-  return s;
+  return {seconds([&] { file = load_obj(task.path); }), seconds([&] {
+            accel = build_accel({{MeshGeometry{&file.mesh}, {}}}, task.build);
+          }),
+          seconds([&] { trace(*accel, work, task.isa, task.threads, answers); })};
 }
 
 Stages with_embree(const PictureTask& task, const Workload& work, Answers& answers) {
-  Stages s;
   TriangleMesh mesh;
-  s.load = seconds([&] { mesh = load_with_tinyobjloader(task.path); });
+  const double load = seconds([&] { mesh = load_with_tinyobjloader(task.path); });
   const EmbreeScene scene(mesh, 1, task.config.c_str());
-  s.build = scene.build_seconds();
-  s.trace = seconds([&] { trace(scene, task.mode, work, task.threads, answers); });
-  return s;
+  return {load, scene.build_seconds(),
+          seconds([&] { trace(scene, task.mode, work, task.threads, answers); })};
 }
 
 /// Collects the stages of several rounds.
 struct Series {
-  std::vector<double> load, build, trace, total;
+  std::vector<double> stage[3], total;
   void add(const Stages& s) {
-    load.push_back(s.load), build.push_back(s.build), trace.push_back(s.trace), total.push_back(s.total());
+    for (int k = 0; k < 3; ++k) stage[k].push_back(s[k]);
+    total.push_back(s[0] + s[1] + s[2]);
   }
   void report(const std::string& name, Row& row) const {
-    row.parts.emplace_back(name + " load", quartiles(load).median);
-    row.parts.emplace_back(name + " build", quartiles(build).median);
-    row.parts.emplace_back(name + " trace", quartiles(trace).median);
+    for (int k = 0; k < 3; ++k) row.parts.emplace_back(name + " " + kStages[k], quartiles(stage[k]).median);
   }
 };
 
@@ -81,12 +74,9 @@ struct Series {
 
 bool race_to_first_picture(const PictureTask& task, const PeerOptions& options, Row& row) {
   Workload work{Work::primary, "", {}, false};
-  {
-    const ObjFile file = load_obj(task.path);
-    Box box;
-    for (const Vec3f& p : file.mesh.positions) box.grow(p);
-    work.rays = primary_rays(box, task.view);
-  }
+  Box box;
+  for (const Vec3f& p : load_obj(task.path).mesh.positions) box.grow(p);
+  work.rays = primary_rays(box, task.view);
   Answers answers(work);
   Series ours, theirs;
   std::vector<double> ratios;

@@ -18,21 +18,20 @@ std::vector<Workload> make_workloads(const Accel& accel, const View& view, const
   const bool shadow = options.wants(Work::shadow) || equal, diffuse = options.wants(Work::diffuse) || equal;
   const bool occlusion = options.wants(Work::ambient_occlusion);
   std::vector<Workload> works;
+  works.reserve(4);
   works.push_back({Work::primary, "primary", primary_rays(box, view), false});
   const RayBatch& primary = works.front().rays;
   if (!shadow && !diffuse && !occlusion) return works;
   HitBatch hits;
   hits.resize_uninitialized(primary.size());
   closest_hit(accel, primary.span(), hits.span(), isa);
-  std::vector<Workload> more;
   if (shadow)
-    more.push_back({Work::shadow, "point-light shadow", shadow_rays(accel, primary, hits, box, view), true});
+    works.push_back({Work::shadow, "point-light shadow", shadow_rays(accel, primary, hits, box, view), true});
   if (diffuse)
-    more.push_back({Work::diffuse, "diffuse", diffuse_rays(accel, primary, hits, box, 1, infinity), false});
+    works.push_back({Work::diffuse, "diffuse", diffuse_rays(accel, primary, hits, box, 1, infinity), false});
   if (occlusion)
-    more.push_back({Work::ambient_occlusion, "ambient occlusion",
-                    diffuse_rays(accel, primary, hits, box, 4, reach), true});
-  for (Workload& work : more) works.push_back(std::move(work));
+    works.push_back({Work::ambient_occlusion, "ambient occlusion",
+                     diffuse_rays(accel, primary, hits, box, 4, reach), true});
   return works;
 }
 

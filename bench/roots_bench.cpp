@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "core/vec3.h"
 #include "kernels/roots/solve.h"
 #include "verify/probes/roots_probe.h"
 
@@ -55,25 +56,19 @@ Problem spread(int degree, std::size_t i) {
 /// sphere.
 Problem torus(std::size_t i) {
   const double major = 1, minor = 0.35, f = 4 * major * major, radius = major + minor;
-  double o[3], d[3], length = 0;
-  for (int k = 0; k < 3; ++k) o[k] = 2 * number(i, k) - 1, length += o[k] * o[k];
-  for (int k = 0; k < 3; ++k) o[k] *= 3 / std::sqrt(length);
-  length = 0;
-  for (int k = 0; k < 3; ++k)
-    d[k] = (number(i, k + 3) - 0.5) * (k == 2 ? 2 * minor : 2 * radius) - o[k], length += d[k] * d[k];
-  double middle = 0;
-  for (int k = 0; k < 3; ++k) d[k] /= std::sqrt(length), middle -= o[k] * d[k];
+  Vec3d o, d;
+  for (int k = 0; k < 3; ++k) o[k] = 2 * number(i, k) - 1;
+  o *= 3 / length(o);
+  for (int k = 0; k < 3; ++k) d[k] = (number(i, k + 3) - 0.5) * (k == 2 ? 2 * minor : 2 * radius) - o[k];
+  d = d / length(d);
   // From the point nearest to the centre.
-  double pp = 0;
-  for (int k = 0; k < 3; ++k) o[k] += middle * d[k], pp += o[k] * o[k];
+  o -= d * dot(o, d);
+  const double pp = dot(o, o);
   const double k1 = pp - major * major - minor * minor;
   Problem q;
   q.p.degree = 4;
-  q.p.c[4] = 1;
-  q.p.c[3] = 0;
-  q.p.c[2] = 2 * k1 + f * d[2] * d[2];
-  q.p.c[1] = 2 * f * o[2] * d[2];
-  q.p.c[0] = k1 * k1 + f * (o[2] * o[2] - minor * minor);
+  q.p.c[4] = 1, q.p.c[3] = 0, q.p.c[2] = 2 * k1 + f * d.z * d.z, q.p.c[1] = 2 * f * o.z * d.z;
+  q.p.c[0] = k1 * k1 + f * (o.z * o.z - minor * minor);
   q.b = std::sqrt(std::max(0.0, radius * radius - pp));
   q.a = -q.b;
   return q;

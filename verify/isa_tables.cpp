@@ -17,7 +17,7 @@ void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe) {
 }
 
 void probe_roots(Isa isa, RootsKernel id, const RootsProbe& probe) {
-  with_isa(isa, [&]<class A>() { roots_probe_code<A>().run(id, probe); });
+  with_isa(isa, [&]<class A>() { run_roots<A>(id, probe); });
 }
 
 }  // namespace oktett

@@ -60,6 +60,12 @@ Vec3d perpendicular(const Vec3d& v, CaseRandom& r) {
   return length(p) > 0 ? normalize(p) : Vec3d{1, 0, 0};
 }
 
+/// The columns of shape i.
+void put(KernelCases& cases, std::size_t i, std::initializer_list<double> values) {
+  Column<double>* column = cases.shape;
+  for (const double value : values) (*column++)[i] = value;
+}
+
 Targets make_triangle(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
   Vec3d p[3];
   for (Vec3d& q : p) q = r.vector();
@@ -83,8 +89,7 @@ Targets make_triangle(CaseRandom& r, const Frame& f, KernelCases& cases, std::si
 Targets make_sphere(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
   const Vec3d c = r.vector() * f.scale + f.offset;
   const double radius = (0.05 + r.unit()) * f.scale;
-  const double column[] = {c.x, c.y, c.z, radius};
-  for (int k = 0; k < 4; ++k) cases.shape[k][i] = column[k];
+  put(cases, i, {c.x, c.y, c.z, radius});
   const Vec3d n = normalize(r.vector());
   return {c + r.vector() * radius, c, c + n * radius, n, perpendicular(n, r) * radius};
 }
@@ -92,8 +97,7 @@ Targets make_sphere(CaseRandom& r, const Frame& f, KernelCases& cases, std::size
 Targets make_disk(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
   const Vec3d c = r.vector() * f.scale + f.offset, n = normalize(r.vector());
   const double radius = (0.05 + r.unit()) * f.scale;
-  const double column[] = {c.x, c.y, c.z, n.x, n.y, n.z, radius};
-  for (int k = 0; k < 7; ++k) cases.shape[k][i] = column[k];
+  put(cases, i, {c.x, c.y, c.z, n.x, n.y, n.z, radius});
   const Vec3d rim = perpendicular(n, r) * radius;
   return {c + rim * (1.4 * r.unit()), c, c + rim, n, rim};
 }
@@ -102,8 +106,7 @@ Targets make_plane(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_
   Vec3d n = normalize(r.vector());
   if (r.bits() % 4 == 0) n = {0, 1, 0};
   const Vec3d p = r.vector() * f.scale + f.offset;
-  const double column[] = {n.x, n.y, n.z, dot(n, p)};
-  for (int k = 0; k < 4; ++k) cases.shape[k][i] = column[k];
+  put(cases, i, {n.x, n.y, n.z, dot(n, p)});
   const Vec3d along = perpendicular(n, r) * f.scale;
   return {p + along, p, p - along, n, along};
 }

@@ -8,11 +8,10 @@
 #include <memory>
 
 #include "accel/accel.h"
-#include "accel/query.h"
-#include "accel/trace_mode.h"
 #include "core/random.h"
 #include "kernels/exact_ops.h"
 #include "verify/cases/kernel_cases.h"
+#include "verify/checks/compare_mode.h"
 #include "verify/checks/kernels.h"
 #include "verify/oracles/exact.h"
 #include "verify/oracles/mesh.h"
@@ -86,6 +85,10 @@ class TreeMaker {
   Vec3d place() { return {coordinate(), coordinate(), coordinate()}; }
   double size() { return coarse_ ? 0.25 + 0.25 * std::floor(random_.unit() * 4) : 0.2 + random_.unit(); }
 
+  Affine turned_to(const Vec3d& c) {
+    return Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
+  }
+
   template <class S>
   static void add(CsgExpression& e, S shape, const Affine& to_world) {
     Geometry& g = e.solids.emplace_back();
@@ -110,16 +113,7 @@ class TreeMaker {
         return std::abs(d.x) < half.x && std::abs(d.y) < half.y && std::abs(d.z) < half.z;
       };
     }
-    if (kind < 0.55) {
-      const Affine m = Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
-      const TorusShape t{r, 0.5 * r};
-      add(e, ExactShape{t}, m);
-      return [inverse = m.inverse(), t](const Vec3l& p) {
-        const Vec3l q = mapped(inverse, p);
-        const long double d = t.major - std::sqrt(q.x * q.x + q.y * q.y);
-        return d * d + q.z * q.z < static_cast<long double>(t.minor) * t.minor;
-      };
-    }
+    if (kind < 0.55) return placed(e, oracle_of(TorusShape{r, 0.5 * r}), turned_to(c));
     if (kind < 0.6) return exact(e, c);
     if (kind < 0.7) {
       const Vec3d n = coarse_ ? Vec3d{0, random_.sign() < 0 ? -1.0 : 1.0, 0} : random_.vector();
@@ -151,9 +145,12 @@ class TreeMaker {
     ExactOracle oracle;
     do oracle = all[static_cast<std::size_t>(random_.unit() * static_cast<double>(all.size()))];
     while (oracle.where || (simple_ && !exact_ops(kind_of(oracle.shape.form)).lists_at_once()));
-    const Affine m = Affine::translation(c) * Affine::rotation(random_.vector() * 180.0);
-    add(e, oracle.shape, m);
-    return [inverse = m.inverse(), f = oracle.f](const Vec3l& p) { return f(mapped(inverse, p)) < 0; };
+    return placed(e, oracle, turned_to(c));
+  }
+
+  static Inside placed(CsgExpression& e, const ExactOracle& oracle, const Affine& to_world) {
+    add(e, oracle.shape, to_world);
+    return [inverse = to_world.inverse(), f = oracle.f](const Vec3l& p) { return f(mapped(inverse, p)) < 0; };
   }
 
   CaseRandom& random_;
@@ -205,17 +202,11 @@ class Checker {
   }
 
   void compare_modes(const RayBatch& rays, const HitBatch& reference) {
-    HitBatch other;
-    other.resize_uninitialized(rays.size());
-    std::vector<std::uint8_t> occluded(rays.size());
     for (const Isa isa : isas_)
-      for (const TraceMode mode : kModes) {
-        closest_hit(*accel_, rays.span(), other.span(), isa, mode);
-        any_hit(*accel_, rays.span(), occluded.data(), isa, mode);
-        for (std::size_t i = 0; i < rays.size(); ++i)
-          if (!(other[i] == reference[i]) || (occluded[i] != 0) != reference[i].valid())
-            fail(tally_.differing, rays[i], fmt::format("{} differs", to_string(isa)));
-      }
+      for (const TraceMode mode : kModes)
+        compare_mode(*accel_, rays, reference, isa, mode, [&](std::size_t i, bool, bool) {
+          fail(tally_.differing, rays[i], fmt::format("{} differs", to_string(isa)));
+        });
   }
 
   void check(const Ray& ray, const Hit& first) {

@@ -9,10 +9,9 @@
 #include <optional>
 
 #include "accel/accel.h"
-#include "accel/query.h"
-#include "accel/trace_mode.h"
 #include "core/random.h"
 #include "kernels/exact/march.h"
+#include "verify/checks/compare_mode.h"
 #include "verify/checks/kernels.h"
 
 namespace oktett {
@@ -204,16 +203,10 @@ class Checker {
       const Isa isa = isas_[k];
       for (const TraceMode mode : kModes) {
         if (k != turn_ && mode != TraceMode::automatic && mode != TraceMode::single) continue;
-        HitBatch other;
-        other.resize_uninitialized(rays.size());
-        closest_hit(*trial_.accel, rays.span(), other.span(), isa, mode);
-        std::vector<std::uint8_t> occluded(rays.size());
-        any_hit(*trial_.accel, rays.span(), occluded.data(), isa, mode);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-          if (other[i] == reference[i] && (occluded[i] != 0) == reference[i].valid()) continue;
+        compare_mode(*trial_.accel, rays, reference, isa, mode, [&](std::size_t i, bool, bool) {
           ++tally_.differing;
           fail(rays[i], fmt::format("{} differs", to_string(isa)));
-        }
+        });
       }
     }
     return reference;

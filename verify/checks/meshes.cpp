@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "accel/accel.h"
-#include "accel/query.h"
 #include "core/random.h"
+#include "verify/checks/compare_mode.h"
 #include "verify/checks/kernels.h"
 
 namespace oktett {
@@ -96,11 +95,6 @@ Ray aimed_ray(const Subject& s, const Viewpoint& from, CaseRandom& random) {
   return ray;
 }
 
-bool same_hit(const Hit& a, const Hit& b) {
-  return a.item == b.item && a.instance == b.instance && std::memcmp(&a.t, &b.t, sizeof a.t) == 0 &&
-         std::memcmp(&a.u, &b.u, sizeof a.u) == 0 && std::memcmp(&a.v, &b.v, sizeof a.v) == 0;
-}
-
 class ChunkCheck {
  public:
   ChunkCheck(const Subject& subject, std::uint64_t first) : subject_(subject), first_(first) {}
@@ -114,8 +108,7 @@ class ChunkCheck {
       if (i % 64 != 0 && (i / 64) % 2 == 0) views_.back() = views_[i - 1];
       rays_.push_back(aimed_ray(subject_, *views_.back(), random));
     }
-    reference_.resize_uninitialized(count), other_.resize_uninitialized(count);
-    occluded_.resize(count);
+    reference_.resize_uninitialized(count);
     closest_hit(*subject_.plain, rays_.span(), reference_.span(), Isa::scalar, TraceMode::single);
     for (std::size_t i = 0; i < count; ++i) tally_.hits += reference_[i].valid();
     for (const Isa isa : isas) {
@@ -128,22 +121,19 @@ class ChunkCheck {
  private:
   void compare(Isa isa, TraceMode mode) {
     if (isa == Isa::scalar && mode != TraceMode::automatic) return;
-    closest_hit(*subject_.accel, rays_.span(), other_.span(), isa, mode);
-    any_hit(*subject_.accel, rays_.span(), occluded_.data(), isa, mode);
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      if (!same_hit(reference_[i], other_[i]))
+    compare_mode(*subject_.accel, rays_, reference_, isa, mode, [&](std::size_t i, bool closest, bool any) {
+      if (closest)
         complain(tally_.differing, i,
                  fmt::format("{} mode {} differs from scalar", to_string(isa), int(mode)));
-      if ((occluded_[i] != 0) != reference_[i].valid())
-        complain(tally_.inconsistent, i, fmt::format("any_hit {} mode {}", to_string(isa), int(mode)));
-    }
+      if (any) complain(tally_.inconsistent, i, fmt::format("any_hit {} mode {}", to_string(isa), int(mode)));
+    });
   }
 
   void check_crossings(std::size_t i, Isa isa) {
     all_hits(*subject_.accel, rays_[i], crossings_, isa);
     const Hit& closest = reference_[i];
     const bool agrees =
-        crossings_.empty() ? !closest.valid() : closest.valid() && same_hit(crossings_[0], closest);
+        crossings_.empty() ? !closest.valid() : closest.valid() && same_bits(crossings_[0], closest);
     if (!agrees)
       complain(tally_.inconsistent, i, fmt::format("all_hits of {} against closest_hit", to_string(isa)));
     if (!subject_.closed || max_component(abs(rays_[i].direction)) == 0) return;
@@ -166,8 +156,7 @@ class ChunkCheck {
   MeshTally tally_;
   RayBatch rays_;
   std::vector<const Viewpoint*> views_;
-  HitBatch reference_, other_;
-  std::vector<std::uint8_t> occluded_;
+  HitBatch reference_;
   std::vector<Hit> crossings_;
 };
 

@@ -2,6 +2,6 @@
 
 namespace oktett {
 
-template const RootsProbeCode& roots_probe_code<OKTETT_ISA>();
+template void run_roots<OKTETT_ISA>(RootsKernel, const RootsProbe&);
 
 }  // namespace oktett

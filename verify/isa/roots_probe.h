@@ -68,10 +68,4 @@ void run_roots(RootsKernel id, const RootsProbe& run) {
   }
 }
 
-template <class A>
-const RootsProbeCode& roots_probe_code() {
-  static constexpr RootsProbeCode code = {run_roots<A>};
-  return code;
-}
-
 }  // namespace oktett

@@ -16,6 +16,8 @@ __extension__ typedef __float128 Real;
 
 using Vec = Vec3<Real>;
 
+constexpr double kTolerance = 0x1p-48;
+
 Real magnitude(Real x) { return x < 0 ? -x : x; }
 Real norm1(const Vec& v) { return magnitude(v.x) + magnitude(v.y) + magnitude(v.z); }
 Real square_root(Real x) {
@@ -31,23 +33,18 @@ struct Root {
 
 /// The first root that surely lies in the ray's range; undecided if an earlier one may.
 OracleAnswer first_root(const Ray& ray, const Root* roots, int count) {
-  OracleAnswer answer;
   for (int i = 0; i < count; ++i) {
     const Real t = roots[i].t, e = roots[i].error + magnitude(t) * 0x1p-23 + 0x1p-148;
     if (!(t + e > ray.tmin && t - e <= ray.tmax && t - e <= FLT_MAX)) continue;
     const bool sure = t - e > ray.tmin && t + e <= ray.tmax && t + e <= FLT_MAX;
-    answer.verdict = sure ? OracleVerdict::hit : OracleVerdict::undecided;
-    answer.t = static_cast<double>(t), answer.t_error = static_cast<double>(roots[i].error);
-    return answer;
+    return {.verdict = sure ? OracleVerdict::hit : OracleVerdict::undecided,
+            .t = static_cast<double>(t),
+            .t_error = static_cast<double>(roots[i].error)};
   }
-  return answer;
+  return {};
 }
 
-OracleAnswer undecided() {
-  OracleAnswer answer;
-  answer.verdict = OracleVerdict::undecided;
-  return answer;
-}
+OracleAnswer undecided() { return {OracleVerdict::undecided}; }
 
 /// False for rays that hit nothing by definition.
 bool is_usable(const Ray& r) {
@@ -82,10 +79,7 @@ OracleAnswer oracle_triangle(const Ray& ray, const Vec3f (&corner)[3], const Tri
     slack_sum += slack[k];
   }
   int positive = 0, negative = 0;
-  for (int k = 0; k < 3; ++k) {
-    positive += volume[k] > slack[k];
-    negative += volume[k] < -slack[k];
-  }
+  for (int k = 0; k < 3; ++k) positive += volume[k] > slack[k], negative += volume[k] < -slack[k];
   if (positive > 0 && negative > 0) return {};
   const bool sure = positive == 3 || negative == 3;
   if (sum == 0 || magnitude(sum) <= slack_sum) return undecided();
@@ -101,44 +95,44 @@ OracleAnswer oracle_triangle(const Ray& ray, const Vec3f (&corner)[3], const Tri
   return answer;
 }
 
-OracleAnswer oracle_sphere(const Ray& ray, const SphereShape& sphere, double tolerance) {
+OracleAnswer oracle_sphere(const Ray& ray, const SphereShape& sphere) {
   if (!is_usable(ray)) return {};
   const Vec d(ray.direction), m = Vec(sphere.center) - Vec(ray.origin);
   const Real dd = dot(d, d), r = sphere.radius, distance = square_root(dot(m, m)), speed = square_root(dd);
   const Vec moment = cross(m, d);
   const Real h = r * r - dot(moment, moment) / dd;
-  const Real slack = tolerance * (r * r + distance * (distance + r));
+  const Real slack = kTolerance * (r * r + distance * (distance + r));
   if (h < -slack) return {};
   if (h <= slack) return undecided();
   const Real half = square_root(h) / speed, closest = dot(m, d) / dd;
-  const Real error = tolerance * (distance + r) / speed + slack / (square_root(h) * speed);
+  const Real error = kTolerance * (distance + r) / speed + slack / (square_root(h) * speed);
   const Root roots[] = {{closest - half, error}, {closest + half, error}};
   return first_root(ray, roots, 2);
 }
 
-OracleAnswer oracle_plane(const Ray& ray, const PlaneShape& plane, double tolerance) {
+OracleAnswer oracle_plane(const Ray& ray, const PlaneShape& plane) {
   if (!is_usable(ray)) return {};
   const Vec d(ray.direction), o(ray.origin), n(plane.normal);
   const Real speed = dot(n, d), height = plane.offset - dot(n, o);
   if (speed == 0) return {};
-  const Real slack = tolerance * (magnitude(plane.offset) + norm1(o));
-  if (magnitude(speed) <= tolerance * norm1(d)) return undecided();
+  const Real slack = kTolerance * (magnitude(plane.offset) + norm1(o));
+  if (magnitude(speed) <= kTolerance * norm1(d)) return undecided();
   const Real t = height / speed;
-  const Root root{t, (slack + tolerance * norm1(d) * magnitude(t)) / magnitude(speed)};
+  const Root root{t, (slack + kTolerance * norm1(d) * magnitude(t)) / magnitude(speed)};
   return first_root(ray, &root, 1);
 }
 
-OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk, double tolerance) {
+OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk) {
   const Vec n(disk.normal), c(disk.center), o(ray.origin), d(ray.direction);
   if (!is_usable(ray)) return {};
   const Real speed = dot(n, d), height = dot(n, c - o);
   if (speed == 0) return {};
-  if (magnitude(speed) <= tolerance * norm1(d)) return undecided();
+  if (magnitude(speed) <= kTolerance * norm1(d)) return undecided();
   const Real t = height / speed;
   const Real error =
-      (tolerance * (norm1(c) + norm1(o)) + tolerance * norm1(d) * magnitude(t)) / magnitude(speed);
+      (kTolerance * (norm1(c) + norm1(o)) + kTolerance * norm1(d) * magnitude(t)) / magnitude(speed);
   const Vec q = o + d * t - c;
-  const Real distance = square_root(dot(q, q)), slack = error * norm1(d) + tolerance * (norm1(c) + norm1(o));
+  const Real distance = square_root(dot(q, q)), slack = error * norm1(d) + kTolerance * (norm1(c) + norm1(o));
   if (distance > disk.radius + slack) return {};
   const Root root{t, error};
   OracleAnswer answer = first_root(ray, &root, 1);
@@ -147,7 +141,7 @@ OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk, double tolerance
   return answer;
 }
 
-OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube, double tolerance) {
+OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube) {
   if (!is_usable(ray)) return {};
   Root near{-FLT_MAX, 0}, far{FLT_MAX, 0};
   near.t *= FLT_MAX, far.t *= FLT_MAX;
@@ -158,14 +152,14 @@ OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube, double tolerance)
       o += Real(row[j]) * ray.origin[j], d += Real(row[j]) * ray.direction[j];
       o_size += magnitude(Real(row[j]) * ray.origin[j]), d_size += magnitude(Real(row[j]) * ray.direction[j]);
     }
-    const Real slack = tolerance * o_size;
-    if (magnitude(d) <= tolerance * d_size) {
+    const Real slack = kTolerance * o_size;
+    if (magnitude(d) <= kTolerance * d_size) {
       if (d_size == 0 && magnitude(o) > 1 + slack) return {};
       doubtful |= d_size > 0 || magnitude(o) >= 1 - slack;
       continue;
     }
     const Real speed = magnitude(d), entry = ((d > 0 ? -1 : 1) - o) / d, exit = ((d > 0 ? 1 : -1) - o) / d;
-    const auto error = [&](Real t) { return (slack + tolerance * d_size * magnitude(t)) / speed; };
+    const auto error = [&](Real t) { return (slack + kTolerance * d_size * magnitude(t)) / speed; };
     // Of two planes that may come first either may decide, so the errors add up.
     const Real ne = error(entry), fe = error(exit);
     near = {std::max(near.t, entry), std::max(near.error, near.t > entry + ne ? near.error : ne)};
@@ -192,13 +186,10 @@ OracleAnswer oracle_slab(const Ray& ray, const Box& box) {
     }
     near = std::max(near, (d > 0 ? lo : hi) / d), far = std::min(far, (d > 0 ? hi : lo) / d);
   }
-  OracleAnswer answer;
-  answer.verdict = near <= far ? OracleVerdict::hit : OracleVerdict::miss;
-  answer.t = static_cast<double>(near);
-  return answer;
+  return {near <= far ? OracleVerdict::hit : OracleVerdict::miss, static_cast<double>(near)};
 }
 
-OracleAnswer oracle_polygon(const Ray& ray, const PolygonShape& polygon, double tolerance) {
+OracleAnswer oracle_polygon(const Ray& ray, const PolygonShape& polygon) {
   const std::vector<Vec3d>& p = polygon.vertices;
   Vec n{}, center{};
   Real size = 0;
@@ -211,12 +202,12 @@ OracleAnswer oracle_polygon(const Ray& ray, const PolygonShape& polygon, double 
   const Vec o(ray.origin), d(ray.direction);
   const Real speed = dot(n, d);
   if (!is_usable(ray) || speed == 0) return {};
-  if (magnitude(speed) <= tolerance * norm1(d)) return undecided();
+  if (magnitude(speed) <= kTolerance * norm1(d)) return undecided();
   const Real t = dot(n, center - o) / speed;
-  const Real error = (tolerance * (norm1(center) + norm1(o) + size) + tolerance * norm1(d) * magnitude(t)) /
+  const Real error = (kTolerance * (norm1(center) + norm1(o) + size) + kTolerance * norm1(d) * magnitude(t)) /
                      magnitude(speed);
   const Vec hit = o + d * t;
-  const Real slack = 4 * (error * norm1(d) + tolerance * (norm1(center) + size));
+  const Real slack = 4 * (error * norm1(d) + kTolerance * (norm1(center) + size));
   double winding = 0;
   bool close = false;
   for (std::size_t i = 0; i < p.size(); ++i) {

@@ -35,16 +35,15 @@ struct TriangleTolerance {
 /// By signed volumes: the ray passes the triangle if the tetrahedra over its edges turn the same way.
 OracleAnswer oracle_triangle(const Ray& ray, const Vec3f (&corner)[3], const TriangleTolerance& tolerance);
 
-/// The other shapes, in the ray's space; `tolerance` relates to distances from the ray's origin.
-inline constexpr double kOracleTolerance = 0x1p-48;
-OracleAnswer oracle_sphere(const Ray& ray, const SphereShape& sphere, double tolerance = kOracleTolerance);
+/// The other shapes, in the ray's space, to 2^-48 of distances from the ray's origin.
+OracleAnswer oracle_sphere(const Ray& ray, const SphereShape& sphere);
 /// `plane.normal` as given: of unit length up to rounding.
-OracleAnswer oracle_plane(const Ray& ray, const PlaneShape& plane, double tolerance = kOracleTolerance);
-OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk, double tolerance = kOracleTolerance);
+OracleAnswer oracle_plane(const Ray& ray, const PlaneShape& plane);
+OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk);
 /// The box [-1, 1]^3 behind the map `to_cube`.
-OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube, double tolerance = kOracleTolerance);
+OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube);
 /// By winding number in the polygon's plane.
-OracleAnswer oracle_polygon(const Ray& ray, const PolygonShape& polygon, double tolerance = kOracleTolerance);
+OracleAnswer oracle_polygon(const Ray& ray, const PolygonShape& polygon);
 /// Whether any point of the ray lies in the closed box; never undecided.
 OracleAnswer oracle_slab(const Ray& ray, const Box& box);
 

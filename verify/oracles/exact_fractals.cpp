@@ -51,15 +51,13 @@ ExactOracle sphereflake(CaseRandom& random) {
   s.ratio = random.unit() < 0.5 ? 1.0 / 3 : 0.1 + 0.4 * random.unit();
   const auto balls =
       std::make_shared<const Balls>(grow({0, 0, 0}, 1, s.ratio, {1, 0, 0}, {0, 1, 0}, s.depth));
-  const double r = static_cast<double>(balls->reach);
-  return {{s},
-          [balls](const Vec3l& p) {
-            Real least = HUGE_VALL;
-            nearest(*balls, p, least);
-            return least;
-          },
-          {-r, -r, -r},
-          {r, r, r}};
+  ExactOracle o{{s}, [balls](const Vec3l& p) {
+                  Real least = HUGE_VALL;
+                  nearest(*balls, p, least);
+                  return least;
+                }};
+  o.grow({0, 0, 0}, static_cast<double>(balls->reach));
+  return o;
 }
 
 /// The cube less an infinite cross of bars per level, each level repeated all over space.
@@ -137,18 +135,17 @@ ExactOracle julia(CaseRandom& random) {
   Real size = 0;
   for (const double c : s.c) size += static_cast<Real>(c) * c;
   const Real r = (1 + std::sqrt(1 + 4 * std::sqrt(size))) / 2;
-  const double side = static_cast<double>(r);
-  return {{s},
-          [s, r](const Vec3l& p) {
-            Real a = p.x, b = p.y, c = p.z, d = s.slice;
-            for (std::uint32_t n = 0; n < s.iterations && a * a + b * b + c * c + d * d < 1e30L; ++n) {
-              const Real twice = 2 * a, square = a * a - b * b - c * c - d * d;
-              a = square + s.c[0], b = twice * b + s.c[1], c = twice * c + s.c[2], d = twice * d + s.c[3];
-            }
-            return a * a + b * b + c * c + d * d - r * r;
-          },
-          {-side, -side, -side},
-          {side, side, side}};
+  ExactOracle o{{s}, [s, r](const Vec3l& p) {
+                  Real a = p.x, b = p.y, c = p.z, d = s.slice;
+                  for (std::uint32_t n = 0; n < s.iterations && a * a + b * b + c * c + d * d < 1e30L; ++n) {
+                    const Real twice = 2 * a, square = a * a - b * b - c * c - d * d;
+                    a = square + s.c[0], b = twice * b + s.c[1], c = twice * c + s.c[2],
+                    d = twice * d + s.c[3];
+                  }
+                  return a * a + b * b + c * c + d * d - r * r;
+                }};
+  o.grow({0, 0, 0}, static_cast<double>(r));
+  return o;
 }
 
 /// All heights, level by level.

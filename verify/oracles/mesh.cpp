@@ -14,6 +14,11 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
   for (const std::uint32_t i : {a, b, c}) mesh.indices.push_back(i);
 }
 
+/// Two triangles, a and c at opposite corners.
+void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  add_triangle(mesh, a, b, c), add_triangle(mesh, a, c, d);
+}
+
 /// Joins every vertex of a mesh to the first one at the same position.
 std::vector<std::uint32_t> welded(const TriangleMesh& mesh) {
   std::map<std::tuple<float, float, float>, std::uint32_t> first;
@@ -38,7 +43,7 @@ OracleMesh make_cube() {
     r.mesh.positions.push_back({i & 1 ? 1.0f : -1.0f, i & 2 ? 1.0f : -1.0f, i & 4 ? 1.0f : -1.0f});
   constexpr std::uint32_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  for (const auto& f : kFaces) add_triangle(r.mesh, f[0], f[1], f[2]), add_triangle(r.mesh, f[0], f[2], f[3]);
+  for (const auto& f : kFaces) add_quad(r.mesh, f[0], f[1], f[2], f[3]);
   return r;
 }
 
@@ -64,10 +69,8 @@ OracleMesh make_icosphere(int levels) {
         };
         if (!near(a, b) || !near(b, c) || !near(c, a)) continue;
         const Vec3f pa = r.mesh.positions[a], pb = r.mesh.positions[b], pc = r.mesh.positions[c];
-        if (dot(cross(pb - pa, pc - pa), pa) > 0)
-          faces.push_back({a, b, c});
-        else
-          faces.push_back({a, c, b});
+        const bool outwards = dot(cross(pb - pa, pc - pa), pa) > 0;
+        faces.push_back({a, outwards ? b : c, outwards ? c : b});
       }
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
@@ -99,10 +102,7 @@ OracleMesh make_torus(int rings, int sides) {
     }
   const auto at = [&](int i, int j) { return static_cast<std::uint32_t>((i % rings) * sides + j % sides); };
   for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < sides; ++j) {
-      add_triangle(r.mesh, at(i, j), at(i, j + 1), at(i + 1, j + 1));
-      add_triangle(r.mesh, at(i, j), at(i + 1, j + 1), at(i + 1, j));
-    }
+    for (int j = 0; j < sides; ++j) add_quad(r.mesh, at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
   return r;
 }
 
@@ -121,10 +121,8 @@ OracleMesh make_globe(int slices, int stacks) {
   for (int i = 0; i < slices; ++i) {
     add_triangle(r.mesh, 0, at(1, i), at(1, i + 1));
     add_triangle(r.mesh, top, at(stacks - 1, i + 1), at(stacks - 1, i));
-    for (int s = 1; s + 1 < stacks; ++s) {
-      add_triangle(r.mesh, at(s, i), at(s + 1, i), at(s + 1, i + 1));
-      add_triangle(r.mesh, at(s, i), at(s + 1, i + 1), at(s, i + 1));
-    }
+    for (int s = 1; s + 1 < stacks; ++s)
+      add_quad(r.mesh, at(s, i), at(s + 1, i), at(s + 1, i + 1), at(s, i + 1));
   }
   return r;
 }
@@ -143,20 +141,14 @@ OracleMesh make_needles(int count) {
   r.mesh.positions.push_back({0.5f, 0, 0});
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t j = (i + 1) % n;
-    add_triangle(r.mesh, i, j, n + j), add_triangle(r.mesh, i, n + j, n + i);
+    add_quad(r.mesh, i, j, n + j, n + i);
     add_triangle(r.mesh, 2 * n, j, i), add_triangle(r.mesh, 2 * n + 1, n + i, n + j);
   }
   return r;
 }
 
 std::vector<OracleMesh> make_closed_meshes() {
-  std::vector<OracleMesh> meshes;
-  meshes.push_back(make_cube());
-  meshes.push_back(make_icosphere(4));
-  meshes.push_back(make_torus(64, 32));
-  meshes.push_back(make_globe(500, 8));
-  meshes.push_back(make_needles(200));
-  return meshes;
+  return {make_cube(), make_icosphere(4), make_torus(64, 32), make_globe(500, 8), make_needles(200)};
 }
 
 std::size_t open_edge_count(const TriangleMesh& mesh) {

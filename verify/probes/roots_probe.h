@@ -24,12 +24,8 @@ struct RootsProbe {
   std::uint8_t* unsure = nullptr;
 };
 
-struct RootsProbeCode {
-  void (*run)(RootsKernel, const RootsProbe&);
-};
-
 template <class A>
-const RootsProbeCode& roots_probe_code();
+void run_roots(RootsKernel id, const RootsProbe& probe);
 
 /// Eight polynomials at a time; one on the scalar path. Throws Error if this build holds no code for the set.
 void probe_roots(Isa isa, RootsKernel id, const RootsProbe& probe);
