@@ -18,6 +18,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "accel/accel.h"
@@ -33,7 +34,8 @@ constexpr double kHeight = 0.25;
 constexpr std::size_t kRays = 1 << 14;
 constexpr std::uint32_t kPicture = 256;
 
-enum class Method { mesh, cells, spans, pyramid };
+/// As a mesh, or how a height field is walked.
+using Method = std::optional<HeightWalk>;
 enum class Work { all, level, camera };
 
 std::uint32_t most_mesh_side() {
@@ -49,15 +51,15 @@ struct Field {
 };
 
 /// The field that was used last. Only one is in memory at a time.
-const Field& field(std::uint32_t n, Method method, bool level) {
+const Field& field(std::uint32_t n, Method walk, bool level) {
   static std::map<std::tuple<std::uint32_t, Method, bool>, Field> fields;
-  const auto key = std::tuple{n, method, level};
+  const auto key = std::tuple{n, walk, level};
   if (const auto found = fields.find(key); found != fields.end()) return found->second;
   fields.clear();
   Field& f = fields[key];
   Column<std::uint16_t> heights = level ? Column<std::uint16_t>(std::size_t{n} * n, 0) : terrain(n);
   if (level) heights[0] = 65535;
-  if (method == Method::mesh) {
+  if (!walk) {
     f.mesh = terrain_mesh(heights, n, kHeight);
     f.accel = build_accel({{MeshGeometry{&f.mesh}, {}}});
     f.bytes = f.mesh.bytes() + stats(*f.accel).bytes();
@@ -65,9 +67,7 @@ const Field& field(std::uint32_t n, Method method, bool level) {
     HeightFieldShape s;
     s.grid = HeightGrid::from_words(n, n, std::move(heights), HeightInterpolation::triangles);
     s.size = {2, kHeight, 2};
-    s.walk = method == Method::cells   ? HeightWalk::cells
-             : method == Method::spans ? HeightWalk::spans
-                                       : HeightWalk::pyramid;
+    s.walk = *walk;
     f.accel = build_accel({{ExactShape{s}, {}}});
     f.bytes = stats(*f.accel).bytes();
   }
@@ -101,10 +101,10 @@ RayBatch rays_of(Work work) {
   return rays;
 }
 
-void trace(benchmark::State& state, std::uint32_t n, Method method, Work work) {
-  if (method == Method::mesh && n > most_mesh_side()) return state.SkipWithError("not run: memory");
+void trace(benchmark::State& state, std::uint32_t n, Method walk, Work work) {
+  if (!walk && n > most_mesh_side()) return state.SkipWithError("not run: memory");
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Field& f = field(n, method, work == Work::level);
+  const Field& f = field(n, walk, work == Work::level);
   const RayBatch rays = rays_of(work);
   HitBatch hits;
   hits.resize_uninitialized(rays.size());
@@ -126,10 +126,10 @@ void trace(benchmark::State& state, std::uint32_t n, Method method, Work work) {
 [[maybe_unused]] const bool registered = [] {
   const std::pair<Work, const char*> works[] = {
       {Work::all, "all"}, {Work::level, "level"}, {Work::camera, "camera"}};
-  const std::pair<Method, const char*> methods[] = {{Method::mesh, "mesh"},
-                                                    {Method::cells, "cells"},
-                                                    {Method::spans, "spans"},
-                                                    {Method::pyramid, "pyramid"}};
+  const std::pair<Method, const char*> methods[] = {{std::nullopt, "mesh"},
+                                                    {HeightWalk::cells, "cells"},
+                                                    {HeightWalk::spans, "spans"},
+                                                    {HeightWalk::pyramid, "pyramid"}};
   for (const std::uint32_t n : {512u, 1024u, 2048u, 4096u, 8192u})
     for (const auto& [method, method_name] : methods)
       for (const auto& [work, work_name] : works)

@@ -85,9 +85,7 @@ class Comparison {
 
  private:
   std::shared_ptr<const Accel> build(const BuildVariant& variant) const {
-    Geometry g;
-    g.shape = MeshGeometry{&mesh_};
-    return build_accel({g}, variant.options);
+    return build_accel({{MeshGeometry{&mesh_}, {}}}, variant.options);
   }
   std::unique_ptr<EmbreeScene> embree_build(int quality) const {
     return std::make_unique<EmbreeScene>(mesh_, quality, config_.c_str());

@@ -66,6 +66,13 @@ struct Branch {
   }
 };
 
+/// The unit vector at `angle` around `along`.
+Vec3d around_axis(const Vec3d& along, double angle) {
+  Vec3d side, other;
+  make_basis(along, side, other);
+  return side * std::cos(angle) + other * std::sin(angle);
+}
+
 class Grower {
  public:
   Grower(PlantKind kind, std::size_t triangles, std::uint32_t seed)
@@ -112,11 +119,9 @@ class Grower {
     for (int i = 0; i < children; ++i) {
       const double u = habit_.first + (1 - habit_.first) * (i + random()) / children;
       const Vec3d along = branch.direction(u);
-      Vec3d side, other;
-      make_basis(along, side, other);
       // The golden angle keeps branches from standing above each other.
       around += 2.39996;
-      const Vec3d out = side * std::cos(around) + other * std::sin(around);
+      const Vec3d out = around_axis(along, around);
       const double angle = habit_.angle * (0.8 + 0.4 * random());
       // A conifer's branches grow shorter towards its top.
       const double taper = kind_ == PlantKind::conifer ? 1.05 - u : 1.1 - 0.5 * u;
@@ -161,13 +166,9 @@ class Grower {
     const auto first = static_cast<std::uint32_t>(model_.vertices.size());
     for (std::size_t i = 0; i < rings; ++i) {
       const double u = static_cast<double>(i) / static_cast<double>(rings - 1);
-      Vec3d side, other;
-      make_basis(branch.direction(u), side, other);
-      for (int k = 0; k < sides; ++k) {
-        const double a = 2 * std::numbers::pi * k / sides;
-        vertex(branch.points[i] +
-               (side * std::cos(a) + other * std::sin(a)) * (branch.radius * (1 - 0.9 * u)));
-      }
+      for (int k = 0; k < sides; ++k)
+        vertex(branch.points[i] + around_axis(branch.direction(u), 2 * std::numbers::pi * k / sides) *
+                                      (branch.radius * (1 - 0.9 * u)));
     }
     const auto n = static_cast<std::uint32_t>(sides);
     for (std::uint32_t i = 0; i + 1 < rings; ++i)
@@ -231,11 +232,9 @@ class Grower {
   /// Petals stand around the tip of a branch, ring after ring.
   void petal(const Branch& branch, std::size_t index) {
     const Vec3d along = branch.direction(1);
-    Vec3d side, other;
-    make_basis(along, side, other);
-    const double a = 2.39996 * static_cast<double>(index),
-                 open = 1.3 / (1 + 0.03 * static_cast<double>(index));
-    const Vec3d out = side * std::cos(a) + other * std::sin(a);
+    const auto rank = static_cast<double>(index);
+    const double open = 1.3 / (1 + 0.03 * rank);
+    const Vec3d out = around_axis(along, 2.39996 * rank);
     const Vec3d blade = along * std::cos(open) + out * std::sin(open);
     diamond(PlantPart::blossom, branch.points.back(), blade, normalize(cross(blade, along)), 0.07, 0.03);
   }

@@ -8,14 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <string>
 
 #include "bench/peer_timing.h"
 #include "bench/povray_scene.h"
 #include "bench/program.h"
+#include "io/text/mapped_file.h"
 #include "render/camera.h"
 #include "render/geometry.h"
 #include "render/render.h"
@@ -33,14 +32,6 @@ struct Options {
   std::vector<std::string> kinds;
 };
 
-std::string read_text(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw Error({path.string(), 0, 0}, "cannot be read", ErrorKind::io);
-  return text.str();
-}
-
 /// Runs POV-Ray on `scene`.pov in `dir`. Returns the trace time that it reports, in seconds. `bounding`:
 /// 1 = its tree of boxes, 2 = its BSP tree.
 double run_povray(const fs::path& dir, const std::string& scene, const Options& o, int bounding) {
@@ -49,7 +40,7 @@ double run_povray(const fs::path& dir, const std::string& scene, const Options& 
       "cd '{}' && povray +I{}.pov +O{}.ppm +FP File_Gamma=1.0 +W{} +H{} -A -D +WT{} +BM{} >{}.log 2>&1",
       dir.string(), scene, scene, o.width, o.height, o.threads, bounding, scene);
   if (std::system(command.c_str()) != 0) throw Error({log, 0, 0}, "POV-Ray failed");
-  const std::string text = read_text(log);
+  const std::string text(MappedFile(log).text());
   const std::size_t line = text.find("Trace Time:"), open = text.find('(', line);
   if (line == std::string::npos || open == std::string::npos)
     throw Error({log, 0, 0}, "there is no trace time");
@@ -58,7 +49,8 @@ double run_povray(const fs::path& dir, const std::string& scene, const Options& 
 
 /// The object numbers that a picture's colours stand for, row by row, mirrored as Oktett's picture is.
 std::vector<std::uint32_t> read_ids(const fs::path& path, const Options& o) {
-  const std::string text = read_text(path);
+  const MappedFile file(path.string());
+  const std::string_view text = file.text();
   const std::size_t size = std::size_t{o.width} * o.height;
   if (text.size() < 3 * size) throw Error({path.string(), 0, 0}, "the picture is too short");
   const auto* pixel = reinterpret_cast<const unsigned char*>(text.data()) + (text.size() - 3 * size);

@@ -10,11 +10,7 @@ namespace oktett::bench {
 
 namespace {
 
-Object operand(Shape shape) {
-  Object object;
-  object.shape = std::move(shape);
-  return object;
-}
+Object operand(Shape shape) { return {std::move(shape), kNoId, {}, {}, {}}; }
 
 CsgShape combine(CsgOp op, std::vector<Object> operands) {
   return {op, std::make_shared<const std::vector<Object>>(std::move(operands))};

@@ -15,19 +15,11 @@ Scene make_scene() {
   Scene s;
   s.materials.resize(2);
   s.materials[1].reflection = 0.5f;
-  Object mesh;
-  MeshShape shape;
-  shape.mesh = std::shared_ptr<const TriangleMesh>(&bench_mesh(), [](const TriangleMesh*) {});
-  mesh.shape = shape, mesh.material = 0;
-  s.objects.push_back(mesh);
-  Object ball;
-  ball.shape = SphereShape{{1.5, -0.5, 0.5}, 0.5};
-  ball.material = 1;
-  s.objects.push_back(ball);
-  Object ground;
-  ground.shape = PlaneShape{{0, 1, 0}, -1.1};
-  ground.material = 0;
-  s.objects.push_back(ground);
+  MeshShape mesh;
+  mesh.mesh = std::shared_ptr<const TriangleMesh>(&bench_mesh(), [](const TriangleMesh*) {});
+  s.objects = {{mesh, 0, {}, {}, {}},
+               {SphereShape{{1.5, -0.5, 0.5}, 0.5}, 1, {}, {}, {}},
+               {PlaneShape{{0, 1, 0}, -1.1}, 0, {}, {}, {}}};
   s.film = {960, 540, {0, 1, 0, 1}};
   s.integrator.samples = 1;
   return s;

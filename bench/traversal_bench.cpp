@@ -23,9 +23,7 @@ struct Scene {
   RayBatch rays[3];
 
   Scene() {
-    Geometry g;
-    g.shape = MeshGeometry{&bench_mesh()};
-    accel = build_accel({g});
+    accel = build_accel({{MeshGeometry{&bench_mesh()}, {}}});
     const View view{512, false};
     const Box box = bounds(*accel);
     rays[0] = primary_rays(box, view);

@@ -154,23 +154,10 @@ Targets make_slab(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t
   return {about, corner, edge, normal, tangent};
 }
 
-Targets make_shape(KernelId id, CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
-  switch (id) {
-    case KernelId::sphere_geometric:
-    case KernelId::sphere_algebraic:
-      return make_sphere(r, f, cases, i);
-    case KernelId::plane:
-      return make_plane(r, f, cases, i);
-    case KernelId::disk:
-      return make_disk(r, f, cases, i);
-    case KernelId::box:
-      return make_oriented_box(r, f, cases, i);
-    case KernelId::slab:
-      return make_slab(r, f, cases, i);
-    default:
-      return make_triangle(r, f, cases, i);
-  }
-}
+/// In the order of KernelId.
+constexpr Targets (*kMakers[kKernels])(CaseRandom&, const Frame&, KernelCases&, std::size_t) = {
+    make_triangle, make_triangle, make_triangle, make_triangle,     make_sphere,
+    make_sphere,   make_plane,    make_disk,     make_oriented_box, make_slab};
 
 Ray make_ray(CaseClass c, CaseRandom& r, const Frame& f, const Targets& at) {
   const int aim = static_cast<int>(r.bits() % 3);
@@ -218,7 +205,7 @@ void KernelCases::fill(KernelId id, CaseClass c, std::uint64_t first, std::size_
     if (c == CaseClass::far) f.offset = {148376, 1234, -223423};
     if (c == CaseClass::huge) f.scale = r.magnitude(15, 30);
     if (c == CaseClass::tiny) f.scale = r.magnitude(-25, -15);
-    const Targets targets = make_shape(id, r, f, *this, i);
+    const Targets targets = kMakers[static_cast<int>(id)](r, f, *this, i);
     rays.set(i, make_ray(c, r, f, targets));
   }
 }

@@ -44,18 +44,9 @@ struct Results {
 
 bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-TriangleTolerance tolerance_of(KernelId id) {
-  switch (id) {
-    case KernelId::triangle_moller_trumbore:
-      return {0, 0x1p-19, 0};
-    case KernelId::triangle_badouel:
-      return {0, 0x1p-19, 0x1p-19};
-    case KernelId::triangle_segura_feito:
-      return {0x1p-19, 0x1p-19, 0};
-    default:
-      return {};
-  }
-}
+/// Of the triangle tests in the order of KernelId.
+constexpr TriangleTolerance kTolerances[] = {
+    {}, {0, 0x1p-19, 0}, {0, 0x1p-19, 0x1p-19}, {0x1p-19, 0x1p-19, 0}};
 
 OracleAnswer ask_oracle(KernelId id, const KernelCases& cases, std::size_t i) {
   const Ray ray = cases.rays[i];
@@ -73,16 +64,15 @@ OracleAnswer ask_oracle(KernelId id, const KernelCases& cases, std::size_t i) {
     case KernelId::disk:
       return oracle_disk(ray, {vec(0), vec(3), s[6][i]});
     case KernelId::box: {
-      Affine map;
-      for (int k = 0; k < 12; ++k)
-        map.m[static_cast<std::size_t>(k / 4)][static_cast<std::size_t>(k % 4)] = s[k][i];
-      return oracle_box(ray, map);
+      double rows[12];
+      for (int k = 0; k < 12; ++k) rows[k] = s[k][i];
+      return oracle_box(ray, Affine::from_rows(rows));
     }
     case KernelId::slab:
       return oracle_slab(ray, {corner(0), corner(1)});
     default: {
       const Vec3f p[3] = {corner(0), corner(1), corner(2)};
-      return oracle_triangle(ray, p, tolerance_of(id));
+      return oracle_triangle(ray, p, kTolerances[static_cast<int>(id)]);
     }
   }
 }

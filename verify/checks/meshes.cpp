@@ -74,21 +74,13 @@ Ray aimed_ray(const Subject& s, const Viewpoint& from, CaseRandom& random) {
   const double u = random.unit();
   Ray ray;
   ray.origin = from.point;
-  Vec3d target;
-  switch (random.bits() % 4) {
-    case 0:
-      target = corner(k);
-      break;
-    case 1:
-      // The middle of an edge is often a float, so that the ray passes it exactly.
-      target = (corner(k) + corner(k + 1)) * 0.5;
-      break;
-    case 2:
-      target = corner(k) * (1 - u) + corner(k + 1) * u;
-      break;
-    default:
-      target = Vec3d(from.point) + random.vector() * double(max_component(bounds(*s.accel).extent()));
-  }
+  const auto kind = random.bits() % 4;
+  // The middle of an edge is often a float, so that the ray passes it exactly.
+  const Vec3d target =
+      kind == 0   ? corner(k)
+      : kind == 1 ? (corner(k) + corner(k + 1)) * 0.5
+      : kind == 2 ? corner(k) * (1 - u) + corner(k + 1) * u
+                  : Vec3d(from.point) + random.vector() * double(max_component(bounds(*s.accel).extent()));
   ray.direction = Vec3f(target - Vec3d(from.point));
   const float length = max_component(abs(ray.direction));
   if (random.bits() & 1 && length > 0) ray.direction = ray.direction / length;

@@ -133,28 +133,12 @@ void run_slab(const KernelProbe& run) {
 
 template <int W, class A>
 void run_kernel_width(KernelId id, const KernelProbe& run) {
-  switch (id) {
-    case KernelId::triangle_watertight:
-      return run_triangle<W, A>(TriangleTest::watertight, run);
-    case KernelId::triangle_moller_trumbore:
-      return run_triangle<W, A>(TriangleTest::moller_trumbore, run);
-    case KernelId::triangle_badouel:
-      return run_triangle<W, A>(TriangleTest::badouel, run);
-    case KernelId::triangle_segura_feito:
-      return run_triangle<W, A>(TriangleTest::segura_feito, run);
-    case KernelId::sphere_geometric:
-      return run_shape<Sphere, W, A>(run);
-    case KernelId::sphere_algebraic:
-      return run_shape<AlgebraicSphere, W, A>(run);
-    case KernelId::plane:
-      return run_shape<Plane, W, A>(run);
-    case KernelId::disk:
-      return run_shape<Disk, W, A>(run);
-    case KernelId::box:
-      return run_shape<BoxSolid, W, A>(run);
-    case KernelId::slab:
-      return run_slab<W, A>(run);
-  }
+  // The triangle tests come first, the other kernels follow in the order of KernelId.
+  if (id <= KernelId::triangle_segura_feito) return run_triangle<W, A>(static_cast<TriangleTest>(id), run);
+  static constexpr void (*kShapes[])(const KernelProbe&) = {
+      run_shape<Sphere, W, A>, run_shape<AlgebraicSphere, W, A>, run_shape<Plane, W, A>,
+      run_shape<Disk, W, A>,   run_shape<BoxSolid, W, A>,        run_slab<W, A>};
+  kShapes[static_cast<int>(id) - static_cast<int>(KernelId::sphere_geometric)](run);
 }
 
 /// Code for the widths W of one set.

@@ -48,24 +48,11 @@ void run_certified(const RootsProbe& run) {
 template <class A>
 void run_roots(RootsKernel id, const RootsProbe& run) {
   using D = Simd<double, std::is_same_v<A, ScalarIsa> ? 1 : 8, A>;
-  switch (id) {
-    case RootsKernel::closed2:
-      return run_closed<2, D>(run);
-    case RootsKernel::closed3:
-      return run_closed<3, D>(run);
-    case RootsKernel::closed4:
-      return run_closed<4, D>(run);
-    case RootsKernel::all2:
-      return run_certified<2, 2, D>(run);
-    case RootsKernel::all3:
-      return run_certified<3, 3, D>(run);
-    case RootsKernel::all4:
-      return run_certified<4, 4, D>(run);
-    case RootsKernel::all6:
-      return run_certified<6, 6, D>(run);
-    case RootsKernel::first4:
-      return run_certified<4, 1, D>(run);
-  }
+  // In the order of RootsKernel.
+  static constexpr void (*kKernels[])(const RootsProbe&) = {
+      run_closed<2, D>,       run_closed<3, D>,       run_closed<4, D>,       run_certified<2, 2, D>,
+      run_certified<3, 3, D>, run_certified<4, 4, D>, run_certified<6, 6, D>, run_certified<4, 1, D>};
+  kKernels[static_cast<int>(id)](run);
 }
 
 }  // namespace oktett

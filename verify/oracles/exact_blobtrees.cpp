@@ -124,21 +124,11 @@ Real blend(const Field& field, std::size_t& at, const Vec3l& p) {
   std::vector<Real> v(b.count);
   for (std::size_t k = b.count; k-- > 0;) v[k] = blend(field, at, p);
   Real all = v[0];
-  for (std::size_t k = 1; k < v.size(); ++k) {
-    switch (b.op) {
-      case Blend::Op::sum:
-        all += v[k];
-        break;
-      case Blend::Op::max:
-        all = std::max(all, v[k]);
-        break;
-      case Blend::Op::min:
-        all = std::min(all, v[k]);
-        break;
-      default:
-        all = std::min(all, 2 * static_cast<Real>(s.iso) - v[k]);
-    }
-  }
+  for (std::size_t k = 1; k < v.size(); ++k)
+    all = b.op == Blend::Op::sum   ? all + v[k]
+          : b.op == Blend::Op::max ? std::max(all, v[k])
+          : b.op == Blend::Op::min ? std::min(all, v[k])
+                                   : std::min(all, 2 * static_cast<Real>(s.iso) - v[k]);
   return all;
 }
 

@@ -28,19 +28,10 @@ struct Samples {
     const Real u = find((x / size.x + 0.5L) * (Real(columns) - 1), columns, i);
     const Real v = find((z / size.z + 0.5L) * (Real(rows) - 1), rows, j);
     const Real a = at(i, j), b = at(i + 1, j), c = at(i, j + 1), d = at(i + 1, j + 1);
-    Real h = 0;
-    switch (interpolation) {
-      case HeightInterpolation::nearest:
-        h = (a + b + c + d) / 4;
-        break;
-      case HeightInterpolation::triangles:
-        h = u + v < 1 ? a + (b - a) * u + (c - a) * v : d + (c - d) * (1 - u) + (b - d) * (1 - v);
-        break;
-      case HeightInterpolation::bilinear:
-        h = (1 - u) * (1 - v) * a + u * (1 - v) * b + (1 - u) * v * c + u * v * d;
-        break;
-    }
-    return h * size.y;
+    if (interpolation == HeightInterpolation::nearest) return (a + b + c + d) / 4 * size.y;
+    if (interpolation == HeightInterpolation::bilinear)
+      return ((1 - u) * (1 - v) * a + u * (1 - v) * b + (1 - u) * v * c + u * v * d) * size.y;
+    return (u + v < 1 ? a + (b - a) * u + (c - a) * v : d + (c - d) * (1 - u) + (b - d) * (1 - v)) * size.y;
   }
 };
 

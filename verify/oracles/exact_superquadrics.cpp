@@ -22,22 +22,17 @@ Real power(Real x, double p, bool ratio) {
 template <class Real>
 Real equation(const SuperquadricShape& s, const Vec3<Real>& p) {
   const Real x = p.x / s.radii.x, y = p.y / s.radii.y, z = p.z / s.radii.z;
-  Real f = 0;
-  switch (s.form) {
-    case Form::ellipsoid:
-      f = power(x, s.p, s.ratio) + power(y, s.q, s.ratio) + power(z, s.r, s.ratio) - 1;
-      break;
-    case Form::hyperboloid:
-      f = power(x, s.p, s.ratio) + power(y, s.q, s.ratio) - power(z, s.r, s.ratio) - 1;
-      // Beyond a pole nothing is inside.
-      if (s.ratio && s.r > 1) f = std::max(f, std::abs(z) - static_cast<Real>(s.r) / (s.r - 1));
-      break;
-    case Form::toroid: {
-      const Real w = power(power(x, s.m, s.ratio) + power(y, s.n, s.ratio), s.q, s.ratio);
-      f = power(static_cast<Real>(s.d) - w, s.r, s.ratio) + power(z, s.p, s.ratio) -
-          static_cast<Real>(s.e) * s.e;
-      break;
-    }
+  Real f;
+  if (s.form == Form::toroid) {
+    const Real w = power(power(x, s.m, s.ratio) + power(y, s.n, s.ratio), s.q, s.ratio);
+    f = power(static_cast<Real>(s.d) - w, s.r, s.ratio) + power(z, s.p, s.ratio) -
+        static_cast<Real>(s.e) * s.e;
+  } else {
+    const Real zr = power(z, s.r, s.ratio), xy = power(x, s.p, s.ratio) + power(y, s.q, s.ratio);
+    f = s.form == Form::ellipsoid ? xy + zr - 1 : xy - zr - 1;
+    // Beyond a pole nothing is inside.
+    if (s.form == Form::hyperboloid && s.ratio && s.r > 1)
+      f = std::max(f, std::abs(z) - static_cast<Real>(s.r) / (s.r - 1));
   }
   return std::isfinite(f) ? f : HUGE_VALL;
 }
