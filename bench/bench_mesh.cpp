@@ -8,7 +8,8 @@
 
 namespace oktett::bench {
 
-TriangleMesh wavy_sphere(std::uint32_t n) {
+/// Of 2 * n * n triangles.
+static TriangleMesh wavy_sphere(std::uint32_t n) {
   TriangleMesh mesh;
   for (std::uint32_t row = 0; row <= n; ++row)
     for (std::uint32_t column = 0; column < n; ++column) {

@@ -5,10 +5,7 @@
 
 namespace oktett::bench {
 
-/// A sphere with waves on it, of 2 * n * n triangles; deterministic.
-TriangleMesh wavy_sphere(std::uint32_t n);
-
-/// Read or made once per program.
+/// Read or made once per program. The generated one is a sphere with waves on it.
 const TriangleMesh& bench_mesh();
 
 }  // namespace oktett::bench

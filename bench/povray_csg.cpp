@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bench/povray_scene.h"
+#include "verify/oracles/exact_families.h"
 
 namespace oktett::bench {
 
@@ -14,11 +15,6 @@ Object operand(Shape shape) { return {std::move(shape), kNoId, {}, {}, {}}; }
 
 CsgShape combine(CsgOp op, std::vector<Object> operands) {
   return {op, std::make_shared<const std::vector<Object>>(std::move(operands))};
-}
-
-/// Outside of the box between -half and half.
-long double outside_box(const Vec3l& p, const Vec3d& half) {
-  return std::max({std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z});
 }
 
 constexpr int kHolesX = 25, kHolesZ = 40;
@@ -42,7 +38,7 @@ FieldObject rounded_cube(const double (&)[6]) {
   object.pov += " }";
   object.shape = combine(CsgOp::subtract, std::move(operands));
   object.f = [](const Vec3l& p) {
-    long double f = std::max(outside_box(p, {0.75, 0.75, 0.75}), std::sqrt(dot(p, p)) - 1);
+    long double f = std::max(outside({-0.75, -0.75, -0.75}, {0.75, 0.75, 0.75}, p), std::sqrt(dot(p, p)) - 1);
     for (int axis = 0; axis < 3; ++axis) {
       const long double x = p[(axis + 1) % 3], y = p[(axis + 2) % 3];
       f = std::max(f, 0.45L - std::hypot(x, y));
@@ -71,7 +67,7 @@ FieldObject drilled_plate(const double (&)[6]) {
       return x - hole_place(std::clamp(cell, 0, count - 1), count);
     };
     const long double d = std::hypot(nearest(p.x, kHolesX), nearest(p.z, kHolesZ));
-    return std::max(outside_box(p, {kPlate, 0.2, kPlate}), kHoleRadius - d);
+    return std::max(outside({-kPlate, -0.2, -kPlate}, {kPlate, 0.2, kPlate}, p), kHoleRadius - d);
   };
   return object;
 }

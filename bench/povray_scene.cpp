@@ -15,6 +15,16 @@ constexpr double kEdge = 24;        // of the field
 constexpr double kHorizontal = 50;  // degrees of view
 const Vec3d kEye{0, 14, -22}, kTarget{0, 0, -2}, kLight{-20, 40, -20};
 
+/// Gives all operands of a combination the material of the whole.
+void set_material(Object& object, std::uint32_t material) {
+  object.material = material;
+  auto* csg = std::get_if<CsgShape>(&object.shape);
+  if (csg == nullptr) return;
+  std::vector<Object> operands = *csg->operands;
+  for (Object& operand : operands) set_material(operand, material);
+  csg->operands = std::make_shared<const std::vector<Object>>(std::move(operands));
+}
+
 }  // namespace
 
 std::string field_head(bool ids) {
@@ -38,20 +48,6 @@ Material field_material(const Color& color) {
   m.ambient = 0.1f, m.diffuse = 0.7f, m.specular = 0.3f, m.phong = 40;
   return m;
 }
-
-namespace {
-
-/// Gives all operands of a combination the material of the whole.
-void set_material(Object& object, std::uint32_t material) {
-  object.material = material;
-  auto* csg = std::get_if<CsgShape>(&object.shape);
-  if (csg == nullptr) return;
-  std::vector<Object> operands = *csg->operands;
-  for (Object& operand : operands) set_material(operand, material);
-  csg->operands = std::make_shared<const std::vector<Object>>(std::move(operands));
-}
-
-}  // namespace
 
 Scene empty_field(std::uint32_t width, std::uint32_t height) {
   Scene scene;

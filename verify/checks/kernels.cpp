@@ -15,11 +15,7 @@ void KernelTally::add(const KernelTally& o) {
   rays += o.rays, hits += o.hits, undecided += o.undecided, wrong += o.wrong;
   excess += o.excess, differing += o.differing;
   worst_ulps = std::max(worst_ulps, o.worst_ulps);
-  if (o.first_failure < first_failure) first_failure = o.first_failure, failure = o.failure;
-}
-
-void KernelTally::fail(std::uint64_t number, const std::string& text) {
-  if (number < first_failure) first_failure = number, failure = text;
+  fail(o.first_failure, o.failure);
 }
 
 bool must_be_right(KernelId id, CaseClass c) {

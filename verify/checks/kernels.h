@@ -10,19 +10,26 @@
 
 namespace oktett {
 
+/// The failure with the least number.
+struct FirstFailure {
+  std::uint64_t first_failure = ~std::uint64_t{0};
+  std::string failure;
+
+  void fail(std::uint64_t number, const std::string& text) {
+    if (number < first_failure) first_failure = number, failure = text;
+  }
+};
+
 /// Counts over pairs of one kernel and class.
-struct KernelTally {
+struct KernelTally : FirstFailure {
   std::uint64_t rays = 0, hits = 0;
   std::uint64_t undecided = 0;  ///< within the tolerance: either answer is right
   std::uint64_t wrong = 0;      ///< the answer, t, u or v outside the tolerance
   std::uint64_t excess = 0;     ///< boxes met by the slab test that the ray misses: allowed, but costs time
   std::uint64_t differing = 0;  ///< a width or instruction set gave other bits
   double worst_ulps = 0;        ///< of t in float, where the problem itself is well-conditioned
-  std::uint64_t first_failure = ~std::uint64_t{0};
-  std::string failure;  ///< of the pair with number `first_failure`
 
   void add(const KernelTally& other);
-  void fail(std::uint64_t number, const std::string& text);
 };
 
 /// True where an answer outside the tolerance is a failure: not for the textbook tests at scales at which

@@ -9,7 +9,6 @@
 #include "accel/accel.h"
 #include "core/random.h"
 #include "verify/checks/compare_mode.h"
-#include "verify/checks/kernels.h"
 
 namespace oktett {
 
@@ -23,11 +22,7 @@ std::vector<MeshPlacement> mesh_placements() {
 void MeshTally::add(const MeshTally& o) {
   rays += o.rays, hits += o.hits, leaks += o.leaks, parity += o.parity, doubled += o.doubled;
   differing += o.differing, inconsistent += o.inconsistent;
-  if (o.first_failure < first_failure) first_failure = o.first_failure, failure = o.failure;
-}
-
-void MeshTally::fail(std::uint64_t number, const std::string& text) {
-  if (number < first_failure) first_failure = number, failure = text;
+  fail(o.first_failure, o.failure);
 }
 
 namespace {

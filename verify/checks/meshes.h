@@ -7,6 +7,7 @@
 
 #include "accel/accel.h"
 #include "core/isa.h"
+#include "verify/checks/kernels.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
@@ -21,19 +22,16 @@ struct MeshPlacement {
 std::vector<MeshPlacement> mesh_placements();
 
 /// Counts over the rays of one mesh in one placement.
-struct MeshTally {
+struct MeshTally : FirstFailure {
   std::uint64_t rays = 0, hits = 0, open_edges = 0;
   std::uint64_t leaks = 0;         ///< rays from inside a closed mesh that hit nothing
   std::uint64_t parity = 0;        ///< numbers of crossings that are even from inside or odd from outside
   std::uint64_t doubled = 0;       ///< rays from inside a convex mesh with more than one crossing
   std::uint64_t differing = 0;     ///< closest hits whose bits depend on the instruction set or mode
   std::uint64_t inconsistent = 0;  ///< any_hit or all_hits that contradict closest_hit
-  std::uint64_t first_failure = ~std::uint64_t{0};
-  std::string failure;
 
   std::uint64_t failures() const { return leaks + parity + doubled + differing + inconsistent; }
   void add(const MeshTally& other);
-  void fail(std::uint64_t number, const std::string& text);
 };
 
 /// Rays from points inside and outside, aimed at vertices, at points of edges and at random, through a tree

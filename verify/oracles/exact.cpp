@@ -49,8 +49,6 @@ ExactOracle oracle_of(const TorusShape& s) {
 
 namespace {
 
-ExactOracle torus(CaseRandom& random) { return oracle_of(draw_shape<TorusShape>(random)); }
-
 /// By the other of the two equations that a cyclide has: the kernel solves the one with z.
 ExactOracle cyclide(CaseRandom& random) {
   auto s = draw_shape<CyclideShape>(random);
@@ -70,7 +68,9 @@ ExactOracle cyclide(CaseRandom& random) {
 }
 
 std::vector<ExactCase> all_cases() {
-  std::vector<ExactCase> all{{"torus", torus}, {"cyclide", cyclide}};
+  std::vector<ExactCase> all{
+      {"torus", [](CaseRandom& random) { return oracle_of(draw_shape<TorusShape>(random)); }},
+      {"cyclide", cyclide}};
   for (const auto& family : {quadric_cases(), polynomial_cases(), superquadric_cases(), metaball_cases(),
                              blobtree_cases(), function_cases(), fractal_cases(), height_cases()})
     all.insert(all.end(), family.begin(), family.end());
