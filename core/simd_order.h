@@ -129,23 +129,21 @@ OKTETT_INLINE int store_descending(const Simd<float, 8, A>& keys, unsigned lanes
   return size;
 }
 
-/// Writes the `values` of the lanes in `lanes` to `out`, lowest lane first; returns their number. All eight
-/// elements of `out` may be overwritten.
-template <class A>
-OKTETT_INLINE int store_compact(unsigned lanes, const std::uint32_t* values, std::uint32_t* out) {
-#if defined(OKTETT_COMPILED_AVX512)
-  if constexpr (std::is_same_v<A, Avx512Isa>) {
-    const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(lanes), v));
-    return __builtin_popcount(lanes);
-  }
-#endif
+/// Writes the `values` of the lanes in `lanes` to `out`, lowest lane first; returns their number. T has 32
+/// bits. All eight elements of `out` may be overwritten; it may begin at `values` or before.
+template <class A, class T>
+OKTETT_INLINE int store_compact(unsigned lanes, const T* values, T* out) {
 #if defined(OKTETT_COMPILED_AVX2)
   if constexpr (kHasFma<A>) {
     const __m256i v = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                        _mm256_permutevar8x32_epi32(v, native::compact_index(lanes)));
+    __m256i front;
+#if defined(OKTETT_COMPILED_AVX512)
+    if constexpr (std::is_same_v<A, Avx512Isa>)
+      front = _mm256_maskz_compress_epi32(static_cast<__mmask8>(lanes), v);
+    else
+#endif
+      front = _mm256_permutevar8x32_epi32(v, native::compact_index(lanes));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), front);
     return __builtin_popcount(lanes);
   }
 #endif

@@ -85,15 +85,16 @@ int expect_same(const Accel& plain, const Accel& other, const RayBatch& rays, co
   return found;
 }
 
+struct Place {
+  double scale;
+  Vec3d shift;
+};
+const Place kPlaces[] = {
+    {1, {}},    {1, {3000, -70000, 5}}, {1e-9, {}}, {1e-20, {}}, {1e-25, {}}, {1e10, {}}, {1e20, {}},
+    {1e30, {}}, {1e-3, {1, 1, 1}},      {1e38, {}}};
+
 TEST(TraceModes, SameHitsAtEveryScale) {
-  struct Place {
-    double scale;
-    Vec3d shift;
-  };
-  const Place places[] = {
-      {1, {}},    {1, {3000, -70000, 5}}, {1e-9, {}}, {1e-20, {}}, {1e-25, {}}, {1e10, {}}, {1e20, {}},
-      {1e30, {}}, {1e-3, {1, 1, 1}},      {1e38, {}}};
-  for (const Place& p : places)
+  for (const Place& p : kPlaces)
     for (const BuildQuality quality : {BuildQuality::fast, BuildQuality::best}) {
       const TriangleMesh m = soup(900, 3, p.scale, p.shift);
       const std::vector<Geometry> geometries = {{MeshGeometry{&m}, {}, kNoId}};
@@ -105,6 +106,48 @@ TEST(TraceModes, SameHitsAtEveryScale) {
         EXPECT_GT(found, 5000) << p.scale;
       }
     }
+}
+
+/// Finite rays in groups of 128 that start close together. In odd groups many end exactly on a vertex. Every
+/// other even group has a ray that is endless or not a number, and before it one that is longer than the
+/// others.
+RayBatch short_rays(const TriangleMesh& m, int groups, std::uint64_t seed, double scale, const Vec3d& shift) {
+  RayBatch rays;
+  CaseRandom r(seed);
+  for (int g = 0; g < groups; ++g) {
+    const Vec3d center = r.vector() * scale + shift;
+    const bool wide = g % 2 == 1, broken = g % 4 == 0;
+    for (int i = 0; i < 128; ++i) {
+      const Vec3d from = center + r.vector() * (scale * (wide ? 0.3 : 0.02));
+      Vec3d to = from + r.vector() * (scale * (wide ? 0.2 : 0.05));
+      if ((wide && i % 4 == 0) || (broken && i == 101))
+        to = Vec3d(m.positions[m.indices[r.bits() % m.indices.size()]]);
+      Ray ray{Vec3f(from), 0, Vec3f(to) - Vec3f(from),
+              i % 3 == 0 ? 1.0f : static_cast<float>(0.5 + r.unit())};
+      if (i % 9 == 0) ray.direction[static_cast<int>(r.bits() % 3)] = 0;
+      if (broken && i == 109) {
+        if (g % 8 == 0) ray.tmax = kInf;
+        (g % 8 == 0 ? ray.direction : ray.origin).x =
+            g % 8 == 0 ? 0 : std::numeric_limits<float>::quiet_NaN();
+      }
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+TEST(TraceModes, SameHitsOfShortRays) {
+  for (const Place& p : kPlaces) {
+    const TriangleMesh m = soup(900, 3, p.scale, p.shift);
+    const std::vector<Geometry> geometries = {{MeshGeometry{&m}, {}, kNoId}};
+    const auto plain = build_accel(geometries), other = build_accel(geometries, {BuildQuality::best});
+    const RayBatch rays = short_rays(m, 24, 8, p.scale, p.shift);
+    const int found = expect_same(*plain, *other, rays, "scale " + std::to_string(p.scale));
+    if (HasFailure()) return;
+    if (p.scale < 1e35) {
+      EXPECT_GT(found, 3000) << p.scale;
+    }
+  }
 }
 
 // Meshes of both kinds of triangle test, closed-form shapes, a plane and instances in one tree; instances of

@@ -1,6 +1,8 @@
 #pragma once
 /// \file One of the rays in flight of an interleaved traversal, and its step through a node.
 
+#include <algorithm>
+
 #include "accel/traverse/inflight/ray_chunk.h"
 #include "accel/traverse/leaf.h"
 #include "core/simd_order.h"
@@ -15,7 +17,7 @@ inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
 /// One ray in flight and its stack. The first 64 bytes are what a node needs. The size is an odd number of
 /// cache lines, so that the rays do not fall into the same sets of the cache.
 struct alignas(64) InflightRay {
-  static constexpr int kCapacity = (kStackSize + BvhNode::kWidth + 15) / 16 * 16;
+  static constexpr int kCapacity = (kStackSize + 3 * BvhNode::kWidth + 15) / 16 * 16;
   float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
   float tmin, limit;                          ///< limit = tmax + slack
   std::uint32_t near_row[3];                  ///< offset in a node's planes of the near ones, per axis
@@ -58,15 +60,17 @@ OKTETT_INLINE void start_ray(InflightRay& ray, const RayChunk<W, A>& c, int i, N
 }
 
 /// Ends the ray at `tmax` and removes the stack entries that lie beyond.
+template <class A>
 OKTETT_INLINE void shorten(InflightRay& ray, float tmax) {
+  using F = Simd<float, BvhNode::kWidth, A>;
   ray.tmax = tmax, ray.limit = tmax + ray.slack;
-  const float limit = ray.limit * kSlabRelativeSlack;
+  const F limit(ray.limit * kSlabRelativeSlack);
   int size = 0;
-  for (int k = 0; k < ray.size; ++k) {
-    const std::uint32_t ref = ray.ref[k];
-    const float near = ray.near[k];
-    ray.ref[size] = ref, ray.near[size] = near;
-    size += near <= limit;
+  for (int k = 0; k < ray.size; k += BvhNode::kWidth) {
+    const unsigned present = (2u << std::min(ray.size - 1 - k, BvhNode::kWidth - 1)) - 1;
+    const unsigned kept = less_equal_lanes<A>(F::load(ray.near + k), limit) & present;
+    store_compact<A>(kept, ray.near + k, ray.near + size);
+    size += store_compact<A>(kept, ray.ref + k, ray.ref + size);
   }
   ray.size = size;
 }

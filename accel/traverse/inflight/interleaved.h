@@ -8,6 +8,7 @@
 /// rays are decided together, one in each lane; only a triangle that the classification leaves open is
 /// decided at once.
 
+#include "accel/traverse/inflight/bundle_entry.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/single.h"
@@ -179,7 +180,7 @@ class InterleavedTraversal {
       if (maybe == 1u << nearest && most < ray.hit_lo) {
         ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(nearest);
         ray.hit_lo = least;
-        return shorten(ray, most);
+        return shorten<A>(ray, most);
       }
     }
     decide_leaf(ray);
@@ -226,7 +227,7 @@ class InterleavedTraversal {
     if constexpr (Q == Query::any) return found(ray);
     ray.candidate = kDecidedHit;
     ray.hit_lo = r.tmax[0];
-    shorten(ray, r.tmax[0]);
+    shorten<A>(ray, r.tmax[0]);
   }
 
   /// Tests the ray's block of triangles exactly.
@@ -272,6 +273,8 @@ class InterleavedTraversal {
   void refill(InflightRay& ray, Tails& tail) {
     for (; next_ < rays_.size; ++next_) {
       const int i = static_cast<int>(next_ % kChunk);
+      if constexpr (Q == Query::any)
+        if (next_ % kBundleRays == 0) set_entry();
       if (i == 0) chunk_.set(rays_, next_, extent_);
       if ((chunk_.tame >> i & 1) != 0) {
         start(ray, i, tail);
@@ -282,8 +285,31 @@ class InterleavedTraversal {
     }
   }
 
+  /// Prepares the entry of the next bundle.
+  OKTETT_NOINLINE void set_entry() {
+    has_entry_ = false;
+    if (accel_.root.is_leaf()) return;
+    const Box reach =
+        reach_of<A>(rays_.part(next_, std::min<std::size_t>(kBundleRays, rays_.size - next_)), extent_);
+    if (reach.empty()) return;
+    entry_.set(accel_, reach);
+    has_entry_ = true;
+  }
+
+  /// The first step of a ray, from the entry of its bundle.
+  OKTETT_INLINE void enter(InflightRay& ray) const {
+    ray.size = 1;
+    for (const BvhNode& node : entry_) {
+      Simd<float, BvhNode::kWidth, A> near;
+      const unsigned met = node_inflight<A>(ray, node, near);
+      ray.size += store_compact<A>(met, node.child_bits(), ray.ref + ray.size);
+    }
+  }
+
   OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
     start_ray(ray, chunk_, i, accel_.root);
+    if constexpr (Q == Query::any)
+      if (has_entry_) enter(ray);
     ray.index = static_cast<std::uint32_t>(next_);
     if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
       RayState<1, A>& r = exact_state(ray);
@@ -340,6 +366,8 @@ class InterleavedTraversal {
   int pending_ = 0;
   std::uint32_t pending_triangle_[kChunk], pending_ray_[kChunk];
   RayChunk<kChunk, A> chunk_;
+  bool has_entry_ = false;
+  BundleEntry<A> entry_;
   InflightRay inflight_[kInflightRays];
   RayState<1, A> states_[kInflightRays];
 };
