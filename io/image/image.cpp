@@ -4,30 +4,35 @@
 
 #include <filesystem>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "io/image/library.h"
 #include "io/image/output.h"
+#include "io/image/writers.h"
 
 namespace oktett {
 namespace {
 
-using Format = std::pair<const char*, PictureLayout>;
-/// Every OpenImageIO writes these.
-constexpr Format kCommonFormats[] = {
-    {".exr", PictureLayout::all_planes}, {".png", PictureLayout::srgb8}, {".jpg", PictureLayout::srgb8},
-    {".jpeg", PictureLayout::srgb8},     {".tif", PictureLayout::srgb8}, {".tiff", PictureLayout::srgb8},
-    {".hdr", PictureLayout::float_rgb},  {".bmp", PictureLayout::srgb8}, {".tga", PictureLayout::srgb8}};
+using Writer = void (*)(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes);
+struct Format {
+  const char* extension;
+  Writer write;  ///< null: OpenImageIO does, and every version of it can
+};
+constexpr Format kCommonFormats[] = {{".exr", write_exr}, {".sxr", write_exr}, {".mxr", write_exr},
+                                     {".png", write_png}, {".jpg", nullptr},   {".jpeg", nullptr},
+                                     {".tif", nullptr},   {".tiff", nullptr},  {".hdr", nullptr},
+                                     {".bmp", nullptr},   {".tga", nullptr}};
 
 std::string extension_of(const std::string& path) { return std::filesystem::path(path).extension().string(); }
 
-/// Without the image library, for formats that need no asking.
-std::optional<PictureLayout> common_layout(const std::string& path) {
-  const std::string extension = extension_of(path);
+/// The format of `path` if it is one of the above, else null.
+const Format* common_format(const std::string& path) {
+  std::string extension = extension_of(path);
+  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   for (const Format& format : kCommonFormats)
-    if (extension == format.first) return format.second;
-  return std::nullopt;
+    if (extension == format.extension) return &format;
+  return nullptr;
 }
 
 void check_planes(const Picture& picture) {
@@ -57,30 +62,38 @@ void check_output(const std::string& path) {
   if (path.find('\0') != std::string::npos) throw Error("the name of the output file contains a zero byte");
   if (std::filesystem::path(path).filename().empty() || std::filesystem::is_directory(path))
     throw Error(Location{path}, "cannot write: is a directory", ErrorKind::io);
-  if (common_layout(path) && image_library_is_installed()) {
+  const Format* format = common_format(path);
+  if (format != nullptr && (format->write != nullptr || image_library_is_installed())) {
     const OutputFile file(path);
     return;
   }
   const ImageLibrary& library = image_library();
-  if (!library.layout(path))
+  const std::optional<PixelLayout> layout = library.layout(path);
+  if (!layout)
     throw Error(Location{path}, "unknown image format '" + extension_of(path) +
                                     "': known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp");
   const OutputFile file(path);
-  library.write(path, file.temporary(), one_pixel(), {});
+  library.write(path, file.temporary(), flatten(one_pixel(), *layout), {});
 }
 
 bool keeps_all_planes(const std::string& path) {
-  std::optional<PictureLayout> layout = common_layout(path);
-  if (!layout) layout = image_library().layout(path);
-  return layout == PictureLayout::all_planes;
+  const Format* format = common_format(path);
+  return format != nullptr && format->write == write_exr;
 }
 
 void write_image(const std::string& path, const Picture& picture, const ImageMetadata& metadata) {
   check_planes(picture);
+  if (const Format* format = common_format(path); format != nullptr && format->write != nullptr) {
+    OutputFile file(path);
+    format->write(file, picture, attributes(metadata));
+    file.commit();
+    return;
+  }
   const ImageLibrary& library = image_library();
-  if (!library.layout(path)) throw Error(Location{path}, "unknown image format");
+  const std::optional<PixelLayout> layout = library.layout(path);
+  if (!layout) throw Error(Location{path}, "unknown image format");
   OutputFile file(path);
-  library.write(path, file.temporary(), picture, metadata);
+  library.write(path, file.temporary(), flatten(picture, *layout), attributes(metadata));
   file.commit();
 }
 

@@ -11,9 +11,9 @@ namespace oktett {
 
 /// Throws Error if a picture cannot be written to `path`; ask before a long render. Of kind bad_input if
 /// `path` is "-" or empty or its extension names no known format. Of kind io if `path` is a directory or
-/// anything but a regular file, if its directory does not exist or cannot be written to, or if the shared
-/// library liboktett_images is missing. A temporary file is created beside `path` and removed; a file at
-/// `path` is not touched.
+/// anything but a regular file, if its directory does not exist or cannot be written to, or if the format is
+/// neither PNG nor EXR and the shared library liboktett_images is missing. A temporary file is created beside
+/// `path` and removed; a file at `path` is not touched.
 void check_output(const std::string& path);
 
 /// True if the format that the extension of `path` names stores planes other than R, G, B and A.

@@ -3,7 +3,7 @@
 ///
 /// OpenImageIO brings hundreds of shared libraries: to start with them takes a third of a second and 120 MB.
 /// So its users, io/image/oiio/, are a shared library of their own, which is loaded when the first image is
-/// read or written; most runs need it for an instant at their end, some never.
+/// read, or written in another format than those of io/image/writers.h. Most runs never need it.
 
 #include <cstdint>
 #include <memory>
@@ -12,25 +12,23 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/image/encode.h"
 #include "io/image/heights.h"
-#include "io/image/metadata.h"
 #include "render/material.h"
 #include "render/picture.h"
 #include "render/texture_sampler.h"
 
 namespace oktett {
 
-/// What the files of a format hold of a picture.
-enum class PictureLayout { all_planes, float_rgb, srgb8 };
-
 /// All members may be called by many threads at once; they throw Error of kind io for what files are not.
 class ImageLibrary {
  public:
-  /// Of files with `path`'s extension; nothing if no such file can be written.
-  virtual std::optional<PictureLayout> layout(const std::string& path) const = 0;
+  /// Of files with `path`'s extension; nothing if no such file can be written. Formats that Oktett writes
+  /// itself are not asked for.
+  virtual std::optional<PixelLayout> layout(const std::string& path) const = 0;
   /// Writes to the file `temporary`, which has `path`'s extension; errors are reported as those of `path`.
-  virtual void write(const std::string& path, const std::string& temporary, const Picture& picture,
-                     const ImageMetadata& metadata) const = 0;
+  virtual void write(const std::string& path, const std::string& temporary, const FlatImage& image,
+                     const std::vector<Attribute>& attributes) const = 0;
   /// See read_image.
   virtual Picture read(const std::string& path) const = 0;
   /// See read_heights.

@@ -1,8 +1,10 @@
 #include "io/image/output.h"
 
 #include <fcntl.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
@@ -15,6 +17,8 @@ namespace oktett {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::size_t kBlocksAtOnce = 64;
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) {
   throw Error(Location{path}, message, ErrorKind::io);
@@ -45,30 +49,18 @@ void check_target(const std::string& path, const fs::path& target) {
   if (fs::exists(status) && access(target.c_str(), W_OK) != 0) fail(path, "cannot write: " + reason(errno));
 }
 
-/// Creates a new file beside `target`; the number makes names unique within the process.
-std::string create_beside(const std::string& path, const fs::path& target) {
+/// Creates a new file beside `target`, puts its name into `name` and returns it open for writing; the number
+/// makes names unique within the process.
+int create_beside(const std::string& path, const fs::path& target, std::string& name) {
   static std::atomic<unsigned> counter{0};
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    const std::string name = ".oktett-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
-    const fs::path candidate = target.parent_path() / (name + target.extension().string());
-    const int file = open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file >= 0) {
-      close(file);
-      return candidate.string();
-    }
+    const std::string stem = ".oktett-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
+    name = (target.parent_path() / (stem + target.extension().string())).string();
+    const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) return file;
     if (errno != EEXIST) fail(path, "cannot write: " + reason(errno));
   }
   fail(path, "cannot write: no free temporary name in the directory");
-}
-
-/// A rename may reach the disk before the data it names, unless the data is flushed first.
-void flush(const std::string& path, const std::string& file) {
-  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) fail(path, "cannot write: " + reason(errno));
-  const int error = fsync(descriptor) == 0 ? 0 : errno;
-  close(descriptor);
-  // Some file systems cannot flush; that is no reason to lose a picture.
-  if (error != 0 && error != EINVAL && error != ENOTSUP) fail(path, "cannot write: " + reason(error));
 }
 
 }  // namespace
@@ -77,15 +69,47 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   const fs::path target = resolve(path);
   check_target(path, target);
   target_ = target.string();
-  temporary_ = create_beside(path, target);
+  file_ = create_beside(path, target, temporary_);
 }
 
 OutputFile::~OutputFile() {
+  close(file_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
+void OutputFile::overwrite(std::uint64_t place, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, "cannot write: " + reason(errno));
+    place += static_cast<std::uint64_t>(written);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+std::uint64_t OutputFile::append(std::string_view bytes) {
+  const std::uint64_t place = size_;
+  overwrite(place, bytes);
+  size_ += bytes.size();
+  return place;
+}
+
+std::vector<std::uint64_t> OutputFile::append_blocks(std::size_t count,
+                                                     const std::function<std::string(std::size_t)>& make) {
+  std::vector<std::uint64_t> places;
+  std::vector<std::string> blocks(std::min(count, kBlocksAtOnce));
+  for (std::size_t first = 0; first < count; first += kBlocksAtOnce) {
+    blocks.resize(std::min(count - first, kBlocksAtOnce));
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) { blocks[i] = make(first + i); });
+    for (const std::string& block : blocks) places.push_back(append(block));
+  }
+  return places;
+}
+
 void OutputFile::commit() {
-  flush(path_, temporary_);
+  // A rename may reach the disk before the data it names, unless the data is flushed first. Some file systems
+  // cannot flush; that is no reason to lose a picture.
+  if (fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(path_, "cannot write: " + reason(errno));
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) fail(path_, "cannot write: " + error.message());

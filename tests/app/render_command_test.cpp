@@ -134,22 +134,25 @@ TEST(RenderCommand, RefusesBadOutputsFirst) {
   EXPECT_EQ(file_count(dir), 1u);
 }
 
-// Without what writes images there is nothing to render for. A shared library of Oktett would lie beside it.
+// Without what writes the format there is nothing to render for. A shared library of Oktett would lie beside
+// it.
 #ifndef OKTETT_SHARED
 TEST(RenderCommand, MissesTheLibraryOfImagesFirst) {
   const TempDir dir;
   fs::create_directory(dir.path() / "bin");
   const std::string alone = dir.file("bin/oktett");
   fs::copy_file(OKTETT_COMMAND, alone);
-  const CommandResult result = run_command(dir, {"render", "missing.yaml", "-o", "a.png"}, alone);
+  const CommandResult result = run_command(dir, {"render", "missing.yaml", "-o", "a.jpg"}, alone);
   EXPECT_EQ(result.status, 1);
   EXPECT_TRUE(contains(result.err, "cannot load liboktett_images.so")) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 
-  fs::copy(fs::path(OKTETT_COMMAND).parent_path().parent_path() / "lib", dir.path() / "lib");
   dir.write("ball.yaml", kScene);
-  EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "-o", "a.png"}, alone).status, 0);
-  EXPECT_TRUE(fs::exists(dir.path() / "a.png"));
+  for (const char* name : {"a.png", "a.exr"})
+    EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "-o", name}, alone).status, 0);
+  fs::copy(fs::path(OKTETT_COMMAND).parent_path().parent_path() / "lib", dir.path() / "lib");
+  EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "-o", "a.jpg"}, alone).status, 0);
+  EXPECT_TRUE(fs::exists(dir.path() / "a.jpg"));
 }
 #endif
 

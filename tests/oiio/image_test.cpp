@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -188,6 +189,17 @@ TEST(Srgb, EightBitValuesSurviveTheRoundTrip) {
   for (int v = 0; v < 256; ++v) EXPECT_EQ(linear_to_srgb8(srgb_to_linear(static_cast<float>(v) / 255)), v);
   EXPECT_NEAR(linear_to_srgb(0.18f), 0.46135613f, 1e-6f);
   EXPECT_NEAR(srgb_to_linear(0.5f), 0.21404114f, 1e-6f);
+}
+
+// The rounded curve, by the formula of the standard in double, at floats from the smallest to 1; on a step of
+// the curve either side is right.
+TEST(Srgb, EightBitValuesAreTheRoundedCurve) {
+  for (std::uint32_t bits = 0; bits <= 0x3f800000; bits += 251) {
+    const float linear = std::bit_cast<float>(bits);
+    const double v = linear;
+    const double encoded = 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+    ASSERT_LE(std::abs(linear_to_srgb8(linear) - encoded), 0.5001) << linear;
+  }
 }
 
 TEST(Png, HoldsSrgbDividedByAlpha) {

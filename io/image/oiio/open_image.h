@@ -15,9 +15,9 @@ namespace oktett::oiio {
 /// The library, whose reading and writing functions are defined in files of their own.
 class OpenImageIoLibrary final : public ImageLibrary {
  public:
-  std::optional<PictureLayout> layout(const std::string& path) const override;
-  void write(const std::string& path, const std::string& temporary, const Picture& picture,
-             const ImageMetadata& metadata) const override;
+  std::optional<PixelLayout> layout(const std::string& path) const override;
+  void write(const std::string& path, const std::string& temporary, const FlatImage& image,
+             const std::vector<Attribute>& attributes) const override;
   Picture read(const std::string& path) const override;
   HeightImage read_heights(const std::string& path, std::uint32_t most_side,
                            std::size_t most_pixels) const override;

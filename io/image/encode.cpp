@@ -1,0 +1,79 @@
+#include "io/image/encode.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.h"
+#include "io/image/color.h"
+
+namespace oktett {
+namespace {
+
+const PicturePlane& color_plane(const Picture& picture, const char* name) {
+  const PicturePlane* plane = picture.find(name);
+  if (plane == nullptr || plane->type == PlaneType::unsigned_int)
+    throw Error(fmt::format("the picture has no colour plane {}, which this format needs", name));
+  return *plane;
+}
+
+std::array<const PicturePlane*, 3> color_planes(const Picture& picture) {
+  return {&color_plane(picture, "R"), &color_plane(picture, "G"), &color_plane(picture, "B")};
+}
+
+/// Coverage in [0, 1]; NaN and infinities count as none.
+float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 0; }
+
+}  // namespace
+
+std::uint32_t stored_channels(const Picture& picture, PixelLayout layout) {
+  return layout == PixelLayout::srgb8_alpha && picture.find("A") != nullptr ? 4 : 3;
+}
+
+void encode_srgb8(const Picture& picture, std::uint32_t channels, std::size_t first, std::size_t count,
+                  std::uint8_t* out) {
+  const std::array<const PicturePlane*, 3> planes = color_planes(picture);
+  const PicturePlane* alpha = channels == 4 ? &color_plane(picture, "A") : nullptr;
+  for (std::size_t i = first; i < first + count; ++i) {
+    const float a = alpha != nullptr ? clamped_alpha(alpha->values[i]) : 1;
+    // Without coverage there is no colour to recover; what light there is (a glow) is kept as it is.
+    const float divisor = a > 0 ? a : 1;
+    for (const PicturePlane* plane : planes) *out++ = linear_to_srgb8(plane->values[i] / divisor);
+    if (alpha != nullptr) *out++ = static_cast<std::uint8_t>(a * 255 + 0.5f);
+  }
+}
+
+FlatImage flatten(const Picture& picture, PixelLayout layout) {
+  FlatImage image{picture.width, picture.height, stored_channels(picture, layout), {}, {}};
+  const std::size_t pixels = std::size_t{picture.width} * picture.height;
+  if (layout != PixelLayout::float_rgb) {
+    image.bytes.resize(pixels * image.channels);
+    encode_srgb8(picture, image.channels, 0, pixels, image.bytes.data());
+    return image;
+  }
+  const std::array<const PicturePlane*, 3> planes = color_planes(picture);
+  image.floats.reserve(pixels * 3);
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (const PicturePlane* plane : planes)
+      image.floats.push_back(std::isfinite(plane->values[i]) ? plane->values[i] : 0);
+  return image;
+}
+
+std::vector<Attribute> attributes(const ImageMetadata& metadata) {
+  std::vector<Attribute> all;
+  if (!metadata.software.empty()) all.push_back({"Software", metadata.software});
+  if (!metadata.command_line.empty()) all.push_back({"commandLine", metadata.command_line});
+  if (!metadata.scene.empty()) all.push_back({"scene", metadata.scene});
+  if (metadata.samples > 0) all.push_back({"samples", static_cast<std::int32_t>(metadata.samples)});
+  if (metadata.render_seconds > 0)
+    all.push_back({"renderSeconds", static_cast<float>(metadata.render_seconds)});
+  if (metadata.camera) {
+    all.push_back({"worldToCamera", metadata.camera->world_to_camera});
+    all.push_back({"worldToNDC", metadata.camera->world_to_ndc});
+  }
+  return all;
+}
+
+}  // namespace oktett
