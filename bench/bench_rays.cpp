@@ -1,6 +1,7 @@
 #include "bench/bench_rays.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace oktett::bench {
@@ -57,7 +58,7 @@ RayBatch shadow_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, c
 }
 
 RayBatch diffuse_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds, int count,
-                      float reach) {
+                      float reach, std::uint32_t seed) {
   const float lift = radius_of(bounds) * 1e-4f;
   RayBatch out;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -66,12 +67,47 @@ RayBatch diffuse_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, 
     Vec3f t, b;
     make_basis(s.geometric_normal, t, b);
     for (int k = 0; k < count; ++k) {
-      const std::uint64_t key = pixel_key(0, i);
+      const std::uint64_t key = pixel_key(seed, i);
       const float a = 2 * std::numbers::pi_v<float> * random_float(key, static_cast<std::uint32_t>(k), 0);
       const float q = random_float(key, static_cast<std::uint32_t>(k), 1), r = std::sqrt(q);
       const Vec3f d = t * (r * std::cos(a)) + b * (r * std::sin(a)) + s.geometric_normal * std::sqrt(1 - q);
       out.push_back({s.position, 0, normalize(d), reach});
     }
+  }
+  return out;
+}
+
+RayBatch bounce_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds, Isa isa) {
+  constexpr std::uint32_t kLast = 4;
+  const float infinity = std::numeric_limits<float>::infinity();
+  RayBatch bounce = diffuse_rays(accel, rays, hits, bounds, 1, infinity), out;
+  for (std::uint32_t number = 2; number <= kLast; ++number) {
+    HitBatch found;
+    found.resize_uninitialized(bounce.size());
+    closest_hit(accel, bounce.span(), found.span(), isa);
+    bounce = diffuse_rays(accel, bounce, found, bounds, 1, infinity, number);
+    for (std::size_t i = 0; i < bounce.size(); ++i) out.push_back(bounce[i]);
+  }
+  return out;
+}
+
+RayBatch random_segments(const Box& box, std::size_t count) {
+  const auto point = [&](std::uint64_t key, std::uint32_t which, int face) {
+    Vec3f p = box.lo;
+    for (int k = 0; k < 3; ++k) {
+      const float random = random_float(key, which, static_cast<std::uint32_t>(k));
+      p[k] += box.extent()[k] * (k == face / 2 ? static_cast<float>(face % 2) : random);
+    }
+    return p;
+  };
+  RayBatch out;
+  out.resize_uninitialized(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t key = pixel_key(0, i);
+    const int face = static_cast<int>(random_bits(key, 2, 0) % 6);
+    const int other = (face + 1 + static_cast<int>(random_bits(key, 2, 1) % 5)) % 6;
+    const Vec3f from = point(key, 0, face), way = point(key, 1, other) - from;
+    out.set(i, {from, 0, normalize(way), length(way)});
   }
   return out;
 }

@@ -20,8 +20,15 @@ RayBatch shadow_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, c
                      const View& view);
 
 /// For each hit of `rays`: `count` rays in cosine-distributed directions about the normal, at most `reach`
-/// long.
+/// long. Another `seed` gives other directions.
 RayBatch diffuse_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds, int count,
-                      float reach);
+                      float reach, std::uint32_t seed = 0);
+
+/// The second to the fourth bounce of diffuse paths, whose first bounce leaves the hits of `rays`: all rays
+/// of a bounce after those of the bounce before, in the order of the paths.
+RayBatch bounce_rays(const Accel& accel, const RayBatch& rays, HitBatch& hits, const Box& bounds, Isa isa);
+
+/// `count` random segments, each from one face of a box to another.
+RayBatch random_segments(const Box& box, std::size_t count);
 
 }  // namespace oktett::bench

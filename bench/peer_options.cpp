@@ -8,18 +8,16 @@
 namespace oktett::bench {
 
 /// In the order of Work.
-static const std::vector<std::string> kWorks = {"build",   "bytes", "primary", "shadow",
-                                                "diffuse", "ao",    "equal",   "picture"};
+static const std::vector<std::string> kWorks = {"build",   "bytes",     "primary", "shadow", "diffuse",
+                                                "ao",      "equal",     "picture", "calls",  "allhits",
+                                                "bounces", "instances", "spheres"};
 
 const std::string& to_string(Work work) { return kWorks[static_cast<std::size_t>(work)]; }
 
-bool PeerOptions::wants(Work work) const {
-  return works.empty() || std::ranges::find(works, work) != works.end();
-}
+bool PeerOptions::wants(Work work) const { return std::ranges::find(works, work) != works.end(); }
 
 bool PeerOptions::wants_tracing() const {
-  return works.empty() ||
-         std::ranges::any_of(works, [](Work work) { return work != Work::build && work != Work::bytes; });
+  return std::ranges::any_of(works, [](Work work) { return work != Work::build && work != Work::bytes; });
 }
 
 /// What `parse` makes of each word of a list with commas.
@@ -44,7 +42,7 @@ static std::size_t index_of(const std::string& word, const std::vector<std::stri
 
 PeerOptions parse_peer_options(int argc, char** argv) {
   PeerOptions o;
-  const std::string head = "usage: peers [option]... MESH.obj...";
+  const std::string head = "usage: peers [option]... [MESH.obj...]";
   using Text = const std::string&;
   const std::vector<Option> options = {
       {"--threads", "N,...", "1", [&](Text v) { o.threads = integers(v, 1); }},
@@ -58,10 +56,16 @@ PeerOptions parse_peer_options(int argc, char** argv) {
          o.inside = each(v, [](Text word) { return index_of(word, {"outside", "inside"}) == 1; });
        }},
       {"--inside", "", "only inside", [&](Text) { o.inside = {true}; }},
-      {"--works", "W,...", "build, bytes, primary, shadow, diffuse, ao, equal, picture; all",
+      {"--works", "W,...",
+       "rows: build, bytes, primary, shadow, diffuse, ao, equal, picture, calls, allhits,\n"
+       "bounces; all. With instances or spheres they are rows of scenes of these",
        [&](Text v) {
          o.works = each(v, [](Text word) { return static_cast<Work>(index_of(word, kWorks)); });
        }},
+      {"--instances", "N", "how many of the mesh, or plants without a mesh; 4000",
+       [&](Text v) { o.instances = number(v, 1, 10'000'000); }},
+      {"--spheres", "N", "how many, beside the mesh if there is one; 1000000",
+       [&](Text v) { o.spheres = number(v, 1, 100'000'000); }},
       {"--seconds", "S", "time for measuring a row; 3", [&](Text v) { o.seconds = number(v, 0.0, 1e6); }},
       {"--runs", "N", "most rounds per row; 15", [&](Text v) { o.runs = number(v, 1, 1'000'000); }},
       {"--build", "NAME", "how Oktett builds the tree that it traces; its default",
@@ -69,7 +73,17 @@ PeerOptions parse_peer_options(int argc, char** argv) {
       {"--isa", "NAME", "instruction set", [&](Text v) { o.isa = v; }},
       {"--json", "FILE", "all figures with their spread", [&](Text v) { o.json = v; }}};
   o.meshes = parse_options(argc, argv, head, options);
-  if (o.meshes.empty()) throw Error(usage_text(head, options));
+  const auto scenes =
+      std::ranges::stable_partition(o.works, [](Work work) { return work < Work::instances; });
+  o.scenes.assign(scenes.begin(), scenes.end());
+  o.works.erase(scenes.begin(), scenes.end());
+  if (o.meshes.empty() && o.scenes.empty()) throw Error(usage_text(head, options));
+  if (o.works.empty() && o.scenes.empty())
+    for (Work work = Work::build; work < Work::instances;
+         work = static_cast<Work>(static_cast<int>(work) + 1))
+      o.works.push_back(work);
+  if (o.works.empty())
+    o.works = {Work::bytes, Work::primary, Work::shadow, Work::diffuse, Work::ambient_occlusion};
   return o;
 }
 

@@ -50,12 +50,13 @@ Stages with_oktett(const PictureTask& task, const Workload& work, Answers& answe
           seconds([&] { trace(*accel, work, task.isa, task.threads, answers); })};
 }
 
-Stages with_embree(const PictureTask& task, const Workload& work, Answers& answers) {
-  TriangleMesh mesh;
-  const double load = seconds([&] { mesh = load_with_tinyobjloader(task.path); });
-  const EmbreeScene scene(mesh, 1, task.config.c_str());
-  return {load, scene.build_seconds(),
-          seconds([&] { trace(scene, task.mode, work, task.threads, answers); })};
+Stages with_embree(const PictureTask& task, int rival, const Workload& work, Answers& answers) {
+  PeerScene scene;
+  const double load = seconds(
+      [&] { scene.meshes.push_back(std::make_shared<TriangleMesh>(load_with_tinyobjloader(task.path))); });
+  const EmbreeScene built(scene, {1, rival == 1}, task.config);
+  return {load, built.build_seconds(),
+          seconds([&] { trace(built, task.modes[rival], work, task.threads, answers); })};
 }
 
 /// Collects the stages of several rounds.
@@ -73,23 +74,27 @@ struct Series {
 }  // namespace
 
 bool race_to_first_picture(const PictureTask& task, const PeerOptions& options, Row& row) {
-  Workload work{Work::primary, "", {}, false};
-  Box box;
-  for (const Vec3f& p : load_obj(task.path).mesh.positions) box.grow(p);
-  work.rays = primary_rays(box, task.view);
+  const Workload work{Work::primary, "",
+                      std::make_shared<RayBatch>(primary_rays(file_scene(task.path).bounds(), task.view))};
   Answers answers(work);
-  Series ours, theirs;
-  std::vector<double> ratios;
+  Series ours, theirs[kRivals];
+  std::vector<double> ratios[kRivals];
   for (Rounds rounds(options.seconds, 2, options.runs); rounds.next();) {
     on_threads(task.threads, [&] {
       ours.add(with_oktett(task, work, answers));
-      theirs.add(with_embree(task, work, answers));
+      for (int k = 0; k < kRivals; ++k) {
+        theirs[k].add(with_embree(task, k, work, answers));
+        ratios[k].push_back(theirs[k].total.back() / ours.total.back());
+      }
     });
-    ratios.push_back(theirs.total.back() / ours.total.back());
   }
-  row.oktett = quartiles(ours.total), row.embree = quartiles(theirs.total), row.ratio = quartiles(ratios);
-  row.mode = "tinyobjloader; " + to_string(task.mode) + ", medium";
-  ours.report("oktett", row), theirs.report("embree", row);
+  row.oktett = quartiles(ours.total), row.mode = "tinyobjloader";
+  ours.report("oktett", row);
+  for (int k = 0; k < kRivals; ++k) {
+    row.against[k] = {quartiles(theirs[k].total), quartiles(ratios[k]),
+                      to_string(task.modes[k]) + ", medium"};
+    theirs[k].report(k == 0 ? "embree" : "robust", row);
+  }
   return true;
 }
 

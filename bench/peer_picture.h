@@ -2,6 +2,7 @@
 /// \file From a file to the first picture: reading, building and one primary frame, with Oktett and with
 /// tinyobjloader and Embree.
 
+#include <array>
 #include <string>
 
 #include "bench/bench_rays.h"
@@ -18,8 +19,8 @@ struct PictureTask {
   int threads = 1;
   Isa isa = Isa::scalar;
   BuildOptions build;
-  EmbreeMode mode;     ///< in which Embree traces primary rays
-  std::string config;  ///< of Embree's device
+  std::array<EmbreeMode, kRivals> modes;  ///< in which Embree traces primary rays
+  std::string config;                     ///< of Embree's device
 };
 
 /// Fills the row's figures in seconds. False if there is no tinyobjloader.

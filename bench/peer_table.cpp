@@ -24,26 +24,45 @@ void print_header(const PeerOptions& options, const std::string& isa) {
   fmt::print(
       "Embree {}, {}, medians of at most {} rounds in {} s; ratio > 1: Oktett is faster (bytes: < 1 is "
       "smaller);\n"
-      "+-: range between the quarter points of the ratio\n",
+      "+-: range between the quarter points of the ratio; robust: Embree's robust mode\n",
       embree_version(), isa, options.runs, options.seconds);
-  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6} {:>5} {:>8}  {:<7} {}\n", "mesh", "view", "thr",
-             "work", "Oktett", "Embree", "ratio", "+-", "null", "unit", "modes");
+  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6} {:>5} {:>8} {:>6} {:>8}  {:<7} {}\n", "mesh",
+             "view", "thr", "work", "Oktett", "Embree", "ratio", "+-", "robust", "ratio", "null", "unit",
+             "modes");
+}
+
+/// Texts that are not empty, with semicolons between.
+static std::string joined(std::initializer_list<std::string> texts) {
+  std::string all;
+  for (const std::string& text : texts)
+    if (!text.empty()) all += (all.empty() ? "" : "; ") + text;
+  return all;
 }
 
 void print_row(const Row& r) {
-  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6.2f} {:>5.2f} {:>8}  {:<7} {}\n", r.mesh,
-             view(r.inside, r.resolution), r.threads, r.work, number(r.oktett.median),
-             number(r.embree.median), r.ratio.median, r.ratio.range(), number(r.null.median), r.unit, r.mode);
+  const auto& [ordinary, robust] = r.against;
+  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6.2f} {:>5.2f} {:>8} {:>6.2f} {:>8}  {:<7} {}\n",
+             r.mesh, view(r.inside, r.resolution), r.threads, r.work, number(r.oktett.median),
+             number(ordinary.embree.median), ordinary.ratio.median, ordinary.ratio.range(),
+             number(robust.embree.median), robust.ratio.median, number(r.null.median), r.unit,
+             joined({r.mode, ordinary.mode, robust.mode}));
   std::fflush(stdout);
 }
 
 void print_agreement(const std::vector<Agreement>& agreements) {
   if (agreements.empty()) return;
-  std::size_t rays = 0, hit_or_miss = 0, distance = 0;
-  for (const Agreement& a : agreements) rays += a.rays, hit_or_miss += a.hit_or_miss, distance += a.distance;
+  Agreement sum;
+  for (const Agreement& a : agreements) {
+    sum.rays += a.rays;
+    for (int k = 0; k < kRivals; ++k)
+      sum.hit_or_miss[k] += a.hit_or_miss[k], sum.distance[k] += a.distance[k];
+  }
   fmt::print(
-      "{:<22} of {} rays, Oktett and Embree disagree on hit or miss for {}, on t by more than 1e-3 for {}\n",
-      agreements.front().mesh, rays, hit_or_miss, distance);
+      "{:<22} of {} rays, Oktett and Embree (robust) disagree on the number of hits for {} ({}), on t by "
+      "more "
+      "than 1e-3 for {} ({})\n",
+      agreements.front().mesh, sum.rays, sum.hit_or_miss[0], sum.hit_or_miss[1], sum.distance[0],
+      sum.distance[1]);
   std::fflush(stdout);
 }
 
@@ -62,23 +81,27 @@ static std::string quoted(const std::string& text) {
 }
 
 static std::string json(const Row& r) {
+  const auto& [ordinary, robust] = r.against;
   std::string parts;
   for (const auto& [name, value] : r.parts)
     parts += fmt::format("{}{}: {}", parts.empty() ? "" : ", ", quoted(name), value);
   return fmt::format(
       "{{\"mesh\": {}, \"view\": \"{}\", \"resolution\": {}, \"threads\": {}, \"work\": {}, \"unit\": {}, "
-      "\"oktett\": {}, \"embree\": {}, \"null\": {}, \"ratio\": {}, \"mode\": {}, \"parts\": {{{}}}}}",
+      "\"oktett\": {}, \"null\": {}, \"embree\": {}, \"ratio\": {}, \"mode\": {}, \"robust\": {}, "
+      "\"robust_ratio\": {}, \"robust_mode\": {}, \"parts\": {{{}}}}}",
       quoted(r.mesh), r.inside ? "inside" : "outside", r.resolution, r.threads, quoted(r.work),
-      quoted(r.unit), json(r.oktett), json(r.embree), json(r.null), json(r.ratio), quoted(r.mode), parts);
+      quoted(r.unit), json(r.oktett), json(r.null), json(ordinary.embree), json(ordinary.ratio),
+      quoted(joined({r.mode, ordinary.mode})), json(robust.embree), json(robust.ratio), quoted(robust.mode),
+      parts);
 }
 
 static std::string json(const Agreement& a) {
   return fmt::format(
       "{{\"mesh\": {}, \"view\": \"{}\", \"resolution\": {}, \"work\": {}, \"rays\": {}, \"hit_or_miss\": "
       "{}, "
-      "\"distance\": {}}}",
-      quoted(a.mesh), a.inside ? "inside" : "outside", a.resolution, quoted(a.work), a.rays, a.hit_or_miss,
-      a.distance);
+      "\"distance\": {}, \"robust_hit_or_miss\": {}, \"robust_distance\": {}}}",
+      quoted(a.mesh), a.inside ? "inside" : "outside", a.resolution, quoted(a.work), a.rays, a.hit_or_miss[0],
+      a.distance[0], a.hit_or_miss[1], a.distance[1]);
 }
 
 template <class T>

@@ -10,6 +10,16 @@
 
 namespace oktett::bench {
 
+/// The modes of Embree that every row is measured against: hits as fast as it can, and its robust mode.
+inline constexpr int kRivals = 2;
+
+/// One rival's figures.
+struct Against {
+  Quartiles embree;
+  Quartiles ratio;   ///< above 1: Oktett is faster; bytes: Oktett's over Embree's
+  std::string mode;  ///< how many rays at a time, which tree
+};
+
 /// One line: rates (higher is better), sizes or times (lower is better). Figures that do not apply are zeros.
 struct Row {
   std::string mesh;
@@ -17,9 +27,9 @@ struct Row {
   int resolution = 0;  ///< 0: the row does not depend on the picture
   int threads = 1;
   std::string work, unit;
-  Quartiles oktett, embree, null;
-  Quartiles ratio;  ///< above 1: Oktett is faster; bytes: Oktett's over Embree's
-  std::string mode;
+  Quartiles oktett, null;
+  Against against[kRivals];                           ///< ordinary, robust
+  std::string mode;                                   ///< how Oktett does it
   std::vector<std::pair<std::string, double>> parts;  ///< the parts of the figures, in seconds
 };
 
@@ -30,8 +40,9 @@ struct Agreement {
   int resolution = 0;
   std::string work;
   std::size_t rays = 0;
-  std::size_t hit_or_miss = 0;  ///< one tracer found a hit, the other none
-  std::size_t distance = 0;     ///< t differs by more than 1e-3 of itself
+  /// By rival: one tracer found a hit, the other none; or they found another number of hits.
+  std::size_t hit_or_miss[kRivals] = {};
+  std::size_t distance[kRivals] = {};  ///< t, or the sum of all, differs by more than 1e-3 of itself
 };
 
 struct PeerReport {

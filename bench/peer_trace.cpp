@@ -8,65 +8,107 @@
 
 namespace oktett::bench {
 
-std::vector<Workload> make_workloads(const Accel& accel, const View& view, const PeerOptions& options,
-                                     Isa isa) {
-  const Box box = bounds(accel);
+/// `works` for a batch of rays, which they share.
+static void add(std::vector<Workload>& works, Work work, const std::string& name, RayBatch rays,
+                Query query = Query::closest) {
+  works.push_back({work, name, std::make_shared<RayBatch>(std::move(rays)), query});
+}
+
+/// Calls of few rays: rays that run together, and rays that do not.
+static void add_calls(std::vector<Workload>& works, const Workload& coherent, const Workload& incoherent) {
+  for (const Workload* kind : {&coherent, &incoherent})
+    for (const std::size_t batch : {1u, 8u, 64u, 1024u})
+      works.push_back({Work::calls,
+                       std::to_string(batch) + (batch == 1 ? " ray" : " rays") + " a call, " + kind->name,
+                       kind->rays, Query::closest, batch});
+}
+
+std::vector<Workload> make_workloads(const Accel& accel, const Box& framed, const View& view,
+                                     const PeerOptions& options, Isa isa) {
   const float infinity = std::numeric_limits<float>::infinity();
-  const float reach = 0.2f * 0.5f * length(box.extent());
+  const float reach = 0.2f * 0.5f * length(framed.extent());
   // The sum of three works decides what Work::equal compares.
   const bool equal = options.wants(Work::equal);
-  const bool shadow = options.wants(Work::shadow) || equal, diffuse = options.wants(Work::diffuse) || equal;
-  const bool occlusion = options.wants(Work::ambient_occlusion);
   std::vector<Workload> works;
-  works.reserve(4);
-  works.push_back({Work::primary, "primary", primary_rays(box, view), false});
-  const RayBatch& primary = works.front().rays;
-  if (!shadow && !diffuse && !occlusion) return works;
+  add(works, Work::primary, "primary", primary_rays(framed, view));
+  const Workload primary = works.front();
+  const RayBatch& rays = *primary.rays;
   HitBatch hits;
-  hits.resize_uninitialized(primary.size());
-  closest_hit(accel, primary.span(), hits.span(), isa);
-  if (shadow)
-    works.push_back({Work::shadow, "point-light shadow", shadow_rays(accel, primary, hits, box, view), true});
-  if (diffuse)
-    works.push_back({Work::diffuse, "diffuse", diffuse_rays(accel, primary, hits, box, 1, infinity), false});
-  if (occlusion)
-    works.push_back({Work::ambient_occlusion, "ambient occlusion",
-                     diffuse_rays(accel, primary, hits, box, 4, reach), true});
+  hits.resize_uninitialized(rays.size());
+  closest_hit(accel, rays.span(), hits.span(), isa);
+  if (options.wants(Work::shadow) || equal)
+    add(works, Work::shadow, "point-light shadow", shadow_rays(accel, rays, hits, framed, view), Query::any);
+  if (options.wants(Work::diffuse) || equal)
+    add(works, Work::diffuse, "diffuse", diffuse_rays(accel, rays, hits, framed, 1, infinity));
+  if (options.wants(Work::ambient_occlusion))
+    add(works, Work::ambient_occlusion, "ambient occlusion",
+        diffuse_rays(accel, rays, hits, framed, 4, reach), Query::any);
+  if (options.wants(Work::bounces))
+    add(works, Work::bounces, "bounce 2 to 4", bounce_rays(accel, rays, hits, framed, isa));
+  if (!options.wants(Work::calls) && !options.wants(Work::all_hits)) return works;
+  const auto segments = std::make_shared<RayBatch>(random_segments(bounds(accel), rays.size()));
+  if (options.wants(Work::calls))
+    add_calls(works, {Work::calls, "camera", primary.rays}, {Work::calls, "random", segments});
+  if (options.wants(Work::all_hits)) {
+    works.push_back({Work::all_hits, "all hits, camera", primary.rays, Query::all});
+    works.push_back({Work::all_hits, "all hits, random", segments, Query::all});
+  }
   return works;
 }
 
+/// All hits of each ray, as Answers holds them.
+static void trace_all(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa) {
+  std::vector<Hit> found;
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    all_hits(accel, rays[i], found, isa);
+    hits.item[i] = static_cast<std::uint32_t>(found.size()), hits.t[i] = 0;
+    for (const Hit& hit : found) hits.t[i] += hit.t;
+  }
+}
+
 void trace(const Accel& accel, const Workload& work, Isa isa, int threads, Answers& answers) {
-  const RaySpan span = work.rays.span();
+  const RaySpan span = work.rays->span();
   const HitSpan hits = answers.hits.span();
-  in_pieces(threads, span.size, [&](std::size_t b, std::size_t n) {
-    if (work.any)
-      any_hit(accel, span.part(b, n), {answers.occluded.data() + b, n}, isa);
-    else
-      closest_hit(accel, span.part(b, n), hits.part(b, n), isa);
+  in_pieces(threads, span.size, [&](std::size_t begin, std::size_t count) {
+    if (work.query == Query::all)
+      return trace_all(accel, span.part(begin, count), hits.part(begin, count), isa);
+    if (work.query == Query::closest && work.batch == 1) {
+      for (std::size_t i = begin; i < begin + count; ++i) hits.set(i, closest_hit(accel, span[i], isa));
+      return;
+    }
+    for (std::size_t b = begin; b < begin + count; b += work.batch) {
+      const std::size_t n = std::min(work.batch, begin + count - b);
+      if (work.query == Query::any)
+        any_hit(accel, span.part(b, n), {answers.occluded.data() + b, n}, isa);
+      else
+        closest_hit(accel, span.part(b, n), hits.part(b, n), isa);
+    }
   });
 }
 
 static void trace_piece(const EmbreeScene& scene, EmbreeMode mode, const Workload& work, Answers& answers,
                         std::size_t b, std::size_t n) {
-  const RaySpan span = work.rays.span();
-  if (work.any)
-    scene.any_hit(span.part(b, n), answers.occluded.data() + b, mode);
+  const RaySpan rays = work.rays->span().part(b, n);
+  if (work.query == Query::any)
+    scene.any_hit(rays, answers.occluded.data() + b, mode);
+  else if (work.query == Query::closest)
+    scene.closest_hit(rays, answers.hits.span().part(b, n), mode);
   else
-    scene.closest_hit(span.part(b, n), answers.hits.span().part(b, n), mode);
+    scene.all_hits(rays, answers.hits.span().part(b, n), mode);
 }
 
 void trace(const EmbreeScene& scene, EmbreeMode mode, const Workload& work, int threads, Answers& answers) {
-  in_pieces(threads, work.rays.size(),
+  in_pieces(threads, work.size(),
             [&](std::size_t b, std::size_t n) { trace_piece(scene, mode, work, answers, b, n); });
 }
 
 void trace_nothing(const Workload& work, int threads, Answers& answers) {
-  const RaySpan span = work.rays.span();
+  const RaySpan span = work.rays->span();
   const HitSpan hits = answers.hits.span();
   in_pieces(threads, span.size, [&](std::size_t b, std::size_t n) {
     for (std::size_t i = b; i < b + n; ++i) {
       const Ray r = span[i];
-      if (work.any)
+      if (work.query == Query::any)
         answers.occluded[i] = r.direction.x > 2;
       else
         hits.set(i, {r.tmax, r.origin.x, r.direction.x, kNoId, kNoId});
@@ -77,7 +119,7 @@ void trace_nothing(const Workload& work, int threads, Answers& answers) {
 EmbreeChoice fastest_mode(const std::vector<const EmbreeScene*>& scenes, const Workload& work) {
   constexpr std::size_t kPiece = 4096, kStride = 8, kFinalists = 3;
   Answers answers(work);
-  const std::size_t size = work.rays.size();
+  const std::size_t size = work.size();
   const auto sample = [&](const EmbreeChoice& c) {
     flush_denormals();
     for (std::size_t b = 0; b < size; b += kPiece * kStride)
@@ -91,7 +133,8 @@ EmbreeChoice fastest_mode(const std::vector<const EmbreeScene*>& scenes, const W
   const auto by_time = [](const EmbreeChoice& a, const EmbreeChoice& b) { return a.seconds < b.seconds; };
   std::vector<EmbreeChoice> choices;
   for (const EmbreeScene* scene : scenes)
-    for (const EmbreeMode mode : embree_modes()) choices.push_back({scene, mode, 0});
+    for (const EmbreeMode mode : embree_modes())
+      if (static_cast<std::size_t>(mode.width) <= work.batch) choices.push_back({scene, mode, 0});
   for (EmbreeChoice& c : choices) c.seconds = twice([&] { sample(c); });
   std::sort(choices.begin(), choices.end(), by_time);
   choices.resize(std::min(choices.size(), kFinalists));
@@ -103,22 +146,23 @@ std::string to_string(EmbreeMode mode) {
   return std::to_string(mode.width) + (mode.coherent ? " coherent" : " incoherent");
 }
 
-Agreement compare(const Workload& work, const Answers& a, const Answers& b) {
-  Agreement agreement;
-  agreement.work = to_string(work.work);
-  agreement.rays = work.rays.size();
-  for (std::size_t i = 0; i < work.rays.size(); ++i) {
-    if (work.any) {
-      agreement.hit_or_miss += a.occluded[i] != b.occluded[i];
+std::string to_string(const EmbreeChoice& choice) {
+  return to_string(choice.mode) + (choice.scene->kind().quality == 1 ? ", medium" : ", high");
+}
+
+void compare(const Workload& work, const Answers& a, const Answers& b, int rival, Agreement& agreement) {
+  std::size_t& hit_or_miss = agreement.hit_or_miss[rival];
+  for (std::size_t i = 0; i < work.size(); ++i) {
+    if (work.query == Query::any) {
+      hit_or_miss += a.occluded[i] != b.occluded[i];
       continue;
     }
-    const bool hit = a.hits.item[i] != kNoId;
-    if (hit != (b.hits.item[i] != kNoId))
-      ++agreement.hit_or_miss;
-    else if (hit && std::abs(a.hits.t[i] - b.hits.t[i]) > 1e-3f * std::abs(b.hits.t[i]))
-      ++agreement.distance;
+    const std::uint32_t ours = a.hits.item[i], theirs = b.hits.item[i];
+    if (work.query == Query::all ? ours != theirs : (ours == kNoId) != (theirs == kNoId))
+      ++hit_or_miss;
+    else if (std::abs(a.hits.t[i] - b.hits.t[i]) > 1e-3f * std::abs(b.hits.t[i]))
+      ++agreement.distance[rival];
   }
-  return agreement;
 }
 
 }  // namespace oktett::bench

@@ -2,6 +2,7 @@
 /// \file One batch of rays through Oktett, Embree and the null tracer.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,25 +14,32 @@
 
 namespace oktett::bench {
 
+/// What is asked of each ray.
+enum class Query { closest, any, all };
+
 /// Rays to be traced and how.
 struct Workload {
   Work work = Work::primary;
   std::string name;
-  RayBatch rays;
-  bool any = false;  ///< occlusion only
+  std::shared_ptr<const RayBatch> rays;
+  Query query = Query::closest;
+  std::size_t batch = 4096;  ///< rays of one call to Oktett; Embree gets at most so many at a time
+
+  std::size_t size() const { return rays->size(); }
 };
 
-/// The primary rays of a view and the rays that leave their hits, for the works in `options`.
-std::vector<Workload> make_workloads(const Accel& accel, const View& view, const PeerOptions& options,
-                                     Isa isa);
+/// The primary rays of a view of `framed` and the rays that leave their hits, for the works in `options`.
+std::vector<Workload> make_workloads(const Accel& accel, const Box& framed, const View& view,
+                                     const PeerOptions& options, Isa isa);
 
-/// The answers of a tracer: `hits`, or `occluded` if the workload needs no more.
+/// The answers of a tracer: `occluded` if the workload needs no more, else `hits`. For Query::all, hits.item
+/// is the number of hits of a ray, hits.t the sum of their distances.
 struct Answers {
   explicit Answers(const Workload& work) {
-    if (work.any)
-      occluded.resize(work.rays.size());
+    if (work.query == Query::any)
+      occluded.resize(work.size());
     else
-      hits.resize_uninitialized(work.rays.size());
+      hits.resize_uninitialized(work.size());
   }
   HitBatch hits;
   std::vector<std::uint8_t> occluded;
@@ -49,13 +57,15 @@ struct EmbreeChoice {
   double seconds = 0;
 };
 
-/// Tries every mode on every eighth piece of the rays, then the best three on all; on one thread.
+/// Tries every mode on every eighth piece of the rays, then the best three on all; on one thread. Modes of
+/// more rays than a call of the workload has are left out.
 EmbreeChoice fastest_mode(const std::vector<const EmbreeScene*>& scenes, const Workload& work);
 
-/// "16 coherent".
+/// "16 coherent", "16 coherent, medium".
 std::string to_string(EmbreeMode mode);
+std::string to_string(const EmbreeChoice& choice);
 
-/// Counts where two tracers answered differently. Names of mesh and view are left to the caller.
-Agreement compare(const Workload& work, const Answers& a, const Answers& b);
+/// Counts where two tracers answered differently, as figures of that rival.
+void compare(const Workload& work, const Answers& a, const Answers& b, int rival, Agreement& agreement);
 
 }  // namespace oktett::bench
