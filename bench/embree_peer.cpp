@@ -211,7 +211,8 @@ const std::vector<EmbreeMode>& embree_modes() {
   return modes;
 }
 
-EmbreeScene::EmbreeScene(const PeerScene& scene, EmbreeKind kind, const std::string& config) : kind_(kind) {
+EmbreeScene::EmbreeScene(const PeerScene& scene, EmbreeKind kind, const std::string& config)
+    : kind_(kind), has_instances_(!scene.places.empty()) {
   device_ = rtcNewDevice(config.c_str());
   rtcSetDeviceMemoryMonitorFunction(device_, count_memory, nullptr);
   const std::ptrdiff_t before = allocated;

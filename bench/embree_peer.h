@@ -43,6 +43,11 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   EmbreeKind kind() const { return kind_; }
+  /// False for the mode in which Embree 3.13.5 does not come back: 16 coherent rays, asked whether they hit
+  /// anything, in a scene of instances.
+  bool comes_back(EmbreeMode mode, bool any) const {
+    return !(has_instances_ && any && mode.width == 16 && mode.coherent);
+  }
   double build_seconds() const { return build_seconds_; }
   /// Bytes that Embree allocated, its copies of vertices and indices included.
   std::size_t bytes() const { return bytes_; }
@@ -56,6 +61,7 @@ class EmbreeScene {
 
  private:
   EmbreeKind kind_;
+  bool has_instances_;
   RTCDeviceTy* device_;
   RTCSceneTy* scene_;
   double build_seconds_;

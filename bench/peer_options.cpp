@@ -57,8 +57,8 @@ PeerOptions parse_peer_options(int argc, char** argv) {
        }},
       {"--inside", "", "only inside", [&](Text) { o.inside = {true}; }},
       {"--works", "W,...",
-       "rows: build, bytes, primary, shadow, diffuse, ao, equal, picture, calls, allhits,\n"
-       "bounces; all. With instances or spheres they are rows of scenes of these",
+       "rows: build, bytes, primary, shadow, diffuse, ao, equal, picture, calls, allhits, bounces; "
+       "all. With instances or spheres, rows of scenes of these",
        [&](Text v) {
          o.works = each(v, [](Text word) { return static_cast<Work>(index_of(word, kWorks)); });
        }},

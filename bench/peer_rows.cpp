@@ -99,8 +99,8 @@ class Comparison {
     report_.rows.push_back(std::move(row));
   }
 
-  /// Builds with `variant` and with Embree in turn, and leaves the trees. Devices of Embree keep TBB from giving
-  /// out all threads, so none lives when a round begins.
+  /// Builds with `variant` and with Embree in turn, and leaves the trees. Devices of Embree keep TBB from
+  /// giving out all threads, so none lives when a round begins.
   Times race_build(const BuildVariant& variant, int threads) {
     Times times;
     for (Rounds rounds(options_.seconds, 3, options_.runs); rounds.next();) {
@@ -109,10 +109,10 @@ class Comparison {
       on_threads(threads, [&] {
         const double ours = seconds([&] { built_ = build(scene_, variant.options); });
         times.add(ours, each_rival([&](int k) {
-          const double theirs = medium(k).build_seconds();
-          if (k + 1 < kRivals) embree_.clear();
-          return theirs;
-        }));
+                    const double theirs = medium(k).build_seconds();
+                    if (k + 1 < kRivals) embree_.clear();
+                    return theirs;
+                  }));
       });
     }
     return times;
@@ -134,7 +134,8 @@ class Comparison {
     }
     if (built_.accel == nullptr) built_ = build(scene_, variant.options);
     if (!options_.wants(Work::bytes)) return;
-    Row r = row(none, options_.threads.front(), triangles ? "bytes per triangle" : "bytes per primitive", "B");
+    Row r =
+        row(none, options_.threads.front(), triangles ? "bytes per triangle" : "bytes per primitive", "B");
     const double ours = static_cast<double>(built_.bytes) / count;
     r.oktett = quartiles({ours}), r.mode = variant.name + "; medium, both with positions and indices";
     for (int k = 0; k < kRivals; ++k) {
@@ -173,8 +174,8 @@ class Comparison {
         Times& t = times[threads];
         const double a = seconds([&] { trace(*built_.accel, work, isa_, threads, ours); });
         t.add(a, each_rival([&](int k) {
-          return seconds([&] { trace(*choices[k].scene, choices[k].mode, work, threads, theirs[k]); });
-        }));
+                return seconds([&] { trace(*choices[k].scene, choices[k].mode, work, threads, theirs[k]); });
+              }));
         t.null.push_back(seconds([&] { trace_nothing(work, threads, nothing); }));
       }
     const double n = static_cast<double>(work.size()) * 1e-6;
@@ -276,7 +277,8 @@ class Comparison {
   void picture_row(const View& view, const Workload& primary, int threads) {
     const auto modes = medium_modes(primary);
     embree_.clear();
-    const PictureTask task{scene_.path, view, threads, isa_, find_variant(options_.build).options, modes, config_};
+    const PictureTask task{scene_.path, view,   threads, isa_, find_variant(options_.build).options,
+                           modes,       config_};
     Row r = row(view, threads, "time to first picture", "s");
     if (race_to_first_picture(task, options_, r)) add(r);
   }

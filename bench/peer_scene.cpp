@@ -71,7 +71,8 @@ PeerScene room_scene(const PeerScene& mesh) {
   scene.name = mesh.name + " in a room", scene.meshes = mesh.meshes;
   scene.framed = mesh.bounds();
   const Vec3f center = scene.framed.center();
-  const float half = length(scene.framed.extent());  // twice the radius; cameras stand at 2.2 radii, askew
+  // Twice the radius of the mesh. Cameras outside stand 2.2 radii from its centre, 1.8 along an axis.
+  const float half = length(scene.framed.extent());
   auto room = std::make_shared<TriangleMesh>();
   for (int corner = 0; corner < 8; ++corner) {
     const auto side = [&](int bit) { return (corner >> bit & 1) != 0 ? half : -half; };
@@ -129,7 +130,7 @@ PeerScene spheres_scene(std::size_t count) {
 
 PeerScene mixed_scene(const PeerScene& mesh, std::size_t count) {
   PeerScene scene;
-  scene.name = fmt::format("{}, {} spheres", mesh.name, count), scene.meshes = mesh.meshes;
+  scene.name = mesh.name + " + spheres", scene.meshes = mesh.meshes;
   // So small that a quarter of the rays through a cube meet one of a million.
   scene.spheres = scatter(mesh.bounds(), count, 0.03);
   return scene;
@@ -139,8 +140,8 @@ OktettScene build(const PeerScene& scene, const BuildOptions& options) {
   OktettScene built;
   std::vector<Geometry> geometries;
   const auto refer_to = [&](const PeerScene::Mesh& mesh) {
-    built.bytes += mesh->positions.size() * sizeof(mesh->positions[0]) +
-                   mesh->indices.size() * sizeof(mesh->indices[0]);
+    built.bytes +=
+        mesh->positions.size() * sizeof(mesh->positions[0]) + mesh->indices.size() * sizeof(mesh->indices[0]);
     return Geometry{MeshGeometry{mesh.get()}, {}};
   };
   for (const PeerScene::Mesh& mesh : scene.meshes) geometries.push_back(refer_to(mesh));

@@ -26,7 +26,7 @@ void print_header(const PeerOptions& options, const std::string& isa) {
       "smaller);\n"
       "+-: range between the quarter points of the ratio; robust: Embree's robust mode\n",
       embree_version(), isa, options.runs, options.seconds);
-  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6} {:>5} {:>8} {:>6} {:>8}  {:<7} {}\n", "mesh",
+  fmt::print("{:<28} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6} {:>5} {:>8} {:>6} {:>8}  {:<7} {}\n", "mesh",
              "view", "thr", "work", "Oktett", "Embree", "ratio", "+-", "robust", "ratio", "null", "unit",
              "modes");
 }
@@ -41,7 +41,7 @@ static std::string joined(std::initializer_list<std::string> texts) {
 
 void print_row(const Row& r) {
   const auto& [ordinary, robust] = r.against;
-  fmt::print("{:<22} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6.2f} {:>5.2f} {:>8} {:>6.2f} {:>8}  {:<7} {}\n",
+  fmt::print("{:<28} {:<8} {:>3} {:<22} {:>8} {:>8} {:>6.2f} {:>5.2f} {:>8} {:>6.2f} {:>8}  {:<7} {}\n",
              r.mesh, view(r.inside, r.resolution), r.threads, r.work, number(r.oktett.median),
              number(ordinary.embree.median), ordinary.ratio.median, ordinary.ratio.range(),
              number(robust.embree.median), robust.ratio.median, number(r.null.median), r.unit,
@@ -58,7 +58,7 @@ void print_agreement(const std::vector<Agreement>& agreements) {
       sum.hit_or_miss[k] += a.hit_or_miss[k], sum.distance[k] += a.distance[k];
   }
   fmt::print(
-      "{:<22} of {} rays, Oktett and Embree (robust) disagree on the number of hits for {} ({}), on t by "
+      "{:<28} of {} rays, Oktett and Embree (robust) disagree on the number of hits for {} ({}), on t by "
       "more "
       "than 1e-3 for {} ({})\n",
       agreements.front().mesh, sum.rays, sum.hit_or_miss[0], sum.hit_or_miss[1], sum.distance[0],

@@ -134,7 +134,9 @@ EmbreeChoice fastest_mode(const std::vector<const EmbreeScene*>& scenes, const W
   std::vector<EmbreeChoice> choices;
   for (const EmbreeScene* scene : scenes)
     for (const EmbreeMode mode : embree_modes())
-      if (static_cast<std::size_t>(mode.width) <= work.batch) choices.push_back({scene, mode, 0});
+      if (static_cast<std::size_t>(mode.width) <= work.batch &&
+          scene->comes_back(mode, work.query == Query::any))
+        choices.push_back({scene, mode, 0});
   for (EmbreeChoice& c : choices) c.seconds = twice([&] { sample(c); });
   std::sort(choices.begin(), choices.end(), by_time);
   choices.resize(std::min(choices.size(), kFinalists));
