@@ -10,6 +10,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <thread>
 
 namespace oktett::bench {
@@ -19,6 +20,17 @@ static double now() {
 }
 
 double seconds(const std::function<void()>& f) {
+  const double start = now();
+  f();
+  return now() - start;
+}
+
+double thread_seconds(const std::function<void()>& f) {
+  const auto now = [] {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  };
   const double start = now();
   f();
   return now() - start;

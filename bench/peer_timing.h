@@ -9,6 +9,9 @@ namespace oktett::bench {
 
 /// Wall time that `f` takes.
 double seconds(const std::function<void()>& f);
+/// Processor time that `f` takes in the calling thread: what other programs take at the same time is left
+/// out.
+double thread_seconds(const std::function<void()>& f);
 
 /// The median and the quartiles.
 struct Quartiles {

@@ -128,7 +128,7 @@ EmbreeChoice fastest_mode(const std::vector<const EmbreeScene*>& scenes, const W
   const auto all = [&](const EmbreeChoice& c) { trace(*c.scene, c.mode, work, 1, answers); };
   const auto twice = [](const std::function<void()>& f) {
     f();
-    return std::min(seconds(f), seconds(f));
+    return std::min(thread_seconds(f), thread_seconds(f));
   };
   const auto by_time = [](const EmbreeChoice& a, const EmbreeChoice& b) { return a.seconds < b.seconds; };
   std::vector<EmbreeChoice> choices;
