@@ -81,8 +81,10 @@ struct CsgExpression {
 /// How much work the builder does. The hits are the same bits for each.
 enum class BuildQuality : std::uint8_t {
   fast,      ///< the fastest to build
-  balanced,  ///< between the two
-  best,      ///< the fastest to trace: a triangle may be in several leaves; several times slower to build
+  balanced,  ///< between the two: where the halves of a scene overlap much, as in buildings, triangles are
+             ///< split
+  best,  ///< the fastest to trace: triangles are split wherever it lowers the cost; several times slower to
+         ///< build
 };
 
 /// How a structure is built. No hit depends on it.

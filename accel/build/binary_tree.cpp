@@ -24,8 +24,8 @@ constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
 
-/// A spatial split is tried if the children of the best object split overlap by more than this part of the
-/// scene's surface (Stich et al. 2009, section 4.5).
+/// A spatial split is tried only if the children of the best object split overlap by more than this part of
+/// the scene's surface (Stich et al. 2009, section 4.5).
 constexpr double kLeastOverlap = 1e-3;
 
 /// Half the surface of a box in the {-lo, hi} form, scaled.
@@ -65,9 +65,11 @@ struct Chunks {
 };
 
 Effort effort_of(BuildQuality quality) {
-  if (quality == BuildQuality::fast) return {8, 256, 32, true, 0};
-  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0};
-  return {32, 32, 32, false, 0.3};
+  if (quality == BuildQuality::fast) return {8, 256, 32, true, 0, 0, false};
+  // In scanned meshes the overlap stays below 0.3, so that they are built without spatial splits; in
+  // buildings it is greater near the root, where a split gains most.
+  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0.3, 0.4, false};
+  return {32, 32, 32, false, 0.3, 0, true};
 }
 
 class Builder {
@@ -186,7 +188,7 @@ class Builder {
     job.depth = depth;
     job.unit = unit_;
     job.effort = effort_;
-    job.pieces = effort_.spatial > 0;
+    job.pieces = pieces_;  // set before the ranges below a spatial split are built
     job.nodes = nodes;
     kernels_.sweep(job);
     cost = job.cost;
@@ -257,11 +259,13 @@ class Builder {
     const Box other = side[1].box();
     all.grow(other);
     overlap.lo = max(overlap.lo, other.lo), overlap.hi = min(overlap.hi, other.hi);
-    if (!(half_area(overlap) > least_overlap_)) return false;
+    const double area = half_area(overlap);
+    if (!(area > least_overlap_) || area < effort_.overlap * half_area(all)) return false;
     const double object_cost =
         half_area(side[0].box()) * blocks_of(count_of(object, false, grid, chunks, bins)) +
         half_area(other) * blocks_of(count_of(object, true, grid, chunks, bins));
-    const SpatialSplit s = find_spatial(r.from + r.begin, r.size(), all, triangles_, parallel_);
+    const SpatialSplit s =
+        find_spatial(r.from + r.begin, r.size(), all, triangles_, effort_.every_axis, parallel_);
     if (s.axis < 0 || !(s.cost < object_cost)) return false;
     const SpatialParts parts =
         partition_spatial(r.from + r.begin, r.size(), r.room(), s, triangles_, r.to + r.first, r.to + r.last);

@@ -119,6 +119,10 @@ struct Effort {
       every_place;  ///< of these, ranges up to this size are tried at every place, others at full blocks
   bool cells;       ///< larger ranges are split along a space-filling curve
   double spatial;   ///< references that spatial splits may add, per reference
+  /// A spatial split is tried if the children of the best object split overlap by at least this part of the
+  /// surface of their parent.
+  double overlap;
+  bool every_axis;  ///< spatial splits are tried across every axis, not only across the longest
 };
 
 /// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].

@@ -146,9 +146,11 @@ double half_area(const Box& box) {
 }
 
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
-                          const TriangleSource& triangles, bool parallel) {
+                          const TriangleSource& triangles, bool every_axis, bool parallel) {
   Slices slices[3];
-  for (int axis = 0; axis < 3; ++axis) slices[axis] = Slices(box.lo[axis], box.hi[axis]);
+  const float longest = max_component(box.extent());
+  for (int axis = 0; axis < 3; ++axis)
+    if (every_axis || box.extent()[axis] >= longest) slices[axis] = Slices(box.lo[axis], box.hi[axis]);
   std::vector<Sliced> parts((count + kChunk - 1) / kChunk);
   const auto chunk = [&](std::size_t c) {
     slice(refs + c * kChunk, std::min(kChunk, count - c * kChunk), slices, triangles, parts[c]);

@@ -20,9 +20,10 @@ struct SpatialSplit {
 /// Half the surface of a box in double, where no float overflows.
 double half_area(const Box& box);
 
-/// The plane of least surface-area cost among equidistant ones. `box` bounds refs[0, count).
+/// The plane of least surface-area cost among equidistant ones across the longest axis of `box`, which bounds
+/// refs[0, count), or across every axis.
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
-                          const TriangleSource& triangles, bool parallel);
+                          const TriangleSource& triangles, bool every_axis, bool parallel);
 
 /// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]). A triangle
 /// that crosses the plane becomes a reference on each side or, where that is cheaper, a whole one on one

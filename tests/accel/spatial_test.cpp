@@ -54,10 +54,10 @@ struct Sides {
   std::vector<PrimRef> left, right;
 };
 
-Sides split(const Soup& soup, std::size_t room, bool parallel = false) {
+Sides split(const Soup& soup, std::size_t room, bool every_axis = true, bool parallel = false) {
   const std::size_t n = soup.refs.size();
   Sides s;
-  s.split = find_spatial(soup.refs.data(), n, soup.bounds, soup, parallel);
+  s.split = find_spatial(soup.refs.data(), n, soup.bounds, soup, every_axis, parallel);
   if (s.split.axis < 0) return s;
   std::vector<PrimRef> to(room);
   const SpatialParts parts =
@@ -157,13 +157,30 @@ TEST(Spatial, OnlyWatertightTrianglesAreCut) {
 
 TEST(Spatial, SameForAnyNumberOfTasks) {
   const Soup soup = random_soup(20000, 1, {}, 7);
-  const SpatialSplit a = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, false),
-                     b = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, true);
+  const SpatialSplit a = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, true, false),
+                     b = find_spatial(soup.refs.data(), soup.refs.size(), soup.bounds, soup, true, true);
   ASSERT_GE(a.axis, 0);
   EXPECT_EQ(a.axis, b.axis);
   EXPECT_EQ(a.place, b.place);
   EXPECT_EQ(a.cost, b.cost);
   EXPECT_EQ(a.count[0], b.count[0]);
+}
+
+TEST(Spatial, OneAxisIsTheLongest) {
+  CaseRandom r(9);
+  for (int axis = 0; axis < 3; ++axis) {
+    Soup soup;
+    const auto corner = [&] {
+      Vec3f p(r.vector());
+      p[axis] *= 5;
+      return p;
+    };
+    for (int i = 0; i < 50; ++i) {
+      const Vec3f a = corner(), b = corner();
+      soup.add(a, b, corner());
+    }
+    EXPECT_EQ(split(soup, 100, false).split.axis, axis);
+  }
 }
 
 TEST(Spatial, WhatCannotBeSplitIsLeft) {

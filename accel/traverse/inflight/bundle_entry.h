@@ -1,6 +1,7 @@
 #pragma once
-/// \file Where short rays that start close together enter the tree. The nodes and leaves that a box around all of
-/// them meets replace the top of the tree, so that each ray skips the levels that tell none of them apart.
+/// \file Where short rays that start close together enter the tree. The nodes and leaves that a box around
+/// all of them meets replace the top of the tree, so that each ray skips the levels that tell none of them
+/// apart.
 
 #include "accel/traverse/inflight/inflight_ray.h"
 
@@ -11,8 +12,8 @@ inline constexpr int kBundleRays = 128;
 /// Relative error of the ends of rays and of the points at which they are hit, and a reserve.
 inline constexpr float kBundleSlack = 0x1p-20f;
 
-/// A box around the points at which rays may be hit, from their origins to their ends, with room for rounding.
-/// Empty if a number of a ray is not finite. `extent` is the greatest |coordinate| of the scene.
+/// A box around the points at which rays may be hit, from their origins to their ends, with room for
+/// rounding. Empty if a number of a ray is not finite. `extent` is the greatest |coordinate| of the scene.
 template <class A>
 OKTETT_INLINE Box reach_of(const RaySpan& rays, float extent) {
   using F = Simd<float, 8, A>;
@@ -94,7 +95,8 @@ class BundleEntry {
                 axis(2, reach.lo.z, reach.hi.z));
   }
 
-  /// Adds the children of `node` that `reach` meets, and half the surfaces of their boxes inside `reach` (0 for leaves).
+  /// Adds the children of `node` that `reach` meets, and half the surfaces of their boxes inside `reach` (0
+  /// for leaves).
   OKTETT_INLINE void append(const BvhNode& node, const Box& reach) {
     int count = 0;
     for (unsigned rest = met(node, reach); rest != 0; rest &= rest - 1, ++count) {
