@@ -27,9 +27,9 @@ struct PeerScene {
   Box bounds() const;
 };
 
-/// The triangles of a file, which may be followed by other things.
+/// The triangles of an OBJ file. Throws Error if it cannot be read.
 PeerScene file_scene(const std::string& path);
-/// A mesh in a closed room of twelve triangles, which cameras outside the mesh stand in too.
+/// A mesh in a closed room of twelve triangles. Cameras that look at the mesh from outside stand in the room.
 PeerScene room_scene(const PeerScene& mesh);
 /// A mesh in many instances of random rotation that fill a cube.
 PeerScene copies_scene(const PeerScene& mesh, std::size_t count);

@@ -8,7 +8,7 @@
 
 namespace oktett::bench {
 
-/// `works` for a batch of rays, which they share.
+/// Adds one workload.
 static void add(std::vector<Workload>& works, Work work, const std::string& name, RayBatch rays,
                 Query query = Query::closest) {
   works.push_back({work, name, std::make_shared<RayBatch>(std::move(rays)), query});
