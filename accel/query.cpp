@@ -89,11 +89,13 @@ static void require_same_size(std::size_t rays, std::size_t answers, const char*
 
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa) {
   require_same_size(rays.size, hits.size, "closest_hit");
+  if (rays.size == 1) return hits.set(0, closest_hit(accel, rays[0], isa));
   closest_hit(accel, rays, hits, isa, TraceMode::automatic);
 }
 
 void any_hit(const Accel& accel, const RaySpan& rays, std::span<std::uint8_t> occluded, Isa isa) {
   require_same_size(rays.size, occluded.size(), "any_hit");
+  if (rays.size == 1) return void(occluded[0] = any_hit(accel, rays[0], isa));
   any_hit(accel, rays, occluded.data(), isa, TraceMode::automatic);
 }
 
@@ -106,10 +108,11 @@ static RaySpan to_columns(std::span<const Ray> rays, RayBatch& columns) {
 
 void closest_hit(const Accel& accel, std::span<const Ray> rays, std::span<Hit> hits, Isa isa) {
   require_same_size(rays.size(), hits.size(), "closest_hit");
+  if (rays.size() == 1) return void(hits[0] = closest_hit(accel, rays[0], isa));
   const TraceCode& code = trace_code(isa);
   for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
-    RayBatch ray_columns;
-    HitBatch hit_columns;
+    static thread_local RayBatch ray_columns;
+    static thread_local HitBatch hit_columns;
     hit_columns.resize_uninitialized(count);
     code.closest_hit(accel, to_columns(rays.subspan(begin, count), ray_columns), {hit_columns.span()},
                      TraceMode::automatic);
@@ -119,35 +122,20 @@ void closest_hit(const Accel& accel, std::span<const Ray> rays, std::span<Hit> h
 
 void any_hit(const Accel& accel, std::span<const Ray> rays, std::span<std::uint8_t> occluded, Isa isa) {
   require_same_size(rays.size(), occluded.size(), "any_hit");
+  if (rays.size() == 1) return void(occluded[0] = any_hit(accel, rays[0], isa));
   const TraceCode& code = trace_code(isa);
   for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
-    RayBatch columns;
+    static thread_local RayBatch columns;
     code.any_hit(accel, to_columns(rays.subspan(begin, count), columns), {occluded.data() + begin},
                  TraceMode::automatic);
   });
 }
 
-/// A batch of the one ray.
-static RaySpan one_ray(const Ray& ray) {
-  return {{&ray.origin.x, &ray.origin.y, &ray.origin.z},
-          {&ray.direction.x, &ray.direction.y, &ray.direction.z},
-          &ray.tmin,
-          &ray.tmax,
-          1};
-}
-
 Hit closest_hit(const Accel& accel, const Ray& ray, Isa isa) {
-  Hit hit;
-  trace_code(isa).closest_hit(accel, one_ray(ray), {{&hit.t, &hit.u, &hit.v, &hit.item, &hit.instance, 1}},
-                              TraceMode::single);
-  return hit;
+  return trace_code(isa).closest_hit_one(accel, ray);
 }
 
-bool any_hit(const Accel& accel, const Ray& ray, Isa isa) {
-  std::uint8_t occluded = 0;
-  trace_code(isa).any_hit(accel, one_ray(ray), {&occluded}, TraceMode::single);
-  return occluded != 0;
-}
+bool any_hit(const Accel& accel, const Ray& ray, Isa isa) { return trace_code(isa).any_hit_one(accel, ray); }
 
 void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {
   hits.clear();

@@ -10,6 +10,8 @@
 namespace oktett {
 
 struct TraceCode {
+  Hit (*closest_hit_one)(const Accel&, const Ray&);
+  bool (*any_hit_one)(const Accel&, const Ray&);
   void (*closest_hit)(const Accel&, const RaySpan&, const HitSink<Query::closest>&, TraceMode);
   void (*any_hit)(const Accel&, const RaySpan&, const HitSink<Query::any>&, TraceMode);
   void (*all_hits)(const Accel&, const Ray&, HitList&);

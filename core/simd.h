@@ -85,6 +85,13 @@ struct Simd {
     for (int i = 0; i < kParts; ++i) native::load(r.part[i], p + i * kLanesPerPart);
     return r;
   }
+  /// `count` consecutive elements, 1 to W; the lanes behind them repeat the last.
+  OKTETT_INLINE static Simd load_front(const T* p, int count) {
+    Simd r;
+    for (int i = 0; i < kParts; ++i)
+      native::load_front(r.part[i], p + i * kLanesPerPart, count - i * kLanesPerPart, p[count - 1]);
+    return r;
+  }
   OKTETT_INLINE void store(T* p) const {
     for (int i = 0; i < kParts; ++i) native::store(p + i * kLanesPerPart, part[i]);
   }

@@ -193,6 +193,13 @@ template <class T, class X>
 OKTETT_INLINE void load(xsimd::batch<T, X>& r, const T* p) {
   r = xsimd::batch<T, X>::load_unaligned(p);
 }
+/// `count` elements from p on, if there are so many lanes; `rest` in the other lanes.
+template <class T, class B>
+OKTETT_INLINE void load_front(B& r, const T* p, int count, T rest) {
+  T lanes[B::size];
+  for (int i = 0; i < static_cast<int>(B::size); ++i) lanes[i] = i < count ? p[i] : rest;
+  load(r, lanes);
+}
 template <class T, class X>
 OKTETT_INLINE void store(T* p, xsimd::batch<T, X> a) {
   a.store_unaligned(p);

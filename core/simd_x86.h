@@ -113,6 +113,11 @@ OKTETT_INLINE void from_bits(batch_bool<double, Avx>& m, unsigned b) {
   m = _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(b), lane), lane));
 }
 
+OKTETT_INLINE void load_front(batch<float, Avx>& r, const float* p, int count, float rest) {
+  const __m256i present =
+      _mm256_cmpgt_epi32(_mm256_set1_epi32(count), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  r = _mm256_blendv_ps(_mm256_set1_ps(rest), _mm256_maskload_ps(p, present), _mm256_castsi256_ps(present));
+}
 OKTETT_INLINE void widen(batch<float, Sse> a, batch<double, Avx>& r) { r = _mm256_cvtps_pd(a); }
 OKTETT_INLINE batch<float, Sse> narrow(batch<double, Avx> a) { return _mm256_cvtpd_ps(a); }
 OKTETT_INLINE void widen(batch<float, Avx> a, batch<double, Avx>& lo, batch<double, Avx>& hi) {
@@ -162,6 +167,9 @@ OKTETT_INLINE void from_bits(batch_bool<float, Avx5>& m, unsigned b) { m = stati
 OKTETT_INLINE void from_bits(batch_bool<double, Avx5>& m, unsigned b) { m = static_cast<__mmask8>(b); }
 OKTETT_INLINE void from_bits(batch_bool<std::int32_t, Avx5>& m, unsigned b) { m = static_cast<__mmask16>(b); }
 
+OKTETT_INLINE void load_front(batch<float, Avx5>& r, const float* p, int count, float rest) {
+  r = _mm512_mask_loadu_ps(_mm512_set1_ps(rest), static_cast<__mmask16>((1u << count) - 1), p);
+}
 OKTETT_INLINE void widen(batch<float, Avx> a, batch<double, Avx5>& r) { r = _mm512_cvtps_pd(a); }
 OKTETT_INLINE batch<float, Avx> narrow(batch<double, Avx5> a) { return _mm512_cvtpd_ps(a); }
 OKTETT_INLINE void widen(batch<float, Avx5> a, batch<double, Avx5>& lo, batch<double, Avx5>& hi) {

@@ -8,6 +8,7 @@
 #include "accel/isa/trace_query.h"
 #include "accel/traverse/beam/traverse_beam.h"
 #include "accel/traverse/inflight/interleaved.h"
+#include "accel/traverse/inflight/solo.h"
 
 namespace oktett {
 
@@ -28,14 +29,18 @@ OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, unsigned la
   return (lanes & ~bits((F(0.0f) < along) & (F(0.8f) * square <= along * along))) == 0;
 }
 
+template <Query Q, class A>
+OKTETT_NOINLINE Hit trace_one(const Accel& accel, const Ray& ray) {
+  if constexpr (std::is_same_v<A, ScalarIsa>)
+    return trace_exact<Q, A>(accel, ray);
+  else
+    return SoloTraversal<Q, A>(accel, ray).run();
+}
+
 /// All rays, one after the other.
 template <Query Q, class A>
 void trace_each(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    RayState<1, A> state;
-    if (state.set(rays[i], accel.bounds) != 0) trace_single<Q>(accel, state);
-    out.set(i, state.hit(0));
-  }
+  for (std::size_t i = 0; i < rays.size; ++i) out.set(i, trace_one<Q, A>(accel, rays[i]));
 }
 
 /// All rays in packets of W. With `coherent_only`, packets whose rays are not coherent go interleaved
@@ -91,6 +96,11 @@ int max_beam_steps(const Accel& accel) {
   return Q == Query::any ? 256 : 384;
 }
 
+/// Batches of fewer rays are no beams: what a beam costs before its first node is more than it saves.
+inline constexpr std::size_t kLeastBeamRays = 64;
+/// Of so few rays each is traced alone.
+inline constexpr std::size_t kAloneRays = 4;
+
 /// Rays that share a point in beams, other coherent ones in packets, the rest interleaved. When a beam is
 /// given up, its rays go interleaved; when several in a row are, so do the next ones without a trial: one
 /// beam after the second, three after the third, then seven. With `insist` no beam is given up.
@@ -138,6 +148,8 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
   } else {
     switch (mode) {
       case TraceMode::automatic:
+        if (rays.size <= kAloneRays) return trace_each<Q, A>(accel, rays, out);
+        if (rays.size < kLeastBeamRays) return trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
         return trace_automatic<Q, A>(accel, rays, out, false);
       case TraceMode::beam:
         return trace_automatic<Q, A>(accel, rays, out, true);

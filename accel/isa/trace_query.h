@@ -12,6 +12,10 @@ namespace oktett {
 template <Query Q, class A>
 void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode);
 
+/// The same for one ray. For Query::any only the hit's validity counts.
+template <Query Q, class A>
+Hit trace_one(const Accel& accel, const Ray& ray);
+
 /// Appends every hit of one ray to `hits`, in no order.
 template <class A>
 void trace_all_hits(const Accel& accel, const Ray& ray, HitList& hits);

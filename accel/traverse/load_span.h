@@ -17,9 +17,7 @@ OKTETT_INLINE RayLanes<F> load_span(const RaySpan& rays, std::size_t b) {
             F::load(rays.tmax + b)};
   }
   const auto load_tail = [&](const float* column) {
-    float tail[W];
-    for (int i = 0; i < W; ++i) tail[i] = column[b + i < rays.size ? b + i : rays.size - 1];
-    return F::load(tail);
+    return F::load_front(column + b, static_cast<int>(rays.size - b));
   };
   return {{load_tail(rays.origin[0]), load_tail(rays.origin[1]), load_tail(rays.origin[2])},
           {load_tail(rays.direction[0]), load_tail(rays.direction[1]), load_tail(rays.direction[2])},

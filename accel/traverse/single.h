@@ -17,6 +17,10 @@ struct IgnoreSteps {
   void instance() const {}      ///< an instance is entered
 };
 
+/// What a ray meets, see accel/traverse/inflight/solo.h.
+template <Query Q, class A>
+Hit trace_one(const Accel& accel, const Ray& ray);
+
 /// A node or leaf that a ray has yet to visit, and the distance at which the ray enters its box.
 struct StackEntry {
   NodeRef ref;
@@ -37,13 +41,20 @@ OKTETT_NOINLINE void instance_single(const Instance& instance, const Accel& inne
   const auto outer = load_rays(r);
   Vec3<Simd<float, 1, A>> o, d;
   transform_rays(instance, outer, o, d);
-  RayState<1, A> child;
   steps.instance();
+  const auto accept = [&](const Hit& h) {
+    if (h.valid()) accept_hit(r, 0, h.t, h.u, h.v, h.item, outer_path(instance, h.instance));
+  };
+  if constexpr (!std::is_same_v<A, ScalarIsa>) {
+    const auto point = [](const Vec3<Simd<float, 1, A>>& v) {
+      return Vec3f{v.x.part[0].v, v.y.part[0].v, v.z.part[0].v};
+    };
+    return accept(trace_one<Q, A>(inner, {point(o), r.tmin[0], point(d), r.tmax[0]}));
+  }
+  RayState<1, A> child;
   if (child.set(o, d, outer.tmin, outer.tmax, inner.bounds) == 0) return;
   trace_single<Q>(inner, child, steps);
-  if (child.item[0] != kNoId)
-    accept_hit(r, 0, child.tmax[0], child.u[0], child.v[0], child.item[0],
-               outer_path(instance, child.path[0]));
+  accept(child.hit(0));
 }
 
 /// One ray against a leaf of the table.
@@ -129,6 +140,14 @@ void trace_single(const Accel& accel, RayState<1, A>& r, Steps steps) {
   for (const LeafEntry& leaf : accel.unbounded) table_leaf_single<Q>(accel, leaf, r, steps);
   if (Q == Query::any && r.item[0] != kNoId) return;
   traverse_single<Q>(accel, r, accel.root, steps);
+}
+
+/// What a ray meets, by exact tests alone.
+template <Query Q, class A>
+OKTETT_NOINLINE Hit trace_exact(const Accel& accel, const Ray& ray) {
+  RayState<1, A> r;
+  if (r.set(ray, accel.bounds) != 0) trace_single<Q>(accel, r);
+  return r.hit(0);
 }
 
 }  // namespace oktett

@@ -22,7 +22,8 @@ bool same_bits(const Hit& a, const Hit& b) {
          std::memcmp(&a.v, &b.v, sizeof a.v) == 0 && a.item == b.item && a.instance == b.instance;
 }
 
-/// Interleaved rays of every instruction set find what single rays of the scalar code find.
+/// Interleaved rays of every instruction set, and single rays of those with vectors, find what single rays of
+/// the scalar code find.
 int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
   const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
   HitBatch expected, hits;
@@ -30,7 +31,7 @@ int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
   std::vector<std::uint8_t> occluded(rays.size());
   closest_hit(*accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
   for (const Isa isa : available_isas())
-    for (const TraceMode mode : {TraceMode::interleaved, TraceMode::automatic}) {
+    for (const TraceMode mode : {TraceMode::interleaved, TraceMode::single, TraceMode::automatic}) {
       closest_hit(*accel, rays.span(), hits.span(), isa, mode);
       any_hit(*accel, rays.span(), occluded.data(), isa, mode);
       for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace oktett {
 namespace {
@@ -54,6 +56,17 @@ TYPED_TEST(SimdTest, ArithmeticIsLaneByLane) {
     EXPECT_EQ(TestFixture::lane(-a, i), -x);
     EXPECT_EQ(TestFixture::lane(abs(b), i), std::abs(y));
     EXPECT_EQ(TestFixture::lane(sqrt(a), i), std::sqrt(x));
+  }
+}
+
+TYPED_TEST(SimdTest, LoadFrontRepeatsTheLastElement) {
+  constexpr int width = TestFixture::kWidth;
+  for (int count = 1; count <= width; ++count) {
+    std::vector<float> values;
+    for (int i = 0; i < count; ++i) values.push_back(2.0f * static_cast<float>(i) + 3);
+    const auto front = TestFixture::Floats::load_front(values.data(), count);
+    for (int i = 0; i < width; ++i)
+      EXPECT_EQ(TestFixture::lane(front, i), values[static_cast<std::size_t>(std::min(i, count - 1))]);
   }
 }
 

@@ -17,6 +17,34 @@ inline constexpr float kChunkMinComponent = 0x1p-40f;
 /// Relative error of o * (1/d), of its sum with the error, and a reserve.
 inline constexpr float kChunkShiftError = 0x1p-21f;
 
+/// What the distances to planes take, along one axis of each lane: plane * inverse + near_shift for a near
+/// plane, plane * inverse + far_shift for a far one.
+template <class F>
+struct SlabLines {
+  F inverse, near_shift, far_shift;
+};
+
+template <class F>
+OKTETT_INLINE F chunk_slack(const F& reach) {
+  return fast_fma(reach, F(2 * kSlabAbsoluteSlack), F(2 * kSlabUnderflow));
+}
+
+/// `reach` is the distance in t to the far end of the scene, `least` the component that replaces smaller
+/// ones.
+template <class F>
+OKTETT_INLINE SlabLines<F> slab_lines(const F& origin, const F& direction, const F& reach, const F& least,
+                                      float extent) {
+  const auto tiny = abs(direction) < least;
+  const F inverse = F(1.0f) / select(tiny, flip_sign(least, direction + F(0.0f)), direction);
+  const F shift = origin * inverse;
+  // Without a fused operation, the product with the plane rounds too.
+  const F size =
+      kHasFma<typename F::Isa> && F::kWidth > 1 ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
+  // Replacing a tiny component turns the ray; it strays no farther than twice the way of the new component.
+  const F error = fast_fma(size, F(kChunkShiftError), select(tiny, F(4.0f) * reach, F(0.0f)));
+  return {inverse, -(shift + error), (error + chunk_slack(reach)) - shift};
+}
+
 /// W rays in columns. A box is met if
 ///     max(near plane * inv + near_shift, tmin) <= min(far plane * inv + far_shift, tmax + slack)
 ///                                                 * kSlabRelativeSlack
@@ -56,26 +84,16 @@ struct alignas(64) RayChunk {
     set_axis(2, r.o.z, dir.z, reach, least, extent);
     dm.store(d_max);
     // Adding zero turns -0 into 0, because near distances are sorted by their bits.
-    (r.tmin + zero).store(tmin), r.tmax.store(tmax), slack_of(reach).store(slack);
+    (r.tmin + zero).store(tmin), r.tmax.store(tmax), chunk_slack(reach).store(slack);
   }
 
  private:
-  OKTETT_INLINE static F slack_of(const F& reach) {
-    return fast_fma(reach, F(2 * kSlabAbsoluteSlack), F(2 * kSlabUnderflow));
-  }
   OKTETT_INLINE void set_axis(int k, const F& origin, const F& direction, const F& reach, const F& least,
                               float extent) {
-    const auto tiny = abs(direction) < least;
-    const F inverse = F(1.0f) / select(tiny, flip_sign(least, direction + F(0.0f)), direction);
-    const F shift = origin * inverse;
-    // Without a fused operation, the product with the plane rounds too.
-    const F size = kHasFma<A> && W > 1 ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
-    // Replacing a tiny component turns the ray; it strays no farther than twice the way of the new component.
-    const F error = fast_fma(size, F(kChunkShiftError), select(tiny, F(4.0f) * reach, F(0.0f)));
-    origin.store(o[k]), direction.store(d[k]), inverse.store(inv[k]);
-    (-(shift + error)).store(near_shift[k]);
-    ((error + slack_of(reach)) - shift).store(far_shift[k]);
-    negative[k] = bits(inverse < F(0.0f));
+    const SlabLines<F> line = slab_lines(origin, direction, reach, least, extent);
+    origin.store(o[k]), direction.store(d[k]), line.inverse.store(inv[k]);
+    line.near_shift.store(near_shift[k]), line.far_shift.store(far_shift[k]);
+    negative[k] = bits(line.inverse < F(0.0f));
   }
 };
 

@@ -1,0 +1,26 @@
+#pragma once
+/// \file Prefetching what a ray visits next.
+
+#include "accel/accel_data.h"
+
+namespace oktett {
+
+/// Where the nodes and the blocks of triangles of a structure begin, as bytes.
+struct TreeBytes {
+  const char* of[2];
+  explicit TreeBytes(const Accel& accel)
+      : of{reinterpret_cast<const char*>(accel.nodes.data()),
+           reinterpret_cast<const char*>(accel.blocks.data())} {}
+
+  /// Prefetches a node or a block. For any other leaf the address means nothing.
+  OKTETT_INLINE void prefetch(NodeRef ref) const {
+    const std::uint32_t is_leaf = ref.bits() >> 31;
+    const std::size_t index = ref.block();
+    const char* at = of[is_leaf] + index * sizeof(BvhNode) +
+                     (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(BvhNode));
+    for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
+      __builtin_prefetch(at + (line < sizeof(BvhNode) ? line : is_leaf * line));
+  }
+};
+
+}  // namespace oktett
