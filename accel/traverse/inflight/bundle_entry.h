@@ -8,7 +8,7 @@
 namespace oktett {
 
 /// Rays that share an entry: neighbours in their batch.
-inline constexpr int kBundleRays = 128;
+inline constexpr int kBundleRays = 256;
 /// Relative error of the ends of rays and of the points at which they are hit, and a reserve.
 inline constexpr float kBundleSlack = 0x1p-20f;
 
@@ -43,24 +43,21 @@ OKTETT_INLINE Box reach_of(const RaySpan& rays, float extent) {
   return {box.lo - Vec3f(slack), box.hi + Vec3f(slack)};
 }
 
-/// Up to kNodes nodes, made for one bundle, whose children are all that its rays can meet in the tree.
+/// A node made for one bundle: its children are all that the rays of the bundle can meet in the tree.
 template <class A>
 class BundleEntry {
  public:
-  static constexpr int kNodes = 2;
-
   /// Collects what `reach` meets, from the root downwards, as long as there is room; `accel.root` is a node.
   void set(const Accel& accel, const Box& reach) {
     size_ = 0;
     append(accel.nodes[accel.root.node_index()], reach);
-    for (;;) {
+    while (size_ > 0) {
       int widest = 0;
       for (int i = 1; i < size_; ++i)
         if (area_[i] > area_[widest]) widest = i;
-      if (size_ == 0 || !(area_[widest] > 0)) break;
+      if (!(area_[widest] > 0)) break;
       const BvhNode& node = accel.nodes[child_[widest].node_index()];
-      const int count = __builtin_popcount(met(node, reach));
-      if (size_ - 1 + count > kCapacity) {
+      if (size_ - 1 + __builtin_popcount(met(node, reach)) > BvhNode::kWidth) {
         area_[widest] = 0;
         continue;
       }
@@ -69,22 +66,17 @@ class BundleEntry {
       child_[widest] = child_[size_], area_[widest] = area_[size_];
       append(node, reach);
     }
-    for (int n = 0; n < kNodes; ++n)
-      for (int i = 0; i < BvhNode::kWidth; ++i) {
-        const int from = n * BvhNode::kWidth + i;
-        const float inf = std::numeric_limits<float>::infinity();
-        for (int k = 0; k < 6; ++k)
-          nodes_[n].plane[k][i] = from < size_ ? plane_[k][from] : k % 2 == 0 ? inf : -inf;
-        nodes_[n].child[i] = from < size_ ? child_[from] : NodeRef::none();
-      }
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < BvhNode::kWidth; ++i) {
+      for (int k = 0; k < 6; ++k) node_.plane[k][i] = i < size_ ? plane_[k][i] : k % 2 == 0 ? kInf : -kInf;
+      node_.child[i] = i < size_ ? child_[i] : NodeRef::none();
+    }
   }
 
-  const BvhNode* begin() const { return nodes_; }
-  const BvhNode* end() const { return nodes_ + (size_ + BvhNode::kWidth - 1) / BvhNode::kWidth; }
+  const BvhNode& node() const { return node_; }
 
  private:
   using F = Simd<float, BvhNode::kWidth, A>;
-  static constexpr int kCapacity = kNodes * BvhNode::kWidth;
 
   /// The children of `node` that `reach` meets, as bits.
   static OKTETT_INLINE unsigned met(const BvhNode& node, const Box& reach) {
@@ -117,9 +109,9 @@ class BundleEntry {
 
   int size_ = 0;
   /// Columns; append() writes eight elements at a time, those behind size_ have no meaning.
-  float plane_[6][kCapacity + BvhNode::kWidth], area_[kCapacity + BvhNode::kWidth];
-  NodeRef child_[kCapacity + BvhNode::kWidth];
-  BvhNode nodes_[kNodes];
+  float plane_[6][2 * BvhNode::kWidth], area_[2 * BvhNode::kWidth];
+  NodeRef child_[2 * BvhNode::kWidth];
+  BvhNode node_;
 };
 
 }  // namespace oktett

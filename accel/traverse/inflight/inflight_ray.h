@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
 /// One ray in flight and its stack. The first 64 bytes are what a node needs. The size is an odd number of
 /// cache lines, so that the rays do not fall into the same sets of the cache.
 struct alignas(64) InflightRay {
-  static constexpr int kCapacity = (kStackSize + 3 * BvhNode::kWidth + 15) / 16 * 16;
+  static constexpr int kCapacity = (kStackSize + 2 * BvhNode::kWidth + 15) / 16 * 16;
   float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
   float tmin, limit;                          ///< limit = tmax + slack
   std::uint32_t near_row[3];                  ///< offset in a node's planes of the near ones, per axis

@@ -17,7 +17,7 @@ namespace oktett {
 
 /// Rays in flight, and the number of rays that must wait at leaves before leaves are visited while other rays
 /// are at nodes.
-inline constexpr int kInflightRays = 32;
+inline constexpr int kInflightRays = 48;
 inline constexpr int kLeafThreshold = 8;
 
 /// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
@@ -296,20 +296,15 @@ class InterleavedTraversal {
     has_entry_ = true;
   }
 
-  /// The first step of a ray, from the entry of its bundle.
-  OKTETT_INLINE void enter(InflightRay& ray) const {
-    ray.size = 1;
-    for (const BvhNode& node : entry_) {
-      Simd<float, BvhNode::kWidth, A> near;
-      const unsigned met = node_inflight<A>(ray, node, near);
-      ray.size += store_compact<A>(met, node.child_bits(), ray.ref + ray.size);
-    }
-  }
-
   OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
     start_ray(ray, chunk_, i, accel_.root);
-    if constexpr (Q == Query::any)
-      if (has_entry_) enter(ray);
+    if constexpr (Q == Query::any) {
+      if (has_entry_) {
+        ray.size = 1;
+        step_node<Q, A>(ray, entry_.node());
+        ++ray.size;  // what the step has popped is popped below
+      }
+    }
     ray.index = static_cast<std::uint32_t>(next_);
     if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
       RayState<1, A>& r = exact_state(ray);
