@@ -23,7 +23,7 @@ include(cmake/public_headers.cmake)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
-  PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt ZLIB::ZLIB ${CMAKE_DL_LIBS})
+  PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt PNG::PNG OpenEXR::OpenEXR ${CMAKE_DL_LIBS})
 
 # Holds a copy of the scalar traversal: compiled as that is. GCC 12 warns of lanes that a mask leaves out.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp

@@ -26,34 +26,31 @@ std::array<const PicturePlane*, 3> color_planes(const Picture& picture) {
 /// Coverage in [0, 1]; NaN and infinities count as none.
 float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 0; }
 
-}  // namespace
-
-std::uint32_t stored_channels(const Picture& picture, PixelLayout layout) {
-  return layout == PixelLayout::srgb8_alpha && picture.find("A") != nullptr ? 4 : 3;
-}
-
-void encode_srgb8(const Picture& picture, std::uint32_t channels, std::size_t first, std::size_t count,
-                  std::uint8_t* out) {
+FlatImage flatten_to_srgb8(const Picture& picture, std::uint32_t channels) {
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const PicturePlane* alpha = channels == 4 ? &color_plane(picture, "A") : nullptr;
-  for (std::size_t i = first; i < first + count; ++i) {
+  const std::size_t pixels = std::size_t{picture.width} * picture.height;
+  FlatImage image{picture.width, picture.height, channels, std::vector<std::uint8_t>(pixels * channels), {}};
+  std::uint8_t* out = image.bytes.data();
+  for (std::size_t i = 0; i < pixels; ++i) {
     const float a = alpha != nullptr ? clamped_alpha(alpha->values[i]) : 1;
     // Without coverage there is no colour to recover; what light there is (a glow) is kept as it is.
     const float divisor = a > 0 ? a : 1;
     for (const PicturePlane* plane : planes) *out++ = linear_to_srgb8(plane->values[i] / divisor);
     if (alpha != nullptr) *out++ = static_cast<std::uint8_t>(a * 255 + 0.5f);
   }
+  return image;
 }
 
+}  // namespace
+
 FlatImage flatten(const Picture& picture, PixelLayout layout) {
-  FlatImage image{picture.width, picture.height, stored_channels(picture, layout), {}, {}};
-  const std::size_t pixels = std::size_t{picture.width} * picture.height;
-  if (layout != PixelLayout::float_rgb) {
-    image.bytes.resize(pixels * image.channels);
-    encode_srgb8(picture, image.channels, 0, pixels, image.bytes.data());
-    return image;
-  }
+  if (layout != PixelLayout::float_rgb)
+    return flatten_to_srgb8(picture,
+                            layout == PixelLayout::srgb8_alpha && picture.find("A") != nullptr ? 4 : 3);
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
+  const std::size_t pixels = std::size_t{picture.width} * picture.height;
+  FlatImage image{picture.width, picture.height, 3, {}, {}};
   image.floats.reserve(pixels * 3);
   for (std::size_t i = 0; i < pixels; ++i)
     for (const PicturePlane* plane : planes)

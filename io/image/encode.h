@@ -22,15 +22,8 @@ struct FlatImage {
   std::vector<float> floats;        ///< of PixelLayout::float_rgb
 };
 
-/// 4 if pixels are stored with A: if there is room for it and `picture` has it. Else 3.
-std::uint32_t stored_channels(const Picture& picture, PixelLayout layout);
-
-/// Pixels [first, first + count) of `picture`, counted from the upper left row by row, as 8-bit sRGB of
-/// `channels` channels each. Colours are divided by A if that is stored. Throws Error if a plane is missing.
-void encode_srgb8(const Picture& picture, std::uint32_t channels, std::size_t first, std::size_t count,
-                  std::uint8_t* out);
-
-/// All pixels of `picture`. Numbers that are not finite become 0. Throws Error if a plane is missing.
+/// All pixels of `picture`, with A if `layout` has room for it and `picture` has it. Colours are divided by
+/// an A that is stored. Numbers that are not finite become 0. Throws Error if a plane is missing.
 FlatImage flatten(const Picture& picture, PixelLayout layout);
 
 /// One fact of ImageMetadata under the name that it has in files.

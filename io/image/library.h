@@ -23,8 +23,8 @@ namespace oktett {
 /// All members may be called by many threads at once; they throw Error of kind io for what files are not.
 class ImageLibrary {
  public:
-  /// Of files with `path`'s extension; nothing if no such file can be written. Formats that Oktett writes
-  /// itself are not asked for.
+  /// Of files with `path`'s extension; nothing if no such file can be written. The formats of
+  /// io/image/writers.h are not asked for.
   virtual std::optional<PixelLayout> layout(const std::string& path) const = 0;
   /// Writes to the file `temporary`, which has `path`'s extension; errors are reported as those of `path`.
   virtual void write(const std::string& path, const std::string& temporary, const FlatImage& image,

@@ -1,10 +1,8 @@
 #include "io/image/output.h"
 
 #include <fcntl.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
@@ -17,8 +15,6 @@ namespace oktett {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr std::size_t kBlocksAtOnce = 64;
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) {
   throw Error(Location{path}, message, ErrorKind::io);
@@ -77,33 +73,14 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) unlink(temporary_.c_str());
 }
 
-void OutputFile::overwrite(std::uint64_t place, std::string_view bytes) {
+void OutputFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    const ssize_t written = pwrite(file_, bytes.data(), bytes.size(), static_cast<off_t>(place_));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(path_, "cannot write: " + reason(errno));
-    place += static_cast<std::uint64_t>(written);
+    place_ += static_cast<std::uint64_t>(written);
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-}
-
-std::uint64_t OutputFile::append(std::string_view bytes) {
-  const std::uint64_t place = size_;
-  overwrite(place, bytes);
-  size_ += bytes.size();
-  return place;
-}
-
-std::vector<std::uint64_t> OutputFile::append_blocks(std::size_t count,
-                                                     const std::function<std::string(std::size_t)>& make) {
-  std::vector<std::uint64_t> places;
-  std::vector<std::string> blocks(std::min(count, kBlocksAtOnce));
-  for (std::size_t first = 0; first < count; first += kBlocksAtOnce) {
-    blocks.resize(std::min(count - first, kBlocksAtOnce));
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) { blocks[i] = make(first + i); });
-    for (const std::string& block : blocks) places.push_back(append(block));
-  }
-  return places;
 }
 
 void OutputFile::commit() {

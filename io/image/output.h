@@ -3,10 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace oktett {
 
@@ -21,15 +19,11 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::string& temporary() const { return temporary_; }
-  /// Writes `bytes` behind what this object wrote before, and returns the place in the file at which they
-  /// start. Throws Error of kind io.
-  std::uint64_t append(std::string_view bytes);
-  /// Appends make(0), make(1), ... make(count - 1), which any number of threads make at a time, and returns
-  /// their places. Throws what `make` throws, and Error of kind io.
-  std::vector<std::uint64_t> append_blocks(std::size_t count,
-                                           const std::function<std::string(std::size_t)>& make);
-  /// Writes `bytes` at a place where something was appended. Throws Error of kind io.
-  void overwrite(std::uint64_t place, std::string_view bytes);
+  /// Writes `bytes` at place() and moves it behind them. Throws Error of kind io.
+  void write(std::string_view bytes);
+  /// Where the next byte is written, counted from the start of the file.
+  std::uint64_t place() const { return place_; }
+  void seek(std::uint64_t place) { place_ = place; }
   /// Flushes the temporary to the disk and renames it to the path. Throws Error of kind io.
   void commit();
 
@@ -37,8 +31,8 @@ class OutputFile {
   std::string path_;    ///< as the user gave it
   std::string target_;  ///< where symbolic links lead
   std::string temporary_;
-  int file_ = -1;           ///< the temporary, open for writing
-  std::uint64_t size_ = 0;  ///< of what was appended
+  int file_ = -1;  ///< the temporary, open for writing
+  std::uint64_t place_ = 0;
 };
 
 }  // namespace oktett

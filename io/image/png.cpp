@@ -1,140 +1,93 @@
-#include <zlib.h>
+#include <png.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <limits>
+#include <csetjmp>
+#include <exception>
 #include <new>
 #include <string>
 
+#include "core/error.h"
 #include "io/image/writers.h"
 
 namespace oktett {
 namespace {
 
-constexpr std::size_t kStripBytes = std::size_t{1} << 18;
-constexpr int kLevel = 6;
+/// zlib's Z_DEFAULT_STRATEGY makes files a tenth smaller than what libpng chooses, in the same time.
+constexpr int kStrategy = 0;
 
-const Bytef* bytes_of(const std::string& data) { return reinterpret_cast<const Bytef*>(data.data()); }
-
-std::string big_endian(std::uint32_t number) {
-  return {static_cast<char>(number >> 24), static_cast<char>(number >> 16), static_cast<char>(number >> 8),
-          static_cast<char>(number)};
-}
-
-std::string chunk(const char* type, const std::string& data) {
-  const std::string body = type + data;
-  const uLong check = crc32_z(0, bytes_of(body), body.size());
-  return big_endian(static_cast<std::uint32_t>(data.size())) + body +
-         big_endian(static_cast<std::uint32_t>(check));
-}
-
-/// The neighbour among left, above and above left that is nearest to left + above - above left.
-int paeth(int left, int above, int corner) {
-  const int to_left = std::abs(above - corner), to_above = std::abs(left - corner);
-  const int to_corner = std::abs(left + above - 2 * corner);
-  if (to_left <= to_above && to_left <= to_corner) return left;
-  return to_above <= to_corner ? above : corner;
-}
-
-/// Filter 0 to 4 of the specification: what `filter` expects at byte i is taken from each byte of `row`.
-/// Bytes before the row are 0. Returns the sum of the magnitudes of the differences.
-template <int filter>
-std::size_t difference(const std::uint8_t* row, const std::uint8_t* above, std::size_t bytes,
-                       std::size_t channels, std::uint8_t* out) {
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < bytes; ++i) {
-    const int a = i < channels ? 0 : row[i - channels], b = above[i],
-              c = i < channels ? 0 : above[i - channels];
-    const int expected[] = {0, a, b, (a + b) / 2, filter == 4 ? paeth(a, b, c) : 0};
-    out[i] = static_cast<std::uint8_t>(row[i] - expected[filter]);
-    sum += static_cast<std::size_t>(std::abs(static_cast<std::int8_t>(out[i])));
-  }
-  return sum;
-}
-constexpr decltype(&difference<0>) kFilters[] = {difference<0>, difference<1>, difference<2>, difference<3>,
-                                                 difference<4>};
-
-/// Rows [first, last) of the picture, each behind the number of the filter that leaves the smallest bytes.
-std::string filtered_rows(const Picture& picture, std::uint32_t channels, std::size_t first,
-                          std::size_t last) {
-  const std::size_t bytes = std::size_t{picture.width} * channels;
-  std::vector<std::uint8_t> above(bytes), row(bytes), candidate(bytes), best(bytes);
-  if (first > 0) encode_srgb8(picture, channels, (first - 1) * picture.width, picture.width, above.data());
-  std::string rows;
-  for (std::size_t y = first; y < last; ++y) {
-    encode_srgb8(picture, channels, y * picture.width, picture.width, row.data());
-    std::size_t least = std::numeric_limits<std::size_t>::max();
-    char chosen = 0;
-    for (char filter = 0; filter < 5; ++filter) {
-      const std::size_t sum = kFilters[static_cast<std::size_t>(filter)](row.data(), above.data(), bytes,
-                                                                         channels, candidate.data());
-      if (sum >= least) continue;
-      least = sum, chosen = filter;
-      best.swap(candidate);
+/// libpng's state. It is C: instead of throwing, an error is kept here and libpng jumps back to `write`.
+class PngWriter {
+ public:
+  explicit PngWriter(OutputFile& file) : file_(file) {
+    png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, keep_error, [](png_structp, const char*) {});
+    if (png_ != nullptr) info_ = png_create_info_struct(png_);
+    if (info_ == nullptr) {
+      png_destroy_write_struct(&png_, nullptr);
+      throw std::bad_alloc();
     }
-    rows += chosen;
-    rows.append(reinterpret_cast<const char*>(best.data()), bytes);
-    row.swap(above);
+    png_set_write_fn(png_, this, write_bytes, [](png_structp) {});
   }
-  return rows;
-}
+  ~PngWriter() { png_destroy_write_struct(&png_, &info_); }
+  PngWriter(const PngWriter&) = delete;
+  PngWriter& operator=(const PngWriter&) = delete;
 
-/// A piece of a deflate stream that does not refer to the pieces before it and ends with a whole byte.
-std::string deflate_piece(const std::string& data, bool is_last) {
-  z_stream stream{};
-  if (deflateInit2(&stream, kLevel, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-  // A flush adds an empty block, of at most six bytes, to what the bound counts.
-  std::string packed(deflateBound(&stream, data.size()) + 6, '\0');
-  stream.next_in = const_cast<Bytef*>(bytes_of(data));
-  stream.avail_in = static_cast<uInt>(data.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  deflate(&stream, is_last ? Z_FINISH : Z_SYNC_FLUSH);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
-}
+  void write(const FlatImage& image, const std::vector<png_text>& texts) {
+    if (!try_to_write(image, texts)) std::rethrow_exception(failure_);
+  }
+
+ private:
+  /// False after an error. The jump leaves no object of this function or of libpng's callbacks behind.
+  bool try_to_write(const FlatImage& image, const std::vector<png_text>& texts) {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_compression_strategy(png_, kStrategy);
+    png_set_IHDR(png_, info_, image.width, image.height, 8,
+                 image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
+    png_set_text(png_, info_, texts.data(), static_cast<int>(texts.size()));
+    png_write_info(png_, info_);
+    for (std::size_t row = 0; row < image.height; ++row)
+      png_write_row(png_, &image.bytes[row * image.width * image.channels]);
+    png_write_end(png_, nullptr);
+    return true;
+  }
+
+  static void write_bytes(png_structp png, png_bytep bytes, std::size_t count) {
+    auto& self = *static_cast<PngWriter*>(png_get_io_ptr(png));
+    try {
+      self.file_.write({reinterpret_cast<const char*>(bytes), count});
+      return;
+    } catch (...) {
+      self.failure_ = std::current_exception();
+    }
+    png_longjmp(png, 1);
+  }
+
+  static void keep_error(png_structp png, const char* message) {
+    auto& failure = static_cast<PngWriter*>(png_get_error_ptr(png))->failure_;
+    failure = std::make_exception_ptr(Error(std::string("cannot write the PNG: ") + message, ErrorKind::io));
+    png_longjmp(png, 1);
+  }
+
+  OutputFile& file_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  std::exception_ptr failure_;
+};
 
 }  // namespace
 
 void write_png(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes) {
-  const std::uint32_t channels = stored_channels(picture, PixelLayout::srgb8_alpha);
-  const char rgb = 2, rgba = 6;
-  file.append("\x89PNG\r\n\x1a\n");
-  file.append(chunk("IHDR", big_endian(picture.width) + big_endian(picture.height) +
-                                std::string{8, channels == 4 ? rgba : rgb, 0, 0, 0}));
-  // sRGB, for readers that know only the older chunks too; the numbers are those of the specification.
-  file.append(chunk("gAMA", big_endian(45455)));
-  file.append(chunk("sRGB", std::string(1, 3)));
-  std::string primaries;
-  for (const std::uint32_t xy : {31270u, 32900u, 64000u, 33000u, 30000u, 60000u, 15000u, 6000u})
-    primaries += big_endian(xy);
-  file.append(chunk("cHRM", primaries));
+  std::vector<png_text> texts;
   for (const Attribute& attribute : attributes)
-    if (const auto* text = std::get_if<std::string>(&attribute.value))
-      file.append(chunk("tEXt", attribute.name + '\0' + *text));
-
-  // Strips of rows are converted and compressed by all threads. Together they are one zlib stream.
-  const std::size_t row_bytes = 1 + std::size_t{picture.width} * channels;
-  const std::size_t strip_rows = std::max<std::size_t>(1, kStripBytes / row_bytes);
-  const std::size_t strips = (picture.height + strip_rows - 1) / strip_rows;
-  std::vector<uLong> checks(strips);
-  file.append(chunk("IDAT", "\x78\x9c"));
-  file.append_blocks(strips, [&](std::size_t strip) {
-    const std::size_t first = strip * strip_rows,
-                      last = std::min(first + strip_rows, std::size_t{picture.height});
-    const std::string rows = filtered_rows(picture, channels, first, last);
-    checks[strip] = adler32_z(1, bytes_of(rows), rows.size());
-    return chunk("IDAT", deflate_piece(rows, strip + 1 == strips));
-  });
-  uLong check = 1;
-  for (std::size_t strip = 0; strip < strips; ++strip) {
-    const std::size_t rows = std::min(strip_rows, picture.height - strip * strip_rows);
-    check = adler32_combine(check, checks[strip], static_cast<z_off_t>(rows * row_bytes));
-  }
-  file.append(chunk("IDAT", big_endian(static_cast<std::uint32_t>(check))));
-  file.append(chunk("IEND", ""));
+    if (const auto* text = std::get_if<std::string>(&attribute.value)) {
+      // libpng only reads them.
+      png_text& entry = texts.emplace_back();
+      entry.compression = PNG_TEXT_COMPRESSION_NONE;
+      entry.key = const_cast<char*>(attribute.name.c_str());
+      entry.text = const_cast<char*>(text->c_str());
+    }
+  PngWriter(file).write(flatten(picture, PixelLayout::srgb8_alpha), texts);
 }
 
 }  // namespace oktett

@@ -8,15 +8,14 @@
 
 namespace oktett {
 
-/// Appends a PNG of 8-bit sRGB, with straight alpha if `picture` has A; attributes that are texts become tEXt
-/// chunks. Source: Portable Network Graphics (PNG) Specification, second edition, W3C 2003.
-/// Throws Error if a colour is missing, or of kind io if the file cannot be written.
+/// Writes a PNG of 8-bit sRGB, with straight alpha if `picture` has A; attributes that are texts become tEXt
+/// chunks. Throws Error if a colour is missing, or of kind io if the file cannot be written.
 void write_png(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes);
 
-/// Appends an OpenEXR file: one part of scan lines, ZIP compression, each plane a channel of its type, all
+/// Writes an OpenEXR file: one part of scan lines, ZIP compression, each plane a channel of its type, all
 /// attributes. Values are stored as they are; finite ones too large for half become the largest half.
-/// Source: "OpenEXR File Layout", openexr.com. Throws Error if two planes share a name or a name is empty or
-/// longer than 255 bytes, or of kind io if the file cannot be written.
+/// Throws Error if two planes share a name or a name is empty or longer than 255 bytes, or of kind io if the
+/// file cannot be written.
 void write_exr(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes);
 
 }  // namespace oktett

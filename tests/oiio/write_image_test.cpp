@@ -136,7 +136,7 @@ TEST(WriteExr, NamesOfPlanesMayBeLongAndMustDiffer) {
   EXPECT_FALSE(std::filesystem::exists(dir.file("b.exr")));
 }
 
-// Strips of rows are compressed apart from each other; the reader takes them as one stream and checks sums.
+// As OpenImageIO reads it.
 TEST(WritePng, EverySizeIsReadBack) {
   const TempDir dir;
   for (const std::uint32_t width : {1u, 700u, 100000u})
