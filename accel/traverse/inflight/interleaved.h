@@ -8,17 +8,22 @@
 /// rays are decided together, one in each lane; only a triangle that the classification leaves open is
 /// decided at once.
 
+#include <algorithm>
+
 #include "accel/traverse/inflight/bundle_entry.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 #include "accel/traverse/inflight/inflight_ray.h"
+#include "accel/traverse/prefetch.h"
 #include "accel/traverse/single.h"
 
 namespace oktett {
 
-/// Rays in flight, and the number of rays that must wait at leaves before leaves are visited while other rays
-/// are at nodes.
+/// Rays in flight, and the number of rays that must wait for a leaf, or for something else, before such are
+/// visited while other rays are at nodes.
 inline constexpr int kInflightRays = 48;
 inline constexpr int kLeafThreshold = 8;
+/// Steps of a round with few rays: each then takes several steps, because the end of a round is mispredicted.
+inline constexpr int kRoundSteps = 16;
 
 /// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
 /// saves.
@@ -37,10 +42,10 @@ class InterleavedTraversal {
     Tails tail = tails();
     for (InflightRay& ray : inflight_) refill(ray, tail);
     keep(tail);
-    while (nodes_.size + leaves_.size + others_.size > 0) {
+    while (nodes_.size() + leaves_.size() + others_.size() > 0) {
       node_round();
-      if (leaves_.size >= kLeafThreshold || nodes_.size == 0) leaf_round();
-      if (others_.size >= kLeafThreshold || nodes_.size + leaves_.size == 0) other_round();
+      if (leaves_.size() >= kLeafThreshold || nodes_.size() == 0) leaf_round();
+      if (others_.size() >= kLeafThreshold || nodes_.size() + leaves_.size() == 0) other_round();
     }
     if constexpr (Q == Query::closest) decide_pending();
   }
@@ -51,23 +56,29 @@ class InterleavedTraversal {
   /// Rays whose blocks of triangles are classified together.
   static constexpr int kLeafRays = std::is_same_v<A, Avx512Isa> ? 2 : 1;
 
-  /// Rays that wait for one kind of step.
+  /// Rays that wait for one kind of step, first come, first served.
   struct Queue {
-    int size = 0;
-    InflightRay* ray[kInflightRays + 1];  ///< one more, because enqueue() writes past the end
+    static constexpr int kPlaces = 256;
+    InflightRay **head = ray, **tail = ray;
+    InflightRay* ray[kPlaces];
+
+    int size() const { return static_cast<int>(tail - head); }
   };
 
   /// The ends of the three queues while a round fills them, kept in registers.
   struct Tails {
     InflightRay **node, **leaf, **other;
   };
+  /// The ends of the queues, with room for a round and for one more, because enqueue() writes past the end.
   OKTETT_INLINE Tails tails() {
-    return {nodes_.ray + nodes_.size, leaves_.ray + leaves_.size, others_.ray + others_.size};
+    constexpr int kMost = Queue::kPlaces - std::max(kInflightRays, kRoundSteps) - 1;
+    for (Queue* q : {&nodes_, &leaves_, &others_})
+      if (OKTETT_UNLIKELY(q->tail > q->ray + kMost))
+        q->tail = std::copy(q->head, q->tail, q->ray), q->head = q->ray;
+    return {nodes_.tail, leaves_.tail, others_.tail};
   }
   OKTETT_INLINE void keep(const Tails& t) {
-    nodes_.size = static_cast<int>(t.node - nodes_.ray),
-    leaves_.size = static_cast<int>(t.leaf - leaves_.ray);
-    others_.size = static_cast<int>(t.other - others_.ray);
+    nodes_.tail = t.node, leaves_.tail = t.leaf, others_.tail = t.other;
   }
 
   /// Queues `ray` for the kind of step that `ref` needs, and prefetches the node or block. Has no branches:
@@ -75,13 +86,7 @@ class InterleavedTraversal {
   /// the prefetched address means nothing.
   OKTETT_INLINE void enqueue(InflightRay& ray, NodeRef ref, Tails& t) const {
     const std::uint32_t bits = ref.bits(), is_leaf = bits >> 31;
-    if constexpr (kPrefetch) {
-      const std::size_t index = bits & (NodeRef::kMaxBlocks - 1);
-      const char* at = base_[is_leaf] + index * sizeof(BvhNode) +
-                       (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(BvhNode));
-      for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
-        __builtin_prefetch(at + (line < sizeof(BvhNode) ? line : is_leaf * line));
-    }
+    if constexpr (kPrefetch) bytes_.prefetch(ref);
     // Arithmetic on the two top bits of NodeRef::bits: compilers turn comparisons into jumps.
     const std::uint32_t is_other = is_leaf & (bits >> 30);
     *t.node = &ray, t.node += 1 - is_leaf;
@@ -96,25 +101,23 @@ class InterleavedTraversal {
   }
 
   void node_round() {
-    const Queue now = nodes_;
-    nodes_.size = 0;
     Tails t = tails();
     const BvhNode* nodes = accel_.nodes.data();
-    for (int i = 0; i < now.size; ++i) {
-      InflightRay& ray = *now.ray[i];
-      enqueue(ray, step_node<Q, A>(ray, nodes[ray.current.bits()]), t);
-    }
+    InflightRay** at = nodes_.head;
+    for (InflightRay** const end = at + std::max(nodes_.size(), kRoundSteps); at != t.node && at != end; ++at)
+      enqueue(**at, step_node<Q, A>(**at, nodes[(*at)->current.bits()]), t);
+    nodes_.head = at;
     keep(t);
   }
 
   void leaf_round() {
-    const Queue now = leaves_;
-    leaves_.size = 0;
-    Tails tail = tails();
-    int i = 0;
-    for (; i + kLeafRays <= now.size; i += kLeafRays) leaf_step<kLeafRays>(now.ray + i, tail);
-    for (; i < now.size; ++i) leaf_step<1>(now.ray + i, tail);
-    keep(tail);
+    Tails t = tails();
+    InflightRay** at = leaves_.head;
+    InflightRay** const end = t.leaf;
+    for (; end - at >= kLeafRays; at += kLeafRays) leaf_step<kLeafRays>(at, t);
+    for (; at != end; ++at) leaf_step<1>(at, t);
+    leaves_.head = at;
+    keep(t);
   }
 
   /// N rays, each against its own block of triangles.
@@ -240,11 +243,9 @@ class InterleavedTraversal {
 
   /// Rays that are finished or at a leaf of the table.
   OKTETT_NOINLINE void other_round() {
-    const Queue now = others_;
-    others_.size = 0;
     Tails tail = tails();
-    for (int i = 0; i < now.size; ++i) {
-      InflightRay& ray = *now.ray[i];
+    for (int rest = others_.size(); rest > 0; --rest) {
+      InflightRay& ray = **others_.head++;
       const NodeRef ref = ray.current;
       if (ref.is_none()) {
         finish(ray);
@@ -288,9 +289,9 @@ class InterleavedTraversal {
   /// Prepares the entry of the next bundle.
   OKTETT_NOINLINE void set_entry() {
     has_entry_ = false;
-    if (accel_.root.is_leaf()) return;
-    const Box reach =
-        reach_of<A>(rays_.part(next_, std::min<std::size_t>(kBundleRays, rays_.size - next_)), extent_);
+    const std::size_t count = std::min<std::size_t>(kBundleRays, rays_.size - next_);
+    if (count < kBundleRays / 4 || accel_.root.is_leaf()) return;
+    const Box reach = reach_of<A>(rays_.part(next_, count), extent_);
     if (reach.empty()) return;
     entry_.set(accel_, reach);
     has_entry_ = true;
@@ -354,8 +355,7 @@ class InterleavedTraversal {
   const RaySpan rays_;
   const HitSink<Q> out_;
   const float extent_;
-  const char* const base_[2] = {reinterpret_cast<const char*>(accel_.nodes.data()),
-                                reinterpret_cast<const char*>(accel_.blocks.data())};
+  const TreeBytes bytes_{accel_};
   std::size_t next_ = 0;
   Queue nodes_, leaves_, others_;
   int pending_ = 0;
