@@ -5,6 +5,12 @@
 
 namespace oktett {
 
+/// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
+/// saves.
+inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20;
+
+inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
+
 /// Where the nodes and the blocks of triangles of a structure begin, as bytes.
 struct TreeBytes {
   const char* of[2];

@@ -25,12 +25,6 @@ inline constexpr int kLeafThreshold = 8;
 /// Steps of a round with few rays: each then takes several steps, because the end of a round is mispredicted.
 inline constexpr int kRoundSteps = 16;
 
-/// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
-/// saves.
-inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20;
-
-inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
-
 /// Traces a batch of rays; see the top of the file. `kPrefetch`: prefetch the memory of each ray's next step.
 template <Query Q, class A, bool kPrefetch>
 class InterleavedTraversal {

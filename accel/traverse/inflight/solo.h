@@ -83,6 +83,7 @@ class SoloTraversal {
     const F tmin(ray_.tmin + 0.0f);
     const BvhNode* nodes = accel_.nodes.data();
     const TreeBytes bytes(accel_);
+    const bool fetch = tree_bytes(accel_) > kPrefetchBytes;
     float limit = tmax_ + slack_[0];
     NodeRef ref = accel_.root;
     for (;;) {
@@ -102,7 +103,8 @@ class SoloTraversal {
             ref = node.child[__builtin_ctz(met)];
             continue;
           }
-          for (unsigned m = met; m != 0; m &= m - 1) bytes.prefetch(node.child[__builtin_ctz(m)]);
+          if (OKTETT_UNLIKELY(fetch))
+            for (unsigned m = met; m != 0; m &= m - 1) bytes.prefetch(node.child[__builtin_ctz(m)]);
           size += store_descending<A>(near, met, node.child_bits(), ref_of + size, near_of + size) - 1;
           ref = NodeRef::from_bits(ref_of[size]);
           continue;
