@@ -3,16 +3,12 @@
 
 #include <algorithm>
 
+#include "accel/traverse/inflight/candidate.h"
 #include "accel/traverse/inflight/ray_chunk.h"
 #include "accel/traverse/leaf.h"
 #include "core/simd_order.h"
 
 namespace oktett {
-
-/// Values of InflightRay::candidate that are no triangle: nothing has been hit so far, or the nearest hit so
-/// far is decided and stands in the ray's RayState.
-inline constexpr std::uint32_t kNoCandidate = 0xffffffffu;
-inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
 
 /// One ray in flight and its stack. The first 64 bytes are what a node needs. The size is an odd number of
 /// cache lines, so that the rays do not fall into the same sets of the cache.
@@ -80,17 +76,9 @@ template <class A>
 OKTETT_INLINE unsigned node_inflight(const InflightRay& ray, const BvhNode& node,
                                      Simd<float, BvhNode::kWidth, A>& near) {
   using F = Simd<float, BvhNode::kWidth, A>;
-  constexpr std::uint32_t kOther = BvhNode::kWidth;
-  const float* rows = &node.plane[0][0];
-  F n[3], f[3];
-  for (int k = 0; k < 3; ++k) {
-    const F inv(ray.inv[k]);
-    n[k] = fast_fma(F::load(rows + ray.near_row[k]), inv, F(ray.near_shift[k]));
-    f[k] = fast_fma(F::load(rows + (ray.near_row[k] ^ kOther)), inv, F(ray.far_shift[k]));
-  }
-  near = max(max(n[0], n[1]), max(n[2], F(ray.tmin)));
-  const F far = min(min(f[0], f[1]), min(f[2], F(ray.limit)));
-  return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
+  const auto each = [](const float(&v)[3]) { return std::array{F(v[0]), F(v[1]), F(v[2])}; };
+  return fused_slab<A>(node, ray.near_row, each(ray.inv), each(ray.near_shift), each(ray.far_shift),
+                       F(ray.tmin), F(ray.limit), near);
 }
 
 /// Pushes the children that the ray meets, the nearest last (for Query::any in any order), and pops the next

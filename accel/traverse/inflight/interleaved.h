@@ -162,40 +162,22 @@ class InterleavedTraversal {
   OKTETT_INLINE void take(InflightRay& ray, const TriangleGuess<F>& guess, const HitInterval<F>& h,
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
-    if (maybe != 0 && accel_.pieces) maybe &= ~repeated(ray);
+    if (maybe != 0 && accel_.pieces)
+      maybe &= ~repeated_lane(accel_, ray.candidate, states_[&ray - inflight_],
+                              accel_.blocks[ray.current.block()]);
     if (maybe == 0) return;
     const unsigned sure = bits(h.sure) >> first & maybe;
     if (sure != 0) {
       if constexpr (Q == Query::any) return found(ray);
-      alignas(64) float lo[F::kWidth], hi[F::kWidth];
-      h.lo.store(lo), h.hi.store(hi);
-      int nearest = __builtin_ctz(sure);
-      for (unsigned rest = sure & (sure - 1); rest != 0; rest &= rest - 1)
-        if (hi[first + __builtin_ctz(rest)] < hi[first + nearest]) nearest = __builtin_ctz(rest);
-      const float least = lo[first + nearest], most = hi[first + nearest];
-      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(most))) >> first;
-      if (maybe == 1u << nearest && most < ray.hit_lo) {
-        ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(nearest);
-        ray.hit_lo = least;
-        return shorten<A>(ray, most);
+      const SureHit hit = nearest_sure(h, sure, first);
+      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi))) >> first;
+      if (maybe == 1u << hit.lane && hit.hi < ray.hit_lo) {
+        ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
+        ray.hit_lo = hit.lo;
+        return shorten<A>(ray, hit.hi);
       }
     }
     decide_leaf(ray);
-  }
-
-  /// The lane, as a bit, of the ray's block that holds the triangle which is its nearest hit so far. A
-  /// triangle that was split stands in several leaves, and need not be tested again.
-  OKTETT_INLINE unsigned repeated(const InflightRay& ray) const {
-    std::uint32_t item = kNoId;
-    if (ray.candidate < kDecidedHit) {
-      item = accel_.blocks[ray.candidate / kBlock].item[ray.candidate % kBlock];
-    } else if (ray.candidate == kDecidedHit) {
-      const RayState<1, A>& r = states_[&ray - inflight_];
-      if (r.path[0] == kNoId) item = r.item[0];
-    }
-    using I = Simd<std::int32_t, kBlock, A>;
-    const auto* items = reinterpret_cast<const std::int32_t*>(accel_.blocks[ray.current.block()].item);
-    return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
   }
 
   /// For Query::any: the ray has hit something and is finished.
@@ -276,7 +258,8 @@ class InterleavedTraversal {
         ++next_;
         return;
       }
-      trace_alone(next_, (chunk_.valid >> i & 1) != 0);
+      // The ray is not valid, or its numbers are too large or too small for the fast arithmetic.
+      out_.set(next_, trace_exact<Q, A>(accel_, rays_[next_]));
     }
   }
 
@@ -307,14 +290,6 @@ class InterleavedTraversal {
       adopt(ray);
     }
     pop(ray, tail);
-  }
-
-  /// Traces a ray whose numbers are too large or too small for the fast arithmetic.
-  OKTETT_NOINLINE void trace_alone(std::size_t index, bool valid) {
-    RayState<1, A> r;
-    r.set(rays_[index], accel_.bounds);
-    if (valid) trace_single<Q>(accel_, r);
-    out_.set(index, r.hit(0));
   }
 
   /// Decides the candidates of finished rays, one in each lane, and stores the hits.

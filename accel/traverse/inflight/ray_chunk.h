@@ -2,9 +2,12 @@
 /// \file Rays prepared for the slab test in fused form, plane * (1/d) - o * (1/d). The bounds on its rounding
 /// errors are part of the ray.
 
+#include <array>
+
 #include "accel/ray_state.h"
 #include "accel/traverse/load_span.h"
 #include "core/lanes.h"
+#include "core/simd_order.h"
 #include "kernels/closed/slab.h"
 #include "kernels/triangle/triangle_classify.h"
 
@@ -45,6 +48,24 @@ OKTETT_INLINE SlabLines<F> slab_lines(const F& origin, const F& direction, const
   return {inverse, -(shift + error), (error + chunk_slack(reach)) - shift};
 }
 
+/// The slab test in fused form: the children of `node` that a ray meets, as bits, and their near distances.
+/// `near_row` are the offsets of the near planes in the node, per axis; see RayChunk for the others.
+template <class A, class F = Simd<float, BvhNode::kWidth, A>>
+OKTETT_INLINE unsigned fused_slab(const BvhNode& node, const std::uint32_t (&near_row)[3],
+                                  const std::array<F, 3>& inverse, const std::array<F, 3>& near_shift,
+                                  const std::array<F, 3>& far_shift, const F& tmin, const F& limit, F& near) {
+  constexpr std::uint32_t kOther = BvhNode::kWidth;
+  const float* rows = &node.plane[0][0];
+  F n[3], f[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    n[k] = fast_fma(F::load(rows + near_row[k]), inverse[k], near_shift[k]);
+    f[k] = fast_fma(F::load(rows + (near_row[k] ^ kOther)), inverse[k], far_shift[k]);
+  }
+  near = max(max(n[0], n[1]), max(n[2], tmin));
+  const F far = min(min(f[0], f[1]), min(f[2], limit));
+  return less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
+}
+
 /// W rays in columns. A box is met if
 ///     max(near plane * inv + near_shift, tmin) <= min(far plane * inv + far_shift, tmax + slack)
 ///                                                 * kSlabRelativeSlack
@@ -57,10 +78,9 @@ struct alignas(64) RayChunk {
   float inv[3][W], near_shift[3][W], far_shift[3][W];
   float tmin[W], tmax[W], slack[W];
   unsigned negative[3];
-  unsigned valid;  ///< rays that can hit anything, see Ray
-  unsigned tame;   ///< those of `valid` whose numbers are not too large or small for the error bounds
+  unsigned tame;  ///< rays that can hit anything (see Ray) and whose numbers suit the error bounds
 
-  /// Sets the W rays from position `b` of a batch on; lanes past its end are not valid. `extent` is the
+  /// Sets the W rays from position `b` of a batch on; lanes past its end are not tame. `extent` is the
   /// greatest |coordinate| of the scene.
   OKTETT_INLINE void set(const RaySpan& rays, std::size_t b, float extent) {
     const std::size_t rest = rays.size - b;
@@ -75,7 +95,7 @@ struct alignas(64) RayChunk {
                         (abs(r.o.z) <= big);
     const auto usable = finite & (zero < dm) & (zero <= r.tmin) & (r.tmin < r.tmax);
     const F span = om + F(extent);
-    valid = bits(usable) & (rest >= W ? ~0u : (1u << rest) - 1);
+    const unsigned valid = bits(usable) & (rest >= W ? ~0u : (1u << rest) - 1);
     tame = valid & bits((F(kChunkMinExtent) <= span) & (span <= F(kClassifyMaxExtent)) &
                         (F(1 / kClassifyMaxDirection) <= dm) & (dm <= F(kClassifyMaxDirection)));
     const F reach = span / dm, least = dm * F(kChunkMinComponent);

@@ -2,8 +2,10 @@
 /// \file One ray by itself through the tree, with the float arithmetic of interleaved rays: triangles are
 /// classified, and the nearest hit is decided when the ray is finished.
 
+#include <array>
 #include <cmath>
 
+#include "accel/traverse/inflight/candidate.h"
 #include "accel/traverse/inflight/ray_chunk.h"
 #include "accel/traverse/prefetch.h"
 #include "accel/traverse/single.h"
@@ -46,14 +48,13 @@ class SoloTraversal {
   OKTETT_INLINE Hit run() {
     if (OKTETT_UNLIKELY(!tame_)) return trace_exact<Q, A>(accel_, ray_);
     if (OKTETT_LIKELY(accel_.unbounded.empty()) || !unbounded()) traverse();
-    if (candidate_ == kNone) return {};
+    if (candidate_ == kNoCandidate) return {};
     if constexpr (Q == Query::any) return {ray_.tmax, 0, 0, 0, kNoId};
-    return candidate_ == kDecided ? state_.hit(0) : decide();
+    return candidate_ == kDecidedHit ? state_.hit(0) : decide();
   }
 
  private:
   static constexpr int kBlock = TriangleBlock::kSize;
-  static constexpr std::uint32_t kNone = 0xffffffffu, kDecided = 0xfffffffeu;
   using F = Simd<float, kBlock, A>;
   using V = Simd<float, 4, A>;
 
@@ -63,18 +64,17 @@ class SoloTraversal {
     return found();
   }
 
-  OKTETT_INLINE bool found() const { return Q == Query::any && candidate_ == kDecided; }
+  OKTETT_INLINE bool found() const { return Q == Query::any && candidate_ == kDecidedHit; }
 
   OKTETT_INLINE void traverse() {
     constexpr int kWidth = BvhNode::kWidth;
-    constexpr std::uint32_t kOther = kWidth;
     std::uint32_t ref_of[kStackSize + kWidth];
     float near_of[kStackSize + kWidth];
     ref_of[0] = NodeRef::none().bits(), near_of[0] = -1;
     int size = 1;
-    F inv[3], near_shift[3], far_shift[3];
+    std::array<F, 3> inv, near_shift, far_shift;
     std::uint32_t near_row[3];
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       inv[k] = F(inv_[k]), near_shift[k] = F(near_shift_[k]), far_shift[k] = F(far_shift_[k]);
       near_row[k] =
           static_cast<std::uint32_t>(kWidth) * (2 * static_cast<std::uint32_t>(k) + (negative_ >> k & 1));
@@ -89,15 +89,8 @@ class SoloTraversal {
     for (;;) {
       if (!ref.is_leaf()) {
         const BvhNode& node = nodes[ref.bits()];
-        const float* rows = &node.plane[0][0];
-        F n[3], f[3];
-        for (int k = 0; k < 3; ++k) {
-          n[k] = fast_fma(F::load(rows + near_row[k]), inv[k], near_shift[k]);
-          f[k] = fast_fma(F::load(rows + (near_row[k] ^ kOther)), inv[k], far_shift[k]);
-        }
-        const F near = max(max(n[0], n[1]), max(n[2], tmin));
-        const F far = min(min(f[0], f[1]), min(f[2], F(limit)));
-        const unsigned met = less_equal_lanes<A>(near, far * F(kSlabRelativeSlack));
+        F near;
+        const unsigned met = fused_slab<A>(node, near_row, inv, near_shift, far_shift, tmin, F(limit), near);
         if (met != 0) {
           if ((met & (met - 1)) == 0) {
             ref = node.child[__builtin_ctz(met)];
@@ -140,24 +133,20 @@ class SoloTraversal {
 
   /// The same for the triangles that the filter did not reject, the bits of `maybe`.
   OKTETT_INLINE bool take(NodeRef ref, const TriangleGuess<F>& guess, unsigned maybe) {
-    if (accel_.pieces) maybe &= ~repeated(accel_.blocks[ref.block()]);
+    if (accel_.pieces) maybe &= ~repeated_lane(accel_, candidate_, state_, accel_.blocks[ref.block()]);
     if (maybe == 0) return false;
     const HitInterval<F> h = hit_interval(guess, F(ray_.tmin), F(tmax_));
     const unsigned sure = bits(h.sure) & maybe;
     if (sure != 0) {
       if constexpr (Q == Query::any) {
-        candidate_ = kDecided;
+        candidate_ = kDecidedHit;
         return true;
       }
-      alignas(64) float lo[kBlock], hi[kBlock];
-      h.lo.store(lo), h.hi.store(hi);
-      int nearest = __builtin_ctz(sure);
-      for (unsigned rest = sure & (sure - 1); rest != 0; rest &= rest - 1)
-        if (hi[__builtin_ctz(rest)] < hi[nearest]) nearest = __builtin_ctz(rest);
-      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hi[nearest])));
-      if (maybe == 1u << nearest && hi[nearest] < hit_lo_) {
-        candidate_ = ref.block() * kBlock + static_cast<std::uint32_t>(nearest);
-        hit_lo_ = lo[nearest], tmax_ = hi[nearest];
+      const SureHit hit = nearest_sure(h, sure, 0);
+      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi)));
+      if (maybe == 1u << hit.lane && hit.hi < hit_lo_) {
+        candidate_ = ref.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
+        hit_lo_ = hit.lo, tmax_ = hit.hi;
         return true;
       }
     }
@@ -165,23 +154,11 @@ class SoloTraversal {
     return adopt();
   }
 
-  /// The lane, as a bit, that holds the triangle which is the nearest hit so far. A triangle that was split
-  /// stands in several leaves, and need not be tested again.
-  OKTETT_INLINE unsigned repeated(const TriangleBlock& block) const {
-    using I = Simd<std::int32_t, kBlock, A>;
-    const std::uint32_t item = candidate_ < kDecided
-                                   ? accel_.blocks[candidate_ / kBlock].item[candidate_ % kBlock]
-                               : candidate_ == kDecided && state_.path[0] == kNoId ? state_.item[0]
-                                                                                   : kNoId;
-    const auto* items = reinterpret_cast<const std::int32_t*>(block.item);
-    return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
-  }
-
   /// The state for exact tests, in which the candidate has been decided.
   OKTETT_NOINLINE RayState<1, A>& exact_state() {
     if (!has_state_) state_.set(ray_, accel_.bounds);
     has_state_ = true;
-    if (candidate_ < kDecided) {
+    if (candidate_ < kDecidedHit) {
       const Hit h = decide();
       if (h.valid()) accept_hit(state_, 0, h.t, h.u, h.v, h.item, h.instance);
     }
@@ -209,7 +186,7 @@ class SoloTraversal {
 
   OKTETT_INLINE bool adopt() {
     if (state_.item[0] == kNoId) return false;
-    candidate_ = kDecided;
+    candidate_ = kDecidedHit;
     hit_lo_ = tmax_ = state_.tmax[0];
     return true;
   }
@@ -222,7 +199,7 @@ class SoloTraversal {
   double inv_dz_, shear_x_, shear_y_;
   bool tame_, has_state_ = false;
   float weight_scale_, det_scale_, tmax_, hit_lo_;
-  std::uint32_t candidate_ = kNone;
+  std::uint32_t candidate_ = kNoCandidate;
   RayState<1, A> state_;
 };
 

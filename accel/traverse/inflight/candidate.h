@@ -1,0 +1,48 @@
+#pragma once
+/// \file The candidate hit of a ray whose triangles are classified in float: the nearest triangle that is surely hit, which is
+/// decided when the ray is finished.
+
+#include "accel/ray_state.h"
+#include "kernels/triangle/triangle_classify.h"
+
+namespace oktett {
+
+/// A candidate is block * TriangleBlock::kSize + lane, or one of these: nothing has been hit so far, or the nearest hit so far
+/// is decided and stands in the ray's RayState.
+inline constexpr std::uint32_t kNoCandidate = 0xffffffffu;
+inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
+
+/// The lane of `block`, as a bit, that holds the triangle of the nearest hit so far. A triangle that was split stands in several
+/// leaves, and need not be tested again. `r` is read only if the candidate is kDecidedHit.
+template <class A>
+OKTETT_INLINE unsigned repeated_lane(const Accel& accel, std::uint32_t candidate, const RayState<1, A>& r,
+                                     const TriangleBlock& block) {
+  constexpr int kBlock = TriangleBlock::kSize;
+  std::uint32_t item = kNoId;
+  if (candidate < kDecidedHit)
+    item = accel.blocks[candidate / kBlock].item[candidate % kBlock];
+  else if (candidate == kDecidedHit && r.path[0] == kNoId)
+    item = r.item[0];
+  using I = Simd<std::int32_t, kBlock, A>;
+  const auto* items = reinterpret_cast<const std::int32_t*>(block.item);
+  return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
+}
+
+/// A triangle that is surely hit at lo <= t <= hi.
+struct SureHit {
+  int lane;
+  float lo, hi;
+};
+
+/// Of the triangles in `sure`, not empty, the one with the least hi. Bit 0 of `sure` is lane `first` of `h`.
+template <class F>
+OKTETT_INLINE SureHit nearest_sure(const HitInterval<F>& h, unsigned sure, int first) {
+  alignas(64) float lo[F::kWidth], hi[F::kWidth];
+  h.lo.store(lo), h.hi.store(hi);
+  int nearest = __builtin_ctz(sure);
+  for (unsigned rest = sure & (sure - 1); rest != 0; rest &= rest - 1)
+    if (hi[first + __builtin_ctz(rest)] < hi[first + nearest]) nearest = __builtin_ctz(rest);
+  return {nearest, lo[first + nearest], hi[first + nearest]};
+}
+
+}  // namespace oktett
