@@ -9,7 +9,7 @@ namespace oktett {
 
 enum class TraceMode : std::uint8_t {
   automatic,    ///< beams for rays that share a point, packets for other coherent rays, the rest interleaved;
-                ///< of a few rays each by itself
+                ///< in batches of a few rays, each ray alone
   single,       ///< one ray after the other
   interleaved,  ///< single rays, many in flight (without vector registers: like `single`)
   packet8,

@@ -98,7 +98,7 @@ int max_beam_steps(const Accel& accel) {
 
 /// Batches of fewer rays are no beams: what a beam costs before its first node is more than it saves.
 inline constexpr std::size_t kLeastBeamRays = 64;
-/// Of so few rays each is traced alone.
+/// In batches of up to this many rays, each ray is traced alone.
 inline constexpr std::size_t kAloneRays = 4;
 
 /// Rays that share a point in beams, other coherent ones in packets, the rest interleaved. When a beam is

@@ -1,19 +1,20 @@
 #pragma once
-/// \file The candidate hit of a ray whose triangles are classified in float: the nearest triangle that is surely hit, which is
-/// decided when the ray is finished.
+/// \file The candidate hit of a ray whose triangles are classified in float: the nearest triangle that is
+/// surely hit, which is decided when the ray is finished.
 
 #include "accel/ray_state.h"
 #include "kernels/triangle/triangle_classify.h"
 
 namespace oktett {
 
-/// A candidate is block * TriangleBlock::kSize + lane, or one of these: nothing has been hit so far, or the nearest hit so far
-/// is decided and stands in the ray's RayState.
+/// A candidate is block * TriangleBlock::kSize + lane, or one of these: nothing has been hit so far, or the
+/// nearest hit so far is decided and stands in the ray's RayState.
 inline constexpr std::uint32_t kNoCandidate = 0xffffffffu;
 inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
 
-/// The lane of `block`, as a bit, that holds the triangle of the nearest hit so far. A triangle that was split stands in several
-/// leaves, and need not be tested again. `r` is read only if the candidate is kDecidedHit.
+/// The lane of `block`, as a bit, that holds the triangle of the nearest hit so far. A triangle that was
+/// split stands in several leaves, and need not be tested again. `r` is read only if the candidate is
+/// kDecidedHit.
 template <class A>
 OKTETT_INLINE unsigned repeated_lane(const Accel& accel, std::uint32_t candidate, const RayState<1, A>& r,
                                      const TriangleBlock& block) {

@@ -18,11 +18,12 @@
 
 namespace oktett {
 
-/// Rays in flight, and the number of rays that must wait for a leaf, or for something else, before such are
-/// visited while other rays are at nodes.
+/// Rays that are traced at the same time.
 inline constexpr int kInflightRays = 48;
+/// Leaves are visited when this many rays wait at leaves, or when no ray is at a node.
 inline constexpr int kLeafThreshold = 8;
-/// Steps of a round with few rays: each then takes several steps, because the end of a round is mispredicted.
+/// A round over the nodes takes at least this many steps. With fewer rays than that, a ray takes several
+/// steps. The end of each round costs a mispredicted branch, so rounds must not be short.
 inline constexpr int kRoundSteps = 16;
 
 /// Traces a batch of rays; see the top of the file. `kPrefetch`: prefetch the memory of each ray's next step.
