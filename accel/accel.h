@@ -142,6 +142,17 @@ bool any_hit(const Accel& accel, const Ray& ray, Isa isa = default_isa());
 /// Replaces `hits` by every hit of one ray, nearest first, those at equal distance by (instance, item). A
 /// closed mesh contributes each crossing exactly once, also at shared edges and vertices.
 void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa = default_isa());
+/// The same for each ray of a batch. `lists` is replaced; its memory is used again.
+void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa = default_isa());
+/// The same for an array of structures.
+void all_hits(const Accel& accel, std::span<const Ray> rays, HitLists& lists, Isa isa = default_isa());
+
+/// counts[i] becomes the number of hits that all_hits lists for ray i.
+void count_hits(const Accel& accel, const RaySpan& rays, std::span<std::uint32_t> counts,
+                Isa isa = default_isa());
+/// The same for an array of structures.
+void count_hits(const Accel& accel, std::span<const Ray> rays, std::span<std::uint32_t> counts,
+                Isa isa = default_isa());
 
 /// What shading needs to know of a hit, which is valid and was found by asking `accel` with `ray`.
 SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const Hit& hit);

@@ -38,6 +38,27 @@ class HitList {
   std::vector<Crossing>& hits_;
 };
 
+/// A crossing of ray number `ray` of a batch.
+struct RayHit {
+  Crossing crossing;
+  std::uint32_t ray = 0;
+};
+
+/// The crossings of a batch of rays, in no order.
+class RayHitList {
+ public:
+  void append(const RayHit* hits, int count);
+  void clear() { hits_.clear(); }
+  const std::vector<RayHit>& hits() const { return hits_; }
+  /// A list for one ray, empty.
+  HitList& scratch() { return scratch_; }
+
+ private:
+  std::vector<RayHit> hits_;
+  std::vector<Crossing> scratch_hits_;
+  HitList scratch_{scratch_hits_};
+};
+
 /// Merges the crossings of exact surfaces among the hits from `first` on. The cells of a surface may each
 /// list a crossing where they meet; afterwards the crossings of an item are sorted and alternate between in
 /// and out. Hits inside instances are left alone.

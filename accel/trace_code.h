@@ -14,7 +14,8 @@ struct TraceCode {
   bool (*any_hit_one)(const Accel&, const Ray&);
   void (*closest_hit)(const Accel&, const RaySpan&, const HitSink<Query::closest>&, TraceMode);
   void (*any_hit)(const Accel&, const RaySpan&, const HitSink<Query::any>&, TraceMode);
-  void (*all_hits)(const Accel&, const Ray&, HitList&);
+  void (*all_hits_one)(const Accel&, const Ray&, HitList&);
+  void (*all_hits)(const Accel&, const RaySpan&, RayHitList&);
 };
 
 template <class A>

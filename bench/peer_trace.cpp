@@ -57,12 +57,17 @@ std::vector<Workload> make_workloads(const Accel& accel, const Box& framed, cons
 }
 
 /// All hits of each ray, as Answers holds them.
-static void trace_all(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa) {
-  std::vector<Hit> found;
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    all_hits(accel, rays[i], found, isa);
-    hits.item[i] = static_cast<std::uint32_t>(found.size()), hits.t[i] = 0;
-    for (const Hit& hit : found) hits.t[i] += hit.t;
+static void trace_all(const Accel& accel, const RaySpan& rays, const HitSpan& hits, std::size_t batch,
+                      Isa isa) {
+  static thread_local HitLists lists;
+  for (std::size_t b = 0; b < rays.size; b += batch) {
+    const std::size_t n = std::min(batch, rays.size - b);
+    all_hits(accel, rays.part(b, n), lists, isa);
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::span<const Hit> found = lists.of_ray(i);
+      hits.item[b + i] = static_cast<std::uint32_t>(found.size()), hits.t[b + i] = 0;
+      for (const Hit& hit : found) hits.t[b + i] += hit.t;
+    }
   }
 }
 
@@ -71,7 +76,7 @@ void trace(const Accel& accel, const Workload& work, Isa isa, int threads, Answe
   const HitSpan hits = answers.hits.span();
   in_pieces(threads, span.size, [&](std::size_t begin, std::size_t count) {
     if (work.query == Query::all)
-      return trace_all(accel, span.part(begin, count), hits.part(begin, count), isa);
+      return trace_all(accel, span.part(begin, count), hits.part(begin, count), work.batch, isa);
     if (work.query == Query::closest && work.batch == 1) {
       for (std::size_t i = begin; i < begin + count; ++i) hits.set(i, closest_hit(accel, span[i], isa));
       return;

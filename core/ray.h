@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "core/mesh.h"
 #include "core/soa.h"
@@ -120,6 +122,17 @@ struct HitBatch {
   Hit operator[](std::size_t i) const { return {t[i], u[i], v[i], item[i], instance[i]}; }
   HitSpan span() { return {t.data(), u.data(), v.data(), item.data(), instance.data(), size()}; }
   operator HitSpan() { return span(); }
+};
+
+/// Every hit of each ray of a batch.
+struct HitLists {
+  std::vector<Hit> hits;           ///< those of ray 0, nearest first, then those of ray 1, and so on
+  std::vector<std::size_t> begin;  ///< where in `hits` those of each ray begin; one more than there are rays
+
+  /// The hits of ray i, nearest first.
+  std::span<const Hit> of_ray(std::size_t i) const {
+    return {hits.data() + begin[i], begin[i + 1] - begin[i]};
+  }
 };
 
 }  // namespace oktett

@@ -9,7 +9,10 @@ const TraceCode& trace_code() {
   static constexpr TraceCode code = {
       trace_one<Query::closest, A>,
       [](const Accel& accel, const Ray& ray) { return trace_one<Query::any, A>(accel, ray).valid(); },
-      trace<Query::closest, A>, trace<Query::any, A>, trace_all_hits<A>};
+      trace<Query::closest, A>,
+      trace<Query::any, A>,
+      trace_all_hits<A>,
+      trace_all_hits<A>};
   return code;
 }
 

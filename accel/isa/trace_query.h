@@ -20,4 +20,8 @@ Hit trace_one(const Accel& accel, const Ray& ray);
 template <class A>
 void trace_all_hits(const Accel& accel, const Ray& ray, HitList& hits);
 
+/// The same for a batch of rays.
+template <class A>
+void trace_all_hits(const Accel& accel, const RaySpan& rays, RayHitList& hits);
+
 }  // namespace oktett

@@ -1,0 +1,190 @@
+#include <algorithm>
+
+#include "accel/accel_data.h"
+#include "accel/batch_pieces.h"
+#include "accel/hit_list.h"
+#include "accel/trace_code.h"
+#include "kernels/exact_ops.h"
+
+namespace oktett {
+
+void HitList::push(const Hit& hit, float turn) { hits_.push_back({hit, turn}); }
+std::size_t HitList::size() const { return hits_.size(); }
+Crossing& HitList::operator[](std::size_t i) { return hits_[i]; }
+void HitList::shrink(std::size_t size) { hits_.resize(size); }
+
+void RayHitList::append(const RayHit* hits, int count) { hits_.insert(hits_.end(), hits, hits + count); }
+
+bool is_triangle(const Accel& accel, std::uint32_t item) {
+  return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;
+}
+
+bool is_mirrored(const Accel& accel, std::uint32_t item) {
+  return accel.frames[accel.geometry_of(item)].mirrored;
+}
+
+void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
+  // Surfaces of one cell list their crossings correctly by themselves.
+  const auto own_exact = [&](const Hit& h) {
+    if (h.instance != kNoId) return false;
+    const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
+    return is_exact(kind) && !exact_ops(kind).one_cell;
+  };
+  std::vector<Crossing> crossings;
+  std::size_t kept = first;
+  for (std::size_t i = first; i < list.size(); ++i) {
+    if (own_exact(list[i].hit))
+      crossings.push_back(list[i]);
+    else
+      list[kept++] = list[i];
+  }
+  list.shrink(kept);
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
+    return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
+  });
+  // Of several crossings inwards in a row the first counts, of several outwards the last.
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const auto same = [&](std::size_t k) {
+      return k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
+             crossings[k].turn == crossings[i].turn;
+    };
+    if (crossings[i].turn < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1))
+      list.push(crossings[i].hit, crossings[i].turn);
+  }
+}
+
+/// The order in which hits are listed: by t, then by (instance, item).
+static bool listed_before(const Hit& a, const Hit& b) {
+  if (a.t != b.t) return a.t < b.t;
+  // Adding one puts "no instance" first.
+  if (a.instance != b.instance) return a.instance + 1 < b.instance + 1;
+  return a.item < b.item;
+}
+
+static void sort_hits(Hit* begin, Hit* end) {
+  if (end - begin > 32) return std::stable_sort(begin, end, listed_before);
+  for (Hit* at = begin; at < end; ++at) {
+    const Hit hit = *at;
+    Hit* to = at;
+    for (; to > begin && listed_before(hit, to[-1]); --to) *to = to[-1];
+    *to = hit;
+  }
+}
+
+void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {
+  static thread_local std::vector<Crossing> crossings;
+  crossings.clear();
+  hits.clear();
+  HitList list(crossings);
+  trace_code(isa).all_hits_one(accel, ray, list);
+  for (const Crossing& c : crossings) hits.push_back(c.hit);
+  sort_hits(hits.data(), hits.data() + hits.size());
+}
+
+/// The hits of some rays of a batch. Those of ray i are hits[begin[i]] to hits[begin[i + 1] - 1].
+struct PieceOfHits {
+  std::vector<Hit> hits;
+  std::vector<std::size_t> begin;
+};
+
+/// The hits of each ray are next to each other in `out`, in the order of the rays, not sorted.
+static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, PieceOfHits& out) {
+  out.begin.assign(rays + 1, 0);
+  for (const RayHit& h : found) ++out.begin[h.ray + 1];
+  for (std::size_t i = 0; i < rays; ++i) out.begin[i + 1] += out.begin[i];
+  out.hits.resize(found.size());
+  static thread_local std::vector<std::size_t> next;
+  next.assign(out.begin.begin(), out.begin.end() - 1);
+  for (const RayHit& h : found) out.hits[next[h.ray]++] = h.crossing.hit;
+}
+
+/// The same, with the crossings of exact surfaces merged.
+static void merge_by_ray(const Accel& accel, const std::vector<RayHit>& found, std::size_t rays,
+                         PieceOfHits& out) {
+  std::vector<std::vector<Crossing>> of_ray(rays);
+  for (const RayHit& h : found) of_ray[h.ray].push_back(h.crossing);
+  out.hits.clear();
+  out.begin.assign(1, 0);
+  for (std::vector<Crossing>& crossings : of_ray) {
+    HitList list(crossings);
+    merge_crossings(accel, list, 0);
+    for (const Crossing& c : crossings) out.hits.push_back(c.hit);
+    out.begin.push_back(out.hits.size());
+  }
+}
+
+/// Removes the repeated hits of triangles that stand in several leaves. The hits of each ray are sorted.
+static void drop_repeated(const Accel& accel, PieceOfHits& out) {
+  std::size_t kept = 0, at = 0;
+  for (std::size_t i = 0; i + 1 < out.begin.size(); ++i) {
+    const std::size_t end = out.begin[i + 1], first = kept;
+    for (; at < end; ++at) {
+      const Hit& h = out.hits[at];
+      if (kept > first && h == out.hits[kept - 1] && h.instance == kNoId && is_triangle(accel, h.item))
+        continue;
+      out.hits[kept++] = h;
+    }
+    out.begin[i + 1] = kept;
+  }
+  out.hits.resize(kept);
+}
+
+static void trace_piece(const Accel& accel, const RaySpan& rays, const TraceCode& code, PieceOfHits& out) {
+  static thread_local RayHitList found;
+  found.clear();
+  code.all_hits(accel, rays, found);
+  if (accel.has_exact)
+    merge_by_ray(accel, found.hits(), rays.size, out);
+  else
+    group_by_ray(found.hits(), rays.size, out);
+  for (std::size_t i = 0; i < rays.size; ++i)
+    sort_hits(out.hits.data() + out.begin[i], out.hits.data() + out.begin[i + 1]);
+  if (accel.pieces) drop_repeated(accel, out);
+}
+
+void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa) {
+  const TraceCode& code = trace_code(isa);
+  std::vector<PieceOfHits> pieces((rays.size + kPieceRays - 1) / kPieceRays);
+  if (pieces.size() == 1) {
+    // The memory of the lists is used again from call to call.
+    pieces[0] = {std::move(lists.hits), std::move(lists.begin)};
+    trace_piece(accel, rays, code, pieces[0]);
+    lists.hits = std::move(pieces[0].hits), lists.begin = std::move(pieces[0].begin);
+    return;
+  }
+  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
+    trace_piece(accel, rays.part(begin, count), code, pieces[begin / kPieceRays]);
+  });
+  lists.hits.clear();
+  lists.begin.assign(1, 0);
+  for (PieceOfHits& piece : pieces) {
+    const std::size_t before = lists.hits.size();
+    lists.hits.insert(lists.hits.end(), piece.hits.begin(), piece.hits.end());
+    for (std::size_t i = 1; i < piece.begin.size(); ++i) lists.begin.push_back(before + piece.begin[i]);
+    piece = {};
+  }
+}
+
+void all_hits(const Accel& accel, std::span<const Ray> rays, HitLists& lists, Isa isa) {
+  RayBatch columns;
+  all_hits(accel, to_columns(rays, columns), lists, isa);
+}
+
+void count_hits(const Accel& accel, const RaySpan& rays, std::span<std::uint32_t> counts, Isa isa) {
+  require_same_size(rays.size, counts.size(), "count_hits");
+  const TraceCode& code = trace_code(isa);
+  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
+    static thread_local PieceOfHits piece;
+    trace_piece(accel, rays.part(begin, count), code, piece);
+    for (std::size_t i = 0; i < count; ++i)
+      counts[begin + i] = static_cast<std::uint32_t>(piece.begin[i + 1] - piece.begin[i]);
+  });
+}
+
+void count_hits(const Accel& accel, std::span<const Ray> rays, std::span<std::uint32_t> counts, Isa isa) {
+  RayBatch columns;
+  count_hits(accel, to_columns(rays, columns), counts, isa);
+}
+
+}  // namespace oktett

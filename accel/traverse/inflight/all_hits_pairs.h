@@ -1,0 +1,279 @@
+#pragma once
+/// \file Every hit of a batch of rays. No hit shortens a ray here, so the order of the steps does not matter:
+/// they are pairs of a ray and a node, then of a ray and a block of triangles, then of a ray and a triangle.
+/// Each kind of pair waits in a list of its own, and a list is worked off in a loop whose steps are
+/// independent of each other.
+
+#include "accel/isa/trace_query.h"
+#include "accel/traverse/all_hits.h"
+#include "accel/traverse/inflight/decide_pairs.h"
+#include "accel/traverse/inflight/ray_chunk.h"
+#include "accel/traverse/prefetch.h"
+
+namespace oktett {
+
+/// A ray as its steps need it: the first 64 bytes for a node, the others for triangles.
+struct alignas(64) PairedRay {
+  float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
+  float tmin, limit;                          ///< limit = tmax + slack
+  std::uint32_t near_row[3];                  ///< offset in a node's planes of the near ones, per axis
+  float padding[2];
+  float o[3], d[3], tmax;
+  float weight_scale, det_scale;  ///< see guess_triangle
+  float more_padding[7];
+};
+static_assert(sizeof(PairedRay) == 128);
+
+/// Traces a batch of rays; see the top of the file.
+template <class A>
+class AllHitsTraversal {
+ public:
+  AllHitsTraversal(const Accel& accel, const RaySpan& rays, RayHitList& out)
+      : accel_(accel), rays_(rays), out_(out), extent_(box_extent(accel.bounds)) {}
+
+  void run() {
+    for (first_ = 0; first_ < rays_.size; first_ += kGroup) {
+      set_group();
+      while (nodes_.size > 0) {
+        node_round();
+        if (leaves_.size > kLeafRoom - 8 * kRound) leaf_round();
+      }
+      leaf_round();
+      decide_round(0);
+    }
+    flush();
+  }
+
+ private:
+  static constexpr int kBlock = TriangleBlock::kSize;
+  static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
+  /// Rays whose blocks of triangles are classified together.
+  static constexpr int kLeafRays = std::is_same_v<A, Avx512Isa> ? 2 : 1;
+  /// Rays that are in the lists at the same time.
+  static constexpr int kGroup = 256;
+  /// Nodes visited in one round: the last ones in the list. Their children are one level deeper and follow in
+  /// the list, so it never holds more than 8 * kRound nodes of one level.
+  static constexpr int kRound = 32;
+  static constexpr int kNodeRoom = kGroup + 8 * kRound * kMaxDepth + 8;
+  static constexpr int kLeafRoom = 1024;
+  static constexpr int kTriangleRoom = 512;
+  static constexpr int kHitRoom = 256;
+
+  /// Pairs of a ray of the group and a node, a block (as NodeRef::bits) or a triangle (block *
+  /// TriangleBlock::kSize + lane). Stores of eight or sixteen lanes may overwrite what follows the last pair.
+  template <int kRoom>
+  struct Pairs {
+    int size = 0;
+    std::uint32_t ray[kRoom + 16], what[kRoom + 16];
+  };
+
+  /// The next rays of the batch, at the root of the tree.
+  void set_group() {
+    const std::size_t count = std::min<std::size_t>(kGroup, rays_.size - first_);
+    for (std::size_t b = 0; b < count; b += kChunk) {
+      chunk_.set(rays_, first_ + b, extent_);
+      for (std::size_t i = 0; i < std::min<std::size_t>(kChunk, count - b); ++i) {
+        const auto ray = static_cast<std::uint32_t>(b + i);
+        if ((chunk_.tame >> i & 1) == 0 || !accel_.unbounded.empty()) {
+          trace_alone(ray);
+        } else {
+          set_ray(group_[ray], static_cast<int>(i));
+          if (accel_.root.is_leaf())
+            at_leaf(ray, accel_.root);
+          else
+            push(nodes_, ray, accel_.root.bits());
+        }
+      }
+    }
+  }
+
+  OKTETT_INLINE void set_ray(PairedRay& ray, int i) const {
+    const RayChunk<kChunk, A>& c = chunk_;
+    for (int k = 0; k < 3; ++k) {
+      ray.inv[k] = c.inv[k][i], ray.near_shift[k] = c.near_shift[k][i], ray.far_shift[k] = c.far_shift[k][i];
+      ray.near_row[k] = static_cast<std::uint32_t>(BvhNode::kWidth) *
+                        (2 * static_cast<std::uint32_t>(k) + (c.negative[k] >> i & 1));
+      ray.o[k] = c.o[k][i], ray.d[k] = c.d[k][i];
+    }
+    ray.tmin = c.tmin[i], ray.tmax = c.tmax[i], ray.limit = c.tmax[i] + c.slack[i];
+    ray.weight_scale = c.d_max[i] * kWeightError, ray.det_scale = c.d_max[i] * kVolumeError;
+  }
+
+  template <int kRoom>
+  OKTETT_INLINE static void push(Pairs<kRoom>& pairs, std::uint32_t ray, std::uint32_t what) {
+    pairs.ray[pairs.size] = ray, pairs.what[pairs.size++] = what;
+  }
+
+  /// Appends the children of a node in `lanes`, with the ray.
+  template <int kRoom>
+  OKTETT_INLINE static void push_children(Pairs<kRoom>& pairs, unsigned lanes, std::uint32_t ray,
+                                          const BvhNode& node) {
+    using I = Simd<std::int32_t, BvhNode::kWidth, A>;
+    I(static_cast<std::int32_t>(ray)).store(reinterpret_cast<std::int32_t*>(pairs.ray + pairs.size));
+    pairs.size += store_compact<A>(lanes, node.child_bits(), pairs.what + pairs.size);
+  }
+
+  void node_round() {
+    std::uint32_t ray_of[kRound], node_of[kRound];
+    const int count = std::min(nodes_.size, kRound);
+    nodes_.size -= count;
+    std::copy_n(nodes_.ray + nodes_.size, count, ray_of);
+    std::copy_n(nodes_.what + nodes_.size, count, node_of);
+    if (fetch_)
+      for (int i = 0; i < count; ++i) bytes_.prefetch(NodeRef::from_bits(node_of[i]));
+    for (int i = 0; i < count; ++i) {
+      const BvhNode& node = accel_.nodes[node_of[i]];
+      const PairedRay& ray = group_[ray_of[i]];
+      using F = Simd<float, BvhNode::kWidth, A>;
+      using I = Simd<std::int32_t, BvhNode::kWidth, A>;
+      const auto each = [](const float(&v)[3]) { return std::array{F(v[0]), F(v[1]), F(v[2])}; };
+      F near;
+      const unsigned met = fused_slab<A>(node, ray.near_row, each(ray.inv), each(ray.near_shift),
+                                         each(ray.far_shift), F(ray.tmin), F(ray.limit), near);
+      // The top bit of a child tells a leaf from a node, the one below it a leaf of the table from a block.
+      const I child = I::load(reinterpret_cast<const std::int32_t*>(node.child_bits()));
+      const unsigned leaf = bits(child < I(0));
+      push_children(nodes_, met & ~leaf, ray_of[i], node);
+      unsigned blocks = met & leaf;
+      if (has_table_) {
+        const unsigned table = blocks & bits(I(static_cast<std::int32_t>(0xc0000000u) - 1) < child);
+        blocks &= ~table;
+        for (unsigned rest = table; rest != 0; rest &= rest - 1)
+          at_leaf(ray_of[i], node.child[__builtin_ctz(rest)]);
+      }
+      push_children(leaves_, blocks, ray_of[i], node);
+    }
+  }
+
+  void leaf_round() {
+    int at = 0;
+    for (; leaves_.size - at >= kLeafRays; at += kLeafRays) leaf_step<kLeafRays>(at);
+    for (; at < leaves_.size; ++at) leaf_step<1>(at);
+    leaves_.size = 0;
+  }
+
+  /// N pairs of a ray and a block from position `at` on: notes the triangles that the filter keeps.
+  template <int N>
+  OKTETT_INLINE void leaf_step(int at) {
+    using B = Simd<float, kBlock, A>;
+    using F = Simd<float, N * kBlock, A>;
+    const auto each = [&](auto&& f) {
+      if constexpr (N == 1)
+        return f(0);
+      else
+        return concat(f(0), f(1));
+    };
+    const auto ray = [&](int j) -> const PairedRay& { return group_[leaves_.ray[at + j]]; };
+    const auto ref = [&](int j) { return NodeRef::from_bits(leaves_.what[at + j]); };
+    const auto number = [&](auto&& f) { return each([&](int j) { return B(f(ray(j))); }); };
+    const auto vector = [&](auto&& v) {
+      return Vec3<F>{number([&](const PairedRay& r) { return v(r)[0]; }),
+                     number([&](const PairedRay& r) { return v(r)[1]; }),
+                     number([&](const PairedRay& r) { return v(r)[2]; })};
+    };
+    const TriangleBlock* blocks = accel_.blocks.data();
+    const auto corner = [&](int c) {
+      const auto axis = [&](int k) {
+        return each([&](int j) { return B::load(blocks[ref(j).block()].v[c][k]); });
+      };
+      return Vec3<F>{axis(0), axis(1), axis(2)};
+    };
+    const auto guess = guess_triangle(vector([](const PairedRay& r) { return r.o; }),
+                                      vector([](const PairedRay& r) { return r.d; }),
+                                      number([](const PairedRay& r) { return r.weight_scale; }),
+                                      number([](const PairedRay& r) { return r.det_scale; }),
+                                      filter_triangle(TriangleLanes<F>{corner(0), corner(1), corner(2)}));
+    const unsigned maybe = bits(maybe_hit(guess, number([](const PairedRay& r) { return r.tmax; })));
+    for (int j = 0; j < N; ++j) {
+      const unsigned present = (2u << (ref(j).triangle_count() - 1)) - 1;
+      using I = Simd<std::int32_t, kBlock, A>;
+      I(static_cast<std::int32_t>(leaves_.ray[at + j]))
+          .store(reinterpret_cast<std::int32_t*>(triangles_.ray + triangles_.size));
+      triangles_.size += store_set_bits<A>(
+          maybe >> (j * kBlock) & present, static_cast<std::int32_t>(ref(j).block() * kBlock),
+          reinterpret_cast<std::int32_t*>(triangles_.what + triangles_.size));
+    }
+    if (triangles_.size > kTriangleRoom - 2 * kBlock) decide_round(kChunk - 1);
+  }
+
+  /// Decides pairs of a ray and a triangle until no more than `rest` are left.
+  OKTETT_NOINLINE void decide_round(int rest) {
+    using C = Simd<float, kChunk, A>;
+    using I = Simd<std::int32_t, kChunk, A>;
+    while (triangles_.size > rest) {
+      const int count = std::min(triangles_.size, kChunk), at = triangles_.size - count;
+      std::uint32_t* ray = triangles_.ray + at;
+      std::uint32_t* triangle = triangles_.what + at;
+      for (int i = count; i < kChunk; ++i) ray[i] = ray[0], triangle[i] = triangle[0];
+      constexpr auto kFloats = static_cast<std::int32_t>(sizeof(PairedRay) / sizeof(float));
+      const I index = I::load(reinterpret_cast<const std::int32_t*>(ray)) * I(kFloats);
+      const auto number = [&](const float& first) { return gather(&first, index); };
+      const PairedRay& g = group_[0];
+      const RayLanes<C> rays{{number(g.o[0]), number(g.o[1]), number(g.o[2])},
+                             {number(g.d[0]), number(g.d[1]), number(g.d[2])},
+                             number(g.tmin),
+                             number(g.tmax)};
+      HitLanes<C> h;
+      unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), triangle, h);
+      met &= (2u << (count - 1)) - 1;
+      alignas(64) float t[kChunk], u[kChunk], v[kChunk];
+      h.t.store(t), h.u.store(u), h.v.store(v);
+      for (; met != 0; met &= met - 1) {
+        const int i = __builtin_ctz(met);
+        const std::uint32_t item = accel_.blocks[triangle[i] / kBlock].item[triangle[i] % kBlock];
+        add({{{t[i], u[i], v[i], item, kNoId}, 0.0f}, static_cast<std::uint32_t>(first_) + ray[i]});
+      }
+      triangles_.size = at;
+    }
+  }
+
+  OKTETT_INLINE void add(const RayHit& hit) {
+    hits_[hit_count_++] = hit;
+    if (hit_count_ == kHitRoom) flush();
+  }
+  OKTETT_NOINLINE void flush() {
+    out_.append(hits_, hit_count_);
+    hit_count_ = 0;
+  }
+
+  /// A ray of the group at a leaf.
+  OKTETT_NOINLINE void at_leaf(std::uint32_t ray, NodeRef ref) {
+    if (ref.is_none()) return;
+    if (ref.is_triangles()) return push(leaves_, ray, ref.bits());
+    RayState<1, A> state;
+    state.set(rays_[first_ + ray], accel_.bounds);
+    HitList& found = out_.scratch();
+    collect_leaf(accel_, accel_.leaves[ref.table_index()], state, found);
+    add_found(ray, found);
+  }
+
+  /// A ray that is not valid, whose numbers do not suit the fast arithmetic, or among unbounded shapes.
+  OKTETT_NOINLINE void trace_alone(std::uint32_t ray) {
+    HitList& found = out_.scratch();
+    trace_all_hits<A>(accel_, rays_[first_ + ray], found);
+    add_found(ray, found);
+  }
+
+  void add_found(std::uint32_t ray, HitList& found) {
+    for (std::size_t i = 0; i < found.size(); ++i)
+      add({found[i], static_cast<std::uint32_t>(first_) + ray});
+    found.shrink(0);
+  }
+
+  const Accel& accel_;
+  const RaySpan rays_;
+  RayHitList& out_;
+  const float extent_;
+  const TreeBytes bytes_{accel_};
+  const bool fetch_ = tree_bytes(accel_) > kPrefetchBytes, has_table_ = !accel_.leaves.empty();
+  std::size_t first_ = 0;  ///< of the group, in the batch
+  RayChunk<kChunk, A> chunk_;
+  Pairs<kNodeRoom> nodes_;
+  Pairs<kLeafRoom> leaves_;
+  Pairs<kTriangleRoom> triangles_;
+  int hit_count_ = 0;
+  RayHit hits_[kHitRoom];
+  PairedRay group_[kGroup];
+};
+
+}  // namespace oktett
