@@ -145,14 +145,13 @@ static void trace_piece(const Accel& accel, const RaySpan& rays, const TraceCode
 
 void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa) {
   const TraceCode& code = trace_code(isa);
-  std::vector<PieceOfHits> pieces((rays.size + kPieceRays - 1) / kPieceRays);
-  if (pieces.size() == 1) {
-    // The memory of the lists is used again from call to call.
-    pieces[0] = {std::move(lists.hits), std::move(lists.begin)};
-    trace_piece(accel, rays, code, pieces[0]);
-    lists.hits = std::move(pieces[0].hits), lists.begin = std::move(pieces[0].begin);
+  if (rays.size <= kPieceRays) {
+    PieceOfHits piece{std::move(lists.hits), std::move(lists.begin)};
+    trace_piece(accel, rays, code, piece);
+    lists.hits = std::move(piece.hits), lists.begin = std::move(piece.begin);
     return;
   }
+  std::vector<PieceOfHits> pieces((rays.size + kPieceRays - 1) / kPieceRays);
   for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
     trace_piece(accel, rays.part(begin, count), code, pieces[begin / kPieceRays]);
   });

@@ -20,11 +20,11 @@ inline constexpr std::size_t kPieceRays = 4096;
 template <class Trace>
 void for_each_piece(std::size_t size, Trace&& trace) {
   if (size <= kPieceRays) return trace(std::size_t{0}, size);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, (size + kPieceRays - 1) / kPieceRays), [&](const auto& r) {
-        for (std::size_t k = r.begin(); k < r.end(); ++k)
-          trace(k * kPieceRays, std::min(kPieceRays, size - k * kPieceRays));
-      });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (size + kPieceRays - 1) / kPieceRays),
+                    [&](const auto& r) {
+                      for (std::size_t k = r.begin(); k < r.end(); ++k)
+                        trace(k * kPieceRays, std::min(kPieceRays, size - k * kPieceRays));
+                    });
 }
 
 inline void require_same_size(std::size_t rays, std::size_t answers, const char* query) {

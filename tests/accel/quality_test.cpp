@@ -215,13 +215,17 @@ TEST(Quality, AllHitsAreTheSame) {
     const auto plain_twice = nested(plain), cut_twice = nested(cut);
     const RayBatch rays = random_rays(500, 8);
     std::size_t total = 0;
+    HitLists lists, twice_lists;
+    all_hits(*cut, rays, lists), all_hits(*cut_twice, rays, twice_lists);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       std::vector<Hit> a, b;
       all_hits(*plain, rays[i], a, default_isa()), all_hits(*cut, rays[i], b, default_isa());
       ASSERT_EQ(a, b) << i;
+      ASSERT_TRUE(std::ranges::equal(a, lists.of_ray(i))) << i;
       total += a.size();
       all_hits(*plain_twice, rays[i], a, default_isa()), all_hits(*cut_twice, rays[i], b, default_isa());
       ASSERT_EQ(a, b) << i;
+      ASSERT_TRUE(std::ranges::equal(a, twice_lists.of_ray(i))) << i;
     }
     EXPECT_GT(total, 300u);
   }

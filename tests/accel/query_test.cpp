@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -92,6 +93,82 @@ TEST(Query, AllWaysToAskGiveTheSameBits) {
   EXPECT_GT(hit_count, 1000u);
 }
 
+/// The lists of a batch, in columns and as structures, against those of single rays.
+void expect_same_lists(const Accel& accel, const std::vector<Ray>& rays, Isa isa) {
+  RayBatch columns;
+  for (const Ray& ray : rays) columns.push_back(ray);
+  // What the lists hold from an earlier call must not matter.
+  HitLists lists{{{1, 2, 3, 4, 5}}, {0, 1}}, structure_lists;
+  std::vector<std::uint32_t> counts(rays.size(), 77), structure_counts(rays.size(), 77);
+  all_hits(accel, columns, lists, isa);
+  all_hits(accel, rays, structure_lists, isa);
+  count_hits(accel, columns, counts, isa);
+  count_hits(accel, rays, structure_counts, isa);
+  ASSERT_EQ(lists.begin.size(), rays.size() + 1);
+  ASSERT_EQ(lists.begin.back(), lists.hits.size());
+  ASSERT_EQ(lists.begin, structure_lists.begin);
+  ASSERT_EQ(lists.hits, structure_lists.hits);
+  std::vector<Hit> one;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    all_hits(accel, rays[i], one, Isa::scalar);
+    ASSERT_TRUE(std::ranges::equal(one, lists.of_ray(i))) << to_string(isa) << ", ray " << i;
+    ASSERT_EQ(counts[i], one.size());
+    ASSERT_EQ(structure_counts[i], one.size());
+  }
+}
+
+// For batches around the sizes of the groups and pieces in which they are traced.
+TEST(Query, EveryHitOfABatchIsThatOfSingleRays) {
+  const TriangleMesh mesh = sheet();
+  const auto mixed = mixed_scene(mesh), meshes = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
+  std::vector<Geometry> with_plane = {{MeshGeometry{&mesh}, {}, kNoId}, {PlaneShape{}, {}, kNoId}};
+  const auto unbounded = build_accel(with_plane);
+  for (const Isa isa : available_isas())
+    for (const std::size_t count : {0, 1, 2, 15, 255, 256, 257, 4096, 4097, 9001}) {
+      expect_same_lists(*meshes, mixed_rays(count), isa);
+      if (count > 4096) continue;
+      expect_same_lists(*mixed, mixed_rays(count), isa);
+      expect_same_lists(*unbounded, mixed_rays(count), isa);
+    }
+}
+
+// Trees whose root is a leaf, or that hold nothing.
+TEST(Query, EveryHitInTheSmallestTrees) {
+  TriangleMesh one;
+  for (const Vec3f& p : {Vec3f{-2, 0, -2}, Vec3f{2, 0, -2}, Vec3f{0, 0, 3}}) one.positions.push_back(p);
+  for (std::uint32_t c = 0; c < 3; ++c) one.indices.push_back(c);
+  const auto triangle = build_accel({{MeshGeometry{&one}, {}, kNoId}});
+  const auto sphere = build_accel({{SpheresShape{{{{0, 1, 0}, 1}}}, {}, kNoId}});
+  for (const Isa isa : available_isas())
+    for (const auto& accel : {triangle, sphere, build_accel({})})
+      expect_same_lists(*accel, mixed_rays(300), isa);
+}
+
+// A ray in the plane of many triangles meets thousands of boxes, and one through a stack of sheets thousands
+// of triangles: the lists of pairs must have room.
+TEST(Query, EveryHitAmongThousands) {
+  TriangleMesh stack;
+  for (std::uint32_t k = 0; k < 5000; ++k) {
+    const float y = 0.001f * static_cast<float>(k);
+    for (const Vec3f& p : {Vec3f{-1, y, -1}, Vec3f{1, y, -1}, Vec3f{0, y, 1}}) stack.positions.push_back(p);
+    for (std::uint32_t c = 0; c < 3; ++c) stack.indices.push_back(3 * k + c);
+  }
+  const auto accel = build_accel({{MeshGeometry{&stack}, {}, kNoId}});
+  std::vector<Ray> rays;
+  for (int i = 0; i < 600; ++i) {
+    const float x = 0.0005f * static_cast<float>(i);
+    rays.push_back(i % 3 == 0 ? Ray{{-5, 2, x}, 0, {1, 0, 0}, kInf} : Ray{{x, -1, 0}, 0, {0, 1, 0}, kInf});
+  }
+  std::vector<std::uint32_t> counts(rays.size());
+  count_hits(*accel, rays, counts);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (i % 3 != 0) {
+      ASSERT_EQ(counts[i], 5000u) << i;
+    }
+  }
+  for (const Isa isa : available_isas()) expect_same_lists(*accel, {rays.begin(), rays.begin() + 40}, isa);
+}
+
 TEST(Query, DefaultInstructionSetGivesTheSameBits) {
   const TriangleMesh mesh = sheet();
   const auto accel = mixed_scene(mesh);
@@ -117,6 +194,9 @@ TEST(Query, SizesThatDifferAreErrors) {
     EXPECT_THROW(closest_hit(*accel, columns, hit_columns), Error);
     EXPECT_THROW(any_hit(*accel, rays, occluded), Error);
     EXPECT_THROW(any_hit(*accel, columns, occluded), Error);
+    std::vector<std::uint32_t> counts(room);
+    EXPECT_THROW(count_hits(*accel, rays, counts), Error);
+    EXPECT_THROW(count_hits(*accel, columns, counts), Error);
   }
   try {
     std::vector<Hit> hits(4);

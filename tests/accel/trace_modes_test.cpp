@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <string>
@@ -77,9 +78,12 @@ int expect_same(const Accel& plain, const Accel& other, const RayBatch& rays, co
       }
     }
     std::vector<Hit> a, b;
+    HitLists lists;
+    all_hits(other, rays, lists, isa);
     for (std::size_t i = 0; i < rays.size(); i += 7) {
       all_hits(plain, rays[i], a, Isa::scalar), all_hits(other, rays[i], b, isa);
       EXPECT_EQ(a, b) << what << ' ' << to_string(isa) << " ray " << i;
+      EXPECT_TRUE(std::ranges::equal(a, lists.of_ray(i))) << what << ' ' << to_string(isa) << " ray " << i;
     }
   }
   return found;

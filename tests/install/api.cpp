@@ -35,6 +35,10 @@ static_assert(has<void(const Accel&, const RaySpan&, Bytes, Isa)>(any_hit));
 static_assert(has<void(const Accel&, std::span<const Ray>, Bytes, Isa)>(any_hit));
 static_assert(has<bool(const Accel&, const Ray&, Isa)>(any_hit));
 static_assert(has<void(const Accel&, const Ray&, std::vector<Hit>&, Isa)>(all_hits));
+static_assert(has<void(const Accel&, const RaySpan&, HitLists&, Isa)>(all_hits));
+static_assert(has<void(const Accel&, std::span<const Ray>, HitLists&, Isa)>(all_hits));
+static_assert(has<void(const Accel&, const RaySpan&, std::span<std::uint32_t>, Isa)>(count_hits));
+static_assert(has<void(const Accel&, std::span<const Ray>, std::span<std::uint32_t>, Isa)>(count_hits));
 static_assert(has<SurfaceInteraction(const Accel&, const Ray&, const Hit&)>(surface_interaction));
 static_assert(has<SurfaceInteraction(const Accel&, const Hit&)>(identify));
 static_assert(has<void(const Accel&, const RaySpan&, const HitSpan&, std::span<const std::uint32_t>,

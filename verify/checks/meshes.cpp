@@ -100,6 +100,7 @@ class ChunkCheck {
     for (std::size_t i = 0; i < count; ++i) tally_.hits += reference_[i].valid();
     for (const Isa isa : isas) {
       for (const TraceMode mode : kModes) compare(isa, mode);
+      all_hits(*subject_.accel, rays_, lists_, isa);
       for (std::size_t i = 0; i < count; ++i) check_crossings(i, isa);
     }
     return tally_;
@@ -123,6 +124,9 @@ class ChunkCheck {
         crossings_.empty() ? !closest.valid() : closest.valid() && same_bits(crossings_[0], closest);
     if (!agrees)
       complain(tally_.inconsistent, i, fmt::format("all_hits of {} against closest_hit", to_string(isa)));
+    if (!std::ranges::equal(crossings_, lists_.of_ray(i), same_bits))
+      complain(tally_.inconsistent, i,
+               fmt::format("all_hits of {}: a batch against one ray", to_string(isa)));
     if (!subject_.closed || max_component(abs(rays_[i].direction)) == 0) return;
     const bool inside = views_[i]->winding % 2 != 0;
     if (inside && !closest.valid()) complain(tally_.leaks, i, "leak");
@@ -145,6 +149,7 @@ class ChunkCheck {
   std::vector<const Viewpoint*> views_;
   HitBatch reference_;
   std::vector<Hit> crossings_;
+  HitLists lists_;
 };
 
 }  // namespace

@@ -53,7 +53,7 @@ class AllHitsTraversal {
   static constexpr int kGroup = 256;
   /// Nodes visited in one round: the last ones in the list. Their children are one level deeper and follow in
   /// the list, so it never holds more than 8 * kRound nodes of one level.
-  static constexpr int kRound = 32;
+  static constexpr int kRound = 64;
   static constexpr int kNodeRoom = kGroup + 8 * kRound * kMaxDepth + 8;
   static constexpr int kLeafRoom = 1024;
   static constexpr int kTriangleRoom = 512;
@@ -78,10 +78,12 @@ class AllHitsTraversal {
           trace_alone(ray);
         } else {
           set_ray(group_[ray], static_cast<int>(i));
-          if (accel_.root.is_leaf())
-            at_leaf(ray, accel_.root);
-          else
+          if (accel_.root.is_triangles())
+            push(leaves_, ray, accel_.root.bits());
+          else if (!accel_.root.is_leaf())
             push(nodes_, ray, accel_.root.bits());
+          else if (!accel_.root.is_none())
+            at_table_leaf(ray, accel_.root);
         }
       }
     }
@@ -104,45 +106,63 @@ class AllHitsTraversal {
     pairs.ray[pairs.size] = ray, pairs.what[pairs.size++] = what;
   }
 
-  /// Appends the children of a node in `lanes`, with the ray.
-  template <int kRoom>
-  OKTETT_INLINE static void push_children(Pairs<kRoom>& pairs, unsigned lanes, std::uint32_t ray,
-                                          const BvhNode& node) {
-    using I = Simd<std::int32_t, BvhNode::kWidth, A>;
-    I(static_cast<std::int32_t>(ray)).store(reinterpret_cast<std::int32_t*>(pairs.ray + pairs.size));
-    pairs.size += store_compact<A>(lanes, node.child_bits(), pairs.what + pairs.size);
-  }
+  /// The end of a list while a round appends to it, kept in registers.
+  struct Tail {
+    std::uint32_t *ray, *what;
+
+    template <int kRoom>
+    OKTETT_INLINE explicit Tail(Pairs<kRoom>& p) : ray(p.ray + p.size), what(p.what + p.size) {}
+
+    /// Appends the children of `node` in `lanes`, with ray `of`.
+    OKTETT_INLINE void push(unsigned lanes, std::uint32_t of, const BvhNode& node) {
+      using I = Simd<std::int32_t, BvhNode::kWidth, A>;
+      I(static_cast<std::int32_t>(of)).store(reinterpret_cast<std::int32_t*>(ray));
+      const int count = store_compact<A>(lanes, node.child_bits(), what);
+      ray += count, what += count;
+    }
+  };
 
   void node_round() {
+    using F = Simd<float, BvhNode::kWidth, A>;
+    using I = Simd<std::int32_t, BvhNode::kWidth, A>;
+    // The round overwrites the end of the list, so it works on a copy, of whole vectors.
     std::uint32_t ray_of[kRound], node_of[kRound];
     const int count = std::min(nodes_.size, kRound);
     nodes_.size -= count;
-    std::copy_n(nodes_.ray + nodes_.size, count, ray_of);
-    std::copy_n(nodes_.what + nodes_.size, count, node_of);
+    for (int i = 0; i < count; i += I::kWidth) {
+      const auto copy = [&](const std::uint32_t* from, std::uint32_t* to) {
+        I::load(reinterpret_cast<const std::int32_t*>(from) + nodes_.size + i)
+            .store(reinterpret_cast<std::int32_t*>(to) + i);
+      };
+      copy(nodes_.ray, ray_of), copy(nodes_.what, node_of);
+    }
     if (fetch_)
       for (int i = 0; i < count; ++i) bytes_.prefetch(NodeRef::from_bits(node_of[i]));
+    const BvhNode* nodes = accel_.nodes.data();
+    const bool has_table = has_table_;
+    Tail inner(nodes_), leaf(leaves_);
     for (int i = 0; i < count; ++i) {
-      const BvhNode& node = accel_.nodes[node_of[i]];
+      const BvhNode& node = nodes[node_of[i]];
       const PairedRay& ray = group_[ray_of[i]];
-      using F = Simd<float, BvhNode::kWidth, A>;
-      using I = Simd<std::int32_t, BvhNode::kWidth, A>;
       const auto each = [](const float(&v)[3]) { return std::array{F(v[0]), F(v[1]), F(v[2])}; };
       F near;
       const unsigned met = fused_slab<A>(node, ray.near_row, each(ray.inv), each(ray.near_shift),
                                          each(ray.far_shift), F(ray.tmin), F(ray.limit), near);
       // The top bit of a child tells a leaf from a node, the one below it a leaf of the table from a block.
       const I child = I::load(reinterpret_cast<const std::int32_t*>(node.child_bits()));
-      const unsigned leaf = bits(child < I(0));
-      push_children(nodes_, met & ~leaf, ray_of[i], node);
-      unsigned blocks = met & leaf;
-      if (has_table_) {
-        const unsigned table = blocks & bits(I(static_cast<std::int32_t>(0xc0000000u) - 1) < child);
+      const unsigned is_leaf = bits(child < I(0));
+      unsigned blocks = met & is_leaf;
+      if (OKTETT_UNLIKELY(has_table)) {
+        const unsigned table = blocks & bits(I(static_cast<std::int32_t>(0xbfffffffu)) < child);
         blocks &= ~table;
         for (unsigned rest = table; rest != 0; rest &= rest - 1)
-          at_leaf(ray_of[i], node.child[__builtin_ctz(rest)]);
+          at_table_leaf(ray_of[i], node.child[__builtin_ctz(rest)]);
       }
-      push_children(leaves_, blocks, ray_of[i], node);
+      inner.push(met & ~is_leaf, ray_of[i], node);
+      leaf.push(blocks, ray_of[i], node);
     }
+    nodes_.size = static_cast<int>(inner.ray - nodes_.ray);
+    leaves_.size = static_cast<int>(leaf.ray - leaves_.ray);
   }
 
   void leaf_round() {
@@ -236,10 +256,8 @@ class AllHitsTraversal {
     hit_count_ = 0;
   }
 
-  /// A ray of the group at a leaf.
-  OKTETT_NOINLINE void at_leaf(std::uint32_t ray, NodeRef ref) {
-    if (ref.is_none()) return;
-    if (ref.is_triangles()) return push(leaves_, ray, ref.bits());
+  /// A ray of the group at a leaf of the table.
+  OKTETT_NOINLINE void at_table_leaf(std::uint32_t ray, NodeRef ref) {
     RayState<1, A> state;
     state.set(rays_[first_ + ray], accel_.bounds);
     HitList& found = out_.scratch();
@@ -255,8 +273,7 @@ class AllHitsTraversal {
   }
 
   void add_found(std::uint32_t ray, HitList& found) {
-    for (std::size_t i = 0; i < found.size(); ++i)
-      add({found[i], static_cast<std::uint32_t>(first_) + ray});
+    for (std::size_t i = 0; i < found.size(); ++i) add({found[i], static_cast<std::uint32_t>(first_) + ray});
     found.shrink(0);
   }
 
