@@ -4,7 +4,6 @@
 /// Each kind of pair waits in a list of its own, and a list is worked off in a loop whose steps are
 /// independent of each other.
 
-#include "accel/isa/trace_query.h"
 #include "accel/traverse/all_hits.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 #include "accel/traverse/inflight/ray_chunk.h"
@@ -267,8 +266,10 @@ class AllHitsTraversal {
 
   /// A ray that is not valid, whose numbers do not suit the fast arithmetic, or among unbounded shapes.
   OKTETT_NOINLINE void trace_alone(std::uint32_t ray) {
+    RayState<1, A> state;
+    if (state.set(rays_[first_ + ray], accel_.bounds) == 0) return;
     HitList& found = out_.scratch();
-    trace_all_hits<A>(accel_, rays_[first_ + ray], found);
+    collect(accel_, state, found);
     add_found(ray, found);
   }
 
