@@ -1,6 +1,7 @@
 #pragma once
 /// \file What a traversal looks for, and where its results go.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -21,6 +22,14 @@ struct HitSink<Query::closest> {
   HitSpan hits;
 
   void set(std::size_t i, const Hit& h) const { hits.set(i, h); }
+  /// No hits for `count` rays from `begin` on.
+  void clear(std::size_t begin, std::size_t count) const {
+    const Hit none;
+    std::fill_n(hits.t + begin, count, none.t);
+    std::fill_n(hits.u + begin, count, none.u), std::fill_n(hits.v + begin, count, none.v);
+    std::fill_n(hits.item + begin, count, none.item);
+    std::fill_n(hits.instance + begin, count, none.instance);
+  }
   HitSink part(std::size_t begin, std::size_t count) const { return {hits.part(begin, count)}; }
 };
 
@@ -29,6 +38,9 @@ struct HitSink<Query::any> {
   std::uint8_t* occluded;
 
   void set(std::size_t i, const Hit& h) const { occluded[i] = h.valid(); }
+  void clear(std::size_t begin, std::size_t count) const {
+    std::fill_n(occluded + begin, count, std::uint8_t{0});
+  }
   HitSink part(std::size_t begin, std::size_t) const { return {occluded + begin}; }
 };
 

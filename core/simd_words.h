@@ -7,39 +7,48 @@
 
 namespace oktett {
 
-/// The 16 numbers from `p` on.
+/// Number k of the result is p[k ^ flip], flip < 16.
 template <class A>
-OKTETT_INLINE Simd<float, 16, A> load_words(const std::uint16_t* p) {
+OKTETT_INLINE Simd<float, 16, A> load_words(const std::uint16_t* p, unsigned flip = 0) {
 #if defined(OKTETT_COMPILED_SSE42)
   if constexpr (!std::is_same_v<A, ScalarIsa>) {
     Simd<float, 16, A> r;
-    const auto* words = reinterpret_cast<const __m128i*>(p);
 #if defined(OKTETT_COMPILED_AVX512)
     if constexpr (r.kParts == 1) {
-      r.part[0] =
-          _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+      const __m256i order =
+          _mm256_xor_si256(_mm256_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+                           _mm256_set1_epi16(static_cast<short>(flip)));
+      const __m256i words =
+          _mm256_permutexvar_epi16(order, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p)));
+      r.part[0] = _mm512_cvtepi32_ps(_mm512_cvtepu16_epi32(words));
       return r;
     }
 #endif
+    // Halves change places with bit 3, bytes of a half do so in pairs with the others.
+    const __m128i order = _mm_xor_si128(_mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+                                        _mm_set1_epi8(static_cast<char>(2 * (flip & 7))));
+    const auto eight = [&](unsigned half) {
+      const auto* words = reinterpret_cast<const __m128i*>(p) + (half ^ flip >> 3);
+      return _mm_shuffle_epi8(_mm_loadu_si128(words), order);
+    };
 #if defined(OKTETT_COMPILED_AVX2)
     if constexpr (r.kParts == 2) {
-      for (int i = 0; i < 2; ++i)
-        r.part[i] = _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(_mm_loadu_si128(words + i)));
+      for (unsigned i = 0; i < 2; ++i) r.part[i] = _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(eight(i)));
       return r;
     }
 #endif
     if constexpr (r.kParts == 4) {
-      for (int i = 0; i < 2; ++i) {
-        const __m128i eight = _mm_loadu_si128(words + i);
-        r.part[2 * i] = _mm_cvtepi32_ps(_mm_cvtepu16_epi32(eight));
-        r.part[2 * i + 1] = _mm_cvtepi32_ps(_mm_cvtepu16_epi32(_mm_srli_si128(eight, 8)));
+      for (unsigned i = 0; i < 2; ++i) {
+        const __m128i words = eight(i);
+        r.part[2 * i] = _mm_cvtepi32_ps(_mm_cvtepu16_epi32(words));
+        r.part[2 * i + 1] = _mm_cvtepi32_ps(_mm_cvtepu16_epi32(_mm_srli_si128(words, 8)));
       }
       return r;
     }
   }
 #endif
   alignas(64) float lanes[16];
-  for (int i = 0; i < 16; ++i) lanes[i] = static_cast<float>(p[i]);
+  for (unsigned i = 0; i < 16; ++i) lanes[i] = static_cast<float>(p[i ^ flip]);
   return Simd<float, 16, A>::load(lanes);
 }
 

@@ -141,6 +141,34 @@ void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& 
   catch_up(rays.size);
 }
 
+/// The only leaf of a structure that has but one, of exact surfaces.
+OKTETT_INLINE const LeafEntry* only_exact_leaf(const Accel& accel) {
+  if (!accel.root.is_leaf() || accel.root.is_none() || accel.root.is_triangles()) return nullptr;
+  const LeafEntry& leaf = accel.leaves[accel.root.table_index()];
+  return is_exact(leaf.kind) && accel.unbounded.empty() ? &leaf : nullptr;
+}
+
+/// All rays against a leaf of exact surfaces, as many at once as such surfaces solve.
+template <Query Q, class A>
+void trace_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& rays, const HitSink<Q>& out) {
+  constexpr int W = ExactCode<A>::kLanes;
+  RayState<W, A> state;
+  for (std::size_t b = 0; b < rays.size; b += W) {
+    const auto r = load_span<Simd<float, W, A>>(rays, b);
+    const std::size_t count = std::min<std::size_t>(rays.size - b, W);
+    const unsigned lanes = state.set_rays(r.o, r.d, r.tmin, r.tmax) & ((1u << count) - 1);
+    if (lanes != 0) leaf_exact(accel, leaf, state, lanes);
+    if (count == W)
+      out.clear(b, W);
+    else
+      out.clear(b, count);
+    for (unsigned found = found_lanes(state, lanes); found != 0; found &= found - 1) {
+      const int i = __builtin_ctz(found);
+      out.set(b + static_cast<std::size_t>(i), state.hit(i));
+    }
+  }
+}
+
 template <Query Q, class A>
 void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
   if constexpr (std::is_same_v<A, ScalarIsa>) {
@@ -149,6 +177,8 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
     switch (mode) {
       case TraceMode::automatic:
         if (rays.size <= kAloneRays) return trace_each<Q, A>(accel, rays, out);
+        if (const LeafEntry* leaf = only_exact_leaf(accel))
+          return trace_exact_leaf<Q, A>(accel, *leaf, rays, out);
         if (rays.size < kLeastBeamRays) return trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
         return trace_automatic<Q, A>(accel, rays, out, false);
       case TraceMode::beam:

@@ -1,8 +1,6 @@
 #pragma once
 /// \file Lines that go together over the pyramid of a height field, and which blocks of a node they may meet.
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/simd_words.h"
@@ -10,83 +8,164 @@
 
 namespace oktett {
 
-/// Lines of one quadrant, or a line alone, from where the first of them begins to matter (s = 0) to where the
-/// last one ceases to (s = 1). All numbers are bounds over the lines, and wide enough for what rounding does
-/// to the lines, to the bounds and to what is made of them in floats. x and z count samples in the direction
-/// of the lines: those of lines that go back are negative. y counts steps of the pyramid above its least.
+/// A line in each lane, from where it begins to matter (s = 0) to where it ceases to (s = 1), in floats. All
+/// numbers bound what they stand for, wide enough for what rounding does to the lines, to the bounds and to
+/// what is made of them in floats (docs/numerics.md). x and z count samples in the direction of the line:
+/// those of lines that go back are negative. y counts steps of the pyramid above its least.
+template <int W>
+struct LineBounds {
+  /// x and z at s = 0, how far the line goes, and 1 / way.
+  struct Side {
+    alignas(4 * W) float low[W], high[W], way[W], per[W];
+  };
+  Side x, z;
+  alignas(4 * W) float y_low[W], y_high[W];  ///< at s = 0
+  alignas(4 * W) float rise[W];
+
+  /// Lines from t = `from` to `to`, in lanes where `from` <= `to`.
+  template <class D>
+  OKTETT_INLINE void set(const HeightGrid& grid, const GridLines<D>& g, const D& from, const D& to) {
+    // Hits are floats, and rounding to them must not lose any.
+    const D far(0x1p+127), round(0x1p-23);
+    const D first = max(min(from, far), -far), last = max(min(to, far), -far);
+    const D t0 = first - abs(first) * round, t1 = last + abs(last) * round;
+    // Floats of numbers up to the sides of the field, and doubles of those of the lines.
+    const std::uint32_t most = grid.columns() > grid.rows() ? grid.columns() : grid.rows();
+    const D slack = D(most * 0x1p-19) + (abs(g.o.x) + abs(g.o.z)) * D(0x1p-46);
+    const auto side = [&](const D& o, const D& d, const typename D::M& forward, Side& out) {
+      const D at = o + t0 * d, begin = select(forward, at, -at);
+      to_float(begin - slack).store(out.low), to_float(begin + slack).store(out.high);
+      // What hardly moves is taken to move a little, which is less than the slack.
+      const auto way = to_float(max(abs(d) * (t1 - t0), slack * D(0.25)));
+      way.store(out.way), (Simd<float, W, typename D::Isa>(1.0f) / way).store(out.per);
+    };
+    side(g.o.x, g.d.x, g.forward_x, x), side(g.o.z, g.d.z, g.forward_z, z);
+
+    const D per_step(1 / grid.step());
+    const D begin = ((g.o.y - D(grid.least())) + t0 * g.d.y) * per_step, all = g.d.y * (t1 - t0) * per_step;
+    const D room = D(0.125) + g.noise * per_step + (abs(begin) + abs(all)) * D(0x1p-20);
+    // What floats cannot bound meets everything.
+    const D most_y(0x1p+100);
+    const auto bounded = abs(begin) + room + abs(all) < most_y;
+    to_float(select(bounded, begin - room, -most_y)).store(y_low);
+    to_float(select(bounded, begin + room, most_y)).store(y_high);
+    to_float(select(bounded, all, D(0.0))).store(rise);
+  }
+};
+
+namespace height {
+
+alignas(64) inline constexpr float kColumnOf[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) inline constexpr float kRowOf[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+
+/// s where each of 4 x 4 blocks begins and ends: in each direction that of the first one, and what each next
+/// one adds. Where s < 0 or s > 1 it does not matter by how much.
+template <class F>
+OKTETT_INLINE F begins(float step_x, float first_x, float step_z, float first_z) {
+  return max(max(fast_fma(F::load(kColumnOf), F(step_x), F(first_x)),
+                 fast_fma(F::load(kRowOf), F(step_z), F(first_z))),
+             F(0.0f));
+}
+template <class F>
+OKTETT_INLINE F ends(float step_x, float first_x, float step_z, float first_z) {
+  return min(min(fast_fma(F::load(kColumnOf), F(step_x), F(first_x)),
+                 fast_fma(F::load(kRowOf), F(step_z), F(first_z))),
+             F(1.0f));
+}
+
+/// For each of `lines` the blocks of the last level that it may meet, as HeightBundle::meets has them.
+/// Returns the lines that may meet any.
+template <class A, int W, class M>
+OKTETT_INLINE unsigned meet_root(const HeightGrid& grid, const LineBounds<W>& b, unsigned lines,
+                                 const M& forward_x, const M& forward_z, unsigned (&met)[W]) {
+  using V = Simd<float, W, A>;
+  using F = Simd<float, 16, A>;
+  const HeightGrid::Level& level = grid.level(grid.levels() - 1);
+  struct Side {
+    alignas(4 * W) float step[W], begin[W], end[W];
+  } x, z;
+  const auto side = [&](const typename LineBounds<W>::Side& s, const M& forward, Side& out) {
+    const V size(static_cast<float>(level.side)), per = V::load(s.per);
+    const V near = select(mask_cast<float>(forward), V(0.0f), V(-4.0f) * size);
+    (size * per).store(out.step), ((near - V::load(s.high)) * per).store(out.begin);
+    ((near + size - V::load(s.low)) * per).store(out.end);
+  };
+  side(b.x, forward_x, x), side(b.z, forward_z, z);
+  // No branches: which lines miss, and which go where, cannot be foretold.
+  const unsigned back_x = ~bits(forward_x), back_z = ~bits(forward_z);
+  unsigned any = 0;
+  for (; lines != 0; lines &= lines - 1) {
+    const int k = __builtin_ctz(lines);
+    const F in = begins<F>(x.step[k], x.begin[k], z.step[k], z.begin[k]);
+    const F out = ends<F>(x.step[k], x.end[k], z.step[k], z.end[k]);
+    const F rise(b.rise[k]), y_low(b.y_low[k]), y_high(b.y_high[k]);
+    const F low = min(fast_fma(in, rise, y_low), fast_fma(out, rise, y_low));
+    const F high = max(fast_fma(in, rise, y_high), fast_fma(out, rise, y_high));
+    const HeightRoot& root = grid.root((back_x >> k & 1) + 2 * (back_z >> k & 1));
+    met[k] = bits((in <= out) & (F::load(root.least) <= high) & (low <= F::load(root.greatest)));
+    any |= static_cast<unsigned>(met[k] != 0) << k;
+  }
+  return any;
+}
+
+}  // namespace height
+
+/// Lines of one quadrant, or a line alone: bounds over the lines.
 class HeightBundle {
  public:
   unsigned lanes = 0;
-  bool forward_x = true, forward_z = true;
-  float spread = 0;  ///< how far lines are apart, in samples, at most
 
-  /// `from` and `to` are where the lines begin and cease to matter.
-  template <class D>
-  OKTETT_INLINE void bound(const HeightGrid& grid, const GridLines<D>& g, const D& from, const D& to,
-                           unsigned of, bool is_forward_x, bool is_forward_z) {
-    lanes = of, forward_x = is_forward_x, forward_z = is_forward_z;
-    const auto m = mask_cast<float>(D::M::from_bits(of));
-    // Hits are floats, and rounding to them must not lose any.
-    const D far(0x1p+127);
-    const double first = lowest(m, max(min(from, far), -far)), last = highest(m, max(min(to, far), -far));
-    const double t0 = first - std::abs(first) * 0x1p-23, t1 = last + std::abs(last) * 0x1p-23;
-    // Floats of numbers up to the sides of the field, and doubles of those of the lines.
-    const double slack = std::max(grid.columns(), grid.rows()) * 0x1p-19 +
-                         static_cast<double>(highest(m, abs(g.o.x) + abs(g.o.z))) * 0x1p-46;
-    const auto side = [&](const D& o, const D& d, bool forward, Side& out) {
-      const D at = o + D(t0) * d, begin = forward ? at : -at;
-      // What hardly moves is taken to move a little, which is less than the slack.
-      const D way = max(abs(d) * D(t1 - t0), D(slack * 0.25));
-      out.low = lowest(m, begin - D(slack)), out.high = highest(m, begin + D(slack));
-      const float shortest = lowest(m, way), longest = highest(m, way);
-      out.per_low = 1 / longest, out.per_high = 1 / shortest;
-      return (out.high - out.low) + (longest - shortest);
+  /// Bit 0 and 1 where lines go back in x, bit 2 and 3 where they do so in z.
+  OKTETT_INLINE unsigned flip() const { return flip_; }
+
+  /// Line `k` alone.
+  template <int W>
+  OKTETT_INLINE void set_one(const LineBounds<W>& b, int k, unsigned flip) {
+    const auto side = [&](const typename LineBounds<W>::Side& from) {
+      return Side{from.low[k], from.high[k], from.per[k], from.per[k]};
     };
-    const float x = side(g.o.x, g.d.x, forward_x, x_), z = side(g.o.z, g.d.z, forward_z, z_);
-    spread = x > z ? x : z;
-
-    const D per_step(1 / grid.step());
-    const D begin = ((g.o.y - D(grid.least())) + D(t0) * g.d.y) * per_step,
-            rise = g.d.y * D(t1 - t0) * per_step;
-    const D room = D(0.125) + g.noise * per_step + (abs(begin) + abs(rise)) * D(0x1p-20);
-    y_low_ = lowest(m, begin - room), y_high_ = highest(m, begin + room);
-    rise_low_ = lowest(m, rise), rise_high_ = highest(m, rise);
-    // What floats cannot bound meets everything.
-    constexpr float kMost = 0x1p+100f;
-    if (-kMost < y_low_ && y_high_ < kMost && -kMost < rise_low_ && rise_high_ < kMost) return;
-    y_low_ = -kMost, y_high_ = kMost, rise_low_ = rise_high_ = 0;
+    lanes = 1u << k, flip_ = flip, x_ = side(b.x), z_ = side(b.z);
+    y_low_ = b.y_low[k], y_high_ = b.y_high[k], rise_low_ = rise_high_ = b.rise[k];
+  }
+  /// The lines `of`, all of one quadrant.
+  template <int W, class A>
+  OKTETT_INLINE void set_several(const LineBounds<W>& b, unsigned of, unsigned flip) {
+    using F = Simd<float, W, A>;
+    const auto m = F::M::from_bits(of);
+    const F inf(std::numeric_limits<float>::infinity());
+    const auto lowest = [&](const float* x) { return horizontal_min(select(m, F::load(x), inf)); };
+    const auto highest = [&](const float* x) { return horizontal_max(select(m, F::load(x), -inf)); };
+    const auto side = [&](const typename LineBounds<W>::Side& from) {
+      return Side{lowest(from.low), highest(from.high), lowest(from.per), highest(from.per)};
+    };
+    lanes = of, flip_ = flip, x_ = side(b.x), z_ = side(b.z);
+    y_low_ = lowest(b.y_low), y_high_ = highest(b.y_high);
+    rise_low_ = lowest(b.rise), rise_high_ = highest(b.rise);
   }
 
-  /// Bit a + 4 b for each block (a, b) of node (i, j) of a level whose blocks have `side` cells along theirs,
-  /// in the order in which lines pass them: `a` and `b` count in their directions.
+  /// Bit a + 4 b for each block (a, b) of node (i, j) of a level, in the order in which lines pass them: `a`
+  /// and `b` count in their directions. Blocks beyond the field may be among them.
   template <class A>
-  OKTETT_INLINE unsigned meets(const HeightNode& node, int i, int j, int side) const {
+  OKTETT_INLINE unsigned meets(const HeightNode& node, int i, int j, const HeightGrid::Level& level) const {
     using F = Simd<float, 16, A>;
-    alignas(64) static constexpr float kUp[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
-    alignas(64) static constexpr float kDown[16] = {3, 2, 1, 0, 3, 2, 1, 0, 3, 2, 1, 0, 3, 2, 1, 0};
-    alignas(64) static constexpr float kRowsUp[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
-    alignas(64) static constexpr float kRowsDown[16] = {3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0};
-    const F zero(0.0f), one(1.0f);
-    // s where each block begins and ends: a multiple of a count, and where that begins. Where s < 0 or s > 1
-    // it does not matter by how much.
-    const F x = F::load(forward_x ? kUp : kDown), z = F::load(forward_z ? kRowsUp : kRowsDown);
-    const auto size = static_cast<float>(side);
-    const auto near_x = static_cast<float>((forward_x ? i : -i - 1) * 4 * side);
-    const auto near_z = static_cast<float>((forward_z ? j : -j - 1) * 4 * side);
-    const auto at = [&](const F& count, float begin, float per) {
-      return fast_fma(count, F(size * per), F(begin * per));
-    };
-    const F in = max(max(at(x, near_x - x_.high, x_.per_low), at(z, near_z - z_.high, z_.per_low)), zero);
-    const F out =
-        min(min(at(x, near_x + size - x_.low, x_.per_high), at(z, near_z + size - z_.low, z_.per_high)), one);
+    const auto size = static_cast<float>(level.side);
+    const int across = static_cast<int>(level.side * level.split);
+    // -i - 1 where lines go back.
+    const auto near_x = static_cast<float>((i ^ -static_cast<int>(flip_ & 1)) * across);
+    const auto near_z = static_cast<float>((j ^ -static_cast<int>(flip_ >> 2 & 1)) * across);
+    const F in = height::begins<F>(size * x_.per_low, (near_x - x_.high) * x_.per_low, size * z_.per_low,
+                                   (near_z - z_.high) * z_.per_low);
+    const F out = height::ends<F>(size * x_.per_high, (near_x + size - x_.low) * x_.per_high,
+                                  size * z_.per_high, (near_z + size - z_.low) * z_.per_high);
     const F low = min(fast_fma(in, F(rise_low_), F(y_low_)), fast_fma(out, F(rise_low_), F(y_low_)));
     const F high = max(fast_fma(in, F(rise_high_), F(y_high_)), fast_fma(out, F(rise_high_), F(y_high_)));
-    const F least = load_words<A>(node.least), greatest = load_words<A>(node.greatest);
-    return in_order(bits((in <= out) & (least <= high) & (low <= greatest)));
+    const unsigned flip = block_of(0, level), present = level.split == 2 ? 0x33u : 0xffffu;
+    const F least = load_words<A>(node.least, flip), greatest = load_words<A>(node.greatest, flip);
+    return bits((in <= out) & (least <= high) & (low <= greatest)) & present;
   }
-  /// Turns the order of lines into that of the node, or back.
-  OKTETT_INLINE unsigned block_of(unsigned in_order) const {
-    return in_order ^ (forward_x ? 0u : 3u) ^ (forward_z ? 0u : 12u);
+  /// Turns the order of lines into that of the nodes of a level, or back.
+  OKTETT_INLINE unsigned block_of(unsigned in_order, const HeightGrid::Level& level) const {
+    return in_order ^ (flip_ & (level.split == 2 ? 5u : 15u));
   }
 
  private:
@@ -95,29 +174,7 @@ class HeightBundle {
     float low, high, per_low, per_high;
   };
 
-  template <class M, class D>
-  static OKTETT_INLINE float lowest(const M& lanes, const D& x) {
-    using F = Simd<float, D::kWidth, typename D::Isa>;
-    return horizontal_min(select(lanes, to_float(x), F(std::numeric_limits<float>::infinity())));
-  }
-  template <class M, class D>
-  static OKTETT_INLINE float highest(const M& lanes, const D& x) {
-    return -lowest(lanes, -x);
-  }
-
-  /// From the node's order, bit by bit.
-  OKTETT_INLINE unsigned in_order(unsigned blocks) const {
-    if (!forward_x) {
-      blocks = (blocks & 0x3333) << 2 | (blocks >> 2 & 0x3333);
-      blocks = (blocks & 0x5555) << 1 | (blocks >> 1 & 0x5555);
-    }
-    if (!forward_z) {
-      blocks = (blocks & 0x00ff) << 8 | (blocks >> 8 & 0x00ff);
-      blocks = (blocks & 0x0f0f) << 4 | (blocks >> 4 & 0x0f0f);
-    }
-    return blocks;
-  }
-
+  unsigned flip_ = 0;
   Side x_, z_;
   float y_low_ = 0, y_high_ = 0, rise_low_ = 0, rise_high_ = 0;
 };

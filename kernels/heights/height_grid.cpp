@@ -3,8 +3,8 @@
 #include <sys/mman.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -90,35 +90,52 @@ void HeightGrid::bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& le
 }
 
 void HeightGrid::build_pyramid() {
-  const auto part = [](std::uint32_t whole) { return std::max((whole + kBlock - 1) / kBlock, 1u); };
-  for (std::uint32_t columns = part(columns_ - 1), rows = part(rows_ - 1);;) {
-    const Level level{columns, rows, part(columns), part(rows), node_count_};
+  const auto parts = [](std::uint32_t whole, std::uint32_t part) {
+    return std::max((whole + part - 1) / part, 1u);
+  };
+  std::uint32_t side = kBlock, columns = parts(columns_ - 1, side), rows = parts(rows_ - 1, side);
+  for (;;) {
+    const std::uint32_t most = std::max(columns, rows);
+    // One level more has 2 x 2 blocks at most, or else 3 x 3 or 4 x 4.
+    const std::uint32_t split = most > kBlock && most <= 2 * kBlock ? 2 : kBlock;
+    const Level level{side, split, columns, rows, parts(columns, split), parts(rows, split), node_count_};
     level_[levels_++] = level;
     node_count_ += std::size_t{level.columns} * level.rows;
-    columns = level.columns, rows = level.rows;
+    side *= split, columns = level.columns, rows = level.rows;
     if (columns == 1 && rows == 1) break;
   }
   nodes_ = large_array<HeightNode>(node_count_);
   node_data_ = nodes_.data();
   for (int k = 0; k < levels_; ++k) {
     const Level& level = level_[k];
-    for (std::uint32_t j = 0; j < level.rows; ++j)
-      for (std::uint32_t i = 0; i < level.columns; ++i) {
-        HeightNode& own = nodes_[level.first + i + std::size_t{j} * level.columns];
-        std::fill_n(own.least, 16, std::uint16_t{65535});
-        for (unsigned blocks = level.blocks(i, j); blocks != 0; blocks &= blocks - 1) {
-          const auto b = static_cast<std::uint32_t>(std::countr_zero(blocks));
-          const std::uint32_t x = kBlock * i + b % kBlock, z = kBlock * j + b / kBlock;
-          if (k == 0) {
-            bound_cells(x, z, own.least[b], own.greatest[b]);
-          } else {
-            const HeightNode& below = node(k - 1, x, z);
-            own.least[b] = *std::min_element(below.least, below.least + 16);
-            own.greatest[b] = *std::max_element(below.greatest, below.greatest + 16);
-          }
+    for (std::size_t n = 0; n < std::size_t{level.columns} * level.rows; ++n) {
+      HeightNode& own = nodes_[level.first + n];
+      std::fill_n(own.least, 16, std::uint16_t{65535});
+      std::fill_n(own.greatest, 16, std::uint16_t{0});
+    }
+    for (std::uint32_t z = 0; z < level.block_rows; ++z)
+      for (std::uint32_t x = 0; x < level.block_columns; ++x) {
+        HeightNode& own =
+            nodes_[level.first + x / level.split + std::size_t{z / level.split} * level.columns];
+        const std::size_t b = x % level.split + std::size_t{kBlock} * (z % level.split);
+        if (k == 0) {
+          bound_cells(x, z, own.least[b], own.greatest[b]);
+        } else {
+          const HeightNode& below = node(k - 1, x, z);
+          own.least[b] = *std::min_element(below.least, below.least + 16);
+          own.greatest[b] = *std::max_element(below.greatest, below.greatest + 16);
         }
       }
   }
+  const Level& last = level_[levels_ - 1];
+  for (std::uint32_t k = 0; k < 16; ++k)
+    for (std::uint32_t quadrant = 0; quadrant < 4; ++quadrant) {
+      const std::uint32_t b = k ^ (3 * (quadrant & 1)) ^ (12 * (quadrant >> 1));
+      const bool is_block = last.has_block(b % kBlock, b / kBlock);
+      constexpr float kInf = std::numeric_limits<float>::infinity();
+      roots_[quadrant].least[k] = is_block ? nodes_[last.first].least[b] : kInf;
+      roots_[quadrant].greatest[k] = is_block ? nodes_[last.first].greatest[b] : -kInf;
+    }
 }
 
 static void require_size(std::uint32_t columns, std::uint32_t rows, std::size_t samples) {

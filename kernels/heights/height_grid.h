@@ -24,10 +24,17 @@ struct alignas(64) HeightNode {
 };
 static_assert(sizeof(HeightNode) == 64);
 
+/// The blocks of the last level, least and greatest, in the order in which lines of one quadrant pass them;
+/// infinity and -infinity where there is no block.
+struct alignas(64) HeightRoot {
+  float least[16], greatest[16];
+};
+
 /// Immutable. Samples are 16-bit numbers or floats; they stand in tiles of 8 x 8, so that what is near each
 /// other in the field is so in memory. Cell (i, j) lies between the columns i and i + 1 and the rows j and
 /// j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k + 1) cells, 4 x 4 of them to a node; the last
-/// level has one node. That adds 2/15 to 16-bit samples.
+/// level has one node. Where that would have no more than 2 x 2 blocks, the nodes of the level below have 2 x
+/// 2, so that the last one has more: it is what every line looks at. That adds 2/15 to 16-bit samples.
 class HeightGrid {
  public:
   /// Cells along a side of the smallest blocks, and blocks along a side of a node.
@@ -35,14 +42,21 @@ class HeightGrid {
   static constexpr int kMaxLevels = 7;  ///< 4^8 > kMaxHeightSide
 
   struct Level {
+    std::uint32_t side = 0;   ///< cells along a side of its blocks
+    std::uint32_t split = 0;  ///< blocks along a side of its nodes: kBlock, or 2
     std::uint32_t block_columns = 0, block_rows = 0;
     std::uint32_t columns = 0, rows = 0;  ///< of nodes
     std::size_t first = 0;                ///< of its nodes
 
-    /// Bit a + 4 b is set where block (a, b) of node (i, j) is one of the field.
-    OKTETT_INLINE unsigned blocks(std::uint32_t i, std::uint32_t j) const {
-      const std::uint32_t x = block_columns - kBlock * i, z = block_rows - kBlock * j;
-      return (x < kBlock ? 0x1111u * ((1u << x) - 1) : 0xffffu) & (z < kBlock ? (1u << 4 * z) - 1 : 0xffffu);
+    /// Block k of node (i, j).
+    OKTETT_INLINE std::uint32_t block_column(std::uint32_t i, unsigned k) const {
+      return split * i + k % kBlock;
+    }
+    OKTETT_INLINE std::uint32_t block_row(std::uint32_t j, unsigned k) const {
+      return split * j + k / kBlock;
+    }
+    OKTETT_INLINE bool has_block(std::uint32_t column, std::uint32_t row) const {
+      return column < block_columns && row < block_rows;
     }
   };
 
@@ -114,6 +128,8 @@ class HeightGrid {
     const Level& l = level_[level];
     return node_data_[l.first + i + std::size_t{j} * l.columns];
   }
+  /// Of lines that go back in x (bit 0) and in z (bit 1).
+  OKTETT_INLINE const HeightRoot& root(unsigned quadrant) const { return roots_[quadrant]; }
   /// A block has samples from least() + step() * node.least[...] to least() + step() * node.greatest[...].
   OKTETT_INLINE double step() const { return step_; }
 
@@ -146,6 +162,7 @@ class HeightGrid {
   double least_ = 0, greatest_ = 0, step_ = 1;
   Level level_[kMaxLevels];
   int levels_ = 0;
+  HeightRoot roots_[4];
 };
 
 }  // namespace oktett

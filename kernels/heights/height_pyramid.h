@@ -7,6 +7,9 @@
 /// lines walk at the same time, each in a block of its own: even neighbouring lines hardly ever meet the same
 /// cells, but so all lanes are busy.
 
+#include <algorithm>
+#include <bit>
+
 #include "kernels/heights/height_bundle.h"
 #include "kernels/heights/height_walk.h"
 
@@ -33,8 +36,9 @@ class PyramidWalk {
   static constexpr int W = D::kWidth;
   using A = typename D::Isa;
   static constexpr std::uint32_t kBlock = HeightGrid::kBlock;
-  /// Lines that are not farther apart than this many cells go together.
-  static constexpr double kClose = 24;
+  /// Lines that are not farther than this many cells from one of them go together, if they are enough.
+  static constexpr float kClose = 12;
+  static constexpr int kLeastBundle = 3;
   static constexpr int kNode = 16, kQueue = 3 * kNode + 1;
 
   /// One of the smallest blocks.
@@ -51,33 +55,49 @@ class PyramidWalk {
   };
 
   OKTETT_INLINE void make_bundles() {
+    LineBounds<W> lines;
+    lines.set(s_.grid, g_, s_.from, s_.to);
     const unsigned x = bits(g_.forward_x), z = bits(g_.forward_z);
-    for (unsigned left = bits(s_.wanted); left != 0;) {
-      const unsigned first = left & -left;
-      const bool forward_x = (x & first) != 0, forward_z = (z & first) != 0;
-      const unsigned same = left & (forward_x ? x : ~x) & (forward_z ? z : ~z);
-      left &= ~same;
-      bundles_[size_].bound(s_.grid, g_, s_.from, s_.to, same, forward_x, forward_z);
-      if (same == first || bundles_[size_].spread <= kClose) {
-        start(bundles_[size_++]);
-        continue;
-      }
-      for (unsigned lanes = same; lanes != 0; lanes &= lanes - 1) {
-        bundles_[size_].bound(s_.grid, g_, s_.from, s_.to, lanes & -lanes, forward_x, forward_z);
-        start(bundles_[size_++]);
+    const auto flip_of = [&](int k) { return 3 * (~x >> k & 1) | 12 * (~z >> k & 1); };
+    const auto near = [&](unsigned left) {
+      const int k = std::countr_zero(left);
+      return left & (x >> k & 1 ? x : ~x) & (z >> k & 1 ? z : ~z) & close_to(lines, k);
+    };
+    const int root = s_.grid.levels() - 1;
+    unsigned left = bits(s_.wanted), met[W];
+    // Most lines that are on their own, and miss the field, do so here, one like the other.
+    if (std::popcount(left) < kLeastBundle || near(left) != left)
+      left = height::meet_root<A>(s_.grid, lines, left, g_.forward_x, g_.forward_z, met);
+    while (left != 0) {
+      const int first = std::countr_zero(left);
+      const unsigned group = near(left);
+      Bundle& b = bundles_[size_++];
+      b.level = root;
+      if (W == 1 || std::popcount(group) < kLeastBundle) {
+        left &= left - 1;
+        b.set_one(lines, first, flip_of(first));
+        b.stack[root] = {0, 0, met[first]};
+      } else {
+        left &= ~group;
+        b.template set_several<W, A>(lines, group, flip_of(first));
+        b.stack[root] = {0, 0, b.template meets<A>(s_.grid.node(root, 0, 0), 0, 0, s_.grid.level(root))};
       }
     }
   }
-  OKTETT_INLINE void start(Bundle& b) {
-    b.level = s_.grid.levels();
-    enter(b, 0, 0);
+  /// The lines that begin and end about where line `k` does.
+  OKTETT_INLINE unsigned close_to(const LineBounds<W>& lines, int k) const {
+    using F = Simd<float, W, A>;
+    const auto apart = [&](const typename LineBounds<W>::Side& side) {
+      return abs(F::load(side.low) - F(side.low[k])) + abs(F::load(side.way) - F(side.way[k]));
+    };
+    return bits(max(apart(lines.x), apart(lines.z)) <= F(kClose));
   }
 
   /// Looks at node (i, j) of the level below.
   OKTETT_INLINE void enter(Bundle& b, std::uint32_t i, std::uint32_t j) {
     const int level = b.level - 1;
     const unsigned met = b.template meets<A>(s_.grid.node(level, i, j), static_cast<int>(i),
-                                             static_cast<int>(j), static_cast<int>(kBlock << 2 * level));
+                                             static_cast<int>(j), s_.grid.level(level));
     if (met == 0) return;
     b.level = level, b.stack[level] = {i, j, met};
   }
@@ -92,29 +112,29 @@ class PyramidWalk {
         ++b.level;
         continue;
       }
-      const HeightGrid::Level& level = s_.grid.level(b.level);
       if (b.level == 0) {
         queue_blocks(b, node, wanted);
         if ((wanted & ~queued_) == 0 || *std::max_element(length_, length_ + W) >= kQueue - kNode) return;
         continue;
       }
-      const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)));
+      const HeightGrid::Level& level = s_.grid.level(b.level);
+      const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)), level);
       node.left &= node.left - 1;
-      if ((level.blocks(node.i, node.j) >> k & 1) != 0)
-        enter(b, kBlock * node.i + k % kBlock, kBlock * node.j + k / kBlock);
+      const std::uint32_t i = level.block_column(node.i, k), j = level.block_row(node.j, k);
+      if (level.has_block(i, j)) enter(b, i, j);
     }
   }
 
   /// Queues the blocks of a node for the lines that may meet them.
   OKTETT_INLINE void queue_blocks(const Bundle& b, Node& node, unsigned wanted) {
     const HeightNode& heights = s_.grid.node(0, node.i, node.j);
-    const unsigned in_field = s_.grid.level(0).blocks(node.i, node.j);
+    const HeightGrid::Level& level = s_.grid.level(0);
     const bool alone = (wanted & (wanted - 1)) == 0;
     for (; node.left != 0; node.left &= node.left - 1) {
-      const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)));
-      if ((in_field >> k & 1) == 0) continue;
-      const Block block{static_cast<std::uint16_t>(kBlock * node.i + k % kBlock),
-                        static_cast<std::uint16_t>(kBlock * node.j + k / kBlock), heights.least[k],
+      const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)), level);
+      const std::uint32_t i = level.block_column(node.i, k), j = level.block_row(node.j, k);
+      if (!level.has_block(i, j)) continue;
+      const Block block{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), heights.least[k],
                         heights.greatest[k]};
       const unsigned met = alone ? wanted : wanted & lines_at(b, block);
       // Whom the block does not matter overwrites it by the next one.
@@ -129,9 +149,9 @@ class PyramidWalk {
 
   OKTETT_INLINE unsigned lines_at(const HeightBundle& b, const Block& block) const {
     const double i = kBlock * block.i, j = kBlock * block.j, end = kBlock;
-    const D x_in = g_.at_column(D(b.forward_x ? i : i + end)),
-            x_out = g_.at_column(D(b.forward_x ? i + end : i));
-    const D z_in = g_.at_row(D(b.forward_z ? j : j + end)), z_out = g_.at_row(D(b.forward_z ? j + end : j));
+    const bool forward_x = (b.flip() & 1) == 0, forward_z = (b.flip() & 4) == 0;
+    const D x_in = g_.at_column(D(forward_x ? i : i + end)), x_out = g_.at_column(D(forward_x ? i + end : i));
+    const D z_in = g_.at_row(D(forward_z ? j : j + end)), z_out = g_.at_row(D(forward_z ? j + end : j));
     const D in = max(max(x_in, z_in), s_.from), out = min(min(x_out, z_out), s_.to);
     return bits((in <= out) & s_.meets(g_.height(in), g_.height(out), least_of(block), greatest_of(block)));
   }

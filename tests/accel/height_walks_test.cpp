@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "accel/query.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/height_field_cases.h"
 
@@ -28,7 +29,8 @@ HeightFieldShape hills(std::uint32_t columns, std::uint32_t rows, Interpolation 
   return s;
 }
 
-/// The hits of a batch of rays, after a check that they are the same on all instruction sets.
+/// The hits of a batch of rays, after a check that they are the same on all instruction sets and by all
+/// traversals: rays alone, those in lanes with others, and a field that is the whole scene.
 std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const RayBatch& rays) {
   HeightFieldShape s = shape;
   s.walk = walk;
@@ -40,7 +42,11 @@ std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const R
     closest_hit(*accel, rays.span(), hits.span(), isa);
     std::vector<std::uint8_t> occluded(rays.size());
     any_hit(*accel, rays.span(), occluded, isa);
+    HitBatch alone;
+    alone.resize_uninitialized(rays.size());
+    closest_hit(*accel, rays.span(), alone.span(), isa, TraceMode::single);
     for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(alone[i], hits[i]) << to_string(isa) << ", ray " << i;
       if (first.size() < rays.size())
         first.push_back(hits[i]);
       else
@@ -90,6 +96,65 @@ TEST(HeightWalks, PyramidsLeaveNothingOut) {
         }
         EXPECT_GT(hits, rays.size() / 10) << columns;
       }
+}
+
+/// Batches of rays that make floats and their bounds fail if anything does: at exactly the height of samples,
+/// along lines of the grid and diagonals, upright, at the borders of blocks, from as far as floats reach, and
+/// cut off. Fields have one cell, blocks that are not full, and nodes of 2 x 2 blocks; heights are as great
+/// as floats can be, or all the same.
+TEST(HeightWalks, PyramidsBearHostileRays) {
+  const auto sample = [](int kind, std::uint32_t i, std::uint32_t j) {
+    if (kind == 0) return 4 * random_float(3, i, j);
+    if (kind == 1) return 2.5f;
+    if (kind == 2) return i == 0 && j == 0 ? 3.0f : 0.0f;
+    return (random_float(3, i, j) - 0.5f) * 1e37f;
+  };
+  for (const auto& [columns, rows] : {std::pair{2u, 2u}, {2u, 70u}, {18u, 23u}, {150u, 66u}, {33u, 513u}})
+    for (int kind = 0; kind < 4; ++kind) {
+      const auto interpolation = kAll[(columns + static_cast<std::uint32_t>(kind)) % 3];
+      std::vector<float> heights;
+      for (std::uint32_t j = 0; j < rows; ++j)
+        for (std::uint32_t i = 0; i < columns; ++i) heights.push_back(sample(kind, i, j));
+      HeightFieldShape s = field(columns, rows, heights, interpolation);
+      const float unit = kind == 3 ? 1e37f : 1.0f;
+      s.size = {(columns - 1.0) * unit, 1, (rows - 1.0) * unit};
+      if (kind % 2 == 0) s = solid(s, -1);
+      const auto place = [&](double k, std::uint32_t samples) {
+        return static_cast<float>(k - (samples - 1) / 2.0) * unit;
+      };
+      RayBatch rays;
+      for (std::uint32_t n = 0; n < 300; ++n) {
+        const auto pick = [&](std::uint32_t k, std::uint32_t most) {
+          return static_cast<std::uint32_t>(random_float(7, n, k) * 0.999f * static_cast<float>(most));
+        };
+        // Samples, and every third time those at the borders of blocks.
+        const std::uint32_t step = n % 3 == 0 ? 4 : 1;
+        const std::uint32_t i = pick(0, (columns - 1) / step + 1) * step,
+                            j = pick(1, (rows - 1) / step + 1) * step;
+        const std::uint32_t k = pick(2, columns), l = pick(3, rows);
+        const Vec3f at{place(i, columns), heights[i + j * columns], place(j, rows)};
+        const Vec3f other{place(k, columns), heights[k + l * columns], place(l, rows)};
+        Vec3f d = at - other;
+        if (n % 8 == 1) d = {0, -unit, 0};
+        if (n % 8 == 2) d = {unit, 0, 0};
+        if (n % 8 == 3) d = {0, 0, -unit};
+        if (n % 8 == 4) d = {-unit, 0, unit};
+        if (n % 8 == 5) d.y = 0;
+        if (n % 8 == 6) d = {unit, 1e-6f * unit, -1e-36f * unit};
+        const float back[] = {0, 0.5f, 3, 1000};
+        Vec3f from = at - d * (kind == 3 ? 0.3f : back[n / 8 % 4]);
+        if (n % 32 == 31 && kind != 3) from = at - d * 1e8f;
+        rays.push_back({from, n % 5 == 0 ? 0.4f : 0.0f, d, n % 7 == 0 ? 1.0f : kInf});
+      }
+      const std::vector<Hit> all = closest(s, HeightWalk::cells, rays);
+      const std::vector<Hit> found = closest(s, HeightWalk::pyramid, rays);
+      std::size_t hits = 0;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        EXPECT_EQ(found[i], all[i]) << columns << " x " << rows << ", kind " << kind << ", ray " << i;
+        hits += all[i].valid();
+      }
+      EXPECT_GT(hits, kind == 3 ? 10u : 30u) << columns << " x " << rows << ", kind " << kind;
+    }
 }
 
 /// No walk leaves out a cell, for any ray.

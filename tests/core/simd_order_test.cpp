@@ -50,8 +50,10 @@ TEST(SimdGather, DoublesOfFloatsAndWords) {
 TEST(SimdWords, AreNumbersWithoutSign) {
   const std::uint16_t words[17] = {9, 0, 1, 255, 256, 32767, 32768, 65535, 7, 6, 5, 4, 3, 2, 1, 40000, 50000};
   float got[16];
-  load_words<ScalarIsa>(words + 1).store(got);
-  for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], static_cast<float>(words[i + 1]));
+  for (unsigned flip = 0; flip < 16; ++flip) {
+    load_words<ScalarIsa>(words + 1, flip).store(got);
+    for (unsigned i = 0; i < 16; ++i) EXPECT_EQ(got[i], static_cast<float>(words[(i ^ flip) + 1]));
+  }
 }
 
 }  // namespace
