@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/platform.h"
 #include "core/ray.h"
 
 namespace oktett {
@@ -30,6 +31,12 @@ struct HitSink<Query::closest> {
     std::fill_n(hits.item + begin, count, none.item);
     std::fill_n(hits.instance + begin, count, none.instance);
   }
+  /// Prefetches the lines that hold the results of ray i and of its neighbours, to be written.
+  /// Inlined by force, because GCC removes calls of functions that only prefetch.
+  OKTETT_INLINE void prefetch(std::size_t i) const {
+    __builtin_prefetch(hits.t + i, 1), __builtin_prefetch(hits.u + i, 1), __builtin_prefetch(hits.v + i, 1);
+    __builtin_prefetch(hits.item + i, 1), __builtin_prefetch(hits.instance + i, 1);
+  }
   HitSink part(std::size_t begin, std::size_t count) const { return {hits.part(begin, count)}; }
 };
 
@@ -41,6 +48,7 @@ struct HitSink<Query::any> {
   void clear(std::size_t begin, std::size_t count) const {
     std::fill_n(occluded + begin, count, std::uint8_t{0});
   }
+  void prefetch(std::size_t) const {}  ///< not needed: one line holds the results of 64 rays
   HitSink part(std::size_t begin, std::size_t) const { return {occluded + begin}; }
 };
 

@@ -127,9 +127,10 @@ void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& 
     }
     const std::size_t count = std::min<std::size_t>(kBeamRays, rays.size - b);
     const RaySpan part = rays.part(b, count);
+    const RaySpan next = rays.part(b + count, std::min<std::size_t>(kBeamRays, rays.size - b - count));
     Apex apex;
     const BeamOutcome outcome = common_point<Q>(part, apex)
-                                    ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps)
+                                    ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps, next)
                                     : BeamOutcome::no_beam;
     failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
     if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;

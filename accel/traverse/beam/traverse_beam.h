@@ -194,9 +194,35 @@ inline constexpr int kRefinedGroups = 8;
 /// Tests of a group after which sorting the rays of a beam pays.
 inline constexpr int kTestsBeforeSort = 64;
 
+/// Brings into the cache what a beam needs after its traversal, a cache line of each column per step: the
+/// rays of the next beam, and the places of its own hits. Fetched all at once, these would be more lines than
+/// the processor can wait for.
+template <Query Q>
+class Lookahead {
+ public:
+  Lookahead(const RaySpan& next, const HitSink<Q>& out, std::size_t size)
+      : next_(next), out_(out), size_(size) {}
+
+  OKTETT_INLINE void step() {
+    if (at_ < next_.size) {
+      for (int k = 0; k < 3; ++k)
+        __builtin_prefetch(next_.origin[k] + at_), __builtin_prefetch(next_.direction[k] + at_);
+      __builtin_prefetch(next_.tmin + at_), __builtin_prefetch(next_.tmax + at_);
+    }
+    if (at_ < size_) out_.prefetch(at_);
+    at_ += 64 / sizeof(float);
+  }
+
+ private:
+  const RaySpan& next_;
+  const HitSink<Q>& out_;
+  const std::size_t size_;  ///< rays of the beam
+  std::size_t at_ = 0;
+};
+
 /// Takes the beam through the tree. False if it is given up because it takes too many steps.
 template <Query Q, class A>
-OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
+OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task, Lookahead<Q>& ahead) {
   const Accel& accel = task.accel;
   BeamRays<A>& beam = task.beam;
   BeamEntry stack[kStackSize];
@@ -209,6 +235,7 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task) {
   ChildWindows children;
   while (size > 0) {
     const BeamEntry e = stack[--size];
+    ahead.step();
     if (__builtin_popcount(dirty) >= 4) {
       for (; dirty != 0; dirty &= dirty - 1) beam.refresh(__builtin_ctz(dirty));
       beam.refresh_window();
@@ -267,16 +294,17 @@ enum class BeamOutcome {
 };
 
 /// Up to kBeamRays rays that meet in `apex`. Unless they are traced, nothing has been written that another
-/// traversal would not overwrite.
+/// traversal would not overwrite. `next` are the rays that will be traced next.
 template <Query Q, class A>
 OKTETT_NOINLINE BeamOutcome trace_beam(const Accel& accel, const RaySpan& rays, const Apex& apex,
-                                       const HitSink<Q>& out, int max_steps) {
+                                       const HitSink<Q>& out, int max_steps, const RaySpan& next) {
   BeamTask<Q, A> task{accel, rays, out, {}, {}, max_steps};
   if (!task.beam.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return BeamOutcome::no_beam;
   if (task.beam.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded)
       table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; });
-    if (!accel.root.is_none() && !traverse_beam(task)) return BeamOutcome::given_up;
+    Lookahead<Q> ahead(next, out, rays.size);
+    if (!accel.root.is_none() && !traverse_beam(task, ahead)) return BeamOutcome::given_up;
   }
   finish_beam(task);
   return BeamOutcome::traced;
