@@ -22,10 +22,13 @@ class NodeRef {
   }
   static NodeRef leaf(std::uint32_t table_index) { return NodeRef(kLeaf | kTable | table_index); }
   static NodeRef none() { return NodeRef(kLeaf | kTable | (kTable - 1)); }
+  /// Only on the stack of a ray in flight: here the ray leaves the instance that it is in.
+  static NodeRef way_out() { return NodeRef(kLeaf | kTable | (kTable - 2)); }
 
   bool is_leaf() const { return (bits_ & kLeaf) != 0; }
   bool is_triangles() const { return (bits_ & (kLeaf | kTable)) == kLeaf; }
   bool is_none() const { return bits_ == none().bits_; }
+  bool is_way_out() const { return bits_ == way_out().bits_; }
   std::uint32_t node_index() const { return bits_; }
   std::uint32_t block() const { return bits_ & (kMaxBlocks - 1); }
   int triangle_count() const { return static_cast<int>(bits_ >> 27 & 7) + 1; }

@@ -3,7 +3,6 @@
 /// speed, never a hit.
 
 #include <algorithm>
-#include <limits>
 
 #include "accel/isa/trace_query.h"
 #include "accel/traverse/beam/traverse_beam.h"
@@ -106,7 +105,7 @@ inline constexpr std::size_t kAloneRays = 4;
 /// beam after the second, three after the third, then seven. With `insist` no beam is given up.
 template <Query Q, class A>
 void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
-  const int max_steps = insist ? std::numeric_limits<int>::max() : max_beam_steps<Q>(accel);
+  const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel);
   // Rays from `begin` on wait to be traced the same way, so that long runs go interleaved together.
   std::size_t begin = 0;
   BeamOutcome waiting = BeamOutcome::no_beam;
@@ -181,6 +180,8 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
         if (const LeafEntry* leaf = only_exact_leaf(accel))
           return trace_exact_leaf<Q, A>(accel, *leaf, rays, out);
         if (rays.size < kLeastBeamRays) return trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
+        // In instances, packets of shadow rays have few rays at a time.
+        if (Q == Query::any && has_instances(accel)) return trace_interleaved<Q, A>(accel, rays, out);
         return trace_automatic<Q, A>(accel, rays, out, false);
       case TraceMode::beam:
         return trace_automatic<Q, A>(accel, rays, out, true);

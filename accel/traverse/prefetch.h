@@ -14,9 +14,13 @@ inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_byte
 /// Where the nodes and the blocks of triangles of a structure begin, as bytes.
 struct TreeBytes {
   const char* of[2];
+  TreeBytes() = default;
   explicit TreeBytes(const Accel& accel)
       : of{reinterpret_cast<const char*>(accel.nodes.data()),
            reinterpret_cast<const char*>(accel.blocks.data())} {}
+
+  OKTETT_INLINE const BvhNode* nodes() const { return reinterpret_cast<const BvhNode*>(of[0]); }
+  OKTETT_INLINE const TriangleBlock* blocks() const { return reinterpret_cast<const TriangleBlock*>(of[1]); }
 
   /// Prefetches a node or a block. For any other leaf the address means nothing.
   OKTETT_INLINE void prefetch(NodeRef ref) const {

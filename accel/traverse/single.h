@@ -34,27 +34,43 @@ OKTETT_NOINLINE void traverse_single(const Accel& accel, RayState<1, A>& r, Node
 template <Query Q, class A, class Steps = IgnoreSteps>
 void trace_single(const Accel& accel, RayState<1, A>& r, Steps steps = {});
 
+/// The ray in the space of the instance's child.
+template <class Instance, class A>
+OKTETT_INLINE Ray ray_inside(const Instance& instance, const RayLanes<Simd<float, 1, A>>& outer) {
+  Vec3<Simd<float, 1, A>> o, d;
+  transform_rays(instance, outer, o, d);
+  const auto point = [](const Vec3<Simd<float, 1, A>>& v) {
+    return Vec3f{v.x.part[0].v, v.y.part[0].v, v.z.part[0].v};
+  };
+  return {point(o), outer.tmin.part[0].v, point(d), outer.tmax.part[0].v};
+}
+
+/// Keeps the hit that the ray has inside an instance, if it is the nearest so far.
+template <class Instance, class A>
+OKTETT_INLINE void accept_inside(const Instance& instance, RayState<1, A>& r, const Hit& h) {
+  if (h.valid()) accept_hit(r, 0, h.t, h.u, h.v, h.item, outer_path(instance, h.instance));
+}
+
+/// Calls f(state) for the ray's state in the space of `inner`, which `instance` shows, unless the ray can hit
+/// nothing there; then keeps the hit of that state, if it is the nearest so far.
+template <class Instance, class A, class Function>
+OKTETT_INLINE void inside_instance(const Instance& instance, const Accel& inner, RayState<1, A>& r,
+                                   Function&& f) {
+  RayState<1, A> child;
+  if (child.set(ray_inside<Instance, A>(instance, load_rays(r)), inner.bounds) == 0) return;
+  f(child);
+  accept_inside(instance, r, child.hit(0));
+}
+
 /// One ray through one instance.
 template <Query Q, class Instance, class A, class Steps>
 OKTETT_NOINLINE void instance_single(const Instance& instance, const Accel& inner, RayState<1, A>& r,
                                      Steps steps) {
-  const auto outer = load_rays(r);
-  Vec3<Simd<float, 1, A>> o, d;
-  transform_rays(instance, outer, o, d);
   steps.instance();
-  const auto accept = [&](const Hit& h) {
-    if (h.valid()) accept_hit(r, 0, h.t, h.u, h.v, h.item, outer_path(instance, h.instance));
-  };
-  if constexpr (!std::is_same_v<A, ScalarIsa>) {
-    const auto point = [](const Vec3<Simd<float, 1, A>>& v) {
-      return Vec3f{v.x.part[0].v, v.y.part[0].v, v.z.part[0].v};
-    };
-    return accept(trace_one<Q, A>(inner, {point(o), r.tmin[0], point(d), r.tmax[0]}));
-  }
-  RayState<1, A> child;
-  if (child.set(o, d, outer.tmin, outer.tmax, inner.bounds) == 0) return;
-  trace_single<Q>(inner, child, steps);
-  accept(child.hit(0));
+  if constexpr (std::is_same_v<A, ScalarIsa>)
+    inside_instance(instance, inner, r, [&](RayState<1, A>& child) { trace_single<Q>(inner, child, steps); });
+  else
+    accept_inside(instance, r, trace_one<Q, A>(inner, ray_inside<Instance, A>(instance, load_rays(r))));
 }
 
 /// One ray against a leaf of the table.

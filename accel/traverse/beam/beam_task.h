@@ -1,6 +1,8 @@
 #pragma once
 /// \file The state of a beam on its way through the tree, and the exact decisions of its candidates.
 
+#include <limits>
+
 #include "accel/traverse/beam/beam_leaf.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 
@@ -35,6 +37,9 @@ class MetTriangles {
   std::uint32_t item_[kSize], groups_[kSize];
 };
 
+/// BeamTask::max_steps of a beam that is never given up.
+inline constexpr int kAnySteps = std::numeric_limits<int>::max();
+
 /// A beam, what it has found, and where its results go.
 template <Query Q, class A>
 struct BeamTask {
@@ -45,7 +50,9 @@ struct BeamTask {
   UnclearList unclear;
   int max_steps;          ///< nodes and leaves that it may visit before it is given up
   MetTriangles met = {};  ///< in use if triangles stand in several leaves
-  bool decided = false;   ///< some hits have been decided and stand in `out`
+  /// Leaves of instances that the beam has visited, and how many rays went into those, in all.
+  int instance_leaves = 0, rays_inside = 0;
+  bool decided = false;  ///< some hits have been decided and stand in `out`
 };
 
 /// Stores the decided hit `h` of ray i if it is the nearest so far. `dz`: the |direction| of the ray along z.

@@ -165,14 +165,27 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   beam.refresh(g);
 }
 
-/// The same for several groups; `met(g)` are the rays of group `g` that may meet the leaf.
+/// A beam is given up if on average fewer than kRaysPerInstance rays go into a leaf of instances, at the
+/// first kInstanceVisits of them or later. Packets inside would have few rays then, and interleaved rays are
+/// faster.
+inline constexpr int kInstanceVisits = 4;
+inline constexpr int kRaysPerInstance = 80;
+
+/// The same for several groups; `met(g)` are the rays of group `g` that may meet the leaf. False if the beam
+/// is given up.
 template <Query Q, class A, class Met>
-OKTETT_INLINE void table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
+OKTETT_INLINE bool table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
+  const bool instances = holds_instances(leaf.kind);
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
     const unsigned rays = met(g);
-    if (rays != 0) table_leaf_group(task, leaf, g, rays);
+    if (rays == 0) continue;
+    if (instances) task.rays_inside += __builtin_popcount(rays);
+    table_leaf_group(task, leaf, g, rays);
   }
+  task.instance_leaves += instances;
+  return task.instance_leaves < kInstanceVisits ||
+         task.rays_inside >= kRaysPerInstance * task.instance_leaves || task.max_steps == kAnySteps;
 }
 
 /// Pushes children in the order of their distance, the nearest last.
@@ -244,8 +257,9 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task, Lookahead<Q>& ahead) {
     if (groups == 0) continue;
     if (++steps > task.max_steps) return false;
     if (e.ref.is_leaf() && !e.ref.is_triangles()) {
-      table_leaf_beam(task, accel.leaves[e.ref.table_index()], groups,
-                      [&](int g) { return entry_rays(e, beam, g); });
+      if (!table_leaf_beam(task, accel.leaves[e.ref.table_index()], groups,
+                           [&](int g) { return entry_rays(e, beam, g); }))
+        return false;
       beam.refresh_window();
       continue;
     }
@@ -302,7 +316,8 @@ OKTETT_NOINLINE BeamOutcome trace_beam(const Accel& accel, const RaySpan& rays, 
   if (!task.beam.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return BeamOutcome::no_beam;
   if (task.beam.groups != 0) {
     for (const LeafEntry& leaf : accel.unbounded)
-      table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; });
+      if (!table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; }))
+        return BeamOutcome::given_up;
     Lookahead<Q> ahead(next, out, rays.size);
     if (!accel.root.is_none() && !traverse_beam(task, ahead)) return BeamOutcome::given_up;
   }

@@ -12,18 +12,21 @@ namespace oktett {
 inline constexpr std::uint32_t kNoCandidate = 0xffffffffu;
 inline constexpr std::uint32_t kDecidedHit = 0xfffffffeu;
 
-/// The lane of `block`, as a bit, that holds the triangle of the nearest hit so far. A triangle that was
-/// split stands in several leaves, and need not be tested again. `r` is read only if the candidate is
-/// kDecidedHit.
+/// The item of the nearest hit so far, if it is a triangle of a tree with `blocks`, else kNoId. `path` is the
+/// path of hits in that tree. `r` is read only if the candidate is kDecidedHit.
 template <class A>
-OKTETT_INLINE unsigned repeated_lane(const Accel& accel, std::uint32_t candidate, const RayState<1, A>& r,
-                                     const TriangleBlock& block) {
+OKTETT_INLINE std::uint32_t candidate_item(const TriangleBlock* blocks, std::uint32_t candidate,
+                                           const RayState<1, A>& r, std::uint32_t path) {
+  constexpr std::uint32_t kBlock = TriangleBlock::kSize;
+  if (candidate < kDecidedHit) return blocks[candidate / kBlock].item[candidate % kBlock];
+  return candidate == kDecidedHit && r.path[0] == path ? r.item[0] : kNoId;
+}
+
+/// The lane of `block`, as a bit, that holds the triangle `item`, if there is one. A triangle that was split
+/// stands in several leaves, and need not be tested again if it is the nearest hit so far.
+template <class A>
+OKTETT_INLINE unsigned repeated_lane(std::uint32_t item, const TriangleBlock& block) {
   constexpr int kBlock = TriangleBlock::kSize;
-  std::uint32_t item = kNoId;
-  if (candidate < kDecidedHit)
-    item = accel.blocks[candidate / kBlock].item[candidate % kBlock];
-  else if (candidate == kDecidedHit && r.path[0] == kNoId)
-    item = r.item[0];
   using I = Simd<std::int32_t, kBlock, A>;
   const auto* items = reinterpret_cast<const std::int32_t*>(block.item);
   return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));

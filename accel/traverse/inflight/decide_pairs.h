@@ -46,16 +46,29 @@ OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBl
   });
 }
 
-/// Ray i of `ray` against triangle `ids[i]` = block * TriangleBlock::kSize + lane, for all i at once, with
-/// the same bits as decide_watertight of each pair alone. The rays may differ in the axis of their greatest
-/// direction component. Returns a bit for each ray that meets its triangle at tmin < t <= tmax. Unused lanes
-/// may have any triangle of `blocks` and any finite ray.
+/// Triangles of different structures: `block[i]` is that of triangle i, `ids[i]` its number as above.
 template <int N, class A>
-OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, const TriangleBlock* blocks,
-                                    const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit) {
+OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* const (&block)[N],
+                                                                const std::uint32_t* ids) {
+  using F = Simd<float, N, A>;
+  alignas(64) float row[9][N];
+  for (int i = 0; i < N; ++i)
+    for (int k = 0; k < 9; ++k) row[k][i] = block[i]->v[k / 3][k % 3][ids[i] % TriangleBlock::kSize];
+  const auto corner = [&](int k) {
+    return Vec3<F>{F::load(row[k]), F::load(row[k + 1]), F::load(row[k + 2])};
+  };
+  return {corner(0), corner(3), corner(6)};
+}
+
+/// Ray i of `ray` against triangle i of `tri`, for all i at once, with the same bits as decide_watertight of
+/// each pair alone. The rays may differ in the axis of their greatest direction component. Returns a bit for
+/// each ray that meets its triangle at tmin < t <= tmax. Unused lanes may have any triangle and any finite
+/// ray.
+template <int N, class A>
+OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, TriangleLanes<Simd<float, N, A>> tri,
+                                    HitLanes<Simd<float, N, A>>& hit) {
   using F = Simd<float, N, A>;
   using D = Simd<double, N, A>;
-  TriangleLanes<F> tri = gather_triangles<N, A>(blocks, ids);
   ray.d = flush_direction(ray.d);
   const F ax = abs(ray.d.x), ay = abs(ray.d.y), az = abs(ray.d.z);
   const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
@@ -72,6 +85,13 @@ OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, const Trian
   const ShearLanes<D> shear{to_double(permute(ray.o)), inv_dz, d.x * inv_dz, d.y * inv_dz};
   tri = {permute(tri.a), permute(tri.b), permute(tri.c)};
   return bits(decide_watertight(shear, tri, ray.tmin, ray.tmax, hit));
+}
+
+/// The same for triangles `ids[i]` = block * TriangleBlock::kSize + lane of `blocks`.
+template <int N, class A>
+OKTETT_INLINE unsigned decide_pairs(const RayLanes<Simd<float, N, A>>& ray, const TriangleBlock* blocks,
+                                    const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit) {
+  return decide_pairs<N, A>(ray, gather_triangles<N, A>(blocks, ids), hit);
 }
 
 }  // namespace oktett

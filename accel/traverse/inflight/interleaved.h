@@ -1,7 +1,8 @@
 #pragma once
 /// \file Many single rays in flight: each step takes one ray through one node or one leaf, prefetches the
 /// memory of its next step and goes on with another ray, which hides the latency of cache misses. The rays
-/// share nothing, so it does not matter whether they are coherent.
+/// share nothing, so it does not matter whether they are coherent. A ray that reaches an instance goes inside
+/// and stays in flight (accel/traverse/inflight/enter_instance.h).
 ///
 /// Triangles are classified in float (kernels/triangle/triangle_classify.h). A triangle that is surely hit,
 /// and surely nearer than the nearest hit so far, becomes the ray's candidate hit. Candidates of finished
@@ -11,82 +12,57 @@
 #include <algorithm>
 
 #include "accel/traverse/inflight/bundle_entry.h"
-#include "accel/traverse/inflight/decide_pairs.h"
-#include "accel/traverse/inflight/inflight_ray.h"
-#include "accel/traverse/prefetch.h"
-#include "accel/traverse/single.h"
+#include "accel/traverse/inflight/enter_instance.h"
+#include "accel/traverse/inflight/inflight_queues.h"
+#include "accel/traverse/inflight/pending_hits.h"
 
 namespace oktett {
 
-/// Rays that are traced at the same time.
-inline constexpr int kInflightRays = 48;
 /// Leaves are visited when this many rays wait at leaves, or when no ray is at a node.
 inline constexpr int kLeafThreshold = 8;
-/// A round over the nodes takes at least this many steps. With fewer rays than that, a ray takes several
-/// steps. The end of each round costs a mispredicted branch, so rounds must not be short.
-inline constexpr int kRoundSteps = 16;
 
-/// Traces a batch of rays; see the top of the file. `kPrefetch`: prefetch the memory of each ray's next step.
-template <Query Q, class A, bool kPrefetch>
+/// What an interleaved traversal is made for.
+enum class InflightTrees {
+  small,      ///< a tree without instances that is in the caches
+  large,      ///< the same, but each ray prefetches the memory of its next step
+  instances,  ///< a tree with instances; also prefetches
+};
+
+/// Traces a batch of rays; see the top of the file.
+template <Query Q, class A, InflightTrees kTrees>
 class InterleavedTraversal {
  public:
   InterleavedTraversal(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out)
       : accel_(accel), rays_(rays), out_(out), extent_(box_extent(accel.bounds)) {}
 
   void run() {
-    Tails tail = tails();
+    Tails tail = queues_.tails();
     for (InflightRay& ray : inflight_) refill(ray, tail);
-    keep(tail);
-    while (nodes_.size() + leaves_.size() + others_.size() > 0) {
+    queues_.keep(tail);
+    while (!queues_.empty()) {
       node_round();
-      if (leaves_.size() >= kLeafThreshold || nodes_.size() == 0) leaf_round();
-      if (others_.size() >= kLeafThreshold || nodes_.size() + leaves_.size() == 0) other_round();
+      if (queues_.leaves.size() >= kLeafThreshold || queues_.nodes.size() == 0) leaf_round();
+      if (queues_.others.size() >= kLeafThreshold || queues_.nodes.size() + queues_.leaves.size() == 0)
+        other_round();
     }
-    if constexpr (Q == Query::closest) decide_pending();
+    if constexpr (Q == Query::closest) pending_.decide(accel_, rays_, out_);
   }
 
  private:
+  static constexpr bool kInstances = kTrees == InflightTrees::instances;
+  static constexpr bool kPrefetch = kTrees != InflightTrees::small;
   static constexpr int kBlock = TriangleBlock::kSize;
   static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
   /// Rays whose blocks of triangles are classified together.
   static constexpr int kLeafRays = std::is_same_v<A, Avx512Isa> ? 2 : 1;
 
-  /// Rays that wait for one kind of step, first come, first served.
-  struct Queue {
-    static constexpr int kPlaces = 256;
-    InflightRay **head = ray, **tail = ray;
-    InflightRay* ray[kPlaces];
+  using Tails = InflightQueues::Tails;
 
-    int size() const { return static_cast<int>(tail - head); }
-  };
-
-  /// The ends of the three queues while a round fills them, kept in registers.
-  struct Tails {
-    InflightRay **node, **leaf, **other;
-  };
-  /// The ends of the queues, with room for a round and for one more, because enqueue() writes past the end.
-  OKTETT_INLINE Tails tails() {
-    constexpr int kMost = Queue::kPlaces - std::max(kInflightRays, kRoundSteps) - 1;
-    for (Queue* q : {&nodes_, &leaves_, &others_})
-      if (OKTETT_UNLIKELY(q->tail > q->ray + kMost))
-        q->tail = std::copy(q->head, q->tail, q->ray), q->head = q->ray;
-    return {nodes_.tail, leaves_.tail, others_.tail};
-  }
-  OKTETT_INLINE void keep(const Tails& t) {
-    nodes_.tail = t.node, leaves_.tail = t.leaf, others_.tail = t.other;
-  }
-
-  /// Queues `ray` for the kind of step that `ref` needs, and prefetches the node or block. Has no branches:
-  /// the pointer is written to the ends of all three queues, and one of the ends moves on. For a finished ray
+  /// Queues `ray` for the kind of step that `ref` needs, and prefetches the node or block. For a finished ray
   /// the prefetched address means nothing.
   OKTETT_INLINE void enqueue(InflightRay& ray, NodeRef ref, Tails& t) const {
-    const std::uint32_t bits = ref.bits(), is_leaf = bits >> 31;
-    if constexpr (kPrefetch) bytes_.prefetch(ref);
-    // Arithmetic on the two top bits of NodeRef::bits: compilers turn comparisons into jumps.
-    const std::uint32_t is_other = is_leaf & (bits >> 30);
-    *t.node = &ray, t.node += 1 - is_leaf;
-    *t.leaf = &ray, t.leaf += is_leaf - is_other;
-    *t.other = &ray, t.other += is_other;
+    if constexpr (kPrefetch) (kInstances ? ray.in.bytes : bytes_).prefetch(ref);
+    InflightQueues::enqueue(ray, ref, t);
   }
 
   OKTETT_INLINE void pop(InflightRay& ray, Tails& t) {
@@ -95,24 +71,32 @@ class InterleavedTraversal {
     enqueue(ray, ref, t);
   }
 
+  /// The nodes and blocks of the tree that the ray is in.
+  OKTETT_INLINE const BvhNode* nodes(const InflightRay& ray) const {
+    return kInstances ? ray.in.bytes.nodes() : accel_.nodes.data();
+  }
+  OKTETT_INLINE const TriangleBlock* blocks(const InflightRay& ray) const {
+    return kInstances ? ray.in.bytes.blocks() : accel_.blocks.data();
+  }
+
   void node_round() {
-    Tails t = tails();
-    const BvhNode* nodes = accel_.nodes.data();
-    InflightRay** at = nodes_.head;
-    for (InflightRay** const end = at + std::max(nodes_.size(), kRoundSteps); at != t.node && at != end; ++at)
-      enqueue(**at, step_node<Q, A>(**at, nodes[(*at)->current.bits()]), t);
-    nodes_.head = at;
-    keep(t);
+    Tails t = queues_.tails();
+    InflightRay** at = queues_.nodes.head;
+    for (InflightRay** const end = at + std::max(queues_.nodes.size(), kRoundSteps);
+         at != t.node && at != end; ++at)
+      enqueue(**at, step_node<Q, A>(**at, nodes(**at)[(*at)->current.bits()]), t);
+    queues_.nodes.head = at;
+    queues_.keep(t);
   }
 
   void leaf_round() {
-    Tails t = tails();
-    InflightRay** at = leaves_.head;
+    Tails t = queues_.tails();
+    InflightRay** at = queues_.leaves.head;
     InflightRay** const end = t.leaf;
     for (; end - at >= kLeafRays; at += kLeafRays) leaf_step<kLeafRays>(at, t);
     for (; at != end; ++at) leaf_step<1>(at, t);
-    leaves_.head = at;
-    keep(t);
+    queues_.leaves.head = at;
+    queues_.keep(t);
   }
 
   /// N rays, each against its own block of triangles.
@@ -120,7 +104,6 @@ class InterleavedTraversal {
   OKTETT_INLINE void leaf_step(InflightRay* const* rays, Tails& tail) {
     using F = Simd<float, N * kBlock, A>;
     using B = Simd<float, kBlock, A>;
-    const TriangleBlock* blocks = accel_.blocks.data();
     // f(ray) of all rays, side by side in lanes.
     const auto each = [&](auto&& f) {
       if constexpr (N == 1)
@@ -136,7 +119,7 @@ class InterleavedTraversal {
     };
     const auto corner = [&](int c) {
       const auto axis = [&](int k) {
-        return each([&](const InflightRay& r) { return B::load(blocks[r.current.block()].v[c][k]); });
+        return each([&](const InflightRay& r) { return B::load(blocks(r)[r.current.block()].v[c][k]); });
       };
       return Vec3<F>{axis(0), axis(1), axis(2)};
     };
@@ -163,9 +146,8 @@ class InterleavedTraversal {
   OKTETT_INLINE void take(InflightRay& ray, const TriangleGuess<F>& guess, const HitInterval<F>& h,
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
-    if (maybe != 0 && accel_.pieces)
-      maybe &= ~repeated_lane(accel_, ray.candidate, states_[&ray - inflight_],
-                              accel_.blocks[ray.current.block()]);
+    if (maybe != 0 && (kInstances ? *ray.in.accel : accel_).pieces)
+      maybe &= ~repeated_lane<A>(repeated_item(ray), blocks(ray)[ray.current.block()]);
     if (maybe == 0) return;
     const unsigned sure = bits(h.sure) >> first & maybe;
     if (sure != 0) {
@@ -174,11 +156,25 @@ class InterleavedTraversal {
       if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi))) >> first;
       if (maybe == 1u << hit.lane && hit.hi < ray.hit_lo) {
         ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
+        if constexpr (kInstances) ray.in.candidate_instance = ray.in.instance;
         ray.hit_lo = hit.lo;
         return shorten<A>(ray, hit.hi);
       }
     }
     decide_leaf(ray);
+  }
+
+  /// The item of the ray's nearest hit so far, if it is a triangle of the tree that the ray is in, else
+  /// kNoId.
+  OKTETT_INLINE std::uint32_t repeated_item(const InflightRay& ray) const {
+    std::uint32_t path = kNoId;
+    if constexpr (kInstances) {
+      if (ray.candidate < kDecidedHit && ray.in.candidate_instance != ray.in.instance) return kNoId;
+      if (ray.in.instance != kNoInstance)
+        with_instance(accel_, ray.in.instance,
+                      [&](const auto& instance, const Accel&) { path = outer_path(instance, kNoId); });
+    }
+    return candidate_item(blocks(ray), ray.candidate, states_[&ray - inflight_], path);
   }
 
   /// For Query::any: the ray has hit something and is finished.
@@ -195,9 +191,23 @@ class InterleavedTraversal {
       ray.has_state = 1;
     }
     if (ray.candidate < kDecidedHit)
-      leaf_triangles_single(accel_.blocks[ray.candidate / kBlock],
-                            static_cast<int>(ray.candidate % kBlock) + 1, r);
+      exact_in(ray.in.candidate_instance, r, [&](const Accel& tree, RayState<1, A>& state) {
+        leaf_triangles_single(tree.blocks[ray.candidate / kBlock],
+                              static_cast<int>(ray.candidate % kBlock) + 1, state);
+      });
     return r;
+  }
+
+  /// Calls f(tree, state) for what an instance shows (kNoInstance: the whole structure) and the state there
+  /// of a ray with state `r`; `r` takes over the hit.
+  template <class Function>
+  OKTETT_INLINE void exact_in(std::uint32_t number, RayState<1, A>& r, Function&& f) const {
+    if constexpr (kInstances)
+      if (number != kNoInstance)
+        return with_instance(accel_, number, [&](const auto& instance, const Accel& child) {
+          inside_instance(instance, child, r, [&](RayState<1, A>& state) { f(child, state); });
+        });
+    f(accel_, r);
   }
 
   /// Takes over the nearest hit from the exact tests.
@@ -212,36 +222,109 @@ class InterleavedTraversal {
 
   /// Tests the ray's block of triangles exactly.
   OKTETT_NOINLINE void decide_leaf(InflightRay& ray) {
-    RayState<1, A>& r = exact_state(ray);
     const NodeRef leaf = ray.current;
-    leaf_triangles_single(accel_.blocks[leaf.block()], leaf.triangle_count(), r);
+    exact_in(ray.in.instance, exact_state(ray), [&](const Accel& tree, RayState<1, A>& state) {
+      leaf_triangles_single(tree.blocks[leaf.block()], leaf.triangle_count(), state);
+    });
     adopt(ray);
   }
 
-  /// Rays that are finished or at a leaf of the table.
+  /// Rays that are finished, at a leaf of the table, or on their way out of an instance.
   OKTETT_NOINLINE void other_round() {
-    Tails tail = tails();
-    for (int rest = others_.size(); rest > 0; --rest) {
-      InflightRay& ray = **others_.head++;
-      const NodeRef ref = ray.current;
-      if (ref.is_none()) {
-        finish(ray);
-        refill(ray, tail);
-      } else {
-        table_leaf_single<Q>(accel_, accel_.leaves[ref.table_index()], exact_state(ray));
-        adopt(ray);
-        pop(ray, tail);
+    Tails tail = queues_.tails();
+    InflightRay** const begin = queues_.others.head;
+    InflightRay** const end = queues_.others.head = tail.other;
+    // First sorted by what is to be done, without branches.
+    InflightRay *finished[kInflightRays + 1], *at_leaf[kInflightRays + 1], *leaving[kInflightRays + 1];
+    InflightRay **finished_end = finished, **leaf_end = at_leaf, **leaving_end = leaving;
+    for (InflightRay** at = begin; at != end; ++at) {
+      const NodeRef ref = (*at)->current;
+      const int none = ref.is_none(), out = ref.is_way_out();
+      *finished_end = *leaf_end = *leaving_end = *at;
+      finished_end += none, leaving_end += out, leaf_end += 1 - none - out;
+    }
+    if constexpr (kInstances)
+      for (InflightRay** at = at_leaf; at != leaf_end; ++at) prefetch_instance(**at);
+    for (InflightRay** at = finished; at != finished_end; ++at) {
+      finish(**at);
+      refill(**at, tail);
+    }
+    if constexpr (kInstances)
+      for (InflightRay** at = leaving; at != leaving_end; ++at) leave(**at, tail);
+    for (InflightRay** at = at_leaf; at != leaf_end; ++at) table_leaf(**at, tail);
+    if constexpr (kInstances) go_inside(tail);
+    queues_.keep(tail);
+  }
+
+  /// Prefetches the memory that describes the instance that the ray goes into, if it goes into one.
+  OKTETT_INLINE void prefetch_instance(const InflightRay& ray) const {
+    if (ray.in.instance != kNoInstance) return;
+    const LeafEntry& leaf = accel_.leaves[ray.current.table_index()];
+    if (leaf.kind == Kind::instance_list) __builtin_prefetch(&accel_.listed_instances[leaf.begin]);
+    if (leaf.kind != Kind::instance) return;
+    const InstanceItem& instance = accel_.instances[leaf.begin];
+    __builtin_prefetch(&instance), __builtin_prefetch(&instance.child);
+  }
+
+  OKTETT_INLINE void table_leaf(InflightRay& ray, Tails& tail) {
+    const NodeRef ref = ray.current;
+    if constexpr (kInstances) {
+      const LeafEntry& leaf = ray.in.accel->leaves[ref.table_index()];
+      if (ray.in.instance == kNoInstance && holds_instances(leaf.kind)) {
+        ray.in.next = first_instance(leaf), ray.in.end = ray.in.next + leaf.count;
+        outer_[&ray - inflight_] = ray;
+        return add_entering(ray, tail);
       }
     }
-    keep(tail);
+    exact_in(ray.in.instance, exact_state(ray), [&](const Accel& tree, RayState<1, A>& state) {
+      table_leaf_single<Q>(tree, tree.leaves[ref.table_index()], state);
+    });
+    adopt(ray);
+    pop(ray, tail);
+  }
+
+  /// Takes the ray into the next instance of its leaf, or, after the last one, out of it.
+  OKTETT_INLINE void leave(InflightRay& ray, Tails& tail) {
+    if (ray.in.next != ray.in.end) return add_entering(ray, tail);
+    leave_instance(ray, outer_[&ray - inflight_], accel_);
+    pop(ray, tail);
+  }
+
+  OKTETT_INLINE void add_entering(InflightRay& ray, Tails& tail) {
+    if (entering_.add(ray, outer_[&ray - inflight_], ray.in.next++, accel_)) go_inside(tail);
+  }
+
+  /// Takes the rays in `entering_` into their instances, or tests them exactly there and then lets them
+  /// leave.
+  OKTETT_INLINE void go_inside(Tails& tail) {
+    const auto stay = [&](InflightRay& ray, std::uint32_t number) {
+      with_instance(accel_, number, [&](const auto& instance, const Accel& child) {
+        instance_single<Q>(instance, child, exact_state(ray), IgnoreSteps{});
+      });
+      adopt(ray);
+      if (Q != Query::any || ray.candidate == kNoCandidate) ray.push(NodeRef::way_out(), -1);
+      pop(ray, tail);
+    };
+    const auto enter = [&](InflightRay& ray, NodeRef root) {
+      ray.current = root;
+      enqueue(ray, root, tail);
+    };
+    const auto miss = [&](InflightRay& ray) {
+      if (ray.in.next != ray.in.end)
+        ray.push(NodeRef::way_out(), -1);
+      else if (ray.in.instance != kNoInstance)
+        leave_instance(ray, outer_[&ray - inflight_], accel_);
+      pop(ray, tail);
+    };
+    entering_.go(accel_, enter, miss, stay);
   }
 
   void finish(const InflightRay& ray) {
     if constexpr (Q == Query::any) {
       out_.occluded[ray.index] = ray.candidate != kNoCandidate;
     } else if (ray.candidate < kDecidedHit) {
-      pending_ray_[pending_] = ray.index, pending_triangle_[pending_] = ray.candidate;
-      if (++pending_ == kChunk) decide_pending();
+      if (pending_.add(ray.index, ray.candidate, ray.in.candidate_instance))
+        pending_.decide(accel_, rays_, out_);
     } else {
       out_.set(ray.index, ray.candidate == kDecidedHit ? states_[&ray - inflight_].hit(0) : Hit{});
     }
@@ -277,6 +360,7 @@ class InterleavedTraversal {
 
   OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
     start_ray(ray, chunk_, i, accel_.root);
+    if constexpr (kInstances) ray.in.set(accel_);
     if constexpr (Q == Query::any) {
       if (has_entry_) {
         ray.size = 1;
@@ -293,62 +377,37 @@ class InterleavedTraversal {
     pop(ray, tail);
   }
 
-  /// Decides the candidates of finished rays, one in each lane, and stores the hits.
-  OKTETT_NOINLINE void decide_pending() {
-    if (pending_ == 0) return;
-    using C = Simd<float, kChunk, A>;
-    alignas(64) float column[8][kChunk];
-    for (int i = 0; i < kChunk; ++i) {
-      if (i >= pending_) pending_ray_[i] = pending_ray_[0], pending_triangle_[i] = pending_triangle_[0];
-      const std::size_t ray = pending_ray_[i];
-      for (int k = 0; k < 3; ++k)
-        column[k][i] = rays_.origin[k][ray], column[3 + k][i] = rays_.direction[k][ray];
-      column[6][i] = rays_.tmin[ray], column[7][i] = rays_.tmax[ray];
-    }
-    const auto vec = [&](int k) {
-      return Vec3<C>{C::load(column[k]), C::load(column[k + 1]), C::load(column[k + 2])};
-    };
-    const RayLanes<C> rays{vec(0), vec(3), C::load(column[6]), C::load(column[7])};
-    HitLanes<C> h;
-    const unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), pending_triangle_, h);
-    alignas(64) float t[kChunk], u[kChunk], v[kChunk];
-    h.t.store(t), h.u.store(u), h.v.store(v);
-    for (int i = 0; i < pending_; ++i) {
-      const std::uint32_t item =
-          accel_.blocks[pending_triangle_[i] / kBlock].item[pending_triangle_[i] % kBlock];
-      out_.set(pending_ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, kNoId} : Hit{});
-    }
-    pending_ = 0;
-  }
-
   const Accel& accel_;
   const RaySpan rays_;
   const HitSink<Q> out_;
   const float extent_;
   const TreeBytes bytes_{accel_};
   std::size_t next_ = 0;
-  Queue nodes_, leaves_, others_;
-  int pending_ = 0;
-  std::uint32_t pending_triangle_[kChunk], pending_ray_[kChunk];
+  InflightQueues queues_;
+  PendingHits<kChunk, A, kInstances> pending_;
   RayChunk<kChunk, A> chunk_;
   bool has_entry_ = false;
   BundleEntry<A> entry_;
   InflightRay inflight_[kInflightRays];
   RayState<1, A> states_[kInflightRays];
+  InflightHead outer_[kInstances ? kInflightRays : 1];
+  EnteringRays<kInstances ? kChunk : 1, A> entering_;
 };
 
-template <Query Q, class A, bool kPrefetch>
+template <Query Q, class A, InflightTrees kTrees>
 OKTETT_NOINLINE void run_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  InterleavedTraversal<Q, A, kPrefetch>(accel, rays, out).run();
+  InterleavedTraversal<Q, A, kTrees>(accel, rays, out).run();
 }
 
 /// All rays of a span against everything; results in the order of the rays.
 template <Query Q, class A>
 void trace_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  if (tree_bytes(accel) > kPrefetchBytes)
-    run_interleaved<Q, A, true>(accel, rays, out);
+  if (has_instances(accel))
+    run_interleaved<Q, A, InflightTrees::instances>(accel, rays, out);
+  else if (tree_bytes(accel) > kPrefetchBytes)
+    run_interleaved<Q, A, InflightTrees::large>(accel, rays, out);
   else
-    run_interleaved<Q, A, false>(accel, rays, out);
+    run_interleaved<Q, A, InflightTrees::small>(accel, rays, out);
 }
 
 }  // namespace oktett

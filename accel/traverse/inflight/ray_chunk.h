@@ -36,16 +36,20 @@ OKTETT_INLINE F chunk_slack(const F& reach) {
 /// ones.
 template <class F>
 OKTETT_INLINE SlabLines<F> slab_lines(const F& origin, const F& direction, const F& reach, const F& least,
-                                      float extent) {
+                                      const F& extent) {
   const auto tiny = abs(direction) < least;
   const F inverse = F(1.0f) / select(tiny, flip_sign(least, direction + F(0.0f)), direction);
   const F shift = origin * inverse;
   // Without a fused operation, the product with the plane rounds too.
-  const F size =
-      kHasFma<typename F::Isa> && F::kWidth > 1 ? abs(shift) : abs(shift) + abs(inverse) * F(extent);
+  const F size = kHasFma<typename F::Isa> && F::kWidth > 1 ? abs(shift) : abs(shift) + abs(inverse) * extent;
   // Replacing a tiny component turns the ray; it strays no farther than twice the way of the new component.
   const F error = fast_fma(size, F(kChunkShiftError), select(tiny, F(4.0f) * reach, F(0.0f)));
   return {inverse, -(shift + error), (error + chunk_slack(reach)) - shift};
+}
+
+/// The offset, in a node's planes, of the near ones along an axis.
+OKTETT_INLINE std::uint32_t near_offset(std::uint32_t axis, unsigned negative) {
+  return static_cast<std::uint32_t>(BvhNode::kWidth) * (2 * axis + negative);
 }
 
 /// The slab test in fused form: the children of `node` that a ray meets, as bits, and their near distances.
@@ -84,7 +88,11 @@ struct alignas(64) RayChunk {
   /// greatest |coordinate| of the scene.
   OKTETT_INLINE void set(const RaySpan& rays, std::size_t b, float extent) {
     const std::size_t rest = rays.size - b;
-    const RayLanes<F> r = load_span<F>(rays, b);
+    set(load_span<F>(rays, b), rest >= W ? ~0u : (1u << rest) - 1, F(extent));
+  }
+
+  /// Sets W rays; those that are not in `present` are not tame. Each has an extent of its own.
+  OKTETT_INLINE void set(const RayLanes<F>& r, unsigned present, const F& extent) {
     const F zero(0.0f), big(std::numeric_limits<float>::max());
     const Vec3<F> dir = flush_direction(r.d);
     const F ax = abs(dir.x), ay = abs(dir.y), az = abs(dir.z);
@@ -94,8 +102,8 @@ struct alignas(64) RayChunk {
     const auto finite = (ax <= big) & (ay <= big) & (az <= big) & (abs(r.o.x) <= big) & (abs(r.o.y) <= big) &
                         (abs(r.o.z) <= big);
     const auto usable = finite & (zero < dm) & (zero <= r.tmin) & (r.tmin < r.tmax);
-    const F span = om + F(extent);
-    const unsigned valid = bits(usable) & (rest >= W ? ~0u : (1u << rest) - 1);
+    const F span = om + extent;
+    const unsigned valid = bits(usable) & present;
     tame = valid & bits((F(kChunkMinExtent) <= span) & (span <= F(kClassifyMaxExtent)) &
                         (F(1 / kClassifyMaxDirection) <= dm) & (dm <= F(kClassifyMaxDirection)));
     const F reach = span / dm, least = dm * F(kChunkMinComponent);
@@ -107,9 +115,22 @@ struct alignas(64) RayChunk {
     (r.tmin + zero).store(tmin), r.tmax.store(tmax), chunk_slack(reach).store(slack);
   }
 
+  /// The rays that meet a box each, as bits.
+  OKTETT_INLINE unsigned meets(const Vec3<F>& lo, const Vec3<F>& hi) const {
+    F near = F::load(tmin), far = F::load(tmax) + F::load(slack);
+    const auto axis = [&](int k, const F& low, const F& high) {
+      const auto turned = F::M::from_bits(negative[k]);
+      const F inverse = F::load(inv[k]);
+      near = max(fast_fma(select(turned, high, low), inverse, F::load(near_shift[k])), near);
+      far = min(fast_fma(select(turned, low, high), inverse, F::load(far_shift[k])), far);
+    };
+    axis(0, lo.x, hi.x), axis(1, lo.y, hi.y), axis(2, lo.z, hi.z);
+    return bits(near <= far * F(kSlabRelativeSlack));
+  }
+
  private:
   OKTETT_INLINE void set_axis(int k, const F& origin, const F& direction, const F& reach, const F& least,
-                              float extent) {
+                              const F& extent) {
     const SlabLines<F> line = slab_lines(origin, direction, reach, least, extent);
     origin.store(o[k]), direction.store(d[k]), line.inverse.store(inv[k]);
     line.near_shift.store(near_shift[k]), line.far_shift.store(far_shift[k]);

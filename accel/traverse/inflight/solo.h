@@ -32,7 +32,7 @@ class SoloTraversal {
             span <= kClassifyMaxExtent && 1 / kClassifyMaxDirection <= d_max &&
             d_max <= kClassifyMaxDirection;
     const V reach = V(span) / V(d_max);
-    const SlabLines<V> line = slab_lines(o, d, reach, V(d_max * kChunkMinComponent), extent);
+    const SlabLines<V> line = slab_lines(o, d, reach, V(d_max * kChunkMinComponent), V(extent));
     line.inverse.store(inv_), line.near_shift.store(near_shift_), line.far_shift.store(far_shift_);
     d.store(d_), chunk_slack(reach).store(slack_);
     const float ax = std::abs(d_[0]), ay = std::abs(d_[1]), az = std::abs(d_[2]);
@@ -76,8 +76,7 @@ class SoloTraversal {
     std::uint32_t near_row[3];
     for (std::size_t k = 0; k < 3; ++k) {
       inv[k] = F(inv_[k]), near_shift[k] = F(near_shift_[k]), far_shift[k] = F(far_shift_[k]);
-      near_row[k] =
-          static_cast<std::uint32_t>(kWidth) * (2 * static_cast<std::uint32_t>(k) + (negative_ >> k & 1));
+      near_row[k] = near_offset(static_cast<std::uint32_t>(k), negative_ >> k & 1);
     }
     // Adding zero turns -0 into 0, because near distances are sorted by their bits.
     const F tmin(ray_.tmin + 0.0f);
@@ -133,7 +132,9 @@ class SoloTraversal {
 
   /// The same for the triangles that the filter did not reject, the bits of `maybe`.
   OKTETT_INLINE bool take(NodeRef ref, const TriangleGuess<F>& guess, unsigned maybe) {
-    if (accel_.pieces) maybe &= ~repeated_lane(accel_, candidate_, state_, accel_.blocks[ref.block()]);
+    if (accel_.pieces)
+      maybe &= ~repeated_lane<A>(candidate_item(accel_.blocks.data(), candidate_, state_, kNoId),
+                                 accel_.blocks[ref.block()]);
     if (maybe == 0) return false;
     const HitInterval<F> h = hit_interval(guess, F(ray_.tmin), F(tmax_));
     const unsigned sure = bits(h.sure) & maybe;
