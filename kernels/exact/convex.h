@@ -94,12 +94,7 @@ OKTETT_INLINE void convex_crossings(const Field& field, const D& a, const D& b, 
   if (OKTETT_LIKELY(none(unsure))) return;
   Crossings<K, D> other;
   certain_crossings<K>(field, a, b, unsure, other);
-  for (int k = 0; k < K; ++k) {
-    out.t[k] = select(unsure, other.t[k], out.t[k]);
-    out.turn[k] = select(unsure, other.turn[k], out.turn[k]);
-    out.part[k] = select(unsure, other.part[k], out.part[k]);
-  }
-  out.up_to = select(unsure, other.up_to, out.up_to);
+  select_crossings(unsure, other, out);
 }
 
 }  // namespace oktett::interval

@@ -73,6 +73,18 @@ struct Crossings {
   }
 };
 
+/// Takes the crossings of `from` in the lanes of `where`.
+template <int K, class D>
+OKTETT_INLINE void select_crossings(const typename D::M& where, const Crossings<K, D>& from,
+                                    Crossings<K, D>& out) {
+  for (int k = 0; k < K; ++k) {
+    out.t[k] = select(where, from.t[k], out.t[k]);
+    out.turn[k] = select(where, from.turn[k], out.turn[k]);
+    out.part[k] = select(where, from.part[k], out.part[k]);
+  }
+  out.up_to = select(where, from.up_to, out.up_to);
+}
+
 /// Turns the places of crossings and their end into distances by to_t.
 template <int K, class D, class F>
 OKTETT_INLINE void place_crossings(Crossings<K, D>& list, const F& to_t) {

@@ -2,8 +2,11 @@
 /// \file Functions of x, y and z inside of a box, solved by intervals along the ray
 /// (kernels/exact/march.h; D. P. Mitchell: Robust ray intersection with interval arithmetic, 1990).
 
+#include <memory>
+
 #include "kernels/exact/implicit_data.h"
 #include "kernels/exact/march.h"
+#include "kernels/exact/stride.h"
 #include "kernels/functions/function_tape.h"
 
 namespace oktett {
@@ -13,6 +16,12 @@ struct ImplicitElement {
   double size;  ///< a power of two: so many units of the function's are 1 in the own space
   bool open;
   Vec3d lo, hi;
+  /// In the function's own variables; elements that follow each other share that of the same function.
+  std::shared_ptr<const VariationGrid> grid;
+};
+
+struct ImplicitPool : ExactPool<ImplicitElement> {
+  std::size_t bytes() const;
 };
 
 /// The function along rays. s is 0 where they begin to matter.
@@ -31,12 +40,19 @@ struct FunctionField {
     const auto axis = [&](const D& from, const D& by) { return Interval<D>(s) * by + Interval<D>(from); };
     return run_tape(function, axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
   }
+  /// The value at a point and the derivative by s, computed in plain arithmetic.
+  OKTETT_INLINE Gradient<D, Walls::flat, D> rate(const D& s) const {
+    const auto axis = [&](const D& from, const D& by) {
+      return Gradient<D, Walls::flat, D>{from + s * by, by};
+    };
+    return run_tape(function, axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
+  }
 };
 
 /// Parts: 0 the surface, 1 to 6 the faces of the box, kJumpPart where the function jumps.
 struct Implicit {
   using Data = ImplicitShape;
-  using Pool = ExactPool<ImplicitElement>;
+  using Pool = ImplicitPool;
   static constexpr int kMaxCrossings = 18;
 
   static void add(Pool& pool, const ImplicitShape& shape, const ExactPlace& place);
@@ -54,9 +70,14 @@ struct Implicit {
         {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)},
         {line.d.x * size, line.d.y * size, line.d.z * size}};
     Crossings<kOwn, D> own;
-    const D sign =
-        interval::march<kOwn>(field, zero, length, length, active, interval::Jumps::list_steep, own);
-    place_crossings(own, [&](const D& s) { return range.a + s; });
+    D sign(0.0);
+    auto rest = active;
+    if constexpr (K == 1)
+      if (!e.grid->cells.empty()) {
+        const auto enters = e.open ? ~active & active : range.enter_face > zero;
+        rest = first_by_strides(*e.grid, field, range.a, length, enters, active, own, sign);
+      }
+    if (any(rest)) march_rest(field, range.a, length, rest, own, sign);
     if (!e.open) return close_by_cell(own, sign < zero, range, active, out);
     CrossingList<K, D> list(out);
     for (int k = 0; k < kOwn; ++k)
@@ -83,6 +104,18 @@ struct Implicit {
   }
 
  private:
+  /// By intervals, in the lanes of `rest`.
+  template <int K, class D>
+  OKTETT_NOINLINE static void march_rest(const FunctionField<D>& field, const D& begin, const D& length,
+                                         const typename D::M& rest, Crossings<K, D>& own, D& sign) {
+    Crossings<K, D> found;
+    const D first =
+        interval::march<K>(field, D(0.0), length, length, rest, interval::Jumps::list_steep, found);
+    place_crossings(found, [&](const D& s) { return begin + s; });
+    select_crossings(rest, found, own);
+    sign = select(rest, first, sign);
+  }
+
   template <Walls W, class D>
   OKTETT_INLINE static Gradient<D, W> slope_of(const ImplicitElement& e, const Vec3<D>& p) {
     const D size(e.size), zero(0.0);

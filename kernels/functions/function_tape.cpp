@@ -253,7 +253,7 @@ FunctionTape compile_function(std::string_view text) {
 
 double value_at(const FunctionTape& tape, double x, double y, double z) {
   using D = Simd<double, 1, ScalarIsa>;
-  const auto constant = [&](double c) { return Gradient<D>{D(c), gradient::zero<D>()}; };
+  const auto constant = [&](double c) { return Gradient<D>{D(c), gradient::zero<Vec3<D>>()}; };
   return only_lane(run_tape(tape, constant(x), constant(y), constant(z)).v);
 }
 

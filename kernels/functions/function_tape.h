@@ -12,9 +12,9 @@ namespace oktett {
 
 namespace tape {
 
-template <class D, Walls W>
-OKTETT_INLINE void set(Gradient<D, W>& r, double c) {
-  r = {D(c), gradient::zero<D>()};
+template <class D, Walls W, class V>
+OKTETT_INLINE void set(Gradient<D, W, V>& r, double c) {
+  r = {D(c), gradient::zero<V>()};
 }
 
 /// One step. T is Interval, Dual of Interval, or Gradient.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/functions/expression.h"
+#include "tests/support/random_expression.h"
 
 namespace oktett {
 namespace {
@@ -27,49 +28,13 @@ Gradient<D> slope(const FunctionTape& tape, double x, double y, double z) {
                   Gradient<D>{D(z), {zero, zero, one}});
 }
 
-/// A random expression of every function there is.
-std::string draw(std::mt19937& random, int depth) {
-  if (depth == 0 || random() % 8 == 0) {
-    static const char* const kLeaves[] = {"x", "y", "z", "0.7", "2", "(-1.3)", "pi"};
-    return kLeaves[random() % 7];
-  }
-  static const char* const kUnary[] = {"sqrt",  "abs",  "sin",   "cos",  "tan",  "asin",
-                                       "acos",  "atan", "exp",   "log",  "log2", "log10",
-                                       "floor", "ceil", "round", "sign", "-"};
-  static const char* const kPowers[] = {"^2", "^3", "^-1", "^-2", "^0", "^1.5", "^-0.3", "^7", "^0.5"};
-  const std::string a = draw(random, depth - 1), b = draw(random, depth - 1);
-  switch (random() % 12) {
-    case 0:
-    case 1:
-    case 2:
-    case 3:
-      return std::string(kUnary[random() % 17]) + "(" + a + ")";
-    case 4:
-      return "(" + a + ")" + kPowers[random() % 9];
-    case 5:
-      return "(" + a + "+" + b + ")";
-    case 6:
-      return "(" + a + "-(" + b + "))";
-    case 7:
-      return "((" + a + ")*(" + b + "))";
-    case 8:
-      return "((" + a + ")/(" + b + "))";
-    case 9:
-      return (random() % 2 ? "min(" : "max(") + a + "," + b + ")";
-    case 10:
-      return (random() % 2 ? "hypot(" : "atan2(") + a + "," + b + ")";
-    default:
-      return "(" + a + ")^(" + b + ")";
-  }
-}
-
 /// Where an interval over a box is bounded, the function is defined in all of the box and within it.
 TEST(FunctionTape, IntervalsHoldTheValues) {
   std::mt19937 random(1);
   const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
   int compiled = 0, bounded = 0, poles = 0;
   for (int k = 0; k < 20000; ++k) {
-    const std::string text = draw(random, 4);
+    const std::string text = random_expression(random, 4);
     FunctionTape tape;
     try {
       tape = compile_function(text);
@@ -107,7 +72,7 @@ TEST(FunctionTape, DerivativesHoldTheSlopes) {
   const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
   int bounded = 0, kinks = 0, undefined = 0;
   for (int k = 0; k < 20000; ++k) {
-    const std::string text = draw(random, 4);
+    const std::string text = random_expression(random, 4);
     FunctionTape tape;
     try {
       tape = compile_function(text);
@@ -249,7 +214,7 @@ TEST(FunctionTape, SurvivesAnyText) {
         "atan2(", "min(", "floor(", " ", "e", "$", "\xc3", "sine(", ".", "^-3", "1e999"};
     // A function with a few tokens put in or cut out.
     std::mt19937 random(*rc::gen::arbitrary<std::uint32_t>());
-    std::string text = draw(random, 3);
+    std::string text = random_expression(random, 3);
     for (auto changes = *rc::gen::inRange(0, 4); changes > 0; --changes) {
       const auto at = *rc::gen::inRange<std::size_t>(0, text.size() + 1);
       if (*rc::gen::arbitrary<bool>())
