@@ -70,14 +70,18 @@ struct Implicit {
         {place(line.o.x, line.d.x), place(line.o.y, line.d.y), place(line.o.z, line.d.z)},
         {line.d.x * size, line.d.y * size, line.d.z * size}};
     Crossings<kOwn, D> own;
-    D sign(0.0);
-    auto rest = active;
-    if constexpr (K == 1)
-      if (!e.grid->cells.empty()) {
-        const auto enters = e.open ? ~active & active : range.enter_face > zero;
-        rest = first_by_strides(*e.grid, field, range.a, length, enters, active, own, sign);
+    D sign;
+    if (K > 1 || e.grid->cells.empty()) {
+      sign = march(field, range.a, length, active, own);
+    } else if constexpr (K == 1) {
+      const auto enters = e.open ? ~active & active : range.enter_face > zero;
+      const auto rest = first_by_strides(*e.grid, field, range.a, length, enters, active, own, sign);
+      if (any(rest)) {
+        Crossings<1, D> found;
+        sign = select(rest, march(field, range.a, length, rest, found), sign);
+        select_crossings(rest, found, own);
       }
-    if (any(rest)) march_rest(field, range.a, length, rest, own, sign);
+    }
     if (!e.open) return close_by_cell(own, sign < zero, range, active, out);
     CrossingList<K, D> list(out);
     for (int k = 0; k < kOwn; ++k)
@@ -104,16 +108,14 @@ struct Implicit {
   }
 
  private:
-  /// By intervals, in the lanes of `rest`.
+  /// The first K crossings by intervals; returns the sign at the beginning.
   template <int K, class D>
-  OKTETT_NOINLINE static void march_rest(const FunctionField<D>& field, const D& begin, const D& length,
-                                         const typename D::M& rest, Crossings<K, D>& own, D& sign) {
-    Crossings<K, D> found;
-    const D first =
-        interval::march<K>(field, D(0.0), length, length, rest, interval::Jumps::list_steep, found);
-    place_crossings(found, [&](const D& s) { return begin + s; });
-    select_crossings(rest, found, own);
-    sign = select(rest, first, sign);
+  OKTETT_NOINLINE static D march(const FunctionField<D>& field, const D& begin, const D& length,
+                                 const typename D::M& active, Crossings<K, D>& out) {
+    const D sign =
+        interval::march<K>(field, D(0.0), length, length, active, interval::Jumps::list_steep, out);
+    place_crossings(out, [&](const D& s) { return begin + s; });
+    return sign;
   }
 
   template <Walls W, class D>

@@ -93,6 +93,9 @@ struct Cells {
     }
     return side * sum / static_cast<double>(list.size());
   }
+  /// Whether rays should try at all: intervals take about ten steps, each of which costs several of these. In
+  /// small cells the number of steps is overestimated, as the scale is that of the flattest.
+  bool pays() const { return unknown() <= 0.2 && steps(scale()) <= (side == kMostGridSide ? 50 : 20); }
 };
 
 /// Smaller cells have to save more than what passing their borders costs.
@@ -111,6 +114,7 @@ VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo,
     return grid;
   };
   VariationGrid grid;
+  bool pays = false;
   for (const int side : {1, 4, 8}) {
     if (side == kMostGridSide && function.steps.size() > 128) break;
     VariationGrid next = empty_grid(side);
@@ -125,7 +129,9 @@ VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo,
       break;
     next.cells = find(true);
     grid = std::move(next);
+    pays = Cells{side, edge, grid.cells}.pays();
   }
+  if (!pays) grid.cells.clear();
   return grid;
 }
 

@@ -30,7 +30,8 @@ struct VariationGrid {
 };
 
 /// The grid of a function over a box with lo < hi: of 1, 4 or 8 cells a side, as many as make bounds smaller.
-/// Functions of many steps get fewer. No cells at all if the box is too small or too large for numbers.
+/// Functions of many steps get fewer.
+/// No cells at all if strides would not pay, or if the box is too small or too large for numbers.
 VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo, const Vec3d& hi);
 
 }  // namespace oktett

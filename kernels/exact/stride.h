@@ -98,7 +98,7 @@ OKTETT_NOINLINE typename D::M first_by_strides(const VariationGrid& grid, const 
   using M = typename D::M;
   const D zero(0.0), one(1.0);
   const GridWay<D> way(grid, field.o, field.d, length);
-  out.clear();
+  out.clear(), sign = zero;
   M live = active & way.is_inside() & (zero < length);
   M unsure = active & ~live, trying = live & ~live, negative = trying;
   D s(0.0), proved(0.0);
