@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/direct_light.h"
+
 namespace oktett {
 
 static LightSource light_source(const Light& light) {
@@ -10,6 +12,19 @@ static LightSource light_source(const Light& light) {
     return {Vec3f(point->position), point->color, false, point->falloff};
   const auto& directional = std::get<DirectionalLight>(light);
   return {Vec3f(normalize(-directional.direction)), directional.color, true, false};
+}
+
+static ShadingMaterial shading_material(const Material& m, const RenderContext& context) {
+  ShadingMaterial s;
+  s.color = m.color, s.specular_color = m.specular_color;
+  s.unlit = m.emission + m.color * m.ambient * context.ambient_light;
+  s.diffuse = m.diffuse, s.specular = m.specular, s.phong = m.phong;
+  s.exponent = ShadingMaterial::kAnyPower;
+  if (m.specular == 0) s.exponent = 0;
+  else if (by_squaring(m.phong)) s.exponent = static_cast<std::int32_t>(m.phong);
+  s.textured = context.textures != nullptr && has_textures(m);
+  s.bounces = m.reflection != 0 || m.transparency != 0;
+  return s;
 }
 
 /// Range of distances along the view axis that the bounds of the scene span in front of the camera.
@@ -40,6 +55,7 @@ RenderContext make_context(const Scene& scene, const World& world, const Texture
   c.settings.depth = std::min(c.settings.depth, 64u);
   for (const Light& light : scene.lights) c.lights.push_back(light_source(light));
   c.background = scene.background, c.ambient_light = scene.ambient_light;
+  for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   c.opaque_background = !(c.background == Color{0, 0, 0});
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;

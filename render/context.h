@@ -7,6 +7,7 @@
 #include "render/camera.h"
 #include "render/geometry.h"
 #include "render/scene.h"
+#include "render/shading_columns.h"
 #include "render/texture_sampler.h"
 
 namespace oktett {
@@ -28,6 +29,7 @@ struct RenderContext {
   std::uint32_t full_width = 1, full_height = 1;
   IntegratorSettings settings;
   std::vector<LightSource> lights;
+  std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
   Color background, ambient_light;
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
   /// transparent.

@@ -116,8 +116,52 @@ Picture make_picture(const RenderContext& context) {
   return picture;
 }
 
-SampleWriter::SampleWriter(Picture& picture) : width_(picture.width) {
-  for (int k = kR; k <= kA; ++k) plane_[k] = picture.planes[k].values.data();
+void TileColors::begin(std::size_t count) {
+  for (Column<float>& plane : plane_) {
+    plane.resize_uninitialized(count);
+    std::fill_n(plane.data(), count, 0.0f);
+  }
+}
+
+std::size_t TileColors::set(std::size_t first, const SampleBatch& samples) {
+  const float* from[] = {samples.color.part[0].data(), samples.color.part[1].data(),
+                         samples.color.part[2].data(), samples.alpha.data()};
+  const std::size_t count = samples.size();
+  std::size_t bad = 0;
+  // x * 0 is 0 for finite x and NaN for all others.
+  const auto is_bad = [&](std::size_t i) {
+    return !(from[0][i] * 0 + from[1][i] * 0 + from[2][i] * 0 + from[3][i] * 0 == 0);
+  };
+  for (std::size_t i = 0; i < count; ++i) bad += is_bad(i) ? 1 : 0;
+  for (int k = 0; k < 4; ++k) {
+    float* to = plane_[k].data() + first;
+    if (bad == 0) {
+      std::copy_n(from[k], count, to);
+    } else {
+      for (std::size_t i = 0; i < count; ++i)
+        if (!is_bad(i)) to[i] = from[k][i];
+    }
+  }
+  return bad;
+}
+
+void TileColors::set(std::size_t number, const PixelSum& sum) {
+  if (sum.good == 0) return;
+  for (int k = 0; k < 3; ++k) plane_[k][number] = static_cast<float>(sum.color[k] / sum.good);
+  plane_[3][number] = static_cast<float>(sum.alpha / sum.good);
+}
+
+void TileColors::copy_to(Picture& picture, const FinishedTile& tile,
+                         const std::vector<std::uint32_t>& numbers) const {
+  for (std::uint32_t y = 0; y < tile.height; ++y) {
+    const std::uint32_t* row = numbers.data() + static_cast<std::size_t>(y) * tile.width;
+    const std::size_t at = static_cast<std::size_t>(tile.y + y) * picture.width + tile.x;
+    for (int k = 0; k < 4; ++k) {
+      const float* from = plane_[k].data();
+      float* to = picture.planes[kR + k].values.data() + at;
+      for (std::uint32_t x = 0; x < tile.width; ++x) to[x] = from[row[x]];
+    }
+  }
 }
 
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel) {
@@ -125,17 +169,13 @@ void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const Pixel
   const auto set = [&](int plane, double sum, std::uint32_t count) {
     picture.planes[plane].values[at] = static_cast<float>(sum / count);
   };
-  const bool data_layers = picture.planes.size() > kA + 1;
-  if (data_layers) {
-    picture.planes[kPrimId].ids[at] = pixel.primitive;
-    picture.planes[kGeomId].ids[at] = pixel.object;
-  }
+  picture.planes[kPrimId].ids[at] = pixel.primitive;
+  picture.planes[kGeomId].ids[at] = pixel.object;
   const bool empty = pixel.color[0] == 0 && pixel.color[1] == 0 && pixel.color[2] == 0 && pixel.alpha == 0;
   // make_picture left the pixel empty.
   if (pixel.good == 0 || (pixel.hits == 0 && empty)) return;
   for (int k = 0; k < 3; ++k) set(kR + k, pixel.color[k], pixel.good);
   set(kA, pixel.alpha, pixel.good);
-  if (!data_layers) return;
   for (int k = 0; k < 3; ++k) {
     set(kNx + k, pixel.normal[k], pixel.good);
     set(kAlbedoR + k, pixel.albedo[k], pixel.good);

@@ -1,11 +1,11 @@
 #pragma once
 /// \file Sums the samples of a pixel and writes pixels to the picture.
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "render/picture.h"
+#include "render/render.h"
 #include "render/wavefront.h"
 
 namespace oktett {
@@ -40,25 +40,26 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 Picture make_picture(const RenderContext& context);
 
-/// Writes pixels that have one sample and no data layers; faster than write_pixel, with the same result.
-class SampleWriter {
+/// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is gathered
+/// here and then copied to the picture row by row.
+class TileColors {
  public:
-  explicit SampleWriter(Picture& picture);
-  /// False if the sample is left out because it holds NaN or infinity.
-  bool write(std::uint32_t x, std::uint32_t y, const Color& color, float alpha) {
-    if (!is_finite(color) || !std::isfinite(alpha)) return false;
-    const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
-    plane_[0][at] = color.x, plane_[1][at] = color.y, plane_[2][at] = color.z, plane_[3][at] = alpha;
-    return true;
-  }
+  /// `count` pixels, black and transparent.
+  void begin(std::size_t count);
+  /// Sets pixels `first`, `first` + 1, ... to the samples, one for each. Pixels whose sample holds NaN or
+  /// infinity are left as they are; returns their number.
+  std::size_t set(std::size_t first, const SampleBatch& samples);
+  /// Sets a pixel to the mean of its samples.
+  void set(std::size_t number, const PixelSum& sum);
+  /// Copies the tile to the picture. `numbers` holds those of its pixels, row by row.
+  void copy_to(Picture& picture, const FinishedTile& tile, const std::vector<std::uint32_t>& numbers) const;
 
  private:
-  float* plane_[4];
-  std::uint32_t width_;
+  Column<float> plane_[4];
 };
 
-/// Writes a finished pixel, (x, y) counted in the picture. Threads may write different pixels at the same
-/// time.
+/// Writes all planes of a finished pixel, (x, y) counted in the picture. Threads may write different pixels at
+/// the same time.
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel);
 
 }  // namespace oktett

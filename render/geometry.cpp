@@ -188,17 +188,17 @@ World build_world(const Scene& scene, const BuildOptions& options) {
 }
 
 const Material& material_at(const World& world, const SurfaceInteraction& surface) {
-  return material_at(world, surface.user, surface.material_slot);
+  return world.materials[material_index(world, surface.user, surface.material_slot)];
 }
 
-const Material& material_at(const World& world, std::uint32_t user, std::uint32_t material_slot) {
+std::uint32_t material_index(const World& world, std::uint32_t user, std::uint32_t material_slot) {
   std::uint32_t material = kNoId;
   if (user < world.objects.size()) {
     const ObjectMaterials& object = world.objects[user];
     material = object.material;
     if (material == kNoId && material_slot < object.slots.size()) material = object.slots[material_slot];
   }
-  return material < world.materials.size() ? world.materials[material] : world.materials.back();
+  return std::min(material, static_cast<std::uint32_t>(world.materials.size() - 1));
 }
 
 }  // namespace oktett

@@ -38,6 +38,7 @@ World build_world(const Scene& scene, const BuildOptions& options = {});
 
 /// The material at a hit: that of the object, else of the mesh's slot, else the default material.
 const Material& material_at(const World& world, const SurfaceInteraction& surface);
-const Material& material_at(const World& world, std::uint32_t user, std::uint32_t material_slot);
+/// Its index in World::materials.
+std::uint32_t material_index(const World& world, std::uint32_t user, std::uint32_t material_slot);
 
 }  // namespace oktett

@@ -21,14 +21,14 @@ Integrator integrator_for(IntegratorKind kind) {
 }
 
 void shade_normal(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
-  wavefront.radiance[ray] = p.surface.shading_normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f};
+  wavefront.radiance.set(ray, p.surface.shading_normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f});
 }
 
 void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const auto depth = static_cast<float>(camera_depth(context.camera, p.surface.position));
   const float shown = (context.far_depth - depth) / (context.far_depth - context.near_depth);
   const float grey = std::clamp(shown, 0.0f, 1.0f);
-  wavefront.radiance[ray] = {grey, grey, grey};
+  wavefront.radiance.set(ray, {grey, grey, grey});
 }
 
 }  // namespace oktett

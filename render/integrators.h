@@ -1,27 +1,34 @@
 #pragma once
 /// \file Integrators: what happens where a ray has hit a surface, one function per kind of picture.
 
+#include "accel/interaction_block.h"
 #include "render/wavefront.h"
 
 namespace oktett {
 
 /// Shades the hit `p` of entry `ray` of `wavefront.rays`. Light that needs no further ray is added to
-/// `wavefront.radiance[ray]`. Shadow rays are queued for light that depends on visibility, and rays of the
+/// entry `ray` of `wavefront.radiance`. Shadow rays are queued for light that depends on visibility, and rays of the
 /// next bounce are queued.
 using Integrator = void (*)(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                             const ShadingPoint& p);
 
 Integrator integrator_for(IntegratorKind kind);
 
+/// Whether the integrator asks for random numbers of a sample.
+inline bool draws_random_numbers(IntegratorKind kind) {
+  return kind == IntegratorKind::path || kind == IntegratorKind::ao;
+}
+
 /// Recursive ray tracing after Whitted (1980) with Phong's illumination model, mirrors, and dielectrics by
 /// Snell's and Fresnel's laws; see Material for the sum.
 void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                    const ShadingPoint& p);
 
-/// Queues the mirror and refracted rays of a hit in Whitted's model. `throughput` includes the opacity of the
-/// surface.
-void push_specular(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
-                   const Color& throughput);
+/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
+/// `found`, with the same bits as shade_whitted, in lanes. Records no first hits, so it serves pictures without
+/// data layers.
+void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                         std::size_t count, const InteractionBlock& found);
 
 /// Unidirectional path tracing (Kajiya 1986). The scene's lights are sampled at each hit; emission and
 /// background are found by rays that happen to meet them. Each hit chooses at random, by their weights, among

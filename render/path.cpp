@@ -60,7 +60,7 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
   if (p.opacity < 1 && random_number(wavefront, sample, hole) >= p.opacity)
     return push_bounce(wavefront, ray, p, p.direction, throughput, Bounce::straight);
 
-  wavefront.radiance[ray] += throughput * p.emission;
+  wavefront.radiance.add(ray, throughput * p.emission);
   add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
   if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
 

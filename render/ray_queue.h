@@ -6,6 +6,7 @@
 #include "core/ray.h"
 #include "core/soa.h"
 #include "core/vec3.h"
+#include "render/color_column.h"
 
 namespace oktett {
 
@@ -13,7 +14,7 @@ namespace oktett {
 struct RayQueue {
   RayBatch rays;
   Column<std::uint32_t> sample;      ///< index into the wavefront's samples
-  Column<Color> throughput;          ///< factor on the light that the ray finds
+  ColorColumn throughput;            ///< factor on the light that the ray finds
   Column<float> distance;            ///< length of the path up to the ray's origin
   Column<std::uint8_t> bounces;      ///< reflections and refractions so far
   Column<std::uint8_t> from_camera;  ///< 1 for camera rays and their straight continuations through holes
@@ -51,7 +52,7 @@ struct RayQueue {
 struct ShadowQueue {
   RayBatch rays;
   Column<std::uint32_t> owner;
-  Column<Color> light;
+  ColorColumn light;
   Column<std::uint8_t> occluded;  ///< written by trace_shadows
 
   std::size_t size() const { return owner.size(); }
@@ -61,7 +62,7 @@ struct ShadowQueue {
     rays.resize_uninitialized(n), owner.resize_uninitialized(n), light.resize_uninitialized(n);
   }
   void set(std::size_t i, const Ray& ray, std::uint32_t ray_owner, const Color& color) {
-    rays.set(i, ray), owner[i] = ray_owner, light[i] = color;
+    rays.set(i, ray), owner[i] = ray_owner, light.set(i, color);
   }
   void push_back(const Ray& ray, std::uint32_t ray_owner, const Color& color) {
     rays.push_back(ray), owner.push_back(ray_owner), light.push_back(color);

@@ -10,10 +10,14 @@ namespace oktett {
 
 struct RenderCode {
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
-  /// Fills ng and ns.
-  void (*face_rays)(const InteractionBlock&, ShadingColumns&);
-  /// Fills what the columns say of one light. Needs ng and ns.
-  void (*meet_light)(const InteractionBlock&, const LightSource&, ShadingColumns&);
+  /// Fills all columns after `ray` and `material` from the rays and from a table of materials, and adds their
+  /// unlit light, except for materials with textures, to the radiance of the rays.
+  void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ShadedRays&,
+                        ShadingColumns&);
+  /// Writes the rays to one light, with the light that they carry if nothing blocks them, for all hits that it
+  /// could reach. Returns their number.
+  std::size_t (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&,
+                             const ShadowColumns& out);
 };
 
 template <class A>

@@ -7,23 +7,48 @@
 
 namespace oktett {
 
-/// Beside the hits' InteractionBlock: their rays, and one light as the hits see it. Lanes read and write
-/// whole groups of eight, so the entries between the last hit and the end of its group must hold numbers,
-/// whatever their values; zeros are fast.
+/// What local shading needs of a material, in one cache line. Numbered like World::materials.
+struct alignas(64) ShadingMaterial {
+  static constexpr std::int32_t kAnyPower = -1;
+
+  Color color, specular_color;
+  Color unlit;  ///< light that needs no lamp: emission + color * ambient * ambient light
+  float diffuse, specular, phong;
+  /// `phong` if highlights are raised to it by squaring, 0 if there are none, else kAnyPower.
+  std::int32_t exponent;
+  bool textured;  ///< colours and normal are known only at the hit
+  bool bounces;   ///< mirrors or lets light pass
+};
+static_assert(sizeof(ShadingMaterial) == 64);
+
+/// Beside the hits' InteractionBlock: their rays and materials. Lanes read and write whole groups of eight, so
+/// the entries between the last hit and the end of its group must hold numbers, whatever their values.
 struct ShadingColumns {
   static constexpr std::size_t kMost = InteractionBlock::kMost;
 
   std::size_t count = 0;
-  float direction[3][kMost];     ///< unit direction in which the ray travels
-  std::int32_t exponent[kMost];  ///< to which the highlight is raised, 0 if not by squaring
-  std::int32_t greatest_exponent = 0;
-  float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
+  std::uint32_t ray[kMost];       ///< entry of the wavefront's rays
+  std::uint32_t material[kMost];  ///< index of the ShadingMaterial
 
-  float origin[3][kMost];  ///< of the ray to the light
-  float falloff[kMost];    ///< 1 / squared distance; not set for directional lights
-  float cosine[kMost];     ///< between ns and the light; 0 where the light is behind
-  float highlight[kMost];  ///< cosine between the mirrored light and the viewer
-  float power[kMost];      ///< highlight^exponent, where highlight is not above 1
+  float direction[3][kMost];         ///< unit direction in which the ray travels
+  float throughput[3][kMost];        ///< of the ray, times the opacity of the surface
+  float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
+  float color[3][kMost], specular_color[3][kMost], diffuse[kMost], specular[kMost], phong[kMost];
+  std::int32_t exponent[kMost];
+};
+
+/// The columns of a wavefront that `begin_shading` reads, and those to which it adds light.
+struct ShadedRays {
+  const float* direction[3];
+  const float* throughput[3];
+  float* radiance[3];
+};
+
+/// The columns of a queue of shadow rays from its end on. Eight entries more than there are hits may be
+/// overwritten.
+struct ShadowColumns {
+  float *origin[3], *direction[3], *light[3];
+  std::uint32_t* owner;
 };
 
 }  // namespace oktett

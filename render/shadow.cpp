@@ -65,14 +65,14 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   for (const std::uint32_t i : left) passed[i] = {0, 0, 0};
 }
 
-void trace_shadows(const RenderContext& context, ShadowQueue& queue, Column<Color>& radiance) {
+void trace_shadows(const RenderContext& context, ShadowQueue& queue, ColorColumn& radiance) {
   if (queue.size() == 0) return;
   Column<std::uint8_t>& occluded = queue.occluded;
   occluded.resize_uninitialized(queue.size());
   any_hit(*context.world->accel, queue.rays, occluded, context.isa);
   if (!context.world->see_through) {
     for (std::size_t i = 0; i < queue.size(); ++i)
-      if (!occluded[i]) radiance[queue.owner[i]] += queue.light[i];
+      if (!occluded[i]) radiance.add(queue.owner[i], queue.light[i]);
     return;
   }
   std::vector<Color> passed(queue.size(), {1, 1, 1});
@@ -81,7 +81,7 @@ void trace_shadows(const RenderContext& context, ShadowQueue& queue, Column<Colo
     if (occluded[i]) left.push_back(i);
   follow_through(context, queue, std::move(left), passed);
   for (std::size_t i = 0; i < queue.size(); ++i)
-    if (!is_black(passed[i])) radiance[queue.owner[i]] += queue.light[i] * passed[i];
+    if (!is_black(passed[i])) radiance.add(queue.owner[i], queue.light[i] * passed[i]);
 }
 
 }  // namespace oktett

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include "render/film.h"
 
 namespace oktett {
 namespace {
@@ -31,6 +30,8 @@ void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work)
     const std::uint32_t x = even_bits(code), y = even_bits(code >> 1);
     if (x < width && y < height) work.order.push_back({static_cast<std::uint32_t>(work.order.size()), x, y});
   }
+  work.numbers.resize(work.order.size());
+  for (const WavefrontPixel& p : work.order) work.numbers[p.y * width + p.x] = p.number;
 }
 
 }  // namespace
@@ -59,8 +60,9 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
   TileCounts counts;
   Wavefront& wavefront = work.wavefront;
   wavefront.counts = {};
-  const bool single = samples == 1 && !context.data_layers;
-  const auto write = [&](std::uint32_t number, const PixelSum& sum) {
+  if (!context.data_layers) work.colors.begin(work.pixels.size());
+  const auto finish = [&](std::uint32_t number, const PixelSum& sum) {
+    if (!context.data_layers) return work.colors.set(number, sum);
     write_pixel(picture, tile.x + work.order[number].x, tile.y + work.order[number].y, sum);
   };
   for (std::size_t p = 0; p < work.pixels.size(); p += pixels_per_wavefront) {
@@ -72,27 +74,22 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
     for (std::uint32_t s = 0; s < samples; s += samples_per_wavefront) {
       start_wavefront(context, pixels, s, std::min(samples, s + samples_per_wavefront), wavefront);
       if (!trace_wavefront(context, wavefront)) continue;
-      if (single) {
-        SampleWriter writer(picture);
-        for (std::size_t i = 0; i < wavefront.samples.size(); ++i) {
-          const WavefrontPixel& at = work.order[wavefront.samples.pixel[i]];
-          if (!writer.write(tile.x + at.x, tile.y + at.y, wavefront.samples.color[i],
-                            wavefront.samples.alpha[i]))
-            ++counts.bad_samples;
-        }
+      if (samples == 1 && !context.data_layers) {
+        counts.bad_samples += work.colors.set(number, wavefront.samples);
         continue;
       }
       for (std::size_t i = 0; i < wavefront.samples.size(); ++i) {
         if (wavefront.samples.pixel[i] != number) {
-          write(number, sum);
+          finish(number, sum);
           number = wavefront.samples.pixel[i], sum = {};
         }
         if (!add_to_pixel(sum, wavefront.samples, i)) ++counts.bad_samples;
       }
     }
     // Pixels are black at first; those that were skipped stay black.
-    if (!single) write(number, sum);
+    if (samples > 1 || context.data_layers) finish(number, sum);
   }
+  if (!context.data_layers) work.colors.copy_to(picture, tile, work.numbers);
   counts.rays = wavefront.counts;
   return counts;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/context.h"
+#include "render/film.h"
 #include "render/picture.h"
 #include "render/render.h"
 #include "render/wavefront.h"
@@ -24,7 +25,9 @@ struct TileWorkspace {
   Wavefront wavefront;
   std::vector<WavefrontPixel> pixels;  ///< of the tile
   std::uint32_t width = 0, height = 0;
-  std::vector<WavefrontPixel> order;  ///< pixels of a tile of that size, relative to its corner
+  std::vector<WavefrontPixel> order;   ///< pixels of a tile of that size, relative to its corner
+  std::vector<std::uint32_t> numbers;  ///< of these pixels, row by row
+  TileColors colors;
 };
 
 /// Renders the pixels of `tile` into `picture` and touches no others.

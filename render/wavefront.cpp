@@ -9,7 +9,6 @@
 #include "render/integrators.h"
 #include "render/sampling.h"
 #include "render/shadow.h"
-#include "render/whitted_block.h"
 
 namespace oktett {
 namespace {
@@ -35,14 +34,18 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
   wavefront.radiance.resize_uninitialized(count);
   wavefront.hit_rays.resize_uninitialized(count);
+  wavefront.radiance.fill(count, {0, 0, 0});
   std::size_t hits = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool hit = wavefront.hits.item[i] != kNoId;
     wavefront.hit_rays[hits] = static_cast<std::uint32_t>(i);
-    hits += hit;
-    wavefront.radiance[i] = hit ? Color{} : wavefront.rays.throughput[i] * context.background;
+    hits += wavefront.hits.item[i] != kNoId ? 1 : 0;
   }
   wavefront.hit_rays.resize_uninitialized(hits);
+  const bool black = wavefront.level == 0 && context.background == Color{0, 0, 0};
+  if (hits < count && !black)
+    for (std::size_t i = 0; i < count; ++i)
+      if (wavefront.hits.item[i] == kNoId)
+        wavefront.radiance.set(i, wavefront.rays.throughput[i] * context.background);
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
   wavefront.next.clear();
 }
@@ -118,8 +121,17 @@ void shade_hits(const RenderContext& context, Wavefront& wavefront) {
 }
 
 void add_to_samples(Wavefront& wavefront) {
-  for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
-    wavefront.samples.color[wavefront.rays.sample[i]] += wavefront.radiance[i];
+  const std::size_t count = wavefront.rays.size();
+  for (int k = 0; k < 3; ++k) {
+    float* color = wavefront.samples.color.part[k].data();
+    const float* radiance = wavefront.radiance.part[k].data();
+    // Camera rays are those of samples 0, 1, ..., whose colour is still black.
+    if (wavefront.level == 0) {
+      for (std::size_t i = 0; i < count; ++i) color[i] = 0.0f + radiance[i];
+    } else {
+      for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] += radiance[i];
+    }
+  }
 }
 
 bool meets_anything(const Wavefront& wavefront) {
@@ -134,21 +146,39 @@ void fill_camera_rays(Wavefront& wavefront) {
   const RayQueue::Entry like;
   RayQueue& rays = wavefront.rays;
   for (std::size_t i = 0; i < count; ++i) rays.sample[i] = static_cast<std::uint32_t>(i);
-  std::fill_n(rays.throughput.data(), count, like.throughput);
+  rays.throughput.fill(count, like.throughput);
   std::fill_n(rays.distance.data(), count, like.distance);
   std::fill_n(rays.bounces.data(), count, like.bounces);
   std::fill_n(rays.from_camera.data(), count, std::uint8_t{1});
 }
 
-/// Resets the results of samples.
+/// Resets the results of samples, except for their colour.
 void fill_samples(SampleBatch& samples) {
-  const std::size_t count = samples.size();
-  std::fill_n(samples.color.data(), count, Color{});
-  std::fill_n(samples.alpha.data(), count, 0.0f);
+  std::fill_n(samples.alpha.data(), samples.size(), 0.0f);
   for (FirstHit& first : samples.first) {
     // The other members are written when a hit is found.
     first.found = false, first.primitive = first.object = kNoId;
   }
+}
+
+std::uint64_t key_of(const RenderContext& context, const WavefrontPixel& pixel) {
+  return pixel_key(context.settings.seed,
+                   static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x);
+}
+
+/// Places the only sample of each pixel at its centre.
+void centre_samples(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                    Wavefront& wavefront) {
+  SampleBatch& s = wavefront.samples;
+  const std::size_t count = pixels.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    wavefront.film_x[i] = pixels[i].x + kSquareCentre.x, wavefront.film_y[i] = pixels[i].y + kSquareCentre.y;
+    s.pixel[i] = pixels[i].number;
+  }
+  std::fill_n(s.number.data(), count, 0u);
+  std::fill_n(s.offset.data(), count, Vec2f{0, 0});
+  if (draws_random_numbers(context.settings.kind))
+    for (std::size_t i = 0; i < count; ++i) s.key[i] = key_of(context, pixels[i]);
 }
 
 }  // namespace
@@ -164,22 +194,20 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
   SampleBatch& s = wavefront.samples;
   s.resize_uninitialized(count, context.data_layers);
   wavefront.rays.resize_uninitialized(count);
-  std::size_t i = 0;
-  const auto add = [&](const WavefrontPixel& pixel, std::uint32_t number, std::uint64_t key,
-                       const SquareSample& at) {
-    wavefront.film_x[i] = pixel.x + at.x, wavefront.film_y[i] = pixel.y + at.y;
-    s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
-    s.offset[i++] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
-  };
-  for (const WavefrontPixel& pixel : pixels) {
-    const std::uint64_t index = static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x;
-    const std::uint64_t key = pixel_key(context.settings.seed, index);
-    if (context.settings.samples == 1) {
-      add(pixel, 0, key, kSquareCentre);
-      continue;
+  if (context.settings.samples == 1) {
+    centre_samples(context, pixels, wavefront);
+  } else {
+    std::size_t i = 0;
+    for (const WavefrontPixel& pixel : pixels) {
+      const std::uint64_t key = key_of(context, pixel);
+      const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
+      for (std::uint32_t number = first; number < last; ++number, ++i) {
+        const SquareSample at = pattern[number];
+        wavefront.film_x[i] = pixel.x + at.x, wavefront.film_y[i] = pixel.y + at.y;
+        s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
+        s.offset[i] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
+      }
     }
-    const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
-    for (std::uint32_t number = first; number < last; ++number) add(pixel, number, key, pattern[number]);
   }
   camera_rays(context.camera, {wavefront.film_x, wavefront.film_y}, wavefront.rays.rays, context.isa);
   wavefront.counts.camera += count;

@@ -26,9 +26,9 @@ struct FirstHit {
 struct SampleBatch {
   Column<std::uint32_t> pixel;   ///< the caller's number of the pixel
   Column<std::uint32_t> number;  ///< of the sample in its pixel
-  Column<std::uint64_t> key;     ///< of the pixel's random numbers
+  Column<std::uint64_t> key;     ///< of the pixel's random numbers, if the integrator draws any
   Column<Vec2f> offset;          ///< from the pixel's centre, in pixels
-  Column<Color> color;
+  ColorColumn color;
   Column<float> alpha;
   Column<std::uint16_t> spawned;  ///< number of rays queued for the next bounce
   Column<FirstHit> first;         ///< empty unless data layers are wanted
@@ -60,7 +60,7 @@ struct Wavefront {
   SampleBatch samples;
   RayQueue rays, next;     ///< of this bounce and the next
   HitBatch hits;           ///< of `rays`
-  Column<Color> radiance;  ///< light found by each of `rays`, throughput included
+  ColorColumn radiance;  ///< light found by each of `rays`, throughput included
   /// One queue per light, so that all rays of a queue lead to the same light. Owners are entries of `rays`.
   /// Rays that lead to no light, such as those of ambient occlusion, are in the first queue.
   std::vector<ShadowQueue> shadows;

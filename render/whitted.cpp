@@ -1,26 +1,28 @@
+#include <algorithm>
+
 #include "render/direct_light.h"
 #include "render/integrators.h"
+#include "render/render_code.h"
 #include "render/specular.h"
 
 namespace oktett {
+namespace {
 
-static bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
+bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
 
-void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                   const ShadingPoint& p) {
-  const Color arriving = wavefront.rays.throughput[ray];
-  const Color throughput = arriving * p.opacity;
+/// Adds the light of a hit that needs no lamp. `throughput` includes the opacity of the surface.
+void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+               const Color& throughput) {
   const Material& m = *p.material;
-  wavefront.radiance[ray] += throughput * (p.emission + p.color * m.ambient * context.ambient_light);
-  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
-
-  if (p.opacity < 1)
-    push_bounce(wavefront, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
-  push_specular(context, wavefront, ray, p, throughput);
+  wavefront.radiance.add(ray, throughput * (p.emission + p.color * m.ambient * context.ambient_light));
 }
 
-void push_specular(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
-                   const Color& throughput) {
+/// Queues the rays that leave a hit: straight through holes, mirrored and refracted.
+void push_bounces(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                  const ShadingPoint& p) {
+  const Color arriving = wavefront.rays.throughput[ray], throughput = arriving * p.opacity;
+  if (p.opacity < 1)
+    push_bounce(wavefront, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
   if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
   const SpecularRays specular = specular_rays(p);
   if (!is_black(specular.mirror))
@@ -29,6 +31,90 @@ void push_specular(const RenderContext& context, Wavefront& wavefront, std::size
   if (!is_black(specular.refracted))
     push_bounce(wavefront, ray, p, specular.refracted_direction, throughput * specular.refracted,
                 Bounce::refracted);
+}
+
+/// Names the rays and materials of the hits. The last is repeated to the end of its group of lanes.
+void name_hits(const RenderContext& context, const std::uint32_t* which, const InteractionBlock& found,
+               ShadingColumns& c) {
+  for (std::size_t k = 0; k < c.count; ++k) {
+    c.ray[k] = which[k];
+    c.material[k] = material_index(*context.world, found.user[k], found.material_slot[k]);
+  }
+  for (std::size_t k = c.count; k % 8 != 0; ++k)
+    c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
+}
+
+ShadedRays shaded_rays(Wavefront& wavefront) {
+  ShadedRays rays;
+  for (int k = 0; k < 3; ++k) {
+    rays.direction[k] = wavefront.rays.rays.direction[k].data();
+    rays.throughput[k] = wavefront.rays.throughput.part[k].data();
+    rays.radiance[k] = wavefront.radiance.part[k].data();
+  }
+  return rays;
+}
+
+/// What hit `k` needs beyond lanes: its textures, and the rays that leave it.
+OKTETT_NOINLINE void finish_alone(const RenderContext& context, Wavefront& wavefront,
+                                  const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
+  const std::uint32_t i = c.ray[k];
+  const bool from_camera = wavefront.rays.from_camera[i] != 0;
+  const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                                       {wavefront.rays.distance[i], from_camera}, found);
+  if (context.materials[c.material[k]].textured) {
+    const Color throughput = wavefront.rays.throughput[i] * p.opacity;
+    add_unlit(context, wavefront, i, p, throughput);
+    InteractionBlock::put(c.throughput, k, throughput);
+    InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
+    InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
+  }
+  push_bounces(context, wavefront, i, p);
+}
+
+/// Queues the rays to one light.
+void push_shadow_rays(const RenderContext& context, const InteractionBlock& found, const LightSource& light,
+                      const ShadingColumns& c, ShadowQueue& queue) {
+  const std::size_t first = queue.size();
+  queue.resize_uninitialized(first + c.count + 8);
+  ShadowColumns out;
+  for (int k = 0; k < 3; ++k) {
+    out.origin[k] = queue.rays.origin[k].data() + first;
+    out.direction[k] = queue.rays.direction[k].data() + first;
+    out.light[k] = queue.light.part[k].data() + first;
+  }
+  out.owner = queue.owner.data() + first;
+  const std::size_t count = render_code(context.isa).shadow_rays(found, light, c, out);
+  const Ray like;
+  std::fill_n(queue.rays.tmin.data() + first, count, like.tmin);
+  std::fill_n(queue.rays.tmax.data() + first, count, light.directional ? like.tmax : kBeforeLight);
+  queue.resize_uninitialized(first + count);
+}
+
+}  // namespace
+
+void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                   const ShadingPoint& p) {
+  const Color throughput = wavefront.rays.throughput[ray] * p.opacity;
+  add_unlit(context, wavefront, ray, p, throughput);
+  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
+  push_bounces(context, wavefront, ray, p);
+}
+
+void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                         std::size_t count, const InteractionBlock& found) {
+  ShadingColumns c;
+  c.count = count;
+  name_hits(context, which, found, c);
+  render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
+  for (std::size_t k = 0; k < count; ++k) {
+    const ShadingMaterial& m = context.materials[c.material[k]];
+    if (m.textured || m.bounces) finish_alone(context, wavefront, found[k], k, c);
+    const std::uint32_t i = c.ray[k];
+    if (wavefront.rays.from_camera[i])
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];
+  }
+  for (std::size_t n = 0; n < context.lights.size(); ++n)
+    push_shadow_rays(context, found, context.lights[n], c, wavefront.shadows[n]);
 }
 
 }  // namespace oktett

@@ -2,7 +2,9 @@
 /// \file Shading of hits in columns, for one instruction set.
 
 #include "accel/surface/offset_origin.h"
+#include "core/simd_order.h"
 #include "render/context.h"
+#include "render/direct_light.h"
 #include "render/shading_columns.h"
 #include "render/shading_lanes.h"
 
@@ -22,14 +24,89 @@ OKTETT_INLINE void store_lanes(const Vec3<F>& v, float (&column)[3][ShadingColum
   v.x.store(column[0] + i), v.y.store(column[1] + i), v.z.store(column[2] + i);
 }
 
+/// Bit k: entry k of the group is a hit, not what fills the group up.
+template <class F>
+OKTETT_INLINE unsigned real_lanes(const ShadingColumns& c, std::size_t i) {
+  const std::size_t left = c.count - i;
+  return (left < F::kWidth ? 1u << left : 1u << F::kWidth) - 1u;
+}
+
+/// Entries of columns, one for each lane. Neighbours are loaded at once.
+template <class F>
+struct PickedEntries {
+  const std::uint32_t* index;
+  bool neighbours = true;
+
+  explicit OKTETT_INLINE PickedEntries(const std::uint32_t* at) : index(at) {
+    for (int k = 1; k < F::kWidth; ++k) neighbours &= at[k] == at[0] + static_cast<std::uint32_t>(k);
+  }
+  OKTETT_INLINE F load(const float* column) const {
+    if (neighbours) return F::load(column + index[0]);
+    float lanes[F::kWidth];
+    for (int k = 0; k < F::kWidth; ++k) lanes[k] = column[index[k]];
+    return F::load(lanes);
+  }
+  /// Adds to the entries of the lanes in `where`.
+  OKTETT_INLINE void add(float* column, const F& x, unsigned where) const {
+    if (neighbours && where == (1u << F::kWidth) - 1)
+      return (F::load(column + index[0]) + x).store(column + index[0]);
+    float lanes[F::kWidth];
+    x.store(lanes);
+    for (; where != 0; where &= where - 1) {
+      const int k = __builtin_ctz(where);
+      column[index[k]] += lanes[k];
+    }
+  }
+};
+
+/// Fills the columns of materials in entries i ... of a group. Returns their unlit light.
+template <class F>
+OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColumns& c, std::size_t i) {
+  constexpr int W = F::kWidth;
+  const std::uint32_t* index = c.material + i;
+  bool same = true;
+  for (int k = 1; k < W; ++k) same &= index[k] == index[0];
+  if (same) {
+    const ShadingMaterial& m = table[index[0]];
+    store_lanes(broadcast<F>(m.color), c.color, i);
+    store_lanes(broadcast<F>(m.specular_color), c.specular_color, i);
+    F(m.diffuse).store(c.diffuse + i), F(m.specular).store(c.specular + i), F(m.phong).store(c.phong + i);
+    for (int k = 0; k < W; ++k) c.exponent[i + k] = m.exponent;
+    return broadcast<F>(m.unlit);
+  }
+  float unlit[3][W];
+  for (int k = 0; k < W; ++k) {
+    const ShadingMaterial& m = table[index[k]];
+    for (int axis = 0; axis < 3; ++axis) {
+      c.color[axis][i + k] = m.color[axis], c.specular_color[axis][i + k] = m.specular_color[axis];
+      unlit[axis][k] = m.unlit[axis];
+    }
+    c.diffuse[i + k] = m.diffuse, c.specular[i + k] = m.specular, c.phong[i + k] = m.phong;
+    c.exponent[i + k] = m.exponent;
+  }
+  return {F::load(unlit[0]), F::load(unlit[1]), F::load(unlit[2])};
+}
+
 template <class A>
-void face_rays_code(const InteractionBlock& s, ShadingColumns& c) {
+void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table, const ShadedRays& rays,
+                        ShadingColumns& c) {
   using F = ShadingLanes<A>;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
+    const PickedEntries<F> ray(c.ray + i);
+    const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]), ray.load(rays.direction[2])};
+    const Vec3<F> throughput{ray.load(rays.throughput[0]), ray.load(rays.throughput[1]), ray.load(rays.throughput[2])};
+    store_lanes(direction, c.direction, i), store_lanes(throughput, c.throughput, i);
     Vec3<F> ng, ns;
-    face_ray(load_lanes<F>(c.direction, i), load_lanes<F>(s.geometric_normal, i),
-             load_lanes<F>(s.shading_normal, i), ng, ns);
+    face_ray(direction, load_lanes<F>(s.geometric_normal, i), load_lanes<F>(s.shading_normal, i), ng, ns);
     store_lanes(ng, c.ng, i), store_lanes(ns, c.ns, i);
+    const Vec3<F> unlit = fetch_materials<F>(table, c, i);
+    // The light of textured surfaces is added when their textures have been looked up.
+    unsigned known = 0;
+    for (int k = 0; k < F::kWidth; ++k) known |= (table[c.material[i + k]].textured ? 0u : 1u) << k;
+    known &= real_lanes<F>(c, i);
+    ray.add(rays.radiance[0], throughput.x * unlit.x, known);
+    ray.add(rays.radiance[1], throughput.y * unlit.y, known);
+    ray.add(rays.radiance[2], throughput.z * unlit.z, known);
   }
 }
 
@@ -43,27 +120,80 @@ OKTETT_INLINE Simd<double, W, A> whole_powers(Simd<double, W, A> x, const Simd<s
   return product;
 }
 
+/// highlight_power in lanes, for hits i ... of the columns.
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highlight, const ShadingColumns& c,
+                                                 std::size_t i) {
+  using F = Simd<float, W, A>;
+  using I = Simd<std::int32_t, W, A>;
+  const F x = min(F(1.0f), highlight);
+  std::int32_t greatest = 0;
+  bool any_power = false;
+  for (int k = 0; k < W; ++k) {
+    const std::int32_t exponent = c.exponent[i + k];
+    any_power |= exponent == ShadingMaterial::kAnyPower;
+    greatest = greatest < exponent ? exponent : greatest;
+  }
+  const F power = to_float(whole_powers(to_double(x), I::load(c.exponent + i), greatest));
+  if (!any_power) return power;
+  float cosine[W], lanes[W];
+  x.store(cosine), power.store(lanes);
+  for (int k = 0; k < W; ++k)
+    if (c.exponent[i + k] == ShadingMaterial::kAnyPower) lanes[k] = highlight_power(cosine[k], c.phong[i + k]);
+  return F::load(lanes);
+}
+
+/// phong_sum in lanes, for hits i ... of the columns.
+template <class F>
+OKTETT_INLINE Vec3<F> phong_sums(const PhongCosines<F>& at, const ShadingColumns& c, std::size_t i) {
+  const F zero(0.0f), specular = F::load(c.specular + i);
+  const Vec3<F> sum = scale_lanes(load_lanes<F>(c.color, i), F::load(c.diffuse + i) * at.cosine);
+  // The comparisons keep NaN in the sum.
+  const auto shines = ~(specular == zero) & ~(at.highlight <= zero);
+  if (none(shines)) return sum;
+  const F shine = specular * highlight_powers(at.highlight, c, i);
+  return select_lanes(shines, add_lanes(sum, scale_lanes(load_lanes<F>(c.specular_color, i), shine)), sum);
+}
+
 template <class A>
-void meet_light_code(const InteractionBlock& s, const LightSource& light, ShadingColumns& c) {
+std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light, const ShadingColumns& c,
+                             const ShadowColumns& out) {
   using F = ShadingLanes<A>;
-  using I = Simd<std::int32_t, F::kWidth, A>;
+  const F zero(0.0f);
+  const Vec3<F> place = broadcast<F>(light.place), light_color = broadcast<F>(light.color);
+  std::size_t end = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const Vec3<F> position = load_lanes<F>(s.position, i);
-    Vec3<F> l = broadcast<F>(light.place);
+    Vec3<F> l = place, color = light_color;
     if (!light.directional) {
       F falloff;
       turn_to_light(light.place, position, l, falloff);
-      falloff.store(c.falloff + i);
+      if (light.falloff) color = scale_lanes(color, falloff);
     }
+    const PhongCosines<F> at =
+        phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);
+    unsigned lit = bits(~(at.cosine <= zero)) & real_lanes<F>(c, i);
+    if (lit == 0) continue;
+    const Vec3<F> shine = phong_sums(at, c, i), throughput = load_lanes<F>(c.throughput, i);
+    const Vec3<F> arriving{throughput.x * shine.x * color.x, throughput.y * shine.y * color.y,
+                           throughput.z * shine.z * color.z};
+    lit &= ~bits((arriving.x == zero) & (arriving.y == zero) & (arriving.z == zero));
     const Vec3<F> origin =
         offset_lanes(position, load_lanes<F>(s.position_error, i), load_lanes<F>(s.geometric_normal, i), l);
-    store_lanes(origin, c.origin, i);
-    const auto cosines =
-        phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);
-    cosines.cosine.store(c.cosine + i), cosines.highlight.store(c.highlight + i);
-    const auto x = to_double(min(F(1.0f), cosines.highlight));
-    to_float(whole_powers(x, I::load(c.exponent + i), c.greatest_exponent)).store(c.power + i);
+    const Vec3<F> direction = light.directional ? place : sub_lanes(place, origin);
+    const auto store = [&](const F& x, float* column) {
+      if (lit == (1u << F::kWidth) - 1) return x.store(column + end);
+      float lanes[F::kWidth];
+      x.store(lanes);
+      store_compact<A>(lit, lanes, column + end);
+    };
+    store(origin.x, out.origin[0]), store(origin.y, out.origin[1]), store(origin.z, out.origin[2]);
+    store(direction.x, out.direction[0]), store(direction.y, out.direction[1]);
+    store(direction.z, out.direction[2]);
+    store(arriving.x, out.light[0]), store(arriving.y, out.light[1]), store(arriving.z, out.light[2]);
+    end += static_cast<std::size_t>(store_compact<A>(lit, c.ray + i, out.owner + end));
   }
+  return end;
 }
 
 }  // namespace oktett
