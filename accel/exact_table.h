@@ -37,7 +37,7 @@ struct ExactCode {
                CrossingLanes<kLanes>& out);
   /// Interactions of hits of one element, as ExactOps::interaction_without_uv makes them. False if there is
   /// no code for that in lanes.
-  bool (*interactions)(const ExactPoolBase& pool, ShapeHits& hits);
+  bool (*interactions)(const ExactPoolBase& pool, const ShapeHits& hits);
 };
 
 /// The functions of ExactCode for the surface S, defined in accel/isa/exact_code.h.
@@ -53,7 +53,7 @@ struct ExactSurfaceCode {
                   HitList& hits) requires std::is_same_v<A, ScalarIsa>;
   static void rows(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
                    CrossingLanes<kLanes>& out);
-  static bool interactions(const ExactPoolBase& pool, ShapeHits& hits);
+  static bool interactions(const ExactPoolBase& pool, const ShapeHits& hits);
 };
 
 /// The functions of each exact kind.

@@ -102,18 +102,4 @@ void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInt
 
 Ray ray_inside(const HitPlace& place, const Ray& ray) { return moved_ray(place.inverse, ray); }
 
-HitNames identify_in(const HitPlace& place, const Hit& hit) {
-  const Accel& a = *place.accel;
-  HitNames names;
-  names.geometry = a.geometry_of(hit.item);
-  names.primitive = hit.item - a.first_item[names.geometry];
-  names.user = place.user != kNoId ? place.user : a.users[names.geometry];
-  names.kind = static_cast<Kind>(a.kinds[names.geometry]);
-  if (names.kind == Kind::triangle) {
-    const auto& slots = std::get<MeshGeometry>(a.geometries[names.geometry].shape).mesh->material_slots;
-    if (!slots.empty()) names.material_slot = slots[names.primitive];
-  }
-  return names;
-}
-
 }  // namespace oktett

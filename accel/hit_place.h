@@ -43,7 +43,19 @@ struct HitNames {
   std::uint32_t material_slot = 0;
   Kind kind;
 };
-HitNames identify_in(const HitPlace& place, const Hit& hit);
+inline HitNames identify_in(const HitPlace& place, const Hit& hit) {
+  const Accel& a = *place.accel;
+  HitNames names;
+  names.geometry = a.geometry_of(hit.item);
+  names.primitive = hit.item - a.first_item[names.geometry];
+  names.user = place.user != kNoId ? place.user : a.users[names.geometry];
+  names.kind = static_cast<Kind>(a.kinds[names.geometry]);
+  if (names.kind == Kind::triangle) {
+    const auto& slots = std::get<MeshGeometry>(a.geometries[names.geometry].shape).mesh->material_slots;
+    if (!slots.empty()) names.material_slot = slots[names.primitive];
+  }
+  return names;
+}
 
 /// The surface interaction of a hit whose place is known. uv and tangent may be missing unless `uv`.
 void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,

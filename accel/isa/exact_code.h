@@ -161,7 +161,7 @@ void ExactSurfaceCode<S, A>::rows(const ExactPoolBase& base, std::uint32_t index
 }
 
 template <class S, class A>
-bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, ShapeHits& hits) {
+bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, const ShapeHits& hits) {
   using D = SurfaceLanes<A>;
   if constexpr (HasSlope<S, D>) {
     using F = Simd<float, D::kWidth, A>;
@@ -169,11 +169,12 @@ bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, ShapeHits& 
     const std::size_t element = hits.element[0];
     if (pool.frames[element].normals != NormalMethod::gradient) return false;
     for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
-      const HitPoints<D> hit(hits, i);
-      const D part = to_double(F::load(hits.part + i));
+      const PickedLanes<F> ray(hits.ray + i);
+      const HitPoints<D> hit(hits, ray);
       Vec3<D> own;
-      const SurfacePoints<D> at = exact_surface_points<S>(pool, element, part, hit, own);
-      store_surface(hit, at.point, at.error, at.normal, hits, i);
+      const SurfacePoints<D> at =
+          exact_surface_points<S>(pool, element, to_double(ray.load(hits.part)), hit, own);
+      store_surface(hit, at, PickedLanes<F>(hits.entry + i), *hits.out);
     }
     return true;
   }

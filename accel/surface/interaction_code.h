@@ -10,11 +10,11 @@ namespace oktett {
 
 struct InteractionCode {
   /// Hits of one mesh.
-  void (*mesh)(MeshHits&);
+  void (*mesh)(const MeshHits&);
   /// Hits of one closed-form kind.
-  void (*closed_form)(const Accel&, Kind, ShapeHits&);
+  void (*closed_form)(const Accel&, Kind, const ShapeHits&);
   /// Hits of one element of an exact surface; false if the kind has no code for lanes.
-  bool (*exact)(Kind, const ExactPoolBase&, ShapeHits&);
+  bool (*exact)(Kind, const ExactPoolBase&, const ShapeHits&);
 };
 
 template <class A>

@@ -3,6 +3,7 @@
 /// one lane, so a hit gets the same bits alone and in a group.
 
 #include "core/affine_lanes.h"
+#include "core/picked_lanes.h"
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 
@@ -17,18 +18,17 @@ struct HitPoints {
   /// One hit in all lanes.
   OKTETT_INLINE HitPoints(const Ray& ray, double distance)
       : o(broadcast<D>(ray.origin)), d(broadcast<D>(ray.direction)), t(distance) {}
-  /// Hits i, i + 1, ... of the columns `origin`, `direction` and `t` of `hits`.
+  /// The entries `at` of the columns `origin`, `direction` and `t` of `hits`.
   template <class Columns>
-  OKTETT_INLINE HitPoints(const Columns& hits, std::size_t i)
-      : o(load(hits.origin, i)), d(load(hits.direction, i)), t(to_double(F::load(hits.t + i))) {}
+  OKTETT_INLINE HitPoints(const Columns& hits, const PickedLanes<Simd<float, D::kWidth, typename D::Isa>>& at)
+      : o(load(hits.origin, at)), d(load(hits.direction, at)), t(to_double(at.load(hits.t))) {}
 
   OKTETT_INLINE Vec3<D> point() const { return add_lanes(o, scale_lanes(d, t)); }
 
  private:
-  using F = Simd<float, D::kWidth, typename D::Isa>;
-  template <class Column>
-  OKTETT_INLINE static Vec3<D> load(const Column& column, std::size_t i) {
-    return to_double(Vec3<F>{F::load(column[0] + i), F::load(column[1] + i), F::load(column[2] + i)});
+  template <class F>
+  OKTETT_INLINE static Vec3<D> load(const float* const (&column)[3], const PickedLanes<F>& at) {
+    return to_double(Vec3<F>{at.load(column[0]), at.load(column[1]), at.load(column[2])});
   }
 };
 
@@ -65,17 +65,17 @@ OKTETT_INLINE Vec3<Simd<float, W, A>> position_error(const HitPoints<Simd<double
   return {error(hit.d.x, point.x), error(hit.d.y, point.y), error(hit.d.z, point.z)};
 }
 
-/// Writes positions, their errors and normals to entries i, i + 1, ... of the columns `position`,
-/// `position_error` and `normal` of `out`.
-template <class D, class Columns>
-OKTETT_INLINE void store_surface(const HitPoints<D>& hit, const Vec3<D>& point, const D& surface_error,
-                                 const Vec3<D>& normal, Columns& out, std::size_t i) {
-  const auto store = [&](const auto& v, auto& column) {
-    v.x.store(column[0] + i), v.y.store(column[1] + i), v.z.store(column[2] + i);
+/// Writes positions, their errors and normals to the entries `at` of `out`, an InteractionBlock.
+template <class D, class F, class Block>
+OKTETT_INLINE void store_surface(const HitPoints<D>& hit, const SurfacePoints<D>& surface,
+                                 const PickedLanes<F>& at, Block& out) {
+  const auto store = [&](const Vec3<F>& v, auto& column) {
+    at.store(v.x, column[0]), at.store(v.y, column[1]), at.store(v.z, column[2]);
   };
-  store(to_float(point), out.position);
-  store(position_error(hit, point, surface_error), out.position_error);
-  store(to_float(normal), out.normal);
+  store(to_float(surface.point), out.position);
+  store(position_error(hit, surface.point, surface.error), out.position_error);
+  const Vec3<F> normal = to_float(surface.normal);
+  store(normal, out.geometric_normal), store(normal, out.shading_normal);
 }
 
 /// Position and error bound of a single hit: see position_error.

@@ -2,6 +2,7 @@
 /// \file Shading of hits in columns, for one instruction set.
 
 #include "accel/surface/offset_origin.h"
+#include "core/picked_lanes.h"
 #include "core/simd_order.h"
 #include "render/context.h"
 #include "render/direct_light.h"
@@ -30,34 +31,6 @@ OKTETT_INLINE unsigned real_lanes(const ShadingColumns& c, std::size_t i) {
   const std::size_t left = c.count - i;
   return (left < F::kWidth ? 1u << left : 1u << F::kWidth) - 1u;
 }
-
-/// Entries of columns, one for each lane. Neighbours are loaded at once.
-template <class F>
-struct PickedEntries {
-  const std::uint32_t* index;
-  bool neighbours = true;
-
-  explicit OKTETT_INLINE PickedEntries(const std::uint32_t* at) : index(at) {
-    for (int k = 1; k < F::kWidth; ++k) neighbours &= at[k] == at[0] + static_cast<std::uint32_t>(k);
-  }
-  OKTETT_INLINE F load(const float* column) const {
-    if (neighbours) return F::load(column + index[0]);
-    float lanes[F::kWidth];
-    for (int k = 0; k < F::kWidth; ++k) lanes[k] = column[index[k]];
-    return F::load(lanes);
-  }
-  /// Adds to the entries of the lanes in `where`.
-  OKTETT_INLINE void add(float* column, const F& x, unsigned where) const {
-    if (neighbours && where == (1u << F::kWidth) - 1)
-      return (F::load(column + index[0]) + x).store(column + index[0]);
-    float lanes[F::kWidth];
-    x.store(lanes);
-    for (; where != 0; where &= where - 1) {
-      const int k = __builtin_ctz(where);
-      column[index[k]] += lanes[k];
-    }
-  }
-};
 
 /// Fills the columns of materials in entries i ... of a group. Returns their unlit light.
 template <class F>
@@ -92,7 +65,7 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
                         ShadingColumns& c) {
   using F = ShadingLanes<A>;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
-    const PickedEntries<F> ray(c.ray + i);
+    const PickedLanes<F> ray(c.ray + i);
     const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]), ray.load(rays.direction[2])};
     const Vec3<F> throughput{ray.load(rays.throughput[0]), ray.load(rays.throughput[1]), ray.load(rays.throughput[2])};
     store_lanes(direction, c.direction, i), store_lanes(throughput, c.throughput, i);
@@ -104,13 +77,22 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
     unsigned known = 0;
     for (int k = 0; k < F::kWidth; ++k) known |= (table[c.material[i + k]].textured ? 0u : 1u) << k;
     known &= real_lanes<F>(c, i);
-    ray.add(rays.radiance[0], throughput.x * unlit.x, known);
-    ray.add(rays.radiance[1], throughput.y * unlit.y, known);
-    ray.add(rays.radiance[2], throughput.z * unlit.z, known);
+    ray.add(throughput.x * unlit.x, rays.radiance[0], known);
+    ray.add(throughput.y * unlit.y, rays.radiance[1], known);
+    ray.add(throughput.z * unlit.z, rays.radiance[2], known);
   }
 }
 
-/// x to the power of whole exponents by squaring: portable::whole_power in lanes.
+/// x to the power of a whole exponent by squaring: portable::whole_power in lanes.
+template <class D>
+OKTETT_INLINE D whole_power(D x, std::int32_t exponent) {
+  D product(1.0);
+  for (; exponent != 0; exponent /= 2, x = x * x)
+    if (exponent % 2 != 0) product = product * x;
+  return product;
+}
+
+/// The same with an exponent for each lane.
 template <int W, class A>
 OKTETT_INLINE Simd<double, W, A> whole_powers(Simd<double, W, A> x, const Simd<std::int32_t, W, A>& exponent,
                                               std::int32_t greatest_exponent) {
@@ -127,15 +109,13 @@ OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highli
   using F = Simd<float, W, A>;
   using I = Simd<std::int32_t, W, A>;
   const F x = min(F(1.0f), highlight);
+  const I exponents = I::load(c.exponent + i);
+  const std::int32_t first = c.exponent[i];
+  if (first >= 0 && none(~(exponents == I(first)))) return to_float(whole_power(to_double(x), first));
   std::int32_t greatest = 0;
-  bool any_power = false;
-  for (int k = 0; k < W; ++k) {
-    const std::int32_t exponent = c.exponent[i + k];
-    any_power |= exponent == ShadingMaterial::kAnyPower;
-    greatest = greatest < exponent ? exponent : greatest;
-  }
-  const F power = to_float(whole_powers(to_double(x), I::load(c.exponent + i), greatest));
-  if (!any_power) return power;
+  for (int k = 0; k < W; ++k) greatest = greatest < c.exponent[i + k] ? c.exponent[i + k] : greatest;
+  const F power = to_float(whole_powers(to_double(x), exponents, greatest));
+  if (none(exponents == I(ShadingMaterial::kAnyPower))) return power;
   float cosine[W], lanes[W];
   x.store(cosine), power.store(lanes);
   for (int k = 0; k < W; ++k)
