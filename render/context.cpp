@@ -20,8 +20,10 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   s.unlit = m.emission + m.color * m.ambient * context.ambient_light;
   s.diffuse = m.diffuse, s.specular = m.specular, s.phong = m.phong;
   s.exponent = ShadingMaterial::kAnyPower;
-  if (m.specular == 0) s.exponent = 0;
-  else if (by_squaring(m.phong)) s.exponent = static_cast<std::int32_t>(m.phong);
+  if (m.specular == 0)
+    s.exponent = 0;
+  else if (by_squaring(m.phong))
+    s.exponent = static_cast<std::int32_t>(m.phong);
   s.textured = context.textures != nullptr && has_textures(m);
   s.bounces = m.reflection != 0 || m.transparency != 0;
   return s;

@@ -39,10 +39,9 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
     return ray;
   }
   Vec3<Lane> towards;
-  Lane falloff;
-  turn_to_light(light.place, broadcast<Lane>(p.surface.position), towards, falloff);
+  const auto square = turn_to_light(light.place, broadcast<Lane>(p.surface.position), towards);
   l = only_lane(towards);
-  if (light.falloff) color = color * falloff.part[0].v;
+  if (light.falloff) color = color * only_lane(falloff(square));
   offset_origin(p.surface, l, ray.origin);
   ray.direction = light.place - ray.origin;
   ray.tmax = kBeforeLight;

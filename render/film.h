@@ -40,8 +40,8 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 Picture make_picture(const RenderContext& context);
 
-/// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is gathered
-/// here and then copied to the picture row by row.
+/// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is
+/// gathered here and then copied to the picture row by row.
 class TileColors {
  public:
   /// `count` pixels, black and transparent.
@@ -58,8 +58,8 @@ class TileColors {
   Column<float> plane_[4];
 };
 
-/// Writes all planes of a finished pixel, (x, y) counted in the picture. Threads may write different pixels at
-/// the same time.
+/// Writes all planes of a finished pixel, (x, y) counted in the picture. Threads may write different pixels
+/// at the same time.
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel);
 
 }  // namespace oktett

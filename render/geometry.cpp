@@ -191,14 +191,4 @@ const Material& material_at(const World& world, const SurfaceInteraction& surfac
   return world.materials[material_index(world, surface.user, surface.material_slot)];
 }
 
-std::uint32_t material_index(const World& world, std::uint32_t user, std::uint32_t material_slot) {
-  std::uint32_t material = kNoId;
-  if (user < world.objects.size()) {
-    const ObjectMaterials& object = world.objects[user];
-    material = object.material;
-    if (material == kNoId && material_slot < object.slots.size()) material = object.slots[material_slot];
-  }
-  return std::min(material, static_cast<std::uint32_t>(world.materials.size() - 1));
-}
-
 }  // namespace oktett

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The scene made ready for tracing: acceleration structures and materials.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -39,6 +40,14 @@ World build_world(const Scene& scene, const BuildOptions& options = {});
 /// The material at a hit: that of the object, else of the mesh's slot, else the default material.
 const Material& material_at(const World& world, const SurfaceInteraction& surface);
 /// Its index in World::materials.
-std::uint32_t material_index(const World& world, std::uint32_t user, std::uint32_t material_slot);
+inline std::uint32_t material_index(const World& world, std::uint32_t user, std::uint32_t material_slot) {
+  std::uint32_t material = kNoId;
+  if (user < world.objects.size()) {
+    const ObjectMaterials& object = world.objects[user];
+    material = object.material;
+    if (material == kNoId && material_slot < object.slots.size()) material = object.slots[material_slot];
+  }
+  return std::min(material, static_cast<std::uint32_t>(world.materials.size() - 1));
+}
 
 }  // namespace oktett

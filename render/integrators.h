@@ -7,8 +7,8 @@
 namespace oktett {
 
 /// Shades the hit `p` of entry `ray` of `wavefront.rays`. Light that needs no further ray is added to
-/// entry `ray` of `wavefront.radiance`. Shadow rays are queued for light that depends on visibility, and rays of the
-/// next bounce are queued.
+/// entry `ray` of `wavefront.radiance`. Shadow rays are queued for light that depends on visibility, and rays
+/// of the next bounce are queued.
 using Integrator = void (*)(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                             const ShadingPoint& p);
 
@@ -25,8 +25,8 @@ void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size
                    const ShadingPoint& p);
 
 /// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
-/// `found`, with the same bits as shade_whitted, in lanes. Records no first hits, so it serves pictures without
-/// data layers.
+/// `found`, with the same bits as shade_whitted, in lanes. Records no first hits, so it serves pictures
+/// without data layers.
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found);
 

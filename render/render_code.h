@@ -14,8 +14,8 @@ struct RenderCode {
   /// unlit light, except for materials with textures, to the radiance of the rays.
   void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ShadedRays&,
                         ShadingColumns&);
-  /// Writes the rays to one light, with the light that they carry if nothing blocks them, for all hits that it
-  /// could reach. Returns their number.
+  /// Writes the rays to one light, with the light that they carry if nothing blocks them, for all hits that
+  /// it could reach. Returns their number.
   std::size_t (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&,
                              const ShadowColumns& out);
 };

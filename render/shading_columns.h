@@ -21,10 +21,11 @@ struct alignas(64) ShadingMaterial {
 };
 static_assert(sizeof(ShadingMaterial) == 64);
 
-/// Beside the hits' InteractionBlock: their rays and materials. Lanes read and write whole groups of eight, so
-/// the entries between the last hit and the end of its group must hold numbers, whatever their values.
+/// Beside the hits' InteractionBlock: their rays and materials. Lanes read and write whole groups, so the
+/// entries between the last hit and the end of its group must hold numbers, whatever their values.
 struct ShadingColumns {
   static constexpr std::size_t kMost = InteractionBlock::kMost;
+  static constexpr std::size_t kGroup = 16;  ///< the most lanes of any instruction set
 
   std::size_t count = 0;
   std::uint32_t ray[kMost];       ///< entry of the wavefront's rays
@@ -44,8 +45,8 @@ struct ShadedRays {
   float* radiance[3];
 };
 
-/// The columns of a queue of shadow rays from its end on. Eight entries more than there are hits may be
-/// overwritten.
+/// The columns of a queue of shadow rays from its end on. `kGroup` entries more than there are hits may
+/// be overwritten.
 struct ShadowColumns {
   float *origin[3], *direction[3], *light[3];
   std::uint32_t* owner;

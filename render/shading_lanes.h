@@ -3,6 +3,7 @@
 /// cosines. Single hits use them with one lane, so a hit gets the same bits alone and in a group.
 
 #include "core/affine_lanes.h"
+#include "core/quotients.h"
 
 namespace oktett {
 
@@ -24,15 +25,21 @@ OKTETT_INLINE typename F::M face_ray(const Vec3<F>& direction, const Vec3<F>& n,
   return behind;
 }
 
-/// Unit vectors `l` from `position` to a light at `place`, and 1 / squared distance, computed in double.
+/// Unit vectors `l` from `position` to a light at `place`, computed in double; returns the squared distances.
 template <int W, class A>
-OKTETT_INLINE void turn_to_light(const Vec3f& place, const Vec3<Simd<float, W, A>>& position,
-                                 Vec3<Simd<float, W, A>>& l, Simd<float, W, A>& falloff) {
+OKTETT_INLINE Simd<double, W, A> turn_to_light(const Vec3f& place, const Vec3<Simd<float, W, A>>& position,
+                                               Vec3<Simd<float, W, A>>& l) {
   using D = Simd<double, W, A>;
   const Vec3<D> towards = sub_lanes(broadcast<D>(place), to_double(position));
-  const D square = dot_lanes(towards, towards), distance = sqrt(square);
-  l = to_float(Vec3<D>{towards.x / distance, towards.y / distance, towards.z / distance});
-  falloff = to_float(D(1.0) / square);
+  const D square = dot_lanes(towards, towards);
+  l = float_quotients(towards, sqrt(square));
+  return square;
+}
+
+/// What is left of the light of a lamp at a distance, where it falls off.
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> falloff(const Simd<double, W, A>& squared_distance) {
+  return to_float(Simd<double, W, A>(1.0) / squared_distance);
 }
 
 /// What Phong's model needs of the directions at a surface.

@@ -162,8 +162,7 @@ void fill_samples(SampleBatch& samples) {
 }
 
 std::uint64_t key_of(const RenderContext& context, const WavefrontPixel& pixel) {
-  return pixel_key(context.settings.seed,
-                   static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x);
+  return pixel_key(context.settings.seed, static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x);
 }
 
 /// Places the only sample of each pixel at its centre.

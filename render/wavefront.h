@@ -58,8 +58,8 @@ struct RayCounts {
 /// sums its rays in the order of the queue, which other samples do not change.
 struct Wavefront {
   SampleBatch samples;
-  RayQueue rays, next;     ///< of this bounce and the next
-  HitBatch hits;           ///< of `rays`
+  RayQueue rays, next;   ///< of this bounce and the next
+  HitBatch hits;         ///< of `rays`
   ColorColumn radiance;  ///< light found by each of `rays`, throughput included
   /// One queue per light, so that all rays of a queue lead to the same light. Owners are entries of `rays`.
   /// Rays that lead to no light, such as those of ambient occlusion, are in the first queue.

@@ -40,7 +40,7 @@ void name_hits(const RenderContext& context, const std::uint32_t* which, const I
     c.ray[k] = which[k];
     c.material[k] = material_index(*context.world, found.user[k], found.material_slot[k]);
   }
-  for (std::size_t k = c.count; k % 8 != 0; ++k)
+  for (std::size_t k = c.count; k % ShadingColumns::kGroup != 0; ++k)
     c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
 }
 
@@ -75,7 +75,7 @@ OKTETT_NOINLINE void finish_alone(const RenderContext& context, Wavefront& wavef
 void push_shadow_rays(const RenderContext& context, const InteractionBlock& found, const LightSource& light,
                       const ShadingColumns& c, ShadowQueue& queue) {
   const std::size_t first = queue.size();
-  queue.resize_uninitialized(first + c.count + 8);
+  queue.resize_uninitialized(first + c.count + ShadingColumns::kGroup);
   ShadowColumns out;
   for (int k = 0; k < 3; ++k) {
     out.origin[k] = queue.rays.origin[k].data() + first;

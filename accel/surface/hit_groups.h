@@ -51,8 +51,10 @@ class HitGroups {
       if (is_exact(names.kind)) part = element_[entry];
     }
     HitGroup& group = find(accel, names.kind, part);
-    if (group.first == kNone) group.first = entry;
-    else next_[group.last] = entry;
+    if (group.first == kNone)
+      group.first = entry;
+    else
+      next_[group.last] = entry;
     group.last = entry;
   }
 

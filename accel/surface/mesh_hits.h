@@ -8,8 +8,8 @@
 
 namespace oktett {
 
-/// `count` hits of one triangle mesh. Lanes work on groups of eight, so the last hit is repeated to the end of
-/// its group.
+/// `count` hits of one triangle mesh. Lanes work on groups of eight, so the last hit is repeated to the end
+/// of its group.
 struct MeshHits {
   static constexpr std::size_t kMost = InteractionBlock::kMost;
 

@@ -4,6 +4,7 @@
 
 #include "accel/accel_data.h"
 #include "core/affine_lanes.h"
+#include "core/quotients.h"
 
 namespace oktett {
 
@@ -82,15 +83,14 @@ OKTETT_INLINE MeshSurface<Simd<float, W, A>> mesh_surface(const MeshFrame& frame
   const Vec3<D> a = to_double(p[0]);
   const Vec3<D> n = cross_lanes(sub_lanes(to_double(p[1]), a), sub_lanes(to_double(p[2]), a));
   // A mirror reverses the winding of the corners, but what was outside stays outside.
-  s.geometric_normal = to_float(scale_lanes(unit_lanes(n), D(frame.mirrored ? -1.0 : 1.0)));
+  s.geometric_normal = scale_lanes(float_quotients(n, length_lanes(n)), F(frame.mirrored ? -1.0f : 1.0f));
   s.shading_normal = s.geometric_normal;
   if (!frame.smooth) return s;
   Vec3<D> m = to_double(weigh(normals, w, u, v));
   if (frame.inverse != nullptr) m = map_normal(*frame.inverse, m);
   const D size = length_lanes(m);
   const auto known = mask_cast<float>((D(0.0) < size) & (size <= D(std::numeric_limits<double>::max())));
-  s.shading_normal =
-      select_lanes(known, to_float(Vec3<D>{m.x / size, m.y / size, m.z / size}), s.geometric_normal);
+  s.shading_normal = select_lanes(known, float_quotients(m, size), s.geometric_normal);
   return s;
 }
 

@@ -74,8 +74,10 @@ class SurfaceFinder {
 
   void find_surfaces(HitGroups& groups, bool moved) {
     for (const HitGroup& group : groups) {
-      if (group.kind == Kind::triangle) find_mesh(groups, group);
-      else find_shape(groups, group, moved);
+      if (group.kind == Kind::triangle)
+        find_mesh(groups, group);
+      else
+        find_shape(groups, group, moved);
       if (moved) groups.for_each(group, [&](std::uint16_t i) { move(i); });
     }
     groups.clear();

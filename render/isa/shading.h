@@ -11,9 +11,14 @@
 
 namespace oktett {
 
-/// Lanes for shading; one hit at a time without vector registers.
+/// Lanes for shading: a register of floats, and at least two of doubles, so that one chain of square roots
+/// and quotients runs beside another. One hit at a time without vector registers.
 template <class A>
-using ShadingLanes = Simd<float, std::is_same_v<A, ScalarIsa> ? 1 : 8, A>;
+using ShadingLanes = Simd<float,
+                          std::is_same_v<A, ScalarIsa>   ? 1
+                          : std::is_same_v<A, Avx512Isa> ? 16
+                                                         : 8,
+                          A>;
 
 template <class F>
 OKTETT_INLINE Vec3<F> load_lanes(const float (&column)[3][ShadingColumns::kMost], std::size_t i) {
@@ -66,8 +71,10 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
   using F = ShadingLanes<A>;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const PickedLanes<F> ray(c.ray + i);
-    const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]), ray.load(rays.direction[2])};
-    const Vec3<F> throughput{ray.load(rays.throughput[0]), ray.load(rays.throughput[1]), ray.load(rays.throughput[2])};
+    const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]),
+                            ray.load(rays.direction[2])};
+    const Vec3<F> throughput{ray.load(rays.throughput[0]), ray.load(rays.throughput[1]),
+                             ray.load(rays.throughput[2])};
     store_lanes(direction, c.direction, i), store_lanes(throughput, c.throughput, i);
     Vec3<F> ng, ns;
     face_ray(direction, load_lanes<F>(s.geometric_normal, i), load_lanes<F>(s.shading_normal, i), ng, ns);
@@ -119,7 +126,8 @@ OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highli
   float cosine[W], lanes[W];
   x.store(cosine), power.store(lanes);
   for (int k = 0; k < W; ++k)
-    if (c.exponent[i + k] == ShadingMaterial::kAnyPower) lanes[k] = highlight_power(cosine[k], c.phong[i + k]);
+    if (c.exponent[i + k] == ShadingMaterial::kAnyPower)
+      lanes[k] = highlight_power(cosine[k], c.phong[i + k]);
   return F::load(lanes);
 }
 
@@ -146,9 +154,8 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     const Vec3<F> position = load_lanes<F>(s.position, i);
     Vec3<F> l = place, color = light_color;
     if (!light.directional) {
-      F falloff;
-      turn_to_light(light.place, position, l, falloff);
-      if (light.falloff) color = scale_lanes(color, falloff);
+      const auto square = turn_to_light(light.place, position, l);
+      if (light.falloff) color = scale_lanes(color, falloff(square));
     }
     const PhongCosines<F> at =
         phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);
@@ -161,17 +168,21 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     const Vec3<F> origin =
         offset_lanes(position, load_lanes<F>(s.position_error, i), load_lanes<F>(s.geometric_normal, i), l);
     const Vec3<F> direction = light.directional ? place : sub_lanes(place, origin);
+    const auto store_lit = [&](const auto* values, auto* to) {
+      for (int k = 0; k < F::kWidth; k += 8) to += store_compact<A>(lit >> k & 0xff, values + k, to);
+    };
     const auto store = [&](const F& x, float* column) {
       if (lit == (1u << F::kWidth) - 1) return x.store(column + end);
       float lanes[F::kWidth];
       x.store(lanes);
-      store_compact<A>(lit, lanes, column + end);
+      store_lit(lanes, column + end);
     };
     store(origin.x, out.origin[0]), store(origin.y, out.origin[1]), store(origin.z, out.origin[2]);
     store(direction.x, out.direction[0]), store(direction.y, out.direction[1]);
     store(direction.z, out.direction[2]);
     store(arriving.x, out.light[0]), store(arriving.y, out.light[1]), store(arriving.z, out.light[2]);
-    end += static_cast<std::size_t>(store_compact<A>(lit, c.ray + i, out.owner + end));
+    store_lit(c.ray + i, out.owner + end);
+    end += static_cast<std::size_t>(__builtin_popcount(lit));
   }
   return end;
 }

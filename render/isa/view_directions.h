@@ -5,6 +5,7 @@
 
 #include "core/double_lanes.h"
 #include "core/lanes.h"
+#include "core/quotients.h"
 #include "render/view_directions.h"
 
 namespace oktett {
@@ -21,10 +22,8 @@ void view_directions_code(const ViewPlane& plane, const ViewPoints& points) {
     const D x = D::load(x_column), y = D::load(y_column);
     const Vec3<D> place{corner.x + across.x * x + down.x * y, corner.y + across.y * x + down.y * y,
                         corner.z + across.z * x + down.z * y};
-    const D length = sqrt(dot_lanes(place, place));
-    to_float(place.x / length).store(out_x);
-    to_float(place.y / length).store(out_y);
-    to_float(place.z / length).store(out_z);
+    const auto direction = float_quotients(place, sqrt(dot_lanes(place, place)));
+    direction.x.store(out_x), direction.y.store(out_y), direction.z.store(out_z);
   };
   float* const* out = points.direction;
   std::size_t i = 0;

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "tests/render/test_scenes.h"
@@ -128,6 +130,47 @@ TEST(Texture, NormalMapsReplaceTheNormal) {
   scene.lights = {DirectionalLight{{-0.6, 0, -0.8}, {1, 1, 1}}};
   const FunctionTextures textures;
   EXPECT_NEAR(color(run_textured(scene, textures), 8, 4).x, 1, 1e-5f);
+}
+
+// Without data layers, lights reach textured hits in lanes, beside hits without textures. Pictures with data
+// layers are shaded hit by hit and must be the same, holes and samples that are not finite included.
+TEST(Texture, TexturedSurfacesLookTheSameInLanes) {
+  Material m = diffuse({1, 0.9f, 0.5f});
+  m.specular = 0.5f, m.phong = 12.5f, m.ambient = 0.2f, m.reflection = 0.25f;
+  m.emission = {0.1f, 0.2f, 0.3f};
+  m.color_texture = m.specular_texture = m.emission_texture = 0;
+  m.opacity_texture = 1, m.bump_texture = 2, m.normal_texture = 3;
+  Scene scene = textured_square(m, 45);
+  scene.ambient_light = {1, 1, 1}, scene.background = {0.2f, 0.3f, 0.4f};
+  scene.integrator.depth = 3;
+  Material shiny = diffuse({0.5f, 0.7f, 0.9f});
+  shiny.specular = 0.3f, shiny.phong = 40;
+  add_object(scene, SphereShape{{0.3, 0.2, -1}, 0.8}, add_material(scene, shiny));
+  shiny.phong = 0, shiny.ambient = 1;
+  add_object(scene, SphereShape{{-0.6, 0.4, 0.5}, 0.3}, add_material(scene, shiny));
+  Material endless = glowing({std::numeric_limits<float>::infinity(), 0, 0});
+  add_object(scene, SphereShape{{0.1, -0.6, 0.5}, 0.2}, add_material(scene, endless));
+  scene.lights = {DirectionalLight{{-0.6, 0.1, -0.8}, {1, 0.5f, 1}}, PointLight{{1, 2, 3}, {9, 9, 9}, true},
+                  PointLight{{-1, 2, 3}, {1, 1, 1}, false}};
+  const FunctionTextures textures;
+  for (const std::uint32_t samples : {1u, 4u}) {
+    scene.integrator.samples = samples;
+    const RenderResult with = run(scene, [&](RenderOptions& o) { o.textures = &textures; });
+    EXPECT_GT(with.report.bad_samples, 0u);
+    for (const Isa isa : available_isas())
+      for (const std::uint32_t tile : {1u, 7u, 32u, 100u}) {
+        const RenderResult without = run(scene, [&](RenderOptions& o) {
+          o.textures = &textures, o.data_layers = false, o.isa = isa, o.tile_size = tile;
+        });
+        EXPECT_EQ(without.report.bad_samples, with.report.bad_samples);
+        EXPECT_EQ(without.report.shadow_rays, with.report.shadow_rays);
+        for (std::size_t k = 0; k < 4; ++k)
+          for (std::size_t i = 0; i < with.picture.planes[k].values.size(); ++i)
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(with.picture.planes[k].values[i]),
+                      std::bit_cast<std::uint32_t>(without.picture.planes[k].values[i]))
+                << to_string(isa) << ", tile " << tile << ", plane " << k << ", pixel " << i;
+      }
+  }
 }
 
 }  // namespace
