@@ -25,7 +25,8 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   else if (by_squaring(m.phong))
     s.exponent = static_cast<std::int32_t>(m.phong);
   s.textured = context.textures != nullptr && has_textures(m);
-  s.bounces = m.reflection != 0 || m.transparency != 0;
+  s.reflection = m.reflection;
+  s.transparent = m.transparency != 0;
   return s;
 }
 

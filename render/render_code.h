@@ -18,6 +18,8 @@ struct RenderCode {
   /// it could reach. Returns their number.
   std::size_t (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&,
                              const ShadowColumns& out);
+  /// Fills `out` with the rays that opaque mirrors send out. Returns a set bit for each hit that sends one.
+  std::uint64_t (*mirror_rays)(const InteractionBlock&, const ShadingColumns&, MirrorColumns& out);
 };
 
 template <class A>

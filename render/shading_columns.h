@@ -13,11 +13,14 @@ struct alignas(64) ShadingMaterial {
 
   Color color, specular_color;
   Color unlit;  ///< light that needs no lamp: emission + color * ambient * ambient light
-  float diffuse, specular, phong;
+  float diffuse, specular, phong, reflection;
   /// `phong` if highlights are raised to it by squaring, 0 if there are none, else kAnyPower.
   std::int32_t exponent;
-  bool textured;  ///< colours and normal are known only at the hit
-  bool bounces;   ///< mirrors or lets light pass
+  bool textured;     ///< colours and normal are known only at the hit
+  bool transparent;  ///< lets light pass
+
+  /// Whether its hits are finished one by one, not in lanes.
+  bool alone() const { return textured || transparent; }
 };
 static_assert(sizeof(ShadingMaterial) == 64);
 
@@ -34,7 +37,8 @@ struct ShadingColumns {
   float direction[3][kMost];         ///< unit direction in which the ray travels
   float throughput[3][kMost];        ///< of the ray, times the opacity of the surface
   float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
-  float color[3][kMost], specular_color[3][kMost], diffuse[kMost], specular[kMost], phong[kMost];
+  float color[3][kMost], specular_color[3][kMost];
+  float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost];
   std::int32_t exponent[kMost];
 };
 
@@ -43,6 +47,12 @@ struct ShadedRays {
   const float* direction[3];
   const float* throughput[3];
   float* radiance[3];
+};
+
+/// The rays that mirrors send out; entry k leaves hit k.
+struct MirrorColumns {
+  float origin[3][ShadingColumns::kMost], direction[3][ShadingColumns::kMost];
+  float throughput[3][ShadingColumns::kMost];
 };
 
 /// The columns of a queue of shadow rays from its end on. `kGroup` entries more than there are hits may

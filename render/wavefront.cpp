@@ -233,17 +233,23 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
 
 void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
                  const Color& throughput, Bounce bounce) {
+  Vec3f origin;
+  offset_origin(p.surface, direction, origin);
+  push_bounce(wavefront, ray, origin, direction, throughput, bounce);
+}
+
+void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce) {
   if (max_component(throughput) < kLeastThroughput) return;
   const std::uint32_t sample = wavefront.rays.sample[ray];
   if (wavefront.samples.spawned[sample] >= kMostRaysPerLevel) return;
   ++wavefront.samples.spawned[sample];
   const bool straight = bounce == Bounce::straight;
   RayQueue::Entry entry;
-  offset_origin(p.surface, direction, entry.ray.origin);
-  entry.ray.direction = direction;
+  entry.ray.origin = origin, entry.ray.direction = direction;
   entry.sample = sample;
   entry.throughput = throughput;
-  entry.distance = wavefront.rays.distance[ray] + p.t;
+  entry.distance = wavefront.rays.distance[ray] + wavefront.hits.t[ray];
   entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (straight ? 0 : 1));
   entry.from_camera = straight && wavefront.rays.from_camera[ray];
   wavefront.next.push_back(entry);

@@ -91,5 +91,8 @@ enum class Bounce {
 /// whose effect on the picture would be invisible, and all rays beyond 256 of one sample in one bounce.
 void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
                  const Color& throughput, Bounce bounce);
+/// The same from `origin`, see offset_origin.
+void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce);
 
 }  // namespace oktett

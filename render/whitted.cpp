@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 
 #include "render/direct_light.h"
 #include "render/integrators.h"
@@ -71,6 +72,20 @@ OKTETT_NOINLINE void finish_alone(const RenderContext& context, Wavefront& wavef
   push_bounces(context, wavefront, i, p);
 }
 
+/// Queues the mirrored rays of hits on opaque mirrors, of which the columns know all.
+void push_mirrored(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                   const ShadingColumns& c) {
+  MirrorColumns mirrored;
+  std::uint64_t sent = render_code(context.isa).mirror_rays(found, c, mirrored);
+  for (; sent != 0; sent &= sent - 1) {
+    const int k = std::countr_zero(sent);
+    if (wavefront.rays.bounces[c.ray[k]] >= context.settings.depth) continue;
+    push_bounce(wavefront, c.ray[k], InteractionBlock::get(mirrored.origin, k),
+                InteractionBlock::get(mirrored.direction, k), InteractionBlock::get(mirrored.throughput, k),
+                Bounce::reflected);
+  }
+}
+
 /// Queues the rays to one light.
 void push_shadow_rays(const RenderContext& context, const InteractionBlock& found, const LightSource& light,
                       const ShadingColumns& c, ShadowQueue& queue) {
@@ -106,9 +121,16 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   c.count = count;
   name_hits(context, which, found, c);
   render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
+  bool alone = false, mirrors = false;
   for (std::size_t k = 0; k < count; ++k) {
     const ShadingMaterial& m = context.materials[c.material[k]];
-    if (m.textured || m.bounces) finish_alone(context, wavefront, found[k], k, c);
+    alone |= m.alone(), mirrors |= m.reflection != 0;
+  }
+  // The rays of a sample must be queued in the order of its hits: one by one if any of them is.
+  if (!alone && mirrors) push_mirrored(context, wavefront, found, c);
+  for (std::size_t k = 0; k < count; ++k) {
+    const ShadingMaterial& m = context.materials[c.material[k]];
+    if (alone && (m.alone() || m.reflection != 0)) finish_alone(context, wavefront, found[k], k, c);
     const std::uint32_t i = c.ray[k];
     if (wavefront.rays.from_camera[i])
       wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];

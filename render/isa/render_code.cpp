@@ -7,7 +7,8 @@ namespace oktett {
 
 template <class A>
 const RenderCode& render_code() {
-  static constexpr RenderCode code = {view_directions_code<A>, begin_shading_code<A>, shadow_rays_code<A>};
+  static constexpr RenderCode code = {view_directions_code<A>, begin_shading_code<A>, shadow_rays_code<A>,
+                                      mirror_rays_code<A>};
   return code;
 }
 

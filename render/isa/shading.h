@@ -49,6 +49,7 @@ OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColum
     store_lanes(broadcast<F>(m.color), c.color, i);
     store_lanes(broadcast<F>(m.specular_color), c.specular_color, i);
     F(m.diffuse).store(c.diffuse + i), F(m.specular).store(c.specular + i), F(m.phong).store(c.phong + i);
+    F(m.reflection).store(c.reflection + i);
     for (int k = 0; k < W; ++k) c.exponent[i + k] = m.exponent;
     return broadcast<F>(m.unlit);
   }
@@ -60,7 +61,7 @@ OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColum
       unlit[axis][k] = m.unlit[axis];
     }
     c.diffuse[i + k] = m.diffuse, c.specular[i + k] = m.specular, c.phong[i + k] = m.phong;
-    c.exponent[i + k] = m.exponent;
+    c.reflection[i + k] = m.reflection, c.exponent[i + k] = m.exponent;
   }
   return {F::load(unlit[0]), F::load(unlit[1]), F::load(unlit[2])};
 }
@@ -185,6 +186,41 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     end += static_cast<std::size_t>(__builtin_popcount(lit));
   }
   return end;
+}
+
+/// reflect_above of render/optics.h in lanes.
+template <class F>
+OKTETT_INLINE Vec3<F> reflect_above_lanes(const Vec3<F>& d, const Vec3<F>& n, const Vec3<F>& ng) {
+  const F two(2.0f);
+  const Vec3<F> r = unit_lanes(sub_lanes(d, scale_lanes(n, two * dot_lanes(d, n))));
+  const F height = dot_lanes(r, ng);
+  const auto below = height < F(0.0f);
+  if (none(below)) return r;
+  return select_lanes(below, unit_lanes(sub_lanes(r, scale_lanes(ng, two * height))), r);
+}
+
+template <class A>
+std::uint64_t mirror_rays_code(const InteractionBlock& s, const ShadingColumns& c, MirrorColumns& out) {
+  using F = ShadingLanes<A>;
+  const F zero(0.0f);
+  std::uint64_t sent = 0;
+  for (std::size_t i = 0; i < c.count; i += F::kWidth) {
+    const Vec3<F> mirror = scale_lanes(load_lanes<F>(c.specular_color, i), F::load(c.reflection + i));
+    const unsigned shines =
+        ~bits((mirror.x == zero) & (mirror.y == zero) & (mirror.z == zero)) & real_lanes<F>(c, i);
+    if (shines == 0) continue;
+    sent |= std::uint64_t{shines} << i;
+    const Vec3<F> throughput = load_lanes<F>(c.throughput, i);
+    const Vec3<F> direction =
+        reflect_above_lanes(load_lanes<F>(c.direction, i), load_lanes<F>(c.ns, i), load_lanes<F>(c.ng, i));
+    store_lanes(offset_lanes(load_lanes<F>(s.position, i), load_lanes<F>(s.position_error, i),
+                             load_lanes<F>(s.geometric_normal, i), direction),
+                out.origin, i);
+    store_lanes(direction, out.direction, i);
+    store_lanes(Vec3<F>{throughput.x * mirror.x, throughput.y * mirror.y, throughput.z * mirror.z},
+                out.throughput, i);
+  }
+  return sent;
 }
 
 }  // namespace oktett

@@ -17,10 +17,13 @@ TEST(Quotients, AreThoseOfDoublesRoundedToFloat) {
   using F = Simd<float, 8, ScalarIsa>;
   using D = Simd<double, 8, ScalarIsa>;
   std::mt19937_64 random(1);
-  const double odd[] = {0,      -0.0,  1e-320, -1e-320, 1e-310,   1e300, 1.7e308, 1e-45,
+  const double odd[] = {0,      -0.0,  1e-320, -1e-320,  1e-310,    1e300, 1.7e308,  1e-45,
                         1e-300, 3e-39, 1e39,   HUGE_VAL, -HUGE_VAL, NAN,   0x1p-149, 0x1p-1074};
   for (int n = 0; n < 40000; ++n) {
-    const auto real = [&] { return std::ldexp(1.0 + static_cast<double>(random() >> 12) * 0x1p-52, static_cast<int>(random() % 80) - 40); };
+    const auto real = [&] {
+      return std::ldexp(1.0 + static_cast<double>(random() >> 12) * 0x1p-52,
+                        static_cast<int>(random() % 80) - 40);
+    };
     double v[3][8], size[8];
     // The size is common, as one lane in doubt decides for all.
     for (int k = 0; k < 8; ++k) size[k] = n % 3 == 0 ? odd[random() % 16] : real();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <vector>
@@ -49,8 +50,13 @@ constexpr IntegratorKind kAllKinds[] = {IntegratorKind::whitted, IntegratorKind:
 
 /// Without data layers, hits are shaded in blocks and without uv. The colours must be the same.
 TEST(Render, ColoursAreTheSameWithoutDataLayers) {
-  for (const IntegratorKind kind : kAllKinds) {
-    Scene scene = busy_scene(kind);
+  for (int n = 0; n <= static_cast<int>(std::size(kAllKinds)); ++n) {
+    const bool mirrors_only = n == static_cast<int>(std::size(kAllKinds));
+    Scene scene = busy_scene(mirrors_only ? IntegratorKind::whitted : kAllKinds[n]);
+    // Without glass, mirrored rays leave whole blocks in lanes. The normals of the mesh are bent enough for
+    // mirrored rays that have to be folded back above its faces.
+    if (mirrors_only)
+      for (Material& m : scene.materials) m.transparency = 0, m.reflection = 0.8f;
     Material checked = diffuse({1, 1, 1});
     scene.textures.push_back({"no such file"});
     checked.color_texture = 0;
