@@ -18,7 +18,7 @@ constexpr std::size_t kMost = InteractionBlock::kMost;
 
 template <class T>
 void repeat_last(T (&column)[kMost], std::size_t count) {
-  for (std::size_t k = count; k % 16 != 0; ++k) column[k] = column[count - 1];
+  for (std::size_t k = count; k % 8 != 0; ++k) column[k] = column[count - 1];
 }
 
 void set_column(float (&column)[3][kMost], std::size_t i, const Vec3f& v) {
@@ -104,7 +104,7 @@ class SurfaceFinder {
       for (int k = 0; k < 3; ++k) set_column(mesh_.normal[k], to, normals[k]);
     };
     groups.for_each(group, [&](std::uint16_t i) { gather(last = i, mesh_.count++); });
-    for (std::size_t to = mesh_.count; to % 16 != 0; ++to) gather(last, to);
+    for (std::size_t to = mesh_.count; to % 8 != 0; ++to) gather(last, to);
     code_.mesh(mesh_);
   }
 
