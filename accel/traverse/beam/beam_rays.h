@@ -70,6 +70,7 @@ struct alignas(64) BeamRays {
 
   int axis[3];    ///< which axes of the scene are x, y, z
   bool mirrored;  ///< z runs against the scene's axis
+  bool at_end;    ///< the apex is where the rays end
   float apex[3];  ///< in the order of `axis`
   float slip;     ///< how far, in x and y, a line passes from the apex at its depth
   float behind;   ///< how far beyond the apex the rays may reach
@@ -125,7 +126,7 @@ bool BeamRays<A>::set_frame(const RaySpan& rays, const Apex& at, float extent) {
   for (int k = 1; k < 3; ++k)
     if (std::fabs(d[k]) > std::fabs(d[z])) z = k;
   axis[0] = (z + 1) % 3, axis[1] = (z + 2) % 3, axis[2] = z;
-  mirrored = (d[z] < 0) != at.at_end;
+  mirrored = (d[z] < 0) != at.at_end, at_end = at.at_end;
   for (int k = 0; k < 3; ++k) apex[k] = p[axis[k]];
   return std::fabs(d[z]) > 0;
 }
@@ -357,22 +358,26 @@ bool BeamRays<A>::set(const RaySpan& rays, const Apex& at, float extent, bool ma
   return true;
 }
 
-/// The rays of one group.
-template <class A>
-OKTETT_INLINE RayLanes<Simd<float, kBeamGroup, A>> load_group(const BeamRays<A>& beam, const RaySpan& rays,
-                                                              int group) {
-  using F = Simd<float, kBeamGroup, A>;
-  const std::size_t base = static_cast<std::size_t>(group) * kBeamGroup;
-  if (!beam.sorted) return load_span<F>(rays, base);
+/// The rays of a beam from place `at` on, as many as F has lanes.
+template <class F, class A>
+OKTETT_INLINE RayLanes<F> load_rays(const BeamRays<A>& beam, const RaySpan& rays, std::size_t at) {
+  if (!beam.sorted) return load_span<F>(rays, at);
   const auto gather = [&](const float* column) {
-    alignas(64) float lanes[kBeamGroup];
-    for (int i = 0; i < kBeamGroup; ++i) lanes[i] = column[beam.order[base + i]];
+    alignas(64) float lanes[F::kWidth];
+    for (int i = 0; i < F::kWidth; ++i) lanes[i] = column[beam.order[at + static_cast<std::size_t>(i)]];
     return F::load(lanes);
   };
   return {{gather(rays.origin[0]), gather(rays.origin[1]), gather(rays.origin[2])},
           {gather(rays.direction[0]), gather(rays.direction[1]), gather(rays.direction[2])},
           gather(rays.tmin),
           gather(rays.tmax)};
+}
+
+/// The rays of one group.
+template <class A>
+OKTETT_INLINE RayLanes<Simd<float, kBeamGroup, A>> load_group(const BeamRays<A>& beam, const RaySpan& rays,
+                                                              int group) {
+  return load_rays<Simd<float, kBeamGroup, A>>(beam, rays, static_cast<std::size_t>(group) * kBeamGroup);
 }
 
 /// The window of a single group.

@@ -112,12 +112,27 @@ OKTETT_INLINE void store_hits(const RayState<kBeamGroup, A>& r, unsigned lanes, 
   raise(beam.hit_lo, 1 - kBeamPointSlack), raise(beam.hit_hi, 1 + kBeamPointSlack);
 }
 
+/// Sixteen misses from position `base`.
+template <class A>
+OKTETT_INLINE void store_misses(const HitSpan& hits, std::size_t base) {
+  using F = Simd<float, kBeamGroup, A>;
+  const F zero(0.0f);
+  F(std::numeric_limits<float>::infinity()).store(hits.t + base);
+  zero.store(hits.u + base), zero.store(hits.v + base);
+  std::memset(hits.item + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
+  std::memset(hits.instance + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
+}
+
 /// Before the first decision: stores a miss for every ray.
 template <Query Q, class A>
 OKTETT_INLINE void begin_decisions(BeamTask<Q, A>& task) {
-  if (Q == Query::any || task.decided) return;
-  task.decided = true;
-  for (std::size_t i = 0; i < task.rays.size; ++i) task.out.set(i, Hit{});
+  if constexpr (Q == Query::closest) {
+    if (task.decided) return;
+    task.decided = true;
+    std::size_t i = 0;
+    for (; i + kBeamGroup <= task.rays.size; i += kBeamGroup) store_misses<A>(task.out.hits, i);
+    for (; i < task.rays.size; ++i) task.out.set(i, Hit{});
+  }
 }
 
 /// Decides `count` (up to 16) pairs of a ray and a triangle.
@@ -190,6 +205,7 @@ OKTETT_INLINE void note_unclear(BeamTask<Q, A>& task, unsigned rays, int group, 
 /// Decides the candidates of a group, so that hits of other shapes can be compared with them.
 template <Query Q, class A>
 OKTETT_NOINLINE void decide_candidates(BeamTask<Q, A>& task, int group) {
+  if (task.accel.blocks.data() == nullptr) return;
   std::uint8_t ray[kBeamGroup];
   std::uint32_t ids[kBeamGroup];
   int count = 0;
@@ -199,17 +215,6 @@ OKTETT_NOINLINE void decide_candidates(BeamTask<Q, A>& task, int group) {
     task.beam.candidate[i] = kNoId;
   }
   if (count > 0) decide_listed(task, ray, ids, count);
-}
-
-/// Sixteen misses from position `base`.
-template <class A>
-OKTETT_INLINE void store_misses(const HitSpan& hits, std::size_t base) {
-  using F = Simd<float, kBeamGroup, A>;
-  const F zero(0.0f);
-  F(std::numeric_limits<float>::infinity()).store(hits.t + base);
-  zero.store(hits.u + base), zero.store(hits.v + base);
-  std::memset(hits.item + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
-  std::memset(hits.instance + base, 0xff, kBeamGroup * sizeof(std::uint32_t));
 }
 
 /// Decides the candidates of a whole group and stores the hits.

@@ -7,7 +7,7 @@
 /// decided exactly at the end, all lanes busy, so the hits have the same bits as those of every other
 /// traversal.
 
-#include "accel/traverse/beam/beam_task.h"
+#include "accel/traverse/beam/beam_planes.h"
 #include "accel/traverse/packet.h"
 #include "core/simd_order.h"
 
@@ -137,24 +137,20 @@ OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, 
   return size;
 }
 
-/// A leaf that is not a block of triangles, against the rays `rays` of group `g`.
+/// A leaf of combinations, instances or textbook triangles, against the rays `rays` of group `g`.
 template <Query Q, class A>
 OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& leaf, int g, unsigned rays) {
   using F = Simd<float, kBeamGroup, A>;
   BeamRays<A>& beam = task.beam;
-  if (!task.decided || task.unclear.size > 0) decide_unclear(task);
+  decide_group(task, g);
   const std::size_t base = static_cast<std::size_t>(g) * kBeamGroup;
   const F infinity(std::numeric_limits<float>::infinity());
   const RayLanes<F> r = load_group(beam, task.rays, g);
   rays &= bits(F::load(beam.hit_lo + base) < infinity);
   RayState<kBeamGroup, A> state;
-  rays &= is_shape(leaf.kind) ? state.set_rays(r.o, r.d, r.tmin, r.tmax)
-                              : state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
+  rays &= state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
   if (rays == 0) return;
-  if constexpr (Q == Query::closest) {
-    decide_candidates(task, g);
-    load_hits(task.out.hits, base, state);
-  }
+  if constexpr (Q == Query::closest) load_hits(task.out.hits, base, state);
   table_leaf_packet<Q>(task.accel, leaf, state, rays);
   const unsigned found = found_lanes(state, rays);
   if (found == 0) return;
@@ -175,6 +171,10 @@ inline constexpr int kRaysPerInstance = 80;
 /// is given up.
 template <Query Q, class A, class Met>
 OKTETT_INLINE bool table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
+  if (is_shape(leaf.kind)) {
+    shape_leaf_beam(task, leaf, groups, met);
+    return true;
+  }
   const bool instances = holds_instances(leaf.kind);
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
@@ -315,13 +315,17 @@ OKTETT_NOINLINE BeamOutcome trace_beam(const Accel& accel, const RaySpan& rays, 
   BeamTask<Q, A> task{accel, rays, out, {}, {}, max_steps};
   if (!task.beam.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return BeamOutcome::no_beam;
   if (task.beam.groups != 0) {
+    if (Q == Query::closest) bound_by_planes(accel, task.beam);
     for (const LeafEntry& leaf : accel.unbounded)
-      if (!table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; }))
+      if (leaf.kind != Kind::plane &&
+          !table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; }))
         return BeamOutcome::given_up;
     Lookahead<Q> ahead(next, out, rays.size);
     if (!accel.root.is_none() && !traverse_beam(task, ahead)) return BeamOutcome::given_up;
+    if (Q == Query::any) decide_planes(task);
   }
   finish_beam(task);
+  if (Q == Query::closest && task.beam.groups != 0) decide_planes(task);
   return BeamOutcome::traced;
 }
 
