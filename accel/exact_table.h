@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include "accel/beam_view.h"
 #include "accel/crossing_lanes.h"
 #include "accel/hit_list.h"
 #include "accel/shape_hits.h"
@@ -35,6 +36,12 @@ struct ExactCode {
   /// once (ExactOps::lists_at_once).
   void (*rows)(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
                CrossingLanes<kLanes>& out);
+  /// Groups of a beam against the cell by conservative arithmetic in float. Leaves `lanes` as they are if
+  /// there is none.
+  void (*filter)(const ExactPoolBase& pool, std::uint32_t cell, const BeamView& beam, unsigned groups,
+                 BeamLanes& lanes);
+  /// Those of `lanes` whose origin surely is outside of the surface.
+  unsigned (*outside)(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes);
   /// Interactions of hits of one element, as ExactOps::interaction_without_uv makes them. False if there is
   /// no code for that in lanes.
   bool (*interactions)(const ExactPoolBase& pool, const ShapeHits& hits);
@@ -53,6 +60,10 @@ struct ExactSurfaceCode {
                   HitList& hits) requires std::is_same_v<A, ScalarIsa>;
   static void rows(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes,
                    CrossingLanes<kLanes>& out);
+  static void filter(const ExactPoolBase& pool, std::uint32_t cell, const BeamView& beam, unsigned groups,
+                     BeamLanes& lanes);
+  static unsigned outside(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays,
+                          unsigned lanes);
   static bool interactions(const ExactPoolBase& pool, const ShapeHits& hits);
 };
 

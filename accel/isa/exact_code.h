@@ -3,6 +3,7 @@
 /// of accel/isa/exact_surface.cpp.in.
 
 #include "accel/exact_table.h"
+#include "accel/isa/beam_cell.h"
 #include "accel/isa/shape_interactions.h"
 #include "kernels/exact/exact_interaction.h"
 
@@ -158,6 +159,65 @@ void ExactSurfaceCode<S, A>::rows(const ExactPoolBase& base, std::uint32_t index
       push_row(out, valid, t, to_float(c.turn[k]), to_float(c.part[k]), pool.frames[cell.element].item, true);
     }
   }
+}
+
+/// Whether S has a filter in lanes of F (kernels/exact/segment.h).
+template <class S, class F>
+concept Classifies = requires(const typename S::Pool& pool, const ExactCell& cell, const Segment<F>& segment,
+                              F& at) {
+  S::classify(pool, cell, segment, at);
+};
+
+template <class S, class D>
+concept HasValue = requires(const typename S::Pool& pool, const ExactCell& cell, const Vec3<D>& p) {
+  S::value(pool, cell, p);
+};
+
+template <class S, class A>
+void ExactSurfaceCode<S, A>::filter(const ExactPoolBase& base, std::uint32_t index, const BeamView& beam,
+                                    unsigned groups, BeamLanes& lanes) {
+  using G = Simd<float, kBeamGroup, A>;
+  if constexpr (!std::is_same_v<A, ScalarIsa> && Classifies<S, G>) {
+    const auto& pool = static_cast<const typename S::Pool&>(base);
+    const ExactCell& cell = pool.cells[index];
+    BeamCell seen;
+    if (!seen.set(pool, cell, beam)) return;
+    for (; groups != 0; groups &= groups - 1) {
+      const int g = __builtin_ctz(groups);
+      const BeamCellRays<G> rays(seen, beam, g * kBeamGroup);
+      G at;
+      const SegmentVerdict<G> verdict = S::classify(pool, cell, rays.segment, at);
+      const unsigned maybe = lanes.maybe[g] & ~bits(rays.empty | verdict.misses);
+      lanes.maybe[g] = static_cast<std::uint16_t>(maybe);
+      if (!beam.any || maybe == 0) continue;
+      if constexpr (HasValue<S, Simd<double, 1, A>>)
+        lanes.leave[g] = static_cast<std::uint16_t>(maybe & bits(verdict.falls & rays.ends));
+      if (!seen.may_be_sure) continue;
+      const auto sure = verdict.inside & rays.whole & surely_in_cell(seen, rays.segment, at);
+      lanes.sure[g] = static_cast<std::uint16_t>(maybe & bits(sure));
+    }
+  }
+}
+
+template <class S, class A>
+unsigned ExactSurfaceCode<S, A>::outside(const ExactPoolBase& base, std::uint32_t index,
+                                         const RayLanes<F>& rays, unsigned lanes) {
+  using D = Simd<double, F::kWidth, A>;
+  if constexpr (!std::is_same_v<A, ScalarIsa> && HasValue<S, D>) {
+    const auto& pool = static_cast<const typename S::Pool&>(base);
+    const ExactCell& cell = pool.cells[index];
+    const Affine& to_own = pool.frames[cell.element].to_own;
+    const Vec3<D> o = to_double(rays.o);
+    const D value = S::value(pool, cell, map_point(to_own, o));
+    // What the map into the own space rounds is less than 2^-50 of the terms that it adds up.
+    double most = 0, shift = 1;
+    for (const auto& row : to_own.m) {
+      most = std::max(most, std::fabs(row[0]) + std::fabs(row[1]) + std::fabs(row[2]));
+      shift = std::max(shift, std::fabs(row[3]));
+    }
+    return lanes & bits(D(0x1p-32) * (D(shift) + D(most) * norm1(o)) < value);
+  }
+  return 0;
 }
 
 template <class S, class A>

@@ -79,6 +79,22 @@ struct Cone {
                   select(exits, D(0.0), slab.out_part), range, list);
   }
 
+  template <class F>
+  OKTETT_INLINE static SegmentVerdict<F> classify(const Pool& pool, const ExactCell& cell,
+                                                  const Segment<F>& s, F& at) {
+    const ConeElement& e = pool.elements[cell.element];
+    const F middle(static_cast<float>(e.middle)), slope(static_cast<float>(e.slope));
+    const F wa = fast_fma(slope, s.a.z, middle), wb = fast_fma(slope, s.b.z, middle);
+    const auto form = [&](const Vec3<F>& p, const Vec3<F>& q, const F& w, const F& v) {
+      return fast_fma(p.x, q.x, fast_fms(p.y, q.y, w * v));
+    };
+    const F margin(6 * s.error + 0x1p-17f);
+    SegmentVerdict<F> verdict = classify_quadratic(form(s.a, s.a, wa, wa), form(s.a, s.b, wa, wb),
+                                                   form(s.b, s.b, wb, wb), margin, at);
+    if (e.open) verdict.inside = verdict.inside & ~verdict.inside;
+    return verdict;
+  }
+
   template <class D>
   OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
                                   Vec3<D>& gradient) {

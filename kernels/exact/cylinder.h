@@ -57,6 +57,17 @@ struct Cylinder {
     list_interval(meets & (in < exit), in, part_in, exit, part_out, range, list);
   }
 
+  template <class F>
+  OKTETT_INLINE static SegmentVerdict<F> classify(const Pool& pool, const ExactCell& cell,
+                                                  const Segment<F>& s, F& at) {
+    const F one(1.0f), margin(5 * s.error + 0x1p-18f);
+    const auto form = [&](const Vec3<F>& p, const Vec3<F>& q) { return fast_fma(p.x, q.x, p.y * q.y) - one; };
+    SegmentVerdict<F> verdict =
+        classify_quadratic(form(s.a, s.a), form(s.a, s.b), form(s.b, s.b), margin, at);
+    if (pool.elements[cell.element].open) verdict.inside = verdict.inside & ~verdict.inside;
+    return verdict;
+  }
+
   template <class D>
   OKTETT_INLINE static void slope(const Pool&, std::size_t, const D& part, const Vec3<D>& p, D& value,
                                   Vec3<D>& gradient) {

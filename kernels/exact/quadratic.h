@@ -3,6 +3,7 @@
 /// decided one by one in double-double.
 
 #include "kernels/exact/exact.h"
+#include "kernels/exact/segment.h"
 
 namespace oktett {
 

@@ -1,6 +1,9 @@
 #pragma once
 /// \file Quadrics (slides: x^2 + y^2 = 1, x^2 + y^2 - z = 0, x^2 + y^2 - z^2 = 1), also cut by a box.
 
+#include <algorithm>
+#include <cmath>
+
 #include "kernels/exact/quadratic.h"
 #include "kernels/exact/quadric_data.h"
 
@@ -74,6 +77,42 @@ struct Quadric {
     const D s = D(0.5) * (range.a + range.b) - shift;
     const auto inside = (f[0] * s + D(2.0) * f[1]) * s + f[2] < D(0.0);
     close_by_cell(open, inside, range, active, out);
+  }
+
+  template <class F>
+  OKTETT_INLINE static SegmentVerdict<F> classify(const Pool& pool, const ExactCell& cell,
+                                                  const Segment<F>& s, F& at) {
+    const QuadricElement& e = pool.elements[cell.element];
+    double sum = 0;
+    for (int k = 0; k < 6; ++k) sum += (k < 3 ? 1 : 2) * std::fabs(e.q[k]);
+    const double linear = std::fabs(e.h.x) + std::fabs(e.h.y) + std::fabs(e.h.z);
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) reach = std::max({reach, std::fabs(e.lo[k]), std::fabs(e.hi[k])});
+    const double most = reach + 0x1p-3;
+    const F margin(static_cast<float>(2.25 * (sum * most + linear) * s.error +
+                                      0x1p-19 * ((sum * most + 2 * linear) * most + std::fabs(e.j))));
+    const auto number = [](double x) { return F(static_cast<float>(x)); };
+    const F hx = number(e.h.x), hy = number(e.h.y), hz = number(e.h.z), xy = number(e.q[3]),
+            xz = number(e.q[4]), yz = number(e.q[5]);
+    const auto times = [&](const Vec3<F>& p) {
+      return Vec3<F>{fast_fma(number(e.q[0]), p.x, fast_fma(xy, p.y, fast_fma(xz, p.z, hx))),
+                     fast_fma(number(e.q[1]), p.y, fast_fma(xy, p.x, fast_fma(yz, p.z, hy))),
+                     fast_fma(number(e.q[2]), p.z, fast_fma(xz, p.x, fast_fma(yz, p.y, hz)))};
+    };
+    const Vec3<F> h{hx, hy, hz}, qa = times(s.a), qb = times(s.b);
+    const F ha = fast_dot(h, s.a) + number(e.j), hb = fast_dot(h, s.b);
+    SegmentVerdict<F> verdict = classify_quadratic(fast_dot(qa, s.a) + ha, fast_dot(qa, s.b) + ha,
+                                                   fast_dot(qb, s.b) + (hb + number(e.j)), margin, at);
+    if (!e.closed) verdict.inside = verdict.inside & ~verdict.inside;
+    return verdict;
+  }
+
+  template <class D>
+  OKTETT_INLINE static D value(const Pool& pool, const ExactCell& cell, const Vec3<D>& p) {
+    D value;
+    Vec3<D> gradient;
+    slope(pool, cell.element, D(0.0), p, value, gradient);
+    return value;
   }
 
   template <class D>

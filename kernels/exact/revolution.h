@@ -9,6 +9,7 @@
 
 #include "kernels/exact/ray_polynomial.h"
 #include "kernels/exact/revolution_data.h"
+#include "kernels/exact/segment.h"
 
 namespace oktett {
 
@@ -97,6 +98,79 @@ struct Revolution {
     list.finish(D(roots::kNoRoot));
   }
 
+  /// x^2 + z^2 - f(y)^2 of the cell's piece, in Bernstein coefficients from products of those of its parts.
+  template <class F>
+  OKTETT_INLINE static SegmentVerdict<F> classify(const Pool& pool, const ExactCell& cell,
+                                                  const Segment<F>& s, F& at) {
+    const RevolutionElement& e = pool.elements[cell.element];
+    const RevolutionElement::Piece& piece = e.pieces[cell.begin];
+    double size = 0, rise = 0;
+    for (int k = 0; k <= e.degree; ++k)
+      size += 1.25 * std::fabs(piece.c[k]), rise += 1.25 * k * std::fabs(piece.c[k]);
+    const double v_error = piece.per_half * (s.error + 0x1p-20);
+    if (!(v_error < 0.03)) {
+      at = F(0.5f);
+      const auto nothing = at < at;
+      return {nothing, nothing, nothing};
+    }
+    const double reach = std::sqrt(piece.greatest2) + 0.25;
+    const F margin(static_cast<float>(5 * reach * s.error +
+                                      0x1p-18 * (reach * reach + size * (e.squared ? 1 : size)) +
+                                      rise * v_error * (e.squared ? 1 : 2.1 * size)));
+    const F middle(static_cast<float>(piece.middle)), per_half(static_cast<float>(piece.per_half));
+    const F v = (s.a.y - middle) * per_half, w = (s.b.y - middle) * per_half;
+    const F q[3] = {fast_fma(s.a.x, s.a.x, s.a.z * s.a.z), fast_fma(s.a.x, s.b.x, s.a.z * s.b.z),
+                    fast_fma(s.b.x, s.b.x, s.b.z * s.b.z)};
+    SegmentVerdict<F> verdict;
+    typename F::M inside_all;
+    const auto finish = [&]<int M>(const F(&c)[M]) {
+      verdict = classify_polynomial(c, margin, at);
+      F most = c[0];
+      for (int k = 1; k < M; ++k) most = max(most, c[k]);
+      inside_all = most < -margin;
+      // Other cells may be inside before.
+      verdict.inside = verdict.inside & (margin < c[0]);
+    };
+    F f[4];
+    blossoms(piece, e.degree, v, w, f);
+    if (e.squared) {
+      const F third(1 / 3.0f), middle2 = q[1] + q[1];
+      const F c[4] = {q[0] - f[0], fast_fms(q[0] + middle2, third, f[1]),
+                      fast_fms(middle2 + q[2], third, f[2]), q[2] - f[3]};
+      finish(c);
+    } else if (e.degree == 1) {
+      const F c[3] = {q[0] - f[0] * f[0], q[1] - f[0] * f[1], q[2] - f[1] * f[1]};
+      finish(c);
+    } else {
+      const F a(0.4f), b(0.6f), tenth(0.1f), fifth(0.2f);
+      const F c[7] = {q[0] - f[0] * f[0],
+                      F(2 / 3.0f) * q[0] + F(1 / 3.0f) * q[1] - f[0] * f[1],
+                      a * q[0] + F(8 / 15.0f) * q[1] + F(1 / 15.0f) * q[2] -
+                          (fifth * F(2.0f) * f[0] * f[2] + b * f[1] * f[1]),
+                      fifth * (q[0] + q[2]) + b * q[1] - (tenth * f[0] * f[3] + F(0.9f) * f[1] * f[2]),
+                      a * q[2] + F(8 / 15.0f) * q[1] + F(1 / 15.0f) * q[0] -
+                          (fifth * F(2.0f) * f[1] * f[3] + b * f[2] * f[2]),
+                      F(2 / 3.0f) * q[2] + F(1 / 3.0f) * q[1] - f[2] * f[3],
+                      q[2] - f[3] * f[3]};
+      finish(c);
+    }
+    if (!(2 * reach + rise * piece.per_half * (e.squared ? 1 : 2 * size) < 64))
+      verdict.falls = verdict.falls & ~verdict.falls;
+    // Inside all the way it crosses the planes only.
+    if (!piece.ends[0].listed && !piece.ends[1].listed) verdict.misses = verdict.misses | inside_all;
+    return verdict;
+  }
+
+  template <class D>
+  OKTETT_INLINE static D value(const Pool& pool, const ExactCell& cell, const Vec3<D>& p) {
+    const RevolutionElement& e = pool.elements[cell.element];
+    const RevolutionElement::Piece& piece = e.pieces[cell.begin];
+    const D v = (p.y - D(piece.middle)) * D(piece.per_half);
+    D f = D(piece.c[e.degree]);
+    for (int n = e.degree; n > 0; --n) f = f * v + D(piece.c[n - 1]);
+    return (p.x * p.x + p.z * p.z) - (e.squared ? f : f * f);
+  }
+
   template <class D>
   OKTETT_INLINE static void slope(const Pool& pool, std::size_t i, const D& part, const Vec3<D>& p, D& value,
                                   Vec3<D>& gradient) {
@@ -144,6 +218,23 @@ struct Revolution {
     typename D::M listed;
     D part;
   };
+
+  /// The polynomial of a piece in Bernstein coefficients from v to w.
+  template <class F>
+  OKTETT_INLINE static void blossoms(const RevolutionElement::Piece& piece, int degree, const F& v,
+                                     const F& w, F (&f)[4]) {
+    const auto c = [&](int k) { return F(static_cast<float>(piece.c[k])); };
+    if (degree == 1) {
+      f[0] = fast_fma(c(1), v, c(0)), f[1] = fast_fma(c(1), w, c(0));
+      return;
+    }
+    const F third(1 / 3.0f), c0 = c(0), c1 = c(1) * third, c2 = c(2) * third, c3 = c(3);
+    const auto polar = [&](const F& x, const F& y, const F& z) {
+      const F xy = x * y, sum = x + y;
+      return fast_fma(c1, sum + z, fast_fma(c2, fast_fma(sum, z, xy), fast_fma(c3, xy * z, c0)));
+    };
+    f[0] = polar(v, v, v), f[1] = polar(v, v, w), f[2] = polar(v, w, w), f[3] = polar(w, w, w);
+  }
 
   template <class M>
   OKTETT_INLINE static M differ(const M& a, const M& b) {

@@ -2,6 +2,7 @@
 /// \file Tori (slides: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
 
 #include "kernels/exact/centered_quartic.h"
+#include "kernels/exact/segment.h"
 #include "kernels/exact/torus_data.h"
 
 namespace oktett {
@@ -46,6 +47,35 @@ struct Torus {
       all.x[i] = select(lemon, D(roots::kNoRoot), all.x[i]);
     }
     list_quartic_roots(all, l, c, there, out);
+  }
+
+  /// (p.p + R^2 - r^2)^2 - 4 R^2 (x^2 + y^2), which has the sign of the equation where r <= R. Both squares
+  /// are quadratic along a segment, with the dot products of its ends as Bernstein coefficients.
+  template <class F>
+  OKTETT_INLINE static SegmentVerdict<F> classify(const Pool& pool, const ExactCell& cell,
+                                                  const Segment<F>& s, F& at) {
+    const TorusElement& e = pool.elements[cell.element];
+    const F shift(static_cast<float>(e.major * e.major - e.minor * e.minor));
+    const F rr(static_cast<float>(4 * e.major * e.major));
+    const auto flat = [](const Vec3<F>& p, const Vec3<F>& q) { return fast_fma(p.x, q.x, p.y * q.y); };
+    const F r0 = flat(s.a, s.a), r1 = flat(s.a, s.b), r2 = flat(s.b, s.b);
+    const F n0 = fast_fma(s.a.z, s.a.z, r0) + shift, n1 = fast_fma(s.a.z, s.b.z, r1) + shift,
+            n2 = fast_fma(s.b.z, s.b.z, r2) + shift;
+    const F half(0.5f), third(1 / 3.0f), sixth(1 / 6.0f);
+    const F c[5] = {fast_fms(n0, n0, rr * r0), fast_fms(n0, n1, rr * (r0 + r1) * half),
+                    fast_fma(n1, n1 + n1, n0 * n2) * third - rr * (fast_fma(r1, F(4.0f), r0) + r2) * sixth,
+                    fast_fms(n1, n2, rr * (r1 + r2) * half), fast_fms(n2, n2, rr * r2)};
+    const F margin(66 * s.error + 0x1p-15f);
+    SegmentVerdict<F> verdict = classify_polynomial(c, margin, at);
+    if (!(e.minor <= e.major)) verdict.inside = verdict.inside & ~verdict.inside;
+    return verdict;
+  }
+
+  template <class D>
+  OKTETT_INLINE static D value(const Pool& pool, const ExactCell& cell, const Vec3<D>& p) {
+    const TorusElement& e = pool.elements[cell.element];
+    const D r = p.x * p.x + p.y * p.y, n = (r + p.z * p.z) + D(e.major * e.major - e.minor * e.minor);
+    return n * n - D(4 * e.major * e.major) * r;
   }
 
   template <class D>

@@ -1,7 +1,7 @@
 #pragma once
-/// \file Unbounded planes against a beam. In the plane of the beam the inverse depth at which a ray meets such
-/// a plane is a linear function of (x, y). So it bounds the rays before the tree, and the kernel decides after
-/// it, for the rays that have met nothing surely nearer. The bounds are derived in docs/numerics.md.
+/// \file Unbounded planes against a beam. In the plane of the beam the inverse depth at which a ray meets
+/// such a plane is a linear function of (x, y). So it bounds the rays before the tree, and the kernel decides
+/// after it, for the rays that have met nothing surely nearer. The bounds are derived in docs/numerics.md.
 
 #include <cmath>
 
@@ -27,8 +27,12 @@ BeamPlane beam_plane(const Plane::Pool& pool, std::uint32_t k, const BeamRays<A>
   }
   if (beam.mirrored) a[2] = -a[2];
   const double depth = pool.offset[k] - at;
-  BeamPlane plane{static_cast<float>(a[2] / depth), static_cast<float>(a[0] / depth),
-                  static_cast<float>(a[1] / depth), 0, -depth, false};
+  BeamPlane plane{static_cast<float>(a[2] / depth),
+                  static_cast<float>(a[0] / depth),
+                  static_cast<float>(a[1] / depth),
+                  0,
+                  -depth,
+                  false};
   plane.error = 0x1p-19f * (std::fabs(plane.c) + std::fabs(plane.cx) + std::fabs(plane.cy)) * beam.spread;
   plane.known = std::fabs(depth) > 0x1p-12 * (size + beam.margin * 0x1p46) && plane.error < 0x1p60f;
   return plane;
@@ -45,7 +49,8 @@ OKTETT_INLINE void each_plane(const Accel& accel, Function&& f) {
 
 /// Inverse depths at which a group meets a plane.
 template <class A>
-OKTETT_INLINE Simd<float, kBeamGroup, A> plane_depths(const BeamPlane& plane, const BeamRays<A>& beam, int g) {
+OKTETT_INLINE Simd<float, kBeamGroup, A> plane_depths(const BeamPlane& plane, const BeamRays<A>& beam,
+                                                      int g) {
   using F = Simd<float, kBeamGroup, A>;
   const int base = g * kBeamGroup;
   return fast_fma(F(plane.cx), F::load(beam.x + base),

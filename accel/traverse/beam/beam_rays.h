@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "accel/beam_view.h"
 #include "accel/traverse/leaf.h"
 #include "accel/traverse/load_span.h"
 
@@ -24,10 +25,6 @@ struct Apex {
   Vec3f point;
   bool at_end = false;  ///< the rays end there (at tmax) instead of starting there
 };
-
-inline constexpr int kBeamRays = 256;
-inline constexpr int kBeamGroup = 16;  ///< rays that are tested against a triangle together
-inline constexpr int kBeamGroups = kBeamRays / kBeamGroup;
 
 /// A parallelogram in the plane of a beam: middle + a * (x1, y1) + b * (x2, y2) with |a|, |b| <= 1.
 struct BeamPatch {

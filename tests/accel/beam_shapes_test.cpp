@@ -1,0 +1,201 @@
+/// \file The filters of closed-form and exact shapes in beams: every ray has the same bits as alone by the
+/// scalar path, also rays along silhouettes, from far away, and from the surface itself.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "accel/accel.h"
+#include "accel/query.h"
+#include "core/random.h"
+
+namespace oktett {
+namespace {
+
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : key_(pixel_key(seed, 0)) {}
+  double operator()() { return random_float(key_, count_++, 0); }
+  double range(double lo, double hi) { return lo + (hi - lo) * (*this)(); }
+  Vec3d vec(double size) { return {range(-size, size), range(-size, size), range(-size, size)}; }
+  int below(int n) { return static_cast<int>((*this)() * n); }
+
+ private:
+  std::uint64_t key_;
+  std::uint32_t count_ = 0;
+};
+
+/// A shape of about the size 1 about the origin.
+Geometry make_shape(int which, Dice& dice) {
+  Geometry g;
+  const bool open = dice.below(3) == 0;
+  switch (which) {
+    case 0:
+      g.shape = SpheresShape{{{dice.vec(0.5), dice.range(0.01, 0.5)}, {dice.vec(0.5), dice.range(0.1, 0.6)}}};
+      break;
+    case 1: {
+      const double minor = dice.range(0.02, 0.6);
+      g.shape = ExactShape{TorusShape{dice.range(0.3, 0.7), minor}};
+      break;
+    }
+    case 2:
+      g.shape = ExactShape{CylinderShape{dice.vec(0.3), dice.vec(0.9), dice.range(0.05, 0.8), open}};
+      break;
+    case 3:
+      g.shape = ExactShape{ConeShape{
+          {0, -0.7, 0}, {0.1, 0.7, 0}, dice.below(2) * dice.range(0.1, 0.9), dice.range(0, 0.9), open}};
+      break;
+    case 4: {
+      QuadricShape q;
+      for (double& c : q.coefficients) c = dice.below(3) == 0 ? 0 : dice.range(-1, 1);
+      q.coefficients[9] = dice.range(-0.3, 0.1);
+      q.clipped = true, q.open = open;
+      g.shape = ExactShape{q};
+      break;
+    }
+    case 5: {
+      RevolutionShape r;
+      const int profile = dice.below(3);
+      r.profile = profile == 0   ? RevolutionShape::Profile::spline
+                  : profile == 1 ? RevolutionShape::Profile::linear
+                                 : RevolutionShape::Profile::sor;
+      double height = -1.2;
+      for (int k = 0; k < 6; ++k) {
+        r.points.push_back({dice.range(0.3, 0.8), height});
+        if (!(profile == 1 && dice.below(3) == 0)) height += dice.range(0.3, 0.5);
+      }
+      r.open = open;
+      g.shape = ExactShape{r};
+      break;
+    }
+    default:
+      g.shape = PlaneShape{dice.vec(1), dice.range(-0.5, 0.5)};
+  }
+  return g;
+}
+
+struct Subject {
+  std::shared_ptr<const Accel> accel;
+  Vec3d center;
+  double scale;
+};
+
+/// A few shapes of one kind, the first of them at the centre, in one of several sizes and places.
+Subject make_subject(int which, Dice& dice) {
+  Subject s;
+  s.scale = std::exp2(dice.below(3) == 0 ? dice.range(-25, 25) : 0);
+  s.center = dice.vec(dice.below(3) == 0 ? 1000 : 1) * s.scale;
+  std::vector<Geometry> all;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d at = k == 0 ? Vec3d{0, 0, 0} : dice.vec(2);
+    const Vec3d stretch = dice.below(2) == 0
+                              ? Vec3d{1, 1, 1}
+                              : Vec3d{dice.range(0.2, 1), dice.range(0.2, 1), dice.range(0.2, 1)};
+    Geometry g = make_shape(which, dice);
+    // Spheres and planes stay what they are under motions and uniform scaling only.
+    g.transform = Affine::translation(s.center + at * s.scale) *
+                  Affine::scaling((which == 0 || which == 6 ? Vec3d{1, 1, 1} : stretch) * s.scale) *
+                  Affine::rotation(dice.vec(180));
+    all.push_back(std::move(g));
+  }
+  s.accel = build_accel(std::move(all), {});
+  return s;
+}
+
+bool hits(const Subject& s, const Vec3f& from, const Vec3f& to) {
+  return closest_hit(*s.accel, Ray{from, 0, to - from}, Isa::scalar).valid();
+}
+
+/// A target at the silhouette: between one ray that hits and one that misses.
+Vec3d silhouette(const Subject& s, const Vec3f& from, Dice& dice) {
+  Vec3d in = s.center + dice.vec(1) * s.scale, out = in;
+  const bool first = hits(s, from, Vec3f(in));
+  for (int k = 0; k < 20 && hits(s, from, Vec3f(out)) == first; ++k) out = s.center + dice.vec(1.5) * s.scale;
+  for (int k = 0; k < 40; ++k) {
+    const Vec3d middle = (in + out) * 0.5;
+    (hits(s, from, Vec3f(middle)) == first ? in : out) = middle;
+  }
+  return in;
+}
+
+Vec3f random_apex(const Subject& s, Dice& dice) {
+  const double far[] = {0.5, 3, 10, 100, 3000};
+  return Vec3f(s.center + dice.vec(far[dice.below(5)]) * s.scale);
+}
+
+void expect_same(const Subject& s, const RayBatch& rays, const std::string& what) {
+  HitBatch expected, got;
+  expected.resize_uninitialized(rays.size()), got.resize_uninitialized(rays.size());
+  std::vector<std::uint8_t> dark(rays.size()), got_dark(rays.size());
+  closest_hit(*s.accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
+  any_hit(*s.accel, rays.span(), dark.data(), Isa::scalar, TraceMode::single);
+  for (const Isa isa : available_isas()) {
+    closest_hit(*s.accel, rays.span(), got.span(), isa, TraceMode::beam);
+    any_hit(*s.accel, rays.span(), got_dark.data(), isa, TraceMode::beam);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_TRUE(got[i] == expected[i])
+          << what << ", " << to_string(isa) << ", ray " << i << ": t " << got[i].t << " for " << expected[i].t
+          << ", item " << got[i].item << " for " << expected[i].item;
+      ASSERT_EQ(int{got_dark[i]}, int{dark[i]})
+          << what << ", " << to_string(isa) << ", ray " << i << ", t " << expected[i].t;
+    }
+  }
+}
+
+class BeamShapes : public testing::TestWithParam<int> {};
+
+constexpr int kRounds = 150;
+
+TEST_P(BeamShapes, CommonOrigin) {
+  Dice dice(5 + static_cast<std::uint64_t>(GetParam()));
+  for (int round = 0; round < kRounds; ++round) {
+    const Subject s = make_subject(GetParam(), dice);
+    const Vec3f from = random_apex(s, dice);
+    const bool edge = dice.below(2) == 0;
+    const Vec3d target = edge ? silhouette(s, from, dice) : s.center;
+    const double wide = (edge ? std::exp2(dice.range(-30, -3)) : 1.5) * s.scale;
+    const int ends = dice.below(3);
+    RayBatch rays;
+    for (int i = 0; i < 512; ++i) {
+      Ray r{from, 0, Vec3f(target + dice.vec(wide)) - from};
+      if (ends == 1) r.tmax = static_cast<float>(dice.range(0.8, 1.2));
+      if (ends == 2) r.tmin = static_cast<float>(dice.range(0.8, 1.2));
+      rays.push_back(r);
+    }
+    expect_same(s, rays, "round " + std::to_string(round));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// From surfaces to a light, as shadow rays: from the rounded point itself, which may be on either side, and
+// from beyond its error.
+TEST_P(BeamShapes, FromSurfacesToAnEnd) {
+  Dice dice(77 + static_cast<std::uint64_t>(GetParam()));
+  for (int round = 0; round < kRounds; ++round) {
+    const Subject s = make_subject(GetParam(), dice);
+    const Vec3f eye = random_apex(s, dice), light = random_apex(s, dice);
+    const bool offset = dice.below(2) == 0, unit = dice.below(2) == 0;
+    const Vec3d target = dice.below(2) == 0 ? silhouette(s, light, dice) : s.center;
+    const double wide = std::exp2(dice.range(-12, 1)) * s.scale;
+    RayBatch rays;
+    for (int i = 0; i < 512; ++i) {
+      const Ray seen{eye, 0, Vec3f(target + dice.vec(wide)) - eye};
+      const Hit hit = closest_hit(*s.accel, seen, Isa::scalar);
+      Vec3f from = Vec3f(target + dice.vec(wide));
+      if (hit.valid()) {
+        const SurfaceInteraction at = surface_interaction(*s.accel, seen, hit);
+        from = offset ? offset_origin(at, light - at.position) : at.position;
+      }
+      const Vec3f to = light - from;
+      rays.push_back(unit ? Ray{from, 0, normalize(to), length(to)} : Ray{from, 0, to, 1 - 0x1p-24f});
+    }
+    expect_same(s, rays, "round " + std::to_string(round));
+    if (HasFatalFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, BeamShapes, testing::Range(0, 7));
+
+}  // namespace
+}  // namespace oktett
