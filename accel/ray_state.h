@@ -143,4 +143,15 @@ OKTETT_INLINE void accept_hit(RayState<W, A>& r, int i, float t, float u, float 
   r.tmax[i] = t, r.u[i] = u, r.v[i] = v, r.item[i] = item, r.path[i] = path;
 }
 
+/// Those of `lanes` whose rays have a hit.
+template <int W, class A>
+OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
+  unsigned found = 0;
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    if (r.item[i] != kNoId) found |= 1u << i;
+  }
+  return found;
+}
+
 }  // namespace oktett

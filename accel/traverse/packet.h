@@ -126,17 +126,6 @@ OKTETT_INLINE void traverse_each(const Accel& accel, RayState<W, A>& r, unsigned
   }
 }
 
-/// Those of `lanes` whose rays have a hit.
-template <int W, class A>
-OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
-  unsigned found = 0;
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int i = __builtin_ctz(lanes);
-    if (r.item[i] != kNoId) found |= 1u << i;
-  }
-  return found;
-}
-
 /// The rays in `lanes` against a leaf of the table.
 template <Query Q, int W, class A>
 OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r,

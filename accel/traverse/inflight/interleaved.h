@@ -13,6 +13,7 @@
 
 #include "accel/traverse/inflight/bundle_entry.h"
 #include "accel/traverse/inflight/enter_instance.h"
+#include "accel/traverse/inflight/exact_group.h"
 #include "accel/traverse/inflight/inflight_queues.h"
 #include "accel/traverse/inflight/pending_hits.h"
 
@@ -251,7 +252,14 @@ class InterleavedTraversal {
     }
     if constexpr (kInstances)
       for (InflightRay** at = leaving; at != leaving_end; ++at) leave(**at, tail);
-    for (InflightRay** at = at_leaf; at != leaf_end; ++at) table_leaf(**at, tail);
+    for (InflightRay** at = at_leaf; at != leaf_end;) {
+      const int count = rays_at_leaf(accel_, at, leaf_end, ExactCode<A>::kLanes);
+      if (count > 0)
+        exact_leaf(at, count, tail);
+      else
+        table_leaf(**at, tail);
+      at += std::max(count, 1);
+    }
     if constexpr (kInstances) go_inside(tail);
     queues_.keep(tail);
   }
@@ -264,6 +272,21 @@ class InterleavedTraversal {
     if (leaf.kind != Kind::instance) return;
     const InstanceItem& instance = accel_.instances[leaf.begin];
     __builtin_prefetch(&instance), __builtin_prefetch(&instance.child);
+  }
+
+  /// Rays of one leaf of exact surfaces, several at once.
+  OKTETT_INLINE void exact_leaf(InflightRay* const* rays, int count, Tails& tail) {
+    RayState<ExactCode<A>::kLanes, A> state;
+    const unsigned met = meet_exact_leaf(accel_, rays_, rays, count, state);
+    for (int i = 0; i < count; ++i) {
+      InflightRay& ray = *rays[i];
+      if ((met >> i & 1) != 0) {
+        // A candidate is decided only now, so the hit may turn out to be no nearer.
+        accept_hit(exact_state(ray), 0, state.tmax[i], state.u[i], state.v[i], state.item[i], kNoId);
+        adopt(ray);
+      }
+      pop(ray, tail);
+    }
   }
 
   OKTETT_INLINE void table_leaf(InflightRay& ray, Tails& tail) {
