@@ -30,7 +30,7 @@ HeightFieldShape hills(std::uint32_t columns, std::uint32_t rows, Interpolation 
 }
 
 /// The hits of a batch of rays, after a check that they are the same on all instruction sets and by all
-/// traversals: rays alone, those in lanes with others, and a field that is the whole scene.
+/// traversals: rays alone, in flight, in packets, and those of a field that is the whole scene.
 std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const RayBatch& rays) {
   HeightFieldShape s = shape;
   s.walk = walk;
@@ -42,11 +42,14 @@ std::vector<Hit> closest(const HeightFieldShape& shape, HeightWalk walk, const R
     closest_hit(*accel, rays.span(), hits.span(), isa);
     std::vector<std::uint8_t> occluded(rays.size());
     any_hit(*accel, rays.span(), occluded, isa);
-    HitBatch alone;
-    alone.resize_uninitialized(rays.size());
-    closest_hit(*accel, rays.span(), alone.span(), isa, TraceMode::single);
+    for (const TraceMode mode : {TraceMode::single, TraceMode::interleaved, TraceMode::packet8}) {
+      HitBatch others;
+      others.resize_uninitialized(rays.size());
+      closest_hit(*accel, rays.span(), others.span(), isa, mode);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        EXPECT_EQ(others[i], hits[i]) << to_string(isa) << ", ray " << i;
+    }
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      EXPECT_EQ(alone[i], hits[i]) << to_string(isa) << ", ray " << i;
       if (first.size() < rays.size())
         first.push_back(hits[i]);
       else

@@ -154,8 +154,8 @@ TEST(TraceModes, SameHitsOfShortRays) {
   }
 }
 
-// Meshes of both kinds of triangle test, closed-form shapes, a plane and instances in one tree; instances of
-// trees of another quality change nothing.
+// Meshes of both kinds of triangle test, closed-form shapes, a plane, exact surfaces and instances in one
+// tree; instances of trees of another quality change nothing.
 TEST(TraceModes, SameHitsOfMixedKinds) {
   const TriangleMesh m = soup(300, 5, 1), textbook = soup(60, 6, 1);
   std::shared_ptr<const Accel> child[2];
@@ -165,12 +165,14 @@ TEST(TraceModes, SameHitsOfMixedKinds) {
   geometries.push_back({PlaneShape{{0, 0, 1}, -0.7}, {}, kNoId});
   CaseRandom r(7);
   std::vector<Geometry> others = geometries;
-  for (int i = 0; i < 90; ++i) {
+  for (int i = 0; i < 120; ++i) {
     const Vec3d c = r.vector();
     const Affine at = Affine::translation(c) * Affine::scaling({0.3, 0.2, 0.1});
     for (std::vector<Geometry>* list : {&geometries, &others}) {
       const auto& inner = child[list == &others ? i / 4 % 2 : 0];
-      if (i % 4 == 0)
+      if (i >= 90)
+        list->push_back({ExactShape{TorusShape{1, 0.4}}, at, kNoId});
+      else if (i % 4 == 0)
         list->push_back({SpheresShape{{{c, 0.05}}}, {}, kNoId});
       else if (i % 4 == 1)
         list->push_back({BoxShape{c, c + Vec3d{0.1, 0.1, 0.01}}, {}, kNoId});
