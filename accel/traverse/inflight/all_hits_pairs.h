@@ -5,6 +5,7 @@
 /// independent of each other.
 
 #include "accel/traverse/all_hits.h"
+#include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 #include "accel/traverse/inflight/ray_chunk.h"
 #include "accel/traverse/prefetch.h"
@@ -46,8 +47,7 @@ class AllHitsTraversal {
  private:
   static constexpr int kBlock = TriangleBlock::kSize;
   static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
-  /// Rays whose blocks of triangles are classified together.
-  static constexpr int kLeafRays = std::is_same_v<A, Avx512Isa> ? 2 : 1;
+  static constexpr int kLeafRays = kBlockRays<A>;
   /// Rays that are in the lists at the same time.
   static constexpr int kGroup = 256;
   /// Nodes visited in one round: the last ones in the list. Their children are one level deeper and follow in
@@ -174,35 +174,11 @@ class AllHitsTraversal {
   /// N pairs of a ray and a block from position `at` on: notes the triangles that the filter keeps.
   template <int N>
   OKTETT_INLINE void leaf_step(int at) {
-    using B = Simd<float, kBlock, A>;
-    using F = Simd<float, N * kBlock, A>;
-    const auto each = [&](auto&& f) {
-      if constexpr (N == 1)
-        return f(0);
-      else
-        return concat(f(0), f(1));
-    };
     const auto ray = [&](int j) -> const PairedRay& { return group_[leaves_.ray[at + j]]; };
     const auto ref = [&](int j) { return NodeRef::from_bits(leaves_.what[at + j]); };
-    const auto number = [&](auto&& f) { return each([&](int j) { return B(f(ray(j))); }); };
-    const auto vector = [&](auto&& v) {
-      return Vec3<F>{number([&](const PairedRay& r) { return v(r)[0]; }),
-                     number([&](const PairedRay& r) { return v(r)[1]; }),
-                     number([&](const PairedRay& r) { return v(r)[2]; })};
-    };
-    const TriangleBlock* blocks = accel_.blocks.data();
-    const auto corner = [&](int c) {
-      const auto axis = [&](int k) {
-        return each([&](int j) { return B::load(blocks[ref(j).block()].v[c][k]); });
-      };
-      return Vec3<F>{axis(0), axis(1), axis(2)};
-    };
-    const auto guess = guess_triangle(vector([](const PairedRay& r) { return r.o; }),
-                                      vector([](const PairedRay& r) { return r.d; }),
-                                      number([](const PairedRay& r) { return r.weight_scale; }),
-                                      number([](const PairedRay& r) { return r.det_scale; }),
-                                      filter_triangle(TriangleLanes<F>{corner(0), corner(1), corner(2)}));
-    const unsigned maybe = bits(maybe_hit(guess, number([](const PairedRay& r) { return r.tmax; })));
+    const auto guess =
+        guess_blocks<N, A>(ray, [&](int j) -> const TriangleBlock& { return accel_.blocks[ref(j).block()]; });
+    const unsigned maybe = bits(maybe_hit(guess, spread_blocks<N, A>([&](int j) { return ray(j).tmax; })));
     for (int j = 0; j < N; ++j) {
       const unsigned present = (2u << (ref(j).triangle_count() - 1)) - 1;
       using I = Simd<std::int32_t, kBlock, A>;

@@ -8,6 +8,16 @@
 
 namespace oktett {
 
+/// Prefetches the memory that describes the instance that the ray goes into, if it goes into one.
+OKTETT_INLINE void prefetch_instance(const Accel& accel, const InflightRay& ray) {
+  if (ray.in.instance != kNoInstance) return;
+  const LeafEntry& leaf = accel.leaves[ray.current.table_index()];
+  if (leaf.kind == Kind::instance_list) __builtin_prefetch(&accel.listed_instances[leaf.begin]);
+  if (leaf.kind != Kind::instance) return;
+  const InstanceItem& instance = accel.instances[leaf.begin];
+  __builtin_prefetch(&instance), __builtin_prefetch(&instance.child);
+}
+
 /// Takes the ray out of its instance; `outer` is what it was outside, `accel` holds the instance.
 OKTETT_INLINE void leave_instance(InflightRay& ray, const InflightHead& outer, const Accel& accel) {
   const InflightHead inside = ray;

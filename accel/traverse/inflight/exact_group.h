@@ -9,8 +9,8 @@
 namespace oktett {
 
 /// Moves the rays that are at the same leaf as *begin next to it, at most as many as exact surfaces solve at
-/// once, and returns how many there are with *begin; 0 if that is inside an instance or its leaf is of another
-/// kind.
+/// once, and returns how many there are with *begin; 0 if that is inside an instance or its leaf is of
+/// another kind.
 OKTETT_INLINE int rays_at_leaf(const Accel& accel, InflightRay** begin, InflightRay** end, int most) {
   const auto is_here = [&](const InflightRay& ray) {
     return ray.in.instance == kNoInstance && ray.current.bits() == (*begin)->current.bits();

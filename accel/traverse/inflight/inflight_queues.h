@@ -57,4 +57,19 @@ struct InflightQueues {
   }
 };
 
+/// Rays that wait for neither a node nor a block, sorted without branches by what they wait for.
+struct SortedOthers {
+  InflightRay *finished[kInflightRays + 1], *at_leaf[kInflightRays + 1], *leaving[kInflightRays + 1];
+  InflightRay **finished_end = finished, **at_leaf_end = at_leaf, **leaving_end = leaving;
+
+  OKTETT_INLINE SortedOthers(InflightRay* const* begin, InflightRay* const* end) {
+    for (InflightRay* const* at = begin; at != end; ++at) {
+      const NodeRef ref = (*at)->current;
+      const int none = ref.is_none(), out = ref.is_way_out();
+      *finished_end = *at_leaf_end = *leaving_end = *at;
+      finished_end += none, leaving_end += out, at_leaf_end += 1 - none - out;
+    }
+  }
+};
+
 }  // namespace oktett

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 
+#include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/bundle_entry.h"
 #include "accel/traverse/inflight/enter_instance.h"
 #include "accel/traverse/inflight/exact_group.h"
@@ -54,8 +55,7 @@ class InterleavedTraversal {
   static constexpr bool kPrefetch = kTrees != InflightTrees::small;
   static constexpr int kBlock = TriangleBlock::kSize;
   static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
-  /// Rays whose blocks of triangles are classified together.
-  static constexpr int kLeafRays = std::is_same_v<A, Avx512Isa> ? 2 : 1;
+  static constexpr int kLeafRays = kBlockRays<A>;
 
   using Tails = InflightQueues::Tails;
 
@@ -103,39 +103,18 @@ class InterleavedTraversal {
   /// N rays, each against its own block of triangles.
   template <int N>
   OKTETT_INLINE void leaf_step(InflightRay* const* rays, Tails& tail) {
-    using F = Simd<float, N * kBlock, A>;
-    using B = Simd<float, kBlock, A>;
-    // f(ray) of all rays, side by side in lanes.
-    const auto each = [&](auto&& f) {
-      if constexpr (N == 1)
-        return f(*rays[0]);
-      else
-        return concat(f(*rays[0]), f(*rays[1]));
-    };
-    const auto number = [&](auto&& f) { return each([&](const InflightRay& r) { return B(f(r)); }); };
-    const auto vector = [&](auto&& v) {
-      return Vec3<F>{number([&](const InflightRay& r) { return v(r)[0]; }),
-                     number([&](const InflightRay& r) { return v(r)[1]; }),
-                     number([&](const InflightRay& r) { return v(r)[2]; })};
-    };
-    const auto corner = [&](int c) {
-      const auto axis = [&](int k) {
-        return each([&](const InflightRay& r) { return B::load(blocks(r)[r.current.block()].v[c][k]); });
-      };
-      return Vec3<F>{axis(0), axis(1), axis(2)};
-    };
-    const auto guess = guess_triangle(vector([](const InflightRay& r) { return r.o; }),
-                                      vector([](const InflightRay& r) { return r.d; }),
-                                      number([](const InflightRay& r) { return r.weight_scale; }),
-                                      number([](const InflightRay& r) { return r.det_scale; }),
-                                      filter_triangle(TriangleLanes<F>{corner(0), corner(1), corner(2)}));
-    const F tmax = number([](const InflightRay& r) { return r.tmax; });
+    using F = BlockLanes<N, A>;
+    const auto ray = [&](int j) -> const InflightRay& { return *rays[j]; };
+    const auto guess = guess_blocks<N, A>(
+        ray, [&](int j) -> const TriangleBlock& { return blocks(ray(j))[ray(j).current.block()]; });
+    const F tmax = spread_blocks<N, A>([&](int j) { return ray(j).tmax; });
     unsigned present = 0;
     for (int j = 0; j < N; ++j)
       present |= ((2u << (rays[j]->current.triangle_count() - 1)) - 1) << (j * kBlock);
     const unsigned maybe = bits(maybe_hit(guess, tmax)) & present;
     if (OKTETT_UNLIKELY(maybe != 0)) {
-      const HitInterval<F> h = hit_interval(guess, number([](const InflightRay& r) { return r.tmin; }), tmax);
+      const HitInterval<F> h =
+          hit_interval(guess, spread_blocks<N, A>([&](int j) { return ray(j).tmin; }), tmax);
       for (int j = 0; j < N; ++j) take(*rays[j], guess, h, maybe, j * kBlock);
     }
     for (int j = 0; j < N; ++j) pop(*rays[j], tail);
@@ -233,27 +212,18 @@ class InterleavedTraversal {
   /// Rays that are finished, at a leaf of the table, or on their way out of an instance.
   OKTETT_NOINLINE void other_round() {
     Tails tail = queues_.tails();
-    InflightRay** const begin = queues_.others.head;
-    InflightRay** const end = queues_.others.head = tail.other;
-    // First sorted by what is to be done, without branches.
-    InflightRay *finished[kInflightRays + 1], *at_leaf[kInflightRays + 1], *leaving[kInflightRays + 1];
-    InflightRay **finished_end = finished, **leaf_end = at_leaf, **leaving_end = leaving;
-    for (InflightRay** at = begin; at != end; ++at) {
-      const NodeRef ref = (*at)->current;
-      const int none = ref.is_none(), out = ref.is_way_out();
-      *finished_end = *leaf_end = *leaving_end = *at;
-      finished_end += none, leaving_end += out, leaf_end += 1 - none - out;
-    }
+    SortedOthers rays(queues_.others.head, tail.other);
+    queues_.others.head = tail.other;
     if constexpr (kInstances)
-      for (InflightRay** at = at_leaf; at != leaf_end; ++at) prefetch_instance(**at);
-    for (InflightRay** at = finished; at != finished_end; ++at) {
+      for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end; ++at) prefetch_instance(accel_, **at);
+    for (InflightRay** at = rays.finished; at != rays.finished_end; ++at) {
       finish(**at);
       refill(**at, tail);
     }
     if constexpr (kInstances)
-      for (InflightRay** at = leaving; at != leaving_end; ++at) leave(**at, tail);
-    for (InflightRay** at = at_leaf; at != leaf_end;) {
-      const int count = rays_at_leaf(accel_, at, leaf_end, ExactCode<A>::kLanes);
+      for (InflightRay** at = rays.leaving; at != rays.leaving_end; ++at) leave(**at, tail);
+    for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end;) {
+      const int count = rays_at_leaf(accel_, at, rays.at_leaf_end, ExactCode<A>::kLanes);
       if (count > 0)
         exact_leaf(at, count, tail);
       else
@@ -262,16 +232,6 @@ class InterleavedTraversal {
     }
     if constexpr (kInstances) go_inside(tail);
     queues_.keep(tail);
-  }
-
-  /// Prefetches the memory that describes the instance that the ray goes into, if it goes into one.
-  OKTETT_INLINE void prefetch_instance(const InflightRay& ray) const {
-    if (ray.in.instance != kNoInstance) return;
-    const LeafEntry& leaf = accel_.leaves[ray.current.table_index()];
-    if (leaf.kind == Kind::instance_list) __builtin_prefetch(&accel_.listed_instances[leaf.begin]);
-    if (leaf.kind != Kind::instance) return;
-    const InstanceItem& instance = accel_.instances[leaf.begin];
-    __builtin_prefetch(&instance), __builtin_prefetch(&instance.child);
   }
 
   /// Rays of one leaf of exact surfaces, several at once.
