@@ -6,6 +6,8 @@
 #include "core/simd_gather.h"
 #include "kernels/exact/exact.h"
 #include "kernels/exact/implicit_grid.h"
+#include "kernels/interval/interval.h"
+#include "kernels/interval/lane_math.h"
 
 namespace oktett {
 
