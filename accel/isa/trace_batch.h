@@ -100,47 +100,6 @@ inline constexpr std::size_t kLeastBeamRays = 64;
 /// In batches of up to this many rays, each ray is traced alone.
 inline constexpr std::size_t kAloneRays = 4;
 
-/// Rays that share a point in beams, other coherent ones in packets, the rest interleaved. When a beam is
-/// given up, its rays go interleaved; when several in a row are, so do the next ones without a trial: one
-/// beam after the second, three after the third, then seven. With `insist` no beam is given up.
-template <Query Q, class A>
-void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
-  const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel);
-  // Rays from `begin` on wait to be traced the same way, so that long runs go interleaved together.
-  std::size_t begin = 0;
-  BeamOutcome waiting = BeamOutcome::no_beam;
-  const auto catch_up = [&](std::size_t end) {
-    if (end <= begin) return;
-    const RaySpan part = rays.part(begin, end - begin);
-    const HitSink<Q> sink = out.part(begin, end - begin);
-    if (waiting == BeamOutcome::given_up)
-      trace_interleaved<Q, A>(accel, part, sink);
-    else
-      trace_packets<Q, kPacketRays<A>, A>(accel, part, sink, true);
-  };
-  int skip = 0, failures = 0;
-  for (std::size_t b = 0; b < rays.size; b += kBeamRays) {
-    if (skip > 0) {
-      --skip;
-      continue;
-    }
-    const std::size_t count = std::min<std::size_t>(kBeamRays, rays.size - b);
-    const RaySpan part = rays.part(b, count);
-    const RaySpan next = rays.part(b + count, std::min<std::size_t>(kBeamRays, rays.size - b - count));
-    Apex apex;
-    const BeamOutcome outcome = common_point<Q>(part, apex)
-                                    ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps, next)
-                                    : BeamOutcome::no_beam;
-    failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
-    if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;
-    if (outcome == waiting) continue;
-    catch_up(b);
-    begin = outcome == BeamOutcome::traced ? b + count : b;
-    if (outcome != BeamOutcome::traced) waiting = outcome;
-  }
-  catch_up(rays.size);
-}
-
 /// The only leaf of a structure that has but one, of exact surfaces.
 OKTETT_INLINE const LeafEntry* only_exact_leaf(const Accel& accel) {
   if (!accel.root.is_leaf() || accel.root.is_none() || accel.root.is_triangles()) return nullptr;
@@ -169,6 +128,57 @@ void trace_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& 
   }
 }
 
+/// Rays that make no beam: together against the leaf if there is only one, of exact surfaces; else in
+/// packets if they are coherent, and interleaved if not.
+template <Query Q, class A>
+void trace_without_beams(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
+  if (const LeafEntry* leaf = only_exact_leaf(accel))
+    trace_exact_leaf<Q, A>(accel, *leaf, rays, out);
+  else
+    trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
+}
+
+/// Rays that share a point in beams, all others by trace_without_beams. When a beam is
+/// given up, its rays go interleaved; when several in a row are, so do the next ones without a trial: one
+/// beam after the second, three after the third, then seven. With `insist` no beam is given up.
+template <Query Q, class A>
+void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
+  const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel);
+  // Rays from `begin` on wait to be traced the same way, so that long runs go interleaved together.
+  std::size_t begin = 0;
+  BeamOutcome waiting = BeamOutcome::no_beam;
+  const auto catch_up = [&](std::size_t end) {
+    if (end <= begin) return;
+    const RaySpan part = rays.part(begin, end - begin);
+    const HitSink<Q> sink = out.part(begin, end - begin);
+    if (waiting == BeamOutcome::given_up)
+      trace_interleaved<Q, A>(accel, part, sink);
+    else
+      trace_without_beams<Q, A>(accel, part, sink);
+  };
+  int skip = 0, failures = 0;
+  for (std::size_t b = 0; b < rays.size; b += kBeamRays) {
+    if (skip > 0) {
+      --skip;
+      continue;
+    }
+    const std::size_t count = std::min<std::size_t>(kBeamRays, rays.size - b);
+    const RaySpan part = rays.part(b, count);
+    const RaySpan next = rays.part(b + count, std::min<std::size_t>(kBeamRays, rays.size - b - count));
+    Apex apex;
+    const BeamOutcome outcome = common_point<Q>(part, apex)
+                                    ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps, next)
+                                    : BeamOutcome::no_beam;
+    failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
+    if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;
+    if (outcome == waiting) continue;
+    catch_up(b);
+    begin = outcome == BeamOutcome::traced ? b + count : b;
+    if (outcome != BeamOutcome::traced) waiting = outcome;
+  }
+  catch_up(rays.size);
+}
+
 template <Query Q, class A>
 void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
   if constexpr (std::is_same_v<A, ScalarIsa>) {
@@ -177,9 +187,7 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
     switch (mode) {
       case TraceMode::automatic:
         if (rays.size <= kAloneRays) return trace_each<Q, A>(accel, rays, out);
-        if (const LeafEntry* leaf = only_exact_leaf(accel))
-          return trace_exact_leaf<Q, A>(accel, *leaf, rays, out);
-        if (rays.size < kLeastBeamRays) return trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
+        if (rays.size < kLeastBeamRays) return trace_without_beams<Q, A>(accel, rays, out);
         // In instances, packets of shadow rays have few rays at a time.
         if (Q == Query::any && has_instances(accel)) return trace_interleaved<Q, A>(accel, rays, out);
         return trace_automatic<Q, A>(accel, rays, out, false);
