@@ -23,7 +23,7 @@ struct BeamCell {
   bool may_be_sure;
 
   /// False if the cell is too near or too large for the bound.
-  bool set(const ExactPoolBase& pool, const ExactCell& cell, const BeamView& beam) {
+  OKTETT_INLINE bool set(const ExactPoolBase& pool, const ExactCell& cell, const BeamView& beam) {
     const auto& to_own = pool.frames[cell.element].to_own.m;
     const auto& to_world = pool.frames[cell.element].to_world.m;
     const Vec3d c = (cell.lo + cell.hi) * 0.5, half = (cell.hi - cell.lo) * 0.5;
