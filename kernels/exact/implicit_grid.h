@@ -12,8 +12,8 @@ namespace oktett {
 /// What is known of one cell, which is taken to be larger by kGridMargin of its edges on all sides.
 struct GridCell {
   float bend[2];  ///< the second derivative along a unit direction is at least -bend[0] and at most bend[1]
-  float slope;  ///< bounds the derivative along a unit direction; its rounding error is less than kSlopeError
-                ///< of it
+  /// Bounds the derivative along a unit direction, whose rounding error is less than kSlopeError of this.
+  float slope;
   float error;  ///< bounds rounding errors of values, and the width of the enclosure of a point's value
 };
 static_assert(sizeof(GridCell) == 4 * sizeof(float));

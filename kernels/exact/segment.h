@@ -2,13 +2,14 @@
 /// \file A surface against pieces of lines in float: a filter that rejects lines that surely miss it, before
 /// it is solved in double, and accepts lines that surely are inside of its solid somewhere.
 ///
-/// A surface that has one offers
-/// - `S::classify(pool, cell, segment, at)`: a SegmentVerdict. Where `inside` is set, `at` is the place, from
-/// 0
-///   to 1, at which the line is inside of the solid, provided that it is inside of the cell there;
-/// - `S::value(pool, cell, p)`, if it likes: the function that is classified, in double. Its gradient adds up
-/// to
-///   less than 64 in the cell where a verdict says `falls`.
+/// A surface that has such a filter offers two functions.
+///
+/// `S::classify(pool, cell, segment, at)` returns a SegmentVerdict. Where its `inside` is set, `at` is the
+/// place, from 0 to 1, at which the line is inside of the solid, provided that it is inside of the cell
+/// there.
+///
+/// `S::value(pool, cell, p)` is optional: the function that is classified, in double. The components of its
+/// gradient add up to less than 64 in a cell where a verdict may say `falls`.
 ///
 /// The bounds are derived in docs/numerics.md.
 
@@ -17,8 +18,8 @@
 
 namespace oktett {
 
-/// Pieces of lines between `a` and `b`, in the own space of an element. They contain all of the lines that is
-/// inside of the cell and within the range of the ray, up to `error` in each coordinate.
+/// Pieces of lines between `a` and `b`, in the own space of an element. A piece contains all points of its
+/// line that are inside of the cell and within the range of the ray, up to `error` in each coordinate.
 template <class F>
 struct Segment {
   Vec3<F> a, b;
