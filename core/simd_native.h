@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <xsimd/xsimd.hpp>
 
 #include "core/platform.h"
@@ -92,17 +93,22 @@ OKTETT_CHOOSE(std::int32_t, 16, Avx512Isa, xsimd::avx512bw)
 // Operations on one lane, by plain arithmetic. Each gives the same bits as the operation of the same name on
 // a batch.
 
+/// The type to compute in: whole numbers wrap around, as those of a batch do.
+template <class T>
+using Wrapping =
+    typename std::conditional_t<std::is_integral_v<T>, std::make_unsigned<T>, std::type_identity<T>>::type;
+
 template <class T, class A>
 OKTETT_INLINE Lane<T, A> operator+(Lane<T, A> a, Lane<T, A> b) {
-  return a.v + b.v;
+  return static_cast<T>(static_cast<Wrapping<T>>(a.v) + static_cast<Wrapping<T>>(b.v));
 }
 template <class T, class A>
 OKTETT_INLINE Lane<T, A> operator-(Lane<T, A> a, Lane<T, A> b) {
-  return a.v - b.v;
+  return static_cast<T>(static_cast<Wrapping<T>>(a.v) - static_cast<Wrapping<T>>(b.v));
 }
 template <class T, class A>
 OKTETT_INLINE Lane<T, A> operator*(Lane<T, A> a, Lane<T, A> b) {
-  return a.v * b.v;
+  return static_cast<T>(static_cast<Wrapping<T>>(a.v) * static_cast<Wrapping<T>>(b.v));
 }
 template <class T, class A>
 OKTETT_INLINE Lane<T, A> operator/(Lane<T, A> a, Lane<T, A> b) {
