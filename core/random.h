@@ -35,36 +35,4 @@ inline float random_float(std::uint64_t key, std::uint32_t sample, std::uint32_t
   return static_cast<float>(static_cast<std::int32_t>(random_bits(key, sample, dimension) >> 40)) * 0x1p-24f;
 }
 
-/// A random permutation of 0 ... n-1, chosen by `key`.
-class Permutation {
- public:
-  Permutation(std::uint32_t n, std::uint64_t key);
-
-  /// The image of `i` < n.
-  std::uint32_t operator()(std::uint32_t i) const {
-    if (n_ < 2) return 0;
-    // Each step is a bijection on the bits of `mask_`. Repeating it until the result is below n restricts it
-    // to n numbers ("cycle walking").
-    do {
-      for (const std::uint64_t bits : round_) {
-        i = (i + static_cast<std::uint32_t>(bits)) & mask_;
-        i = (i * (static_cast<std::uint32_t>(bits >> 32) | 1u)) & mask_;
-        i ^= i >> shift_;
-      }
-    } while (i >= n_);
-    const std::uint64_t turned = std::uint64_t{i} + turn_;
-    return static_cast<std::uint32_t>(turned >= n_ ? turned - n_ : turned);
-  }
-
- private:
-  std::uint32_t n_, mask_ = 0, turn_ = 0;
-  int shift_ = 1;
-  std::uint64_t round_[3] = {};
-};
-
-/// The image of `i` < `n` under a random permutation of 0 ... n-1 chosen by `key`.
-inline std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
-  return Permutation(n, key)(i);
-}
-
 }  // namespace oktett

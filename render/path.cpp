@@ -1,9 +1,10 @@
 #include <algorithm>
 
-#include "core/random.h"
 #include "render/direct_light.h"
 #include "render/integrators.h"
-#include "render/sampling.h"
+#include "render/sample_dimensions.h"
+#include "render/sampling/owen_sobol.h"
+#include "render/sampling/warp.h"
 #include "render/specular.h"
 
 namespace oktett {
@@ -13,16 +14,12 @@ namespace {
 constexpr unsigned kSureBounces = 3;
 constexpr float kMostSurvival = 0.95f;
 
-/// The uses of a bounce's random numbers. Dimension 0 is the place on the film.
-enum Dimension : std::uint32_t { hole, lobe, roulette, direction, per_level };
-
-std::uint32_t dimension(const Wavefront& wavefront, Dimension d) {
-  return 1 + wavefront.level * per_level + d;
+std::uint64_t key_of(const Wavefront& wavefront, std::uint32_t sample, Decision decision) {
+  return sequence_key(wavefront.samples.key[sample], dimension(decision, wavefront.level));
 }
 
-float random_number(const Wavefront& wavefront, std::uint32_t sample, Dimension d) {
-  return random_float(wavefront.samples.key[sample], wavefront.samples.number[sample],
-                      dimension(wavefront, d));
+float random_number(const Wavefront& wavefront, std::uint32_t sample, Decision decision) {
+  return sobol_number(wavefront.samples.number[sample], key_of(wavefront, sample, decision));
 }
 
 /// Russian roulette: ends paths of small weight at random and raises the weight of the others, so that the
@@ -30,7 +27,7 @@ float random_number(const Wavefront& wavefront, std::uint32_t sample, Dimension 
 bool survives(const Wavefront& wavefront, std::size_t ray, Color& throughput) {
   if (wavefront.rays.bounces[ray] + 1u <= kSureBounces) return true;
   const float chance = std::min(kMostSurvival, max_component(throughput));
-  if (random_number(wavefront, wavefront.rays.sample[ray], roulette) >= chance) return false;
+  if (random_number(wavefront, wavefront.rays.sample[ray], Decision::roulette) >= chance) return false;
   throughput *= 1 / chance;
   return true;
 }
@@ -40,13 +37,10 @@ void push_path(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, con
   if (survives(wavefront, ray, throughput)) push_bounce(wavefront, ray, p, towards, throughput, bounce);
 }
 
-void push_diffuse(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
-                  const Color& throughput) {
+void push_diffuse(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Color& throughput) {
   const std::uint32_t sample = wavefront.rays.sample[ray];
-  const std::uint64_t pattern = pattern_key(wavefront.samples.key[sample], dimension(wavefront, direction));
-  SquareSample at = stratified_sample(wavefront.samples.number[sample], context.settings.samples, pattern);
-  // A pattern of one point is always its centre, which would give all pixels the same direction.
-  if (context.settings.samples == 1) at = {random_float(pattern, 0, 2), random_float(pattern, 0, 3)};
+  const SquareSample at =
+      sobol_point(wavefront.samples.number[sample], key_of(wavefront, sample, Decision::direction));
   const Vec3f towards = cosine_direction(p.ns, at);
   if (dot(towards, p.ng) <= 0) return;
   push_path(wavefront, ray, p, towards, throughput, Bounce::reflected);
@@ -57,7 +51,7 @@ void push_diffuse(const RenderContext& context, Wavefront& wavefront, std::size_
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const Color throughput = wavefront.rays.throughput[ray];
   const std::uint32_t sample = wavefront.rays.sample[ray];
-  if (p.opacity < 1 && random_number(wavefront, sample, hole) >= p.opacity)
+  if (p.opacity < 1 && random_number(wavefront, sample, Decision::hole) >= p.opacity)
     return push_bounce(wavefront, ray, p, p.direction, throughput, Bounce::straight);
 
   wavefront.radiance.add(ray, throughput * p.emission);
@@ -70,9 +64,9 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
                            max_component(specular.refracted)};
   const float sum = weight[0] + weight[1] + weight[2];
   if (!(sum > 0)) return;
-  const float at = random_number(wavefront, sample, lobe) * sum;
+  const float at = random_number(wavefront, sample, Decision::lobe) * sum;
   if (at < weight[0]) {
-    push_diffuse(context, wavefront, ray, p, throughput * diffuse * (sum / weight[0]));
+    push_diffuse(wavefront, ray, p, throughput * diffuse * (sum / weight[0]));
   } else if (at < weight[0] + weight[1]) {
     push_path(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror * (sum / weight[1]),
               Bounce::reflected);

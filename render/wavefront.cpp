@@ -7,7 +7,8 @@
 #include "accel/surface/offset_origin.h"
 #include "core/random.h"
 #include "render/integrators.h"
-#include "render/sampling.h"
+#include "render/sample_dimensions.h"
+#include "render/sampling/owen_sobol.h"
 #include "render/shadow.h"
 
 namespace oktett {
@@ -15,9 +16,6 @@ namespace {
 
 /// Holes that a camera path may lead through, in addition to its bounces.
 constexpr unsigned kMostHoles = 128;
-/// Limits the rays of a sample where materials reflect more light than they receive.
-constexpr std::uint16_t kMostRaysPerLevel = 256;
-constexpr float kLeastThroughput = 1 / 4096.0f;
 /// Shadow rays are traced when this many have gathered.
 constexpr std::size_t kShadowBatch = 4096;
 /// Number of hits that are shaded together.
@@ -171,7 +169,7 @@ void centre_samples(const RenderContext& context, std::span<const WavefrontPixel
   SampleBatch& s = wavefront.samples;
   const std::size_t count = pixels.size();
   for (std::size_t i = 0; i < count; ++i) {
-    wavefront.film_x[i] = pixels[i].x + kSquareCentre.x, wavefront.film_y[i] = pixels[i].y + kSquareCentre.y;
+    wavefront.film_x[i] = pixels[i].x + 0.5, wavefront.film_y[i] = pixels[i].y + 0.5;
     s.pixel[i] = pixels[i].number;
   }
   std::fill_n(s.number.data(), count, 0u);
@@ -199,9 +197,9 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
     std::size_t i = 0;
     for (const WavefrontPixel& pixel : pixels) {
       const std::uint64_t key = key_of(context, pixel);
-      const StratifiedPattern pattern(context.settings.samples, pattern_key(key, 0));
+      const std::uint64_t places = sequence_key(key, dimension(Decision::film));
       for (std::uint32_t number = first; number < last; ++number, ++i) {
-        const SquareSample at = pattern[number];
+        const SquareSample at = sobol_point(number, places);
         wavefront.film_x[i] = pixel.x + at.x, wavefront.film_y[i] = pixel.y + at.y;
         s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
         s.offset[i] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
@@ -240,10 +238,7 @@ void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, c
 
 void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
                  const Color& throughput, Bounce bounce) {
-  if (max_component(throughput) < kLeastThroughput) return;
   const std::uint32_t sample = wavefront.rays.sample[ray];
-  if (wavefront.samples.spawned[sample] >= kMostRaysPerLevel) return;
-  ++wavefront.samples.spawned[sample];
   const bool straight = bounce == Bounce::straight;
   RayQueue::Entry entry;
   entry.ray.origin = origin, entry.ray.direction = direction;

@@ -30,7 +30,7 @@ struct SampleBatch {
   Column<Vec2f> offset;          ///< from the pixel's centre, in pixels
   ColorColumn color;
   Column<float> alpha;
-  Column<std::uint16_t> spawned;  ///< number of rays queued for the next bounce
+  Column<std::uint16_t> spawned;  ///< number of rays that Whitted's integrator queued for the next bounce
   Column<FirstHit> first;         ///< empty unless data layers are wanted
 
   std::size_t size() const { return pixel.size(); }
@@ -87,8 +87,7 @@ enum class Bounce {
   straight,  ///< through a hole: not counted as a bounce
 };
 
-/// Queues for the next bounce the ray that leaves `p`, the hit of entry `ray`, in `direction`. Drops rays
-/// whose effect on the picture would be invisible, and all rays beyond 256 of one sample in one bounce.
+/// Queues for the next bounce the ray that leaves `p`, the hit of entry `ray`, in `direction`.
 void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
                  const Color& throughput, Bounce bounce);
 /// The same from `origin`, see offset_origin.

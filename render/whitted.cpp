@@ -9,6 +9,26 @@
 namespace oktett {
 namespace {
 
+/// Rays that change a pixel by less than this are not traced.
+constexpr float kLeastThroughput = 1 / 4096.0f;
+/// Limits the rays of a sample in one bounce, which mirrors and glass would double each time.
+constexpr std::uint16_t kMostRaysPerLevel = 256;
+
+/// Whether a ray of this throughput may be queued for the sample of entry `ray`. Counts it.
+bool admit(Wavefront& wavefront, std::size_t ray, const Color& throughput) {
+  if (max_component(throughput) < kLeastThroughput) return false;
+  std::uint16_t& spawned = wavefront.samples.spawned[wavefront.rays.sample[ray]];
+  if (spawned >= kMostRaysPerLevel) return false;
+  ++spawned;
+  return true;
+}
+
+/// Queues the ray that leaves `p` if it is worth it.
+void push_admitted(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
+                   const Color& throughput, Bounce bounce) {
+  if (admit(wavefront, ray, throughput)) push_bounce(wavefront, ray, p, direction, throughput, bounce);
+}
+
 bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
 
 /// Adds the light of a hit that needs no lamp. `throughput` includes the opacity of the surface.
@@ -23,15 +43,15 @@ void push_bounces(const RenderContext& context, Wavefront& wavefront, std::size_
                   const ShadingPoint& p) {
   const Color arriving = wavefront.rays.throughput[ray], throughput = arriving * p.opacity;
   if (p.opacity < 1)
-    push_bounce(wavefront, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
+    push_admitted(wavefront, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
   if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
   const SpecularRays specular = specular_rays(p);
   if (!is_black(specular.mirror))
-    push_bounce(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror,
-                Bounce::reflected);
+    push_admitted(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror,
+                  Bounce::reflected);
   if (!is_black(specular.refracted))
-    push_bounce(wavefront, ray, p, specular.refracted_direction, throughput * specular.refracted,
-                Bounce::refracted);
+    push_admitted(wavefront, ray, p, specular.refracted_direction, throughput * specular.refracted,
+                  Bounce::refracted);
 }
 
 /// Names the rays and materials of the hits. The last is repeated to the end of its group of lanes.
@@ -80,9 +100,10 @@ void push_mirrored(const RenderContext& context, Wavefront& wavefront, const Int
   for (; sent != 0; sent &= sent - 1) {
     const int k = std::countr_zero(sent);
     if (wavefront.rays.bounces[c.ray[k]] >= context.settings.depth) continue;
+    const Color throughput = InteractionBlock::get(mirrored.throughput, k);
+    if (!admit(wavefront, c.ray[k], throughput)) continue;
     push_bounce(wavefront, c.ray[k], InteractionBlock::get(mirrored.origin, k),
-                InteractionBlock::get(mirrored.direction, k), InteractionBlock::get(mirrored.throughput, k),
-                Bounce::reflected);
+                InteractionBlock::get(mirrored.direction, k), throughput, Bounce::reflected);
   }
 }
 

@@ -61,30 +61,5 @@ TEST(Random, NeighboursAreUncorrelated) {
   EXPECT_LT(std::abs(sum / kCount * 12), 5 / std::sqrt(kCount));
 }
 
-TEST(Permute, IsABijection) {
-  for (const std::uint32_t n : {1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 16u, 17u, 100u, 255u, 256u, 257u, 5000u})
-    for (std::uint64_t key = 0; key < 20; ++key) {
-      std::vector<bool> hit(n);
-      for (std::uint32_t i = 0; i < n; ++i) {
-        const std::uint32_t j = permute(i, n, mix_bits(key));
-        ASSERT_LT(j, n);
-        ASSERT_FALSE(hit[j]) << n;
-        hit[j] = true;
-      }
-    }
-  EXPECT_LT(permute(0xfffffffeu, 0xffffffffu, 1), 0xffffffffu);
-}
-
-TEST(Permute, SendsEachNumberEverywhereAboutEquallyOften) {
-  for (const std::uint32_t n : {2u, 3u, 4u, 5u, 9u, 16u}) {
-    constexpr std::uint32_t kKeys = 20000;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      std::vector<int> bins(n);
-      for (std::uint64_t key = 0; key < kKeys; ++key) ++bins[permute(i, n, mix_bits(key))];
-      for (const int count : bins) EXPECT_NEAR(count, kKeys / n, 6 * std::sqrt(kKeys / n)) << n << ' ' << i;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace oktett

@@ -1,0 +1,26 @@
+#pragma once
+/// \file The decisions of a sample that are made at random, each with numbers of its own.
+
+#include <cstdint>
+
+namespace oktett {
+
+/// What is decided at random. Those after `film` are made anew at each bounce.
+enum class Decision : std::uint32_t {
+  film,         ///< the place in the pixel
+  hole,         ///< whether a ray passes through a surface that is partly a hole
+  lobe,         ///< which part of the material sends the ray on
+  direction,    ///< where it goes
+  light,        ///< which light is asked
+  light_place,  ///< which place on that light
+  roulette,     ///< whether the path ends
+  count
+};
+
+/// The dimension of a decision at bounce `level`: 0 is the surface that the camera ray meets.
+constexpr std::uint32_t dimension(Decision decision, unsigned level = 0) {
+  constexpr auto per_level = static_cast<std::uint32_t>(Decision::count) - 1;
+  return static_cast<std::uint32_t>(decision) + level * per_level;
+}
+
+}  // namespace oktett
