@@ -37,8 +37,7 @@ OKTETT_INLINE RayLanes<F> shape_rays(const BeamTask<Q, A>& task, std::size_t at)
 template <class F, class A>
 OKTETT_INLINE void keep_hits(const HitSpan& hits, BeamRays<A>& beam, const RayLanes<F>& rays, std::size_t at,
                              unsigned met, const HitLanes<F>& h, std::uint32_t item) {
-  constexpr int N = F::kWidth;
-  using I = Simd<std::int32_t, N, A>;
+  using I = Simd<std::int32_t, F::kWidth, A>;
   // At equal distance the numbers of the items decide.
   for (unsigned same = met & bits(h.t == rays.tmax); OKTETT_UNLIKELY(same != 0); same &= same - 1) {
     const std::size_t i = at + static_cast<std::size_t>(__builtin_ctz(same));
@@ -46,30 +45,8 @@ OKTETT_INLINE void keep_hits(const HitSpan& hits, BeamRays<A>& beam, const RayLa
       met &= ~(same & -same);
   }
   if (met == 0) return;
-  const auto found = F::M::from_bits(met);
-  if (at + N <= hits.size) {
-    const auto put = [&](const F& x, float* to) { select(found, x, F::load(to + at)).store(to + at); };
-    const auto put_id = [&](std::uint32_t id, std::uint32_t* column) {
-      auto* to = reinterpret_cast<std::int32_t*>(column + at);
-      select(mask_cast<std::int32_t>(found), I(static_cast<std::int32_t>(id)), I::load(to)).store(to);
-    };
-    put(h.t, hits.t), put(h.u, hits.u), put(h.v, hits.v);
-    put_id(item, hits.item), put_id(kNoId, hits.instance);
-  } else {
-    alignas(64) float t[N], u[N], v[N];
-    h.t.store(t), h.u.store(u), h.v.store(v);
-    for (unsigned rest = met; rest != 0; rest &= rest - 1) {
-      const int i = __builtin_ctz(rest);
-      hits.set(at + static_cast<std::size_t>(i), {t[i], u[i], v[i], item, kNoId});
-    }
-  }
   const F* d[3] = {&rays.d.x, &rays.d.y, &rays.d.z};
-  const F s = F(1.0f) / (h.t * abs(*d[beam.axis[2]]));
-  const auto raise = [&](float* column, float slack) {
-    const F was = F::load(column + at);
-    select(found, max(s * F(slack), was), was).store(column + at);
-  };
-  raise(beam.hit_lo, 1 - kBeamPointSlack), raise(beam.hit_hi, 1 + kBeamPointSlack);
+  store_hits(hits, beam, *d[beam.axis[2]], at, met, h, I(static_cast<std::int32_t>(item)), I(-1));
 }
 
 /// The rays in `lanes` of group `g` against one shape, N at once. `test(rays, lanes, hit, part)` is
@@ -88,30 +65,19 @@ OKTETT_INLINE void shape_group(BeamTask<Q, A>& task, int g, unsigned lanes, std:
     const unsigned met = test(rays, asked, hit, part);
     if (met == 0) continue;
     changed |= met;
-    if constexpr (Q == Query::any) {
-      const F infinity(std::numeric_limits<float>::infinity());
-      select(F::M::from_bits(met), infinity, F::load(beam.hit_lo + at)).store(beam.hit_lo + at);
-    } else {
+    if constexpr (Q == Query::any)
+      block_rays<N>(beam, at, met);
+    else
       keep_hits(task.out.hits, beam, rays, at, met, hit, item);
-    }
   }
   if (changed != 0) beam.refresh(g);
-}
-
-/// The rays of `g` that are not finished: an any-hit ray that is known to be blocked is.
-template <class A>
-OKTETT_INLINE unsigned open_rays(const BeamRays<A>& beam, int g) {
-  using F = Simd<float, kBeamGroup, A>;
-  return bits(F::load(beam.hit_lo + g * kBeamGroup) < F(std::numeric_limits<float>::infinity()));
 }
 
 /// Any-hit rays of `g` in `sure` are blocked. Returns those of `rays` that remain to be decided.
 template <class A>
 OKTETT_INLINE unsigned accept_sure(BeamRays<A>& beam, int g, unsigned rays, unsigned sure) {
   if (sure != 0) {
-    using F = Simd<float, kBeamGroup, A>;
-    float* const hit_lo = beam.hit_lo + g * kBeamGroup;
-    select(F::M::from_bits(sure), F(std::numeric_limits<float>::infinity()), F::load(hit_lo)).store(hit_lo);
+    block_rays<kBeamGroup>(beam, static_cast<std::size_t>(g) * kBeamGroup, sure);
     beam.refresh(g);
   }
   return rays & ~sure & open_rays(beam, g);
@@ -135,21 +101,29 @@ OKTETT_INLINE void closed_group(BeamTask<Q, A>& task, const typename S::Pool& po
       });
 }
 
-/// Groups of a beam against cell `k` of a pool of exact surfaces. `lanes.maybe` are the rays that may meet
-/// it.
-template <Query Q, class A>
-OKTETT_INLINE void exact_groups(BeamTask<Q, A>& task, Kind kind, std::uint32_t k, unsigned groups,
-                                BeamLanes& lanes) {
-  const ExactPoolBase& pool = task.accel.exact_pool(kind);
-  const ExactCode<A>& code = exact_code<A>(kind);
-  code.filter(pool, k, beam_view(task.beam, Q == Query::any), groups, lanes);
+/// Calls meet(g, rays) for each of `groups` with the rays that a filter has left undecided in `lanes`.
+template <Query Q, class A, class Meet>
+OKTETT_INLINE void each_undecided(BeamTask<Q, A>& task, unsigned groups, const BeamLanes& lanes,
+                                  Meet&& meet) {
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
     unsigned rays = lanes.maybe[g];
-    if (rays == 0) continue;
-    if (Q == Query::any) rays = accept_sure(task.beam, g, rays, lanes.sure[g]);
+    if (Q == Query::any && rays != 0) rays = accept_sure(task.beam, g, rays, lanes.sure[g]);
     if (rays == 0) continue;
     decide_group(task, g);
+    meet(g, rays);
+  }
+}
+
+/// Groups of a beam against cell `k` of a pool of exact surfaces. `lanes.maybe` are the rays that may meet
+/// it.
+template <Query Q, class A>
+OKTETT_INLINE void exact_groups(BeamTask<Q, A>& task, const BeamView& view, Kind kind, std::uint32_t k,
+                                unsigned groups, BeamLanes& lanes) {
+  const ExactPoolBase& pool = task.accel.exact_pool(kind);
+  const ExactCode<A>& code = exact_code<A>(kind);
+  code.filter(pool, k, view, groups, lanes);
+  each_undecided(task, groups, lanes, [&](int g, unsigned rays) {
     shape_group<ExactCode<A>::kLanes>(task, g, rays, pool.item_of_cell(k),
                                       [&](const auto& r, unsigned asked, auto& hit, int part) {
                                         if constexpr (Q == Query::any) {
@@ -160,7 +134,7 @@ OKTETT_INLINE void exact_groups(BeamTask<Q, A>& task, Kind kind, std::uint32_t k
                                         }
                                         return code.first(pool, k, r, asked, hit);
                                       });
-  }
+  });
 }
 
 /// Groups of a beam against primitive `k` of a pool of closed-form shapes, likewise.
@@ -171,15 +145,7 @@ OKTETT_INLINE void closed_groups(BeamTask<Q, A>& task, const typename S::Pool& p
     BeamSphere sphere;
     if (sphere.set(pool, k, task.beam)) sphere.filter(task.beam, groups, lanes);
   }
-  for (; groups != 0; groups &= groups - 1) {
-    const int g = __builtin_ctz(groups);
-    unsigned rays = lanes.maybe[g];
-    if (rays == 0) continue;
-    if (Q == Query::any) rays = accept_sure(task.beam, g, rays, lanes.sure[g]);
-    if (rays == 0) continue;
-    decide_group(task, g);
-    closed_group<S>(task, pool, k, g, rays);
-  }
+  each_undecided(task, groups, lanes, [&](int g, unsigned rays) { closed_group<S>(task, pool, k, g, rays); });
 }
 
 /// Groups of a beam against the shapes of a leaf; `met(g)` are the rays of group `g` that may meet its box.
@@ -195,9 +161,10 @@ OKTETT_INLINE void shape_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, 
   }
   if (kept == 0) return;
   if (is_exact(leaf.kind)) {
+    const BeamView view = beam_view(task.beam, Q == Query::any);
     for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
       BeamLanes lanes = in_box;
-      exact_groups(task, leaf.kind, k, kept, lanes);
+      exact_groups(task, view, leaf.kind, k, kept, lanes);
     }
     return;
   }

@@ -55,6 +55,21 @@ struct BeamTask {
   bool decided = false;  ///< some hits have been decided and stand in `out`
 };
 
+/// The rays of group `g` that are not finished: an any-hit ray that is known to be blocked is.
+template <class A>
+OKTETT_INLINE unsigned open_rays(const BeamRays<A>& beam, int g) {
+  using F = Simd<float, kBeamGroup, A>;
+  return bits(F::load(beam.hit_lo + g * kBeamGroup) < F(std::numeric_limits<float>::infinity()));
+}
+
+/// Notes that the any-hit rays [at, at + N) in `lanes` are blocked.
+template <int N, class A>
+OKTETT_INLINE void block_rays(BeamRays<A>& beam, std::size_t at, unsigned lanes) {
+  using F = Simd<float, N, A>;
+  const F infinity(std::numeric_limits<float>::infinity());
+  select(F::M::from_bits(lanes), infinity, F::load(beam.hit_lo + at)).store(beam.hit_lo + at);
+}
+
 /// Stores the decided hit `h` of ray i if it is the nearest so far. `dz`: the |direction| of the ray along z.
 template <class A>
 OKTETT_INLINE void accept_beam(const HitSpan& hits, BeamRays<A>& beam, float dz, std::size_t i,
@@ -80,36 +95,47 @@ OKTETT_INLINE void load_hits(const HitSpan& hits, std::size_t base, RayState<kBe
   }
 }
 
-/// Stores the hits of `r` for the rays in `lanes`, which have one.
-template <class A>
-OKTETT_INLINE void store_hits(const RayState<kBeamGroup, A>& r, unsigned lanes, const HitSpan& hits,
-                              std::size_t base, BeamRays<A>& beam) {
-  using F = Simd<float, kBeamGroup, A>;
-  using I = Simd<std::int32_t, kBeamGroup, A>;
-  const auto found = F::M::from_bits(lanes);
-  if (base + kBeamGroup <= hits.size) {
-    const auto put = [&](const float* from, float* to) {
-      select(found, F::load(from), F::load(to + base)).store(to + base);
+/// Stores the hits `h` of the rays [at, at + width) in `met`. `dz`: their directions along z.
+template <class F, class I, class A>
+OKTETT_INLINE void store_hits(const HitSpan& hits, BeamRays<A>& beam, const F& dz, std::size_t at,
+                              unsigned met, const HitLanes<F>& h, const I& item, const I& instance) {
+  const auto found = F::M::from_bits(met);
+  if (at + F::kWidth <= hits.size) {
+    const auto put = [&](const F& x, float* to) { select(found, x, F::load(to + at)).store(to + at); };
+    const auto put_ids = [&](const I& ids, std::uint32_t* column) {
+      auto* to = reinterpret_cast<std::int32_t*>(column + at);
+      select(mask_cast<std::int32_t>(found), ids, I::load(to)).store(to);
     };
-    const auto put_ids = [&](const std::uint32_t* from, std::uint32_t* to) {
-      auto* at = reinterpret_cast<std::int32_t*>(to + base);
-      const I ids = I::load(reinterpret_cast<const std::int32_t*>(from));
-      select(mask_cast<std::int32_t>(found), ids, I::load(at)).store(at);
-    };
-    put(r.tmax, hits.t), put(r.u, hits.u), put(r.v, hits.v);
-    put_ids(r.item, hits.item), put_ids(r.path, hits.instance);
+    put(h.t, hits.t), put(h.u, hits.u), put(h.v, hits.v);
+    put_ids(item, hits.item), put_ids(instance, hits.instance);
   } else {
-    for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
+    alignas(64) float t[F::kWidth], u[F::kWidth], v[F::kWidth];
+    alignas(64) std::int32_t items[F::kWidth], instances[F::kWidth];
+    h.t.store(t), h.u.store(u), h.v.store(v), item.store(items), instance.store(instances);
+    for (unsigned rest = met; rest != 0; rest &= rest - 1) {
       const int i = __builtin_ctz(rest);
-      hits.set(base + static_cast<std::size_t>(i), r.hit(i));
+      hits.set(at + static_cast<std::size_t>(i), {t[i], u[i], v[i], static_cast<std::uint32_t>(items[i]),
+                                                  static_cast<std::uint32_t>(instances[i])});
     }
   }
-  const F s = F(1.0f) / (F::load(r.tmax) * abs(F::load(r.d[beam.axis[2]])));
+  const F s = F(1.0f) / (h.t * abs(dz));
   const auto raise = [&](float* column, float slack) {
-    const F was = F::load(column + base);
-    select(found, max(s * F(slack), was), was).store(column + base);
+    const F was = F::load(column + at);
+    select(found, max(s * F(slack), was), was).store(column + at);
   };
   raise(beam.hit_lo, 1 - kBeamPointSlack), raise(beam.hit_hi, 1 + kBeamPointSlack);
+}
+
+/// The same for the hits of `r`.
+template <class A>
+OKTETT_INLINE void store_hits(const HitSpan& hits, BeamRays<A>& beam, std::size_t base, unsigned met,
+                              const RayState<kBeamGroup, A>& r) {
+  using F = Simd<float, kBeamGroup, A>;
+  const auto ids = [](const std::uint32_t* from) {
+    return Simd<std::int32_t, kBeamGroup, A>::load(reinterpret_cast<const std::int32_t*>(from));
+  };
+  const HitLanes<F> h{F::load(r.tmax), F::load(r.u), F::load(r.v)};
+  store_hits(hits, beam, F::load(r.d[beam.axis[2]]), base, met, h, ids(r.item), ids(r.path));
 }
 
 /// Sixteen misses from position `base`.

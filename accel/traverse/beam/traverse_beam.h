@@ -99,9 +99,7 @@ OKTETT_NOINLINE void meet_edge_on(BeamTask<Q, A>& task, std::uint32_t id, unsign
     const int g = __builtin_ctz(groups);
     const RayLanes<F> r = load_group(task.beam, task.rays, g);
     const F d_max = max(abs(r.d.x), max(abs(r.d.y), abs(r.d.z)));
-    const F infinity(std::numeric_limits<float>::infinity());
-    const unsigned open = bits(F::load(task.beam.hit_lo + g * kBeamGroup) < infinity);
-    note_unclear(task, open & bits(filter_watertight(r, d_max, tri)), g, id);
+    note_unclear(task, open_rays(task.beam, g) & bits(filter_watertight(r, d_max, tri)), g, id);
   }
 }
 
@@ -140,13 +138,11 @@ OKTETT_INLINE int leaf_beam(BeamTask<Q, A>& task, NodeRef ref, unsigned groups, 
 /// A leaf of combinations, instances or textbook triangles, against the rays `rays` of group `g`.
 template <Query Q, class A>
 OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& leaf, int g, unsigned rays) {
-  using F = Simd<float, kBeamGroup, A>;
   BeamRays<A>& beam = task.beam;
   decide_group(task, g);
   const std::size_t base = static_cast<std::size_t>(g) * kBeamGroup;
-  const F infinity(std::numeric_limits<float>::infinity());
-  const RayLanes<F> r = load_group(beam, task.rays, g);
-  rays &= bits(F::load(beam.hit_lo + base) < infinity);
+  const auto r = load_group(beam, task.rays, g);
+  rays &= open_rays(beam, g);
   RayState<kBeamGroup, A> state;
   rays &= state.set(r.o, r.d, r.tmin, r.tmax, task.accel.bounds);
   if (rays == 0) return;
@@ -155,9 +151,9 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   const unsigned found = found_lanes(state, rays);
   if (found == 0) return;
   if constexpr (Q == Query::any)
-    select(F::M::from_bits(found), infinity, F::load(beam.hit_lo + base)).store(beam.hit_lo + base);
+    block_rays<kBeamGroup>(beam, base, found);
   else
-    store_hits(state, found, task.out.hits, base, beam);
+    store_hits(task.out.hits, beam, base, found, state);
   beam.refresh(g);
 }
 
