@@ -6,28 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "accel/accel.h"
-#include "accel/query.h"
-#include "core/random.h"
+#include "tests/accel/same_hits.h"
+#include "tests/support/dice.h"
 
 namespace oktett {
 namespace {
 
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : key_(pixel_key(seed, 0)) {}
-  double operator()() { return random_float(key_, count_++, 0); }
-  double range(double lo, double hi) { return lo + (hi - lo) * (*this)(); }
-  Vec3d vec(double size) { return {range(-size, size), range(-size, size), range(-size, size)}; }
-  int below(int n) { return static_cast<int>((*this)() * n); }
-
- private:
-  std::uint64_t key_;
-  std::uint32_t count_ = 0;
-};
-
 /// A shape of about the size 1 about the origin.
-Geometry make_shape(int which, Dice& dice) {
+Geometry make_shape(int which, Dice<double>& dice) {
   Geometry g;
   const bool open = dice.below(3) == 0;
   switch (which) {
@@ -82,7 +68,7 @@ struct Subject {
 };
 
 /// A few shapes of one kind, the first of them at the centre, in one of several sizes and places.
-Subject make_subject(int which, Dice& dice) {
+Subject make_subject(int which, Dice<double>& dice) {
   Subject s;
   s.scale = std::exp2(dice.below(3) == 0 ? dice.range(-25, 25) : 0);
   s.center = dice.vec(dice.below(3) == 0 ? 1000 : 1) * s.scale;
@@ -108,7 +94,7 @@ bool hits(const Subject& s, const Vec3f& from, const Vec3f& to) {
 }
 
 /// A target at the silhouette: between one ray that hits and one that misses.
-Vec3d silhouette(const Subject& s, const Vec3f& from, Dice& dice) {
+Vec3d silhouette(const Subject& s, const Vec3f& from, Dice<double>& dice) {
   Vec3d in = s.center + dice.vec(1) * s.scale, out = in;
   const bool first = hits(s, from, Vec3f(in));
   for (int k = 0; k < 20 && hits(s, from, Vec3f(out)) == first; ++k) out = s.center + dice.vec(1.5) * s.scale;
@@ -119,28 +105,9 @@ Vec3d silhouette(const Subject& s, const Vec3f& from, Dice& dice) {
   return in;
 }
 
-Vec3f random_apex(const Subject& s, Dice& dice) {
+Vec3f random_apex(const Subject& s, Dice<double>& dice) {
   const double far[] = {0.5, 3, 10, 100, 3000};
   return Vec3f(s.center + dice.vec(far[dice.below(5)]) * s.scale);
-}
-
-void expect_same(const Subject& s, const RayBatch& rays, const std::string& what) {
-  HitBatch expected, got;
-  expected.resize_uninitialized(rays.size()), got.resize_uninitialized(rays.size());
-  std::vector<std::uint8_t> dark(rays.size()), got_dark(rays.size());
-  closest_hit(*s.accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
-  any_hit(*s.accel, rays.span(), dark.data(), Isa::scalar, TraceMode::single);
-  for (const Isa isa : available_isas()) {
-    closest_hit(*s.accel, rays.span(), got.span(), isa, TraceMode::beam);
-    any_hit(*s.accel, rays.span(), got_dark.data(), isa, TraceMode::beam);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      ASSERT_TRUE(got[i] == expected[i])
-          << what << ", " << to_string(isa) << ", ray " << i << ": t " << got[i].t << " for " << expected[i].t
-          << ", item " << got[i].item << " for " << expected[i].item;
-      ASSERT_EQ(int{got_dark[i]}, int{dark[i]})
-          << what << ", " << to_string(isa) << ", ray " << i << ", t " << expected[i].t;
-    }
-  }
 }
 
 class BeamShapes : public testing::TestWithParam<int> {};
@@ -148,7 +115,7 @@ class BeamShapes : public testing::TestWithParam<int> {};
 constexpr int kRounds = 150;
 
 TEST_P(BeamShapes, CommonOrigin) {
-  Dice dice(5 + static_cast<std::uint64_t>(GetParam()));
+  Dice<double> dice(5 + static_cast<std::uint32_t>(GetParam()));
   for (int round = 0; round < kRounds; ++round) {
     const Subject s = make_subject(GetParam(), dice);
     const Vec3f from = random_apex(s, dice);
@@ -163,15 +130,16 @@ TEST_P(BeamShapes, CommonOrigin) {
       if (ends == 2) r.tmin = static_cast<float>(dice.range(0.8, 1.2));
       rays.push_back(r);
     }
-    expect_same(s, rays, "round " + std::to_string(round));
-    if (HasFatalFailure()) return;
+    expect_hits(*s.accel, rays, scalar_hits(*s.accel, rays), {TraceMode::single, TraceMode::beam},
+                "round " + std::to_string(round));
+    if (HasFailure()) return;
   }
 }
 
 // From surfaces to a light, as shadow rays: from the rounded point itself, which may be on either side, and
 // from beyond its error.
 TEST_P(BeamShapes, FromSurfacesToAnEnd) {
-  Dice dice(77 + static_cast<std::uint64_t>(GetParam()));
+  Dice<double> dice(77 + static_cast<std::uint32_t>(GetParam()));
   for (int round = 0; round < kRounds; ++round) {
     const Subject s = make_subject(GetParam(), dice);
     const Vec3f eye = random_apex(s, dice), light = random_apex(s, dice);
@@ -190,8 +158,9 @@ TEST_P(BeamShapes, FromSurfacesToAnEnd) {
       const Vec3f to = light - from;
       rays.push_back(unit ? Ray{from, 0, normalize(to), length(to)} : Ray{from, 0, to, 1 - 0x1p-24f});
     }
-    expect_same(s, rays, "round " + std::to_string(round));
-    if (HasFatalFailure()) return;
+    expect_hits(*s.accel, rays, scalar_hits(*s.accel, rays), {TraceMode::single, TraceMode::beam},
+                "round " + std::to_string(round));
+    if (HasFailure()) return;
   }
 }
 

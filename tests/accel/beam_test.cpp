@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "accel/accel.h"
-#include "accel/query.h"
-#include "core/random.h"
+#include "tests/accel/same_hits.h"
+#include "tests/support/dice.h"
 
 namespace oktett {
 namespace {
@@ -16,21 +15,7 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// Numbers in [0, 1), one after the other.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : key_(pixel_key(seed, 0)) {}
-  float operator()() { return random_float(key_, count_++, 0); }
-  float range(float lo, float hi) { return lo + (hi - lo) * (*this)(); }
-  Vec3f vec(float size) { return {range(-size, size), range(-size, size), range(-size, size)}; }
-  int below(int n) { return static_cast<int>((*this)() * static_cast<float>(n)); }
-
- private:
-  std::uint64_t key_;
-  std::uint32_t count_ = 0;
-};
-
-TriangleMesh grid_mesh(int n, bool flat, Dice& dice) {
+TriangleMesh grid_mesh(int n, bool flat, Dice<float>& dice) {
   TriangleMesh m;
   for (int y = 0; y <= n; ++y)
     for (int x = 0; x <= n; ++x)
@@ -46,7 +31,7 @@ TriangleMesh grid_mesh(int n, bool flat, Dice& dice) {
   return m;
 }
 
-TriangleMesh soup(int n, float size, Dice& dice) {
+TriangleMesh soup(int n, float size, Dice<float>& dice) {
   TriangleMesh m;
   for (int i = 0; i < n; ++i) {
     const Vec3f at = dice.vec(1);
@@ -93,7 +78,7 @@ constexpr int kSubjects = 9;
 /// Batches of rays per subject and test.
 constexpr int kRounds = 60;
 
-Subject make_subject(int which, Dice& dice) {
+Subject make_subject(int which, Dice<float>& dice) {
   Subject s;
   switch (which) {
     case 0:
@@ -146,7 +131,7 @@ Subject make_subject(int which, Dice& dice) {
 
 /// Directions of a bundle towards a target: pixels, targets hit exactly, one direction, or a wide cone.
 Vec3f bundle_direction(int kind, int i, const Vec3f& from, const Vec3f& target, const Subject& s,
-                       Dice& dice) {
+                       Dice<float>& dice) {
   const Vec3f to = target - from;
   const float reach = length(to);
   Vec3f u, v;
@@ -170,7 +155,7 @@ Vec3f bundle_direction(int kind, int i, const Vec3f& from, const Vec3f& target, 
 }
 
 /// Some rays that hit nothing, or only in a part of their range.
-void trouble(Ray& r, Dice& dice) {
+void trouble(Ray& r, Dice<float>& dice) {
   const int what = dice.below(40);
   if (what == 0) r.direction.y = kNan;
   if (what == 1) r.direction = {0, 0, 0};
@@ -180,29 +165,7 @@ void trouble(Ray& r, Dice& dice) {
   if (what == 5) r.direction.z = -0.0f;
 }
 
-void expect_same(const Subject& s, const RayBatch& rays, const std::string& what) {
-  HitBatch expected, got;
-  expected.resize_uninitialized(rays.size()), got.resize_uninitialized(rays.size());
-  std::vector<std::uint8_t> dark(rays.size()), got_dark(rays.size());
-  closest_hit(*s.accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
-  any_hit(*s.accel, rays.span(), dark.data(), Isa::scalar, TraceMode::single);
-  for (const Isa isa : available_isas()) {
-    for (const TraceMode mode : {TraceMode::automatic, TraceMode::beam}) {
-      closest_hit(*s.accel, rays.span(), got.span(), isa, mode);
-      any_hit(*s.accel, rays.span(), got_dark.data(), isa, mode);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_TRUE(got[i] == expected[i])
-            << what << ", " << to_string(isa) << ", ray " << i << ": t " << got[i].t << " for "
-            << expected[i].t << ", item " << got[i].item << " for " << expected[i].item;
-        ASSERT_EQ(int{got_dark[i]}, int{dark[i]}) << what << ", " << to_string(isa) << ", ray " << i << ", t "
-                                                  << expected[i].t << " of " << rays[i].tmax;
-        ASSERT_EQ(int{dark[i]}, int{expected[i].valid()});
-      }
-    }
-  }
-}
-
-Vec3f random_apex(const Subject& s, Dice& dice) {
+Vec3f random_apex(const Subject& s, Dice<float>& dice) {
   switch (dice.below(5)) {
     case 0:
       return s.targets[static_cast<std::size_t>(dice.below(static_cast<int>(s.targets.size())))];
@@ -218,10 +181,15 @@ Vec3f random_apex(const Subject& s, Dice& dice) {
   }
 }
 
+void expect_same(const Subject& s, const RayBatch& rays, const std::string& what) {
+  expect_hits(*s.accel, rays, scalar_hits(*s.accel, rays),
+              {TraceMode::single, TraceMode::automatic, TraceMode::beam}, what);
+}
+
 class Beams : public testing::TestWithParam<int> {};
 
 TEST_P(Beams, CommonOrigin) {
-  Dice dice(17 + static_cast<std::uint64_t>(GetParam()));
+  Dice<float> dice(17 + static_cast<std::uint32_t>(GetParam()));
   const Subject s = make_subject(GetParam(), dice);
   for (int round = 0; round < kRounds; ++round) {
     const Vec3f from = random_apex(s, dice);
@@ -239,11 +207,9 @@ TEST_P(Beams, CommonOrigin) {
       rays.push_back(r);
     }
     // Again, ending exactly at what was hit, just before it, and just behind it.
-    HitBatch hits;
-    hits.resize_uninitialized(rays.size());
-    closest_hit(*s.accel, rays.span(), hits.span(), Isa::scalar, TraceMode::single);
+    const HitBatch hits = scalar_hits(*s.accel, rays);
     expect_same(s, rays, "origin, round " + std::to_string(round));
-    if (HasFatalFailure()) return;
+    if (HasFailure()) return;
     for (std::size_t i = 0; i < rays.size(); ++i)
       if (hits[i].valid()) {
         const int how = dice.below(4);
@@ -253,12 +219,12 @@ TEST_P(Beams, CommonOrigin) {
         if (how == 3) rays.tmin[i] = std::nextafter(hits.t[i], 0.0f), rays.tmax[i] = kInf;
       }
     expect_same(s, rays, "cut, round " + std::to_string(round));
-    if (HasFatalFailure()) return;
+    if (HasFailure()) return;
   }
 }
 
 TEST_P(Beams, CommonEnd) {
-  Dice dice(99 + static_cast<std::uint64_t>(GetParam()));
+  Dice<float> dice(99 + static_cast<std::uint32_t>(GetParam()));
   const Subject s = make_subject(GetParam(), dice);
   for (int round = 0; round < kRounds; ++round) {
     const Vec3f light = random_apex(s, dice);
@@ -282,7 +248,7 @@ TEST_P(Beams, CommonEnd) {
       rays.push_back(r);
     }
     expect_same(s, rays, "end, round " + std::to_string(round));
-    if (HasFatalFailure()) return;
+    if (HasFailure()) return;
   }
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "accel/accel_data.h"
-#include "accel/query.h"
 #include "verify/cases/kernel_cases.h"
+#include "verify/checks/compare_mode.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
@@ -126,8 +126,7 @@ TEST(Build, LowestOfIdenticalTrianglesIsHit) {
   HitBatch hits;
   hits.resize_uninitialized(16);
   for (const Isa isa : available_isas())
-    for (const TraceMode mode : {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
-                                 TraceMode::packet16, TraceMode::beam, TraceMode::interleaved}) {
+    for (const TraceMode mode : kTraceModes) {
       closest_hit(*accel, rays.span(), hits.span(), isa, mode);
       for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(hits[i].item, 0u);
     }

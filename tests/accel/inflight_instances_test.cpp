@@ -4,15 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "accel/accel_data.h"
-#include "accel/query.h"
 #include "accel/traverse/inflight/enter_instance.h"
+#include "tests/accel/same_hits.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/cases/kernel_cases.h"
 
@@ -22,32 +22,9 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 using AccelPtr = std::shared_ptr<const Accel>;
 
-bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-bool same_bits(const Hit& a, const Hit& b) {
-  return same_bits(a.t, b.t) && same_bits(a.u, b.u) && same_bits(a.v, b.v) && a.item == b.item &&
-         a.instance == b.instance;
-}
-
-/// Returns the number of hits.
 int expect_same_hits(const Accel& accel, const RayBatch& rays) {
-  HitBatch expected, hits;
-  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
-  std::vector<std::uint8_t> occluded(rays.size());
-  closest_hit(accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
-  for (const Isa isa : available_isas())
-    for (const TraceMode mode : {TraceMode::interleaved, TraceMode::automatic, TraceMode::single}) {
-      closest_hit(accel, rays.span(), hits.span(), isa, mode);
-      any_hit(accel, rays.span(), occluded.data(), isa, mode);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        EXPECT_TRUE(same_bits(hits[i], expected[i]))
-            << to_string(isa) << " mode " << int(mode) << " ray " << i;
-        EXPECT_EQ(occluded[i] != 0, expected[i].valid()) << to_string(isa) << " ray " << i;
-        if (testing::Test::HasFailure()) return 0;
-      }
-    }
-  int count = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
-  return count;
+  return expect_hits(accel, rays, scalar_hits(accel, rays),
+                     {TraceMode::interleaved, TraceMode::automatic, TraceMode::single});
 }
 
 /// The ray in the space of an instance's child: in double, rounded to float.
@@ -207,17 +184,7 @@ TEST(InflightInstances, AdversarialTriangles) {
     std::vector<TriangleMesh> meshes(40);
     RayBatch rays;
     for (TriangleMesh& mesh : meshes)
-      for (int i = 0; i < 12; ++i) {
-        const TriangleCase c = adversarial_case(random, scale);
-        for (const Vec3f& p : c.corner) {
-          mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-          mesh.positions.push_back(p);
-        }
-        rays.push_back(c.ray);
-        Ray up_to_target = c.ray;
-        up_to_target.tmax = 1;
-        rays.push_back(up_to_target);
-      }
+      for (int i = 0; i < 12; ++i) add_case(adversarial_case(random, scale), mesh, rays);
     std::vector<Geometry> plain, shown;
     for (const TriangleMesh& mesh : meshes) {
       plain.push_back({MeshGeometry{&mesh}, {}, kNoId});
@@ -228,7 +195,9 @@ TEST(InflightInstances, AdversarialTriangles) {
     // An instance that moves nothing changes no bit of a distance.
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Hit h = closest_hit(*a, rays[i]), k = closest_hit(*b, rays[i]);
-      ASSERT_TRUE(h.valid() == k.valid() && (!h.valid() || same_bits(h.t, k.t))) << scale << " ray " << i;
+      ASSERT_TRUE(h.valid() == k.valid() &&
+                  (!h.valid() || std::bit_cast<std::uint32_t>(h.t) == std::bit_cast<std::uint32_t>(k.t)))
+          << scale << " ray " << i;
     }
   }
 }

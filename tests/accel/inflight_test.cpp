@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <vector>
 
-#include "accel/query.h"
 #include "accel/traverse/inflight/inflight_ray.h"
+#include "tests/accel/same_hits.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/cases/kernel_cases.h"
 
@@ -17,47 +16,16 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-bool same_bits(const Hit& a, const Hit& b) {
-  return std::memcmp(&a.t, &b.t, sizeof a.t) == 0 && std::memcmp(&a.u, &b.u, sizeof a.u) == 0 &&
-         std::memcmp(&a.v, &b.v, sizeof a.v) == 0 && a.item == b.item && a.instance == b.instance;
-}
-
-/// Interleaved rays of every instruction set, and single rays of those with vectors, find what single rays of
-/// the scalar code find.
 int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
   const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
-  HitBatch expected, hits;
-  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
-  std::vector<std::uint8_t> occluded(rays.size());
-  closest_hit(*accel, rays.span(), expected.span(), Isa::scalar, TraceMode::single);
-  for (const Isa isa : available_isas())
-    for (const TraceMode mode : {TraceMode::interleaved, TraceMode::single, TraceMode::automatic}) {
-      closest_hit(*accel, rays.span(), hits.span(), isa, mode);
-      any_hit(*accel, rays.span(), occluded.data(), isa, mode);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        EXPECT_TRUE(same_bits(hits[i], expected[i])) << to_string(isa) << " ray " << i;
-        EXPECT_EQ(occluded[i] != 0, expected[i].valid()) << to_string(isa) << " ray " << i;
-        if (testing::Test::HasFailure()) return 0;
-      }
-    }
-  int count = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
-  return count;
+  return expect_hits(*accel, rays, scalar_hits(*accel, rays),
+                     {TraceMode::interleaved, TraceMode::single, TraceMode::automatic});
 }
 
-/// Slivers, needles and pairs of the same triangle, which tie, with rays that meet or just miss them.
-void add_case(TriangleRandom& random, TriangleMesh& mesh, RayBatch& rays, float scale) {
+/// A case with its triangle once or twice; the two tie.
+void add_random_case(TriangleRandom& random, TriangleMesh& mesh, RayBatch& rays, float scale) {
   const TriangleCase c = adversarial_case(random, scale);
-  const int copies = random.bits() % 8 == 0 ? 2 : 1;
-  for (int k = 0; k < copies; ++k)
-    for (const Vec3f& p : c.corner) {
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-      mesh.positions.push_back(p);
-    }
-  rays.push_back(c.ray);
-  Ray up_to_target = c.ray;
-  up_to_target.tmax = 1;
-  rays.push_back(up_to_target);
+  add_case(c, mesh, rays, random.bits() % 8 == 0 ? 2 : 1);
 }
 
 class InterleavedScale : public testing::TestWithParam<float> {};
@@ -66,7 +34,7 @@ TEST_P(InterleavedScale, AdversarialTrianglesGiveTheSameHits) {
   TriangleRandom random(static_cast<std::uint64_t>(std::ilogb(GetParam()) + 3000));
   TriangleMesh mesh;
   RayBatch rays;
-  for (int i = 0; i < 500; ++i) add_case(random, mesh, rays, GetParam());
+  for (int i = 0; i < 500; ++i) add_random_case(random, mesh, rays, GetParam());
   EXPECT_GT(expect_same_hits(mesh, rays), 500);
 }
 
@@ -142,7 +110,7 @@ TEST(Interleaved, StrangeRaysAmongOthers) {
   TriangleRandom random(17);
   TriangleMesh mesh;
   RayBatch soup, rays;
-  for (int i = 0; i < 1000; ++i) add_case(random, mesh, soup, 1);
+  for (int i = 0; i < 1000; ++i) add_random_case(random, mesh, soup, 1);
   for (std::size_t i = 0; i < soup.size(); ++i)
     rays.push_back(strange_ray(static_cast<int>(random.bits() % 30), soup[i]));
   EXPECT_GT(expect_same_hits(mesh, rays), 500);
@@ -174,7 +142,7 @@ TEST(Interleaved, BatchesOfAnySize) {
   TriangleRandom random(23);
   TriangleMesh mesh;
   RayBatch soup;
-  for (int i = 0; i < 300; ++i) add_case(random, mesh, soup, 1);
+  for (int i = 0; i < 300; ++i) add_random_case(random, mesh, soup, 1);
   for (const std::size_t size : {1, 2, 7, 8, 9, 15, 16, 17, 31, 32, 33, 47, 48, 49, 100}) {
     RayBatch rays;
     for (std::size_t i = 0; i < size; ++i) rays.push_back(soup[i]);

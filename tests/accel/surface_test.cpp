@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "accel/query.h"
+#include "tests/accel/same_hits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/closed.h"
 #include "verify/oracles/mesh.h"
@@ -13,8 +13,6 @@ namespace oktett {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
-                                TraceMode::packet16,  TraceMode::beam,   TraceMode::interleaved};
 
 Hit trace(const Accel& accel, const Ray& ray) {
   RayBatch rays;
@@ -31,22 +29,10 @@ Geometry instance(std::shared_ptr<const Accel> child, const Affine& m, std::uint
 
 /// All modes and instruction sets give the hits of the scalar code; any_hit and all_hits agree with them.
 int expect_agreement(const Accel& accel, const RayBatch& rays) {
-  HitBatch expected, hits;
-  expected.resize_uninitialized(rays.size()), hits.resize_uninitialized(rays.size());
-  std::vector<std::uint8_t> occluded(rays.size());
+  const HitBatch expected = scalar_hits(accel, rays);
+  const int count = expect_hits(accel, rays, expected, kTraceModes);
   std::vector<Hit> all;
-  closest_hit(accel, rays.span(), expected.span(), Isa::scalar);
-  int count = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) count += expected[i].valid();
   for (const Isa isa : available_isas()) {
-    for (const TraceMode mode : kModes) {
-      closest_hit(accel, rays.span(), hits.span(), isa, mode);
-      any_hit(accel, rays.span(), occluded.data(), isa, mode);
-      for (std::size_t i = 0; i < rays.size(); ++i) {
-        EXPECT_EQ(hits[i], expected[i]) << to_string(isa) << " mode " << int(mode) << " ray " << i;
-        EXPECT_EQ(occluded[i] != 0, expected[i].valid());
-      }
-    }
     for (std::size_t i = 0; i < rays.size(); ++i) {
       all_hits(accel, rays[i], all, isa);
       EXPECT_EQ(all.empty(), !expected[i].valid());

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/mesh.h"
 #include "core/random.h"
 #include "core/ray.h"
 
@@ -59,6 +60,19 @@ inline TriangleCase adversarial_case(TriangleRandom& r, float scale) {
   const float length = max_component(abs(c.ray.direction));
   if (choice & 64) c.ray.direction = c.ray.direction / length;
   return c;
+}
+
+/// Adds the triangle to `mesh`, `copies` times, and to `rays` its ray, endless and up to the target.
+inline void add_case(const TriangleCase& c, TriangleMesh& mesh, RayBatch& rays, int copies = 1) {
+  for (; copies > 0; --copies)
+    for (const Vec3f& p : c.corner) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(p);
+    }
+  rays.push_back(c.ray);
+  Ray up_to_target = c.ray;
+  up_to_target.tmax = 1;
+  rays.push_back(up_to_target);
 }
 
 }  // namespace oktett

@@ -2,6 +2,7 @@
 /// \file One way of tracing against another.
 
 #include <cstring>
+#include <initializer_list>
 #include <vector>
 
 #include "accel/accel.h"
@@ -9,6 +10,10 @@
 #include "accel/trace_mode.h"
 
 namespace oktett {
+
+inline constexpr std::initializer_list<TraceMode> kTraceModes = {
+    TraceMode::automatic, TraceMode::single, TraceMode::packet8,
+    TraceMode::packet16,  TraceMode::beam,   TraceMode::interleaved};
 
 static_assert(sizeof(Hit) == 20, "a hit has no padding");
 inline bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }

@@ -28,8 +28,6 @@ void MeshTally::add(const MeshTally& o) {
 namespace {
 
 constexpr std::size_t kChunk = 2048;
-constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single, TraceMode::packet8,
-                                TraceMode::packet16,  TraceMode::beam,   TraceMode::interleaved};
 
 /// A point that rays start at, and how often the mesh winds around it.
 struct Viewpoint {
@@ -99,7 +97,7 @@ class ChunkCheck {
     closest_hit(*subject_.plain, rays_.span(), reference_.span(), Isa::scalar, TraceMode::single);
     for (std::size_t i = 0; i < count; ++i) tally_.hits += reference_[i].valid();
     for (const Isa isa : isas) {
-      for (const TraceMode mode : kModes) compare(isa, mode);
+      for (const TraceMode mode : kTraceModes) compare(isa, mode);
       all_hits(*subject_.accel, rays_, lists_, isa);
       for (std::size_t i = 0; i < count; ++i) check_crossings(i, isa);
     }
