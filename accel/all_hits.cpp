@@ -82,14 +82,8 @@ void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa is
   sort_hits(hits.data(), hits.data() + hits.size());
 }
 
-/// The hits of some rays of a batch. Those of ray i are hits[begin[i]] to hits[begin[i + 1] - 1].
-struct PieceOfHits {
-  std::vector<Hit> hits;
-  std::vector<std::size_t> begin;
-};
-
-/// The hits of each ray are next to each other in `out`, in the order of the rays, not sorted.
-static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, PieceOfHits& out) {
+/// Groups the crossings of a batch by ray. The hits of each ray are not sorted.
+static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, HitLists& out) {
   out.begin.assign(rays + 1, 0);
   for (const RayHit& h : found) ++out.begin[h.ray + 1];
   for (std::size_t i = 0; i < rays; ++i) out.begin[i + 1] += out.begin[i];
@@ -99,9 +93,9 @@ static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, Pie
   for (const RayHit& h : found) out.hits[next[h.ray]++] = h.crossing.hit;
 }
 
-/// The same, with the crossings of exact surfaces merged.
+/// The same, and merges the crossings of exact surfaces.
 static void merge_by_ray(const Accel& accel, const std::vector<RayHit>& found, std::size_t rays,
-                         PieceOfHits& out) {
+                         HitLists& out) {
   std::vector<std::vector<Crossing>> of_ray(rays);
   for (const RayHit& h : found) of_ray[h.ray].push_back(h.crossing);
   out.hits.clear();
@@ -114,8 +108,8 @@ static void merge_by_ray(const Accel& accel, const std::vector<RayHit>& found, s
   }
 }
 
-/// Removes the repeated hits of triangles that stand in several leaves. The hits of each ray are sorted.
-static void drop_repeated(const Accel& accel, PieceOfHits& out) {
+/// Removes the repeated hits of triangles that stand in several leaves. The hits of each ray must be sorted.
+static void drop_repeated(const Accel& accel, HitLists& out) {
   std::size_t kept = 0, at = 0;
   for (std::size_t i = 0; i + 1 < out.begin.size(); ++i) {
     const std::size_t end = out.begin[i + 1], first = kept;
@@ -130,7 +124,8 @@ static void drop_repeated(const Accel& accel, PieceOfHits& out) {
   out.hits.resize(kept);
 }
 
-static void trace_piece(const Accel& accel, const RaySpan& rays, const TraceCode& code, PieceOfHits& out) {
+/// The hits of a batch, not sorted. Those of triangles that stand in several leaves may be repeated.
+static void find_hits(const Accel& accel, const RaySpan& rays, const TraceCode& code, HitLists& out) {
   static thread_local RayHitList found;
   found.clear();
   code.all_hits(accel, rays, found);
@@ -138,26 +133,30 @@ static void trace_piece(const Accel& accel, const RaySpan& rays, const TraceCode
     merge_by_ray(accel, found.hits(), rays.size, out);
   else
     group_by_ray(found.hits(), rays.size, out);
-  for (std::size_t i = 0; i < rays.size; ++i)
-    sort_hits(out.hits.data() + out.begin[i], out.hits.data() + out.begin[i + 1]);
-  if (accel.pieces) drop_repeated(accel, out);
 }
 
-void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa) {
+/// Sorts the hits of each ray and removes repeated ones.
+static void sort_lists(const Accel& accel, HitLists& lists) {
+  for (std::size_t i = 0; i + 1 < lists.begin.size(); ++i)
+    sort_hits(lists.hits.data() + lists.begin[i], lists.hits.data() + lists.begin[i + 1]);
+  if (accel.pieces) drop_repeated(accel, lists);
+}
+
+template <class Rays>
+static void list_hits(const Accel& accel, const Rays& rays, HitLists& lists, Isa isa) {
   const TraceCode& code = trace_code(isa);
-  if (rays.size <= kPieceRays) {
-    PieceOfHits piece{std::move(lists.hits), std::move(lists.begin)};
-    trace_piece(accel, rays, code, piece);
-    lists.hits = std::move(piece.hits), lists.begin = std::move(piece.begin);
-    return;
-  }
-  std::vector<PieceOfHits> pieces((rays.size + kPieceRays - 1) / kPieceRays);
-  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
-    trace_piece(accel, rays.part(begin, count), code, pieces[begin / kPieceRays]);
-  });
+  const auto list_piece = [&](const RaySpan& piece, HitLists& out) {
+    find_hits(accel, piece, code, out);
+    sort_lists(accel, out);
+  };
+  const std::size_t size = ray_count(rays);
+  if (size <= kPieceRays) return list_piece(piece_columns(rays, 0, size), lists);
+  std::vector<HitLists> pieces(piece_count(size));
+  for_each_piece(
+      rays, [&](std::size_t begin, const RaySpan& piece) { list_piece(piece, pieces[begin / kPieceRays]); });
   lists.hits.clear();
   lists.begin.assign(1, 0);
-  for (PieceOfHits& piece : pieces) {
+  for (HitLists& piece : pieces) {
     const std::size_t before = lists.hits.size();
     lists.hits.insert(lists.hits.end(), piece.hits.begin(), piece.hits.end());
     for (std::size_t i = 1; i < piece.begin.size(); ++i) lists.begin.push_back(before + piece.begin[i]);
@@ -165,25 +164,34 @@ void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa)
   }
 }
 
-void all_hits(const Accel& accel, std::span<const Ray> rays, HitLists& lists, Isa isa) {
-  RayBatch columns;
-  all_hits(accel, to_columns(rays, columns), lists, isa);
+void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa) {
+  list_hits(accel, rays, lists, isa);
 }
 
-void count_hits(const Accel& accel, const RaySpan& rays, std::span<std::uint32_t> counts, Isa isa) {
-  require_same_size(rays.size, counts.size(), "count_hits");
+void all_hits(const Accel& accel, std::span<const Ray> rays, HitLists& lists, Isa isa) {
+  list_hits(accel, rays, lists, isa);
+}
+
+template <class Rays>
+static void count_lists(const Accel& accel, const Rays& rays, std::span<std::uint32_t> counts, Isa isa) {
+  require_same_size(ray_count(rays), counts.size(), "count_hits");
   const TraceCode& code = trace_code(isa);
-  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
-    static thread_local PieceOfHits piece;
-    trace_piece(accel, rays.part(begin, count), code, piece);
-    for (std::size_t i = 0; i < count; ++i)
-      counts[begin + i] = static_cast<std::uint32_t>(piece.begin[i + 1] - piece.begin[i]);
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    static thread_local HitLists lists;
+    find_hits(accel, piece, code, lists);
+    // Sorting is only needed to find repeated hits.
+    if (accel.pieces) sort_lists(accel, lists);
+    for (std::size_t i = 0; i < piece.size; ++i)
+      counts[begin + i] = static_cast<std::uint32_t>(lists.of_ray(i).size());
   });
 }
 
+void count_hits(const Accel& accel, const RaySpan& rays, std::span<std::uint32_t> counts, Isa isa) {
+  count_lists(accel, rays, counts, isa);
+}
+
 void count_hits(const Accel& accel, std::span<const Ray> rays, std::span<std::uint32_t> counts, Isa isa) {
-  RayBatch columns;
-  count_hits(accel, to_columns(rays, columns), counts, isa);
+  count_lists(accel, rays, counts, isa);
 }
 
 }  // namespace oktett

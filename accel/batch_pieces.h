@@ -1,7 +1,7 @@
 #pragma once
-/// \file What the queries over batches have in common: checks, columns, and pieces that threads share out.
+/// \file What the queries over batches have in common: checks, and pieces of a batch, which are traced in
+/// parallel.
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -16,28 +16,40 @@ namespace oktett {
 /// Larger batches are traced in pieces of this size, each a task.
 inline constexpr std::size_t kPieceRays = 4096;
 
-/// Calls trace(begin, count) for each piece of a batch.
-template <class Trace>
-void for_each_piece(std::size_t size, Trace&& trace) {
-  if (size <= kPieceRays) return trace(std::size_t{0}, size);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (size + kPieceRays - 1) / kPieceRays),
-                    [&](const auto& r) {
-                      for (std::size_t k = r.begin(); k < r.end(); ++k)
-                        trace(k * kPieceRays, std::min(kPieceRays, size - k * kPieceRays));
-                    });
+inline std::size_t piece_count(std::size_t size) { return (size + kPieceRays - 1) / kPieceRays; }
+
+inline std::size_t ray_count(const RaySpan& rays) { return rays.size; }
+inline std::size_t ray_count(std::span<const Ray> rays) { return rays.size(); }
+
+/// Rays `begin` to `begin + count - 1` of a batch, in columns.
+inline RaySpan piece_columns(const RaySpan& rays, std::size_t begin, std::size_t count) {
+  return rays.part(begin, count);
+}
+
+/// The same for an array of rays. The columns are valid until the thread's next call.
+inline RaySpan piece_columns(std::span<const Ray> rays, std::size_t begin, std::size_t count) {
+  static thread_local RayBatch columns;
+  columns.resize_uninitialized(count);
+  for (std::size_t i = 0; i < count; ++i) columns.set(i, rays[begin + i]);
+  return columns.span();
+}
+
+/// Calls trace(begin, piece) for each piece of a batch: the rays from number `begin` on, as a RaySpan. `Rays`
+/// is RaySpan or std::span<const Ray>.
+template <class Rays, class Trace>
+void for_each_piece(const Rays& rays, Trace&& trace) {
+  const std::size_t size = ray_count(rays);
+  const auto trace_from = [&](std::size_t begin) {
+    trace(begin, piece_columns(rays, begin, std::min(kPieceRays, size - begin)));
+  };
+  if (size <= kPieceRays) return trace_from(0);
+  tbb::parallel_for(std::size_t{0}, piece_count(size), [&](std::size_t k) { trace_from(k * kPieceRays); });
 }
 
 inline void require_same_size(std::size_t rays, std::size_t answers, const char* query) {
   if (rays != answers)
     throw Error(std::string(query) + ": " + std::to_string(rays) + " rays, but room for " +
                 std::to_string(answers) + " answers");
-}
-
-/// The rays as columns.
-inline RaySpan to_columns(std::span<const Ray> rays, RayBatch& columns) {
-  columns.resize_uninitialized(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) columns.set(i, rays[i]);
-  return columns.span();
 }
 
 }  // namespace oktett

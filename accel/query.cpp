@@ -7,15 +7,15 @@ namespace oktett {
 
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode) {
   const TraceCode& code = trace_code(isa);
-  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
-    code.closest_hit(accel, rays.part(begin, count), {hits.part(begin, count)}, mode);
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    code.closest_hit(accel, piece, {hits.part(begin, piece.size)}, mode);
   });
 }
 
 void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa, TraceMode mode) {
   const TraceCode& code = trace_code(isa);
-  for_each_piece(rays.size, [&](std::size_t begin, std::size_t count) {
-    code.any_hit(accel, rays.part(begin, count), {occluded + begin}, mode);
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    code.any_hit(accel, piece, {occluded + begin}, mode);
   });
 }
 
@@ -35,13 +35,11 @@ void closest_hit(const Accel& accel, std::span<const Ray> rays, std::span<Hit> h
   require_same_size(rays.size(), hits.size(), "closest_hit");
   if (rays.size() == 1) return void(hits[0] = closest_hit(accel, rays[0], isa));
   const TraceCode& code = trace_code(isa);
-  for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
-    static thread_local RayBatch ray_columns;
-    static thread_local HitBatch hit_columns;
-    hit_columns.resize_uninitialized(count);
-    code.closest_hit(accel, to_columns(rays.subspan(begin, count), ray_columns), {hit_columns.span()},
-                     TraceMode::automatic);
-    for (std::size_t i = 0; i < count; ++i) hits[begin + i] = hit_columns[i];
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    static thread_local HitBatch columns;
+    columns.resize_uninitialized(piece.size);
+    code.closest_hit(accel, piece, {columns.span()}, TraceMode::automatic);
+    for (std::size_t i = 0; i < piece.size; ++i) hits[begin + i] = columns[i];
   });
 }
 
@@ -49,10 +47,8 @@ void any_hit(const Accel& accel, std::span<const Ray> rays, std::span<std::uint8
   require_same_size(rays.size(), occluded.size(), "any_hit");
   if (rays.size() == 1) return void(occluded[0] = any_hit(accel, rays[0], isa));
   const TraceCode& code = trace_code(isa);
-  for_each_piece(rays.size(), [&](std::size_t begin, std::size_t count) {
-    static thread_local RayBatch columns;
-    code.any_hit(accel, to_columns(rays.subspan(begin, count), columns), {occluded.data() + begin},
-                 TraceMode::automatic);
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    code.any_hit(accel, piece, {occluded.data() + begin}, TraceMode::automatic);
   });
 }
 
