@@ -14,6 +14,10 @@ Crossing& HitList::operator[](std::size_t i) { return hits_[i]; }
 void HitList::shrink(std::size_t size) { hits_.resize(size); }
 
 void RayHitList::append(const RayHit* hits, int count) { hits_.insert(hits_.end(), hits, hits + count); }
+void RayHitList::take_scratch(std::size_t ray) {
+  for (const Crossing& c : scratch_hits_) hits_.push_back({c, static_cast<std::uint32_t>(ray)});
+  scratch_hits_.clear();
+}
 
 bool is_triangle(const Accel& accel, std::uint32_t item) {
   return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;

@@ -52,6 +52,8 @@ class RayHitList {
   const std::vector<RayHit>& hits() const { return hits_; }
   /// A list for one ray, empty.
   HitList& scratch() { return scratch_; }
+  /// Moves the crossings in scratch() here, as those of ray number `ray`.
+  void take_scratch(std::size_t ray);
 
  private:
   std::vector<RayHit> hits_;

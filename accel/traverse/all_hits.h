@@ -151,4 +151,11 @@ void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits) {
   if (accel.has_exact) merge_crossings(accel, hits, first);
 }
 
+/// The same for a ray that may be invalid.
+template <class A>
+void trace_all_hits(const Accel& accel, const Ray& ray, HitList& hits) {
+  RayState<1, A> state;
+  if (state.set(ray, accel.bounds) != 0) collect(accel, state, hits);
+}
+
 }  // namespace oktett

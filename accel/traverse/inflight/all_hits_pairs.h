@@ -7,22 +7,9 @@
 #include "accel/traverse/all_hits.h"
 #include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/decide_pairs.h"
-#include "accel/traverse/inflight/ray_chunk.h"
-#include "accel/traverse/prefetch.h"
+#include "accel/traverse/inflight/inflight_ray.h"
 
 namespace oktett {
-
-/// A ray as its steps need it: the first 64 bytes for a node, the others for triangles.
-struct alignas(64) PairedRay {
-  float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
-  float tmin, limit;                          ///< limit = tmax + slack
-  std::uint32_t near_row[3];                  ///< offset in a node's planes of the near ones, per axis
-  float padding[2];
-  float o[3], d[3], tmax;
-  float weight_scale, det_scale;  ///< see guess_triangle
-  float more_padding[7];
-};
-static_assert(sizeof(PairedRay) == 128);
 
 /// Traces a batch of rays; see the top of the file.
 template <class A>
@@ -76,7 +63,7 @@ class AllHitsTraversal {
         if ((chunk_.tame >> i & 1) == 0 || !accel_.unbounded.empty()) {
           trace_alone(ray);
         } else {
-          set_ray(group_[ray], static_cast<int>(i));
+          set_ray(group_[ray], chunk_, static_cast<int>(i));
           if (accel_.root.is_triangles())
             push(leaves_, ray, accel_.root.bits());
           else if (!accel_.root.is_leaf())
@@ -86,18 +73,6 @@ class AllHitsTraversal {
         }
       }
     }
-  }
-
-  OKTETT_INLINE void set_ray(PairedRay& ray, int i) const {
-    const RayChunk<kChunk, A>& c = chunk_;
-    for (int k = 0; k < 3; ++k) {
-      ray.inv[k] = c.inv[k][i], ray.near_shift[k] = c.near_shift[k][i], ray.far_shift[k] = c.far_shift[k][i];
-      ray.near_row[k] = static_cast<std::uint32_t>(BvhNode::kWidth) *
-                        (2 * static_cast<std::uint32_t>(k) + (c.negative[k] >> i & 1));
-      ray.o[k] = c.o[k][i], ray.d[k] = c.d[k][i];
-    }
-    ray.tmin = c.tmin[i], ray.tmax = c.tmax[i], ray.limit = c.tmax[i] + c.slack[i];
-    ray.weight_scale = c.d_max[i] * kWeightError, ray.det_scale = c.d_max[i] * kVolumeError;
   }
 
   template <int kRoom>
@@ -122,7 +97,6 @@ class AllHitsTraversal {
   };
 
   void node_round() {
-    using F = Simd<float, BvhNode::kWidth, A>;
     using I = Simd<std::int32_t, BvhNode::kWidth, A>;
     // The round overwrites the end of the list, so it works on a copy, of whole vectors.
     std::uint32_t ray_of[kRound], node_of[kRound];
@@ -142,11 +116,8 @@ class AllHitsTraversal {
     Tail inner(nodes_), leaf(leaves_);
     for (int i = 0; i < count; ++i) {
       const BvhNode& node = nodes[node_of[i]];
-      const PairedRay& ray = group_[ray_of[i]];
-      const auto each = [](const float(&v)[3]) { return std::array{F(v[0]), F(v[1]), F(v[2])}; };
-      F near;
-      const unsigned met = fused_slab<A>(node, ray.near_row, each(ray.inv), each(ray.near_shift),
-                                         each(ray.far_shift), F(ray.tmin), F(ray.limit), near);
+      Simd<float, BvhNode::kWidth, A> near;
+      const unsigned met = node_inflight<A>(group_[ray_of[i]], node, near);
       // The top bit of a child tells a leaf from a node, the one below it a leaf of the table from a block.
       const I child = I::load(reinterpret_cast<const std::int32_t*>(node.child_bits()));
       const unsigned is_leaf = bits(child < I(0));
@@ -174,7 +145,7 @@ class AllHitsTraversal {
   /// N pairs of a ray and a block from position `at` on: notes the triangles that the filter keeps.
   template <int N>
   OKTETT_INLINE void leaf_step(int at) {
-    const auto ray = [&](int j) -> const PairedRay& { return group_[leaves_.ray[at + j]]; };
+    const auto ray = [&](int j) -> const InflightHead& { return group_[leaves_.ray[at + j]]; };
     const auto ref = [&](int j) { return NodeRef::from_bits(leaves_.what[at + j]); };
     const auto guess =
         guess_blocks<N, A>(ray, [&](int j) -> const TriangleBlock& { return accel_.blocks[ref(j).block()]; });
@@ -200,10 +171,10 @@ class AllHitsTraversal {
       std::uint32_t* ray = triangles_.ray + at;
       std::uint32_t* triangle = triangles_.what + at;
       for (int i = count; i < kChunk; ++i) ray[i] = ray[0], triangle[i] = triangle[0];
-      constexpr auto kFloats = static_cast<std::int32_t>(sizeof(PairedRay) / sizeof(float));
+      constexpr auto kFloats = static_cast<std::int32_t>(sizeof(InflightHead) / sizeof(float));
       const I index = I::load(reinterpret_cast<const std::int32_t*>(ray)) * I(kFloats);
       const auto number = [&](const float& first) { return gather(&first, index); };
-      const PairedRay& g = group_[0];
+      const InflightHead& g = group_[0];
       const RayLanes<C> rays{{number(g.o[0]), number(g.o[1]), number(g.o[2])},
                              {number(g.d[0]), number(g.d[1]), number(g.d[2])},
                              number(g.tmin),
@@ -235,23 +206,14 @@ class AllHitsTraversal {
   OKTETT_NOINLINE void at_table_leaf(std::uint32_t ray, NodeRef ref) {
     RayState<1, A> state;
     state.set(rays_[first_ + ray], accel_.bounds);
-    HitList& found = out_.scratch();
-    collect_leaf(accel_, accel_.leaves[ref.table_index()], state, found);
-    add_found(ray, found);
+    collect_leaf(accel_, accel_.leaves[ref.table_index()], state, out_.scratch());
+    out_.take_scratch(first_ + ray);
   }
 
   /// A ray that is not valid, whose numbers do not suit the fast arithmetic, or among unbounded shapes.
   OKTETT_NOINLINE void trace_alone(std::uint32_t ray) {
-    RayState<1, A> state;
-    if (state.set(rays_[first_ + ray], accel_.bounds) == 0) return;
-    HitList& found = out_.scratch();
-    collect(accel_, state, found);
-    add_found(ray, found);
-  }
-
-  void add_found(std::uint32_t ray, HitList& found) {
-    for (std::size_t i = 0; i < found.size(); ++i) add({found[i], static_cast<std::uint32_t>(first_) + ray});
-    found.shrink(0);
+    trace_all_hits<A>(accel_, rays_[first_ + ray], out_.scratch());
+    out_.take_scratch(first_ + ray);
   }
 
   const Accel& accel_;
@@ -267,7 +229,7 @@ class AllHitsTraversal {
   Pairs<kTriangleRoom> triangles_;
   int hit_count_ = 0;
   RayHit hits_[kHitRoom];
-  PairedRay group_[kGroup];
+  InflightHead group_[kGroup];
 };
 
 }  // namespace oktett

@@ -27,8 +27,8 @@ struct alignas(64) InflightTree {
   }
 };
 
-/// What an in-flight ray is in the space of the tree that it is in, and how far it has come. The first 64
-/// bytes are what a node needs.
+/// An in-flight ray in the space of the tree that it is in, and how far it has come. A node needs the first
+/// 64 bytes only.
 struct alignas(64) InflightHead {
   float inv[3], near_shift[3], far_shift[3];  ///< see RayChunk
   float tmin, limit;                          ///< limit = tmax + slack
@@ -37,8 +37,9 @@ struct alignas(64) InflightHead {
   std::int32_t size;                          ///< of the stack
   float o[3], d[3], slack;
   float weight_scale, det_scale;  ///< see guess_triangle
-  float tmax,
-      hit_lo;  ///< bounds on the distance of the nearest hit so far; without one, both the end of the ray
+  /// Bounds on the distance of the nearest hit so far: hit_lo <= t <= tmax. Without a hit, both are the end
+  /// of the ray.
+  float tmax, hit_lo;
   /// The nearest hit so far: a triangle that is surely hit and not decided yet, as block *
   /// TriangleBlock::kSize + lane; or kNoCandidate or kDecidedHit.
   std::uint32_t candidate;
@@ -78,13 +79,19 @@ OKTETT_INLINE void set_lines(InflightHead& ray, const RayChunk<W, A>& c, int i) 
   ray.weight_scale = c.d_max[i] * kWeightError, ray.det_scale = c.d_max[i] * kVolumeError;
 }
 
+/// The same, and the range of the ray.
+template <int W, class A>
+OKTETT_INLINE void set_ray(InflightHead& ray, const RayChunk<W, A>& c, int i) {
+  set_lines(ray, c, i);
+  ray.tmin = c.tmin[i];
+  ray.set_end(c.tmax[i]);
+}
+
 /// Starts ray `i` of a chunk at `root`.
 template <int W, class A>
 OKTETT_INLINE void start_ray(InflightRay& ray, const RayChunk<W, A>& c, int i, NodeRef root) {
-  set_lines(ray, c, i);
-  ray.tmin = c.tmin[i], ray.hit_lo = c.tmax[i];
-  ray.set_end(c.tmax[i]);
-  ray.candidate = kNoCandidate, ray.has_state = 0, ray.size = 0;
+  set_ray(ray, c, i);
+  ray.hit_lo = c.tmax[i], ray.candidate = kNoCandidate, ray.has_state = 0, ray.size = 0;
   ray.push(NodeRef::none(), -1), ray.push(root, 0);
 }
 
@@ -106,7 +113,7 @@ OKTETT_INLINE void shorten(InflightRay& ray, float tmax) {
 
 /// The slab test in fused form: the children of `node` that the ray meets, as bits, and their near distances.
 template <class A>
-OKTETT_INLINE unsigned node_inflight(const InflightRay& ray, const BvhNode& node,
+OKTETT_INLINE unsigned node_inflight(const InflightHead& ray, const BvhNode& node,
                                      Simd<float, BvhNode::kWidth, A>& near) {
   using F = Simd<float, BvhNode::kWidth, A>;
   const auto each = [](const float(&v)[3]) { return std::array{F(v[0]), F(v[1]), F(v[2])}; };
