@@ -8,13 +8,13 @@
 
 namespace oktett {
 
-/// A line in each lane, from where it begins to matter (s = 0) to where it ceases to (s = 1), in floats. All
-/// numbers bound what they stand for, wide enough for what rounding does to the lines, to the bounds and to
-/// what is made of them in floats (docs/numerics.md). x and z count samples in the direction of the line:
-/// those of lines that go back are negative. y counts steps of the pyramid above its least.
+/// W lines, one in each lane, each from the point at s = 0 to the point at s = 1. The numbers are floats that
+/// bound the true ones. The bounds have room for all rounding errors: in the lines, in the bounds themselves
+/// and in what is computed from them in floats (docs/numerics.md). x and z count samples in the line's own
+/// direction, so they are negative where it goes back. y counts steps of the pyramid above its least value.
 template <int W>
 struct LineBounds {
-  /// x and z at s = 0, how far the line goes, and 1 / way.
+  /// Bounds on x or z at s = 0, how far the line goes until s = 1, and the inverse of that.
   struct Side {
     alignas(4 * W) float low[W], high[W], way[W], per[W];
   };
@@ -29,13 +29,13 @@ struct LineBounds {
     const D far(0x1p+127), round(0x1p-23);
     const D first = max(min(from, far), -far), last = max(min(to, far), -far);
     const D t0 = first - abs(first) * round, t1 = last + abs(last) * round;
-    // Floats of numbers up to the sides of the field, and doubles of those of the lines.
+    // Rounding errors of floats up to the sides of the field, and of doubles up to the lines' origins.
     const std::uint32_t most = grid.columns() > grid.rows() ? grid.columns() : grid.rows();
     const D slack = D(most * 0x1p-19) + (abs(g.o.x) + abs(g.o.z)) * D(0x1p-46);
     const auto side = [&](const D& o, const D& d, const typename D::M& forward, Side& out) {
       const D at = o + t0 * d, begin = select(forward, at, -at);
       to_float(begin - slack).store(out.low), to_float(begin + slack).store(out.high);
-      // What hardly moves is taken to move a little, which is less than the slack.
+      // A line that hardly moves counts as moving a little, by less than the slack: 1 / way is finite.
       const auto way = to_float(max(abs(d) * (t1 - t0), slack * D(0.25)));
       way.store(out.way), (Simd<float, W, typename D::Isa>(1.0f) / way).store(out.per);
     };
@@ -44,7 +44,7 @@ struct LineBounds {
     const D per_step(1 / grid.step());
     const D begin = ((g.o.y - D(grid.least())) + t0 * g.d.y) * per_step, all = g.d.y * (t1 - t0) * per_step;
     const D room = D(0.125) + g.noise * per_step + (abs(begin) + abs(all)) * D(0x1p-20);
-    // What floats cannot bound meets everything.
+    // A line whose heights are too large for floats may meet every block.
     const D most_y(0x1p+100);
     const auto bounded = abs(begin) + room + abs(all) < most_y;
     to_float(select(bounded, begin - room, -most_y)).store(y_low);
@@ -58,8 +58,8 @@ namespace height {
 alignas(64) inline constexpr float kColumnOf[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
 alignas(64) inline constexpr float kRowOf[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
 
-/// s where each of 4 x 4 blocks begins and ends: in each direction that of the first one, and what each next
-/// one adds. Where s < 0 or s > 1 it does not matter by how much.
+/// The s at which lines enter and leave each of 4 x 4 blocks, cut to [0, 1]. `first` is the s for the first
+/// column or row of blocks, and each next one adds `step`.
 template <class F>
 OKTETT_INLINE F begins(float step_x, float first_x, float step_z, float first_z) {
   return max(max(fast_fma(F::load(kColumnOf), F(step_x), F(first_x)),
@@ -72,6 +72,20 @@ OKTETT_INLINE F ends(float step_x, float first_x, float step_z, float first_z) {
                  fast_fma(F::load(kRowOf), F(step_z), F(first_z))),
              F(1.0f));
 }
+
+/// Bounds on the height of lines: from y_low + s rise_low to y_high + s rise_high.
+template <class F>
+struct HeightBounds {
+  F y_low, y_high, rise_low, rise_high;
+
+  /// The blocks that lines may meet, as bits. Lines are in a block for s from `in` to `out`; its heights are
+  /// from `least` to `greatest`.
+  OKTETT_INLINE unsigned meet(const F& in, const F& out, const F& least, const F& greatest) const {
+    const F low = min(fast_fma(in, rise_low, y_low), fast_fma(out, rise_low, y_low));
+    const F high = max(fast_fma(in, rise_high, y_high), fast_fma(out, rise_high, y_high));
+    return bits((in <= out) & (least <= high) & (low <= greatest));
+  }
+};
 
 /// For each of `lines` the blocks of the last level that it may meet, as HeightBundle::meets has them.
 /// Returns the lines that may meet any.
@@ -91,18 +105,17 @@ OKTETT_INLINE unsigned meet_root(const HeightGrid& grid, const LineBounds<W>& b,
     ((near + size - V::load(s.low)) * per).store(out.end);
   };
   side(b.x, forward_x, x), side(b.z, forward_z, z);
-  // No branches: which lines miss, and which go where, cannot be foretold.
+  // No branches: the processor could not predict which lines miss, nor their directions.
   const unsigned back_x = ~bits(forward_x), back_z = ~bits(forward_z);
   unsigned any = 0;
   for (; lines != 0; lines &= lines - 1) {
     const int k = __builtin_ctz(lines);
     const F in = begins<F>(x.step[k], x.begin[k], z.step[k], z.begin[k]);
     const F out = ends<F>(x.step[k], x.end[k], z.step[k], z.end[k]);
-    const F rise(b.rise[k]), y_low(b.y_low[k]), y_high(b.y_high[k]);
-    const F low = min(fast_fma(in, rise, y_low), fast_fma(out, rise, y_low));
-    const F high = max(fast_fma(in, rise, y_high), fast_fma(out, rise, y_high));
+    const F rise(b.rise[k]);
+    const HeightBounds<F> heights{F(b.y_low[k]), F(b.y_high[k]), rise, rise};
     const HeightRoot& root = grid.root((back_x >> k & 1) + 2 * (back_z >> k & 1));
-    met[k] = bits((in <= out) & (F::load(root.least) <= high) & (low <= F::load(root.greatest)));
+    met[k] = heights.meet(in, out, F::load(root.least), F::load(root.greatest));
     any |= static_cast<unsigned>(met[k] != 0) << k;
   }
   return any;
@@ -115,7 +128,7 @@ class HeightBundle {
  public:
   unsigned lanes = 0;
 
-  /// Bit 0 and 1 where lines go back in x, bit 2 and 3 where they do so in z.
+  /// Bits 0 and 1 are set if the lines go back in x, bits 2 and 3 if they go back in z.
   OKTETT_INLINE unsigned flip() const { return flip_; }
 
   /// Line `k` alone.
@@ -157,13 +170,12 @@ class HeightBundle {
                                    (near_z - z_.high) * z_.per_low);
     const F out = height::ends<F>(size * x_.per_high, (near_x + size - x_.low) * x_.per_high,
                                   size * z_.per_high, (near_z + size - z_.low) * z_.per_high);
-    const F low = min(fast_fma(in, F(rise_low_), F(y_low_)), fast_fma(out, F(rise_low_), F(y_low_)));
-    const F high = max(fast_fma(in, F(rise_high_), F(y_high_)), fast_fma(out, F(rise_high_), F(y_high_)));
+    const height::HeightBounds<F> heights{F(y_low_), F(y_high_), F(rise_low_), F(rise_high_)};
     const unsigned flip = block_of(0, level), present = level.split == 2 ? 0x33u : 0xffffu;
-    const F least = load_words<A>(node.least, flip), greatest = load_words<A>(node.greatest, flip);
-    return bits((in <= out) & (least <= high) & (low <= greatest)) & present;
+    return heights.meet(in, out, load_words<A>(node.least, flip), load_words<A>(node.greatest, flip)) &
+           present;
   }
-  /// Turns the order of lines into that of the nodes of a level, or back.
+  /// Turns a block's number in the order of the lines into its number in a node of the level, or back.
   OKTETT_INLINE unsigned block_of(unsigned in_order, const HeightGrid::Level& level) const {
     return in_order ^ (flip_ & (level.split == 2 ? 5u : 15u));
   }
