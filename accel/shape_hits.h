@@ -13,9 +13,9 @@ struct ShapeHits {
   std::size_t count = 0;
   const float *origin[3], *direction[3];  ///< columns of rays
   const float *t, *part;                  ///< columns of their hits; `part` of an exact shape is Hit::u
-  std::uint32_t ray[kMost];               ///< which of their entries
+  std::uint32_t ray[kMost];               ///< index of each hit in these columns
   std::uint32_t element[kMost];           ///< index in the pool of the kind
-  std::uint32_t entry[kMost];             ///< of `out`
+  std::uint32_t entry[kMost];             ///< index of each hit in `out`
   InteractionBlock* out;                  ///< receives positions, their errors and normals
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Lanes that stand anywhere in columns.
+/// \file Lanes that are loaded from any entries of columns, and stored there.
 
 #include <cstdint>
 
@@ -7,8 +7,8 @@
 
 namespace oktett {
 
-/// Entries index[0], index[1], ... of columns of floats, one for each lane of F. Neighbours are loaded and
-/// stored at once.
+/// Entries index[0], index[1], ... of columns of floats, one for each lane of F. If they are consecutive,
+/// they are loaded and stored at once.
 template <class F>
 class PickedLanes {
  public:

@@ -24,7 +24,7 @@ OKTETT_INLINE Simd<float, 16, A> load_words(const std::uint16_t* p, unsigned fli
       return r;
     }
 #endif
-    // Halves change places with bit 3, bytes of a half do so in pairs with the others.
+    // Bit 3 of `flip` exchanges the halves; the other bits exchange words, pairs of bytes, within each half.
     const __m128i order = _mm_xor_si128(_mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
                                         _mm_set1_epi8(static_cast<char>(2 * (flip & 7))));
     const auto eight = [&](unsigned half) {

@@ -14,7 +14,7 @@ namespace oktett {
 
 /// Lines of a beam in the own space of an element. With z = (1 + s) depth, where `depth` is that of the
 /// middle of the cell, the ray (x, y) is at q + s w, where q = middle + dx u + dy v, w = q - middle +
-/// from_apex, and (dx, dy) is the distance of (x, y) from the middle. So what is far away does not cancel.
+/// from_apex, and (dx, dy) is the distance of (x, y) from the middle. So a far apex causes no cancellation.
 struct BeamCell {
   float x, y, depth;
   Vec3f middle, u, v, from_apex;

@@ -118,7 +118,7 @@ void trace_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& 
     const unsigned lanes = state.set_rays(r.o, r.d, r.tmin, r.tmax) & ((1u << count) - 1);
     if (lanes != 0) leaf_exact(accel, leaf, state, lanes);
     if (count == W)
-      out.clear(b, W);
+      out.clear(b, W);  // the compiler knows the size
     else
       out.clear(b, count);
     for (unsigned found = found_lanes(state, lanes); found != 0; found &= found - 1) {
@@ -138,9 +138,9 @@ void trace_without_beams(const Accel& accel, const RaySpan& rays, const HitSink<
     trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
 }
 
-/// Rays that share a point in beams, all others by trace_without_beams. When a beam is
-/// given up, its rays go interleaved; when several in a row are, so do the next ones without a trial: one
-/// beam after the second, three after the third, then seven. With `insist` no beam is given up.
+/// Rays that share a point in beams, all others by trace_without_beams(). When a beam is given up, its rays
+/// are traced interleaved. When several in a row are, the next rays go interleaved without a trial: those of
+/// one beam after the second, of three after the third, then of seven. With `insist` no beam is given up.
 template <Query Q, class A>
 void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
   const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel);

@@ -62,7 +62,7 @@ class HitGroups {
   static constexpr std::uint16_t kNone = 0xffff;
   static constexpr std::size_t kSlots = 2 * kMost;
 
-  /// The group of that name; new ones have no entries.
+  /// The group of these hits. If it is new, it has no entries.
   HitGroup& find(const Accel& accel, Kind kind, std::uint32_t part) {
     const auto is = [&](const HitGroup& g) { return g.accel == &accel && g.kind == kind && g.part == part; };
     if (count_ > 0 && is(groups_[latest_])) return groups_[latest_];

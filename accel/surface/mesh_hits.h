@@ -18,7 +18,7 @@ struct MeshHits {
   float corner[3][3][kMost];  ///< [corner][axis], in the mesh's own space
   float normal[3][3][kMost];  ///< normals at the corners, if frame.smooth; see MeshSurface
   float u[kMost], v[kMost];
-  std::uint32_t entry[kMost];  ///< of `out`
+  std::uint32_t entry[kMost];  ///< index of each hit in `out`
   InteractionBlock* out;       ///< receives the columns of MeshSurface
 };
 

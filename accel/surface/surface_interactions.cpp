@@ -53,7 +53,7 @@ class SurfaceFinder {
     if (place_.accel == nullptr || hit.instance != path_) {
       // The groups inside an instance share its map.
       if (place_.moved) find_surfaces(moved_, true);
-      // The usual place is not copied: most of it are maps.
+      // The usual place is not copied, because its maps are large.
       if (hit.instance == kNoId && !place_.changes())
         place_.accel = &accel_;
       else
@@ -164,7 +164,7 @@ class SurfaceFinder {
 
   HitPlace place_;  ///< of the latest hit
   std::uint32_t path_ = kNoId;
-  HitGroups standing_, moved_;  ///< hits outside instances; those inside of `place_`
+  HitGroups standing_, moved_;  ///< hits outside instances, and hits in the instance `place_`
   std::size_t combinations_ = 0;
   Combined combined_[kMost];
   float inner_origin_[3][kMost], inner_direction_[3][kMost], inner_t_[kMost], inner_part_[kMost];

@@ -98,19 +98,21 @@ struct Revolution {
     list.finish(D(roots::kNoRoot));
   }
 
-  /// x^2 + z^2 - f(y)^2 of the cell's piece, in Bernstein coefficients from products of those of its parts.
+  /// Classifies x^2 + z^2 - f(y)^2 of the cell's piece. Its Bernstein coefficients are made of products of
+  /// those of x, z and f.
   template <class F>
   OKTETT_INLINE static SegmentVerdict<F> classify(const Pool& pool, const ExactCell& cell,
                                                   const Segment<F>& s, F& at) {
     const RevolutionElement& e = pool.elements[cell.element];
     const RevolutionElement::Piece& piece = e.pieces[cell.begin];
+    // Bounds on the polynomial of the piece and on its slope, also a little beyond |v| = 1.
     double size = 0, rise = 0;
     for (int k = 0; k <= e.degree; ++k)
       size += 1.25 * std::fabs(piece.c[k]), rise += 1.25 * k * std::fabs(piece.c[k]);
     const double v_error = piece.per_half * (s.error + 0x1p-20);
     if (!(v_error < 0.03)) {
       at = F(0.5f);
-      const auto nothing = at < at;
+      const auto nothing = F::M::from_bits(0);
       return {nothing, nothing, nothing};
     }
     const double reach = std::sqrt(piece.greatest2) + 0.25;
@@ -128,15 +130,15 @@ struct Revolution {
       F most = c[0];
       for (int k = 1; k < M; ++k) most = max(most, c[k]);
       inside_all = most < -margin;
-      // Other cells may be inside before.
+      // A line that is inside from the beginning may have entered in another cell.
       verdict.inside = verdict.inside & (margin < c[0]);
     };
     F f[4];
     blossoms(piece, e.degree, v, w, f);
     if (e.squared) {
-      const F third(1 / 3.0f), middle2 = q[1] + q[1];
-      const F c[4] = {q[0] - f[0], fast_fms(q[0] + middle2, third, f[1]),
-                      fast_fms(middle2 + q[2], third, f[2]), q[2] - f[3]};
+      const F third(1 / 3.0f), twice = q[1] + q[1];
+      const F c[4] = {q[0] - f[0], fast_fms(q[0] + twice, third, f[1]), fast_fms(twice + q[2], third, f[2]),
+                      q[2] - f[3]};
       finish(c);
     } else if (e.degree == 1) {
       const F c[3] = {q[0] - f[0] * f[0], q[1] - f[0] * f[1], q[2] - f[1] * f[1]};
@@ -155,8 +157,8 @@ struct Revolution {
       finish(c);
     }
     if (!(2 * reach + rise * piece.per_half * (e.squared ? 1 : 2 * size) < 64))
-      verdict.falls = verdict.falls & ~verdict.falls;
-    // Inside all the way it crosses the planes only.
+      verdict.falls = F::M::from_bits(0);
+    // A line that is inside from end to end crosses only planes, and this piece lists none.
     if (!piece.ends[0].listed && !piece.ends[1].listed) verdict.misses = verdict.misses | inside_all;
     return verdict;
   }
@@ -219,7 +221,7 @@ struct Revolution {
     D part;
   };
 
-  /// The polynomial of a piece in Bernstein coefficients from v to w.
+  /// The Bernstein coefficients of a piece's polynomial from v to w: values of its polar form.
   template <class F>
   OKTETT_INLINE static void blossoms(const RevolutionElement::Piece& piece, int degree, const F& v,
                                      const F& w, F (&f)[4]) {

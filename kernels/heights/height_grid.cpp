@@ -96,7 +96,7 @@ void HeightGrid::build_pyramid() {
   std::uint32_t side = kBlock, columns = parts(columns_ - 1, side), rows = parts(rows_ - 1, side);
   for (;;) {
     const std::uint32_t most = std::max(columns, rows);
-    // One level more has 2 x 2 blocks at most, or else 3 x 3 or 4 x 4.
+    // With 4 x 4 blocks to a node, the next level would have 2 x 2 blocks at most; so it has up to 4 x 4.
     const std::uint32_t split = most > kBlock && most <= 2 * kBlock ? 2 : kBlock;
     const Level level{side, split, columns, rows, parts(columns, split), parts(rows, split), node_count_};
     level_[levels_++] = level;

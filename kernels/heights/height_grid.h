@@ -24,8 +24,8 @@ struct alignas(64) HeightNode {
 };
 static_assert(sizeof(HeightNode) == 64);
 
-/// The blocks of the last level, least and greatest, in the order in which lines of one quadrant pass them;
-/// infinity and -infinity where there is no block.
+/// The least and greatest values of the blocks of the last level, in the order in which lines of one quadrant
+/// pass them; infinity and -infinity where there is no block.
 struct alignas(64) HeightRoot {
   float least[16], greatest[16];
 };
@@ -33,8 +33,8 @@ struct alignas(64) HeightRoot {
 /// Immutable. Samples are 16-bit numbers or floats; they stand in tiles of 8 x 8, so that what is near each
 /// other in the field is so in memory. Cell (i, j) lies between the columns i and i + 1 and the rows j and
 /// j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k + 1) cells, 4 x 4 of them to a node; the last
-/// level has one node. Where that would have no more than 2 x 2 blocks, the nodes of the level below have 2 x
-/// 2, so that the last one has more: it is what every line looks at. That adds 2/15 to 16-bit samples.
+/// level has one node. Every line tests it, so it should have more than 2 x 2 blocks; where it would not, the
+/// nodes of the level below have 2 x 2 blocks. The pyramid takes 2/15 of the bytes of 16-bit samples.
 class HeightGrid {
  public:
   /// Cells along a side of the smallest blocks, and blocks along a side of a node.
@@ -100,7 +100,7 @@ class HeightGrid {
     return word_data_ != nullptr ? static_cast<double>(word_data_[place])
                                  : static_cast<double>(float_data_[place]);
   }
-  /// The samples about the block whose first cell is (i, j): they are wanted soon.
+  /// Prefetches the samples of the block whose first cell is (i, j).
   OKTETT_INLINE void prefetch_block(std::uint32_t i, std::uint32_t j) const {
     const std::size_t size = word_data_ != nullptr ? sizeof(std::uint16_t) : sizeof(float);
     const auto* samples = word_data_ != nullptr ? reinterpret_cast<const char*>(word_data_)
@@ -128,7 +128,7 @@ class HeightGrid {
     const Level& l = level_[level];
     return node_data_[l.first + i + std::size_t{j} * l.columns];
   }
-  /// Of lines that go back in x (bit 0) and in z (bit 1).
+  /// The last level for lines that go back in x (bit 0) and in z (bit 1).
   OKTETT_INLINE const HeightRoot& root(unsigned quadrant) const { return roots_[quadrant]; }
   /// A block has samples from least() + step() * node.least[...] to least() + step() * node.greatest[...].
   OKTETT_INLINE double step() const { return step_; }

@@ -1,11 +1,11 @@
 #pragma once
-/// \file The way of many lines over a height field from its whole down to single cells, past blocks of cells
-/// that have nothing at the heights of the lines.
+/// \file Many lines over a height field: down its pyramid to single cells. Blocks of cells are skipped if the
+/// lines pass above or below all their heights.
 ///
 /// Lines that keep close together go down in a bundle, others alone; the 16 blocks of a node of the pyramid
-/// are tested at once. Each line queues the smallest blocks that it may meet. Over the cells of these all
-/// lines walk at the same time, each in a block of its own: even neighbouring lines hardly ever meet the same
-/// cells, but so all lanes are busy.
+/// are tested at once. Each line queues the smallest blocks that it may meet. Then all lines walk over the
+/// cells of these at the same time, each in a block of its own. Even neighbouring lines rarely meet the same
+/// cells, but this keeps all lanes busy.
 
 #include <algorithm>
 #include <bit>
@@ -36,7 +36,7 @@ class PyramidWalk {
   static constexpr int W = D::kWidth;
   using A = typename D::Isa;
   static constexpr std::uint32_t kBlock = HeightGrid::kBlock;
-  /// Lines that are not farther than this many cells from one of them go together, if they are enough.
+  /// Lines within this many cells of one of them make a bundle, if there are at least kLeastBundle.
   static constexpr float kClose = 12;
   static constexpr int kLeastBundle = 3;
   static constexpr int kNode = 16, kQueue = 3 * kNode + 1;
@@ -47,11 +47,11 @@ class PyramidWalk {
   };
   struct Node {
     std::uint32_t i, j;
-    unsigned left;  ///< blocks to be looked at, in the order of the lines
+    unsigned left;  ///< blocks yet to visit, as bits in the order of the lines
   };
   struct Bundle : HeightBundle {
     Node stack[HeightGrid::kMaxLevels];
-    int level;  ///< of the node that is looked at; those above it are behind it
+    int level;  ///< of the current node, stack[level]; the nodes above it follow in the stack
   };
 
   OKTETT_INLINE void make_bundles() {
@@ -65,7 +65,7 @@ class PyramidWalk {
     };
     const int root = s_.grid.levels() - 1;
     unsigned left = bits(s_.wanted), met[W];
-    // Most lines that are on their own, and miss the field, do so here, one like the other.
+    // Most lines that go alone and miss the field are rejected here, without a mispredicted branch.
     if (std::popcount(left) < kLeastBundle || near(left) != left)
       left = height::meet_root<A>(s_.grid, lines, left, g_.forward_x, g_.forward_z, met);
     while (left != 0) {
@@ -93,7 +93,7 @@ class PyramidWalk {
     return bits(max(apart(lines.x), apart(lines.z)) <= F(kClose));
   }
 
-  /// Looks at node (i, j) of the level below.
+  /// Goes down to node (i, j) of the level below, if the lines may meet any of its blocks.
   OKTETT_INLINE void enter(Bundle& b, std::uint32_t i, std::uint32_t j) {
     const int level = b.level - 1;
     const unsigned met = b.template meets<A>(s_.grid.node(level, i, j), static_cast<int>(i),
@@ -102,7 +102,7 @@ class PyramidWalk {
     b.level = level, b.stack[level] = {i, j, met};
   }
 
-  /// Down to the next of the smallest blocks, until every line has one.
+  /// Goes down the pyramid and queues the smallest blocks, until every line has one.
   OKTETT_INLINE void descend(Bundle& b) {
     const unsigned wanted = b.lanes & bits(s_.wanted);
     if (wanted == 0) b.level = s_.grid.levels();
@@ -137,7 +137,7 @@ class PyramidWalk {
       const Block block{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), heights.least[k],
                         heights.greatest[k]};
       const unsigned met = alone ? wanted : wanted & lines_at(b, block);
-      // Whom the block does not matter overwrites it by the next one.
+      // Lines that do not meet the block overwrite it with the next one.
       for (int lane = 0; lane < W; ++lane) {
         queue_[lane][length_[lane]] = block;
         length_[lane] += static_cast<int>(met >> lane & 1);
@@ -166,7 +166,7 @@ class PyramidWalk {
     int taken[W] = {};
     M walking = ~M::all_true();
     for (;;) {
-      // Who is through with a block takes the next one.
+      // Lines that have finished a block take their next one.
       unsigned fresh = 0;
       for (unsigned free = queued_ & bits(s_.wanted) & ~bits(walking); free != 0; free &= free - 1) {
         const int lane = std::countr_zero(free);
@@ -196,7 +196,7 @@ class PyramidWalk {
     D i = D(0.0), j = D(0.0), last_i = D(0.0), last_j = D(0.0);  ///< the last ones are of the block
   };
 
-  /// To the cell where a line comes to heights that its block has, or one before it.
+  /// Takes lines to the cell where they reach the heights of their block, or to one before it.
   OKTETT_INLINE void enter_blocks(Walk& w, const M& fresh) const {
     const D i = D::load(w.block_i), j = D::load(w.block_j), zero(0.0), end(static_cast<double>(kBlock));
     const D x_in = g_.at_column(i + select(g_.forward_x, zero, end));
@@ -219,7 +219,7 @@ class PyramidWalk {
     w.last_i = last_i, w.last_j = last_j;
   }
 
-  /// Looks at the cells and goes to the next ones.
+  /// Tests the cell of each line, and takes the line to the next one.
   OKTETT_INLINE void step(Walk& w, M& walking) {
     const GridCell<D> cell(s_.grid, w.i, w.j, g_.forward_x, g_.forward_z);
     const D zero(0.0), one(1.0);

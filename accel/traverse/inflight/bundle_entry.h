@@ -1,7 +1,7 @@
 #pragma once
-/// \file Where short rays that start close together enter the tree. The nodes and leaves that a box around
-/// all of them meets replace the top of the tree, so that each ray skips the levels that tell none of them
-/// apart.
+/// \file Where short rays that start close together enter the tree: at the nodes and leaves that a box around
+/// all of them meets. They replace the top of the tree, whose levels cost each ray steps and hardly ever
+/// separate the rays.
 
 #include "accel/traverse/inflight/inflight_ray.h"
 
