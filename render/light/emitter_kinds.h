@@ -1,0 +1,60 @@
+#pragma once
+/// \file The functions of emitter.h for each kind of emitter.
+
+#include <cmath>
+#include <optional>
+
+#include "render/light/emitter.h"
+
+namespace oktett {
+
+/// Below this solid angle flat emitters are sampled by area: it hardly differs, and is exact.
+inline constexpr double kLeastSolidAngle = 1e-6;
+
+std::optional<LightSample> sample_kind(const TriangleEmitter& e, const LightPoint& p, const SquareSample& s);
+std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoint& p, const SquareSample& s);
+std::optional<LightSample> sample_kind(const DiskEmitter& e, const LightPoint& p, const SquareSample& s);
+std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint& p, const SquareSample& s);
+std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p, const SquareSample& s);
+std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p, const SquareSample& s);
+std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint& p,
+                                       const SquareSample& s);
+std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint& p,
+                                       const SquareSample& s);
+
+float pdf_kind(const TriangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const RectangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const DiskEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const PointEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const SpotEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const DirectionalEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+float pdf_kind(const EnvironmentEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
+
+/// The bounds without a check of their numbers.
+std::optional<LightBounds> bounds_kind(const TriangleEmitter& e);
+std::optional<LightBounds> bounds_kind(const RectangleEmitter& e);
+std::optional<LightBounds> bounds_kind(const DiskEmitter& e);
+std::optional<LightBounds> bounds_kind(const SphereEmitter& e);
+std::optional<LightBounds> bounds_kind(const PointEmitter& e);
+std::optional<LightBounds> bounds_kind(const SpotEmitter& e);
+
+/// A sample at the end of `to`, the vector from the point. Nothing if pdf or distance are 0, infinite or NaN,
+/// or the light is not finite.
+inline std::optional<LightSample> sample_at(const Vec3d& to, const Color& radiance, double pdf, bool delta,
+                                            double u = 0, double v = 0) {
+  const double length_of_to = length(to);
+  const auto distance = static_cast<float>(length_of_to), density = static_cast<float>(pdf);
+  const auto usable = [](float x) { return x > 0 && std::isfinite(x); };
+  if (!usable(distance) || !usable(density) || !is_finite(radiance)) return std::nullopt;
+  return LightSample{.direction = Vec3f(to / length_of_to),
+                     .distance = distance,
+                     .radiance = radiance,
+                     .pdf = density,
+                     .delta = delta,
+                     .emitter = 0,
+                     .u = static_cast<float>(u),
+                     .v = static_cast<float>(v)};
+}
+
+}  // namespace oktett

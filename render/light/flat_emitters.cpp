@@ -1,0 +1,203 @@
+/// \file Triangles, parallelograms and disks.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/math.h"
+#include "render/light/emitter_kinds.h"
+#include "render/light/spherical_rectangle.h"
+#include "render/light/spherical_triangle.h"
+
+namespace oktett {
+
+/// What the kinds share: the plane of an emitter as seen from a point.
+struct Facing {
+  Vec3d normal;   ///< not unit: its length is twice the area of a triangle, the area of a parallelogram
+  double height;  ///< of the point over the front of the plane, times the length of the normal
+
+  /// Whether the emitter lights points on this side of its plane.
+  bool lights(bool both_sides) const { return both_sides ? height != 0 : height > 0; }
+};
+
+/// `to` goes from the point to any place in the plane.
+static Facing facing(const Vec3d& normal, const Vec3d& to) { return {normal, -dot(normal, to)}; }
+
+/// The density, per solid angle, of points that are uniform over an area, at the end of `to`. `normal` is as
+/// long as the area is large.
+static double area_pdf(const Vec3d& to, const Vec3d& normal) {
+  const double square = dot(to, to);
+  return square * std::sqrt(square) / std::abs(dot(to, normal));
+}
+
+// Triangles.
+
+namespace {
+
+/// A triangle relative to a point.
+struct TriangleView {
+  Vec3d a, edge_u, edge_v;
+  Facing side;
+
+  TriangleView(const TriangleEmitter& e, const LightPoint& p)
+      : a(Vec3d(e.a) - Vec3d(p.position)),
+        edge_u(Vec3d(e.b) - Vec3d(e.a)),
+        edge_v(Vec3d(e.c) - Vec3d(e.a)),
+        side(facing(cross(edge_u, edge_v), a)) {}
+
+  SphericalTriangle spherical() const { return {a, a + edge_u, a + edge_v}; }
+};
+
+}  // namespace
+
+/// Where the ray along `direction` meets the plane of the triangle, as weights of the second and third corner
+/// that are clamped to the triangle.
+static void triangle_place(const TriangleView& t, const Vec3d& direction, double& u, double& v) {
+  const double volume = dot(t.side.normal, direction);
+  u = std::clamp(dot(cross(t.edge_v, t.a), direction) / volume, 0.0, 1.0);
+  v = std::clamp(dot(cross(t.a, t.edge_u), direction) / volume, 0.0, 1.0 - u);
+}
+
+std::optional<LightSample> sample_kind(const TriangleEmitter& e, const LightPoint& p, const SquareSample& s) {
+  const TriangleView t(e, p);
+  if (!t.side.lights(e.both_sides)) return std::nullopt;
+  const SphericalTriangle spherical = t.spherical();
+  double u, v;
+  if (spherical.solid_angle() >= kLeastSolidAngle) {
+    triangle_place(t, spherical.direction(s), u, v);
+    return sample_at(t.a + t.edge_u * u + t.edge_v * v, e.radiance, 1 / spherical.solid_angle(), false, u, v);
+  }
+  const double root = std::sqrt(s.x);
+  u = root * (1 - s.y), v = root * s.y;
+  const Vec3d to = t.a + t.edge_u * u + t.edge_v * v;
+  return sample_at(to, e.radiance, area_pdf(to, t.side.normal * 0.5), false, u, v);
+}
+
+float pdf_kind(const TriangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
+  const TriangleView t(e, p);
+  if (!t.side.lights(e.both_sides)) return 0;
+  const double angle = t.spherical().solid_angle();
+  if (angle >= kLeastSolidAngle) return static_cast<float>(1 / angle);
+  return static_cast<float>(area_pdf(Vec3d(direction) * double{distance}, t.side.normal * 0.5));
+}
+
+/// The bounds of a flat thing.
+static LightBounds flat_bounds(const Box& box, const Vec3d& normal, double area, const Color& radiance,
+                               bool both_sides) {
+  return {.box = box,
+          .axis = Vec3f(normalize(normal)),
+          .spread = 0,
+          .reach = static_cast<float>(std::numbers::pi / 2),
+          .both_sides = both_sides,
+          .power = static_cast<float>(color_weight(radiance) * area)};
+}
+
+std::optional<LightBounds> bounds_kind(const TriangleEmitter& e) {
+  const Vec3d normal = cross(Vec3d(e.b) - Vec3d(e.a), Vec3d(e.c) - Vec3d(e.a));
+  Box box;
+  for (const Vec3f& corner : {e.a, e.b, e.c}) box.grow(corner);
+  return flat_bounds(box, normal, length(normal) / 2, e.radiance, e.both_sides);
+}
+
+// Parallelograms.
+
+namespace {
+
+/// A parallelogram relative to a point.
+struct RectangleView {
+  Vec3d corner, edge_u, edge_v;
+  Facing side;
+
+  RectangleView(const RectangleEmitter& e, const LightPoint& p)
+      : corner(Vec3d(e.corner) - Vec3d(p.position)),
+        edge_u(e.edge_u),
+        edge_v(e.edge_v),
+        side(facing(cross(edge_u, edge_v), corner)) {}
+
+  /// The same in the plane's own coordinates, for perpendicular edges.
+  SphericalRectangle spherical(double length_u, double length_v) const {
+    const double x = dot(corner, edge_u) / length_u, y = dot(corner, edge_v) / length_v;
+    return {x, x + length_u, y, y + length_v, std::abs(side.height) / length(side.normal)};
+  }
+
+  bool perpendicular() const {
+    const double skew = dot(edge_u, edge_v);
+    return skew * skew <= 1e-12 * dot(edge_u, edge_u) * dot(edge_v, edge_v);
+  }
+};
+
+}  // namespace
+
+std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoint& p,
+                                       const SquareSample& s) {
+  const RectangleView r(e, p);
+  if (!r.side.lights(e.both_sides)) return std::nullopt;
+  if (r.perpendicular()) {
+    const double length_u = length(r.edge_u), length_v = length(r.edge_v);
+    const SphericalRectangle spherical = r.spherical(length_u, length_v);
+    if (spherical.solid_angle() >= kLeastSolidAngle) {
+      double x, y;
+      spherical.place(s, x, y);
+      const double u = std::clamp((x - dot(r.corner, r.edge_u) / length_u) / length_u, 0.0, 1.0);
+      const double v = std::clamp((y - dot(r.corner, r.edge_v) / length_v) / length_v, 0.0, 1.0);
+      return sample_at(r.corner + r.edge_u * u + r.edge_v * v, e.radiance, 1 / spherical.solid_angle(), false,
+                       u, v);
+    }
+  }
+  const Vec3d to = r.corner + r.edge_u * s.x + r.edge_v * s.y;
+  return sample_at(to, e.radiance, area_pdf(to, r.side.normal), false, s.x, s.y);
+}
+
+float pdf_kind(const RectangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
+  const RectangleView r(e, p);
+  if (!r.side.lights(e.both_sides)) return 0;
+  if (r.perpendicular()) {
+    const double angle = r.spherical(length(r.edge_u), length(r.edge_v)).solid_angle();
+    if (angle >= kLeastSolidAngle) return static_cast<float>(1 / angle);
+  }
+  return static_cast<float>(area_pdf(Vec3d(direction) * double{distance}, r.side.normal));
+}
+
+std::optional<LightBounds> bounds_kind(const RectangleEmitter& e) {
+  const Vec3d normal = cross(Vec3d(e.edge_u), Vec3d(e.edge_v));
+  Box box;
+  for (const Vec3f& corner :
+       {e.corner, e.corner + e.edge_u, e.corner + e.edge_v, e.corner + e.edge_u + e.edge_v})
+    box.grow(corner);
+  return flat_bounds(box, normal, length(normal), e.radiance, e.both_sides);
+}
+
+// Disks.
+
+/// A unit normal times the area.
+static Vec3d disk_area(const DiskEmitter& e) {
+  return normalize(Vec3d(e.normal)) * (std::numbers::pi * e.radius * e.radius);
+}
+
+std::optional<LightSample> sample_kind(const DiskEmitter& e, const LightPoint& p, const SquareSample& s) {
+  const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position), normal = disk_area(e);
+  if (!facing(normal, to_center).lights(e.both_sides)) return std::nullopt;
+  Vec3d tangent, bitangent;
+  make_basis(normalize(normal), tangent, bitangent);
+  const double radius = e.radius * std::sqrt(s.x), angle = 2 * std::numbers::pi * s.y;
+  const Vec3d to =
+      to_center + tangent * (radius * portable::cos(angle)) + bitangent * (radius * portable::sin(angle));
+  return sample_at(to, e.radiance, area_pdf(to, normal), false);
+}
+
+float pdf_kind(const DiskEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
+  const Vec3d normal = disk_area(e);
+  if (!facing(normal, Vec3d(e.center) - Vec3d(p.position)).lights(e.both_sides)) return 0;
+  return static_cast<float>(area_pdf(Vec3d(direction) * double{distance}, normal));
+}
+
+std::optional<LightBounds> bounds_kind(const DiskEmitter& e) {
+  const Vec3d n = normalize(Vec3d(e.normal));
+  const double r = e.radius;
+  const Vec3d half{r * std::sqrt(std::max(0.0, 1 - n.x * n.x)), r * std::sqrt(std::max(0.0, 1 - n.y * n.y)),
+                   r * std::sqrt(std::max(0.0, 1 - n.z * n.z))};
+  const Box box{round_down(Vec3d(e.center) - half), round_up(Vec3d(e.center) + half)};
+  return flat_bounds(box, n, r > 0 ? length(disk_area(e)) : 0, e.radiance, e.both_sides);
+}
+
+}  // namespace oktett

@@ -1,0 +1,38 @@
+#pragma once
+/// \file What light sampling is asked for, and what it answers.
+///
+/// Units: radiance in W / (m^2 sr), intensity in W / sr, irradiance in W / m^2, each per colour channel.
+
+#include <cstdint>
+
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// A point that is lit.
+struct LightPoint {
+  Vec3f position;
+  /// Unit vector; zero for a point in a medium, which light reaches from all sides.
+  Vec3f normal;
+  /// Light from behind the normal does not matter: the surface is opaque. Such light may still be sampled.
+  bool front_only = false;
+};
+
+/// Light that may reach a point from one direction, if nothing is in between.
+struct LightSample {
+  Vec3f direction;  ///< unit vector from the point towards the light
+  float distance;   ///< from the point to the light; infinity if the light is infinitely far away
+  /// Radiance that arrives; for a delta light its irradiance on a surface that faces it.
+  Color radiance;
+  /// Density of choosing `direction`, per solid angle, times the probability of choosing the emitter; for a
+  /// delta light that probability alone. Always > 0 and finite.
+  float pdf;
+  bool delta;             ///< the light is seen as a point, so no other ray can meet it
+  std::uint32_t emitter;  ///< index into the emitters of the LightSet
+  /// Where on the emitter the light comes from, for textures. Triangle: weights of the second and the third
+  /// corner. Rectangle: fractions of its edges. Environment: fractions of width and height of the map.
+  /// Others: 0.
+  float u, v;
+};
+
+}  // namespace oktett

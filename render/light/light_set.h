@@ -1,0 +1,67 @@
+#pragma once
+/// \file All lights of a scene: chooses one of them, and a direction to it.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "render/light/emitter.h"
+#include "render/light/light_sample.h"
+#include "render/light/light_tree.h"
+#include "render/sampling/square_sample.h"
+
+namespace oktett {
+
+/// Emitters that have a place are chosen by a LightTree. The others (directional light, environments and
+/// points without falloff) are few; each is chosen by its irradiance. Emitters that give no light, have no
+/// area or hold a number that is infinite or NaN are never chosen.
+///
+/// Infinite emitters that are not delta lights are seen by rays that leave the scene. They overlap: a sample
+/// of one has the radiance of all of them and the density of all of them together, as have
+/// environment_radiance and environment_pdf.
+class LightSet {
+ public:
+  LightSet() = default;
+  explicit LightSet(std::vector<Emitter> emitters);
+
+  /// Numbered as they were given.
+  const std::vector<Emitter>& emitters() const { return emitters_; }
+  /// True if sample() never finds anything.
+  bool empty() const { return tree_.empty() && distant_.empty(); }
+
+  /// A light that may reach the point. The emitter is chosen by `choice` in [0, 1), which should have many
+  /// random bits if there are many emitters, and the direction by `s`. Nothing if there is no light, or if
+  /// the chosen emitter cannot light the point; that happens although others can, and counts as a sample that
+  /// is black.
+  std::optional<LightSample> sample(const LightPoint& point, double choice, const SquareSample& s) const;
+
+  /// The density, per solid angle, with which sample() chooses the unit vector `direction` to the point of
+  /// emitter number `emitter` at `distance`, for a ray that found the emitter by another way. 0 for delta
+  /// lights and for emitters that sample() never chooses. For infinite emitters see environment_pdf.
+  float pdf(const LightPoint& point, std::uint32_t emitter, const Vec3f& direction, float distance) const;
+
+  /// The probability with which sample() chooses the emitter.
+  double probability(const LightPoint& point, std::uint32_t emitter) const;
+
+  /// Radiance of all infinite emitters that are not delta lights, in the unit vector `direction` away from a
+  /// point.
+  Color environment_radiance(const Vec3f& direction) const;
+  /// The density, per solid angle, with which sample() chooses `direction` to any infinite emitter.
+  float environment_pdf(const LightPoint& point, const Vec3f& direction) const;
+
+ private:
+  /// The probability of choosing the tree.
+  double tree_probability(const LightPoint& point) const;
+
+  static constexpr std::uint32_t kNever = 0xffffffffu;
+
+  std::vector<Emitter> emitters_;
+  LightTree tree_;
+  std::vector<std::uint32_t> placed_;   ///< numbers of the emitters in the tree
+  std::vector<std::uint32_t> in_tree_;  ///< per emitter: its number in the tree, or kNever
+  std::vector<std::uint32_t> distant_;  ///< numbers of the emitters without place that are chosen
+  std::vector<double> distant_sums_;    ///< irradiance of these up to and with each
+  std::vector<std::uint32_t> visible_;  ///< numbers of the infinite emitters that are not delta lights
+};
+
+}  // namespace oktett

@@ -1,0 +1,181 @@
+/// \file Spheres, points, spots and what is infinitely far away.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/math.h"
+#include "render/light/emitter_kinds.h"
+
+namespace oktett {
+
+static constexpr double kPi = std::numbers::pi;
+
+/// The unit vector at an angle from the unit vector `axis` whose cosine is 1 - `one_minus_cos`. `turn` in [0,
+/// 1) goes once around.
+static Vec3d around(const Vec3d& axis, double one_minus_cos, double turn) {
+  Vec3d tangent, bitangent;
+  make_basis(axis, tangent, bitangent);
+  const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2 - one_minus_cos)));
+  const double angle = 2 * kPi * turn;
+  return tangent * (sine * portable::cos(angle)) + bitangent * (sine * portable::sin(angle)) +
+         axis * (1 - one_minus_cos);
+}
+
+// Spheres.
+
+/// 1 - cosine of the half angle of the cone that a sphere fills, by the square of the sine.
+static double cap_height(double sine_square) { return sine_square / (1 + std::sqrt(1 - sine_square)); }
+
+std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint& p, const SquareSample& s) {
+  const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position);
+  const double square = dot(to_center, to_center), r = e.radius, r_square = r * r;
+  if (square >= r_square) {
+    if (!(square > 0)) return std::nullopt;
+    const double height = cap_height(r_square / square), depth = s.x * height;
+    const double center_distance = std::sqrt(square);
+    const Vec3d direction = around(to_center / center_distance, depth, s.y);
+    const double near_square = r_square - square * depth * (2 - depth);
+    const double distance = center_distance * (1 - depth) - std::sqrt(std::max(0.0, near_square));
+    return sample_at(direction * distance, e.radiance, 1 / (2 * kPi * height), false);
+  }
+  if (!e.both_sides) return std::nullopt;
+  const Vec3d direction = around({0, 0, 1}, 2 * s.x, s.y);
+  const double along = dot(to_center, direction);
+  const double distance = along + std::sqrt(along * along + (r_square - square));
+  return sample_at(direction * distance, e.radiance, 1 / (4 * kPi), false);
+}
+
+float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f&, float) {
+  const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position);
+  const double square = dot(to_center, to_center), r_square = double{e.radius} * e.radius;
+  if (square >= r_square)
+    return square > 0 ? static_cast<float>(1 / (2 * kPi * cap_height(r_square / square))) : 0;
+  return e.both_sides ? static_cast<float>(1 / (4 * kPi)) : 0;
+}
+
+std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
+  const double r = e.radius;
+  const Vec3d half{r, r, r};
+  return LightBounds{.box = {round_down(Vec3d(e.center) - half), round_up(Vec3d(e.center) + half)},
+                     .spread = static_cast<float>(kPi),
+                     .reach = static_cast<float>(kPi / 2),
+                     .power = r > 0 ? static_cast<float>(color_weight(e.radiance) * kPi * r * r) : 0};
+}
+
+// Points and spots.
+
+std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p, const SquareSample&) {
+  const Vec3d to = Vec3d(e.position) - Vec3d(p.position);
+  return sample_at(to, e.falloff ? e.intensity * static_cast<float>(1 / dot(to, to)) : e.intensity, 1, true);
+}
+
+std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p, const SquareSample&) {
+  const Vec3d to = Vec3d(e.position) - Vec3d(p.position);
+  const double square = dot(to, to), cosine = -dot(Vec3d(e.axis), to) / std::sqrt(square);
+  const double width = double{e.cos_inner} - e.cos_outer;
+  if (!(cosine > e.cos_outer)) return std::nullopt;
+  const double t = cosine >= e.cos_inner ? 1 : (cosine - e.cos_outer) / width;
+  return sample_at(to, e.intensity * static_cast<float>(t * t * (3 - 2 * t) / square), 1, true);
+}
+
+float pdf_kind(const PointEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
+float pdf_kind(const SpotEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
+
+std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
+  if (!e.falloff) return std::nullopt;
+  return LightBounds{.box = {e.position, e.position},
+                     .spread = static_cast<float>(kPi),
+                     .reach = static_cast<float>(kPi / 2),
+                     .power = color_weight(e.intensity)};
+}
+
+std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
+  const double inner = portable::acos(std::clamp(double{e.cos_inner}, -1.0, 1.0));
+  const double outer = portable::acos(std::clamp(double{e.cos_outer}, -1.0, 1.0));
+  const double spread = std::max(std::min(inner, outer), outer - kPi / 2);
+  return LightBounds{.box = {e.position, e.position},
+                     .axis = normalize(e.axis),
+                     .spread = static_cast<float>(spread),
+                     .reach = static_cast<float>(outer - spread),
+                     .power = color_weight(e.intensity)};
+}
+
+// Directional light and environments.
+
+/// 1 - cosine of the angular radius.
+static double disk_height(const DirectionalEmitter& e) {
+  const double sine = portable::sin(e.angle / 4.0);
+  return 2 * sine * sine;
+}
+
+/// The radiance of the disk.
+static Color disk_radiance(const DirectionalEmitter& e) {
+  const double sine = portable::sin(e.angle / 2.0);
+  return e.irradiance * static_cast<float>(1 / (kPi * sine * sine));
+}
+
+static bool in_disk(const DirectionalEmitter& e, const Vec3f& direction) {
+  // The square of the chord between the directions keeps its accuracy for small angles.
+  const Vec3d chord = Vec3d(direction) - Vec3d(e.direction);
+  return dot(chord, chord) <= 2 * disk_height(e);
+}
+
+std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint&,
+                                       const SquareSample& s) {
+  LightSample sample{.direction = e.direction,
+                     .distance = std::numeric_limits<float>::infinity(),
+                     .radiance = e.irradiance,
+                     .pdf = 1,
+                     .delta = true,
+                     .emitter = 0,
+                     .u = 0,
+                     .v = 0};
+  if (!(e.angle > 0)) return sample;
+  sample.direction = Vec3f(around(Vec3d(e.direction), s.x * disk_height(e), s.y));
+  sample.radiance = disk_radiance(e);
+  sample.pdf = static_cast<float>(1 / (2 * kPi * disk_height(e)));
+  sample.delta = false;
+  return sample;
+}
+
+float pdf_kind(const DirectionalEmitter& e, const LightPoint&, const Vec3f& direction, float) {
+  return e.angle > 0 && in_disk(e, direction) ? static_cast<float>(1 / (2 * kPi * disk_height(e))) : 0;
+}
+
+std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint&,
+                                       const SquareSample& s) {
+  if (!e.map || !e.map->samples()) return std::nullopt;
+  const EnvironmentMap::Sample sample = e.map->sample(s);
+  return LightSample{.direction = sample.direction,
+                     .distance = std::numeric_limits<float>::infinity(),
+                     .radiance = sample.radiance,
+                     .pdf = sample.pdf,
+                     .delta = false,
+                     .emitter = 0,
+                     .u = sample.u,
+                     .v = sample.v};
+}
+
+float pdf_kind(const EnvironmentEmitter& e, const LightPoint&, const Vec3f& direction, float) {
+  return e.map ? e.map->pdf(direction) : 0;
+}
+
+Color infinite_radiance(const Emitter& emitter, const Vec3f& direction) {
+  if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter))
+    return e->map ? e->map->radiance(direction) : Color{};
+  if (const auto* e = std::get_if<DirectionalEmitter>(&emitter))
+    return e->angle > 0 && in_disk(*e, direction) ? disk_radiance(*e) : Color{};
+  return {};
+}
+
+double distant_irradiance(const Emitter& emitter) {
+  if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter))
+    return e->map && e->map->samples() ? kPi * e->map->mean_radiance() : 0;
+  if (const auto* e = std::get_if<DirectionalEmitter>(&emitter)) return color_weight(e->irradiance);
+  if (const auto* e = std::get_if<PointEmitter>(&emitter)) return e->falloff ? 0 : color_weight(e->intensity);
+  return 0;
+}
+
+}  // namespace oktett

@@ -1,0 +1,279 @@
+#include "render/light/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "render/light/emitter.h"
+#include "tests/render/light_checks.h"
+
+namespace oktett {
+namespace {
+
+using namespace light_checks;
+
+/// Emitters of all kinds that have a place, in a cube of edge `size`.
+std::vector<Emitter> mixed_emitters(std::size_t count, double size, std::uint64_t key) {
+  Random random(key);
+  std::vector<Emitter> all;
+  while (all.size() < count) {
+    const Vec3f p = Vec3f(Vec3d{random(), random(), random()} * size);
+    const float r = static_cast<float>(size * 0.1 * std::pow(random(), 4) + 1e-4);
+    const float power = static_cast<float>(std::exp(random.between(-6, 6)));
+    const Color color = Color{1, 0.5f, 0.2f} * power;
+    const bool both = random() < 0.5;
+    switch (all.size() % 5) {
+      case 0:
+        all.emplace_back(
+            TriangleEmitter{p, p + random.direction() * r, p + random.direction() * r, color, both});
+        break;
+      case 1:
+        all.emplace_back(DiskEmitter{p, random.direction(), r, color, both});
+        break;
+      case 2:
+        all.emplace_back(SphereEmitter{p, r, color, both});
+        break;
+      case 3:
+        all.emplace_back(PointEmitter{p, color});
+        break;
+      default: {
+        const auto outer = static_cast<float>(random.between(-0.99, 0.99));
+        const auto inner = static_cast<float>(random.between(outer, 1));
+        all.emplace_back(SpotEmitter{p, random.direction(), color, inner, outer});
+      }
+    }
+  }
+  return all;
+}
+
+std::vector<LightBounds> bounds_of(const std::vector<Emitter>& emitters) {
+  std::vector<LightBounds> bounds;
+  for (const Emitter& e : emitters) bounds.push_back(*light_bounds(e));
+  return bounds;
+}
+
+LightPoint random_point(Random& random, double size) {
+  LightPoint point{
+      Vec3f(Vec3d{random.between(-0.2, 1.2), random.between(-0.2, 1.2), random.between(-0.2, 1.2)} * size),
+      random.direction(), random() < 0.5};
+  if (random() < 0.2) point.normal = {};
+  return point;
+}
+
+/// Some point of the emitter lights `point`.
+bool lights(const Emitter& emitter, const LightPoint& point, Random& random) {
+  for (int i = 0; i < 30; ++i) {
+    const auto s = sample_emitter(emitter, point, random.square());
+    if (!s) continue;
+    if (!point.front_only || dot(s->direction, point.normal) > 0) return true;
+  }
+  return false;
+}
+
+TEST(LightTree, ProbabilitiesOfAllEmittersSumToOne) {
+  for (const std::size_t count : {1, 2, 3, 10, 300}) {
+    const LightTree tree(bounds_of(mixed_emitters(count, 10, count)));
+    Random random(count);
+    for (int i = 0; i < 50; ++i) {
+      const LightPoint point = random_point(random, 10);
+      double sum = 0;
+      for (std::uint32_t j = 0; j < count; ++j) sum += tree.probability(point, j);
+      ASSERT_NEAR(sum, 1, 1e-6);
+    }
+  }
+}
+
+TEST(LightTree, ChoosesAsOftenAsTheProbabilitySays) {
+  constexpr std::size_t kCount = 60;
+  constexpr int kChoices = 50000;
+  const LightTree tree(bounds_of(mixed_emitters(kCount, 3, 7)));
+  Random random(8);
+  for (int i = 0; i < 10; ++i) {
+    const LightPoint point = random_point(random, 3);
+    std::vector<double> expected(kCount), counted(kCount);
+    for (std::uint32_t j = 0; j < kCount; ++j) expected[j] = tree.probability(point, j) * kChoices;
+    for (int j = 0; j < kChoices; ++j) {
+      const auto choice = tree.choose(point, random());
+      ASSERT_TRUE(choice);
+      ASSERT_EQ(choice->probability, tree.probability(point, choice->index));
+      ++counted[choice->index];
+    }
+    EXPECT_LT(chi_squared(expected, counted), 4);
+  }
+}
+
+// Points in and out of boxes, near and far, of either orientation; a point on the emitter, too.
+TEST(LightTree, NeverLeavesOutAnEmitterThatLightsThePoint) {
+  for (const double size : {1e-3, 1.0, 1e6}) {
+    const std::vector<Emitter> emitters = mixed_emitters(400, size, 3);
+    const std::vector<LightBounds> bounds = bounds_of(emitters);
+    const LightTree tree(bounds);
+    Random random(4);
+    for (int i = 0; i < 40; ++i) {
+      LightPoint point = random_point(random, size);
+      if (i % 4 == 0) point.position = bounds[static_cast<std::size_t>(i)].box.lo;
+      if (i % 4 == 1) point.position = bounds[static_cast<std::size_t>(i)].box.center();
+      for (std::uint32_t j = 0; j < emitters.size(); ++j)
+        if (lights(emitters[j], point, random)) {
+          ASSERT_GT(tree.probability(point, j), 0) << j;
+        }
+    }
+  }
+}
+
+// Two emitters only, so that no other bounds hide a fault: at the border of what each can light.
+TEST(LightTree, IsConservativeAtGrazingAngles) {
+  Random random(5);
+  int lit = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3f n = random.direction();
+    Vec3f t, b;
+    make_basis(n, t, b);
+    const auto r = static_cast<float>(std::exp(random.between(-6, 3)));
+    // The point is just above the plane of the disk, and the disk just above that of the point.
+    const auto above = [&] { return static_cast<float>(std::exp(random.between(-14, -1))); };
+    const DiskEmitter disk{random.direction() * 10.0f, n, r, {1, 1, 1}};
+    LightPoint point{disk.center + t * static_cast<float>(1 + r * random()) + n * above(), {}, true};
+    point.normal = normalize(-n + b * above());
+    const Emitter far = SphereEmitter{{100, 100, 100}, 1, {1, 1, 1}};
+    const LightTree tree(bounds_of({disk, far}));
+    if (!lights(disk, point, random)) continue;
+    ++lit;
+    ASSERT_GT(tree.probability(point, 0), 0);
+  }
+  EXPECT_GT(lit, 500);
+}
+
+TEST(LightTree, HoldsNoEmitters) {
+  const LightTree tree(std::vector<LightBounds>{});
+  EXPECT_TRUE(tree.empty());
+  EXPECT_FALSE(tree.choose({}, 0.5));
+  EXPECT_EQ(tree.importance({}), 0);
+}
+
+TEST(LightTree, HoldsManyEmittersAtOnePlace) {
+  const std::vector<LightBounds> bounds(1000, *light_bounds(PointEmitter{{1, 2, 3}, {1, 1, 1}}));
+  const LightTree tree(bounds);
+  for (const Vec3f& p : {Vec3f{0, 0, 0}, Vec3f{1, 2, 3}}) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < 1000; ++i) sum += tree.probability({p, {}}, i);
+    EXPECT_NEAR(sum, 1, 1e-6);
+    EXPECT_NEAR(tree.probability({p, {}}, 17), 1e-3, 1e-4);
+  }
+}
+
+// Positions and powers in geometric progression make splits that separate one emitter at a time.
+TEST(LightTree, StaysShallowEnoughForItsTrails) {
+  std::vector<LightBounds> bounds;
+  for (int i = -120; i < 120; ++i)
+    bounds.push_back(
+        *light_bounds(PointEmitter{{std::ldexp(1.0f, i), 0, 0}, Color{1, 1, 1} * std::ldexp(1.0f, i)}));
+  const LightTree tree(bounds);
+  Random random(1);
+  for (int i = 0; i < 100; ++i) {
+    const LightPoint point{{static_cast<float>(std::exp(random.between(-80, 80))), 0, 1e-3f}, {}};
+    const auto choice = tree.choose(point, random());
+    ASSERT_EQ(choice->probability, tree.probability(point, choice->index));
+    double sum = 0;
+    for (std::uint32_t j = 0; j < bounds.size(); ++j) sum += tree.probability(point, j);
+    ASSERT_NEAR(sum, 1, 1e-5);
+  }
+}
+
+std::vector<LightBounds> small_panels(std::size_t count) {
+  Random random(2);
+  std::vector<LightBounds> bounds(count);
+  for (LightBounds& b : bounds) {
+    const Vec3f p = Vec3f(Vec3d{random(), random(), random()} * 100.0);
+    b = {.box = {p, p + Vec3f{0.01f, 0.01f, 0.01f}},
+         .axis = random.direction(),
+         .reach = static_cast<float>(kPi / 2),
+         .power = 1};
+  }
+  return bounds;
+}
+
+TEST(LightTree, HoldsAMillionEmitters) {
+  constexpr std::size_t kCount = 1000000;
+  const LightTree tree(small_panels(kCount));
+  EXPECT_LE(tree.bytes(), kCount * (64 + 8));
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const LightPoint point = random_point(random, 100);
+    const auto choice = tree.choose(point, random());
+    ASSERT_TRUE(choice);
+    ASSERT_EQ(choice->probability, tree.probability(point, choice->index));
+  }
+}
+
+// Large enough to be built by several threads.
+TEST(LightTree, IsTheSameForEveryBuild) {
+  const std::vector<LightBounds> bounds = small_panels(20000);
+  const LightTree tree(bounds), again(bounds);
+  Random random(4);
+  for (int i = 0; i < 10000; ++i) {
+    const LightPoint point = random_point(random, 100);
+    const double u = random();
+    const auto a = tree.choose(point, u), b = again.choose(point, u);
+    ASSERT_EQ(a->index, b->index);
+    ASSERT_EQ(a->probability, b->probability);
+  }
+}
+
+// The tree prefers what brings more light: with many small lamps the noise is far below that of a choice by
+// power.
+TEST(LightTree, ChoosesNearAndFacingEmittersMoreOften) {
+  std::vector<Emitter> lamps;
+  for (int x = 0; x < 30; ++x)
+    for (int y = 0; y < 30; ++y)
+      lamps.emplace_back(
+          DiskEmitter{{static_cast<float>(x), 3, static_cast<float>(y)}, {0, -1, 0}, 0.1f, {1, 1, 1}});
+  const LightTree tree(bounds_of(lamps));
+  Random random(3);
+  for (int i = 0; i < 20; ++i) {
+    const LightPoint point{
+        {static_cast<float>(random.between(0, 29)), 0, static_cast<float>(random.between(0, 29))},
+        {0, 1, 0},
+        true};
+    // The variance of value / probability: value is the irradiance of each lamp.
+    double total = 0, by_tree = 0, by_power = 0;
+    for (std::uint32_t j = 0; j < lamps.size(); ++j) {
+      const Vec3d to = Vec3d(std::get<DiskEmitter>(lamps[j]).center) - Vec3d(point.position);
+      const double value = to.y * to.y / (dot(to, to) * dot(to, to));
+      total += value;
+      by_tree += value * value / tree.probability(point, j);
+      by_power += value * value * static_cast<double>(lamps.size());
+    }
+    EXPECT_LT((by_tree - total * total) * 4, by_power - total * total);
+  }
+}
+
+TEST(LightBounds, JoinedConesHoldBoth) {
+  Random random(6);
+  for (int i = 0; i < 20000; ++i) {
+    LightBounds a, b;
+    a.axis = random.direction();
+    b.axis = i % 5 == 0   ? a.axis
+             : i % 5 == 1 ? -a.axis
+             : i % 5 == 2 ? normalize(a.axis + random.direction() * 1e-4f)
+                          : random.direction();
+    a.spread = static_cast<float>(random() < 0.3 ? 0 : random.between(0, kPi));
+    b.spread = static_cast<float>(random() < 0.3 ? 0 : random.between(0, kPi));
+    a.both_sides = random() < 0.3, b.both_sides = random() < 0.3;
+    a.box.grow(random.direction()), b.box.grow(random.direction());
+    const LightBounds sum = join(a, b);
+    EXPECT_TRUE(sum.box.contains(a.box) && sum.box.contains(b.box));
+    ASSERT_NEAR(length(sum.axis), 1, 1e-5f);
+    for (const LightBounds& part : {a, b}) {
+      // The normal of the part that is farthest from the axis of the sum.
+      const Vec3d p(part.axis), s(sum.axis);
+      double between = std::atan2(length(cross(p, s)), dot(p, s));
+      if (sum.both_sides && part.both_sides) between = std::min(between, kPi - between);
+      ASSERT_LE(std::min(between + part.spread, kPi), sum.spread + 1e-6) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace oktett
