@@ -5,28 +5,10 @@
 #include <cstring>
 #include <vector>
 
-#include "core/random.h"
+#include "tests/support/triangle_cases.h"
 
 namespace oktett {
 namespace {
-
-/// Random numbers that depend on a counter alone.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : key_(mix_bits(seed)) {}
-  float sign() { return 2 * random_float(key_, 0, next_++) - 1; }
-  Vec3f vector() {
-    const float x = sign(), y = sign(), z = sign();
-    return {x, y, z};
-  }
-  std::uint32_t below(std::uint32_t n) {
-    return static_cast<std::uint32_t>(random_bits(key_, 1, next_++) % n);
-  }
-
- private:
-  std::uint64_t key_;
-  std::uint32_t next_ = 0;
-};
 
 template <int N>
 struct Pairs {
@@ -37,7 +19,8 @@ struct Pairs {
 
 /// Rays towards a point, an edge point or a corner of a triangle of `blocks` each.
 template <int N>
-Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, Random& random, std::vector<Ray>& rays) {
+Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& random,
+                    std::vector<Ray>& rays) {
   using F = Simd<float, N, ScalarIsa>;
   Pairs<N> p;
   rays.clear();
@@ -71,7 +54,7 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, Random& random, st
   return p;
 }
 
-std::vector<TriangleBlock> random_blocks(Random& random) {
+std::vector<TriangleBlock> random_blocks(TriangleRandom& random) {
   std::vector<TriangleBlock> blocks(9);
   for (TriangleBlock& b : blocks) {
     for (auto& corner : b.v)
@@ -90,7 +73,7 @@ bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 template <int N>
 void expect_same_as_alone() {
   using One = Simd<float, 1, ScalarIsa>;
-  Random random(static_cast<std::uint64_t>(N));
+  TriangleRandom random(static_cast<std::uint64_t>(N));
   const std::vector<TriangleBlock> blocks = random_blocks(random);
   int hits = 0, misses = 0, axes[3] = {};
   std::vector<Ray> rays;
@@ -133,7 +116,7 @@ TEST(DecidePairs, SameAsOneRayAndOneTriangle) {
 TEST(DecidePairs, GathersNearAndFar) {
   constexpr int N = 16;
   constexpr std::uint32_t kNear = 16;  // two blocks
-  Random random(5);
+  TriangleRandom random(5);
   const std::vector<TriangleBlock> blocks = random_blocks(random);
   int near = 0, far = 0;
   for (int repeat = 0; repeat < 3000; ++repeat) {

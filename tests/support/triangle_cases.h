@@ -20,6 +20,7 @@ class TriangleRandom {
     return {x, y, z};
   }
   std::uint64_t bits() { return random_bits(key_, 1, next_++); }
+  std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(bits() % n); }
 
  private:
   std::uint64_t key_;
