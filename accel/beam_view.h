@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the code of a surface sees of a beam (accel/traverse/beam/beam_rays.h).
+/// \file The part of a beam (accel/traverse/beam/beam_rays.h) that the code of a surface reads.
 
 #include <cstdint>
 
@@ -18,7 +18,7 @@ struct BeamView {
   int axis[3];
   bool mirrored;
   float farthest;  ///< greatest |x| and |y|
-  float slack;     ///< how far a line may pass from where (x, y) says that it is: slip, behind and margin
+  float slack;     ///< bounds the distance of a ray from the line that (x, y) stands for
   float near_s;
   bool any;  ///< any hit will do, and the rays end at the apex
 };
@@ -27,7 +27,7 @@ struct BeamView {
 struct BeamLanes {
   std::uint16_t maybe[kBeamGroups];  ///< in: the rays to be tested; out: those that may hit the shape
   std::uint16_t sure[kBeamGroups];   ///< out: those of them that surely hit it before the end of their range
-  std::uint16_t leave[kBeamGroups];  ///< out: those that miss it if their end is outside (ExactCode::outside)
+  std::uint16_t leave[kBeamGroups];  ///< out: those that miss it if they start outside (ExactCode::outside)
 };
 
 }  // namespace oktett

@@ -12,15 +12,16 @@
 
 namespace oktett {
 
-/// Lines of a beam in the own space of an element. With z = (1 + s) depth, where `depth` is that of the
-/// middle of the cell, the ray (x, y) is at q + s w, where q = middle + dx u + dy v, w = q - middle +
-/// from_apex, and (dx, dy) is the distance of (x, y) from the middle. So a far apex causes no cancellation.
+/// Lines of a beam in the own space of an element. At the depth z = (1 + s) depth, where `depth` is that of
+/// the middle of the cell, the ray (x, y) is at q + s w. Here q = middle + dx u + dy v and w = q - middle +
+/// from_apex, with (dx, dy) from the middle to (x, y). Near the cell dx, dy and s are small, so hardly any
+/// digits cancel, however far away the apex is.
 struct BeamCell {
   float x, y, depth;
   Vec3f middle, u, v, from_apex;
-  Vec3f lo, hi;  ///< the cell, wider by twice the error
-  float error;   ///< bound on the error of a coordinate in the cell
-  bool may_be_sure;
+  Vec3f lo, hi;      ///< the cell, wider by twice the error
+  float error;       ///< bound on the error of a coordinate in the cell
+  bool may_be_sure;  ///< the whole cell is farther than 1 / near_s, see BeamRays
 
   /// False if the cell is too near or too large for the bound.
   OKTETT_INLINE bool set(const ExactPoolBase& pool, const ExactCell& cell, const BeamView& beam) {

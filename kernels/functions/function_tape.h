@@ -1,9 +1,9 @@
 #pragma once
 /// \file Functions of x, y and z as tapes: lists of steps over a few registers, compiled once from a text and
-/// run on intervals, on intervals with derivatives, or on numbers with gradients.
+/// run on intervals, on intervals with derivatives, on variations, or on numbers with gradients.
 ///
-/// What is the same is computed once, what has no x, y or z in it is computed when the text is read, and a
-/// sine and a cosine of the same angle are one step.
+/// Equal subexpressions are computed once, those without x, y and z when the text is read. A sine and a
+/// cosine of the same angle are one step.
 
 #include "kernels/functions/gradient.h"
 #include "kernels/functions/tape_data.h"
@@ -17,7 +17,7 @@ OKTETT_INLINE void set(Gradient<D, W, V>& r, double c) {
   r = {D(c), gradient::zero<V>()};
 }
 
-/// One step. T is Interval, Dual of Interval, or Gradient.
+/// One step. T is Interval, Dual of Interval, Variation, or Gradient.
 template <class T>
 OKTETT_INLINE void run_step(const TapeStep& s, T* r) {
   T& out = r[s.out];

@@ -1,7 +1,7 @@
 #pragma once
-/// \file Numbers in lanes with their derivatives by x, y and z (forward automatic differentiation). NaN where
-/// a function is not defined, at the poles of quotients and for the logarithm of 0, too. At kinks the
-/// derivative is that of one side, at steps it is 0.
+/// \file Numbers in lanes with their derivatives by x, y and z or along a line (forward automatic
+/// differentiation). They are NaN where a function is not defined, also at the poles of quotients and for the
+/// logarithm of 0. At kinks the derivative is that of one side, at steps it is 0.
 
 #include "core/affine_lanes.h"
 #include "kernels/interval/dual.h"
@@ -22,7 +22,7 @@ struct Gradient {
   V d;
 };
 
-// For derivatives along a line, as for vectors.
+// The functions of vectors for derivatives along a line, which are single numbers.
 template <class T, int N, class A>
 OKTETT_INLINE Simd<T, N, A> add_lanes(const Simd<T, N, A>& a, const Simd<T, N, A>& b) {
   return a + b;
@@ -62,12 +62,12 @@ template <class D, Walls W, class V>
 OKTETT_INLINE Gradient<D, W, V> chain(const Gradient<D, W, V>& a, const D& value, const D& slope) {
   return {value, scale_lanes(a.d, slope)};
 }
-/// Keeps what one divides by away from zero.
+/// A divisor; with steep walls it is kept away from zero.
 template <Walls W, class D>
 OKTETT_INLINE D divisor(const D& x) {
   return W == Walls::flat ? x : select(abs(x) < D(0x1p-100), D(0x1p-100), x);
 }
-/// The slope of a step that is so far away.
+/// The slope that stands for a step at this distance.
 template <class D>
 OKTETT_INLINE D steepness(const D& distance) {
   return D(1.0) / (distance * distance + D(0x1p-100));

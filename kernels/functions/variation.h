@@ -13,11 +13,11 @@
 
 namespace oktett {
 
-/// Where it is not proved that there are derivatives, apart from kinks, `doubt` is NaN.
+/// `doubt` is NaN unless the function is proved to have derivatives in the whole box, apart from kinks.
 template <class D>
 struct Variation {
   Interval<D> v;   ///< encloses all values
-  D error;         ///< of a value computed in plain arithmetic; nor is the enclosure of a point's value wider
+  D error;         ///< bounds that of a value in plain arithmetic; the interval of a point is no wider
   Vec3<D> g;       ///< bounds on the absolute derivatives by x, y and z
   D slope_error;   ///< of a computed derivative along a unit direction
   D h[6];          ///< bounds on the absolute second derivatives by xx, yy, zz, xy, xz, yz
@@ -29,9 +29,9 @@ namespace variation {
 
 /// Bound on the relative rounding errors of one operation, in plain arithmetic and by intervals.
 inline constexpr double kUnit = 0x1p-49;
-/// The same of the slope of any function of one number, the greatest that of real powers.
+/// The same for the slope of a function of one number; real powers have the greatest.
 inline constexpr double kSlope = 0x1p-36;
-/// The errors, absolute, of sine and cosine, and of inverse trigonometric functions.
+/// Absolute errors of sine and cosine, and of inverse trigonometric functions.
 inline constexpr double kSine = 0x1p-48, kArc = 0x1p-44;
 
 template <class D>
@@ -42,16 +42,17 @@ template <class D>
 OKTETT_INLINE D total(const Vec3<D>& g) {
   return (g.x + g.y) + g.z;
 }
+/// x where `defined`, NaN elsewhere.
 template <class D>
-OKTETT_INLINE D nan() {
-  return D(std::numeric_limits<double>::quiet_NaN());
+OKTETT_INLINE D or_nan(const typename D::M& defined, const D& x) {
+  return oktett::select(defined, x, D(std::numeric_limits<double>::quiet_NaN()));
 }
-/// Values with what rounding may move them by.
+/// The range of values, wider by four times their rounding error.
 template <class D>
 OKTETT_INLINE Interval<D> wide(const Variation<D>& a) {
   return {a.v.lo - D(4.0) * a.error, a.v.hi + D(4.0) * a.error};
 }
-/// out = a g_i g_j + h, the products of one vector's components with another's.
+/// Adds `by` (a_i b_j + a_j b_i) to h for each pair of axes i, j, in the order of Variation::h.
 template <class D>
 OKTETT_INLINE void add_products(const D& by, const Vec3<D>& a, const Vec3<D>& b, D (&h)[6]) {
   h[0] = h[0] + D(2.0) * by * (a.x * b.x), h[1] = h[1] + D(2.0) * by * (a.y * b.y);
@@ -81,12 +82,12 @@ OKTETT_INLINE Variation<D> chain(const Variation<D>& a, const Interval<D>& v, co
   r.doubt = a.doubt + (slope - slope) + (bend - bend) + (own - own);
   return r;
 }
-/// The same for functions that rise everywhere.
+/// The same for functions that rise everywhere or, if not `rising`, fall everywhere.
 template <class D>
-OKTETT_INLINE Variation<D> chain_rising(const Variation<D>& a, const Interval<D>& v, const D& slope,
-                                        const D& bend, const D& own) {
+OKTETT_INLINE Variation<D> chain_monotone(const Variation<D>& a, const Interval<D>& v, const D& slope,
+                                          const D& bend, const D& own, bool rising = true) {
   const auto all = D::M::all_true();
-  return chain(a, v, slope, bend, own, all, ~all);
+  return chain(a, v, slope, bend, own, rising ? all : ~all, rising ? ~all : all);
 }
 template <class D>
 OKTETT_INLINE Variation<D> select(const typename D::M& m, const Variation<D>& a, const Variation<D>& b) {
@@ -98,7 +99,7 @@ OKTETT_INLINE Variation<D> select(const typename D::M& m, const Variation<D>& a,
   r.doubt = oktett::select(m, a.doubt, b.doubt);
   return r;
 }
-/// What holds for either; the range of values is that of `a`.
+/// Bounds that hold for both `a` and `b`; the range of values is that of `a`.
 template <class D>
 OKTETT_INLINE Variation<D> either(const Variation<D>& a, const Variation<D>& b) {
   Variation<D> r;
@@ -110,12 +111,13 @@ OKTETT_INLINE Variation<D> either(const Variation<D>& a, const Variation<D>& b) 
   r.doubt = a.doubt + b.doubt;
   return r;
 }
-/// A function with steps: constant, or nothing is known of it. `from` and `to` are its values at the ends.
+/// A step function of `a`: constant if its values at both ends, `from` and `to`, are equal. Otherwise nothing
+/// is known of it.
 template <class D>
 OKTETT_INLINE Variation<D> stepped(const Variation<D>& a, const D& from, const D& to) {
   Variation<D> r = constant(from);
   r.v = interval::carry(a.v, {from, to});
-  r.doubt = a.doubt + oktett::select(from == to, D(0.0), nan<D>());
+  r.doubt = a.doubt + or_nan(from == to, D(0.0));
   return r;
 }
 
@@ -170,9 +172,8 @@ OKTETT_INLINE Variation<D> plus(const Variation<D>& a, double c) {
 template <class D>
 OKTETT_INLINE Variation<D> times(const Variation<D>& a, double c) {
   const Interval<D> v = times(a.v, c);
-  const auto all = D::M::all_true();
-  return variation::chain(a, v, D(std::abs(c)), D(0.0), D(variation::kUnit) * variation::magnitude(v),
-                          c > 0 ? all : ~all, c > 0 ? ~all : all);
+  return variation::chain_monotone(a, v, D(std::abs(c)), D(0.0),
+                                   D(variation::kUnit) * variation::magnitude(v), c > 0);
 }
 template <class D>
 OKTETT_NOINLINE Variation<D> sqr(const Variation<D>& a) {
@@ -185,9 +186,9 @@ template <class D>
 OKTETT_NOINLINE Variation<D> inverse(const Variation<D>& a) {
   const Interval<D> w = variation::wide(a);
   const auto defined = (D(0.0) < w.lo) | (w.hi < D(0.0));
-  const D least = select(defined, min(abs(w.lo), abs(w.hi)), variation::nan<D>()), s = D(1.0) / least;
-  const auto all = D::M::all_true();
-  return variation::chain(a, inverse(a.v), s * s, D(2.0) * s * (s * s), D(variation::kUnit) * s, ~all, all);
+  const D least = variation::or_nan(defined, min(abs(w.lo), abs(w.hi))), s = D(1.0) / least;
+  return variation::chain_monotone(a, inverse(a.v), s * s, D(2.0) * s * (s * s), D(variation::kUnit) * s,
+                                   false);
 }
 template <class D>
 OKTETT_INLINE Variation<D> operator/(const Variation<D>& a, const Variation<D>& b) {
@@ -196,8 +197,8 @@ OKTETT_INLINE Variation<D> operator/(const Variation<D>& a, const Variation<D>& 
 template <class D>
 OKTETT_NOINLINE Variation<D> sqrt(const Variation<D>& a) {
   const Interval<D> w = variation::wide(a), v = sqrt(a.v);
-  const D least = select(D(0.0) < w.lo, w.lo, variation::nan<D>()), slope = D(0.5) / sqrt(least);
-  return variation::chain_rising(a, v, slope, D(0.5) * slope / least, D(variation::kUnit) * sqrt(w.hi));
+  const D least = variation::or_nan(D(0.0) < w.lo, w.lo), slope = D(0.5) / sqrt(least);
+  return variation::chain_monotone(a, v, slope, D(0.5) * slope / least, D(variation::kUnit) * sqrt(w.hi));
 }
 template <class D>
 OKTETT_NOINLINE Variation<D> abs(const Variation<D>& a) {
@@ -222,15 +223,15 @@ template <class D>
 OKTETT_NOINLINE Variation<D> exp(const Variation<D>& a) {
   const Interval<D> w = variation::wide(a), v = exp(a.v);
   const D most = exp(Interval<D>(w.hi)).hi;
-  return variation::chain_rising(a, v, most, most,
-                                 (D(1.0) + variation::magnitude(w)) * (D(variation::kUnit * 2) * most));
+  return variation::chain_monotone(a, v, most, most,
+                                   (D(1.0) + variation::magnitude(w)) * (D(variation::kUnit * 2) * most));
 }
 template <class D>
 OKTETT_NOINLINE Variation<D> log(const Variation<D>& a) {
   const Interval<D> w = variation::wide(a), v = log(a.v);
-  const D s = D(1.0) / select(D(0.0) < w.lo, w.lo, variation::nan<D>());
-  return variation::chain_rising(a, v, s, s * s,
-                                 D(variation::kUnit * 4) * (D(1.0) + variation::magnitude(v)));
+  const D s = D(1.0) / variation::or_nan(D(0.0) < w.lo, w.lo);
+  return variation::chain_monotone(a, v, s, s * s,
+                                   D(variation::kUnit * 4) * (D(1.0) + variation::magnitude(v)));
 }
 /// For whole n.
 template <class D>
@@ -253,14 +254,13 @@ OKTETT_NOINLINE Variation<D> pow(const Variation<D>& a, int n) {
 template <class D>
 OKTETT_NOINLINE Variation<D> pow(const Variation<D>& a, double y) {
   const Interval<D> w = variation::wide(a), v = pow(a.v, y);
-  const D unknown = variation::nan<D>();
-  const Interval<D> base{select(D(0.0) < w.lo, w.lo, unknown), select(D(0.0) < w.lo, w.hi, unknown)};
+  const auto positive = D(0.0) < w.lo;
+  const Interval<D> base{variation::or_nan(positive, w.lo), variation::or_nan(positive, w.hi)};
   const D slope = variation::magnitude(pow(base, y - 1) * D(y));
   const D bend = variation::magnitude(pow(base, y - 2) * D(y * (y - 1)));
   // The exponent of 2 is at most 1100 in size where the power is a number.
   const D own = D(0x1p-36) * variation::magnitude(pow(base, y));
-  const auto all = D::M::all_true();
-  return variation::chain(a, v, slope, bend, own, y > 0 ? all : ~all, y > 0 ? ~all : all);
+  return variation::chain_monotone(a, v, slope, bend, own, y > 0);
 }
 template <class D>
 OKTETT_NOINLINE void sin_cos(const Variation<D>& a, Variation<D>& sin, Variation<D>& cos) {
@@ -268,7 +268,7 @@ OKTETT_NOINLINE void sin_cos(const Variation<D>& a, Variation<D>& sin, Variation
   Interval<D> s, c, ws, wc;
   sin_cos(a.v, s, c);
   sin_cos(w, ws, wc);
-  const D far = select(variation::magnitude(w) < D(lane::kMaxAngle), D(0.0), variation::nan<D>());
+  const D far = variation::or_nan(variation::magnitude(w) < D(lane::kMaxAngle), D(0.0));
   const D own = D(variation::kSine) + far;
   const D up = variation::magnitude(ws), down = variation::magnitude(wc), zero(0.0);
   sin = variation::chain(a, s, down, up, own, zero <= wc.lo, wc.hi <= zero);
@@ -287,19 +287,18 @@ OKTETT_NOINLINE Variation<D> atan(const Variation<D>& a) {
   const Interval<D> w = variation::wide(a), size = abs(w);
   // 2 x / (1 + x^2)^2 is below 0.65 everywhere.
   const D s = D(1.0) / (D(1.0) + size.lo * size.lo);
-  return variation::chain_rising(a, atan(a.v), s, min(D(0.65), D(2.0) * size.hi * (s * s)),
-                                 D(variation::kArc));
+  return variation::chain_monotone(a, atan(a.v), s, min(D(0.65), D(2.0) * size.hi * (s * s)),
+                                   D(variation::kArc));
 }
 
 namespace variation {
 
-/// asin; acos is pi/2 less it.
+/// asin if `rising`, else acos, which is pi/2 - asin.
 template <class D>
 OKTETT_INLINE Variation<D> arc(const Variation<D>& a, const Interval<D>& v, bool rising) {
   const D most = magnitude(wide(a)), rest = (D(1.0) - most) * (D(1.0) + most);
-  const D s = D(1.0) / oktett::sqrt(oktett::select(D(0.0) < rest, rest, nan<D>()));
-  const auto all = D::M::all_true();
-  return chain(a, v, s, most * s * (s * s), D(kArc) * s, rising ? all : ~all, rising ? ~all : all);
+  const D s = D(1.0) / oktett::sqrt(or_nan(D(0.0) < rest, rest));
+  return chain_monotone(a, v, s, most * s * (s * s), D(kArc) * s, rising);
 }
 
 }  // namespace variation
@@ -320,12 +319,10 @@ OKTETT_NOINLINE Variation<D> atan2(const Variation<D>& y, const Variation<D>& x)
   const D near_x = select(zero < wx.lo, wx.lo, select(wx.hi < zero, -wx.hi, zero));
   const D near_y = select(zero < wy.lo, wy.lo, select(wy.hi < zero, -wy.hi, zero));
   // The derivatives of the angle at a distance of r from the origin: 1/r, and 1/r^2.
-  const D s = D(1.0) / select(smooth, sqrt(near_x * near_x + near_y * near_y), variation::nan<D>());
-  Variation<D> r = y + x;
-  r = variation::chain(r, atan2(y.v, x.v), s, s * s, D(variation::kArc), ~smooth & smooth, ~smooth & smooth);
-  // The error of the sum does not matter, its kinks do.
-  r.falls = r.rises = r.falls + r.rises;
-  return r;
+  const D s = D(1.0) / variation::or_nan(smooth, sqrt(near_x * near_x + near_y * near_y));
+  // They bound those of the angle by y and by x alike, so the chain rule for the sum bounds the angle.
+  const auto neither = ~D::M::all_true();
+  return variation::chain(y + x, atan2(y.v, x.v), s, s * s, D(variation::kArc), neither, neither);
 }
 template <class D>
 OKTETT_NOINLINE Variation<D> floor(const Variation<D>& a) {

@@ -1,7 +1,8 @@
 #pragma once
 /// \file Unbounded planes against a beam. In the plane of the beam the inverse depth at which a ray meets
-/// such a plane is a linear function of (x, y). So it bounds the rays before the tree, and the kernel decides
-/// after it, for the rays that have met nothing surely nearer. The bounds are derived in docs/numerics.md.
+/// such a plane is a linear function of (x, y). Before the tree, it bounds the rays. After the tree, the
+/// kernel decides for the rays that have met nothing surely nearer. The bounds are derived in
+/// docs/numerics.md.
 
 #include <cmath>
 
@@ -27,13 +28,11 @@ BeamPlane beam_plane(const Plane::Pool& pool, std::uint32_t k, const BeamRays<A>
   }
   if (beam.mirrored) a[2] = -a[2];
   const double depth = pool.offset[k] - at;
-  BeamPlane plane{static_cast<float>(a[2] / depth),
-                  static_cast<float>(a[0] / depth),
-                  static_cast<float>(a[1] / depth),
-                  0,
-                  -depth,
-                  false};
+  BeamPlane plane;
+  plane.c = static_cast<float>(a[2] / depth), plane.height = -depth;
+  plane.cx = static_cast<float>(a[0] / depth), plane.cy = static_cast<float>(a[1] / depth);
   plane.error = 0x1p-19f * (std::fabs(plane.c) + std::fabs(plane.cx) + std::fabs(plane.cy)) * beam.spread;
+  // margin * 2^46 is the greatest coordinate of the apex and the scene.
   plane.known = std::fabs(depth) > 0x1p-12 * (size + beam.margin * 0x1p46) && plane.error < 0x1p60f;
   return plane;
 }
@@ -57,7 +56,7 @@ OKTETT_INLINE Simd<float, kBeamGroup, A> plane_depths(const BeamPlane& plane, co
                   fast_fma(F(plane.cy), F::load(beam.y + base), F(plane.c)));
 }
 
-/// Before the tree: what is surely beyond a plane that a ray surely meets need not be looked at.
+/// Before the tree: ends rays at planes that they surely meet, since what lies surely beyond is not needed.
 template <class A>
 OKTETT_NOINLINE void bound_by_planes(const Accel& accel, BeamRays<A>& beam) {
   using F = Simd<float, kBeamGroup, A>;

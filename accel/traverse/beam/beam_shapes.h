@@ -8,7 +8,7 @@
 
 namespace oktett {
 
-/// What the code of a surface sees of a beam.
+/// The part of a beam that the code of a surface reads.
 template <class A>
 BeamView beam_view(const BeamRays<A>& beam, bool any) {
   BeamView v{beam.x, beam.y, beam.hit_lo, beam.hit_hi, {}, {}, beam.mirrored, 0, 0, beam.near_s, false};

@@ -15,7 +15,7 @@ struct BeamSphere {
   float x, y;          ///< the centre
   float outer, inner;  ///< squares of the radius over the depth, more and less by the error
   float near, far;     ///< bounds of its depth
-  bool may_be_sure;
+  bool may_be_sure;    ///< the whole sphere is farther than 1 / near_s, see BeamRays
 
   /// False if the sphere is too near or too large for the bounds.
   template <class A>
