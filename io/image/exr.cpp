@@ -41,7 +41,7 @@ int thread_count() {
   return count;
 }
 
-/// Keeps errors: the last bytes are written by a destructor of OpenEXR, which drops them.
+/// Keeps the last error, because OpenEXR writes the last bytes in a destructor, which drops exceptions.
 class Stream final : public Imf::OStream {
  public:
   explicit Stream(OutputFile& file) : OStream("the picture"), file_(file) {}
@@ -74,6 +74,7 @@ std::string date() {
   return {text, std::strftime(text, sizeof text, "%Y:%m:%d %H:%M:%S", &local)};
 }
 
+/// Adds an attribute, by its type.
 struct AddTo {
   Imf::Header& header;
   const std::string& name;

@@ -14,7 +14,8 @@ namespace {
 /// zlib's Z_DEFAULT_STRATEGY makes files a tenth smaller than what libpng chooses, in the same time.
 constexpr int kStrategy = 0;
 
-/// libpng's state. It is C: instead of throwing, an error is kept here and libpng jumps back to `write`.
+/// The state of libpng for one picture. No exception may pass through libpng, which is C code. Instead, a
+/// callback keeps the error here and jumps back to try_to_write().
 class PngWriter {
  public:
   explicit PngWriter(OutputFile& file) : file_(file) {
@@ -35,7 +36,8 @@ class PngWriter {
   }
 
  private:
-  /// False after an error. The jump leaves no object of this function or of libpng's callbacks behind.
+  /// False after an error. The jump skips no destructor: neither this function nor the callbacks have objects
+  /// that need one then.
   bool try_to_write(const FlatImage& image, const std::vector<png_text>& texts) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
@@ -81,7 +83,7 @@ void write_png(OutputFile& file, const Picture& picture, const std::vector<Attri
   std::vector<png_text> texts;
   for (const Attribute& attribute : attributes)
     if (const auto* text = std::get_if<std::string>(&attribute.value)) {
-      // libpng only reads them.
+      // libpng only reads the texts, but its pointers are not to const.
       png_text& entry = texts.emplace_back();
       entry.compression = PNG_TEXT_COMPRESSION_NONE;
       entry.key = const_cast<char*>(attribute.name.c_str());
