@@ -26,9 +26,10 @@ std::array<const PicturePlane*, 3> color_planes(const Picture& picture) {
 /// Coverage in [0, 1]; NaN and infinities count as none.
 float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 0; }
 
-FlatImage flatten_to_srgb8(const Picture& picture, std::uint32_t channels) {
+FlatImage flatten_to_srgb8(const Picture& picture, bool with_alpha) {
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
-  const PicturePlane* alpha = channels == 4 ? &color_plane(picture, "A") : nullptr;
+  const PicturePlane* alpha = with_alpha ? &color_plane(picture, "A") : nullptr;
+  const std::uint32_t channels = with_alpha ? 4 : 3;
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   FlatImage image{picture.width, picture.height, channels, std::vector<std::uint8_t>(pixels * channels), {}};
   std::uint8_t* out = image.bytes.data();
@@ -46,8 +47,7 @@ FlatImage flatten_to_srgb8(const Picture& picture, std::uint32_t channels) {
 
 FlatImage flatten(const Picture& picture, PixelLayout layout) {
   if (layout != PixelLayout::float_rgb)
-    return flatten_to_srgb8(picture,
-                            layout == PixelLayout::srgb8_alpha && picture.find("A") != nullptr ? 4 : 3);
+    return flatten_to_srgb8(picture, layout == PixelLayout::srgb8_alpha && picture.find("A") != nullptr);
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   FlatImage image{picture.width, picture.height, 3, {}, {}};

@@ -24,7 +24,7 @@ class MetTriangles {
   MetTriangles() { clear(); }
   /// Forgets everything, for groups of other rays.
   void clear() { std::fill_n(item_, kSize, kNoId); }
-  /// Those of `groups` that have not been tested against `item`, and notes that they now are.
+  /// Notes that `groups` are tested against `item`. Returns those of them that were not before.
   OKTETT_INLINE unsigned add(std::uint32_t item, unsigned groups) {
     const std::uint32_t at = item * 0x9e3779b1u >> 26;
     const unsigned met = item_[at] == item ? groups_[at] : 0;
@@ -218,6 +218,7 @@ OKTETT_NOINLINE void decide_unclear(BeamTask<Q, A>& task) {
   list.size = 0;
 }
 
+/// Lists `rays` of a group as unclear against triangle `id`. Decides the list when it is full.
 template <Query Q, class A>
 OKTETT_INLINE void note_unclear(BeamTask<Q, A>& task, unsigned rays, int group, std::uint32_t id) {
   UnclearList& list = task.unclear;
@@ -231,7 +232,7 @@ OKTETT_INLINE void note_unclear(BeamTask<Q, A>& task, unsigned rays, int group, 
 /// Decides the candidates of a group, so that hits of other shapes can be compared with them.
 template <Query Q, class A>
 OKTETT_NOINLINE void decide_candidates(BeamTask<Q, A>& task, int group) {
-  if (task.accel.blocks.data() == nullptr) return;
+  if (task.accel.blocks.data() == nullptr) return;  // without triangles there are no candidates
   std::uint8_t ray[kBeamGroup];
   std::uint32_t ids[kBeamGroup];
   int count = 0;
