@@ -13,6 +13,12 @@ static constexpr double kPi = std::numbers::pi;
 /// Added to each joined cone, for the rounding of its axis.
 static constexpr double kSlack = 1e-6;
 
+double lit_part(double spread) {
+  const double cosine = portable::cos(spread), mean = (1 + cosine) / 2;
+  const double width = cosine > 0 ? portable::sin(spread) : 1;
+  return mean >= width ? mean : (mean + width) * (mean + width) / (4 * width);
+}
+
 LightBounds join(const LightBounds& a, const LightBounds& b) {
   LightBounds sum = a;
   sum.box.grow(b.box);

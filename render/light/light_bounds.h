@@ -15,9 +15,13 @@ struct LightBounds {
   float spread = 0;         ///< radians, [0, pi]
   float reach = 0;          ///< radians, [0, pi / 2]
   bool both_sides = false;  ///< the same light goes to the side opposite to each normal
-  /// Sum of the peak intensities, in W / sr.
+  /// Sum of radiance times area, in W / sr. Things that are not flat count as made of small pieces with
+  /// normals in the cone, see lit_part.
   float power = 0;
 };
+
+/// About the mean cosine, none taken below 0, between the axis of a cone of normals and the normals.
+double lit_part(double spread);
 
 /// Bounds of the emitters of both.
 LightBounds join(const LightBounds& a, const LightBounds& b);

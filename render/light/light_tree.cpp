@@ -8,9 +8,14 @@
 
 namespace oktett {
 
-/// Light leaves and arrives up to this much, in cosines, beyond what the bounds say. It covers the rounding
-/// of sines by sine_of, which is below 6e-4 each.
-static constexpr float kLeastCosine = 4e-3f;
+/// Light leaves and arrives up to this much, in cosines, beyond what the bounds say. It covers rounding.
+static constexpr float kLeastCosine = 1e-3f;
+
+/// The part of the greatest cosine in the estimate of a mean cosine, and the part of the square of the radius
+/// that the square of the distance is at least. Chosen for small variance in rows, clouds and clusters of
+/// lamps.
+static constexpr float kPartOfGreatest = 0.1f;
+static constexpr float kPartOfRadius = 0.125f;
 
 /// Importances and probabilities are at least this large where they are not 0.
 static constexpr float kLeastImportance = 1e-37f;
@@ -57,52 +62,60 @@ LightTree::Node LightTree::make_node(const LightBounds& bounds) {
   node.power = bounds.power;
   encode_axis(bounds.axis, node.axis);
   node.cos_spread = stored_cosine(bounds.spread + kAxisError);
-  node.cos_reach = stored_cosine(bounds.reach);
+  node.cos_limit = stored_cosine(double{bounds.spread} + bounds.reach + kAxisError);
   node.both_sides = bounds.both_sides;
   return node;
 }
 
-static float sine_of(float cosine) { return std::sqrt(std::max(0.0f, (1 - cosine) * (1 + cosine))); }
+/// The mean of max(0, x) for x uniform in [mean - width, mean + width].
+static float positive_part(float mean, float width) {
+  if (mean >= width) return mean;
+  if (mean <= -width) return 0;
+  return (mean + width) * (mean + width) / (4 * width);
+}
 
-namespace {
+/// Whether an angle of cosine `cosine` is surely greater than the sum of an angle of cosine `limit` and an
+/// acute one of sine `ball`; 1 stands for any angle. cos(a + b) = cos(a) cos(b) - sin(a) sin(b) is not below
+/// this bound.
+static bool is_beyond(float cosine, float limit, float ball) {
+  return ball < 1 && cosine < (limit > 0 ? limit * (1 - ball * ball) : limit) - ball - kLeastCosine;
+}
 
-/// An angle in [0, pi].
-struct Angle {
-  float cosine, sine;
-
-  /// max(0, this - b)
-  Angle reduced_by(const Angle& b) const {
-    if (cosine >= b.cosine) return {1, 0};
-    return {cosine * b.cosine + sine * b.sine, sine * b.cosine - cosine * b.sine};
-  }
-};
-
-}  // namespace
+/// About the mean of the cosines of a set of angles, none taken below 0, whose cosines are `mean` plus or
+/// minus `width`. `middle` is the cosine of the angle in their middle. The part of their greatest cosine
+/// keeps the mean from being far too low where the few emitters that face the point are the strongest.
+static float mean_cosine(float mean, float width, float middle) {
+  const float greatest = width < 1 ? std::clamp(middle + width, kLeastCosine, 1.0f) : 1;
+  return positive_part(mean, width) * (1 - kPartOfGreatest) + greatest * kPartOfGreatest;
+}
 
 float LightTree::node_importance(const Node& node, const LightPoint& point) {
   const Vec3f to = node.center - point.position;
-  const float square = dot(to, to), radius_square = node.radius * node.radius;
-  // Inside the sphere light may come from any direction.
-  if (!(square > radius_square * (1 + 1e-5f)))
-    return std::max(node.power / std::max(radius_square, 1e-30f), kLeastImportance);
-  const float distance = std::sqrt(square), sine = node.radius / distance;
-  const Angle ball{sine_of(sine), sine};
+  const float square = dot(to, to), distance = std::sqrt(square);
+  // The sine of half the angle that the sphere fills; from inside, light may come from all directions.
+  const float ball = node.radius < distance ? node.radius / distance : 1;
+  const float scale = distance > 0 ? 1 / distance : 0;
 
   const Vec3f axis = decode_axis(node.axis);
-  float cosine = -dot(axis, to) / (std::sqrt(dot(axis, axis)) * distance);
-  if (node.both_sides) cosine = std::abs(cosine);
+  const float cosine = -dot(axis, to) * scale / std::sqrt(dot(axis, axis));
   const float cos_spread = cosine_of(node.cos_spread);
-  const Angle leaving =
-      Angle{cosine, sine_of(cosine)}.reduced_by({cos_spread, sine_of(cos_spread)}).reduced_by(ball);
-  if (leaving.cosine < cosine_of(node.cos_reach) - kLeastCosine) return 0;
-  const float importance = node.power / square * std::max(leaving.cosine, kLeastCosine);
+  const float spread = cos_spread > 0 ? std::sqrt((1 - cos_spread) * (1 + cos_spread)) : 1;
+  const float width = std::min(1.0f, spread + ball), mean = cosine * (1 + cos_spread) / 2;
+  const float leaving_cosine = node.both_sides ? std::abs(cosine) : cosine;
+  if (is_beyond(leaving_cosine, cosine_of(node.cos_limit), ball)) return 0;
+  float leaving = mean_cosine(mean, width, leaving_cosine);
+  if (node.both_sides) leaving += positive_part(-mean, width);
 
-  if (point.normal == Vec3f{}) return std::max(importance, kLeastImportance);
-  float incidence = dot(point.normal, to) / distance;
-  if (!point.front_only) incidence = std::abs(incidence);
-  const Angle arriving = Angle{incidence, sine_of(incidence)}.reduced_by(ball);
-  if (arriving.cosine < -kLeastCosine) return 0;
-  return std::max(importance * std::max(arriving.cosine, kLeastCosine), kLeastImportance);
+  float arriving = 1;
+  if (point.normal != Vec3f{}) {
+    const float incidence = dot(point.normal, to) * scale;
+    const float arriving_cosine = point.front_only ? incidence : std::abs(incidence);
+    if (is_beyond(arriving_cosine, 0, ball)) return 0;
+    arriving = mean_cosine(incidence, ball, arriving_cosine);
+    if (!point.front_only) arriving += positive_part(-incidence, ball);
+  }
+  const float nearest = std::max(square, kPartOfRadius * node.radius * node.radius);
+  return std::max(node.power / std::max(nearest, kLeastImportance) * leaving * arriving, kLeastImportance);
 }
 
 double LightTree::left_probability(std::uint32_t node, const LightPoint& point) const {

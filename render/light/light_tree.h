@@ -51,7 +51,7 @@ class LightTree {
     float power;
     std::int16_t axis[2];      ///< octahedral, times 32767
     std::uint16_t cos_spread;  ///< rounded down; see cosine_of in the source
-    std::uint16_t cos_reach;   ///< rounded down
+    std::uint16_t cos_limit;   ///< of the widest angle between axis and light, rounded down
     std::uint32_t leaf : 1, both_sides : 1;
     std::uint32_t next : 30;  ///< leaf: index of the emitter; else: the right child
   };

@@ -61,7 +61,7 @@ std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
   return LightBounds{.box = {round_down(Vec3d(e.center) - half), round_up(Vec3d(e.center) + half)},
                      .spread = static_cast<float>(kPi),
                      .reach = static_cast<float>(kPi / 2),
-                     .power = r > 0 ? static_cast<float>(color_weight(e.radiance) * kPi * r * r) : 0};
+                     .power = r > 0 ? static_cast<float>(color_weight(e.radiance) * 4 * kPi * r * r) : 0};
 }
 
 // Points and spots.
@@ -88,7 +88,7 @@ std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
   return LightBounds{.box = {e.position, e.position},
                      .spread = static_cast<float>(kPi),
                      .reach = static_cast<float>(kPi / 2),
-                     .power = color_weight(e.intensity)};
+                     .power = static_cast<float>(color_weight(e.intensity) / lit_part(kPi))};
 }
 
 std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
@@ -99,7 +99,7 @@ std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
                      .axis = normalize(e.axis),
                      .spread = static_cast<float>(spread),
                      .reach = static_cast<float>(outer - spread),
-                     .power = color_weight(e.intensity)};
+                     .power = static_cast<float>(color_weight(e.intensity) / lit_part(spread))};
 }
 
 // Directional light and environments.

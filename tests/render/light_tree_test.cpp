@@ -245,7 +245,7 @@ TEST(LightTree, ChoosesNearAndFacingEmittersMoreOften) {
       by_tree += value * value / tree.probability(point, j);
       by_power += value * value * static_cast<double>(lamps.size());
     }
-    EXPECT_LT((by_tree - total * total) * 4, by_power - total * total);
+    EXPECT_LT((by_tree - total * total) * 30, by_power - total * total);
   }
 }
 
