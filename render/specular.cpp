@@ -1,6 +1,6 @@
 #include "render/specular.h"
 
-#include "render/optics.h"
+#include "render/bsdf/optics.h"
 
 namespace oktett {
 

@@ -188,7 +188,7 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
   return end;
 }
 
-/// reflect_above of render/optics.h in lanes.
+/// reflect_above of render/bsdf/optics.h in lanes.
 template <class F>
 OKTETT_INLINE Vec3<F> reflect_above_lanes(const Vec3<F>& d, const Vec3<F>& n, const Vec3<F>& ng) {
   const F two(2.0f);

@@ -21,6 +21,10 @@ std::optional<Vec3f> refract(const Vec3f& d, const Vec3f& n, float eta);
 
 /// The fraction of unpolarised light that an interface between dielectrics reflects, by Fresnel's equations:
 /// 1 beyond the critical angle. `cosine` is that of the angle of incidence, [0, 1].
-float fresnel(float cosine, float eta);
+double fresnel(double cosine, double eta);
+
+/// The same for a conductor of complex index of refraction eta + i k, relative to the medium before it, eta >
+/// 0 (Born 1999, section 14.2).
+double conductor_fresnel(double cosine, double eta, double k);
 
 }  // namespace oktett

@@ -1,4 +1,4 @@
-#include "render/optics.h"
+#include "render/bsdf/optics.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

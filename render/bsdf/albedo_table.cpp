@@ -1,0 +1,58 @@
+#include "render/bsdf/albedo_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace oktett {
+
+/// Narrower facets count as being this wide. The delta lobes begin well above.
+static constexpr double kLeastRoughness = 0.01;
+
+static double mix(double a, double b, double t) { return a + (b - a) * t; }
+
+/// Splits `x` in [0, last] into the index of an interval and the place in it.
+static int interval(double& x, int last) {
+  const int i = std::clamp(static_cast<int>(x), 0, last - 1);
+  x -= i;
+  return i;
+}
+
+double AlbedoTable::node_alpha(int j) const {
+  const double rho = std::max(kLeastRoughness, static_cast<double>(j) / (nodes_ - 1));
+  return rho * rho;
+}
+
+double AlbedoTable::node_mu(int i, double alpha) const {
+  if (i == nodes_ - 1) return 1;
+  const double y = static_cast<double>(i) / (nodes_ - 1),
+               width = wide_ ? std::sqrt(alpha * std::sqrt(alpha)) : alpha;
+  return y * y * width / (1 + width - y * y);
+}
+
+double AlbedoTable::at(double mu, double alpha) const {
+  const double rho = std::sqrt(alpha), width = wide_ ? rho * std::sqrt(rho) : alpha;
+  double x = std::sqrt(mu * (1 + width) / (mu + width)) * (nodes_ - 1), y = rho * (nodes_ - 1);
+  const int i = interval(x, nodes_ - 1), j = interval(y, nodes_ - 1);
+  const float* const near = &value_[i * nodes_ + j];
+  const float* const far = near + nodes_;
+  return mix(mix(near[0], near[1], y), mix(far[0], far[1], y), x);
+}
+
+double LossTable::node_roughness(int j) {
+  return std::max(kLeastRoughness, static_cast<double>(j) / (kNodes - 1));
+}
+
+double LossTable::scale(double rho) const {
+  double scale = 1;
+  for (int i = 0; i < power_; ++i) scale *= rho;
+  return scale;
+}
+
+double LossTable::at(double alpha) const {
+  const double rho = std::max(kLeastRoughness, std::sqrt(alpha));
+  double x = rho * (kNodes - 1);
+  const int j = interval(x, kNodes - 1);
+  return mix(value_[j], value_[j + 1], x) * scale(rho);
+}
+
+}  // namespace oktett

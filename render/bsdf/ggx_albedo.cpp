@@ -1,0 +1,214 @@
+#include "render/bsdf/ggx_albedo.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "render/bsdf/ggx.h"
+#include "render/bsdf/optics.h"
+
+namespace oktett {
+namespace {
+
+constexpr int kMirrorNodes = 32, kNodes = 24, kInsideNodes = 32;
+/// Bounds of the errors of the tables.
+constexpr double kMirrorError = 0.001, kReflectedError = 0.0035, kGlassError = 0.0045;
+
+/// `loss` lowered by at most `error`, but not to 0.
+double lowered(double loss, double error) { return loss > 0 ? loss * (loss / (loss + error)) : 0; }
+
+/// A rule for integrals over the unit square: a Fibonacci lattice made periodic by the substitution
+/// t^2 (3 - 2t) in both directions (Sloan 1994). Weights add to 1.
+struct Lattice {
+  std::vector<SquareSample> point;
+  std::vector<double> weight;
+
+  /// Two successive Fibonacci numbers.
+  Lattice(int generator, int points) : point(points), weight(points) {
+    double sum = 0;
+    for (int i = 0; i < points; ++i) {
+      const double s = (i + 0.5) / points, t = (i * generator % points + 0.5) / points;
+      point[i] = {s * s * (3 - 2 * s), t * t * (3 - 2 * t)};
+      sum += weight[i] = s * (1 - s) * t * (1 - t);
+    }
+    for (double& w : weight) w /= sum;
+  }
+};
+
+const Lattice& coarse_lattice() {
+  static const Lattice lattice(233, 377);
+  return lattice;
+}
+const Lattice& fine_lattice() {
+  static const Lattice lattice(377, 610);
+  return lattice;
+}
+
+/// The mean of `value(w, m, c)` over the facet normals `m` visible from a direction `w` of cosine `mu`, with
+/// c = w.m.
+template <class Value>
+double facet_mean(const Lattice& lattice, double mu, double alpha, Value&& value) {
+  mu = std::max(mu, 1e-5);
+  const Vec3d w{std::sqrt(1 - mu * mu), 0, mu};
+  double sum = 0;
+  for (std::size_t i = 0; i < lattice.point.size(); ++i) {
+    const SquareSample& p = lattice.point[i];
+    // The other half of the circle mirrors this one.
+    const Vec3d m = ggx_visible_normal(w, alpha, {p.y / 2, p.x});
+    sum += lattice.weight[i] * value(w, m, dot(w, m));
+  }
+  return sum;
+}
+
+/// The fraction of visible facets' light along `out` that is not shadowed.
+double unshadowed(double lambda_in, const Vec3d& out, double alpha) {
+  return (1 + lambda_in) / (1 + lambda_in + ggx_lambda(out, alpha));
+}
+
+/// The albedo of facets that reflect the fraction `fresnel(c)`.
+template <class Fresnel>
+double reflected(double mu, double alpha, Fresnel&& fresnel_of) {
+  return facet_mean(coarse_lattice(), mu, alpha, [&](const Vec3d& w, const Vec3d& m, double c) {
+    const Vec3d out = m * (2 * c) - w;
+    return out.z > 0 ? fresnel_of(c) * unshadowed(ggx_lambda(w, alpha), out, alpha) : 0;
+  });
+}
+
+double reflected_and_transmitted(double mu, double alpha, double eta) {
+  // From inside, Fresnel's reflectance has a kink at the critical angle.
+  const Lattice& lattice = eta < 1 ? fine_lattice() : coarse_lattice();
+  return facet_mean(lattice, mu, alpha, [&](const Vec3d& w, const Vec3d& m, double c) {
+    const double lambda = ggx_lambda(w, alpha), f = fresnel(c, eta);
+    const Vec3d up = m * (2 * c) - w;
+    const double reflected = up.z > 0 ? f * unshadowed(lambda, up, alpha) : 0;
+    if (f >= 1) return reflected;
+    const Vec3d down = m * (c / eta - std::sqrt(1 - (1 - c * c) / (eta * eta))) - w * (1 / eta);
+    return down.z < 0 ? reflected + (1 - f) * unshadowed(lambda, down, alpha) : reflected;
+  });
+}
+
+struct MirrorTables {
+  AlbedoTable albedo{kMirrorNodes, false, [](double mu, double alpha) {
+                       return reflected(mu, alpha, [](double) { return 1.0; });
+                     }};
+  double at(double mu, double alpha) const { return 1 - lowered(1 - albedo.at(mu, alpha), kMirrorError); }
+  LossTable loss{4, [this](double mu, double alpha) { return at(mu, alpha); }};
+};
+
+const MirrorTables& mirror_tables() {
+  static const MirrorTables tables;
+  return tables;
+}
+
+/// Tables are kept for whole multiples of this step of the amplitude that is reflected head-on,
+/// (eta - 1) / (eta + 1). It is 16 steps for eta = 1.5.
+constexpr double kStep = 1 / 80.0;
+constexpr int kSteps = 48;
+
+double ior_of_step(int step) {
+  const double r = step == 0 ? 1e-3 : step * kStep;
+  return (1 + r) / (1 - r);
+}
+
+/// The tables of all steps, made when first used.
+template <class Tables>
+const Tables& tables_of_step(int step) {
+  static std::array<std::once_flag, 2 * kSteps + 1> once;
+  static std::array<std::unique_ptr<const Tables>, 2 * kSteps + 1> made;
+  const int i = step + kSteps;
+  std::call_once(once[i], [&] { made[i] = std::make_unique<const Tables>(ior_of_step(step)); });
+  return *made[i];
+}
+
+template <class Tables>
+TablePair<Tables> tables_for(double eta) {
+  double x = std::clamp((eta - 1) / (eta + 1) / kStep, -double{kSteps}, double{kSteps});
+  // Close to a step, as indices given in float are, one table is enough.
+  if (std::abs(x - std::floor(x + 0.5)) < 1e-4) x = std::floor(x + 0.5);
+  const int i = static_cast<int>(std::floor(x));
+  const Tables& first = tables_of_step<Tables>(i);
+  return {&first, x == i ? &first : &tables_of_step<Tables>(i + 1), x - i};
+}
+
+template <class Tables, class Get>
+double interpolated(const TablePair<Tables>& pair, Get&& get) {
+  const double first = get(*pair.first);
+  return pair.first == pair.second ? first : first + (get(*pair.second) - first) * pair.place;
+}
+
+}  // namespace
+
+double MirrorAlbedo::operator()(double mu) const { return mirror_tables().at(mu, alpha_); }
+double MirrorAlbedo::mean_loss() const { return mirror_tables().loss.at(alpha_); }
+
+/// The table holds how the albedo differs from that of the smooth interface times that of mirrors, which it
+/// tends to for small alpha.
+struct ReflectedAlbedo::Tables {
+  double eta;
+  AlbedoTable difference;
+  LossTable loss;
+  double smooth_loss;
+
+  explicit Tables(double ior)
+      : eta(ior),
+        difference(kNodes, false,
+                   [&](double mu, double alpha) {
+                     return reflected(mu, alpha, [&](double c) { return fresnel(c, eta); }) -
+                            like_smooth(mu, alpha, eta);
+                   }),
+        loss(0, [&](double mu, double alpha) { return at(mu, alpha, eta); }) {
+    constexpr int kPoints = 256;
+    smooth_loss = 0;
+    for (int i = 0; i < kPoints; ++i) {
+      const double mu = (i + 0.5) / kPoints;
+      smooth_loss += (1 - fresnel(mu, eta)) * 2 * mu / kPoints;
+    }
+  }
+  static double like_smooth(double mu, double alpha, double eta) {
+    return mirror_tables().albedo.at(mu, alpha) * fresnel(mu, eta);
+  }
+  /// For an interface of index `ior` close to this table's.
+  double at(double mu, double alpha, double ior) const {
+    const double r = std::clamp(like_smooth(mu, alpha, ior) + difference.at(mu, alpha), 0.0, 1.0);
+    return r + kReflectedError * (1 - r) * r / (r + 0.02);
+  }
+};
+
+ReflectedAlbedo::ReflectedAlbedo(double eta, double alpha)
+    : eta_(eta), alpha_(alpha), tables_(tables_for<Tables>(eta)) {
+  mean_loss_ =
+      interpolated(tables_, [&](const Tables& t) { return alpha == 0 ? t.smooth_loss : t.loss.at(alpha); });
+}
+
+double ReflectedAlbedo::operator()(double mu) const {
+  if (alpha_ == 0) return std::min(1.0, fresnel(mu, eta_));
+  return interpolated(tables_, [&](const Tables& t) { return t.at(mu, alpha_, eta_); });
+}
+
+struct GlassAlbedo::Tables {
+  AlbedoTable albedo;
+  LossTable loss;
+
+  explicit Tables(double eta)
+      : albedo(eta < 1 ? kInsideNodes : kNodes, true,
+               [=](double mu, double alpha) { return reflected_and_transmitted(mu, alpha, eta); }),
+        loss(4, [this](double mu, double alpha) { return at(mu, alpha); }) {}
+  double at(double mu, double alpha) const { return 1 - lowered(1 - albedo.at(mu, alpha), kGlassError); }
+};
+
+GlassAlbedo::GlassAlbedo(double eta, double alpha) : alpha_(alpha), tables_(tables_for<Tables>(eta)) {}
+
+double GlassAlbedo::operator()(double mu) const {
+  return interpolated(tables_, [&](const Tables& t) { return t.at(mu, alpha_); });
+}
+
+double GlassAlbedo::mean_loss() const {
+  return interpolated(tables_, [&](const Tables& t) { return t.loss.at(alpha_); });
+}
+
+double mean_fresnel(double eta) { return (eta - 1) / (4.08567 + 1.00071 * eta); }
+
+}  // namespace oktett

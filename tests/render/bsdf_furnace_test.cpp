@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include "render/bsdf/bsdf.h"
+#include "tests/render/bsdf_support.h"
+
+namespace oktett {
+namespace {
+
+/// What a surface sends to a viewer at the cosine `mu` in white light from all sides, by integration of its
+/// values alone.
+double furnace(const PrincipledParameters& p, double mu, bool front) {
+  const Vec3f wo = direction_at(mu, 0.3);
+  const Bsdf bsdf = principled_bsdf(p, wo, front);
+  const double eta = p.thin ? 1 : front ? p.ior : 1 / p.ior, sine2 = (1 - mu * mu) / (eta * eta);
+  const double below = sine2 < 1 ? std::sqrt(1 - sine2) : 0.1;
+  const PolarSquare mirrored({-wo.x, -wo.y, wo.z}), refracted({-wo.x / eta, -wo.y / eta, -below});
+  const auto half = [&](const PolarSquare& square) {
+    const auto value = [&](double s, double t) {
+      return bsdf.evaluate(Vec3f(square.direction(s, t))).value.x * square.density(s, t);
+    };
+    double sum = 0;
+    for (int i = 0; i < 16; ++i)
+      for (int j = 0; j < 8; ++j)
+        sum += integral(value, i / 16.0, (i + 1) / 16.0, j / 8.0, (j + 1) / 8.0, 3e-6, 6);
+    return sum;
+  };
+  return half(mirrored) + (p.transmission > 0 ? half(refracted) : 0);
+}
+
+/// The least and most over roughnesses and directions.
+void expect_white(const PrincipledParameters& material, bool front = true) {
+  PrincipledParameters p = material;
+  p.base_color = {1, 1, 1};
+  for (const float roughness : {0.032f, 0.1f, 0.15f, 0.2f, 0.3f, 0.45f, 0.6f, 0.8f, 1.0f})
+    for (const double mu : {0.01, 0.1, 0.2, 0.45, 0.7, 1.0}) {
+      p.roughness = roughness;
+      const double sum = furnace(p, mu, front);
+      EXPECT_GE(sum, 0.99) << "roughness " << roughness << " cosine " << mu;
+      EXPECT_LE(sum, 1.001) << "roughness " << roughness << " cosine " << mu;
+    }
+}
+
+TEST(BsdfFurnace, MetalIsWhiteAtEveryRoughness) {
+  PrincipledParameters p;
+  p.metallic = 1;
+  expect_white(p);
+}
+
+TEST(BsdfFurnace, OpaqueDielectricIsWhiteAtEveryRoughness) {
+  PrincipledParameters p;
+  for (const float ior : {1.1f, 1.5f, 2.4f}) {
+    SCOPED_TRACE(ior);
+    p.ior = ior;
+    expect_white(p);
+  }
+}
+
+TEST(BsdfFurnace, GlassIsWhiteAtEveryRoughnessFromBothSides) {
+  PrincipledParameters p;
+  p.transmission = 1;
+  expect_white(p, true);
+  expect_white(p, false);
+}
+
+TEST(BsdfFurnace, ThinGlassIsWhiteAtEveryRoughness) {
+  PrincipledParameters p;
+  p.transmission = 1;
+  p.thin = true;
+  expect_white(p);
+}
+
+TEST(BsdfFurnace, LayersTakeNoMoreThanTheyGive) {
+  PrincipledParameters p;
+  p.coat = 1, p.coat_roughness = 0.3f, p.sheen = 1, p.metallic = 0.5f, p.transmission = 0.5f;
+  expect_white(p);
+  p = {};
+  p.coat = 0.7f, p.coat_roughness = 0.1f, p.sheen = 0.5f, p.sheen_roughness = 0.8f;
+  expect_white(p);
+}
+
+}  // namespace
+}  // namespace oktett
