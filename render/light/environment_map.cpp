@@ -15,6 +15,11 @@ static constexpr double kPi = std::numbers::pi;
 /// A compensated map with less than this part of its light left counts as constant.
 static constexpr double kLeastLeft = 1e-6;
 
+Vec3f environment_direction(double u, double v) {
+  const double sine = portable::sin(kPi * v), angle = (u - 0.5) * 2 * kPi;
+  return Vec3f(Vec3d{sine * portable::sin(angle), portable::cos(kPi * v), -sine * portable::cos(angle)});
+}
+
 static float valid(float value) { return value > 0 && std::isfinite(value) ? value : 0; }
 
 /// Index of the interval of `sums` in which `value` lies, and in which part of it. Intervals of length 0 are

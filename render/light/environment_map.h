@@ -17,6 +17,10 @@ struct EnvironmentPicture {
   std::vector<Color> pixels;  ///< linear radiance, width * height
 };
 
+/// The unit vector to the place at fractions `u` of the width and `v` of the height of a map that is not
+/// rotated.
+Vec3f environment_direction(double u, double v);
+
 struct EnvironmentOptions {
   double rotation = 0;  ///< radians; turns the map about +y, counter-clockwise as seen from above
   /// Interpolates between the centres of pixels, bilinearly. False: each pixel has one colour.
