@@ -129,11 +129,14 @@ void trace_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& 
 }
 
 /// Rays that make no beam: together against the leaf if there is only one, of exact surfaces; else in
-/// packets if they are coherent, and interleaved if not.
+/// packets if they are coherent, and interleaved if not. Shadow rays among instances are always interleaved:
+/// in an instance, packets of them have few rays at a time.
 template <Query Q, class A>
 void trace_without_beams(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
   if (const LeafEntry* leaf = only_exact_leaf(accel))
     trace_exact_leaf<Q, A>(accel, *leaf, rays, out);
+  else if (Q == Query::any && has_instances(accel))
+    trace_interleaved<Q, A>(accel, rays, out);
   else
     trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
 }
@@ -142,7 +145,8 @@ void trace_without_beams(const Accel& accel, const RaySpan& rays, const HitSink<
 /// are traced interleaved. When several in a row are, the next rays go interleaved without a trial: those of
 /// one beam after the second, of three after the third, then of seven. With `insist` no beam is given up.
 template <Query Q, class A>
-void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
+OKTETT_NOINLINE void trace_beams(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist,
+                                 BeamInstances<Q, A>* instances) {
   const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel);
   // Rays from `begin` on wait to be traced the same way, so that long runs go interleaved together.
   std::size_t begin = 0;
@@ -166,9 +170,10 @@ void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& 
     const RaySpan part = rays.part(b, count);
     const RaySpan next = rays.part(b + count, std::min<std::size_t>(kBeamRays, rays.size - b - count));
     Apex apex;
-    const BeamOutcome outcome = common_point<Q>(part, apex)
-                                    ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps, next)
-                                    : BeamOutcome::no_beam;
+    const BeamOutcome outcome =
+        common_point<Q>(part, apex)
+            ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps, next, instances)
+            : BeamOutcome::no_beam;
     failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
     if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;
     if (outcome == waiting) continue;
@@ -180,6 +185,22 @@ void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& 
 }
 
 template <Query Q, class A>
+OKTETT_NOINLINE void trace_beams_inside(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out,
+                                        bool insist) {
+  BeamInstances<Q, A> instances(accel);
+  trace_beams<Q, A>(accel, rays, out, insist, &instances);
+}
+
+/// Beams where rays share a point, in structures with instances or without.
+template <Query Q, class A>
+void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
+  if (has_instances(accel))
+    trace_beams_inside<Q, A>(accel, rays, out, insist);
+  else
+    trace_beams<Q, A>(accel, rays, out, insist, nullptr);
+}
+
+template <Query Q, class A>
 void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, TraceMode mode) {
   if constexpr (std::is_same_v<A, ScalarIsa>) {
     trace_each<Q, A>(accel, rays, out);
@@ -188,8 +209,6 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
       case TraceMode::automatic:
         if (rays.size <= kAloneRays) return trace_each<Q, A>(accel, rays, out);
         if (rays.size < kLeastBeamRays) return trace_without_beams<Q, A>(accel, rays, out);
-        // In instances, packets of shadow rays have few rays at a time.
-        if (Q == Query::any && has_instances(accel)) return trace_interleaved<Q, A>(accel, rays, out);
         return trace_automatic<Q, A>(accel, rays, out, false);
       case TraceMode::beam:
         return trace_automatic<Q, A>(accel, rays, out, true);

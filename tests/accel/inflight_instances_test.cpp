@@ -12,75 +12,11 @@
 
 #include "accel/accel_data.h"
 #include "accel/traverse/inflight/enter_instance.h"
-#include "tests/accel/same_hits.h"
+#include "tests/accel/instance_cases.h"
 #include "tests/support/triangle_cases.h"
-#include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
-using AccelPtr = std::shared_ptr<const Accel>;
-
-int expect_same_hits(const Accel& accel, const RayBatch& rays) {
-  return expect_hits(accel, rays, scalar_hits(accel, rays),
-                     {TraceMode::interleaved, TraceMode::automatic, TraceMode::single});
-}
-
-/// The ray in the space of an instance's child: in double, rounded to float.
-Ray inside(const ListedInstance& instance, const Ray& r) {
-  Ray ray = r;
-  const auto map = [&](const Vec3f& p, int k, double w) {
-    const float* m = instance.to_child + 4 * k;
-    const double x = p.x, y = p.y, z = p.z, shift = m[3];
-    const double linear = (double(m[0]) * x + double(m[1]) * y) + double(m[2]) * z;
-    return static_cast<float>(w == 0 ? linear : linear + shift);
-  };
-  for (int k = 0; k < 3; ++k) ray.origin[k] = map(r.origin, k, 1), ray.direction[k] = map(r.direction, k, 0);
-  return ray;
-}
-
-/// The nearest hit of a ray with the instances of one list, each asked by itself; of equal ones the first.
-Hit ask_each(const Accel& accel, const Ray& ray) {
-  Hit nearest;
-  std::vector<const ListedInstance*> order;
-  for (const ListedInstance& k : accel.listed_instances) order.push_back(&k);
-  std::ranges::sort(order, {}, &ListedInstance::item);
-  for (const ListedInstance* k : order) {
-    Hit h = closest_hit(*accel.listed_children[k->child], inside(*k, ray), Isa::scalar);
-    if (!h.valid() || (nearest.valid() && h.t >= nearest.t)) continue;
-    h.instance = k->first_path + (h.instance + 1);
-    nearest = h;
-  }
-  return nearest;
-}
-
-TriangleMesh soup(int count, std::uint64_t seed, double size) {
-  TriangleMesh m;
-  CaseRandom r(seed);
-  for (int i = 0; i < count; ++i) {
-    const Vec3d c = r.vector();
-    for (int k = 0; k < 3; ++k) {
-      m.indices.push_back(static_cast<std::uint32_t>(m.positions.size()));
-      m.positions.push_back(Vec3f(c + r.vector() * (i % 10 == 0 ? 8 * size : size)));
-    }
-  }
-  return m;
-}
-
-AccelPtr tree_of(const TriangleMesh& mesh, BuildQuality quality = BuildQuality::balanced) {
-  return build_accel({{MeshGeometry{&mesh}, {}, kNoId}}, {quality});
-}
-
-InstancePlace place(const Affine& to_list, std::uint32_t child) {
-  InstancePlace p{{}, child, kNoId};
-  to_list.to_rows(p.to_list);
-  return p;
-}
-
-Affine turned(CaseRandom& r, double scale) {
-  return Affine::rotation(r.vector() * 180.0) * Affine::scaling(Vec3d{1, 1, 1} * scale);
-}
 
 /// Rays from and to points of a cube of half edge `far`. Some start or end where others do, some run along an
 /// axis, some are not rays, some have a direction that is `stretch` times as long.
@@ -100,18 +36,6 @@ RayBatch rays_in(double far, int count, std::uint64_t seed, float stretch = 1e14
   return rays;
 }
 
-/// Compares every `step`-th ray with ask_each(); up to `grazing` of them may differ. An instance is displaced
-/// by the rounding of the ray in its space, so a ray that touches the bounds of the instance may miss them.
-void expect_asked_each(const Accel& accel, const RayBatch& rays, std::size_t step, int grazing = 0) {
-  HitBatch hits;
-  hits.resize_uninitialized(rays.size());
-  closest_hit(accel, rays.span(), hits.span(), default_isa(), TraceMode::interleaved);
-  int different = 0;
-  for (std::size_t i = 0; i < rays.size(); i += step)
-    different += !same_bits(hits[i], ask_each(accel, rays[i]));
-  EXPECT_LE(different, grazing);
-}
-
 // Thousands of instances that overlap, of trees of few triangles, of many, and of triangles in pieces: all
 // places in flight are in instances at once.
 TEST(InflightInstances, ManyThatOverlap) {
@@ -125,7 +49,7 @@ TEST(InflightInstances, ManyThatOverlap) {
   const AccelPtr accel = build_accel({{list, {}, kNoId}});
   const RayBatch rays = rays_in(9, 6000, 5);
   EXPECT_GT(expect_same_hits(*accel, rays), 3000);
-  expect_asked_each(*accel, rays, 23);
+  expect_asked_each(*accel, rays, 23, TraceMode::interleaved);
 }
 
 // The same instance several times, and instances of meshes that hold the same triangles: the first of the
@@ -143,7 +67,7 @@ TEST(InflightInstances, Ties) {
   const AccelPtr accel = build_accel({{list, {}, kNoId}});
   const RayBatch rays = rays_in(3, 4000, 8);
   EXPECT_GT(expect_same_hits(*accel, rays), 1500);
-  expect_asked_each(*accel, rays, 7);
+  expect_asked_each(*accel, rays, 7, TraceMode::interleaved);
 }
 
 // Maps that mirror, shear, flatten nearly, or scale to where the fast arithmetic is not made for. What is
@@ -154,25 +78,10 @@ TEST(InflightInstances, UnusualMaps) {
   for (const double scale : {1.0, 1e-4, 1e-13, 1e-20, 1e6, 1e12}) {
     TriangleMesh mesh = unit;
     for (Vec3f& p : mesh.positions) p = Vec3f(Vec3d(p) * scale);
-    std::vector<Geometry> geometries;
-    InstanceList list{{tree_of(mesh)}, {}};
-    for (int k = 0; k < 60; ++k) {
-      Affine shape = Affine::scaling(Vec3d{1, 1, 1} / scale);
-      if (k % 5 == 1) shape = Affine::scaling({-1, 1, 1}) * shape;
-      if (k % 5 == 2) shape = Affine::scaling({1, 1, r.magnitude(-9, 0)}) * shape;
-      if (k % 5 == 3)
-        shape = Affine::scaling({1, 0.01, 1}) * turned(r, 1) * Affine::scaling({1, 50, 1}) * shape;
-      if (k % 5 == 4) shape = Affine::scaling({r.magnitude(-3, 3), 1, r.magnitude(-6, 6)}) * shape;
-      const Affine at = Affine::translation(r.vector() * 2.0) * turned(r, 1) * shape;
-      if (k % 2 == 0)
-        list.places.push_back(place(at, 0));
-      else
-        geometries.push_back({InstanceGeometry{list.children[0]}, at, kNoId});
-    }
+    const auto [mixed, listed] = unusual_maps(mesh, scale, r);
     const RayBatch rays = rays_in(3, 1500, 11, scale > 1 ? 10 : 1e14f);
-    geometries.push_back({list, {}, kNoId});
-    EXPECT_GT(expect_same_hits(*build_accel(geometries), rays), 300) << scale;
-    expect_asked_each(*build_accel({{list, {}, kNoId}}), rays, 11);
+    EXPECT_GT(expect_same_hits(*mixed, rays), 300) << scale;
+    expect_asked_each(*listed, rays, 11, TraceMode::interleaved);
     if (HasFailure()) return;
   }
 }

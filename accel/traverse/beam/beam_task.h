@@ -40,6 +40,9 @@ class MetTriangles {
 /// BeamTask::max_steps of a beam that is never given up.
 inline constexpr int kAnySteps = std::numeric_limits<int>::max();
 
+template <Query Q, class A>
+class BeamInstances;
+
 /// A beam, what it has found, and where its results go.
 template <Query Q, class A>
 struct BeamTask {
@@ -48,11 +51,10 @@ struct BeamTask {
   const HitSink<Q>& out;  ///< complete only when the beam is finished
   BeamRays<A> beam;
   UnclearList unclear;
-  int max_steps;          ///< nodes and leaves that it may visit before it is given up
-  MetTriangles met = {};  ///< in use if triangles stand in several leaves
-  /// Leaves of instances that the beam has visited, and how many rays went into those, in all.
-  int instance_leaves = 0, rays_inside = 0;
-  bool decided = false;  ///< some hits have been decided and stand in `out`
+  int max_steps;                   ///< nodes and leaves that it may visit before it is given up
+  BeamInstances<Q, A>* instances;  ///< where there are instances
+  MetTriangles met = {};           ///< in use if triangles stand in several leaves
+  bool decided = false;            ///< some hits have been decided and stand in `out`
 };
 
 /// The rays of group `g` that are not finished: an any-hit ray that is known to be blocked is.

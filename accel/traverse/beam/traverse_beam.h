@@ -7,6 +7,7 @@
 /// decided exactly at the end, all lanes busy, so the hits have the same bits as those of every other
 /// traversal.
 
+#include "accel/traverse/beam/beam_instances.h"
 #include "accel/traverse/beam/beam_planes.h"
 #include "accel/traverse/packet.h"
 #include "core/simd_order.h"
@@ -157,31 +158,22 @@ OKTETT_NOINLINE void table_leaf_group(BeamTask<Q, A>& task, const LeafEntry& lea
   beam.refresh(g);
 }
 
-/// A beam is given up if on average fewer than kRaysPerInstance rays go into a leaf of instances, at the
-/// first kInstanceVisits of them or later. Packets inside would have few rays then, and interleaved rays are
-/// faster.
-inline constexpr int kInstanceVisits = 4;
-inline constexpr int kRaysPerInstance = 80;
-
-/// The same for several groups; `met(g)` are the rays of group `g` that may meet the leaf. False if the beam
-/// is given up.
+/// The same for several groups; `met(g)` are the rays of group `g` that may meet the leaf.
 template <Query Q, class A, class Met>
-OKTETT_INLINE bool table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
-  if (is_shape(leaf.kind)) {
-    shape_leaf_beam(task, leaf, groups, met);
-    return true;
+OKTETT_INLINE void table_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, unsigned groups, Met&& met) {
+  if (is_shape(leaf.kind)) return shape_leaf_beam(task, leaf, groups, met);
+  if (holds_instances(leaf.kind)) {
+    bool inside = true;
+    if (task.max_steps != kAnySteps) task.max_steps += kStepsPerInstance * leaf.count;
+    for (std::uint32_t k = 0; k < leaf.count && inside; ++k)
+      inside = task.instances->visit(first_instance(leaf) + k, groups, met);
+    if (inside) return;
   }
-  const bool instances = holds_instances(leaf.kind);
   for (; groups != 0; groups &= groups - 1) {
     const int g = __builtin_ctz(groups);
     const unsigned rays = met(g);
-    if (rays == 0) continue;
-    if (instances) task.rays_inside += __builtin_popcount(rays);
-    table_leaf_group(task, leaf, g, rays);
+    if (rays != 0) table_leaf_group(task, leaf, g, rays);
   }
-  task.instance_leaves += instances;
-  return task.instance_leaves < kInstanceVisits ||
-         task.rays_inside >= kRaysPerInstance * task.instance_leaves || task.max_steps == kAnySteps;
 }
 
 /// Pushes children in the order of their distance, the nearest last.
@@ -229,7 +221,33 @@ class Lookahead {
   std::size_t at_ = 0;
 };
 
-/// Takes the beam through the tree. False if it is given up because it takes too many steps.
+/// Sorts the rays of a beam whose stack has `size` entries.
+template <Query Q, class A>
+OKTETT_NOINLINE void sort_beam(BeamTask<Q, A>& task, BeamEntry* stack, int size) {
+  // Lists, mailboxes and rays in instances refer to rays by their old places.
+  if (task.instances != nullptr) task.instances->finish_rays();
+  decide_unclear(task);
+  task.met.clear();
+  task.beam.sort();
+  for (int i = 0; i < size; ++i) stack[i].groups = task.beam.groups;
+}
+
+/// Prefetches the children of a node above instances: nodes and what describes instances of a list.
+OKTETT_INLINE void prefetch_children(const Accel& accel, const BvhNode& node, unsigned children) {
+  const TreeBytes bytes(accel);
+  for (; children != 0; children &= children - 1) {
+    const NodeRef child = node.child[__builtin_ctz(children)];
+    if (!child.is_leaf()) {
+      bytes.prefetch(child);
+    } else if (!child.is_triangles()) {
+      const LeafEntry& leaf = accel.leaves[child.table_index()];
+      if (leaf.kind == Kind::instance_list) __builtin_prefetch(&accel.listed_instances[leaf.begin]);
+    }
+  }
+}
+
+/// Takes the beam through the tree. False if it is given up because it takes too many steps,
+/// or because too few rays meet each instance.
 template <Query Q, class A>
 OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task, Lookahead<Q>& ahead) {
   const Accel& accel = task.accel;
@@ -253,10 +271,18 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task, Lookahead<Q>& ahead) {
     if (groups == 0) continue;
     if (++steps > task.max_steps) return false;
     if (e.ref.is_leaf() && !e.ref.is_triangles()) {
-      if (!table_leaf_beam(task, accel.leaves[e.ref.table_index()], groups,
-                           [&](int g) { return entry_rays(e, beam, g); }))
-        return false;
+      table_leaf_beam(task, accel.leaves[e.ref.table_index()], groups,
+                      [&](int g) { return entry_rays(e, beam, g); });
+      if (task.instances != nullptr) {
+        dirty |= task.instances->take_dirty();
+        if (task.max_steps != kAnySteps && task.instances->sparse()) return false;
+      }
       beam.refresh_window();
+      tests += __builtin_popcount(groups);
+      if (Q == Query::any && tests >= kTestsBeforeSort && beam.may_sort) {
+        sort_beam(task, stack, size);
+        dirty = 0;
+      }
       continue;
     }
     if (e.ref.is_triangles() && __builtin_popcount(groups) <= kRefinedGroups) {
@@ -282,15 +308,12 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task, Lookahead<Q>& ahead) {
       const BvhNode& node = accel.nodes[e.ref.node_index()];
       const unsigned met = node_beam(node, beam, window, children);
       size = push_windows(node.child, met, children, groups, stack, size);
+      if (task.instances != nullptr) prefetch_children(accel, node, met);
     } else {
       tests += leaf_beam(task, e.ref, groups, window, dirty);
       if (Q == Query::any && OKTETT_UNLIKELY(tests >= kTestsBeforeSort) && beam.may_sort) {
-        // The list and the mailboxes refer to rays by their old places.
-        decide_unclear(task);
-        task.met.clear();
-        beam.sort();
+        sort_beam(task, stack, size);
         dirty = 0;
-        for (int i = 0; i < size; ++i) stack[i].groups = beam.groups;
       }
     }
   }
@@ -300,24 +323,27 @@ OKTETT_NOINLINE bool traverse_beam(BeamTask<Q, A>& task, Lookahead<Q>& ahead) {
 enum class BeamOutcome {
   traced,
   no_beam,   ///< the rays share no point, fan out too far or are out of scale
-  given_up,  ///< they took more steps than was allowed
+  given_up,  ///< they took more steps than was allowed, or too few of them met each instance
 };
 
 /// Up to kBeamRays rays that meet in `apex`. Unless they are traced, nothing has been written that another
-/// traversal would not overwrite. `next` are the rays that will be traced next.
+/// traversal would not overwrite. `next` are the rays that will be traced next, `instances` is null where
+/// there are none.
 template <Query Q, class A>
 OKTETT_NOINLINE BeamOutcome trace_beam(const Accel& accel, const RaySpan& rays, const Apex& apex,
-                                       const HitSink<Q>& out, int max_steps, const RaySpan& next) {
-  BeamTask<Q, A> task{accel, rays, out, {}, {}, max_steps};
+                                       const HitSink<Q>& out, int max_steps, const RaySpan& next,
+                                       BeamInstances<Q, A>* instances) {
+  BeamTask<Q, A> task{accel, rays, out, {}, {}, max_steps, instances};
+  if (instances != nullptr) instances->begin(task);
   if (!task.beam.set(rays, apex, box_extent(accel.bounds), Q == Query::any)) return BeamOutcome::no_beam;
   if (task.beam.groups != 0) {
     if (Q == Query::closest) bound_by_planes(accel, task.beam);
     for (const LeafEntry& leaf : accel.unbounded)
-      if (leaf.kind != Kind::plane &&
-          !table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; }))
-        return BeamOutcome::given_up;
+      if (leaf.kind != Kind::plane)
+        table_leaf_beam(task, leaf, task.beam.groups, [](int) { return (1u << kBeamGroup) - 1; });
     Lookahead<Q> ahead(next, out, rays.size);
     if (!accel.root.is_none() && !traverse_beam(task, ahead)) return BeamOutcome::given_up;
+    if (instances != nullptr) instances->finish_rays();
     if (Q == Query::any) decide_planes(task);
   }
   finish_beam(task);

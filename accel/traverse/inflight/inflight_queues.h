@@ -31,6 +31,10 @@ struct InflightQueues {
     InflightRay **node, **leaf, **other;
   };
 
+  void clear() {
+    for (InflightQueue* q : {&nodes, &leaves, &others}) q->head = q->tail = q->ray;
+  }
+
   bool empty() const { return nodes.size() + leaves.size() + others.size() == 0; }
 
   /// The ends of the queues, with room for a round and for one more, because enqueue() writes past the end.

@@ -45,7 +45,8 @@ struct alignas(64) InflightHead {
   std::uint32_t candidate;
   std::uint32_t index;      ///< of the ray in its batch
   std::uint32_t has_state;  ///< the ray's RayState is filled in
-  std::uint32_t padding[2];
+  std::uint32_t place;      ///< of the ray in its beam
+  std::uint32_t padding;
 
   OKTETT_INLINE void set_end(float t) { tmax = t, limit = t + slack; }
 };

@@ -1,322 +1,56 @@
 #pragma once
-/// \file Many single rays in flight: each step takes one ray through one node or one leaf, prefetches the
-/// memory of its next step and goes on with another ray, which hides the latency of cache misses. The rays
-/// share nothing, so it does not matter whether they are coherent. A ray that reaches an instance goes inside
-/// and stays in flight (accel/traverse/inflight/enter_instance.h).
-///
-/// Triangles are classified in float (kernels/triangle/triangle_classify.h). A triangle that is surely hit,
-/// and surely nearer than the nearest hit so far, becomes the ray's candidate hit. Candidates of finished
-/// rays are decided together, one in each lane; only a triangle that the classification leaves open is
-/// decided at once.
+/// \file A batch of single rays, interleaved: when a ray in flight is finished, the next one of the batch
+/// takes its place. Candidates of finished rays are decided together, one in each lane.
 
-#include <algorithm>
-
-#include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/bundle_entry.h"
-#include "accel/traverse/inflight/enter_instance.h"
-#include "accel/traverse/inflight/exact_group.h"
-#include "accel/traverse/inflight/inflight_queues.h"
-#include "accel/traverse/inflight/pending_hits.h"
+#include "accel/traverse/inflight/inflight_traversal.h"
 
 namespace oktett {
 
-/// Leaves are visited when this many rays wait at leaves, or when no ray is at a node.
-inline constexpr int kLeafThreshold = 8;
-
-/// What an interleaved traversal is made for.
-enum class InflightTrees {
-  small,      ///< a tree without instances that is in the caches
-  large,      ///< the same, but each ray prefetches the memory of its next step
-  instances,  ///< a tree with instances; also prefetches
-};
-
 /// Traces a batch of rays; see the top of the file.
 template <Query Q, class A, InflightTrees kTrees>
-class InterleavedTraversal {
+class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees>, Q, A, kTrees> {
+  using Base = InflightTraversal<InterleavedTraversal, Q, A, kTrees>;
+
  public:
   InterleavedTraversal(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out)
-      : accel_(accel), rays_(rays), out_(out), extent_(box_extent(accel.bounds)) {}
+      : Base(accel), out_(out), extent_(box_extent(accel.bounds)) {
+    rays_ = rays;
+  }
 
   void run() {
     Tails tail = queues_.tails();
     for (InflightRay& ray : inflight_) refill(ray, tail);
     queues_.keep(tail);
-    while (!queues_.empty()) {
-      node_round();
-      if (queues_.leaves.size() >= kLeafThreshold || queues_.nodes.size() == 0) leaf_round();
-      if (queues_.others.size() >= kLeafThreshold || queues_.nodes.size() + queues_.leaves.size() == 0)
-        other_round();
-    }
-    if constexpr (Q == Query::closest) pending_.decide(accel_, rays_, out_);
+    while (!queues_.empty()) this->advance();
+    if constexpr (Q == Query::closest) decide();
   }
 
  private:
-  static constexpr bool kInstances = kTrees == InflightTrees::instances;
-  static constexpr bool kPrefetch = kTrees != InflightTrees::small;
-  static constexpr int kBlock = TriangleBlock::kSize;
-  static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
-  static constexpr int kLeafRays = kBlockRays<A>;
+  friend Base;
+  using Base::accel_, Base::rays_, Base::queues_, Base::pending_, Base::chunk_, Base::inflight_,
+      Base::states_;
+  using typename Base::Tails;
 
-  using Tails = InflightQueues::Tails;
-
-  /// Queues `ray` for the kind of step that `ref` needs, and prefetches the node or block. For a finished ray
-  /// the prefetched address means nothing.
-  OKTETT_INLINE void enqueue(InflightRay& ray, NodeRef ref, Tails& t) const {
-    if constexpr (kPrefetch) (kInstances ? ray.in.bytes : bytes_).prefetch(ref);
-    InflightQueues::enqueue(ray, ref, t);
-  }
-
-  OKTETT_INLINE void pop(InflightRay& ray, Tails& t) {
-    const NodeRef ref = NodeRef::from_bits(ray.ref[--ray.size]);
-    ray.current = ref;
-    enqueue(ray, ref, t);
-  }
-
-  /// The nodes and blocks of the tree that the ray is in.
-  OKTETT_INLINE const BvhNode* nodes(const InflightRay& ray) const {
-    return kInstances ? ray.in.bytes.nodes() : accel_.nodes.data();
-  }
-  OKTETT_INLINE const TriangleBlock* blocks(const InflightRay& ray) const {
-    return kInstances ? ray.in.bytes.blocks() : accel_.blocks.data();
-  }
-
-  void node_round() {
-    Tails t = queues_.tails();
-    InflightRay** at = queues_.nodes.head;
-    for (InflightRay** const end = at + std::max(queues_.nodes.size(), kRoundSteps);
-         at != t.node && at != end; ++at)
-      enqueue(**at, step_node<Q, A>(**at, nodes(**at)[(*at)->current.bits()]), t);
-    queues_.nodes.head = at;
-    queues_.keep(t);
-  }
-
-  void leaf_round() {
-    Tails t = queues_.tails();
-    InflightRay** at = queues_.leaves.head;
-    InflightRay** const end = t.leaf;
-    for (; end - at >= kLeafRays; at += kLeafRays) leaf_step<kLeafRays>(at, t);
-    for (; at != end; ++at) leaf_step<1>(at, t);
-    queues_.leaves.head = at;
-    queues_.keep(t);
-  }
-
-  /// N rays, each against its own block of triangles.
-  template <int N>
-  OKTETT_INLINE void leaf_step(InflightRay* const* rays, Tails& tail) {
-    using F = BlockLanes<N, A>;
-    const auto ray = [&](int j) -> const InflightRay& { return *rays[j]; };
-    const auto guess = guess_blocks<N, A>(
-        ray, [&](int j) -> const TriangleBlock& { return blocks(ray(j))[ray(j).current.block()]; });
-    const F tmax = spread_blocks<N, A>([&](int j) { return ray(j).tmax; });
-    unsigned present = 0;
-    for (int j = 0; j < N; ++j)
-      present |= ((2u << (rays[j]->current.triangle_count() - 1)) - 1) << (j * kBlock);
-    const unsigned maybe = bits(maybe_hit(guess, tmax)) & present;
-    if (OKTETT_UNLIKELY(maybe != 0)) {
-      const HitInterval<F> h =
-          hit_interval(guess, spread_blocks<N, A>([&](int j) { return ray(j).tmin; }), tmax);
-      for (int j = 0; j < N; ++j) take(*rays[j], guess, h, maybe, j * kBlock);
-    }
-    for (int j = 0; j < N; ++j) pop(*rays[j], tail);
-  }
-
-  /// Takes the triangles of the ray's block that the filter did not reject, the bits of `maybe`. The block is
-  /// in lanes `first`, `first` + 1, ... of `guess`, `h` and `maybe`.
-  template <class F>
-  OKTETT_INLINE void take(InflightRay& ray, const TriangleGuess<F>& guess, const HitInterval<F>& h,
-                          unsigned maybe, int first) {
-    maybe = maybe >> first & ((1u << kBlock) - 1);
-    if (maybe != 0 && (kInstances ? *ray.in.accel : accel_).pieces)
-      maybe &= ~repeated_lane<A>(repeated_item(ray), blocks(ray)[ray.current.block()]);
-    if (maybe == 0) return;
-    const unsigned sure = bits(h.sure) >> first & maybe;
-    if (sure != 0) {
-      if constexpr (Q == Query::any) return found(ray);
-      const SureHit hit = nearest_sure(h, sure, first);
-      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi))) >> first;
-      if (maybe == 1u << hit.lane && hit.hi < ray.hit_lo) {
-        ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
-        if constexpr (kInstances) ray.in.candidate_instance = ray.in.instance;
-        ray.hit_lo = hit.lo;
-        return shorten<A>(ray, hit.hi);
-      }
-    }
-    decide_leaf(ray);
-  }
-
-  /// The item of the ray's nearest hit so far, if it is a triangle of the tree that the ray is in, else
-  /// kNoId.
-  OKTETT_INLINE std::uint32_t repeated_item(const InflightRay& ray) const {
-    std::uint32_t path = kNoId;
-    if constexpr (kInstances) {
-      if (ray.candidate < kDecidedHit && ray.in.candidate_instance != ray.in.instance) return kNoId;
-      if (ray.in.instance != kNoInstance)
-        with_instance(accel_, ray.in.instance,
-                      [&](const auto& instance, const Accel&) { path = outer_path(instance, kNoId); });
-    }
-    return candidate_item(blocks(ray), ray.candidate, states_[&ray - inflight_], path);
-  }
-
-  /// For Query::any: the ray has hit something and is finished.
-  OKTETT_INLINE void found(InflightRay& ray) {
-    ray.candidate = kDecidedHit;
-    ray.size = 1;
-  }
-
-  /// The ray's state for exact tests, in which its candidate has been decided.
-  OKTETT_NOINLINE RayState<1, A>& exact_state(InflightRay& ray) {
-    RayState<1, A>& r = states_[&ray - inflight_];
-    if (ray.has_state == 0) {
-      r.set(rays_[ray.index], accel_.bounds);
-      ray.has_state = 1;
-    }
-    if (ray.candidate < kDecidedHit)
-      exact_in(ray.in.candidate_instance, r, [&](const Accel& tree, RayState<1, A>& state) {
-        leaf_triangles_single(tree.blocks[ray.candidate / kBlock],
-                              static_cast<int>(ray.candidate % kBlock) + 1, state);
-      });
-    return r;
-  }
-
-  /// Calls f(tree, state) for what an instance shows (kNoInstance: the whole structure) and the state there
-  /// of a ray with state `r`; `r` takes over the hit.
-  template <class Function>
-  OKTETT_INLINE void exact_in(std::uint32_t number, RayState<1, A>& r, Function&& f) const {
-    if constexpr (kInstances)
-      if (number != kNoInstance)
-        return with_instance(accel_, number, [&](const auto& instance, const Accel& child) {
-          inside_instance(instance, child, r, [&](RayState<1, A>& state) { f(child, state); });
-        });
-    f(accel_, r);
-  }
-
-  /// Takes over the nearest hit from the exact tests.
-  OKTETT_INLINE void adopt(InflightRay& ray) {
-    const RayState<1, A>& r = states_[&ray - inflight_];
-    if (r.item[0] == kNoId) return;
-    if constexpr (Q == Query::any) return found(ray);
-    ray.candidate = kDecidedHit;
-    ray.hit_lo = r.tmax[0];
-    shorten<A>(ray, r.tmax[0]);
-  }
-
-  /// Tests the ray's block of triangles exactly.
-  OKTETT_NOINLINE void decide_leaf(InflightRay& ray) {
-    const NodeRef leaf = ray.current;
-    exact_in(ray.in.instance, exact_state(ray), [&](const Accel& tree, RayState<1, A>& state) {
-      leaf_triangles_single(tree.blocks[leaf.block()], leaf.triangle_count(), state);
-    });
-    adopt(ray);
-  }
-
-  /// Rays that are finished, at a leaf of the table, or on their way out of an instance.
-  OKTETT_NOINLINE void other_round() {
-    Tails tail = queues_.tails();
-    SortedOthers rays(queues_.others.head, tail.other);
-    queues_.others.head = tail.other;
-    if constexpr (kInstances)
-      for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end; ++at) prefetch_instance(accel_, **at);
-    for (InflightRay** at = rays.finished; at != rays.finished_end; ++at) {
-      finish(**at);
-      refill(**at, tail);
-    }
-    if constexpr (kInstances)
-      for (InflightRay** at = rays.leaving; at != rays.leaving_end; ++at) leave(**at, tail);
-    for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end;) {
-      const int count = rays_at_leaf(accel_, at, rays.at_leaf_end, ExactCode<A>::kLanes);
-      if (count > 0)
-        exact_leaf(at, count, tail);
-      else
-        table_leaf(**at, tail);
-      at += std::max(count, 1);
-    }
-    if constexpr (kInstances) go_inside(tail);
-    queues_.keep(tail);
-  }
-
-  /// Rays of one leaf of exact surfaces, several at once.
-  OKTETT_INLINE void exact_leaf(InflightRay* const* rays, int count, Tails& tail) {
-    RayState<ExactCode<A>::kLanes, A> state;
-    const unsigned met = meet_exact_leaf(accel_, rays_, rays, count, state);
-    for (int i = 0; i < count; ++i) {
-      InflightRay& ray = *rays[i];
-      if ((met >> i & 1) != 0) {
-        // A candidate is decided only now, so the hit may turn out to be no nearer.
-        accept_hit(exact_state(ray), 0, state.tmax[i], state.u[i], state.v[i], state.item[i], kNoId);
-        adopt(ray);
-      }
-      pop(ray, tail);
-    }
-  }
-
-  OKTETT_INLINE void table_leaf(InflightRay& ray, Tails& tail) {
-    const NodeRef ref = ray.current;
-    if constexpr (kInstances) {
-      const LeafEntry& leaf = ray.in.accel->leaves[ref.table_index()];
-      if (ray.in.instance == kNoInstance && holds_instances(leaf.kind)) {
-        ray.in.next = first_instance(leaf), ray.in.end = ray.in.next + leaf.count;
-        outer_[&ray - inflight_] = ray;
-        return add_entering(ray, tail);
-      }
-    }
-    exact_in(ray.in.instance, exact_state(ray), [&](const Accel& tree, RayState<1, A>& state) {
-      table_leaf_single<Q>(tree, tree.leaves[ref.table_index()], state);
-    });
-    adopt(ray);
-    pop(ray, tail);
-  }
-
-  /// Takes the ray into the next instance of its leaf, or, after the last one, out of it.
-  OKTETT_INLINE void leave(InflightRay& ray, Tails& tail) {
-    if (ray.in.next != ray.in.end) return add_entering(ray, tail);
-    leave_instance(ray, outer_[&ray - inflight_], accel_);
-    pop(ray, tail);
-  }
-
-  OKTETT_INLINE void add_entering(InflightRay& ray, Tails& tail) {
-    if (entering_.add(ray, outer_[&ray - inflight_], ray.in.next++, accel_)) go_inside(tail);
-  }
-
-  /// Takes the rays in `entering_` into their instances, or tests them exactly there and then lets them
-  /// leave.
-  OKTETT_INLINE void go_inside(Tails& tail) {
-    const auto stay = [&](InflightRay& ray, std::uint32_t number) {
-      with_instance(accel_, number, [&](const auto& instance, const Accel& child) {
-        instance_single<Q>(instance, child, exact_state(ray), IgnoreSteps{});
-      });
-      adopt(ray);
-      if (Q != Query::any || ray.candidate == kNoCandidate) ray.push(NodeRef::way_out(), -1);
-      pop(ray, tail);
-    };
-    const auto enter = [&](InflightRay& ray, NodeRef root) {
-      ray.current = root;
-      enqueue(ray, root, tail);
-    };
-    const auto miss = [&](InflightRay& ray) {
-      if (ray.in.next != ray.in.end)
-        ray.push(NodeRef::way_out(), -1);
-      else if (ray.in.instance != kNoInstance)
-        leave_instance(ray, outer_[&ray - inflight_], accel_);
-      pop(ray, tail);
-    };
-    entering_.go(accel_, enter, miss, stay);
-  }
-
-  void finish(const InflightRay& ray) {
+  OKTETT_INLINE void finish(InflightRay& ray, Tails& tail) {
     if constexpr (Q == Query::any) {
       out_.occluded[ray.index] = ray.candidate != kNoCandidate;
     } else if (ray.candidate < kDecidedHit) {
-      if (pending_.add(ray.index, ray.candidate, ray.in.candidate_instance))
-        pending_.decide(accel_, rays_, out_);
+      if (pending_.add(ray.index, ray.candidate, ray.in.candidate_instance)) decide();
     } else {
       out_.set(ray.index, ray.candidate == kDecidedHit ? states_[&ray - inflight_].hit(0) : Hit{});
     }
+    refill(ray, tail);
+  }
+
+  void decide() {
+    pending_.decide(accel_, rays_, [&](std::uint32_t ray, const Hit& h) { out_.set(ray, h); });
   }
 
   /// Starts the next ray of the batch in the place of a finished one.
   void refill(InflightRay& ray, Tails& tail) {
     for (; next_ < rays_.size; ++next_) {
-      const int i = static_cast<int>(next_ % kChunk);
+      const int i = static_cast<int>(next_ % Base::kChunk);
       if constexpr (Q == Query::any)
         if (next_ % kBundleRays == 0) set_entry();
       if (i == 0) chunk_.set(rays_, next_, extent_);
@@ -343,7 +77,7 @@ class InterleavedTraversal {
 
   OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
     start_ray(ray, chunk_, i, accel_.root);
-    if constexpr (kInstances) ray.in.set(accel_);
+    if constexpr (Base::kInstances) ray.in.set(accel_);
     if constexpr (Q == Query::any) {
       if (has_entry_) {
         ray.size = 1;
@@ -353,28 +87,18 @@ class InterleavedTraversal {
     }
     ray.index = static_cast<std::uint32_t>(next_);
     if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
-      RayState<1, A>& r = exact_state(ray);
+      RayState<1, A>& r = this->exact_state(ray);
       for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, r);
-      adopt(ray);
+      this->adopt(ray);
     }
-    pop(ray, tail);
+    this->pop(ray, tail);
   }
 
-  const Accel& accel_;
-  const RaySpan rays_;
   const HitSink<Q> out_;
   const float extent_;
-  const TreeBytes bytes_{accel_};
   std::size_t next_ = 0;
-  InflightQueues queues_;
-  PendingHits<kChunk, A, kInstances> pending_;
-  RayChunk<kChunk, A> chunk_;
   bool has_entry_ = false;
   BundleEntry<A> entry_;
-  InflightRay inflight_[kInflightRays];
-  RayState<1, A> states_[kInflightRays];
-  InflightHead outer_[kInstances ? kInflightRays : 1];
-  EnteringRays<kInstances ? kChunk : 1, A> entering_;
 };
 
 template <Query Q, class A, InflightTrees kTrees>

@@ -18,8 +18,12 @@ class PendingHits {
     return ++size_ == N;
   }
 
-  /// Decides all and stores the hits of `rays` in `accel`.
-  OKTETT_NOINLINE void decide(const Accel& accel, const RaySpan& rays, const HitSink<Query::closest>& out) {
+  /// Forgets all.
+  void clear() { size_ = 0; }
+
+  /// Decides all for `rays` in `accel` and calls store(ray, hit) for each.
+  template <class Store>
+  OKTETT_NOINLINE void decide(const Accel& accel, const RaySpan& rays, Store&& store) {
     if (size_ == 0) return;
     alignas(64) float column[8][N];
     const TriangleBlock* block[N];
@@ -51,7 +55,7 @@ class PendingHits {
       const TriangleBlock& b = kInstances ? *block[i] : accel.blocks[triangle_[i] / TriangleBlock::kSize];
       const std::uint32_t item = b.item[triangle_[i] % TriangleBlock::kSize];
       const std::uint32_t instance = kInstances ? path[i] : kNoId;
-      out.set(ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, instance} : Hit{});
+      store(ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, instance} : Hit{});
     }
     size_ = 0;
   }
