@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "core/math.h"
 
 namespace oktett {
 
@@ -17,152 +14,127 @@ static constexpr float kLeastCosine = 1e-3f;
 static constexpr float kPartOfGreatest = 0.1f;
 static constexpr float kPartOfRadius = 0.125f;
 
-/// Importances and probabilities are at least this large where they are not 0.
+/// Squares of distances are at least this large, so that divisions do not overflow.
+static constexpr float kLeastSquare = 1e-30f;
+
+/// Importances are at least this large where they are not 0, and at least this part of the sum.
 static constexpr float kLeastImportance = 1e-37f;
-static constexpr double kLeastProbability = 0x1p-30;
+static constexpr double kLeastPart = 0x1p-30;
 
-/// How far the stored axis may point away from the given one, in radians.
-static constexpr double kAxisError = 1e-4;
-
-static std::uint16_t stored_cosine(double angle) {
-  const double cosine = portable::cos(std::min(angle, std::numbers::pi));
-  return static_cast<std::uint16_t>(std::max(0.0, std::floor((cosine + 1) * 32767.5)));
-}
-
-static float cosine_of(std::uint16_t stored) { return static_cast<float>(stored) * (1 / 32767.5f) - 1; }
-
-/// The octahedral map of a unit vector (Cigolle et al. 2014, JCGT 3(2)).
-static void encode_axis(const Vec3f& axis, std::int16_t (&stored)[2]) {
-  const float sum = std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z);
-  float x = axis.x / sum, y = axis.y / sum;
-  if (axis.z < 0) {
-    const float folded = (1 - std::abs(y)) * std::copysign(1.0f, x);
-    y = (1 - std::abs(x)) * std::copysign(1.0f, y);
-    x = folded;
-  }
-  stored[0] = static_cast<std::int16_t>(std::floor(x * 32767 + 0.5f));
-  stored[1] = static_cast<std::int16_t>(std::floor(y * 32767 + 0.5f));
-}
-
-/// Not unit, but not shorter than 1 / sqrt(3).
-static Vec3f decode_axis(const std::int16_t (&stored)[2]) {
-  const float x = static_cast<float>(stored[0]) * (1 / 32767.0f);
-  const float y = static_cast<float>(stored[1]) * (1 / 32767.0f);
-  const float z = 1 - std::abs(x) - std::abs(y);
-  const float fold = std::max(-z, 0.0f);
-  return {x - std::copysign(fold, x), y - std::copysign(fold, y), z};
-}
-
-LightTree::Node LightTree::make_node(const LightBounds& bounds) {
-  Node node{};
-  node.center = bounds.box.center();
-  const Vec3d center(node.center);
-  const Vec3d half = max(Vec3d(bounds.box.hi) - center, center - Vec3d(bounds.box.lo));
-  node.radius = round_up(length(half) * (1 + 1e-12));
-  node.power = bounds.power;
-  encode_axis(bounds.axis, node.axis);
-  node.cos_spread = stored_cosine(bounds.spread + kAxisError);
-  node.cos_limit = stored_cosine(double{bounds.spread} + bounds.reach + kAxisError);
-  node.both_sides = bounds.both_sides;
-  return node;
-}
+// All lanes take the same way, so that the compiler can compute them together.
 
 /// The mean of max(0, x) for x uniform in [mean - width, mean + width].
-static float positive_part(float mean, float width) {
-  if (mean >= width) return mean;
-  if (mean <= -width) return 0;
-  return (mean + width) * (mean + width) / (4 * width);
+static inline float positive_part(float mean, float width) {
+  const float wide = std::max(width, 1e-6f), above = std::min(std::max(mean + wide, 0.0f), 2 * wide);
+  return above * above / (4 * wide) + std::max(mean - wide, 0.0f);
 }
 
 /// Whether an angle of cosine `cosine` is surely greater than the sum of an angle of cosine `limit` and an
 /// acute one of sine `ball`; 1 stands for any angle. cos(a + b) = cos(a) cos(b) - sin(a) sin(b) is not below
 /// this bound.
-static bool is_beyond(float cosine, float limit, float ball) {
-  return ball < 1 && cosine < (limit > 0 ? limit * (1 - ball * ball) : limit) - ball - kLeastCosine;
+static inline bool is_beyond(float cosine, float limit, float ball) {
+  return (ball < 1) & (cosine < std::min(limit, limit * (1 - ball * ball)) - ball - kLeastCosine);
 }
 
 /// About the mean of the cosines of a set of angles, none taken below 0, whose cosines are `mean` plus or
 /// minus `width`. `middle` is the cosine of the angle in their middle. The part of their greatest cosine
 /// keeps the mean from being far too low where the few emitters that face the point are the strongest.
-static float mean_cosine(float mean, float width, float middle) {
-  const float greatest = width < 1 ? std::clamp(middle + width, kLeastCosine, 1.0f) : 1;
+static inline float mean_cosine(float mean, float width, float middle) {
+  const float sum = std::min(std::max(middle + width, kLeastCosine), 1.0f), greatest = width < 1 ? sum : 1;
   return positive_part(mean, width) * (1 - kPartOfGreatest) + greatest * kPartOfGreatest;
 }
 
-float LightTree::node_importance(const Node& node, const LightPoint& point) {
-  const Vec3f to = node.center - point.position;
-  const float square = dot(to, to), distance = std::sqrt(square);
-  // The sine of half the angle that the sphere fills; from inside, light may come from all directions.
-  const float ball = node.radius < distance ? node.radius / distance : 1;
-  const float scale = distance > 0 ? 1 / distance : 0;
-
-  const Vec3f axis = decode_axis(node.axis);
-  const float cosine = -dot(axis, to) * scale / std::sqrt(dot(axis, axis));
-  const float cos_spread = cosine_of(node.cos_spread);
-  const float spread = cos_spread > 0 ? std::sqrt((1 - cos_spread) * (1 + cos_spread)) : 1;
-  const float width = std::min(1.0f, spread + ball), mean = cosine * (1 + cos_spread) / 2;
-  const float leaving_cosine = node.both_sides ? std::abs(cosine) : cosine;
-  if (is_beyond(leaving_cosine, cosine_of(node.cos_limit), ball)) return 0;
-  float leaving = mean_cosine(mean, width, leaving_cosine);
-  if (node.both_sides) leaving += positive_part(-mean, width);
-
-  float arriving = 1;
-  if (point.normal != Vec3f{}) {
-    const float incidence = dot(point.normal, to) * scale;
-    const float arriving_cosine = point.front_only ? incidence : std::abs(incidence);
-    if (is_beyond(arriving_cosine, 0, ball)) return 0;
-    arriving = mean_cosine(incidence, ball, arriving_cosine);
-    if (!point.front_only) arriving += positive_part(-incidence, ball);
-  }
-  const float nearest = std::max(square, kPartOfRadius * node.radius * node.radius);
-  return std::max(node.power / std::max(nearest, kLeastImportance) * leaving * arriving, kLeastImportance);
+double LightTree::Importances::sum() const {
+  return (double{lane[0]} + double{lane[1]}) + (double{lane[2]} + double{lane[3]});
 }
 
-double LightTree::left_probability(std::uint32_t node, const LightPoint& point) const {
-  const Node &left = nodes_[node + 1], &right = nodes_[nodes_[node].next];
-  double a = node_importance(left, point), b = node_importance(right, point);
+LightTree::Importances LightTree::importances(const Quad& quad, const LightPoint& point) {
+  const Vec3f p = point.position, n = point.normal;
+  const bool any_side = !point.front_only, surface = n != Vec3f{};
+  Importances result;
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    const float x = quad.center[0][i] - p.x, y = quad.center[1][i] - p.y, z = quad.center[2][i] - p.z;
+    const float square = std::max(x * x + y * y + z * z, kLeastSquare), scale = 1 / std::sqrt(square);
+    // The sine of half the angle that the sphere fills; from inside, light may come from all directions.
+    const float ball = std::min(quad.radius[i] * scale, 1.0f);
+
+    const float cosine = -(quad.axis[0][i] * x + quad.axis[1][i] * y + quad.axis[2][i] * z) * scale;
+    const float cos_spread = quad.cos_spread[i];
+    const float sin_spread = cos_spread > 0 ? std::sqrt(std::max(1 - cos_spread * cos_spread, 0.0f)) : 1.0f;
+    const float width = std::min(1.0f, sin_spread + ball), mean = cosine * (1 + cos_spread) * 0.5f;
+    const bool both_sides = (quad.child[i] & kBothSides) != 0;
+    const float leaving_cosine = both_sides ? std::abs(cosine) : cosine;
+    const float back = positive_part(-mean, width);
+    const float leaving = mean_cosine(mean, width, leaving_cosine) + (both_sides ? back : 0.0f);
+
+    const float incidence = (n.x * x + n.y * y + n.z * z) * scale;
+    const float arriving_cosine = any_side ? std::abs(incidence) : incidence;
+    const float behind = positive_part(-incidence, ball);
+    const float arriving = mean_cosine(incidence, ball, arriving_cosine) + (any_side ? behind : 0.0f);
+
+    const float nearest = std::max(square, kPartOfRadius * quad.radius[i] * quad.radius[i]);
+    const float importance = quad.power[i] / nearest * leaving * (surface ? arriving : 1.0f);
+    const bool dark = is_beyond(leaving_cosine, quad.cos_limit[i], ball) |
+                      (surface & is_beyond(arriving_cosine, 0, ball)) | !(quad.power[i] > 0);
+    result.lane[i] = dark ? 0.0f : std::max(importance, kLeastImportance);
+  }
+  return result;
+}
+
+LightTree::Importances LightTree::weights(const Quad& quad, const LightPoint& point) {
+  Importances w = importances(quad, point);
+  const double sum = w.sum();
   // If none can light the point, and where floats overflow.
-  if (!(a + b > 0) || !std::isfinite(a + b)) a = left.power, b = right.power;
-  const double left_part = a / (a + b);
-  // Powers whose sum is infinite.
-  if (std::isnan(left_part)) return 0.5;
-  return a > 0 && b > 0 ? std::clamp(left_part, kLeastProbability, 1 - kLeastProbability) : left_part;
+  if (!(sum > 0) || !std::isfinite(sum)) {
+    std::copy(quad.power, quad.power + kLanes, w.lane);
+    // Powers of nodes may be infinite sums.
+    if (!std::isfinite(w.sum()))
+      for (float& lane : w.lane) lane = lane > 0 ? 1 : 0;
+    return w;
+  }
+  const auto least = static_cast<float>(sum * kLeastPart);
+  for (float& lane : w.lane) lane = lane > 0 ? std::max(lane, least) : 0;
+  return w;
 }
 
 std::optional<LightTree::Choice> LightTree::choose(const LightPoint& point, double u) const {
-  if (nodes_.empty()) return std::nullopt;
+  if (quads_.empty()) return std::nullopt;
   double probability = 1;
-  std::uint32_t node = 0;
-  while (!nodes_[node].leaf) {
-    const double left = left_probability(node, point);
-    if (u < left) {
-      u = u / left;
-      probability *= left;
-      ++node;
-    } else {
-      u = (u - left) / (1 - left);
-      probability *= 1 - left;
-      node = nodes_[node].next;
+  std::uint32_t child = 0;
+  do {
+    const Quad& quad = quads_[child / 4];
+    const Importances w = weights(quad, point);
+    const double sum = w.sum();
+    double rest = u * sum;
+    std::uint32_t chosen = kLanes;
+    for (std::uint32_t i = 0; i < kLanes; ++i) {
+      if (!(w.lane[i] > 0)) continue;
+      if (chosen != kLanes) rest -= w.lane[chosen];
+      chosen = i;
+      if (rest < w.lane[i]) break;
     }
-    // Rounding may give 1, where a child of probability 0 would be chosen.
-    u = std::min(u, 1 - 0x1p-53);
-  }
-  return Choice{nodes_[node].next, probability};
+    // Rounding may give 1.
+    u = std::clamp(rest / w.lane[chosen], 0.0, 1 - 0x1p-53);
+    probability *= w.lane[chosen] / sum;
+    child = quad.child[chosen];
+  } while (!(child & kLeaf));
+  return Choice{child / 4, probability};
 }
 
 double LightTree::probability(const LightPoint& point, std::uint32_t index) const {
+  // From the root, so that the product is the same bits as that of choose().
+  std::uint32_t way[kDeepest], steps = 0;
+  for (std::uint32_t slot = slots_[index]; slot != kRoot; slot = quads_[slot / 4].parent) way[steps++] = slot;
   double probability = 1;
-  std::uint32_t node = 0;
-  for (std::uint64_t trail = trails_[index]; !nodes_[node].leaf; trail >>= 1) {
-    const double left = left_probability(node, point);
-    probability *= trail & 1 ? 1 - left : left;
-    node = trail & 1 ? nodes_[node].next : node + 1;
+  while (steps-- > 0) {
+    const Importances w = weights(quads_[way[steps] / 4], point);
+    probability *= w.lane[way[steps] % 4] / w.sum();
   }
   return probability;
 }
 
 double LightTree::importance(const LightPoint& point) const {
-  return nodes_.empty() ? 0 : node_importance(nodes_[0], point);
+  return quads_.empty() ? 0 : importances(quads_[0], point).sum();
 }
 
 }  // namespace oktett

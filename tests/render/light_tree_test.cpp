@@ -197,7 +197,7 @@ std::vector<LightBounds> small_panels(std::size_t count) {
 TEST(LightTree, HoldsAMillionEmitters) {
   constexpr std::size_t kCount = 1000000;
   const LightTree tree(small_panels(kCount));
-  EXPECT_LE(tree.bytes(), kCount * (64 + 8));
+  EXPECT_LE(tree.bytes(), kCount * 104);
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const LightPoint point = random_point(random, 100);
@@ -245,7 +245,7 @@ TEST(LightTree, ChoosesNearAndFacingEmittersMoreOften) {
       by_tree += value * value / tree.probability(point, j);
       by_power += value * value * static_cast<double>(lamps.size());
     }
-    EXPECT_LT((by_tree - total * total) * 30, by_power - total * total);
+    EXPECT_LT((by_tree - total * total) * 50, by_power - total * total);
   }
 }
 
