@@ -35,4 +35,9 @@ inline double ggx_lambda(const Vec3d& w, double alpha) {
 /// w.z) (Dupuy 2023: normals of a sphere's visible cap, stretched).
 Vec3d ggx_visible_normal(const Vec3d& w, double alpha, const SquareSample& u);
 
+/// The same for reflection: most normals that reflect below the surface are left out (Eto 2023). The
+/// reflected direction, if it lies above the surface, has the density D(m) ggx_reflected_scale(w).
+Vec3d ggx_reflecting_normal(const Vec3d& w, double alpha, const SquareSample& u);
+double ggx_reflected_scale(const Vec3d& w, double alpha);
+
 }  // namespace oktett

@@ -38,6 +38,24 @@ double reflected_again(double fresnel, double mean_loss) {
   return fresnel * fresnel * (1 - mean_loss) / (1 - fresnel * mean_loss);
 }
 
+/// The light that facets send to each other leaves them at grazing angles if they are narrow. A direction
+/// above the surface whose cosine has a density in proportion to its power t: t = -1/2 for narrow facets, 0
+/// for wider ones, 1 for the widest. Of these, each has the least variance in its range of alpha.
+constexpr double kNarrow = 0.0625, kWide = 0.16;
+
+Vec3d grazing_above(double alpha, const SquareSample& u) {
+  if (alpha > kWide) return cosine_above(u);
+  const double cosine = alpha > kNarrow ? u.x : u.x * u.x, sine = std::sqrt(1 - cosine * cosine);
+  const double angle = 2 * kPi * u.y;
+  return {sine * portable::cos(angle), sine * portable::sin(angle), cosine};
+}
+
+/// The density of `grazing_above` per solid angle.
+double grazing_density(double cosine, double alpha) {
+  if (alpha > kWide) return cosine / kPi;
+  return alpha > kNarrow ? 1 / (2 * kPi) : 1 / (4 * kPi * std::sqrt(cosine));
+}
+
 }  // namespace
 
 PrincipledLobes::PrincipledLobes(const PrincipledParameters& p, const Vec3f& wo, bool front)
@@ -54,7 +72,7 @@ PrincipledLobes::PrincipledLobes(const PrincipledParameters& p, const Vec3f& wo,
 PrincipledLobes::Facets PrincipledLobes::facets(double roughness) const {
   const double rho = limited(roughness, 0, 1);
   if (rho < kLeastRoughness) return {};
-  return {rho * rho, ggx_lambda(wo_, rho * rho)};
+  return {rho * rho, ggx_lambda(wo_, rho * rho), ggx_reflected_scale(wo_, rho * rho)};
 }
 
 /// Sheen and coat, and the weights of what lies below.
@@ -98,7 +116,7 @@ void PrincipledLobes::set_metal(const PrincipledParameters& p) {
                     reflected_again(mean.z, loss)};
   const double lost_here = 1 - mirror_albedo_(wo_.z);
   metal_again_ = again * (metal_ * lost_here / (kPi * loss));
-  choice_[kAbove] += metal_ * max_component(again) * lost_here;
+  choice_[kAgainAbove] += metal_ * max_component(again) * lost_here;
 }
 
 /// An interface over Lambert's law. The diffuse part takes what the interface does not reflect, for the
@@ -112,7 +130,7 @@ void PrincipledLobes::set_opaque(const PrincipledParameters& p) {
   const double reflected = (*opaque_albedo_)(wo_.z);
   choice_[kMirror] += opaque_ * std::max(r * r, reflected);
   diffuse_ = base_color_ * (opaque_ * (1 - reflected) / (kPi * opaque_albedo_->mean_loss()));
-  choice_[kAbove] += opaque_ * max_component(base_color_) * (1 - reflected);
+  choice_[kDiffuse] = opaque_ * max_component(base_color_) * (1 - reflected);
 }
 
 /// Glass. The light that single scattering loses is split between both sides such that the split is the same
@@ -139,8 +157,8 @@ void PrincipledLobes::set_glass(const PrincipledParameters& p, bool front) {
   if (!(loss > 0 && loss_behind > 0)) return;
   glass_again_above_ = glass_ * (1 - passed) * lost_here / (kPi * loss);
   glass_again_below_ = base_color_ * (glass_ * passed * lost_here / (kPi * loss_behind));
-  choice_[kAbove] += glass_ * (1 - passed) * lost_here;
-  choice_[kBelow] += glass_ * passed * tint * lost_here;
+  choice_[kAgainAbove] += glass_ * (1 - passed) * lost_here;
+  choice_[kAgainBelow] = glass_ * passed * tint * lost_here;
 }
 
 Vec3d PrincipledLobes::metal_fresnel(double c) const {
@@ -162,39 +180,41 @@ double PrincipledLobes::chance_of_reflection(double reflectance) const {
   return passed > 0 ? reflectance / (reflectance + passed) : 1;
 }
 
-/// Facets: f cos of a reflecting lobe is F D G / (4 wo.z), its density D / ((1 + Lambda(wo)) 4 wo.z).
+/// Facets: f cos of a reflecting lobe is F D G / (4 wo.z) with G = 1 / (1 + Lambda(wo) + Lambda(wi)).
 PrincipledLobes::Value PrincipledLobes::above(const Vec3d& wi) const {
   Value sum;
   const Vec3d h = normalize(wo_ + wi);
   const double c = std::min(1.0, dot(wo_, h));
   if (base_.alpha > 0) {
-    const double common = ggx_density(h, base_.alpha) / (4 * wo_.z);
+    const double normals = ggx_density(h, base_.alpha), density = normals * base_.reflected;
     Vec3d reflectance;
-    double chance = choice_[kMirror];
     if (metal_ > 0) reflectance += metal_fresnel(c) * metal_;
     if (opaque_ > 0) reflectance += kWhite * (opaque_ * fresnel(c, opaque_eta_));
+    sum.pdf += choice_[kMirror] * density;
     if (!glass_smooth_) {
-      const double f = glass_fresnel(c);
+      const double f = glass_fresnel(c), visible = normals / (4 * wo_.z * (1 + base_.lambda));
       reflectance += kWhite * (glass_ * f);
-      chance += choice_[kGlass] * chance_of_reflection(f);
+      sum.pdf += choice_[kGlass] * chance_of_reflection(f) * (thin_ ? density : visible);
     }
-    sum.value += reflectance * (common / (1 + base_.lambda + ggx_lambda(wi, base_.alpha)));
-    sum.pdf += chance * (common / (1 + base_.lambda));
+    sum.value += reflectance * (normals / (4 * wo_.z * (1 + base_.lambda + ggx_lambda(wi, base_.alpha))));
   }
   if (coat_facets_.alpha > 0) {
-    const double common = ggx_density(h, coat_facets_.alpha) / (4 * wo_.z);
-    const double f = fresnel(c, coat_eta_), lambda = ggx_lambda(wi, coat_facets_.alpha);
-    sum.value += kWhite * (coat_ * f * common / (1 + coat_facets_.lambda + lambda));
-    sum.pdf += choice_[kCoat] * common / (1 + coat_facets_.lambda);
+    const double normals = ggx_density(h, coat_facets_.alpha), lambda = ggx_lambda(wi, coat_facets_.alpha);
+    const double weight = coat_ * fresnel(c, coat_eta_);
+    sum.value += kWhite * (weight * normals / (4 * wo_.z * (1 + coat_facets_.lambda + lambda)));
+    sum.pdf += choice_[kCoat] * normals * coat_facets_.reflected;
   }
-  if (choice_[kAbove] > 0) {
+  if (opaque_ > 0) {
+    sum.value += diffuse_ * ((1 - (*opaque_albedo_)(wi.z)) * wi.z);
+    sum.pdf += choice_[kDiffuse] * wi.z / kPi;
+  }
+  if (choice_[kAgainAbove] > 0) {
     Vec3d again;
-    if (opaque_ > 0) again += diffuse_ * (1 - (*opaque_albedo_)(wi.z));
     if (max_component(metal_again_) > 0) again += metal_again_ * (1 - mirror_albedo_(wi.z));
     if (glass_again_above_ > 0)
       again += kWhite * (glass_again_above_ * (1 - (thin_ ? mirror_albedo_(wi.z) : (*glass_albedo_)(wi.z))));
     sum.value += again * wi.z;
-    sum.pdf += choice_[kAbove] * wi.z / kPi;
+    sum.pdf += choice_[kAgainAbove] * grazing_density(wi.z, base_.alpha);
   }
   if (choice_[kSheen] > 0) {
     const double density = fibres_.density(wi);
@@ -212,28 +232,29 @@ PrincipledLobes::Value PrincipledLobes::transmitted(const Vec3d& wi) const {
   if (!(size > 0)) return {};
   h = h / (h.z < 0 ? -size : size);
   const double c = std::min(1.0, dot(wo_, h)), d = dot(wi, h);
-  double jacobian;
+  const double reflectance = glass_fresnel(c), normals = ggx_density(h, base_.alpha);
+  double facing, density;
   if (thin_) {
-    jacobian = 1 / (4 * c);
+    facing = normals / (4 * wo_.z);
+    density = normals * base_.reflected;
   } else {
     if (!(c > 0 && d < 0)) return {};
     const double t = c + eta_ * d;
-    jacobian = eta_ * eta_ * -d / (t * t);
+    facing = normals * c / wo_.z * eta_ * eta_ * -d / (t * t);
+    density = facing / (1 + base_.lambda);
   }
-  const double reflectance = glass_fresnel(c);
-  const double common = ggx_density(h, base_.alpha) * c / wo_.z * jacobian;
-  return {
-      base_color_ * (glass_ * (1 - reflectance) * common / (1 + base_.lambda + ggx_lambda(wi, base_.alpha))),
-      choice_[kGlass] * (1 - chance_of_reflection(reflectance)) * common / (1 + base_.lambda)};
+  const double shown = facing / (1 + base_.lambda + ggx_lambda(wi, base_.alpha));
+  return {base_color_ * (glass_ * (1 - reflectance) * shown),
+          choice_[kGlass] * (1 - chance_of_reflection(reflectance)) * density};
 }
 
 PrincipledLobes::Value PrincipledLobes::below(const Vec3d& wi) const {
   if (glass_smooth_) return {};
   Value sum = transmitted(wi);
-  if (choice_[kBelow] > 0) {
+  if (choice_[kAgainBelow] > 0) {
     const double albedo = thin_ ? mirror_albedo_(-wi.z) : (*glass_albedo_behind_)(-wi.z);
     sum.value += glass_again_below_ * ((1 - albedo) * -wi.z);
-    sum.pdf += choice_[kBelow] * -wi.z / kPi;
+    sum.pdf += choice_[kAgainBelow] * grazing_density(-wi.z, base_.alpha);
   }
   return sum;
 }
@@ -246,17 +267,18 @@ OKTETT_NOINLINE BsdfValue PrincipledLobes::evaluate(const Vec3f& wi) const {
 }
 
 bool PrincipledLobes::only_delta() const {
-  return choice_[kSheen] == 0 && choice_[kAbove] == 0 && choice_[kBelow] == 0 &&
-         (choice_[kCoat] == 0 || coat_facets_.alpha == 0) && (choice_[kMirror] == 0 || base_.alpha == 0) &&
-         (choice_[kGlass] == 0 || glass_smooth_);
+  return choice_[kSheen] == 0 && choice_[kDiffuse] == 0 && choice_[kAgainAbove] == 0 &&
+         choice_[kAgainBelow] == 0 && (choice_[kCoat] == 0 || coat_facets_.alpha == 0) &&
+         (choice_[kMirror] == 0 || base_.alpha == 0) && (choice_[kGlass] == 0 || glass_smooth_);
 }
 
 std::optional<BsdfSample> PrincipledLobes::sample(float lobe, const SquareSample& u) const {
   double place = lobe;
   const int chosen = choice_.pick(place);
   if (chosen == kSheen) return sample_of(*this, fibres_.sample(u));
-  if (chosen == kAbove) return sample_of(*this, cosine_above(u));
-  if (chosen == kBelow) return sample_of(*this, flipped(cosine_above(u)));
+  if (chosen == kDiffuse) return sample_of(*this, cosine_above(u));
+  if (chosen == kAgainAbove) return sample_of(*this, grazing_above(base_.alpha, u));
+  if (chosen == kAgainBelow) return sample_of(*this, flipped(grazing_above(base_.alpha, u)));
   if (chosen == kGlass) return glass_smooth_ ? sample_smooth_glass(place) : sample_glass(place, u);
   if (chosen < 0) return std::nullopt;
   const double alpha = chosen == kCoat ? coat_facets_.alpha : base_.alpha;
@@ -266,7 +288,7 @@ std::optional<BsdfSample> PrincipledLobes::sample(float lobe, const SquareSample
                         : metal_fresnel(wo_.z) * metal_ + kWhite * (opaque_ * fresnel(wo_.z, opaque_eta_));
     return delta_sample(mirrored(wo_), weight, choice_[chosen]);
   }
-  const Vec3d m = ggx_visible_normal(wo_, alpha, u), wi = m * (2 * dot(wo_, m)) - wo_;
+  const Vec3d m = ggx_reflecting_normal(wo_, alpha, u), wi = m * (2 * dot(wo_, m)) - wo_;
   return wi.z > 0 ? sample_of(*this, wi) : std::nullopt;
 }
 
@@ -283,7 +305,8 @@ std::optional<BsdfSample> PrincipledLobes::sample_smooth_glass(double place) con
 }
 
 std::optional<BsdfSample> PrincipledLobes::sample_glass(double place, const SquareSample& u) const {
-  const Vec3d m = ggx_visible_normal(wo_, base_.alpha, u);
+  const Vec3d m =
+      thin_ ? ggx_reflecting_normal(wo_, base_.alpha, u) : ggx_visible_normal(wo_, base_.alpha, u);
   const double c = dot(wo_, m), reflectance = glass_fresnel(c);
   const bool reflect = place < chance_of_reflection(reflectance);
   if (reflect || thin_) {

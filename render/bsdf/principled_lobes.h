@@ -53,12 +53,13 @@ class PrincipledLobes {
 
  private:
   /// kMirror: metal and opaque dielectric. kGlass: reflected or transmitted, as Fresnel's equations say.
-  /// kAbove, kBelow: all that is diffuse in shape, on the viewer's side and on the other.
-  enum Lobe { kSheen, kCoat, kMirror, kGlass, kAbove, kBelow, kLobes };
+  /// kAgainAbove, kAgainBelow: what single scattering loses, on the viewer's side and on the other.
+  enum Lobe { kSheen, kCoat, kMirror, kGlass, kDiffuse, kAgainAbove, kAgainBelow, kLobes };
 
   struct Facets {
-    double alpha = 0;   ///< width of the facets; 0: smooth
-    double lambda = 0;  ///< ggx_lambda of the viewer
+    double alpha = 0;      ///< width of the facets; 0: smooth
+    double lambda = 0;     ///< ggx_lambda of the viewer
+    double reflected = 0;  ///< ggx_reflected_scale of the viewer
   };
   struct Value {
     Vec3d value;
