@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/four.h"
+
 namespace oktett {
 
 /// Light leaves and arrives up to this much, in cosines, beyond what the bounds say. It covers rounding.
@@ -21,26 +23,26 @@ static constexpr float kLeastSquare = 1e-30f;
 static constexpr float kLeastImportance = 1e-37f;
 static constexpr double kLeastPart = 0x1p-30;
 
-// All lanes take the same way, so that the compiler can compute them together.
-
 /// The mean of max(0, x) for x uniform in [mean - width, mean + width].
-static inline float positive_part(float mean, float width) {
-  const float wide = std::max(width, 1e-6f), above = std::min(std::max(mean + wide, 0.0f), 2 * wide);
-  return above * above / (4 * wide) + std::max(mean - wide, 0.0f);
+static Four positive_part(Four mean, Four width) {
+  const Four wide = max(width, 1e-6f), above = min(max(mean + wide, 0), 2 * wide);
+  return above * above / (4 * wide) + max(mean - wide, 0);
 }
 
-/// Whether an angle of cosine `cosine` is surely greater than the sum of an angle of cosine `limit` and an
-/// acute one of sine `ball`; 1 stands for any angle. cos(a + b) = cos(a) cos(b) - sin(a) sin(b) is not below
-/// this bound.
-static inline bool is_beyond(float cosine, float limit, float ball) {
-  return (ball < 1) & (cosine < std::min(limit, limit * (1 - ball * ball)) - ball - kLeastCosine);
+/// `x`, but 0 where an angle of cosine `cosine` is surely greater than the sum of an angle of cosine `limit`
+/// and an acute one of sine `ball`; 1 stands for any angle. cos(a + b) = cos(a) cos(b) - sin(a) sin(b) is not
+/// below this bound.
+static Four unless_beyond(Four x, Four cosine, Four limit, Four ball) {
+  const Four bound = min(limit, limit * (1 - ball * ball)) - ball - kLeastCosine;
+  const auto beyond = (ball < 1) & (cosine < bound);
+  return beyond ? four(0) : x;
 }
 
 /// About the mean of the cosines of a set of angles, none taken below 0, whose cosines are `mean` plus or
 /// minus `width`. `middle` is the cosine of the angle in their middle. The part of their greatest cosine
 /// keeps the mean from being far too low where the few emitters that face the point are the strongest.
-static inline float mean_cosine(float mean, float width, float middle) {
-  const float sum = std::min(std::max(middle + width, kLeastCosine), 1.0f), greatest = width < 1 ? sum : 1;
+static Four mean_cosine(Four mean, Four width, Four middle) {
+  const Four sum = min(max(middle + width, kLeastCosine), 1), greatest = width < 1 ? sum : four(1);
   return positive_part(mean, width) * (1 - kPartOfGreatest) + greatest * kPartOfGreatest;
 }
 
@@ -49,36 +51,35 @@ double LightTree::Importances::sum() const {
 }
 
 LightTree::Importances LightTree::importances(const Quad& quad, const LightPoint& point) {
-  const Vec3f p = point.position, n = point.normal;
-  const bool any_side = !point.front_only, surface = n != Vec3f{};
-  Importances result;
-  for (std::uint32_t i = 0; i < kLanes; ++i) {
-    const float x = quad.center[0][i] - p.x, y = quad.center[1][i] - p.y, z = quad.center[2][i] - p.z;
-    const float square = std::max(x * x + y * y + z * z, kLeastSquare), scale = 1 / std::sqrt(square);
-    // The sine of half the angle that the sphere fills; from inside, light may come from all directions.
-    const float ball = std::min(quad.radius[i] * scale, 1.0f);
+  const Four x = four(quad.center[0]) - point.position.x, y = four(quad.center[1]) - point.position.y;
+  const Four z = four(quad.center[2]) - point.position.z, radius = four(quad.radius);
+  const Four square = max(x * x + y * y + z * z, kLeastSquare), scale = 1 / square_root(square);
+  // The sine of half the angle that the sphere fills; from inside, light may come from all directions.
+  const Four ball = min(radius * scale, 1);
 
-    const float cosine = -(quad.axis[0][i] * x + quad.axis[1][i] * y + quad.axis[2][i] * z) * scale;
-    const float cos_spread = quad.cos_spread[i];
-    const float sin_spread = cos_spread > 0 ? std::sqrt(std::max(1 - cos_spread * cos_spread, 0.0f)) : 1.0f;
-    const float width = std::min(1.0f, sin_spread + ball), mean = cosine * (1 + cos_spread) * 0.5f;
-    const bool both_sides = (quad.child[i] & kBothSides) != 0;
-    const float leaving_cosine = both_sides ? std::abs(cosine) : cosine;
-    const float back = positive_part(-mean, width);
-    const float leaving = mean_cosine(mean, width, leaving_cosine) + (both_sides ? back : 0.0f);
+  const Four cosine = -(four(quad.axis[0]) * x + four(quad.axis[1]) * y + four(quad.axis[2]) * z) * scale;
+  const Four cos_spread = four(quad.cos_spread);
+  const Four sin_spread = cos_spread > 0 ? square_root(max(1 - cos_spread * cos_spread, 0)) : four(1);
+  const Four mean = cosine * (1 + cos_spread) * 0.5f, width = min(sin_spread + ball, 1);
+  const auto back_part = [](std::uint32_t child) { return child & kBothSides ? 1.0f : 0.0f; };
+  const Four back{back_part(quad.child[0]), back_part(quad.child[1]), back_part(quad.child[2]),
+                  back_part(quad.child[3])};
+  const Four leaving = back > 0 ? magnitude(cosine) : cosine;
+  const Four power = four(quad.power), nearest = max(square, kPartOfRadius * radius * radius);
+  Four importance =
+      power / nearest * (mean_cosine(mean, width, leaving) + back * positive_part(-mean, width));
+  Four lit = unless_beyond(power, leaving, four(quad.cos_limit), ball);
 
-    const float incidence = (n.x * x + n.y * y + n.z * z) * scale;
-    const float arriving_cosine = any_side ? std::abs(incidence) : incidence;
-    const float behind = positive_part(-incidence, ball);
-    const float arriving = mean_cosine(incidence, ball, arriving_cosine) + (any_side ? behind : 0.0f);
-
-    const float nearest = std::max(square, kPartOfRadius * quad.radius[i] * quad.radius[i]);
-    const float importance = quad.power[i] / nearest * leaving * (surface ? arriving : 1.0f);
-    const bool dark = is_beyond(leaving_cosine, quad.cos_limit[i], ball) |
-                      (surface & is_beyond(arriving_cosine, 0, ball)) | !(quad.power[i] > 0);
-    result.lane[i] = dark ? 0.0f : std::max(importance, kLeastImportance);
+  if (point.normal != Vec3f{}) {
+    const Four incidence = (point.normal.x * x + point.normal.y * y + point.normal.z * z) * scale;
+    const Four arriving = point.front_only ? incidence : magnitude(incidence);
+    Four cosines = mean_cosine(incidence, ball, arriving);
+    if (!point.front_only) cosines += positive_part(-incidence, ball);
+    importance *= cosines;
+    lit = unless_beyond(lit, arriving, four(0), ball);
   }
-  return result;
+  importance = lit > 0 ? max(importance, kLeastImportance) : four(0);
+  return {{importance[0], importance[1], importance[2], importance[3]}};
 }
 
 LightTree::Importances LightTree::weights(const Quad& quad, const LightPoint& point) {
