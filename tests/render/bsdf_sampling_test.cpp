@@ -81,7 +81,7 @@ T any_of(const T (&list)[N], std::uint64_t key, std::uint32_t dimension) {
   return list[random_bits(key, 0, dimension) % N];
 }
 
-constexpr float kRoughness[] = {0.032f, 0.06f, 0.12f, 0.25f, 0.4f, 0.6f, 0.8f, 1};
+constexpr float kRoughness[] = {0.032f, 0.06f, 0.12f, 0.25f, 0.35f, 0.6f, 0.8f, 1};
 constexpr double kCosine[] = {0.01, 0.05, 0.2, 0.5, 0.7, 0.9, 0.999, 1};
 constexpr float kIor[] = {0.4f, 0.7f, 0.9f, 1.05f, 1.33f, 1.5f, 2.4f};
 constexpr float kWeight[] = {0, 0, 0.5f, 1};
