@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
-#include "accel/traverse/inflight/inflight_ray.h"
+#include "accel/traverse/inflight/exact_group.h"
 #include "tests/accel/same_hits.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/cases/kernel_cases.h"
@@ -224,6 +225,31 @@ TEST(Interleaved, NodesMissNoBox) {
   }
   EXPECT_GT(met, 20000);
   EXPECT_LT(more, 2 * met);
+}
+
+// Without instances nothing sets the tree that a ray is in, so whatever is there must not part the rays.
+TEST(Interleaved, RaysAtOneLeafOfExactSurfacesGoTogether) {
+  constexpr std::size_t kRays = 6;
+  const auto accel = build_accel({{ExactShape{TorusShape{}}, {}, kNoId}});
+  ASSERT_TRUE(accel->root.is_leaf());
+  const NodeRef elsewhere = NodeRef::leaf(accel->root.table_index() + 1);
+  std::vector<InflightRay> inflight(kRays);
+  const auto gather = [&](auto instances, std::uint32_t instance, int most) {
+    InflightRay* rays[kRays];
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+      rays[i] = &inflight[i];
+      inflight[i].current = i == 1 || i == 2 ? elsewhere : accel->root;
+      inflight[i].in.instance = instance;
+    }
+    const int count = rays_at_leaf<instances.value>(*accel, rays, rays + kRays, most);
+    for (int i = 0; i < count; ++i) EXPECT_EQ(rays[i]->current.bits(), accel->root.bits()) << i;
+    return count;
+  };
+  for (const std::uint32_t instance : {0u, 77u, kNoInstance})
+    EXPECT_EQ(gather(std::false_type{}, instance, 8), 4) << instance;
+  EXPECT_EQ(gather(std::false_type{}, 0, 3), 3);
+  EXPECT_EQ(gather(std::true_type{}, kNoInstance, 8), 4);
+  EXPECT_EQ(gather(std::true_type{}, 0, 8), 0);
 }
 
 }  // namespace

@@ -10,10 +10,11 @@ namespace oktett {
 
 /// Moves the rays that are at the same leaf as *begin next to it, at most as many as exact surfaces solve at
 /// once, and returns how many there are with *begin; 0 if that is inside an instance or its leaf is of
-/// another kind.
+/// another kind. `kInstances`: the rays may be inside instances; else their InflightRay::in is not set.
+template <bool kInstances>
 OKTETT_INLINE int rays_at_leaf(const Accel& accel, InflightRay** begin, InflightRay** end, int most) {
   const auto is_here = [&](const InflightRay& ray) {
-    return ray.in.instance == kNoInstance && ray.current.bits() == (*begin)->current.bits();
+    return (!kInstances || ray.in.instance == kNoInstance) && ray.current.bits() == (*begin)->current.bits();
   };
   if (!is_here(**begin) || !is_exact(accel.leaves[(*begin)->current.table_index()].kind)) return 0;
   int count = 1;

@@ -219,7 +219,7 @@ class InflightTraversal {
     if constexpr (kEnter)
       for (InflightRay** at = rays.leaving; at != rays.leaving_end; ++at) leave(**at, tail);
     for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end;) {
-      const int count = rays_at_leaf(accel_, at, rays.at_leaf_end, ExactCode<A>::kLanes);
+      const int count = rays_at_leaf<kInstances>(accel_, at, rays.at_leaf_end, ExactCode<A>::kLanes);
       if (count > 0)
         exact_leaf(at, count, tail);
       else
