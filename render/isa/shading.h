@@ -83,7 +83,11 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
     const Vec3<F> unlit = fetch_materials<F>(table, c, i);
     // The light of textured surfaces is added when their textures have been looked up.
     unsigned known = 0;
-    for (int k = 0; k < F::kWidth; ++k) known |= (table[c.material[i + k]].textured ? 0u : 1u) << k;
+    for (int k = 0; k < F::kWidth; ++k) {
+      // Not inside the shift: GCC 12's sanitizers of bounds and shifts together would read a wrong entry.
+      const bool textured = table[c.material[i + k]].textured;
+      known |= (textured ? 0u : 1u) << k;
+    }
     known &= real_lanes<F>(c, i);
     ray.add(throughput.x * unlit.x, rays.radiance[0], known);
     ray.add(throughput.y * unlit.y, rays.radiance[1], known);
