@@ -22,7 +22,7 @@ struct InstanceItem {
   double to_child[12];  ///< row-major 3x4
   const Accel* child;
   std::uint32_t item;
-  std::uint32_t first_path;  ///< paths through this instance are first_path + 1 + (path inside the child + 1)
+  std::uint32_t first_path;  ///< paths through this instance are first_path + (path inside the child + 1)
 };
 
 /// An instance of a list. Its map is exactly that of its floats.
