@@ -1,6 +1,8 @@
 #pragma once
 /// \file Triangle meshes as data.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/soa.h"
@@ -30,5 +32,16 @@ struct TriangleMesh {
            uv_indices.bytes() + material_slots.bytes();
   }
 };
+
+/// The texture coordinates of the corners of a triangle: those of the mesh if all three have some, else
+/// (0, 0), (1, 0) and (0, 1), so that u and v are the weights of the second and the third corner.
+inline std::array<Vec2f, 3> corner_uvs(const TriangleMesh& mesh, std::uint32_t triangle) {
+  std::array<Vec2f, 3> uv{{{0, 0}, {1, 0}, {0, 1}}};
+  if (mesh.uv_indices.empty()) return uv;
+  const std::uint32_t* index = &mesh.uv_indices[3 * std::size_t{triangle}];
+  if (index[0] != kNoId && index[1] != kNoId && index[2] != kNoId)
+    for (std::size_t k = 0; k < 3; ++k) uv[k] = mesh.uvs[index[k]];
+  return uv;
+}
 
 }  // namespace oktett

@@ -7,15 +7,10 @@
 namespace oktett {
 namespace {
 
-/// uv and dp/du of a mesh hit; a mesh without texture coordinates has the barycentric ones.
+/// uv and dp/du of a mesh hit.
 void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, const Vec3f (&p)[3],
              SurfaceInteraction& s) {
-  Vec2f uv[3] = {{0, 0}, {1, 0}, {0, 1}};
-  if (!mesh.uv_indices.empty()) {
-    const std::uint32_t* index = &mesh.uv_indices[3 * std::size_t{triangle}];
-    if (index[0] != kNoId && index[1] != kNoId && index[2] != kNoId)
-      for (int k = 0; k < 3; ++k) uv[k] = mesh.uvs[index[k]];
-  }
+  const std::array<Vec2f, 3> uv = corner_uvs(mesh, triangle);
   const float w = 1 - u - v;
   s.uv = {uv[0].x * w + uv[1].x * u + uv[2].x * v, uv[0].y * w + uv[1].y * u + uv[2].y * v};
   const float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y, du2 = uv[2].x - uv[0].x,
