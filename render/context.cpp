@@ -2,16 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "core/math.h"
 #include "render/direct_light.h"
 
 namespace oktett {
 
+/// Whitted's model knows lights that have a place or one direction.
+static bool lights_whitted(const Light& light) { return !std::holds_alternative<EnvironmentLight>(light); }
+
 static LightSource light_source(const Light& light) {
-  if (const auto* point = std::get_if<PointLight>(&light))
-    return {Vec3f(point->position), point->color, false, point->falloff};
-  const auto& directional = std::get<DirectionalLight>(light);
-  return {Vec3f(normalize(-directional.direction)), directional.color, true, false};
+  LightSource source;
+  if (const auto* point = std::get_if<PointLight>(&light)) {
+    source.place = Vec3f(point->position), source.color = point->color, source.falloff = point->falloff;
+  } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
+    const auto cosine = [](double degrees) {
+      return static_cast<float>(portable::cos(degrees * (std::numbers::pi / 180)));
+    };
+    source.place = Vec3f(spot->position), source.color = spot->color, source.falloff = true;
+    source.spot = true, source.axis = Vec3f(normalize(spot->direction));
+    source.cos_inner = cosine(spot->inner_angle), source.cos_outer = cosine(spot->outer_angle);
+  } else {
+    const auto* sky = std::get_if<SkyLight>(&light);
+    const DirectionalLight directional = sky != nullptr ? sun_of(*sky) : std::get<DirectionalLight>(light);
+    source.place = Vec3f(normalize(-directional.direction)), source.color = directional.color;
+    source.directional = true;
+  }
+  return source;
 }
 
 static ShadingMaterial shading_material(const Material& m, const RenderContext& context) {
@@ -24,7 +42,8 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
     s.exponent = 0;
   else if (by_squaring(m.phong))
     s.exponent = static_cast<std::int32_t>(m.phong);
-  s.textured = context.textures != nullptr && has_textures(m);
+  s.varies = (context.textures != nullptr && has_textures(m)) ||
+             (!m.emits_behind && !(m.emission == Color{0, 0, 0}));
   s.reflection = m.reflection;
   s.transparent = m.transparency != 0;
   return s;
@@ -45,7 +64,8 @@ static void set_depth_range(const Box& box, RenderContext& context) {
   context.near_depth = static_cast<float>(nearest), context.far_depth = static_cast<float>(farthest);
 }
 
-RenderContext make_context(const Scene& scene, const World& world, const TextureSampler* textures, Isa isa) {
+RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
+                           const TextureSampler* textures, Isa isa) {
   RenderContext c;
   c.world = &world;
   c.textures = textures;
@@ -56,10 +76,12 @@ RenderContext make_context(const Scene& scene, const World& world, const Texture
   c.settings = scene.integrator;
   c.settings.samples = std::clamp(c.settings.samples, 1u, 65536u);
   c.settings.depth = std::min(c.settings.depth, 64u);
-  for (const Light& light : scene.lights) c.lights.push_back(light_source(light));
+  c.sampled = &lights;
+  for (const Light& light : scene.lights)
+    if (lights_whitted(light)) c.lights.push_back(light_source(light));
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
-  c.opaque_background = !(c.background == Color{0, 0, 0});
+  c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;
   c.ao_radius = radius > 0 ? static_cast<float>(radius) : 1;

@@ -7,6 +7,7 @@
 #include "render/camera.h"
 #include "render/geometry.h"
 #include "render/scene.h"
+#include "render/scene_lights.h"
 #include "render/shading_columns.h"
 #include "render/texture_sampler.h"
 
@@ -18,6 +19,9 @@ struct LightSource {
   Color color;
   bool directional = false;
   bool falloff = false;
+  bool spot = false;
+  Vec3f axis;                          ///< of a spot: unit vector along the middle of its cone
+  float cos_inner = 1, cos_outer = 0;  ///< of a spot: cosines of the angles between which it fades
 };
 
 struct RenderContext {
@@ -28,7 +32,8 @@ struct RenderContext {
   PixelWindow window;
   std::uint32_t full_width = 1, full_height = 1;
   IntegratorSettings settings;
-  std::vector<LightSource> lights;
+  std::vector<LightSource> lights;         ///< those that have a place or a direction, for Whitted's model
+  const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
   Color background, ambient_light;
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
@@ -40,7 +45,8 @@ struct RenderContext {
   float footprint_scale = 1;            ///< width of a sample's share of the pixel, in pixels
 };
 
-/// `scene` has its camera and lights filled in. `world` and `textures` must outlive the result.
-RenderContext make_context(const Scene& scene, const World& world, const TextureSampler* textures, Isa isa);
+/// `scene` has its camera and lights filled in. `world`, `lights` and `textures` must outlive the result.
+RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
+                           const TextureSampler* textures, Isa isa);
 
 }  // namespace oktett

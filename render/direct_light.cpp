@@ -42,6 +42,11 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
   const auto square = turn_to_light(light.place, broadcast<Lane>(p.surface.position), towards);
   l = only_lane(towards);
   if (light.falloff) color = color * only_lane(falloff(square));
+  if (light.spot)
+    color =
+        color * spot_share(-dot_lanes(towards, broadcast<Lane>(light.axis)), light.cos_inner, light.cos_outer)
+                    .part[0]
+                    .v;
   offset_origin(p.surface, l, ray.origin);
   ray.direction = light.place - ray.origin;
   ray.tmax = kBeforeLight;

@@ -30,12 +30,19 @@ void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found);
 
-/// Unidirectional path tracing (Kajiya 1986). The scene's lights are sampled at each hit; emission and
-/// background are found by rays that happen to meet them. Each hit chooses at random, by their weights, among
-/// diffuse, mirror and glass. Lights are
-/// scaled as in Whitted's model: a white diffuse surface that faces a light of colour c shows c. Ambient
-/// light is left out, since it stands for the indirect light that path tracing computes.
+/// Unidirectional path tracing (Kajiya 1986). Each hit sends one ray to a light that is chosen at random and
+/// one in a direction that the material chooses. Light that both can find is weighted by the power heuristic
+/// (Veach 1997). After `depth` bounces the next surface gives only what it emits. Nothing is cut off: the
+/// expected value of a pixel is its light, but for two conventions. Light from points passes glass straight,
+/// as no ray could find it otherwise. Ambient light is left out, since it stands for the indirect light that
+/// path tracing computes.
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// Which queue of a Wavefront holds the shadow rays of path tracing to lights that other rays can meet.
+inline constexpr std::size_t kAreaQueue = 1;
+
+/// The weight in path tracing of environment light that entry `ray`, a miss, finds.
+float environment_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray);
 
 /// Ambient occlusion: white times the cosine-weighted fraction of directions that meet nothing within the
 /// radius.

@@ -1,10 +1,13 @@
 #pragma once
 /// \file Materials and textures as data.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/mesh.h"
 #include "core/vec3.h"
+#include "render/bsdf/principled_parameters.h"
 
 namespace oktett {
 
@@ -19,6 +22,16 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
+/// A material whose parameters are those of the principled model, see PrincipledParameters. Textures are
+/// indices into Scene::textures or kNoId; each multiplies its parameter.
+struct PrincipledMaterial {
+  PrincipledParameters parameters;  ///< base_color is that of Material::color, with its texture
+  std::uint32_t metallic_texture = kNoId, roughness_texture = kNoId, specular_texture = kNoId;
+  std::uint32_t transmission_texture = kNoId, coat_texture = kNoId, coat_roughness_texture = kNoId;
+  std::uint32_t sheen_texture = kNoId, sheen_color_texture = kNoId, sheen_roughness_texture = kNoId;
+  bool operator==(const PrincipledMaterial&) const = default;
+};
+
 /// A material of the Whitted model. The light that leaves a point is the sum of
 /// - emission,
 /// - color * (ambient * ambient light + diffuse * sum over lights),
@@ -29,16 +42,18 @@ struct Material {
   std::string name;
   Color color{0.8f, 0.8f, 0.8f};  ///< colour of diffuse and ambient light, and of light that passes through
   Color specular_color{1, 1, 1};  ///< colour of highlights and mirror reflections
-  Color emission{0, 0, 0};
-  float ambient = 0.1f;                    ///< [0, inf)
-  float diffuse = 0.8f;                    ///< [0, inf)
-  float specular = 0;                      ///< weight of the Phong highlight, [0, inf)
-  float phong = 32;                        ///< Phong exponent, [0, inf)
-  float reflection = 0;                    ///< weight of the mirror ray, [0, 1]
-  float transparency = 0;                  ///< weight of light that passes through, [0, 1]; 0 = opaque
-  float ior = 1.5f;                        ///< index of refraction inside relative to outside, > 0
-  float roughness = 0;                     ///< PBR `Pr`; no integrator uses it yet
-  float metallic = 0;                      ///< PBR `Pm`; no integrator uses it yet
+  Color emission{0, 0, 0};        ///< radiance
+  bool emits_behind = true;       ///< both sides glow; false: only that of the geometric normal
+  float ambient = 0.1f;           ///< [0, inf)
+  float diffuse = 0.8f;           ///< [0, inf)
+  float specular = 0;             ///< weight of the Phong highlight, [0, inf)
+  float phong = 32;               ///< Phong exponent, [0, inf)
+  float reflection = 0;           ///< weight of the mirror ray, [0, 1]
+  float transparency = 0;         ///< weight of light that passes through, [0, 1]; 0 = opaque
+  float ior = 1.5f;               ///< index of refraction inside relative to outside, > 0
+  /// If given, path tracing scatters light by it. Emission, opacity, bumps and normals are those of the other
+  /// members, and so is all that Whitted's model shows: see resemble_principled.
+  std::optional<PrincipledMaterial> principled;
   std::uint32_t color_texture = kNoId;     ///< index into Scene::textures; multiplies `color` (map_Kd)
   std::uint32_t specular_texture = kNoId;  ///< multiplies `specular_color` (map_Ks)
   std::uint32_t emission_texture = kNoId;  ///< multiplies `emission` (map_Ke)
@@ -48,5 +63,13 @@ struct Material {
   float bump_scale = 1;                   ///< MTL `-bm`
   bool operator==(const Material&) const = default;
 };
+
+/// The principled material of the colour, roughness, index of refraction and transparency of a Phong
+/// material.
+PrincipledMaterial principled_like(const Material& m);
+
+/// Sets the parameters of the Whitted model to what comes near to `m.principled`, which must be given: smooth
+/// metal is a mirror, smooth glass is glass, and rougher surfaces have a highlight of about their width.
+void resemble_principled(Material& m);
 
 }  // namespace oktett

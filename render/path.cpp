@@ -1,11 +1,14 @@
+/// \file Path tracing, see integrators.h.
+
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "render/direct_light.h"
 #include "render/integrators.h"
 #include "render/sample_dimensions.h"
 #include "render/sampling/owen_sobol.h"
-#include "render/sampling/warp.h"
-#include "render/specular.h"
+#include "render/surface_bsdf.h"
 
 namespace oktett {
 namespace {
@@ -14,66 +17,132 @@ namespace {
 constexpr unsigned kSureBounces = 3;
 constexpr float kMostSurvival = 0.95f;
 
-std::uint64_t key_of(const Wavefront& wavefront, std::uint32_t sample, Decision decision) {
-  return sequence_key(wavefront.samples.key[sample], dimension(decision, wavefront.level));
+/// The random numbers of one sample at one bounce.
+class Choices {
+ public:
+  Choices(const Wavefront& wavefront, std::size_t ray)
+      : pixel_(wavefront.samples.key[wavefront.rays.sample[ray]]),
+        sample_(wavefront.samples.number[wavefront.rays.sample[ray]]),
+        level_(wavefront.level) {}
+
+  float number(Decision decision) const { return sobol_number(sample_, key(decision)); }
+  SquareSample point(Decision decision) const { return sobol_point(sample_, key(decision)); }
+
+ private:
+  std::uint64_t key(Decision decision) const { return sequence_key(pixel_, dimension(decision, level_)); }
+
+  std::uint64_t pixel_;
+  std::uint32_t sample_;
+  unsigned level_;
+};
+
+/// Veach's power heuristic for a light that two ways of sampling can find with these densities: the weight of
+/// the first.
+float power_weight(float pdf, float other) {
+  // Divided first: squares of densities may be too large for a float.
+  const float ratio = other / pdf;
+  return 1 / (1 + ratio * ratio);
 }
 
-float random_number(const Wavefront& wavefront, std::uint32_t sample, Decision decision) {
-  return sobol_number(wavefront.samples.number[sample], key_of(wavefront, sample, decision));
+/// The weight of light that entry `ray` meets, if a light sample would have found it with density
+/// `light_pdf`.
+template <class LightPdf>
+float met_weight(const Wavefront& wavefront, std::size_t ray, const LightPdf& light_pdf) {
+  if (wavefront.level == 0) return 1;
+  const float pdf = wavefront.paths.pdf[ray];
+  return pdf == 0 ? 1 : power_weight(pdf, light_pdf(wavefront.paths.from[ray]));
+}
+
+float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
+                      const ShadingPoint& p) {
+  return met_weight(wavefront, ray, [&](const LightPoint& from) {
+    const std::uint32_t emitter = context.sampled->emitter_at(wavefront.hits[ray]);
+    if (emitter == kNoId) return 0.0f;
+    return context.sampled->set().pdf(from, emitter, p.direction, length(p.surface.position - from.position));
+  });
+}
+
+/// tmax of a shadow ray over the vector to a point on a light: it ends before the light's surface, whose
+/// place is known to a few units in the last place of its coordinates only.
+float before_surface(const Vec3f& light, float distance) {
+  const float blur = 0x1p-20f * max_component(abs(light)) / distance;
+  return 1 - std::max(0x1p-13f, std::min(blur, 0.5f));
+}
+
+/// Sends a ray to a light chosen at random.
+void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+                  const SurfaceBsdf& bsdf, const LightPoint& from, const Choices& choices) {
+  // A single number of 24 bits is too coarse for millions of lights.
+  const double which = choices.point(Decision::light).x;
+  const std::optional<LightSample> light =
+      context.sampled->set().sample(from, which, choices.point(Decision::light_place));
+  if (!light) return;
+  const BsdfValue found = bsdf.evaluate(light->direction);
+  if (found.value == Color{0, 0, 0}) return;
+  const float weight = light->delta ? 1 : power_weight(light->pdf, found.pdf);
+  const Color arriving = wavefront.rays.throughput[ray] * found.value * light->radiance *
+                         context.sampled->texture_at(*light, context.textures) * (weight / light->pdf);
+  if (arriving == Color{0, 0, 0}) return;
+  Ray shadow;
+  shadow.origin = offset_origin(p.surface, light->direction);
+  shadow.direction = light->direction;
+  if (std::isfinite(light->distance)) {
+    const Vec3f place = from.position + light->direction * light->distance;
+    shadow.direction = place - shadow.origin;
+    shadow.tmax = light->delta ? kBeforeLight : before_surface(place, light->distance);
+  }
+  wavefront.shadows[light->delta ? 0 : kAreaQueue].push_back(shadow, static_cast<std::uint32_t>(ray),
+                                                             arriving);
 }
 
 /// Russian roulette: ends paths of small weight at random and raises the weight of the others, so that the
 /// mean does not change. False if the path ends.
-bool survives(const Wavefront& wavefront, std::size_t ray, Color& throughput) {
+bool survives(const Wavefront& wavefront, std::size_t ray, const Choices& choices, Color& throughput) {
   if (wavefront.rays.bounces[ray] + 1u <= kSureBounces) return true;
   const float chance = std::min(kMostSurvival, max_component(throughput));
-  if (random_number(wavefront, wavefront.rays.sample[ray], Decision::roulette) >= chance) return false;
+  if (choices.number(Decision::roulette) >= chance) return false;
   throughput *= 1 / chance;
   return true;
 }
 
-void push_path(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& towards,
-               Color throughput, Bounce bounce) {
-  if (survives(wavefront, ray, throughput)) push_bounce(wavefront, ray, p, towards, throughput, bounce);
-}
-
-void push_diffuse(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Color& throughput) {
-  const std::uint32_t sample = wavefront.rays.sample[ray];
-  const SquareSample at =
-      sobol_point(wavefront.samples.number[sample], key_of(wavefront, sample, Decision::direction));
-  const Vec3f towards = cosine_direction(p.ns, at);
-  if (dot(towards, p.ng) <= 0) return;
-  push_path(wavefront, ray, p, towards, throughput, Bounce::reflected);
+/// Passes straight through a hole. Light behind it could have been chosen where the ray left a surface.
+void pass_hole(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+  push_bounce(wavefront, ray, p, p.direction, wavefront.rays.throughput[ray], Bounce::straight);
+  const bool camera = wavefront.level == 0;
+  wavefront.next_paths.push_back(camera ? 0 : wavefront.paths.pdf[ray],
+                                 camera ? LightPoint{} : wavefront.paths.from[ray]);
 }
 
 }  // namespace
 
+float environment_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
+  return met_weight(wavefront, ray, [&](const LightPoint& from) {
+    return context.sampled->set().environment_pdf(from, wavefront.rays.rays[ray].direction);
+  });
+}
+
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+  const Choices choices(wavefront, ray);
+  if (p.opacity < 1 && choices.number(Decision::hole) >= p.opacity) return pass_hole(wavefront, ray, p);
+
   const Color throughput = wavefront.rays.throughput[ray];
-  const std::uint32_t sample = wavefront.rays.sample[ray];
-  if (p.opacity < 1 && random_number(wavefront, sample, Decision::hole) >= p.opacity)
-    return push_bounce(wavefront, ray, p, p.direction, throughput, Bounce::straight);
+  if (!(p.emission == Color{0, 0, 0}))
+    wavefront.radiance.add(ray, throughput * p.emission * emission_weight(context, wavefront, ray, p));
+  if (wavefront.rays.bounces[ray] > context.settings.depth) return;
 
-  wavefront.radiance.add(ray, throughput * p.emission);
-  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
-  if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
+  const SurfaceBsdf bsdf(p);
+  const LightPoint from{p.surface.position, p.ng, !bsdf.transmits()};
+  const bool sampled = !bsdf.only_delta() && !context.sampled->set().empty();
+  if (sampled) sample_light(context, wavefront, ray, p, bsdf, from, choices);
 
-  const SpecularRays specular = specular_rays(p);
-  const Color diffuse = p.color * p.material->diffuse;
-  const float weight[3] = {max_component(diffuse), max_component(specular.mirror),
-                           max_component(specular.refracted)};
-  const float sum = weight[0] + weight[1] + weight[2];
-  if (!(sum > 0)) return;
-  const float at = random_number(wavefront, sample, Decision::lobe) * sum;
-  if (at < weight[0]) {
-    push_diffuse(wavefront, ray, p, throughput * diffuse * (sum / weight[0]));
-  } else if (at < weight[0] + weight[1]) {
-    push_path(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror * (sum / weight[1]),
-              Bounce::reflected);
-  } else if (weight[2] > 0) {
-    push_path(wavefront, ray, p, specular.refracted_direction,
-              throughput * specular.refracted * (sum / weight[2]), Bounce::refracted);
-  }
+  const std::optional<BsdfSample> next =
+      bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
+  if (!next) return;
+  Color onward = throughput * next->weight;
+  if (!survives(wavefront, ray, choices, onward)) return;
+  push_bounce(wavefront, ray, p, next->direction, onward,
+              next->transmitted ? Bounce::refracted : Bounce::reflected);
+  wavefront.next_paths.push_back(sampled && !next->delta ? next->pdf : 0, from);
 }
 
 }  // namespace oktett

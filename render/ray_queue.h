@@ -7,6 +7,7 @@
 #include "core/soa.h"
 #include "core/vec3.h"
 #include "render/color_column.h"
+#include "render/light/light_sample.h"
 
 namespace oktett {
 
@@ -46,6 +47,16 @@ struct RayQueue {
     sample.push_back(e.sample), throughput.push_back(e.throughput), distance.push_back(e.distance);
     bounces.push_back(e.bounces), from_camera.push_back(e.from_camera ? 1 : 0);
   }
+};
+
+/// What a path knows of the surface that its ray left, beside the columns of a RayQueue: how likely the ray's
+/// direction was, and for which point lights would have been chosen there.
+struct PathColumns {
+  Column<float> pdf;  ///< of the direction, per solid angle; 0 if no light could be chosen in its place
+  Column<LightPoint> from;
+
+  void clear() { pdf.resize_uninitialized(0), from.resize_uninitialized(0); }
+  void push_back(float density, const LightPoint& point) { pdf.push_back(density), from.push_back(point); }
 };
 
 /// Shadow rays. Each adds `light` to the radiance of its owner, an entry of a RayQueue, if nothing blocks it.

@@ -109,7 +109,8 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
   complete_scene(scene, world.bounds);
   const double build_seconds = seconds_since(start);
 
-  RenderContext context = make_context(scene, world, options.textures, options.isa);
+  const SceneLights lights(scene, world);
+  RenderContext context = make_context(scene, world, lights, options.textures, options.isa);
   context.data_layers = options.data_layers;
   result.picture = make_picture(context);
   const Clock::time_point tracing = Clock::now();

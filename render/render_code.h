@@ -11,7 +11,7 @@ namespace oktett {
 struct RenderCode {
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
   /// Fills all columns after `ray` and `material` from the rays and from a table of materials, and adds their
-  /// unlit light, except for materials with textures, to the radiance of the rays.
+  /// unlit light, except for materials that vary, to the radiance of the rays.
   void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ShadedRays&,
                         ShadingColumns&);
   /// Writes the rays to one light, with the light that they carry if nothing blocks them, for all hits that

@@ -13,6 +13,7 @@
 #include "core/vec3.h"
 #include "kernels/closed/shape_data.h"
 #include "kernels/exact_form.h"
+#include "render/light/environment_picture.h"
 #include "render/material.h"
 
 namespace oktett {
@@ -60,22 +61,53 @@ struct IntegratorSettings {
   bool operator==(const IntegratorSettings&) const = default;
 };
 
-/// Emits `color` in all directions. Its light does not fall off with distance unless `falloff` is set
-/// (1/r^2).
+// The colour of a light is what a white diffuse surface shows that faces it: an irradiance divided by pi, or
+// for lights with falloff an intensity divided by pi. Radiance stands as it is.
+
+/// Emits light in all directions. Its light does not fall off with distance unless `falloff` is set (1/r^2).
 struct PointLight {
   Vec3d position;
   Color color{1, 1, 1};
   bool falloff = false;
 };
 
+/// A point that emits light into a cone, which falls off as 1/r^2. From the inner to the outer angle it fades
+/// smoothly.
+struct SpotLight {
+  Vec3d position;
+  Vec3d direction{0, -1, 0};  ///< along the middle of the cone, of any length but zero
+  Color color{1, 1, 1};
+  double inner_angle = 30;  ///< degrees from the middle, [0, outer_angle]
+  double outer_angle = 40;  ///< degrees from the middle, (0, 180]
+};
+
 /// Parallel light that travels along `direction`.
 struct DirectionalLight {
   Vec3d direction{0, -1, 0};
   Color color{1, 1, 1};
+  /// Angular diameter in degrees, [0, 180]: the light comes from a disk in the sky, which path tracing shows
+  /// and samples. The sun has 0.53.
+  double angle = 0;
+};
+
+/// Light from all directions, which is also the background.
+struct EnvironmentLight {
+  std::shared_ptr<const EnvironmentPicture> picture;  ///< not null
+  double rotation = 0;                                ///< degrees about +y
+  Color color{1, 1, 1};                               ///< multiplies the radiance of the picture
+};
+
+/// The clear sky by day with the sun in it, over a diffuse ground; also the background. See Sky.
+struct SkyLight {
+  Vec3d sun{1, 2, 1};              ///< towards the sun, of any length but zero; the horizon is y = 0
+  double turbidity = 3;            ///< [2, 10]: from very clear to hazy
+  Color ground{0.2f, 0.2f, 0.2f};  ///< albedo of what is below the horizon
+  /// Multiplies radiance in kcd / m^2. With the default, white shows about 1 in the sun of noon.
+  Color color{0.03f, 0.03f, 0.03f};
 };
 
 /// A light of any kind.
-using Light = std::variant<PointLight, DirectionalLight>;
+using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentLight, SkyLight>;
 
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.
 struct MeshShape {

@@ -16,11 +16,11 @@ struct alignas(64) ShadingMaterial {
   float diffuse, specular, phong, reflection;
   /// `phong` if highlights are raised to it by squaring, 0 if there are none, else kAnyPower.
   std::int32_t exponent;
-  bool textured;     ///< colours and normal are known only at the hit
+  bool varies;       ///< colours, normal or emission are known only at the hit
   bool transparent;  ///< lets light pass
 
   /// Whether its hits are finished one by one, not in lanes.
-  bool alone() const { return textured || transparent; }
+  bool alone() const { return varies || transparent; }
 };
 static_assert(sizeof(ShadingMaterial) == 64);
 

@@ -42,6 +42,14 @@ OKTETT_INLINE Simd<float, W, A> falloff(const Simd<double, W, A>& squared_distan
   return to_float(Simd<double, W, A>(1.0) / squared_distance);
 }
 
+/// What a spot gives at an angle from the middle of its cone, by the cosine of that angle: 1 up to the inner
+/// angle, 0 from the outer one on.
+template <class F>
+OKTETT_INLINE F spot_share(const F& cosine, float cos_inner, float cos_outer) {
+  const F t = min(max((cosine - F(cos_outer)) / F(cos_inner - cos_outer), F(0.0f)), F(1.0f));
+  return t * t * (F(3.0f) - F(2.0f) * t);
+}
+
 /// What Phong's model needs of the directions at a surface.
 template <class F>
 struct PhongCosines {

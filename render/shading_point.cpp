@@ -52,6 +52,22 @@ float opacity_at(const RenderContext& c, const Material& m, const Vec2f& uv, con
   return std::clamp(c.textures->value(m.opacity_texture, uv, f.dx, f.dy), 0.0f, 1.0f);
 }
 
+PrincipledParameters principled_at(const RenderContext& c, const PrincipledMaterial& m, const Color& color,
+                                   const Vec2f& uv, const Footprint& f) {
+  PrincipledParameters at = m.parameters;
+  at.base_color = color;
+  if (c.textures == nullptr) return at;
+  const auto scale = [&](float& value, std::uint32_t texture) {
+    if (texture != kNoId) value *= c.textures->value(texture, uv, f.dx, f.dy);
+  };
+  scale(at.metallic, m.metallic_texture), scale(at.roughness, m.roughness_texture);
+  scale(at.specular, m.specular_texture), scale(at.transmission, m.transmission_texture);
+  scale(at.coat, m.coat_texture), scale(at.coat_roughness, m.coat_roughness_texture);
+  scale(at.sheen, m.sheen_texture), scale(at.sheen_roughness, m.sheen_roughness_texture);
+  at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, uv, f);
+  return at;
+}
+
 /// The normal of the surface displaced by a height map along `n` (Blinn 1978), dp/dv as in `footprint`.
 Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const Footprint& f) {
@@ -114,26 +130,40 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.specular_color = textured(context, m.specular_color, m.specular_texture, s.uv, f);
   p.emission = textured(context, m.emission, m.emission_texture, s.uv, f);
   p.opacity = opacity_at(context, m, s.uv, f);
+  if (m.principled && context.settings.kind == IntegratorKind::path)
+    p.principled = principled_at(context, *m.principled, p.color, s.uv, f);
   face_ray(p, ns);
+  if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
   return p;
 }
 
+static bool has_textures(const PrincipledMaterial& m) {
+  for (const std::uint32_t texture :
+       {m.metallic_texture, m.roughness_texture, m.specular_texture, m.transmission_texture, m.coat_texture,
+        m.coat_roughness_texture, m.sheen_texture, m.sheen_color_texture, m.sheen_roughness_texture})
+    if (texture != kNoId) return true;
+  return false;
+}
+
 bool has_textures(const Material& m) {
+  if (m.principled && has_textures(*m.principled)) return true;
   return m.color_texture != kNoId || m.specular_texture != kNoId || m.emission_texture != kNoId ||
          m.opacity_texture != kNoId || m.bump_texture != kNoId || m.normal_texture != kNoId;
 }
 
-bool is_opaque(const Material& m) { return m.transparency == 0 && m.opacity_texture == kNoId; }
+bool is_opaque(const Material& m, ShadowRule rule) {
+  return (m.transparency == 0 || rule == ShadowRule::holes_pass) && m.opacity_texture == kNoId;
+}
 
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit,
-                    const SurfaceInteraction& s) {
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
+                    ShadowRule rule) {
   const Material& m = material_at(*context.world, s);
   Vec2f uv;
   if (context.textures != nullptr && has_textures(m))
     uv = surface_interaction(*context.world->accel, ray, hit).uv;
   const float opacity = opacity_at(context, m, uv, {});
   const float hole = 1 - opacity;
-  if (m.transparency == 0) return {hole, hole, hole};
+  if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
   const Color color = textured(context, m.color, m.color_texture, uv, {});
   return color * (m.transparency * opacity) + Color{hole, hole, hole};
 }

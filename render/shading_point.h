@@ -21,8 +21,9 @@ struct ShadingPoint {
   float t = 0;      ///< distance from the ray's origin
   Vec3f ng, ns;     ///< geometric and shading normal, turned towards the ray's origin; dot(direction, ns) < 0
   bool front = true;  ///< the ray comes from the side that the surface's own normal points to
-  Color color, specular_color, emission;  ///< textures included
-  float opacity = 1;                      ///< fraction that is surface; the rest is a hole
+  Color color, specular_color, emission;           ///< textures included
+  float opacity = 1;                               ///< fraction that is surface; the rest is a hole
+  std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
 };
 
 /// `ray` has unit direction, and `hit` is its valid hit, with the surface interaction `s`. uv and tangent of
@@ -30,14 +31,22 @@ struct ShadingPoint {
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);
 
+/// What stops light on its way from a lamp.
+enum class ShadowRule {
+  /// Opaque materials. Transparent ones attenuate light by colour * transparency and do not bend it.
+  transparent_passes,
+  /// All materials; light passes only through holes. For light that other rays find behind glass.
+  holes_pass,
+};
+
 /// The fraction of light that passes straight through the surface at a hit of a shadow ray: through holes
-/// unchanged, else material colour * transparency. Uses only the names of `s`.
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit,
-                    const SurfaceInteraction& s);
+/// unchanged, and where the rule lets it pass, material colour * transparency. Uses only the names of `s`.
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
+                    ShadowRule rule);
 
 bool has_textures(const Material& material);
 
 /// True if `transmittance` is black at every hit.
-bool is_opaque(const Material& material);
+bool is_opaque(const Material& material, ShadowRule rule);
 
 }  // namespace oktett

@@ -28,7 +28,7 @@ static Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
 
 /// Follows the rays numbered in `left` through transparent surfaces; `passed` holds the fraction of light for
 /// each ray.
-static void follow_through(const RenderContext& context, const ShadowQueue& queue,
+static void follow_through(const RenderContext& context, const ShadowQueue& queue, ShadowRule rule,
                            std::vector<std::uint32_t> left, std::vector<Color>& passed) {
   const Accel& accel = *context.world->accel;
   RayBatch rays, rest;
@@ -46,8 +46,8 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
       Color& light = passed[left[k]];
       // Most materials are opaque, and the names are enough to find the material.
       const SurfaceInteraction names = identify(accel, hit);
-      const bool opaque = is_opaque(material_at(*context.world, names));
-      light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names);
+      const bool opaque = is_opaque(material_at(*context.world, names), rule);
+      light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names, rule);
       if (!is_black(light)) kept.push_back(k);
     }
     rest.resize_uninitialized(0);
@@ -65,7 +65,7 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   for (const std::uint32_t i : left) passed[i] = {0, 0, 0};
 }
 
-void trace_shadows(const RenderContext& context, ShadowQueue& queue, ColorColumn& radiance) {
+void trace_shadows(const RenderContext& context, ShadowQueue& queue, ShadowRule rule, ColorColumn& radiance) {
   if (queue.size() == 0) return;
   Column<std::uint8_t>& occluded = queue.occluded;
   occluded.resize_uninitialized(queue.size());
@@ -79,7 +79,7 @@ void trace_shadows(const RenderContext& context, ShadowQueue& queue, ColorColumn
   std::vector<std::uint32_t> left;
   for (std::uint32_t i = 0; i < queue.size(); ++i)
     if (occluded[i]) left.push_back(i);
-  follow_through(context, queue, std::move(left), passed);
+  follow_through(context, queue, rule, std::move(left), passed);
   for (std::size_t i = 0; i < queue.size(); ++i)
     if (!is_black(passed[i])) radiance.add(queue.owner[i], queue.light[i] * passed[i]);
 }

@@ -26,6 +26,16 @@ void find_hits(const RenderContext& context, Wavefront& wavefront) {
   closest_hit(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), context.isa);
 }
 
+/// The light that entry `ray` finds where it meets nothing.
+Color background_light(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
+  if (!context.sampled->has_environment()) return context.background;
+  const RaySpan rays = wavefront.rays.rays;
+  const Vec3f direction{rays.direction[0][ray], rays.direction[1][ray], rays.direction[2][ray]};
+  const Color light = context.sampled->set().environment_radiance(direction);
+  const bool path = context.settings.kind == IntegratorKind::path;
+  return context.background + (path ? light * environment_weight(context, wavefront, ray) : light);
+}
+
 /// Sets the radiance of each ray, the background's if it hit nothing and 0 if it did, and lists the rays that
 /// hit.
 void start_level(const RenderContext& context, Wavefront& wavefront) {
@@ -39,13 +49,14 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
     hits += wavefront.hits.item[i] != kNoId ? 1 : 0;
   }
   wavefront.hit_rays.resize_uninitialized(hits);
-  const bool black = wavefront.level == 0 && context.background == Color{0, 0, 0};
+  const bool black =
+      wavefront.level == 0 && context.background == Color{0, 0, 0} && !context.sampled->has_environment();
   if (hits < count && !black)
     for (std::size_t i = 0; i < count; ++i)
       if (wavefront.hits.item[i] == kNoId)
-        wavefront.radiance.set(i, wavefront.rays.throughput[i] * context.background);
+        wavefront.radiance.set(i, wavefront.rays.throughput[i] * background_light(context, wavefront, i));
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
-  wavefront.next.clear();
+  wavefront.next.clear(), wavefront.next_paths.clear();
 }
 
 /// A background that is part of the picture counts as covering.
@@ -77,8 +88,12 @@ void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::s
 /// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
 /// entry.
 void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
-  for (ShadowQueue& queue : wavefront.shadows) {
-    trace_shadows(context, queue, wavefront.radiance);
+  const bool path = context.settings.kind == IntegratorKind::path;
+  for (std::size_t n = 0; n < wavefront.shadows.size(); ++n) {
+    ShadowQueue& queue = wavefront.shadows[n];
+    const bool holes = path && n == kAreaQueue;
+    trace_shadows(context, queue, holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes,
+                  wavefront.radiance);
     wavefront.counts.shadow += queue.size();
     queue.clear();
   }
@@ -186,7 +201,8 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
   wavefront.level = 0;
   wavefront.whole_pixels = last - first == context.settings.samples;
   wavefront.next.clear();
-  wavefront.shadows.resize(std::max<std::size_t>(1, context.lights.size()));
+  const bool path = context.settings.kind == IntegratorKind::path;
+  wavefront.shadows.resize(path ? kAreaQueue + 1 : std::max<std::size_t>(1, context.lights.size()));
   wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);
   SampleBatch& s = wavefront.samples;
   s.resize_uninitialized(count, context.data_layers);
@@ -211,7 +227,8 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
 }
 
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
-  const unsigned most_levels = context.settings.depth + kMostHoles;
+  // The light that leaves the last surface may come from one more, which path tracing looks up.
+  const unsigned most_levels = context.settings.depth + 1 + kMostHoles;
   for (wavefront.level = 0; wavefront.level <= most_levels && !wavefront.rays.empty(); ++wavefront.level) {
     find_hits(context, wavefront);
     if (wavefront.level == 0) {
@@ -225,6 +242,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     shade_hits(context, wavefront);
     add_to_samples(wavefront);
     std::swap(wavefront.rays, wavefront.next);
+    std::swap(wavefront.paths, wavefront.next_paths);
   }
   return true;
 }

@@ -58,11 +58,13 @@ struct RayCounts {
 /// sums its rays in the order of the queue, which other samples do not change.
 struct Wavefront {
   SampleBatch samples;
-  RayQueue rays, next;   ///< of this bounce and the next
-  HitBatch hits;         ///< of `rays`
-  ColorColumn radiance;  ///< light found by each of `rays`, throughput included
-  /// One queue per light, so that all rays of a queue lead to the same light. Owners are entries of `rays`.
-  /// Rays that lead to no light, such as those of ambient occlusion, are in the first queue.
+  RayQueue rays, next;            ///< of this bounce and the next
+  PathColumns paths, next_paths;  ///< of `rays` after the camera rays and of `next`, in path tracing
+  HitBatch hits;                  ///< of `rays`
+  ColorColumn radiance;           ///< light found by each of `rays`, throughput included
+  /// In Whitted's model one queue per light, so that all rays of a queue lead to the same light. In path
+  /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
+  /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.
   std::vector<ShadowQueue> shadows;
   Column<std::uint32_t> hit_rays;  ///< entries of `rays` that hit something
   Column<double> film_x, film_y;   ///< where the camera rays pass the film

@@ -82,7 +82,7 @@ OKTETT_NOINLINE void finish_alone(const RenderContext& context, Wavefront& wavef
   const bool from_camera = wavefront.rays.from_camera[i] != 0;
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                                        {wavefront.rays.distance[i], from_camera}, found);
-  if (context.materials[c.material[k]].textured) {
+  if (context.materials[c.material[k]].varies) {
     const Color throughput = wavefront.rays.throughput[i] * p.opacity;
     add_unlit(context, wavefront, i, p, throughput);
     InteractionBlock::put(c.throughput, k, throughput);

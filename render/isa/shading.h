@@ -81,12 +81,12 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
     face_ray(direction, load_lanes<F>(s.geometric_normal, i), load_lanes<F>(s.shading_normal, i), ng, ns);
     store_lanes(ng, c.ng, i), store_lanes(ns, c.ns, i);
     const Vec3<F> unlit = fetch_materials<F>(table, c, i);
-    // The light of textured surfaces is added when their textures have been looked up.
+    // Light that varies over the surface is added when it is known.
     unsigned known = 0;
     for (int k = 0; k < F::kWidth; ++k) {
       // Not inside the shift: GCC 12's sanitizers of bounds and shifts together would read a wrong entry.
-      const bool textured = table[c.material[i + k]].textured;
-      known |= (textured ? 0u : 1u) << k;
+      const bool varies = table[c.material[i + k]].varies;
+      known |= (varies ? 0u : 1u) << k;
     }
     known &= real_lanes<F>(c, i);
     ray.add(throughput.x * unlit.x, rays.radiance[0], known);
@@ -161,6 +161,10 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     if (!light.directional) {
       const auto square = turn_to_light(light.place, position, l);
       if (light.falloff) color = scale_lanes(color, falloff(square));
+      if (light.spot) {
+        const F cosine = -dot_lanes(l, broadcast<F>(light.axis));
+        color = scale_lanes(color, spot_share(cosine, light.cos_inner, light.cos_outer));
+      }
     }
     const PhongCosines<F> at =
         phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);

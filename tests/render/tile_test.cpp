@@ -48,7 +48,8 @@ TEST(Tile, TilesNeedNoOrderAmongThreads) {
   BuildOptions build;
   build.parallel = false;
   const World world = build_world(scene, build);
-  const RenderContext context = make_context(scene, world, nullptr, default_isa());
+  const SceneLights lights(scene, world);
+  const RenderContext context = make_context(scene, world, lights, nullptr, default_isa());
   const auto with_threads = [&](int count) {
     Picture picture = make_picture(context);
     const std::vector<FinishedTile> tiles = cut_tiles(picture.width, picture.height, 7);

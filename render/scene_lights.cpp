@@ -1,0 +1,219 @@
+#include "render/scene_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "accel/placed_geometry.h"
+#include "core/math.h"
+#include "render/light/sky.h"
+
+namespace oktett {
+
+static constexpr double kDegree = std::numbers::pi / 180;
+/// A white diffuse surface shows 1 / pi of the irradiance on it.
+static constexpr auto kIrradiance = static_cast<float>(std::numbers::pi);
+
+static Sky sky_of(const SkyLight& light) {
+  return Sky({Vec3f(normalize(light.sun)), light.turbidity, light.ground});
+}
+
+DirectionalLight sun_of(const SkyLight& light) {
+  const DirectionalEmitter sun = sky_of(light).sun();
+  return {-Vec3d(sun.direction), sun.irradiance * light.color / kIrradiance,
+          static_cast<double>(sun.angle) / kDegree};
+}
+
+static Emitter emitter(const PointLight& light) {
+  return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff};
+}
+
+static Emitter emitter(const SpotLight& light) {
+  const auto cos_outer = static_cast<float>(portable::cos(light.outer_angle * kDegree));
+  const auto cos_inner = static_cast<float>(portable::cos(light.inner_angle * kDegree));
+  // A sharp edge is one that fades over the least step of the cosine.
+  return SpotEmitter{.position = Vec3f(light.position),
+                     .axis = Vec3f(normalize(light.direction)),
+                     .intensity = light.color * kIrradiance,
+                     .cos_inner = std::max(cos_inner, cos_outer + 0x1p-23f),
+                     .cos_outer = cos_outer};
+}
+
+static Emitter emitter(const DirectionalLight& light) {
+  return DirectionalEmitter{Vec3f(normalize(-light.direction)), light.color * kIrradiance,
+                            static_cast<float>(light.angle * kDegree)};
+}
+
+static Emitter emitter(const EnvironmentLight& light) {
+  EnvironmentPicture picture = *light.picture;
+  for (Color& pixel : picture.pixels) pixel = pixel * light.color;
+  EnvironmentOptions options;
+  options.rotation = light.rotation * kDegree;
+  options.compensate = true;
+  return EnvironmentEmitter{std::make_shared<const EnvironmentMap>(std::move(picture), options)};
+}
+
+static Emitter emitter(const SkyLight& light) {
+  return emitter(
+      EnvironmentLight{std::make_shared<const EnvironmentPicture>(sky_of(light).picture()), 0, light.color});
+}
+
+static bool has_place(const Light& light) {
+  return std::holds_alternative<PointLight>(light) || std::holds_alternative<SpotLight>(light);
+}
+
+/// Turns glowing surfaces into emitters.
+class EmitterCollector {
+ public:
+  EmitterCollector(const World& world, SceneLights& lights, std::vector<Emitter>& emitters)
+      : world_(world), lights_(lights), emitters_(emitters) {}
+
+  void collect() {
+    const auto glows = [](const Material& m) { return can_sample(m); };
+    if (std::none_of(world_.materials.begin(), world_.materials.end(), glows)) return;
+    std::vector<PlacedGeometry> placed;
+    visit_placed_geometries(*world_.accel, [&](const PlacedGeometry& p) {
+      if (may_glow(p)) placed.push_back(p);
+    });
+    // In an order that does not depend on how the structure was built.
+    std::sort(placed.begin(), placed.end(), [](const PlacedGeometry& a, const PlacedGeometry& b) {
+      return std::tie(a.instance, a.first_item) < std::tie(b.instance, b.first_item);
+    });
+    for (const PlacedGeometry& p : placed)
+      std::visit([&](const auto& shape) { add(p, shape); }, p.geometry->shape);
+  }
+
+ private:
+  static bool can_sample(const Material& m) {
+    return !(m.emission == Color{0, 0, 0}) && m.opacity_texture == kNoId;
+  }
+
+  bool may_glow(const PlacedGeometry& p) const {
+    const auto glows = [&](std::uint32_t slot) {
+      return can_sample(world_.materials[material_index(world_, p.user, slot)]);
+    };
+    if (glows(0)) return true;
+    if (!std::holds_alternative<MeshGeometry>(p.geometry->shape) || p.user >= world_.objects.size())
+      return false;
+    for (std::uint32_t slot = 1; slot < world_.objects[p.user].slots.size(); ++slot)
+      if (glows(slot)) return true;
+    return false;
+  }
+
+  /// The material of a primitive if it can be sampled.
+  const Material* material(const PlacedGeometry& p, std::uint32_t slot = 0) const {
+    const Material& m = world_.materials[material_index(world_, p.user, slot)];
+    return can_sample(m) ? &m : nullptr;
+  }
+
+  std::uint32_t add_emitter(const PlacedGeometry& p, std::uint32_t primitive, Emitter emitter) {
+    const auto number = static_cast<std::uint32_t>(emitters_.size());
+    lights_.keys_.push_back({p.instance, p.first_item + primitive, number});
+    emitters_.push_back(std::move(emitter));
+    return number;
+  }
+
+  void add(const PlacedGeometry& p, const MeshGeometry& shape) {
+    const TriangleMesh& mesh = *shape.mesh;
+    // A mirror reverses the winding of the corners, but the front stays the front.
+    const bool mirrored = p.to_world.determinant() < 0;
+    for (std::uint32_t k = 0; k < mesh.triangle_count(); ++k) {
+      const Material* m = material(p, mesh.material_slots.empty() ? 0u : mesh.material_slots[k]);
+      if (m == nullptr) continue;
+      const auto corner = [&](std::uint32_t i) {
+        return Vec3f(p.to_world.point(Vec3d(mesh.positions[mesh.indices[3 * k + i]])));
+      };
+      TriangleEmitter e{corner(0), corner(1), corner(2), m->emission, m->emits_behind};
+      // Where the texture lies is found by the weights of the corners, so their order must stay.
+      if (mirrored && !m->emits_behind) {
+        if (m->emission_texture != kNoId) continue;
+        std::swap(e.b, e.c);
+      }
+      const std::uint32_t number = add_emitter(p, k, e);
+      if (m->emission_texture != kNoId) lights_.textured_.push_back({number, m->emission_texture, k, &mesh});
+    }
+  }
+
+  void add(const PlacedGeometry& p, const SpheresShape& shape) {
+    const Material* m = material(p);
+    const double scale = p.to_world.uniform_scale();
+    if (m == nullptr || m->emission_texture != kNoId || scale == 0) return;
+    for (std::uint32_t k = 0; k < shape.spheres.size(); ++k) {
+      const SphereShape& s = shape.spheres[k];
+      add_emitter(
+          p, k,
+          SphereEmitter{Vec3f(p.to_world.point(s.center)), static_cast<float>(s.radius * std::abs(scale)),
+                        m->emission, m->emits_behind});
+    }
+  }
+
+  void add(const PlacedGeometry& p, const DiskShape& shape) {
+    const Material* m = material(p);
+    const double scale = p.to_world.uniform_scale();
+    if (m == nullptr || m->emission_texture != kNoId || scale == 0) return;
+    const Vec3d normal = p.to_world.inverse().normal_by_inverse(shape.normal);
+    add_emitter(
+        p, 0,
+        DiskEmitter{Vec3f(p.to_world.point(shape.center)), Vec3f(normalize(normal)),
+                    static_cast<float>(shape.radius * std::abs(scale)), m->emission, m->emits_behind});
+  }
+
+  void add(const PlacedGeometry& p, const PolygonShape& shape) {
+    const Material* m = material(p);
+    if (m == nullptr || m->emission_texture != kNoId || shape.vertices.size() != 4) return;
+    const auto corner = [&](std::size_t i) { return p.to_world.point(shape.vertices[i]); };
+    const Vec3d u = corner(1) - corner(0), v = corner(3) - corner(0), rest = corner(2) - corner(1) - v;
+    const double size = std::max(length(u), length(v));
+    if (length(rest) > 1e-6 * size || std::abs(dot(u, v)) > 1e-6 * length(u) * length(v)) return;
+    const bool mirrored = p.to_world.determinant() < 0;
+    add_emitter(p, 0,
+                RectangleEmitter{Vec3f(corner(0)), Vec3f(mirrored ? v : u), Vec3f(mirrored ? u : v),
+                                 m->emission, m->emits_behind});
+  }
+
+  /// Other shapes are not sampled.
+  template <class Shape>
+  void add(const PlacedGeometry&, const Shape&) {}
+
+  const World& world_;
+  SceneLights& lights_;
+  std::vector<Emitter>& emitters_;
+};
+
+SceneLights::SceneLights(const Scene& scene, const World& world) {
+  std::vector<Emitter> emitters;
+  for (const Light& light : scene.lights) {
+    emitters.push_back(std::visit([](const auto& l) { return emitter(l); }, light));
+    if (const auto* sky = std::get_if<SkyLight>(&light)) emitters.push_back(emitter(sun_of(*sky)));
+    const auto* directional = std::get_if<DirectionalLight>(&light);
+    const bool point = directional != nullptr ? directional->angle == 0 : has_place(light);
+    has_environment_ |= !point;
+  }
+  EmitterCollector(world, *this, emitters).collect();
+  set_ = LightSet(std::move(emitters));
+}
+
+std::uint32_t SceneLights::emitter_at(const Hit& hit) const {
+  const auto found =
+      std::lower_bound(keys_.begin(), keys_.end(), hit, [](const EmitterKey& key, const Hit& h) {
+        return std::tie(key.instance, key.item) < std::tie(h.instance, h.item);
+      });
+  if (found == keys_.end() || found->instance != hit.instance || found->item != hit.item) return kNoId;
+  return found->emitter;
+}
+
+Color SceneLights::texture_at(const LightSample& sample, const TextureSampler* textures) const {
+  if (textured_.empty() || textures == nullptr) return {1, 1, 1};
+  const auto found =
+      std::lower_bound(textured_.begin(), textured_.end(), sample.emitter,
+                       [](const TexturedEmitter& e, std::uint32_t number) { return e.emitter < number; });
+  if (found == textured_.end() || found->emitter != sample.emitter) return {1, 1, 1};
+  const std::array<Vec2f, 3> uv = corner_uvs(*found->mesh, found->triangle);
+  const float weight[3] = {1 - sample.u - sample.v, sample.u, sample.v};
+  Vec2f at;
+  for (std::size_t k = 0; k < 3; ++k) at.x += uv[k].x * weight[k], at.y += uv[k].y * weight[k];
+  return textures->color(found->texture, at, {}, {});
+}
+
+}  // namespace oktett

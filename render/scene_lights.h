@@ -1,0 +1,58 @@
+#pragma once
+/// \file The lights of a scene as path tracing asks for them: its lamps, its environment, and the surfaces
+/// that glow.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/ray.h"
+#include "render/geometry.h"
+#include "render/light/light_set.h"
+#include "render/scene.h"
+#include "render/texture_sampler.h"
+
+namespace oktett {
+
+/// The sun of a sky.
+DirectionalLight sun_of(const SkyLight& light);
+
+/// All lights that can be sampled.
+///
+/// Surfaces that glow are sampled if they are triangles, spheres, disks or rectangles (polygons of four
+/// corners) which no combination cuts, with a material without holes; spheres and disks only without a
+/// texture of emission and if their transform keeps angles. All other glowing surfaces give light to the
+/// paths that happen to meet them.
+class SceneLights {
+ public:
+  /// The lights of `scene`, whose lights are filled in, and of the glowing surfaces in `world`.
+  SceneLights(const Scene& scene, const World& world);
+
+  const LightSet& set() const { return set_; }
+  /// The number of the emitter in set() whose surface was hit; kNoId if it is not sampled.
+  std::uint32_t emitter_at(const Hit& hit) const;
+  /// What the texture of emission makes of the light of a sample.
+  Color texture_at(const LightSample& sample, const TextureSampler* textures) const;
+  /// Whether rays that meet nothing can find more light than the background's.
+  bool has_environment() const { return has_environment_; }
+
+ private:
+  /// A triangle whose emission has a texture.
+  struct TexturedEmitter {
+    std::uint32_t emitter, texture, triangle;
+    const TriangleMesh* mesh;
+  };
+  /// The primitive that an emitter shows, as in Hit.
+  struct EmitterKey {
+    std::uint32_t instance, item, emitter;
+  };
+
+  friend class EmitterCollector;
+
+  LightSet set_;
+  std::vector<EmitterKey> keys_;           ///< ordered by instance and item
+  std::vector<TexturedEmitter> textured_;  ///< ordered by emitter
+  bool has_environment_ = false;
+};
+
+}  // namespace oktett
