@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -26,6 +27,9 @@ struct Statements {
   std::optional<Color> ka, kd, ks, ke, tf;
   std::optional<float> d, tr;
   float illum = 2;
+  /// By the order of kPrincipled and kPrincipledTextures.
+  std::array<std::optional<float>, 5> principled;
+  std::array<std::optional<std::uint32_t>, 5> principled_textures;
 };
 
 constexpr std::pair<const char*, std::optional<Color> Statements::*> kColors[] = {{"ka", &Statements::ka},
@@ -39,6 +43,20 @@ constexpr std::pair<const char*, std::uint32_t Material::*> kTextures[] = {
     {"map_ke", &Material::emission_texture}, {"map_d", &Material::opacity_texture},
     {"map_bump", &Material::bump_texture},   {"bump", &Material::bump_texture},
     {"norm", &Material::normal_texture},     {"map_normal", &Material::normal_texture}};
+
+// The statements of the extension for physically based rendering. One of them makes a material principled.
+constexpr std::pair<const char*, float PrincipledParameters::*> kPrincipled[] = {
+    {"pr", &PrincipledParameters::roughness},
+    {"pm", &PrincipledParameters::metallic},
+    {"ps", &PrincipledParameters::sheen},
+    {"pc", &PrincipledParameters::coat},
+    {"pcr", &PrincipledParameters::coat_roughness}};
+constexpr std::pair<const char*, std::uint32_t PrincipledMaterial::*> kPrincipledTextures[] = {
+    {"map_pr", &PrincipledMaterial::roughness_texture},
+    {"map_pm", &PrincipledMaterial::metallic_texture},
+    {"map_ps", &PrincipledMaterial::sheen_texture},
+    {"map_pc", &PrincipledMaterial::coat_texture},
+    {"map_pcr", &PrincipledMaterial::coat_roughness_texture}};
 
 class MtlReader {
  public:
@@ -106,11 +124,13 @@ class MtlReader {
     } else if (key == "illum") {
       const auto is_model = [](float x) { return x >= 0 && x <= 10 && x == std::floor(x); };
       read(take(line, is_model, "illum must be a whole number from 0 to 10"), said_.illum);
-    } else if (key == "pr") {
-      material.roughness = clamp_unit(line.take_number().value_or(material.roughness));
-    } else if (key == "pm") {
-      material.metallic = clamp_unit(line.take_number().value_or(material.metallic));
     }
+    for (std::size_t i = 0; i < std::size(kPrincipled); ++i)
+      if (key == kPrincipled[i].first) read(line.take_number(), said_.principled[i]);
+    for (std::size_t i = 0; i < std::size(kPrincipledTextures); ++i)
+      if (key == kPrincipledTextures[i].first)
+        if (const auto texture = read_mtl_texture(line, directory_))
+          said_.principled_textures[i] = textures_.add(texture->texture);
   }
 
   /// A malformed value leaves what was there.
@@ -144,6 +164,24 @@ class MtlReader {
       m.emission = *said_.ke;
     else if (m.emission_texture != kNoId)
       m.emission = {1, 1, 1};
+    set_principled(m);
+  }
+
+  void set_principled(Material& m) const {
+    const auto said = [](const auto& value) { return value.has_value(); };
+    if (std::ranges::none_of(said_.principled, said) && std::ranges::none_of(said_.principled_textures, said))
+      return;
+    PrincipledMaterial principled = principled_like(m);
+    for (std::size_t i = 0; i < std::size(kPrincipled); ++i)
+      if (said_.principled[i])
+        principled.parameters.*kPrincipled[i].second = clamp_unit(*said_.principled[i]);
+    for (std::size_t i = 0; i < std::size(kPrincipledTextures); ++i) {
+      if (!said_.principled_textures[i]) continue;
+      principled.*kPrincipledTextures[i].second = *said_.principled_textures[i];
+      // A texture without a number to multiply shows as it is.
+      if (!said_.principled[i]) principled.parameters.*kPrincipled[i].second = 1;
+    }
+    m.principled = principled;
   }
 
   void set_opacity(Material& m) const {

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "io/scene/readers.h"
@@ -36,12 +38,92 @@ void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
   out = load.textures.add(texture);
 }
 
+/// What PrincipledParameters::ior allows.
+constexpr Range kPrincipledIor{0.25, 4};
+
+bool is_texture(const YamlNode* node) { return node != nullptr && node->kind == YamlKind::map; }
+
+/// A number, or a texture that takes its place.
+void read_textured(SceneLoad& load, const YamlNode* node, float& out, std::uint32_t& texture,
+                   const Range& range) {
+  if (!is_texture(node)) return load.values.read(node, out, range);
+  out = 1;
+  read_texture(load, node, texture);
+}
+
+/// A colour, or a texture that takes its place.
+void read_textured(SceneLoad& load, const YamlNode* node, Color& out, std::uint32_t& texture) {
+  if (!is_texture(node)) return load.values.read_color(node, out);
+  out = {1, 1, 1};
+  read_texture(load, node, texture);
+}
+
+/// The complex index of refraction of a metal.
+std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, const YamlNode& node) {
+  const YamlNode *eta = fields["eta"], *k = fields["k"];
+  if (!eta && !k) return std::nullopt;
+  if (!eta || !k) throw Error(node.where(), "a metal's index of refraction needs both 'eta' and 'k'");
+  Conductor metal;
+  load.values.read_color(eta, metal.eta);
+  load.values.read_color(k, metal.k);
+  if (!(std::min({metal.eta.x, metal.eta.y, metal.eta.z}) > 0))
+    throw Error(eta->where(), "expected numbers greater than 0");
+  return metal;
+}
+
+void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
+  const Fields fields(
+      node, "a principled material",
+      {"base_color", "metallic", "roughness", "specular", "ior", "transmission", "thin", "coat",
+       "coat_roughness", "coat_ior", "sheen", "sheen_color", "sheen_roughness", "eta", "k"});
+  PrincipledMaterial principled;
+  PrincipledParameters& p = principled.parameters;
+  read_textured(load, fields["base_color"], m.color, m.color_texture);
+  p.base_color = m.color;
+  read_textured(load, fields["metallic"], p.metallic, principled.metallic_texture, kUnitInterval);
+  read_textured(load, fields["roughness"], p.roughness, principled.roughness_texture, kUnitInterval);
+  read_textured(load, fields["specular"], p.specular, principled.specular_texture, kUnitInterval);
+  load.values.read(fields["ior"], p.ior, kPrincipledIor);
+  read_textured(load, fields["transmission"], p.transmission, principled.transmission_texture, kUnitInterval);
+  load.values.read(fields["thin"], p.thin);
+  read_textured(load, fields["coat"], p.coat, principled.coat_texture, kUnitInterval);
+  read_textured(load, fields["coat_roughness"], p.coat_roughness, principled.coat_roughness_texture,
+                kUnitInterval);
+  load.values.read(fields["coat_ior"], p.coat_ior, {1, kPrincipledIor.hi});
+  read_textured(load, fields["sheen"], p.sheen, principled.sheen_texture, kUnitInterval);
+  read_textured(load, fields["sheen_color"], p.sheen_color, principled.sheen_color_texture);
+  read_textured(load, fields["sheen_roughness"], p.sheen_roughness, principled.sheen_roughness_texture,
+                kUnitInterval);
+  p.conductor = read_conductor(load, fields, node);
+  m.principled = principled;
+  resemble_principled(m);
+}
+
+/// Throws Error if a principled material also has keys of Phong's model.
+void refuse_phong_keys(const YamlNode& node) {
+  for (const MapEntry& entry : map_entries(node, "a material"))
+    for (const char* key :
+         {"color", "specular_color", "ambient", "diffuse", "specular", "phong", "reflection", "transparency",
+          "ior", "roughness", "metallic", "map_color", "map_specular"})
+      if (entry.key->text == key)
+        throw Error(entry.key->where(), quote(key) + " has no meaning beside 'principled'");
+}
+
+/// `roughness` and `metallic` beside Phong's parameters make a principled material of them.
+void read_roughness(SceneLoad& load, const YamlNode* roughness, const YamlNode* metallic, Material& m) {
+  if (!roughness && !metallic) return;
+  m.principled = principled_like(m);
+  load.values.read(roughness, m.principled->parameters.roughness, kUnitInterval);
+  load.values.read(metallic, m.principled->parameters.metallic, kUnitInterval);
+}
+
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {
   const Fields fields(
       node, "a material",
-      {"color", "specular_color", "emission", "ambient", "diffuse", "specular", "phong", "reflection",
-       "transparency", "ior", "roughness", "metallic", "map_color", "map_specular", "map_emission",
-       "map_opacity", "map_bump", "map_normal", "bump_scale"});
+      {"principled", "emits",      "color",     "specular_color", "emission",     "ambient",
+       "diffuse",    "specular",   "phong",     "reflection",     "transparency", "ior",
+       "roughness",  "metallic",   "map_color", "map_specular",   "map_emission", "map_opacity",
+       "map_bump",   "map_normal", "bump_scale"});
   SceneValues& values = load.values;
   Material m;
   m.name = name;
@@ -55,8 +137,9 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   values.read(fields["reflection"], m.reflection, kUnitInterval);
   values.read(fields["transparency"], m.transparency, kUnitInterval);
   values.read(fields["ior"], m.ior, kPositive);
-  values.read(fields["roughness"], m.roughness, kUnitInterval);
-  values.read(fields["metallic"], m.metallic, kUnitInterval);
+  read_roughness(load, fields["roughness"], fields["metallic"], m);
+  if (const YamlNode* emits = fields["emits"])
+    m.emits_behind = values.choice<bool>(*emits, {{"both", true}, {"front", false}});
   read_texture(load, fields["map_color"], m.color_texture);
   read_texture(load, fields["map_specular"], m.specular_texture);
   read_texture(load, fields["map_emission"], m.emission_texture);
@@ -64,6 +147,10 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   read_texture(load, fields["map_bump"], m.bump_texture);
   read_texture(load, fields["map_normal"], m.normal_texture);
   values.read(fields["bump_scale"], m.bump_scale, kAnyNumber);
+  if (const YamlNode* principled = fields["principled"]) {
+    refuse_phong_keys(node);
+    read_principled(load, *principled, m);
+  }
   load.scene.materials.push_back(std::move(m));
   return static_cast<std::uint32_t>(load.scene.materials.size() - 1);
 }

@@ -18,26 +18,6 @@ void check_view(const Camera& camera, const YamlNode& node) {
     throw Error(node.where(), "the camera's 'up' is parallel to its view direction");
 }
 
-Light read_point_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a point light", {"position", "color", "falloff"});
-  PointLight light;
-  light.position = load.values.vector(fields.require("position"));
-  load.values.read_color(fields["color"], light.color);
-  load.values.read(fields["falloff"], light.falloff);
-  return light;
-}
-
-Light read_directional_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a directional light", {"direction", "color"});
-  DirectionalLight light;
-  if (const YamlNode* direction = fields["direction"]) {
-    light.direction = load.values.vector(*direction);
-    if (light.direction == Vec3d{0, 0, 0}) throw Error(direction->where(), "the direction must not be zero");
-  }
-  load.values.read_color(fields["color"], light.color);
-  return light;
-}
-
 }  // namespace
 
 void read_camera(SceneLoad& load, const YamlNode& node) {
@@ -86,19 +66,6 @@ void read_integrator(SceneLoad& load, const YamlNode& node) {
   if (const YamlNode* seed = fields["seed"])
     integrator.seed = values.integer(*seed, 0, std::numeric_limits<std::uint32_t>::max());
   values.read(fields["ao_radius"], integrator.ao_radius, kNonNegative);
-}
-
-void read_lights(SceneLoad& load, const YamlNode& node) {
-  load.scene.lights_given = true;
-  for (const YamlNode* item : list_items(node, "lights")) {
-    const Fields fields(*item, "a light", {"point", "directional"});
-    const std::vector<MapEntry> kinds = map_entries(*item, "a light");
-    if (kinds.size() != 1) throw Error(item->where(), "expected one of point and directional");
-    const bool is_point = fields["point"] != nullptr;
-    const YamlNode& light = *kinds[0].value;
-    load.scene.lights.push_back(is_point ? read_point_light(load, light)
-                                         : read_directional_light(load, light));
-  }
 }
 
 }  // namespace oktett

@@ -41,7 +41,7 @@ TEST(Mtl, SaysNothingMeansTheDefault) {
 }
 
 TEST(Mtl, ColorsAndWeights) {
-  const Material m = material("Kd 0.1 0.2 0.3\nKs 0.5 0.25 0\nKe 1 2 3\nNs 96.5\nNi 1.33\nPr 0.25\nPm 1\n");
+  const Material m = material("Kd 0.1 0.2 0.3\nKs 0.5 0.25 0\nKe 1 2 3\nNs 96.5\nNi 1.33\n");
   EXPECT_EQ(m.color, (Color{0.1f, 0.2f, 0.3f}));
   EXPECT_EQ(m.diffuse, 1);
   EXPECT_EQ(m.ambient, 0.1f);
@@ -51,10 +51,34 @@ TEST(Mtl, ColorsAndWeights) {
   EXPECT_EQ(m.emission, (Color{1, 2, 3}));
   EXPECT_EQ(m.phong, 96.5f);
   EXPECT_EQ(m.ior, 1.33f);
-  EXPECT_EQ(m.roughness, 0.25f);
-  EXPECT_EQ(m.metallic, 1);
+  EXPECT_FALSE(m.principled);
   EXPECT_EQ(material("Kd 0.5\n").color, (Color{0.5f, 0.5f, 0.5f}));
   EXPECT_EQ(material("Ks 0 0 0\n").specular, 0);
+}
+
+TEST(Mtl, StatementsOfPhysicallyBasedRenderingMakeItPrincipled) {
+  const Mtl mtl = load(
+      "newmtl a\nKd 0.1 0.2 0.3\nNi 1.33\nd 0.25\nPr 0.25\nPm 7\nPs 0.5\nPc 0.125\nPcr 0.75\n"
+      "newmtl b\nNs 30\nmap_Pr r.png\nmap_Pm m.png\nPm 0.5\n");
+  EXPECT_EQ(mtl.warnings, std::vector<std::string>{});
+  ASSERT_TRUE(mtl.materials.at(0).principled);
+  const PrincipledParameters& a = mtl.materials[0].principled->parameters;
+  EXPECT_EQ(a.base_color, (Color{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(a.ior, 1.33f);
+  EXPECT_EQ(a.transmission, 0.75f);
+  EXPECT_EQ(a.roughness, 0.25f);
+  EXPECT_EQ(a.metallic, 1);
+  EXPECT_EQ(a.sheen, 0.5f);
+  EXPECT_EQ(a.coat, 0.125f);
+  EXPECT_EQ(a.coat_roughness, 0.75f);
+  const Material& b = mtl.materials.at(1);
+  ASSERT_TRUE(b.principled);
+  EXPECT_EQ(b.principled->parameters.roughness, 1);
+  EXPECT_EQ(b.principled->parameters.metallic, 0.5f);
+  EXPECT_EQ(mtl.textures.at(b.principled->roughness_texture).path, "r.png");
+  EXPECT_EQ(mtl.textures.at(b.principled->metallic_texture).path, "m.png");
+  // The exponent 30 has the width alpha = sqrt(2 / 32) = 1/4, and roughness is its root.
+  EXPECT_FLOAT_EQ(load("newmtl c\nNs 30\nPm 0\n").materials.at(0).principled->parameters.roughness, 0.5f);
 }
 
 TEST(Mtl, AmbientIsRelativeToTheColor) {

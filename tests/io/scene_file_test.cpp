@@ -88,8 +88,9 @@ TEST(SceneFile, ReadsMaterials) {
   EXPECT_EQ(m.reflection, 0.75f);
   EXPECT_EQ(m.transparency, 1);
   EXPECT_EQ(m.ior, 1.25f);
-  EXPECT_EQ(m.roughness, 0.5f);
-  EXPECT_EQ(m.metallic, 1);
+  ASSERT_TRUE(m.principled);
+  EXPECT_EQ(m.principled->parameters.roughness, 0.5f);
+  EXPECT_EQ(m.principled->parameters.metallic, 1);
   EXPECT_EQ(m.bump_scale, 3);
   ASSERT_EQ(scene.textures.size(), 3u) << "equal textures are shared";
   EXPECT_EQ(scene.textures.at(m.color_texture).path, files.dir.file("wood.png"));

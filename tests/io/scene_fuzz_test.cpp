@@ -85,7 +85,7 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
   ASSERT_GE(texts.size(), 4u);
   Random random(2024);
   int loaded = 0, refused = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     const std::string mutant =
         mutate(texts[random.below(texts.size())], texts[random.below(texts.size())], random);
     const std::string path = dir.write("mutant.yaml", mutant);

@@ -1,0 +1,198 @@
+/// \file The lights of scene files. Lamps that have an area become objects that glow.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "io/image/image.h"
+#include "io/scene/readers.h"
+#include "io/scene/utf8.h"
+
+namespace oktett {
+namespace {
+
+constexpr auto kPi = static_cast<float>(std::numbers::pi);
+
+/// The colour of a light: as `color`, or in a radiometric unit under another key, which is pi times as much.
+void read_light_color(SceneLoad& load, const Fields& fields, const YamlNode& node, const char* radiometric,
+                      Color& out) {
+  const YamlNode *color = fields["color"], *unit = fields[radiometric];
+  if (color && unit)
+    throw Error(node.where(), std::string("expected 'color' or '") + radiometric + "', not both");
+  load.values.read_color(color, out);
+  if (!unit) return;
+  load.values.read_color(unit, out);
+  out *= 1 / kPi;
+}
+
+Vec3d read_direction(SceneLoad& load, const YamlNode& node) {
+  const Vec3d direction = load.values.vector(node);
+  if (direction == Vec3d{0, 0, 0}) throw Error(node.where(), "the direction must not be zero");
+  return direction;
+}
+
+void read_point(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a point light", {"position", "color", "intensity", "falloff"});
+  PointLight light;
+  light.position = load.values.vector(fields.require("position"));
+  read_light_color(load, fields, node, "intensity", light.color);
+  // An intensity means light that falls off.
+  light.falloff = fields["intensity"] != nullptr;
+  load.values.read(fields["falloff"], light.falloff);
+  load.scene.lights.emplace_back(light);
+}
+
+void read_spot(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a spot light",
+                      {"position", "direction", "at", "color", "intensity", "inner_angle", "outer_angle"});
+  SpotLight light;
+  light.position = load.values.vector(fields.require("position"));
+  const YamlNode *direction = fields["direction"], *at = fields["at"];
+  if (direction && at) throw Error(node.where(), "expected 'direction' or 'at', not both");
+  if (direction) light.direction = read_direction(load, *direction);
+  if (at) {
+    light.direction = load.values.vector(*at) - light.position;
+    if (light.direction == Vec3d{0, 0, 0}) throw Error(at->where(), "the light stands where it points to");
+  }
+  read_light_color(load, fields, node, "intensity", light.color);
+  load.values.read(fields["outer_angle"], light.outer_angle, {0, 180, true, false});
+  light.inner_angle = 0.75 * light.outer_angle;
+  load.values.read(fields["inner_angle"], light.inner_angle, {0, 180});
+  if (light.inner_angle > light.outer_angle)
+    throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
+  load.scene.lights.emplace_back(light);
+}
+
+void read_directional(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a directional light", {"direction", "color", "irradiance", "angle"});
+  DirectionalLight light;
+  if (const YamlNode* direction = fields["direction"]) light.direction = read_direction(load, *direction);
+  read_light_color(load, fields, node, "irradiance", light.color);
+  load.values.read(fields["angle"], light.angle, {0, 180});
+  load.scene.lights.emplace_back(light);
+}
+
+/// The radiance of a picture file of all directions.
+std::shared_ptr<const EnvironmentPicture> read_environment_picture(SceneLoad& load, const YamlNode& node) {
+  const std::string path = load.values.existing_file(node);
+  Picture picture;
+  try {
+    picture = read_image(path);
+  } catch (const Error& e) {
+    // An image has no lines: what names it is the place to look at.
+    const std::string what = e.what();
+    throw Error(node.where(), quote(path, 1000) + what.substr(what.find(path) == 0 ? path.size() : 0));
+  }
+  const PicturePlane* planes[3] = {picture.find("R"), picture.find("G"), picture.find("B")};
+  for (const PicturePlane* plane : planes)
+    if (plane == nullptr) throw Error(node.where(), quote(path, 1000) + ": the image has no colours");
+  EnvironmentPicture environment;
+  environment.width = picture.width, environment.height = picture.height;
+  environment.pixels.resize(std::size_t{picture.width} * picture.height);
+  for (std::size_t i = 0; i < environment.pixels.size(); ++i)
+    environment.pixels[i] = {planes[0]->values[i], planes[1]->values[i], planes[2]->values[i]};
+  return std::make_shared<const EnvironmentPicture>(std::move(environment));
+}
+
+void read_environment(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "an environment", {"file", "color", "rotate"});
+  EnvironmentLight light;
+  light.picture = read_environment_picture(load, fields.require("file"));
+  load.values.read_color(fields["color"], light.color);
+  load.values.read(fields["rotate"], light.rotation, kAnyNumber);
+  load.scene.lights.emplace_back(std::move(light));
+}
+
+void read_sky(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a sky", {"sun", "turbidity", "ground", "color"});
+  SkyLight light;
+  if (const YamlNode* sun = fields["sun"]) light.sun = read_direction(load, *sun);
+  load.values.read(fields["turbidity"], light.turbidity, {2, 10});
+  load.values.read_color(fields["ground"], light.ground);
+  load.values.read_color(fields["color"], light.color);
+  load.scene.lights.emplace_back(light);
+}
+
+/// Adds an object that glows, of `area`. It is given `radiance`, or `power` in all, which a diffuse emitter
+/// sends out as pi * area * radiance.
+void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Shape shape, double area) {
+  const YamlNode *radiance = fields["radiance"], *power = fields["power"];
+  if (radiance && power) throw Error(node.where(), "expected 'radiance' or 'power', not both");
+  Material m;
+  m.color = {0, 0, 0}, m.ambient = m.diffuse = 0;
+  m.emission = {1, 1, 1};
+  m.emits_behind = false;
+  load.values.read_color(radiance, m.emission);
+  if (power) {
+    load.values.read_color(power, m.emission);
+    m.emission *= static_cast<float>(1 / (std::numbers::pi * area));
+  }
+  load.scene.materials.push_back(std::move(m));
+  Object object;
+  object.shape = std::move(shape);
+  object.material = static_cast<std::uint32_t>(load.scene.materials.size() - 1);
+  object.where = node.where();
+  load.scene.objects.push_back(std::move(object));
+}
+
+void read_sphere_light(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a sphere light", {"center", "radius", "radiance", "power"});
+  SphereShape sphere;
+  sphere.center = load.values.vector(fields.require("center"));
+  load.values.read(fields["radius"], sphere.radius, kPositive);
+  add_glowing(load, fields, node, sphere, 4 * std::numbers::pi * sphere.radius * sphere.radius);
+}
+
+void read_disk_light(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a disk light", {"center", "normal", "radius", "radiance", "power"});
+  DiskShape disk;
+  disk.normal = {0, -1, 0};
+  disk.center = load.values.vector(fields.require("center"));
+  if (const YamlNode* normal = fields["normal"]) disk.normal = read_direction(load, *normal);
+  load.values.read(fields["radius"], disk.radius, kPositive);
+  add_glowing(load, fields, node, disk, std::numbers::pi * disk.radius * disk.radius);
+}
+
+void read_rectangle_light(SceneLoad& load, const YamlNode& node) {
+  const Fields fields(node, "a rectangle light", {"corner", "u", "v", "radiance", "power"});
+  const Vec3d corner = load.values.vector(fields.require("corner"));
+  const Vec3d u = load.values.vector(fields.require("u")), v = load.values.vector(fields.require("v"));
+  const double area = length(u) * length(v);
+  if (!(area > 0)) throw Error(node.where(), "the edges 'u' and 'v' must not be zero");
+  if (std::abs(dot(u, v)) > 1e-6 * area)
+    throw Error(node.where(), "the edges 'u' and 'v' must be perpendicular");
+  add_glowing(load, fields, node, PolygonShape{{corner, corner + u, corner + u + v, corner + v}}, area);
+}
+
+struct LightKind {
+  const char* key;
+  void (*read)(SceneLoad&, const YamlNode&);
+};
+constexpr LightKind kLightKinds[] = {{"point", read_point},
+                                     {"spot", read_spot},
+                                     {"directional", read_directional},
+                                     {"environment", read_environment},
+                                     {"sky", read_sky},
+                                     {"sphere", read_sphere_light},
+                                     {"disk", read_disk_light},
+                                     {"rectangle", read_rectangle_light}};
+
+}  // namespace
+
+void read_lights(SceneLoad& load, const YamlNode& node) {
+  load.scene.lights_given = true;
+  std::vector<const char*> keys;
+  for (const LightKind& kind : kLightKinds) keys.push_back(kind.key);
+  for (const YamlNode* item : list_items(node, "lights")) {
+    const Fields fields(*item, "a light", keys);
+    const std::vector<MapEntry> entries = map_entries(*item, "a light");
+    if (entries.size() != 1)
+      throw Error(item->where(),
+                  "expected one of point, spot, directional, environment, sky, sphere, disk and rectangle");
+    for (const LightKind& kind : kLightKinds)
+      if (entries[0].key->text == kind.key) kind.read(load, *entries[0].value);
+  }
+}
+
+}  // namespace oktett

@@ -1,0 +1,174 @@
+/// \file Lights and principled materials in scene files.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "io/image/image.h"
+#include "tests/io/scene_test_support.h"
+
+namespace oktett {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+using namespace test;
+
+/// Expects the error that the file gives to hold `text`.
+void expect_error(const std::string& file, const std::string& text) {
+  const std::string error = SceneFiles().error_v1(file);
+  EXPECT_NE(error.find(text), std::string::npos) << error;
+}
+
+TEST(SceneLight, ReadsLampsWithoutArea) {
+  const Scene scene = SceneFiles().load_v1(
+      "lights:\n"
+      "  - point: {position: [1, 2, 3], intensity: [3, 6, 9]}\n"
+      "  - spot: {position: [0, 5, 0], at: [0, 1, 3], color: [1, 2, 3], outer_angle: 20}\n"
+      "  - spot: {position: [0, 5, 0], direction: [0, -2, 0], inner_angle: 5, outer_angle: 6}\n"
+      "  - directional: {direction: [1, -1, 0], irradiance: [1, 1, 1], angle: 0.5}\n"
+      "  - sky: {sun: [0, 1, 2], turbidity: 4, ground: [0.1, 0.2, 0.3], color: [1, 1, 1]}\n");
+  ASSERT_EQ(scene.lights.size(), 5u);
+  const auto& point = std::get<PointLight>(scene.lights[0]);
+  EXPECT_NEAR(static_cast<double>(point.color.y), 6 / kPi, 1e-6);
+  EXPECT_TRUE(point.falloff);
+  const auto& spot = std::get<SpotLight>(scene.lights[1]);
+  EXPECT_EQ(spot.direction, (Vec3d{0, -4, 3}));
+  EXPECT_EQ(spot.color, (Color{1, 2, 3}));
+  EXPECT_EQ(spot.outer_angle, 20);
+  EXPECT_EQ(spot.inner_angle, 15);
+  EXPECT_EQ(std::get<SpotLight>(scene.lights[2]).inner_angle, 5);
+  EXPECT_EQ(std::get<DirectionalLight>(scene.lights[3]).angle, 0.5);
+  EXPECT_NEAR(static_cast<double>(std::get<DirectionalLight>(scene.lights[3]).color.x), 1 / kPi, 1e-6);
+  const auto& sky = std::get<SkyLight>(scene.lights[4]);
+  EXPECT_EQ(sky.sun, (Vec3d{0, 1, 2}));
+  EXPECT_EQ(sky.turbidity, 4);
+  EXPECT_EQ(sky.ground, (Color{0.1f, 0.2f, 0.3f}));
+}
+
+// A lamp with an area is an object that glows. Its power is pi * area * radiance.
+TEST(SceneLight, LampsWithAnAreaAreObjects) {
+  const Scene scene = SceneFiles().load_v1(
+      "lights:\n"
+      "  - sphere: {center: [1, 2, 3], radius: 2, power: [10, 20, 30]}\n"
+      "  - disk: {center: [0, 1, 0], radius: 0.5, radiance: [5, 6, 7]}\n"
+      "  - rectangle: {corner: [0, 0, 0], u: [2, 0, 0], v: [0, 0, 3], power: [6, 6, 6]}\n");
+  EXPECT_TRUE(scene.lights_given);
+  EXPECT_TRUE(scene.lights.empty());
+  ASSERT_EQ(scene.objects.size(), 3u);
+  const auto emission = [&](std::size_t i) { return scene.materials.at(scene.objects[i].material).emission; };
+  EXPECT_NEAR(static_cast<double>(emission(0).y), 20 / (kPi * 16 * kPi), 1e-6);
+  EXPECT_EQ(emission(1), (Color{5, 6, 7}));
+  EXPECT_NEAR(static_cast<double>(emission(2).x), 1 / kPi, 1e-6);
+  EXPECT_EQ(std::get<DiskShape>(scene.objects[1].shape).normal, (Vec3d{0, -1, 0}));
+  EXPECT_EQ(std::get<PolygonShape>(scene.objects[2].shape).vertices[2], (Vec3d{2, 0, 3}));
+  EXPECT_FALSE(scene.materials[scene.objects[1].material].emits_behind);
+}
+
+TEST(SceneLight, ReadsEnvironments) {
+  SceneFiles files;
+  Picture picture;
+  picture.width = 4, picture.height = 2;
+  for (const char* name : {"R", "G", "B"}) {
+    PicturePlane& plane = picture.planes.emplace_back();
+    plane.name = name, plane.type = PlaneType::single_float;
+    for (int i = 0; i < 8; ++i)
+      plane.values.push_back(static_cast<float>(10 * i) + (name[0] == 'G' ? 1.0f : 0.0f));
+  }
+  write_image(files.dir.file("sky.exr"), picture);
+  const Scene scene =
+      files.load_v1("lights: [{environment: {file: sky.exr, rotate: 90, color: [1, 2, 3]}}]\n");
+  const auto& light = std::get<EnvironmentLight>(scene.lights.at(0));
+  EXPECT_EQ(light.rotation, 90);
+  EXPECT_EQ(light.color, (Color{1, 2, 3}));
+  ASSERT_EQ(light.picture->width, 4u);
+  ASSERT_EQ(light.picture->height, 2u);
+  EXPECT_EQ(light.picture->pixels[5], (Color{50, 51, 50}));
+}
+
+TEST(SceneLight, ErrorsSayWhatIsExpected) {
+  expect_error("lights: [{lamp: {}}]\n", "unknown key 'lamp' in a light");
+  expect_error("lights: [{point: {position: [0, 0, 0]}, sky: {}}]\n", "expected one of point");
+  expect_error("lights: [{point: {position: [0, 0, 0], color: [1, 1, 1], intensity: [1, 1, 1]}}]\n",
+               "expected 'color' or 'intensity'");
+  expect_error("lights: [{point: {position: [0, 0, 0], color: [-1, 1, 1]}}]\n", "at least 0");
+  expect_error("lights: [{spot: {position: [0, 0, 0], at: [0, 0, 0]}}]\n", "stands where it points to");
+  expect_error("lights: [{spot: {position: [0, 0, 0], inner_angle: 50}}]\n", "greater than 'outer_angle'");
+  expect_error("lights: [{sphere: {center: [0, 0, 0], radius: 0}}]\n", "greater than 0");
+  expect_error("lights: [{sphere: {center: [0, 0, 0], power: [1, 1, 1], radiance: [1, 1, 1]}}]\n",
+               "expected 'radiance' or 'power'");
+  expect_error("lights: [{rectangle: {corner: [0, 0, 0], u: [1, 0, 0], v: [1, 1, 0]}}]\n", "perpendicular");
+  expect_error("lights: [{rectangle: {corner: [0, 0, 0], u: [0, 0, 0], v: [1, 1, 0]}}]\n",
+               "must not be zero");
+  expect_error("lights: [{environment: {file: missing.exr}}]\n", "missing.exr");
+  expect_error("lights: [{sky: {turbidity: 20}}]\n", "from 2 to 10");
+  SceneFiles files;
+  files.dir.write("broken.exr", "no picture");
+  EXPECT_THROW(files.load_v1("lights: [{environment: {file: broken.exr}}]\n"), Error);
+}
+
+TEST(SceneMaterial, ReadsPrincipledOnes) {
+  SceneFiles files;
+  files.dir.write("a.png", "x"), files.dir.write("b.png", "x");
+  const Scene scene = files.load_v1(
+      "materials:\n"
+      "  all:\n"
+      "    principled: {base_color: [0.1, 0.2, 0.3], metallic: 0.25, roughness: {file: a.png, gain: 0.5},\n"
+      "      specular: 0.75, ior: 1.25, transmission: 0.5, thin: true, coat: 1, coat_roughness: 0.125,\n"
+      "      coat_ior: 1.75, sheen: 0.375, sheen_color: {file: b.png}, sheen_roughness: 0.625,\n"
+      "      eta: [1, 2, 3], k: [4, 5, 6]}\n"
+      "    emission: [1, 1, 0]\n"
+      "    emits: front\n");
+  const Material& m = scene.materials.at(0);
+  ASSERT_TRUE(m.principled);
+  const PrincipledParameters& p = m.principled->parameters;
+  EXPECT_EQ(p.base_color, (Color{0.1f, 0.2f, 0.3f}));
+  EXPECT_EQ(p.metallic, 0.25f);
+  EXPECT_EQ(p.roughness, 1);
+  EXPECT_EQ(scene.textures.at(m.principled->roughness_texture).path, files.dir.file("a.png"));
+  EXPECT_EQ(scene.textures.at(m.principled->roughness_texture).gain, 0.5f);
+  EXPECT_EQ(p.specular, 0.75f);
+  EXPECT_EQ(p.ior, 1.25f);
+  EXPECT_EQ(p.transmission, 0.5f);
+  EXPECT_TRUE(p.thin);
+  EXPECT_EQ(p.coat, 1);
+  EXPECT_EQ(p.coat_roughness, 0.125f);
+  EXPECT_EQ(p.coat_ior, 1.75f);
+  EXPECT_EQ(p.sheen, 0.375f);
+  EXPECT_EQ(p.sheen_color, (Color{1, 1, 1}));
+  EXPECT_EQ(scene.textures.at(m.principled->sheen_color_texture).path, files.dir.file("b.png"));
+  EXPECT_EQ(p.sheen_roughness, 0.625f);
+  ASSERT_TRUE(p.conductor);
+  EXPECT_EQ(p.conductor->eta, (Color{1, 2, 3}));
+  EXPECT_EQ(p.conductor->k, (Color{4, 5, 6}));
+  EXPECT_EQ(m.emission, (Color{1, 1, 0}));
+  EXPECT_FALSE(m.emits_behind);
+}
+
+TEST(SceneMaterial, RoughnessAndMetallicMakeItPrincipled) {
+  const Scene scene = SceneFiles().load_v1(
+      "materials:\n  a: {color: [1, 0, 0], ior: 1.25, transparency: 0.5, metallic: 0.75}\n  b: {color: [1, "
+      "0, 0]}\n");
+  ASSERT_TRUE(scene.materials[0].principled);
+  const PrincipledParameters& p = scene.materials[0].principled->parameters;
+  EXPECT_EQ(p.base_color, (Color{1, 0, 0}));
+  EXPECT_EQ(p.metallic, 0.75f);
+  EXPECT_EQ(p.ior, 1.25f);
+  EXPECT_EQ(p.transmission, 0.5f);
+  EXPECT_FALSE(scene.materials[1].principled);
+}
+
+TEST(SceneMaterial, ErrorsOfPrincipledOnes) {
+  expect_error("materials: {a: {principled: {rough: 1}}}\n", "unknown key 'rough'");
+  expect_error("materials: {a: {principled: {ior: 0}}}\n", "0.25");
+  expect_error("materials: {a: {principled: {roughness: 2}}}\n", "from 0 to 1");
+  expect_error("materials: {a: {principled: {base_color: [-1, 0, 0]}}}\n", "at least 0");
+  expect_error("materials: {a: {principled: {eta: [1, 1, 1]}}}\n", "both 'eta' and 'k'");
+  expect_error("materials: {a: {principled: {eta: [1, 0, 1], k: [1, 1, 1]}}}\n", "greater than 0");
+  expect_error("materials: {a: {principled: {}, phong: 3}}\n", "'phong' has no meaning beside 'principled'");
+  expect_error("materials: {a: {emits: left}}\n", "front");
+  expect_error("materials: {a: {principled: {roughness: {file: missing.png}}}}\n", "missing.png");
+}
+
+}  // namespace
+}  // namespace oktett
