@@ -1,7 +1,10 @@
 #include "render/light/emitter.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "core/math.h"
 #include "render/light/emitter_kinds.h"
 
 namespace oktett {
@@ -11,6 +14,15 @@ float color_weight(const Color& c) {
   const auto part = [](float x) { return x > 0 ? double{x} : 0; };
   const auto mean = static_cast<float>((part(c.x) + part(c.y) + part(c.z)) / 3);
   return std::isfinite(mean) ? mean : 0;
+}
+
+Vec3d around(const Vec3d& axis, double one_minus_cos, double turn) {
+  Vec3d tangent, bitangent;
+  make_basis(axis, tangent, bitangent);
+  const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2 - one_minus_cos)));
+  const double angle = 2 * std::numbers::pi * turn;
+  return tangent * (sine * portable::cos(angle)) + bitangent * (sine * portable::sin(angle)) +
+         axis * (1 - one_minus_cos);
 }
 
 std::optional<LightSample> sample_emitter(const Emitter& emitter, const LightPoint& point,

@@ -33,7 +33,8 @@ struct RectangleEmitter {
   bool both_sides = false;
 };
 
-/// Points are uniform over the area.
+/// Points are uniform over the area; close to the disk, half of the directions are uniform over the largest
+/// circle in it around the place below the point.
 struct DiskEmitter {
   Vec3f center;
   Vec3f normal;  ///< unit; points to the front

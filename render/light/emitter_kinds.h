@@ -31,6 +31,10 @@ float pdf_kind(const SpotEmitter& e, const LightPoint& p, const Vec3f& direction
 float pdf_kind(const DirectionalEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
 float pdf_kind(const EnvironmentEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
 
+/// The unit vector at an angle from the unit vector `axis` whose cosine is 1 - `one_minus_cos`. `turn` in [0,
+/// 1) goes once around.
+Vec3d around(const Vec3d& axis, double one_minus_cos, double turn);
+
 /// The bounds without a check of their numbers.
 std::optional<LightBounds> bounds_kind(const TriangleEmitter& e);
 std::optional<LightBounds> bounds_kind(const RectangleEmitter& e);

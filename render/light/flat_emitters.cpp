@@ -169,26 +169,58 @@ std::optional<LightBounds> bounds_kind(const RectangleEmitter& e) {
 
 // Disks.
 
-/// A unit normal times the area.
-static Vec3d disk_area(const DiskEmitter& e) {
-  return normalize(Vec3d(e.normal)) * (std::numbers::pi * e.radius * e.radius);
-}
+namespace {
+
+/// A disk relative to a point.
+struct DiskView {
+  Vec3d center, normal;
+  double area;
+  Facing side;
+  /// 1 - cosine of half the angle of the circle around the place below the point that fits into the disk; 0
+  /// if the circle is smaller than its distance.
+  double cap = 0;
+
+  DiskView(const DiskEmitter& e, const LightPoint& p)
+      : center(Vec3d(e.center) - Vec3d(p.position)),
+        normal(normalize(Vec3d(e.normal))),
+        area(std::numbers::pi * e.radius * e.radius),
+        side(facing(normal, center)) {
+    const double height = std::abs(side.height), radius = e.radius - length(center + normal * side.height);
+    if (radius > height) cap = 1 - height / std::sqrt(height * height + radius * radius);
+  }
+
+  double pdf(const Vec3d& to) const {
+    const double by_area = area_pdf(to, normal * area);
+    if (cap == 0) return by_area;
+    const bool in_cap = std::abs(dot(normal, to)) >= (1 - cap) * length(to);
+    return 0.5 * by_area + (in_cap ? 0.25 / (std::numbers::pi * cap) : 0);
+  }
+};
+
+}  // namespace
 
 std::optional<LightSample> sample_kind(const DiskEmitter& e, const LightPoint& p, const SquareSample& s) {
-  const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position), normal = disk_area(e);
-  if (!facing(normal, to_center).lights(e.both_sides)) return std::nullopt;
+  const DiskView disk(e, p);
+  if (!disk.side.lights(e.both_sides)) return std::nullopt;
+  if (disk.cap > 0 && s.x < 0.5) {
+    const Vec3d down = disk.side.height > 0 ? -disk.normal : disk.normal;
+    const double depth = 2 * s.x * disk.cap;
+    const Vec3d to = around(down, depth, s.y) * (std::abs(disk.side.height) / (1 - depth));
+    return sample_at(to, e.radiance, disk.pdf(to), false);
+  }
+  const double part = disk.cap > 0 ? 2 * s.x - 1 : s.x;
   Vec3d tangent, bitangent;
-  make_basis(normalize(normal), tangent, bitangent);
-  const double radius = e.radius * std::sqrt(s.x), angle = 2 * std::numbers::pi * s.y;
+  make_basis(disk.normal, tangent, bitangent);
+  const double radius = e.radius * std::sqrt(part), angle = 2 * std::numbers::pi * s.y;
   const Vec3d to =
-      to_center + tangent * (radius * portable::cos(angle)) + bitangent * (radius * portable::sin(angle));
-  return sample_at(to, e.radiance, area_pdf(to, normal), false);
+      disk.center + tangent * (radius * portable::cos(angle)) + bitangent * (radius * portable::sin(angle));
+  return sample_at(to, e.radiance, disk.pdf(to), false);
 }
 
 float pdf_kind(const DiskEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
-  const Vec3d normal = disk_area(e);
-  if (!facing(normal, Vec3d(e.center) - Vec3d(p.position)).lights(e.both_sides)) return 0;
-  return static_cast<float>(area_pdf(Vec3d(direction) * double{distance}, normal));
+  const DiskView disk(e, p);
+  if (!disk.side.lights(e.both_sides)) return 0;
+  return static_cast<float>(disk.pdf(Vec3d(direction) * double{distance}));
 }
 
 std::optional<LightBounds> bounds_kind(const DiskEmitter& e) {
@@ -197,7 +229,7 @@ std::optional<LightBounds> bounds_kind(const DiskEmitter& e) {
   const Vec3d half{r * std::sqrt(std::max(0.0, 1 - n.x * n.x)), r * std::sqrt(std::max(0.0, 1 - n.y * n.y)),
                    r * std::sqrt(std::max(0.0, 1 - n.z * n.z))};
   const Box box{round_down(Vec3d(e.center) - half), round_up(Vec3d(e.center) + half)};
-  return flat_bounds(box, n, r > 0 ? length(disk_area(e)) : 0, e.radiance, e.both_sides);
+  return flat_bounds(box, n, r > 0 ? std::numbers::pi * r * r : 0, e.radiance, e.both_sides);
 }
 
 }  // namespace oktett

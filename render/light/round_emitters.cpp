@@ -12,17 +12,6 @@ namespace oktett {
 
 static constexpr double kPi = std::numbers::pi;
 
-/// The unit vector at an angle from the unit vector `axis` whose cosine is 1 - `one_minus_cos`. `turn` in [0,
-/// 1) goes once around.
-static Vec3d around(const Vec3d& axis, double one_minus_cos, double turn) {
-  Vec3d tangent, bitangent;
-  make_basis(axis, tangent, bitangent);
-  const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2 - one_minus_cos)));
-  const double angle = 2 * kPi * turn;
-  return tangent * (sine * portable::cos(angle)) + bitangent * (sine * portable::sin(angle)) +
-         axis * (1 - one_minus_cos);
-}
-
 // Spheres.
 
 /// 1 - cosine of the half angle of the cone that a sphere fills, by the square of the sine.

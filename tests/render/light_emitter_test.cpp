@@ -134,6 +134,8 @@ std::vector<Case> cases() {
       {"disk from behind", disk, {1, 2, -1}},
       {"disk grazing", disk, {3, -1, 1.3f}},
       {"disk near", disk, Vec3f{0.7f, 0, 1.1f} - normalize(Vec3f{1, 2, -2}) * 0.01f},
+      {"disk very near", DiskEmitter{{0, 0, 0}, {0, 0, 1}, 10, kWhite, true}, {3, 2, 1e-3f}},
+      {"disk near its rim", DiskEmitter{{0, 0, 0}, {0, 0, 1}, 1, kWhite, true}, {0, 0.98f, -0.01f}},
       {"disk far", disk, {300, 200, -500}, false},
       {"ball", ball, {0, 0, 0}},
       {"ball near", ball, {1, 2.501f, 3}},

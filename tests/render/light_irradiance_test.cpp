@@ -93,14 +93,18 @@ TEST(LightIrradiance, SpheresAndDisksGiveTheIrradianceOfTheirClosedForms) {
   }
 }
 
-// Just above a large rectangle that faces it, a surface receives pi: it sees nothing else.
-TEST(LightIrradiance, SurfacesCloseToALargeRectangleReceivePi) {
+// Just above a large flat emitter that faces it, a surface receives pi: it sees nothing else.
+TEST(LightIrradiance, SurfacesCloseToALargeEmitterReceivePi) {
   const RectangleEmitter floor{{-1000, -1000, 0}, {2000, 0, 0}, {0, 2000, 0}, kWhite};
   for (const float height : {1.0f, 1e-2f, 1e-4f, 1e-6f}) {
     SCOPED_TRACE(height);
     const Estimate e = irradiance(floor, {{10, 20, height}, {0, 0, -1}}, 20000, 3);
     EXPECT_NEAR(e.mean, kPi, 4 * e.error + 1e-5);
     const TriangleEmitter half{{-1000, -1000, 0}, {2000, -1000, 0}, {-1000, 2000, 0}, kWhite};
+    const DiskEmitter disk{{0, 0, 0}, {0, 0, 1}, 1000, kWhite};
+    const Estimate d = irradiance(disk, {{10, 20, height}, {0, 0, -1}}, 20000, 5);
+    EXPECT_NEAR(d.mean, kPi, 4 * d.error + 1e-5);
+    EXPECT_LT(d.error, 0.05);
     const Estimate t = irradiance(half, {{10, 20, height}, {0, 0, -1}}, 20000, 4);
     EXPECT_NEAR(t.mean, kPi, 4 * t.error + 1e-5);
   }
