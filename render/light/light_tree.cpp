@@ -60,11 +60,11 @@ LightTree::Importances LightTree::importances(const Quad& quad, const LightPoint
   const Four cosine = -(four(quad.axis[0]) * x + four(quad.axis[1]) * y + four(quad.axis[2]) * z) * scale;
   const Four cos_spread = four(quad.cos_spread);
   const Four sin_spread = cos_spread > 0 ? square_root(max(1 - cos_spread * cos_spread, 0)) : four(1);
-  const Four mean = cosine * (1 + cos_spread) * 0.5f, width = min(sin_spread + ball, 1);
+  const Four width = min(sin_spread + ball, 1);
   const auto back_part = [](std::uint32_t child) { return child & kBothSides ? 1.0f : 0.0f; };
   const Four back{back_part(quad.child[0]), back_part(quad.child[1]), back_part(quad.child[2]),
                   back_part(quad.child[3])};
-  const Four leaving = back > 0 ? magnitude(cosine) : cosine;
+  const Four leaving = back > 0 ? magnitude(cosine) : cosine, mean = leaving * (1 + cos_spread) * 0.5f;
   const Four power = four(quad.power), nearest = max(square, kPartOfRadius * radius * radius);
   Four importance =
       power / nearest * (mean_cosine(mean, width, leaving) + back * positive_part(-mean, width));
@@ -73,8 +73,8 @@ LightTree::Importances LightTree::importances(const Quad& quad, const LightPoint
   if (point.normal != Vec3f{}) {
     const Four incidence = (point.normal.x * x + point.normal.y * y + point.normal.z * z) * scale;
     const Four arriving = point.front_only ? incidence : magnitude(incidence);
-    Four cosines = mean_cosine(incidence, ball, arriving);
-    if (!point.front_only) cosines += positive_part(-incidence, ball);
+    Four cosines = mean_cosine(arriving, ball, arriving);
+    if (!point.front_only) cosines += positive_part(-arriving, ball);
     importance *= cosines;
     lit = unless_beyond(lit, arriving, four(0), ball);
   }

@@ -33,6 +33,50 @@ TEST(Sky, HasTheZenithOfThePaper) {
     }
 }
 
+/// The paper's table of A to E: slopes and offsets by turbidity, for luminance and for the chromaticities.
+constexpr double kTable[3][10] = {
+    {0.1787, -1.4630, -0.3554, 0.4275, -0.0227, 5.3251, 0.1206, -2.5771, -0.0670, 0.3703},
+    {-0.0193, -0.2592, -0.0665, 0.0008, -0.0004, 0.2125, -0.0641, -0.8989, -0.0033, 0.0452},
+    {-0.0167, -0.2608, -0.0950, 0.0092, -0.0079, 0.2102, -0.0441, -1.6537, -0.0109, 0.0529}};
+
+/// The ratio of quantity `q` at this angle from the zenith and from the sun to that at the zenith.
+double perez_ratio(int q, double turbidity, double zenith, double from_sun, double sun_zenith) {
+  double k[5];
+  for (int i = 0; i < 5; ++i) k[i] = kTable[q][2 * i] * turbidity + kTable[q][2 * i + 1];
+  const auto f = [&](double theta, double gamma) {
+    return (1 + k[0] * std::exp(k[1] / std::cos(theta))) *
+           (1 + k[2] * std::exp(k[3] * gamma) + k[4] * std::pow(std::cos(gamma), 2));
+  };
+  return f(zenith, from_sun) / f(0, sun_zenith);
+}
+
+// Along the meridian of the sun and away from it, luminance and chromaticity change as in the paper.
+TEST(Sky, HasTheGradientsOfThePaper) {
+  // The matrix from Rec.709 to XYZ.
+  const auto chromaticity = [](const Color& c, int q) {
+    const double x = 0.4124564 * c.x + 0.3575761 * c.y + 0.1804375 * c.z, y = luminance(c);
+    const double z = 0.0193339 * c.x + 0.1191920 * c.y + 0.9503041 * c.z;
+    return (q == 1 ? x : y) / (x + y + z);
+  };
+  for (const double turbidity : {2.2, 4.0}) {
+    const double sun_zenith = 0.7;
+    const Sky sky({.sun = at_elevation(90 - sun_zenith * 180 / kPi), .turbidity = turbidity});
+    const Color zenith = sky.radiance({0, 1, 0});
+    for (const double place : {-1.2, -0.6, 0.3, 0.65, 1.1, 1.4}) {
+      const Color c = sky.radiance(at_elevation(90 - place * 180 / kPi));
+      const double theta = std::abs(place), gamma = std::abs(place - sun_zenith);
+      // A channel below 0 is cut off, which shifts what is left.
+      if (c.x * c.y * c.z == 0) continue;
+      EXPECT_NEAR(luminance(c) / luminance(zenith) / perez_ratio(0, turbidity, theta, gamma, sun_zenith), 1,
+                  2e-3);
+      for (const int q : {1, 2})
+        EXPECT_NEAR(chromaticity(c, q) / chromaticity(zenith, q) /
+                        perez_ratio(q, turbidity, theta, gamma, sun_zenith),
+                    1, 2e-3);
+    }
+  }
+}
+
 // Measured on clear days: 10 to 20 klx from the sky, of which the model gives a little more, and from the sun
 // at 60 degrees 70 to 110 klx on a surface that faces it.
 TEST(Sky, HasTheBrightnessOfAClearDay) {

@@ -145,6 +145,14 @@ TEST(LightTree, IsConservativeAtGrazingAngles) {
   EXPECT_GT(lit, 500);
 }
 
+TEST(LightTree, LeavesOutWhatIsBehindAnOpaqueSurfaceOnly) {
+  const LightTree tree(bounds_of({PointEmitter{{0, 0, 2}, {1, 1, 1}}, PointEmitter{{0, 0, -2}, {1, 1, 1}}}));
+  EXPECT_EQ(tree.probability({{}, {0, 0, 1}, true}, 0), 1);
+  EXPECT_EQ(tree.probability({{}, {0, 0, 1}, true}, 1), 0);
+  EXPECT_NEAR(tree.probability({{}, {0, 0, 1}, false}, 1), 0.5, 0.01);
+  EXPECT_NEAR(tree.probability({{}, {}, false}, 1), 0.5, 1e-6);
+}
+
 TEST(LightTree, HoldsNoEmitters) {
   const LightTree tree(std::vector<LightBounds>{});
   EXPECT_TRUE(tree.empty());
