@@ -132,8 +132,7 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
 
   const SurfaceBsdf bsdf(p);
   const LightPoint from{p.surface.position, p.ng, !bsdf.transmits()};
-  const bool sampled = !bsdf.only_delta() && !context.sampled->set().empty();
-  if (sampled) sample_light(context, wavefront, ray, p, bsdf, from, choices);
+  if (!bsdf.only_delta()) sample_light(context, wavefront, ray, p, bsdf, from, choices);
 
   const std::optional<BsdfSample> next =
       bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
@@ -142,7 +141,7 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
   if (!survives(wavefront, ray, choices, onward)) return;
   push_bounce(wavefront, ray, p, next->direction, onward,
               next->transmitted ? Bounce::refracted : Bounce::reflected);
-  wavefront.next_paths.push_back(sampled && !next->delta ? next->pdf : 0, from);
+  wavefront.next_paths.push_back(next->pdf, from);
 }
 
 }  // namespace oktett

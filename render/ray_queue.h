@@ -52,7 +52,8 @@ struct RayQueue {
 /// What a path knows of the surface that its ray left, beside the columns of a RayQueue: how likely the ray's
 /// direction was, and for which point lights would have been chosen there.
 struct PathColumns {
-  Column<float> pdf;  ///< of the direction, per solid angle; 0 if no light could be chosen in its place
+  Column<float> pdf;  ///< of the direction, per solid angle; 0 for mirrors and clear glass, which no light
+                      ///< sample replaces
   Column<LightPoint> from;
 
   void clear() { pdf.resize_uninitialized(0), from.resize_uninitialized(0); }
