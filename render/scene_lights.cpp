@@ -190,7 +190,8 @@ SceneLights::SceneLights(const Scene& scene, const World& world) {
     const bool point = directional != nullptr ? directional->angle == 0 : has_place(light);
     has_environment_ |= !point;
   }
-  EmitterCollector(world, *this, emitters).collect();
+  // Only path tracing asks for surfaces, of which there may be millions.
+  if (scene.integrator.kind == IntegratorKind::path) EmitterCollector(world, *this, emitters).collect();
   set_ = LightSet(std::move(emitters));
 }
 

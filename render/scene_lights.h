@@ -25,7 +25,8 @@ DirectionalLight sun_of(const SkyLight& light);
 /// paths that happen to meet them.
 class SceneLights {
  public:
-  /// The lights of `scene`, whose lights are filled in, and of the glowing surfaces in `world`.
+  /// The lights of `scene`, whose lights are filled in, and if it is for path tracing, of the glowing
+  /// surfaces in `world`.
   SceneLights(const Scene& scene, const World& world);
 
   const LightSet& set() const { return set_; }

@@ -343,6 +343,7 @@ TEST(LightTransport, PicturesDependNeitherOnThreadsNorTilesNorSets) {
 
 TEST(SceneLights, NamesTheEmitterOfAHit) {
   Scene scene = bare_scene();
+  scene.integrator.kind = IntegratorKind::path;
   const std::uint32_t lamp = add_material(scene, glowing({1, 1, 1})),
                       dark = add_material(scene, diffuse({1, 1, 1}));
   add_object(scene, SphereShape{{-3, 0, 0}, 1}, dark);
