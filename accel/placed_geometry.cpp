@@ -1,6 +1,6 @@
 #include "accel/placed_geometry.h"
 
-#include "accel/accel_data.h"
+#include "accel/instance.h"
 
 namespace oktett {
 namespace {
@@ -14,9 +14,6 @@ struct Stand {
   std::uint32_t user_or(std::uint32_t inner) const { return user != kNoId ? user : inner; }
 };
 
-/// Path p inside a child is path first_path + p + 1 outside; p = kNoId is the child itself.
-std::uint32_t chain(const Stand& stand, std::uint32_t path) { return stand.instance + path + 1; }
-
 void visit_structure(const Accel& accel, const Stand& stand,
                      const std::function<void(const PlacedGeometry&)>& visit) {
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
@@ -28,22 +25,20 @@ void visit_structure(const Accel& accel, const Stand& stand,
     visit({&geometry, stand.to_world * geometry.transform, stand.user_or(accel.users[g]), stand.instance,
            accel.first_item[g]});
   }
-  for (const PathStep& step : accel.path_steps) {
-    if (step.is_combination || step.stride != 0) continue;
-    const Geometry& instance = accel.geometries[accel.geometry_of(step.item)];
-    visit_structure(
-        *step.child,
-        {stand.to_world * instance.transform, chain(stand, step.first_path), stand.user_or(instance.user)},
-        visit);
-  }
-  for (const ListedInstance& place : accel.listed_instances) {
-    const Geometry& list = accel.geometries[accel.geometry_of(place.item)];
-    visit_structure(
-        *accel.listed_children[place.child],
-        {stand.to_world * Affine::from_rows(place.to_child).inverse(), chain(stand, place.first_path),
-         stand.user_or(place.user != kNoId ? place.user : list.user)},
-        visit);
-  }
+  const auto visit_child = [&](const auto& instance, const Affine& to_list, std::uint32_t user) {
+    // The number of a chain inside a child follows from that of the child itself as outer_path says.
+    const std::uint32_t number = stand.instance + (outer_path(instance, kNoId) + 1);
+    visit_structure(child_of(accel, instance), {stand.to_world * to_list, number, stand.user_or(user)},
+                    visit);
+  };
+  const auto geometry_of = [&](const auto& instance) -> const Geometry& {
+    return accel.geometries[accel.geometry_of(instance.item)];
+  };
+  for (const InstanceItem& instance : accel.instances)
+    visit_child(instance, geometry_of(instance).transform, geometry_of(instance).user);
+  for (const ListedInstance& instance : accel.listed_instances)
+    visit_child(instance, Affine::from_rows(instance.to_child).inverse(),
+                instance.user != kNoId ? instance.user : geometry_of(instance).user);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/direct_light.h"
+#include "render/bsdf/phong_power.h"
 
 namespace oktett {
 

@@ -3,16 +3,14 @@
 #include <algorithm>
 
 #include "accel/surface/offset_origin.h"
-#include "core/math.h"
 #include "core/platform.h"
+#include "render/bsdf/phong_power.h"
 #include "render/shading_lanes.h"
 
 namespace oktett {
 
 float highlight_power(float cosine, float exponent) {
-  if (by_squaring(exponent))
-    return static_cast<float>(portable::whole_power(cosine, static_cast<unsigned>(exponent)));
-  return static_cast<float>(portable::pow(cosine, exponent));
+  return static_cast<float>(phong_power(cosine, exponent));
 }
 
 using Lane = Simd<float, 1, ScalarIsa>;

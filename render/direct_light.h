@@ -13,14 +13,7 @@ namespace oktett {
 /// tmax of shadow rays whose direction is the vector to the light: they end just before it.
 inline constexpr float kBeforeLight = 1 - 0x1p-24f;
 
-/// Powers with whole exponents up to this one are computed by squaring; most materials have such exponents.
-inline constexpr float kMostBySquaring = 1024;
-inline bool by_squaring(float exponent) {
-  return exponent <= kMostBySquaring && exponent >= 0 &&
-         static_cast<float>(static_cast<unsigned>(exponent)) == exponent;
-}
-
-/// `cosine`, in [0, 1] or NaN, to the power of a material's exponent.
+/// phong_power, rounded to float.
 float highlight_power(float cosine, float exponent);
 
 /// The sum that `phong` returns where the light is in front of the surface. `cosine`, > 0 or NaN, is the

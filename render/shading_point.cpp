@@ -57,13 +57,9 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
   PrincipledParameters at = m.parameters;
   at.base_color = color;
   if (c.textures == nullptr) return at;
-  const auto scale = [&](float& value, std::uint32_t texture) {
-    if (texture != kNoId) value *= c.textures->value(texture, uv, f.dx, f.dy);
-  };
-  scale(at.metallic, m.metallic_texture), scale(at.roughness, m.roughness_texture);
-  scale(at.specular, m.specular_texture), scale(at.transmission, m.transmission_texture);
-  scale(at.coat, m.coat_texture), scale(at.coat_roughness, m.coat_roughness_texture);
-  scale(at.sheen, m.sheen_texture), scale(at.sheen_roughness, m.sheen_roughness_texture);
+  for (const PrincipledNumber& number : kPrincipledNumbers)
+    if (const std::uint32_t texture = m.*number.texture; texture != kNoId)
+      at.*number.value *= c.textures->value(texture, uv, f.dx, f.dy);
   at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, uv, f);
   return at;
 }
@@ -138,11 +134,9 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
 }
 
 static bool has_textures(const PrincipledMaterial& m) {
-  for (const std::uint32_t texture :
-       {m.metallic_texture, m.roughness_texture, m.specular_texture, m.transmission_texture, m.coat_texture,
-        m.coat_roughness_texture, m.sheen_texture, m.sheen_color_texture, m.sheen_roughness_texture})
-    if (texture != kNoId) return true;
-  return false;
+  for (const PrincipledNumber& number : kPrincipledNumbers)
+    if (m.*number.texture != kNoId) return true;
+  return m.sheen_color_texture != kNoId;
 }
 
 bool has_textures(const Material& m) {

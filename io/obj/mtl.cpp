@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -27,9 +28,11 @@ struct Statements {
   std::optional<Color> ka, kd, ks, ke, tf;
   std::optional<float> d, tr;
   float illum = 2;
-  /// By the order of kPrincipled and kPrincipledTextures.
-  std::array<std::optional<float>, 5> principled;
-  std::array<std::optional<std::uint32_t>, 5> principled_textures;
+  struct Principled {
+    std::optional<float> value;
+    std::optional<std::uint32_t> texture;
+  };
+  std::array<Principled, 5> principled;  ///< in the order of kPrincipled
 };
 
 constexpr std::pair<const char*, std::optional<Color> Statements::*> kColors[] = {{"ka", &Statements::ka},
@@ -45,18 +48,18 @@ constexpr std::pair<const char*, std::uint32_t Material::*> kTextures[] = {
     {"norm", &Material::normal_texture},     {"map_normal", &Material::normal_texture}};
 
 // The statements of the extension for physically based rendering. One of them makes a material principled.
-constexpr std::pair<const char*, float PrincipledParameters::*> kPrincipled[] = {
-    {"pr", &PrincipledParameters::roughness},
-    {"pm", &PrincipledParameters::metallic},
-    {"ps", &PrincipledParameters::sheen},
-    {"pc", &PrincipledParameters::coat},
-    {"pcr", &PrincipledParameters::coat_roughness}};
-constexpr std::pair<const char*, std::uint32_t PrincipledMaterial::*> kPrincipledTextures[] = {
-    {"map_pr", &PrincipledMaterial::roughness_texture},
-    {"map_pm", &PrincipledMaterial::metallic_texture},
-    {"map_ps", &PrincipledMaterial::sheen_texture},
-    {"map_pc", &PrincipledMaterial::coat_texture},
-    {"map_pcr", &PrincipledMaterial::coat_roughness_texture}};
+// "map_" before a statement gives the texture.
+struct PrincipledStatement {
+  std::string_view key;
+  float PrincipledParameters::*value;
+  std::uint32_t PrincipledMaterial::*texture;
+};
+constexpr PrincipledStatement kPrincipled[] = {
+    {"pr", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture},
+    {"pm", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture},
+    {"ps", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
+    {"pc", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
+    {"pcr", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture}};
 
 class MtlReader {
  public:
@@ -125,12 +128,12 @@ class MtlReader {
       const auto is_model = [](float x) { return x >= 0 && x <= 10 && x == std::floor(x); };
       read(take(line, is_model, "illum must be a whole number from 0 to 10"), said_.illum);
     }
-    for (std::size_t i = 0; i < std::size(kPrincipled); ++i)
-      if (key == kPrincipled[i].first) read(line.take_number(), said_.principled[i]);
-    for (std::size_t i = 0; i < std::size(kPrincipledTextures); ++i)
-      if (key == kPrincipledTextures[i].first)
+    for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
+      if (key == kPrincipled[i].key) read(line.take_number(), said_.principled[i].value);
+      if (key == std::string("map_").append(kPrincipled[i].key))
         if (const auto texture = read_mtl_texture(line, directory_))
-          said_.principled_textures[i] = textures_.add(texture->texture);
+          said_.principled[i].texture = textures_.add(texture->texture);
+    }
   }
 
   /// A malformed value leaves what was there.
@@ -168,20 +171,15 @@ class MtlReader {
   }
 
   void set_principled(Material& m) const {
-    const auto said = [](const auto& value) { return value.has_value(); };
-    if (std::ranges::none_of(said_.principled, said) && std::ranges::none_of(said_.principled_textures, said))
-      return;
-    PrincipledMaterial principled = principled_like(m);
-    for (std::size_t i = 0; i < std::size(kPrincipled); ++i)
-      if (said_.principled[i])
-        principled.parameters.*kPrincipled[i].second = clamp_unit(*said_.principled[i]);
-    for (std::size_t i = 0; i < std::size(kPrincipledTextures); ++i) {
-      if (!said_.principled_textures[i]) continue;
-      principled.*kPrincipledTextures[i].second = *said_.principled_textures[i];
+    const auto said = [](const Statements::Principled& p) { return p.value || p.texture; };
+    if (std::ranges::none_of(said_.principled, said)) return;
+    PrincipledMaterial& principled = m.principled.emplace(principled_like(m));
+    for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
+      const auto& [value, texture] = said_.principled[i];
       // A texture without a number to multiply shows as it is.
-      if (!said_.principled[i]) principled.parameters.*kPrincipled[i].second = 1;
+      if (value || texture) principled.parameters.*kPrincipled[i].value = value ? clamp_unit(*value) : 1;
+      if (texture) principled.*kPrincipled[i].texture = *texture;
     }
-    m.principled = principled;
   }
 
   void set_opacity(Material& m) const {

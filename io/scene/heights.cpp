@@ -20,17 +20,12 @@ using MaybeForm = std::optional<ExactForm>;
 
 std::shared_ptr<const HeightGrid> read_file(SceneLoad& load, const YamlNode& node,
                                             HeightInterpolation interpolation) {
-  const std::string path = load.values.existing_file(node);
-  try {
+  return read_image_file(load, node, [&](const std::string& path) {
     HeightImage image = read_heights(path, kMaxHeightSide, kMaxHeightSamples);
     return image.words.empty()
                ? HeightGrid::from_floats(image.columns, image.rows, std::move(image.floats), interpolation)
                : HeightGrid::from_words(image.columns, image.rows, std::move(image.words), interpolation);
-  } catch (const Error& e) {
-    // An image has no lines: what names it is the place to look at.
-    const std::string what = e.what();
-    throw Error(node.where(), quote(path, 1000) + what.substr(what.find(path) == 0 ? path.size() : 0));
-  }
+  });
 }
 
 bool depends_on_y(const FunctionTape& f) {

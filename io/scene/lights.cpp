@@ -75,18 +75,13 @@ void read_directional(SceneLoad& load, const YamlNode& node) {
 
 /// The radiance of a picture file of all directions.
 std::shared_ptr<const EnvironmentPicture> read_environment_picture(SceneLoad& load, const YamlNode& node) {
-  const std::string path = load.values.existing_file(node);
-  Picture picture;
-  try {
-    picture = read_image(path);
-  } catch (const Error& e) {
-    // An image has no lines: what names it is the place to look at.
-    const std::string what = e.what();
-    throw Error(node.where(), quote(path, 1000) + what.substr(what.find(path) == 0 ? path.size() : 0));
-  }
+  const Picture picture = read_image_file(load, node, [](const std::string& path) {
+    Picture read = read_image(path);
+    for (const char* plane : {"R", "G", "B"})
+      if (read.find(plane) == nullptr) throw Error(path + ": the image has no colours");
+    return read;
+  });
   const PicturePlane* planes[3] = {picture.find("R"), picture.find("G"), picture.find("B")};
-  for (const PicturePlane* plane : planes)
-    if (plane == nullptr) throw Error(node.where(), quote(path, 1000) + ": the image has no colours");
   EnvironmentPicture environment;
   environment.width = picture.width, environment.height = picture.height;
   environment.pixels.resize(std::size_t{picture.width} * picture.height);

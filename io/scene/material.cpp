@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
+#include "render/bsdf/ggx_albedo.h"
 
 namespace oktett {
 namespace {
@@ -38,9 +41,6 @@ void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
   out = load.textures.add(texture);
 }
 
-/// What PrincipledParameters::ior allows.
-constexpr Range kPrincipledIor{0.25, 4};
-
 bool is_texture(const YamlNode* node) { return node != nullptr && node->kind == YamlKind::map; }
 
 /// A number, or a texture that takes its place.
@@ -72,41 +72,36 @@ std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, c
 }
 
 void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
-  const Fields fields(
-      node, "a principled material",
-      {"base_color", "metallic", "roughness", "specular", "ior", "transmission", "thin", "coat",
-       "coat_roughness", "coat_ior", "sheen", "sheen_color", "sheen_roughness", "eta", "k"});
+  std::vector<const char*> keys{"base_color", "ior", "thin", "coat_ior", "sheen_color", "eta", "k"};
+  for (const PrincipledNumber& number : kPrincipledNumbers) keys.push_back(number.name);
+  const Fields fields(node, "a principled material", keys);
   PrincipledMaterial principled;
   PrincipledParameters& p = principled.parameters;
   read_textured(load, fields["base_color"], m.color, m.color_texture);
   p.base_color = m.color;
-  read_textured(load, fields["metallic"], p.metallic, principled.metallic_texture, kUnitInterval);
-  read_textured(load, fields["roughness"], p.roughness, principled.roughness_texture, kUnitInterval);
-  read_textured(load, fields["specular"], p.specular, principled.specular_texture, kUnitInterval);
-  load.values.read(fields["ior"], p.ior, kPrincipledIor);
-  read_textured(load, fields["transmission"], p.transmission, principled.transmission_texture, kUnitInterval);
-  load.values.read(fields["thin"], p.thin);
-  read_textured(load, fields["coat"], p.coat, principled.coat_texture, kUnitInterval);
-  read_textured(load, fields["coat_roughness"], p.coat_roughness, principled.coat_roughness_texture,
-                kUnitInterval);
-  load.values.read(fields["coat_ior"], p.coat_ior, {1, kPrincipledIor.hi});
-  read_textured(load, fields["sheen"], p.sheen, principled.sheen_texture, kUnitInterval);
+  for (const PrincipledNumber& number : kPrincipledNumbers)
+    read_textured(load, fields[number.name], p.*number.value, principled.*number.texture, kUnitInterval);
   read_textured(load, fields["sheen_color"], p.sheen_color, principled.sheen_color_texture);
-  read_textured(load, fields["sheen_roughness"], p.sheen_roughness, principled.sheen_roughness_texture,
-                kUnitInterval);
+  load.values.read(fields["ior"], p.ior, {1 / kMostIor, kMostIor});
+  load.values.read(fields["coat_ior"], p.coat_ior, {1, kMostIor});
+  load.values.read(fields["thin"], p.thin);
   p.conductor = read_conductor(load, fields, node);
   m.principled = principled;
   resemble_principled(m);
 }
 
+/// The keys of Phong's model, and those of all materials.
+constexpr const char* kPhongKeys[] = {"color",        "specular_color", "ambient",   "diffuse",  "specular",
+                                      "phong",        "reflection",     "transparency", "ior", "roughness",
+                                      "metallic",     "map_color",      "map_specular"};
+constexpr const char* kCommonKeys[] = {"principled",  "emits",        "emission",   "map_emission",
+                                       "map_opacity", "map_bump",     "map_normal", "bump_scale"};
+
 /// Throws Error if a principled material also has keys of Phong's model.
 void refuse_phong_keys(const YamlNode& node) {
   for (const MapEntry& entry : map_entries(node, "a material"))
-    for (const char* key :
-         {"color", "specular_color", "ambient", "diffuse", "specular", "phong", "reflection", "transparency",
-          "ior", "roughness", "metallic", "map_color", "map_specular"})
-      if (entry.key->text == key)
-        throw Error(entry.key->where(), quote(key) + " has no meaning beside 'principled'");
+    if (std::ranges::find(kPhongKeys, entry.key->text) != std::end(kPhongKeys))
+      throw Error(entry.key->where(), quote(entry.key->text) + " has no meaning beside 'principled'");
 }
 
 /// `roughness` and `metallic` beside Phong's parameters make a principled material of them.
@@ -118,12 +113,9 @@ void read_roughness(SceneLoad& load, const YamlNode* roughness, const YamlNode* 
 }
 
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {
-  const Fields fields(
-      node, "a material",
-      {"principled", "emits",      "color",     "specular_color", "emission",     "ambient",
-       "diffuse",    "specular",   "phong",     "reflection",     "transparency", "ior",
-       "roughness",  "metallic",   "map_color", "map_specular",   "map_emission", "map_opacity",
-       "map_bump",   "map_normal", "bump_scale"});
+  std::vector<const char*> keys(std::begin(kPhongKeys), std::end(kPhongKeys));
+  keys.insert(keys.end(), std::begin(kCommonKeys), std::end(kCommonKeys));
+  const Fields fields(node, "a material", keys);
   SceneValues& values = load.values;
   Material m;
   m.name = name;

@@ -7,6 +7,7 @@
 
 #include "core/description.h"
 #include "io/scene/load.h"
+#include "io/scene/utf8.h"
 
 namespace oktett {
 
@@ -38,6 +39,19 @@ std::optional<Shape> read_shape(SceneLoad& load, const YamlNode& key, const Yaml
 /// A list of spheres, {centers, radius} or {file}. Spheres of radius 0 are left out with a warning; nothing,
 /// after another one, if no sphere is left.
 std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const YamlNode& node);
+
+/// Calls read(path) for the image file that `node` names. An Error that it throws, whose text may begin with
+/// the path, is thrown again at the place of the name, since an image has no lines.
+template <class Read>
+auto read_image_file(SceneLoad& load, const YamlNode& node, Read&& read) {
+  const std::string path = load.values.existing_file(node);
+  try {
+    return read(path);
+  } catch (const Error& e) {
+    const std::string what = e.what();
+    throw Error(node.where(), quote(path, 1000) + what.substr(what.find(path) == 0 ? path.size() : 0));
+  }
+}
 
 /// Throws Error at the object's place if it has no inside: if it is flat, open, or a mesh that is not closed.
 void require_solid(const SceneLoad& load, const Object& object);

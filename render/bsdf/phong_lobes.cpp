@@ -2,15 +2,11 @@
 
 #include "core/platform.h"
 #include "render/bsdf/optics.h"
+#include "render/bsdf/phong_power.h"
 
 namespace oktett {
 
 static constexpr double kMost = 1e9;
-
-static double power(double x, double exponent) {
-  const bool whole = exponent <= 1024 && exponent == std::floor(exponent);
-  return whole ? portable::whole_power(x, static_cast<unsigned>(exponent)) : portable::pow(x, exponent);
-}
 
 PhongLobes::PhongLobes(const PhongParameters& parameters, const Vec3f& wo, bool front) {
   const Vec3d w = direction_above(wo);
@@ -47,7 +43,7 @@ OKTETT_NOINLINE BsdfValue PhongLobes::evaluate(const Vec3f& wi) const {
   double pdf = choice_[kDiffuse] * w.z;
   const double cosine = std::min(1.0, dot(mirrored_viewer_, w));
   if (choice_[kHighlight] > 0 && cosine > 0) {
-    const double shine = power(cosine, exponent_);
+    const double shine = phong_power(cosine, exponent_);
     value += highlight_ * shine;
     pdf += choice_[kHighlight] * (exponent_ + 1) / 2 * shine;
   }

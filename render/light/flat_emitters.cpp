@@ -30,22 +30,34 @@ static double area_pdf(const Vec3d& to, const Vec3d& normal) {
   return square * std::sqrt(square) / std::abs(dot(to, normal));
 }
 
+namespace {
+
+/// Two edges that leave a corner, relative to a point.
+struct CornerView {
+  Vec3d corner, edge_u, edge_v;
+  Facing side;
+
+  CornerView(const Vec3f& at, const Vec3d& u, const Vec3d& v, const LightPoint& p)
+      : corner(Vec3d(at) - Vec3d(p.position)),
+        edge_u(u),
+        edge_v(v),
+        side(facing(cross(edge_u, edge_v), corner)) {}
+
+  Vec3d place(double u, double v) const { return corner + edge_u * u + edge_v * v; }
+};
+
+}  // namespace
+
 // Triangles.
 
 namespace {
 
 /// A triangle relative to a point.
-struct TriangleView {
-  Vec3d a, edge_u, edge_v;
-  Facing side;
-
+struct TriangleView : CornerView {
   TriangleView(const TriangleEmitter& e, const LightPoint& p)
-      : a(Vec3d(e.a) - Vec3d(p.position)),
-        edge_u(Vec3d(e.b) - Vec3d(e.a)),
-        edge_v(Vec3d(e.c) - Vec3d(e.a)),
-        side(facing(cross(edge_u, edge_v), a)) {}
+      : CornerView(e.a, Vec3d(e.b) - Vec3d(e.a), Vec3d(e.c) - Vec3d(e.a), p) {}
 
-  SphericalTriangle spherical() const { return {a, a + edge_u, a + edge_v}; }
+  SphericalTriangle spherical() const { return {corner, corner + edge_u, corner + edge_v}; }
 };
 
 }  // namespace
@@ -54,8 +66,8 @@ struct TriangleView {
 /// that are clamped to the triangle.
 static void triangle_place(const TriangleView& t, const Vec3d& direction, double& u, double& v) {
   const double volume = dot(t.side.normal, direction);
-  u = std::clamp(dot(cross(t.edge_v, t.a), direction) / volume, 0.0, 1.0);
-  v = std::clamp(dot(cross(t.a, t.edge_u), direction) / volume, 0.0, 1.0 - u);
+  u = std::clamp(dot(cross(t.edge_v, t.corner), direction) / volume, 0.0, 1.0);
+  v = std::clamp(dot(cross(t.corner, t.edge_u), direction) / volume, 0.0, 1.0 - u);
 }
 
 std::optional<LightSample> sample_kind(const TriangleEmitter& e, const LightPoint& p, const SquareSample& s) {
@@ -65,11 +77,11 @@ std::optional<LightSample> sample_kind(const TriangleEmitter& e, const LightPoin
   double u, v;
   if (spherical.solid_angle() >= kLeastSolidAngle) {
     triangle_place(t, spherical.direction(s), u, v);
-    return sample_at(t.a + t.edge_u * u + t.edge_v * v, e.radiance, 1 / spherical.solid_angle(), false, u, v);
+    return sample_at(t.place(u, v), e.radiance, 1 / spherical.solid_angle(), false, u, v);
   }
   const double root = std::sqrt(s.x);
   u = root * (1 - s.y), v = root * s.y;
-  const Vec3d to = t.a + t.edge_u * u + t.edge_v * v;
+  const Vec3d to = t.place(u, v);
   return sample_at(to, e.radiance, area_pdf(to, t.side.normal * 0.5), false, u, v);
 }
 
@@ -104,15 +116,9 @@ std::optional<LightBounds> bounds_kind(const TriangleEmitter& e) {
 namespace {
 
 /// A parallelogram relative to a point.
-struct RectangleView {
-  Vec3d corner, edge_u, edge_v;
-  Facing side;
-
+struct RectangleView : CornerView {
   RectangleView(const RectangleEmitter& e, const LightPoint& p)
-      : corner(Vec3d(e.corner) - Vec3d(p.position)),
-        edge_u(e.edge_u),
-        edge_v(e.edge_v),
-        side(facing(cross(edge_u, edge_v), corner)) {}
+      : CornerView(e.corner, Vec3d(e.edge_u), Vec3d(e.edge_v), p) {}
 
   /// The same in the plane's own coordinates, for perpendicular edges.
   SphericalRectangle spherical(double length_u, double length_v) const {
@@ -140,11 +146,11 @@ std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoi
       spherical.place(s, x, y);
       const double u = std::clamp((x - dot(r.corner, r.edge_u) / length_u) / length_u, 0.0, 1.0);
       const double v = std::clamp((y - dot(r.corner, r.edge_v) / length_v) / length_v, 0.0, 1.0);
-      return sample_at(r.corner + r.edge_u * u + r.edge_v * v, e.radiance, 1 / spherical.solid_angle(), false,
+      return sample_at(r.place(u, v), e.radiance, 1 / spherical.solid_angle(), false,
                        u, v);
     }
   }
-  const Vec3d to = r.corner + r.edge_u * s.x + r.edge_v * s.y;
+  const Vec3d to = r.place(s.x, s.y);
   return sample_at(to, e.radiance, area_pdf(to, r.side.normal), false, s.x, s.y);
 }
 

@@ -69,20 +69,13 @@ int expect_beams(const Accel& accel, const RayBatch& rays, const Vec3f& light) {
 // Thousands of instances, seen from outside and from among them, so that beams meet instances in front of the
 // apex, around it and beside it.
 TEST(BeamInstances, ManyThatOverlap) {
-  const TriangleMesh few = soup(3, 1, 0.5), many = soup(400, 2, 0.1), split = soup(300, 3, 0.2);
-  const AccelPtr in_pieces = tree_of(split, BuildQuality::best);
-  EXPECT_TRUE(in_pieces->pieces);
-  InstanceList list{{tree_of(few), tree_of(many), in_pieces}, {}};
-  CaseRandom r(4);
-  for (std::uint32_t k = 0; k < 3000; ++k)
-    list.places.push_back(place(Affine::translation(r.vector() * 8.0) * turned(r, 0.3 + r.unit()), k % 3));
-  const AccelPtr accel = build_accel({{list, {}, kNoId}});
+  const Crowd crowd;
   const RayBatch outside = camera({20, 13, -25}, {0, 0, 0}, 0.3, 48),
                  among = camera({1, 2, 3}, {0, 1, -5}, 0.4, 32);
-  EXPECT_GT(expect_beams(*accel, outside, {-30, 20, 10}), 1000);
-  EXPECT_GT(expect_beams(*accel, among, {0.5f, 0, 0}), 500);
-  expect_asked_each(*accel, outside, 41, TraceMode::beam);
-  expect_asked_each(*accel, among, 41, TraceMode::beam);
+  EXPECT_GT(expect_beams(*crowd.accel, outside, {-30, 20, 10}), 1000);
+  EXPECT_GT(expect_beams(*crowd.accel, among, {0.5f, 0, 0}), 500);
+  expect_asked_each(*crowd.accel, outside, 41, TraceMode::beam);
+  expect_asked_each(*crowd.accel, among, 41, TraceMode::beam);
 }
 
 // So many and so small instances that few rays of a beam meet each: beams are given up on the way.

@@ -39,17 +39,10 @@ RayBatch rays_in(double far, int count, std::uint64_t seed, float stretch = 1e14
 // Thousands of instances that overlap, of trees of few triangles, of many, and of triangles in pieces: all
 // places in flight are in instances at once.
 TEST(InflightInstances, ManyThatOverlap) {
-  const TriangleMesh few = soup(3, 1, 0.5), many = soup(400, 2, 0.1), split = soup(300, 3, 0.2);
-  const AccelPtr in_pieces = tree_of(split, BuildQuality::best);
-  EXPECT_TRUE(in_pieces->pieces);
-  InstanceList list{{tree_of(few), tree_of(many), in_pieces}, {}};
-  CaseRandom r(4);
-  for (std::uint32_t k = 0; k < 3000; ++k)
-    list.places.push_back(place(Affine::translation(r.vector() * 8.0) * turned(r, 0.3 + r.unit()), k % 3));
-  const AccelPtr accel = build_accel({{list, {}, kNoId}});
+  const Crowd crowd;
   const RayBatch rays = rays_in(9, 6000, 5);
-  EXPECT_GT(expect_same_hits(*accel, rays), 3000);
-  expect_asked_each(*accel, rays, 23, TraceMode::interleaved);
+  EXPECT_GT(expect_same_hits(*crowd.accel, rays), 3000);
+  expect_asked_each(*crowd.accel, rays, 23, TraceMode::interleaved);
 }
 
 // The same instance several times, and instances of meshes that hold the same triangles: the first of the

@@ -84,6 +84,25 @@ inline void add_instance(std::vector<Geometry>& geometries, const AccelPtr& chil
   geometries.push_back(instance);
 }
 
+/// 3000 instances that overlap, of trees of few triangles, of many, and of triangles in pieces. The meshes live
+/// as long as the crowd.
+struct Crowd {
+  TriangleMesh few = soup(3, 1, 0.5), many = soup(400, 2, 0.1), split = soup(300, 3, 0.2);
+  AccelPtr accel;
+
+  Crowd() {
+    const AccelPtr in_pieces = tree_of(split, BuildQuality::best);
+    EXPECT_TRUE(in_pieces->pieces);
+    InstanceList list{{tree_of(few), tree_of(many), in_pieces}, {}};
+    CaseRandom r(4);
+    for (std::uint32_t k = 0; k < 3000; ++k)
+      list.places.push_back(place(Affine::translation(r.vector() * 8.0) * turned(r, 0.3 + r.unit()), k % 3));
+    accel = build_accel({{list, {}, kNoId}});
+  }
+  Crowd(const Crowd&) = delete;
+  Crowd& operator=(const Crowd&) = delete;
+};
+
 /// 60 instances of `mesh`, whose own scale is `scale`, about the origin: mirrored, nearly flat, sheared and
 /// unevenly scaled. First one by one and in a list by turns, then those of the list alone.
 inline std::pair<AccelPtr, AccelPtr> unusual_maps(const TriangleMesh& mesh, double scale, CaseRandom& r) {
