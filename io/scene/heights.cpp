@@ -8,6 +8,7 @@
 
 #include "io/image/heights.h"
 #include "io/scene/exact.h"
+#include "io/scene/readers.h"
 #include "io/scene/shape_reader.h"
 #include "io/scene/utf8.h"
 #include "kernels/functions/tape_data.h"
