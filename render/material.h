@@ -32,7 +32,8 @@ struct PrincipledMaterial {
   bool operator==(const PrincipledMaterial&) const = default;
 };
 
-/// A number of the principled material in [0, 1], its name in scene files, and the texture that multiplies it.
+/// A number of the principled material in [0, 1], its name in scene files, and the texture that multiplies
+/// it.
 struct PrincipledNumber {
   const char* name;
   float PrincipledParameters::*value;
@@ -46,7 +47,8 @@ inline constexpr PrincipledNumber kPrincipledNumbers[] = {
     {"coat", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
     {"coat_roughness", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture},
     {"sheen", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
-    {"sheen_roughness", &PrincipledParameters::sheen_roughness, &PrincipledMaterial::sheen_roughness_texture}};
+    {"sheen_roughness", &PrincipledParameters::sheen_roughness,
+     &PrincipledMaterial::sheen_roughness_texture}};
 
 /// A material of the Whitted model. The light that leaves a point is the sum of
 /// - emission,

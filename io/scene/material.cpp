@@ -91,11 +91,11 @@ void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
 }
 
 /// The keys of Phong's model, and those of all materials.
-constexpr const char* kPhongKeys[] = {"color",        "specular_color", "ambient",   "diffuse",  "specular",
-                                      "phong",        "reflection",     "transparency", "ior", "roughness",
-                                      "metallic",     "map_color",      "map_specular"};
-constexpr const char* kCommonKeys[] = {"principled",  "emits",        "emission",   "map_emission",
-                                       "map_opacity", "map_bump",     "map_normal", "bump_scale"};
+constexpr const char* kPhongKeys[] = {"color",    "specular_color", "ambient",      "diffuse", "specular",
+                                      "phong",    "reflection",     "transparency", "ior",     "roughness",
+                                      "metallic", "map_color",      "map_specular"};
+constexpr const char* kCommonKeys[] = {"principled",  "emits",    "emission",   "map_emission",
+                                       "map_opacity", "map_bump", "map_normal", "bump_scale"};
 
 /// Throws Error if a principled material also has keys of Phong's model.
 void refuse_phong_keys(const YamlNode& node) {
