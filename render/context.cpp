@@ -6,6 +6,7 @@
 
 #include "core/math.h"
 #include "render/bsdf/phong_power.h"
+#include "render/shading_point.h"
 
 namespace oktett {
 

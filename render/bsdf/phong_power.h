@@ -7,7 +7,8 @@ namespace oktett {
 
 /// Whole exponents up to 1024 are raised to by squaring; most materials have such exponents.
 inline bool by_squaring(double exponent) {
-  return exponent >= 0 && exponent <= 1024 && static_cast<double>(static_cast<unsigned>(exponent)) == exponent;
+  return exponent >= 0 && exponent <= 1024 &&
+         static_cast<double>(static_cast<unsigned>(exponent)) == exponent;
 }
 
 /// `cosine`, in [0, 1] or NaN, to the power of a material's exponent.
