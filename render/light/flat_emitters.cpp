@@ -146,8 +146,7 @@ std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoi
       spherical.place(s, x, y);
       const double u = std::clamp((x - dot(r.corner, r.edge_u) / length_u) / length_u, 0.0, 1.0);
       const double v = std::clamp((y - dot(r.corner, r.edge_v) / length_v) / length_v, 0.0, 1.0);
-      return sample_at(r.place(u, v), e.radiance, 1 / spherical.solid_angle(), false,
-                       u, v);
+      return sample_at(r.place(u, v), e.radiance, 1 / spherical.solid_angle(), false, u, v);
     }
   }
   const Vec3d to = r.place(s.x, s.y);
