@@ -84,8 +84,8 @@ inline void add_instance(std::vector<Geometry>& geometries, const AccelPtr& chil
   geometries.push_back(instance);
 }
 
-/// 3000 instances that overlap, of trees of few triangles, of many, and of triangles in pieces. The meshes live
-/// as long as the crowd.
+/// 3000 instances that overlap, of trees of few triangles, of many, and of triangles in pieces. The meshes
+/// live as long as the crowd.
 struct Crowd {
   TriangleMesh few = soup(3, 1, 0.5), many = soup(400, 2, 0.1), split = soup(300, 3, 0.2);
   AccelPtr accel;
