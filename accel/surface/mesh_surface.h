@@ -54,14 +54,22 @@ OKTETT_INLINE Vec3<F> weigh(const Vec3<F> (&p)[3], const F& wa, const F& wb, con
           p[0].z * wa + p[1].z * wb + p[2].z * wc};
 }
 
+/// The size of a triangle in one coordinate of its corners, up to twice its extent.
+template <class F>
+OKTETT_INLINE F spread(const F& a, const F& b, const F& c) {
+  return abs(b - a) + abs(c - a);
+}
+
 /// Bound on the error of the interpolated coordinate a wa + b wb + c wc: gamma(7) bounds the rounding of the
 /// interpolation (Pharr, Jakob, Humphreys 2016, section 3.9.4); the weights, which are rounded to float, add
-/// two more units.
+/// two more units. `least` is what the intersection test may be off by: the other two errors are zero where a
+/// triangle lies in a coordinate plane.
 template <class F>
-OKTETT_INLINE F weighted_error(const F& a, const F& b, const F& c, const F& wa, const F& wb, const F& wc) {
+OKTETT_INLINE F weighted_error(const F& a, const F& b, const F& c, const F& wa, const F& wb, const F& wc,
+                               const F& least) {
   const F magnitude = abs(a * wa) + abs(b * wb) + abs(c * wc);
-  const F spread = abs(b - a) + abs(c - a);
-  return F(0x1p-21f) * magnitude + F(0x1p-22f) * spread + F(1e-37f);
+  const F error = F(0x1p-21f) * magnitude + F(0x1p-22f) * spread(a, b, c) + F(1e-37f);
+  return select(error < least, least, error);
 }
 
 /// The surface of triangles with corners `p`, in their place, at barycentric coordinates u, v. `normals` are
@@ -77,9 +85,14 @@ OKTETT_INLINE MeshSurface<Simd<float, W, A>> mesh_surface(const MeshFrame& frame
   const F w = F(1.0f) - u - v;
   MeshSurface<F> s;
   s.position = weigh(p, w, u, v);
-  s.position_error = {weighted_error(p[0].x, p[1].x, p[2].x, w, u, v),
-                      weighted_error(p[0].y, p[1].y, p[2].y, w, u, v),
-                      weighted_error(p[0].z, p[1].z, p[2].z, w, u, v)};
+  const F size =
+      spread(p[0].x, p[1].x, p[2].x) + spread(p[0].y, p[1].y, p[2].y) + spread(p[0].z, p[1].z, p[2].z);
+  // The test shifts a triangle by up to 2^-50 of its size and its distance, which is small for rays that
+  // leave it.
+  const F least = F(0x1p-46f) * size;
+  s.position_error = {weighted_error(p[0].x, p[1].x, p[2].x, w, u, v, least),
+                      weighted_error(p[0].y, p[1].y, p[2].y, w, u, v, least),
+                      weighted_error(p[0].z, p[1].z, p[2].z, w, u, v, least)};
   const Vec3<D> a = to_double(p[0]);
   const Vec3<D> n = cross_lanes(sub_lanes(to_double(p[1]), a), sub_lanes(to_double(p[2]), a));
   // A mirror reverses the winding of the corners, but what was outside stays outside.
@@ -88,9 +101,10 @@ OKTETT_INLINE MeshSurface<Simd<float, W, A>> mesh_surface(const MeshFrame& frame
   if (!frame.smooth) return s;
   Vec3<D> m = to_double(weigh(normals, w, u, v));
   if (frame.inverse != nullptr) m = map_normal(*frame.inverse, m);
-  const D size = length_lanes(m);
-  const auto known = mask_cast<float>((D(0.0) < size) & (size <= D(std::numeric_limits<double>::max())));
-  s.shading_normal = select_lanes(known, float_quotients(m, size), s.geometric_normal);
+  const D m_length = length_lanes(m);
+  const auto known =
+      mask_cast<float>((D(0.0) < m_length) & (m_length <= D(std::numeric_limits<double>::max())));
+  s.shading_normal = select_lanes(known, float_quotients(m, m_length), s.geometric_normal);
   return s;
 }
 

@@ -152,6 +152,73 @@ TEST(SurfaceInteraction, MeshesAtAllScalesNeitherShadowThemselvesNorStray) {
   expect_good_surfaces(*accel, moved);
 }
 
+/// A square in the plane y = 0 of side 2 `half`, as two triangles whose corners are listed from `first` on;
+/// its front is above or below.
+TriangleMesh ground(float half, std::uint32_t first, bool above) {
+  TriangleMesh mesh;
+  for (const Vec3f& p : {Vec3f{-1, 0, -1}, Vec3f{-1, 0, 1}, Vec3f{1, 0, 1}, Vec3f{1, 0, -1}})
+    mesh.positions.push_back(p * half);
+  for (const std::uint32_t k : {0u, above ? 1u : 2u, above ? 2u : 1u, 0u, above ? 2u : 3u, above ? 3u : 2u})
+    mesh.indices.push_back((first + k) % 4);
+  return mesh;
+}
+
+/// Rays that leave a face in the plane y = 0 upwards, up to grazing ones, meet nothing. There the coordinates
+/// have no rounding errors, so only the errors of the intersection test itself are left.
+void expect_free_above_ground(const Geometry& geometry, double half, const char* name) {
+  const auto accel = build_accel({geometry});
+  CaseRandom r(31);
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3d target{half * 0.9 * r.sign(), 0, half * 0.9 * r.sign()};
+    const Vec3d from{2 * half * r.sign(), half * (0.01 + 2 * r.unit()), 2 * half * r.sign()};
+    const Ray ray{Vec3f(from), 0, Vec3f(target) - Vec3f(from), kInf};
+    const Hit hit = trace(*accel, ray);
+    if (!hit.valid()) continue;
+    ++hits;
+    const SurfaceInteraction s = surface_interaction(*accel, ray, hit);
+    if (std::abs(s.geometric_normal.y) < 0.999f) continue;  // another face
+    const double slope = i % 2 == 0 ? 0.01 + r.unit() : r.magnitude(-5, 0);
+    const Vec3f leaving(Vec3d{r.sign(), slope, r.sign()});
+    const Hit again = trace(*accel, {offset_origin(s, leaving), 0, leaving, kInf});
+    ASSERT_FALSE(again.valid()) << name << " of half side " << half << ", ray " << i << ", t " << again.t;
+  }
+  EXPECT_GT(hits, 10000) << name;
+}
+
+TEST(SurfaceInteraction, LargeFacesInCoordinatePlanesDoNotShadowThemselves) {
+  for (const double half : {1e-4, 1.0, 20.0, 1e6}) {
+    for (std::uint32_t first = 0; first < 4; ++first)
+      for (const bool above : {true, false}) {
+        const TriangleMesh mesh = ground(static_cast<float>(half), first, above);
+        expect_free_above_ground({MeshGeometry{&mesh}, {}, kNoId}, half, "mesh");
+        if (HasFailure()) return;
+      }
+    expect_free_above_ground({PlaneShape{{0, 1, 0}, 0}, {}, kNoId}, half, "plane");
+    expect_free_above_ground({DiskShape{{0, 0, 0}, {0, 1, 0}, half}, {}, kNoId}, half, "disk");
+    expect_free_above_ground({BoxShape{{-half, -half, -half}, {half, 0, half}}, {}, kNoId}, half, "box");
+    expect_free_above_ground(
+        {PolygonShape{{{-half, 0, -half}, {-half, 0, half}, {half, 0, half}, {half, 0, -half}}}, {}, kNoId},
+        half, "polygon");
+    expect_free_above_ground({ExactShape{CylinderShape{{0, -half, 0}, {0, 0, 0}, half}}, {}, kNoId}, half,
+                             "cylinder");
+    expect_free_above_ground({ExactShape{ConeShape{{0, -half, 0}, {0, 0, 0}, 2 * half, half}}, {}, kNoId},
+                             half, "cone");
+    expect_free_above_ground({ExactShape{PolyhedronShape{{{{0, 1, 0}, 0},
+                                                          {{0, -1, 0}, half},
+                                                          {{1, 0, 0}, half},
+                                                          {{-1, 0, 0}, half},
+                                                          {{0, 0, 1}, half},
+                                                          {{0, 0, -1}, half}}}},
+                              {},
+                              kNoId},
+                             half, "polyhedron");
+    QuadricShape bowl{{1, 1, 1, 0, 0, 0, 0, 0, 0, -4 * half * half}};
+    bowl.clipped = true, bowl.lo = {-half, -half, -half}, bowl.hi = {half, 0, half};
+    expect_free_above_ground({ExactShape{bowl}, {}, kNoId}, half, "quadric");
+  }
+}
+
 TEST(Instance, NestedScaledAndMirroredAgreeInAllModes) {
   const TriangleMesh mesh = make_icosphere(2).mesh;
   const auto leaf = build_accel(one_of_each(mesh));
