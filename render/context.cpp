@@ -6,6 +6,7 @@
 
 #include "core/math.h"
 #include "render/bsdf/phong_power.h"
+#include "render/path_surfaces.h"
 #include "render/shading_point.h"
 
 namespace oktett {
@@ -82,6 +83,8 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
     if (lights_whitted(light)) c.lights.push_back(light_source(light));
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
+  if (c.settings.kind == IntegratorKind::path)
+    c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world, textures));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Data that all pixels of a render share, prepared once.
 
+#include <memory>
 #include <vector>
 
 #include "core/isa.h"
@@ -12,6 +13,8 @@
 #include "render/texture_sampler.h"
 
 namespace oktett {
+
+struct PathSurface;
 
 /// A light in the precision of shading.
 struct LightSource {
@@ -35,6 +38,8 @@ struct RenderContext {
   std::vector<LightSource> lights;         ///< those that have a place or a direction, for Whitted's model
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
+  /// Two for each of World::materials, for path tracing; else null.
+  std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
   Color background, ambient_light;
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
   /// transparent.

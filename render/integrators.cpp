@@ -20,6 +20,11 @@ Integrator integrator_for(IntegratorKind kind) {
   return shade_whitted;
 }
 
+bool shades_in_blocks(const RenderContext& context) {
+  if (context.settings.kind == IntegratorKind::path) return true;
+  return context.settings.kind == IntegratorKind::whitted && !context.data_layers;
+}
+
 void shade_normal(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   wavefront.radiance.set(ray, p.surface.shading_normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f});
 }

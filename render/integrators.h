@@ -38,11 +38,16 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
 /// path tracing computes.
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
 
+/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
+/// `found`, with the same bits as shade_path, in lanes, and records first hits.
+void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                      std::size_t count, const InteractionBlock& found);
+
+/// Whether hits are shaded in blocks: by shade_whitted_block or shade_path_block.
+bool shades_in_blocks(const RenderContext& context);
+
 /// Which queue of a Wavefront holds the shadow rays of path tracing to lights that other rays can meet.
 inline constexpr std::size_t kAreaQueue = 1;
-
-/// The weight in path tracing of environment light that entry `ray`, a miss, finds.
-float environment_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray);
 
 /// Ambient occlusion: white times the cosine-weighted fraction of directions that meet nothing within the
 /// radius.

@@ -6,16 +6,14 @@
 
 #include "render/direct_light.h"
 #include "render/integrators.h"
+#include "render/path_emission.h"
+#include "render/path_numbers.h"
 #include "render/sample_dimensions.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/surface_bsdf.h"
 
 namespace oktett {
 namespace {
-
-/// Bounces before Russian roulette begins.
-constexpr unsigned kSureBounces = 3;
-constexpr float kMostSurvival = 0.95f;
 
 /// The random numbers of one sample at one bounce.
 class Choices {
@@ -36,37 +34,10 @@ class Choices {
   unsigned level_;
 };
 
-/// Veach's power heuristic for a light that two ways of sampling can find with these densities: the weight of
-/// the first.
-float power_weight(float pdf, float other) {
-  // Divided first: squares of densities may be too large for a float.
-  const float ratio = other / pdf;
-  return 1 / (1 + ratio * ratio);
-}
-
-/// The weight of light that entry `ray` meets, if a light sample would have found it with density
-/// `light_pdf`.
-template <class LightPdf>
-float met_weight(const Wavefront& wavefront, std::size_t ray, const LightPdf& light_pdf) {
-  if (wavefront.level == 0) return 1;
-  const float pdf = wavefront.paths.pdf[ray];
-  return pdf == 0 ? 1 : power_weight(pdf, light_pdf(wavefront.paths.from[ray]));
-}
-
-float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
-                      const ShadingPoint& p) {
-  return met_weight(wavefront, ray, [&](const LightPoint& from) {
-    const std::uint32_t emitter = context.sampled->emitter_at(wavefront.hits[ray]);
-    if (emitter == kNoId) return 0.0f;
-    return context.sampled->set().pdf(from, emitter, p.direction, length(p.surface.position - from.position));
-  });
-}
-
-/// tmax of a shadow ray over the vector to a point on a light: it ends before the light's surface, whose
-/// place is known to a few units in the last place of its coordinates only.
+/// See kLeastGap.
 float before_surface(const Vec3f& light, float distance) {
-  const float blur = 0x1p-20f * max_component(abs(light)) / distance;
-  return 1 - std::max(0x1p-13f, std::min(blur, 0.5f));
+  const float blur = kPlaceError * max_component(abs(light)) / distance;
+  return 1 - std::max(kLeastGap, std::min(blur, 0.5f));
 }
 
 /// Sends a ray to a light chosen at random.
@@ -80,8 +51,9 @@ void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_
   const BsdfValue found = bsdf.evaluate(light->direction);
   if (found.value == Color{0, 0, 0}) return;
   const float weight = light->delta ? 1 : power_weight(light->pdf, found.pdf);
-  const Color arriving = wavefront.rays.throughput[ray] * found.value * light->radiance *
-                         context.sampled->texture_at(*light, context.textures) * (weight / light->pdf);
+  const Color arriving = wavefront.rays.throughput[ray] * found.value *
+                         (light->radiance * context.sampled->texture_at(*light, context.textures)) *
+                         (weight / light->pdf);
   if (arriving == Color{0, 0, 0}) return;
   Ray shadow;
   shadow.origin = offset_origin(p.surface, light->direction);
@@ -115,19 +87,14 @@ void pass_hole(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
 
 }  // namespace
 
-float environment_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
-  return met_weight(wavefront, ray, [&](const LightPoint& from) {
-    return context.sampled->set().environment_pdf(from, wavefront.rays.rays[ray].direction);
-  });
-}
-
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const Choices choices(wavefront, ray);
   if (p.opacity < 1 && choices.number(Decision::hole) >= p.opacity) return pass_hole(wavefront, ray, p);
 
   const Color throughput = wavefront.rays.throughput[ray];
   if (!(p.emission == Color{0, 0, 0}))
-    wavefront.radiance.add(ray, throughput * p.emission * emission_weight(context, wavefront, ray, p));
+    wavefront.radiance.add(
+        ray, throughput * p.emission * emission_weight(context, wavefront, ray, p.surface.position));
   if (wavefront.rays.bounces[ray] > context.settings.depth) return;
 
   const SurfaceBsdf bsdf(p);

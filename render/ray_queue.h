@@ -56,7 +56,8 @@ struct PathColumns {
                       ///< sample replaces
   Column<LightPoint> from;
 
-  void clear() { pdf.resize_uninitialized(0), from.resize_uninitialized(0); }
+  void clear() { resize_uninitialized(0); }
+  void resize_uninitialized(std::size_t n) { pdf.resize_uninitialized(n), from.resize_uninitialized(n); }
   void push_back(float density, const LightPoint& point) { pdf.push_back(density), from.push_back(point); }
 };
 

@@ -3,6 +3,7 @@
 
 #include "core/isa.h"
 #include "render/context.h"
+#include "render/path_block.h"
 #include "render/shading_columns.h"
 #include "render/view_directions.h"
 
@@ -20,6 +21,16 @@ struct RenderCode {
                              const ShadowColumns& out);
   /// Fills `out` with the rays that opaque mirrors send out. Returns a set bit for each hit that sends one.
   std::uint64_t (*mirror_rays)(const InteractionBlock&, const ShadingColumns&, MirrorColumns& out);
+
+  /// Fills the columns of a PathBlock up to the random numbers, but those for `ray`, `key`, `number` and
+  /// `bounces`, which are given.
+  void (*begin_path)(const InteractionBlock&, const PathRays&, unsigned level, PathBlock&);
+  /// Writes the shadow rays and the rays of the next bounce of hits of one surface. All columns of the block
+  /// are filled.
+  void (*shade_phong)(const InteractionBlock&, const PathRays&, const PathBlock&, const PhongSurface&,
+                      bool transmits, const PathRun&, PathQueues&);
+  void (*shade_principled)(const InteractionBlock&, const PathRays&, const PathBlock&,
+                           const PrincipledSurface&, bool transmits, const PathRun&, PathQueues&);
 };
 
 template <class A>

@@ -2,18 +2,26 @@
 
 namespace oktett {
 
-static PhongParameters phong_parameters(const ShadingPoint& p) {
-  const Material& m = *p.material;
+PhongParameters phong_parameters(const Material& m) {
   PhongParameters parameters;
-  parameters.color = p.color, parameters.specular_color = p.specular_color;
+  parameters.color = m.color, parameters.specular_color = m.specular_color;
   parameters.diffuse = m.diffuse, parameters.specular = m.specular, parameters.phong = m.phong;
   parameters.reflection = m.reflection, parameters.transparency = m.transparency, parameters.ior = m.ior;
   return parameters;
 }
 
 static Bsdf bsdf_of(const ShadingPoint& p, const Vec3f& wo) {
-  return p.principled ? principled_bsdf(*p.principled, wo, p.front)
-                      : phong_bsdf(phong_parameters(p), wo, p.front);
+  if (p.principled) return principled_bsdf(*p.principled, wo, p.front);
+  PhongParameters parameters = phong_parameters(*p.material);
+  parameters.color = p.color, parameters.specular_color = p.specular_color;
+  return phong_bsdf(parameters, wo, p.front);
+}
+
+SurfaceBsdf::Frame::Frame(const Vec3f& n) : z(n) {
+  using F = Simd<float, 1, ScalarIsa>;
+  Vec3<F> tangent, bitangent;
+  basis_lanes(broadcast<F>(n), tangent, bitangent);
+  x = only_lane(tangent), y = only_lane(bitangent);
 }
 
 SurfaceBsdf::SurfaceBsdf(const ShadingPoint& p)

@@ -8,6 +8,9 @@
 
 namespace oktett {
 
+/// The parameters of Phong's model, without textures.
+PhongParameters phong_parameters(const Material& material);
+
 class SurfaceBsdf {
  public:
   explicit SurfaceBsdf(const ShadingPoint& p);
@@ -25,7 +28,7 @@ class SurfaceBsdf {
  private:
   /// An orthonormal frame about the shading normal.
   struct Frame {
-    explicit Frame(const Vec3f& n) : z(n) { make_basis(n, x, y); }
+    explicit Frame(const Vec3f& n);
     Vec3f to_local(const Vec3f& v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
     Vec3f to_world(const Vec3f& v) const { return normalize(x * v.x + y * v.y + z * v.z); }
     Vec3f x, y, z;

@@ -7,6 +7,7 @@
 #include "accel/surface/offset_origin.h"
 #include "core/random.h"
 #include "render/integrators.h"
+#include "render/path_emission.h"
 #include "render/sample_dimensions.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/shadow.h"
@@ -67,24 +68,6 @@ void cover_background(const RenderContext& context, Wavefront& wavefront) {
       wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
 }
 
-void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                      const ShadingPoint& p) {
-  const std::uint32_t sample = wavefront.rays.sample[ray];
-  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * p.opacity;
-  if (!context.data_layers) return;
-  FirstHit& first = wavefront.samples.first[sample];
-  if (first.found || p.opacity == 0) return;
-  const SurfaceInteraction& s = p.surface;
-  first = {true,
-           static_cast<float>(camera_depth(context.camera, s.position)),
-           s.shading_normal,
-           s.position,
-           p.color,
-           s.uv,
-           s.primitive,
-           s.user};
-}
-
 /// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
 /// entry.
 void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
@@ -108,7 +91,9 @@ bool shadows_are_full(const Wavefront& wavefront) {
 /// Shades hits in blocks, so that their surface interactions stay in the nearest cache until they are used.
 void shade_hits(const RenderContext& context, Wavefront& wavefront) {
   const Integrator integrator = integrator_for(context.settings.kind);
-  const bool in_blocks = context.settings.kind == IntegratorKind::whitted && !context.data_layers;
+  const bool in_blocks = shades_in_blocks(context);
+  const auto shade_block =
+      context.settings.kind == IntegratorKind::path ? shade_path_block : shade_whitted_block;
   InteractionBlock found;
   for (std::size_t first = 0; first < wavefront.hit_rays.size(); first += kShadeBlock) {
     const std::size_t count = std::min(kShadeBlock, wavefront.hit_rays.size() - first);
@@ -116,7 +101,7 @@ void shade_hits(const RenderContext& context, Wavefront& wavefront) {
     surface_interactions(*context.world->accel, wavefront.rays.rays, wavefront.hits, {which, count}, found,
                          context.isa);
     if (in_blocks) {
-      shade_whitted_block(context, wavefront, which, count, found);
+      shade_block(context, wavefront, which, count, found);
       if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
       continue;
     }
@@ -245,6 +230,24 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     std::swap(wavefront.paths, wavefront.next_paths);
   }
   return true;
+}
+
+void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                      const ShadingPoint& p) {
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * p.opacity;
+  if (!context.data_layers) return;
+  FirstHit& first = wavefront.samples.first[sample];
+  if (first.found || p.opacity == 0) return;
+  const SurfaceInteraction& s = p.surface;
+  first = {true,
+           static_cast<float>(camera_depth(context.camera, s.position)),
+           s.shading_normal,
+           s.position,
+           p.color,
+           s.uv,
+           s.primitive,
+           s.user};
 }
 
 void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,

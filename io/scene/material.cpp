@@ -6,7 +6,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
-#include "render/bsdf/ggx_albedo.h"
+#include "render/bsdf/principled_parameters.h"
 
 namespace oktett {
 namespace {

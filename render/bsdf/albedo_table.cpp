@@ -29,13 +29,15 @@ double AlbedoTable::node_mu(int i, double alpha) const {
   return y * y * width / (1 + width - y * y);
 }
 
+AlbedoRow AlbedoTable::row(double alpha) const {
+  const double rho = std::sqrt(alpha);
+  double y = rho * (nodes_ - 1);
+  const int j = interval(y, nodes_ - 1);
+  return {&value_[j], nodes_, wide_ ? rho * std::sqrt(rho) : alpha, y};
+}
+
 double AlbedoTable::at(double mu, double alpha) const {
-  const double rho = std::sqrt(alpha), width = wide_ ? rho * std::sqrt(rho) : alpha;
-  double x = std::sqrt(mu * (1 + width) / (mu + width)) * (nodes_ - 1), y = rho * (nodes_ - 1);
-  const int i = interval(x, nodes_ - 1), j = interval(y, nodes_ - 1);
-  const float* const near = &value_[i * nodes_ + j];
-  const float* const far = near + nodes_;
-  return mix(mix(near[0], near[1], y), mix(far[0], far[1], y), x);
+  return only_lane(row(alpha).at(Simd<double, 1, ScalarIsa>(mu)));
 }
 
 double LossTable::node_roughness(int j) {

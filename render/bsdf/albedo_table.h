@@ -3,7 +3,32 @@
 
 #include <vector>
 
+#include "core/lane_math.h"
+#include "core/simd_gather.h"
+
 namespace oktett {
+
+/// An AlbedoTable at one width of the facets.
+struct AlbedoRow {
+  const float* values = nullptr;  ///< of the first node for mu, at the node for alpha before the width
+  int nodes = 1;
+  double width = 0;  ///< of the range of mu where the quantity changes fast
+  double part = 0;   ///< place between the node for alpha and the next, [0, 1]
+
+  /// The quantity at `mu` in [0, 1], in lanes.
+  template <class D>
+  OKTETT_INLINE D at(const D& mu) const {
+    const D w(width), last(nodes - 1), mix(part);
+    const D x = sqrt(mu * (D(1.0) + w) / (mu + w)) * last;
+    const D node = within(whole_part(x), D(0.0), last - D(1.0)), place = node * D(nodes);
+    const auto value = [&](int offset) {
+      const D before = gather(values + offset, place), after = gather(values + offset + 1, place);
+      return before + (after - before) * mix;
+    };
+    const D near = value(0), far = value(nodes);
+    return near + (far - near) * (x - node);
+  }
+};
 
 /// A quantity in [0, 1] by the cosine `mu` of a direction with the normal and by the width `alpha` of the
 /// facets, both in [0, 1]. Linear between nodes that lie close together where the quantity changes fast:
@@ -21,6 +46,7 @@ class AlbedoTable {
       }
   }
 
+  AlbedoRow row(double alpha) const;
   double at(double mu, double alpha) const;
 
  private:

@@ -13,15 +13,18 @@
 #include <variant>
 
 #include "core/vec3.h"
+#include "render/bsdf/lobes.h"
 #include "render/bsdf/phong_lobes.h"
 #include "render/bsdf/principled_lobes.h"
+#include "render/sampling/square_sample.h"
 
 namespace oktett {
 
+/// One surface seen from one direction: the lobes of the materials with a single lane.
 class Bsdf {
  public:
-  explicit Bsdf(const PhongLobes& lobes) : lobes_(lobes) {}
-  explicit Bsdf(const PrincipledLobes& lobes) : lobes_(lobes) {}
+  Bsdf(const PhongSurface& surface, const Vec3f& wo) : lobes_(Phong(surface, wo)) {}
+  Bsdf(const PrincipledSurface& surface, const Vec3f& wo) : lobes_(Principled(surface, wo)) {}
 
   /// Value and density of the lobes that are not delta, for light from `wi`.
   BsdfValue evaluate(const Vec3f& wi) const;
@@ -32,7 +35,27 @@ class Bsdf {
   bool only_delta() const;
 
  private:
-  std::variant<PhongLobes, PrincipledLobes> lobes_;
+  using D = Simd<double, 1, ScalarIsa>;
+
+  /// Lobes with the surface that they refer to.
+  template <class Lobes>
+  struct Kept {
+    using Surface = typename Lobes::Surface;
+    Kept(const Surface& s, const Vec3f& wo);
+    Kept(const Kept& other) : surface(other.surface), lobes(other.lobes) { lobes.rebind(surface); }
+    Kept& operator=(const Kept& other) {
+      surface = other.surface, lobes = other.lobes;
+      lobes.rebind(surface);
+      return *this;
+    }
+    ~Kept() = default;
+    Surface surface;
+    Lobes lobes;
+  };
+  using Phong = Kept<PhongLobes<D>>;
+  using Principled = Kept<PrincipledLobes<D>>;
+
+  std::variant<Phong, Principled> lobes_;
 };
 
 /// `front`: the viewer is outside, where the geometric normal points to.

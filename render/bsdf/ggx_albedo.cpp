@@ -9,16 +9,21 @@
 
 #include "render/bsdf/ggx.h"
 #include "render/bsdf/optics.h"
+#include "render/sampling/square_sample.h"
 
 namespace oktett {
 namespace {
 
 constexpr int kMirrorNodes = 32, kNodes = 24, kInsideNodes = 32;
-/// Bounds of the errors of the tables.
-constexpr double kMirrorError = 0.001, kReflectedError = 0.0035, kGlassError = 0.0045;
+using Lane = Simd<double, 1, ScalarIsa>;
 
-/// `loss` lowered by at most `error`, but not to 0.
-double lowered(double loss, double error) { return loss > 0 ? loss * (loss / (loss + error)) : 0; }
+Vec3d visible_normal(const Vec3d& w, double alpha, double x, double y) {
+  return only_lane(ggx_normal(broadcast<Lane>(w), Lane(alpha), Lane(1), Lane(x), Lane(y)));
+}
+double lambda_of(const Vec3d& w, double alpha) {
+  return only_lane(ggx_lambda(broadcast<Lane>(w), Lane(alpha)));
+}
+double lowered(double loss, double error) { return only_lane(lowered_loss(Lane(loss), error)); }
 
 /// A rule for integrals over the unit square: a Fibonacci lattice made periodic by the substitution
 /// t^2 (3 - 2t) in both directions (Sloan 1994). Weights add to 1.
@@ -57,7 +62,7 @@ double facet_mean(const Lattice& lattice, double mu, double alpha, Value&& value
   for (std::size_t i = 0; i < lattice.point.size(); ++i) {
     const SquareSample& p = lattice.point[i];
     // The other half of the circle mirrors this one.
-    const Vec3d m = ggx_visible_normal(w, alpha, {p.y / 2, p.x});
+    const Vec3d m = visible_normal(w, alpha, p.y / 2, p.x);
     sum += lattice.weight[i] * value(w, m, dot(w, m));
   }
   return sum;
@@ -65,7 +70,7 @@ double facet_mean(const Lattice& lattice, double mu, double alpha, Value&& value
 
 /// The fraction of visible facets' light along `out` that is not shadowed.
 double unshadowed(double lambda_in, const Vec3d& out, double alpha) {
-  return (1 + lambda_in) / (1 + lambda_in + ggx_lambda(out, alpha));
+  return (1 + lambda_in) / (1 + lambda_in + lambda_of(out, alpha));
 }
 
 /// The albedo of facets that reflect the fraction `fresnel(c)`.
@@ -73,7 +78,7 @@ template <class Fresnel>
 double reflected(double mu, double alpha, Fresnel&& fresnel_of) {
   return facet_mean(coarse_lattice(), mu, alpha, [&](const Vec3d& w, const Vec3d& m, double c) {
     const Vec3d out = m * (2 * c) - w;
-    return out.z > 0 ? fresnel_of(c) * unshadowed(ggx_lambda(w, alpha), out, alpha) : 0;
+    return out.z > 0 ? fresnel_of(c) * unshadowed(lambda_of(w, alpha), out, alpha) : 0;
   });
 }
 
@@ -81,7 +86,7 @@ double reflected_and_transmitted(double mu, double alpha, double eta) {
   // From inside, Fresnel's reflectance has a kink at the critical angle.
   const Lattice& lattice = eta < 1 ? fine_lattice() : coarse_lattice();
   return facet_mean(lattice, mu, alpha, [&](const Vec3d& w, const Vec3d& m, double c) {
-    const double lambda = ggx_lambda(w, alpha), f = fresnel(c, eta);
+    const double lambda = lambda_of(w, alpha), f = fresnel(c, eta);
     const Vec3d up = m * (2 * c) - w;
     const double reflected = up.z > 0 ? f * unshadowed(lambda, up, alpha) : 0;
     if (f >= 1) return reflected;
@@ -123,6 +128,24 @@ const Tables& tables_of_step(int step) {
   return *made[i];
 }
 
+/// Two tables between which an albedo is interpolated, for indices of refraction.
+template <class Tables>
+struct TablePair {
+  const Tables *first, *second;
+  double place;  ///< 0: the first, 1: the second
+
+  /// `loss(table)`, interpolated.
+  template <class Loss>
+  double mean(Loss&& loss) const {
+    const double here = loss(*first);
+    return first == second ? here : here + (loss(*second) - here) * place;
+  }
+  /// `table` is the member of Tables.
+  AlbedoRows rows(AlbedoTable Tables::*table, double alpha) const {
+    return {(first->*table).row(alpha), (second->*table).row(alpha), first != second, place};
+  }
+};
+
 template <class Tables>
 TablePair<Tables> tables_for(double eta) {
   double x = std::clamp((eta - 1) / (eta + 1) / kStep, -double{kSteps}, double{kSteps});
@@ -133,16 +156,10 @@ TablePair<Tables> tables_for(double eta) {
   return {&first, x == i ? &first : &tables_of_step<Tables>(i + 1), x - i};
 }
 
-template <class Tables, class Get>
-double interpolated(const TablePair<Tables>& pair, Get&& get) {
-  const double first = get(*pair.first);
-  return pair.first == pair.second ? first : first + (get(*pair.second) - first) * pair.place;
-}
-
 }  // namespace
 
-double MirrorAlbedo::operator()(double mu) const { return mirror_tables().at(mu, alpha_); }
-double MirrorAlbedo::mean_loss() const { return mirror_tables().loss.at(alpha_); }
+MirrorAlbedo::MirrorAlbedo(double alpha)
+    : row_(mirror_tables().albedo.row(alpha)), mean_loss_(alpha > 0 ? mirror_tables().loss.at(alpha) : 0) {}
 
 /// The table holds how the albedo differs from that of the smooth interface times that of mirrors, which it
 /// tends to for small alpha.
@@ -177,15 +194,12 @@ struct ReflectedAlbedo::Tables {
   }
 };
 
-ReflectedAlbedo::ReflectedAlbedo(double eta, double alpha)
-    : eta_(eta), alpha_(alpha), tables_(tables_for<Tables>(eta)) {
-  mean_loss_ =
-      interpolated(tables_, [&](const Tables& t) { return alpha == 0 ? t.smooth_loss : t.loss.at(alpha); });
-}
-
-double ReflectedAlbedo::operator()(double mu) const {
-  if (alpha_ == 0) return std::min(1.0, fresnel(mu, eta_));
-  return interpolated(tables_, [&](const Tables& t) { return t.at(mu, alpha_, eta_); });
+ReflectedAlbedo::ReflectedAlbedo(double eta, double alpha) : eta_(eta), alpha_(alpha) {
+  const auto tables = tables_for<Tables>(eta);
+  mean_loss_ = tables.mean([&](const Tables& t) { return alpha == 0 ? t.smooth_loss : t.loss.at(alpha); });
+  if (alpha == 0) return;
+  mirror_ = mirror_tables().albedo.row(alpha);
+  rows_ = tables.rows(&Tables::difference, alpha);
 }
 
 struct GlassAlbedo::Tables {
@@ -199,14 +213,10 @@ struct GlassAlbedo::Tables {
   double at(double mu, double alpha) const { return 1 - lowered(1 - albedo.at(mu, alpha), kGlassError); }
 };
 
-GlassAlbedo::GlassAlbedo(double eta, double alpha) : alpha_(alpha), tables_(tables_for<Tables>(eta)) {}
-
-double GlassAlbedo::operator()(double mu) const {
-  return interpolated(tables_, [&](const Tables& t) { return t.at(mu, alpha_); });
-}
-
-double GlassAlbedo::mean_loss() const {
-  return interpolated(tables_, [&](const Tables& t) { return t.loss.at(alpha_); });
+GlassAlbedo::GlassAlbedo(double eta, double alpha) {
+  const auto tables = tables_for<Tables>(eta);
+  mean_loss_ = tables.mean([&](const Tables& t) { return t.loss.at(alpha); });
+  rows_ = tables.rows(&Tables::albedo, alpha);
 }
 
 double mean_fresnel(double eta) { return (eta - 1) / (4.08567 + 1.00071 * eta); }

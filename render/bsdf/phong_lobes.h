@@ -1,7 +1,8 @@
 #pragma once
 /// \file Phong's illumination model with ideal mirrors and glass, as of Material, for light of unit radiance.
 
-#include "render/bsdf/lobes.h"
+#include "render/bsdf/lobe_lanes.h"
+#include "render/bsdf/phong_power.h"
 
 namespace oktett {
 
@@ -17,27 +18,159 @@ struct PhongParameters {
   float ior = 1.5f;        ///< index of refraction behind the front side relative to before it, > 0
 };
 
+/// What one side of a surface needs, whatever the directions.
+struct PhongSurface {
+  PhongSurface() = default;
+  /// `front`: the viewer is outside, where the geometric normal points to.
+  PhongSurface(const PhongParameters& parameters, bool front);
+
+  Vec3d color, diffuse, highlight, mirror;
+  double exponent = 0, transparency = 0, eta = 1;
+};
+
 /// The sum of (Phong 1975, each light as it is lit by lamps divided by pi)
 /// - color * diffuse * cos(wi) / pi,
 /// - specular_color * specular * max(0, r.wi)^phong / pi, r the mirrored viewer. As light is not
-/// foreshortened
-///   here, this lobe is not reciprocal;
+///   foreshortened here, this lobe is not reciprocal;
 /// - a mirror: specular_color * reflection;
 /// - glass: transparency, of which Fresnel's fraction is reflected and the rest, times color, refracted.
+///
+/// In lanes of doubles D, for viewers of the same surface.
+template <class D>
 class PhongLobes {
  public:
-  PhongLobes(const PhongParameters& parameters, const Vec3f& wo, bool front);
-  BsdfValue evaluate(const Vec3f& wi) const;
-  std::optional<BsdfSample> sample(float lobe, const SquareSample& u) const;
-  bool only_delta() const { return choice_[kDiffuse] == 0 && choice_[kHighlight] == 0; }
+  using F = FloatsOf<D>;
+  using Surface = PhongSurface;
+
+  PhongLobes(const PhongSurface& surface, const Vec3<F>& wo) : s_(&surface) {
+    const Vec3<D> w = direction_above<D>(wo);
+    mirrored_viewer_ = {-w.x, -w.y, w.z};
+    mirror_ = broadcast<D>(s_->mirror);
+    if (s_->transparency > 0) set_glass(w);
+    choice_[kDiffuse] = D(max_component(s_->diffuse));
+    choice_[kHighlight] = D(max_component(s_->highlight) * 2 / (s_->exponent + 1));
+    choice_[kMirror] = max(max(mirror_.x, mirror_.y), mirror_.z);
+    choice_[kRefracted] = max(max(refracted_.x, refracted_.y), refracted_.z);
+    choice_.normalize();
+  }
+
+  /// Value and density of the lobes that are not delta. Not inlined: GCC 12 would leave out the rounding of
+  /// directions to float and back.
+  OKTETT_NOINLINE BsdfValues<D> evaluate(const Vec3<F>& wi) const {
+    const D zero(0.0);
+    const auto above = wi.z > F(0.0f);
+    const Vec3<D> w = unit_lanes(to_double(wi));
+    Vec3<D> value = broadcast<D>(s_->diffuse) * w.z;
+    D pdf = choice_[kDiffuse] * w.z;
+    const D cosine = min(D(1.0), dot_lanes(mirrored_viewer_, w));
+    const auto shines = (choice_[kHighlight] > zero) & (cosine > zero);
+    if (any(shines)) {
+      const D shine = select(shines, power_lanes(select(shines, cosine, D(1.0))), zero);
+      value = value + broadcast<D>(s_->highlight) * shine;
+      pdf = pdf + choice_[kHighlight] * D((s_->exponent + 1) / 2) * shine;
+    }
+    const D share(1 / std::numbers::pi);
+    const F dark(0.0f);
+    return {select_lanes(above, to_float(value * share), Vec3<F>{dark, dark, dark}),
+            select(above, to_float(pdf * share), dark)};
+  }
+
+  /// As Bsdf::sample.
+  BsdfSamples<D> sample(const D& lobe, const D& x, const D& y) const {
+    D place = lobe;
+    const D chosen = choice_.pick(place);
+    const auto diffuse = chosen == D(kDiffuse), highlight = chosen == D(kHighlight);
+    const auto mirror = chosen == D(kMirror), refracted = chosen == D(kRefracted);
+    Vec3<D> direction = mirrored_viewer_;
+    if (any(diffuse)) direction = select_lanes(diffuse, cosine_above(x, y), direction);
+    if (any(highlight))
+      direction = select_lanes(highlight, highlight_direction(x, y, bits(highlight)), direction);
+    if (any(refracted)) direction = select_lanes(refracted, refracted_direction_, direction);
+    BsdfSamples<D> sample;
+    sample.direction = to_float(direction);
+    sample.transmitted = sample.direction.z < F(0.0f);
+    const auto scattered = mask_cast<float>(diffuse | highlight);
+    sample.found = scattered;
+    sample.pdf = F(0.0f);
+    sample.weight = {F(0.0f), F(0.0f), F(0.0f)};
+    if (any(scattered)) {
+      const BsdfValues<D> at = evaluate(sample.direction);
+      sample.found = scattered & (at.pdf > F(0.0f));
+      sample.weight = {at.value.x / at.pdf, at.value.y / at.pdf, at.value.z / at.pdf};
+      sample.pdf = select(scattered, at.pdf, F(0.0f));
+    }
+    add_delta(sample, mirror, mirror_, choice_[kMirror]);
+    add_delta(sample, refracted, refracted_, choice_[kRefracted]);
+    return sample;
+  }
+
+  /// The lanes in which `evaluate` is black everywhere.
+  typename F::M only_delta() const {
+    return mask_cast<float>((choice_[kDiffuse] == D(0.0)) & (choice_[kHighlight] == D(0.0)));
+  }
+
+  /// After the surface has been copied to another place.
+  void rebind(const PhongSurface& surface) { s_ = &surface; }
 
  private:
   enum Lobe { kDiffuse, kHighlight, kMirror, kRefracted, kLobes };
 
-  Vec3d mirrored_viewer_, refracted_direction_;
-  Vec3d diffuse_, highlight_, mirror_, refracted_;
-  double exponent_;
-  LobeChoice<kLobes> choice_;
+  void set_glass(const Vec3<D>& w) {
+    const D eta(s_->eta), ratio(1 / s_->eta), zero(0.0);
+    const D sin2_out = ratio * ratio * (D(1.0) - w.z * w.z);
+    const auto passes = (sin2_out < D(1.0)) | (eta == D(1.0));
+    const D cos_out = sqrt(max(zero, D(1.0) - sin2_out));
+    refracted_direction_ = unit_lanes(Vec3<D>{-w.x * ratio, -w.y * ratio, -cos_out});
+    const D reflectance = select(passes, min(D(1.0), fresnel_lanes(w.z, eta)), D(1.0));
+    const D reflected = D(s_->transparency) * reflectance;
+    mirror_ = mirror_ + Vec3<D>{reflected, reflected, reflected};
+    refracted_ = broadcast<D>(s_->color) * select(passes, D(s_->transparency) * (D(1.0) - reflectance), zero);
+  }
+
+  /// `cosine` in [0, 1] to the power of the exponent.
+  D power_lanes(const D& cosine) const {
+    if (by_squaring(s_->exponent)) {
+      D product(1.0), x = cosine;
+      for (auto n = static_cast<unsigned>(s_->exponent); n != 0; n >>= 1, x = x * x)
+        if (n & 1) product = product * x;
+      return product;
+    }
+    double lanes[D::kWidth];
+    cosine.store(lanes);
+    for (double& lane : lanes) lane = portable::pow(lane, s_->exponent);
+    return D::load(lanes);
+  }
+
+  /// Directions about the mirrored viewer, right in the lanes `which`: the cosine to it is
+  /// (1 - x)^(1 / (exponent + 1)).
+  Vec3<D> highlight_direction(const D& x, const D& y, unsigned which) const {
+    double lanes[D::kWidth];
+    x.store(lanes);
+    for (int k = 0; k < D::kWidth; ++k)
+      lanes[k] = which >> k & 1 ? portable::pow(1 - lanes[k], 1 / (s_->exponent + 1)) : 1;
+    const D cosine = D::load(lanes), size = sqrt(max(D(0.0), (D(1.0) - cosine) * (D(1.0) + cosine)));
+    D sine_turn, cosine_turn;
+    sin_cos_of_turn(y, sine_turn, cosine_turn);
+    Vec3<D> tangent, bitangent;
+    basis_lanes(mirrored_viewer_, tangent, bitangent);
+    return unit_lanes(tangent * (size * cosine_turn) + bitangent * (size * sine_turn) +
+                      mirrored_viewer_ * cosine);
+  }
+
+  static void add_delta(BsdfSamples<D>& sample, const typename D::M& chosen, const Vec3<D>& coefficient,
+                        const D& probability) {
+    if (none(chosen)) return;
+    const auto lanes = mask_cast<float>(chosen);
+    const Vec3<D> weight{coefficient.x / probability, coefficient.y / probability,
+                         coefficient.z / probability};
+    sample.found = sample.found | lanes;
+    sample.weight = select_lanes(lanes, to_float(weight), sample.weight);
+  }
+
+  const PhongSurface* s_;
+  Vec3<D> mirrored_viewer_, refracted_direction_, mirror_;
+  Vec3<D> refracted_{D(0.0), D(0.0), D(0.0)};
+  LobeChances<D, kLobes> choice_;
 };
 
 }  // namespace oktett

@@ -7,6 +7,9 @@
 
 namespace oktett {
 
+/// Greatest index of refraction of the principled material.
+inline constexpr double kMostIor = 4;
+
 /// The complex index of refraction eta + i k of a metal, for each component of a colour.
 struct Conductor {
   Color eta{0.2f, 0.92f, 1.1f};

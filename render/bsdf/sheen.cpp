@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/bsdf/lobes.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 
@@ -33,7 +33,7 @@ double SheenLobe::density(const Vec3d& wi) const {
 }
 
 Vec3d SheenLobe::sample(const SquareSample& u) const {
-  const Vec3d w = cosine_above(u);
+  const Vec3d w = Vec3d(cosine_direction({0, 0, 1}, u));
   const double x = (w.x - b_ * w.z) / a_, y = w.y / a_;
   return normalize(Vec3d{cosine_ * x - sine_ * y, sine_ * x + cosine_ * y, w.z});
 }

@@ -1,16 +1,18 @@
 #include "render/sampling/warp.h"
 
 #include <cmath>
-#include <numbers>
 
-#include "core/math.h"
+#include "core/lane_math.h"
 
 namespace oktett {
 
 Vec3f cosine_direction(const Vec3f& n, const SquareSample& s) {
-  const double radius = std::sqrt(s.x), angle = 2 * std::numbers::pi * s.y;
-  const auto x = static_cast<float>(radius * portable::cos(angle));
-  const auto y = static_cast<float>(radius * portable::sin(angle));
+  using D = Simd<double, 1, ScalarIsa>;
+  const double radius = std::sqrt(s.x);
+  D sine, cosine;
+  sin_cos_of_turn(D(s.y), sine, cosine);
+  const auto x = static_cast<float>(radius * only_lane(cosine));
+  const auto y = static_cast<float>(radius * only_lane(sine));
   const auto z = static_cast<float>(std::sqrt(1 - s.x));
   Vec3f tangent, bitangent;
   make_basis(n, tangent, bitangent);

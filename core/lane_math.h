@@ -1,0 +1,69 @@
+#pragma once
+/// \file Elementary functions of doubles in lanes, with the same bits in every width and instruction set.
+
+#include <numbers>
+
+#include "core/lanes.h"
+
+namespace oktett {
+
+/// `x` within [least, most]; `least` for NaN.
+template <class D>
+OKTETT_INLINE D within(const D& x, const D& least, const D& most) {
+  return min(max(x, least), most);
+}
+
+/// The greatest whole number up to `x`, 0 <= x < 2^51.
+template <int W, class A>
+OKTETT_INLINE Simd<double, W, A> whole_part(const Simd<double, W, A>& x) {
+  using D = Simd<double, W, A>;
+  const D nearest = (x + D(0x1p52)) - D(0x1p52);
+  return select(nearest > x, nearest - D(1.0), nearest);
+}
+
+/// Horner's scheme; `c` from the highest power down.
+template <class D, std::size_t N>
+OKTETT_INLINE D polynomial_lanes(const double (&c)[N], const D& x) {
+  D sum(c[0]);
+  for (std::size_t i = 1; i < N; ++i) sum = sum * x + D(c[i]);
+  return sum;
+}
+
+/// Sine and cosine of `turn` times a full circle, 0 <= turn <= 1. The absolute error is below 1e-15.
+template <int W, class A>
+OKTETT_INLINE void sin_cos_of_turn(const Simd<double, W, A>& turn, Simd<double, W, A>& sine,
+                                   Simd<double, W, A>& cosine) {
+  using D = Simd<double, W, A>;
+  // Taylor's series, for angles up to pi/4.
+  constexpr double kSine[] = {-1 / 1307674368000.0, 1 / 6227020800.0, -1 / 39916800.0, 1 / 362880.0,
+                              -1 / 5040.0,          1 / 120.0,        -1 / 6.0};
+  constexpr double kCosine[] = {1 / 20922789888000.0,
+                                -1 / 87178291200.0,
+                                1 / 479001600.0,
+                                -1 / 3628800.0,
+                                1 / 40320.0,
+                                -1 / 720.0,
+                                1 / 24.0,
+                                -1 / 2.0,
+                                1};
+  const D quarters = turn * D(4.0), quadrant = whole_part(quarters + D(0.5));
+  const D angle = (quarters - quadrant) * D(std::numbers::pi / 2), square = angle * angle;
+  const D s = angle + angle * (square * polynomial_lanes(kSine, square));
+  const D c = polynomial_lanes(kCosine, square);
+  const auto first = quadrant == D(1.0), second = quadrant == D(2.0), third = quadrant == D(3.0);
+  const auto odd = first | third;
+  const D along = select(odd, s, c), across = select(odd, c, s);
+  cosine = select(first | second, -along, along);
+  sine = select(second | third, -across, across);
+}
+
+/// make_basis in lanes. At n.z = -0 the sign is 1.
+template <class D>
+OKTETT_INLINE void basis_lanes(const Vec3<D>& n, Vec3<D>& tangent, Vec3<D>& bitangent) {
+  const D one(1), sign = select(n.z < D(0), -one, one);
+  const D a = -one / (sign + n.z), b = n.x * n.y * a;
+  tangent = {one + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+}  // namespace oktett

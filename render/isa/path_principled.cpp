@@ -1,0 +1,18 @@
+#include "render/bsdf/principled_lobes.h"
+
+#include "render/isa/path_shading.h"
+
+namespace oktett {
+
+template <class A>
+void shade_principled_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+                           const PrincipledSurface& surface, bool transmits, const PathRun& run,
+                           PathQueues& out) {
+  shade_path_run<A, PrincipledLobes<Simd<double, kDoubleLanes<A>, A>>>(found, rays, block, surface, transmits,
+                                                                       run, out);
+}
+
+template void shade_principled_code<OKTETT_ISA>(const InteractionBlock&, const PathRays&, const PathBlock&,
+                                                const PrincipledSurface&, bool, const PathRun&, PathQueues&);
+
+}  // namespace oktett

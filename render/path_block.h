@@ -1,0 +1,90 @@
+#pragma once
+/// \file Hits that path tracing shades together, in columns: what the code of each instruction set works on.
+
+#include <cstdint>
+
+#include "accel/interaction_block.h"
+#include "render/bsdf/phong_lobes.h"
+#include "render/bsdf/principled_surface.h"
+#include "render/light/light_sample.h"
+
+namespace oktett {
+
+/// One side of a material, prepared for path tracing. Entry 2 m is the front of World::materials[m], entry
+/// 2 m + 1 its back.
+struct PathSurface {
+  bool alone = false;       ///< textures: its hits are shaded one by one
+  bool principled = false;  ///< which of the following holds
+  bool transmits = false;   ///< light may pass to the other side
+  bool only_delta = false;  ///< no light can be sampled
+  Color emission{0, 0, 0};
+  PhongSurface phong;
+  PrincipledSurface layers;
+};
+
+/// What a light sample is for its hit.
+enum class LightKind : std::uint8_t { none, delta, area };
+
+/// The hits of an InteractionBlock, with their rays, random numbers and light samples. Lanes read whole
+/// groups, so entries behind the last hit, up to the end of its group, hold copies of it.
+struct PathBlock {
+  static constexpr std::size_t kMost = InteractionBlock::kMost;
+  static constexpr std::size_t kGroup = 8;  ///< the most lanes of any instruction set
+
+  std::size_t count = 0;
+  std::uint32_t ray[kMost];     ///< entry of the wavefront's rays
+  std::uint64_t key[kMost];     ///< of the pixel's random numbers
+  std::uint32_t number[kMost];  ///< of the sample in its pixel
+  std::uint8_t bounces[kMost];
+
+  float direction[3][kMost];  ///< unit direction in which the ray travels
+  float throughput[3][kMost];
+  float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
+  std::uint64_t behind = 0;          ///< bit k: hit k is seen from behind
+
+  float lobe[kMost], roulette[kMost];  ///< [0, 1)
+  double direction_x[kMost], direction_y[kMost];
+  double light[kMost], light_x[kMost], light_y[kMost];
+
+  LightKind light_kind[kMost];
+  float light_direction[3][kMost], light_distance[kMost], light_pdf[kMost];
+  float light_color[3][kMost];  ///< radiance or irradiance that arrives, textures included
+};
+
+/// The columns of a wavefront's rays that a PathBlock is filled from.
+struct PathRays {
+  const float *direction[3], *throughput[3], *distance;
+  const float* t;  ///< of the hits
+  const std::uint32_t* sample;
+};
+
+/// Hits of one PathSurface: entries of a PathBlock, the last one repeated to the end of its group.
+struct PathRun {
+  const std::uint32_t* entry;
+  std::size_t count;
+};
+
+/// The columns of a queue of shadow rays. One group more than there are hits may be overwritten.
+struct PathShadows {
+  float *origin[3], *direction[3], *tmax, *light[3];
+  std::uint32_t* owner;
+  std::size_t size;  ///< grows
+};
+
+/// The columns of the next bounce. One group more than there are hits may be overwritten.
+struct PathOnward {
+  float *origin[3], *direction[3], *throughput[3], *distance, *pdf;
+  std::uint32_t* sample;
+  std::uint8_t* bounces;
+  LightPoint* from;
+  std::size_t size;               ///< grows
+  std::uint64_t transmitted = 0;  ///< how many of the rays are
+};
+
+/// Where the rays of a block go.
+struct PathQueues {
+  PathShadows delta, area;
+  PathOnward next;
+};
+
+}  // namespace oktett

@@ -1,0 +1,19 @@
+#pragma once
+/// \file The weight in path tracing of light that a ray meets, against light samples that find the same.
+
+#include "render/wavefront.h"
+
+namespace oktett {
+
+/// Veach's power heuristic for a light that two ways of sampling can find with these densities: the weight of
+/// the first.
+float power_weight(float pdf, float other);
+
+/// The weight of the light that the surface at `position`, the hit of entry `ray`, emits.
+float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
+                      const Vec3f& position);
+
+/// The weight of environment light that entry `ray`, a miss, finds.
+float environment_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray);
+
+}  // namespace oktett
