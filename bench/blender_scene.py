@@ -1,0 +1,146 @@
+"""Renders a directory that path_peers has written with Blender's Cycles: blender -b -P blender_scene.py -- DIR SEED SPP...
+
+One picture, DIR/cycles_SPP.exr, for each number of samples. Prints "cycles SPP SECONDS" for each, where the seconds
+are those of the whole render call, the building of the scene included.
+"""
+import json
+import os
+import sys
+import time
+
+import bpy
+
+
+def load_triangles(path, slots):
+    """Vertices, triangles and the material slot of each triangle of an OBJ file."""
+    vertices, triangles, materials, slot = [], [], [], 0
+    with open(path) as lines:
+        for line in lines:
+            words = line.split()
+            if not words:
+                continue
+            if words[0] == "v":
+                x, y, z = map(float, words[1:4])
+                vertices.append((x, -z, y))  # Blender's z is up
+            elif words[0] == "usemtl":
+                slot = slots[words[1]]
+            elif words[0] == "f":
+                triangles.append([int(word) - 1 for word in words[1:4]])
+                materials.append(slot)
+    return vertices, triangles, materials
+
+
+def make_material(description):
+    material = bpy.data.materials.new(description["name"])
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    output = nodes.new("ShaderNodeOutputMaterial")
+    color = description["color"] + [1]
+    kind = description["kind"]
+    if kind == "lamp":
+        shader = nodes.new("ShaderNodeEmission")
+        strength = max(description["color"])
+        color = [c / strength for c in description["color"]] + [1]
+        shader.inputs["Strength"].default_value = strength
+    elif kind == "metal":
+        shader = nodes.new("ShaderNodeBsdfGlossy")
+        shader.distribution = "MULTI_GGX"
+        shader.inputs["Roughness"].default_value = description["roughness"]
+    elif kind == "glass":
+        shader = nodes.new("ShaderNodeBsdfGlass")
+        shader.distribution = "SHARP"
+        shader.inputs["IOR"].default_value = description["ior"]
+    else:
+        shader = nodes.new("ShaderNodeBsdfDiffuse")
+    shader.inputs["Color"].default_value = color
+    links.new(shader.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def make_camera(scene, description):
+    def turned(p):
+        return (p[0], -p[2], p[1])
+
+    camera = bpy.data.cameras.new("camera")
+    camera.sensor_fit = "VERTICAL"
+    camera.angle = description["fov"] * 3.141592653589793 / 180
+    camera.clip_start = 1e-3
+    thing = bpy.data.objects.new("camera", camera)
+    from mathutils import Vector
+
+    start, end = Vector(turned(description["from"])), Vector(turned(description["at"]))
+    thing.location = start
+    thing.rotation_mode = "QUATERNION"
+    thing.rotation_quaternion = (end - start).to_track_quat("-Z", "Y")
+    scene.collection.objects.link(thing)
+    scene.camera = thing
+
+
+def make_world(scene, directory, description):
+    world = bpy.data.worlds.new("world")
+    scene.world = world
+    world.use_nodes = True
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    background = nodes["Background"]
+    background.inputs["Color"].default_value = description["background"] + [1]
+    if description["environment"]:
+        picture = nodes.new("ShaderNodeTexEnvironment")
+        picture.image = bpy.data.images.load(os.path.join(directory, "environment.exr"))
+        picture.image.colorspace_settings.name = "Non-Color"
+        links.new(picture.outputs["Color"], background.inputs["Color"])
+
+
+def configure(scene, description, seed):
+    scene.render.engine = "CYCLES"
+    scene.render.resolution_x, scene.render.resolution_y = description["size"]
+    scene.render.resolution_percentage = 100
+    scene.render.threads_mode = "FIXED"
+    scene.render.threads = int(os.environ.get("OKTETT_PEER_THREADS", "2"))
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    scene.render.image_settings.color_depth = "32"
+    scene.render.image_settings.color_mode = "RGB"
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.seed = seed
+    cycles.use_denoising = False
+    cycles.use_adaptive_sampling = False
+    cycles.pixel_filter_type = "BOX"
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+    cycles.light_sampling_threshold = 0
+    cycles.blur_glossy = 0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    depth = description["depth"]
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = depth
+    cycles.transmission_bounces = cycles.transparent_max_bounces = depth
+
+
+def main():
+    words = sys.argv[sys.argv.index("--") + 1 :]
+    directory, seed, samples = words[0], int(words[1]), [int(word) for word in words[2:]]
+    with open(os.path.join(directory, "scene.json")) as text:
+        description = json.load(text)
+    scene = bpy.context.scene
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+    configure(scene, description, seed)
+    names = {material["name"]: i for i, material in enumerate(description["materials"])}
+    vertices, triangles, slots = load_triangles(os.path.join(directory, "scene.obj"), names)
+    mesh = bpy.data.meshes.new("scene")
+    mesh.from_pydata(vertices, [], triangles)
+    for material in description["materials"]:
+        mesh.materials.append(make_material(material))
+    mesh.polygons.foreach_set("material_index", slots)
+    mesh.update()
+    scene.collection.objects.link(bpy.data.objects.new("scene", mesh))
+    make_camera(scene, description["camera"])
+    make_world(scene, directory, description)
+    for count in samples:
+        scene.cycles.samples = count
+        scene.render.filepath = os.path.join(directory, "cycles_%d.exr" % count)
+        start = time.time()
+        bpy.ops.render.render(write_still=True)
+        print("cycles", count, time.time() - start, flush=True)
+
+
+main()
