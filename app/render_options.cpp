@@ -9,12 +9,12 @@
 #include <string_view>
 #include <system_error>
 
+#include "app/choice.h"
 #include "core/error.h"
 
 namespace oktett {
 namespace {
 
-constexpr const char* kIntegrators[] = {"whitted", "path", "ao", "normal", "depth"};
 /// In the order of BuildQuality.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
 // The same bounds as in a scene file.
@@ -70,7 +70,11 @@ std::size_t index_of(const char* complaint, const std::string& word, const char*
 
 }  // namespace
 
-const char* to_string(IntegratorKind kind) { return kIntegrators[static_cast<std::size_t>(kind)]; }
+const char* to_string(IntegratorKind kind) {
+  for (const Choice<IntegratorKind>& known : kIntegratorKinds)
+    if (known.value == kind) return known.name;
+  return "";
+}
 
 void add_render_options(Verb& verb, RenderArguments& a) {
   verb.positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh (.obj)");
@@ -81,7 +85,9 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.option("--size", &a.size, "WxH", "Size of the full frame in pixels");
   verb.option("--cropwindow", &a.crop, "x0,x1,y0,y1", "Part of the frame to render, as fractions of it");
   verb.option("--seed", &a.seed, "N", "Seed of the random numbers");
-  verb.option("--integrator", &a.integrator, "K", "whitted, path, ao, normal or depth");
+  verb.option("--integrator", &a.integrator, "K",
+              "whitted, path, ao, normal, depth, albedo, uv, position, object, primitive, facing or wire");
+  add_film_options(verb, a.film);
   verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
@@ -109,9 +115,8 @@ void override_scene(const RenderArguments& arguments, Scene& scene) {
   if (!arguments.size.empty()) parse_size(arguments.size, scene.film);
   if (!arguments.crop.empty()) parse_crop(arguments.crop, scene.film.crop);
   if (!arguments.integrator.empty())
-    scene.integrator.kind =
-        static_cast<IntegratorKind>(index_of("--integrator: unknown kind", arguments.integrator, kIntegrators,
-                                             "whitted, path, ao, normal or depth"));
+    scene.integrator.kind = choice_of<IntegratorKind>("--integrator", arguments.integrator, kIntegratorKinds);
+  override_film(arguments.film, scene);
   if (arguments.seed) scene.integrator.seed = *arguments.seed;
   if (arguments.samples) {
     if (*arguments.samples < 1 || *arguments.samples > kMaxSamples)

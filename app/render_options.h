@@ -8,6 +8,7 @@
 
 #include "accel/accel.h"
 #include "app/command_line.h"
+#include "app/film_options.h"
 #include "io/scene/scene_file.h"
 #include "render/scene.h"
 
@@ -23,6 +24,7 @@ struct RenderArguments {
   std::string size;
   std::string crop;
   std::string integrator;
+  FilmArguments film;
   std::string isa;
   std::string bvh;  ///< quality of the trees; empty: the default
   std::vector<std::string> definitions;

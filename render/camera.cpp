@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/math.h"
+#include "render/sampling/warp.h"
 #include "render/view_directions.h"
 
 namespace oktett {
@@ -42,6 +43,17 @@ static void look_at(const Camera& camera, CameraFrame& frame) {
   frame.up = cross(frame.right, frame.forward);
 }
 
+/// `height` is that of what is seen, at distance 1 if the camera is a perspective one.
+static void set_lens(const Camera& camera, double height, CameraFrame& frame) {
+  frame.focus = camera.focus_at     ? dot(*camera.focus_at - camera.from, frame.forward)
+                : camera.focus != 0 ? camera.focus
+                                    : length(camera.at - camera.from);
+  const bool has_f_number = camera.f_number > 0 && camera.projection == Projection::perspective;
+  const double diameter = has_f_number ? kFilmHeight / height / camera.f_number : camera.aperture;
+  if (diameter > 0 && std::isfinite(diameter) && frame.focus > 0 && std::isfinite(frame.focus))
+    frame.lens_radius = diameter / 2;
+}
+
 CameraFrame camera_frame(const Camera& camera, const Film& film) {
   CameraFrame frame;
   frame.projection = camera.projection;
@@ -56,6 +68,7 @@ CameraFrame camera_frame(const Camera& camera, const Film& film) {
   frame.per_pixel_y = frame.up * -frame.pixel_size;
   frame.corner = frame.per_pixel_x * (-width_in_pixels / 2) + frame.per_pixel_y * (-height_in_pixels / 2);
   if (perspective) frame.corner += frame.forward;
+  set_lens(camera, height, frame);
   return frame;
 }
 
@@ -72,8 +85,27 @@ Ray camera_ray(const CameraFrame& camera, double x, double y) {
   return ray;
 }
 
+Ray camera_ray(const CameraFrame& camera, double x, double y, double u, double v) {
+  if (camera.lens_radius == 0) return camera_ray(camera, x, y);
+  const SquareSample at = disk_point({u, v});
+  const Vec3d lens = camera.right * (camera.lens_radius * at.x) + camera.up * (camera.lens_radius * at.y);
+  const Vec3d place = camera.corner + camera.per_pixel_x * x + camera.per_pixel_y * y;
+  const bool perspective = camera.projection == Projection::perspective;
+  const Vec3d from = perspective ? lens : lens + place;
+  const Vec3d to = perspective ? place * camera.focus : place + camera.forward * camera.focus;
+  Ray ray;
+  ray.origin = Vec3f(camera.origin + from);
+  ray.direction = Vec3f(normalize(to - from));
+  return ray;
+}
+
 void camera_rays(const CameraFrame& camera, const FilmPoints& points, RayBatch& rays, Isa isa) {
   const std::size_t count = rays.size();
+  if (camera.lens_radius > 0) {
+    for (std::size_t i = 0; i < count; ++i)
+      rays.set(i, camera_ray(camera, points.x[i], points.y[i], (*points.lens_x)[i], (*points.lens_y)[i]));
+    return;
+  }
   if (camera.projection != Projection::perspective) {
     for (std::size_t i = 0; i < count; ++i) rays.set(i, camera_ray(camera, points.x[i], points.y[i]));
     return;

@@ -25,7 +25,8 @@ PixelWindow crop_window(const Film& film);
 /// A camera with all that its rays have in common. A film point (x, y) counts pixels of the full frame from
 /// its upper left corner; v(x, y) = corner + x per_pixel_x + y per_pixel_y. A perspective ray starts at
 /// `origin` in the direction v(x, y); an orthographic one starts at origin + v(x, y) in the direction
-/// `forward`.
+/// `forward`. With a lens, the ray starts at a point of a disk about that origin, across the view axis, and
+/// meets the ray of the pinhole at the distance `focus` along the axis (Cook, Porter, Carpenter 1984).
 struct CameraFrame {
   Projection projection = Projection::perspective;
   Vec3d origin;
@@ -33,6 +34,8 @@ struct CameraFrame {
   Vec3d corner, per_pixel_x, per_pixel_y;
   double pixel_size =
       0;  ///< height of a pixel in world units: at distance 1 (perspective), everywhere (orthographic)
+  double lens_radius = 0;  ///< 0: a pinhole
+  double focus = 1;        ///< along the view axis
 };
 
 /// The frame of a camera. An `up` along the view axis, or a view direction of zero, is replaced by a valid
@@ -43,14 +46,19 @@ CameraFrame camera_frame(const Camera& camera, const Film& film);
 struct FilmPoints {
   const Column<double>& x;
   const Column<double>& y;
+  /// Points of the unit square, which is laid over the lens. Needed if there is a lens.
+  const Column<double>* lens_x = nullptr;
+  const Column<double>* lens_y = nullptr;
 };
 
 /// Sets `rays`, which has the size of the points, to the rays through them: the bits that camera_ray gives.
 void camera_rays(const CameraFrame& camera, const FilmPoints& points, RayBatch& rays,
                  Isa isa = default_isa());
 
-/// The ray through a film point, of unit direction.
+/// The ray through a film point, of unit direction, from the middle of the lens.
 Ray camera_ray(const CameraFrame& camera, double x, double y);
+/// The same from the point of the lens where the point (u, v) of the unit square lies.
+Ray camera_ray(const CameraFrame& camera, double x, double y, double u, double v);
 
 /// Distance of `p` in front of the camera along its view axis.
 double camera_depth(const CameraFrame& camera, const Vec3f& p);

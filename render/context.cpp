@@ -75,6 +75,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.camera = camera_frame(scene.camera, scene.film);
   c.window = crop_window(scene.film);
   c.full_width = std::max(scene.film.width, 1u), c.full_height = std::max(scene.film.height, 1u);
+  c.filter = FilterSampler(scene.film.filter, scene.film.filter_radius);
   c.settings = scene.integrator;
   c.settings.samples = std::clamp(c.settings.samples, 1u, 65536u);
   c.settings.depth = std::min(c.settings.depth, 64u);

@@ -7,6 +7,7 @@
 #include "core/isa.h"
 #include "render/camera.h"
 #include "render/geometry.h"
+#include "render/sampling/filter_sampler.h"
 #include "render/scene.h"
 #include "render/scene_lights.h"
 #include "render/shading_columns.h"
@@ -34,6 +35,7 @@ struct RenderContext {
   CameraFrame camera;
   PixelWindow window;
   std::uint32_t full_width = 1, full_height = 1;
+  FilterSampler filter;
   IntegratorSettings settings;
   std::vector<LightSource> lights;         ///< those that have a place or a direction, for Whitted's model
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing

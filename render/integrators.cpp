@@ -1,7 +1,5 @@
 #include "render/integrators.h"
 
-#include <algorithm>
-
 namespace oktett {
 
 Integrator integrator_for(IntegratorKind kind) {
@@ -16,6 +14,20 @@ Integrator integrator_for(IntegratorKind kind) {
       return shade_normal;
     case IntegratorKind::depth:
       return shade_depth;
+    case IntegratorKind::albedo:
+      return shade_albedo;
+    case IntegratorKind::uv:
+      return shade_uv;
+    case IntegratorKind::position:
+      return shade_position;
+    case IntegratorKind::object:
+      return shade_object;
+    case IntegratorKind::primitive:
+      return shade_primitive;
+    case IntegratorKind::facing:
+      return shade_facing;
+    case IntegratorKind::wire:
+      return shade_wire;
   }
   return shade_whitted;
 }
@@ -23,17 +35,6 @@ Integrator integrator_for(IntegratorKind kind) {
 bool shades_in_blocks(const RenderContext& context) {
   if (context.settings.kind == IntegratorKind::path) return true;
   return context.settings.kind == IntegratorKind::whitted && !context.data_layers;
-}
-
-void shade_normal(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
-  wavefront.radiance.set(ray, p.surface.shading_normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f});
-}
-
-void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
-  const auto depth = static_cast<float>(camera_depth(context.camera, p.surface.position));
-  const float shown = (context.far_depth - depth) / (context.far_depth - context.near_depth);
-  const float grey = std::clamp(shown, 0.0f, 1.0f);
-  wavefront.radiance.set(ray, {grey, grey, grey});
 }
 
 }  // namespace oktett

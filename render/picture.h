@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/soa.h"
+#include "render/tone.h"
 
 namespace oktett {
 
@@ -27,6 +28,7 @@ struct Picture {
   std::uint32_t x = 0, y = 0;                     ///< where their upper left pixel is in the full frame
   std::uint32_t full_width = 0, full_height = 0;  ///< of the frame that the planes are a part of
   std::vector<PicturePlane> planes;
+  Tone tone;  ///< how formats that store no linear light show the colours
 
   /// The plane called `name`, or null.
   const PicturePlane* find(const std::string& name) const {

@@ -113,6 +113,7 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
   RenderContext context = make_context(scene, world, lights, options.textures, options.isa);
   context.data_layers = options.data_layers;
   result.picture = make_picture(context);
+  result.picture.tone = scene.film.tone;
   const Clock::time_point tracing = Clock::now();
   Monitor monitor(options, result.picture, tracing);
   render_tiles(context, options.tile_size, result.picture, monitor);

@@ -23,4 +23,7 @@ constexpr std::uint32_t dimension(Decision decision, unsigned level = 0) {
   return static_cast<std::uint32_t>(decision) + level * per_level;
 }
 
+/// The dimension of the place on the lens. Paths of any length leave it free.
+inline constexpr std::uint32_t kLensDimension = 0xffffffffu;
+
 }  // namespace oktett

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/description.h"
 #include "core/error.h"
 #include "core/mesh.h"
 #include "core/transform.h"
@@ -15,8 +17,14 @@
 #include "kernels/exact_form.h"
 #include "render/light/environment_picture.h"
 #include "render/material.h"
+#include "render/motion.h"
+#include "render/sampling/filter_kind.h"
+#include "render/tone.h"
 
 namespace oktett {
+
+/// Height of the film that f-numbers refer to, in world units: that of a 35 mm camera, in metres.
+inline constexpr double kFilmHeight = 0.024;
 
 /// How a camera projects.
 enum class Projection { perspective, orthographic };
@@ -29,26 +37,54 @@ struct Camera {
   Vec3d up{0, 1, 0};  ///< the direction that points up in the picture, of any length
   double fov = 40;    ///< full vertical angle in degrees, (0, 180); perspective only
   double height = 2;  ///< height of the view volume in world units; orthographic only
+  /// Diameter of the lens in world units; 0 is a pinhole, which shows everything sharp.
+  double aperture = 0;
+  /// If not 0, the aperture is the focal length divided by this, for film of kFilmHeight; perspective only.
+  double f_number = 0;
+  double focus = 0;  ///< what is sharp lies at this distance along the view axis; 0: at the distance of `at`
+  std::optional<Vec3d> focus_at{};  ///< instead of `focus`: a point in the plane that is sharp
+  double shutter[2] = {0, 1};       ///< times at which it opens and closes; not descending
+  MotionPointer motion{};           ///< moves `from`, `at`, `up` and `focus_at`
   bool operator==(const Camera&) const = default;
 };
 
-/// The size of the picture in pixels, and the part of it that is rendered.
+/// The picture: its size in pixels, the part of it that is rendered, and how samples become pixels and
+/// pixels become files.
 struct Film {
   std::uint32_t width = 960;   ///< > 0
   std::uint32_t height = 540;  ///< > 0
   /// Part of the picture to render, as fractions [0, 1] of width and height: x0, x1, y0, y1 (pbrt's order).
   double crop[4] = {0, 1, 0, 1};
+  FilterKind filter = FilterKind::box;
+  double filter_radius = 0;  ///< in pixels; 0: usual_radius(filter)
+  Tone tone{};
+  bool cryptomatte = false;  ///< also coverage by objects and materials, see render/cryptomatte.h
   bool operator==(const Film&) const = default;
 };
 
 /// How light is computed.
 enum class IntegratorKind {
-  whitted,  ///< Whitted 1980: lights, shadows, mirrors and glass
-  path,     ///< path tracing, with light from diffuse surfaces, too
-  ao,       ///< ambient occlusion: the unoccluded part of the hemisphere
-  normal,   ///< shading normals as colours
-  depth,    ///< distances as grey
+  whitted,    ///< Whitted 1980: lights, shadows, mirrors and glass
+  path,       ///< path tracing, with light from diffuse surfaces, too
+  ao,         ///< ambient occlusion: the unoccluded part of the hemisphere
+  normal,     ///< shading normals as colours
+  depth,      ///< distances as grey
+  albedo,     ///< colours of materials
+  uv,         ///< surface parameters as red and green
+  position,   ///< places in the box around the scene as colours
+  object,     ///< a colour for each object
+  primitive,  ///< a colour for each primitive, e.g. each triangle
+  facing,     ///< how far surfaces face the viewer; backs are red
+  wire,       ///< the edges of triangles
 };
+/// Their names.
+inline constexpr Choice<IntegratorKind> kIntegratorKinds[] = {
+    {"whitted", IntegratorKind::whitted}, {"path", IntegratorKind::path},
+    {"ao", IntegratorKind::ao},           {"normal", IntegratorKind::normal},
+    {"depth", IntegratorKind::depth},     {"albedo", IntegratorKind::albedo},
+    {"uv", IntegratorKind::uv},           {"position", IntegratorKind::position},
+    {"object", IntegratorKind::object},   {"primitive", IntegratorKind::primitive},
+    {"facing", IntegratorKind::facing},   {"wire", IntegratorKind::wire}};
 
 /// How light is computed, and with how many samples.
 struct IntegratorSettings {
@@ -58,6 +94,12 @@ struct IntegratorSettings {
   std::uint32_t seed = 0;
   double ao_radius =
       0;  ///< reach of ambient-occlusion rays in world units; 0: a tenth of the scene's diagonal
+  /// If not 0, samples brighter than this are darkened to it, which is a bias: the picture loses light.
+  double clamp = 0;
+  /// If not 0, pixels get more than `samples` samples until their relative error is about this; see
+  /// render/adaptive.h.
+  double error = 0;
+  std::uint32_t max_samples = 1024;  ///< most samples of a pixel if `error` is given, [1, 65536]
   bool operator==(const IntegratorSettings&) const = default;
 };
 
@@ -109,6 +151,12 @@ struct SkyLight {
 /// A light of any kind.
 using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentLight, SkyLight>;
 
+/// What may be said of any light.
+struct LightTraits {
+  MotionPointer motion;  ///< moves the light; not of environments and skies
+  std::string group;     ///< the light group that it belongs to; empty: that of all lights without one
+};
+
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;
@@ -158,6 +206,9 @@ struct Object {
   std::uint32_t material =
       kNoId;         ///< index into Scene::materials; kNoId: the mesh's own, or the default material
   Affine transform;  ///< from the shape's space to that of the prototype or the world
+  /// If not null, it gives the transform at each time, and `transform` is that at time 0. Only of objects of
+  /// the scene itself.
+  MotionPointer motion;
   std::string name;  ///< may be empty
   Location where;    ///< where a scene file defines it; else empty
 };
@@ -180,7 +231,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Light> lights;
-  bool lights_given = false;  ///< false: render() adds a key and a fill light beside the camera
+  std::vector<LightTraits> light_traits;  ///< of the light of the same number; may be shorter
+  bool lights_given = false;              ///< false: render() adds a key and a fill light beside the camera
   std::vector<Prototype> prototypes;
   std::vector<Object> objects;
   std::vector<Warning> warnings;  ///< what was skipped or given a default while a file was read

@@ -109,7 +109,8 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   ShadingPoint p;
   p.material = &material_at(*context.world, found);
   const bool textured_here = context.textures != nullptr && has_textures(*p.material);
-  const bool uv_shown = context.data_layers && history.from_camera;
+  const bool uv_shown =
+      (context.data_layers && history.from_camera) || context.settings.kind == IntegratorKind::uv;
   p.surface = textured_here || uv_shown ? surface_interaction(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;

@@ -33,6 +33,16 @@ void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work)
   for (const WavefrontPixel& p : work.order) work.numbers[p.y * width + p.x] = p.number;
 }
 
+/// Darkens colours with a component above `most` until none is. Those that are not finite stay so.
+void clamp_samples(double most, ColorColumn& colors) {
+  const auto limit = static_cast<float>(most);
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const Color color = colors[i];
+    const float peak = max_component(color);
+    if (peak > limit && is_finite(color)) colors.set(i, color * (limit / peak));
+  }
+}
+
 }  // namespace
 
 std::vector<FinishedTile> cut_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t tile_size) {
@@ -73,6 +83,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
     for (std::uint32_t s = 0; s < samples; s += samples_per_wavefront) {
       start_wavefront(context, pixels, s, std::min(samples, s + samples_per_wavefront), wavefront);
       if (!trace_wavefront(context, wavefront)) continue;
+      if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples.color);
       if (samples == 1 && !context.data_layers) {
         counts.bad_samples += work.colors.set(number, wavefront.samples);
         continue;

@@ -68,6 +68,7 @@ struct Wavefront {
   std::vector<ShadowQueue> shadows;
   Column<std::uint32_t> hit_rays;  ///< entries of `rays` that hit something
   Column<double> film_x, film_y;   ///< where the camera rays pass the film
+  Column<double> lens_x, lens_y;   ///< and the lens, as in FilmPoints
   unsigned level = 0;              ///< number of the bounce; 0 = camera rays
   bool whole_pixels = true;        ///< all samples of each of its pixels are in this wavefront
   RayCounts counts;

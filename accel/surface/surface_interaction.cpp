@@ -2,6 +2,7 @@
 #include "accel/hit_place.h"
 #include "accel/surface/mesh_surface.h"
 #include "accel/surface/offset_origin.h"
+#include "accel/triangle_corners.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {
@@ -82,6 +83,18 @@ SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const
   SurfaceInteraction s;
   interaction_at(place, identify_in(place, hit), ray, hit, true, s);
   return s;
+}
+
+std::optional<std::array<Vec3f, 3>> triangle_corners(const Accel& accel, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  const HitNames names = identify_in(place, hit);
+  if (names.kind != Kind::triangle) return std::nullopt;
+  const Geometry& g = place.accel->geometries[names.geometry];
+  std::array<Vec3f, 3> corners;
+  for (int k = 0; k < 3; ++k)
+    corners[k] = Vec3f(place.to_world.point(g.transform.point(
+        Vec3d(corner_position(*std::get<MeshGeometry>(g.shape).mesh, names.primitive, k)))));
+  return corners;
 }
 
 Vec3f offset_origin(const SurfaceInteraction& s, const Vec3f& direction) {

@@ -37,7 +37,10 @@ FlatImage flatten_to_srgb8(const Picture& picture, bool with_alpha) {
     const float a = alpha != nullptr ? clamped_alpha(alpha->values[i]) : 1;
     // Without coverage there is no colour to recover; what light there is (a glow) is kept as it is.
     const float divisor = a > 0 ? a : 1;
-    for (const PicturePlane* plane : planes) *out++ = linear_to_srgb8(plane->values[i] / divisor);
+    const Color light{planes[0]->values[i] / divisor, planes[1]->values[i] / divisor,
+                      planes[2]->values[i] / divisor};
+    const Color shown = toned(picture.tone, light);
+    for (int k = 0; k < 3; ++k) *out++ = linear_to_srgb8(shown[k]);
     if (alpha != nullptr) *out++ = static_cast<std::uint8_t>(a * 255 + 0.5f);
   }
   return image;

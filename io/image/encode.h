@@ -22,8 +22,9 @@ struct FlatImage {
   std::vector<float> floats;        ///< of PixelLayout::float_rgb
 };
 
-/// All pixels of `picture`, with A if `layout` has room for it and `picture` has it. Colours are divided by
-/// an A that is stored. Numbers that are not finite become 0. Throws Error if a plane is missing.
+/// All pixels of `picture`, with its tone unless they are floats, with A if `layout` has room for it and
+/// `picture` has it. Colours are divided by an A that is stored. Numbers that are not finite become 0. Throws
+/// Error if a plane is missing.
 FlatImage flatten(const Picture& picture, PixelLayout layout);
 
 /// One fact of ImageMetadata under the name that it has in files.

@@ -27,7 +27,8 @@ bool keeps_all_planes(const std::string& path);
 ///   are stored as they are, NaN and infinities included; finite values too large for half become the largest
 ///   half.
 /// - HDR and other formats of floating point: linear R, G, B.
-/// - All others: 8-bit sRGB of R, G, B and, where the format has it, A. If A is stored, colours are divided
+/// - All others: 8-bit sRGB of R, G, B as picture.tone shows them and, where the format has it, A. If A is
+/// stored, colours are divided
 ///   by it; if not, they stay as they are (over black). NaN and infinities become 0. Only the data window is
 ///   written.
 void write_image(const std::string& path, const Picture& picture, const ImageMetadata& metadata = {});

@@ -18,10 +18,30 @@ void check_view(const Camera& camera, const YamlNode& node) {
     throw Error(node.where(), "the camera's 'up' is parallel to its view direction");
 }
 
+void read_lens(SceneValues& values, const Fields& fields, const YamlNode& node, Camera& camera) {
+  const YamlNode *aperture = fields["aperture"], *f_number = fields["f_number"], *focus = fields["focus"];
+  if (aperture && f_number) throw Error(node.where(), "expected 'aperture' or 'f_number', not both");
+  values.read(aperture, camera.aperture, kNonNegative);
+  values.read(f_number, camera.f_number, kPositive);
+  if (aperture) camera.f_number = 0;
+  if (f_number) camera.aperture = 0;
+  if (f_number && camera.projection == Projection::orthographic)
+    throw Error(f_number->where(), "an orthographic view has no f-number; expected 'aperture'");
+  if (focus && focus->kind == YamlKind::sequence) {
+    camera.focus_at = values.vector(*focus);
+  } else if (focus) {
+    camera.focus_at.reset();
+    values.read(focus, camera.focus, kPositive);
+  }
+  if (camera.focus_at && !(dot(*camera.focus_at - camera.from, camera.at - camera.from) > 0))
+    throw Error(focus ? focus->where() : node.where(), "the point in focus does not lie before the camera");
+}
+
 }  // namespace
 
 void read_camera(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "camera", {"from", "at", "up", "fov", "projection", "height"});
+  const Fields fields(node, "camera",
+                      {"from", "at", "up", "fov", "projection", "height", "aperture", "f_number", "focus"});
   SceneValues& values = load.values;
   Camera& camera = load.scene.camera;
   load.scene.camera_given = true;
@@ -34,10 +54,12 @@ void read_camera(SceneLoad& load, const YamlNode& node) {
     camera.projection = values.choice<Projection>(
         *projection, {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}});
   check_view(camera, node);
+  read_lens(values, fields, node, camera);
 }
 
 void read_film(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "film", {"width", "height", "crop"});
+  const Fields fields(node, "film",
+                      {"width", "height", "crop", "filter", "filter_radius", "tone", "exposure"});
   Film& film = load.scene.film;
   if (const YamlNode* width = fields["width"]) film.width = load.values.integer(*width, 1, kMaxFilmSide);
   if (const YamlNode* height = fields["height"]) film.height = load.values.integer(*height, 1, kMaxFilmSide);
@@ -49,23 +71,27 @@ void read_film(SceneLoad& load, const YamlNode& node) {
       throw Error(crop->where(),
                   "the crop window is empty; expected [x0, x1, y0, y1] with x0 < x1 and y0 < y1");
   }
+  if (const YamlNode* filter = fields["filter"]) {
+    film.filter = load.values.choice<FilterKind>(*filter, kFilterKinds);
+    film.filter_radius = 0;
+  }
+  load.values.read(fields["filter_radius"], film.filter_radius, kFilterRadii);
+  if (const YamlNode* tone = fields["tone"]) film.tone.kind = load.values.choice<ToneKind>(*tone, kToneKinds);
+  load.values.read(fields["exposure"], film.tone.exposure, kExposures);
 }
 
 void read_integrator(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "integrator", {"kind", "samples", "depth", "seed", "ao_radius"});
+  const Fields fields(node, "integrator", {"kind", "samples", "depth", "seed", "ao_radius", "clamp"});
   SceneValues& values = load.values;
   IntegratorSettings& integrator = load.scene.integrator;
   if (const YamlNode* kind = fields["kind"])
-    integrator.kind = values.choice<IntegratorKind>(*kind, {{"whitted", IntegratorKind::whitted},
-                                                            {"path", IntegratorKind::path},
-                                                            {"ao", IntegratorKind::ao},
-                                                            {"normal", IntegratorKind::normal},
-                                                            {"depth", IntegratorKind::depth}});
+    integrator.kind = values.choice<IntegratorKind>(*kind, kIntegratorKinds);
   if (const YamlNode* samples = fields["samples"]) integrator.samples = values.integer(*samples, 1, 65536);
   if (const YamlNode* depth = fields["depth"]) integrator.depth = values.integer(*depth, 0, 64);
   if (const YamlNode* seed = fields["seed"])
     integrator.seed = values.integer(*seed, 0, std::numeric_limits<std::uint32_t>::max());
   values.read(fields["ao_radius"], integrator.ao_radius, kNonNegative);
+  values.read(fields["clamp"], integrator.clamp, kNonNegative);
 }
 
 }  // namespace oktett

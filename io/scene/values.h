@@ -75,6 +75,10 @@ class SceneValues {
 
   template <class T>
   T choice(const YamlNode& node, std::initializer_list<Choice<T>> choices) {
+    return choice<T>(node, std::span(choices.begin(), choices.size()));
+  }
+  template <class T>
+  T choice(const YamlNode& node, std::span<const Choice<T>> choices) {
     const std::string word = text(node);
     std::vector<std::string> names;
     for (const Choice<T>& c : choices) {

@@ -19,4 +19,14 @@ Vec3f cosine_direction(const Vec3f& n, const SquareSample& s) {
   return normalize(tangent * x + bitangent * y + n * z);
 }
 
+SquareSample disk_point(const SquareSample& s) {
+  constexpr double kQuarter = std::numbers::pi / 4;
+  const double a = 2 * s.x - 1, b = 2 * s.y - 1;
+  if (a == 0 && b == 0) return {0, 0};
+  const bool wide = std::abs(a) > std::abs(b);
+  const double radius = wide ? a : b, angle = kQuarter * (wide ? b / a : a / b);
+  const double along = radius * portable::cos(angle), across = radius * portable::sin(angle);
+  return wide ? SquareSample{along, across} : SquareSample{across, along};
+}
+
 }  // namespace oktett

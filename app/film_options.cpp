@@ -1,0 +1,50 @@
+#include "app/film_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+#include "app/choice.h"
+#include "core/error.h"
+
+namespace oktett {
+namespace {
+
+/// Reads the value of `option` if there is one.
+void read_number(const char* option, std::string_view text, const Range& range, double& value) {
+  if (text.empty()) return;
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw Error(fmt::format("{}: '{}' is no number", option, text));
+  if (!std::isfinite(number) || !range.contains(number))
+    throw Error(fmt::format("{}: {} is out of range; expected {} to {}", option, text, range.lo, range.hi));
+  value = number;
+}
+
+}  // namespace
+
+void add_film_options(Verb& verb, FilmArguments& a) {
+  verb.option("--filter", &a.filter, "K", "Filter of pixels: box, tent, gaussian or blackman_harris");
+  verb.option("--tone", &a.tone, "K", "Tone curve of 8-bit pictures: srgb, filmic, aces or neutral");
+  verb.option("--exposure", &a.exposure, "STOPS", "Exposure of 8-bit pictures");
+  verb.option("--clamp", &a.clamp, "RADIANCE",
+              "Darken samples that are brighter; loses light, but removes bright dots");
+}
+
+void override_film(const FilmArguments& a, Scene& scene) {
+  Film& film = scene.film;
+  if (!a.filter.empty()) {
+    film.filter = choice_of<FilterKind>("--filter", a.filter, kFilterKinds);
+    film.filter_radius = 0;
+  }
+  if (!a.tone.empty()) film.tone.kind = choice_of<ToneKind>("--tone", a.tone, kToneKinds);
+  read_number("--exposure", a.exposure, kExposures, film.tone.exposure);
+  read_number("--clamp", a.clamp, kNonNegative, scene.integrator.clamp);
+}
+
+}  // namespace oktett

@@ -1,0 +1,90 @@
+/// \file The first rays of a wavefront: where samples pass the film and the lens.
+
+#include <algorithm>
+
+#include "core/random.h"
+#include "render/integrators.h"
+#include "render/sample_dimensions.h"
+#include "render/sampling/owen_sobol.h"
+#include "render/wavefront.h"
+
+namespace oktett {
+namespace {
+
+std::uint64_t key_of(const RenderContext& context, const WavefrontPixel& pixel) {
+  return pixel_key(context.settings.seed, static_cast<std::uint64_t>(pixel.y) * context.full_width + pixel.x);
+}
+
+/// Places the only sample of each pixel at its centre.
+void centre_samples(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                    Wavefront& wavefront) {
+  SampleBatch& s = wavefront.samples;
+  const std::size_t count = pixels.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    wavefront.film_x[i] = pixels[i].x + 0.5, wavefront.film_y[i] = pixels[i].y + 0.5;
+    s.pixel[i] = pixels[i].number;
+  }
+  std::fill_n(s.number.data(), count, 0u);
+  std::fill_n(s.offset.data(), count, Vec2f{0, 0});
+  if (draws_random_numbers(context.settings.kind))
+    for (std::size_t i = 0; i < count; ++i) s.key[i] = key_of(context, pixels[i]);
+}
+
+/// Places samples [first, last) of each pixel by the filter.
+void spread_samples(const RenderContext& context, std::span<const WavefrontPixel> pixels, std::uint32_t first,
+                    std::uint32_t last, Wavefront& wavefront) {
+  SampleBatch& s = wavefront.samples;
+  const bool square = context.filter.is_pixel();
+  std::size_t i = 0;
+  for (const WavefrontPixel& pixel : pixels) {
+    const std::uint64_t key = key_of(context, pixel);
+    const std::uint64_t places = sequence_key(key, dimension(Decision::film));
+    for (std::uint32_t number = first; number < last; ++number, ++i) {
+      SquareSample at = sobol_point(number, places);
+      if (!square) at = {context.filter.offset(at.x) + 0.5, context.filter.offset(at.y) + 0.5};
+      wavefront.film_x[i] = pixel.x + at.x, wavefront.film_y[i] = pixel.y + at.y;
+      s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
+      s.offset[i] = {static_cast<float>(at.x - 0.5), static_cast<float>(at.y - 0.5)};
+    }
+  }
+}
+
+/// Places samples [first, last) of each pixel on the lens.
+void spread_over_lens(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                      std::uint32_t first, std::uint32_t last, Wavefront& wavefront) {
+  const std::size_t count = wavefront.samples.size();
+  wavefront.lens_x.resize_uninitialized(count), wavefront.lens_y.resize_uninitialized(count);
+  std::size_t i = 0;
+  for (const WavefrontPixel& pixel : pixels) {
+    const std::uint64_t places = sequence_key(key_of(context, pixel), kLensDimension);
+    for (std::uint32_t number = first; number < last; ++number, ++i) {
+      const SquareSample at = sobol_point(number, places);
+      wavefront.lens_x[i] = at.x, wavefront.lens_y[i] = at.y;
+    }
+  }
+}
+
+}  // namespace
+
+void start_wavefront(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                     std::uint32_t first, std::uint32_t last, Wavefront& wavefront) {
+  const std::size_t count = pixels.size() * (last - first);
+  wavefront.level = 0;
+  wavefront.whole_pixels = last - first == context.settings.samples;
+  wavefront.next.clear();
+  const bool path = context.settings.kind == IntegratorKind::path;
+  wavefront.shadows.resize(path ? kAreaQueue + 1 : std::max<std::size_t>(1, context.lights.size()));
+  wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);
+  wavefront.samples.resize_uninitialized(count, context.data_layers);
+  wavefront.rays.resize_uninitialized(count);
+  if (context.settings.samples == 1)
+    centre_samples(context, pixels, wavefront);
+  else
+    spread_samples(context, pixels, first, last, wavefront);
+  if (context.camera.lens_radius > 0) spread_over_lens(context, pixels, first, last, wavefront);
+  camera_rays(context.camera, {wavefront.film_x, wavefront.film_y, &wavefront.lens_x, &wavefront.lens_y},
+              wavefront.rays.rays, context.isa);
+  wavefront.counts.camera += count;
+}
+
+}  // namespace oktett

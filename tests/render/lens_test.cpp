@@ -1,0 +1,150 @@
+/// \file The thin lens: circles of confusion in closed form, distribution over the lens.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/sampling/warp.h"
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+Film film(std::uint32_t width, std::uint32_t height) {
+  Film f;
+  f.width = width, f.height = height;
+  return f;
+}
+
+Camera lens_camera(Projection projection, double aperture, double focus) {
+  Camera camera;
+  camera.projection = projection;
+  camera.from = {1, 2, 3}, camera.at = {-2, 1, -4}, camera.up = {0.1, 1, 0};
+  camera.aperture = aperture, camera.focus = focus;
+  return camera;
+}
+
+/// Where a ray passes the plane at distance `depth` along the view axis.
+Vec3d at_depth(const CameraFrame& frame, const Ray& ray, double depth) {
+  const Vec3d o(ray.origin), d(ray.direction);
+  return o + d * ((depth - dot(o - frame.origin, frame.forward)) / dot(d, frame.forward));
+}
+
+// All rays of a film point meet in the plane in focus; elsewhere they fill a disk whose radius is that of the
+// lens times |depth - focus| / focus, by similar triangles.
+TEST(Lens, RaysOfAPointFillItsCircleOfConfusion) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic})
+    for (const double aperture : {1e-3, 0.5, 40.0})
+      for (const double focus : {0.1, 3.0, 500.0}) {
+        const CameraFrame frame = camera_frame(lens_camera(projection, aperture, focus), film(64, 48));
+        const Ray middle = camera_ray(frame, 20.3, 7.9);
+        for (const double depth : {0.5 * focus, focus, 3 * focus}) {
+          const double radius = aperture / 2 * std::abs(depth - focus) / focus;
+          // Directions are floats; the more a ray leans, the more their error counts.
+          const double scale = (focus + aperture + depth) * (1 + aperture / focus);
+          double farthest = 0;
+          for (int i = 0; i < 400; ++i) {
+            const double u = (i % 20 + 0.5) / 20, v = (i / 20 + 0.5) / 20;
+            const Ray ray = camera_ray(frame, 20.3, 7.9, u, v);
+            EXPECT_NEAR(length(ray.direction), 1, 1e-6f);
+            const Vec3d away = at_depth(frame, ray, depth) - at_depth(frame, middle, depth);
+            // The disk is parallel to the film.
+            EXPECT_NEAR(dot(away, frame.forward), 0, 1e-6 * scale);
+            farthest = std::max(farthest, length(away));
+          }
+          EXPECT_LT(farthest, radius + 2e-6 * scale);
+          EXPECT_GT(farthest, 0.94 * radius - 2e-6 * scale);
+        }
+      }
+}
+
+// The map of the square to the disk keeps areas: as many points fall into each ring and sector as its area
+// says.
+TEST(Lens, PointsOfTheDiskAreUniform) {
+  constexpr int kSide = 400, kRings = 4, kSectors = 8;
+  int count[kRings][kSectors] = {};
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const SquareSample p = disk_point({(i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide});
+    const double r = std::hypot(p.x, p.y);
+    ASSERT_LE(r, 1 + 1e-12);
+    const double turn = std::atan2(p.y, p.x) / (2 * std::numbers::pi) + 0.5;
+    ++count[std::min(kRings - 1, static_cast<int>(r * r * kRings))]
+           [std::min(kSectors - 1, static_cast<int>(turn * kSectors))];
+  }
+  for (const auto& ring : count)
+    for (const int n : ring) EXPECT_NEAR(n, kSide * kSide / (kRings * kSectors), 0.02 * n);
+  for (const SquareSample& s : {SquareSample{0.5, 0.5}, SquareSample{0, 0}, SquareSample{1 - 1e-16, 0}}) {
+    const SquareSample p = disk_point(s);
+    EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+    EXPECT_LE(std::hypot(p.x, p.y), 1 + 1e-12);
+  }
+}
+
+// The picture of a small glowing disk out of focus is its share of the lens: radius squared over that of the
+// circle of confusion squared.
+TEST(Lens, SmallThingsOutOfFocusAreSpread) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Scene scene = bare_scene(1);
+    scene.camera.projection = projection;
+    scene.camera.from = {0, 0, 0}, scene.camera.at = {0, 0, -1};
+    // A pixel so small that what it sees is a point.
+    scene.camera.fov = 1e-4, scene.camera.height = 1e-6;
+    scene.camera.aperture = 0.5, scene.camera.focus = 2;
+    scene.integrator.samples = 4096;
+    add_object(scene, DiskShape{{0, 0, -5}, {0, 0, 1}, 0.1}, add_material(scene, glowing({1, 1, 1})));
+    const double radius = 0.25 * (5 - 2) / 2;
+    EXPECT_NEAR(value(run(scene).picture, "R", 0, 0), 0.1 * 0.1 / (radius * radius), 0.003);
+    // In focus it is as bright as it is.
+    scene.camera.focus = 5;
+    EXPECT_EQ(value(run(scene).picture, "R", 0, 0), 1);
+  }
+}
+
+TEST(Lens, FocusIsADistanceAPointOrWhatTheCameraLooksAt) {
+  Camera camera;
+  camera.from = {0, 0, 5}, camera.aperture = 1;
+  EXPECT_EQ(camera_frame(camera, film(4, 4)).focus, 5);
+  camera.focus = 3;
+  EXPECT_EQ(camera_frame(camera, film(4, 4)).focus, 3);
+  camera.focus_at = Vec3d{7, -2, 1};
+  EXPECT_EQ(camera_frame(camera, film(4, 4)).focus, 4);
+  // A plane of focus behind the camera is none: the camera is a pinhole.
+  camera.focus_at = Vec3d{0, 0, 6};
+  EXPECT_EQ(camera_frame(camera, film(4, 4)).lens_radius, 0);
+}
+
+// A lens of 50 mm at f/2 has a diameter of 25 mm.
+TEST(Lens, FNumbersAreThoseOfPhotography) {
+  Camera camera;
+  camera.fov = 2 * std::atan(0.012 / 0.05) * 180 / std::numbers::pi;
+  camera.f_number = 2;
+  EXPECT_NEAR(camera_frame(camera, film(36, 24)).lens_radius, 0.0125, 1e-12);
+}
+
+// The same picture for every instruction set, number of threads and crop; the lens does not change what a
+// pinhole shows.
+TEST(Lens, PicturesHaveTheSameBits) {
+  Scene scene = bare_scene(24);
+  scene.integrator.samples = 5;
+  scene.camera.aperture = 0.3;
+  scene.lights = {PointLight{{3, 4, 5}, {1, 1, 1}, false}};
+  add_object(scene, SphereShape{{0, 0, 1}, 0.7}, add_material(scene, diffuse({1, 0.5, 0.2f})));
+  add_object(scene, PlaneShape{{0, 1, 0}, -1}, 0);
+  const Picture one = run(scene, [](RenderOptions& o) { o.threads = 1, o.isa = Isa::scalar; }).picture;
+  EXPECT_TRUE(same_bytes(one, run(scene, [](RenderOptions& o) { o.threads = 3; }).picture));
+  scene.camera.aperture = 1e-12;
+  const Picture sharp = run(scene).picture;
+  scene.camera.aperture = 0;
+  const Picture pinhole = run(scene).picture;
+  double difference = 0;
+  for (std::size_t i = 0; i < 24 * 24; ++i)
+    difference += std::abs(sharp.find("R")->values[i] - pinhole.find("R")->values[i]);
+  EXPECT_LT(difference, 1e-2);
+}
+
+}  // namespace
+}  // namespace oktett
