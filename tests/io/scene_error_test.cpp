@@ -131,7 +131,8 @@ TEST(SceneError, WrongTypes) {
       {"camera: {fov: wide}", "scene.yaml:2:15: expected a number, found 'wide'"},
       {"camera: {projection: fish}", "scene.yaml:2:22: expected perspective or orthographic, found 'fish'"},
       {"integrator: {kind: paht}",
-       "scene.yaml:2:20: expected whitted or path or ao or normal or depth, found 'paht'; did you mean "
+       "scene.yaml:2:20: expected whitted or path or ao or normal or depth or albedo or uv or position or "
+       "object or primitive or facing or wire, found 'paht'; did you mean "
        "'path'?"},
       {"objects: {sphere: {}}", "scene.yaml:2:10: expected a list for objects, found a map"},
       {"objects: [sphere]", "scene.yaml:2:11: expected a map for an object, found 'sphere'"},
