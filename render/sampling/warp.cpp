@@ -1,8 +1,10 @@
 #include "render/sampling/warp.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/lane_math.h"
+#include "core/math.h"
 
 namespace oktett {
 
