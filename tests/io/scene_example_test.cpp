@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
+#include "io/image/texture.h"
+#include "render/render.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett {
@@ -31,6 +36,37 @@ TEST(SceneExample, ShapesShowsEveryShape) {
   std::vector<bool> seen(std::variant_size_v<Shape>);
   for (const Object& object : scene.objects) seen[object.shape.index()] = true;
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_TRUE(seen[i]) << "alternative " << i << " of Shape";
+}
+
+/// The bits of the colours of a small picture.
+std::vector<std::uint32_t> small_picture(Scene scene, Isa isa, unsigned threads) {
+  scene.film.height = std::max(1u, 40 * scene.film.height / scene.film.width), scene.film.width = 40;
+  scene.integrator.samples = std::min(scene.integrator.samples, 4u);
+  const ImageTextures textures(scene.textures);
+  RenderOptions options;
+  options.isa = isa, options.threads = threads, options.tile_size = 16;
+  options.textures = &textures, options.data_layers = false;
+  const RenderResult result = render(std::move(scene), options);
+  EXPECT_EQ(result.report.bad_samples, 0u);
+  std::vector<std::uint32_t> bits;
+  for (const char* name : {"R", "G", "B"})
+    for (const float value : result.picture.find(name)->values) {
+      EXPECT_TRUE(std::isfinite(value));
+      bits.push_back(std::bit_cast<std::uint32_t>(value));
+    }
+  return bits;
+}
+
+TEST(SceneExample, EveryPictureHasTheSameBitsForAllSetsAndThreads) {
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+    if (entry.path().extension() != ".yaml") continue;
+    if (entry.path().filename() == "bunny.yaml" && !std::filesystem::exists(kBunny)) continue;
+    SCOPED_TRACE(entry.path().string());
+    const Scene scene = load_scene(entry.path().string());
+    const std::vector<std::uint32_t> expected = small_picture(scene, Isa::scalar, 1);
+    for (const Isa isa : available_isas())
+      EXPECT_EQ(small_picture(scene, isa, 2), expected) << to_string(isa);
+  }
 }
 
 /// The bunny stands on the ground: its lowest vertex touches y = 0.
