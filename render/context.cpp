@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/math.h"
+#include "render/adaptive.h"
 #include "render/bsdf/phong_power.h"
 #include "render/path_surfaces.h"
 #include "render/shading_point.h"
@@ -66,6 +67,17 @@ static void set_depth_range(const Box& box, RenderContext& context) {
   context.near_depth = static_cast<float>(nearest), context.far_depth = static_cast<float>(farthest);
 }
 
+std::uint32_t first_samples(const IntegratorSettings& settings) {
+  return std::clamp(settings.samples, settings.error > 0 ? kLeastPilot : 1u, 65536u);
+}
+
+std::vector<LightSource> light_sources(const Scene& scene) {
+  std::vector<LightSource> sources;
+  for (const Light& light : scene.lights)
+    if (lights_whitted(light)) sources.push_back(light_source(light));
+  return sources;
+}
+
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
                            const TextureSampler* textures, Isa isa) {
   RenderContext c;
@@ -77,11 +89,10 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.full_width = std::max(scene.film.width, 1u), c.full_height = std::max(scene.film.height, 1u);
   c.filter = FilterSampler(scene.film.filter, scene.film.filter_radius);
   c.settings = scene.integrator;
-  c.settings.samples = std::clamp(c.settings.samples, 1u, 65536u);
+  c.settings.samples = first_samples(scene.integrator);
   c.settings.depth = std::min(c.settings.depth, 64u);
   c.sampled = &lights;
-  for (const Light& light : scene.lights)
-    if (lights_whitted(light)) c.lights.push_back(light_source(light));
+  c.lights = light_sources(scene);
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   if (c.settings.kind == IntegratorKind::path)

@@ -49,8 +49,16 @@ struct RenderContext {
   bool data_layers = true;
   float ao_radius = 1;                  ///< reach of ambient-occlusion rays
   float near_depth = 0, far_depth = 1;  ///< what the depth integrator shows as white and black
-  float footprint_scale = 1;            ///< width of a sample's share of the pixel, in pixels
+  /// If not null, one for each moment while the shutter is open, see render/moments.h.
+  const std::vector<RenderContext>* moments = nullptr;
+  float footprint_scale = 1;  ///< width of a sample's share of the pixel, in pixels
 };
+
+/// The number of samples that every pixel gets.
+std::uint32_t first_samples(const IntegratorSettings& settings);
+
+/// The lights that have a place or a direction.
+std::vector<LightSource> light_sources(const Scene& scene);
 
 /// `scene` has its camera and lights filled in. `world`, `lights` and `textures` must outlive the result.
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,

@@ -113,6 +113,9 @@ Picture make_picture(const RenderContext& context) {
     }
     picture.planes.push_back(std::move(plane));
   }
+  if (context.data_layers && context.settings.error > 0)
+    picture.planes.push_back(
+        {kSampleCountPlane, PlaneType::unsigned_int, {}, Column<std::uint32_t>(size, 0)});
   return picture;
 }
 

@@ -25,6 +25,9 @@ struct PixelSum {
 /// Adds sample `i`; false if it is left out because it holds NaN or infinity.
 bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 
+/// The plane that holds the number of samples of each pixel in adaptive sampling.
+inline constexpr const char* kSampleCountPlane = "sampleCount.I";
+
 /// An empty picture with the planes of a render: black and transparent, Z infinite, all ids kNoId.
 ///
 /// Beauty: R, G, B and A are means over the samples. A is the fraction covered. A background that gives light
@@ -38,6 +41,7 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 /// - primID.I is the primitive in its geometry, geomID.I the object in the scene (as World counts them). They
 ///   are those of the sample nearest to the pixel's centre, never filtered.
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
+/// - sampleCount.I, in adaptive sampling only, is the number of the pixel's samples.
 Picture make_picture(const RenderContext& context);
 
 /// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is

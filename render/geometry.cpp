@@ -19,6 +19,10 @@ class WorldBuilder {
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
     world_.accel = build_list(scene_.objects);
     world_.bounds = bounds(*world_.accel);
+    if (!world_.moving.empty()) {
+      world_.still = world_.accel;
+      pose(world_, 0, options_);
+    }
     world_.sah_cost = stats(*world_.accel).sah_cost;
     add_materials();
     return std::move(world_);
@@ -30,6 +34,10 @@ class WorldBuilder {
     std::uint64_t instances = 0;
     for (std::size_t k = 0; k < objects.size(); ++k) {
       const Object& object = objects[k];
+      if (object.motion != nullptr && &objects == &scene_.objects) {
+        add_moving(object);
+        continue;
+      }
       Geometry geometry;
       if (const std::size_t run = instances_from(objects, k); run >= kLeastList) {
         geometries.push_back({instance_list(objects, k, run), {}, kNoId});
@@ -42,6 +50,11 @@ class WorldBuilder {
       if (instance && object.transform.is_invertible()) ++instances;
       geometries.push_back(std::move(geometry));
     }
+    return build_counted(std::move(geometries), instances);
+  }
+
+  /// A structure whose triangles, primitives and bytes are counted. So many of its items are `instances`.
+  std::shared_ptr<const Accel> build_counted(std::vector<Geometry> geometries, std::uint64_t instances) {
     std::shared_ptr<const Accel> accel = build_accel(std::move(geometries), options_);
     const AccelStats s = stats(*accel);
     world_.triangles += s.triangles;
@@ -50,12 +63,23 @@ class WorldBuilder {
     return accel;
   }
 
+  void add_moving(const Object& object) {
+    Object unmoved = object;
+    unmoved.transform = {};
+    Geometry geometry;
+    if (!make_geometry(unmoved, geometry)) return;
+    if (const auto* instance = std::get_if<InstanceGeometry>(&geometry.shape))
+      world_.moving.push_back({instance->child, object.motion, geometry.user});
+    else
+      world_.moving.push_back({build_counted({std::move(geometry)}, 0), object.motion, kNoId});
+  }
+
   /// Number of instances in a row from object `first` on.
   std::size_t instances_from(const std::vector<Object>& objects, std::size_t first) const {
     std::size_t end = first;
     while (end < objects.size()) {
       const auto* instance = std::get_if<InstanceShape>(&objects[end].shape);
-      if (instance == nullptr || instance->prototype >= prototypes_.size()) break;
+      if (instance == nullptr || instance->prototype >= prototypes_.size() || objects[end].motion) break;
       ++end;
     }
     return end - first;
@@ -185,6 +209,16 @@ class WorldBuilder {
 
 World build_world(const Scene& scene, const BuildOptions& options) {
   return WorldBuilder(scene, options).build();
+}
+
+void pose(World& world, double time, const BuildOptions& options) {
+  std::vector<Geometry> geometries;
+  if (world.still != nullptr && stats(*world.still).items > 0)
+    geometries.push_back({InstanceGeometry{world.still}, {}, kNoId});
+  for (const MovingObject& object : world.moving)
+    geometries.push_back({InstanceGeometry{object.shape}, object.motion->at(time), object.user});
+  world.accel = build_accel(std::move(geometries), options);
+  world.bounds = bounds(*world.accel);
 }
 
 const Material& material_at(const World& world, const SurfaceInteraction& surface) {

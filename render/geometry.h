@@ -18,6 +18,13 @@ struct ObjectMaterials {
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
 };
 
+/// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
+struct MovingObject {
+  std::shared_ptr<const Accel> shape;
+  MotionPointer motion;
+  std::uint32_t user = kNoId;  ///< of the instance, as in Geometry
+};
+
 /// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's
 /// own; an instance counts as one object.
 struct World {
@@ -25,7 +32,9 @@ struct World {
   std::vector<ObjectMaterials> objects;
   std::vector<Material> materials;  ///< those of the scene, and the default material at the end
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< kept alive for `accel`
-  Box bounds;                                               ///< of all that is bounded
+  std::shared_ptr<const Accel> still;  ///< what does not move, if anything moves; may be null then
+  std::vector<MovingObject> moving;
+  Box bounds;                ///< of all that is bounded
   bool see_through = false;  ///< some material lets light pass, so shadow rays must look at what they hit
 
   std::uint64_t triangles = 0, primitives = 0;  ///< unique, instances not counted
@@ -36,6 +45,9 @@ struct World {
 /// Each prototype becomes one acceleration structure, shared by its instances. References that lead nowhere
 /// (a missing mesh, a prototype that does not stand earlier in the list) are left out.
 World build_world(const Scene& scene, const BuildOptions& options = {});
+
+/// Places what moves where it is at `time`: changes `accel` and `bounds`. build_world does it for time 0.
+void pose(World& world, double time, const BuildOptions& options = {});
 
 /// The material at a hit: that of the object, else of the mesh's slot, else the default material.
 const Material& material_at(const World& world, const SurfaceInteraction& surface);

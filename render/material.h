@@ -79,7 +79,6 @@ struct Material {
   std::uint32_t bump_texture = kNoId;     ///< height, perturbs the shading normal (map_Bump)
   std::uint32_t normal_texture = kNoId;   ///< tangent-space normal (norm)
   float bump_scale = 1;                   ///< MTL `-bm`
-  std::string group;                      ///< the light group that its emission belongs to; may be empty
   bool operator==(const Material&) const = default;
 };
 

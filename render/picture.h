@@ -36,6 +36,9 @@ struct Picture {
       if (plane.name == name) return &plane;
     return nullptr;
   }
+  PicturePlane* find(const std::string& name) {
+    return const_cast<PicturePlane*>(static_cast<const Picture*>(this)->find(name));
+  }
 };
 
 }  // namespace oktett

@@ -14,6 +14,7 @@
 #include "render/default_view.h"
 #include "render/film.h"
 #include "render/geometry.h"
+#include "render/moments.h"
 #include "render/tile.h"
 
 namespace oktett {
@@ -105,13 +106,15 @@ void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture
 RenderResult render_here(Scene scene, const RenderOptions& options) {
   RenderResult result;
   const Clock::time_point start = Clock::now();
-  const World world = build_world(scene, options.build);
+  World world = build_world(scene, options.build);
+  Moments moments(scene, world, options.build);
   complete_scene(scene, world.bounds);
   const double build_seconds = seconds_since(start);
 
   const SceneLights lights(scene, world);
   RenderContext context = make_context(scene, world, lights, options.textures, options.isa);
   context.data_layers = options.data_layers;
+  moments.share(scene, context);
   result.picture = make_picture(context);
   result.picture.tone = scene.film.tone;
   const Clock::time_point tracing = Clock::now();

@@ -86,6 +86,9 @@ inline constexpr Choice<IntegratorKind> kIntegratorKinds[] = {
     {"object", IntegratorKind::object},   {"primitive", IntegratorKind::primitive},
     {"facing", IntegratorKind::facing},   {"wire", IntegratorKind::wire}};
 
+/// Relative errors that adaptive sampling can be asked for; 0: it is off.
+inline constexpr Range kErrors{0, 1};
+
 /// How light is computed, and with how many samples.
 struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
@@ -154,7 +157,6 @@ using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentL
 /// What may be said of any light.
 struct LightTraits {
   MotionPointer motion;  ///< moves the light; not of environments and skies
-  std::string group;     ///< the light group that it belongs to; empty: that of all lights without one
 };
 
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.

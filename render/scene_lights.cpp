@@ -181,10 +181,19 @@ class EmitterCollector {
   std::vector<Emitter>& emitters_;
 };
 
-SceneLights::SceneLights(const Scene& scene, const World& world) {
+static bool is_environment(const Light& light) {
+  return std::holds_alternative<EnvironmentLight>(light) || std::holds_alternative<SkyLight>(light);
+}
+
+SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLights* like) {
   std::vector<Emitter> emitters;
   for (const Light& light : scene.lights) {
-    emitters.push_back(std::visit([](const auto& l) { return emitter(l); }, light));
+    if (like != nullptr && is_environment(light))
+      emitters.push_back(EnvironmentEmitter{like->environments_[environments_.size()]});
+    else
+      emitters.push_back(std::visit([](const auto& l) { return emitter(l); }, light));
+    if (const auto* environment = std::get_if<EnvironmentEmitter>(&emitters.back()))
+      environments_.push_back(environment->map);
     if (const auto* sky = std::get_if<SkyLight>(&light)) emitters.push_back(emitter(sun_of(*sky)));
     const auto* directional = std::get_if<DirectionalLight>(&light);
     const bool point = directional != nullptr ? directional->angle == 0 : has_place(light);

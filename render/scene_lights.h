@@ -3,6 +3,7 @@
 /// that glow.
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -27,7 +28,9 @@ class SceneLights {
  public:
   /// The lights of `scene`, whose lights are filled in, and if it is for path tracing, of the glowing
   /// surfaces in `world`.
-  SceneLights(const Scene& scene, const World& world);
+  /// `like`, which may be null, was made for the same scene at another moment: its environments are used
+  /// again.
+  SceneLights(const Scene& scene, const World& world, const SceneLights* like = nullptr);
 
   const LightSet& set() const { return set_; }
   /// The number of the emitter in set() whose surface was hit; kNoId if it is not sampled.
@@ -51,8 +54,9 @@ class SceneLights {
   friend class EmitterCollector;
 
   LightSet set_;
-  std::vector<EmitterKey> keys_;           ///< ordered by instance and item
-  std::vector<TexturedEmitter> textured_;  ///< ordered by emitter
+  std::vector<EmitterKey> keys_;                                     ///< ordered by instance and item
+  std::vector<TexturedEmitter> textured_;                            ///< ordered by emitter
+  std::vector<std::shared_ptr<const EnvironmentMap>> environments_;  ///< in the order of their lights
   bool has_environment_ = false;
 };
 

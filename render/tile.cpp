@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <span>
 
+#include "render/tile_parts.h"
+
 namespace oktett {
 namespace {
-
-/// Greatest number of camera samples in a wavefront: enough to keep packets full after some bounces, few
-/// enough to stay in the cache.
-constexpr std::uint32_t kWavefrontSamples = 4096;
 
 /// The even bits of `code`, packed together.
 std::uint32_t even_bits(std::uint32_t code) {
@@ -17,8 +15,8 @@ std::uint32_t even_bits(std::uint32_t code) {
   return bits;
 }
 
-/// The pixels of a tile of the given size in Morton order, so that neighbours in the list make coherent
-/// packets.
+}  // namespace
+
 void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work) {
   if (work.width == width && work.height == height) return;
   work.width = width, work.height = height;
@@ -33,7 +31,6 @@ void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work)
   for (const WavefrontPixel& p : work.order) work.numbers[p.y * width + p.x] = p.number;
 }
 
-/// Darkens colours with a component above `most` until none is. Those that are not finite stay so.
 void clamp_samples(double most, ColorColumn& colors) {
   const auto limit = static_cast<float>(most);
   for (std::size_t i = 0; i < colors.size(); ++i) {
@@ -42,8 +39,6 @@ void clamp_samples(double most, ColorColumn& colors) {
     if (peak > limit && is_finite(color)) colors.set(i, color * (limit / peak));
   }
 }
-
-}  // namespace
 
 std::vector<FinishedTile> cut_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t tile_size) {
   std::vector<FinishedTile> tiles;
@@ -56,6 +51,7 @@ std::vector<FinishedTile> cut_tiles(std::uint32_t width, std::uint32_t height, s
 
 TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture,
                        TileWorkspace& work) {
+  if (needs_parts(context)) return render_tile_in_parts(context, tile, picture, work);
   list_pixels(tile.width, tile.height, work);
   work.pixels.clear();
   for (const WavefrontPixel& p : work.order)

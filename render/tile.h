@@ -30,6 +30,17 @@ struct TileWorkspace {
   TileColors colors;
 };
 
+/// Greatest number of camera samples in a wavefront: enough to keep packets full after some bounces, few
+/// enough to stay in the cache.
+inline constexpr std::uint32_t kWavefrontSamples = 4096;
+
+/// Sets `order` and `numbers` of the workspace to the pixels of a tile of the given size, in Morton order, so
+/// that neighbours in the list make coherent packets.
+void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work);
+
+/// Darkens colours with a component above `most` until none is. Those that are not finite stay so.
+void clamp_samples(double most, ColorColumn& colors);
+
 /// Renders the pixels of `tile` into `picture` and touches no others.
 TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture,
                        TileWorkspace& work);

@@ -8,6 +8,7 @@
 #include "io/image/image.h"
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
+#include "render/moved.h"
 
 namespace oktett {
 namespace {
@@ -32,8 +33,23 @@ Vec3d read_direction(SceneLoad& load, const YamlNode& node) {
   return direction;
 }
 
+/// Moves the light that was read last.
+void read_light_motion(SceneLoad& load, const Fields& fields) {
+  const YamlNode* node = fields["motion"];
+  if (!node) return;
+  Motion motion;
+  motion.factors.push_back(read_motion(load.values, *node));
+  std::vector<Light>& lights = load.scene.lights;
+  if (!motion.moves()) {
+    lights.back() = moved_light(motion.at(0), lights.back());
+    return;
+  }
+  load.scene.light_traits.resize(lights.size());
+  load.scene.light_traits.back().motion = std::make_shared<const Motion>(std::move(motion));
+}
+
 void read_point(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a point light", {"position", "color", "intensity", "falloff"});
+  const Fields fields(node, "a point light", {"position", "color", "intensity", "falloff", "motion"});
   PointLight light;
   light.position = load.values.vector(fields.require("position"));
   read_light_color(load, fields, node, "intensity", light.color);
@@ -41,11 +57,13 @@ void read_point(SceneLoad& load, const YamlNode& node) {
   light.falloff = fields["intensity"] != nullptr;
   load.values.read(fields["falloff"], light.falloff);
   load.scene.lights.emplace_back(light);
+  read_light_motion(load, fields);
 }
 
 void read_spot(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a spot light",
-                      {"position", "direction", "at", "color", "intensity", "inner_angle", "outer_angle"});
+  const Fields fields(
+      node, "a spot light",
+      {"position", "direction", "at", "color", "intensity", "inner_angle", "outer_angle", "motion"});
   SpotLight light;
   light.position = load.values.vector(fields.require("position"));
   const YamlNode *direction = fields["direction"], *at = fields["at"];
@@ -62,15 +80,17 @@ void read_spot(SceneLoad& load, const YamlNode& node) {
   if (light.inner_angle > light.outer_angle)
     throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
   load.scene.lights.emplace_back(light);
+  read_light_motion(load, fields);
 }
 
 void read_directional(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a directional light", {"direction", "color", "irradiance", "angle"});
+  const Fields fields(node, "a directional light", {"direction", "color", "irradiance", "angle", "motion"});
   DirectionalLight light;
   if (const YamlNode* direction = fields["direction"]) light.direction = read_direction(load, *direction);
   read_light_color(load, fields, node, "irradiance", light.color);
   load.values.read(fields["angle"], light.angle, {0, 180});
   load.scene.lights.emplace_back(light);
+  read_light_motion(load, fields);
 }
 
 /// The radiance of a picture file of all directions.
@@ -128,11 +148,17 @@ void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Sh
   object.shape = std::move(shape);
   object.material = static_cast<std::uint32_t>(load.scene.materials.size() - 1);
   object.where = node.where();
+  if (const YamlNode* motion = fields["motion"]) {
+    Motion moved;
+    moved.factors.push_back(read_motion(load.values, *motion));
+    object.transform = moved.at(0);
+    if (moved.moves()) object.motion = std::make_shared<const Motion>(std::move(moved));
+  }
   load.scene.objects.push_back(std::move(object));
 }
 
 void read_sphere_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a sphere light", {"center", "radius", "radiance", "power"});
+  const Fields fields(node, "a sphere light", {"center", "radius", "radiance", "power", "motion"});
   SphereShape sphere;
   sphere.center = load.values.vector(fields.require("center"));
   load.values.read(fields["radius"], sphere.radius, kPositive);
@@ -140,7 +166,7 @@ void read_sphere_light(SceneLoad& load, const YamlNode& node) {
 }
 
 void read_disk_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a disk light", {"center", "normal", "radius", "radiance", "power"});
+  const Fields fields(node, "a disk light", {"center", "normal", "radius", "radiance", "power", "motion"});
   DiskShape disk;
   disk.normal = {0, -1, 0};
   disk.center = load.values.vector(fields.require("center"));
@@ -150,7 +176,7 @@ void read_disk_light(SceneLoad& load, const YamlNode& node) {
 }
 
 void read_rectangle_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a rectangle light", {"corner", "u", "v", "radiance", "power"});
+  const Fields fields(node, "a rectangle light", {"corner", "u", "v", "radiance", "power", "motion"});
   const Vec3d corner = load.values.vector(fields.require("corner"));
   const Vec3d u = load.values.vector(fields.require("u")), v = load.values.vector(fields.require("v"));
   const double area = length(u) * length(v);

@@ -15,6 +15,7 @@ struct Surroundings {
   Affine transform;
   std::uint32_t material = kNoId;
   bool is_dropped = false;  ///< the members are checked but not kept
+  Motion motion;            ///< its value at time 0 is `transform`
 };
 
 /// Several objects as one operand: their union.
@@ -31,7 +32,7 @@ MapEntry find_shape(const YamlNode& node) {
   const std::vector<std::string>& shapes = object_keys();
   const std::string shape_names = fmt::format("{}", fmt::join(shapes, ", "));
   std::vector<std::string> known = shapes;
-  known.insert(known.end(), {"material", "transform", "name"});
+  known.insert(known.end(), {"material", "transform", "motion", "name"});
   MapEntry shape{nullptr, nullptr};
   for (const MapEntry& entry : map_entries(node, "an object")) {
     const std::string& key = entry.key->text;
@@ -60,7 +61,7 @@ class ObjectReader {
 
   void read(const YamlNode& node, const Surroundings& outer) {
     const auto [key, value] = find_shape(node);
-    const Fields fields(node, "an object", {key->text.c_str(), "material", "transform", "name"});
+    const Fields fields(node, "an object", {key->text.c_str(), "material", "transform", "motion", "name"});
     const bool is_group = key->text == "group", is_instance = key->text == "instance";
 
     Object object;
@@ -70,11 +71,12 @@ class ObjectReader {
       load_.objects.add(object.name, 0, name->where(), "object");
     }
     // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
-    Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped};
+    Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped, outer.motion};
     if (const YamlNode* material = fields["material"]) inner.material = read_material(load_, *material);
     if (const YamlNode* transform = fields["transform"]) {
       const Affine own = read_transform(load_.values, *transform);
       inner.transform = outer.transform * own;
+      inner.motion.factors.push_back({{0, own}});
       std::string reason = why_degenerate(own);
       if (reason.empty() && !outer.is_dropped) reason = why_degenerate(inner.transform);
       if (!reason.empty()) {
@@ -82,6 +84,12 @@ class ObjectReader {
         load_.warn(transform->where(),
                    reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
       }
+    }
+    if (const YamlNode* motion = fields["motion"]) {
+      if (fields["transform"])
+        throw Error(motion->where(),
+                    "expected 'transform' or 'motion', not both; a group can have the other");
+      read_motion_of(*motion, inner);
     }
     if (is_group) {
       for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
@@ -95,6 +103,7 @@ class ObjectReader {
     object.shape = std::move(*shape);
     object.material = inner.material;
     object.transform = inner.transform;
+    if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
     out_.push_back(std::move(object));
   }
 
@@ -102,17 +111,29 @@ class ObjectReader {
   int levels() const { return levels_; }
 
  private:
+  void read_motion_of(const YamlNode& node, Surroundings& inner) {
+    inner.motion.factors.push_back(read_motion(load_.values, node));
+    if (inner.motion.factors.back().size() > 1 && !name_.empty())
+      throw Error(node.where(), "what is in a prototype cannot move by itself; move its instances");
+    if (inner.motion.factors.back().size() > 1 && is_operand_)
+      throw Error(node.where(), "what is in a combination cannot move by itself; move the combination");
+    Motion own;
+    own.factors.push_back(inner.motion.factors.back());
+    inner.transform = inner.transform * own.at(0);
+  }
+
   std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
                                 const Surroundings& outer) {
     const auto nodes = list_items(operands, key.text);
     if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
     // Operands stand in the space of the combination, whose transform applies to all.
-    const Surroundings inner{{}, outer.material, outer.is_dropped};
+    const Surroundings inner{{}, outer.material, outer.is_dropped, {}};
     std::vector<Object> solids;
     bool is_nothing = false;
     for (const YamlNode* node : nodes) {
       std::vector<Object> members;
       ObjectReader reader(load_, members, defining_, name_);
+      reader.is_operand_ = true;
       reader.read(*node, inner);
       levels_ = std::max(levels_, reader.levels_);
       for (const Object& member : members) require_solid(load_, member);
@@ -159,6 +180,7 @@ class ObjectReader {
   std::vector<Object>& out_;
   const YamlNode* defining_;
   std::string name_;
+  bool is_operand_ = false;  ///< the objects are operands of a combination
   int levels_ = 0;
 };
 

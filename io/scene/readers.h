@@ -16,6 +16,9 @@ void read_camera(SceneLoad& load, const YamlNode& node);
 void read_film(SceneLoad& load, const YamlNode& node);
 void read_integrator(SceneLoad& load, const YamlNode& node);
 
+/// The keys of a motion: at least one, of ascending times and regular transforms.
+std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node);
+
 /// Adds the lights in a list.
 void read_lights(SceneLoad& load, const YamlNode& node);
 /// Adds the named materials in the map `materials` to the scene.

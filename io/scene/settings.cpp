@@ -1,6 +1,8 @@
 #include <limits>
+#include <memory>
 
 #include "io/scene/readers.h"
+#include "render/moved.h"
 
 namespace oktett {
 namespace {
@@ -41,7 +43,8 @@ void read_lens(SceneValues& values, const Fields& fields, const YamlNode& node, 
 
 void read_camera(SceneLoad& load, const YamlNode& node) {
   const Fields fields(node, "camera",
-                      {"from", "at", "up", "fov", "projection", "height", "aperture", "f_number", "focus"});
+                      {"from", "at", "up", "fov", "projection", "height", "aperture", "f_number", "focus",
+                       "shutter", "motion"});
   SceneValues& values = load.values;
   Camera& camera = load.scene.camera;
   load.scene.camera_given = true;
@@ -55,6 +58,20 @@ void read_camera(SceneLoad& load, const YamlNode& node) {
         *projection, {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}});
   check_view(camera, node);
   read_lens(values, fields, node, camera);
+  if (const YamlNode* shutter = fields["shutter"]) {
+    values.numbers(*shutter, camera.shutter);
+    if (camera.shutter[0] > camera.shutter[1])
+      throw Error(shutter->where(), "the shutter closes before it opens");
+  }
+  if (const YamlNode* motion = fields["motion"]) {
+    const auto moved = std::make_shared<Motion>();
+    moved->factors.push_back(read_motion(values, *motion));
+    camera.motion = moved;
+    // One key says where the camera stands all the time.
+    if (moved->moves()) return;
+    camera = camera_at(camera, 0);
+    camera.motion = nullptr;
+  }
 }
 
 void read_film(SceneLoad& load, const YamlNode& node) {
@@ -81,7 +98,8 @@ void read_film(SceneLoad& load, const YamlNode& node) {
 }
 
 void read_integrator(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "integrator", {"kind", "samples", "depth", "seed", "ao_radius", "clamp"});
+  const Fields fields(node, "integrator",
+                      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples"});
   SceneValues& values = load.values;
   IntegratorSettings& integrator = load.scene.integrator;
   if (const YamlNode* kind = fields["kind"])
@@ -92,6 +110,8 @@ void read_integrator(SceneLoad& load, const YamlNode& node) {
     integrator.seed = values.integer(*seed, 0, std::numeric_limits<std::uint32_t>::max());
   values.read(fields["ao_radius"], integrator.ao_radius, kNonNegative);
   values.read(fields["clamp"], integrator.clamp, kNonNegative);
+  values.read(fields["error"], integrator.error, kErrors);
+  if (const YamlNode* most = fields["max_samples"]) integrator.max_samples = values.integer(*most, 1, 65536);
 }
 
 }  // namespace oktett

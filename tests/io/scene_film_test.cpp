@@ -52,5 +52,75 @@ TEST(SceneFilm, BadLensesAndFiltersAreErrors) {
   expect_starts(error("integrator: {clamp: -1}\n"), "scene.yaml:2:21: expected a number of at least 0");
 }
 
+TEST(SceneFilm, ReadsAdaptiveSampling) {
+  const Scene scene = SceneFiles().load_v1("integrator: {error: 0.02, max_samples: 500}\n");
+  EXPECT_EQ(scene.integrator.error, 0.02);
+  EXPECT_EQ(scene.integrator.max_samples, 500u);
+  expect_starts(SceneFiles().error_v1("integrator: {error: 2}\n"), "scene.yaml:2:21: expected a number");
+  expect_starts(SceneFiles().error_v1("integrator: {max_samples: 0}\n"),
+                "scene.yaml:2:27: expected a whole number from 1 to 65536");
+}
+
+TEST(SceneFilm, ReadsMotions) {
+  const Scene scene = SceneFiles().load_v1(
+      "camera: {shutter: [0, 0.5], motion: [{time: 0, transform: []}, {time: 1, transform: {translate: [1, "
+      "0, 0]}}]}\n"
+      "lights:\n"
+      "  - point: {position: [0, 1, 0]}\n"
+      "  - point: {position: [0, 1, 0], motion: [{time: 0, transform: []}, {time: 1, transform: {translate: "
+      "[0, 2, 0]}}]}\n"
+      "  - sphere: {center: [0, 0, 0], radius: 1, motion: [{time: 0, transform: []}, {time: 2, transform: "
+      "{scale: 3}}]}\n"
+      "objects:\n"
+      "  - group:\n"
+      "      - sphere: {}\n"
+      "        transform: {scale: 2}\n"
+      "      - sphere: {}\n"
+      "        motion: [{time: 0, transform: {translate: [5, 0, 0]}}, {time: 1, transform: []}]\n"
+      "    motion: [{time: 0, transform: {translate: [0, 0, 1]}}, {time: 1, transform: {translate: [0, 0, "
+      "3]}}]\n"
+      "  - sphere: {}\n"
+      "    motion: [{time: 7, transform: {scale: 4}}]\n");
+  EXPECT_EQ(scene.camera.shutter[1], 0.5);
+  ASSERT_NE(scene.camera.motion, nullptr);
+  EXPECT_EQ(scene.camera.motion->at(0.5), Affine::translation({0.5, 0, 0}));
+  ASSERT_EQ(scene.light_traits.size(), 2u);
+  EXPECT_EQ(scene.light_traits[0].motion, nullptr);
+  EXPECT_EQ(scene.light_traits[1].motion->at(1), Affine::translation({0, 2, 0}));
+  ASSERT_EQ(scene.objects.size(), 4u);
+  EXPECT_EQ(scene.objects[0].motion->at(2), Affine::scaling({3, 3, 3}));
+  EXPECT_EQ(scene.objects[1].motion->at(1), Affine::translation({0, 0, 3}) * Affine::scaling({2, 2, 2}));
+  EXPECT_EQ(scene.objects[1].transform, Affine::translation({0, 0, 1}) * Affine::scaling({2, 2, 2}));
+  EXPECT_EQ(scene.objects[2].motion->at(0), Affine::translation({5, 0, 1}));
+  EXPECT_EQ(scene.objects[2].motion->at(1), Affine::translation({0, 0, 3}));
+  // A single key is a transform.
+  EXPECT_EQ(scene.objects[3].motion, nullptr);
+  EXPECT_EQ(scene.objects[3].transform, Affine::scaling({4, 4, 4}));
+}
+
+TEST(SceneFilm, BadMotionsAreErrors) {
+  const auto error = [](const std::string& motion) {
+    return SceneFiles().error_v1("objects:\n  - sphere: {}\n    motion: " + motion + "\n");
+  };
+  expect_starts(error("[]"), "scene.yaml:4:13: a motion needs at least one key");
+  expect_starts(error("{time: 0}"), "scene.yaml:4:13: expected a list for motion");
+  expect_starts(error("[{time: 0}]"), "scene.yaml:4:14: a key of a motion needs 'transform'");
+  expect_starts(error("[{time: 1, transform: []}, {time: 1, transform: []}]"),
+                "scene.yaml:4:47: the times of a motion must ascend: expected more than 1");
+  expect_starts(error("[{time: 0, transform: {scale: 0}}]"), "scene.yaml:4:35: the transform is singular");
+  expect_starts(error("[{time: 0, transform: []}, {time: 1, transform: {scale: -1}}]"),
+                "scene.yaml:4:61: a motion cannot turn a thing into its mirror image");
+  expect_starts(
+      SceneFiles().error_v1("objects:\n  - sphere: {}\n    transform: {scale: 2}\n    motion: []\n"),
+      "scene.yaml:5:13: expected 'transform' or 'motion', not both");
+  const std::string moving = "motion: [{time: 0, transform: []}, {time: 1, transform: {scale: 2}}]";
+  expect_starts(SceneFiles().error_v1("define:\n  a:\n    sphere: {}\n    " + moving + "\n"),
+                "scene.yaml:5:13: what is in a prototype cannot move by itself");
+  expect_starts(SceneFiles().error_v1("objects:\n  - union:\n      - sphere: {}\n        " + moving + "\n"),
+                "scene.yaml:5:17: what is in a combination cannot move by itself");
+  expect_starts(SceneFiles().error_v1("camera: {shutter: [1, 0]}\n"),
+                "scene.yaml:2:19: the shutter closes before it opens");
+}
+
 }  // namespace
 }  // namespace oktett

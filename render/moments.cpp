@@ -1,0 +1,72 @@
+#include "render/moments.h"
+
+#include <algorithm>
+
+#include "core/random.h"
+#include "render/moved.h"
+
+namespace oktett {
+namespace {
+
+bool any_light_moves(const Scene& scene) {
+  const auto moves = [](const LightTraits& traits) { return traits.motion != nullptr; };
+  return std::any_of(scene.light_traits.begin(), scene.light_traits.end(), moves);
+}
+
+/// Whether light samples are different at each moment.
+bool lights_differ(const Scene& scene, const World& world) {
+  if (any_light_moves(scene)) return true;
+  const auto glows = [](const Material& m) { return !(m.emission == Color{0, 0, 0}); };
+  return scene.integrator.kind == IntegratorKind::path && !world.moving.empty() &&
+         std::any_of(world.materials.begin(), world.materials.end(), glows);
+}
+
+std::vector<Light> lights_at(const Scene& scene, double time) {
+  std::vector<Light> lights = scene.lights;
+  for (std::size_t i = 0; i < std::min(lights.size(), scene.light_traits.size()); ++i)
+    if (const MotionPointer& motion = scene.light_traits[i].motion)
+      lights[i] = moved_light(motion->at(time), lights[i]);
+  return lights;
+}
+
+}  // namespace
+
+Moments::Moments(const Scene& scene, World& world, const BuildOptions& build) : world_(world) {
+  if (scene.camera.motion == nullptr && world.moving.empty() && !any_light_moves(scene)) return;
+  const double open = scene.camera.shutter[0], close = scene.camera.shutter[1];
+  const std::uint32_t samples = first_samples(scene.integrator);
+  const std::uint32_t count = open == close ? 1 : std::min(samples, kMostMoments);
+  const std::uint64_t key = pixel_key(scene.integrator.seed, ~std::uint64_t{0} - 1);
+  for (std::uint32_t m = 0; m < count; ++m) {
+    const double begin = first_sample_of_moment(m, count, samples),
+                 end = first_sample_of_moment(m + 1, count, samples);
+    const double at = begin + (end - begin) * static_cast<double>(random_float(key, m, 0));
+    times_.push_back(open + (close - open) * (at / samples));
+  }
+  if (world.moving.empty()) return;
+  for (const double time : times_) {
+    World& posed = worlds_.emplace_back(world);
+    pose(posed, time, build);
+    world.bounds.grow(posed.bounds);
+  }
+  for (World& posed : worlds_) posed.bounds = world.bounds;
+}
+
+void Moments::share(Scene& scene, RenderContext& context) {
+  const bool differ = !times_.empty() && lights_differ(scene, world_);
+  contexts_.reserve(times_.size());
+  for (std::size_t m = 0; m < times_.size(); ++m) {
+    RenderContext& c = contexts_.emplace_back(context);
+    c.camera = camera_frame(camera_at(scene.camera, times_[m]), scene.film);
+    if (!worlds_.empty()) c.world = &worlds_[m];
+    if (!differ) continue;
+    std::vector<Light> lights = lights_at(scene, times_[m]);
+    std::swap(scene.lights, lights);
+    c.lights = light_sources(scene);
+    c.sampled = &lights_.emplace_back(scene, *c.world, context.sampled);
+    std::swap(scene.lights, lights);
+  }
+  if (!contexts_.empty()) context.moments = &contexts_;
+}
+
+}  // namespace oktett

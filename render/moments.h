@@ -1,0 +1,50 @@
+#pragma once
+/// \file Motion blur: the time in which the shutter is open, cut into moments.
+///
+/// Between moments things move, at each moment they stand still: it has an acceleration structure, lights and
+/// a camera of its own, and everything that traces and shades rays stays as it is. Structures of meshes,
+/// prototypes and all that does not move are built once; only the tree over them is built for each moment.
+/// Samples of a moment are consecutive, so they are spread evenly over the pixel in themselves and together.
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "render/context.h"
+
+namespace oktett {
+
+/// More moments look the same in most pictures, and each takes memory.
+inline constexpr std::uint32_t kMostMoments = 64;
+
+/// The first of the `samples` samples of a pixel that belongs to moment `moment`, [0, moments]. `samples` is
+/// at least `moments`.
+constexpr std::uint32_t first_sample_of_moment(std::uint32_t moment, std::uint32_t moments,
+                                               std::uint32_t samples) {
+  return static_cast<std::uint32_t>(std::uint64_t{moment} * samples / moments);
+}
+
+/// The moments of a scene in which something moves; none for other scenes.
+class Moments {
+ public:
+  /// Chooses times, each at random in the part of the shutter's time that its share of the samples stands
+  /// for, and builds the structures. Widens the bounds of `world`, which must outlive this, to all moments.
+  Moments(const Scene& scene, World& world, const BuildOptions& build);
+  Moments(const Moments&) = delete;
+  Moments& operator=(const Moments&) = delete;
+
+  /// Sets context.moments to copies of `context`, which must be complete, with what is different at each
+  /// moment. The scene's lights are moved meanwhile.
+  void share(Scene& scene, RenderContext& context);
+
+  const std::vector<double>& times() const { return times_; }
+
+ private:
+  const World& world_;
+  std::vector<double> times_;
+  std::vector<World> worlds_;       ///< of each time; empty if no object moves
+  std::deque<SceneLights> lights_;  ///< of each time; empty if no light moves
+  std::vector<RenderContext> contexts_;
+};
+
+}  // namespace oktett
