@@ -34,6 +34,10 @@ void add_film_options(Verb& verb, FilmArguments& a) {
   verb.option("--exposure", &a.exposure, "STOPS", "Exposure of 8-bit pictures");
   verb.option("--clamp", &a.clamp, "RADIANCE",
               "Darken samples that are brighter; loses light, but removes bright dots");
+  verb.option("--error", &a.error, "E",
+              "Adaptive sampling: up to --max-spp samples where the relative error is greater than E");
+  verb.option("--max-spp", &a.max_samples, "N", "Most samples per pixel of adaptive sampling");
+  verb.flag("--denoise", a.denoise, "Smooth the noise of the finished picture");
 }
 
 void override_film(const FilmArguments& a, Scene& scene) {
@@ -45,6 +49,11 @@ void override_film(const FilmArguments& a, Scene& scene) {
   if (!a.tone.empty()) film.tone.kind = choice_of<ToneKind>("--tone", a.tone, kToneKinds);
   read_number("--exposure", a.exposure, kExposures, film.tone.exposure);
   read_number("--clamp", a.clamp, kNonNegative, scene.integrator.clamp);
+  read_number("--error", a.error, kErrors, scene.integrator.error);
+  if (!a.max_samples) return;
+  if (*a.max_samples < 1 || *a.max_samples > 65536)
+    throw Error(fmt::format("--max-spp: {} is out of range; expected 1 to 65536", *a.max_samples));
+  scene.integrator.max_samples = *a.max_samples;
 }
 
 }  // namespace oktett

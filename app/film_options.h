@@ -12,7 +12,9 @@ namespace oktett {
 
 /// The words of the command line, not checked yet. Empty: what the scene says.
 struct FilmArguments {
-  std::string filter, tone, exposure, clamp;
+  std::string filter, tone, exposure, clamp, error;
+  std::optional<std::uint32_t> max_samples;
+  bool denoise = false;
 };
 
 void add_film_options(Verb& verb, FilmArguments& arguments);

@@ -22,6 +22,7 @@
 #include "io/image/image.h"
 #include "io/image/texture.h"
 #include "io/scene/scene_file.h"
+#include "render/denoise.h"
 #include "render/render.h"
 
 namespace oktett {
@@ -123,7 +124,7 @@ class Watch {
 
 /// Wall-clock seconds of the stages of the command.
 struct StageTimes {
-  double load = 0, build = 0, render = 0, write = 0;
+  double load = 0, build = 0, render = 0, denoise = 0, write = 0;
 };
 
 std::uint64_t rays_of(const RenderReport& r) {
@@ -141,9 +142,11 @@ double bytes_per_triangle(const RenderReport& report) {
 
 /// "load 0.012 s, build 0.345 s, render 1.23 s (12.3 Mrays/s), write 0.056 s".
 std::string times_text(const StageTimes& times, const RenderReport& report) {
-  return fmt::format("load {}, build {}, render {} ({}rays/s), write {}", duration_text(times.load),
+  const std::string denoised =
+      times.denoise > 1e-3 ? fmt::format(", denoise {}", duration_text(times.denoise)) : "";
+  return fmt::format("load {}, build {}, render {} ({}rays/s){}, write {}", duration_text(times.load),
                      duration_text(times.build), duration_text(times.render),
-                     with_prefix(rays_per_second(report)), duration_text(times.write));
+                     with_prefix(rays_per_second(report)), denoised, duration_text(times.write));
 }
 
 /// A table of counts, one per line.
@@ -212,7 +215,7 @@ int run_render(const CommandLine& line, const RenderArguments& arguments) {
   options.isa = choose_isa(arguments.isa);
   options.threads = arguments.threads;
   options.build = parse_bvh_option(arguments.bvh);
-  options.data_layers = keeps_all_planes(output);
+  options.data_layers = keeps_all_planes(output) || arguments.film.denoise;
 
   Stopwatch watch;
   StageTimes times;
@@ -234,6 +237,9 @@ int run_render(const CommandLine& line, const RenderArguments& arguments) {
   times.build = result.report.build_seconds;
   times.render = result.report.render_seconds;
   watch.lap();
+  // The rest of a picture that was stopped is black.
+  if (arguments.film.denoise && !result.report.stopped) denoise(result.picture);
+  times.denoise = watch.lap();
   const ImageMetadata metadata = metadata_of(line, arguments, result);
   // The library that writes images takes as much memory as a large scene: free the scene before it is loaded.
   result.scene = Scene{};

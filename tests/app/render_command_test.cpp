@@ -83,6 +83,34 @@ TEST(RenderCommand, OptionsOverrideTheScene) {
   EXPECT_GE(spec.channelindex("primID.I"), 0);
 }
 
+TEST(RenderCommand, FilmOptionsOverrideTheScene) {
+  const TempDir dir;
+  dir.write("ball.yaml", kScene);
+  const CommandResult result = run_command(
+      dir, {"render",    "ball.yaml", "--size",     "16x16", "--spp",   "4",      "--filter", "tent",
+            "--tone",    "filmic",    "--exposure", "-1.5",  "--clamp", "3",      "--error",  "0.1",
+            "--max-spp", "16",        "--denoise",  "-o",    "a.exr",   "--quiet"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const std::vector<std::string> names = header(dir.file("a.exr")).channelnames;
+  for (const char* name : {"sampleCount.I", "Noisy.R"})
+    EXPECT_NE(std::find(names.begin(), names.end(), name), names.end()) << name;
+  // A picture without layers is denoised, too.
+  EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "--size", "8x8", "--denoise", "-o", "a.png"}).status, 0);
+  const auto error = [&](const char* option, const char* value) {
+    const CommandResult bad = run_command(dir, {"render", "ball.yaml", option, value});
+    EXPECT_EQ(bad.status, 2);
+    return bad.err;
+  };
+  EXPECT_NE(error("--filter", "tend").find("--filter: unknown kind 'tend'; did you mean 'tent'?"),
+            std::string::npos);
+  EXPECT_NE(error("--tone", "x").find("expected srgb, filmic, aces or neutral"), std::string::npos);
+  EXPECT_NE(error("--exposure", "bright").find("--exposure: 'bright' is no number"), std::string::npos);
+  EXPECT_NE(error("--exposure", "inf").find("--exposure: inf is out of range"), std::string::npos);
+  EXPECT_NE(error("--error", "1.5").find("--error: 1.5 is out of range; expected 0 to 1"), std::string::npos);
+  EXPECT_NE(error("--max-spp", "0").find("--max-spp: 0 is out of range"), std::string::npos);
+  EXPECT_NE(error("--clamp", "-1").find("--clamp: -1 is out of range"), std::string::npos);
+}
+
 TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
   const TempDir dir;
   dir.write("ball.yaml", kScene);

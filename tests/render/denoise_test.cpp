@@ -1,0 +1,159 @@
+/// \file The denoiser: error against long renders, what it must leave alone.
+
+#include "render/denoise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/random.h"
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+/// Mean squared relative error of the green channel.
+double error(const Picture& p, const Picture& truth) {
+  double sum = 0;
+  const std::size_t size = truth.find("G")->values.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto a = static_cast<double>(p.find("G")->values[i]),
+               b = static_cast<double>(truth.find("G")->values[i]);
+    sum += (a - b) * (a - b) / (b * b + 0.01);
+  }
+  return sum / static_cast<double>(size);
+}
+
+/// A room of coloured walls lit by a lamp, with a ball in it.
+Scene room() {
+  Scene scene = bare_scene(64);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.depth = 4;
+  scene.camera.from = {0, 0, 3.4};
+  const auto wall = [&](const Vec3d& normal, double offset, const Color& color) {
+    add_object(scene, PlaneShape{normal, offset}, add_material(scene, diffuse(color)));
+  };
+  wall({0, 1, 0}, -1, {0.7f, 0.7f, 0.7f}), wall({0, -1, 0}, -1, {0.7f, 0.7f, 0.7f});
+  wall({1, 0, 0}, -1, {0.7f, 0.1f, 0.1f}), wall({-1, 0, 0}, -1, {0.1f, 0.6f, 0.1f});
+  wall({0, 0, 1}, -1, {0.7f, 0.7f, 0.7f});
+  wall({0, 0, -1}, -4, {0.7f, 0.7f, 0.7f});
+  add_object(scene, SphereShape{{0.3, -0.6, 0}, 0.4}, 0);
+  add_object(scene, SphereShape{{0, 0.8, 0}, 0.12}, add_material(scene, glowing({20, 20, 20})));
+  return scene;
+}
+
+/// Balls of matt and shiny material on a floor under a bright sky.
+Scene balls() {
+  Scene scene = bare_scene(64);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.depth = 3;
+  scene.camera.from = {0, 2, 6};
+  scene.lights = {SkyLight{}};
+  const std::uint32_t white = add_material(scene, diffuse({0.8f, 0.8f, 0.8f}));
+  add_object(scene, PlaneShape{{0, 1, 0}, -1}, white);
+  Material shiny = diffuse({0.8f, 0.2f, 0.1f});
+  shiny.principled = PrincipledMaterial{};
+  shiny.principled->parameters.base_color = shiny.color, shiny.principled->parameters.roughness = 0.3f;
+  add_object(scene, SphereShape{{-1.1, 0, 0}, 1}, add_material(scene, shiny));
+  add_object(scene, SphereShape{{1.1, 0, 0.3}, 1}, white);
+  return scene;
+}
+
+TEST(Denoise, TheErrorFalls) {
+  for (const bool first : {true, false}) {
+    Scene scene = first ? room() : balls();
+    scene.integrator.samples = 1024, scene.integrator.seed = 5;
+    const Picture truth = run(scene).picture;
+    for (const std::uint32_t samples : {16u, 64u}) {
+      scene.integrator.samples = samples, scene.integrator.seed = 0;
+      Picture picture = run(scene).picture;
+      const double before = error(picture, truth);
+      denoise(picture);
+      const double after = error(picture, truth);
+      RecordProperty("factor", std::to_string(before / after));
+      // The sky leaves little noise but at edges, which stay.
+      EXPECT_LT(after, before / (first ? 3.5 : 1.7))
+          << first << ' ' << samples << ": " << before << ' ' << after;
+    }
+  }
+}
+
+// Without noise nothing changes, edges and gradients included.
+TEST(Denoise, NoiselessPicturesStay) {
+  Scene scene = bare_scene(40);
+  scene.background = {0.2f, 0.5f, 1};
+  scene.lights = {PointLight{{3, 4, 5}, {1, 1, 1}, false}};
+  add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, diffuse({1, 0.5f, 0.2f})));
+  const Picture before = run(scene).picture;
+  Picture after = before;
+  denoise(after);
+  for (const char* channel : {"R", "G", "B"})
+    for (std::size_t i = 0; i < 1600; ++i) {
+      ASSERT_EQ(after.find(channel)->values[i], before.find(channel)->values[i]);
+      ASSERT_EQ(after.find(std::string("Noisy.") + channel)->values[i], before.find(channel)->values[i]);
+    }
+}
+
+/// A picture with all planes, grey of 0.5 with noise of known variance.
+Picture noise(std::uint32_t size, float deviation) {
+  Picture p = run(bare_scene(size)).picture;
+  for (std::size_t i = 0; i < p.find("R")->values.size(); ++i) {
+    for (const char* channel : {"R", "G", "B"}) {
+      p.find(channel)->values[i] =
+          0.5f + deviation * (random_float(3, static_cast<std::uint32_t>(i), 0) - 0.5f);
+      p.find(std::string("Variance.") + channel)->values[i] = deviation * deviation / 12;
+    }
+  }
+  return p;
+}
+
+TEST(Denoise, PureNoiseBecomesFlat) {
+  Picture p = noise(64, 0.4f);
+  denoise(p);
+  double mean = 0, variance = 0;
+  for (const float v : p.find("G")->values) mean += static_cast<double>(v) / 4096;
+  for (const float v : p.find("G")->values) variance += (static_cast<double>(v) - mean) * (v - mean) / 4096;
+  EXPECT_NEAR(mean, 0.5, 0.01);
+  EXPECT_LT(variance, 0.4 * 0.4 / 12 / 30);
+}
+
+// An edge of features stays sharp although noise hides it.
+TEST(Denoise, FeaturesKeepEdges) {
+  Picture p = noise(64, 0.8f);
+  for (std::uint32_t y = 0; y < 64; ++y)
+    for (std::uint32_t x = 32; x < 64; ++x) {
+      for (const char* channel : {"R", "G", "B"}) p.find(channel)->values[y * 64 + x] += 0.5f;
+      p.find("N.X")->values[y * 64 + x] = 1;
+    }
+  denoise(p);
+  double left = 0, right = 0;
+  for (std::uint32_t y = 0; y < 64; ++y)
+    left += static_cast<double>(value(p, "G", 31, y)) / 64,
+        right += static_cast<double>(value(p, "G", 32, y)) / 64;
+  EXPECT_NEAR(right - left, 0.5, 0.07);
+}
+
+TEST(Denoise, BadPixelsAndOddSizesDoNoHarm) {
+  for (const std::uint32_t size : {1u, 2u, 65u}) {
+    Picture p = noise(size, 0.4f);
+    p.find("G")->values[0] = std::numeric_limits<float>::quiet_NaN();
+    p.find("Variance.R")->values[0] = std::numeric_limits<float>::infinity();
+    p.find("N.Y")->values[size - 1] = std::numeric_limits<float>::quiet_NaN();
+    denoise(p);
+    for (const char* channel : {"R", "G", "B"})
+      for (const float v : p.find(channel)->values) ASSERT_TRUE(std::isfinite(v));
+  }
+}
+
+TEST(Denoise, NeedsItsLayers) {
+  Picture p = run(bare_scene(4), [](RenderOptions& o) { o.data_layers = false; }).picture;
+  EXPECT_THROW(denoise(p), Error);
+  EXPECT_EQ(p.planes.size(), 4u);
+}
+
+}  // namespace
+}  // namespace oktett
