@@ -22,7 +22,11 @@ inline Four max(Four a, float b) { return max(a, four(b)); }
 inline Four magnitude(Four a) { return a < 0 ? -a : a; }
 /// Correctly rounded.
 inline Four square_root(Four a) {
+#if defined(__SSE__)
+  return __builtin_ia32_sqrtps(a);
+#else
   return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+#endif
 }
 
 }  // namespace oktett

@@ -5,6 +5,7 @@
 
 #include "render/integrators.h"
 #include "render/path_emission.h"
+#include "render/path_lights.h"
 #include "render/path_surfaces.h"
 #include "render/render_code.h"
 
@@ -40,18 +41,6 @@ void begin_block(const RenderContext& context, const Wavefront& wavefront, const
   for (std::size_t k = 0; k < c.count; ++k) name(k, which[k]);
   for (std::size_t k = c.count; k < kMost; ++k) name(k, which[c.count - 1]);
   render_code(context.isa).begin_path(found, path_rays(wavefront), wavefront.level, c);
-}
-
-void sample_light_of(const RenderContext& context, const InteractionBlock& found, std::size_t k,
-                     bool front_only, PathBlock& c) {
-  const LightPoint from{InteractionBlock::get(found.position, k), InteractionBlock::get(c.ng, k), front_only};
-  const auto light = context.sampled->set().sample(from, c.light[k], {c.light_x[k], c.light_y[k]});
-  c.light_kind[k] = !light ? LightKind::none : light->delta ? LightKind::delta : LightKind::area;
-  if (!light) return;
-  InteractionBlock::put(c.light_direction, k, light->direction);
-  InteractionBlock::put(c.light_color, k,
-                        light->radiance * context.sampled->texture_at(*light, context.textures));
-  c.light_distance[k] = light->distance, c.light_pdf[k] = light->pdf;
 }
 
 PathShadows end_of(ShadowQueue& queue, std::size_t count) {
@@ -127,7 +116,9 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   c.count = count;
   begin_block(context, wavefront, which, found, c);
   Shown shown[kMost];
-  std::size_t in_lanes = 0;
+  std::uint32_t asks[kMost];
+  bool front_only[kMost];
+  std::size_t in_lanes = 0, asking = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = c.ray[k];
     const bool behind = c.behind >> k & 1;
@@ -152,9 +143,11 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
                  emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k)));
     if (wavefront.rays.bounces[i] > context.settings.depth) continue;
     c.light_kind[k] = LightKind::none;
-    if (!surface.only_delta) sample_light_of(context, found, k, !surface.transmits, c);
+    if (!surface.only_delta)
+      asks[asking] = static_cast<std::uint32_t>(k), front_only[asking++] = !surface.transmits;
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
   }
+  sample_lights(context, found, asks, front_only, asking, c);
   std::stable_sort(shown, shown + in_lanes,
                    [](const Shown& a, const Shown& b) { return a.surface < b.surface; });
   if (in_lanes > 0) shade_runs(context, wavefront, found, c, shown, in_lanes);

@@ -13,7 +13,4 @@ float power_weight(float pdf, float other);
 float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
                       const Vec3f& position);
 
-/// The weight of environment light that entry `ray`, a miss, finds.
-float environment_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray);
-
 }  // namespace oktett

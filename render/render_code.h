@@ -4,6 +4,7 @@
 #include "core/isa.h"
 #include "render/context.h"
 #include "render/path_block.h"
+#include "render/path_lights.h"
 #include "render/shading_columns.h"
 #include "render/view_directions.h"
 
@@ -31,6 +32,7 @@ struct RenderCode {
                       bool transmits, const PathRun&, PathQueues&);
   void (*shade_principled)(const InteractionBlock&, const PathRays&, const PathBlock&,
                            const PrincipledSurface&, bool transmits, const PathRun&, PathQueues&);
+  LightCode lights;
 };
 
 template <class A>

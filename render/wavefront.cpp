@@ -7,6 +7,7 @@
 #include "accel/surface/offset_origin.h"
 #include "render/integrators.h"
 #include "render/path_emission.h"
+#include "render/render_code.h"
 #include "render/shadow.h"
 
 namespace oktett {
@@ -24,14 +25,45 @@ void find_hits(const RenderContext& context, Wavefront& wavefront) {
   closest_hit(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), context.isa);
 }
 
-/// The light that entry `ray` finds where it meets nothing.
-Color background_light(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
-  if (!context.sampled->has_environment()) return context.background;
-  const RaySpan rays = wavefront.rays.rays;
-  const Vec3f direction{rays.direction[0][ray], rays.direction[1][ray], rays.direction[2][ray]};
-  const Color light = context.sampled->set().environment_radiance(direction);
-  const bool path = context.settings.kind == IntegratorKind::path;
-  return context.background + (path ? light * environment_weight(context, wavefront, ray) : light);
+/// Sets the radiance of up to 64 rays that meet nothing.
+void add_environment(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* misses,
+                     std::size_t count) {
+  constexpr std::size_t kMost = EnvironmentValues::kMost;
+  const bool path = context.settings.kind == IntegratorKind::path && wavefront.level > 0;
+  float direction[3][kMost] = {};
+  LightPoint from[kMost];
+  for (std::size_t k = 0; k < count; ++k) {
+    for (int axis = 0; axis < 3; ++axis) direction[axis][k] = wavefront.rays.rays.direction[axis][misses[k]];
+    if (path) from[k] = wavefront.paths.from[misses[k]];
+  }
+  EnvironmentValues found;
+  context.sampled->set().environment_values(render_code(context.isa).lights.map, count, path ? from : nullptr,
+                                            {direction[0], direction[1], direction[2]}, found);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = misses[k];
+    const float pdf = path ? wavefront.paths.pdf[i] : 0;
+    const float weight = pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
+    const Color light = InteractionBlock::get(found.radiance, k);
+    wavefront.radiance.set(i, wavefront.rays.throughput[i] * (context.background + light * weight));
+  }
+}
+
+/// Sets the radiance of all rays that meet nothing.
+void add_background(const RenderContext& context, Wavefront& wavefront) {
+  std::uint32_t misses[EnvironmentValues::kMost];
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
+    if (wavefront.hits.item[i] != kNoId) continue;
+    if (!context.sampled->has_environment()) {
+      wavefront.radiance.set(i, wavefront.rays.throughput[i] * context.background);
+      continue;
+    }
+    misses[count++] = i;
+    if (count < EnvironmentValues::kMost) continue;
+    add_environment(context, wavefront, misses, count);
+    count = 0;
+  }
+  if (count > 0) add_environment(context, wavefront, misses, count);
 }
 
 /// Sets the radiance of each ray, the background's if it hit nothing and 0 if it did, and lists the rays that
@@ -49,10 +81,7 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
   wavefront.hit_rays.resize_uninitialized(hits);
   const bool black =
       wavefront.level == 0 && context.background == Color{0, 0, 0} && !context.sampled->has_environment();
-  if (hits < count && !black)
-    for (std::size_t i = 0; i < count; ++i)
-      if (wavefront.hits.item[i] == kNoId)
-        wavefront.radiance.set(i, wavefront.rays.throughput[i] * background_light(context, wavefront, i));
+  if (hits < count && !black) add_background(context, wavefront);
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
   wavefront.next.clear(), wavefront.next_paths.clear();
 }

@@ -1,5 +1,6 @@
 #include "render/render_code.h"
 
+#include "render/isa/light_code.h"
 #include "render/isa/path_begin.h"
 #include "render/isa/path_shading.h"
 #include "render/isa/shading.h"
@@ -9,9 +10,9 @@ namespace oktett {
 
 template <class A>
 const RenderCode& render_code() {
-  static constexpr RenderCode code = {view_directions_code<A>, begin_shading_code<A>, shadow_rays_code<A>,
-                                      mirror_rays_code<A>,     begin_path_code<A>,    shade_phong_code<A>,
-                                      shade_principled_code<A>};
+  static const RenderCode code = {view_directions_code<A>,  begin_shading_code<A>, shadow_rays_code<A>,
+                                  mirror_rays_code<A>,      begin_path_code<A>,    shade_phong_code<A>,
+                                  shade_principled_code<A>, light_code<A>()};
   return code;
 }
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/light/emitter_kinds.h"
+#include "render/light/emitter_lanes.h"
 
 namespace oktett {
 
@@ -17,12 +17,21 @@ float color_weight(const Color& c) {
 }
 
 Vec3d around(const Vec3d& axis, double one_minus_cos, double turn) {
-  Vec3d tangent, bitangent;
-  make_basis(axis, tangent, bitangent);
-  const double sine = std::sqrt(std::max(0.0, one_minus_cos * (2 - one_minus_cos)));
-  const double angle = 2 * std::numbers::pi * turn;
-  return tangent * (sine * portable::cos(angle)) + bitangent * (sine * portable::sin(angle)) +
-         axis * (1 - one_minus_cos);
+  using Lane = Simd<double, 1, ScalarIsa>;
+  return only_lane(around_lanes(broadcast<Lane>(axis), Lane(one_minus_cos), Lane(turn)));
+}
+
+std::optional<LightSample> only_sample(const LightSamples<Simd<double, 1, ScalarIsa>>& s,
+                                       const Color& radiance) {
+  if (none(s.found) || !is_finite(radiance)) return std::nullopt;
+  return LightSample{.direction = only_lane(s.direction),
+                     .distance = only_lane(s.distance),
+                     .radiance = radiance,
+                     .pdf = only_lane(s.pdf),
+                     .delta = false,
+                     .emitter = 0,
+                     .u = static_cast<float>(only_lane(s.u)),
+                     .v = static_cast<float>(only_lane(s.v))};
 }
 
 std::optional<LightSample> sample_emitter(const Emitter& emitter, const LightPoint& point,

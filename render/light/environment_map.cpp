@@ -22,20 +22,6 @@ Vec3f environment_direction(double u, double v) {
 
 static float valid(float value) { return value > 0 && std::isfinite(value) ? value : 0; }
 
-/// Index of the interval of `sums` in which `value` lies, and in which part of it. Intervals of length 0 are
-/// never chosen; at least one must be longer.
-static std::size_t find_interval(const double* sums, std::size_t count, double value, double& part) {
-  const double* end = sums + count;
-  const double* found = std::upper_bound(sums, end, value);
-  if (found == end) found = std::lower_bound(sums, end, sums[count - 1]);
-  const double before = found == sums ? 0 : found[-1];
-  part = std::clamp((value - before) / (*found - before), 0.0, 1.0);
-  return static_cast<std::size_t>(found - sums);
-}
-
-/// The length of interval `i`.
-static double interval(const double* sums, std::size_t i) { return i == 0 ? sums[0] : sums[i] - sums[i - 1]; }
-
 EnvironmentMap::EnvironmentMap(EnvironmentPicture picture, const EnvironmentOptions& options)
     : picture_(std::move(picture)),
       cos_rotation_(portable::cos(options.rotation)),
@@ -70,10 +56,6 @@ double EnvironmentMap::weight(std::int64_t x, std::int64_t y) const {
   return (row(y - 1) + 6 * row(y) + row(y + 1)) / 64;
 }
 
-double EnvironmentMap::top_cosine(std::size_t row) const {
-  return portable::cos(kPi * static_cast<double>(row) / picture_.height);
-}
-
 double EnvironmentMap::pixel_solid_angle(std::size_t row) const {
   // The difference of the cosines of its edges times the angle of its width.
   const double half = kPi / 2 / picture_.height;
@@ -83,80 +65,71 @@ double EnvironmentMap::pixel_solid_angle(std::size_t row) const {
 
 void EnvironmentMap::prepare_density(double subtract) {
   const std::size_t width = picture_.width, height = picture_.height;
-  rows_.resize(height);
-  columns_.resize(width * height);
+  rows_.resize(height), cosines_.resize(height + 1);
+  columns_.resize(width * height), density_.resize(width * height);
   total_ = 0;
+  std::vector<double> weights(width * height);
   for (std::size_t y = 0; y < height; ++y) {
     double sum = 0;
     for (std::size_t x = 0; x < width; ++x) {
-      sum += std::max(0.0, weight(static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)) - subtract);
-      columns_[y * width + x] = sum;
+      weights[y * width + x] =
+          std::max(0.0, weight(static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)) - subtract);
+      columns_[y * width + x] = sum += weights[y * width + x];
     }
     total_ += sum * pixel_solid_angle(y);
     rows_[y] = total_;
   }
+  for (std::size_t y = 0; y <= height; ++y)
+    cosines_[y] = portable::cos(kPi * static_cast<double>(y) / picture_.height);
+  for (std::size_t i = 0; i < weights.size(); ++i) density_[i] = static_cast<float>(weights[i] / total_);
 }
 
-float EnvironmentMap::density(std::size_t row, std::size_t column) const {
-  const double* columns = columns_.data() + row * picture_.width;
-  const double in_row = interval(columns, column) / columns[picture_.width - 1];
-  return static_cast<float>(interval(rows_.data(), row) / total_ * in_row / pixel_solid_angle(row));
+EnvironmentTables EnvironmentMap::tables() const {
+  return {.width = static_cast<std::int32_t>(picture_.width),
+          .height = static_cast<std::int32_t>(picture_.height),
+          .pixels = picture_.pixels.data(),
+          .rows = rows_.data(),
+          .columns = columns_.data(),
+          .cosines = cosines_.data(),
+          .density = density_.data(),
+          .total = total_,
+          .cos_rotation = cos_rotation_,
+          .sin_rotation = sin_rotation_,
+          .smooth = smooth_};
+}
+
+using Lane = Simd<double, 1, ScalarIsa>;
+
+static Color radiance_at(const EnvironmentTables& map, const MapPlaces<Lane>& place) {
+  Color c;
+  float* const parts[3] = {&c.x, &c.y, &c.z};
+  map_radiance(map, place, parts);
+  return c;
 }
 
 EnvironmentMap::Sample EnvironmentMap::sample(const SquareSample& s) const {
-  const std::size_t width = picture_.width;
-  double in_row, in_column;
-  const std::size_t row = find_interval(rows_.data(), rows_.size(), s.y * total_, in_row);
-  const double* columns = columns_.data() + row * width;
-  const std::size_t column = find_interval(columns, width, s.x * columns[width - 1], in_column);
-
-  const double top = top_cosine(row), cosine = top + in_row * (top_cosine(row + 1) - top);
-  const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
-  const double u = (static_cast<double>(column) + in_column) / picture_.width;
-  const double v = portable::atan2(sine, cosine) / kPi;
-  const double angle = (u - 0.5) * 2 * kPi;
-  const double x = sine * portable::sin(angle), z = -sine * portable::cos(angle);
-  const Vec3d direction{cos_rotation_ * x + sin_rotation_ * z, cosine, cos_rotation_ * z - sin_rotation_ * x};
-  return {Vec3f(direction), smooth_ ? radiance_at({u, v}) : picture_.pixels[row * width + column],
-          density(row, column), static_cast<float>(u), static_cast<float>(v)};
+  const EnvironmentTables map = tables();
+  const auto chosen = map_samples(map, Lane(s.x), Lane(s.y));
+  const std::size_t pixel = static_cast<std::size_t>(chosen.row[0]) * picture_.width + chosen.column[0];
+  return {only_lane(chosen.direction), smooth_ ? radiance_at(map, chosen.place) : picture_.pixels[pixel],
+          density_[pixel], static_cast<float>(only_lane(chosen.place.u)),
+          static_cast<float>(only_lane(chosen.place.v))};
 }
 
-EnvironmentMap::Place EnvironmentMap::place(const Vec3f& direction) const {
-  const Vec3d d(direction);
-  const double x = cos_rotation_ * d.x - sin_rotation_ * d.z, z = sin_rotation_ * d.x + cos_rotation_ * d.z;
-  // A NaN becomes 0.
-  return {std::max(0.0, 0.5 + portable::atan2(x, -z) / (2 * kPi)),
-          std::max(0.0, portable::atan2(std::sqrt(x * x + z * z), d.y) / kPi)};
-}
-
-/// The pixel of `count` that holds the fraction `f`.
-static std::size_t pixel_of(double f, std::size_t count) {
-  return std::min(static_cast<std::size_t>(std::max(0.0, f * static_cast<double>(count))), count - 1);
+static MapPlaces<Lane> place_of(const EnvironmentTables& map, const Vec3f& direction) {
+  return map_places(map, broadcast<Simd<float, 1, ScalarIsa>>(direction));
 }
 
 float EnvironmentMap::pdf(const Vec3f& direction) const {
-  if (!samples()) return 0;
-  const Place p = place(direction);
-  const std::size_t row = pixel_of(p.v, picture_.height);
-  if (!(interval(rows_.data(), row) > 0)) return 0;
-  return density(row, pixel_of(p.u, picture_.width));
+  const EnvironmentTables map = tables();
+  float density;
+  map_density(map, place_of(map, direction), &density);
+  return density;
 }
 
 Color EnvironmentMap::radiance(const Vec3f& direction) const {
-  const Place p = place(direction);
-  if (smooth_) return radiance_at(p);
-  return picture_.pixels[pixel_of(p.v, picture_.height) * picture_.width + pixel_of(p.u, picture_.width)];
-}
-
-Color EnvironmentMap::radiance_at(const Place& p) const {
-  const double x = p.u * picture_.width - 0.5, y = p.v * picture_.height - 0.5;
-  const double left = std::floor(x), above = std::floor(y);
-  const auto column = static_cast<std::int64_t>(left), row = static_cast<std::int64_t>(above);
-  const auto right_part = static_cast<float>(x - left), lower_part = static_cast<float>(y - above);
-  const auto mixed = [&](std::int64_t j) {
-    return pixel(column, j) * (1 - right_part) + pixel(column + 1, j) * right_part;
-  };
-  return mixed(row) * (1 - lower_part) + mixed(row + 1) * lower_part;
+  const EnvironmentTables map = tables();
+  return radiance_at(map, place_of(map, direction));
 }
 
 }  // namespace oktett

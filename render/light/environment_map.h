@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/vec3.h"
+#include "render/light/environment_lanes.h"
 #include "render/light/environment_picture.h"
 #include "render/sampling/square_sample.h"
 
@@ -47,21 +48,15 @@ class EnvironmentMap {
   Color radiance(const Vec3f& direction) const;
   /// The mean over all directions of the mean of the channels.
   double mean_radiance() const { return mean_; }
+  /// Valid as long as the map.
+  EnvironmentTables tables() const;
 
  private:
-  struct Place {
-    double u, v;
-  };
-  Place place(const Vec3f& direction) const;
-  Color radiance_at(const Place& p) const;
   const Color& pixel(std::int64_t x, std::int64_t y) const;
   double weight(std::int64_t x, std::int64_t y) const;
   /// Fills the sums and total_.
   void prepare_density(double subtract);
-  /// The cosine of the angle between +y and the upper edge of `row`.
-  double top_cosine(std::size_t row) const;
   double pixel_solid_angle(std::size_t row) const;
-  float density(std::size_t row, std::size_t column) const;
 
   EnvironmentPicture picture_;
   double cos_rotation_, sin_rotation_;
@@ -70,6 +65,8 @@ class EnvironmentMap {
   /// For each row: the sum of weight times solid angle over this row and those above. For each pixel: the sum
   /// of weights over this pixel and those left of it in its row.
   std::vector<double> rows_, columns_;
+  std::vector<double> cosines_;  ///< of the angle between +y and the edges of rows
+  std::vector<float> density_;   ///< of each pixel, per solid angle
 };
 
 }  // namespace oktett

@@ -5,11 +5,12 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/light/emitter_kinds.h"
-#include "render/light/spherical_rectangle.h"
+#include "render/light/emitter_lanes.h"
 #include "render/light/spherical_triangle.h"
 
 namespace oktett {
+
+using Lane = Simd<double, 1, ScalarIsa>;
 
 /// What the kinds share: the plane of an emitter as seen from a point.
 struct Facing {
@@ -121,7 +122,7 @@ struct RectangleView : CornerView {
       : CornerView(e.corner, Vec3d(e.edge_u), Vec3d(e.edge_v), p) {}
 
   /// The same in the plane's own coordinates, for perpendicular edges.
-  SphericalRectangle spherical(double length_u, double length_v) const {
+  SphericalRectangle<Lane> spherical(double length_u, double length_v) const {
     const double x = dot(corner, edge_u) / length_u, y = dot(corner, edge_v) / length_v;
     return {x, x + length_u, y, y + length_v, std::abs(side.height) / length(side.normal)};
   }
@@ -136,28 +137,17 @@ struct RectangleView : CornerView {
 
 std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoint& p,
                                        const SquareSample& s) {
-  const RectangleView r(e, p);
-  if (!r.side.lights(e.both_sides)) return std::nullopt;
-  if (r.perpendicular()) {
-    const double length_u = length(r.edge_u), length_v = length(r.edge_v);
-    const SphericalRectangle spherical = r.spherical(length_u, length_v);
-    if (spherical.solid_angle() >= kLeastSolidAngle) {
-      double x, y;
-      spherical.place(s, x, y);
-      const double u = std::clamp((x - dot(r.corner, r.edge_u) / length_u) / length_u, 0.0, 1.0);
-      const double v = std::clamp((y - dot(r.corner, r.edge_v) / length_v) / length_v, 0.0, 1.0);
-      return sample_at(r.place(u, v), e.radiance, 1 / spherical.solid_angle(), false, u, v);
-    }
-  }
-  const Vec3d to = r.place(s.x, s.y);
-  return sample_at(to, e.radiance, area_pdf(to, r.side.normal), false, s.x, s.y);
+  const RectangleViews<Lane> view{broadcast<Lane>(Vec3d(e.corner) - Vec3d(p.position)),
+                                  broadcast<Lane>(Vec3d(e.edge_u)), broadcast<Lane>(Vec3d(e.edge_v)),
+                                  Lane::M::from_bits(e.both_sides ? 1 : 0)};
+  return only_sample(view.sample(Lane(s.x), Lane(s.y)), e.radiance);
 }
 
 float pdf_kind(const RectangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
   const RectangleView r(e, p);
   if (!r.side.lights(e.both_sides)) return 0;
   if (r.perpendicular()) {
-    const double angle = r.spherical(length(r.edge_u), length(r.edge_v)).solid_angle();
+    const double angle = only_lane(r.spherical(length(r.edge_u), length(r.edge_v)).solid_angle());
     if (angle >= kLeastSolidAngle) return static_cast<float>(1 / angle);
   }
   return static_cast<float>(area_pdf(Vec3d(direction) * double{distance}, r.side.normal));

@@ -27,7 +27,7 @@ LightSet::LightSet(std::vector<Emitter> emitters)
       placed_.push_back(i);
       bounds.push_back(*b);
     } else if (const double irradiance = distant_irradiance(emitters_[i]); irradiance > 0) {
-      distant_.push_back(i);
+      distant_.push_back(i), distant_irradiances_.push_back(irradiance);
       distant_sums_.push_back(sum += irradiance);
     }
     if (seen_at_infinity(emitters_[i])) visible_.push_back(i);
@@ -44,43 +44,50 @@ double LightSet::tree_probability(const LightPoint& point) const {
   return std::clamp(share, kLeastShare, 1 - kLeastShare);
 }
 
-std::optional<LightSample> LightSet::sample(const LightPoint& point, double choice,
-                                            const SquareSample& s) const {
+std::optional<LightSet::Choice> LightSet::choose(const LightPoint& point, double choice) const {
   if (empty()) return std::nullopt;
   const double of_tree = tree_probability(point);
   if (choice < of_tree) {
     const auto chosen = tree_.choose(point, choice / of_tree);
     if (!chosen) return std::nullopt;
-    const std::uint32_t emitter = placed_[chosen->index];
-    auto sample = sample_emitter(emitters_[emitter], point, s);
-    if (!sample) return std::nullopt;
-    sample->emitter = emitter;
-    sample->pdf = static_cast<float>(sample->pdf * chosen->probability * of_tree);
-    return sample->pdf > 0 ? sample : std::nullopt;
+    return Choice{placed_[chosen->index], chosen->probability * of_tree, false};
   }
   const double total = distant_sums_.back(), place = (choice - of_tree) / (1 - of_tree) * total;
   const auto found = std::upper_bound(distant_sums_.begin(), distant_sums_.end() - 1, place);
-  const std::uint32_t emitter = distant_[found - distant_sums_.begin()];
-  auto sample = sample_emitter(emitters_[emitter], point, s);
+  const std::size_t i = found - distant_sums_.begin();
+  return Choice{distant_[i], (1 - of_tree) * (distant_irradiances_[i] / total), true};
+}
+
+std::optional<LightSample> LightSet::sample(const LightPoint& point, const Choice& chosen,
+                                            const SquareSample& s) const {
+  auto sample = sample_emitter(emitters_[chosen.emitter], point, s);
   if (!sample) return std::nullopt;
-  sample->emitter = emitter;
-  if (sample->delta) {
-    sample->pdf = static_cast<float>(probability(point, emitter));
-  } else if (visible_.size() > 1) {
+  sample->emitter = chosen.emitter;
+  if (chosen.distant && !sample->delta && visible_.size() > 1) {
     sample->radiance = environment_radiance(sample->direction);
     sample->pdf = environment_pdf(point, sample->direction);
   } else {
-    sample->pdf = static_cast<float>(sample->pdf * probability(point, emitter));
+    sample->pdf = static_cast<float>(sample->pdf * chosen.probability);
   }
   return sample->pdf > 0 ? sample : std::nullopt;
+}
+
+std::optional<LightSample> LightSet::sample(const LightPoint& point, double choice,
+                                            const SquareSample& s) const {
+  const auto chosen = choose(point, choice);
+  return chosen ? sample(point, *chosen, s) : std::nullopt;
+}
+
+double LightSet::distant_probability(std::uint32_t emitter) const {
+  const auto found = std::lower_bound(distant_.begin(), distant_.end(), emitter);
+  if (found == distant_.end() || *found != emitter) return 0;
+  return distant_irradiances_[found - distant_.begin()] / distant_sums_.back();
 }
 
 double LightSet::probability(const LightPoint& point, std::uint32_t emitter) const {
   if (in_tree_[emitter] != kNever)
     return tree_probability(point) * tree_.probability(point, in_tree_[emitter]);
-  const auto found = std::lower_bound(distant_.begin(), distant_.end(), emitter);
-  if (found == distant_.end() || *found != emitter) return 0;
-  return (1 - tree_probability(point)) * distant_irradiance(emitters_[emitter]) / distant_sums_.back();
+  return (1 - tree_probability(point)) * distant_probability(emitter);
 }
 
 float LightSet::pdf(const LightPoint& point, std::uint32_t emitter, const Vec3f& direction,
@@ -96,11 +103,40 @@ Color LightSet::environment_radiance(const Vec3f& direction) const {
 }
 
 float LightSet::environment_pdf(const LightPoint& point, const Vec3f& direction) const {
+  const double of_distant = 1 - tree_probability(point);
   double sum = 0;
   for (const std::uint32_t emitter : visible_)
     if (const float pdf = emitter_pdf(emitters_[emitter], point, direction, 0); pdf > 0)
-      sum += pdf * probability(point, emitter);
+      sum += pdf * (of_distant * distant_probability(emitter));
   return static_cast<float>(sum);
+}
+
+void LightSet::environment_values(const MapCode& code, std::size_t count, const LightPoint* points,
+                                  const float* const (&direction)[3], EnvironmentValues& out) const {
+  constexpr std::size_t kMost = EnvironmentValues::kMost;
+  double sums[kMost] = {}, of_distant[kMost];
+  std::fill_n(&out.radiance[0][0], 3 * kMost, 0.0f);
+  for (std::size_t k = 0; k < count; ++k)
+    of_distant[k] = points != nullptr ? 1 - tree_probability(points[k]) : 0;
+  for (const std::uint32_t emitter : visible_) {
+    const double probability = distant_probability(emitter);
+    const auto add = [&](std::size_t k, const Color& radiance, float pdf) {
+      for (int axis = 0; axis < 3; ++axis) out.radiance[axis][k] += radiance[axis];
+      if (pdf > 0) sums[k] += pdf * (of_distant[k] * probability);
+    };
+    if (const auto* e = std::get_if<EnvironmentEmitter>(&emitters_[emitter])) {
+      float radiance[3][kMost], pdf[kMost];
+      code.values(e->map->tables(), count, direction, {radiance[0], radiance[1], radiance[2]}, pdf);
+      for (std::size_t k = 0; k < count; ++k)
+        add(k, {radiance[0][k], radiance[1][k], radiance[2][k]}, pdf[k]);
+      continue;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec3f d{direction[0][k], direction[1][k], direction[2][k]};
+      add(k, infinite_radiance(emitters_[emitter], d), emitter_pdf(emitters_[emitter], {}, d, 0));
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) out.pdf[k] = static_cast<float>(sums[k]);
 }
 
 }  // namespace oktett

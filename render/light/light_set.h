@@ -12,6 +12,18 @@
 
 namespace oktett {
 
+/// Code of an instruction set that looks up directions, given as columns, in environment maps.
+struct MapCode {
+  void (*values)(const EnvironmentTables&, std::size_t count, const float* const (&direction)[3],
+                 float* const (&radiance)[3], float* pdf);
+};
+
+/// Light and densities of up to kMost directions.
+struct EnvironmentValues {
+  static constexpr std::size_t kMost = 64;
+  float radiance[3][kMost], pdf[kMost];
+};
+
 /// Emitters that have a place are chosen by a LightTree. The others (directional light, environments and
 /// points without falloff) are few; each is chosen by its irradiance. Emitters that give no light, have no
 /// area or hold a number that is infinite or NaN are never chosen.
@@ -35,6 +47,16 @@ class LightSet {
   /// is black.
   std::optional<LightSample> sample(const LightPoint& point, double choice, const SquareSample& s) const;
 
+  /// The same in two steps, of which the second may be done for many points together.
+  struct Choice {
+    std::uint32_t emitter;
+    double probability;  ///< of choosing it
+    bool distant;        ///< it has no place
+  };
+  std::optional<Choice> choose(const LightPoint& point, double choice) const;
+  std::optional<LightSample> sample(const LightPoint& point, const Choice& chosen,
+                                    const SquareSample& s) const;
+
   /// The density, per solid angle, with which sample() chooses the unit vector `direction` to the point of
   /// emitter number `emitter` at `distance`, for a ray that found the emitter by another way. 0 for delta
   /// lights and for emitters that sample() never chooses. For infinite emitters see environment_pdf.
@@ -48,10 +70,19 @@ class LightSet {
   Color environment_radiance(const Vec3f& direction) const;
   /// The density, per solid angle, with which sample() chooses `direction` to any infinite emitter.
   float environment_pdf(const LightPoint& point, const Vec3f& direction) const;
+  /// Both for up to EnvironmentValues::kMost directions, given as columns, with the same bits. Without
+  /// `points` the densities are 0.
+  void environment_values(const MapCode& code, std::size_t count, const LightPoint* points,
+                          const float* const (&direction)[3], EnvironmentValues& out) const;
+  /// Whether infinite emitters overlap, so that samples of one need environment_values.
+  bool environment_overlaps() const { return visible_.size() > 1; }
 
  private:
   /// The probability of choosing the tree.
   double tree_probability(const LightPoint& point) const;
+
+  /// The probability of a distant emitter among these.
+  double distant_probability(std::uint32_t emitter) const;
 
   static constexpr std::uint32_t kNever = 0xffffffffu;
 
@@ -60,6 +91,7 @@ class LightSet {
   std::vector<std::uint32_t> placed_;   ///< numbers of the emitters in the tree
   std::vector<std::uint32_t> in_tree_;  ///< per emitter: its number in the tree, or kNever
   std::vector<std::uint32_t> distant_;  ///< numbers of the emitters without place that are chosen
+  std::vector<double> distant_irradiances_;
   std::vector<double> distant_sums_;    ///< irradiance of these up to and with each
   std::vector<std::uint32_t> visible_;  ///< numbers of the infinite emitters that are not delta lights
 };

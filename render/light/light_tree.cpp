@@ -59,15 +59,17 @@ LightTree::Importances LightTree::importances(const Quad& quad, const LightPoint
 
   const Four cosine = -(four(quad.axis[0]) * x + four(quad.axis[1]) * y + four(quad.axis[2]) * z) * scale;
   const Four cos_spread = four(quad.cos_spread);
-  const Four sin_spread = cos_spread > 0 ? square_root(max(1 - cos_spread * cos_spread, 0)) : four(1);
-  const Four width = min(sin_spread + ball, 1);
+  const Four width = min(four(quad.sin_spread) + ball, 1);
+  const bool any_back = (quad.child[0] | quad.child[1] | quad.child[2] | quad.child[3]) & kBothSides;
   const auto back_part = [](std::uint32_t child) { return child & kBothSides ? 1.0f : 0.0f; };
   const Four back{back_part(quad.child[0]), back_part(quad.child[1]), back_part(quad.child[2]),
                   back_part(quad.child[3])};
-  const Four leaving = back > 0 ? magnitude(cosine) : cosine, mean = leaving * (1 + cos_spread) * 0.5f;
+  const Four leaving = any_back ? (back > 0 ? magnitude(cosine) : cosine) : cosine;
+  const Four mean = leaving * (1 + cos_spread) * 0.5f;
   const Four power = four(quad.power), nearest = max(square, kPartOfRadius * radius * radius);
-  Four importance =
-      power / nearest * (mean_cosine(mean, width, leaving) + back * positive_part(-mean, width));
+  Four leaving_part = mean_cosine(mean, width, leaving);
+  if (any_back) leaving_part += back * positive_part(-mean, width);
+  Four importance = power / nearest * leaving_part;
   Four lit = unless_beyond(power, leaving, four(quad.cos_limit), ball);
 
   if (point.normal != Vec3f{}) {
@@ -100,6 +102,7 @@ LightTree::Importances LightTree::weights(const Quad& quad, const LightPoint& po
 
 std::optional<LightTree::Choice> LightTree::choose(const LightPoint& point, double u) const {
   if (quads_.empty()) return std::nullopt;
+  if (slots_.size() == 1) return Choice{0, 1};
   double probability = 1;
   std::uint32_t child = 0;
   do {
@@ -123,9 +126,10 @@ std::optional<LightTree::Choice> LightTree::choose(const LightPoint& point, doub
 }
 
 double LightTree::probability(const LightPoint& point, std::uint32_t index) const {
+  if (slots_.size() == 1) return 1;
   // From the root, so that the product is the same bits as that of choose().
   std::uint32_t way[kDeepest], steps = 0;
-  for (std::uint32_t slot = slots_[index]; slot != kRoot; slot = quads_[slot / 4].parent) way[steps++] = slot;
+  for (std::uint32_t slot = slots_[index]; slot != kRoot; slot = parents_[slot / 4]) way[steps++] = slot;
   double probability = 1;
   while (steps-- > 0) {
     const Importances w = weights(quads_[way[steps] / 4], point);

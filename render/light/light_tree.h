@@ -37,7 +37,9 @@ class LightTree {
   };
 
   bool empty() const { return quads_.empty(); }
-  std::size_t bytes() const { return quads_.size() * sizeof(Quad) + slots_.size() * sizeof(slots_[0]); }
+  std::size_t bytes() const {
+    return quads_.size() * (sizeof(Quad) + sizeof(parents_[0])) + slots_.size() * sizeof(slots_[0]);
+  }
 
   /// Chooses an emitter by the number `u` in [0, 1), which should have as many random bits as there are
   /// emitters and more. Nothing if the tree is empty.
@@ -59,10 +61,10 @@ class LightTree {
     float radius[kLanes];
     float axis[3][kLanes];
     float cos_spread[kLanes];
-    float cos_limit[kLanes];  ///< of the widest angle between axis and light
+    float sin_spread[kLanes];  ///< 1 beyond a right angle
+    float cos_limit[kLanes];   ///< of the widest angle between axis and light
     float power[kLanes];
     std::uint32_t child[kLanes];  ///< its number of quad or emitter, times 4, plus kLeaf and kBothSides
-    std::uint32_t parent;         ///< number of the parent times 4, plus the lane there; kRoot
   };
   static_assert(sizeof(Quad) == 192);
 
@@ -81,8 +83,9 @@ class LightTree {
   /// The same such that the sum is > 0 and finite, and no part of it but 0 is very small.
   static Importances weights(const Quad& quad, const LightPoint& point);
 
-  std::vector<Quad> quads_;           ///< depth first
-  std::vector<std::uint32_t> slots_;  ///< per emitter: its quad times 4, plus its lane
+  std::vector<Quad> quads_;             ///< depth first
+  std::vector<std::uint32_t> parents_;  ///< per quad: number of the parent times 4, plus the lane; kRoot
+  std::vector<std::uint32_t> slots_;    ///< per emitter: its quad times 4, plus its lane
 };
 
 }  // namespace oktett

@@ -195,7 +195,7 @@ class LightTree::Builder {
     }
     const auto number = static_cast<std::uint32_t>(tree_.quads_.size());
     tree_.quads_.emplace_back();
-    tree_.quads_[number].parent = parent;
+    tree_.parents_.push_back(parent);
     for (std::uint32_t lane = 0; lane < count; ++lane) {
       const BinaryNode& child = nodes_[children[lane]];
       write(child, tree_.quads_[number], lane);
@@ -214,7 +214,8 @@ class LightTree::Builder {
     const Vec3d half = max(Vec3d(bounds.box.hi) - Vec3d(center), Vec3d(center) - Vec3d(bounds.box.lo));
     for (int i = 0; i < 3; ++i) quad.center[i][lane] = center[i], quad.axis[i][lane] = axis[i];
     quad.radius[lane] = round_up(length(half) * (1 + 1e-12));
-    quad.cos_spread[lane] = static_cast<float>(portable::cos(bounds.spread));
+    const float cos_spread = quad.cos_spread[lane] = static_cast<float>(portable::cos(bounds.spread));
+    quad.sin_spread[lane] = cos_spread > 0 ? std::sqrt(std::max(1 - cos_spread * cos_spread, 0.0f)) : 1;
     const double limit = std::min(double{bounds.spread} + bounds.reach, std::numbers::pi);
     quad.cos_limit[lane] = static_cast<float>(portable::cos(limit));
     quad.power[lane] = bounds.power;

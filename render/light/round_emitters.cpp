@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/light/emitter_kinds.h"
+#include "render/light/emitter_lanes.h"
 
 namespace oktett {
 
@@ -14,20 +14,16 @@ static constexpr double kPi = std::numbers::pi;
 
 // Spheres.
 
-/// 1 - cosine of the half angle of the cone that a sphere fills, by the square of the sine.
-static double cap_height(double sine_square) { return sine_square / (1 + std::sqrt(1 - sine_square)); }
+using Lane = Simd<double, 1, ScalarIsa>;
+
+static double cap_height(double sine_square) { return only_lane(cap_height_lanes(Lane(sine_square))); }
 
 std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint& p, const SquareSample& s) {
   const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position);
   const double square = dot(to_center, to_center), r = e.radius, r_square = r * r;
   if (square >= r_square) {
     if (!(square > 0)) return std::nullopt;
-    const double height = cap_height(r_square / square), depth = s.x * height;
-    const double center_distance = std::sqrt(square);
-    const Vec3d direction = around(to_center / center_distance, depth, s.y);
-    const double near_square = r_square - square * depth * (2 - depth);
-    const double distance = center_distance * (1 - depth) - std::sqrt(std::max(0.0, near_square));
-    return sample_at(direction * distance, e.radiance, 1 / (2 * kPi * height), false);
+    return only_sample(sample_spheres(broadcast<Lane>(to_center), Lane(r), Lane(s.x), Lane(s.y)), e.radiance);
   }
   if (!e.both_sides) return std::nullopt;
   const Vec3d direction = around({0, 0, 1}, 2 * s.x, s.y);

@@ -1,0 +1,114 @@
+#pragma once
+/// \file Light samples and look-ups in environment maps for many points, for one instruction set. Columns are
+/// up to 64 long; entries up to the end of the last group of lanes are read and written.
+
+#include "core/double_lanes.h"
+#include "render/light/emitter_lanes.h"
+#include "render/path_lights.h"
+
+namespace oktett {
+
+template <class A>
+using LightLanes = Simd<double, kDoubleLanes<A>, A>;
+
+template <class A>
+void map_values_code(const EnvironmentTables& map, std::size_t count, const float* const (&direction)[3],
+                     float* const (&radiance)[3], float* pdf) {
+  using F = FloatsOf<LightLanes<A>>;
+  for (std::size_t i = 0; i < count; i += F::kWidth) {
+    const auto at = map_places(
+        map, Vec3<F>{F::load(direction[0] + i), F::load(direction[1] + i), F::load(direction[2] + i)});
+    map_radiance(map, at, {radiance[0] + i, radiance[1] + i, radiance[2] + i});
+    map_density(map, at, pdf + i);
+  }
+}
+
+template <class A>
+void map_samples_code(const EnvironmentTables& map, LightGroup& group) {
+  using D = LightLanes<A>;
+  constexpr int W = D::kWidth;
+  for (std::size_t i = 0; i < group.count; i += W) {
+    const auto s = map_samples(map, D::load(group.x + i), D::load(group.y + i));
+    s.direction.x.store(group.direction[0] + i), s.direction.y.store(group.direction[1] + i);
+    s.direction.z.store(group.direction[2] + i);
+    std::int64_t pixel[W];
+    for (int k = 0; k < W; ++k) {
+      pixel[k] = std::int64_t{s.row[k]} * map.width + s.column[k];
+      group.pdf[i + k] = map.density[pixel[k]];
+    }
+    if (map.smooth) {
+      map_radiance(map, s.place, {group.radiance[0] + i, group.radiance[1] + i, group.radiance[2] + i});
+      continue;
+    }
+    for (int k = 0; k < W; ++k)
+      for (int axis = 0; axis < 3; ++axis) group.radiance[axis][i + k] = map.pixels[pixel[k]][axis];
+  }
+}
+
+/// Three columns of lanes from a member of each emitter, in double.
+template <class D, class Get>
+OKTETT_INLINE Vec3<D> emitter_vectors(const Get& get) {
+  double x[D::kWidth], y[D::kWidth], z[D::kWidth];
+  for (int k = 0; k < D::kWidth; ++k) {
+    const Vec3f& v = get(k);
+    x[k] = v.x, y[k] = v.y, z[k] = v.z;
+  }
+  return {D::load(x), D::load(y), D::load(z)};
+}
+
+template <class D>
+OKTETT_INLINE Vec3<D> group_positions(const LightGroup& group, std::size_t i) {
+  using F = FloatsOf<D>;
+  return to_double(Vec3<F>{F::load(group.position[0] + i), F::load(group.position[1] + i),
+                           F::load(group.position[2] + i)});
+}
+
+template <class D>
+OKTETT_INLINE void store_samples(const LightSamples<D>& s, LightGroup& group, std::size_t i) {
+  s.direction.x.store(group.direction[0] + i), s.direction.y.store(group.direction[1] + i);
+  s.direction.z.store(group.direction[2] + i);
+  s.distance.store(group.distance + i);
+  select(s.found, s.pdf, FloatsOf<D>(0.0f)).store(group.pdf + i);
+  s.u.store(group.x + i), s.v.store(group.y + i);
+}
+
+template <class A>
+void rectangle_samples_code(LightGroup& group) {
+  using D = LightLanes<A>;
+  for (std::size_t i = 0; i < group.count; i += D::kWidth) {
+    const auto emitter = [&](int k) -> const RectangleEmitter& {
+      return *static_cast<const RectangleEmitter*>(group.emitter[i + k]);
+    };
+    unsigned both_sides = 0;
+    for (int k = 0; k < D::kWidth; ++k) both_sides |= (emitter(k).both_sides ? 1u : 0u) << k;
+    const Vec3<D> corner = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).corner; });
+    const RectangleViews<D> views{
+        sub_lanes(corner, group_positions<D>(group, i)),
+        emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).edge_u; }),
+        emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).edge_v; }),
+        D::M::from_bits(both_sides)};
+    store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
+  }
+}
+
+template <class A>
+void sphere_samples_code(LightGroup& group) {
+  using D = LightLanes<A>;
+  for (std::size_t i = 0; i < group.count; i += D::kWidth) {
+    const auto emitter = [&](int k) -> const SphereEmitter& {
+      return *static_cast<const SphereEmitter*>(group.emitter[i + k]);
+    };
+    double radius[D::kWidth];
+    for (int k = 0; k < D::kWidth; ++k) radius[k] = emitter(k).radius;
+    const Vec3<D> center = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).center; });
+    store_samples(sample_spheres(sub_lanes(center, group_positions<D>(group, i)), D::load(radius),
+                                 D::load(group.x + i), D::load(group.y + i)),
+                  group, i);
+  }
+}
+
+/// The functions above for the set.
+template <class A>
+LightCode light_code();
+
+}  // namespace oktett
