@@ -149,6 +149,19 @@ std::string times_text(const StageTimes& times, const RenderReport& report) {
                      with_prefix(rays_per_second(report)), denoised, duration_text(times.write));
 }
 
+/// part / whole, 0 for 0 / 0.
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
+
+/// A number for each bounce.
+template <class Of>
+std::vector<double> by_bounce(const RenderReport& report, const Of& of) {
+  std::vector<double> values;
+  for (const BounceReport& b : report.bounces) values.push_back(of(b));
+  return values;
+}
+
 /// A table of counts, one per line.
 std::string stats_text(const RenderReport& report) {
   std::string text;
@@ -160,6 +173,13 @@ std::string stats_text(const RenderReport& report) {
   line("  shadow", grouped(report.shadow_rays));
   line("  reflected", grouped(report.reflected_rays));
   line("  refracted", grouped(report.refracted_rays));
+  for (std::size_t i = 0; i < report.bounces.size(); ++i) {
+    const BounceReport& b = report.bounces[i];
+    text += fmt::format("  bounce {:<11}{:>16} in batches of {:.0f}, {} shadow rays", i, grouped(b.rays),
+                        share(b.rays, b.batches), grouped(b.shadow_rays));
+    text += b.lanes > 0 ? fmt::format(", {:.0f} % of shading lanes filled\n", 100 * share(b.shaded, b.lanes))
+                        : "\n";
+  }
   line("triangles", grouped(report.triangles));
   line("primitives", grouped(report.primitives));
   line("geometry", bytes_text(report.geometry_bytes));
@@ -179,10 +199,19 @@ std::string stats_json(const StageTimes& times, const RenderReport& report, cons
                         {"reflected", report.reflected_rays},
                         {"refracted", report.refracted_rays},
                         {"total", rays_of(report)}};
+  const auto number = [](std::uint64_t BounceReport::*count) {
+    return [count](const BounceReport& b) { return static_cast<double>(b.*count); };
+  };
+  const JsonObject bounces{
+      {"rays", by_bounce(report, number(&BounceReport::rays))},
+      {"shadow_rays", by_bounce(report, number(&BounceReport::shadow_rays))},
+      {"batches", by_bounce(report, number(&BounceReport::batches))},
+      {"lanes_filled", by_bounce(report, [](const BounceReport& b) { return share(b.shaded, b.lanes); })}};
   const JsonObject all{{"output", output},
                        {"seconds", seconds},
                        {"rays", rays},
                        {"rays_per_second", rays_per_second(report)},
+                       {"bounces", bounces},
                        {"triangles", report.triangles},
                        {"primitives", report.primitives},
                        {"geometry_bytes", report.geometry_bytes},

@@ -90,6 +90,7 @@ void shade_runs(const RenderContext& context, Wavefront& wavefront, const Intera
     PathRun run{entry, 0};
     const std::uint32_t number = shown[first].surface;
     for (; first < count && shown[first].surface == number; ++first) entry[run.count++] = shown[first].entry;
+    count_lanes(wavefront, run.count, code.path_lanes);
     for (std::size_t k = 0; k < kGroup; ++k) entry[run.count + k] = entry[run.count - 1];
     const PathSurface& surface = (*context.path_surfaces)[number];
     if (surface.principled)

@@ -15,22 +15,18 @@ class LightSampler {
   LightSampler(const RenderContext& context, const InteractionBlock& found, PathBlock& block)
       : context_(context), set_(context.sampled->set()), found_(found), c_(block) {}
 
-  void add(std::uint32_t k, bool front_only) {
-    const LightPoint from{InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k),
-                          front_only};
-    c_.light_kind[k] = LightKind::none;
-    const auto chosen = set_.choose(from, c_.light[k]);
-    if (!chosen) return;
-    const Emitter& emitter = set_.emitters()[chosen->emitter];
-    if (const auto* e = std::get_if<RectangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
-      return put(rectangles_, k, *chosen, e, front_only);
-    if (const auto* e = std::get_if<SphereEmitter>(&emitter); e != nullptr && is_outside(*e, from.position))
-      return put(spheres_, k, *chosen, e, front_only);
-    if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter)) {
-      if (map_ == nullptr) map_ = e;
-      if (map_ == e) return put(environment_, k, *chosen, e, front_only);
+  void add(const std::uint32_t* entry, const bool* front_only, std::size_t count) {
+    LightPoint from[kMost];
+    double choices[kMost] = {};
+    LightSet::Choice chosen[kMost];
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t k = entry[i];
+      from[i] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k), front_only[i]};
+      choices[i] = c_.light[k];
     }
-    if (const auto sample = set_.sample(from, *chosen, {c_.light_x[k], c_.light_y[k]})) set(k, *sample);
+    set_.choose({from, count}, choices, chosen);
+    for (std::size_t i = 0; i < count; ++i)
+      if (chosen[i].probability > 0) add(entry[i], from[i], chosen[i]);
   }
 
   void finish() {
@@ -43,6 +39,19 @@ class LightSampler {
   }
 
  private:
+  void add(std::uint32_t k, const LightPoint& from, const LightSet::Choice& chosen) {
+    const Emitter& emitter = set_.emitters()[chosen.emitter];
+    if (const auto* e = std::get_if<RectangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
+      return put(rectangles_, k, chosen, e, from.front_only);
+    if (const auto* e = std::get_if<SphereEmitter>(&emitter); e != nullptr && is_outside(*e, from.position))
+      return put(spheres_, k, chosen, e, from.front_only);
+    if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter)) {
+      if (map_ == nullptr) map_ = e;
+      if (map_ == e) return put(environment_, k, chosen, e, from.front_only);
+    }
+    if (const auto sample = set_.sample(from, chosen, {c_.light_x[k], c_.light_y[k]})) set(k, *sample);
+  }
+
   static bool is_outside(const SphereEmitter& e, const Vec3f& position) {
     const Vec3d to = Vec3d(e.center) - Vec3d(position);
     const double square = dot(to, to), radius = e.radius;
@@ -133,7 +142,7 @@ class LightSampler {
 void sample_lights(const RenderContext& context, const InteractionBlock& found, const std::uint32_t* entry,
                    const bool* front_only, std::size_t count, PathBlock& c) {
   LightSampler sampler(context, found, c);
-  for (std::size_t i = 0; i < count; ++i) sampler.add(entry[i], front_only[i]);
+  sampler.add(entry, front_only, count);
   sampler.finish();
 }
 

@@ -47,6 +47,10 @@ class Monitor {
     const std::lock_guard lock(mutex_);
     report_.camera_rays += counts.rays.camera, report_.shadow_rays += counts.rays.shadow;
     report_.reflected_rays += counts.rays.reflected, report_.refracted_rays += counts.rays.refracted;
+    if (report_.bounces.size() < counts.rays.bounces.size())
+      report_.bounces.resize(counts.rays.bounces.size());
+    for (std::size_t i = 0; i < counts.rays.bounces.size(); ++i)
+      add(counts.rays.bounces[i], report_.bounces[i]);
     report_.bad_samples += counts.bad_samples;
     progress_.rays += counts.rays.total();
     progress_.pixels_done += static_cast<std::uint64_t>(tile.width) * tile.height;
@@ -64,6 +68,11 @@ class Monitor {
   const RenderReport& report() const { return report_; }
 
  private:
+  static void add(const BounceReport& more, BounceReport& sum) {
+    sum.rays += more.rays, sum.shadow_rays += more.shadow_rays, sum.batches += more.batches;
+    sum.shaded += more.shaded, sum.lanes += more.lanes;
+  }
+
   const RenderOptions& options_;
   const Picture& picture_;
   Clock::time_point start_;

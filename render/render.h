@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "accel/accel.h"
 #include "core/isa.h"
@@ -43,17 +44,27 @@ struct RenderOptions {
   bool data_layers = true;       ///< also fill the planes Z, N, P, Albedo, u, v, ids and Variance
 };
 
+/// The rays of one bounce, over all tiles: how well they fill what works on many of them at once.
+struct BounceReport {
+  std::uint64_t rays = 0;         ///< camera rays at bounce 0; without shadow rays
+  std::uint64_t shadow_rays = 0;  ///< from the surfaces that these rays meet
+  std::uint64_t batches = 0;      ///< in which the rays were traced
+  std::uint64_t shaded = 0;       ///< hits that were shaded in lanes
+  std::uint64_t lanes = 0;        ///< that this took, idle ones included
+};
+
 /// What a render took, and what it met.
 struct RenderReport {
   double build_seconds = 0, render_seconds = 0;
   std::uint64_t camera_rays = 0, shadow_rays = 0, reflected_rays = 0, refracted_rays = 0;
-  std::uint64_t bad_samples = 0;     ///< NaN or infinite samples that were left out
-  std::uint64_t triangles = 0;       ///< each counted once, however many instances show it
-  std::uint64_t primitives = 0;      ///< of all kinds, counted likewise
-  std::uint64_t geometry_bytes = 0;  ///< meshes
-  std::uint64_t bvh_bytes = 0;       ///< nodes and leaves
-  double sah_cost = 0;               ///< AccelStats::sah_cost of the whole scene's structure
-  bool stopped = false;              ///< not all tiles were rendered
+  std::vector<BounceReport> bounces;  ///< of Whitted's integrator and of path tracing
+  std::uint64_t bad_samples = 0;      ///< NaN or infinite samples that were left out
+  std::uint64_t triangles = 0;        ///< each counted once, however many instances show it
+  std::uint64_t primitives = 0;       ///< of all kinds, counted likewise
+  std::uint64_t geometry_bytes = 0;   ///< meshes
+  std::uint64_t bvh_bytes = 0;        ///< nodes and leaves
+  double sah_cost = 0;                ///< AccelStats::sah_cost of the whole scene's structure
+  bool stopped = false;               ///< not all tiles were rendered
 };
 
 struct RenderResult {

@@ -11,6 +11,7 @@
 namespace oktett {
 
 struct RenderCode {
+  std::size_t whitted_lanes, path_lanes;  ///< hits that are shaded at once
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
   /// Fills all columns after `ray` and `material` from the rays and from a table of materials, and adds their
   /// unlit light, except for materials that vary, to the radiance of the rays.

@@ -104,6 +104,7 @@ void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
     trace_shadows(context, queue, holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes,
                   wavefront.radiance);
     wavefront.counts.shadow += queue.size();
+    wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
     queue.clear();
   }
 }
@@ -187,10 +188,22 @@ void fill_samples(SampleBatch& samples) {
 
 }  // namespace
 
+static void begin_bounce(Wavefront& wavefront) {
+  std::vector<BounceReport>& bounces = wavefront.counts.bounces;
+  if (bounces.size() <= wavefront.level) bounces.resize(wavefront.level + 1);
+  bounces[wavefront.level].rays += wavefront.rays.size(), ++bounces[wavefront.level].batches;
+}
+
+void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width) {
+  BounceReport& bounce = wavefront.counts.bounces[wavefront.level];
+  bounce.shaded += hits, bounce.lanes += (hits + width - 1) / width * width;
+}
+
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
   // The light that leaves the last surface may come from one more, which path tracing looks up.
   const unsigned most_levels = context.settings.depth + 1 + kMostHoles;
   for (wavefront.level = 0; wavefront.level <= most_levels && !wavefront.rays.empty(); ++wavefront.level) {
+    begin_bounce(wavefront);
     find_hits(context, wavefront);
     if (wavefront.level == 0) {
       // If several wavefronts share a pixel, all of them are needed for its mean.

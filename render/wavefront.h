@@ -7,6 +7,7 @@
 
 #include "render/context.h"
 #include "render/ray_queue.h"
+#include "render/render.h"
 #include "render/shading_point.h"
 
 namespace oktett {
@@ -50,6 +51,7 @@ struct WavefrontPixel {
 /// How many rays of each kind were traced.
 struct RayCounts {
   std::uint64_t camera = 0, shadow = 0, reflected = 0, refracted = 0;
+  std::vector<BounceReport> bounces;
   std::uint64_t total() const { return camera + shadow + reflected + refracted; }
 };
 
@@ -73,6 +75,9 @@ struct Wavefront {
   bool whole_pixels = true;        ///< all samples of each of its pixels are in this wavefront
   RayCounts counts;
 };
+
+/// Counts hits of the present bounce that were shaded in groups of `width` lanes.
+void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width);
 
 /// Fills a wavefront, which may be new or finished, with the camera rays of samples [first, last) of each
 /// pixel.

@@ -141,6 +141,7 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   ShadingColumns c;
   c.count = count;
   name_hits(context, which, found, c);
+  count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
   render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
   bool alone = false, mirrors = false;
   for (std::size_t k = 0; k < count; ++k) {

@@ -10,9 +10,10 @@ namespace oktett {
 
 template <class A>
 const RenderCode& render_code() {
-  static const RenderCode code = {view_directions_code<A>,  begin_shading_code<A>, shadow_rays_code<A>,
-                                  mirror_rays_code<A>,      begin_path_code<A>,    shade_phong_code<A>,
-                                  shade_principled_code<A>, light_code<A>()};
+  static const RenderCode code = {ShadingLanes<A>::kWidth, kDoubleLanes<A>,     view_directions_code<A>,
+                                  begin_shading_code<A>,   shadow_rays_code<A>, mirror_rays_code<A>,
+                                  begin_path_code<A>,      shade_phong_code<A>, shade_principled_code<A>,
+                                  light_code<A>()};
   return code;
 }
 

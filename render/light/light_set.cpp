@@ -44,18 +44,39 @@ double LightSet::tree_probability(const LightPoint& point) const {
   return std::clamp(share, kLeastShare, 1 - kLeastShare);
 }
 
-std::optional<LightSet::Choice> LightSet::choose(const LightPoint& point, double choice) const {
-  if (empty()) return std::nullopt;
-  const double of_tree = tree_probability(point);
-  if (choice < of_tree) {
-    const auto chosen = tree_.choose(point, choice / of_tree);
-    if (!chosen) return std::nullopt;
-    return Choice{placed_[chosen->index], chosen->probability * of_tree, false};
-  }
+LightSet::Choice LightSet::choose_distant(double of_tree, double choice) const {
   const double total = distant_sums_.back(), place = (choice - of_tree) / (1 - of_tree) * total;
   const auto found = std::upper_bound(distant_sums_.begin(), distant_sums_.end() - 1, place);
   const std::size_t i = found - distant_sums_.begin();
-  return Choice{distant_[i], (1 - of_tree) * (distant_irradiances_[i] / total), true};
+  return {distant_[i], (1 - of_tree) * (distant_irradiances_[i] / total), true};
+}
+
+void LightSet::choose(std::span<const LightPoint> points, const double* choices, Choice* out) const {
+  constexpr std::size_t kMost = EnvironmentValues::kMost;
+  LightPoint near[kMost];
+  double u[kMost], of_tree[kMost];
+  std::size_t entry[kMost], count = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    out[k] = {0, 0, false};
+    if (empty()) continue;
+    const double share = tree_probability(points[k]);
+    if (choices[k] < share) {
+      near[count] = points[k], u[count] = choices[k] / share, of_tree[count] = share, entry[count++] = k;
+    } else {
+      out[k] = choose_distant(share, choices[k]);
+    }
+  }
+  if (count == 0) return;
+  LightTree::Choice chosen[kMost];
+  tree_.choose({near, count}, u, chosen);
+  for (std::size_t i = 0; i < count; ++i)
+    out[entry[i]] = {placed_[chosen[i].index], chosen[i].probability * of_tree[i], false};
+}
+
+std::optional<LightSet::Choice> LightSet::choose(const LightPoint& point, double choice) const {
+  Choice chosen;
+  choose({&point, 1}, &choice, &chosen);
+  return chosen.probability > 0 ? std::optional(chosen) : std::nullopt;
 }
 
 std::optional<LightSample> LightSet::sample(const LightPoint& point, const Choice& chosen,

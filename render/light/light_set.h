@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/light/emitter.h"
@@ -54,6 +55,8 @@ class LightSet {
     bool distant;        ///< it has no place
   };
   std::optional<Choice> choose(const LightPoint& point, double choice) const;
+  /// The same for up to 64 points. Where nothing is chosen the probability is 0.
+  void choose(std::span<const LightPoint> points, const double* choices, Choice* out) const;
   std::optional<LightSample> sample(const LightPoint& point, const Choice& chosen,
                                     const SquareSample& s) const;
 
@@ -81,6 +84,7 @@ class LightSet {
   /// The probability of choosing the tree.
   double tree_probability(const LightPoint& point) const;
 
+  Choice choose_distant(double of_tree, double choice) const;
   /// The probability of a distant emitter among these.
   double distant_probability(std::uint32_t emitter) const;
 

@@ -100,29 +100,51 @@ LightTree::Importances LightTree::weights(const Quad& quad, const LightPoint& po
   return w;
 }
 
+void LightTree::step(const LightPoint& point, Walk& walk) const {
+  const Quad& quad = quads_[walk.child / 4];
+  const Importances w = weights(quad, point);
+  const double sum = w.sum();
+  double rest = walk.u * sum;
+  std::uint32_t chosen = kLanes;
+  for (std::uint32_t i = 0; i < kLanes; ++i) {
+    if (!(w.lane[i] > 0)) continue;
+    if (chosen != kLanes) rest -= w.lane[chosen];
+    chosen = i;
+    if (rest < w.lane[i]) break;
+  }
+  // Rounding may give 1.
+  walk.u = std::clamp(rest / w.lane[chosen], 0.0, 1 - 0x1p-53);
+  walk.probability *= w.lane[chosen] / sum;
+  walk.child = quad.child[chosen];
+}
+
 std::optional<LightTree::Choice> LightTree::choose(const LightPoint& point, double u) const {
   if (quads_.empty()) return std::nullopt;
-  if (slots_.size() == 1) return Choice{0, 1};
-  double probability = 1;
-  std::uint32_t child = 0;
-  do {
-    const Quad& quad = quads_[child / 4];
-    const Importances w = weights(quad, point);
-    const double sum = w.sum();
-    double rest = u * sum;
-    std::uint32_t chosen = kLanes;
-    for (std::uint32_t i = 0; i < kLanes; ++i) {
-      if (!(w.lane[i] > 0)) continue;
-      if (chosen != kLanes) rest -= w.lane[chosen];
-      chosen = i;
-      if (rest < w.lane[i]) break;
+  Choice choice;
+  choose({&point, 1}, &u, &choice);
+  return choice;
+}
+
+void LightTree::choose(std::span<const LightPoint> points, const double* u, Choice* out) const {
+  if (slots_.size() == 1) return void(std::fill_n(out, points.size(), Choice{0, 1}));
+  constexpr std::size_t kTogether = 8;
+  for (std::size_t first = 0; first < points.size(); first += kTogether) {
+    Walk walks[kTogether];
+    std::size_t left[kTogether], count = std::min(kTogether, points.size() - first);
+    for (std::size_t k = 0; k < count; ++k) walks[k].u = u[first + k], left[k] = k;
+    while (count > 0) {
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t k = left[i];
+        step(points[first + k], walks[k]);
+        if (walks[k].child & kLeaf)
+          out[first + k] = {walks[k].child / 4, walks[k].probability};
+        else
+          left[kept++] = k;
+      }
+      count = kept;
     }
-    // Rounding may give 1.
-    u = std::clamp(rest / w.lane[chosen], 0.0, 1 - 0x1p-53);
-    probability *= w.lane[chosen] / sum;
-    child = quad.child[chosen];
-  } while (!(child & kLeaf));
-  return Choice{child / 4, probability};
+  }
 }
 
 double LightTree::probability(const LightPoint& point, std::uint32_t index) const {

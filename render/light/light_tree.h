@@ -45,6 +45,10 @@ class LightTree {
   /// emitters and more. Nothing if the tree is empty.
   std::optional<Choice> choose(const LightPoint& point, double u) const;
 
+  /// The same for many points, with the same answers, side by side: a processor works on the steps of several
+  /// points at once. The tree must not be empty.
+  void choose(std::span<const LightPoint> points, const double* u, Choice* out) const;
+
   /// The probability with which choose() answers `index`; never 0 for an emitter that can light the point.
   double probability(const LightPoint& point, std::uint32_t index) const;
 
@@ -78,6 +82,13 @@ class LightTree {
   };
 
   class Builder;
+
+  /// A choice on its way down.
+  struct Walk {
+    std::uint32_t child = 0;  ///< a quad, or where kLeaf is set the emitter chosen
+    double u, probability = 1;
+  };
+  void step(const LightPoint& point, Walk& walk) const;
 
   static Importances importances(const Quad& quad, const LightPoint& point);
   /// The same such that the sum is > 0 and finite, and no part of it but 0 is very small.

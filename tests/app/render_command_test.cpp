@@ -116,7 +116,8 @@ TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
   dir.write("ball.yaml", kScene);
   const CommandResult text = run_command(dir, {"render", "ball.yaml", "--stats"});
   EXPECT_EQ(text.status, 0) << text.err;
-  for (const char* word : {"camera", "shadow", "bytes per triangle", "sah cost", "bad samples"})
+  for (const char* word :
+       {"camera", "shadow", "bytes per triangle", "sah cost", "bad samples", "bounce 0", "shading lanes"})
     EXPECT_TRUE(contains(text.out, word)) << word;
   const CommandResult json = run_command(dir, {"render", "--stats=json", "ball.yaml"});
   EXPECT_EQ(json.status, 0) << json.err;
@@ -124,6 +125,8 @@ TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
   EXPECT_EQ(json.out.substr(json.out.size() - 2), "}\n");
   EXPECT_EQ(std::count(json.out.begin(), json.out.end(), '\n'), 1);
   EXPECT_TRUE(contains(json.out, "\"output\": \"ball.png\""));
+  EXPECT_TRUE(contains(json.out, "\"bounces\": {\"rays\": ["));
+  EXPECT_TRUE(contains(json.out, "\"lanes_filled\": ["));
   EXPECT_TRUE(contains(json.err, "wrote ball.png"));
 }
 
