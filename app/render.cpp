@@ -20,7 +20,9 @@
 #include "core/isa.h"
 #include "io/display/display.h"
 #include "io/image/image.h"
+#include "io/image/output.h"
 #include "io/image/texture.h"
+#include "io/photon/photon_map_file.h"
 #include "io/scene/scene_file.h"
 #include "render/denoise.h"
 #include "render/render.h"
@@ -120,6 +122,33 @@ class Watch {
   ProgressLine line_;
   std::unique_ptr<Display> display_;
   RenderProgress last_;
+};
+
+/// The file of --photon-map: read before rendering if it is there, else written after.
+class PhotonFile {
+ public:
+  PhotonFile(const RenderArguments& arguments, const Scene& scene, RenderOptions& options)
+      : path_(arguments.photon_map) {
+    const bool path = scene.integrator.kind == IntegratorKind::path;
+    if (!path && arguments.caustics) throw Error("--caustics needs the integrator 'path'");
+    if (path_.empty()) return;
+    if (!path) throw Error("--photon-map needs the integrator 'path'");
+    if (std::filesystem::exists(path_)) {
+      options.photons = read_photon_map(path_);
+      path_.clear();
+    } else {
+      // Throws now rather than after the picture if it cannot be written.
+      const OutputFile writable(path_);
+      options.keep_photons = true;
+    }
+  }
+
+  void keep(const RenderResult& result) const {
+    if (!path_.empty() && result.photons != nullptr) write_photon_map(path_, *result.photons);
+  }
+
+ private:
+  std::string path_;  ///< to write; empty: none
 };
 
 /// Wall-clock seconds of the stages of the command.
@@ -257,12 +286,15 @@ int run_render(const CommandLine& line, const RenderArguments& arguments) {
   if (arguments.verbose && !arguments.quiet) print_plan(scene, options, output);
   times.load = watch.lap();
 
+  PhotonFile photons(arguments, scene, options);
+
   // A first signal ends the tracing, not the writing.
   const StopOnSignal interrupt;
   options.stop = interrupt.flag();
   Watch shown(arguments, options);
   RenderResult result = render(std::move(scene), options);
   shown.finish();
+  photons.keep(result);
   times.build = result.report.build_seconds;
   times.render = result.report.render_seconds;
   watch.lap();

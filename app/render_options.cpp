@@ -88,6 +88,9 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.option("--integrator", &a.integrator, "K",
               "whitted, path, ao, normal, depth, albedo, uv, position, object, primitive, facing or wire");
   add_film_options(verb, a.film);
+  verb.flag("--caustics", a.caustics, "Light through mirrors and glass by photons, with --integrator path");
+  verb.option("--photon-map", &a.photon_map, "FILE",
+              "Photons for --caustics: read from FILE, or written if it is missing");
   verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
@@ -117,6 +120,9 @@ void override_scene(const RenderArguments& arguments, Scene& scene) {
   if (!arguments.integrator.empty())
     scene.integrator.kind = choice_of<IntegratorKind>("--integrator", arguments.integrator, kIntegratorKinds);
   override_film(arguments.film, scene);
+  CausticSettings& caustics = scene.integrator.caustics;
+  if ((arguments.caustics || !arguments.photon_map.empty()) && caustics.photons == 0)
+    caustics.photons = CausticSettings::kUsualPhotons;
   if (arguments.seed) scene.integrator.seed = *arguments.seed;
   if (arguments.samples) {
     if (*arguments.samples < 1 || *arguments.samples > kMaxSamples)

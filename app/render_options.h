@@ -30,6 +30,8 @@ struct RenderArguments {
   std::vector<std::string> definitions;
   std::string stats;  ///< "", "text" or "json"
   std::string display_server;
+  bool caustics = false;
+  std::string photon_map;  ///< file; empty: photons are not kept
   bool quiet = false;
   bool verbose = false;
   bool progress = false;

@@ -28,6 +28,8 @@ struct LightSource {
   float cos_inner = 1, cos_outer = 0;  ///< of a spot: cosines of the angles between which it fades
 };
 
+class Caustics;
+
 struct RenderContext {
   const World* world = nullptr;
   const TextureSampler* textures = nullptr;  ///< null: textures are white
@@ -39,6 +41,7 @@ struct RenderContext {
   IntegratorSettings settings;
   std::vector<LightSource> lights;         ///< those that have a place or a direction, for Whitted's model
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
+  const Caustics* caustics = nullptr;      ///< photons that path tracing asks for light; may be null
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;

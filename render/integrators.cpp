@@ -33,7 +33,7 @@ Integrator integrator_for(IntegratorKind kind) {
 }
 
 bool shades_in_blocks(const RenderContext& context) {
-  if (context.settings.kind == IntegratorKind::path) return true;
+  if (context.settings.kind == IntegratorKind::path) return context.caustics == nullptr;
   return context.settings.kind == IntegratorKind::whitted && !context.data_layers;
 }
 

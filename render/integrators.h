@@ -43,7 +43,8 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
 void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                       std::size_t count, const InteractionBlock& found);
 
-/// Whether hits are shaded in blocks: by shade_whitted_block or shade_path_block.
+/// Whether hits are shaded in blocks: by shade_whitted_block or shade_path_block. Paths that ask photons are
+/// not.
 bool shades_in_blocks(const RenderContext& context);
 
 /// Which queue of a Wavefront holds the shadow rays of path tracing to lights that other rays can meet.

@@ -8,6 +8,7 @@
 #include "render/integrators.h"
 #include "render/path_emission.h"
 #include "render/path_numbers.h"
+#include "render/photon/caustics.h"
 #include "render/sample_dimensions.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/surface_bsdf.h"
@@ -55,6 +56,8 @@ void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_
                          (light->radiance * context.sampled->texture_at(*light, context.textures)) *
                          (weight / light->pdf);
   if (arriving == Color{0, 0, 0}) return;
+  // Light that photons bring through glass must not pass it straight, too.
+  const bool straight = light->delta && !(context.caustics && context.caustics->brings(light->emitter));
   Ray shadow;
   shadow.origin = offset_origin(p.surface, light->direction);
   shadow.direction = light->direction;
@@ -63,7 +66,7 @@ void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_
     shadow.direction = place - shadow.origin;
     shadow.tmax = light->delta ? kBeforeLight : before_surface(place, light->distance);
   }
-  wavefront.shadows[light->delta ? 0 : kAreaQueue].push_back(shadow, static_cast<std::uint32_t>(ray),
+  wavefront.shadows[straight ? 0 : kAreaQueue].push_back(shadow, static_cast<std::uint32_t>(ray),
                                                              arriving);
 }
 
@@ -82,7 +85,8 @@ void pass_hole(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   push_bounce(wavefront, ray, p, p.direction, wavefront.rays.throughput[ray], Bounce::straight);
   const bool camera = wavefront.level == 0;
   wavefront.next_paths.push_back(camera ? 0 : wavefront.paths.pdf[ray],
-                                 camera ? LightPoint{} : wavefront.paths.from[ray]);
+                                 camera ? LightPoint{} : wavefront.paths.from[ray],
+                                 !camera && wavefront.paths.scattered[ray] != 0);
 }
 
 }  // namespace
@@ -99,7 +103,11 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
 
   const SurfaceBsdf bsdf(p);
   const LightPoint from{p.surface.position, p.ng, !bsdf.transmits()};
-  if (!bsdf.only_delta()) sample_light(context, wavefront, ray, p, bsdf, from, choices);
+  if (!bsdf.only_delta()) {
+    sample_light(context, wavefront, ray, p, bsdf, from, choices);
+    if (context.caustics != nullptr)
+      wavefront.radiance.add(ray, throughput * context.caustics->light(wavefront, ray, p, bsdf));
+  }
 
   const std::optional<BsdfSample> next =
       bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
@@ -108,7 +116,8 @@ void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t 
   if (!survives(wavefront, ray, choices, onward)) return;
   push_bounce(wavefront, ray, p, next->direction, onward,
               next->transmitted ? Bounce::refracted : Bounce::reflected);
-  wavefront.next_paths.push_back(next->pdf, from);
+  const bool scattered = wavefront.level > 0 && wavefront.paths.scattered[ray] != 0;
+  wavefront.next_paths.push_back(next->pdf, from, scattered || next->pdf > 0);
 }
 
 }  // namespace oktett

@@ -1,5 +1,6 @@
 #pragma once
-/// \file The weight in path tracing of light that a ray meets, against light samples that find the same.
+/// \file The weight in path tracing of light that a ray meets: against light samples that find the same, and
+/// none where photons bring it.
 
 #include "render/wavefront.h"
 

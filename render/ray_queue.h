@@ -55,10 +55,17 @@ struct PathColumns {
   Column<float> pdf;  ///< of the direction, per solid angle; 0 for mirrors and clear glass, which no light
                       ///< sample replaces
   Column<LightPoint> from;
+  /// 1 if any surface on the path sent it on otherwise than mirrors and clear glass do. Set only if
+  /// RenderContext::caustics is.
+  Column<std::uint8_t> scattered;
 
   void clear() { resize_uninitialized(0); }
-  void resize_uninitialized(std::size_t n) { pdf.resize_uninitialized(n), from.resize_uninitialized(n); }
-  void push_back(float density, const LightPoint& point) { pdf.push_back(density), from.push_back(point); }
+  void resize_uninitialized(std::size_t n) {
+    pdf.resize_uninitialized(n), from.resize_uninitialized(n), scattered.resize_uninitialized(n);
+  }
+  void push_back(float density, const LightPoint& point, bool was_scattered) {
+    pdf.push_back(density), from.push_back(point), scattered.push_back(was_scattered ? 1 : 0);
+  }
 };
 
 /// Shadow rays. Each adds `light` to the radiance of its owner, an entry of a RayQueue, if nothing blocks it.

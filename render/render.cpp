@@ -15,6 +15,7 @@
 #include "render/film.h"
 #include "render/geometry.h"
 #include "render/moments.h"
+#include "render/photon/caustics.h"
 #include "render/tile.h"
 
 namespace oktett {
@@ -123,6 +124,14 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
   const SceneLights lights(scene, world);
   RenderContext context = make_context(scene, world, lights, options.textures, options.isa);
   context.data_layers = options.data_layers;
+  const Clock::time_point photons = Clock::now();
+  std::optional<Caustics> caustics;
+  if (wants_photons(context.settings)) {
+    caustics.emplace(make_caustics(context, {options.photons, options.keep_photons}));
+    context.caustics = &*caustics;
+    result.photons = caustics->map();
+  }
+  const double photon_seconds = seconds_since(photons);
   moments.share(scene, context);
   result.picture = make_picture(context);
   result.picture.tone = scene.film.tone;
@@ -133,6 +142,7 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
 
   result.report = monitor.report();
   result.report.build_seconds = build_seconds;
+  result.report.photon_seconds = photon_seconds;
   result.report.render_seconds = seconds_since(tracing);
   describe_world(world, result.report);
   result.scene = std::move(scene);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "accel/accel.h"
@@ -26,6 +27,9 @@ struct FinishedTile {
   std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
+/// The photons that bring caustics, see read_photon_map and write_photon_map.
+struct PhotonMap;
+
 /// How a scene is rendered. The picture depends on `textures` and `data_layers` alone.
 struct RenderOptions {
   Isa isa = default_isa();
@@ -39,6 +43,10 @@ struct RenderOptions {
   /// May be empty. Called for each finished tile, by one thread at a time, with the picture so far, of which
   /// only R, G, B and A are filled.
   std::function<void(const Picture&, const FinishedTile&)> tile_finished;
+  /// For pictures with caustics: the photons to use, or null to trace some. They must have been made for the
+  /// same scene and settings but for camera, film and samples.
+  std::shared_ptr<const PhotonMap> photons;
+  bool keep_photons = false;  ///< trace photons of all passes, for RenderResult::photons
   BuildOptions build;            ///< of the acceleration structures
   std::uint32_t tile_size = 32;  ///< pixels along the edge of a tile, [1, 256]
   bool data_layers = true;       ///< also fill the planes Z, N, P, Albedo, u, v, ids and Variance
@@ -56,6 +64,7 @@ struct BounceReport {
 /// What a render took, and what it met.
 struct RenderReport {
   double build_seconds = 0, render_seconds = 0;
+  double photon_seconds = 0;  ///< of tracing photons or of checking those given
   std::uint64_t camera_rays = 0, shadow_rays = 0, reflected_rays = 0, refracted_rays = 0;
   std::vector<BounceReport> bounces;  ///< of Whitted's integrator and of path tracing
   std::uint64_t bad_samples = 0;      ///< NaN or infinite samples that were left out
@@ -71,11 +80,12 @@ struct RenderResult {
   Picture picture;
   RenderReport report;
   Scene scene;  ///< the scene given, with camera and lights filled in if it had none
+  std::shared_ptr<const PhotonMap> photons;  ///< those used; null if the picture has no caustics
 };
 
 /// Builds the acceleration structures and renders. The picture's bits do not depend on the number of threads,
 /// the instruction set or timing. Throws std::bad_alloc if memory runs out, and Error if this build has no
-/// code for `options.isa`.
+/// code for `options.isa` or if `options.photons` are not for this scene.
 RenderResult render(Scene scene, const RenderOptions& options = {});
 
 }  // namespace oktett

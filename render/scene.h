@@ -89,6 +89,16 @@ inline constexpr Choice<IntegratorKind> kIntegratorKinds[] = {
 /// Relative errors that adaptive sampling can be asked for; 0: it is off.
 inline constexpr Range kErrors{0, 1};
 
+/// Caustics by photons, in path tracing.
+struct CausticSettings {
+  static constexpr std::uint32_t kUsualPhotons = 200000, kMostPhotons = 1u << 26, kMostPasses = 4096;
+
+  std::uint32_t photons = 0;  ///< emitted per pass, [0, kMostPhotons]; 0: only what paths happen to find
+  std::uint32_t passes = 16;  ///< [1, kMostPasses]; sample s of a pixel uses pass s modulo `passes`
+  double radius = 0;          ///< of the first pass in world units; 0: chosen by the photons
+  bool operator==(const CausticSettings&) const = default;
+};
+
 /// How light is computed, and with how many samples.
 struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
@@ -103,6 +113,7 @@ struct IntegratorSettings {
   /// render/adaptive.h.
   double error = 0;
   std::uint32_t max_samples = 1024;  ///< most samples of a pixel if `error` is given, [1, 65536]
+  CausticSettings caustics = {};
   bool operator==(const IntegratorSettings&) const = default;
 };
 

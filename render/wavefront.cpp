@@ -7,6 +7,7 @@
 #include "accel/surface/offset_origin.h"
 #include "render/integrators.h"
 #include "render/path_emission.h"
+#include "render/photon/caustics.h"
 #include "render/render_code.h"
 #include "render/shadow.h"
 
@@ -42,7 +43,8 @@ void add_environment(const RenderContext& context, Wavefront& wavefront, const s
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = misses[k];
     const float pdf = path ? wavefront.paths.pdf[i] : 0;
-    const float weight = pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
+    const bool by_photons = is_caustic(context, wavefront, i) && context.caustics->brings_distant();
+    const float weight = by_photons ? 0 : pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
     const Color light = InteractionBlock::get(found.radiance, k);
     wavefront.radiance.set(i, wavefront.rays.throughput[i] * (context.background + light * weight));
   }

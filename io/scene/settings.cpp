@@ -97,9 +97,28 @@ void read_film(SceneLoad& load, const YamlNode& node) {
   load.values.read(fields["exposure"], film.tone.exposure, kExposures);
 }
 
+/// `caustics`: a flag, or a map of settings, which switches them on.
+static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings& caustics) {
+  SceneValues& values = load.values;
+  if (node.kind == YamlKind::scalar) {
+    caustics.photons = values.boolean(node) ? CausticSettings::kUsualPhotons : 0;
+    return;
+  }
+  const Fields fields(node, "caustics", {"photons", "passes", "radius"});
+  caustics.photons = CausticSettings::kUsualPhotons;
+  if (const YamlNode* photons = fields["photons"])
+    caustics.photons = values.integer(*photons, 1, CausticSettings::kMostPhotons);
+  if (const YamlNode* passes = fields["passes"])
+    caustics.passes = values.integer(*passes, 1, CausticSettings::kMostPasses);
+  if (const YamlNode* radius = fields["radius"]) {
+    caustics.radius = 0;
+    if (values.text(*radius) != "auto") values.read(radius, caustics.radius, kPositive);
+  }
+}
+
 void read_integrator(SceneLoad& load, const YamlNode& node) {
   const Fields fields(node, "integrator",
-                      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples"});
+                      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples", "caustics"});
   SceneValues& values = load.values;
   IntegratorSettings& integrator = load.scene.integrator;
   if (const YamlNode* kind = fields["kind"])
@@ -112,6 +131,7 @@ void read_integrator(SceneLoad& load, const YamlNode& node) {
   values.read(fields["clamp"], integrator.clamp, kNonNegative);
   values.read(fields["error"], integrator.error, kErrors);
   if (const YamlNode* most = fields["max_samples"]) integrator.max_samples = values.integer(*most, 1, 65536);
+  if (const YamlNode* caustics = fields["caustics"]) read_caustics(load, *caustics, integrator.caustics);
 }
 
 }  // namespace oktett

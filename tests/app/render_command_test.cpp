@@ -219,6 +219,49 @@ TEST(RenderCommand, AnAbsentDisplayServerIsAWarning) {
   EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "--display-server", "a:b"}).status, 2);
 }
 
+std::vector<float> pixels(const std::string& path) {
+  const auto input = OIIO::ImageInput::open(path);
+  EXPECT_TRUE(input) << path;
+  if (!input) return {};
+  std::vector<float> values(static_cast<std::size_t>(input->spec().image_pixels()) *
+                            static_cast<std::size_t>(input->spec().nchannels));
+  EXPECT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, values.data()));
+  return values;
+}
+
+TEST(RenderCommand, ThePhotonMapIsWrittenOnceAndThenRead) {
+  const TempDir dir;
+  dir.write("ball.yaml", std::string(kScene) +
+                             "    material: {transparency: 1}\n"
+                             "  - plane: {normal: [0, 1, 0], offset: -1}\n"
+                             "lights:\n"
+                             "  - point: {position: [2, 4, 1], intensity: [90, 90, 90]}\n");
+  const std::vector<std::string> first{"render", "ball.yaml",    "--integrator",  "path", "--photon-map",
+                                       "p.map",  "-o", "a.exr"};
+  std::vector<std::string> again = first;
+  again.back() = "b.exr";
+  CommandResult result = run_command(dir, first);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string map = file_content(dir.file("p.map"));
+  EXPECT_FALSE(map.empty());
+  result = run_command(dir, again);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(file_content(dir.file("p.map")), map);
+  EXPECT_EQ(pixels(dir.file("a.exr")), pixels(dir.file("b.exr")));
+  again.insert(again.end(), {"--seed", "3"});
+  result = run_command(dir, again);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_TRUE(contains(result.err, "p.map: ")) << result.err;
+  EXPECT_TRUE(contains(result.err, "it has seed 0, the scene wants 3")) << result.err;
+  dir.write("p.map", "no photons");
+  result = run_command(dir, first);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_TRUE(contains(result.err, "p.map: is not a photon map of version 1")) << result.err;
+  result = run_command(dir, {"render", "ball.yaml", "--caustics"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_TRUE(contains(result.err, "--caustics needs the integrator 'path'")) << result.err;
+}
+
 /// A render that takes minutes unless it is stopped, in steps much shorter than a second.
 std::vector<std::string> long_render() {
   return {"render", "ball.yaml", "--size", "2048x2048", "--spp", "256", "--progress", "-o", "long.png"};

@@ -50,6 +50,19 @@ TEST(SceneFile, ReadsSettings) {
   EXPECT_EQ(scene.ambient_light, (Color{1, 1, 1}));
 }
 
+TEST(SceneFile, ReadsCaustics) {
+  const auto read = [](const std::string& text) {
+    return SceneFiles().load_v1("integrator: {kind: path" + text + "}\n").integrator.caustics;
+  };
+  constexpr std::uint32_t kUsual = CausticSettings::kUsualPhotons;
+  EXPECT_EQ(read(""), CausticSettings{});
+  EXPECT_EQ(read(", caustics: false"), CausticSettings{});
+  EXPECT_EQ(read(", caustics: true"), (CausticSettings{kUsual, 16, 0}));
+  EXPECT_EQ(read(", caustics: {}"), (CausticSettings{kUsual, 16, 0}));
+  EXPECT_EQ(read(", caustics: {photons: 5, passes: 3, radius: 0.5}"), (CausticSettings{5, 3, 0.5}));
+  EXPECT_EQ(read(", caustics: {radius: auto}"), (CausticSettings{kUsual, 16, 0}));
+}
+
 TEST(SceneFile, ReadsLights) {
   const Scene scene = SceneFiles().load_v1(
       "lights:\n"

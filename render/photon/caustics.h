@@ -1,0 +1,68 @@
+#pragma once
+/// \file Caustics by progressive photon mapping (Hachisuka et al. 2008, ACM TOG 27(5); Hachisuka and Jensen
+/// 2009, ACM TOG 28(5)), with the radii of Knaus and Zwicker (2011).
+///
+/// Photons bring the light that reaches a surface after mirrors and glass alone, wherever that surface scatters
+/// light in other ways, too. Path tracing leaves out what they bring. A sample of a pixel asks the photons of
+/// one pass; each pass has photons of its own and a smaller radius than the one before.
+
+#include <memory>
+#include <vector>
+
+#include "render/photon/photon_map.h"
+#include "render/photon/photon_source.h"
+#include "render/surface_bsdf.h"
+#include "render/wavefront.h"
+
+namespace oktett {
+
+/// The photons of a scene, and which lights they stand for.
+class Caustics {
+ public:
+  Caustics(std::shared_ptr<const PhotonMap> map, const PhotonSource& source);
+
+  const std::shared_ptr<const PhotonMap>& map() const { return map_; }
+
+  /// Light from photons that leaves `p`, the hit of entry `ray`, towards the ray's origin.
+  Color light(const Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+              const SurfaceBsdf& bsdf) const;
+
+  /// Whether the light of this emitter that passes mirrors or glass on its way to a surface is left to
+  /// photons.
+  bool brings(std::uint32_t emitter) const { return brings_[emitter] != 0; }
+  /// The same for lights that are infinitely far away.
+  bool brings_distant() const { return brings_distant_; }
+
+ private:
+  std::shared_ptr<const PhotonMap> map_;
+  std::vector<std::uint8_t> brings_;
+  bool brings_distant_;
+  std::uint32_t depth_;
+};
+
+/// Whether the settings ask for photons.
+inline bool wants_photons(const IntegratorSettings& settings) {
+  return settings.kind == IntegratorKind::path && settings.caustics.photons > 0;
+}
+
+/// What photons the settings ask for.
+PhotonPlan photon_plan(const IntegratorSettings& settings);
+
+/// Where the photons of a map come from.
+struct PhotonOptions {
+  std::shared_ptr<const PhotonMap> given;  ///< used if it is for this scene; null: photons are traced
+  bool all_passes = false;  ///< trace also those that no sample of a pixel asks for
+};
+
+/// Traces the photons that the settings of `context` ask for, or takes those given. Throws Error if these are
+/// for another scene or other settings.
+Caustics make_caustics(const RenderContext& context, const PhotonOptions& options);
+
+/// Whether entry `ray` came from mirrors or glass that were met after a surface that scatters otherwise: the
+/// lights that it meets are those that photons bring.
+inline bool is_caustic(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
+  return context.caustics != nullptr && wavefront.level > 0 && wavefront.paths.pdf[ray] == 0 &&
+         wavefront.paths.scattered[ray] != 0;
+}
+
+}  // namespace oktett

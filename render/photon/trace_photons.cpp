@@ -1,0 +1,255 @@
+#include "render/photon/trace_photons.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "accel/accel.h"
+#include "core/random.h"
+#include "render/light/emitter.h"
+#include "render/sampling/owen_sobol.h"
+#include "render/surface_bsdf.h"
+
+namespace oktett {
+
+PhotonEnergy& PhotonEnergy::operator+=(const PhotonEnergy& other) {
+  emitted += other.emitted, stored += other.stored, absorbed += other.absorbed;
+  escaped += other.escaped, cut += other.cut;
+  return *this;
+}
+
+namespace {
+
+/// Photons that are traced together.
+constexpr std::uint32_t kChunk = 4096;
+/// Holes that a photon may pass, in addition to its bounces.
+constexpr unsigned kMostHoles = 128;
+/// Bounces before Russian roulette begins.
+constexpr unsigned kSureBounces = 3;
+
+/// What is decided at random for a photon. Those after `direction` are decided anew at each surface.
+enum class PhotonDecision : std::uint32_t { light, place, direction, hole, lobe, scattering, roulette, count };
+
+/// The random numbers of photons of one pass.
+class PhotonChoices {
+ public:
+  // Pixels are numbered with 32 bits, so their keys are others.
+  PhotonChoices(std::uint32_t seed, std::uint32_t pass)
+      : key_(pixel_key(seed, (std::uint64_t{1} << 40) + pass)) {}
+
+  SquareSample point(std::uint32_t photon, PhotonDecision decision, unsigned level = 0) const {
+    return sobol_point(photon, sequence_key(key_, dimension(decision, level)));
+  }
+  float number(std::uint32_t photon, PhotonDecision decision, unsigned level) const {
+    return sobol_number(photon, sequence_key(key_, dimension(decision, level)));
+  }
+
+ private:
+  static std::uint32_t dimension(PhotonDecision decision, unsigned level) {
+    constexpr auto per_level = static_cast<std::uint32_t>(PhotonDecision::count) - 3;
+    return static_cast<std::uint32_t>(decision) + level * per_level;
+  }
+
+  std::uint64_t key_;
+};
+
+/// Photons in flight, in columns.
+struct PhotonQueue {
+  RayBatch rays;
+  std::vector<std::uint32_t> number;
+  std::vector<Color> power;
+  std::vector<float> index_square;  ///< of the medium that the photon is in
+  std::vector<std::uint16_t> bounces;
+  std::vector<float> distance;
+
+  std::size_t size() const { return number.size(); }
+  void clear() {
+    rays.resize_uninitialized(0);
+    number.clear(), power.clear(), index_square.clear(), bounces.clear(), distance.clear();
+  }
+  void push_back(const Ray& ray, std::uint32_t photon, const Color& color, float square, unsigned bounce,
+                 float way) {
+    rays.push_back(ray);
+    number.push_back(photon), power.push_back(color), index_square.push_back(square);
+    bounces.push_back(static_cast<std::uint16_t>(bounce)), distance.push_back(way);
+  }
+};
+
+/// The square of the index of refraction behind the surface over that before it, as a photon meets it.
+float index_change(const ShadingPoint& p) {
+  if (p.principled && p.principled->thin) return 1;
+  const float ior = p.principled ? p.principled->ior : p.material->ior;
+  const float eta = p.front ? ior : 1 / ior;
+  return eta * eta;
+}
+
+/// What makes following light forwards and backwards the same where shading and geometric normal differ (Veach
+/// 1997, section 5.3): 1 where they do not.
+float normals_factor(const ShadingPoint& p, const Vec3f& onward) {
+  const float factor = std::abs(dot(onward, p.ng) * dot(p.direction, p.ns)) /
+                       std::abs(dot(p.direction, p.ng) * dot(onward, p.ns));
+  return std::isfinite(factor) ? factor : 0;
+}
+
+/// The photons [first, last) of a pass.
+class PhotonChunk {
+ public:
+  PhotonChunk(const RenderContext& context, const PhotonSource& source, const PhotonPlan& plan,
+              std::uint32_t pass)
+      : context_(context), source_(source), plan_(plan), choices_(plan.seed, pass) {}
+
+  void trace(std::uint32_t first, std::uint32_t last) {
+    emit(first, last);
+    const unsigned most_levels = plan_.depth + 1 + kMostHoles;
+    for (level_ = 0; level_ < most_levels && queue_.size() > 0; ++level_) {
+      next_.clear();
+      follow();
+      std::swap(queue_, next_);
+    }
+    for (const Color& power : queue_.power) energy_.cut += double{color_weight(power)};
+    std::stable_sort(stored_.begin(), stored_.end(),
+                     [](const Stored& a, const Stored& b) { return a.number < b.number; });
+  }
+
+  void append_to(TracedPhotons& all) const {
+    for (const Stored& s : stored_) all.photons.push_back(s.photon);
+    all.energy += energy_;
+  }
+
+ private:
+  struct Stored {
+    std::uint32_t number;
+    Photon photon;
+  };
+
+  void emit(std::uint32_t first, std::uint32_t last) {
+    const float share = 1 / static_cast<float>(plan_.photons);
+    std::vector<std::uint32_t> distant;
+    RayBatch outward;
+    for (std::uint32_t number = first; number < last; ++number) {
+      const auto start = source_.emit(choices_.point(number, PhotonDecision::light).x,
+                                      choices_.point(number, PhotonDecision::place),
+                                      choices_.point(number, PhotonDecision::direction));
+      if (!start) continue;
+      if (start->distant) {
+        distant.push_back(static_cast<std::uint32_t>(queue_.size()));
+        Ray back = start->ray;
+        back.direction = -back.direction;
+        outward.push_back(back);
+      }
+      queue_.push_back(start->ray, number, start->power * share, 1, 0, 0);
+      energy_.emitted += double{color_weight(queue_.power.back())};
+    }
+    if (!distant.empty()) stop_outside(distant, outward);
+  }
+
+  /// Surfaces without bounds may stand between a distant light and the place where its photon starts.
+  void stop_outside(const std::vector<std::uint32_t>& distant, const RayBatch& outward) {
+    std::vector<std::uint8_t> occluded(distant.size());
+    any_hit(*context_.world->accel, outward, occluded, context_.isa);
+    for (std::size_t k = 0; k < distant.size(); ++k) {
+      if (!occluded[k]) continue;
+      Color& power = queue_.power[distant[k]];
+      energy_.absorbed += double{color_weight(power)};
+      power = {0, 0, 0};
+    }
+  }
+
+  void follow() {
+    hits_.resize_uninitialized(queue_.size());
+    closest_hit(*context_.world->accel, queue_.rays.span(), hits_.span(), context_.isa);
+    std::vector<std::uint32_t> met;
+    for (std::uint32_t i = 0; i < queue_.size(); ++i) {
+      if (hits_.item[i] == kNoId)
+        energy_.escaped += double{color_weight(queue_.power[i])};
+      else if (max_component(queue_.power[i]) > 0)
+        met.push_back(i);
+    }
+    InteractionBlock found;
+    for (std::size_t first = 0; first < met.size(); first += InteractionBlock::kMost) {
+      const std::size_t count = std::min(InteractionBlock::kMost, met.size() - first);
+      surface_interactions(*context_.world->accel, queue_.rays, hits_,
+                           std::span(met).subspan(first, count), found, context_.isa);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::uint32_t i = met[first + k];
+        arrive(i, shading_point(context_, queue_.rays[i], hits_[i], {queue_.distance[i], false}, found[k]));
+      }
+    }
+  }
+
+  void push(std::size_t i, const ShadingPoint& p, const Vec3f& direction, const Color& power,
+            float index_square, unsigned bounces) {
+    Ray ray;
+    ray.origin = offset_origin(p.surface, direction), ray.direction = direction;
+    next_.push_back(ray, queue_.number[i], power, index_square, bounces, queue_.distance[i] + p.t);
+  }
+
+  void arrive(std::size_t i, const ShadingPoint& p) {
+    const std::uint32_t number = queue_.number[i];
+    const Color power = queue_.power[i];
+    const unsigned bounces = queue_.bounces[i];
+    const float index_square = queue_.index_square[i];
+    if (p.opacity < 1 && choices_.number(number, PhotonDecision::hole, level_) >= p.opacity)
+      return push(i, p, p.direction, power, index_square, bounces);
+
+    const SurfaceBsdf bsdf(p);
+    const bool stored = bounces > 0 && !bsdf.only_delta();
+    if (stored)
+      stored_.push_back({number, {p.surface.position, power * (1 / index_square), pack_direction(p.direction),
+                                  static_cast<std::uint16_t>(bounces)}});
+    const auto ends = [&](const Color& rest) {
+      (stored ? energy_.stored : energy_.absorbed) += double{color_weight(power)} - double{color_weight(rest)};
+    };
+    const auto next = bsdf.sample(choices_.number(number, PhotonDecision::lobe, level_),
+                                  choices_.point(number, PhotonDecision::scattering, level_));
+    if (!next || !next->delta) return ends({});
+    const float change = next->transmitted ? index_change(p) : 1;
+    Color onward = power * next->weight * normals_factor(p, next->direction);
+    ends(onward);
+    if (bounces + 1 > plan_.depth) {
+      energy_.cut += double{color_weight(onward)};
+      return;
+    }
+    if (!survives(number, bounces + 1, power, onward)) return;
+    push(i, p, next->direction, onward, index_square * change, bounces + 1);
+  }
+
+  /// Russian roulette by the part of the photon's power that goes on.
+  bool survives(std::uint32_t number, unsigned bounces, const Color& before, Color& power) const {
+    const float rest = color_weight(power);
+    if (!(rest > 0)) return false;
+    if (bounces <= kSureBounces) return true;
+    const float chance = std::min(1.0f, rest / color_weight(before));
+    if (choices_.number(number, PhotonDecision::roulette, level_) >= chance) return false;
+    power *= 1 / chance;
+    return true;
+  }
+
+  const RenderContext& context_;
+  const PhotonSource& source_;
+  const PhotonPlan& plan_;
+  PhotonChoices choices_;
+  unsigned level_ = 0;
+  PhotonQueue queue_, next_;
+  HitBatch hits_;
+  std::vector<Stored> stored_;
+  PhotonEnergy energy_;
+};
+
+}  // namespace
+
+TracedPhotons trace_photons(const RenderContext& context, const PhotonSource& source, const PhotonPlan& plan,
+                            std::uint32_t pass) {
+  TracedPhotons all;
+  if (source.empty()) return all;
+  const std::uint32_t chunks = (plan.photons + kChunk - 1) / kChunk;
+  std::vector<PhotonChunk> parts(chunks, PhotonChunk(context, source, plan, pass));
+  tbb::parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t c) {
+    parts[c].trace(c * kChunk, std::min(plan.photons, (c + 1) * kChunk));
+  });
+  for (const PhotonChunk& part : parts) part.append_to(all);
+  return all;
+}
+
+}  // namespace oktett
