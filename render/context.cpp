@@ -19,12 +19,14 @@ static LightSource light_source(const Light& light) {
   LightSource source;
   if (const auto* point = std::get_if<PointLight>(&light)) {
     source.place = Vec3f(point->position), source.color = point->color, source.falloff = point->falloff;
+    source.profile = profile_of(*point);
   } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
     const auto cosine = [](double degrees) {
       return static_cast<float>(portable::cos(degrees * (std::numbers::pi / 180)));
     };
     source.place = Vec3f(spot->position), source.color = spot->color, source.falloff = true;
-    source.spot = true, source.axis = Vec3f(normalize(spot->direction));
+    source.spot = spot->profile == nullptr, source.profile = profile_of(*spot);
+    source.axis = Vec3f(normalize(spot->direction));
     source.cos_inner = cosine(spot->inner_angle), source.cos_outer = cosine(spot->outer_angle);
   } else {
     const auto* sky = std::get_if<SkyLight>(&light);

@@ -26,6 +26,7 @@ struct LightSource {
   bool spot = false;
   Vec3f axis;                          ///< of a spot: unit vector along the middle of its cone
   float cos_inner = 1, cos_outer = 0;  ///< of a spot: cosines of the angles between which it fades
+  AimedProfile profile = {};
 };
 
 class Caustics;

@@ -45,6 +45,7 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
         color * spot_share(-dot_lanes(towards, broadcast<Lane>(light.axis)), light.cos_inner, light.cos_outer)
                     .part[0]
                     .v;
+  if (light.profile.profile != nullptr) color = color * light.profile(-Vec3d(l));
   offset_origin(p.surface, l, ray.origin);
   ray.direction = light.place - ray.origin;
   ray.tmax = kBeforeLight;

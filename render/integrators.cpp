@@ -34,7 +34,10 @@ Integrator integrator_for(IntegratorKind kind) {
 
 bool shades_in_blocks(const RenderContext& context) {
   if (context.settings.kind == IntegratorKind::path) return context.caustics == nullptr;
-  return context.settings.kind == IntegratorKind::whitted && !context.data_layers;
+  if (context.settings.kind != IntegratorKind::whitted || context.data_layers) return false;
+  // Lanes know no profiles.
+  return std::none_of(context.lights.begin(), context.lights.end(),
+                      [](const LightSource& light) { return light.profile.profile != nullptr; });
 }
 
 }  // namespace oktett

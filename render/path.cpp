@@ -66,8 +66,7 @@ void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_
     shadow.direction = place - shadow.origin;
     shadow.tmax = light->delta ? kBeforeLight : before_surface(place, light->distance);
   }
-  wavefront.shadows[straight ? 0 : kAreaQueue].push_back(shadow, static_cast<std::uint32_t>(ray),
-                                                             arriving);
+  wavefront.shadows[straight ? 0 : kAreaQueue].push_back(shadow, static_cast<std::uint32_t>(ray), arriving);
 }
 
 /// Russian roulette: ends paths of small weight at random and raises the weight of the others, so that the

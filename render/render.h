@@ -46,7 +46,7 @@ struct RenderOptions {
   /// For pictures with caustics: the photons to use, or null to trace some. They must have been made for the
   /// same scene and settings but for camera, film and samples.
   std::shared_ptr<const PhotonMap> photons;
-  bool keep_photons = false;  ///< trace photons of all passes, for RenderResult::photons
+  bool keep_photons = false;     ///< trace photons of all passes, for RenderResult::photons
   BuildOptions build;            ///< of the acceleration structures
   std::uint32_t tile_size = 32;  ///< pixels along the edge of a tile, [1, 256]
   bool data_layers = true;       ///< also fill the planes Z, N, P, Albedo, u, v, ids and Variance

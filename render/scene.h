@@ -16,6 +16,7 @@
 #include "kernels/closed/shape_data.h"
 #include "kernels/exact_form.h"
 #include "render/light/environment_picture.h"
+#include "render/light/light_profile.h"
 #include "render/material.h"
 #include "render/motion.h"
 #include "render/sampling/filter_kind.h"
@@ -125,6 +126,9 @@ struct PointLight {
   Vec3d position;
   Color color{1, 1, 1};
   bool falloff = false;
+  /// Multiplies the intensity by direction; points down. Null: the same in all directions.
+  std::shared_ptr<const LightProfile> profile = nullptr;
+  double rotation = 0;  ///< of the profile: degrees about its axis
 };
 
 /// A point that emits light into a cone, which falls off as 1/r^2. From the inner to the outer angle it fades
@@ -135,6 +139,9 @@ struct SpotLight {
   Color color{1, 1, 1};
   double inner_angle = 30;  ///< degrees from the middle, [0, outer_angle]
   double outer_angle = 40;  ///< degrees from the middle, (0, 180]
+  /// Instead of the angles: multiplies the intensity by direction, its axis along `direction`. May be null.
+  std::shared_ptr<const LightProfile> profile = nullptr;
+  double rotation = 0;  ///< of the profile: degrees about its axis
 };
 
 /// Parallel light that travels along `direction`.

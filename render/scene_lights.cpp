@@ -25,11 +25,19 @@ DirectionalLight sun_of(const SkyLight& light) {
           static_cast<double>(sun.angle) / kDegree};
 }
 
+AimedProfile profile_of(const PointLight& light) { return aim(light.profile, {0, -1, 0}, light.rotation); }
+
+AimedProfile profile_of(const SpotLight& light) {
+  return aim(light.profile, light.direction, light.rotation);
+}
+
 static Emitter emitter(const PointLight& light) {
-  return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff};
+  return PointEmitter{Vec3f(light.position), light.color * kIrradiance, light.falloff, profile_of(light)};
 }
 
 static Emitter emitter(const SpotLight& light) {
+  if (light.profile != nullptr)
+    return PointEmitter{Vec3f(light.position), light.color * kIrradiance, true, profile_of(light)};
   const auto cos_outer = static_cast<float>(portable::cos(light.outer_angle * kDegree));
   const auto cos_inner = static_cast<float>(portable::cos(light.inner_angle * kDegree));
   // A sharp edge is one that fades over the least step of the cosine.

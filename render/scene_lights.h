@@ -18,6 +18,10 @@ namespace oktett {
 /// The sun of a sky.
 DirectionalLight sun_of(const SkyLight& light);
 
+/// The profiles of lights, aimed.
+AimedProfile profile_of(const PointLight& light);
+AimedProfile profile_of(const SpotLight& light);
+
 /// All lights that can be sampled.
 ///
 /// Surfaces that glow are sampled if they are triangles, spheres, disks or rectangles (polygons of four

@@ -86,7 +86,8 @@ bool is_possible(const Photon& p) {
 
 PhotonPass read_pass(Pieces& pieces) {
   const auto header = pieces.take<PassHeader>();
-  if (!(header.radius > 0) || !std::isfinite(header.radius)) pieces.fail("the radius of a pass is not positive");
+  if (!(header.radius > 0) || !std::isfinite(header.radius))
+    pieces.fail("the radius of a pass is not positive");
   // Compared before the memory is asked for.
   if (header.count > pieces.left() / sizeof(Photon)) pieces.fail("the file is cut short");
   Column<Photon> photons(header.count);

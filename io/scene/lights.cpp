@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/image/image.h"
+#include "io/photometry/ies_file.h"
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
 #include "render/moved.h"
@@ -33,37 +34,43 @@ Vec3d read_direction(SceneLoad& load, const YamlNode& node) {
   return direction;
 }
 
-/// Moves the light that was read last.
-void read_light_motion(SceneLoad& load, const Fields& fields) {
-  const YamlNode* node = fields["motion"];
-  if (!node) return;
-  Motion motion;
-  motion.factors.push_back(read_motion(load.values, *node));
-  std::vector<Light>& lights = load.scene.lights;
-  if (!motion.moves()) {
-    lights.back() = moved_light(motion.at(0), lights.back());
-    return;
+/// The file of `profile`, if it is given, and what goes with it.
+template <class PointOrSpot>
+void read_profile(SceneLoad& load, const Fields& fields, const YamlNode& node, PointOrSpot& light) {
+  if (const YamlNode* file = fields["profile"]) {
+    light.profile =
+        std::make_shared<const LightProfile>(read_light_profile(load.values.existing_file(*file)));
+    load.values.read(fields["rotate"], light.rotation, kAnyNumber);
+  } else if (fields["rotate"] != nullptr) {
+    throw Error(fields["rotate"]->where(), "'rotate' turns a 'profile', which is missing");
   }
-  load.scene.light_traits.resize(lights.size());
-  load.scene.light_traits.back().motion = std::make_shared<const Motion>(std::move(motion));
+  const YamlNode* power = fields["power"];
+  if (!power) return;
+  if (fields["color"] || fields["intensity"])
+    throw Error(node.where(), "expected 'color', 'intensity' or 'power', not two of them");
+  load.values.read_color(power, light.color);
+  const double flux = light.profile ? profile_flux(*light.profile) : 4 * std::numbers::pi;
+  light.color *= static_cast<float>(1 / (std::numbers::pi * flux));
 }
 
 void read_point(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a point light", {"position", "color", "intensity", "falloff", "motion"});
+  const Fields fields(node, "a point light",
+                      {"position", "color", "intensity", "power", "falloff", "profile", "rotate", "motion"});
   PointLight light;
   light.position = load.values.vector(fields.require("position"));
   read_light_color(load, fields, node, "intensity", light.color);
+  read_profile(load, fields, node, light);
   // An intensity means light that falls off.
-  light.falloff = fields["intensity"] != nullptr;
+  light.falloff = fields["intensity"] || fields["power"] || fields["profile"];
   load.values.read(fields["falloff"], light.falloff);
   load.scene.lights.emplace_back(light);
   read_light_motion(load, fields);
 }
 
 void read_spot(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(
-      node, "a spot light",
-      {"position", "direction", "at", "color", "intensity", "inner_angle", "outer_angle", "motion"});
+  const Fields fields(node, "a spot light",
+                      {"position", "direction", "at", "color", "intensity", "power", "inner_angle",
+                       "outer_angle", "profile", "rotate", "motion"});
   SpotLight light;
   light.position = load.values.vector(fields.require("position"));
   const YamlNode *direction = fields["direction"], *at = fields["at"];
@@ -74,6 +81,11 @@ void read_spot(SceneLoad& load, const YamlNode& node) {
     if (light.direction == Vec3d{0, 0, 0}) throw Error(at->where(), "the light stands where it points to");
   }
   read_light_color(load, fields, node, "intensity", light.color);
+  read_profile(load, fields, node, light);
+  if (fields["power"] && !light.profile)
+    throw Error(fields["power"]->where(), "the 'power' of a spot needs a 'profile'");
+  if (light.profile && (fields["inner_angle"] || fields["outer_angle"]))
+    throw Error(node.where(), "expected 'profile' or angles, not both");
   load.values.read(fields["outer_angle"], light.outer_angle, {0, 180, true, false});
   light.inner_angle = 0.75 * light.outer_angle;
   load.values.read(fields["inner_angle"], light.inner_angle, {0, 180});

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/vec3.h"
+#include "render/light/aimed_profile.h"
 #include "render/light/environment_map.h"
 #include "render/light/light_bounds.h"
 #include "render/light/light_sample.h"
@@ -56,6 +57,7 @@ struct PointEmitter {
   Color intensity;
   /// False: it lights each point, however far, with the irradiance `intensity`.
   bool falloff = true;
+  AimedProfile profile = {};
 };
 
 /// A point that gives light into a cone. Between the two angles the intensity falls as 3 t^2 - 2 t^3, where t

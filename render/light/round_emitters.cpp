@@ -53,7 +53,8 @@ std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
 
 std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p, const SquareSample&) {
   const Vec3d to = Vec3d(e.position) - Vec3d(p.position);
-  return sample_at(to, e.falloff ? e.intensity * static_cast<float>(1 / dot(to, to)) : e.intensity, 1, true);
+  const Color light = e.falloff ? e.intensity * static_cast<float>(1 / dot(to, to)) : e.intensity;
+  return sample_at(to, light * e.profile(-to), 1, true);
 }
 
 std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p, const SquareSample&) {

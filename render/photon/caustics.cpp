@@ -65,11 +65,15 @@ Caustics make_caustics(const RenderContext& context, const PhotonOptions& option
   const PhotonPlan plan = photon_plan(context.settings);
   if (options.given != nullptr) {
     const std::string differs = difference(*options.given, plan, fingerprint(unseen, source, plan));
-    if (!differs.empty()) throw Error(Location{options.given->path}, "the photon map is for another picture: " + differs);
+    if (!differs.empty())
+      throw Error(Location{options.given->path}, "the photon map is for another picture: " + differs);
     return {options.given, source};
   }
-  if (!options.all_passes)
-    return {trace_map(unseen, source, plan, std::min(plan.passes, context.settings.samples)), source};
+  if (!options.all_passes) {
+    const IntegratorSettings& s = context.settings;
+    const std::uint32_t samples = s.error > 0 ? std::max(s.samples, s.max_samples) : s.samples;
+    return {trace_map(unseen, source, plan, std::min(plan.passes, samples)), source};
+  }
   const std::shared_ptr<PhotonMap> map = trace_map(unseen, source, plan, plan.passes);
   map->scene = fingerprint(unseen, source, plan);
   return {map, source};

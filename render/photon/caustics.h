@@ -2,9 +2,9 @@
 /// \file Caustics by progressive photon mapping (Hachisuka et al. 2008, ACM TOG 27(5); Hachisuka and Jensen
 /// 2009, ACM TOG 28(5)), with the radii of Knaus and Zwicker (2011).
 ///
-/// Photons bring the light that reaches a surface after mirrors and glass alone, wherever that surface scatters
-/// light in other ways, too. Path tracing leaves out what they bring. A sample of a pixel asks the photons of
-/// one pass; each pass has photons of its own and a smaller radius than the one before.
+/// Photons bring the light that reaches a surface after mirrors and glass alone, wherever that surface
+/// scatters light in other ways, too. Path tracing leaves out what they bring. A sample of a pixel asks the
+/// photons of one pass; each pass has photons of its own and a smaller radius than the one before.
 
 #include <memory>
 #include <vector>
@@ -51,7 +51,7 @@ PhotonPlan photon_plan(const IntegratorSettings& settings);
 /// Where the photons of a map come from.
 struct PhotonOptions {
   std::shared_ptr<const PhotonMap> given;  ///< used if it is for this scene; null: photons are traced
-  bool all_passes = false;  ///< trace also those that no sample of a pixel asks for
+  bool all_passes = false;                 ///< trace also those that no sample of a pixel asks for
 };
 
 /// Traces the photons that the settings of `context` ask for, or takes those given. Throws Error if these are

@@ -90,7 +90,8 @@ SceneFingerprint fingerprint(const RenderContext& context, const PhotonSource& s
 
 std::string difference(const PhotonMap& map, const PhotonPlan& plan, const SceneFingerprint& scene) {
   const auto number = [](const char* what, double has, double wanted) {
-    return "it has " + std::string(what) + " " + number_text(has) + ", the scene wants " + number_text(wanted);
+    return "it has " + std::string(what) + " " + number_text(has) + ", the scene wants " +
+           number_text(wanted);
   };
   const PhotonPlan& has = map.plan;
   if (has.photons != plan.photons) return number("photons per pass:", has.photons, plan.photons);

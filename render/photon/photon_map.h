@@ -87,8 +87,8 @@ struct PhotonMap {
 };
 
 /// The radius of pass number `pass` of a map whose first pass has the radius `first`: its square shrinks by
-/// (i + a) / (i + 1), a = 2/3, in step i = 1, 2, ... (Knaus and Zwicker 2011, ACM TOG 30(3)). So the variance of
-/// the mean of n passes falls as n^-2/3 and its bias as n^-1/3.
+/// (i + a) / (i + 1), a = 2/3, in step i = 1, 2, ... (Knaus and Zwicker 2011, ACM TOG 30(3)). So the variance
+/// of the mean of n passes falls as n^-2/3 and its bias as n^-1/3.
 double pass_radius(double first, std::uint32_t pass);
 
 /// The radius that suits photons: around half of them it holds at least 32 others. 0 if there are fewer than

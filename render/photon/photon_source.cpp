@@ -92,9 +92,8 @@ std::optional<PhotonStart> emit_area(const Area& e, const std::optional<Target>&
   const Vec3d direction = cone.direction(s);
   const double cosine = dot(direction, place.normal);
   if (!(cosine > 0) && !e.both_sides) return std::nullopt;
-  return PhotonStart{
-      ray_from(place.position, place.normal, direction),
-      e.radiance * static_cast<float>(std::abs(cosine) * place.area * cone.solid_angle())};
+  return PhotonStart{ray_from(place.position, place.normal, direction),
+                     e.radiance * static_cast<float>(std::abs(cosine) * place.area * cone.solid_angle())};
 }
 
 PhotonStart emit_from_point(const Vec3f& position, const Vec3d& direction, const Color& power) {
@@ -244,13 +243,13 @@ std::optional<PhotonStart> PhotonSource::emit(double choice, const SquareSample&
     start->distant = true;
   } else if (const auto* e = std::get_if<PointEmitter>(&emitter)) {
     const Cone cone(Vec3d(e->position), target_);
-    start = emit_from_point(e->position, cone.direction(direction),
-                            e->intensity * static_cast<float>(cone.solid_angle()));
+    const Vec3d d = cone.direction(direction);
+    start = emit_from_point(e->position, d,
+                            e->intensity * (static_cast<float>(cone.solid_angle()) * e->profile(d)));
   } else if (const auto* spot = std::get_if<SpotEmitter>(&emitter)) {
     const Cone cone = cone_of(*spot, target_);
     const Vec3d d = cone.direction(direction);
-    start =
-        emit_from_point(spot->position, d, intensity(*spot, d) * static_cast<float>(cone.solid_angle()));
+    start = emit_from_point(spot->position, d, intensity(*spot, d) * static_cast<float>(cone.solid_angle()));
   } else {
     std::visit(
         [&](const auto& area) {

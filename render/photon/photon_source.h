@@ -38,8 +38,8 @@ class PhotonSource {
   /// Whether the photons carry the light of this emitter of the LightSet: not if it has no power, or if it is
   /// a point without falloff, whose power would be infinite.
   bool brings(std::uint32_t emitter) const { return brings_[emitter] != 0; }
-  /// Whether the photons carry the light of all emitters that are infinitely far away. Not if mirrors or glass
-  /// without bounds would need infinitely many photons.
+  /// Whether the photons carry the light of all emitters that are infinitely far away. Not if mirrors or
+  /// glass without bounds would need infinitely many photons.
   bool brings_distant() const { return brings_distant_; }
   std::uint32_t emitter_count() const { return static_cast<std::uint32_t>(brings_.size()); }
   /// 0 if photons go in all directions.

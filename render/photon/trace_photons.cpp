@@ -29,7 +29,16 @@ constexpr unsigned kMostHoles = 128;
 constexpr unsigned kSureBounces = 3;
 
 /// What is decided at random for a photon. Those after `direction` are decided anew at each surface.
-enum class PhotonDecision : std::uint32_t { light, place, direction, hole, lobe, scattering, roulette, count };
+enum class PhotonDecision : std::uint32_t {
+  light,
+  place,
+  direction,
+  hole,
+  lobe,
+  scattering,
+  roulette,
+  count
+};
 
 /// The random numbers of photons of one pass.
 class PhotonChoices {
@@ -84,8 +93,8 @@ float index_change(const ShadingPoint& p) {
   return eta * eta;
 }
 
-/// What makes following light forwards and backwards the same where shading and geometric normal differ (Veach
-/// 1997, section 5.3): 1 where they do not.
+/// What makes following light forwards and backwards the same where shading and geometric normal differ
+/// (Veach 1997, section 5.3): 1 where they do not.
 float normals_factor(const ShadingPoint& p, const Vec3f& onward) {
   const float factor = std::abs(dot(onward, p.ng) * dot(p.direction, p.ns)) /
                        std::abs(dot(p.direction, p.ng) * dot(onward, p.ns));
@@ -169,8 +178,8 @@ class PhotonChunk {
     InteractionBlock found;
     for (std::size_t first = 0; first < met.size(); first += InteractionBlock::kMost) {
       const std::size_t count = std::min(InteractionBlock::kMost, met.size() - first);
-      surface_interactions(*context_.world->accel, queue_.rays, hits_,
-                           std::span(met).subspan(first, count), found, context_.isa);
+      surface_interactions(*context_.world->accel, queue_.rays, hits_, std::span(met).subspan(first, count),
+                           found, context_.isa);
       for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t i = met[first + k];
         arrive(i, shading_point(context_, queue_.rays[i], hits_[i], {queue_.distance[i], false}, found[k]));
@@ -196,10 +205,12 @@ class PhotonChunk {
     const SurfaceBsdf bsdf(p);
     const bool stored = bounces > 0 && !bsdf.only_delta();
     if (stored)
-      stored_.push_back({number, {p.surface.position, power * (1 / index_square), pack_direction(p.direction),
-                                  static_cast<std::uint16_t>(bounces)}});
+      stored_.push_back({number,
+                         {p.surface.position, power * (1 / index_square), pack_direction(p.direction),
+                          static_cast<std::uint16_t>(bounces)}});
     const auto ends = [&](const Color& rest) {
-      (stored ? energy_.stored : energy_.absorbed) += double{color_weight(power)} - double{color_weight(rest)};
+      (stored ? energy_.stored : energy_.absorbed) +=
+          double{color_weight(power)} - double{color_weight(rest)};
     };
     const auto next = bsdf.sample(choices_.number(number, PhotonDecision::lobe, level_),
                                   choices_.point(number, PhotonDecision::scattering, level_));

@@ -25,10 +25,10 @@ struct TracedPhotons {
   PhotonEnergy energy;
 };
 
-/// Emits and follows the photons of pass number `pass`. A photon goes on as long as the material sends it in an
-/// ideal mirror or refracted direction, and is kept wherever a surface it meets on the way also scatters light
-/// otherwise, except on the surface that it meets first. The result depends on neither the camera nor the
-/// number of threads. Media are ignored.
+/// Emits and follows the photons of pass number `pass`. A photon goes on as long as the material sends it in
+/// an ideal mirror or refracted direction, and is kept wherever a surface it meets on the way also scatters
+/// light otherwise, except on the surface that it meets first. The result depends on neither the camera nor
+/// the number of threads. Media are ignored.
 TracedPhotons trace_photons(const RenderContext& context, const PhotonSource& source, const PhotonPlan& plan,
                             std::uint32_t pass);
 

@@ -236,8 +236,8 @@ TEST(RenderCommand, ThePhotonMapIsWrittenOnceAndThenRead) {
                              "  - plane: {normal: [0, 1, 0], offset: -1}\n"
                              "lights:\n"
                              "  - point: {position: [2, 4, 1], intensity: [90, 90, 90]}\n");
-  const std::vector<std::string> first{"render", "ball.yaml",    "--integrator",  "path", "--photon-map",
-                                       "p.map",  "-o", "a.exr"};
+  const std::vector<std::string> first{"render",       "ball.yaml", "--integrator", "path",
+                                       "--photon-map", "p.map",     "-o",           "a.exr"};
   std::vector<std::string> again = first;
   again.back() = "b.exr";
   CommandResult result = run_command(dir, first);

@@ -80,8 +80,8 @@ TEST(Caustics, TheBiasVanishesAsTheCubeRoot) {
     for (std::uint32_t i = 1; i <= n; square *= (i + 2.0 / 3) / (i + 1.0), ++i) sum += square;
     return sum / n;
   };
-  EXPECT_NEAR(mean_square(3), (1 + pass_radius(1, 1) * pass_radius(1, 1) + pass_radius(1, 2) * pass_radius(1, 2)) / 3,
-              1e-12);
+  EXPECT_NEAR(mean_square(3),
+              (1 + pass_radius(1, 1) * pass_radius(1, 1) + pass_radius(1, 2) * pass_radius(1, 2)) / 3, 1e-12);
   EXPECT_NEAR(std::log(mean_square(1000000) / mean_square(10000)) / std::log(100.0), -1.0 / 3, 0.002);
 }
 

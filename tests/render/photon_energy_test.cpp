@@ -91,7 +91,8 @@ TEST(PhotonEnergy, LightsSendTheirPowerToTheTarget) {
     for (int i = 0; i < steps; ++i)
       for (int k = 0; k < 2 * steps; ++k) {
         const double theta = kPi * (i + 0.5) / steps, phi = kPi * (k + 0.5) / steps;
-        const Vec3f d(Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)});
+        const Vec3f d(
+            Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)});
         sum += double{uneven.lights.set().environment_radiance(d).y} * std::sin(theta) * kPi * kPi /
                (steps * steps);
       }
@@ -143,10 +144,9 @@ PhotonEnergy expect_conserved(const Scene& scene, std::uint32_t depth = 8) {
 }
 
 TEST(PhotonEnergy, WhatIsEmittedIsStoredAbsorbedOrEscapes) {
-  const Light lights[] = {PointLight{{0, 3, 0}, {1, 1, 1}, true},
-                          SpotLight{{0, 3, 0.2}, {0, -1, 0}, {1, 1, 1}, 20, 40},
-                          DirectionalLight{{1, -2, 0.5}, {1, 1, 1}, 0},
-                          DirectionalLight{{1, -2, 0.5}, {1, 1, 1}, 3}, SkyLight{}};
+  const Light lights[] = {
+      PointLight{{0, 3, 0}, {1, 1, 1}, true}, SpotLight{{0, 3, 0.2}, {0, -1, 0}, {1, 1, 1}, 20, 40},
+      DirectionalLight{{1, -2, 0.5}, {1, 1, 1}, 0}, DirectionalLight{{1, -2, 0.5}, {1, 1, 1}, 3}, SkyLight{}};
   for (const Light& light : lights) {
     // Clear glass over nothing: all escapes.
     Scene scene = bare_scene(1);

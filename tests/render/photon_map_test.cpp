@@ -26,7 +26,8 @@ TEST(Photon, DirectionsArePackedToATenThousandth) {
   std::vector<Vec3f> cases{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const float s = 1 / std::sqrt(2.0f);
   for (const float a : {s, -s})
-    for (const float b : {s, -s}) cases.push_back({a, b, 0}), cases.push_back({0, a, b}), cases.push_back({a, 0, b});
+    for (const float b : {s, -s})
+      cases.push_back({a, b, 0}), cases.push_back({0, a, b}), cases.push_back({a, 0, b});
   for (std::uint32_t i = 0; i < 20000; ++i) cases.push_back(unit_vector(i));
   for (const Vec3f& d : cases) {
     const Vec3f back = unpack_direction(pack_direction(d));

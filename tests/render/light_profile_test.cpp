@@ -1,0 +1,146 @@
+/// \file Lamps with profiles: values, flux and direction, and the light that they give.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/random.h"
+#include "render/light/aimed_profile.h"
+#include "tests/render/photon_support.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+constexpr double kPi = std::numbers::pi;
+
+/// cos(vertical) below the horizon, every degree.
+std::shared_ptr<LightProfile> cosine_profile() {
+  auto profile = std::make_shared<LightProfile>();
+  profile->horizontal = {0};
+  for (int i = 0; i <= 90; ++i) {
+    profile->vertical.push_back(i);
+    profile->values.push_back(static_cast<float>(std::cos(i * kPi / 180)));
+  }
+  return profile;
+}
+
+/// Random values on uneven angles.
+std::shared_ptr<LightProfile> random_profile(std::uint32_t seed) {
+  auto profile = std::make_shared<LightProfile>();
+  profile->vertical = {10, 30, 31, 80, 110, 175};
+  profile->horizontal = {0, 20, 90, 100, 250, 360};
+  for (std::uint32_t i = 0; i < 36; ++i) profile->values.push_back(random_float(seed, i, 0));
+  for (std::size_t v = 0; v < 6; ++v) profile->values[30 + v] = profile->values[v];
+  return profile;
+}
+
+double flux_by_quadrature(const LightProfile& profile) {
+  const int steps = 1800;
+  double sum = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int k = 0; k < 720; ++k) {
+      const double v = 180 * (i + 0.5) / steps, h = 360 * (k + 0.5) / 720;
+      sum += profile_value(profile, v, h) * std::sin(v * kPi / 180) * (kPi / steps) * (2 * kPi / 720);
+    }
+  return sum;
+}
+
+TEST(LightProfile, FluxIsTheIntegralOfItsValues) {
+  EXPECT_NEAR(profile_flux(*cosine_profile()), kPi, 1e-3);
+  const LightProfile even{{0, 180}, {0}, {1, 1}};
+  EXPECT_NEAR(profile_flux(even), 4 * kPi, 1e-12);
+  const LightProfile below{{0, 90}, {0, 180, 360}, {1, 1, 0, 0, 1, 1}};
+  EXPECT_NEAR(profile_flux(below), kPi, 1e-12);
+  for (std::uint32_t seed = 0; seed < 5; ++seed) {
+    const auto profile = random_profile(seed);
+    EXPECT_NEAR(profile_flux(*profile), flux_by_quadrature(*profile), 3e-3);
+  }
+}
+
+TEST(LightProfile, ValuesAreThoseOfTheTableAndLinearBetween) {
+  const auto p = random_profile(1);
+  for (std::size_t h = 0; h < 6; ++h)
+    for (std::size_t v = 0; v < 6; ++v)
+      EXPECT_NEAR(profile_value(*p, p->vertical[v], p->horizontal[h]), p->values[h * 6 + v], 1e-7);
+  EXPECT_NEAR(profile_value(*p, 20, 10), (p->values[0] + p->values[1] + p->values[6] + p->values[7]) / 4,
+              1e-7);
+  EXPECT_EQ(profile_value(*p, 9.99, 10), 0);
+  EXPECT_EQ(profile_value(*p, 175.01, 10), 0);
+  EXPECT_EQ(profile_value(*p, std::nan(""), 10), 0);
+}
+
+TEST(LightProfile, IsAimedAlongItsAxis) {
+  const auto down = aim(random_profile(2), {0, -2, 0}, 0);
+  const auto at = [](double v, double h) {
+    const double s = std::sin(v * kPi / 180);
+    // Horizontal angles from +x, counter-clockwise as seen from above.
+    return Vec3d{s * std::cos(h * kPi / 180), -std::cos(v * kPi / 180), -s * std::sin(h * kPi / 180)};
+  };
+  for (const double v : {10.5, 50.0, 120.0})
+    for (const double h : {0.0, 45.0, 95.0, 200.0, 359.0}) {
+      EXPECT_NEAR(down(at(v, h)), profile_value(*down.profile, v, h), 1e-5) << v << ' ' << h;
+      const auto turned = aim(down.profile, {0, -1, 0}, 30);
+      EXPECT_NEAR(turned(at(v, h)), profile_value(*down.profile, v, h < 30 ? h + 330 : h - 30), 1e-5);
+    }
+  for (const Vec3d& axis :
+       {Vec3d{0, 1, 0}, Vec3d{1, 2, 3}, Vec3d{-1, 0, 0}, Vec3d{1e-9, 1, 0}, Vec3d{0, -1, 1e-9}}) {
+    const AimedProfile p = aim(cosine_profile(), axis, 77);
+    EXPECT_NEAR(length(p.down), 1, 1e-6);
+    EXPECT_NEAR(length(p.zero), 1, 1e-6);
+    EXPECT_NEAR(dot(p.down, p.zero), 0, 1e-6);
+    EXPECT_NEAR(p(axis), 1, 1e-6) << axis.x;
+    EXPECT_EQ(p(-axis), 0);
+  }
+}
+
+/// A camera of one pixel at the origin of a white floor, y = 0.
+Scene floor_scene(const Light& light, IntegratorKind kind) {
+  Scene scene = bare_scene(1);
+  scene.integrator.kind = kind;
+  scene.camera.from = {0, 0.4, 5}, scene.camera.at = {0, 0, 0}, scene.camera.fov = 0.001;
+  add_object(scene, DiskShape{{0, 0, 0}, {0, 1, 0}, 0.5}, add_material(scene, diffuse({1, 1, 1})));
+  scene.lights = {light};
+  return scene;
+}
+
+// A floor under a lamp whose intensity goes with the cosine: color cos^2(angle) / d^2.
+TEST(LightProfile, LightsAFloorAsBothIntegratorsSay) {
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted})
+    for (const bool layers : {false, true})
+      for (const double x : {0.0, 1.0, -3.0}) {
+        const double square = x * x + 4, want = 3 * 4 / square / square;
+        const auto set = [&](RenderOptions& o) { o.data_layers = layers; };
+        PointLight point{{x, 2, 0}, {3, 3, 3}, true};
+        point.profile = cosine_profile();
+        EXPECT_NEAR(value(run(floor_scene(point, kind), set).picture, "G", 0, 0), want, 1e-3 * want);
+        // A spot that looks at the origin.
+        SpotLight spot{{x, 2, 0}, {-x, -2, 0}, {3, 3, 3}};
+        spot.profile = cosine_profile();
+        const double towards = 3 * 2 / std::sqrt(square) / square;
+        EXPECT_NEAR(value(run(floor_scene(spot, kind), set).picture, "G", 0, 0), towards, 1e-3 * towards);
+        spot.direction = {x, 2, 0};
+        EXPECT_EQ(value(run(floor_scene(spot, kind), set).picture, "G", 0, 0), 0);
+      }
+}
+
+TEST(LightProfile, PhotonsCarryItsFlux) {
+  Scene scene = bare_scene(1);
+  add_object(scene, PlaneShape{{0, 1, 0}, -1}, add_material(scene, mirror()));
+  PointLight point{{0, 2, 0}, {1, 1, 1}, true};
+  point.profile = random_profile(3);
+  scene.lights = {point};
+  const PhotonScene photons(scene);
+  double sum = 0;
+  const std::uint32_t count = 1 << 18;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto d = [&](std::uint32_t k) { return static_cast<double>(random_float(3, i, k)); };
+    const auto start = photons.source.emit(d(0), {d(1), d(2)}, {d(3), d(4)});
+    if (start) sum += double{start->power.y};
+  }
+  EXPECT_NEAR(sum / count, kPi * profile_flux(*point.profile), 0.01 * kPi * profile_flux(*point.profile));
+}
+
+}  // namespace
+}  // namespace oktett
