@@ -171,10 +171,12 @@ double bytes_per_triangle(const RenderReport& report) {
 
 /// "load 0.012 s, build 0.345 s, render 1.23 s (12.3 Mrays/s), write 0.056 s".
 std::string times_text(const StageTimes& times, const RenderReport& report) {
+  const std::string photons =
+      report.photon_seconds > 0 ? fmt::format("photons {}, ", duration_text(report.photon_seconds)) : "";
   const std::string denoised =
       times.denoise > 1e-3 ? fmt::format(", denoise {}", duration_text(times.denoise)) : "";
-  return fmt::format("load {}, build {}, render {} ({}rays/s){}, write {}", duration_text(times.load),
-                     duration_text(times.build), duration_text(times.render),
+  return fmt::format("load {}, build {}, {}render {} ({}rays/s){}, write {}", duration_text(times.load),
+                     duration_text(times.build), photons, duration_text(times.render),
                      with_prefix(rays_per_second(report)), denoised, duration_text(times.write));
 }
 

@@ -131,7 +131,7 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
     context.caustics = &*caustics;
     result.photons = caustics->map();
   }
-  const double photon_seconds = seconds_since(photons);
+  const double photon_seconds = caustics ? seconds_since(photons) : 0;
   moments.share(scene, context);
   result.picture = make_picture(context);
   result.picture.tone = scene.film.tone;

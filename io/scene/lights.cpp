@@ -34,6 +34,21 @@ Vec3d read_direction(SceneLoad& load, const YamlNode& node) {
   return direction;
 }
 
+/// Moves the light that was read last.
+void read_light_motion(SceneLoad& load, const Fields& fields) {
+  const YamlNode* node = fields["motion"];
+  if (!node) return;
+  Motion motion;
+  motion.factors.push_back(read_motion(load.values, *node));
+  std::vector<Light>& lights = load.scene.lights;
+  if (!motion.moves()) {
+    lights.back() = moved_light(motion.at(0), lights.back());
+    return;
+  }
+  load.scene.light_traits.resize(lights.size());
+  load.scene.light_traits.back().motion = std::make_shared<const Motion>(std::move(motion));
+}
+
 /// The file of `profile`, if it is given, and what goes with it.
 template <class PointOrSpot>
 void read_profile(SceneLoad& load, const Fields& fields, const YamlNode& node, PointOrSpot& light) {

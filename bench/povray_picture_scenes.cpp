@@ -1,0 +1,189 @@
+#include "bench/povray_picture_scenes.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace oktett::bench {
+namespace {
+
+constexpr double kHorizontal = 40;  // degrees of view
+constexpr std::uint32_t kDepth = 5;
+
+std::string text_of(const Vec3d& p) { return fmt::format("<{}, {}, {}>", p.x, p.y, p.z); }
+
+Scene empty_scene(std::uint32_t width, std::uint32_t height, const Vec3d& from, const Vec3d& at) {
+  Scene scene;
+  scene.camera.from = from, scene.camera.at = at, scene.camera_given = scene.lights_given = true;
+  const double half = std::tan(kHorizontal * std::numbers::pi / 360) * height / width;
+  scene.camera.fov = std::atan(half) * 360 / std::numbers::pi;
+  scene.film.width = width, scene.film.height = height;
+  scene.integrator.depth = kDepth;
+  scene.ambient_light = {0, 0, 0};
+  return scene;
+}
+
+/// `lens`: more words of the camera.
+std::string pov_head(const Scene& scene, const std::string& lens = {}) {
+  return fmt::format(
+      "#version 3.7;\nglobal_settings {{ assumed_gamma 1.0 max_trace_level {} adc_bailout 1/4096 }}\n"
+      "camera {{ location {} right x*image_width/image_height angle {} look_at {} {} }}\n"
+      "background {{ rgb {} }}\n",
+      kDepth + 1, text_of(scene.camera.from), kHorizontal, text_of(scene.camera.at), lens,
+      text_of(Vec3d(scene.background)));
+}
+
+std::uint32_t add(Scene& scene, Shape shape, const Material& material) {
+  scene.materials.push_back(material);
+  scene.objects.emplace_back().shape = std::move(shape);
+  scene.objects.back().material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  return scene.objects.back().material;
+}
+
+Material dull(const Color& color) {
+  Material m;
+  m.color = color, m.ambient = 0, m.diffuse = 0.8f;
+  return m;
+}
+
+std::string pov_dull(const Color& c) {
+  return fmt::format("pigment {{ rgb {} }} finish {{ ambient 0 diffuse 0.8 }}", text_of(Vec3d(c)));
+}
+
+const Color kFloor{0.6f, 0.6f, 0.65f};
+std::string pov_floor(double height) {
+  return fmt::format("plane {{ y, {} {} }}\n", height, pov_dull(kFloor));
+}
+
+/// The balls of the Standard Procedural Databases (Haines 1987): nine balls of a third of the radius sit on
+/// each ball, six around its middle and three above.
+void add_balls(const Vec3d& center, double radius, const Vec3d& axis, int levels, SpheresShape& balls) {
+  balls.spheres.push_back({center, radius});
+  if (levels == 0) return;
+  Vec3d x, y;
+  make_basis(axis, x, y);
+  for (int k = 0; k < 9; ++k) {
+    const double turn = (k < 6 ? k : k + 0.25) * std::numbers::pi * (k < 6 ? 2.0 / 6 : 2.0 / 3);
+    const double up = k < 6 ? 0 : 0.8164965809277261;
+    const Vec3d out = normalize((x * std::cos(turn) + y * std::sin(turn)) * std::sqrt(1 - up * up) + axis * up);
+    add_balls(center + out * (radius * 4 / 3), radius / 3, out, levels - 1, balls);
+  }
+}
+
+PictureScene balls(std::uint32_t width, std::uint32_t height, int levels) {
+  SpheresShape shape;
+  add_balls({0, 0, 0}, 0.5, {0, 1, 0}, levels, shape);
+  PictureScene p;
+  p.name = fmt::format("balls_{}", shape.spheres.size());
+  p.scene = empty_scene(width, height, {2.1, 1.3, -1.7}, {0, 0, 0});
+  p.scene.background = {0.08f, 0.2f, 0.3f};
+  p.scene.lights = {PointLight{{4, 6, -3}}};
+  Material mirror = dull({1, 0.9f, 0.7f});
+  mirror.diffuse = 0.4f, mirror.reflection = 0.5f;
+  std::string text = pov_head(p.scene) +
+                     "light_source { <4, 6, -3> rgb 1 }\n"
+                     "#declare T = texture { pigment { rgb <1, 0.9, 0.7> } finish { ambient 0 diffuse 0.4 "
+                     "reflection 0.5 } }\n" +
+                     pov_floor(-0.5);
+  // Nine digits are those of a float, and both read the same ones.
+  for (SphereShape& s : shape.spheres) {
+    const std::string numbers = fmt::format("<{:.9g}, {:.9g}, {:.9g}>, {:.9g}", s.center.x, s.center.y,
+                                            s.center.z, s.radius);
+    text += "sphere { " + numbers + " texture { T } }\n";
+  }
+  add(p.scene, std::move(shape), mirror);
+  add(p.scene, PlaneShape{{0, 1, 0}, -0.5}, dull(kFloor));
+  p.pov = [text](std::uint32_t) { return text; };
+  return p;
+}
+
+/// Dull balls of many colours on a floor, and what stands between them.
+std::string add_field(Scene& scene, int side) {
+  std::string text = pov_floor(0);
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k) {
+      const Color color{0.3f + 0.7f * static_cast<float>(i) / static_cast<float>(side), 0.5f,
+                        1 - 0.7f * static_cast<float>(k) / static_cast<float>(side)};
+      const Vec3d center{1.0 * (i - side / 2), 0.4, 1.0 * (k - side / 2)};
+      add(scene, SphereShape{center, 0.4}, dull(color));
+      text += fmt::format("sphere {{ {}, 0.4 {} }}\n", text_of(center), pov_dull(color));
+    }
+  add(scene, PlaneShape{}, dull(kFloor));
+  return text;
+}
+
+PictureScene glass(std::uint32_t width, std::uint32_t height) {
+  PictureScene p;
+  p.name = "glass";
+  p.scene = empty_scene(width, height, {1, 4, -9}, {0, 0.5, 0});
+  p.scene.background = {0.1f, 0.2f, 0.3f};
+  p.scene.lights = {PointLight{{-20, 40, -20}}};
+  std::string text = pov_head(p.scene) + "light_source { <-20, 40, -20> rgb 1 }\n" + add_field(p.scene, 11);
+  Material clear = dull({1, 1, 1});
+  clear.diffuse = 0, clear.transparency = 1, clear.ior = 1.5f;
+  text +=
+      "#declare G = texture { pigment { rgbt <1, 1, 1, 1> } finish { ambient 0 diffuse 0 reflection { 0, 1 "
+      "fresnel on } conserve_energy } }\n";
+  for (int i = 0; i < 6; ++i)
+    for (int k = 0; k < 6; ++k) {
+      const Vec3d center{i - 2.5, 1.1, k - 2.5};
+      add(p.scene, SphereShape{center, 0.45}, clear);
+      text += fmt::format("sphere {{ {}, 0.45 texture {{ G }} interior {{ ior 1.5 }} }}\n", text_of(center));
+    }
+  p.pov = [text](std::uint32_t) { return text; };
+  return p;
+}
+
+/// A lens of some width looks over the field.
+PictureScene lens(std::uint32_t width, std::uint32_t height) {
+  PictureScene p;
+  p.name = "lens";
+  p.scene = empty_scene(width, height, {1, 3, -9}, {0, 0.4, 0});
+  p.scene.lights = {PointLight{{-20, 40, -20}}};
+  p.scene.camera.aperture = 0.4;
+  Scene& scene = p.scene;
+  const std::string things = "light_source { <-20, 40, -20> rgb 1 }\n" + add_field(scene, 11);
+  p.pov = [head = scene, things](std::uint32_t samples) {
+    // Variance 0 takes all samples.
+    return pov_head(head, fmt::format("aperture 0.4 focal_point {} blur_samples {} variance 0",
+                                      text_of(head.camera.at), samples)) +
+           things;
+  };
+  p.samples = 16, p.pov_samples = 16, p.long_samples = 1024, p.pov_long_samples = 1024;
+  return p;
+}
+
+/// A far lamp of a tenth of its distance, which both programs therefore light alike.
+PictureScene lamp(std::uint32_t width, std::uint32_t height) {
+  PictureScene p;
+  p.name = "lamp";
+  p.scene = empty_scene(width, height, {1, 3, -9}, {0, 0.4, 0});
+  p.scene.integrator.kind = IntegratorKind::path, p.scene.integrator.depth = 0;
+  const std::string things = add_field(p.scene, 11);
+  constexpr double kEdge = 100, kHigh = 1000;
+  Material glow = dull({0, 0, 0});
+  const auto radiance = static_cast<float>(std::numbers::pi * kHigh * kHigh / (kEdge * kEdge));
+  glow.emission = {radiance, radiance, radiance}, glow.emits_behind = false;
+  const double h = kEdge / 2;
+  add(p.scene, PolygonShape{{{-h, kHigh, -h}, {h, kHigh, -h}, {h, kHigh, h}, {-h, kHigh, h}}}, glow);
+  p.pov = [head = p.scene, things](std::uint32_t samples) {
+    const auto side = static_cast<int>(std::lround(std::sqrt(samples)));
+    return pov_head(head) +
+           fmt::format("light_source {{ <0, {}, 0> rgb 1 area_light <{}, 0, 0>, <0, 0, {}>, {}, {} jitter "
+                       "area_illumination on }}\n",
+                       kHigh, kEdge, kEdge, side, side) +
+           things;
+  };
+  p.samples = 16, p.pov_samples = 16, p.long_samples = 1024, p.pov_long_samples = 1024;
+  return p;
+}
+
+}  // namespace
+
+std::vector<PictureScene> picture_scenes(std::uint32_t width, std::uint32_t height) {
+  return {balls(width, height, 4), balls(width, height, 5), glass(width, height), lens(width, height),
+          lamp(width, height)};
+}
+
+}  // namespace oktett::bench
