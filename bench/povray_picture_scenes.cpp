@@ -66,7 +66,8 @@ void add_balls(const Vec3d& center, double radius, const Vec3d& axis, int levels
   for (int k = 0; k < 9; ++k) {
     const double turn = (k < 6 ? k : k + 0.25) * std::numbers::pi * (k < 6 ? 2.0 / 6 : 2.0 / 3);
     const double up = k < 6 ? 0 : 0.8164965809277261;
-    const Vec3d out = normalize((x * std::cos(turn) + y * std::sin(turn)) * std::sqrt(1 - up * up) + axis * up);
+    const Vec3d out =
+        normalize((x * std::cos(turn) + y * std::sin(turn)) * std::sqrt(1 - up * up) + axis * up);
     add_balls(center + out * (radius * 4 / 3), radius / 3, out, levels - 1, balls);
   }
 }
@@ -88,8 +89,8 @@ PictureScene balls(std::uint32_t width, std::uint32_t height, int levels) {
                      pov_floor(-0.5);
   // Nine digits are those of a float, and both read the same ones.
   for (SphereShape& s : shape.spheres) {
-    const std::string numbers = fmt::format("<{:.9g}, {:.9g}, {:.9g}>, {:.9g}", s.center.x, s.center.y,
-                                            s.center.z, s.radius);
+    const std::string numbers =
+        fmt::format("<{:.9g}, {:.9g}, {:.9g}>, {:.9g}", s.center.x, s.center.y, s.center.z, s.radius);
     text += "sphere { " + numbers + " texture { T } }\n";
   }
   add(p.scene, std::move(shape), mirror);
@@ -170,9 +171,10 @@ PictureScene lamp(std::uint32_t width, std::uint32_t height) {
   p.pov = [head = p.scene, things](std::uint32_t samples) {
     const auto side = static_cast<int>(std::lround(std::sqrt(samples)));
     return pov_head(head) +
-           fmt::format("light_source {{ <0, {}, 0> rgb 1 area_light <{}, 0, 0>, <0, 0, {}>, {}, {} jitter "
-                       "area_illumination on }}\n",
-                       kHigh, kEdge, kEdge, side, side) +
+           fmt::format(
+               "light_source {{ <0, {}, 0> rgb 1 area_light <{}, 0, 0>, <0, 0, {}>, {}, {} jitter "
+               "area_illumination on }}\n",
+               kHigh, kEdge, kEdge, side, side) +
            things;
   };
   p.samples = 16, p.pov_samples = 16, p.long_samples = 1024, p.pov_long_samples = 1024;

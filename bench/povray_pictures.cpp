@@ -1,5 +1,5 @@
-/// \file Whole pictures by Oktett and by POV-Ray 3.7, in turn: mirrors and glass at equal depth, and lenses and
-/// lamps of some size at equal noise.
+/// \file Whole pictures by Oktett and by POV-Ray 3.7, in turn: mirrors and glass at equal depth, and lenses
+/// and lamps of some size at equal noise.
 
 #include <fmt/format.h>
 
@@ -49,10 +49,10 @@ Shot by_oktett(Scene scene, std::uint32_t samples, const Options& o) {
 Shot by_povray(const std::string& text, const Options& o, const fs::path& dir, int bounding) {
   write_text((dir / "scene.pov").string(), text);
   const std::string log = (dir / "scene.log").string();
-  const std::string command =
-      fmt::format("cd '{}' && povray +Iscene.pov +Oscene.ppm +FP16 File_Gamma=1.0 +W{} +H{} -A -D +WT{} +BM{} "
-                  ">scene.log 2>&1",
-                  dir.string(), o.width, o.height, o.threads, bounding);
+  const std::string command = fmt::format(
+      "cd '{}' && povray +Iscene.pov +Oscene.ppm +FP16 File_Gamma=1.0 +W{} +H{} -A -D +WT{} +BM{} "
+      ">scene.log 2>&1",
+      dir.string(), o.width, o.height, o.threads, bounding);
   if (std::system(command.c_str()) != 0) throw Error({log, 0, 0}, "POV-Ray failed");
   const std::string report(MappedFile(log).text());
   const std::size_t line = report.find("Trace Time:"), open = report.find('(', line);
@@ -153,7 +153,8 @@ void parse_size(const std::string& value, Options& o) {
 int run(int argc, char** argv) {
   Options o;
   const std::string head =
-      "usage: povray_pictures [option]... [SCENE]...\n  SCENE                    balls_7381, balls_66430, glass, "
+      "usage: povray_pictures [option]... [SCENE]...\n  SCENE                    balls_7381, balls_66430, "
+      "glass, "
       "lens or lamp; all";
   using Text = const std::string&;
   const std::vector<Option> options = {
@@ -166,19 +167,19 @@ int run(int argc, char** argv) {
   for (const std::string& name : o.scenes)
     if (std::ranges::find(scenes, name, &PictureScene::name) == scenes.end())
       throw Error("unknown scene '" + name + "'\n" + usage_text(head, options));
-  const fs::path dir = o.keep.empty() ? fs::temp_directory_path() /
-                                            fmt::format("oktett-pictures-{}", seconds([] {}) * 1e9)
-                                      : fs::path(o.keep);
+  const fs::path dir =
+      o.keep.empty() ? fs::temp_directory_path() / fmt::format("oktett-pictures-{}", seconds([] {}) * 1e9)
+                     : fs::path(o.keep);
   fs::create_directories(dir);
   fmt::print(
-      "{}x{}, {} threads; seconds of tracing, medians of {} rounds in turn; noise over the mean, against long\n"
+      "{}x{}, {} threads; seconds of tracing, medians of {} rounds in turn; noise over the mean, against "
+      "long\n"
       "runs of the same program; percent by which Oktett's mean is greater, and by which blocks differ\n",
       o.width, o.height, o.threads, o.runs);
-  fmt::print("{:<16}{:>9}{:>9}{:>8}{:>16}{:>10}{:>10}{:>10}{:>9}{:>9}\n", "scene", "Oktett", "POV-Ray", "ratio",
-             "quarters", "our noise", "their", "at equal", "mean", "blocks");
+  fmt::print("{:<16}{:>9}{:>9}{:>8}{:>16}{:>10}{:>10}{:>10}{:>9}{:>9}\n", "scene", "Oktett", "POV-Ray",
+             "ratio", "quarters", "our noise", "their", "at equal", "mean", "blocks");
   for (const PictureScene& scene : scenes)
-    if (o.scenes.empty() || std::ranges::find(o.scenes, scene.name) != o.scenes.end())
-      compare(scene, o, dir);
+    if (o.scenes.empty() || std::ranges::find(o.scenes, scene.name) != o.scenes.end()) compare(scene, o, dir);
   if (o.keep.empty()) fs::remove_all(dir);
   return 0;
 }

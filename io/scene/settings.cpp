@@ -117,8 +117,9 @@ static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings
 }
 
 void read_integrator(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "integrator",
-                      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples", "caustics"});
+  const Fields fields(
+      node, "integrator",
+      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples", "caustics"});
   SceneValues& values = load.values;
   IntegratorSettings& integrator = load.scene.integrator;
   if (const YamlNode* kind = fields["kind"])

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Caustics by progressive photon mapping (Hachisuka et al. 2008, ACM TOG 27(5); Hachisuka and Jensen
-/// 2009, ACM TOG 28(5)), with the radii of Knaus and Zwicker (2011).
+/// \file Caustics by progressive photon mapping (Hachisuka et al. 2008), with the radii of Knaus and Zwicker
+/// (2011).
 ///
 /// Photons bring the light that reaches a surface after mirrors and glass alone, wherever that surface
 /// scatters light in other ways, too. Path tracing leaves out what they bring. A sample of a pixel asks the
@@ -29,7 +29,7 @@ class Caustics {
 
   /// Whether the light of this emitter that passes mirrors or glass on its way to a surface is left to
   /// photons.
-  bool brings(std::uint32_t emitter) const { return brings_[emitter] != 0; }
+  bool brings(std::uint32_t emitter) const { return emitter < brings_.size() && brings_[emitter] != 0; }
   /// The same for lights that are infinitely far away.
   bool brings_distant() const { return brings_distant_; }
 

@@ -77,13 +77,13 @@ TEST_F(PhotonMapFile, WhatIsReadIsWhatWasWritten) {
 
 TEST_F(PhotonMapFile, EveryCutAndEveryChangedByteIsFound) {
   const std::string good = bytes();
-  for (std::size_t size = 0; size < good.size(); size += size < 100 ? 1 : 13) {
+  for (std::size_t size = 0; size < good.size(); size += size < 100 ? 3 : 41) {
     put(good.substr(0, size));
     EXPECT_THROW(read_photon_map(path()), Error) << size;
   }
   put(good + "x");
   expect_error("length");
-  for (std::size_t i = 0; i < good.size(); i += i < 120 ? 1 : 7)
+  for (std::size_t i = 0; i < good.size(); i += i < 120 ? 2 : 29)
     for (const int flip : {1, 0x80, 0xff}) {
       std::string bad = good;
       bad[i] = static_cast<char>(bad[i] ^ flip);
