@@ -162,7 +162,7 @@ PictureScene lamp(std::uint32_t width, std::uint32_t height) {
   p.scene = empty_scene(width, height, {1, 3, -9}, {0, 0.4, 0});
   p.scene.integrator.kind = IntegratorKind::path, p.scene.integrator.depth = 0;
   const std::string things = add_field(p.scene, 11);
-  constexpr double kEdge = 100, kHigh = 1000;
+  static constexpr double kEdge = 100, kHigh = 1000;
   Material glow = dull({0, 0, 0});
   const auto radiance = static_cast<float>(std::numbers::pi * kHigh * kHigh / (kEdge * kEdge));
   glow.emission = {radiance, radiance, radiance}, glow.emits_behind = false;
