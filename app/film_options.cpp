@@ -37,6 +37,7 @@ void add_film_options(Verb& verb, FilmArguments& a) {
   verb.option("--error", &a.error, "E",
               "Adaptive sampling: up to --max-spp samples where the relative error is greater than E");
   verb.option("--max-spp", &a.max_samples, "N", "Most samples per pixel of adaptive sampling");
+  verb.flag("--cryptomatte", a.cryptomatte, "Also write mattes of objects and materials (EXR only)");
   verb.flag("--denoise", a.denoise, "Smooth the noise of the finished picture");
 }
 
@@ -50,6 +51,7 @@ void override_film(const FilmArguments& a, Scene& scene) {
   read_number("--exposure", a.exposure, kExposures, film.tone.exposure);
   read_number("--clamp", a.clamp, kNonNegative, scene.integrator.clamp);
   read_number("--error", a.error, kErrors, scene.integrator.error);
+  if (a.cryptomatte) film.cryptomatte = true;
   if (!a.max_samples) return;
   if (*a.max_samples < 1 || *a.max_samples > 65536)
     throw Error(fmt::format("--max-spp: {} is out of range; expected 1 to 65536", *a.max_samples));

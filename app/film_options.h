@@ -14,7 +14,7 @@ namespace oktett {
 struct FilmArguments {
   std::string filter, tone, exposure, clamp, error;
   std::optional<std::uint32_t> max_samples;
-  bool denoise = false;
+  bool denoise = false, cryptomatte = false;
 };
 
 void add_film_options(Verb& verb, FilmArguments& arguments);

@@ -16,6 +16,7 @@
 namespace oktett {
 
 struct PathSurface;
+struct Mattes;
 
 /// A light in the precision of shading.
 struct LightSource {
@@ -53,6 +54,7 @@ struct RenderContext {
   bool data_layers = true;
   float ao_radius = 1;                  ///< reach of ambient-occlusion rays
   float near_depth = 0, far_depth = 1;  ///< what the depth integrator shows as white and black
+  const Mattes* mattes = nullptr;       ///< null: no mattes are wanted
   /// If not null, one for each moment while the shutter is open, see render/moments.h.
   const std::vector<RenderContext>* moments = nullptr;
   float footprint_scale = 1;  ///< width of a sample's share of the pixel, in pixels

@@ -92,7 +92,7 @@ class WorldBuilder {
     for (std::size_t k = first; k < first + count; ++k) {
       const Object& object = objects[k];
       const auto id = static_cast<std::uint32_t>(world_.objects.size());
-      world_.objects.push_back({object.material, {}});
+      world_.objects.push_back({object.material, {}, object.name});
       // Without a material of its own, an instance shows those of the objects inside.
       InstancePlace place{
           {}, std::get<InstanceShape>(object.shape).prototype, object.material == kNoId ? kNoId : id};
@@ -104,7 +104,7 @@ class WorldBuilder {
 
   bool make_geometry(const Object& object, Geometry& geometry) {
     const auto id = static_cast<std::uint32_t>(world_.objects.size());
-    world_.objects.push_back({object.material, {}});
+    world_.objects.push_back({object.material, {}, object.name});
     geometry.transform = object.transform;
     geometry.user = id;
     if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) return false;

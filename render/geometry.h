@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "accel/accel.h"
@@ -16,6 +17,7 @@ namespace oktett {
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
+  std::string name;                  ///< of the object; may be empty
 };
 
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.

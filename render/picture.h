@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/soa.h"
@@ -28,6 +29,8 @@ struct Picture {
   std::uint32_t x = 0, y = 0;                     ///< where their upper left pixel is in the full frame
   std::uint32_t full_width = 0, full_height = 0;  ///< of the frame that the planes are a part of
   std::vector<PicturePlane> planes;
+  /// Texts that EXR files keep beside the planes, each with its name.
+  std::vector<std::pair<std::string, std::string>> attributes;
   Tone tone;  ///< how formats that store no linear light show the colours
 
   /// The plane called `name`, or null.

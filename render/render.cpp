@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "render/context.h"
+#include "render/cryptomatte.h"
 #include "render/default_view.h"
 #include "render/film.h"
 #include "render/geometry.h"
@@ -132,8 +133,13 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
     result.photons = caustics->map();
   }
   const double photon_seconds = caustics ? seconds_since(photons) : 0;
-  moments.share(scene, context);
   result.picture = make_picture(context);
+  Mattes mattes;
+  if (scene.film.cryptomatte && options.data_layers) {
+    mattes = add_mattes(world, result.picture);
+    context.mattes = &mattes;
+  }
+  moments.share(scene, context);
   result.picture.tone = scene.film.tone;
   const Clock::time_point tracing = Clock::now();
   Monitor monitor(options, result.picture, tracing);

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "render/adaptive.h"
+#include "render/cryptomatte.h"
 #include "render/moments.h"
 
 namespace oktett {
@@ -17,6 +18,7 @@ class TileParts {
     list_all_pixels();
     sums_.resize(pixels_.size());
     if (adaptive_) luminance_.resize(pixels_.size());
+    if (context.mattes != nullptr) objects_.resize(pixels_.size()), materials_.resize(pixels_.size());
     counts_.resize(pixels_.size(), context.settings.samples);
     work_.wavefront.counts = {};
   }
@@ -54,6 +56,7 @@ class TileParts {
         work_.colors.set(p.number, sums_[p.number]);
     }
     if (!context_.data_layers) work_.colors.copy_to(picture, tile_, numbers);
+    if (context_.mattes != nullptr) write_mattes(picture);
     if (PicturePlane* counts = picture.find(kSampleCountPlane); counts != nullptr)
       for (std::uint32_t y = 0; y < tile_.height; ++y)
         for (std::uint32_t x = 0; x < tile_.width; ++x)
@@ -64,6 +67,23 @@ class TileParts {
   TileCounts counts() const { return {work_.wavefront.counts, bad_samples_}; }
 
  private:
+  void write_mattes(Picture& picture) const {
+    for (const WavefrontPixel& p : pixels_) {
+      if (!is_inside(p)) continue;
+      const std::size_t at = std::size_t{tile_.y + p.y - top_} * picture.width + (tile_.x + p.x - left_);
+      const std::uint32_t samples = sums_[p.number].good;
+      objects_[p.number].write(picture, context_.mattes->object_planes, at, samples);
+      materials_[p.number].write(picture, context_.mattes->material_planes, at, samples);
+    }
+  }
+
+  void add_to_mattes(std::uint32_t pixel, const FirstHit& first) {
+    const Mattes& mattes = *context_.mattes;
+    if (!first.found) return;
+    if (first.object < mattes.objects.size()) objects_[pixel].add(mattes.objects[first.object]);
+    materials_[pixel].add(mattes.materials[first.material]);
+  }
+
   /// The pixels of the tile and, in adaptive sampling, their neighbours outside it, as far as the frame goes,
   /// in Morton order.
   void list_all_pixels() {
@@ -130,9 +150,10 @@ class TileParts {
       const std::uint32_t pixel = samples.pixel[i];
       if (!add_to_pixel(sums_[pixel], samples, i)) {
         bad_samples_ += is_inside(pixels_[pixel]) ? 1 : 0;
-      } else if (in_pilot_) {
-        luminance_[pixel].add(samples.color[i]);
+        continue;
       }
+      if (in_pilot_) luminance_[pixel].add(samples.color[i]);
+      if (context.mattes != nullptr) add_to_mattes(pixel, samples.first[i]);
     }
   }
 
@@ -145,6 +166,7 @@ class TileParts {
   std::uint32_t x0_ = 0, y0_ = 0, x1_ = 0, y1_ = 0;  ///< the pixels in the list, in the full frame
   std::vector<WavefrontPixel> pixels_;               ///< numbered in their order
   std::vector<PixelSum> sums_;                       ///< of each pixel
+  std::vector<MatteSums> objects_, materials_;       ///< of each pixel, if mattes are wanted
   std::vector<LuminanceSums> luminance_;             ///< of its first samples
   std::vector<std::uint32_t> counts_;                ///< of its samples
   std::uint64_t bad_samples_ = 0;
@@ -153,7 +175,7 @@ class TileParts {
 }  // namespace
 
 bool needs_parts(const RenderContext& context) {
-  return context.settings.error > 0 || context.moments != nullptr;
+  return context.settings.error > 0 || context.moments != nullptr || context.mattes != nullptr;
 }
 
 TileCounts render_tile_in_parts(const RenderContext& context, const FinishedTile& tile, Picture& picture,

@@ -238,7 +238,8 @@ void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::s
            p.color,
            s.uv,
            s.primitive,
-           s.user};
+           s.user,
+           material_index(*context.world, s.user, s.material_slot)};
 }
 
 void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,

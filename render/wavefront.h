@@ -21,6 +21,7 @@ struct FirstHit {
   Color albedo;
   Vec2f uv;
   std::uint32_t primitive = kNoId, object = kNoId;
+  std::uint32_t material = kNoId;  ///< index into World::materials
 };
 
 /// Camera samples in columns: their places and their results.

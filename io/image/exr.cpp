@@ -102,6 +102,7 @@ Imf::Header header(const Picture& picture, const std::vector<Attribute>& attribu
       box(picture.x, picture.y, picture.width, picture.height));
   header.zipCompressionLevel() = kLevel;
   header.insert("capDate", Imf::StringAttribute(date()));
+  for (const auto& [name, text] : picture.attributes) header.insert(name, Imf::StringAttribute(text));
   for (const Attribute& attribute : attributes) std::visit(AddTo{header, attribute.name}, attribute.value);
   return header;
 }

@@ -23,7 +23,8 @@ bool keeps_all_planes(const std::string& path);
 /// same directory, flushed to the disk and renamed, so `path` never holds a part of a picture. Throws Error
 /// of kind io if that fails; then a file that was at `path` is still there, and no other is left behind.
 ///
-/// - EXR: every plane with its own type, zip compression, data window in the full frame, all metadata. Values
+/// - EXR: every plane with its own type, all attributes, zip compression, data window in the full frame, all
+/// metadata. Values
 ///   are stored as they are, NaN and infinities included; finite values too large for half become the largest
 ///   half.
 /// - HDR and other formats of floating point: linear R, G, B.

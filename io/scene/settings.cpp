@@ -75,8 +75,9 @@ void read_camera(SceneLoad& load, const YamlNode& node) {
 }
 
 void read_film(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "film",
-                      {"width", "height", "crop", "filter", "filter_radius", "tone", "exposure"});
+  const Fields fields(
+      node, "film",
+      {"width", "height", "crop", "filter", "filter_radius", "tone", "exposure", "cryptomatte"});
   Film& film = load.scene.film;
   if (const YamlNode* width = fields["width"]) film.width = load.values.integer(*width, 1, kMaxFilmSide);
   if (const YamlNode* height = fields["height"]) film.height = load.values.integer(*height, 1, kMaxFilmSide);
@@ -95,6 +96,7 @@ void read_film(SceneLoad& load, const YamlNode& node) {
   load.values.read(fields["filter_radius"], film.filter_radius, kFilterRadii);
   if (const YamlNode* tone = fields["tone"]) film.tone.kind = load.values.choice<ToneKind>(*tone, kToneKinds);
   load.values.read(fields["exposure"], film.tone.exposure, kExposures);
+  load.values.read(fields["cryptomatte"], film.cryptomatte);
 }
 
 /// `caustics`: a flag, or a map of settings, which switches them on.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <csignal>
 #include <filesystem>
 #include <iterator>
@@ -109,6 +110,44 @@ TEST(RenderCommand, FilmOptionsOverrideTheScene) {
   EXPECT_NE(error("--error", "1.5").find("--error: 1.5 is out of range; expected 0 to 1"), std::string::npos);
   EXPECT_NE(error("--max-spp", "0").find("--max-spp: 0 is out of range"), std::string::npos);
   EXPECT_NE(error("--clamp", "-1").find("--clamp: -1 is out of range"), std::string::npos);
+}
+
+// A reader that knows nothing but the specification: it finds the layer by its attributes, the id of a name
+// in the manifest, and adds up the coverage of that id.
+TEST(RenderCommand, CryptomatteCanBeReadByOthers) {
+  const TempDir dir;
+  dir.write("ball.yaml",
+            "oktett: 1\ncamera: {projection: orthographic, height: 2}\nobjects:\n"
+            "  - box: {min: [0, -2, -1], max: [2, 2, 1]}\n    name: half\n");
+  ASSERT_EQ(run_command(dir, {"render", "ball.yaml", "--size", "1x1", "--spp", "16", "--cryptomatte", "-o",
+                              "a.exr", "--quiet"})
+                .status,
+            0);
+  const auto image = OIIO::ImageInput::open(dir.file("a.exr"));
+  ASSERT_TRUE(image);
+  const OIIO::ImageSpec& spec = image->spec();
+  std::string key;
+  for (const OIIO::ParamValue& p : spec.extra_attribs)
+    if (p.name().string().starts_with("cryptomatte/") && p.get_string() == "CryptoObject")
+      key = p.name().string().substr(0, p.name().string().rfind('/') + 1);
+  ASSERT_EQ(key.size(), 20u);
+  EXPECT_EQ(spec.get_string_attribute(key + "hash"), "MurmurHash3_32");
+  EXPECT_EQ(spec.get_string_attribute(key + "conversion"), "uint32_to_float32");
+  const std::string manifest = spec.get_string_attribute(key + "manifest");
+  const std::size_t at = manifest.find("\"half\":\"");
+  ASSERT_NE(at, std::string::npos) << manifest;
+  const auto bits = static_cast<std::uint32_t>(std::stoul(manifest.substr(at + 8, 8), nullptr, 16));
+  std::vector<float> pixel(static_cast<std::size_t>(spec.nchannels));
+  ASSERT_TRUE(image->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixel.data()));
+  const auto channel = [&](const std::string& name) {
+    return pixel[static_cast<std::size_t>(spec.channelindex(name))];
+  };
+  float covered = 0;
+  for (const char* rank : {"CryptoObject00.", "CryptoObject01.", "CryptoObject02."})
+    for (const char* pair : {"RG", "BA"})
+      if (std::bit_cast<std::uint32_t>(channel(std::string(rank) + pair[0])) == bits)
+        covered += channel(std::string(rank) + pair[1]);
+  EXPECT_EQ(covered, 0.5f);
 }
 
 TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
