@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/four.h"
+#include "core/platform.h"
 
 namespace oktett {
 
@@ -22,6 +24,8 @@ static constexpr float kLeastSquare = 1e-30f;
 /// Importances are at least this large where they are not 0, and at least this part of the sum.
 static constexpr float kLeastImportance = 1e-37f;
 static constexpr double kLeastPart = 0x1p-30;
+
+static void put(Four values, float (&to)[4]) { std::memcpy(to, &values, sizeof(to)); }
 
 /// The mean of max(0, x) for x uniform in [mean - width, mean + width].
 static Four positive_part(Four mean, Four width) {
@@ -81,7 +85,9 @@ LightTree::Importances LightTree::importances(const Quad& quad, const LightPoint
     lit = unless_beyond(lit, arriving, four(0), ball);
   }
   importance = lit > 0 ? max(importance, kLeastImportance) : four(0);
-  return {{importance[0], importance[1], importance[2], importance[3]}};
+  Importances w;
+  put(importance, w.lane);
+  return w;
 }
 
 LightTree::Importances LightTree::weights(const Quad& quad, const LightPoint& point) {
@@ -96,7 +102,7 @@ LightTree::Importances LightTree::weights(const Quad& quad, const LightPoint& po
     return w;
   }
   const auto least = static_cast<float>(sum * kLeastPart);
-  for (float& lane : w.lane) lane = lane > 0 ? std::max(lane, least) : 0;
+  put(four(w.lane) > 0 ? max(four(w.lane), least) : four(0), w.lane);
   return w;
 }
 
@@ -104,14 +110,15 @@ void LightTree::step(const LightPoint& point, Walk& walk) const {
   const Quad& quad = quads_[walk.child / 4];
   const Importances w = weights(quad, point);
   const double sum = w.sum();
-  double rest = walk.u * sum;
-  std::uint32_t chosen = kLanes;
-  for (std::uint32_t i = 0; i < kLanes; ++i) {
-    if (!(w.lane[i] > 0)) continue;
-    if (chosen != kLanes) rest -= w.lane[chosen];
-    chosen = i;
-    if (rest < w.lane[i]) break;
-  }
+  // Without branches, as no processor can predict them.
+  const double before[kLanes] = {0, double{w.lane[0]}, double{w.lane[0]} + w.lane[1],
+                                 double{w.lane[0]} + w.lane[1] + w.lane[2]};
+  const double place = walk.u * sum;
+  std::uint32_t chosen =
+      (place >= before[1] ? 1u : 0u) + (place >= before[2] ? 1u : 0u) + (place >= before[3] ? 1u : 0u);
+  // By rounding, the place may be behind the last child that can be chosen.
+  while (OKTETT_UNLIKELY(!(w.lane[chosen] > 0))) --chosen;
+  const double rest = place - before[chosen];
   // Rounding may give 1.
   walk.u = std::clamp(rest / w.lane[chosen], 0.0, 1 - 0x1p-53);
   walk.probability *= w.lane[chosen] / sum;
