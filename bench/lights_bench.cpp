@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "bench/bench_object.h"
 #include "core/random.h"
 #include "render/render.h"
 
@@ -29,7 +30,7 @@ Scene lamps(std::int64_t count, double edge) {
   lamp.emission = {radiance, radiance, radiance};
   s.materials = {floor, lamp};
   const auto add = [&](Shape shape, std::uint32_t material) {
-    s.objects.push_back({std::move(shape), material, {}, {}, {}});
+    s.objects.push_back(make_object(std::move(shape), material));
   };
   add(PlaneShape{{0, 1, 0}, 0}, 0);
   for (int i = 0; i < 16; ++i) add(SphereShape{{i % 4 * 1.6 - 2.4, 0.5, i / 4 * 1.6 - 2.4}, 0.5}, 0);

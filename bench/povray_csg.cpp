@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bench/bench_object.h"
 #include "bench/povray_scene.h"
 #include "verify/oracles/exact_families.h"
 
@@ -11,7 +12,7 @@ namespace oktett::bench {
 
 namespace {
 
-Object operand(Shape shape) { return {std::move(shape), kNoId, {}, {}, {}}; }
+Object operand(Shape shape) { return make_object(std::move(shape), kNoId); }
 
 CsgShape combine(CsgOp op, std::vector<Object> operands) {
   return {op, std::make_shared<const std::vector<Object>>(std::move(operands))};

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bench/bench_mesh.h"
+#include "bench/bench_object.h"
 #include "render/render.h"
 
 namespace oktett::bench {
@@ -17,9 +18,8 @@ Scene make_scene() {
   s.materials[1].reflection = 0.5f;
   MeshShape mesh;
   mesh.mesh = std::shared_ptr<const TriangleMesh>(&bench_mesh(), [](const TriangleMesh*) {});
-  s.objects = {{mesh, 0, {}, {}, {}},
-               {SphereShape{{1.5, -0.5, 0.5}, 0.5}, 1, {}, {}, {}},
-               {PlaneShape{{0, 1, 0}, -1.1}, 0, {}, {}, {}}};
+  s.objects = {make_object(mesh, 0), make_object(SphereShape{{1.5, -0.5, 0.5}, 0.5}, 1),
+               make_object(PlaneShape{{0, 1, 0}, -1.1}, 0)};
   s.film = {960, 540, {0, 1, 0, 1}};
   s.integrator.samples = 1;
   return s;
