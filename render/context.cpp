@@ -48,7 +48,7 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   else if (by_squaring(m.phong))
     s.exponent = static_cast<std::int32_t>(m.phong);
   s.varies = (context.textures != nullptr && has_textures(m)) ||
-             (!m.emits_behind && !(m.emission == Color{0, 0, 0}));
+             (!m.emits_behind && !(m.emission == Color{0, 0, 0})) || !m.surface || m.interior != kNoId;
   s.reflection = m.reflection;
   s.transparent = m.transparency != 0;
   return s;
@@ -80,6 +80,26 @@ std::vector<LightSource> light_sources(const Scene& scene) {
   return sources;
 }
 
+void enclose_camera(const Camera& camera, RenderContext& context) {
+  if (!context.tracks_enclosures) return;
+  context.camera_place = Vec3f(camera.from);
+  context.camera_enclosures = enclosures_at(*context.world, context.camera_place);
+}
+
+/// See RenderContext::interiors.
+static std::vector<Vec3d> interiors(const Scene& scene, const World& world) {
+  std::vector<Vec3d> extinctions;
+  if (scene.integrator.kind != IntegratorKind::whitted) return extinctions;
+  for (std::size_t i = 0; i < world.materials.size(); ++i) {
+    const Material& m = world.materials[i];
+    if (m.interior == kNoId || scene.media[m.interior].grid) continue;
+    const Medium& medium = scene.media[m.interior];
+    extinctions.resize(world.materials.size(), {0, 0, 0});
+    extinctions[i] = Vec3d(medium.absorption) + Vec3d(medium.scattering);
+  }
+  return extinctions;
+}
+
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
                            const TextureSampler* textures, Isa isa) {
   RenderContext c;
@@ -95,6 +115,13 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.settings.depth = std::min(c.settings.depth, 64u);
   c.sampled = &lights;
   c.lights = light_sources(scene);
+  c.interiors = interiors(scene, world);
+  c.tracks_enclosures = world.tracks_enclosures;
+  if (c.tracks_enclosures) {
+    for (const Medium& medium : scene.media) c.media.emplace_back(medium);
+    c.outer_medium = scene.medium;
+    enclose_camera(scene.camera, c);
+  }
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   if (c.settings.kind == IntegratorKind::path)

@@ -6,7 +6,9 @@
 
 #include "core/isa.h"
 #include "render/camera.h"
+#include "render/enclosures.h"
 #include "render/geometry.h"
+#include "render/medium/medium_tracker.h"
 #include "render/sampling/filter_sampler.h"
 #include "render/scene.h"
 #include "render/scene_lights.h"
@@ -47,6 +49,14 @@ struct RenderContext {
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
+  bool tracks_enclosures = false;      ///< rays must know in which solids they are, see enclosures.h
+  std::vector<MediumTracker> media;    ///< numbered as in Scene::media
+  std::uint32_t outer_medium = kNoId;  ///< the medium outside of all solids
+  /// Extinction of homogeneous interiors, numbered as World::materials, for Whitted's model; empty if no
+  /// material has one.
+  std::vector<Vec3d> interiors;
+  EnclosureStack camera_enclosures;  ///< the solids around the camera
+  Vec3f camera_place;                ///< where `camera_enclosures` holds
   Color background, ambient_light;
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
   /// transparent.
@@ -65,6 +75,9 @@ std::uint32_t first_samples(const IntegratorSettings& settings);
 
 /// The lights that have a place or a direction.
 std::vector<LightSource> light_sources(const Scene& scene);
+
+/// Finds the solids around the camera, if the scene tracks them.
+void enclose_camera(const Camera& camera, RenderContext& context);
 
 /// `scene` has its camera and lights filled in. `world`, `lights` and `textures` must outlive the result.
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,

@@ -4,6 +4,9 @@
 #include <set>
 #include <utility>
 
+#include "render/enclosures.h"
+#include "render/solids.h"
+
 namespace oktett {
 namespace {
 
@@ -16,6 +19,7 @@ class WorldBuilder {
   WorldBuilder(const Scene& scene, const BuildOptions& options) : scene_(scene), options_(options) {}
 
   World build() {
+    world_.tracks_enclosures = needs_enclosures(scene_);
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
     world_.accel = build_list(scene_.objects);
     world_.bounds = bounds(*world_.accel);
@@ -92,7 +96,7 @@ class WorldBuilder {
     for (std::size_t k = first; k < first + count; ++k) {
       const Object& object = objects[k];
       const auto id = static_cast<std::uint32_t>(world_.objects.size());
-      world_.objects.push_back({object.material, {}, object.name});
+      world_.objects.push_back({object.material, {}, solid(object, id), object.name});
       // Without a material of its own, an instance shows those of the objects inside.
       InstancePlace place{
           {}, std::get<InstanceShape>(object.shape).prototype, object.material == kNoId ? kNoId : id};
@@ -104,7 +108,7 @@ class WorldBuilder {
 
   bool make_geometry(const Object& object, Geometry& geometry) {
     const auto id = static_cast<std::uint32_t>(world_.objects.size());
-    world_.objects.push_back({object.material, {}, object.name});
+    world_.objects.push_back({object.material, {}, solid(object, id), object.name});
     geometry.transform = object.transform;
     geometry.user = id;
     if (!std::visit([&](const auto& shape) { return convert(shape, geometry); }, object.shape)) return false;
@@ -152,7 +156,9 @@ class WorldBuilder {
   }
 
   bool convert(const CsgShape& shape, Geometry& geometry) {
+    combination_ = static_cast<std::uint32_t>(world_.objects.size() - 1);
     auto expression = std::make_shared<CsgExpression>(csg_expression(shape));
+    combination_ = kNoId;
     geometry.shape = CsgGeometry{std::move(expression)};
     return true;
   }
@@ -195,7 +201,31 @@ class WorldBuilder {
     world_.materials = scene_.materials;
     world_.materials.emplace_back();
     for (const Material& m : scene_.materials)
-      if (m.transparency != 0 || m.opacity_texture != kNoId) world_.see_through = true;
+      if (m.transparency != 0 || m.opacity_texture != kNoId || !m.surface) world_.see_through = true;
+  }
+
+  static bool needs_enclosures(const Scene& scene) {
+    if (scene.integrator.kind != IntegratorKind::path) return false;
+    return scene.medium != kNoId || std::ranges::any_of(scene.materials, [](const Material& m) {
+             return m.interior != kNoId || m.priority != kNoPriority;
+           });
+  }
+
+  bool may_enclose(const Object& object) const {
+    const auto encloses_slot = [&](std::uint32_t slot) {
+      return slot < scene_.materials.size() && encloses(scene_.materials[slot]);
+    };
+    const auto* mesh = std::get_if<MeshShape>(&object.shape);
+    if (object.material != kNoId || mesh == nullptr) return encloses_slot(object.material);
+    return std::ranges::any_of(mesh->slot_materials, encloses_slot);
+  }
+
+  /// What ObjectMaterials::solid is for object number `id`.
+  std::uint32_t solid(const Object& object, std::uint32_t id) {
+    if (!world_.tracks_enclosures || !may_enclose(object)) return kNoId;
+    if (!is_solid(object.shape, scene_.prototypes)) return kNoId;
+    world_.has_enclosing_solids = true;
+    return combination_ != kNoId ? combination_ : id;
   }
 
   const Scene& scene_;
@@ -203,6 +233,7 @@ class WorldBuilder {
   World world_;
   std::vector<std::shared_ptr<const Accel>> prototypes_;
   std::set<const TriangleMesh*> seen_;
+  std::uint32_t combination_ = kNoId;  ///< the object whose operands are being made
 };
 
 }  // namespace

@@ -17,7 +17,10 @@ namespace oktett {
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
   std::vector<std::uint32_t> slots;  ///< material per slot of the mesh
-  std::string name;                  ///< of the object; may be empty
+  /// The object whose inside its surfaces bound: itself, or the combination that it is an operand of. kNoId
+  /// if it has no inside, or if paths need not know.
+  std::uint32_t solid = kNoId;
+  std::string name;  ///< of the object; may be empty
 };
 
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
@@ -36,7 +39,9 @@ struct World {
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< kept alive for `accel`
   std::shared_ptr<const Accel> still;  ///< what does not move, if anything moves; may be null then
   std::vector<MovingObject> moving;
-  Box bounds;                ///< of all that is bounded
+  Box bounds;                         ///< of all that is bounded
+  bool tracks_enclosures = false;     ///< paths must know which solids they are in
+  bool has_enclosing_solids = false;  ///< there are any that they must know of
   bool see_through = false;  ///< some material lets light pass, so shadow rays must look at what they hit
 
   std::uint64_t triangles = 0, primitives = 0;  ///< unique, instances not counted

@@ -33,7 +33,8 @@ Integrator integrator_for(IntegratorKind kind) {
 }
 
 bool shades_in_blocks(const RenderContext& context) {
-  if (context.settings.kind == IntegratorKind::path) return context.caustics == nullptr;
+  if (context.settings.kind == IntegratorKind::path)
+    return context.caustics == nullptr && !context.tracks_enclosures;
   if (context.settings.kind != IntegratorKind::whitted || context.data_layers) return false;
   // Lanes know no profiles.
   return std::none_of(context.lights.begin(), context.lights.end(),

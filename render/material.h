@@ -50,6 +50,9 @@ inline constexpr PrincipledNumber kPrincipledNumbers[] = {
     {"sheen_roughness", &PrincipledParameters::sheen_roughness,
      &PrincipledMaterial::sheen_roughness_texture}};
 
+/// The priority of materials that have none: lower than all others.
+inline constexpr std::int32_t kNoPriority = -1;
+
 /// A material of the Whitted model. The light that leaves a point is the sum of
 /// - emission,
 /// - color * (ambient * ambient light + diffuse * sum over lights),
@@ -79,6 +82,12 @@ struct Material {
   std::uint32_t bump_texture = kNoId;     ///< height, perturbs the shading normal (map_Bump)
   std::uint32_t normal_texture = kNoId;   ///< tangent-space normal (norm)
   float bump_scale = 1;                   ///< MTL `-bm`
+  /// False: the boundary of the interior has no surface, and light passes it as if it were not there.
+  bool surface = true;
+  std::uint32_t interior = kNoId;  ///< index into Scene::media: what fills solids of this material
+  /// Where solids overlap, the one of higher priority, >= 0, fills the space. Its index of refraction then
+  /// counts relative to the solid around it that has a priority, too. See render/enclosures.h.
+  std::int32_t priority = kNoPriority;
   bool operator==(const Material&) const = default;
 };
 

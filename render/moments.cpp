@@ -57,8 +57,10 @@ void Moments::share(Scene& scene, RenderContext& context) {
   contexts_.reserve(times_.size());
   for (std::size_t m = 0; m < times_.size(); ++m) {
     RenderContext& c = contexts_.emplace_back(context);
-    c.camera = camera_frame(camera_at(scene.camera, times_[m]), scene.film);
+    const Camera camera = camera_at(scene.camera, times_[m]);
+    c.camera = camera_frame(camera, scene.film);
     if (!worlds_.empty()) c.world = &worlds_[m];
+    enclose_camera(camera, c);
     if (!differ) continue;
     std::vector<Light> lights = lights_at(scene, times_[m]);
     std::swap(scene.lights, lights);

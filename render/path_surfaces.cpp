@@ -7,7 +7,7 @@ namespace oktett {
 
 static PathSurface path_surface(const Material& m, bool front, const TextureSampler* textures) {
   PathSurface s;
-  s.alone = textures != nullptr && has_textures(m);
+  s.alone = (textures != nullptr && has_textures(m)) || !m.surface;
   s.principled = m.principled.has_value();
   if (front || m.emits_behind) s.emission = m.emission;
   if (s.alone) return s;

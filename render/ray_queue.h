@@ -7,6 +7,7 @@
 #include "core/soa.h"
 #include "core/vec3.h"
 #include "render/color_column.h"
+#include "render/enclosures.h"
 #include "render/light/light_sample.h"
 
 namespace oktett {
@@ -58,13 +59,16 @@ struct PathColumns {
   /// 1 if any surface on the path sent it on otherwise than mirrors and clear glass do. Set only if
   /// RenderContext::caustics is.
   Column<std::uint8_t> scattered;
+  Column<EnclosureStack> enclosures;  ///< the solids around the ray, from the camera on; empty unless the
+                                      ///< scene tracks them
 
-  void clear() { resize_uninitialized(0); }
+  void clear() { resize_uninitialized(0), enclosures.resize_uninitialized(0); }
   void resize_uninitialized(std::size_t n) {
     pdf.resize_uninitialized(n), from.resize_uninitialized(n), scattered.resize_uninitialized(n);
   }
-  void push_back(float density, const LightPoint& point, bool was_scattered) {
+  void push_back(float density, const LightPoint& point, bool was_scattered, const EnclosureStack* around) {
     pdf.push_back(density), from.push_back(point), scattered.push_back(was_scattered ? 1 : 0);
+    if (around != nullptr) enclosures.push_back(*around);
   }
 };
 
@@ -73,13 +77,15 @@ struct ShadowQueue {
   RayBatch rays;
   Column<std::uint32_t> owner;
   ColorColumn light;
-  Column<std::uint8_t> occluded;  ///< written by trace_shadows
+  Column<std::uint8_t> occluded;      ///< written by trace_shadows
+  Column<EnclosureStack> enclosures;  ///< the solids at the origins; empty unless the scene tracks them
 
   std::size_t size() const { return owner.size(); }
 
   void clear() { resize_uninitialized(0); }
   void resize_uninitialized(std::size_t n) {
     rays.resize_uninitialized(n), owner.resize_uninitialized(n), light.resize_uninitialized(n);
+    if (n == 0) enclosures.resize_uninitialized(0);
   }
   void set(std::size_t i, const Ray& ray, std::uint32_t ray_owner, const Color& color) {
     rays.set(i, ray), owner[i] = ray_owner, light.set(i, color);

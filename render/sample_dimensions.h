@@ -26,4 +26,18 @@ constexpr std::uint32_t dimension(Decision decision, unsigned level = 0) {
 /// The dimension of the place on the lens. Paths of any length leave it free.
 inline constexpr std::uint32_t kLensDimension = 0xffffffffu;
 
+/// Decisions that only paths in media make. Their dimensions lie beyond those of all others, so that media in
+/// one place do not change the random numbers elsewhere.
+enum class MediumDecision : std::uint32_t {
+  passage,   ///< how far a path goes, and by which colour channel that is decided
+  tracking,  ///< what happens at the places in between
+  shadow,    ///< the same for the ray to a light
+  count
+};
+
+constexpr std::uint32_t dimension(MediumDecision decision, unsigned level) {
+  return (1u << 20) + static_cast<std::uint32_t>(decision) +
+         level * static_cast<std::uint32_t>(MediumDecision::count);
+}
+
 }  // namespace oktett

@@ -18,6 +18,7 @@
 #include "render/light/environment_picture.h"
 #include "render/light/light_profile.h"
 #include "render/material.h"
+#include "render/medium/medium.h"
 #include "render/motion.h"
 #include "render/sampling/filter_kind.h"
 #include "render/tone.h"
@@ -250,6 +251,8 @@ struct Scene {
   Color ambient_light{1, 1, 1};
   std::vector<Material> materials;
   std::vector<Texture> textures;
+  std::vector<Medium> media;
+  std::uint32_t medium = kNoId;  ///< index into `media`: what fills the space outside of all solids
   std::vector<Light> lights;
   std::vector<LightTraits> light_traits;  ///< of the light of the same number; may be shorter
   bool lights_given = false;              ///< false: render() adds a key and a fill light beside the camera

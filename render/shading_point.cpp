@@ -48,6 +48,7 @@ Color textured(const RenderContext& c, const Color& color, std::uint32_t texture
 }
 
 float opacity_at(const RenderContext& c, const Material& m, const Vec2f& uv, const Footprint& f) {
+  if (!m.surface) return 0;
   if (m.opacity_texture == kNoId || c.textures == nullptr) return 1;
   return std::clamp(c.textures->value(m.opacity_texture, uv, f.dx, f.dy), 0.0f, 1.0f);
 }
@@ -127,6 +128,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.specular_color = textured(context, m.specular_color, m.specular_texture, s.uv, f);
   p.emission = textured(context, m.emission, m.emission_texture, s.uv, f);
   p.opacity = opacity_at(context, m, s.uv, f);
+  p.ior = m.ior;
   if (m.principled && context.settings.kind == IntegratorKind::path)
     p.principled = principled_at(context, *m.principled, p.color, s.uv, f);
   face_ray(p, ns);
@@ -147,6 +149,7 @@ bool has_textures(const Material& m) {
 }
 
 bool is_opaque(const Material& m, ShadowRule rule) {
+  if (!m.surface) return false;
   return (m.transparency == 0 || rule == ShadowRule::holes_pass) && m.opacity_texture == kNoId;
 }
 

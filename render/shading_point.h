@@ -22,6 +22,7 @@ struct ShadingPoint {
   Vec3f ng, ns;     ///< geometric and shading normal, turned towards the ray's origin; dot(direction, ns) < 0
   bool front = true;  ///< the ray comes from the side that the surface's own normal points to
   Color color, specular_color, emission;           ///< textures included
+  float ior = 1.5f;                                ///< of Phong's model: inside relative to outside
   float opacity = 1;                               ///< fraction that is surface; the rest is a hole
   std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
 };

@@ -8,13 +8,9 @@
 
 namespace oktett {
 
-/// Transparent surfaces that a shadow ray may pass before it counts as blocked.
-static constexpr int kMostLayers = 128;
-
 static bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
-/// The part of a shadow ray behind the surface `s`. It ends where `ray` ends.
-static Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
+Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
   Ray rest = ray;
   rest.origin = offset_origin(s, ray.direction);
   if (ray.tmax < std::numeric_limits<float>::infinity()) {
@@ -36,7 +32,7 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   HitBatch hits;
   std::vector<std::uint32_t> kept;  // of `left`
   InteractionBlock behind;
-  for (int layer = 0; layer < kMostLayers && !left.empty(); ++layer) {
+  for (int layer = 0; layer < kMostShadowLayers && !left.empty(); ++layer) {
     hits.resize_uninitialized(rays.size());
     closest_hit(accel, rays.span(), hits.span(), context.isa);
     kept.clear();

@@ -11,4 +11,10 @@ namespace oktett {
 /// the queue.
 void trace_shadows(const RenderContext& context, ShadowQueue& queue, ShadowRule rule, ColorColumn& radiance);
 
+/// Surfaces that a shadow ray may pass before it counts as blocked.
+inline constexpr int kMostShadowLayers = 128;
+
+/// The part of a shadow ray behind the surface `s`. It ends where `ray` ends.
+Ray continue_behind(const Ray& ray, const SurfaceInteraction& s);
+
 }  // namespace oktett

@@ -13,7 +13,7 @@ PhongParameters phong_parameters(const Material& m) {
 static Bsdf bsdf_of(const ShadingPoint& p, const Vec3f& wo) {
   if (p.principled) return principled_bsdf(*p.principled, wo, p.front);
   PhongParameters parameters = phong_parameters(*p.material);
-  parameters.color = p.color, parameters.specular_color = p.specular_color;
+  parameters.color = p.color, parameters.specular_color = p.specular_color, parameters.ior = p.ior;
   return phong_bsdf(parameters, wo, p.front);
 }
 

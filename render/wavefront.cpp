@@ -6,6 +6,7 @@
 #include "accel/accel.h"
 #include "accel/surface/offset_origin.h"
 #include "render/integrators.h"
+#include "render/medium_paths.h"
 #include "render/path_emission.h"
 #include "render/photon/caustics.h"
 #include "render/render_code.h"
@@ -103,8 +104,11 @@ void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
   for (std::size_t n = 0; n < wavefront.shadows.size(); ++n) {
     ShadowQueue& queue = wavefront.shadows[n];
     const bool holes = path && n == kAreaQueue;
-    trace_shadows(context, queue, holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes,
-                  wavefront.radiance);
+    const ShadowRule rule = holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes;
+    if (context.tracks_enclosures)
+      trace_shadows_in_media(context, wavefront, queue, rule);
+    else
+      trace_shadows(context, queue, rule, wavefront.radiance);
     wavefront.counts.shadow += queue.size();
     wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
     queue.clear();
@@ -209,12 +213,16 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     find_hits(context, wavefront);
     if (wavefront.level == 0) {
       // If several wavefronts share a pixel, all of them are needed for its mean.
-      if (wavefront.whole_pixels && !context.opaque_background && !meets_anything(wavefront)) return false;
+      const bool may_be_empty = !context.opaque_background && !context.tracks_enclosures;
+      if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
       fill_samples(wavefront.samples);
       fill_camera_rays(wavefront);
+      if (context.tracks_enclosures) enclose_camera_rays(context, wavefront);
     }
+    if (context.tracks_enclosures) pass_media(context, wavefront);
     start_level(context, wavefront);
     cover_background(context, wavefront);
+    if (context.tracks_enclosures) shade_media(context, wavefront);
     shade_hits(context, wavefront);
     add_to_samples(wavefront);
     std::swap(wavefront.rays, wavefront.next);

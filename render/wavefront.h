@@ -56,6 +56,13 @@ struct RayCounts {
   std::uint64_t total() const { return camera + shadow + reflected + refracted; }
 };
 
+/// What a ray meets in a medium before it meets a surface.
+struct MediumEvent {
+  std::uint32_t ray;     ///< entry of the wavefront's rays
+  std::uint32_t medium;  ///< index into RenderContext::media
+  MediumPassage passage;
+};
+
 /// The rays of one bounce of some samples, and what is kept for the next bounce. The result of a sample does
 /// not depend on the other samples of its wavefront: each ray sums its light in a fixed order, and a sample
 /// sums its rays in the order of the queue, which other samples do not change.
@@ -69,11 +76,12 @@ struct Wavefront {
   /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
   /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.
   std::vector<ShadowQueue> shadows;
-  Column<std::uint32_t> hit_rays;  ///< entries of `rays` that hit something
-  Column<double> film_x, film_y;   ///< where the camera rays pass the film
-  Column<double> lens_x, lens_y;   ///< and the lens, as in FilmPoints
-  unsigned level = 0;              ///< number of the bounce; 0 = camera rays
-  bool whole_pixels = true;        ///< all samples of each of its pixels are in this wavefront
+  std::vector<MediumEvent> medium_events;  ///< of rays that are scattered or find light in media
+  Column<std::uint32_t> hit_rays;          ///< entries of `rays` that hit something
+  Column<double> film_x, film_y;           ///< where the camera rays pass the film
+  Column<double> lens_x, lens_y;           ///< and the lens, as in FilmPoints
+  unsigned level = 0;                      ///< number of the bounce; 0 = camera rays
+  bool whole_pixels = true;                ///< all samples of each of its pixels are in this wavefront
   RayCounts counts;
 };
 

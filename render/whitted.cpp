@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/math.h"
 #include "render/direct_light.h"
 #include "render/integrators.h"
 #include "render/render_code.h"
@@ -30,6 +31,14 @@ void push_admitted(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
 }
 
 bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
+
+/// The part of the light that passes the interior of the solid that a ray leaves at `p` (Beer's law).
+Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
+  const auto material = static_cast<std::size_t>(p.material - context.world->materials.data());
+  if (p.front || context.interiors.empty()) return {1, 1, 1};
+  const Vec3d depth = context.interiors[material] * static_cast<double>(p.t);
+  return Color(Vec3d{portable::exp(-depth.x), portable::exp(-depth.y), portable::exp(-depth.z)});
+}
 
 /// Adds the light of a hit that needs no lamp. `throughput` includes the opacity of the surface.
 void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
@@ -75,21 +84,25 @@ ShadedRays shaded_rays(Wavefront& wavefront) {
   return rays;
 }
 
-/// What hit `k` needs beyond lanes: its textures, and the rays that leave it.
-OKTETT_NOINLINE void finish_alone(const RenderContext& context, Wavefront& wavefront,
-                                  const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
+/// What hit `k` needs beyond lanes: its textures, and the rays that leave it. Returns what the interior that
+/// the ray comes through leaves of its light.
+OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wavefront,
+                                   const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
   const std::uint32_t i = c.ray[k];
   const bool from_camera = wavefront.rays.from_camera[i] != 0;
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                                        {wavefront.rays.distance[i], from_camera}, found);
+  const Color left = passing_interior(context, p);
   if (context.materials[c.material[k]].varies) {
     const Color throughput = wavefront.rays.throughput[i] * p.opacity;
-    add_unlit(context, wavefront, i, p, throughput);
+    add_unlit(context, wavefront, i, p, throughput * left);
     InteractionBlock::put(c.throughput, k, throughput);
     InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
     InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
   }
+  if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
   push_bounces(context, wavefront, i, p);
+  return left;
 }
 
 /// Queues the mirrored rays of hits on opaque mirrors, of which the columns know all.
@@ -130,6 +143,8 @@ void push_shadow_rays(const RenderContext& context, const InteractionBlock& foun
 
 void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                    const ShadingPoint& p) {
+  const Color left = passing_interior(context, p);
+  if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(ray, wavefront.rays.throughput[ray] * left);
   const Color throughput = wavefront.rays.throughput[ray] * p.opacity;
   add_unlit(context, wavefront, ray, p, throughput);
   add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
@@ -152,10 +167,13 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   if (!alone && mirrors) push_mirrored(context, wavefront, found, c);
   for (std::size_t k = 0; k < count; ++k) {
     const ShadingMaterial& m = context.materials[c.material[k]];
-    if (alone && (m.alone() || m.reflection != 0)) finish_alone(context, wavefront, found[k], k, c);
+    Color left{1, 1, 1};
+    if (alone && (m.alone() || m.reflection != 0)) left = finish_alone(context, wavefront, found[k], k, c);
     const std::uint32_t i = c.ray[k];
     if (wavefront.rays.from_camera[i])
       wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];
+    if (!(left == Color{1, 1, 1}))
+      InteractionBlock::put(c.throughput, k, InteractionBlock::get(c.throughput, k) * left);
   }
   for (std::size_t n = 0; n < context.lights.size(); ++n)
     push_shadow_rays(context, found, context.lights[n], c, wavefront.shadows[n]);

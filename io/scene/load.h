@@ -45,7 +45,7 @@ struct SceneLoad {
   SceneParameters parameters;
   SceneValues values;
   MeshLibrary meshes;
-  NameTable materials, prototypes, objects;
+  NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
   std::vector<int> prototype_levels;  ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;

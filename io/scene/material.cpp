@@ -94,8 +94,10 @@ void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
 constexpr const char* kPhongKeys[] = {"color",    "specular_color", "ambient",      "diffuse", "specular",
                                       "phong",    "reflection",     "transparency", "ior",     "roughness",
                                       "metallic", "map_color",      "map_specular"};
-constexpr const char* kCommonKeys[] = {"principled",  "emits",    "emission",   "map_emission",
-                                       "map_opacity", "map_bump", "map_normal", "bump_scale"};
+constexpr const char* kCommonKeys[] = {
+    "principled",          "emits",      "emission", "map_emission", "map_opacity", "map_bump",
+    "map_normal",          "bump_scale", "surface",  "interior",     "priority",    "attenuation_color",
+    "attenuation_distance"};
 
 /// Throws Error if a principled material also has keys of Phong's model.
 void refuse_phong_keys(const YamlNode& node) {
@@ -143,6 +145,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
     refuse_phong_keys(node);
     read_principled(load, *principled, m);
   }
+  read_interior(load, fields, node, m);
   load.scene.materials.push_back(std::move(m));
   return static_cast<std::uint32_t>(load.scene.materials.size() - 1);
 }

@@ -104,6 +104,7 @@ class ObjectReader {
     object.material = inner.material;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
+    require_inside(object);
     out_.push_back(std::move(object));
   }
 
@@ -122,6 +123,14 @@ class ObjectReader {
     inner.transform = inner.transform * own.at(0);
   }
 
+  /// Throws Error if the material fills the inside of the object, but there is none.
+  void require_inside(const Object& object) const {
+    if (object.material == kNoId) return;
+    const Material& m = load_.scene.materials[object.material];
+    if (m.interior == kNoId && m.priority == kNoPriority && m.surface) return;
+    require_solid(load_, object, "only solids can have a material with an interior");
+  }
+
   std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
                                 const Surroundings& outer) {
     const auto nodes = list_items(operands, key.text);
@@ -136,7 +145,7 @@ class ObjectReader {
       reader.is_operand_ = true;
       reader.read(*node, inner);
       levels_ = std::max(levels_, reader.levels_);
-      for (const Object& member : members) require_solid(load_, member);
+      for (const Object& member : members) require_solid(load_, member, "only solids can be combined");
       // What was skipped is nothing, and so is what it is intersected with or taken from.
       const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
       if (members.empty())

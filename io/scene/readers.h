@@ -21,6 +21,12 @@ std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node);
 
 /// Adds the lights in a list.
 void read_lights(SceneLoad& load, const YamlNode& node);
+/// Adds the named media in the map `media` to the scene.
+void define_media(SceneLoad& load, const YamlNode& media);
+/// Sets what fills the space around the scene, by the name of a medium.
+void read_outer_medium(SceneLoad& load, const YamlNode& node);
+/// The keys of a material that say what is inside of its solids; those of its surface have been read.
+void read_interior(SceneLoad& load, const Fields& fields, const YamlNode& node, Material& m);
 /// Adds the named materials in the map `materials` to the scene.
 void define_materials(SceneLoad& load, const YamlNode& materials);
 /// Adds the prototypes in the map `define` to the scene. Each may hold instances of those before it.
@@ -57,7 +63,8 @@ auto read_image_file(SceneLoad& load, const YamlNode& node, Read&& read) {
 }
 
 /// Throws Error at the object's place if it has no inside: if it is flat, open, or a mesh that is not closed.
-void require_solid(const SceneLoad& load, const Object& object);
+/// `why` ends the message: "only solids ...".
+void require_solid(const SceneLoad& load, const Object& object, const std::string& why);
 
 // Each says why nothing of the shape or the transform can be seen, or nothing if it is usable.
 /// Zero area, edges that touch each other, or a vertex further from the plane than 1e-5 of the polygon's

@@ -44,7 +44,7 @@ class FileReader {
       throw Error(root.where(), "expected a map that begins with 'oktett: 1', found " + root.describe());
     const Fields fields(root, "a scene",
                         {"oktett", "include", "params", "camera", "film", "integrator", "background",
-                         "ambient_light", "materials", "lights", "define", "objects"});
+                         "ambient_light", "media", "medium", "materials", "lights", "define", "objects"});
     check_version(fields, root);
     const auto section = [&](const char* key, auto read_section) {
       if (const YamlNode* node = fields[key]) read_section(load_, *node);
@@ -56,6 +56,8 @@ class FileReader {
     section("integrator", read_integrator);
     load_.values.read_color(fields["background"], load_.scene.background);
     load_.values.read_color(fields["ambient_light"], load_.scene.ambient_light);
+    section("media", define_media);
+    section("medium", read_outer_medium);
     section("materials", define_materials);
     section("lights", read_lights);
     section("define", define_prototypes);

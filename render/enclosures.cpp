@@ -1,0 +1,125 @@
+#include "render/enclosures.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace oktett {
+
+void EnclosureStack::enter(const Enclosure& enclosure) {
+  if (size_ == kMost) {
+    std::copy(entries_ + 1, entries_ + kMost, entries_);
+    --size_;
+  }
+  entries_[size_++] = enclosure;
+}
+
+void EnclosureStack::leave(const Enclosure& enclosure) {
+  std::uint32_t found = size_;
+  for (std::uint32_t i = 0; i < size_; ++i)
+    if (entries_[i].solid == enclosure.solid &&
+        (found == size_ || entries_[i] == enclosure || !(entries_[found] == enclosure)))
+      found = i;
+  if (found == size_) return;
+  std::copy(entries_ + found + 1, entries_ + size_, entries_ + found);
+  --size_;
+}
+
+bool encloses(const Material& m) {
+  if (!m.surface) return true;
+  if (m.principled) return m.principled->parameters.transmission > 0 && !m.principled->parameters.thin;
+  return m.transparency > 0;
+}
+
+static float ior_of(const Material& m) {
+  if (!m.surface) return 1;
+  return m.principled ? m.principled->parameters.ior : m.ior;
+}
+
+/// The entry that fills the space; null if there is none.
+static const Material* filling(const World& world, const EnclosureStack& stack) {
+  const Material* best = nullptr;
+  for (std::uint32_t i = 0; i < stack.size(); ++i) {
+    const Material& m = world.materials[stack[i].material];
+    if (best == nullptr || m.priority >= best->priority) best = &m;
+  }
+  return best;
+}
+
+/// The solid whose boundary a surface is; its `solid` is kNoId if there is none.
+static Enclosure enclosure_of(const World& world, const SurfaceInteraction& surface) {
+  Enclosure e;
+  e.material = material_index(world, surface.user, surface.material_slot);
+  if (surface.user < world.objects.size() && encloses(world.materials[e.material]))
+    e.solid = world.objects[surface.user].solid;
+  return e;
+}
+
+Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+                     bool front) {
+  Boundary b;
+  b.behind = before;
+  const Enclosure e = enclosure_of(world, surface);
+  if (e.solid == kNoId) return b;
+  front ? b.behind.enter(e) : b.behind.leave(e);
+  const Material& m = world.materials[e.material];
+  if (m.priority == kNoPriority) return b;
+  const Material* around = filling(world, front ? before : b.behind);
+  if (around == nullptr || around->priority == kNoPriority) return b;
+  b.hidden = around->priority > m.priority;
+  b.ior = ior_of(m) / ior_of(*around);
+  return b;
+}
+
+std::uint32_t medium_in(const World& world, const EnclosureStack& enclosures, std::uint32_t outside) {
+  const Material* m = filling(world, enclosures);
+  return m != nullptr ? m->interior : outside;
+}
+
+EnclosureStack enclosures_behind(const World& world, const EnclosureStack& before, const Ray& ray,
+                                 std::span<const Hit> hits) {
+  EnclosureStack stack = before;
+  for (const Hit& hit : hits) {
+    const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
+    stack = boundary_at(world, stack, s, !(dot(ray.direction, s.geometric_normal) > 0)).behind;
+  }
+  return stack;
+}
+
+/// The solids that the ray leaves without having entered them, in order.
+static std::vector<Enclosure> left_by(const World& world, const Ray& ray) {
+  std::vector<Hit> hits;
+  all_hits(*world.accel, ray, hits);
+  std::vector<Enclosure> entered, left;
+  for (const Hit& hit : hits) {
+    const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
+    const Enclosure e = enclosure_of(world, s);
+    if (e.solid == kNoId) continue;
+    if (!(dot(ray.direction, s.geometric_normal) > 0)) {
+      entered.push_back(e);
+      continue;
+    }
+    const auto same_solid = [&](const Enclosure& other) { return other.solid == e.solid; };
+    const auto found = std::find_if(entered.begin(), entered.end(), same_solid);
+    if (found != entered.end())
+      entered.erase(found);
+    else
+      left.push_back(e);
+  }
+  return left;
+}
+
+EnclosureStack enclosures_at(const World& world, const Vec3f& point) {
+  EnclosureStack stack;
+  if (!world.has_enclosing_solids) return stack;
+  // A direction along no axis or diagonal, where rays might run along edges. A solid without bounds, such as
+  // a half-space, may be left in one of two opposite directions only.
+  const Vec3f direction = normalize(Vec3f{0.5377f, 0.7221f, -0.4349f});
+  std::vector<Enclosure> left = left_by(world, {point, 0, direction});
+  std::vector<Enclosure> behind = left_by(world, {point, 0, -direction});
+  if (behind.size() > left.size()) std::swap(left, behind);
+  for (std::size_t i = left.size(); i-- > 0;) stack.enter(left[i]);
+  return stack;
+}
+
+}  // namespace oktett

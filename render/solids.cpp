@@ -1,0 +1,54 @@
+#include "render/solids.h"
+
+#include <algorithm>
+
+#include "core/open_edges.h"
+
+namespace oktett {
+
+bool is_open(const ExactShape& shape) {
+  return std::visit(
+      [](const auto& form) {
+        // Without a box a quadric or a blob has no faces that could be missing.
+        if constexpr (requires { form.clipped; })
+          return form.open && form.clipped;
+        else if constexpr (requires { form.bounded; })
+          return form.open && form.bounded;
+        else if constexpr (requires { form.open; })
+          return form.open;
+        else
+          return false;
+      },
+      shape.form);
+}
+
+namespace {
+
+struct IsSolid {
+  const std::vector<Prototype>& prototypes;
+
+  bool operator()(const MeshShape& shape) const {
+    return shape.mesh != nullptr && (shape.by_winding || find_open_edges(*shape.mesh).count == 0);
+  }
+  bool operator()(const TriangleShape&) const { return false; }
+  bool operator()(const DiskShape&) const { return false; }
+  bool operator()(const PolygonShape&) const { return false; }
+  bool operator()(const ExactShape& shape) const { return !is_open(shape); }
+  bool operator()(const InstanceShape& shape) const {
+    if (shape.prototype >= prototypes.size()) return false;
+    const std::vector<Object>& objects = prototypes[shape.prototype].objects;
+    return std::ranges::all_of(objects, [&](const Object& o) { return std::visit(*this, o.shape); });
+  }
+  template <class T>
+  bool operator()(const T&) const {
+    return true;
+  }
+};
+
+}  // namespace
+
+bool is_solid(const Shape& shape, const std::vector<Prototype>& prototypes) {
+  return std::visit(IsSolid{prototypes}, shape);
+}
+
+}  // namespace oktett

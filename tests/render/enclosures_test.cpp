@@ -1,0 +1,253 @@
+/// \file Nested dielectrics: stacks of solids, priorities, cameras inside.
+
+#include "render/enclosures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/render/medium_support.h"
+
+namespace oktett {
+namespace {
+
+using namespace test;
+
+/// Clear glass that attenuates like a medium.
+Material filled(Scene& scene, float ior, const Color& absorption, std::int32_t priority = kNoPriority) {
+  Material m = glass(ior);
+  Medium medium;
+  medium.absorption = absorption;
+  scene.media.push_back(medium);
+  m.interior = static_cast<std::uint32_t>(scene.media.size() - 1);
+  m.priority = priority;
+  return m;
+}
+
+CsgShape difference(const Object& a, const Object& b) {
+  return {CsgOp::subtract, std::make_shared<const std::vector<Object>>(std::vector{a, b})};
+}
+
+Object object(Shape shape, std::uint32_t material) {
+  Object o;
+  o.shape = std::move(shape), o.material = material;
+  return o;
+}
+
+TEST(EnclosureStack, RemovesWhatWasEntered) {
+  EnclosureStack stack;
+  stack.leave({1, 1});
+  EXPECT_EQ(stack.size(), 0u);
+  stack.enter({1, 10}), stack.enter({2, 20}), stack.enter({1, 11});
+  stack.leave({1, 10});
+  ASSERT_EQ(stack.size(), 2u);
+  EXPECT_EQ(stack[0], (Enclosure{2, 20}));
+  EXPECT_EQ(stack[1], (Enclosure{1, 11}));
+  // By another material of the same solid.
+  stack.leave({2, 99});
+  ASSERT_EQ(stack.size(), 1u);
+  EXPECT_EQ(stack[0].solid, 1u);
+  stack.leave({3, 11});
+  EXPECT_EQ(stack.size(), 1u);
+}
+
+TEST(EnclosureStack, ForgetsTheFirstOfTooMany) {
+  EnclosureStack stack;
+  for (std::uint32_t i = 0; i < EnclosureStack::kMost + 3; ++i) stack.enter({i, i});
+  ASSERT_EQ(stack.size(), EnclosureStack::kMost);
+  EXPECT_EQ(stack[0].solid, 3u);
+  EXPECT_EQ(stack[EnclosureStack::kMost - 1].solid, EnclosureStack::kMost + 2);
+}
+
+/// Balls around the origin and a half-space below y = 2, all of glass with a priority.
+World nested_world(Scene& scene) {
+  scene.integrator.kind = IntegratorKind::path;
+  for (const double radius : {3.0, 1.0, 2.0}) {
+    Material m = glass(1.5f);
+    m.priority = 1;
+    add_object(scene, SphereShape{{0, 0, 0}, radius}, add_material(scene, m));
+  }
+  Material water = glass(1.33f);
+  water.priority = 0;
+  add_object(scene, PlaneShape{{0, 1, 0}, 2}, add_material(scene, water));
+  return build_world(scene);
+}
+
+TEST(Enclosures, AreFoundAtAnyPoint) {
+  Scene scene;
+  const World world = nested_world(scene);
+  const auto solids_at = [&](const Vec3f& point) {
+    const EnclosureStack stack = enclosures_at(world, point);
+    std::vector<std::uint32_t> solids;
+    for (std::uint32_t i = 0; i < stack.size(); ++i) solids.push_back(stack[i].solid);
+    return solids;
+  };
+  using Solids = std::vector<std::uint32_t>;
+  EXPECT_EQ(solids_at({9, 9, 9}), Solids{});
+  EXPECT_EQ(solids_at({9, -9, 9}), (Solids{3}));
+  EXPECT_EQ(solids_at({0, 2.5f, 0}), (Solids{0}));
+  EXPECT_EQ(solids_at({0, 0.1f, 0}).size(), 4u);
+  EXPECT_EQ(solids_at({0, 0.1f, 0}).back(), 1u) << "the innermost ball comes last";
+  EXPECT_EQ(solids_at({0, -1.5f, 0}).size(), 3u);
+}
+
+TEST(Enclosures, OpenSurfacesAndOpaqueMaterialsHaveNoInside) {
+  Scene scene;
+  scene.integrator.kind = IntegratorKind::path;
+  const std::uint32_t clear = add_material(scene, filled(scene, 1.5f, {1, 1, 1}));
+  const std::uint32_t opaque = add_material(scene, diffuse({1, 1, 1}));
+  add_object(scene, DiskShape{{0, 0, 0}, {0, 0, 1}, 1}, clear);
+  CylinderShape tube;
+  tube.open = true;
+  add_object(scene, ExactShape{tube}, clear);
+  add_object(scene, SphereShape{{0, 0, 0}, 4}, opaque);
+  const World world = build_world(scene);
+  EXPECT_FALSE(world.has_enclosing_solids);
+  EXPECT_EQ(enclosures_at(world, {0, 0, 0}).size(), 0u);
+}
+
+// The camera in a ball of glass, in smoke in glass, and below a water level that no upward ray leaves twice.
+TEST(Enclosures, TheCameraMayBeginInside) {
+  Scene scene = medium_scene(1, 4);
+  scene.camera.from = {0, 0, 0}, scene.camera.at = {0, 0, -1};
+  add_object(scene, PlaneShape{{0, 0, 1}, -10}, add_material(scene, glowing({1, 1, 1})));
+  add_object(scene, SphereShape{{0, 0, 0}, 2}, add_material(scene, filled(scene, 1, {0.5f, 0.25f, 0})));
+  expect_mean(mean_of(run(scene).picture), exp_of({-1, -0.5, 0}), 1e-4);
+  Medium smoke;
+  smoke.absorption = {2, 0, 1};
+  add_object(scene, SphereShape{{0, 0, 0}, 0.5}, add_interior(scene, smoke));
+  expect_mean(mean_of(run(scene).picture), exp_of({-1.75, -0.375, -0.5}), 1e-4);
+  scene.camera.projection = Projection::orthographic, scene.camera.height = 1e-4;
+  expect_mean(mean_of(run(scene).picture), exp_of({-1.75, -0.375, -0.5}), 1e-3);
+  // The glass lies in water, which has the lowest of three priorities.
+  add_object(scene, PlaneShape{{0, 1, 0}, 1}, add_material(scene, filled(scene, 1, {0.1f, 0.1f, 0.1f}, 0)));
+  scene.materials[1].priority = 1, scene.materials[2].priority = 2;
+  expect_mean(mean_of(run(scene).picture), exp_of({-2.55, -1.175, -1.3}), 1e-3);
+}
+
+// An orthographic camera whose view is partly inside: each ray begins where its place is.
+TEST(Enclosures, EachPlaceOfTheCameraHasItsSolids) {
+  Scene scene = bare_scene(2);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.camera.projection = Projection::orthographic, scene.camera.height = 2;
+  scene.camera.from = {0, 0, 0}, scene.camera.at = {0, 0, -1};
+  add_object(scene, PlaneShape{{0, 0, 1}, -10}, add_material(scene, glowing({1, 1, 1})));
+  Medium smoke;
+  smoke.absorption = {1, 1, 1};
+  add_object(scene, BoxShape{{0.01, -5, -1}, {5, 5, 1}}, add_interior(scene, smoke));
+  const Picture picture = run(scene).picture;
+  for (std::uint32_t y = 0; y < 2; ++y) {
+    EXPECT_NEAR(value(picture, "R", 0, y), 1, 1e-5f);
+    EXPECT_NEAR(value(picture, "R", 1, y), std::exp(-1.0f), 1e-4f);
+  }
+}
+
+/// A small view of a block of glass around another, under light of several colours from several sides.
+Scene block_scene() {
+  Scene scene = bare_scene(12);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.samples = 256, scene.integrator.depth = 24;
+  scene.camera.from = {0.7, 1.1, 4}, scene.camera.at = {0, 0, 0}, scene.camera.fov = 35;
+  scene.background = {0.2f, 0.3f, 0.4f};
+  add_object(scene, PlaneShape{{0, 0, 1}, -6}, add_material(scene, glowing({1, 0.2f, 0.1f})));
+  add_object(scene, PlaneShape{{1, 0, 0}, -6}, add_material(scene, glowing({0.1f, 2, 0.1f})));
+  return scene;
+}
+
+/// Pictures agree pixel by pixel within what their samples scatter.
+void expect_same_light(const Picture& a, const Picture& b) {
+  int far = 0, count = 0;
+  Vec3d sums{0, 0, 0};
+  for (std::uint32_t y = 0; y < a.height; ++y)
+    for (std::uint32_t x = 0; x < a.width; ++x) {
+      const char *names[] = {"R", "G", "B"}, *variances[] = {"Variance.R", "Variance.G", "Variance.B"};
+      for (int c = 0; c < 3; ++c) {
+        const float u = value(a, names[c], x, y), v = value(b, names[c], x, y);
+        const float error = std::sqrt(value(a, variances[c], x, y) + value(b, variances[c], x, y));
+        sums[c] += static_cast<double>(u - v) / (a.width * a.height);
+        far += std::abs(u - v) > 4 * error + 1e-3f ? 1 : 0, ++count;
+      }
+    }
+  EXPECT_LE(far, count / 100);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sums[c], 0, 0.005) << c;
+}
+
+// Liquid in glass: the liquid overlaps the wall, and the wall, of higher priority, wins. The same picture as
+// with interfaces that touch each other exactly, where the inner one bends light by the ratio of the indices.
+TEST(NestedDielectrics, OverlappingSolidsMatchExactInterfaces) {
+  const BoxShape outer{{-1, -1, -1}, {1, 1, 1}}, cavity{{-0.6, -0.6, -0.6}, {0.6, 0.6, 0.6}};
+  Scene exact = block_scene();
+  exact.materials.reserve(8);
+  const std::uint32_t wall = add_material(exact, filled(exact, 1.5f, {0.1f, 0, 0.3f}));
+  add_object(exact, outer, wall);
+  add_object(exact, cavity, add_material(exact, filled(exact, 1.33f / 1.5f, {0.5f, 1, 0})));
+
+  Scene overlapping = block_scene();
+  const std::uint32_t hollow = add_material(overlapping, filled(overlapping, 1.5f, {0.1f, 0, 0.3f}, 2));
+  add_object(overlapping, difference(object(outer, hollow), object(cavity, hollow)), hollow);
+  add_object(overlapping, BoxShape{{-0.7, -0.8, -0.7}, {0.8, 0.7, 0.7}},
+             add_material(overlapping, filled(overlapping, 1.33f, {0.5f, 1, 0}, 1)));
+  const Picture want = run(exact).picture, got = run(overlapping).picture;
+  expect_same_light(want, got);
+
+  // The other way round: the liquid of higher priority carves its place out of a massive block.
+  Scene carved = block_scene();
+  add_object(carved, outer, add_material(carved, filled(carved, 1.5f, {0.1f, 0, 0.3f}, 1)));
+  add_object(carved, cavity, add_material(carved, filled(carved, 1.33f, {0.5f, 1, 0}, 2)));
+  expect_same_light(want, run(carved).picture);
+
+  // Without priorities the overlap gives another picture, so the test can tell.
+  for (Material& m : overlapping.materials) m.priority = kNoPriority;
+  double difference = 0;
+  const Picture wrong = run(overlapping).picture;
+  for (std::uint32_t i = 0; i < 12; ++i)
+    difference += std::abs(static_cast<double>(value(wrong, "R", i, 6) - value(want, "R", i, 6)));
+  EXPECT_GT(difference, 0.1);
+}
+
+// A lamp inside of glass is found by light samples through hidden boundaries as by chance.
+TEST(NestedDielectrics, HiddenBoundariesDoNotShadow) {
+  Scene scene = medium_scene(64, 3);
+  scene.camera.from = {0, 3, 5};
+  add_object(scene, DiskShape{{0, 0, 0}, {0, 1, 0}, 0.05}, add_material(scene, diffuse({1, 1, 1})));
+  add_object(scene, SphereShape{{0, 3, -1}, 0.3}, add_material(scene, glowing({8, 8, 8})));
+  Material around = glass(1.5f), inside = glass(1.2f);
+  around.priority = 5, inside.priority = 4;
+  add_object(scene, SphereShape{{0, 0, 0}, 30}, add_material(scene, around));
+  const Mean clear = mean_of(run(scene).picture);
+  add_object(scene, BoxShape{{-1, 1, -3}, {1, 2, 1}}, add_material(scene, inside));
+  const Mean hidden = mean_of(run(scene).picture);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(hidden.value[c], clear.value[c], 3 * std::hypot(hidden.error[c], clear.error[c]) + 1e-6);
+  EXPECT_LT(hidden.error.x, 3 * clear.error.x) << "the lamp is sampled through the box";
+}
+
+// Whitted's glass attenuates by Beer's law, with and without data layers, which take another way; boundaries
+// without a surface are invisible to it.
+TEST(Interiors, WhittedAttenuatesLightInGlass) {
+  Scene scene = bare_scene(4);
+  scene.camera.from = {0, 0, 5}, scene.camera.fov = 0.001;
+  add_object(scene, PlaneShape{{0, 0, 1}, -10}, add_material(scene, glowing({1, 1, 1})));
+  add_object(scene, SphereShape{}, add_material(scene, filled(scene, 1, {0.5f, 1, 0})));
+  Material invisible = diffuse({1, 1, 1});
+  invisible.surface = false;
+  add_object(scene, SphereShape{{0, 0, 0}, 3}, add_material(scene, invisible));
+  for (const bool layers : {true, false}) {
+    const Picture picture = run(scene, [&](RenderOptions& o) { o.data_layers = layers; }).picture;
+    const Color seen = color(picture, 2, 2);
+    EXPECT_NEAR(seen.x, std::exp(-1.0f), 1e-5f);
+    EXPECT_NEAR(seen.y, std::exp(-2.0f), 1e-5f);
+    EXPECT_EQ(seen.z, 1);
+    EXPECT_EQ(value(picture, "A", 2, 2), 1);
+  }
+  // From inside, too.
+  scene.camera.from = {0, 0, 0}, scene.camera.at = {0, 0, -1};
+  for (const bool layers : {true, false}) {
+    const Picture picture = run(scene, [&](RenderOptions& o) { o.data_layers = layers; }).picture;
+    EXPECT_NEAR(color(picture, 2, 2).y, std::exp(-1.0f), 1e-5f);
+    EXPECT_EQ(value(picture, "A", 2, 2), 1);
+  }
+}
+
+}  // namespace
+}  // namespace oktett
