@@ -86,7 +86,7 @@ struct Material {
   bool surface = true;
   std::uint32_t interior = kNoId;  ///< index into Scene::media: what fills solids of this material
   /// Where solids overlap, the one of higher priority, >= 0, fills the space. Its index of refraction then
-  /// counts relative to the solid around it that has a priority, too. See render/enclosures.h.
+  /// counts relative to the solid around it that has a priority, too.
   std::int32_t priority = kNoPriority;
   bool operator==(const Material&) const = default;
 };
