@@ -161,6 +161,10 @@ SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const
 /// surface_interaction.
 SurfaceInteraction identify(const Accel& accel, const Hit& hit);
 
+/// The map to the world from the own space of the shape that was hit, which is that before its geometry's
+/// transform; of a combination or an instance, the shape inside it.
+Affine object_transform(const Accel& accel, const Hit& hit);
+
 /// out[k] becomes the surface interaction of ray and hit number which[k], for at most InteractionBlock::kMost
 /// of them: the bits that surface_interaction gives, except that uv and tangent are left out. Throws Error if
 /// there are more.

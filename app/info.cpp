@@ -16,6 +16,7 @@
 #include "app/scene_summary.h"
 #include "app/text.h"
 #include "io/scene/scene_file.h"
+#include "io/scene/schema.h"
 #include "io/scene/surface_table.h"
 #include "render/camera.h"
 #include "render/default_view.h"
@@ -175,6 +176,8 @@ void add_info_command(CommandLine& line) {
   verb.flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb.flag("--json", arguments->json, "Print one JSON object");
   verb.notice("--shapes", surface_table, "Print the shapes of scene files as a table and exit");
+  verb.notice("--patterns", pattern_table, "Print the patterns of textures as a table and exit");
+  verb.notice("--schema", scene_schema, "Print the JSON Schema of scene files and exit");
 }
 
 }  // namespace oktett

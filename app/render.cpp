@@ -25,6 +25,7 @@
 #include "io/photon/photon_map_file.h"
 #include "io/scene/scene_file.h"
 #include "render/denoise.h"
+#include "render/look/default_look.h"
 #include "render/render.h"
 
 namespace oktett {
@@ -51,7 +52,12 @@ Scene load(const RenderArguments& arguments) {
   // A mistyped option should not cost the time to read a large scene.
   Scene none;
   override_scene(arguments, none);
+  const std::optional<Look> look = look_of(arguments);
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
+  override_scene(arguments, scene);
+  if (!look) return scene;
+  apply_look(scene, *look);
+  // The look chooses the number of samples.
   override_scene(arguments, scene);
   return scene;
 }

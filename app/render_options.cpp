@@ -11,10 +11,13 @@
 
 #include "app/choice.h"
 #include "core/error.h"
+#include "io/scene/meshes.h"
 
 namespace oktett {
 namespace {
 
+/// In the order of Look.
+constexpr const char* kLooks[] = {"studio", "clay", "normals", "wire"};
 /// In the order of BuildQuality.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
 // The same bounds as in a scene file.
@@ -91,6 +94,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.flag("--caustics", a.caustics, "Light through mirrors and glass by photons, with --integrator path");
   verb.option("--photon-map", &a.photon_map, "FILE",
               "Photons for --caustics: read from FILE, or written if it is missing");
+  verb.option("--look", &a.look, "LOOK", "How a mesh given alone is shown: studio, clay, normals or wire");
   verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
@@ -130,6 +134,19 @@ void override_scene(const RenderArguments& arguments, Scene& scene) {
           fmt::format("--spp: {} is out of range; expected 1 to {}", *arguments.samples, kMaxSamples));
     scene.integrator.samples = *arguments.samples;
   }
+}
+
+std::optional<Look> look_of(const RenderArguments& arguments) {
+  const bool alone = is_mesh_file(arguments.scene);
+  if (arguments.look.empty()) {
+    if (!alone || !arguments.integrator.empty()) return std::nullopt;
+    return Look::studio;
+  }
+  const auto look = static_cast<Look>(
+      index_of("--look: unknown look", arguments.look, kLooks, "studio, clay, normals or wire"));
+  if (!alone) throw Error("--look is for meshes given alone; a scene file says itself how it looks");
+  if (!arguments.integrator.empty()) throw Error("--look chooses the integrator; expected no --integrator");
+  return look;
 }
 
 Definitions parse_definitions(const std::vector<std::string>& words) {

@@ -10,6 +10,7 @@
 #include "app/command_line.h"
 #include "app/film_options.h"
 #include "io/scene/scene_file.h"
+#include "render/look/default_look.h"
 #include "render/scene.h"
 
 namespace oktett {
@@ -25,6 +26,7 @@ struct RenderArguments {
   std::string crop;
   std::string integrator;
   FilmArguments film;
+  std::string look;  ///< of a mesh given alone; empty: the default
   std::string isa;
   std::string bvh;  ///< quality of the trees; empty: the default
   std::vector<std::string> definitions;
@@ -41,6 +43,10 @@ void add_render_options(Verb& verb, RenderArguments& arguments);
 
 /// Overrides settings of the scene by the arguments. Throws Error for unknown words.
 void override_scene(const RenderArguments& arguments, Scene& scene);
+/// The look of a mesh given alone; nothing for a scene file, or if an integrator is asked for: then the mesh
+/// stands before the background, lit from the camera. Throws Error for an unknown word or a look that does
+/// not belong here.
+std::optional<Look> look_of(const RenderArguments& arguments);
 /// Splits `name=value` words; of several with one name the last counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
 void add_bvh_option(Verb& verb, std::string& quality);

@@ -8,7 +8,7 @@
 #include "render/adaptive.h"
 #include "render/bsdf/phong_power.h"
 #include "render/path_surfaces.h"
-#include "render/shading_point.h"
+#include "render/surface_textures.h"
 
 namespace oktett {
 
@@ -37,18 +37,19 @@ static LightSource light_source(const Light& light) {
   return source;
 }
 
+std::int32_t highlight_exponent(float specular, float phong) {
+  if (specular == 0) return 0;
+  return by_squaring(phong) ? static_cast<std::int32_t>(phong) : ShadingMaterial::kAnyPower;
+}
+
 static ShadingMaterial shading_material(const Material& m, const RenderContext& context) {
   ShadingMaterial s;
   s.color = m.color, s.specular_color = m.specular_color;
   s.unlit = m.emission + m.color * m.ambient * context.ambient_light;
   s.diffuse = m.diffuse, s.specular = m.specular, s.phong = m.phong;
-  s.exponent = ShadingMaterial::kAnyPower;
-  if (m.specular == 0)
-    s.exponent = 0;
-  else if (by_squaring(m.phong))
-    s.exponent = static_cast<std::int32_t>(m.phong);
-  s.varies = (context.textures != nullptr && has_textures(m)) ||
-             (!m.emits_behind && !(m.emission == Color{0, 0, 0})) || !m.surface || m.interior != kNoId;
+  s.exponent = highlight_exponent(m.specular, m.phong);
+  s.varies = has_textures(m) || m.opacity != 1 || (!m.emits_behind && !(m.emission == Color{0, 0, 0})) ||
+             !m.surface || m.interior != kNoId;
   s.reflection = m.reflection;
   s.transparent = m.transparency != 0;
   return s;
@@ -105,6 +106,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   RenderContext c;
   c.world = &world;
   c.textures = textures;
+  c.texture_list = scene.textures;
   c.isa = isa;
   c.camera = camera_frame(scene.camera, scene.film);
   c.window = crop_window(scene.film);
@@ -125,7 +127,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   if (c.settings.kind == IntegratorKind::path)
-    c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world, textures));
+    c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;

@@ -2,6 +2,7 @@
 /// \file Data that all pixels of a render share, prepared once.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/isa.h"
@@ -36,7 +37,8 @@ class Caustics;
 
 struct RenderContext {
   const World* world = nullptr;
-  const TextureSampler* textures = nullptr;  ///< null: textures are white
+  const TextureSampler* textures = nullptr;  ///< of images; null: they are white
+  std::span<const Texture> texture_list;     ///< Scene::textures
   Isa isa = Isa::scalar;
   CameraFrame camera;
   PixelWindow window;
@@ -79,7 +81,11 @@ std::vector<LightSource> light_sources(const Scene& scene);
 /// Finds the solids around the camera, if the scene tracks them.
 void enclose_camera(const Camera& camera, RenderContext& context);
 
-/// `scene` has its camera and lights filled in. `world`, `lights` and `textures` must outlive the result.
+/// ShadingMaterial::exponent of a highlight of that weight and power.
+std::int32_t highlight_exponent(float specular, float phong);
+
+/// `scene` has its camera and lights filled in. `scene`, `world`, `lights` and `textures` must outlive the
+/// result.
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
                            const TextureSampler* textures, Isa isa);
 

@@ -21,8 +21,8 @@ static OKTETT_INLINE Color phong_here(const ShadingPoint& p, const Vec3f& l) {
   const float cosine = cosines.cosine.part[0].v, highlight = cosines.highlight.part[0].v;
   // NaN is not left out: it goes on to the picture, where it is counted.
   if (cosine <= 0) return {0, 0, 0};
-  return phong_sum(*p.material, p.color, p.specular_color, cosine, highlight,
-                   [&] { return highlight_power(std::min(highlight, 1.0f), p.material->phong); });
+  return phong_sum(p.values, p.color, p.specular_color, cosine, highlight,
+                   [&] { return highlight_power(std::min(highlight, 1.0f), p.values.phong); });
 }
 
 Color phong(const ShadingPoint& p, const Vec3f& l) { return phong_here(p, l); }

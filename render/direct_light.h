@@ -20,7 +20,7 @@ float highlight_power(float cosine, float exponent);
 /// cosine between shading normal and light; `highlight` is that between the mirrored light and the viewer;
 /// `power()` returns the highlight_power of min(highlight, 1).
 template <class Power>
-OKTETT_INLINE Color phong_sum(const Material& m, const Color& color, const Color& specular_color,
+OKTETT_INLINE Color phong_sum(const PhongValues& m, const Color& color, const Color& specular_color,
                               float cosine, float highlight, Power&& power) {
   Color sum = color * (m.diffuse * cosine);
   // The comparison keeps NaN in the sum.

@@ -201,7 +201,8 @@ class WorldBuilder {
     world_.materials = scene_.materials;
     world_.materials.emplace_back();
     for (const Material& m : scene_.materials)
-      if (m.transparency != 0 || m.opacity_texture != kNoId || !m.surface) world_.see_through = true;
+      if (m.transparency != 0 || m.opacity != 1 || m.opacity_texture != kNoId || !m.surface)
+        world_.see_through = true;
   }
 
   static bool needs_enclosures(const Scene& scene) {

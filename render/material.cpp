@@ -8,12 +8,21 @@ namespace oktett {
 /// Below this roughness Whitted's model shows a mirror, above it a highlight.
 static constexpr float kMirrorRoughness = 0.2f;
 
+float greatest_albedo(const Material& m) {
+  // The highlight's cosine to the power n, over pi, has the integral 2 / (n + 1) over its hemisphere.
+  const float mirror = m.specular * 2 / (m.phong + 1) + m.reflection;
+  Color sum = m.color * m.diffuse + m.specular_color * mirror;
+  for (int k = 0; k < 3; ++k) sum[k] += m.transparency * std::max(1.0f, m.color[k]);
+  return max_component(sum);
+}
+
 PrincipledMaterial principled_like(const Material& m) {
   PrincipledMaterial principled;
   PrincipledParameters& p = principled.parameters;
   p.base_color = m.color;
   p.ior = m.ior;
   p.transmission = m.transparency;
+  principled.transmission_texture = m.transparency_texture;
   // Facets whose highlight is as wide as that of the exponent: alpha^2 = 2 / (exponent + 2).
   p.roughness = std::sqrt(std::sqrt(2 / (m.phong + 2)));
   return principled;

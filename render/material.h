@@ -8,17 +8,19 @@
 #include "core/mesh.h"
 #include "core/vec3.h"
 #include "render/bsdf/principled_parameters.h"
+#include "render/pattern.h"
 
 namespace oktett {
 
-/// An image file and how it is laid over the uv square. ImageTextures reads the file.
+/// An image file and how it is laid over the uv square, or a pattern. ImageTextures reads the file.
 struct Texture {
-  std::string path;
-  bool clamp = false;     ///< clamp to the edge instead of repeating (MTL `-clamp on`)
-  Vec3f offset{0, 0, 0};  ///< added to uv after scaling (MTL `-o`)
-  Vec3f scale{1, 1, 1};   ///< multiplies uv (MTL `-s`)
-  float gain = 1;         ///< multiplies the texel (MTL `-mm base gain`)
-  float base = 0;         ///< added to the texel (MTL `-mm base gain`)
+  std::string path;                         ///< of the image; empty for a pattern
+  bool clamp = false;                       ///< clamp to the edge instead of repeating (MTL `-clamp on`)
+  Vec3f offset{0, 0, 0};                    ///< added to uv after scaling (MTL `-o`)
+  Vec3f scale{1, 1, 1};                     ///< multiplies uv (MTL `-s`)
+  float gain = 1;                           ///< multiplies the texel (MTL `-mm base gain`)
+  float base = 0;                           ///< added to the texel (MTL `-mm base gain`)
+  std::optional<PatternTexture> pattern{};  ///< instead of an image; only gain and base apply to it
   bool operator==(const Texture&) const = default;
 };
 
@@ -29,15 +31,17 @@ struct PrincipledMaterial {
   std::uint32_t metallic_texture = kNoId, roughness_texture = kNoId, specular_texture = kNoId;
   std::uint32_t transmission_texture = kNoId, coat_texture = kNoId, coat_roughness_texture = kNoId;
   std::uint32_t sheen_texture = kNoId, sheen_color_texture = kNoId, sheen_roughness_texture = kNoId;
+  std::uint32_t ior_texture = kNoId, coat_ior_texture = kNoId;
   bool operator==(const PrincipledMaterial&) const = default;
 };
 
-/// A number of the principled material in [0, 1], its name in scene files, and the texture that multiplies
-/// it.
+/// A number of the principled material, its name in scene files, the texture that multiplies it, and the
+/// range to which the product is clamped.
 struct PrincipledNumber {
   const char* name;
   float PrincipledParameters::*value;
   std::uint32_t PrincipledMaterial::*texture;
+  Range range = kUnitInterval;
 };
 inline constexpr PrincipledNumber kPrincipledNumbers[] = {
     {"metallic", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture},
@@ -47,8 +51,9 @@ inline constexpr PrincipledNumber kPrincipledNumbers[] = {
     {"coat", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
     {"coat_roughness", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture},
     {"sheen", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
-    {"sheen_roughness", &PrincipledParameters::sheen_roughness,
-     &PrincipledMaterial::sheen_roughness_texture}};
+    {"sheen_roughness", &PrincipledParameters::sheen_roughness, &PrincipledMaterial::sheen_roughness_texture},
+    {"ior", &PrincipledParameters::ior, &PrincipledMaterial::ior_texture, {0.25, 4}},
+    {"coat_ior", &PrincipledParameters::coat_ior, &PrincipledMaterial::coat_ior_texture, {1, 4}}};
 
 /// The priority of materials that have none: lower than all others.
 inline constexpr std::int32_t kNoPriority = -1;
@@ -72,16 +77,21 @@ struct Material {
   float reflection = 0;           ///< weight of the mirror ray, [0, 1]
   float transparency = 0;         ///< weight of light that passes through, [0, 1]; 0 = opaque
   float ior = 1.5f;               ///< index of refraction inside relative to outside, > 0
+  float opacity = 1;              ///< part of the surface that is there, [0, 1]; the rest is holes
   /// If given, path tracing scatters light by it. Emission, opacity, bumps and normals are those of the other
   /// members, and so is all that Whitted's model shows: see resemble_principled.
   std::optional<PrincipledMaterial> principled;
   std::uint32_t color_texture = kNoId;     ///< index into Scene::textures; multiplies `color` (map_Kd)
   std::uint32_t specular_texture = kNoId;  ///< multiplies `specular_color` (map_Ks)
   std::uint32_t emission_texture = kNoId;  ///< multiplies `emission` (map_Ke)
-  std::uint32_t opacity_texture = kNoId;  ///< multiplies opacity, 0 in the image is fully see-through (map_d)
-  std::uint32_t bump_texture = kNoId;     ///< height, perturbs the shading normal (map_Bump)
-  std::uint32_t normal_texture = kNoId;   ///< tangent-space normal (norm)
-  float bump_scale = 1;                   ///< MTL `-bm`
+  std::uint32_t opacity_texture =
+      kNoId;                           ///< multiplies `opacity`, 0 in the image is fully see-through (map_d)
+  std::uint32_t bump_texture = kNoId;  ///< height, perturbs the shading normal (map_Bump)
+  std::uint32_t normal_texture = kNoId;  ///< tangent-space normal (norm)
+  float bump_scale = 1;                  ///< MTL `-bm`
+  // Each multiplies the number of its name.
+  std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
+  std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
   /// False: the boundary of the interior has no surface, and light passes it as if it were not there.
   bool surface = true;
   std::uint32_t interior = kNoId;  ///< index into Scene::media: what fills solids of this material
@@ -90,6 +100,25 @@ struct Material {
   std::int32_t priority = kNoPriority;
   bool operator==(const Material&) const = default;
 };
+
+/// A number of Phong's model, likewise.
+struct PhongNumber {
+  const char* name;
+  float Material::*value;
+  std::uint32_t Material::*texture;
+  Range range = kNonNegative;
+};
+inline constexpr PhongNumber kPhongNumbers[] = {
+    {"ambient", &Material::ambient, &Material::ambient_texture},
+    {"diffuse", &Material::diffuse, &Material::diffuse_texture},
+    {"specular", &Material::specular, &Material::specular_weight_texture},
+    {"phong", &Material::phong, &Material::phong_texture},
+    {"reflection", &Material::reflection, &Material::reflection_texture, kUnitInterval},
+    {"transparency", &Material::transparency, &Material::transparency_texture, kUnitInterval}};
+
+/// A bound on the part of light that a material of Phong's model gives back in all, where it gives back most:
+/// textures count as white. Above 1 it makes energy.
+float greatest_albedo(const Material& m);
 
 /// The principled material of the colour, roughness, index of refraction and transparency of a Phong
 /// material.

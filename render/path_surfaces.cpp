@@ -1,13 +1,13 @@
 #include "render/path_surfaces.h"
 
-#include "render/shading_point.h"
 #include "render/surface_bsdf.h"
+#include "render/surface_textures.h"
 
 namespace oktett {
 
-static PathSurface path_surface(const Material& m, bool front, const TextureSampler* textures) {
+static PathSurface path_surface(const Material& m, bool front) {
   PathSurface s;
-  s.alone = (textures != nullptr && has_textures(m)) || !m.surface;
+  s.alone = has_textures(m) || m.opacity != 1 || !m.surface;
   s.principled = m.principled.has_value();
   if (front || m.emits_behind) s.emission = m.emission;
   if (s.alone) return s;
@@ -26,10 +26,10 @@ static PathSurface path_surface(const Material& m, bool front, const TextureSamp
   return s;
 }
 
-std::vector<PathSurface> path_surfaces(const World& world, const TextureSampler* textures) {
+std::vector<PathSurface> path_surfaces(const World& world) {
   std::vector<PathSurface> surfaces;
   for (const Material& m : world.materials)
-    for (const bool front : {true, false}) surfaces.push_back(path_surface(m, front, textures));
+    for (const bool front : {true, false}) surfaces.push_back(path_surface(m, front));
   return surfaces;
 }
 

@@ -8,6 +8,7 @@
 #include "accel/placed_geometry.h"
 #include "core/math.h"
 #include "render/light/sky.h"
+#include "render/surface_textures.h"
 
 namespace oktett {
 
@@ -94,7 +95,7 @@ class EmitterCollector {
 
  private:
   static bool can_sample(const Material& m) {
-    return !(m.emission == Color{0, 0, 0}) && m.opacity_texture == kNoId;
+    return !(m.emission == Color{0, 0, 0}) && m.opacity == 1 && m.opacity_texture == kNoId;
   }
 
   bool may_glow(const PlacedGeometry& p) const {
@@ -193,7 +194,8 @@ static bool is_environment(const Light& light) {
   return std::holds_alternative<EnvironmentLight>(light) || std::holds_alternative<SkyLight>(light);
 }
 
-SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLights* like) {
+SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLights* like)
+    : texture_list_(scene.textures) {
   std::vector<Emitter> emitters;
   for (const Light& light : scene.lights) {
     if (like != nullptr && is_environment(light))
@@ -222,16 +224,21 @@ std::uint32_t SceneLights::emitter_at(const Hit& hit) const {
 }
 
 Color SceneLights::texture_at(const LightSample& sample, const TextureSampler* textures) const {
-  if (textured_.empty() || textures == nullptr) return {1, 1, 1};
+  if (textured_.empty()) return {1, 1, 1};
   const auto found =
       std::lower_bound(textured_.begin(), textured_.end(), sample.emitter,
                        [](const TexturedEmitter& e, std::uint32_t number) { return e.emitter < number; });
   if (found == textured_.end() || found->emitter != sample.emitter) return {1, 1, 1};
-  const std::array<Vec2f, 3> uv = corner_uvs(*found->mesh, found->triangle);
+  const TriangleMesh& mesh = *found->mesh;
+  const std::array<Vec2f, 3> uv = corner_uvs(mesh, found->triangle);
   const float weight[3] = {1 - sample.u - sample.v, sample.u, sample.v};
-  Vec2f at;
-  for (std::size_t k = 0; k < 3; ++k) at.x += uv[k].x * weight[k], at.y += uv[k].y * weight[k];
-  return textures->color(found->texture, at, {}, {});
+  TexturePlace at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    at.uv.x += uv[k].x * weight[k], at.uv.y += uv[k].y * weight[k];
+    at.position +=
+        Vec3d(mesh.positions[mesh.indices[3 * std::size_t{found->triangle} + k]]) * double{weight[k]};
+  }
+  return texture_color({texture_list_, textures}, found->texture, at);
 }
 
 }  // namespace oktett

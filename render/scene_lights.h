@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -58,6 +59,7 @@ class SceneLights {
   friend class EmitterCollector;
 
   LightSet set_;
+  std::span<const Texture> texture_list_;                            ///< Scene::textures
   std::vector<EmitterKey> keys_;                                     ///< ordered by instance and item
   std::vector<TexturedEmitter> textured_;                            ///< ordered by emitter
   std::vector<std::shared_ptr<const EnvironmentMap>> environments_;  ///< in the order of their lights

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "accel/accel.h"
 #include "render/shading_lanes.h"
+#include "render/surface_textures.h"
 
 namespace oktett {
 namespace {
@@ -41,58 +43,116 @@ Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& h
   return footprint(s, x, y, c.footprint_scale);
 }
 
-Color textured(const RenderContext& c, const Color& color, std::uint32_t texture, const Vec2f& uv,
-               const Footprint& f) {
-  if (texture == kNoId || c.textures == nullptr) return color;
-  return color * c.textures->color(texture, uv, f.dx, f.dy);
+Color textured(const RenderContext& c, const Color& color, std::uint32_t texture, const TexturePlace& place) {
+  return texture == kNoId ? color : color * texture_color(c, texture, place);
 }
 
-float opacity_at(const RenderContext& c, const Material& m, const Vec2f& uv, const Footprint& f) {
+float opacity_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
   if (!m.surface) return 0;
-  if (m.opacity_texture == kNoId || c.textures == nullptr) return 1;
-  return std::clamp(c.textures->value(m.opacity_texture, uv, f.dx, f.dy), 0.0f, 1.0f);
+  if (m.opacity_texture == kNoId) return m.opacity;
+  return std::clamp(m.opacity * texture_value(c, m.opacity_texture, place), 0.0f, 1.0f);
+}
+
+/// The value of a number where its texture has that value. A NaN becomes the least value.
+float in_range(float value, const Range& range) {
+  const auto lo = static_cast<float>(range.lo);
+  return value > lo ? std::min(value, static_cast<float>(range.hi)) : lo;
 }
 
 PrincipledParameters principled_at(const RenderContext& c, const PrincipledMaterial& m, const Color& color,
-                                   const Vec2f& uv, const Footprint& f) {
+                                   const TexturePlace& place) {
   PrincipledParameters at = m.parameters;
   at.base_color = color;
-  if (c.textures == nullptr) return at;
   for (const PrincipledNumber& number : kPrincipledNumbers)
     if (const std::uint32_t texture = m.*number.texture; texture != kNoId)
-      at.*number.value *= c.textures->value(texture, uv, f.dx, f.dy);
-  at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, uv, f);
+      at.*number.value = in_range(at.*number.value * texture_value(c, texture, place), number.range);
+  at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, place);
   return at;
+}
+
+PhongValues phong_values(const RenderContext& c, const Material& m, const TexturePlace& place) {
+  PhongValues values{m.ambient, m.diffuse, m.specular, m.phong, m.reflection, m.transparency};
+  float* const at[] = {&values.ambient, &values.diffuse,    &values.specular,
+                       &values.phong,   &values.reflection, &values.transparency};
+  for (std::size_t i = 0; i < std::size(kPhongNumbers); ++i)
+    if (const std::uint32_t texture = m.*kPhongNumbers[i].texture; texture != kNoId)
+      *at[i] = in_range(*at[i] * texture_value(c, texture, place), kPhongNumbers[i].range);
+  return values;
+}
+
+/// `bent`, of any length, as a unit normal, or `n` if it is none.
+Vec3f unit_normal(const Vec3f& bent, const Vec3f& n) {
+  return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
 }
 
 /// The normal of the surface displaced by a height map along `n` (Blinn 1978), dp/dv as in `footprint`.
 Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
-             const Footprint& f) {
+             const TexturePlace& place) {
   const float size = length(s.tangent);
-  if (!(size > 0)) return n;
+  if (c.textures == nullptr || !(size > 0)) return n;
   const Vec3f t = s.tangent / size, b = cross(n, t);
   const auto step = [](float across, float down) {
     return std::max(0.5f * (std::abs(across) + std::abs(down)), 0x1p-11f);
   };
-  const float du = step(f.dx.x, f.dy.x), dv = step(f.dx.y, f.dy.y);
+  const float du = step(place.dx.x, place.dy.x), dv = step(place.dx.y, place.dy.y);
   const auto height = [&](float u, float v) {
-    return m.bump_scale * c.textures->value(m.bump_texture, {s.uv.x + u, s.uv.y + v}, f.dx, f.dy);
+    return m.bump_scale * c.textures->value(m.bump_texture, {s.uv.x + u, s.uv.y + v}, place.dx, place.dy);
   };
   const float here = height(0, 0);
-  const Vec3f bent = n * size - t * ((height(du, 0) - here) / du) - b * ((height(0, dv) - here) / dv);
-  return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
+  return unit_normal(n * size - t * ((height(du, 0) - here) / du) - b * ((height(0, dv) - here) / dv), n);
+}
+
+/// The same for a pattern, whose heights are given in space: the surface where F = 0 becomes that where
+/// F = height |grad F|, so its normal loses the part of the heights' gradient that runs along the surface
+/// (Perlin 1985). All in the object's space, which `to_world` leads out of.
+Vec3f bumped_by_pattern(const PatternTexture& pattern, float scale, const Affine& to_world,
+                        const Affine& to_object, const Vec3d& position, const Vec3f& n) {
+  const Vec3d own = normalize(to_world.normal_by_inverse(Vec3d(n)));
+  const Vec3d slope = pattern_slope(pattern, position) * double{scale};
+  return unit_normal(Vec3f(normalize(to_object.normal_by_inverse(own - (slope - own * dot(slope, own))))), n);
 }
 
 /// The normal from a tangent-space normal map.
 Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
-             const Footprint& f) {
+             const TexturePlace& place) {
   const Vec3f flat = s.tangent - n * dot(s.tangent, n);
-  if (!(dot(flat, flat) > 0)) return n;
+  if (c.textures == nullptr || !(dot(flat, flat) > 0)) return n;
   const Vec3f t = normalize(flat), b = cross(n, t);
-  const Vec3f texel = c.textures->normal(m.normal_texture, s.uv, f.dx, f.dy) * 2 - Vec3f{1, 1, 1};
-  const Vec3f bent = t * texel.x + b * texel.y + n * texel.z;
-  return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
+  const Vec3f texel = c.textures->normal(m.normal_texture, s.uv, place.dx, place.dy) * 2 - Vec3f{1, 1, 1};
+  return unit_normal(t * texel.x + b * texel.y + n * texel.z, n);
 }
+
+/// What the textures of a material ask of a hit.
+class TexturedHit {
+ public:
+  TexturedHit(const RenderContext& context, const Material& m, const SurfaceInteraction& s, const Hit& hit)
+      : context_(context), m_(m), s_(s) {
+    place.uv = s.uv;
+    if (!has_pattern(context, m)) return;
+    to_world_ = object_transform(*context.world->accel, hit);
+    to_object_ = to_world_.inverse();
+    place.position = to_object_.point(Vec3d(s.position));
+  }
+
+  Vec3f shading_normal() const {
+    Vec3f n = s_.shading_normal;
+    if (const PatternTexture* pattern = pattern_of(context_, m_.bump_texture)) {
+      const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
+      n = bumped_by_pattern(*pattern, scale, to_world_, to_object_, place.position, n);
+    } else if (m_.bump_texture != kNoId) {
+      n = bumped(context_, m_, s_, n, place);
+    }
+    return m_.normal_texture == kNoId ? n : mapped(context_, m_, s_, n, place);
+  }
+
+  TexturePlace place;
+
+ private:
+  const RenderContext& context_;
+  const Material& m_;
+  const SurfaceInteraction& s_;
+  Affine to_world_, to_object_;
+};
 
 /// Sets `front`, `ng` and `ns`.
 void face_ray(ShadingPoint& p, const Vec3f& shading_normal) {
@@ -109,7 +169,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
                            const RayHistory& history, const SurfaceInteraction& found) {
   ShadingPoint p;
   p.material = &material_at(*context.world, found);
-  const bool textured_here = context.textures != nullptr && has_textures(*p.material);
+  const bool textured_here = has_textures(*p.material);
   const bool uv_shown =
       (context.data_layers && history.from_camera) || context.settings.kind == IntegratorKind::uv;
   p.surface = textured_here || uv_shown ? surface_interaction(*context.world->accel, ray, hit) : found;
@@ -117,53 +177,47 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.t = hit.t;
   const Material& m = *p.material;
   const SurfaceInteraction& s = p.surface;
-  Footprint f;
+  TexturePlace place;
   Vec3f ns = s.shading_normal;
   if (textured_here) {
-    f = texture_footprint(context, ray, hit, s, history);
-    if (m.bump_texture != kNoId) ns = bumped(context, m, s, ns, f);
-    if (m.normal_texture != kNoId) ns = mapped(context, m, s, ns, f);
+    TexturedHit textures(context, m, s, hit);
+    const Footprint f = texture_footprint(context, ray, hit, s, history);
+    textures.place.dx = f.dx, textures.place.dy = f.dy;
+    ns = textures.shading_normal();
+    place = textures.place;
   }
-  p.color = textured(context, m.color, m.color_texture, s.uv, f);
-  p.specular_color = textured(context, m.specular_color, m.specular_texture, s.uv, f);
-  p.emission = textured(context, m.emission, m.emission_texture, s.uv, f);
-  p.opacity = opacity_at(context, m, s.uv, f);
+  p.color = textured(context, m.color, m.color_texture, place);
+  p.specular_color = textured(context, m.specular_color, m.specular_texture, place);
+  p.emission = textured(context, m.emission, m.emission_texture, place);
+  p.values = phong_values(context, m, place);
+  p.opacity = opacity_at(context, m, place);
   p.ior = m.ior;
   if (m.principled && context.settings.kind == IntegratorKind::path)
-    p.principled = principled_at(context, *m.principled, p.color, s.uv, f);
+    p.principled = principled_at(context, *m.principled, p.color, place);
   face_ray(p, ns);
   if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
   return p;
 }
 
-static bool has_textures(const PrincipledMaterial& m) {
-  for (const PrincipledNumber& number : kPrincipledNumbers)
-    if (m.*number.texture != kNoId) return true;
-  return m.sheen_color_texture != kNoId;
-}
-
-bool has_textures(const Material& m) {
-  if (m.principled && has_textures(*m.principled)) return true;
-  return m.color_texture != kNoId || m.specular_texture != kNoId || m.emission_texture != kNoId ||
-         m.opacity_texture != kNoId || m.bump_texture != kNoId || m.normal_texture != kNoId;
-}
-
 bool is_opaque(const Material& m, ShadowRule rule) {
   if (!m.surface) return false;
-  return (m.transparency == 0 || rule == ShadowRule::holes_pass) && m.opacity_texture == kNoId;
+  return (m.transparency == 0 || rule == ShadowRule::holes_pass) && m.opacity == 1 &&
+         m.opacity_texture == kNoId;
 }
 
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
                     ShadowRule rule) {
   const Material& m = material_at(*context.world, s);
-  Vec2f uv;
-  if (context.textures != nullptr && has_textures(m))
-    uv = surface_interaction(*context.world->accel, ray, hit).uv;
-  const float opacity = opacity_at(context, m, uv, {});
+  TexturePlace place;
+  if (has_textures(m)) {
+    const SurfaceInteraction all = surface_interaction(*context.world->accel, ray, hit);
+    place = TexturedHit(context, m, all, hit).place;
+  }
+  const float opacity = opacity_at(context, m, place);
   const float hole = 1 - opacity;
   if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
-  const Color color = textured(context, m.color, m.color_texture, uv, {});
-  return color * (m.transparency * opacity) + Color{hole, hole, hole};
+  const Color color = textured(context, m.color, m.color_texture, place);
+  return color * (phong_values(context, m, place).transparency * opacity) + Color{hole, hole, hole};
 }
 
 }  // namespace oktett

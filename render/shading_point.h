@@ -14,6 +14,11 @@ struct RayHistory {
   bool from_camera = false;  ///< a camera ray, or its straight continuation
 };
 
+/// The numbers of kPhongNumbers at a place, in that order.
+struct PhongValues {
+  float ambient, diffuse, specular, phong, reflection, transparency;
+};
+
 struct ShadingPoint {
   SurfaceInteraction surface;
   const Material* material = nullptr;
@@ -23,6 +28,7 @@ struct ShadingPoint {
   bool front = true;  ///< the ray comes from the side that the surface's own normal points to
   Color color, specular_color, emission;           ///< textures included
   float ior = 1.5f;                                ///< of Phong's model: inside relative to outside
+  PhongValues values{};                            ///< textures included
   float opacity = 1;                               ///< fraction that is surface; the rest is a hole
   std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
 };
@@ -44,8 +50,6 @@ enum class ShadowRule {
 /// unchanged, and where the rule lets it pass, material colour * transparency. Uses only the names of `s`.
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
                     ShadowRule rule);
-
-bool has_textures(const Material& material);
 
 /// True if `transmittance` is black at every hit.
 bool is_opaque(const Material& material, ShadowRule rule);

@@ -15,18 +15,19 @@ static std::optional<Vec3f> refract_below(const ShadingPoint& p, float eta) {
 SpecularRays specular_rays(const ShadingPoint& p) {
   const Material& m = *p.material;
   SpecularRays rays;
-  if (m.reflection == 0 && m.transparency == 0) return rays;
+  const PhongValues& v = p.values;
+  if (v.reflection == 0 && v.transparency == 0) return rays;
   rays.mirror_direction = reflect_above(p.direction, p.ns, p.ng);
-  rays.mirror = p.specular_color * m.reflection;
-  if (m.transparency == 0) return rays;
+  rays.mirror = p.specular_color * v.reflection;
+  if (v.transparency == 0) return rays;
   const float eta = p.front ? m.ior : 1 / m.ior;
   const std::optional<Vec3f> refracted = refract_below(p, eta);
   const float reflectance = refracted ? fresnel(-dot(p.direction, p.ns), eta) : 1;
-  const float mirrored = m.transparency * reflectance;
+  const float mirrored = v.transparency * reflectance;
   rays.mirror += Color{mirrored, mirrored, mirrored};
   if (refracted) {
     rays.refracted_direction = *refracted;
-    rays.refracted = p.color * (m.transparency * (1 - reflectance));
+    rays.refracted = p.color * (v.transparency * (1 - reflectance));
   }
   return rays;
 }

@@ -12,8 +12,11 @@ PhongParameters phong_parameters(const Material& m) {
 
 static Bsdf bsdf_of(const ShadingPoint& p, const Vec3f& wo) {
   if (p.principled) return principled_bsdf(*p.principled, wo, p.front);
-  PhongParameters parameters = phong_parameters(*p.material);
-  parameters.color = p.color, parameters.specular_color = p.specular_color, parameters.ior = p.ior;
+  PhongParameters parameters;
+  parameters.color = p.color, parameters.specular_color = p.specular_color;
+  parameters.diffuse = p.values.diffuse, parameters.specular = p.values.specular;
+  parameters.phong = p.values.phong, parameters.reflection = p.values.reflection;
+  parameters.transparency = p.values.transparency, parameters.ior = p.ior;
   return phong_bsdf(parameters, wo, p.front);
 }
 
@@ -28,7 +31,7 @@ SurfaceBsdf::SurfaceBsdf(const ShadingPoint& p)
     : frame_(p.ns),
       ng_(p.ng),
       bsdf_(bsdf_of(p, frame_.to_local(-p.direction))),
-      transmits_(p.principled ? p.principled->transmission > 0 : p.material->transparency > 0) {}
+      transmits_(p.principled ? p.principled->transmission > 0 : p.values.transparency > 0) {}
 
 BsdfValue SurfaceBsdf::evaluate(const Vec3f& l) const {
   // Both normals must agree on which side the light is.

@@ -43,8 +43,7 @@ Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
 /// Adds the light of a hit that needs no lamp. `throughput` includes the opacity of the surface.
 void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                const Color& throughput) {
-  const Material& m = *p.material;
-  wavefront.radiance.add(ray, throughput * (p.emission + p.color * m.ambient * context.ambient_light));
+  wavefront.radiance.add(ray, throughput * (p.emission + p.color * p.values.ambient * context.ambient_light));
 }
 
 /// Queues the rays that leave a hit: straight through holes, mirrored and refracted.
@@ -99,6 +98,9 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
     InteractionBlock::put(c.throughput, k, throughput);
     InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
     InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
+    c.diffuse[k] = p.values.diffuse, c.specular[k] = p.values.specular, c.phong[k] = p.values.phong;
+    c.reflection[k] = p.values.reflection;
+    c.exponent[k] = highlight_exponent(p.values.specular, p.values.phong);
   }
   if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
   push_bounces(context, wavefront, i, p);

@@ -50,6 +50,13 @@ SurfaceInteraction identify(const Accel& accel, const Hit& hit) {
   return s;
 }
 
+Affine object_transform(const Accel& accel, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  const std::uint32_t geometry = identify_in(place, hit).geometry;
+  const Affine& transform = place.accel->geometries[geometry].transform;
+  return place.moved ? place.to_world * transform : transform;
+}
+
 /// The surface in the space of the structure that holds the item; `uv` says whether uv and tangent are
 /// wanted.
 static void interaction_inside(const HitNames& names, const Accel& a, const Ray& inner, const Hit& hit,

@@ -1,5 +1,6 @@
 #include "io/image/texture.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "io/image/library.h"
@@ -7,7 +8,9 @@
 namespace oktett {
 
 ImageTextures::ImageTextures(std::vector<Texture> textures) {
-  if (!textures.empty()) sampler_ = image_library().load_textures(std::move(textures), warnings_);
+  const auto is_image = [](const Texture& texture) { return !texture.pattern; };
+  if (std::ranges::any_of(textures, is_image))
+    sampler_ = image_library().load_textures(std::move(textures), warnings_);
 }
 
 Color ImageTextures::color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {

@@ -140,9 +140,9 @@ std::shared_ptr<const EnvironmentPicture> read_environment_picture(SceneLoad& lo
 void read_environment(SceneLoad& load, const YamlNode& node) {
   const Fields fields(node, "an environment", {"file", "color", "rotate"});
   EnvironmentLight light;
-  light.picture = read_environment_picture(load, fields.require("file"));
   load.values.read_color(fields["color"], light.color);
   load.values.read(fields["rotate"], light.rotation, kAnyNumber);
+  light.picture = read_environment_picture(load, fields.require("file"));
   load.scene.lights.emplace_back(std::move(light));
 }
 

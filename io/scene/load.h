@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "io/obj/mtl_texture.h"
@@ -47,6 +48,7 @@ struct SceneLoad {
   MeshLibrary meshes;
   NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
+  std::vector<std::pair<std::uint32_t, Location>> phong_places;  ///< of the materials of Phong's model
   std::vector<int> prototype_levels;  ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;
 

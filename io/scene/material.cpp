@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <optional>
@@ -10,36 +12,6 @@
 
 namespace oktett {
 namespace {
-
-/// One number for all axes, [u, v], or [u, v, w].
-void read_layout(SceneValues& values, const YamlNode* node, Vec3f& out, bool single_number) {
-  if (!node) return;
-  double v[3] = {out.x, out.y, out.z};
-  if (single_number && node->kind == YamlKind::scalar)
-    v[0] = v[1] = v[2] = values.number(*node);
-  else
-    values.numbers(*node, {v, node->kind == YamlKind::sequence && node->items.size() == 3 ? 3u : 2u});
-  out = static_cast<Vec3f>(Vec3d{v[0], v[1], v[2]});
-}
-
-/// A file, or a map with the file and how it lies on the surface.
-void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
-  if (!node) return;
-  SceneValues& values = load.values;
-  Texture texture;
-  if (node->kind != YamlKind::map) {
-    texture.path = values.existing_file(*node);
-  } else {
-    const Fields fields(*node, "a texture", {"file", "scale", "offset", "clamp", "gain", "base"});
-    texture.path = values.existing_file(fields.require("file"));
-    read_layout(values, fields["scale"], texture.scale, true);
-    read_layout(values, fields["offset"], texture.offset, false);
-    values.read(fields["clamp"], texture.clamp);
-    values.read(fields["gain"], texture.gain, kAnyNumber);
-    values.read(fields["base"], texture.base, kAnyNumber);
-  }
-  out = load.textures.add(texture);
-}
 
 bool is_texture(const YamlNode* node) { return node != nullptr && node->kind == YamlKind::map; }
 
@@ -58,6 +30,14 @@ void read_textured(SceneLoad& load, const YamlNode* node, Color& out, std::uint3
   read_texture(load, node, texture);
 }
 
+/// A texture that multiplies a value which is no texture itself.
+void read_map(SceneLoad& load, const YamlNode* node, std::uint32_t& texture) {
+  if (node && texture != kNoId)
+    throw Error(node->where(),
+                "this texture multiplies a value that is a texture itself; expected one of them");
+  read_texture(load, node, texture);
+}
+
 /// The complex index of refraction of a metal.
 std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, const YamlNode& node) {
   const YamlNode *eta = fields["eta"], *k = fields["k"];
@@ -72,7 +52,7 @@ std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, c
 }
 
 void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
-  std::vector<const char*> keys{"base_color", "ior", "thin", "coat_ior", "sheen_color", "eta", "k"};
+  std::vector<const char*> keys{"base_color", "thin", "sheen_color", "eta", "k"};
   for (const PrincipledNumber& number : kPrincipledNumbers) keys.push_back(number.name);
   const Fields fields(node, "a principled material", keys);
   PrincipledMaterial principled;
@@ -80,10 +60,8 @@ void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
   read_textured(load, fields["base_color"], m.color, m.color_texture);
   p.base_color = m.color;
   for (const PrincipledNumber& number : kPrincipledNumbers)
-    read_textured(load, fields[number.name], p.*number.value, principled.*number.texture, kUnitInterval);
+    read_textured(load, fields[number.name], p.*number.value, principled.*number.texture, number.range);
   read_textured(load, fields["sheen_color"], p.sheen_color, principled.sheen_color_texture);
-  load.values.read(fields["ior"], p.ior, {1 / kMostIor, kMostIor});
-  load.values.read(fields["coat_ior"], p.coat_ior, {1, kMostIor});
   load.values.read(fields["thin"], p.thin);
   p.conductor = read_conductor(load, fields, node);
   m.principled = principled;
@@ -95,9 +73,9 @@ constexpr const char* kPhongKeys[] = {"color",    "specular_color", "ambient",  
                                       "phong",    "reflection",     "transparency", "ior",     "roughness",
                                       "metallic", "map_color",      "map_specular"};
 constexpr const char* kCommonKeys[] = {
-    "principled",          "emits",      "emission", "map_emission", "map_opacity", "map_bump",
-    "map_normal",          "bump_scale", "surface",  "interior",     "priority",    "attenuation_color",
-    "attenuation_distance"};
+    "principled",  "emits",    "emission",          "map_emission",        "opacity",
+    "map_opacity", "map_bump", "map_normal",        "bump_scale",          "surface",
+    "interior",    "priority", "attenuation_color", "attenuation_distance"};
 
 /// Throws Error if a principled material also has keys of Phong's model.
 void refuse_phong_keys(const YamlNode& node) {
@@ -109,9 +87,10 @@ void refuse_phong_keys(const YamlNode& node) {
 /// `roughness` and `metallic` beside Phong's parameters make a principled material of them.
 void read_roughness(SceneLoad& load, const YamlNode* roughness, const YamlNode* metallic, Material& m) {
   if (!roughness && !metallic) return;
-  m.principled = principled_like(m);
-  load.values.read(roughness, m.principled->parameters.roughness, kUnitInterval);
-  load.values.read(metallic, m.principled->parameters.metallic, kUnitInterval);
+  PrincipledMaterial& principled = m.principled.emplace(principled_like(m));
+  read_textured(load, roughness, principled.parameters.roughness, principled.roughness_texture,
+                kUnitInterval);
+  read_textured(load, metallic, principled.parameters.metallic, principled.metallic_texture, kUnitInterval);
 }
 
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {
@@ -121,23 +100,20 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   SceneValues& values = load.values;
   Material m;
   m.name = name;
-  values.read_color(fields["color"], m.color);
-  values.read_color(fields["specular_color"], m.specular_color);
-  values.read_color(fields["emission"], m.emission);
-  values.read(fields["ambient"], m.ambient, kNonNegative);
-  values.read(fields["diffuse"], m.diffuse, kNonNegative);
-  values.read(fields["specular"], m.specular, kNonNegative);
-  values.read(fields["phong"], m.phong, kNonNegative);
-  values.read(fields["reflection"], m.reflection, kUnitInterval);
-  values.read(fields["transparency"], m.transparency, kUnitInterval);
+  read_textured(load, fields["color"], m.color, m.color_texture);
+  read_textured(load, fields["specular_color"], m.specular_color, m.specular_texture);
+  read_textured(load, fields["emission"], m.emission, m.emission_texture);
+  for (const PhongNumber& number : kPhongNumbers)
+    read_textured(load, fields[number.name], m.*number.value, m.*number.texture, number.range);
   values.read(fields["ior"], m.ior, kPositive);
+  read_textured(load, fields["opacity"], m.opacity, m.opacity_texture, kUnitInterval);
   read_roughness(load, fields["roughness"], fields["metallic"], m);
   if (const YamlNode* emits = fields["emits"])
     m.emits_behind = values.choice<bool>(*emits, {{"both", true}, {"front", false}});
-  read_texture(load, fields["map_color"], m.color_texture);
-  read_texture(load, fields["map_specular"], m.specular_texture);
-  read_texture(load, fields["map_emission"], m.emission_texture);
-  read_texture(load, fields["map_opacity"], m.opacity_texture);
+  read_map(load, fields["map_color"], m.color_texture);
+  read_map(load, fields["map_specular"], m.specular_texture);
+  read_map(load, fields["map_emission"], m.emission_texture);
+  read_map(load, fields["map_opacity"], m.opacity_texture);
   read_texture(load, fields["map_bump"], m.bump_texture);
   read_texture(load, fields["map_normal"], m.normal_texture);
   values.read(fields["bump_scale"], m.bump_scale, kAnyNumber);
@@ -146,6 +122,8 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
     read_principled(load, *principled, m);
   }
   read_interior(load, fields, node, m);
+  if (!m.principled)
+    load.phong_places.emplace_back(static_cast<std::uint32_t>(load.scene.materials.size()), node.where());
   load.scene.materials.push_back(std::move(m));
   return static_cast<std::uint32_t>(load.scene.materials.size() - 1);
 }
@@ -158,6 +136,18 @@ void define_materials(SceneLoad& load, const YamlNode& materials) {
     load.materials.add(key->text, index, key->where(), "material");
     append_material(load, *value, key->text);
   }
+}
+
+void warn_of_energy(SceneLoad& load) {
+  if (load.scene.integrator.kind != IntegratorKind::path) return;
+  // What exceeds 1 by rounding is not meant.
+  constexpr float kMost = 1.001f;
+  for (const auto& [index, place] : load.phong_places)
+    if (const float albedo = greatest_albedo(load.scene.materials[index]); albedo > kMost)
+      load.warn(place,
+                fmt::format("this material may give back {:.3g} times the light that it receives, so paths "
+                            "grow brighter with each bounce",
+                            albedo));
 }
 
 std::uint32_t read_material(SceneLoad& load, const YamlNode& node) {

@@ -82,12 +82,14 @@ Potential read_potential(SceneLoad& load, const Fields& fields) {
   return p;
 }
 
+constexpr const char* kElementKeys[] = {"point",  "segment", "polygon", "ellipsoid", "potential",
+                                        "radius", "b",       "d",       "weight"};
+
 /// A map with the key of a skeleton and its potential.
 FieldElement read_element(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(
-      node, "element",
-      {"point", "segment", "polygon", "ellipsoid", "potential", "radius", "b", "d", "weight"});
+  const Fields fields(node, "element", kElementKeys);
   FieldElement element;
+  element.potential = read_potential(load, fields);
   const char* found = nullptr;
   for (const auto& skeleton : kSkeletons) {
     const YamlNode* value = fields[skeleton.key];
@@ -99,7 +101,6 @@ FieldElement read_element(SceneLoad& load, const YamlNode& node) {
     skeleton.read(load, *value, found, element.skeleton);
   }
   if (!found) throw Error(node.where(), "expected a skeleton: point, segment, polygon or ellipsoid");
-  element.potential = read_potential(load, fields);
   return element;
 }
 
@@ -154,6 +155,9 @@ constexpr Choice<Blend::Op> kBlends[] = {{"sum", Blend::Op::sum},
 
 /// Appends what a node of the tree stands for, in postfix order. Only the outermost one has other keys.
 void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape& tree) {
+  std::vector<std::string> known(std::begin(kElementKeys), std::end(kElementKeys));
+  for (const Choice<Blend::Op>& blend : kBlends) known.emplace_back(blend.name);
+  declare_keys(node, "a blend or an element", known);
   const std::vector<MapEntry> entries = map_entries(node, "blend");
   for (const Choice<Blend::Op>& blend : kBlends) {
     const auto found =

@@ -33,6 +33,7 @@ MapEntry find_shape(const YamlNode& node) {
   const std::string shape_names = fmt::format("{}", fmt::join(shapes, ", "));
   std::vector<std::string> known = shapes;
   known.insert(known.end(), {"material", "transform", "motion", "name"});
+  declare_keys(node, "an object", known);
   MapEntry shape{nullptr, nullptr};
   for (const MapEntry& entry : map_entries(node, "an object")) {
     const std::string& key = entry.key->text;

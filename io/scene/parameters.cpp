@@ -1,4 +1,5 @@
 #include "io/scene/parameters.h"
+#include "io/scene/read_probe.h"
 
 #include <algorithm>
 #include <utility>
@@ -30,6 +31,7 @@ void SceneParameters::add_defaults(const YamlNode& params) {
     if (!is_name(name)) throw Error(key->where(), "a name consists of letters, digits, '_' and '-'");
     if (value->kind != YamlKind::scalar)
       throw Error(value->where(), "expected a number or text, found " + value->describe());
+    if (value->file->probe) value->file->probe->value(*value, {ReadType::Kind::text});
     std::string text = expand(*value);
     const auto [place, is_new] = values_.try_emplace(name, Value{std::move(text), false, false});
     if (!is_new) place->second.used = true;

@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "core/description.h"
@@ -19,6 +21,12 @@ void read_integrator(SceneLoad& load, const YamlNode& node);
 /// The keys of a motion: at least one, of ascending times and regular transforms.
 std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node);
 
+/// Warns of materials that make energy if the scene is path traced. Called when all else is read.
+void warn_of_energy(SceneLoad& load);
+
+/// Reads all sections of a scene from a tree that stands in no file. Throws Error.
+void read_scene_tree(const YamlNode& root);
+
 /// Adds the lights in a list.
 void read_lights(SceneLoad& load, const YamlNode& node);
 /// Adds the named media in the map `media` to the scene.
@@ -33,6 +41,21 @@ void define_materials(SceneLoad& load, const YamlNode& materials);
 void define_prototypes(SceneLoad& load, const YamlNode& define);
 /// Adds the objects in the list `objects` to the scene.
 void read_objects(SceneLoad& load, const YamlNode& objects);
+
+/// A texture: a file, or a map with the file and how it lies on the surface, or with a pattern. `out` becomes
+/// its index into Scene::textures; it stays if `node` is null.
+void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out);
+/// What every pattern has besides its own parameters.
+inline constexpr const char* kPatternKeys[] = {"colors", "transform"};
+/// Calls what(pattern) for one pattern of each kind, with its defaults.
+template <class What, class... P>
+void visit_patterns_of(const What& what, std::type_identity<std::variant<P...>>) {
+  (what(P{}), ...);
+}
+template <class What>
+void visit_patterns(const What& what) {
+  visit_patterns_of(what, std::type_identity<Pattern>{});
+}
 
 /// Index into Scene::materials for a name, or for an inline map, which is appended.
 std::uint32_t read_material(SceneLoad& load, const YamlNode& node);

@@ -22,6 +22,9 @@ class FileReader {
  public:
   explicit FileReader(SceneLoad& load) : load_(load) {}
 
+  /// Reads the sections of a tree that stands in no file.
+  void read_tree(const YamlNode& root) { read_sections(root); }
+
   void read(const std::string& path) {
     chain_.push_back({path, canonical_path(path)});
     seen_.push_back(chain_.back().canonical);
@@ -108,10 +111,16 @@ void expect_readable(const std::string& path) {
 
 }  // namespace
 
+void read_scene_tree(const YamlNode& root) {
+  SceneLoad load({});
+  FileReader(load).read_tree(root);
+}
+
 Scene load_scene_file(const std::string& path, const Definitions& definitions) {
   SceneLoad load(definitions);
   load.scene.source = path;
   FileReader(load).read(path);
+  warn_of_energy(load);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
   return std::move(load.scene);
 }

@@ -47,7 +47,8 @@ void ParameterReader::read(const YamlNode& node, const Parameter& parameter, Vec
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points) {
   const auto items = items_of(node, parameter);
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = load_.values.vector(*items[i]);
+  for (std::size_t i = 0; i < std::min(points.size(), items.size()); ++i)
+    points[i] = load_.values.vector(*items[i]);
 }
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, SolidBox& box) {
@@ -81,6 +82,7 @@ void ParameterReader::read(const YamlNode& node, const Parameter&, std::vector<M
 std::span<const YamlNode* const> ParameterReader::items_of(const YamlNode& node, const Parameter& parameter) {
   const auto items = list_items(node, parameter.key);
   const Range& counts = parameter.range;
+  if (node.file->probe) return items;
   if (counts.contains(static_cast<double>(items.size()))) return items;
   const std::string expected = counts.lo == counts.hi ? fmt::format("{}", counts.lo)
                                : counts.lo == 0       ? fmt::format("at most {}", counts.hi)

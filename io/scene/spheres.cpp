@@ -53,7 +53,7 @@ SphereShape sphere_of(NumberLine& line) {
 std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
   SphereList list(load);
   if (node.kind == YamlKind::sequence) {
-    for (const YamlNode* item : node.items) {
+    for (const YamlNode* item : list_items(node, "spheres")) {
       list.count(item->where());
       SphereShape sphere;
       read_described(load, *item, "sphere", sphere);

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <string_view>
 
+#include "io/scene/readers.h"
 #include "io/scene/shape_reader.h"
 
 namespace oktett {
@@ -144,6 +145,23 @@ std::vector<DescribedSurface> described_surfaces() {
   SurfaceList all;
   visit_surfaces(all);
   return std::move(all.list);
+}
+
+std::vector<DescribedSurface> described_patterns() {
+  SurfaceList all;
+  visit_patterns([&](auto pattern) { all.surface(decltype(pattern)::kSurface, pattern); });
+  return std::move(all.list);
+}
+
+std::string pattern_table() {
+  std::string table = "| pattern | key | value | default | meaning |\n|---|---|---|---|---|\n";
+  for (const DescribedSurface& pattern : described_patterns()) {
+    table += fmt::format("| **`{}`** | | | | {} |\n", pattern.surface.key, pattern.surface.meaning);
+    for (const DescribedParameter& p : pattern.parameters)
+      table +=
+          fmt::format("| | `{}` | {} | `{}` | {} |\n", p.parameter.key, p.text, p.usual, p.parameter.meaning);
+  }
+  return table;
 }
 
 std::string surface_table() {

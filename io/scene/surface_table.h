@@ -22,10 +22,16 @@ struct DescribedSurface {
   std::vector<DescribedParameter> parameters;
 };
 
+/// The patterns as a Markdown table.
+std::string pattern_table();
+
 /// Each shape that describes its parameters.
 std::vector<DescribedSurface> described_surfaces();
 
-/// The same as a Markdown table. Shapes with the same parameters share their rows.
+/// Each kind of pattern of textures, likewise.
+std::vector<DescribedSurface> described_patterns();
+
+/// The shapes as a Markdown table. Shapes with the same parameters share their rows.
 std::string surface_table();
 
 }  // namespace oktett

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "io/scene/read_probe.h"
 #include "io/scene/utf8.h"
 #include "kernels/functions/expression.h"
 
@@ -24,11 +25,16 @@ std::string describe(const Range& range, const char* noun) {
   return has_hi ? fmt::format("{} {}", noun, greatest) : noun;
 }
 
+void declare_keys(const YamlNode& node, const std::string& what, const std::vector<std::string>& known) {
+  if (node.file->probe && node.kind == YamlKind::map) node.file->probe->keys(node, what, known);
+}
+
 std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what) {
   std::vector<MapEntry> entries;
   if (node.kind == YamlKind::null) return entries;
   if (node.kind != YamlKind::map)
     throw Error(node.where(), "expected a map for " + what + ", found " + node.describe());
+  if (node.file->probe) node.file->probe->entries(node, what);
   for (std::size_t i = 0; i + 1 < node.items.size(); i += 2)
     entries.push_back({node.items[i], node.items[i + 1]});
   return entries;
@@ -38,6 +44,7 @@ std::span<const YamlNode* const> list_items(const YamlNode& node, const std::str
   if (node.kind == YamlKind::null) return {};
   if (node.kind != YamlKind::sequence)
     throw Error(node.where(), "expected a list for " + what + ", found " + node.describe());
+  if (node.file->probe) node.file->probe->entries(node, what);
   return node.items;
 }
 
@@ -52,6 +59,7 @@ std::string suggest(const std::string& name, std::span<const std::string> known)
 
 Fields::Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known)
     : node_(node), what_(what) {
+  if (node.file->probe) declare_keys(node, what, {known.begin(), known.end()});
   for (const auto& [key, value] : map_entries(node, what)) {
     if (std::find(known.begin(), known.end(), key->text) != known.end()) continue;
     const std::vector<std::string> names(known.begin(), known.end());
@@ -70,15 +78,38 @@ const YamlNode* Fields::operator[](const char* key) const {
 
 const YamlNode& Fields::require(const char* key) const {
   if (const YamlNode* value = (*this)[key]) return *value;
+  if (node_.file->probe && node_.kind == YamlKind::map) return node_.file->probe->required(node_, key);
   throw Error(node_.where(), what_ + " needs " + quote(key));
+}
+
+/// Tells who watches what the value is read as. Returns whether someone does; then any value is allowed.
+static bool probed(const YamlNode& node, const ReadType& type) {
+  if (!node.file->probe) return false;
+  node.file->probe->value(node, type);
+  return true;
+}
+
+double some_number(const Range& range) {
+  for (const double x : {1.0, 0.5, 0.0, range.lo, range.hi})
+    if (range.contains(x)) return x;
+  return 0.5 * (range.lo + range.hi);
+}
+
+std::size_t SceneValues::probe_words(const YamlNode& node, std::vector<std::string> words) {
+  if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected text");
+  const std::size_t count = words.size();
+  node.file->probe->value(node, {ReadType::Kind::choice, {}, 0, std::move(words)});
+  return node.file->probe->chosen(count);
 }
 
 std::string SceneValues::text(const YamlNode& node) {
   if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected text, found " + node.describe());
+  if (probed(node, {ReadType::Kind::text})) return node.text;
   return parameters_.expand(node);
 }
 
 bool SceneValues::boolean(const YamlNode& node) {
+  if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::boolean})) return false;
   const std::string word = node.kind == YamlKind::scalar ? text(node) : "";
   if (word == "true") return true;
   if (word == "false") return false;
@@ -109,6 +140,7 @@ double SceneValues::expression(const YamlNode& node, const std::string& text) {
 
 double SceneValues::number(const YamlNode& node, const Range& range) {
   if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected a number, found " + node.describe());
+  if (probed(node, {ReadType::Kind::number, range})) return some_number(range);
   const std::string written = text(node);
   const char* begin = written.data() + (written.starts_with('+') ? 1 : 0);
   const char* const end = written.data() + written.size();
@@ -129,6 +161,9 @@ double SceneValues::number(const YamlNode& node, const Range& range) {
 }
 
 std::uint32_t SceneValues::integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi) {
+  const Range range = whole(lo, hi);
+  if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::integer, range}))
+    return static_cast<std::uint32_t>(some_number(range));
   const double value =
       number(node, {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
   if (value != std::floor(value) || value < lo || value > hi)
@@ -141,6 +176,10 @@ void SceneValues::numbers(const YamlNode& node, std::span<double> out, const Ran
   if (node.kind != YamlKind::sequence)
     throw Error(node.where(),
                 fmt::format("expected a list of {} numbers, found {}", out.size(), node.describe()));
+  if (probed(node, {ReadType::Kind::numbers, range, out.size()})) {
+    node.file->probe->fill(out, range);
+    return;
+  }
   if (node.items.size() != out.size())
     throw Error(node.where(), fmt::format("expected {} numbers, found {}", out.size(), node.items.size()));
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = number(*node.items[i], range);
@@ -158,6 +197,8 @@ static float linear_from_srgb(int byte) {
 }
 
 Color SceneValues::color(const YamlNode& node) {
+  const bool fits = node.kind == YamlKind::sequence || node.kind == YamlKind::scalar;
+  if (fits && probed(node, {ReadType::Kind::color})) return {1, 1, 1};
   if (node.kind == YamlKind::sequence) {
     double c[3];
     numbers(node, c, kNonNegative);
@@ -176,6 +217,7 @@ Color SceneValues::color(const YamlNode& node) {
 }
 
 std::string SceneValues::existing_file(const YamlNode& node) {
+  if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::file})) return "";
   const std::string written = text(node);
   if (written.empty()) throw Error(node.where(), "expected the path of a file, found nothing");
   // A NUL would cut the path short on its way to the system.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/description.h"
@@ -24,6 +25,9 @@ struct MapEntry {
   const YamlNode* key;
   const YamlNode* value;
 };
+
+/// Says that `node` is a map that may have these keys, to who watches.
+void declare_keys(const YamlNode& node, const std::string& what, const std::vector<std::string>& known);
 
 /// The entries of a map in order; none for an empty node. Throws Error if `node` is anything else; `what`
 /// names it.
@@ -79,6 +83,7 @@ class SceneValues {
   }
   template <class T>
   T choice(const YamlNode& node, std::span<const Choice<T>> choices) {
+    if (node.file->probe) return choices[probe_choice(node, choices)].value;
     const std::string word = text(node);
     std::vector<std::string> names;
     for (const Choice<T>& c : choices) {
@@ -96,6 +101,13 @@ class SceneValues {
   void read(const YamlNode* node, bool& out);
 
  private:
+  template <class Choices>
+  static std::size_t probe_choice(const YamlNode& node, const Choices& choices) {
+    std::vector<std::string> names;
+    for (const auto& c : choices) names.emplace_back(c.name);
+    return probe_words(node, std::move(names));
+  }
+  static std::size_t probe_words(const YamlNode& node, std::vector<std::string> words);
   [[noreturn]] static void fail_choice(const YamlNode& node, const std::string& word,
                                        std::span<const std::string> names);
   double expression(const YamlNode& node, const std::string& text);

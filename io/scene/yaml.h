@@ -20,6 +20,7 @@ inline constexpr std::size_t kMaxYamlNodes = 4'000'000;  ///< keys, scalars, map
 enum class YamlKind : std::uint8_t { null, scalar, sequence, map };
 
 struct YamlFile;
+class ReadProbe;
 
 /// One node. A map's `items` alternate between keys (scalars, all different) and values. Aliases share the
 /// node they name.
@@ -47,6 +48,7 @@ struct YamlFile {
   std::string text;
   std::deque<YamlNode> nodes;
   const YamlNode* root = nullptr;
+  ReadProbe* probe = nullptr;      ///< of a tree that is no file but stands for all; else null
   std::size_t expanded_nodes = 0;  ///< number of nodes with each alias counted as what it stands for
 
   YamlFile() = default;

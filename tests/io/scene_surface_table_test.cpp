@@ -100,6 +100,13 @@ TEST_F(SurfaceTable, IsInTheDocument) {
       << "expected the output of `oktett info --shapes` in docs/scene-format.md";
 }
 
+TEST_F(SurfaceTable, ThePatternsAreInTheDocument) {
+  std::ifstream stream(std::string(OKTETT_SOURCE_DIR) + "/docs/scene-format.md");
+  const std::string document{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_NE(document.find("\n\n" + pattern_table() + "\n"), std::string::npos)
+      << "expected the output of `oktett info --patterns` in docs/scene-format.md";
+}
+
 TEST_F(SurfaceTable, EveryListedKeyIsAccepted) {
   for (const DescribedSurface& s : described_surfaces()) {
     EXPECT_EQ(error(s, needed(s)), "no error") << s.surface.key;

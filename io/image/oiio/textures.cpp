@@ -274,9 +274,15 @@ class FileTextures final : public TextureSampler {
   }
 
  private:
+  static constexpr std::size_t kNoFile = ~std::size_t{0};  ///< of a pattern
+
   void list_files() {
     std::map<std::string, std::size_t> known;
     for (const Texture& texture : textures_) {
+      if (texture.pattern) {
+        file_of_.push_back(kNoFile);
+        continue;
+      }
       const auto [place, is_new] = known.try_emplace(texture.path, files_.size());
       if (is_new) files_.push_back({texture.path, nullptr, {}, {}, 0});
       file_of_.push_back(place->second);
@@ -286,7 +292,7 @@ class FileTextures final : public TextureSampler {
   /// False if the texture is white.
   bool look_up(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy, int first_channel, int channels,
                float* result) const {
-    if (index >= textures_.size()) return false;
+    if (index >= textures_.size() || file_of_[index] == kNoFile) return false;
     const Texture& texture = textures_[index];
     TextureSystem::TextureHandle* handle = files_[file_of_[index]].handle;
     if (handle == nullptr) return false;

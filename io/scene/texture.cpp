@@ -1,0 +1,107 @@
+/// \file The textures of scene files: images, and patterns.
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "io/scene/readers.h"
+#include "io/scene/shape_reader.h"
+#include "io/scene/utf8.h"
+
+namespace oktett {
+namespace {
+
+constexpr const char* kImageKeys[] = {"file", "scale", "offset", "clamp"};
+/// Most colours of a pattern.
+constexpr std::size_t kMostColors = 64;
+
+/// One number for all axes, [u, v], or [u, v, w].
+void read_layout(SceneValues& values, const YamlNode* node, Vec3f& out, bool single_number) {
+  if (!node) return;
+  double v[3] = {out.x, out.y, out.z};
+  if (single_number && node->kind == YamlKind::scalar)
+    v[0] = v[1] = v[2] = values.number(*node);
+  else
+    values.numbers(*node, {v, node->kind == YamlKind::sequence && node->items.size() == 3 ? 3u : 2u});
+  out = static_cast<Vec3f>(Vec3d{v[0], v[1], v[2]});
+}
+
+std::vector<Color> read_colors(SceneLoad& load, const YamlNode& node) {
+  std::vector<Color> colors;
+  for (const YamlNode* item : list_items(node, "colors")) colors.push_back(load.values.color(*item));
+  if (colors.empty() || colors.size() > kMostColors)
+    throw Error(node.where(), fmt::format("expected 1 to {} colors, found {}", kMostColors, colors.size()));
+  return colors;
+}
+
+template <class P>
+PatternTexture read_pattern_of(SceneLoad& load, const YamlNode& node, P pattern) {
+  KeyList known(pattern);
+  known.keys.insert(known.keys.end(), std::begin(kPatternKeys), std::end(kPatternKeys));
+  const Fields fields(node, P::kSurface.key, known.keys);
+  ParameterReader reader(load, node, fields);
+  pattern.describe(reader);
+  PatternTexture texture;
+  texture.pattern = pattern;
+  if (const YamlNode* colors = fields["colors"]) texture.colors = read_colors(load, *colors);
+  if (const YamlNode* transform = fields["transform"]) {
+    const Affine to_object = read_transform(load.values, *transform);
+    if (!to_object.is_invertible())
+      throw Error(transform->where(), "expected a map with an inverse, found a singular one");
+    texture.to_pattern = to_object.inverse();
+  }
+  return texture;
+}
+
+/// The pattern of this name, if there is one.
+std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& name, const YamlNode& node) {
+  std::optional<PatternTexture> texture;
+  visit_patterns([&](auto pattern) {
+    if (name == decltype(pattern)::kSurface.key) texture = read_pattern_of(load, node, pattern);
+  });
+  return texture;
+}
+
+void read_image(SceneLoad& load, const Fields& fields, Texture& texture) {
+  SceneValues& values = load.values;
+  texture.path = values.existing_file(fields.require("file"));
+  read_layout(values, fields["scale"], texture.scale, true);
+  read_layout(values, fields["offset"], texture.offset, false);
+  values.read(fields["clamp"], texture.clamp);
+}
+
+}  // namespace
+
+void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
+  if (!node) return;
+  SceneValues& values = load.values;
+  Texture texture;
+  if (node->kind != YamlKind::map) {
+    texture.path = values.existing_file(*node);
+    out = load.textures.add(texture);
+    return;
+  }
+  std::vector<const char*> keys(std::begin(kImageKeys), std::end(kImageKeys));
+  visit_patterns([&](const auto& pattern) { keys.push_back(std::decay_t<decltype(pattern)>::kSurface.key); });
+  keys.insert(keys.end(), {"gain", "base"});
+  const Fields fields(*node, "a texture", keys);
+  // A pattern stands alone but for gain and base.
+  const std::vector<MapEntry> entries = map_entries(*node, "a texture");
+  for (const MapEntry& entry : entries) {
+    texture.pattern = read_pattern(load, entry.key->text, *entry.value);
+    if (!texture.pattern) continue;
+    for (const MapEntry& other : entries)
+      if (&other != &entry && other.key->text != "gain" && other.key->text != "base")
+        throw Error(other.key->where(),
+                    quote(other.key->text) + " has no meaning beside " + quote(entry.key->text));
+    break;
+  }
+  if (!texture.pattern) read_image(load, fields, texture);
+  values.read(fields["gain"], texture.gain, kAnyNumber);
+  values.read(fields["base"], texture.base, kAnyNumber);
+  out = load.textures.add(texture);
+}
+
+}  // namespace oktett

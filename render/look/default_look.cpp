@@ -1,0 +1,190 @@
+#include "render/look/default_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "core/math.h"
+#include "render/camera.h"
+#include "render/look/mesh_view.h"
+#include "render/look/smooth_normals.h"
+#include "render/look/studio.h"
+
+namespace oktett {
+namespace {
+
+constexpr double kFov = 30, kMargin = 0.07;
+constexpr double kGroundAlbedo = 0.42, kHorizon = 0.45;
+
+Material matt(const char* name, const Color& color) {
+  Material m;
+  m.name = name;
+  m.color = color;
+  m.ambient = 0, m.diffuse = 1;
+  return m;
+}
+
+/// How the mesh lies about its up direction.
+struct Stance {
+  double low, high;  ///< along up
+  double width;      ///< the greater extent across
+  double depth;      ///< the smaller one
+};
+
+Stance stance_of(const TriangleMesh& mesh, const Vec3d& up) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  Box box;
+  Stance s{kInf, -kInf, 0, 0};
+  for (const std::uint32_t index : mesh.indices) {
+    const Vec3f& p = mesh.positions[index];
+    box.grow(p);
+    const double height = dot(Vec3d(p), up);
+    s.low = std::min(s.low, height), s.high = std::max(s.high, height);
+  }
+  const Vec3f e = box.extent();
+  const int vertical = dominant_axis(up);
+  const double a = e[(vertical + 1) % 3], b = e[(vertical + 2) % 3];
+  s.width = std::max(a, b), s.depth = std::min(a, b);
+  return s;
+}
+
+/// The tangent of the angle at which the camera looks down: flat things are seen from a steeper angle.
+double descent(const Stance& s) {
+  const double tallness = (s.high - s.low) / std::max(s.width, 1e-30);
+  return std::clamp(0.62 - 0.55 * tallness, 0.14, 0.62);
+}
+
+/// Towards the camera from a thing that stands upright: from the right of its front.
+Vec3d towards_camera(const Stance& s, const Vec3d& up) {
+  const Vec3d front = std::abs(up.z) > std::abs(up.y) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
+  const Vec3d right = cross(up, front);
+  return normalize(front * 0.86 + right * 0.5) + up * descent(s);
+}
+
+StudioFrame studio_frame(const Camera& camera, const Vec3d& up) {
+  const Vec3d right = normalize(cross(camera.at - camera.from, up));
+  return {right, up, cross(right, up)};
+}
+
+/// A disk of the ground. Its opacity is that of the texture, if there is one.
+void add_disk(Scene& scene, const DiskShape& disk, std::uint32_t opacity) {
+  Material material = matt("ground", Color{1, 1, 1} * static_cast<float>(kGroundAlbedo));
+  material.opacity_texture = opacity;
+  scene.materials.push_back(std::move(material));
+  Object ground;
+  ground.shape = disk;
+  ground.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  ground.name = "ground";
+  scene.objects.push_back(std::move(ground));
+}
+
+/// What the mesh stands on. It fades into the backdrop, which has the radiance of an unshadowed ground.
+void add_ground(Scene& scene, const Stance& s, const Vec3d& up) {
+  const double size = s.width + s.high - s.low, step = 1e-4 * size;
+  DiskShape near;
+  // A little lower than the mesh, so that a flat base does not lie in it.
+  near.center = scene.camera.at + up * (s.low - step - dot(scene.camera.at, up));
+  near.normal = up;
+  near.radius = 0.9 * size;
+  // Most of the ground that is seen is opaque and has a disk of its own, since textures cost time. The disk
+  // that fades lies below it.
+  DiskShape far = near;
+  far.center = near.center - up * step;
+  far.radius = 3.2 * size;
+  PatternTexture fade;
+  fade.pattern = RadialPattern{far.center, near.radius, far.radius};
+  fade.colors = {{1, 1, 1}, {0.85f, 0.85f, 0.85f}, {0.5f, 0.5f, 0.5f}, {0.15f, 0.15f, 0.15f}, {0, 0, 0}};
+  Texture opacity;
+  opacity.pattern = fade;
+  scene.textures.push_back(opacity);
+  add_disk(scene, near, kNoId);
+  add_disk(scene, far, static_cast<std::uint32_t>(scene.textures.size() - 1));
+}
+
+void light_by(Scene& scene, EnvironmentPicture picture) {
+  EnvironmentLight light;
+  light.picture = std::make_shared<const EnvironmentPicture>(std::move(picture));
+  scene.lights = {light};
+  scene.lights_given = true;
+  scene.background = {0, 0, 0};
+}
+
+/// Sky and sun through the openings, and a weak lamp beside the camera that leaves nothing black.
+void light_room(Scene& scene, const InteriorView& view, const Vec3d& up) {
+  light_by(scene, overcast_picture(studio_frame(view.camera, up)));
+  if (view.sun) scene.lights.push_back(DirectionalLight{-*view.sun, {1.15f, 1.06f, 0.95f}, 1.5});
+  const StudioFrame frame = studio_frame(view.camera, up);
+  const double distance = length(view.camera.at - view.camera.from);
+  PointLight lamp;
+  lamp.position = view.camera.from + (frame.right * -0.1 + up * 0.15) * (0.2 * distance);
+  lamp.color = Color{1, 0.97f, 0.92f} * (view.sun ? 0.3f : 0.7f);
+  scene.lights.push_back(lamp);
+}
+
+/// Coarse meshes without normals get some, so that their triangles do not show.
+void smooth(MeshShape& shape) {
+  constexpr std::size_t kFine = 1000000;
+  constexpr double kCrease = 40;
+  if (!shape.mesh->normals.empty() || shape.mesh->triangle_count() > kFine) return;
+  auto mesh = std::make_shared<TriangleMesh>(*shape.mesh);
+  add_smooth_normals(*mesh, kCrease);
+  shape.mesh = std::move(mesh);
+}
+
+void cover(Scene& scene, Object& object, Material material) {
+  scene.materials.push_back(std::move(material));
+  object.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
+}
+
+/// What a mesh without materials is made of.
+Material satin() {
+  Material m;
+  m.name = "satin";
+  m.color = {0.66f, 0.63f, 0.60f};
+  PrincipledMaterial principled;
+  principled.parameters.base_color = m.color;
+  principled.parameters.roughness = 0.38f;
+  m.principled = principled;
+  resemble_principled(m);
+  return m;
+}
+
+/// Whether the materials of the mesh are only what stands in for missing ones.
+bool is_neutral(const Scene& scene) {
+  return scene.materials.size() == 1 && scene.materials[0].name == "neutral";
+}
+
+}  // namespace
+
+void apply_look(Scene& scene, Look look) {
+  if (scene.objects.empty()) return;
+  auto& shape = std::get<MeshShape>(scene.objects[0].shape);
+  smooth(shape);
+  const TriangleMesh& mesh = *shape.mesh;
+  const Vec3d up = normalize(scene.camera.up);
+  const std::optional<InteriorView> inside = interior_view(mesh, up, scene.film);
+  const Stance stance = stance_of(mesh, up);
+  scene.camera =
+      inside ? inside->camera : fit_mesh(mesh, -towards_camera(stance, up), up, kFov, kMargin, scene.film);
+  scene.camera_given = true;
+  scene.integrator.samples = inside ? 16 : 12;
+  scene.film.tone.kind = ToneKind::neutral;
+  if (look == Look::normals || look == Look::wire) {
+    scene.integrator.kind = look == Look::wire ? IntegratorKind::wire : IntegratorKind::normal;
+    return;
+  }
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.depth = inside ? 4 : 2;
+  if (inside)
+    light_room(scene, *inside, up);
+  else
+    light_by(scene, studio_picture(studio_frame(scene.camera, up), kGroundAlbedo, kHorizon));
+  if (look == Look::clay)
+    cover(scene, scene.objects[0], matt("clay", {0.58f, 0.42f, 0.33f}));
+  else if (is_neutral(scene))
+    cover(scene, scene.objects[0], satin());
+  if (!inside) add_ground(scene, stance, up);
+}
+
+}  // namespace oktett

@@ -1,0 +1,139 @@
+#pragma once
+/// \file Patterns: textures that are computed from the place in the space of the object, so that they need
+/// no uv and fit every surface.
+
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "core/description.h"
+#include "core/transform.h"
+#include "core/vec3.h"
+
+namespace oktett {
+
+/// Least and greatest size of what repeats in a pattern.
+inline constexpr Range kPatternSize{1e-9, 1e9, false, false, Unit::length};
+inline constexpr Range kTurbulence{0, 100};
+
+/// Sums of noise of smaller and smaller details.
+struct Turbulence {
+  std::uint32_t octaves = 5;
+  double roughness = 0.5;
+
+  void describe(auto& p) {
+    p.field("octaves", octaves, whole(1, 16),
+            "how many sizes of details there are, each half of the one before");
+    p.field("roughness", roughness, kUnitInterval,
+            "how strong details are, relative to those of twice the size");
+  }
+  bool operator==(const Turbulence&) const = default;
+};
+
+/// Cubes of the edge `size` in turn.
+struct CheckerPattern {
+  double size = 1;
+
+  static constexpr Surface kSurface{"checker", "cubes of the first and the last colour in turn"};
+  void describe(auto& p) { p.field("size", size, kPatternSize, "the edge of a cube"); }
+  bool operator==(const CheckerPattern&) const = default;
+};
+
+/// Grows from 0 at `from` to 1 at `to`.
+struct GradientPattern {
+  Vec3d from{0, 0, 0}, to{0, 1, 0};
+
+  static constexpr Surface kSurface{"gradient", "from the first colour to the last along a line"};
+  void describe(auto& p) {
+    p.field("from", from, kCoordinate, "where the first colour ends");
+    p.field("to", to, kCoordinate, "where the last colour begins");
+    p.check(!(from == to), "to", "'from' and 'to' must differ");
+  }
+  bool operator==(const GradientPattern&) const = default;
+};
+
+/// Grows from 0 at the distance `inner` from the centre to 1 at `outer`.
+struct RadialPattern {
+  Vec3d center{0, 0, 0};
+  double inner = 0, outer = 1;
+
+  static constexpr Surface kSurface{"radial",
+                                    "from the first colour to the last by the distance from a point"};
+  void describe(auto& p) {
+    p.field("center", center, kCoordinate, "the point");
+    p.field("inner", inner, kLength, "the distance at which the first colour ends");
+    p.field("outer", outer, kLength, "the distance at which the last colour begins");
+    p.check(inner < outer, "outer", "'outer' must be greater than 'inner'");
+  }
+  bool operator==(const RadialPattern&) const = default;
+};
+
+/// Clouds.
+struct NoisePattern {
+  double size = 1;
+  Turbulence turbulence{};
+
+  static constexpr Surface kSurface{"noise", "clouds of all colours"};
+  void describe(auto& p) {
+    p.field("size", size, kPatternSize, "the greatest details");
+    turbulence.describe(p);
+  }
+  bool operator==(const NoisePattern&) const = default;
+};
+
+/// Layers across x, folded by noise.
+struct MarblePattern {
+  double size = 1;
+  double distortion = 1;
+  Turbulence turbulence{};
+
+  static constexpr Surface kSurface{"marble",
+                                    "layers across x, back and forth through the colours, folded by noise"};
+  void describe(auto& p) {
+    p.field("size", size, kPatternSize, "the distance of two layers");
+    p.field("distortion", distortion, kTurbulence, "how far noise moves them, in sizes");
+    turbulence.describe(p);
+  }
+  bool operator==(const MarblePattern&) const = default;
+};
+
+/// Rings about the y axis, bent by noise.
+struct WoodPattern {
+  double size = 0.1;
+  double distortion = 0.4;
+  Turbulence turbulence{2, 0.4};
+
+  static constexpr Surface kSurface{
+      "wood", "rings about the y axis, each from the first colour to the last, bent by noise"};
+  void describe(auto& p) {
+    p.field("size", size, kPatternSize, "the width of a ring");
+    p.field("distortion", distortion, kTurbulence, "how far noise moves them, in sizes");
+    turbulence.describe(p);
+  }
+  bool operator==(const WoodPattern&) const = default;
+};
+
+/// A pattern of any kind.
+using Pattern =
+    std::variant<CheckerPattern, GradientPattern, RadialPattern, NoisePattern, MarblePattern, WoodPattern>;
+
+/// A pattern with its colours and where it lies.
+struct PatternTexture {
+  Pattern pattern;
+  /// Evenly spaced from 0 to 1, linear in between; at least one.
+  std::vector<Color> colors{{0, 0, 0}, {1, 1, 1}};
+  Affine to_pattern;  ///< from the object's space to that of the pattern
+  bool operator==(const PatternTexture&) const = default;
+};
+
+/// The value in [0, 1] of the pattern at a point of its own space; 0 where the point is not finite.
+double pattern_value(const Pattern& pattern, const Vec3d& p);
+
+/// The colour at a point of the object's space.
+Color pattern_color(const PatternTexture& texture, const Vec3d& p);
+
+/// The gradient of the first channel of the colour at a point of the object's space, from differences over
+/// a thousandth of the smallest detail.
+Vec3d pattern_slope(const PatternTexture& texture, const Vec3d& p);
+
+}  // namespace oktett

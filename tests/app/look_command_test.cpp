@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/app/run_command.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+using test::CommandResult;
+using test::file_content;
+using test::run_command;
+using test::TempDir;
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// The pixels of the picture, or the message on stderr if another status than 0 is expected.
+std::string picture(const TempDir& dir, const std::vector<std::string>& options, int status = 0) {
+  std::vector<std::string> words{"render", "mesh.obj", "--size", "32x18", "-o", "x.png", "--spp", "2"};
+  words.insert(words.end(), options.begin(), options.end());
+  const CommandResult result = run_command(dir, words);
+  EXPECT_EQ(result.status, status) << result.err;
+  if (status != 0) return result.err;
+  // The metadata before the pixels hold the command.
+  const std::string file = file_content(dir.file("x.png"));
+  return file.substr(file.find("IDAT"));
+}
+
+TEST(LookCommand, ShowsMeshesAloneInEachLook) {
+  const TempDir dir;
+  dir.write("mesh.obj", kTetrahedron);
+  const std::string usual = picture(dir, {});
+  EXPECT_EQ(picture(dir, {"--look", "studio"}), usual);
+  const std::string clay = picture(dir, {"--look", "clay"}), normals = picture(dir, {"--look", "normals"});
+  EXPECT_NE(clay, usual);
+  EXPECT_NE(normals, usual);
+  EXPECT_NE(picture(dir, {"--look", "wire"}), normals);
+  EXPECT_NE(picture(dir, {"--integrator", "whitted"}), usual);
+  // The bits do not depend on the threads or the instruction set.
+  EXPECT_EQ(picture(dir, {"-t", "1"}), usual);
+  EXPECT_EQ(picture(dir, {"--isa", "scalar"}), usual);
+}
+
+TEST(LookCommand, RefusesWhatHasNoLook) {
+  const TempDir dir;
+  dir.write("mesh.obj", kTetrahedron);
+  EXPECT_NE(picture(dir, {"--look", "clai"}, 2).find("did you mean 'clay'?"), std::string::npos);
+  EXPECT_NE(picture(dir, {"--look", "clay", "--integrator", "ao"}, 2).find("--integrator"),
+            std::string::npos);
+  dir.write("scene.yaml", "oktett: 1\nobjects: [{sphere: }]\n");
+  const CommandResult result = run_command(dir, {"render", "scene.yaml", "--look", "clay"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("--look is for meshes"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace oktett

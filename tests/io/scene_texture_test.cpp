@@ -1,0 +1,148 @@
+/// \file Textures of scene files: images and patterns in the place of values, and what is wrong with them.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/image/texture.h"
+#include "tests/io/scene_test_support.h"
+
+namespace oktett {
+namespace {
+
+using test::expect_starts;
+using test::SceneFiles;
+
+class SceneTexture : public testing::Test {
+ protected:
+  SceneTexture() { files.dir.write("a.png", ""); }
+  Material material(const std::string& keys) {
+    scene = files.load_v1("materials: {m: {" + keys + "}}");
+    return scene.materials.at(0);
+  }
+  const Texture& texture(std::uint32_t index) const { return scene.textures.at(index); }
+
+  SceneFiles files;
+  Scene scene;
+};
+
+TEST_F(SceneTexture, PatternsAreRead) {
+  Material m = material(
+      "color: {marble: {size: 2, distortion: 0.5, octaves: 3, roughness: 0.25, colors: [[1, 0, 0], "
+      "'#000000', [0, 0, 1]], transform: {translate: [1, 2, 3]}}, gain: 2, base: 0.5}");
+  const Texture& t = texture(m.color_texture);
+  EXPECT_EQ(m.color, (Color{1, 1, 1}));
+  EXPECT_EQ(t.gain, 2);
+  EXPECT_EQ(t.base, 0.5f);
+  ASSERT_TRUE(t.pattern);
+  const MarblePattern expected{2, 0.5, {3, 0.25}};
+  EXPECT_EQ(t.pattern->pattern, Pattern(expected));
+  EXPECT_EQ(t.pattern->colors, (std::vector<Color>{{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}));
+  EXPECT_EQ(t.pattern->to_pattern.point({1, 2, 3}), (Vec3d{0, 0, 0}));
+
+  m = material("map_bump: {wood: }");
+  EXPECT_EQ(texture(m.bump_texture).pattern->pattern, Pattern(WoodPattern{}));
+}
+
+TEST_F(SceneTexture, StandInThePlaceOfEveryValue) {
+  for (const PhongNumber& number : kPhongNumbers) {
+    const Material m = material(std::string(number.name) + ": {noise: }");
+    EXPECT_EQ(m.*number.value, 1) << number.name;
+    EXPECT_TRUE(texture(m.*number.texture).pattern) << number.name;
+  }
+  for (const PrincipledNumber& number : kPrincipledNumbers) {
+    const Material m = material("principled: {" + std::string(number.name) + ": {file: a.png, gain: 3}}");
+    EXPECT_EQ(texture((*m.principled).*number.texture).gain, 3) << number.name;
+  }
+  EXPECT_NE(material("opacity: {checker: }").opacity_texture, kNoId);
+  EXPECT_NE(material("emission: {file: a.png}").emission_texture, kNoId);
+  EXPECT_NE(material("specular_color: {gradient: }").specular_texture, kNoId);
+  EXPECT_NE(material("roughness: {radial: }").principled->roughness_texture, kNoId);
+  const Material m = material("opacity: 0.25");
+  EXPECT_EQ(m.opacity, 0.25f);
+  EXPECT_EQ(m.opacity_texture, kNoId);
+}
+
+TEST_F(SceneTexture, ErrorsSayWhatIsWrong) {
+  const auto error = [&](const std::string& keys) {
+    return files.error_v1("materials: {m: {" + keys + "}}");
+  };
+  const auto expect = [&](const std::string& keys, const std::string& part) {
+    EXPECT_NE(error(keys).find(part), std::string::npos) << keys << "\n" << error(keys);
+  };
+  expect_starts(error("map_color: absent.png"), "scene.yaml:2:28: 'absent.png': no such file");
+  expect_starts(error("map_color: ."), "scene.yaml:2:28: ");
+  expect("map_color: 3", "no such file");
+  expect("map_color: [a.png]", "expected text");
+  expect("color: {}", "a texture needs 'file'");
+  expect("color: {gain: 2}", "a texture needs 'file'");
+  expect("color: {marbel: }", "did you mean 'marble'?");
+  expect("color: {marble: , file: a.png}", "'file' has no meaning beside 'marble'");
+  expect("color: {marble: , wood: }", "'wood' has no meaning beside 'marble'");
+  expect("color: {marble: , scale: 2}", "'scale' has no meaning beside 'marble'");
+  expect("color: {marble: {colors: []}}", "expected 1 to 64 colors, found 0");
+  expect("color: {marble: {colors: [[1, 1, -1]]}}", "at least 0");
+  expect("color: {marble: {colors: [[.nan, 0, 0]]}}", "expected a finite number");
+  expect("color: {marble: {transform: {scale: 0}}}", "singular");
+  expect("color: {marble: {octaves: 0}}", "whole number from 1 to 16");
+  expect("color: {checker: {size: 0}}", "expected a number");
+  expect("color: {gradient: {from: [1, 2, 3], to: [1, 2, 3]}}", "must differ");
+  expect("color: {radial: {inner: 2}}", "'outer' must be greater than 'inner'");
+  expect("color: {file: a.png}, map_color: a.png", "expected one of them");
+  expect("opacity: {file: a.png}, map_opacity: a.png", "expected one of them");
+  expect("opacity: 1.5", "from 0 to 1");
+  expect("principled: {ior: 5}", "from 0.25 to 4");
+  // A texture cannot hold itself: an alias inside its own anchor is no YAML.
+  expect("color: &a {marble: {colors: *a}}", "");
+  EXPECT_NE(error("color: &a {marble: {colors: *a}}"), "no error");
+}
+
+TEST_F(SceneTexture, WarnsOfMaterialsThatMakeEnergy) {
+  const auto warnings = [&](const std::string& kind, const std::string& keys) {
+    std::string text;
+    for (const Warning& w :
+         files.load_v1("integrator: {kind: " + kind + "}\nmaterials: {m: {" + keys + "}}").warnings)
+      text += w.message;
+    return text;
+  };
+  EXPECT_EQ(warnings("path", "color: [1, 1, 1], diffuse: 1"), "");
+  EXPECT_EQ(warnings("path", "color: [1, 1, 1], diffuse: 0.5, reflection: 0.5"), "");
+  EXPECT_NE(warnings("path", "color: [1, 1, 1], diffuse: 0.7, reflection: 0.5").find("1.2 times"),
+            std::string::npos);
+  EXPECT_NE(warnings("path", "color: [0, 0, 0], specular: 3, phong: 1").find("3 times"), std::string::npos);
+  EXPECT_EQ(warnings("path", "color: [0, 0, 0], specular: 3, phong: 5"), "");
+  EXPECT_EQ(warnings("whitted", "diffuse: 5"), "");
+  EXPECT_EQ(warnings("path", "principled: {base_color: [1, 1, 1], sheen: 1, coat: 1}"), "");
+}
+
+// Lamps without size, light of less than nothing, and impossible optics are errors; a mirror is a roughness.
+TEST_F(SceneTexture, ImpossibleValuesAreErrors) {
+  for (const char* text :
+       {"lights: [{sphere: {center: [0, 0, 0], radius: 0}}]",
+        "lights: [{disk: {center: [0, 0, 0], radius: 0}}]",
+        "lights: [{rectangle: {corner: [0, 0, 0], u: [0, 0, 0], v: [0, 1, 0]}}]",
+        "lights: [{point: {position: [0, 0, 0], color: [1, -1, 1]}}]", "lights: [{sky: {color: [-1, 0, 0]}}]",
+        "lights: [{sphere: {center: [0, 0, 0], power: [0, 0, -1]}}]", "materials: {m: {color: [0, 0, -0.1]}}",
+        "materials: {m: {emission: [-1, 0, 0]}}", "materials: {m: {ior: 0}}", "materials: {m: {ior: -1}}",
+        "materials: {m: {principled: {ior: 0}}}", "materials: {m: {roughness: -0.1}}",
+        "materials: {m: {principled: {eta: [0, 1, 1], k: [1, 1, 1]}}}", "materials: {m: {diffuse: -1}}"}) {
+    const std::string error = files.error_v1(text);
+    expect_starts(error, "scene.yaml:2:");
+    EXPECT_TRUE(error.find("expected") != std::string::npos || error.find("must not") != std::string::npos)
+        << error;
+  }
+  EXPECT_EQ(files.error_v1("materials: {m: {roughness: 0}, n: {principled: {roughness: 0}}}"), "no error");
+}
+
+// Patterns need no file, so the library of images is not loaded for them.
+TEST_F(SceneTexture, PatternsAreNoImages) {
+  material("color: {noise: }");
+  const ImageTextures textures(scene.textures);
+  EXPECT_TRUE(textures.warnings().empty());
+  EXPECT_EQ(textures.color(0, {0.5f, 0.5f}, {}, {}), (Color{1, 1, 1}));
+}
+
+}  // namespace
+}  // namespace oktett

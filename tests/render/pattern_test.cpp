@@ -1,0 +1,387 @@
+/// \file Patterns by closed forms, and bumps of patterns on surfaces of all kinds.
+
+#include "render/pattern.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/random.h"
+#include "render/surface_textures.h"
+#include "tests/render/light_checks.h"
+#include "tests/render/test_scenes.h"
+
+namespace oktett {
+namespace {
+
+using light_checks::Random;
+using test::add_material;
+using test::add_object;
+using test::bare_scene;
+
+Vec3d random_point(Random& random, double reach) {
+  return {random.between(-reach, reach), random.between(-reach, reach), random.between(-reach, reach)};
+}
+
+TEST(Pattern, CheckersAreCubesInTurn) {
+  Random random(1);
+  for (int i = 0; i < 10000; ++i) {
+    const double size = random.between(0.1, 3);
+    const Vec3d p = random_point(random, 20);
+    long long sum = 0;
+    for (int k = 0; k < 3; ++k) sum += static_cast<long long>(std::floor(p[k] / size + 1 / 4096.0));
+    EXPECT_EQ(pattern_value(CheckerPattern{size}, p), sum % 2 == 0 ? 0 : 1);
+  }
+  // The faces of a cube of that size show whole squares, whatever the rounding of their places.
+  for (const double z : {1 - 1e-7, 1.0, 1 + 1e-7})
+    EXPECT_EQ(pattern_value(CheckerPattern{1}, {0.5, 0.5, z}), 1);
+}
+
+TEST(Pattern, GradientsAreLinear) {
+  Random random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d from = random_point(random, 3), to = random_point(random, 3);
+    const double part = random.between(-0.5, 1.5);
+    // Sideways nothing changes.
+    const Vec3d aside = cross(to - from, random_point(random, 1));
+    const double expected = std::min(1.0, std::max(0.0, part));
+    EXPECT_NEAR(pattern_value(GradientPattern{from, to}, from + (to - from) * part + aside), expected, 1e-9);
+    const RadialPattern radial{from, 0.5, 2};
+    const double distance = std::hypot(to.x - from.x, to.y - from.y, to.z - from.z);
+    EXPECT_NEAR(pattern_value(radial, to), std::min(1.0, std::max(0.0, (distance - 0.5) / 1.5)), 1e-12);
+  }
+}
+
+TEST(Pattern, MarbleAndWoodWithoutDistortionAreLayersAndRings) {
+  Random random(3);
+  MarblePattern marble{0.7, 0};
+  WoodPattern wood{0.3, 0};
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3d p = random_point(random, 5);
+    EXPECT_NEAR(pattern_value(marble, p), std::pow(std::sin(std::numbers::pi * p.x / 0.7), 2), 1e-9);
+    const double ring = std::fmod(std::hypot(p.x, p.z) / 0.3, 1);
+    EXPECT_NEAR(pattern_value(wood, p), ring * ring * (3 - 2 * ring), 1e-9);
+  }
+}
+
+/// Gradient noise as a sum over the corners of a cell: each gradient's linear function times a window.
+double noise_by_windows(const Vec3d& p) {
+  const auto window = [](double d) {
+    const double t = 1 - std::abs(d);
+    return t <= 0 ? 0 : 10 * std::pow(t, 3) - 15 * std::pow(t, 4) + 6 * std::pow(t, 5);
+  };
+  double sum = 0;
+  const long long cell[3] = {std::llround(std::floor(p.x)), std::llround(std::floor(p.y)),
+                             std::llround(std::floor(p.z))};
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < 2; ++k) {
+        const long long corner[3] = {cell[0] + i, cell[1] + j, cell[2] + k};
+        std::uint64_t bits = 0;
+        for (const long long c : corner) bits = mix_bits(bits + static_cast<std::uint64_t>(c) + kGoldenBits);
+        const double d[3] = {p.x - static_cast<double>(corner[0]), p.y - static_cast<double>(corner[1]),
+                             p.z - static_cast<double>(corner[2])};
+        const auto axis = static_cast<int>((bits >> 32) % 3);
+        const double slope = (bits & 1 ? -1 : 1) * d[axis] + (bits & 2 ? -1 : 1) * d[(axis + 1) % 3];
+        sum += slope * window(d[0]) * window(d[1]) * window(d[2]);
+      }
+  return sum;
+}
+
+TEST(Pattern, NoiseIsTheSumOfItsOctaves) {
+  Random random(4);
+  double mean = 0, least = 1, most = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3d p = random_point(random, 50);
+    NoisePattern noise{0.8, {3, 0.6}};
+    Vec3d q = p / 0.8;
+    double sum = 0;
+    for (const double weight : {1.0, 0.6, 0.36}) {
+      sum += weight * noise_by_windows(q);
+      q = q * 2 + Vec3d{0.5, 0.5, 0.5};
+    }
+    const double value = pattern_value(noise, p);
+    EXPECT_NEAR(value, 0.5 + 0.5 * sum / 1.96, 1e-10);
+    mean += value / 4000, least = std::min(least, value), most = std::max(most, value);
+  }
+  EXPECT_NEAR(mean, 0.5, 0.01);
+  EXPECT_LT(least, 0.3);
+  EXPECT_GT(most, 0.7);
+}
+
+TEST(Pattern, PointsWithoutAPlaceHaveTheFirstColour) {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Pattern& pattern :
+       {Pattern(CheckerPattern{}), Pattern(GradientPattern{}), Pattern(RadialPattern{}),
+        Pattern(NoisePattern{}), Pattern(MarblePattern{}), Pattern(WoodPattern{})})
+    for (const Vec3d& p : {Vec3d{nan, 0, 0}, Vec3d{0, -inf, inf}, Vec3d{1e300, -1e300, 1e300}}) {
+      const double value = pattern_value(pattern, p);
+      EXPECT_TRUE(value >= 0 && value <= 1) << pattern.index();
+    }
+}
+
+TEST(Pattern, ColoursStandInEqualSteps) {
+  PatternTexture texture;
+  texture.pattern = GradientPattern{{0, 0, 0}, {3, 0, 0}};
+  texture.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, 5, 5}};
+  texture.to_pattern = Affine::translation({-1, 0, 0});
+  const auto at = [&](double x) { return pattern_color(texture, {x + 1, 7, 7}); };
+  EXPECT_EQ(at(-1), (Color{1, 0, 0}));
+  EXPECT_EQ(at(1), (Color{0, 1, 0}));
+  EXPECT_EQ(at(1.5), (Color{0, 0.5f, 0.5f}));
+  EXPECT_EQ(at(9), (Color{5, 5, 5}));
+  texture.colors = {{2, 3, 4}};
+  EXPECT_EQ(at(1.5), (Color{2, 3, 4}));
+}
+
+TEST(Pattern, SlopesFollowTheChainRule) {
+  Random random(5);
+  PatternTexture texture;
+  texture.pattern = GradientPattern{{0, 0, 0}, {0, 0, 4}};
+  texture.colors = {{1, 0, 0}, {3, 0, 0}};
+  texture.to_pattern = Affine::rotation({10, 20, 30}) * Affine::scaling({2, 1, 0.5});
+  for (int i = 0; i < 100; ++i) {
+    const Vec3d p = random_point(random, 0.5) + texture.to_pattern.inverse().point({0, 0, 2});
+    const Vec3d slope = pattern_slope(texture, p);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(slope[k], 0.5 * texture.to_pattern.m[2][k], 1e-9);
+  }
+}
+
+// --- on surfaces
+
+/// Towards three lights of red, green and blue.
+constexpr Vec3d kLights[3] = {{0.6, 0, 0.8}, {-0.36, 0.48, 0.8}, {-0.36, -0.48, 0.8}};
+
+/// A scene of one object about the origin, seen from the front at (0, 0, 4).
+struct Seen {
+  Scene scene = bare_scene(48);
+  Picture picture;
+
+  explicit Seen(const Shape& shape, const Affine& transform, const Material& material,
+                const Texture& texture) {
+    scene.camera.from = {0.3, 0.5, 6};
+    for (int k = 0; k < 3; ++k)
+      scene.lights.push_back(
+          DirectionalLight{-kLights[k], {k == 0 ? 1.0f : 0, k == 1 ? 1.0f : 0, k == 2 ? 1.0f : 0}});
+    scene.textures.push_back(texture);
+    add_object(scene, shape, add_material(scene, material), transform);
+    picture = test::run(scene).picture;
+  }
+  /// The normal by which a pixel is lit: each channel is its cosine to one light. Zero where not all reach
+  /// it.
+  Vec3d lit(std::size_t i) const {
+    Vec3d n;
+    for (int k = 0; k < 3; ++k) {
+      const double cosine = picture.find(k == 0 ? "R" : k == 1 ? "G" : "B")->values[i];
+      if (!(cosine > 0)) return {};
+      const Vec3d &b = kLights[(k + 1) % 3], &c = kLights[(k + 2) % 3];
+      n = n + cross(b, c) * (cosine / dot(kLights[k], cross(b, c)));
+    }
+    return n;
+  }
+  Vec3d at(const char* prefix, std::size_t i) const {
+    const auto plane = [&](const char* axis) { return picture.find(std::string(prefix) + axis)->values[i]; };
+    return {plane(".X"), plane(".Y"), plane(".Z")};
+  }
+};
+
+Texture linear_heights(const Vec3d& direction, float gain) {
+  PatternTexture pattern;
+  pattern.pattern = GradientPattern{direction * -50.0, direction * 50.0};
+  pattern.colors = {{-50, 0, 0}, {50, 0, 0}};
+  Texture texture;
+  texture.pattern = pattern;
+  texture.gain = gain;
+  return texture;
+}
+
+/// Compares the bent normals with those of the plain surface, tilted in the object's own space.
+void expect_bumps(const Shape& shape, const Affine& map, const char* what) {
+  const Vec3d direction = normalize(Vec3d{0.3, 0.8, 0.5});
+  Material plain = test::diffuse({1, 1, 1}), bumpy = plain;
+  bumpy.bump_texture = 0;
+  bumpy.bump_scale = 2;
+  const Seen flat(shape, map, plain, linear_heights(direction, 0.25f));
+  const Seen bent(shape, map, bumpy, linear_heights(direction, 0.25f));
+  int compared = 0;
+  for (std::size_t i = 0; i < 48 * 48; ++i) {
+    const Vec3d n = flat.at("N", i);
+    if (!(length(n) > 0.5)) continue;
+    // Normals are mapped by the inverse transpose of M, so M^T leads back.
+    Vec3d own;
+    for (int k = 0; k < 3; ++k) own[k] = map.m[0][k] * n.x + map.m[1][k] * n.y + map.m[2][k] * n.z;
+    own = normalize(own);
+    const Vec3d along = direction - own * dot(direction, own);
+    const Vec3d tilted = own - along * 0.5;
+    const Affine back = map.inverse();
+    Vec3d expected;
+    for (int k = 0; k < 3; ++k)
+      expected[k] = back.m[0][k] * tilted.x + back.m[1][k] * tilted.y + back.m[2][k] * tilted.z;
+    expected = normalize(expected);
+    // Where the bent normal turns away from the viewer, shading bends it less.
+    if (dot(expected, normalize(Vec3d{0.3, 0.5, 6} - flat.at("P", i))) < 0.05) continue;
+    const Vec3d found = bent.lit(i);
+    if (found == Vec3d{0, 0, 0}) continue;
+    EXPECT_LT(length(found - expected), 2e-4) << what << " pixel " << i;
+    ++compared;
+  }
+  EXPECT_GT(compared, 100) << what;
+}
+
+Shape exact(auto form) { return ExactShape{form, NormalMethod::gradient}; }
+
+TEST(PatternBump, TiltsTheNormalsOfEverySurface) {
+  const Affine map = Affine::rotation({20, 30, 40}) * Affine::scaling({1.5, 1, 0.8});
+  expect_bumps(SphereShape{}, {}, "sphere");
+  expect_bumps(SphereShape{}, map, "ellipsoid");
+  expect_bumps(BoxShape{}, map, "box");
+  expect_bumps(exact(TorusShape{}), map, "torus");
+  auto operands = std::make_shared<std::vector<Object>>(2);
+  // Operands have materials of their own.
+  (*operands)[0].material = (*operands)[1].material = 0;
+  (*operands)[0].shape = SphereShape{};
+  (*operands)[1].shape = SphereShape{{0.6, 0.6, 0.6}, 0.8};
+  expect_bumps(CsgShape{CsgOp::unite, operands}, map, "combination");
+}
+
+/// Answers everything with one number.
+class Constant final : public TextureSampler {
+ public:
+  explicit Constant(float value) : value_(value) {}
+  Color color(std::uint32_t, Vec2f, Vec2f, Vec2f) const override { return {value_, value_, value_}; }
+  float value(std::uint32_t, Vec2f, Vec2f, Vec2f) const override { return value_; }
+
+ private:
+  float value_;
+};
+
+/// The picture of a ball before a white sky whose material is changed by `with`, with that sampler.
+Picture ball_with(const TextureSampler& sampler, const std::function<void(Material&)>& with,
+                  IntegratorKind kind = IntegratorKind::path) {
+  Scene scene = bare_scene(8);
+  scene.integrator.kind = kind;
+  scene.background = {1, 1, 1};
+  scene.textures.emplace_back();
+  Material m = test::diffuse({0.5f, 0.5f, 0.5f});
+  with(m);
+  add_object(scene, SphereShape{{0, 0, 0}, 3}, add_material(scene, m));
+  RenderResult result = test::run(scene, [&](RenderOptions& options) { options.textures = &sampler; });
+  EXPECT_EQ(result.report.bad_samples, 0u);
+  return std::move(result.picture);
+}
+
+TEST(BadTexels, CountAsBlackOrAsTheLeastNumber) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, inf, -inf, -1.0f}) {
+    const Constant sampler(bad);
+    for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted}) {
+      const Picture black = ball_with(
+          sampler, [](Material& m) { m.color_texture = 0; }, kind);
+      EXPECT_EQ(test::value(black, "R", 4, 4), 0) << bad;
+    }
+    for (const PhongNumber& number : kPhongNumbers)
+      ball_with(sampler, [&](Material& m) { m.*number.texture = 0, m.*number.value = 1; });
+    for (const PrincipledNumber& number : kPrincipledNumbers)
+      ball_with(sampler, [&](Material& m) {
+        m.principled.emplace();
+        (*m.principled).*number.texture = 0, m.principled->parameters.*number.value = 1;
+      });
+  }
+}
+
+// A texture of constant value is the same as that value in the parameter, bit for bit.
+TEST(TexturedNumbers, OfOneValueAreThatValue) {
+  const Constant half(0.5f);
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted}) {
+    for (const PhongNumber& number : kPhongNumbers) {
+      const auto all = [](Material& m) {
+        m.diffuse = 0.4f, m.specular = 0.2f, m.phong = 8, m.reflection = 0.1f, m.transparency = 0.1f;
+        m.ambient = 0.3f;
+      };
+      const Picture textured = ball_with(
+          half, [&](Material& m) { all(m), m.*number.texture = 0; }, kind);
+      const Picture plain = ball_with(
+          half, [&](Material& m) { all(m), m.*number.value *= 0.5f; }, kind);
+      EXPECT_TRUE(test::same_bytes(textured, plain)) << number.name;
+    }
+    if (kind == IntegratorKind::whitted) continue;  // it does not know the principled model
+    for (const PrincipledNumber& number : kPrincipledNumbers) {
+      const auto all = [](Material& m) {
+        PrincipledParameters& p = m.principled.emplace().parameters;
+        p.metallic = 0.2f, p.transmission = 0.3f, p.coat = 0.4f, p.coat_roughness = 0.3f, p.sheen = 0.5f;
+        p.ior = 2.5f, p.coat_ior = 2.2f;
+      };
+      const Picture textured = ball_with(
+          half, [&](Material& m) { all(m), (*m.principled).*number.texture = 0; }, kind);
+      const Picture plain = ball_with(
+          half, [&](Material& m) { all(m), m.principled->parameters.*number.value *= 0.5f; }, kind);
+      EXPECT_TRUE(test::same_bytes(textured, plain)) << number.name;
+    }
+  }
+}
+
+// Of a surface of opacity a before a background of radiance 1, and without light of its own, 1 - a is seen.
+TEST(Opacity, LetsTheRestPass) {
+  const Constant white(1);
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted}) {
+    Scene scene = bare_scene(16);
+    scene.integrator.kind = kind;
+    scene.integrator.samples = 64;
+    scene.background = {1, 1, 1};
+    Material m = test::diffuse({0, 0, 0});
+    m.opacity = 0.25f;
+    add_object(scene, DiskShape{{0, 0, 0}, {0, 0, 1}, 50}, add_material(scene, m));
+    const Picture picture = test::run(scene).picture;
+    double mean = 0;
+    for (const float v : picture.find("R")->values) mean += v / 256.0;
+    EXPECT_NEAR(mean, 0.75, kind == IntegratorKind::path ? 0.01 : 1e-6);
+  }
+}
+
+TEST(PatternColor, LiesInTheObjectsSpace) {
+  // What is seen through an instance inside an instance depends on the place before all transforms.
+  Scene scene = bare_scene(32);
+  PatternTexture pattern;
+  pattern.pattern = GradientPattern{{0, -1, 0}, {0, 1, 0}};
+  Texture texture;
+  texture.pattern = pattern;
+  scene.textures.push_back(texture);
+  Material m = test::diffuse({1, 1, 1});
+  m.color_texture = 0;
+  const std::uint32_t material = add_material(scene, m);
+  const Affine own = Affine::scaling({0.5, 2, 1}), inner = Affine::rotation({0, 0, 50}),
+               outer = Affine::translation({0.2, 0, 0});
+  scene.prototypes.resize(2);
+  Object ball;
+  ball.shape = SphereShape{};
+  ball.material = material, ball.transform = own;
+  scene.prototypes[0].objects.push_back(ball);
+  Object instance;
+  instance.shape = InstanceShape{0};
+  instance.transform = inner;
+  scene.prototypes[1].objects.push_back(instance);
+  instance.shape = InstanceShape{1};
+  instance.transform = outer;
+  scene.objects.push_back(instance);
+  scene.camera.from = {0, 0, 8};
+  const Picture picture = test::run(scene).picture;
+  const Affine back = (outer * inner * own).inverse();
+  int compared = 0;
+  for (std::size_t i = 0; i < 32 * 32; ++i) {
+    if (!std::isfinite(picture.find("Z")->values[i])) continue;
+    const Vec3d p{picture.find("P.X")->values[i], picture.find("P.Y")->values[i],
+                  picture.find("P.Z")->values[i]};
+    EXPECT_NEAR(picture.find("Albedo.R")->values[i], 0.5 + 0.5 * back.point(p).y, 1e-4);
+    ++compared;
+  }
+  EXPECT_GT(compared, 50);
+}
+
+}  // namespace
+}  // namespace oktett
