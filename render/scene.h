@@ -60,7 +60,7 @@ struct Film {
   FilterKind filter = FilterKind::box;
   double filter_radius = 0;  ///< in pixels; 0: usual_radius(filter)
   Tone tone{};
-  bool cryptomatte = false;  ///< also coverage by objects and materials, see render/cryptomatte.h
+  bool cryptomatte = false;  ///< also coverage by objects and materials
   bool operator==(const Film&) const = default;
 };
 
@@ -111,8 +111,7 @@ struct IntegratorSettings {
       0;  ///< reach of ambient-occlusion rays in world units; 0: a tenth of the scene's diagonal
   /// If not 0, samples brighter than this are darkened to it, which is a bias: the picture loses light.
   double clamp = 0;
-  /// If not 0, pixels get more than `samples` samples until their relative error is about this; see
-  /// render/adaptive.h.
+  /// If not 0, pixels get more than `samples` samples until their relative error is about this.
   double error = 0;
   std::uint32_t max_samples = 1024;  ///< most samples of a pixel if `error` is given, [1, 65536]
   CausticSettings caustics = {};
