@@ -24,7 +24,7 @@
 #include "io/image/texture.h"
 #include "io/photon/photon_map_file.h"
 #include "io/scene/scene_file.h"
-#include "render/denoise.h"
+#include "render/film/denoise.h"
 #include "render/look/default_look.h"
 #include "render/render.h"
 

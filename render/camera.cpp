@@ -6,7 +6,7 @@
 
 #include "core/math.h"
 #include "render/sampling/warp.h"
-#include "render/view_directions.h"
+#include "render/transport/view_directions.h"
 
 namespace oktett {
 

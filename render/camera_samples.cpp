@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/random.h"
-#include "render/integrators.h"
-#include "render/sample_dimensions.h"
 #include "render/sampling/owen_sobol.h"
-#include "render/wavefront.h"
+#include "render/transport/integrators.h"
+#include "render/transport/sample_dimensions.h"
+#include "render/transport/wavefront.h"
 
 namespace oktett {
 namespace {

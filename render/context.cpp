@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/adaptive.h"
 #include "render/bsdf/phong_power.h"
-#include "render/path_surfaces.h"
+#include "render/film/adaptive.h"
 #include "render/surface_textures.h"
+#include "render/transport/path_surfaces.h"
 
 namespace oktett {
 

@@ -1,7 +1,7 @@
 /// \file The table of this layer's code by instruction set.
 
 #include "core/isa_select.h"
-#include "render/render_code.h"
+#include "render/transport/render_code.h"
 
 namespace oktett {
 

@@ -11,13 +11,13 @@
 #include <optional>
 
 #include "render/context.h"
-#include "render/cryptomatte.h"
 #include "render/default_view.h"
-#include "render/film.h"
+#include "render/film/cryptomatte.h"
+#include "render/film/film.h"
+#include "render/film/tile.h"
 #include "render/geometry.h"
 #include "render/moments.h"
 #include "render/photon/caustics.h"
-#include "render/tile.h"
 
 namespace oktett {
 namespace {

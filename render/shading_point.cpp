@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "accel/accel.h"
-#include "render/shading_lanes.h"
 #include "render/surface_textures.h"
+#include "render/transport/shading_lanes.h"
 
 namespace oktett {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/double_lanes.h"
 #include "render/light/emitter_lanes.h"
-#include "render/path_lights.h"
+#include "render/transport/path_lights.h"
 
 namespace oktett {
 

@@ -4,10 +4,10 @@
 
 #include "core/double_lanes.h"
 #include "core/picked_lanes.h"
-#include "render/path_block.h"
-#include "render/sample_dimensions.h"
 #include "render/sampling/owen_sobol.h"
-#include "render/shading_lanes.h"
+#include "render/transport/path_block.h"
+#include "render/transport/sample_dimensions.h"
+#include "render/transport/shading_lanes.h"
 
 namespace oktett {
 

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Path tracing at hits of one surface, in lanes: the light of light samples, and the rays of the next
-/// bounce. shade_path of render/path.cpp says the same for single hits.
+/// bounce. shade_path of render/transport/path.cpp says the same for single hits.
 
 #include <limits>
 
@@ -8,9 +8,9 @@
 #include "core/double_lanes.h"
 #include "core/picked_lanes.h"
 #include "core/simd_order.h"
-#include "render/direct_light.h"
-#include "render/path_block.h"
-#include "render/path_numbers.h"
+#include "render/transport/direct_light.h"
+#include "render/transport/path_block.h"
+#include "render/transport/path_numbers.h"
 
 namespace oktett {
 

@@ -1,4 +1,4 @@
-#include "render/render_code.h"
+#include "render/transport/render_code.h"
 
 #include "render/isa/light_code.h"
 #include "render/isa/path_begin.h"

@@ -5,9 +5,9 @@
 #include "core/picked_lanes.h"
 #include "core/simd_order.h"
 #include "render/context.h"
-#include "render/direct_light.h"
 #include "render/shading_columns.h"
-#include "render/shading_lanes.h"
+#include "render/transport/direct_light.h"
+#include "render/transport/shading_lanes.h"
 
 namespace oktett {
 

@@ -19,15 +19,12 @@ Caustics::Caustics(std::shared_ptr<const PhotonMap> map, const PhotonSource& sou
   for (std::uint32_t i = 0; i < source.emitter_count(); ++i) brings_.push_back(source.brings(i) ? 1 : 0);
 }
 
-Color Caustics::light(const Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p,
                       const SurfaceBsdf& bsdf) const {
-  const std::uint32_t number = wavefront.samples.number[wavefront.rays.sample[ray]];
-  const PhotonPass& pass = map_->passes[number % map_->plan.passes];
-  // A path that has made `made` bounces may make this many more before it must meet a light.
-  const unsigned made = wavefront.rays.bounces[ray];
+  const PhotonPass& pass = map_->passes[sample % map_->plan.passes];
   Color sum;
   pass.visit_near(p.surface.position, p.ng, [&](const Photon& photon, float weight) {
-    if (photon.bounces + made > depth_) return;
+    if (photon.bounces + bounces > depth_) return;
     const Vec3f to_light = -unpack_direction(photon.direction);
     // Photons arrive in proportion to the cosine at the true surface.
     const float cosine = std::max(kLeastCosine, std::abs(dot(to_light, p.ng)));

@@ -12,7 +12,6 @@
 #include "render/photon/photon_map.h"
 #include "render/photon/photon_source.h"
 #include "render/surface_bsdf.h"
-#include "render/wavefront.h"
 
 namespace oktett {
 
@@ -23,9 +22,9 @@ class Caustics {
 
   const std::shared_ptr<const PhotonMap>& map() const { return map_; }
 
-  /// Light from photons that leaves `p`, the hit of entry `ray`, towards the ray's origin.
-  Color light(const Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
-              const SurfaceBsdf& bsdf) const;
+  /// Light from photons that leaves `p` towards the camera, for a path that reached `p` after `bounces`
+  /// bounces and belongs to sample number `sample` of its pixel.
+  Color light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p, const SurfaceBsdf& bsdf) const;
 
   /// Whether the light of this emitter that passes mirrors or glass on its way to a surface is left to
   /// photons.
@@ -57,12 +56,5 @@ struct PhotonOptions {
 /// Traces the photons that the settings of `context` ask for, or takes those given. Throws Error if these are
 /// for another scene or other settings.
 Caustics make_caustics(const RenderContext& context, const PhotonOptions& options);
-
-/// Whether entry `ray` came from mirrors or glass that were met after a surface that scatters otherwise: the
-/// lights that it meets are those that photons bring.
-inline bool is_caustic(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
-  return context.caustics != nullptr && wavefront.level > 0 && wavefront.paths.pdf[ray] == 0 &&
-         wavefront.paths.scattered[ray] != 0;
-}
 
 }  // namespace oktett

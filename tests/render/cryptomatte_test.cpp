@@ -1,6 +1,6 @@
 /// \file Cryptomatte: hashes against published values, coverage against geometry.
 
-#include "render/cryptomatte.h"
+#include "render/film/cryptomatte.h"
 
 #include <gtest/gtest.h>
 

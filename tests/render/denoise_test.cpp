@@ -1,6 +1,6 @@
 /// \file The denoiser: error against long renders, what it must leave alone.
 
-#include "render/denoise.h"
+#include "render/film/denoise.h"
 
 #include <gtest/gtest.h>
 

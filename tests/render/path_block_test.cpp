@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "render/integrators.h"
-#include "render/path_block.h"
-#include "render/wavefront.h"
+#include "render/transport/integrators.h"
+#include "render/transport/path_block.h"
+#include "render/transport/wavefront.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett {

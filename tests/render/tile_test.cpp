@@ -1,4 +1,4 @@
-#include "render/tile.h"
+#include "render/film/tile.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "render/film.h"
+#include "render/film/film.h"
 #include "render/geometry.h"
 #include "tests/render/test_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "render/view_directions.h"
+#include "render/transport/view_directions.h"
 
 #include <gtest/gtest.h>
 

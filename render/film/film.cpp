@@ -1,0 +1,201 @@
+#include "render/film/film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace oktett {
+namespace {
+
+/// Indices of planes, in the order in which make_picture adds them.
+enum PlaneIndex {
+  kR,
+  kG,
+  kB,
+  kA,
+  kZ,
+  kNx,
+  kNy,
+  kNz,
+  kPx,
+  kPy,
+  kPz,
+  kAlbedoR,
+  kAlbedoG,
+  kAlbedoB,
+  kU,
+  kV,
+  kPrimId,
+  kGeomId,
+  kVarianceR,
+  kVarianceG,
+  kVarianceB,
+};
+constexpr const char* kNames[] = {
+    "R",   "G",   "B",        "A",        "Z",          "N.X",        "N.Y",
+    "N.Z", "P.X", "P.Y",      "P.Z",      "Albedo.R",   "Albedo.G",   "Albedo.B",
+    "u",   "v",   "primID.I", "geomID.I", "Variance.R", "Variance.G", "Variance.B",
+};
+
+void add3(double (&sum)[3], const Vec3f& v) {
+  for (int k = 0; k < 3; ++k) sum[k] += static_cast<double>(v[k]);
+}
+
+void add_ids(PixelSum& pixel, const FirstHit& first, const Vec2f& offset) {
+  const float distance = offset.x * offset.x + offset.y * offset.y;
+  if (!pixel.has_ids || distance < pixel.nearest) {
+    pixel.has_ids = true;
+    pixel.nearest = distance;
+    pixel.primitive = first.primitive, pixel.object = first.object;
+  }
+}
+
+void add_first_hit(PixelSum& pixel, const FirstHit& first) {
+  const bool finite = std::isfinite(first.depth) && is_finite(first.normal) && is_finite(first.position) &&
+                      is_finite(first.albedo) && std::isfinite(first.uv.x) && std::isfinite(first.uv.y);
+  if (!finite) return;
+  ++pixel.hits;
+  pixel.depth += static_cast<double>(first.depth);
+  add3(pixel.normal, first.normal);
+  add3(pixel.position, first.position);
+  add3(pixel.albedo, first.albedo);
+  pixel.uv[0] += static_cast<double>(first.uv.x), pixel.uv[1] += static_cast<double>(first.uv.y);
+}
+
+/// Variance of the mean of `n` samples with the given sums.
+double variance_of_mean(double sum, double square, std::uint32_t n) {
+  if (n < 2) return 0;
+  const double count = n;
+  return std::max(0.0, square - sum * sum / count) / (count - 1) / count;
+}
+
+}  // namespace
+
+bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
+  const Color color = samples.color[i];
+  if (!is_finite(color) || !std::isfinite(samples.alpha[i])) return false;
+  ++pixel.good;
+  if (samples.first.empty()) {
+    add3(pixel.color, color);
+    pixel.alpha += static_cast<double>(samples.alpha[i]);
+    return true;
+  }
+  const FirstHit& first = samples.first[i];
+  if (!first.found && color == Color{} && samples.alpha[i] == 0) {
+    add_ids(pixel, first, samples.offset[i]);
+    return true;
+  }
+  add3(pixel.color, color);
+  for (int k = 0; k < 3; ++k)
+    pixel.square[k] += static_cast<double>(color[k]) * static_cast<double>(color[k]);
+  pixel.alpha += static_cast<double>(samples.alpha[i]);
+  add_ids(pixel, first, samples.offset[i]);
+  if (first.found) add_first_hit(pixel, first);
+  return true;
+}
+
+Picture make_picture(const RenderContext& context) {
+  Picture picture;
+  picture.width = context.window.width(), picture.height = context.window.height();
+  picture.x = context.window.x0, picture.y = context.window.y0;
+  picture.full_width = context.full_width, picture.full_height = context.full_height;
+  const std::size_t size = static_cast<std::size_t>(picture.width) * picture.height;
+  const int count = context.data_layers ? kVarianceB + 1 : kA + 1;
+  for (int i = 0; i < count; ++i) {
+    PicturePlane plane;
+    plane.name = kNames[i];
+    if (i == kPrimId || i == kGeomId) {
+      plane.type = PlaneType::unsigned_int;
+      plane.ids = Column<std::uint32_t>(size, kNoId);
+    } else {
+      plane.type = i <= kA ? PlaneType::half_float : PlaneType::single_float;
+      plane.values = Column<float>(size, i == kZ ? std::numeric_limits<float>::infinity() : 0.0f);
+    }
+    picture.planes.push_back(std::move(plane));
+  }
+  if (context.data_layers && context.settings.error > 0)
+    picture.planes.push_back(
+        {kSampleCountPlane, PlaneType::unsigned_int, {}, Column<std::uint32_t>(size, 0)});
+  return picture;
+}
+
+void TileColors::begin(std::size_t count) {
+  for (Column<float>& plane : plane_) {
+    plane.resize_uninitialized(count);
+    std::fill_n(plane.data(), count, 0.0f);
+  }
+}
+
+std::size_t TileColors::set(std::size_t first, const SampleBatch& samples) {
+  const float* from[] = {samples.color.part[0].data(), samples.color.part[1].data(),
+                         samples.color.part[2].data(), samples.alpha.data()};
+  const std::size_t count = samples.size();
+  std::size_t bad = 0;
+  // x * 0 is 0 for finite x and NaN for all others.
+  const auto is_bad = [&](std::size_t i) {
+    return !(from[0][i] * 0 + from[1][i] * 0 + from[2][i] * 0 + from[3][i] * 0 == 0);
+  };
+  for (std::size_t i = 0; i < count; ++i) bad += is_bad(i) ? 1 : 0;
+  for (int k = 0; k < 4; ++k) {
+    float* to = plane_[k].data() + first;
+    if (bad == 0) {
+      std::copy_n(from[k], count, to);
+    } else {
+      for (std::size_t i = 0; i < count; ++i)
+        if (!is_bad(i)) to[i] = from[k][i];
+    }
+  }
+  return bad;
+}
+
+void TileColors::set(std::size_t number, const PixelSum& sum) {
+  if (sum.good == 0) return;
+  for (int k = 0; k < 3; ++k) plane_[k][number] = static_cast<float>(sum.color[k] / sum.good);
+  plane_[3][number] = static_cast<float>(sum.alpha / sum.good);
+}
+
+void TileColors::copy_to(Picture& picture, const FinishedTile& tile,
+                         const std::vector<std::uint32_t>& numbers) const {
+  // A row of a tile lies far from the next one in the picture, so the processor does not foresee it.
+  constexpr std::uint32_t kRowsAhead = 4, kLine = 64 / sizeof(float);
+  for (std::uint32_t y = 0; y < tile.height; ++y) {
+    if (y + kRowsAhead < tile.height) {
+      const std::size_t next = static_cast<std::size_t>(tile.y + y + kRowsAhead) * picture.width + tile.x;
+      for (int k = 0; k < 4; ++k)
+        for (std::uint32_t x = 0; x < tile.width; x += kLine)
+          __builtin_prefetch(picture.planes[kR + k].values.data() + next + x, 1);
+    }
+    const std::uint32_t* row = numbers.data() + static_cast<std::size_t>(y) * tile.width;
+    const std::size_t at = static_cast<std::size_t>(tile.y + y) * picture.width + tile.x;
+    for (int k = 0; k < 4; ++k) {
+      const float* from = plane_[k].data();
+      float* to = picture.planes[kR + k].values.data() + at;
+      for (std::uint32_t x = 0; x < tile.width; ++x) to[x] = from[row[x]];
+    }
+  }
+}
+
+void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel) {
+  const std::size_t at = static_cast<std::size_t>(y) * picture.width + x;
+  const auto set = [&](int plane, double sum, std::uint32_t count) {
+    picture.planes[plane].values[at] = static_cast<float>(sum / count);
+  };
+  picture.planes[kPrimId].ids[at] = pixel.primitive;
+  picture.planes[kGeomId].ids[at] = pixel.object;
+  const bool empty = pixel.color[0] == 0 && pixel.color[1] == 0 && pixel.color[2] == 0 && pixel.alpha == 0;
+  // make_picture left the pixel empty.
+  if (pixel.good == 0 || (pixel.hits == 0 && empty)) return;
+  for (int k = 0; k < 3; ++k) set(kR + k, pixel.color[k], pixel.good);
+  set(kA, pixel.alpha, pixel.good);
+  for (int k = 0; k < 3; ++k) {
+    set(kNx + k, pixel.normal[k], pixel.good);
+    set(kAlbedoR + k, pixel.albedo[k], pixel.good);
+    set(kVarianceR + k, variance_of_mean(pixel.color[k], pixel.square[k], pixel.good), 1);
+    if (pixel.hits > 0) set(kPx + k, pixel.position[k], pixel.hits);
+  }
+  if (pixel.hits == 0) return;
+  set(kZ, pixel.depth, pixel.hits);
+  set(kU, pixel.uv[0], pixel.hits), set(kV, pixel.uv[1], pixel.hits);
+}
+
+}  // namespace oktett

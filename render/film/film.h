@@ -1,0 +1,69 @@
+#pragma once
+/// \file Sums the samples of a pixel and writes pixels to the picture.
+
+#include <cstdint>
+#include <vector>
+
+#include "render/picture.h"
+#include "render/render.h"
+#include "render/transport/wavefront.h"
+
+namespace oktett {
+
+/// Sums over the samples of one pixel, added in the order of their numbers.
+struct PixelSum {
+  double color[3] = {}, square[3] = {};
+  double alpha = 0;
+  double depth = 0, normal[3] = {}, position[3] = {}, albedo[3] = {}, uv[2] = {};
+  std::uint32_t good = 0;  ///< samples without NaN and infinities; the others are left out
+  std::uint32_t hits = 0;  ///< of the good samples, those that met a surface
+  float nearest = 0;       ///< squared distance from the pixel's centre of the sample that gave the ids
+  bool has_ids = false;
+  std::uint32_t primitive = kNoId, object = kNoId;
+};
+
+/// Adds sample `i`; false if it is left out because it holds NaN or infinity.
+bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
+
+/// The plane that holds the number of samples of each pixel in adaptive sampling.
+inline constexpr const char* kSampleCountPlane = "sampleCount.I";
+
+/// An empty picture with the planes of a render: black and transparent, Z infinite, all ids kNoId.
+///
+/// Beauty: R, G, B and A are means over the samples. A is the fraction covered. A background that gives light
+/// counts as covering and a black one does not, so colours are always premultiplied by A. Data layers (if
+/// `data_layers`) describe the first surface that each camera ray meets:
+/// - Z is the distance along the view axis, not along the ray, as compositing programs expect; infinite where
+///   there is no surface. P is the position in world space; u and v are the texture coordinates. All of them
+///   are means over the samples that met a surface.
+/// - N is the shading normal in world space, which points out of solids. Albedo is the base colour. Both are
+///   means over all samples, with 0 for those that met nothing, as denoisers expect.
+/// - primID.I is the primitive in its geometry, geomID.I the object in the scene (as World counts them). They
+///   are those of the sample nearest to the pixel's centre, never filtered.
+/// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
+/// - sampleCount.I, in adaptive sampling only, is the number of the pixel's samples.
+Picture make_picture(const RenderContext& context);
+
+/// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is
+/// gathered here and then copied to the picture row by row.
+class TileColors {
+ public:
+  /// `count` pixels, black and transparent.
+  void begin(std::size_t count);
+  /// Sets pixels `first`, `first` + 1, ... to the samples, one for each. Pixels whose sample holds NaN or
+  /// infinity are left as they are; returns their number.
+  std::size_t set(std::size_t first, const SampleBatch& samples);
+  /// Sets a pixel to the mean of its samples.
+  void set(std::size_t number, const PixelSum& sum);
+  /// Copies the tile to the picture. `numbers` holds those of its pixels, row by row.
+  void copy_to(Picture& picture, const FinishedTile& tile, const std::vector<std::uint32_t>& numbers) const;
+
+ private:
+  Column<float> plane_[4];
+};
+
+/// Writes all planes of a finished pixel, (x, y) counted in the picture. Threads may write different pixels
+/// at the same time.
+void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel);
+
+}  // namespace oktett

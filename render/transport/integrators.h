@@ -1,0 +1,90 @@
+#pragma once
+/// \file Integrators: what happens where a ray has hit a surface, one function per kind of picture.
+
+#include "accel/interaction_block.h"
+#include "render/transport/wavefront.h"
+
+namespace oktett {
+
+/// Shades the hit `p` of entry `ray` of `wavefront.rays`. Light that needs no further ray is added to
+/// entry `ray` of `wavefront.radiance`. Shadow rays are queued for light that depends on visibility, and rays
+/// of the next bounce are queued.
+using Integrator = void (*)(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                            const ShadingPoint& p);
+
+Integrator integrator_for(IntegratorKind kind);
+
+/// Whether the integrator asks for random numbers of a sample.
+inline bool draws_random_numbers(IntegratorKind kind) {
+  return kind == IntegratorKind::path || kind == IntegratorKind::ao;
+}
+
+/// Recursive ray tracing after Whitted (1980) with Phong's illumination model, mirrors, and dielectrics by
+/// Snell's and Fresnel's laws; see Material for the sum.
+void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                   const ShadingPoint& p);
+
+/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
+/// `found`, with the same bits as shade_whitted, in lanes. Records no first hits, so it serves pictures
+/// without data layers.
+void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                         std::size_t count, const InteractionBlock& found);
+
+/// Unidirectional path tracing (Kajiya 1986). Each hit sends one ray to a light that is chosen at random and
+/// one in a direction that the material chooses. Light that both can find is weighted by the power heuristic
+/// (Veach 1997). After `depth` bounces the next surface gives only what it emits. Nothing is cut off: the
+/// expected value of a pixel is its light, but for two conventions. Light from points passes glass straight,
+/// as no ray could find it otherwise. Ambient light is left out, since it stands for the indirect light that
+/// path tracing computes.
+void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
+/// `found`, with the same bits as shade_path, in lanes, and records first hits.
+void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                      std::size_t count, const InteractionBlock& found);
+
+/// Whether hits are shaded in blocks: by shade_whitted_block or shade_path_block. Paths that ask photons are
+/// not.
+bool shades_in_blocks(const RenderContext& context);
+
+/// Which queue of a Wavefront holds the shadow rays of path tracing to lights that other rays can meet.
+inline constexpr std::size_t kAreaQueue = 1;
+
+/// Ambient occlusion: white times the cosine-weighted fraction of directions that meet nothing within the
+/// radius.
+void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                             const ShadingPoint& p);
+
+// Pictures of what the camera sees, without light. See render/transport/flat_integrators.cpp.
+
+/// The shading normal in world space, [-1, 1] shown as [0, 1].
+void shade_normal(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// Distance along the view axis: white at the near end of the scene's bounds, black at the far end.
+void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// The colour of the material, textures included.
+void shade_albedo(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// The fractional parts of u and v as red and green.
+void shade_uv(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// The place between the two ends of the scene's bounds, [0, 1] along x, y and z as red, green and blue.
+void shade_position(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                    const ShadingPoint& p);
+
+/// A colour made of the number of the object.
+void shade_object(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// A colour made of the numbers of the object and of the primitive in it.
+void shade_primitive(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                     const ShadingPoint& p);
+
+/// The cosine between the shading normal and the viewer: grey on front sides, red on backs.
+void shade_facing(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+/// Dark lines, one pixel wide, along the edges of triangles, on surfaces that are brighter the more they face
+/// the viewer.
+void shade_wire(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+
+}  // namespace oktett

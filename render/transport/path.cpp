@@ -1,0 +1,94 @@
+/// \file Path tracing, see integrators.h.
+
+#include <optional>
+
+#include "render/photon/caustics.h"
+#include "render/surface_bsdf.h"
+#include "render/transport/integrators.h"
+#include "render/transport/path_choices.h"
+#include "render/transport/path_emission.h"
+
+namespace oktett {
+namespace {
+
+/// The solids around a ray that leaves the hit of entry `ray`. `boundary` is null unless the scene tracks
+/// them.
+const EnclosureStack* enclosures(const Wavefront& wavefront, std::size_t ray, const Boundary* boundary,
+                                 bool behind) {
+  if (boundary == nullptr) return nullptr;
+  return behind ? &boundary->behind : &wavefront.paths.enclosures[ray];
+}
+
+/// Sends a ray to a light chosen at random.
+void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+                  const SurfaceBsdf& bsdf, const LightPoint& from, const Choices& choices,
+                  const Boundary* boundary) {
+  const std::optional<LightSample> light = choose_light(context, from, choices);
+  if (!light) return;
+  const BsdfValue found = bsdf.evaluate(light->direction);
+  if (found.value == Color{0, 0, 0}) return;
+  const Color arriving = light_found(context, wavefront.rays.throughput[ray], *light, found);
+  const bool behind = dot(p.ng, light->direction) < 0;
+  // Light that photons bring through glass must not pass it straight, too.
+  const bool straight = light->delta && !(context.caustics && context.caustics->brings(light->emitter));
+  queue_light(wavefront, ray, offset_origin(p.surface, light->direction), from, *light, arriving, straight,
+              enclosures(wavefront, ray, boundary, behind));
+}
+
+/// Passes straight on. Light behind the surface could have been chosen where the ray left the last one.
+void pass_straight(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Boundary* boundary) {
+  push_bounce(wavefront, ray, p, p.direction, wavefront.rays.throughput[ray], Bounce::straight);
+  const bool camera = wavefront.level == 0;
+  wavefront.next_paths.push_back(
+      camera ? 0 : wavefront.paths.pdf[ray], camera ? LightPoint{} : wavefront.paths.from[ray],
+      !camera && wavefront.paths.scattered[ray] != 0, enclosures(wavefront, ray, boundary, true));
+}
+
+void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+                   const Boundary* boundary) {
+  const Choices choices(wavefront, ray);
+  if (p.opacity < 1 && choices.number(Decision::hole) >= p.opacity)
+    return pass_straight(wavefront, ray, p, boundary);
+
+  const Color throughput = wavefront.rays.throughput[ray];
+  if (!(p.emission == Color{0, 0, 0}))
+    wavefront.radiance.add(
+        ray, throughput * p.emission * emission_weight(context, wavefront, ray, p.surface.position));
+  if (wavefront.rays.bounces[ray] > context.settings.depth) return;
+
+  const SurfaceBsdf bsdf(p);
+  const LightPoint from{p.surface.position, p.ng, !bsdf.transmits()};
+  if (!bsdf.only_delta()) {
+    sample_light(context, wavefront, ray, p, bsdf, from, choices, boundary);
+    if (context.caustics != nullptr)
+      wavefront.radiance.add(
+          ray, throughput * context.caustics->light(wavefront.samples.number[wavefront.rays.sample[ray]],
+                                                    wavefront.rays.bounces[ray], p, bsdf));
+  }
+
+  const std::optional<BsdfSample> next =
+      bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
+  if (!next) return;
+  Color onward = throughput * next->weight;
+  if (!survives(wavefront, ray, choices, onward)) return;
+  push_bounce(wavefront, ray, p, next->direction, onward,
+              next->transmitted ? Bounce::refracted : Bounce::reflected);
+  const bool scattered = wavefront.level > 0 && wavefront.paths.scattered[ray] != 0;
+  wavefront.next_paths.push_back(next->pdf, from, scattered || next->pdf > 0,
+                                 enclosures(wavefront, ray, boundary, next->transmitted));
+}
+
+}  // namespace
+
+void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+  if (!context.tracks_enclosures) return shade_surface(context, wavefront, ray, p, nullptr);
+  const Boundary boundary = boundary_at(*context.world, wavefront.paths.enclosures[ray], p.surface, p.front);
+  if (boundary.hidden) return pass_straight(wavefront, ray, p, &boundary);
+  if (!boundary.ior) return shade_surface(context, wavefront, ray, p, &boundary);
+  ShadingPoint between = p;
+  between.ior = *boundary.ior;
+  if (between.principled) between.principled->ior = *boundary.ior;
+  shade_surface(context, wavefront, ray, between, &boundary);
+}
+
+}  // namespace oktett

@@ -1,0 +1,157 @@
+/// \file Path tracing of hits in blocks, see integrators.h.
+
+#include <algorithm>
+#include <bit>
+
+#include "render/transport/integrators.h"
+#include "render/transport/path_emission.h"
+#include "render/transport/path_lights.h"
+#include "render/transport/path_surfaces.h"
+#include "render/transport/render_code.h"
+
+namespace oktett {
+namespace {
+
+constexpr std::size_t kMost = PathBlock::kMost, kGroup = PathBlock::kGroup;
+
+/// A hit of the block and the PathSurface that it shows.
+struct Shown {
+  std::uint32_t surface, entry;
+};
+
+PathRays path_rays(const Wavefront& wavefront) {
+  PathRays rays;
+  for (int k = 0; k < 3; ++k) {
+    rays.direction[k] = wavefront.rays.rays.direction[k].data();
+    rays.throughput[k] = wavefront.rays.throughput.part[k].data();
+  }
+  rays.distance = wavefront.rays.distance.data(), rays.t = wavefront.hits.t.data();
+  rays.sample = wavefront.rays.sample.data();
+  return rays;
+}
+
+/// Fills the block up to the random numbers.
+void begin_block(const RenderContext& context, const Wavefront& wavefront, const std::uint32_t* which,
+                 const InteractionBlock& found, PathBlock& c) {
+  const auto name = [&](std::size_t k, std::uint32_t i) {
+    const std::uint32_t sample = wavefront.rays.sample[i];
+    c.ray[k] = i, c.key[k] = wavefront.samples.key[sample], c.number[k] = wavefront.samples.number[sample];
+    c.bounces[k] = wavefront.rays.bounces[i];
+  };
+  for (std::size_t k = 0; k < c.count; ++k) name(k, which[k]);
+  for (std::size_t k = c.count; k < kMost; ++k) name(k, which[c.count - 1]);
+  render_code(context.isa).begin_path(found, path_rays(wavefront), wavefront.level, c);
+}
+
+PathShadows end_of(ShadowQueue& queue, std::size_t count) {
+  PathShadows to;
+  to.size = queue.size();
+  queue.resize_uninitialized(to.size + count + kGroup);
+  for (int k = 0; k < 3; ++k) {
+    to.origin[k] = queue.rays.origin[k].data(), to.direction[k] = queue.rays.direction[k].data();
+    to.light[k] = queue.light.part[k].data();
+  }
+  to.tmax = queue.rays.tmax.data(), to.owner = queue.owner.data();
+  return to;
+}
+
+PathOnward end_of(RayQueue& queue, PathColumns& paths, std::size_t count) {
+  PathOnward to;
+  to.size = queue.size();
+  queue.resize_uninitialized(to.size + count + kGroup);
+  paths.resize_uninitialized(to.size + count + kGroup);
+  for (int k = 0; k < 3; ++k) {
+    to.origin[k] = queue.rays.origin[k].data(), to.direction[k] = queue.rays.direction[k].data();
+    to.throughput[k] = queue.throughput.part[k].data();
+  }
+  to.distance = queue.distance.data(), to.pdf = paths.pdf.data(), to.from = paths.from.data();
+  to.sample = queue.sample.data(), to.bounces = queue.bounces.data();
+  return to;
+}
+
+/// The columns of rays that are the same for all.
+void fill_rays(RayBatch& rays, std::size_t first, std::size_t end, bool with_tmax) {
+  const Ray like;
+  std::fill(rays.tmin.data() + first, rays.tmin.data() + end, like.tmin);
+  if (with_tmax) std::fill(rays.tmax.data() + first, rays.tmax.data() + end, like.tmax);
+}
+
+/// Shades the hits in `shown`, which are in the order of their surfaces.
+void shade_runs(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                const PathBlock& c, const Shown* shown, std::size_t count) {
+  const RenderCode& code = render_code(context.isa);
+  const PathRays rays = path_rays(wavefront);
+  ShadowQueue &delta = wavefront.shadows[0], &area = wavefront.shadows[kAreaQueue];
+  const std::size_t deltas = delta.size(), areas = area.size(), onward = wavefront.next.size();
+  PathQueues out{end_of(delta, count), end_of(area, count),
+                 end_of(wavefront.next, wavefront.next_paths, count)};
+  for (std::size_t first = 0; first < count;) {
+    std::uint32_t entry[kMost + kGroup];
+    PathRun run{entry, 0};
+    const std::uint32_t number = shown[first].surface;
+    for (; first < count && shown[first].surface == number; ++first) entry[run.count++] = shown[first].entry;
+    count_lanes(wavefront, run.count, code.path_lanes);
+    for (std::size_t k = 0; k < kGroup; ++k) entry[run.count + k] = entry[run.count - 1];
+    const PathSurface& surface = (*context.path_surfaces)[number];
+    if (surface.principled)
+      code.shade_principled(found, rays, c, surface.layers, surface.transmits, run, out);
+    else
+      code.shade_phong(found, rays, c, surface.phong, surface.transmits, run, out);
+  }
+  delta.resize_uninitialized(out.delta.size), area.resize_uninitialized(out.area.size);
+  wavefront.next.resize_uninitialized(out.next.size),
+      wavefront.next_paths.resize_uninitialized(out.next.size);
+  fill_rays(delta.rays, deltas, out.delta.size, false), fill_rays(area.rays, areas, out.area.size, false);
+  fill_rays(wavefront.next.rays, onward, out.next.size, true);
+  std::fill(wavefront.next.from_camera.data() + onward, wavefront.next.from_camera.data() + out.next.size,
+            std::uint8_t{0});
+  wavefront.counts.refracted += out.next.transmitted;
+  wavefront.counts.reflected += out.next.size - onward - out.next.transmitted;
+}
+
+}  // namespace
+
+void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                      std::size_t count, const InteractionBlock& found) {
+  PathBlock c;
+  c.count = count;
+  begin_block(context, wavefront, which, found, c);
+  Shown shown[kMost];
+  std::uint32_t asks[kMost];
+  bool front_only[kMost];
+  std::size_t in_lanes = 0, asking = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = c.ray[k];
+    const bool behind = c.behind >> k & 1;
+    const std::uint32_t number =
+        2 * material_index(*context.world, found.user[k], found.material_slot[k]) + (behind ? 1 : 0);
+    const PathSurface& surface = (*context.path_surfaces)[number];
+    const bool from_camera = wavefront.rays.from_camera[i] != 0;
+    if (surface.alone || (from_camera && context.data_layers)) {
+      const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                                           {wavefront.rays.distance[i], from_camera}, found[k]);
+      if (from_camera) record_first_hit(context, wavefront, i, p);
+      if (surface.alone) {
+        shade_path(context, wavefront, i, p);
+        continue;
+      }
+    } else if (from_camera) {
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
+    }
+    if (!(surface.emission == Color{0, 0, 0}))
+      wavefront.radiance.add(
+          i, wavefront.rays.throughput[i] * surface.emission *
+                 emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k)));
+    if (wavefront.rays.bounces[i] > context.settings.depth) continue;
+    c.light_kind[k] = LightKind::none;
+    if (!surface.only_delta)
+      asks[asking] = static_cast<std::uint32_t>(k), front_only[asking++] = !surface.transmits;
+    shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
+  }
+  sample_lights(context, found, asks, front_only, asking, c);
+  std::stable_sort(shown, shown + in_lanes,
+                   [](const Shown& a, const Shown& b) { return a.surface < b.surface; });
+  if (in_lanes > 0) shade_runs(context, wavefront, found, c, shown, in_lanes);
+}
+
+}  // namespace oktett

@@ -1,0 +1,41 @@
+#pragma once
+/// \file Light samples for the hits of a block, in columns.
+
+#include <cstdint>
+
+#include "render/context.h"
+#include "render/transport/path_block.h"
+
+namespace oktett {
+
+/// Points that have chosen emitters of one kind, with their samples. Lanes read and write whole groups.
+struct LightGroup {
+  static constexpr std::size_t kMost = PathBlock::kMost;
+
+  std::size_t count = 0;
+  std::uint32_t entry[kMost];   ///< of the PathBlock
+  std::uint32_t number[kMost];  ///< of the emitter
+  const void* emitter[kMost];   ///< of the kind that the function expects
+  double probability[kMost];    ///< of the emitter
+  bool front_only[kMost];       ///< as in LightPoint
+  float position[3][kMost];
+  double x[kMost], y[kMost];  ///< of the unit square; afterwards the place on the emitter
+
+  float direction[3][kMost], distance[kMost], pdf[kMost];  ///< density 0: nothing is found
+  float radiance[3][kMost];                                ///< of environments
+};
+
+/// Code that samples the lights of groups.
+struct LightCode {
+  MapCode map;
+  void (*map_samples)(const EnvironmentTables&, LightGroup&);
+  void (*rectangle_samples)(LightGroup&);
+  void (*sphere_samples)(LightGroup&);  ///< points outside of the spheres
+};
+
+/// Chooses lights for the entries listed in `entry` and fills their light columns, with the bits of
+/// LightSet::sample. `front_only` says for each of these what LightPoint needs.
+void sample_lights(const RenderContext& context, const InteractionBlock& found, const std::uint32_t* entry,
+                   const bool* front_only, std::size_t count, PathBlock& c);
+
+}  // namespace oktett

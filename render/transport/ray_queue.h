@@ -1,0 +1,98 @@
+#pragma once
+/// \file Queues of rays to trace, each with the sample that it belongs to.
+
+#include <cstdint>
+
+#include "core/ray.h"
+#include "core/soa.h"
+#include "core/vec3.h"
+#include "render/enclosures.h"
+#include "render/light/light_sample.h"
+#include "render/transport/color_column.h"
+
+namespace oktett {
+
+/// Rays of unit direction with their state, in columns. Clearing a queue keeps its memory.
+struct RayQueue {
+  RayBatch rays;
+  Column<std::uint32_t> sample;      ///< index into the wavefront's samples
+  ColorColumn throughput;            ///< factor on the light that the ray finds
+  Column<float> distance;            ///< length of the path up to the ray's origin
+  Column<std::uint8_t> bounces;      ///< reflections and refractions so far
+  Column<std::uint8_t> from_camera;  ///< 1 for camera rays and their straight continuations through holes
+
+  std::size_t size() const { return sample.size(); }
+  bool empty() const { return sample.empty(); }
+
+  void clear() { resize_uninitialized(0); }
+  void resize_uninitialized(std::size_t n) {
+    rays.resize_uninitialized(n);
+    sample.resize_uninitialized(n), throughput.resize_uninitialized(n), distance.resize_uninitialized(n);
+    bounces.resize_uninitialized(n), from_camera.resize_uninitialized(n);
+  }
+
+  /// One entry of the columns.
+  struct Entry {
+    Ray ray;
+    std::uint32_t sample = 0;
+    Color throughput{1, 1, 1};
+    float distance = 0;
+    std::uint8_t bounces = 0;
+    bool from_camera = false;
+  };
+  Entry operator[](std::size_t i) const {
+    return {rays[i], sample[i], throughput[i], distance[i], bounces[i], from_camera[i] != 0};
+  }
+  void push_back(const Entry& e) {
+    rays.push_back(e.ray);
+    sample.push_back(e.sample), throughput.push_back(e.throughput), distance.push_back(e.distance);
+    bounces.push_back(e.bounces), from_camera.push_back(e.from_camera ? 1 : 0);
+  }
+};
+
+/// What a path knows of the surface that its ray left, beside the columns of a RayQueue: how likely the ray's
+/// direction was, and for which point lights would have been chosen there.
+struct PathColumns {
+  Column<float> pdf;  ///< of the direction, per solid angle; 0 for mirrors and clear glass, which no light
+                      ///< sample replaces
+  Column<LightPoint> from;
+  /// 1 if any surface on the path sent it on otherwise than mirrors and clear glass do. Set only if
+  /// RenderContext::caustics is.
+  Column<std::uint8_t> scattered;
+  Column<EnclosureStack> enclosures;  ///< the solids around the ray, from the camera on; empty unless the
+                                      ///< scene tracks them
+
+  void clear() { resize_uninitialized(0), enclosures.resize_uninitialized(0); }
+  void resize_uninitialized(std::size_t n) {
+    pdf.resize_uninitialized(n), from.resize_uninitialized(n), scattered.resize_uninitialized(n);
+  }
+  void push_back(float density, const LightPoint& point, bool was_scattered, const EnclosureStack* around) {
+    pdf.push_back(density), from.push_back(point), scattered.push_back(was_scattered ? 1 : 0);
+    if (around != nullptr) enclosures.push_back(*around);
+  }
+};
+
+/// Shadow rays. Each adds `light` to the radiance of its owner, an entry of a RayQueue, if nothing blocks it.
+struct ShadowQueue {
+  RayBatch rays;
+  Column<std::uint32_t> owner;
+  ColorColumn light;
+  Column<std::uint8_t> occluded;      ///< written by trace_shadows
+  Column<EnclosureStack> enclosures;  ///< the solids at the origins; empty unless the scene tracks them
+
+  std::size_t size() const { return owner.size(); }
+
+  void clear() { resize_uninitialized(0); }
+  void resize_uninitialized(std::size_t n) {
+    rays.resize_uninitialized(n), owner.resize_uninitialized(n), light.resize_uninitialized(n);
+    if (n == 0) enclosures.resize_uninitialized(0);
+  }
+  void set(std::size_t i, const Ray& ray, std::uint32_t ray_owner, const Color& color) {
+    rays.set(i, ray), owner[i] = ray_owner, light.set(i, color);
+  }
+  void push_back(const Ray& ray, std::uint32_t ray_owner, const Color& color) {
+    rays.push_back(ray), owner.push_back(ray_owner), light.push_back(color);
+  }
+};
+
+}  // namespace oktett

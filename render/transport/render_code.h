@@ -1,0 +1,45 @@
+#pragma once
+/// \file Code of the renderer that is compiled for each instruction set in render/isa.
+
+#include "core/isa.h"
+#include "render/context.h"
+#include "render/shading_columns.h"
+#include "render/transport/path_block.h"
+#include "render/transport/path_lights.h"
+#include "render/transport/view_directions.h"
+
+namespace oktett {
+
+struct RenderCode {
+  std::size_t whitted_lanes, path_lanes;  ///< hits that are shaded at once
+  void (*view_directions)(const ViewPlane&, const ViewPoints&);
+  /// Fills all columns after `ray` and `material` from the rays and from a table of materials, and adds their
+  /// unlit light, except for materials that vary, to the radiance of the rays.
+  void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ShadedRays&,
+                        ShadingColumns&);
+  /// Writes the rays to one light, with the light that they carry if nothing blocks them, for all hits that
+  /// it could reach. Returns their number.
+  std::size_t (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&,
+                             const ShadowColumns& out);
+  /// Fills `out` with the rays that opaque mirrors send out. Returns a set bit for each hit that sends one.
+  std::uint64_t (*mirror_rays)(const InteractionBlock&, const ShadingColumns&, MirrorColumns& out);
+
+  /// Fills the columns of a PathBlock up to the random numbers, but those for `ray`, `key`, `number` and
+  /// `bounces`, which are given.
+  void (*begin_path)(const InteractionBlock&, const PathRays&, unsigned level, PathBlock&);
+  /// Writes the shadow rays and the rays of the next bounce of hits of one surface. All columns of the block
+  /// are filled.
+  void (*shade_phong)(const InteractionBlock&, const PathRays&, const PathBlock&, const PhongSurface&,
+                      bool transmits, const PathRun&, PathQueues&);
+  void (*shade_principled)(const InteractionBlock&, const PathRays&, const PathBlock&,
+                           const PrincipledSurface&, bool transmits, const PathRun&, PathQueues&);
+  LightCode lights;
+};
+
+template <class A>
+const RenderCode& render_code();
+
+/// Throws Error if this build holds no code for the set.
+const RenderCode& render_code(Isa isa);
+
+}  // namespace oktett

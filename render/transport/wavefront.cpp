@@ -1,0 +1,275 @@
+#include "render/transport/wavefront.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "accel/accel.h"
+#include "accel/surface/offset_origin.h"
+#include "render/photon/caustics.h"
+#include "render/transport/integrators.h"
+#include "render/transport/medium_paths.h"
+#include "render/transport/path_emission.h"
+#include "render/transport/render_code.h"
+#include "render/transport/shadow.h"
+
+namespace oktett {
+namespace {
+
+/// Holes that a camera path may lead through, in addition to its bounces.
+constexpr unsigned kMostHoles = 128;
+/// Shadow rays are traced when this many have gathered.
+constexpr std::size_t kShadowBatch = 4096;
+/// Number of hits that are shaded together.
+constexpr std::size_t kShadeBlock = InteractionBlock::kMost;
+
+void find_hits(const RenderContext& context, Wavefront& wavefront) {
+  wavefront.hits.resize_uninitialized(wavefront.rays.size());
+  closest_hit(*context.world->accel, wavefront.rays.rays.span(), wavefront.hits.span(), context.isa);
+}
+
+/// Sets the radiance of up to 64 rays that meet nothing.
+void add_environment(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* misses,
+                     std::size_t count) {
+  constexpr std::size_t kMost = EnvironmentValues::kMost;
+  const bool path = context.settings.kind == IntegratorKind::path && wavefront.level > 0;
+  float direction[3][kMost] = {};
+  LightPoint from[kMost];
+  for (std::size_t k = 0; k < count; ++k) {
+    for (int axis = 0; axis < 3; ++axis) direction[axis][k] = wavefront.rays.rays.direction[axis][misses[k]];
+    if (path) from[k] = wavefront.paths.from[misses[k]];
+  }
+  EnvironmentValues found;
+  context.sampled->set().environment_values(render_code(context.isa).lights.map, count, path ? from : nullptr,
+                                            {direction[0], direction[1], direction[2]}, found);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = misses[k];
+    const float pdf = path ? wavefront.paths.pdf[i] : 0;
+    const bool by_photons = is_caustic(context, wavefront, i) && context.caustics->brings_distant();
+    const float weight = by_photons ? 0 : pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
+    const Color light = InteractionBlock::get(found.radiance, k);
+    wavefront.radiance.set(i, wavefront.rays.throughput[i] * (context.background + light * weight));
+  }
+}
+
+/// Sets the radiance of all rays that meet nothing.
+void add_background(const RenderContext& context, Wavefront& wavefront) {
+  std::uint32_t misses[EnvironmentValues::kMost];
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
+    if (wavefront.hits.item[i] != kNoId) continue;
+    if (!context.sampled->has_environment()) {
+      wavefront.radiance.set(i, wavefront.rays.throughput[i] * context.background);
+      continue;
+    }
+    misses[count++] = i;
+    if (count < EnvironmentValues::kMost) continue;
+    add_environment(context, wavefront, misses, count);
+    count = 0;
+  }
+  if (count > 0) add_environment(context, wavefront, misses, count);
+}
+
+/// Sets the radiance of each ray, the background's if it hit nothing and 0 if it did, and lists the rays that
+/// hit.
+void start_level(const RenderContext& context, Wavefront& wavefront) {
+  const std::size_t count = wavefront.rays.size();
+  wavefront.radiance.resize_uninitialized(count);
+  wavefront.hit_rays.resize_uninitialized(count);
+  wavefront.radiance.fill(count, {0, 0, 0});
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    wavefront.hit_rays[hits] = static_cast<std::uint32_t>(i);
+    hits += wavefront.hits.item[i] != kNoId ? 1 : 0;
+  }
+  wavefront.hit_rays.resize_uninitialized(hits);
+  const bool black =
+      wavefront.level == 0 && context.background == Color{0, 0, 0} && !context.sampled->has_environment();
+  if (hits < count && !black) add_background(context, wavefront);
+  std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
+  wavefront.next.clear(), wavefront.next_paths.clear();
+}
+
+/// A background that is part of the picture counts as covering.
+void cover_background(const RenderContext& context, Wavefront& wavefront) {
+  if (!context.opaque_background) return;
+  for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
+    if (wavefront.rays.from_camera[i] && wavefront.hits.item[i] == kNoId)
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
+}
+
+/// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
+/// entry.
+void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
+  const bool path = context.settings.kind == IntegratorKind::path;
+  for (std::size_t n = 0; n < wavefront.shadows.size(); ++n) {
+    ShadowQueue& queue = wavefront.shadows[n];
+    const bool holes = path && n == kAreaQueue;
+    const ShadowRule rule = holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes;
+    if (context.tracks_enclosures)
+      trace_shadows_in_media(context, wavefront, queue, rule);
+    else
+      trace_shadows(context, queue, rule, wavefront.radiance);
+    wavefront.counts.shadow += queue.size();
+    wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
+    queue.clear();
+  }
+}
+
+bool shadows_are_full(const Wavefront& wavefront) {
+  for (const ShadowQueue& queue : wavefront.shadows)
+    if (queue.size() >= kShadowBatch) return true;
+  return false;
+}
+
+/// Shades hits in blocks, so that their surface interactions stay in the nearest cache until they are used.
+void shade_hits(const RenderContext& context, Wavefront& wavefront) {
+  const Integrator integrator = integrator_for(context.settings.kind);
+  const bool in_blocks = shades_in_blocks(context);
+  const auto shade_block =
+      context.settings.kind == IntegratorKind::path ? shade_path_block : shade_whitted_block;
+  InteractionBlock found;
+  for (std::size_t first = 0; first < wavefront.hit_rays.size(); first += kShadeBlock) {
+    const std::size_t count = std::min(kShadeBlock, wavefront.hit_rays.size() - first);
+    const std::uint32_t* which = wavefront.hit_rays.data() + first;
+    surface_interactions(*context.world->accel, wavefront.rays.rays, wavefront.hits, {which, count}, found,
+                         context.isa);
+    if (in_blocks) {
+      shade_block(context, wavefront, which, count, found);
+      if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
+      continue;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t i = which[k];
+      const bool from_camera = wavefront.rays.from_camera[i] != 0;
+      const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                                           {wavefront.rays.distance[i], from_camera}, found[k]);
+      if (from_camera) record_first_hit(context, wavefront, i, p);
+      integrator(context, wavefront, i, p);
+    }
+    if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
+  }
+  flush_shadows(context, wavefront);
+}
+
+void add_to_samples(Wavefront& wavefront) {
+  const std::size_t count = wavefront.rays.size();
+  for (int k = 0; k < 3; ++k) {
+    float* color = wavefront.samples.color.part[k].data();
+    const float* radiance = wavefront.radiance.part[k].data();
+    // Camera rays are those of samples 0, 1, ..., whose colour is still black.
+    if (wavefront.level == 0) {
+      for (std::size_t i = 0; i < count; ++i) color[i] = 0.0f + radiance[i];
+    } else {
+      for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] += radiance[i];
+    }
+  }
+}
+
+bool meets_anything(const Wavefront& wavefront) {
+  for (const std::uint32_t item : wavefront.hits.item)
+    if (item != kNoId) return true;
+  return false;
+}
+
+/// Fills the columns whose value is the same for all camera rays.
+void fill_camera_rays(Wavefront& wavefront) {
+  const std::size_t count = wavefront.rays.size();
+  const RayQueue::Entry like;
+  RayQueue& rays = wavefront.rays;
+  for (std::size_t i = 0; i < count; ++i) rays.sample[i] = static_cast<std::uint32_t>(i);
+  rays.throughput.fill(count, like.throughput);
+  std::fill_n(rays.distance.data(), count, like.distance);
+  std::fill_n(rays.bounces.data(), count, like.bounces);
+  std::fill_n(rays.from_camera.data(), count, std::uint8_t{1});
+}
+
+/// Resets the results of samples, except for their colour.
+void fill_samples(SampleBatch& samples) {
+  std::fill_n(samples.alpha.data(), samples.size(), 0.0f);
+  for (FirstHit& first : samples.first) {
+    // The other members are written when a hit is found.
+    first.found = false, first.primitive = first.object = kNoId;
+  }
+}
+
+}  // namespace
+
+static void begin_bounce(Wavefront& wavefront) {
+  std::vector<BounceReport>& bounces = wavefront.counts.bounces;
+  if (bounces.size() <= wavefront.level) bounces.resize(wavefront.level + 1);
+  bounces[wavefront.level].rays += wavefront.rays.size(), ++bounces[wavefront.level].batches;
+}
+
+void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width) {
+  BounceReport& bounce = wavefront.counts.bounces[wavefront.level];
+  bounce.shaded += hits, bounce.lanes += (hits + width - 1) / width * width;
+}
+
+bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
+  // The light that leaves the last surface may come from one more, which path tracing looks up.
+  const unsigned most_levels = context.settings.depth + 1 + kMostHoles;
+  for (wavefront.level = 0; wavefront.level <= most_levels && !wavefront.rays.empty(); ++wavefront.level) {
+    begin_bounce(wavefront);
+    find_hits(context, wavefront);
+    if (wavefront.level == 0) {
+      // If several wavefronts share a pixel, all of them are needed for its mean.
+      const bool may_be_empty = !context.opaque_background && !context.tracks_enclosures;
+      if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
+      fill_samples(wavefront.samples);
+      fill_camera_rays(wavefront);
+      if (context.tracks_enclosures) enclose_camera_rays(context, wavefront);
+    }
+    if (context.tracks_enclosures) pass_media(context, wavefront);
+    start_level(context, wavefront);
+    cover_background(context, wavefront);
+    if (context.tracks_enclosures) shade_media(context, wavefront);
+    shade_hits(context, wavefront);
+    add_to_samples(wavefront);
+    std::swap(wavefront.rays, wavefront.next);
+    std::swap(wavefront.paths, wavefront.next_paths);
+  }
+  return true;
+}
+
+void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                      const ShadingPoint& p) {
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * p.opacity;
+  if (!context.data_layers) return;
+  FirstHit& first = wavefront.samples.first[sample];
+  if (first.found || p.opacity == 0) return;
+  const SurfaceInteraction& s = p.surface;
+  first = {true,
+           static_cast<float>(camera_depth(context.camera, s.position)),
+           s.shading_normal,
+           s.position,
+           p.color,
+           s.uv,
+           s.primitive,
+           s.user,
+           material_index(*context.world, s.user, s.material_slot)};
+}
+
+void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce) {
+  Vec3f origin;
+  offset_origin(p.surface, direction, origin);
+  push_bounce(wavefront, ray, origin, direction, throughput, bounce);
+}
+
+void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce) {
+  const std::uint32_t sample = wavefront.rays.sample[ray];
+  const bool straight = bounce == Bounce::straight;
+  RayQueue::Entry entry;
+  entry.ray.origin = origin, entry.ray.direction = direction;
+  entry.sample = sample;
+  entry.throughput = throughput;
+  entry.distance = wavefront.rays.distance[ray] + wavefront.hits.t[ray];
+  entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (straight ? 0 : 1));
+  entry.from_camera = straight && wavefront.rays.from_camera[ray];
+  wavefront.next.push_back(entry);
+  ++(bounce == Bounce::reflected ? wavefront.counts.reflected : wavefront.counts.refracted);
+}
+
+}  // namespace oktett

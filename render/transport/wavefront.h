@@ -1,0 +1,118 @@
+#pragma once
+/// \file A wavefront: the rays of one bounce in a tile, traced and shaded together.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "render/context.h"
+#include "render/render.h"
+#include "render/shading_point.h"
+#include "render/transport/ray_queue.h"
+
+namespace oktett {
+
+/// The surface that a sample's camera ray meets first, for the data layers. The other members hold values
+/// only if `found`.
+struct FirstHit {
+  bool found = false;
+  float depth = 0;  ///< along the view axis
+  Vec3f normal, position;
+  Color albedo;
+  Vec2f uv;
+  std::uint32_t primitive = kNoId, object = kNoId;
+  std::uint32_t material = kNoId;  ///< index into World::materials
+};
+
+/// Camera samples in columns: their places and their results.
+struct SampleBatch {
+  Column<std::uint32_t> pixel;   ///< the caller's number of the pixel
+  Column<std::uint32_t> number;  ///< of the sample in its pixel
+  Column<std::uint64_t> key;     ///< of the pixel's random numbers, if the integrator draws any
+  Column<Vec2f> offset;          ///< from the pixel's centre, in pixels
+  ColorColumn color;
+  Column<float> alpha;
+  Column<std::uint16_t> spawned;  ///< number of rays that Whitted's integrator queued for the next bounce
+  Column<FirstHit> first;         ///< empty unless data layers are wanted
+
+  std::size_t size() const { return pixel.size(); }
+  void resize_uninitialized(std::size_t n, bool data_layers) {
+    pixel.resize_uninitialized(n), number.resize_uninitialized(n), key.resize_uninitialized(n);
+    offset.resize_uninitialized(n), color.resize_uninitialized(n), alpha.resize_uninitialized(n);
+    spawned.resize_uninitialized(n), first.resize_uninitialized(data_layers ? n : 0);
+  }
+};
+
+/// A pixel whose samples a wavefront holds.
+struct WavefrontPixel {
+  std::uint32_t number = 0;    ///< the caller's
+  std::uint32_t x = 0, y = 0;  ///< in the full frame
+};
+
+/// How many rays of each kind were traced.
+struct RayCounts {
+  std::uint64_t camera = 0, shadow = 0, reflected = 0, refracted = 0;
+  std::vector<BounceReport> bounces;
+  std::uint64_t total() const { return camera + shadow + reflected + refracted; }
+};
+
+/// What a ray meets in a medium before it meets a surface.
+struct MediumEvent {
+  std::uint32_t ray;     ///< entry of the wavefront's rays
+  std::uint32_t medium;  ///< index into RenderContext::media
+  MediumPassage passage;
+};
+
+/// The rays of one bounce of some samples, and what is kept for the next bounce. The result of a sample does
+/// not depend on the other samples of its wavefront: each ray sums its light in a fixed order, and a sample
+/// sums its rays in the order of the queue, which other samples do not change.
+struct Wavefront {
+  SampleBatch samples;
+  RayQueue rays, next;            ///< of this bounce and the next
+  PathColumns paths, next_paths;  ///< of `rays` after the camera rays and of `next`, in path tracing
+  HitBatch hits;                  ///< of `rays`
+  ColorColumn radiance;           ///< light found by each of `rays`, throughput included
+  /// In Whitted's model one queue per light, so that all rays of a queue lead to the same light. In path
+  /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
+  /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.
+  std::vector<ShadowQueue> shadows;
+  std::vector<MediumEvent> medium_events;  ///< of rays that are scattered or find light in media
+  Column<std::uint32_t> hit_rays;          ///< entries of `rays` that hit something
+  Column<double> film_x, film_y;           ///< where the camera rays pass the film
+  Column<double> lens_x, lens_y;           ///< and the lens, as in FilmPoints
+  unsigned level = 0;                      ///< number of the bounce; 0 = camera rays
+  bool whole_pixels = true;                ///< all samples of each of its pixels are in this wavefront
+  RayCounts counts;
+};
+
+/// Counts hits of the present bounce that were shaded in groups of `width` lanes.
+void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width);
+
+/// Fills a wavefront, which may be new or finished, with the camera rays of samples [first, last) of each
+/// pixel.
+void start_wavefront(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                     std::uint32_t first, std::uint32_t last, Wavefront& wavefront);
+
+/// Traces all bounces and fills the samples' colour, alpha and first hit. False if nothing was filled in
+/// because no sample of the pixels met anything and the background is black.
+bool trace_wavefront(const RenderContext& context, Wavefront& wavefront);
+
+/// Adds the hit `p` of entry `ray`, a camera ray, to the alpha and the data layers of its sample.
+void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                      const ShadingPoint& p);
+
+/// How a ray continues at a surface.
+enum class Bounce {
+  reflected,
+  refracted,
+  straight,  ///< through a hole: not counted as a bounce
+};
+
+/// Queues for the next bounce the ray that leaves `p`, the hit of entry `ray`, in `direction`.
+void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce);
+/// The same from `origin`, see offset_origin.
+void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
+                 const Color& throughput, Bounce bounce);
+
+}  // namespace oktett

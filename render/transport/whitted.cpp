@@ -1,0 +1,184 @@
+#include <algorithm>
+#include <bit>
+
+#include "core/math.h"
+#include "render/specular.h"
+#include "render/transport/direct_light.h"
+#include "render/transport/integrators.h"
+#include "render/transport/render_code.h"
+
+namespace oktett {
+namespace {
+
+/// Rays that change a pixel by less than this are not traced.
+constexpr float kLeastThroughput = 1 / 4096.0f;
+/// Limits the rays of a sample in one bounce, which mirrors and glass would double each time.
+constexpr std::uint16_t kMostRaysPerLevel = 256;
+
+/// Whether a ray of this throughput may be queued for the sample of entry `ray`. Counts it.
+bool admit(Wavefront& wavefront, std::size_t ray, const Color& throughput) {
+  if (max_component(throughput) < kLeastThroughput) return false;
+  std::uint16_t& spawned = wavefront.samples.spawned[wavefront.rays.sample[ray]];
+  if (spawned >= kMostRaysPerLevel) return false;
+  ++spawned;
+  return true;
+}
+
+/// Queues the ray that leaves `p` if it is worth it.
+void push_admitted(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
+                   const Color& throughput, Bounce bounce) {
+  if (admit(wavefront, ray, throughput)) push_bounce(wavefront, ray, p, direction, throughput, bounce);
+}
+
+bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
+
+/// The part of the light that passes the interior of the solid that a ray leaves at `p` (Beer's law).
+Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
+  const auto material = static_cast<std::size_t>(p.material - context.world->materials.data());
+  if (p.front || context.interiors.empty()) return {1, 1, 1};
+  const Vec3d depth = context.interiors[material] * static_cast<double>(p.t);
+  return Color(Vec3d{portable::exp(-depth.x), portable::exp(-depth.y), portable::exp(-depth.z)});
+}
+
+/// Adds the light of a hit that needs no lamp. `throughput` includes the opacity of the surface.
+void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+               const Color& throughput) {
+  wavefront.radiance.add(ray, throughput * (p.emission + p.color * p.values.ambient * context.ambient_light));
+}
+
+/// Queues the rays that leave a hit: straight through holes, mirrored and refracted.
+void push_bounces(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                  const ShadingPoint& p) {
+  const Color arriving = wavefront.rays.throughput[ray], throughput = arriving * p.opacity;
+  if (p.opacity < 1)
+    push_admitted(wavefront, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
+  if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
+  const SpecularRays specular = specular_rays(p);
+  if (!is_black(specular.mirror))
+    push_admitted(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror,
+                  Bounce::reflected);
+  if (!is_black(specular.refracted))
+    push_admitted(wavefront, ray, p, specular.refracted_direction, throughput * specular.refracted,
+                  Bounce::refracted);
+}
+
+/// Names the rays and materials of the hits. The last is repeated to the end of its group of lanes.
+void name_hits(const RenderContext& context, const std::uint32_t* which, const InteractionBlock& found,
+               ShadingColumns& c) {
+  for (std::size_t k = 0; k < c.count; ++k) {
+    c.ray[k] = which[k];
+    c.material[k] = material_index(*context.world, found.user[k], found.material_slot[k]);
+  }
+  for (std::size_t k = c.count; k % ShadingColumns::kGroup != 0; ++k)
+    c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
+}
+
+ShadedRays shaded_rays(Wavefront& wavefront) {
+  ShadedRays rays;
+  for (int k = 0; k < 3; ++k) {
+    rays.direction[k] = wavefront.rays.rays.direction[k].data();
+    rays.throughput[k] = wavefront.rays.throughput.part[k].data();
+    rays.radiance[k] = wavefront.radiance.part[k].data();
+  }
+  return rays;
+}
+
+/// What hit `k` needs beyond lanes: its textures, and the rays that leave it. Returns what the interior that
+/// the ray comes through leaves of its light.
+OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wavefront,
+                                   const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
+  const std::uint32_t i = c.ray[k];
+  const bool from_camera = wavefront.rays.from_camera[i] != 0;
+  const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                                       {wavefront.rays.distance[i], from_camera}, found);
+  const Color left = passing_interior(context, p);
+  if (context.materials[c.material[k]].varies) {
+    const Color throughput = wavefront.rays.throughput[i] * p.opacity;
+    add_unlit(context, wavefront, i, p, throughput * left);
+    InteractionBlock::put(c.throughput, k, throughput);
+    InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
+    InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
+    c.diffuse[k] = p.values.diffuse, c.specular[k] = p.values.specular, c.phong[k] = p.values.phong;
+    c.reflection[k] = p.values.reflection;
+    c.exponent[k] = highlight_exponent(p.values.specular, p.values.phong);
+  }
+  if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
+  push_bounces(context, wavefront, i, p);
+  return left;
+}
+
+/// Queues the mirrored rays of hits on opaque mirrors, of which the columns know all.
+void push_mirrored(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                   const ShadingColumns& c) {
+  MirrorColumns mirrored;
+  std::uint64_t sent = render_code(context.isa).mirror_rays(found, c, mirrored);
+  for (; sent != 0; sent &= sent - 1) {
+    const int k = std::countr_zero(sent);
+    if (wavefront.rays.bounces[c.ray[k]] >= context.settings.depth) continue;
+    const Color throughput = InteractionBlock::get(mirrored.throughput, k);
+    if (!admit(wavefront, c.ray[k], throughput)) continue;
+    push_bounce(wavefront, c.ray[k], InteractionBlock::get(mirrored.origin, k),
+                InteractionBlock::get(mirrored.direction, k), throughput, Bounce::reflected);
+  }
+}
+
+/// Queues the rays to one light.
+void push_shadow_rays(const RenderContext& context, const InteractionBlock& found, const LightSource& light,
+                      const ShadingColumns& c, ShadowQueue& queue) {
+  const std::size_t first = queue.size();
+  queue.resize_uninitialized(first + c.count + ShadingColumns::kGroup);
+  ShadowColumns out;
+  for (int k = 0; k < 3; ++k) {
+    out.origin[k] = queue.rays.origin[k].data() + first;
+    out.direction[k] = queue.rays.direction[k].data() + first;
+    out.light[k] = queue.light.part[k].data() + first;
+  }
+  out.owner = queue.owner.data() + first;
+  const std::size_t count = render_code(context.isa).shadow_rays(found, light, c, out);
+  const Ray like;
+  std::fill_n(queue.rays.tmin.data() + first, count, like.tmin);
+  std::fill_n(queue.rays.tmax.data() + first, count, light.directional ? like.tmax : kBeforeLight);
+  queue.resize_uninitialized(first + count);
+}
+
+}  // namespace
+
+void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                   const ShadingPoint& p) {
+  const Color left = passing_interior(context, p);
+  if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(ray, wavefront.rays.throughput[ray] * left);
+  const Color throughput = wavefront.rays.throughput[ray] * p.opacity;
+  add_unlit(context, wavefront, ray, p, throughput);
+  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
+  push_bounces(context, wavefront, ray, p);
+}
+
+void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                         std::size_t count, const InteractionBlock& found) {
+  ShadingColumns c;
+  c.count = count;
+  name_hits(context, which, found, c);
+  count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
+  render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
+  bool alone = false, mirrors = false;
+  for (std::size_t k = 0; k < count; ++k) {
+    const ShadingMaterial& m = context.materials[c.material[k]];
+    alone |= m.alone(), mirrors |= m.reflection != 0;
+  }
+  // The rays of a sample must be queued in the order of its hits: one by one if any of them is.
+  if (!alone && mirrors) push_mirrored(context, wavefront, found, c);
+  for (std::size_t k = 0; k < count; ++k) {
+    const ShadingMaterial& m = context.materials[c.material[k]];
+    Color left{1, 1, 1};
+    if (alone && (m.alone() || m.reflection != 0)) left = finish_alone(context, wavefront, found[k], k, c);
+    const std::uint32_t i = c.ray[k];
+    if (wavefront.rays.from_camera[i])
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];
+    if (!(left == Color{1, 1, 1}))
+      InteractionBlock::put(c.throughput, k, InteractionBlock::get(c.throughput, k) * left);
+  }
+  for (std::size_t n = 0; n < context.lights.size(); ++n)
+    push_shadow_rays(context, found, context.lights[n], c, wavefront.shadows[n]);
+}
+
+}  // namespace oktett
