@@ -77,7 +77,7 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
   wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);
   wavefront.samples.resize_uninitialized(count, context.data_layers);
   wavefront.rays.resize_uninitialized(count);
-  if (context.settings.samples == 1)
+  if (context.settings.samples == 1 && first == 0)
     centre_samples(context, pixels, wavefront);
   else
     spread_samples(context, pixels, first, last, wavefront);

@@ -14,6 +14,7 @@
 #include "render/default_view.h"
 #include "render/film/cryptomatte.h"
 #include "render/film/film.h"
+#include "render/film/film_state.h"
 #include "render/film/tile.h"
 #include "render/geometry.h"
 #include "render/moments.h"
@@ -31,9 +32,12 @@ double seconds_since(Clock::time_point start) {
 /// Collects the reports of tiles and calls the caller's functions, one thread at a time.
 class Monitor {
  public:
-  Monitor(const RenderOptions& options, const Picture& picture, Clock::time_point start)
+  Monitor(const RenderOptions& options, const std::vector<FinishedTile>& tiles, const Picture& picture,
+          Clock::time_point start)
       : options_(options), picture_(picture), start_(start) {
-    progress_.pixels_total = static_cast<std::uint64_t>(picture.width) * picture.height;
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      if (options.film == nullptr || options.film->in_share(i))
+        progress_.pixels_total += std::uint64_t{tiles[i].width} * tiles[i].height;
   }
 
   bool stop_wanted() const {
@@ -96,8 +100,17 @@ void describe_world(const World& world, RenderReport& report) {
   report.sah_cost = world.sah_cost;
 }
 
-void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture& picture, Monitor& monitor) {
-  const std::vector<FinishedTile> tiles = cut_tiles(picture.width, picture.height, tile_size);
+/// Begins the film, if there is one, and returns the tiles to render.
+std::vector<FinishedTile> plan_tiles(const RenderContext& context, const Picture& picture,
+                                     const RenderOptions& options) {
+  if (options.film == nullptr) return cut_tiles(picture.width, picture.height, options.tile_size);
+  options.film->begin({format_of(context), picture.attributes, picture.tone, context.settings.samples,
+                       context.moments != nullptr});
+  return options.film->tiles();
+}
+
+void render_tiles(const RenderContext& context, const std::vector<FinishedTile>& tiles, FilmState* film,
+                  Picture& picture, Monitor& monitor) {
   tbb::enumerable_thread_specific<TileWorkspace> workspaces;
   // One tile per task: their costs differ greatly, and stopping should not wait for a block of tiles.
   tbb::parallel_for(
@@ -108,7 +121,11 @@ void render_tiles(const RenderContext& context, std::uint32_t tile_size, Picture
             monitor.skip_tile();
             continue;
           }
-          monitor.finish_tile(tiles[i], render_tile(context, tiles[i], picture, workspaces.local()));
+          TileWorkspace& work = workspaces.local();
+          if (film == nullptr)
+            monitor.finish_tile(tiles[i], render_tile(context, tiles[i], picture, work));
+          else if (film->in_share(i))
+            monitor.finish_tile(tiles[i], render_film_tile(context, *film, i, picture, work));
         }
       },
       tbb::simple_partitioner());
@@ -133,17 +150,17 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
     result.photons = caustics->map();
   }
   const double photon_seconds = caustics ? seconds_since(photons) : 0;
-  result.picture = make_picture(context);
-  Mattes mattes;
-  if (scene.film.cryptomatte && options.data_layers) {
-    mattes = add_mattes(world, result.picture);
-    context.mattes = &mattes;
-  }
+  const bool wants_mattes = scene.film.cryptomatte && options.data_layers;
+  const Mattes mattes = wants_mattes ? mattes_of(world) : Mattes{};
+  if (wants_mattes) context.mattes = &mattes;
+  result.picture = make_picture(format_of(context));
+  result.picture.attributes = mattes.attributes;
   moments.share(scene, context);
   result.picture.tone = scene.film.tone;
+  const std::vector<FinishedTile> tiles = plan_tiles(context, result.picture, options);
   const Clock::time_point tracing = Clock::now();
-  Monitor monitor(options, result.picture, tracing);
-  render_tiles(context, options.tile_size, result.picture, monitor);
+  Monitor monitor(options, tiles, result.picture, tracing);
+  render_tiles(context, tiles, options.film, result.picture, monitor);
   monitor.tell_progress();
 
   result.report = monitor.report();

@@ -30,7 +30,11 @@ struct FinishedTile {
 /// The photons that bring caustics, see read_photon_map and write_photon_map.
 struct PhotonMap;
 
-/// How a scene is rendered. The picture depends on `textures` and `data_layers` alone.
+/// A picture in progress: sums of finished tiles, in files of their own, see `oktett render --checkpoint`.
+class FilmState;
+
+/// How a scene is rendered. The picture depends on `textures` and `data_layers` and, if it is not null, on
+/// `film`.
 struct RenderOptions {
   Isa isa = default_isa();
   unsigned threads = 0;  ///< 0: as many as the process may use
@@ -46,7 +50,10 @@ struct RenderOptions {
   /// For pictures with caustics: the photons to use, or null to trace some. They must have been made for the
   /// same scene and settings but for camera, film and samples.
   std::shared_ptr<const PhotonMap> photons;
-  bool keep_photons = false;     ///< trace photons of all passes, for RenderResult::photons
+  bool keep_photons = false;  ///< trace photons of all passes, for RenderResult::photons
+  /// May be null. Tiles that it has are not rendered again; the others are added, as far as they are of its
+  /// share of the picture. The rest is left black with alpha 0.
+  FilmState* film = nullptr;
   BuildOptions build;            ///< of the acceleration structures
   std::uint32_t tile_size = 32;  ///< pixels along the edge of a tile, [1, 256]
   bool data_layers = true;       ///< also fill the planes Z, N, P, Albedo, u, v, ids and Variance

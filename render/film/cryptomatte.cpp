@@ -90,15 +90,23 @@ static std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-static std::size_t add_layer(const std::string& layer, const std::vector<std::string>& names,
-                             Picture& picture) {
-  const std::size_t first = picture.planes.size();
+void add_matte_planes(Picture& picture) {
   const std::size_t size = static_cast<std::size_t>(picture.width) * picture.height;
-  for (int k = 0; k < 2 * kMatteLevels; ++k)
-    picture.planes.push_back({fmt::format("{}{:02}.{}", layer, k / 4, "RGBA"[k % 4]),
-                              PlaneType::single_float,
-                              Column<float>(size, 0.0f),
-                              {}});
+  for (const char* layer : {kObjectLayer, kMaterialLayer})
+    for (int k = 0; k < 2 * kMatteLevels; ++k)
+      picture.planes.push_back({fmt::format("{}{:02}.{}", layer, k / 4, "RGBA"[k % 4]),
+                                PlaneType::single_float,
+                                Column<float>(size, 0.0f),
+                                {}});
+}
+
+std::size_t first_matte_plane(const Picture& picture, const char* layer) {
+  const std::string name = fmt::format("{}00.R", layer);
+  const auto is_first = [&](const PicturePlane& plane) { return plane.name == name; };
+  return static_cast<std::size_t>(std::ranges::find_if(picture.planes, is_first) - picture.planes.begin());
+}
+
+static void add_attributes(const std::string& layer, const std::vector<std::string>& names, Mattes& mattes) {
   std::map<std::string, std::uint32_t> sorted;
   for (const std::string& name : names) sorted[name] = id_bits(name);
   std::string manifest;
@@ -106,11 +114,10 @@ static std::size_t add_layer(const std::string& layer, const std::vector<std::st
     manifest += fmt::format("{}{}:\"{:08x}\"", manifest.empty() ? "{" : ",", quoted(name), bits);
   manifest += manifest.empty() ? "{}" : "}";
   const std::string key = fmt::format("cryptomatte/{:.7}/", fmt::format("{:08x}", id_bits(layer)));
-  picture.attributes.push_back({key + "name", layer});
-  picture.attributes.push_back({key + "hash", "MurmurHash3_32"});
-  picture.attributes.push_back({key + "conversion", "uint32_to_float32"});
-  picture.attributes.push_back({key + "manifest", manifest});
-  return first;
+  mattes.attributes.push_back({key + "name", layer});
+  mattes.attributes.push_back({key + "hash", "MurmurHash3_32"});
+  mattes.attributes.push_back({key + "conversion", "uint32_to_float32"});
+  mattes.attributes.push_back({key + "manifest", manifest});
 }
 
 static std::vector<float> ids_of(const std::vector<std::string>& names) {
@@ -119,11 +126,11 @@ static std::vector<float> ids_of(const std::vector<std::string>& names) {
   return ids;
 }
 
-Mattes add_mattes(const World& world, Picture& picture) {
+Mattes mattes_of(const World& world) {
   const std::vector<std::string> objects = object_names(world), materials = material_names(world);
-  Mattes mattes{ids_of(objects), ids_of(materials), 0, 0};
-  mattes.object_planes = add_layer("CryptoObject", objects, picture);
-  mattes.material_planes = add_layer("CryptoMaterial", materials, picture);
+  Mattes mattes{ids_of(objects), ids_of(materials), {}};
+  add_attributes(kObjectLayer, objects, mattes);
+  add_attributes(kMaterialLayer, materials, mattes);
   return mattes;
 }
 

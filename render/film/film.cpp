@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
+
+#include "render/film/cryptomatte.h"
 
 namespace oktett {
 namespace {
@@ -94,13 +97,31 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
   return true;
 }
 
-Picture make_picture(const RenderContext& context) {
+bool operator==(const FilmFormat& a, const FilmFormat& b) {
+  const auto numbers = [](const FilmFormat& f) {
+    return std::make_tuple(f.window.x0, f.window.y0, f.window.x1, f.window.y1, f.full_width, f.full_height,
+                           f.data_layers, f.sample_counts, f.mattes);
+  };
+  return numbers(a) == numbers(b);
+}
+
+FilmFormat format_of(const RenderContext& context) {
+  const bool layers = context.data_layers;
+  return {context.window,
+          context.full_width,
+          context.full_height,
+          layers,
+          layers && context.settings.error > 0,
+          layers && context.mattes != nullptr};
+}
+
+Picture make_picture(const FilmFormat& format) {
   Picture picture;
-  picture.width = context.window.width(), picture.height = context.window.height();
-  picture.x = context.window.x0, picture.y = context.window.y0;
-  picture.full_width = context.full_width, picture.full_height = context.full_height;
+  picture.width = format.window.width(), picture.height = format.window.height();
+  picture.x = format.window.x0, picture.y = format.window.y0;
+  picture.full_width = format.full_width, picture.full_height = format.full_height;
   const std::size_t size = static_cast<std::size_t>(picture.width) * picture.height;
-  const int count = context.data_layers ? kVarianceB + 1 : kA + 1;
+  const int count = format.data_layers ? kVarianceB + 1 : kA + 1;
   for (int i = 0; i < count; ++i) {
     PicturePlane plane;
     plane.name = kNames[i];
@@ -113,9 +134,10 @@ Picture make_picture(const RenderContext& context) {
     }
     picture.planes.push_back(std::move(plane));
   }
-  if (context.data_layers && context.settings.error > 0)
+  if (format.sample_counts)
     picture.planes.push_back(
         {kSampleCountPlane, PlaneType::unsigned_int, {}, Column<std::uint32_t>(size, 0)});
+  if (format.mattes) add_matte_planes(picture);
   return picture;
 }
 
@@ -173,6 +195,14 @@ void TileColors::copy_to(Picture& picture, const FinishedTile& tile,
       for (std::uint32_t x = 0; x < tile.width; ++x) to[x] = from[row[x]];
     }
   }
+}
+
+void write_color(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel) {
+  if (pixel.good == 0) return;
+  const std::size_t at = static_cast<std::size_t>(y) * picture.width + x;
+  for (int k = 0; k < 3; ++k)
+    picture.planes[kR + k].values[at] = static_cast<float>(pixel.color[k] / pixel.good);
+  picture.planes[kA].values[at] = static_cast<float>(pixel.alpha / pixel.good);
 }
 
 void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel) {

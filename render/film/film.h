@@ -28,6 +28,19 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i);
 /// The plane that holds the number of samples of each pixel in adaptive sampling.
 inline constexpr const char* kSampleCountPlane = "sampleCount.I";
 
+/// Which planes a picture has, and where it lies in its frame.
+struct FilmFormat {
+  PixelWindow window;
+  std::uint32_t full_width = 1, full_height = 1;
+  bool data_layers = false;
+  bool sample_counts = false;  ///< the plane kSampleCountPlane; only with data layers
+  bool mattes = false;         ///< the planes of add_matte_planes; only with data layers
+};
+bool operator==(const FilmFormat& a, const FilmFormat& b);
+
+/// That of a picture of `context`.
+FilmFormat format_of(const RenderContext& context);
+
 /// An empty picture with the planes of a render: black and transparent, Z infinite, all ids kNoId.
 ///
 /// Beauty: R, G, B and A are means over the samples. A is the fraction covered. A background that gives light
@@ -42,7 +55,8 @@ inline constexpr const char* kSampleCountPlane = "sampleCount.I";
 ///   are those of the sample nearest to the pixel's centre, never filtered.
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 /// - sampleCount.I, in adaptive sampling only, is the number of the pixel's samples.
-Picture make_picture(const RenderContext& context);
+/// Planes of mattes follow.
+Picture make_picture(const FilmFormat& format);
 
 /// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is
 /// gathered here and then copied to the picture row by row.
@@ -61,6 +75,9 @@ class TileColors {
  private:
   Column<float> plane_[4];
 };
+
+/// Writes R, G, B and A of a finished pixel of a picture without data layers, see write_pixel.
+void write_color(Picture& picture, std::uint32_t x, std::uint32_t y, const PixelSum& pixel);
 
 /// Writes all planes of a finished pixel, (x, y) counted in the picture. Threads may write different pixels
 /// at the same time.

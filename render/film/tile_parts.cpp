@@ -4,7 +4,6 @@
 #include <span>
 
 #include "render/film/adaptive.h"
-#include "render/film/cryptomatte.h"
 #include "render/moments.h"
 
 namespace oktett {
@@ -13,14 +12,25 @@ namespace {
 /// A tile while it is rendered.
 class TileParts {
  public:
-  TileParts(const RenderContext& context, const FinishedTile& tile, TileWorkspace& work)
-      : context_(context), tile_(tile), work_(work), adaptive_(context.settings.error > 0) {
+  /// `adaptive`: all first samples are traced, from which the number of others follows.
+  TileParts(const RenderContext& context, const FinishedTile& tile, bool adaptive, TileWorkspace& work)
+      : context_(context), tile_(tile), work_(work), adaptive_(adaptive) {
     list_all_pixels();
-    sums_.resize(pixels_.size());
+    sums_.resize(pixels_.size(), empty_sum());
     if (adaptive_) luminance_.resize(pixels_.size());
     if (context.mattes != nullptr) objects_.resize(pixels_.size()), materials_.resize(pixels_.size());
     counts_.resize(pixels_.size(), context.settings.samples);
-    work_.wavefront.counts = {};
+  }
+
+  /// Sets what is known of the tile.
+  void set(const TileSums& sums) {
+    for (const WavefrontPixel& p : pixels_) {
+      if (!is_inside(p)) continue;
+      const std::size_t at = place(p);
+      sums_[p.number] = sums.pixels[at], counts_[p.number] = sums.samples[at];
+      if (context_.mattes == nullptr) continue;
+      objects_[p.number] = sums.objects[at], materials_[p.number] = sums.materials[at];
+    }
   }
 
   void trace_all() {
@@ -29,52 +39,66 @@ class TileParts {
     trace(pixels_, 0, pilot);
     in_pilot_ = false;
     if (!adaptive_) return;
-    std::vector<std::uint32_t> wanted;
     for (const WavefrontPixel& p : pixels_)
-      if (is_inside(p)) wanted.push_back(counts_[p.number] = samples_wanted(p));
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    for (const std::uint32_t count : wanted) {
-      if (count == pilot) continue;
-      std::vector<WavefrontPixel> group;
-      for (const WavefrontPixel& p : pixels_)
-        if (is_inside(p) && counts_[p.number] == count) group.push_back(p);
-      trace(group, pilot, count);
-    }
+      if (is_inside(p)) counts_[p.number] = samples_wanted(p);
+    for_each_count([&](std::uint32_t count, std::span<const WavefrontPixel> group) {
+      if (count > pilot) trace(group, pilot, count);
+    });
   }
 
-  void write(Picture& picture) const {
-    std::vector<std::uint32_t> numbers(std::size_t{tile_.width} * tile_.height);
-    if (!context_.data_layers) work_.colors.begin(pixels_.size());
+  /// Traces `count` more samples of each pixel.
+  void trace_more(std::uint32_t count) {
+    for_each_count([&](std::uint32_t taken, std::span<const WavefrontPixel> group) {
+      trace(group, taken, taken + count);
+    });
+    for (std::uint32_t& taken : counts_) taken += count;
+  }
+
+  TileSums sums() const {
+    TileSums sums;
+    const std::size_t size = std::size_t{tile_.width} * tile_.height;
+    sums.pixels.resize(size), sums.samples.resize(size);
+    if (context_.mattes != nullptr) sums.objects.resize(size), sums.materials.resize(size);
     for (const WavefrontPixel& p : pixels_) {
       if (!is_inside(p)) continue;
-      const std::uint32_t x = p.x - left_, y = p.y - top_;
-      numbers[std::size_t{y} * tile_.width + x] = p.number;
-      if (context_.data_layers)
-        write_pixel(picture, tile_.x + x, tile_.y + y, sums_[p.number]);
-      else
-        work_.colors.set(p.number, sums_[p.number]);
+      const std::size_t at = place(p);
+      sums.pixels[at] = sums_[p.number], sums.samples[at] = counts_[p.number];
+      if (context_.mattes == nullptr) continue;
+      sums.objects[at] = objects_[p.number], sums.materials[at] = materials_[p.number];
     }
-    if (!context_.data_layers) work_.colors.copy_to(picture, tile_, numbers);
-    if (context_.mattes != nullptr) write_mattes(picture);
-    if (PicturePlane* counts = picture.find(kSampleCountPlane); counts != nullptr)
-      for (std::uint32_t y = 0; y < tile_.height; ++y)
-        for (std::uint32_t x = 0; x < tile_.width; ++x)
-          counts->ids[std::size_t{tile_.y + y} * picture.width + tile_.x + x] =
-              counts_[numbers[std::size_t{y} * tile_.width + x]];
+    return sums;
   }
 
   TileCounts counts() const { return {work_.wavefront.counts, bad_samples_}; }
 
  private:
-  void write_mattes(Picture& picture) const {
-    for (const WavefrontPixel& p : pixels_) {
-      if (!is_inside(p)) continue;
-      const std::size_t at = std::size_t{tile_.y + p.y - top_} * picture.width + (tile_.x + p.x - left_);
-      const std::uint32_t samples = sums_[p.number].good;
-      objects_[p.number].write(picture, context_.mattes->object_planes, at, samples);
-      materials_[p.number].write(picture, context_.mattes->material_planes, at, samples);
+  /// Calls `use(count, pixels)` for all pixels of the tile of which as many samples are wanted, or known.
+  template <class Use>
+  void for_each_count(const Use& use) {
+    std::vector<std::uint32_t> counts;
+    for (const WavefrontPixel& p : pixels_)
+      if (is_inside(p)) counts.push_back(counts_[p.number]);
+    std::sort(counts.begin(), counts.end());
+    counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+    for (const std::uint32_t count : counts) {
+      std::vector<WavefrontPixel> group;
+      for (const WavefrontPixel& p : pixels_)
+        if (is_inside(p) && counts_[p.number] == count) group.push_back(p);
+      use(count, group);
     }
+  }
+
+  /// A pixel with one sample has its bits: even -0 stays -0 when it is added.
+  PixelSum empty_sum() const {
+    PixelSum sum;
+    if (context_.settings.samples == 1 && !context_.data_layers)
+      sum.color[0] = sum.color[1] = sum.color[2] = sum.alpha = -0.0;
+    return sum;
+  }
+
+  /// The number of a pixel of the tile, row by row.
+  std::size_t place(const WavefrontPixel& p) const {
+    return std::size_t{p.y - top_} * tile_.width + (p.x - left_);
   }
 
   void add_to_mattes(std::uint32_t pixel, const FirstHit& first) {
@@ -180,10 +204,25 @@ bool needs_parts(const RenderContext& context) {
 
 TileCounts render_tile_in_parts(const RenderContext& context, const FinishedTile& tile, Picture& picture,
                                 TileWorkspace& work) {
-  TileParts parts(context, tile, work);
+  work.wavefront.counts = {};
+  TileParts parts(context, tile, context.settings.error > 0, work);
   parts.trace_all();
-  parts.write(picture);
+  write_tile(format_of(context), tile, parts.sums(), picture);
   return parts.counts();
+}
+
+TileSums sum_tile(const RenderContext& context, const FinishedTile& tile, TileWorkspace& work) {
+  TileParts parts(context, tile, context.settings.error > 0, work);
+  parts.trace_all();
+  return parts.sums();
+}
+
+void add_to_tile(const RenderContext& context, const FinishedTile& tile, std::uint32_t samples,
+                 TileWorkspace& work, TileSums& sums) {
+  TileParts parts(context, tile, false, work);
+  parts.set(sums);
+  parts.trace_more(samples);
+  sums = parts.sums();
 }
 
 }  // namespace oktett

@@ -51,7 +51,7 @@ TEST(Tile, TilesNeedNoOrderAmongThreads) {
   const SceneLights lights(scene, world);
   const RenderContext context = make_context(scene, world, lights, nullptr, default_isa());
   const auto with_threads = [&](int count) {
-    Picture picture = make_picture(context);
+    Picture picture = make_picture(format_of(context));
     const std::vector<FinishedTile> tiles = cut_tiles(picture.width, picture.height, 7);
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> threads;

@@ -1,0 +1,132 @@
+#include "render/film/film_state.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "render/film/tile_parts.h"
+
+namespace oktett {
+namespace {
+
+std::size_t tile_count(const FilmFormat& format, std::uint32_t size) {
+  const auto along = [&](std::uint32_t pixels) { return std::size_t{(pixels + size - 1) / size}; };
+  return along(format.window.width()) * along(format.window.height());
+}
+
+std::size_t pixels_of(const FinishedTile& tile) { return std::size_t{tile.width} * tile.height; }
+
+}  // namespace
+
+std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares) {
+  std::uint32_t size = 32;
+  while (size > 8 && shares > 1 && tile_count(format, size) < std::size_t{4} * shares) size /= 2;
+  return size;
+}
+
+void FilmState::begin(const FilmPlan& plan) {
+  const std::lock_guard lock(mutex_);
+  if (begun_) {
+    if (!(plan == plan_)) throw Error("the film is of another picture");
+    return;
+  }
+  plan_ = plan;
+  tile_size_ = tile_size_of(plan.format, share_.count);
+  tiles_ = cut_tiles(plan.format.window.width(), plan.format.window.height(), tile_size_);
+  if (plan.moves && added_ % plan.samples != 0)
+    throw Error("things move, so samples are added by multiples of " + std::to_string(plan.samples));
+  begun_ = true;
+}
+
+bool FilmState::has_begun() const {
+  const std::lock_guard lock(mutex_);
+  return begun_;
+}
+
+bool FilmState::in_share(std::size_t tile) const {
+  const std::size_t columns = (plan_.format.window.width() + tile_size_ - 1) / tile_size_;
+  const std::size_t row = tile / columns, column = tile % columns;
+  return (row * columns + (column + row) % columns) % share_.count + 1 == share_.number;
+}
+
+void FilmState::add_samples(std::uint32_t count) {
+  if (count > kMostAddedSamples - added_)
+    throw Error("more than " + std::to_string(kMostAddedSamples) + " samples would be added");
+  if (plan_.moves && count % plan_.samples != 0)
+    throw Error("things move, so samples are added by multiples of " + std::to_string(plan_.samples));
+  added_ += count;
+}
+
+TileRecordPointer FilmState::record(std::size_t tile) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = records_.find(tile);
+  return found == records_.end() ? nullptr : found->second;
+}
+
+void FilmState::set_record(std::size_t tile, TileRecord record) {
+  auto kept = std::make_shared<const TileRecord>(std::move(record));
+  const std::lock_guard lock(mutex_);
+  records_[tile] = std::move(kept);
+  ++version_;
+}
+
+std::map<std::size_t, TileRecordPointer> FilmState::records() const {
+  const std::lock_guard lock(mutex_);
+  return records_;
+}
+
+std::uint64_t FilmState::version() const {
+  const std::lock_guard lock(mutex_);
+  return version_;
+}
+
+std::size_t FilmState::tiles_wanted() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) count += in_share(i) ? 1 : 0;
+  return count;
+}
+
+std::size_t FilmState::tiles_finished() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(records_, [&](const auto& entry) { return entry.second->added == added_; }));
+}
+
+TileCounts render_film_tile(const RenderContext& context, FilmState& film, std::size_t tile, Picture& picture,
+                            TileWorkspace& work) {
+  const FilmFormat& format = film.plan().format;
+  const FinishedTile& place = film.tiles()[tile];
+  const TileRecordPointer known = film.record(tile);
+  TileCounts counts;
+  work.wavefront.counts = {};
+  TileSums sums =
+      known != nullptr ? decode_tile(format, pixels_of(place), known->bytes) : sum_tile(context, place, work);
+  // Samples are added to the sums of the first ones even in one render, so that several give the same bits.
+  const std::uint32_t missing = film.added() - (known != nullptr ? known->added : 0);
+  if (missing > 0) add_to_tile(context, place, missing, work, sums);
+  counts.rays = work.wavefront.counts;
+  if (known == nullptr || missing > 0) film.set_record(tile, {film.added(), encode_tile(format, sums)});
+  write_tile(format, place, sums, picture);
+  counts.bad_samples = sums.bad_samples();
+  return counts;
+}
+
+Picture make_picture(const FilmPlan& plan) {
+  Picture picture = make_picture(plan.format);
+  picture.attributes = plan.attributes;
+  picture.tone = plan.tone;
+  return picture;
+}
+
+void write_tiles(const FilmState& film, Picture& picture) {
+  const auto records = film.records();
+  std::vector<std::pair<std::size_t, TileRecordPointer>> list(records.begin(), records.end());
+  tbb::parallel_for(std::size_t{0}, list.size(), [&](std::size_t i) {
+    const FinishedTile& place = film.tiles()[list[i].first];
+    const FilmFormat& format = film.plan().format;
+    write_tile(format, place, decode_tile(format, pixels_of(place), list[i].second->bytes), picture);
+  });
+}
+
+}  // namespace oktett

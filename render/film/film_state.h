@@ -1,0 +1,104 @@
+#pragma once
+/// \file A picture in progress: the sums of the tiles that are finished, and which tiles it is to have.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/film/tile.h"
+#include "render/film/tile_sums.h"
+#include "render/tone.h"
+
+namespace oktett {
+
+/// Part `number` of `count` parts of a picture.
+struct FilmShare {
+  static constexpr std::uint32_t kMost = 1u << 20;  ///< parts
+
+  std::uint32_t number = 1, count = 1;
+  bool operator==(const FilmShare&) const = default;
+};
+
+/// What is known of a picture before its first pixel.
+struct FilmPlan {
+  FilmFormat format;
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< see Picture::attributes
+  Tone tone;
+  std::uint32_t samples = 1;  ///< of each pixel, without those that are added
+  bool moves = false;         ///< samples are added by multiples of `samples` only
+  bool operator==(const FilmPlan&) const = default;
+};
+
+/// The edge of tiles: 32 pixels, or 16 or 8 if a picture in so many shares would else have fewer than four
+/// tiles for each of them.
+std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares);
+
+/// The sums of a tile as bytes, and how many samples more than the plan's each of its pixels has.
+struct TileRecord {
+  std::uint32_t added = 0;
+  std::string bytes;
+};
+using TileRecordPointer = std::shared_ptr<const TileRecord>;
+
+/// Tiles are numbered row by row. Tile (column, row) belongs to share (row * columns + (column + row) mod
+/// columns) mod count + 1: every count-th tile, where each row begins one tile further to the right so that
+/// shares are no columns. All functions may be called by several threads at the same time.
+class FilmState {
+ public:
+  /// `added`: samples of each pixel beyond those of the plan.
+  explicit FilmState(FilmShare share, std::uint32_t added = 0) : share_(share), added_(added) {}
+
+  /// Sets the plan. If there is one, this must be the same; else throws Error.
+  void begin(const FilmPlan& plan);
+  bool has_begun() const;
+  // The following need a plan.
+  const FilmPlan& plan() const { return plan_; }
+  std::uint32_t tile_size() const { return tile_size_; }
+  const std::vector<FinishedTile>& tiles() const { return tiles_; }
+  FilmShare share() const { return share_; }
+  bool in_share(std::size_t tile) const;
+  std::uint32_t added() const { return added_; }
+  /// Asks for that many more samples of each pixel. Throws Error if they are too many, or if things move and
+  /// it is no multiple of the plan's samples. Not while other threads use the film.
+  void add_samples(std::uint32_t count);
+
+  /// What is known of a tile; may be null.
+  TileRecordPointer record(std::size_t tile) const;
+  void set_record(std::size_t tile, TileRecord record);
+  /// All that are known, by number.
+  std::map<std::size_t, TileRecordPointer> records() const;
+  /// Grows with each record that is set.
+  std::uint64_t version() const;
+
+  std::size_t tiles_wanted() const;
+  /// Of these, those with all their samples.
+  std::size_t tiles_finished() const;
+
+ private:
+  FilmShare share_;
+  std::uint32_t added_;
+  std::uint32_t tile_size_ = 0;
+  FilmPlan plan_;
+  std::vector<FinishedTile> tiles_;
+  mutable std::mutex mutex_;
+  std::map<std::size_t, TileRecordPointer> records_;
+  std::uint64_t version_ = 0;
+  bool begun_ = false;
+};
+
+/// Does what render_tile does for one of film.tiles(): traces the samples that the film lacks, keeps the sums
+/// and writes the planes.
+TileCounts render_film_tile(const RenderContext& context, FilmState& film, std::size_t tile, Picture& picture,
+                            TileWorkspace& work);
+
+/// An empty picture with the plan's planes, attributes and tone.
+Picture make_picture(const FilmPlan& plan);
+
+/// Writes all tiles that `film` has. Throws Error for records that it cannot have.
+void write_tiles(const FilmState& film, Picture& picture);
+
+}  // namespace oktett
