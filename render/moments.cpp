@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "render/moved.h"
+#include "render/photon/caustics.h"
 
 namespace oktett {
 namespace {
@@ -32,10 +33,14 @@ std::vector<Light> lights_at(const Scene& scene, double time) {
 }  // namespace
 
 Moments::Moments(const Scene& scene, World& world, const BuildOptions& build) : world_(world) {
-  if (scene.camera.motion == nullptr && world.moving.empty() && !any_light_moves(scene)) return;
+  things_move_ = !world.moving.empty() || any_light_moves(scene);
+  if (scene.camera.motion == nullptr && !things_move_) return;
   const double open = scene.camera.shutter[0], close = scene.camera.shutter[1];
   const std::uint32_t samples = first_samples(scene.integrator);
-  const std::uint32_t count = open == close ? 1 : std::min(samples, kMostMoments);
+  std::uint32_t count = open == close ? 1 : std::min(samples, kMostMoments);
+  // Each moment needs photons of its own.
+  if (things_move_ && wants_photons(scene.integrator))
+    count = std::min(count, std::max(scene.integrator.caustics.passes, 1u));
   const std::uint64_t key = pixel_key(scene.integrator.seed, ~std::uint64_t{0} - 1);
   for (std::uint32_t m = 0; m < count; ++m) {
     const double begin = first_sample_of_moment(m, count, samples),

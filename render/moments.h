@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "render/context.h"
@@ -37,11 +38,17 @@ class Moments {
   /// moment. The scene's lights are moved meanwhile.
   void share(Scene& scene, RenderContext& context);
 
+  /// The copies that `share` made.
+  std::span<RenderContext> contexts() { return contexts_; }
+  /// Whether objects or lights move, not the camera alone.
+  bool things_move() const { return things_move_; }
+
   const std::vector<double>& times() const { return times_; }
 
  private:
   const World& world_;
   std::vector<double> times_;
+  bool things_move_ = false;
   std::vector<World> worlds_;       ///< of each time; empty if no object moves
   std::deque<SceneLights> lights_;  ///< of each time; empty if no light moves
   std::vector<RenderContext> contexts_;

@@ -131,6 +131,18 @@ void render_tiles(const RenderContext& context, const std::vector<FinishedTile>&
       tbb::simple_partitioner());
 }
 
+/// Gives the context, or those of all moments, the photons that the settings ask for; none if they want none.
+std::vector<Caustics> share_photons(Moments& moments, RenderContext& context, const RenderOptions& options) {
+  if (!wants_photons(context.settings)) return {};
+  const PhotonOptions wanted{options.photons, options.keep_photons};
+  const std::span<RenderContext> all = moments.contexts();
+  std::vector<Caustics> caustics =
+      moments.things_move() ? make_caustics(all, wanted) : make_caustics({&context, 1}, wanted);
+  context.caustics = &caustics.front();
+  for (std::size_t m = 0; m < all.size(); ++m) all[m].caustics = &caustics[m % caustics.size()];
+  return caustics;
+}
+
 RenderResult render_here(Scene scene, const RenderOptions& options) {
   RenderResult result;
   const Clock::time_point start = Clock::now();
@@ -142,20 +154,16 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
   const SceneLights lights(scene, world);
   RenderContext context = make_context(scene, world, lights, options.textures, options.isa);
   context.data_layers = options.data_layers;
-  const Clock::time_point photons = Clock::now();
-  std::optional<Caustics> caustics;
-  if (wants_photons(context.settings)) {
-    caustics.emplace(make_caustics(context, {options.photons, options.keep_photons}));
-    context.caustics = &*caustics;
-    result.photons = caustics->map();
-  }
-  const double photon_seconds = caustics ? seconds_since(photons) : 0;
   const bool wants_mattes = scene.film.cryptomatte && options.data_layers;
   const Mattes mattes = wants_mattes ? mattes_of(world) : Mattes{};
   if (wants_mattes) context.mattes = &mattes;
   result.picture = make_picture(format_of(context));
   result.picture.attributes = mattes.attributes;
   moments.share(scene, context);
+  const Clock::time_point photons = Clock::now();
+  const std::vector<Caustics> caustics = share_photons(moments, context, options);
+  if (!caustics.empty()) result.photons = caustics.front().map();
+  const double photon_seconds = caustics.empty() ? 0 : seconds_since(photons);
   result.picture.tone = scene.film.tone;
   const std::vector<FinishedTile> tiles = plan_tiles(context, result.picture, options);
   const Clock::time_point tracing = Clock::now();

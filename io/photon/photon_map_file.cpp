@@ -18,15 +18,16 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "photons are written as they lie in memory");
 
 /// Begins every file; the number is the version of the format.
-constexpr std::string_view kMagic = "oktett photons 1\n";
+constexpr std::string_view kMagic = "oktett photons 2\n";
 constexpr std::uint32_t kMostPasses = 4096, kMostBounces = 65;
 
 struct Header {
   std::uint32_t photons, passes, depth, seed;
   double radius;
   std::uint64_t geometry, materials, lights;
+  std::uint32_t moments, unused;
 };
-static_assert(sizeof(Header) == 48);
+static_assert(sizeof(Header) == 56);
 
 struct PassHeader {
   float radius;
@@ -110,7 +111,7 @@ void write_photon_map(const std::string& path, const PhotonMap& map) {
   write(kMagic);
   const PhotonPlan& plan = map.plan;
   write(bytes_of(Header{plan.photons, plan.passes, plan.depth, plan.seed, plan.radius, map.scene.geometry,
-                        map.scene.materials, map.scene.lights}));
+                        map.scene.materials, map.scene.lights, plan.moments, 0}));
   for (const PhotonPass& pass : map.passes) {
     write(bytes_of(PassHeader{pass.radius(), static_cast<std::uint32_t>(pass.photons().size())}));
     write(bytes_of(pass.photons()));
@@ -123,11 +124,11 @@ std::shared_ptr<const PhotonMap> read_photon_map(const std::string& path) {
   const MappedFile file(path);
   Pieces pieces(path, file.text());
   if (pieces.left() < kMagic.size() || pieces.take(kMagic.size()) != kMagic)
-    pieces.fail("is not a photon map of version 1");
+    pieces.fail("is not a photon map of version 2");
   const auto header = pieces.take<Header>();
   auto map = std::make_shared<PhotonMap>();
   map->path = path;
-  map->plan = {header.photons, header.passes, header.depth, header.seed, header.radius};
+  map->plan = {header.photons, header.passes, header.depth, header.seed, header.radius, header.moments};
   map->scene = {header.geometry, header.materials, header.lights};
   if (header.photons == 0 || header.passes == 0 || header.passes > kMostPasses)
     pieces.fail("the numbers of photons and passes are out of range");

@@ -21,8 +21,9 @@ bool may_cast(const Material& m) {
   if (p.parameters.coat != 0 &&
       may_be_below(p.parameters.coat_roughness, p.coat_roughness_texture, kLeastRoughness))
     return true;
-  // Glass that hardly bends light is smooth whatever its roughness.
-  return p.parameters.transmission != 0 && std::abs(p.parameters.ior - 1) < 2 * kLeastIorDifference;
+  // Glass that hardly bends light is smooth whatever its roughness. What lies around it may be as dense.
+  return p.parameters.transmission != 0 &&
+         (m.priority != kNoPriority || std::abs(p.parameters.ior - 1) < 2 * kLeastIorDifference);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <string>
 #include <utility>
 
@@ -14,14 +15,17 @@ namespace oktett {
 /// Below this cosine between light and surface the surface counts as lit at this cosine.
 static constexpr float kLeastCosine = 1e-3f;
 
-Caustics::Caustics(std::shared_ptr<const PhotonMap> map, const PhotonSource& source)
-    : map_(std::move(map)), brings_distant_(source.brings_distant()), depth_(map_->plan.depth) {
+Caustics::Caustics(std::shared_ptr<const PhotonMap> map, const PassRange& passes, const PhotonSource& source)
+    : map_(std::move(map)),
+      passes_(passes),
+      brings_distant_(source.brings_distant()),
+      depth_(map_->plan.depth) {
   for (std::uint32_t i = 0; i < source.emitter_count(); ++i) brings_.push_back(source.brings(i) ? 1 : 0);
 }
 
 Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p,
                       const SurfaceBsdf& bsdf) const {
-  const PhotonPass& pass = map_->passes[sample % map_->plan.passes];
+  const PhotonPass& pass = map_->passes[passes_.first + passes_.step * (sample % passes_.count)];
   Color sum;
   pass.visit_near(p.surface.position, p.ng, [&](const Photon& photon, float weight) {
     if (photon.bounces + bounces > depth_) return;
@@ -33,47 +37,61 @@ Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint
   return sum;
 }
 
-PhotonPlan photon_plan(const IntegratorSettings& settings) {
+PhotonPlan photon_plan(const IntegratorSettings& settings, std::uint32_t moments) {
   const CausticSettings& caustics = settings.caustics;
-  return {caustics.photons, std::max(caustics.passes, 1u), std::min(settings.depth, 64u), settings.seed,
-          caustics.radius};
+  return {caustics.photons,
+          std::max(caustics.passes, 1u),
+          std::min(settings.depth, 64u),
+          settings.seed,
+          caustics.radius,
+          moments};
 }
 
-static std::shared_ptr<PhotonMap> trace_map(const RenderContext& context, const PhotonSource& source,
-                                            const PhotonPlan& plan, std::uint32_t passes) {
+static std::shared_ptr<PhotonMap> trace_map(std::span<const RenderContext> moments,
+                                            const std::deque<PhotonSource>& sources, const PhotonPlan& plan,
+                                            std::uint32_t passes) {
   auto map = std::make_shared<PhotonMap>();
   map->plan = plan;
   // Photons that all lie in one place need some radius, too.
-  const double least = 0x1p-16 * (source.target_radius() > 0 ? source.target_radius() : 1);
+  const double target = sources.front().target_radius();
+  const double least = 0x1p-16 * (target > 0 ? target : 1);
   double first = plan.radius;
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
-    TracedPhotons traced = trace_photons(context, source, plan, pass);
+    const std::size_t moment = pass % moments.size();
+    TracedPhotons traced = trace_photons(moments[moment], sources[moment], plan, pass);
     if (pass == 0 && first == 0) first = std::max(least, usual_radius(traced.photons));
     map->passes.emplace_back(std::move(traced.photons), static_cast<float>(pass_radius(first, pass)));
   }
   return map;
 }
 
-Caustics make_caustics(const RenderContext& context, const PhotonOptions& options) {
-  // Textures are looked up as finely as they are, wherever the camera stands.
-  RenderContext unseen = context;
-  unseen.camera = {}, unseen.data_layers = false;
-  const PhotonSource source(*context.world, *context.sampled, context.textures, find_casters(*context.world));
-  const PhotonPlan plan = photon_plan(context.settings);
-  if (options.given != nullptr) {
-    const std::string differs = difference(*options.given, plan, fingerprint(unseen, source, plan));
+std::vector<Caustics> make_caustics(std::span<const RenderContext> moments, const PhotonOptions& options) {
+  std::vector<RenderContext> unseen(moments.begin(), moments.end());
+  std::deque<PhotonSource> sources;
+  for (RenderContext& c : unseen) {
+    // Textures are looked up as finely as they are, wherever the camera stands.
+    c.camera = {}, c.data_layers = false;
+    sources.emplace_back(*c.world, *c.sampled, c.textures, find_casters(*c.world));
+  }
+  const IntegratorSettings& s = moments.front().settings;
+  const auto count = static_cast<std::uint32_t>(moments.size());
+  const PhotonPlan plan = photon_plan(s, count);
+  const std::uint32_t samples = s.error > 0 ? std::max(s.samples, s.max_samples) : s.samples;
+  const std::uint32_t asked = std::min(plan.passes, samples);
+  std::shared_ptr<const PhotonMap> map = options.given;
+  if (map != nullptr) {
+    const std::string differs = difference(*map, plan, fingerprint(unseen, sources, plan));
     if (!differs.empty())
-      throw Error(Location{options.given->path}, "the photon map is for another picture: " + differs);
-    return {options.given, source};
+      throw Error(Location{map->path}, "the photon map is for another picture: " + differs);
+  } else {
+    const auto traced = trace_map(unseen, sources, plan, options.all_passes ? plan.passes : asked);
+    if (options.all_passes) traced->scene = fingerprint(unseen, sources, plan);
+    map = traced;
   }
-  if (!options.all_passes) {
-    const IntegratorSettings& s = context.settings;
-    const std::uint32_t samples = s.error > 0 ? std::max(s.samples, s.max_samples) : s.samples;
-    return {trace_map(unseen, source, plan, std::min(plan.passes, samples)), source};
-  }
-  const std::shared_ptr<PhotonMap> map = trace_map(unseen, source, plan, plan.passes);
-  map->scene = fingerprint(unseen, source, plan);
-  return {map, source};
+  std::vector<Caustics> caustics;
+  for (std::uint32_t m = 0; m < count; ++m)
+    caustics.push_back({map, {m, count, (asked - m + count - 1) / count}, sources[m]});
+  return caustics;
 }
 
 }  // namespace oktett

@@ -7,6 +7,7 @@
 /// photons of one pass; each pass has photons of its own and a smaller radius than the one before.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "render/photon/photon_map.h"
@@ -15,10 +16,15 @@
 
 namespace oktett {
 
-/// The photons of a scene, and which lights they stand for.
+/// Passes number `first`, first + step, ..., `count` of them.
+struct PassRange {
+  std::uint32_t first = 0, step = 1, count = 1;
+};
+
+/// The photons of a scene, or of one moment of it, and which lights they stand for.
 class Caustics {
  public:
-  Caustics(std::shared_ptr<const PhotonMap> map, const PhotonSource& source);
+  Caustics(std::shared_ptr<const PhotonMap> map, const PassRange& passes, const PhotonSource& source);
 
   const std::shared_ptr<const PhotonMap>& map() const { return map_; }
 
@@ -34,6 +40,7 @@ class Caustics {
 
  private:
   std::shared_ptr<const PhotonMap> map_;
+  PassRange passes_;
   std::vector<std::uint8_t> brings_;
   bool brings_distant_;
   std::uint32_t depth_;
@@ -44,8 +51,8 @@ inline bool wants_photons(const IntegratorSettings& settings) {
   return settings.kind == IntegratorKind::path && settings.caustics.photons > 0;
 }
 
-/// What photons the settings ask for.
-PhotonPlan photon_plan(const IntegratorSettings& settings);
+/// What photons the settings ask for, in a scene of so many moments.
+PhotonPlan photon_plan(const IntegratorSettings& settings, std::uint32_t moments = 1);
 
 /// Where the photons of a map come from.
 struct PhotonOptions {
@@ -53,8 +60,10 @@ struct PhotonOptions {
   bool all_passes = false;                 ///< trace also those that no sample of a pixel asks for
 };
 
-/// Traces the photons that the settings of `context` ask for, or takes those given. Throws Error if these are
-/// for another scene or other settings.
-Caustics make_caustics(const RenderContext& context, const PhotonOptions& options);
+/// Traces the photons that the settings ask for, or takes those given. Throws Error if these are for another
+/// scene or other settings. `moments`: the scene, or what it is at each moment while the shutter is open, no
+/// more of these than passes; pass number p belongs to moment p modulo their number. The result has the
+/// photons of each moment, all of one map.
+std::vector<Caustics> make_caustics(std::span<const RenderContext> moments, const PhotonOptions& options);
 
 }  // namespace oktett

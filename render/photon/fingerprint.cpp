@@ -83,9 +83,15 @@ std::string number_text(double x) {
 
 }  // namespace
 
-SceneFingerprint fingerprint(const RenderContext& context, const PhotonSource& source,
+SceneFingerprint fingerprint(std::span<const RenderContext> moments, const std::deque<PhotonSource>& sources,
                              const PhotonPlan& plan) {
-  return {geometry_hash(context), materials_hash(context, source, plan), lights_hash(source)};
+  Hasher geometry, materials, lights;
+  for (std::size_t m = 0; m < moments.size(); ++m) {
+    geometry.add(geometry_hash(moments[m]));
+    materials.add(materials_hash(moments[m], sources[m], plan));
+    lights.add(lights_hash(sources[m]));
+  }
+  return {geometry.value(), materials.value(), lights.value()};
 }
 
 std::string difference(const PhotonMap& map, const PhotonPlan& plan, const SceneFingerprint& scene) {
@@ -97,11 +103,12 @@ std::string difference(const PhotonMap& map, const PhotonPlan& plan, const Scene
   if (has.photons != plan.photons) return number("photons per pass:", has.photons, plan.photons);
   if (has.passes != plan.passes) return number("passes:", has.passes, plan.passes);
   if (has.depth != plan.depth) return number("depth", has.depth, plan.depth);
+  if (has.moments != plan.moments) return number("moments of motion:", has.moments, plan.moments);
   if (has.seed != plan.seed) return number("seed", has.seed, plan.seed);
   if (has.radius != plan.radius) return number("radius", has.radius, plan.radius);
   if (map.scene.geometry != scene.geometry) return "its scene has other geometry";
   if (map.scene.lights != scene.lights) return "its scene has other lights, or mirrors and glass elsewhere";
-  if (map.scene.materials != scene.materials) return "its scene has other materials or textures";
+  if (map.scene.materials != scene.materials) return "its scene has other materials, media or textures";
   return {};
 }
 

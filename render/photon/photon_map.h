@@ -63,6 +63,7 @@ struct PhotonPlan {
   std::uint32_t depth = 0;  ///< most bounces
   std::uint32_t seed = 0;
   double radius = 0;  ///< of the first pass in world units; 0: chosen by the photons of the first pass
+  std::uint32_t moments = 1;  ///< at which the scene stands differently; pass p is of moment p modulo moments
   bool operator==(const PhotonPlan&) const = default;
 };
 

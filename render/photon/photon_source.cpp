@@ -259,6 +259,7 @@ std::optional<PhotonStart> PhotonSource::emit(double choice, const SquareSample&
         emitter);
   }
   if (!start) return std::nullopt;
+  start->emitter = number;
   LightSample sample{};
   sample.emitter = number, sample.u = glowing.u, sample.v = glowing.v;
   start->power = start->power * lights_.texture_at(sample, textures_) * static_cast<float>(total / weight);

@@ -16,7 +16,8 @@ struct PhotonStart {
   Ray ray;
   /// In W per colour channel: the mean over many photons is the power of all lights that goes to the target.
   Color power;
-  bool distant = false;  ///< comes from infinitely far away; the ray starts outside the scene's bounds
+  std::uint32_t emitter = 0;  ///< of the LightSet
+  bool distant = false;       ///< comes from infinitely far away; the ray starts outside the scene's bounds
 };
 
 /// Sends photons of all lights towards one ball.

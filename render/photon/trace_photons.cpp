@@ -4,18 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "accel/accel.h"
-#include "core/random.h"
 #include "render/light/emitter.h"
-#include "render/sampling/owen_sobol.h"
+#include "render/photon/photon_choices.h"
+#include "render/photon/photon_media.h"
 #include "render/surface_bsdf.h"
 
 namespace oktett {
 
 PhotonEnergy& PhotonEnergy::operator+=(const PhotonEnergy& other) {
   emitted += other.emitted, stored += other.stored, absorbed += other.absorbed;
-  escaped += other.escaped, cut += other.cut;
+  escaped += other.escaped, media += other.media, cut += other.cut;
   return *this;
 }
 
@@ -28,54 +29,21 @@ constexpr unsigned kMostHoles = 128;
 /// Bounces before Russian roulette begins.
 constexpr unsigned kSureBounces = 3;
 
-/// What is decided at random for a photon. Those after `direction` are decided anew at each surface.
-enum class PhotonDecision : std::uint32_t {
-  light,
-  place,
-  direction,
-  hole,
-  lobe,
-  scattering,
-  roulette,
-  count
-};
-
-/// The random numbers of photons of one pass.
-class PhotonChoices {
- public:
-  // Pixels are numbered with 32 bits, so their keys are others.
-  PhotonChoices(std::uint32_t seed, std::uint32_t pass)
-      : key_(pixel_key(seed, (std::uint64_t{1} << 40) + pass)) {}
-
-  SquareSample point(std::uint32_t photon, PhotonDecision decision, unsigned level = 0) const {
-    return sobol_point(photon, sequence_key(key_, dimension(decision, level)));
-  }
-  float number(std::uint32_t photon, PhotonDecision decision, unsigned level) const {
-    return sobol_number(photon, sequence_key(key_, dimension(decision, level)));
-  }
-
- private:
-  static std::uint32_t dimension(PhotonDecision decision, unsigned level) {
-    constexpr auto per_level = static_cast<std::uint32_t>(PhotonDecision::count) - 3;
-    return static_cast<std::uint32_t>(decision) + level * per_level;
-  }
-
-  std::uint64_t key_;
-};
-
 /// Photons in flight, in columns.
 struct PhotonQueue {
   RayBatch rays;
   std::vector<std::uint32_t> number;
   std::vector<Color> power;
-  std::vector<float> index_square;  ///< of the medium that the photon is in
+  std::vector<float> index_square;  ///< around the photon, relative to where it started
   std::vector<std::uint16_t> bounces;
   std::vector<float> distance;
+  std::vector<EnclosureStack> enclosures;  ///< empty unless the scene tracks solids
 
   std::size_t size() const { return number.size(); }
   void clear() {
     rays.resize_uninitialized(0);
     number.clear(), power.clear(), index_square.clear(), bounces.clear(), distance.clear();
+    enclosures.clear();
   }
   void push_back(const Ray& ray, std::uint32_t photon, const Color& color, float square, unsigned bounce,
                  float way) {
@@ -88,7 +56,7 @@ struct PhotonQueue {
 /// The square of the index of refraction behind the surface over that before it, as a photon meets it.
 float index_change(const ShadingPoint& p) {
   if (p.principled && p.principled->thin) return 1;
-  const float ior = p.principled ? p.principled->ior : p.material->ior;
+  const float ior = p.principled ? p.principled->ior : p.ior;
   const float eta = p.front ? ior : 1 / ior;
   return eta * eta;
 }
@@ -134,35 +102,27 @@ class PhotonChunk {
 
   void emit(std::uint32_t first, std::uint32_t last) {
     const float share = 1 / static_cast<float>(plan_.photons);
-    std::vector<std::uint32_t> distant;
-    RayBatch outward;
+    std::vector<PhotonStart> starts;
+    std::vector<TrackingNumbers> numbers;
     for (std::uint32_t number = first; number < last; ++number) {
       const auto start = source_.emit(choices_.point(number, PhotonDecision::light).x,
                                       choices_.point(number, PhotonDecision::place),
                                       choices_.point(number, PhotonDecision::direction));
       if (!start) continue;
-      if (start->distant) {
-        distant.push_back(static_cast<std::uint32_t>(queue_.size()));
-        Ray back = start->ray;
-        back.direction = -back.direction;
-        outward.push_back(back);
-      }
+      starts.push_back(*start), numbers.push_back(choices_.before_start(number));
       queue_.push_back(start->ray, number, start->power * share, 1, 0, 0);
       energy_.emitted += double{color_weight(queue_.power.back())};
     }
-    if (!distant.empty()) stop_outside(distant, outward);
+    queue_.enclosures = start_enclosures(context_, starts);
+    const std::vector<Color> reaching = reaching_start(context_, starts, queue_.enclosures, numbers);
+    for (std::size_t i = 0; i < starts.size(); ++i) energy_.absorbed += attenuate(i, reaching[i]);
   }
 
-  /// Surfaces without bounds may stand between a distant light and the place where its photon starts.
-  void stop_outside(const std::vector<std::uint32_t>& distant, const RayBatch& outward) {
-    std::vector<std::uint8_t> occluded(distant.size());
-    any_hit(*context_.world->accel, outward, occluded, context_.isa);
-    for (std::size_t k = 0; k < distant.size(); ++k) {
-      if (!occluded[k]) continue;
-      Color& power = queue_.power[distant[k]];
-      energy_.absorbed += double{color_weight(power)};
-      power = {0, 0, 0};
-    }
+  /// Leaves the part `passing` of the power of photon `i` and returns what it loses.
+  double attenuate(std::size_t i, const Color& passing) {
+    const Color before = queue_.power[i];
+    queue_.power[i] = before * passing;
+    return double{color_weight(before)} - double{color_weight(queue_.power[i])};
   }
 
   void follow() {
@@ -170,6 +130,7 @@ class PhotonChunk {
     closest_hit(*context_.world->accel, queue_.rays.span(), hits_.span(), context_.isa);
     std::vector<std::uint32_t> met;
     for (std::uint32_t i = 0; i < queue_.size(); ++i) {
+      if (context_.tracks_enclosures) pass_media(i);
       if (hits_.item[i] == kNoId)
         energy_.escaped += double{color_weight(queue_.power[i])};
       else if (max_component(queue_.power[i]) > 0)
@@ -187,20 +148,50 @@ class PhotonChunk {
     }
   }
 
+  /// A photon that a medium scatters is lost: paths find its light by themselves.
+  void pass_media(std::uint32_t i) {
+    const Ray ray = queue_.rays[i];
+    const double end =
+        hits_.item[i] == kNoId ? std::numeric_limits<double>::infinity() : static_cast<double>(hits_.t[i]);
+    energy_.media +=
+        attenuate(i, passing_media(context_, queue_.enclosures[i], {ray.origin, ray.direction, end},
+                                   choices_.in_media(queue_.number[i], level_)));
+  }
+
+  /// `around`: the solids that the photon is in from here on; null if the scene tracks none.
   void push(std::size_t i, const ShadingPoint& p, const Vec3f& direction, const Color& power,
-            float index_square, unsigned bounces) {
+            float index_square, unsigned bounces, const EnclosureStack* around) {
     Ray ray;
     ray.origin = offset_origin(p.surface, direction), ray.direction = direction;
     next_.push_back(ray, queue_.number[i], power, index_square, bounces, queue_.distance[i] + p.t);
+    if (around != nullptr) next_.enclosures.push_back(*around);
   }
 
+  /// Solids count as in shade_path.
   void arrive(std::size_t i, const ShadingPoint& p) {
+    if (!context_.tracks_enclosures) return meet(i, p, nullptr, nullptr);
+    const EnclosureStack& before = queue_.enclosures[i];
+    const Boundary boundary = boundary_at(*context_.world, before, p.surface, p.front);
+    if (boundary.hidden)
+      return push(i, p, p.direction, queue_.power[i], queue_.index_square[i], queue_.bounces[i],
+                  &boundary.behind);
+    ShadingPoint between = p;
+    if (boundary.ior) {
+      between.ior = *boundary.ior;
+      if (between.principled) between.principled->ior = *boundary.ior;
+    }
+    meet(i, between, &before, &boundary.behind);
+  }
+
+  /// Keeps the photon at a surface and sends it on. `before` and `behind`: the solids on both sides.
+  void meet(std::size_t i, const ShadingPoint& p, const EnclosureStack* before,
+            const EnclosureStack* behind) {
     const std::uint32_t number = queue_.number[i];
     const Color power = queue_.power[i];
     const unsigned bounces = queue_.bounces[i];
     const float index_square = queue_.index_square[i];
     if (p.opacity < 1 && choices_.number(number, PhotonDecision::hole, level_) >= p.opacity)
-      return push(i, p, p.direction, power, index_square, bounces);
+      return push(i, p, p.direction, power, index_square, bounces, behind);
 
     const SurfaceBsdf bsdf(p);
     const bool stored = bounces > 0 && !bsdf.only_delta();
@@ -223,7 +214,8 @@ class PhotonChunk {
       return;
     }
     if (!survives(number, bounces + 1, power, onward)) return;
-    push(i, p, next->direction, onward, index_square * change, bounces + 1);
+    push(i, p, next->direction, onward, index_square * change, bounces + 1,
+         next->transmitted ? behind : before);
   }
 
   /// Russian roulette by the part of the photon's power that goes on.

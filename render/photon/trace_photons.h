@@ -12,8 +12,9 @@ namespace oktett {
 struct PhotonEnergy {
   double emitted = 0;
   double stored = 0;    ///< ended at a surface that keeps photons, after mirrors or glass
-  double absorbed = 0;  ///< ended at any other place of a surface
+  double absorbed = 0;  ///< ended at any other place of a surface, or on the way to where the photon starts
   double escaped = 0;   ///< left the scene
+  double media = 0;     ///< absorbed or scattered by media
   double cut = 0;       ///< was still on its way after the last bounce
 
   PhotonEnergy& operator+=(const PhotonEnergy& other);
@@ -27,8 +28,9 @@ struct TracedPhotons {
 
 /// Emits and follows the photons of pass number `pass`. A photon goes on as long as the material sends it in
 /// an ideal mirror or refracted direction, and is kept wherever a surface it meets on the way also scatters
-/// light otherwise, except on the surface that it meets first. The result depends on neither the camera nor
-/// the number of threads. Media are ignored.
+/// light otherwise, except on the surface that it meets first. Solids and their priorities bend it as they
+/// bend paths; media attenuate it by all that they absorb and scatter. The result depends on neither the
+/// camera nor the number of threads.
 TracedPhotons trace_photons(const RenderContext& context, const PhotonSource& source, const PhotonPlan& plan,
                             std::uint32_t pass);
 

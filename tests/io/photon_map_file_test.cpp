@@ -94,10 +94,10 @@ TEST_F(PhotonMapFile, EveryCutAndEveryChangedByteIsFound) {
 
 TEST_F(PhotonMapFile, ErrorsSayWhatIsWrong) {
   const std::string good = bytes();
-  put("oktett photons 2\n" + good.substr(17));
-  expect_error("version 1");
+  put("oktett photons 1\n" + good.substr(17));
+  expect_error("version 2");
   put("");
-  expect_error("version 1");
+  expect_error("version 2");
   put(good.substr(0, good.size() - 9));
   expect_error("cut short");
   std::string bad = good;
@@ -114,11 +114,11 @@ TEST_F(PhotonMapFile, ErrorsSayWhatIsWrong) {
   put_at(17 + 4, 5000u);
   expect_error("out of range");
   // The first pass is empty; the count of the second one is that of a file of 128 GB.
-  put_at(17 + 48 + 8 + 4, 0xffffffffu);
+  put_at(17 + 56 + 8 + 4, 0xffffffffu);
   expect_error("cut short");
-  put_at(17 + 48, -1.0f);
+  put_at(17 + 56, -1.0f);
   expect_error("radius");
-  const std::size_t photon = 17 + 48 + 8 + 8;
+  const std::size_t photon = 17 + 56 + 8 + 8;
   put_at(photon, std::numeric_limits<float>::infinity());
   expect_error("none can have");
   put_at(photon + 12, -1.0f);

@@ -85,49 +85,6 @@ TEST(Caustics, TheBiasVanishesAsTheCubeRoot) {
   EXPECT_NEAR(std::log(mean_square(1000000) / mean_square(10000)) / std::log(100.0), -1.0 / 3, 0.002);
 }
 
-/// A ball of glass and a mirror on a floor, under a lamp that paths can find.
-Scene lamp_over_glass(const Material& ball) {
-  Scene scene = bare_scene(12);
-  scene.integrator.kind = IntegratorKind::path;
-  scene.integrator.depth = 5;
-  scene.camera.from = {0, 3, 4}, scene.camera.at = {0, 0.3, 0}, scene.camera.fov = 40;
-  add_object(scene, PlaneShape{{0, 1, 0}, 0}, add_material(scene, diffuse({0.6f, 0.6f, 0.6f})));
-  add_object(scene, SphereShape{{-0.5, 0.7, 0}, 0.5}, add_material(scene, ball));
-  // Scatters light itself, too.
-  Material shiny = diffuse({0.5f, 0.3f, 0.3f});
-  shiny.diffuse = 0.6f, shiny.reflection = 0.4f;
-  add_object(scene, BoxShape{{0.4, 0, -0.4}, {0.9, 0.8, 0.4}}, add_material(scene, shiny));
-  Material lamp = glowing({4, 4, 4});
-  lamp.emits_behind = false;
-  add_object(scene, DiskShape{{0, 4, 1}, {0, -1, 0}, 1.2}, add_material(scene, lamp));
-  return scene;
-}
-
-/// Expects that blocks of the picture agree within what both pictures say of their own noise, but for a part
-/// `bias` of the light.
-void expect_same_light(const Scene& scene, const CausticSettings& caustics, double bias) {
-  Scene plain = scene;
-  plain.integrator.samples = 4096;
-  Scene with = scene;
-  with.integrator.samples = 512, with.integrator.caustics = caustics;
-  const Picture a = run(plain).picture, b = run(with).picture;
-  int apart = 0;
-  for (std::uint32_t y = 0; y < 12; y += 3)
-    for (std::uint32_t x = 0; x < 12; x += 3) {
-      double difference = 0, variance = 0, light = 0;
-      for (std::uint32_t k = 0; k < 9; ++k) {
-        const std::uint32_t px = x + k % 3, py = y + k / 3;
-        difference += double{value(a, "G", px, py)} - double{value(b, "G", px, py)};
-        variance += double{value(a, "Variance.G", px, py)} + double{value(b, "Variance.G", px, py)};
-        light += double{value(a, "G", px, py)};
-      }
-      const double allowed = 3 * std::sqrt(variance) + bias * light;
-      if (std::abs(difference) > allowed) ++apart;
-      EXPECT_LT(std::abs(difference), 2 * allowed) << x << ' ' << y << ' ' << light;
-    }
-  EXPECT_LE(apart, 1);
-}
-
 TEST(Caustics, PhotonsAndPathsFindTheSameLight) {
   CausticSettings caustics;
   caustics.photons = 20000, caustics.passes = 64;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random.h"
+#include "render/medium/density_grid.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::test {
@@ -55,5 +57,20 @@ inline void expect_mean(const Mean& mean, const Vec3d& want, double most_error) 
 }
 
 inline Vec3d exp_of(const Vec3d& v) { return {std::exp(v.x), std::exp(v.y), std::exp(v.z)}; }
+
+/// A random number in [0, 1).
+inline double random(std::uint32_t i, std::uint32_t k) {
+  return static_cast<double>(random_bits(9, i, k) >> 11) * 0x1p-53;
+}
+
+/// Random densities, many of them 0 and a few large.
+inline std::shared_ptr<const DensityGrid> random_grid(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz) {
+  Column<float> values(std::size_t{nx} * ny * nz);
+  for (std::uint32_t i = 0; i < values.size(); ++i) {
+    const double u = random(i, 77);
+    values[i] = static_cast<float>(u < 0.5 ? 0 : u < 0.9 ? u : 4 * u);
+  }
+  return std::make_shared<const DensityGrid>(nx, ny, nz, std::move(values));
+}
 
 }  // namespace oktett::test
