@@ -176,6 +176,48 @@ BvhNode node_of(const std::vector<Box>& boxes) {
 }
 
 // The fused slab test meets every box that the ray meets, at every scale, also if it only touches a corner.
+/// Short rays enter the tree at what the box around them meets. The ends of these all lie on one plane, most of
+/// them off by a rounding error in the same direction.
+TEST(Interleaved, ShortRaysThatEndOnASurface) {
+  CaseRandom random(71);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int bundle = 0; bundle < 64; ++bundle) {
+      const float height = static_cast<float>(random.sign());
+      TriangleMesh mesh;
+      for (std::uint32_t i = 0; i < 64; ++i) {
+        const auto x = static_cast<float>(i % 8), y = static_cast<float>(i / 8);
+        for (const Vec2f& corner : {Vec2f{x, y}, Vec2f{x + 1, y}, Vec2f{x, y + 1}}) {
+          Vec3f p;
+          p[axis] = height, p[(axis + 1) % 3] = corner.x, p[(axis + 2) % 3] = corner.y;
+          mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+          mesh.positions.push_back(p);
+        }
+      }
+      const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
+      const float start = height + static_cast<float>(random.magnitude(-1, 5));
+      std::vector<Ray> rays(256);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays[i].origin[axis] = start, rays[i].direction[axis] = -1;
+        rays[i].origin[(axis + 1) % 3] = static_cast<float>(i % 8) + 0.25f;
+        rays[i].origin[(axis + 2) % 3] = static_cast<float>(i / 8 % 8) + 0.25f;
+      }
+      std::vector<Hit> hits(rays.size());
+      closest_hit(*accel, rays, hits);
+      RayBatch batch;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        rays[i].tmax = hits[i].t;
+        batch.push_back(rays[i]);
+      }
+      std::vector<std::uint8_t> occluded(rays.size());
+      for (const Isa isa : available_isas()) {
+        any_hit(*accel, batch.span(), occluded.data(), isa, TraceMode::interleaved);
+        EXPECT_EQ(std::count(occluded.begin(), occluded.end(), 1), 256)
+            << to_string(isa) << " axis " << axis << " height " << height << " from " << start;
+      }
+    }
+  }
+}
+
 TEST(Interleaved, NodesMissNoBox) {
   constexpr int kRays = 8;
   using A = ScalarIsa;

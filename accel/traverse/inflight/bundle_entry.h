@@ -40,7 +40,8 @@ OKTETT_INLINE Box reach_of(const RaySpan& rays, float extent) {
   }
   const float slack =
       kBundleSlack * (extent + std::max(max_component(abs(box.lo)), max_component(abs(box.hi))));
-  return {box.lo - Vec3f(slack), box.hi + Vec3f(slack)};
+  const Vec3f room{slack, slack, slack};
+  return {box.lo - room, box.hi + room};
 }
 
 /// A node made for one bundle: its children are all that the rays of the bundle can meet in the tree.
