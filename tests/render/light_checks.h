@@ -1,5 +1,6 @@
 #pragma once
-/// \file Oracles for light sampling: surfaces cut into small patches, and Pearson's chi-squared test.
+/// \file Oracles for light sampling: surfaces cut into small patches, Lambert's formula, and Pearson's
+/// chi-squared test.
 
 #include <algorithm>
 #include <cmath>
@@ -87,6 +88,17 @@ inline std::size_t cube_cell(const Vec3d& direction, int n) {
   const auto cell = [&](double c) { return std::clamp(static_cast<int>((c / m + 1) / 2 * n), 0, n - 1); };
   const int face = 2 * axis + (d[axis] < 0);
   return static_cast<std::size_t>((face * n + cell(d[(axis + 1) % 3])) * n + cell(d[(axis + 2) % 3]));
+}
+
+/// Lambert's formula: the irradiance of a polygon of radiance 1 that lies above the horizon.
+inline double lambert(const std::vector<Vec3d>& corners, const Vec3d& point, const Vec3d& n) {
+  double sum = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3d a = normalize(corners[i] - point), b = normalize(corners[(i + 1) % corners.size()] - point);
+    const Vec3d side = cross(a, b);
+    sum += std::atan2(length(side), dot(a, b)) * dot(normalize(side), n) / 2;
+  }
+  return std::abs(sum);
 }
 
 /// How many standard deviations Pearson's sum lies above its mean (Wilson and Hilferty 1931). `expected` and

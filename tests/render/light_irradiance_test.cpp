@@ -13,17 +13,6 @@ using namespace light_checks;
 
 constexpr Color kWhite{1, 1, 1};
 
-/// Lambert's formula: the irradiance of a polygon of radiance 1 that lies above the horizon.
-double lambert(const std::vector<Vec3d>& corners, const Vec3d& point, const Vec3d& n) {
-  double sum = 0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec3d a = normalize(corners[i] - point), b = normalize(corners[(i + 1) % corners.size()] - point);
-    const Vec3d side = cross(a, b);
-    sum += std::atan2(length(side), dot(a, b)) * dot(normalize(side), n) / 2;
-  }
-  return std::abs(sum);
-}
-
 /// The mean of radiance * cosine / pdf over independent samples, and its standard error.
 struct Estimate {
   double mean = 0, error = 0;
