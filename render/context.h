@@ -18,6 +18,7 @@
 
 namespace oktett {
 
+struct LightGroups;
 struct PathSurface;
 struct Mattes;
 
@@ -64,9 +65,10 @@ struct RenderContext {
   /// transparent.
   bool opaque_background = false;
   bool data_layers = true;
-  float ao_radius = 1;                  ///< reach of ambient-occlusion rays
-  float near_depth = 0, far_depth = 1;  ///< what the depth integrator shows as white and black
-  const Mattes* mattes = nullptr;       ///< null: no mattes are wanted
+  float ao_radius = 1;                        ///< reach of ambient-occlusion rays
+  float near_depth = 0, far_depth = 1;        ///< what the depth integrator shows as white and black
+  const Mattes* mattes = nullptr;             ///< null: no mattes are wanted
+  const LightGroups* light_groups = nullptr;  ///< null: no layers of light groups are wanted
   /// If not null, one for each moment while the shutter is open, see render/moments.h.
   const std::vector<RenderContext>* moments = nullptr;
   float footprint_scale = 1;  ///< width of a sample's share of the pixel, in pixels

@@ -70,6 +70,7 @@ struct Material {
   Color specular_color{1, 1, 1};  ///< colour of highlights and mirror reflections
   Color emission{0, 0, 0};        ///< radiance
   bool emits_behind = true;       ///< both sides glow; false: only that of the geometric normal
+  std::string light_group{};      ///< of `emission`; empty: the default group
   float ambient = 0.1f;           ///< [0, inf)
   float diffuse = 0.8f;           ///< [0, inf)
   float specular = 0;             ///< weight of the Phong highlight, [0, inf)

@@ -17,6 +17,7 @@
 #include "render/film/film_state.h"
 #include "render/film/tile.h"
 #include "render/geometry.h"
+#include "render/light_groups.h"
 #include "render/moments.h"
 #include "render/photon/caustics.h"
 
@@ -157,6 +158,9 @@ RenderResult render_here(Scene scene, const RenderOptions& options) {
   const bool wants_mattes = scene.film.cryptomatte && options.data_layers;
   const Mattes mattes = wants_mattes ? mattes_of(world) : Mattes{};
   if (wants_mattes) context.mattes = &mattes;
+  const LightGroups groups = light_groups(scene);
+  if (groups.any() && context.settings.kind == IntegratorKind::path && options.data_layers)
+    context.light_groups = &groups;
   result.picture = make_picture(format_of(context));
   result.picture.attributes = mattes.attributes;
   moments.share(scene, context);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file A scene as data: what a scene file says, or what a program puts together, before anything is built.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -174,8 +175,14 @@ using Light = std::variant<PointLight, SpotLight, DirectionalLight, EnvironmentL
 
 /// What may be said of any light.
 struct LightTraits {
-  MotionPointer motion;  ///< moves the light; not of environments and skies
+  MotionPointer motion{};  ///< moves the light; not of environments and skies
+  std::string group{};     ///< the light group; empty: kDefaultLightGroup
 };
+
+/// The group of all light that is in no other: that of lights without a group, the background and media.
+inline constexpr const char* kDefaultLightGroup = "default";
+/// Most light groups of a scene, the default one included.
+inline constexpr std::size_t kMostLightGroups = 64;
 
 /// A mesh, shared by all objects that show the same file, and the material of each of its slots.
 struct MeshShape {

@@ -8,6 +8,7 @@
 #include "accel/placed_geometry.h"
 #include "core/math.h"
 #include "render/light/sky.h"
+#include "render/light_groups.h"
 #include "render/surface_textures.h"
 
 namespace oktett {
@@ -75,8 +76,9 @@ static bool has_place(const Light& light) {
 /// Turns glowing surfaces into emitters.
 class EmitterCollector {
  public:
-  EmitterCollector(const World& world, SceneLights& lights, std::vector<Emitter>& emitters)
-      : world_(world), lights_(lights), emitters_(emitters) {}
+  EmitterCollector(const World& world, const LightGroups& groups, SceneLights& lights,
+                   std::vector<Emitter>& emitters)
+      : world_(world), groups_(groups), lights_(lights), emitters_(emitters) {}
 
   void collect() {
     const auto glows = [](const Material& m) { return can_sample(m); };
@@ -116,9 +118,12 @@ class EmitterCollector {
     return can_sample(m) ? &m : nullptr;
   }
 
-  std::uint32_t add_emitter(const PlacedGeometry& p, std::uint32_t primitive, Emitter emitter) {
+  std::uint32_t add_emitter(const PlacedGeometry& p, std::uint32_t primitive, const Material& m,
+                            Emitter emitter) {
     const auto number = static_cast<std::uint32_t>(emitters_.size());
     lights_.keys_.push_back({p.instance, p.first_item + primitive, number});
+    const auto material = static_cast<std::uint32_t>(&m - world_.materials.data());
+    if (groups_.any()) lights_.groups_.push_back(groups_.material(material));
     emitters_.push_back(std::move(emitter));
     return number;
   }
@@ -139,7 +144,7 @@ class EmitterCollector {
         if (m->emission_texture != kNoId) continue;
         std::swap(e.b, e.c);
       }
-      const std::uint32_t number = add_emitter(p, k, e);
+      const std::uint32_t number = add_emitter(p, k, *m, e);
       if (m->emission_texture != kNoId) lights_.textured_.push_back({number, m->emission_texture, k, &mesh});
     }
   }
@@ -151,7 +156,7 @@ class EmitterCollector {
     for (std::uint32_t k = 0; k < shape.spheres.size(); ++k) {
       const SphereShape& s = shape.spheres[k];
       add_emitter(
-          p, k,
+          p, k, *m,
           SphereEmitter{Vec3f(p.to_world.point(s.center)), static_cast<float>(s.radius * std::abs(scale)),
                         m->emission, m->emits_behind});
     }
@@ -163,7 +168,7 @@ class EmitterCollector {
     if (m == nullptr || m->emission_texture != kNoId || scale == 0) return;
     const Vec3d normal = p.to_world.inverse().normal_by_inverse(shape.normal);
     add_emitter(
-        p, 0,
+        p, 0, *m,
         DiskEmitter{Vec3f(p.to_world.point(shape.center)), Vec3f(normalize(normal)),
                     static_cast<float>(shape.radius * std::abs(scale)), m->emission, m->emits_behind});
   }
@@ -176,7 +181,7 @@ class EmitterCollector {
     const double size = std::max(length(u), length(v));
     if (length(rest) > 1e-6 * size || std::abs(dot(u, v)) > 1e-6 * length(u) * length(v)) return;
     const bool mirrored = p.to_world.determinant() < 0;
-    add_emitter(p, 0,
+    add_emitter(p, 0, *m,
                 RectangleEmitter{Vec3f(corner(0)), Vec3f(mirrored ? v : u), Vec3f(mirrored ? u : v),
                                  m->emission, m->emits_behind});
   }
@@ -186,6 +191,7 @@ class EmitterCollector {
   void add(const PlacedGeometry&, const Shape&) {}
 
   const World& world_;
+  const LightGroups& groups_;
   SceneLights& lights_;
   std::vector<Emitter>& emitters_;
 };
@@ -197,21 +203,33 @@ static bool is_environment(const Light& light) {
 SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLights* like)
     : texture_list_(scene.textures) {
   std::vector<Emitter> emitters;
-  for (const Light& light : scene.lights) {
+  const LightGroups groups = light_groups(scene);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
     if (like != nullptr && is_environment(light))
       emitters.push_back(EnvironmentEmitter{like->environments_[environments_.size()]});
     else
-      emitters.push_back(std::visit([](const auto& l) { return emitter(l); }, light));
+      std::visit([&](const auto& l) { emitters.push_back(emitter(l)); }, light);
     if (const auto* environment = std::get_if<EnvironmentEmitter>(&emitters.back()))
       environments_.push_back(environment->map);
     if (const auto* sky = std::get_if<SkyLight>(&light)) emitters.push_back(emitter(sun_of(*sky)));
+    if (groups.any()) groups_.resize(emitters.size(), groups.of_light[i]);
     const auto* directional = std::get_if<DirectionalLight>(&light);
     const bool point = directional != nullptr ? directional->angle == 0 : has_place(light);
     has_environment_ |= !point;
   }
   // Only path tracing asks for surfaces, of which there may be millions.
-  if (scene.integrator.kind == IntegratorKind::path) EmitterCollector(world, *this, emitters).collect();
+  if (scene.integrator.kind == IntegratorKind::path)
+    EmitterCollector(world, groups, *this, emitters).collect();
   set_ = LightSet(std::move(emitters));
+}
+
+std::optional<std::uint8_t> SceneLights::environment_group() const {
+  const std::vector<std::uint32_t>& visible = set_.visible();
+  const std::uint8_t first = visible.empty() ? std::uint8_t{0} : group(visible.front());
+  for (const std::uint32_t emitter : visible)
+    if (group(emitter) != first) return std::nullopt;
+  return first;
 }
 
 std::uint32_t SceneLights::emitter_at(const Hit& hit) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -45,6 +46,11 @@ class SceneLights {
   /// Whether rays that meet nothing can find more light than the background's.
   bool has_environment() const { return has_environment_; }
 
+  /// The light group of an emitter of set().
+  std::uint8_t group(std::uint32_t emitter) const { return groups_.empty() ? 0 : groups_[emitter]; }
+  /// The light group of all infinite emitters that rays meet; nothing if these are in several.
+  std::optional<std::uint8_t> environment_group() const;
+
  private:
   /// A triangle whose emission has a texture.
   struct TexturedEmitter {
@@ -59,9 +65,10 @@ class SceneLights {
   friend class EmitterCollector;
 
   LightSet set_;
-  std::span<const Texture> texture_list_;                            ///< Scene::textures
-  std::vector<EmitterKey> keys_;                                     ///< ordered by instance and item
-  std::vector<TexturedEmitter> textured_;                            ///< ordered by emitter
+  std::vector<std::uint8_t> groups_;       ///< of each emitter; empty if all are in the default group
+  std::span<const Texture> texture_list_;  ///< Scene::textures
+  std::vector<EmitterKey> keys_;           ///< ordered by instance and item
+  std::vector<TexturedEmitter> textured_;  ///< ordered by emitter
   std::vector<std::shared_ptr<const EnvironmentMap>> environments_;  ///< in the order of their lights
   bool has_environment_ = false;
 };

@@ -11,6 +11,7 @@
 #include "io/image/output.h"
 #include "io/text/mapped_file.h"
 #include "render/photon/photon_map.h"
+#include "render/scene.h"
 
 namespace oktett {
 namespace {
@@ -82,7 +83,7 @@ class Pieces {
 bool is_possible(const Photon& p) {
   const bool power = p.power.x >= 0 && p.power.y >= 0 && p.power.z >= 0;
   return is_finite(p.position) && is_finite(p.power) && power && p.bounces > 0 && p.bounces <= kMostBounces &&
-         p.unused == 0;
+         p.light_group < kMostLightGroups;
 }
 
 PhotonPass read_pass(Pieces& pieces) {

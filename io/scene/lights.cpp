@@ -1,5 +1,8 @@
 /// \file The lights of scene files. Lamps that have an area become objects that glow.
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -34,19 +37,31 @@ Vec3d read_direction(SceneLoad& load, const YamlNode& node) {
   return direction;
 }
 
+/// What is said of the light that was read last.
+LightTraits& traits_of_last(SceneLoad& load) {
+  load.scene.light_traits.resize(load.scene.lights.size());
+  return load.scene.light_traits.back();
+}
+
+/// Adds a light and puts it into its group.
+void add_light(SceneLoad& load, const Fields& fields, Light light) {
+  load.scene.lights.push_back(std::move(light));
+  if (const YamlNode* group = fields["light_group"])
+    traits_of_last(load).group = read_light_group(load, *group);
+}
+
 /// Moves the light that was read last.
 void read_light_motion(SceneLoad& load, const Fields& fields) {
   const YamlNode* node = fields["motion"];
   if (!node) return;
   Motion motion;
   motion.factors.push_back(read_motion(load.values, *node));
-  std::vector<Light>& lights = load.scene.lights;
   if (!motion.moves()) {
-    lights.back() = moved_light(motion.at(0), lights.back());
+    Light& last = load.scene.lights.back();
+    last = moved_light(motion.at(0), last);
     return;
   }
-  load.scene.light_traits.resize(lights.size());
-  load.scene.light_traits.back().motion = std::make_shared<const Motion>(std::move(motion));
+  traits_of_last(load).motion = std::make_shared<const Motion>(std::move(motion));
 }
 
 /// The file of `profile`, if it is given, and what goes with it.
@@ -69,8 +84,9 @@ void read_profile(SceneLoad& load, const Fields& fields, const YamlNode& node, P
 }
 
 void read_point(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a point light",
-                      {"position", "color", "intensity", "power", "falloff", "profile", "rotate", "motion"});
+  const Fields fields(
+      node, "a point light",
+      {"position", "color", "intensity", "power", "falloff", "profile", "rotate", "motion", "light_group"});
   PointLight light;
   light.position = load.values.vector(fields.require("position"));
   read_light_color(load, fields, node, "intensity", light.color);
@@ -78,14 +94,14 @@ void read_point(SceneLoad& load, const YamlNode& node) {
   // An intensity means light that falls off.
   light.falloff = fields["intensity"] || fields["power"] || fields["profile"];
   load.values.read(fields["falloff"], light.falloff);
-  load.scene.lights.emplace_back(light);
+  add_light(load, fields, light);
   read_light_motion(load, fields);
 }
 
 void read_spot(SceneLoad& load, const YamlNode& node) {
   const Fields fields(node, "a spot light",
                       {"position", "direction", "at", "color", "intensity", "power", "inner_angle",
-                       "outer_angle", "profile", "rotate", "motion"});
+                       "outer_angle", "profile", "rotate", "motion", "light_group"});
   SpotLight light;
   light.position = load.values.vector(fields.require("position"));
   const YamlNode *direction = fields["direction"], *at = fields["at"];
@@ -106,17 +122,18 @@ void read_spot(SceneLoad& load, const YamlNode& node) {
   load.values.read(fields["inner_angle"], light.inner_angle, {0, 180});
   if (light.inner_angle > light.outer_angle)
     throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
-  load.scene.lights.emplace_back(light);
+  add_light(load, fields, light);
   read_light_motion(load, fields);
 }
 
 void read_directional(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a directional light", {"direction", "color", "irradiance", "angle", "motion"});
+  const Fields fields(node, "a directional light",
+                      {"direction", "color", "irradiance", "angle", "motion", "light_group"});
   DirectionalLight light;
   if (const YamlNode* direction = fields["direction"]) light.direction = read_direction(load, *direction);
   read_light_color(load, fields, node, "irradiance", light.color);
   load.values.read(fields["angle"], light.angle, {0, 180});
-  load.scene.lights.emplace_back(light);
+  add_light(load, fields, light);
   read_light_motion(load, fields);
 }
 
@@ -138,22 +155,23 @@ std::shared_ptr<const EnvironmentPicture> read_environment_picture(SceneLoad& lo
 }
 
 void read_environment(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "an environment", {"file", "color", "rotate"});
+  const Fields fields(node, "an environment", {"file", "color", "rotate", "light_group"});
   EnvironmentLight light;
   load.values.read_color(fields["color"], light.color);
   load.values.read(fields["rotate"], light.rotation, kAnyNumber);
-  light.picture = read_environment_picture(load, fields.require("file"));
-  load.scene.lights.emplace_back(std::move(light));
+  add_light(load, fields, std::move(light));
+  std::get<EnvironmentLight>(load.scene.lights.back()).picture =
+      read_environment_picture(load, fields.require("file"));
 }
 
 void read_sky(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a sky", {"sun", "turbidity", "ground", "color"});
+  const Fields fields(node, "a sky", {"sun", "turbidity", "ground", "color", "light_group"});
   SkyLight light;
   if (const YamlNode* sun = fields["sun"]) light.sun = read_direction(load, *sun);
   load.values.read(fields["turbidity"], light.turbidity, {2, 10});
   load.values.read_color(fields["ground"], light.ground);
   load.values.read_color(fields["color"], light.color);
-  load.scene.lights.emplace_back(light);
+  add_light(load, fields, light);
 }
 
 /// Adds an object that glows, of `area`. It is given `radiance`, or `power` in all, which a diffuse emitter
@@ -165,6 +183,7 @@ void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Sh
   m.color = {0, 0, 0}, m.ambient = m.diffuse = 0;
   m.emission = {1, 1, 1};
   m.emits_behind = false;
+  if (const YamlNode* group = fields["light_group"]) m.light_group = read_light_group(load, *group);
   load.values.read_color(radiance, m.emission);
   if (power) {
     load.values.read_color(power, m.emission);
@@ -185,7 +204,8 @@ void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Sh
 }
 
 void read_sphere_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a sphere light", {"center", "radius", "radiance", "power", "motion"});
+  const Fields fields(node, "a sphere light",
+                      {"center", "radius", "radiance", "power", "motion", "light_group"});
   SphereShape sphere;
   sphere.center = load.values.vector(fields.require("center"));
   load.values.read(fields["radius"], sphere.radius, kPositive);
@@ -193,7 +213,8 @@ void read_sphere_light(SceneLoad& load, const YamlNode& node) {
 }
 
 void read_disk_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a disk light", {"center", "normal", "radius", "radiance", "power", "motion"});
+  const Fields fields(node, "a disk light",
+                      {"center", "normal", "radius", "radiance", "power", "motion", "light_group"});
   DiskShape disk;
   disk.normal = {0, -1, 0};
   disk.center = load.values.vector(fields.require("center"));
@@ -203,7 +224,8 @@ void read_disk_light(SceneLoad& load, const YamlNode& node) {
 }
 
 void read_rectangle_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a rectangle light", {"corner", "u", "v", "radiance", "power", "motion"});
+  const Fields fields(node, "a rectangle light",
+                      {"corner", "u", "v", "radiance", "power", "motion", "light_group"});
   const Vec3d corner = load.values.vector(fields.require("corner"));
   const Vec3d u = load.values.vector(fields.require("u")), v = load.values.vector(fields.require("v"));
   const double area = length(u) * length(v);
@@ -227,6 +249,24 @@ constexpr LightKind kLightKinds[] = {{"point", read_point},
                                      {"rectangle", read_rectangle_light}};
 
 }  // namespace
+
+std::string read_light_group(SceneLoad& load, const YamlNode& node) {
+  std::string name = load.values.text(node);
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  if (name.empty() || !std::ranges::all_of(name, is_plain))
+    throw Error(node.where(),
+                "a light group's name has letters, digits, '_' and '-' only, because layers of "
+                "the picture are named after it; found " +
+                    quote(name));
+  if (name == kDefaultLightGroup) return {};
+  load.light_groups.insert(name);
+  // The default group is one more.
+  if (load.light_groups.size() >= kMostLightGroups)
+    throw Error(node.where(), fmt::format("there are more than {} light groups", kMostLightGroups - 1));
+  return name;
+}
 
 void read_lights(SceneLoad& load, const YamlNode& node) {
   load.scene.lights_given = true;

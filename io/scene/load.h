@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -49,7 +50,8 @@ struct SceneLoad {
   NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
   std::vector<std::pair<std::uint32_t, Location>> phong_places;  ///< of the materials of Phong's model
-  std::vector<int> prototype_levels;  ///< of instances, its own included, per prototype
+  std::set<std::string> light_groups;  ///< names that lights and materials have given
+  std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;
 
   /// Adds a warning; after the first thousand only says that there are more.

@@ -8,6 +8,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
+#include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
 
 namespace oktett {
@@ -40,7 +41,9 @@ void read_map(SceneLoad& load, const YamlNode* node, std::uint32_t& texture) {
 
 /// The complex index of refraction of a metal.
 std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, const YamlNode& node) {
-  const YamlNode *eta = fields["eta"], *k = fields["k"];
+  const YamlNode *metal_name = fields["metal"], *eta = fields["eta"], *k = fields["k"];
+  if (metal_name && (eta || k)) throw Error(node.where(), "expected 'metal' or 'eta' and 'k', not both");
+  if (metal_name) return load.values.choice<Conductor>(*metal_name, kMetals);
   if (!eta && !k) return std::nullopt;
   if (!eta || !k) throw Error(node.where(), "a metal's index of refraction needs both 'eta' and 'k'");
   Conductor metal;
@@ -52,7 +55,7 @@ std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, c
 }
 
 void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
-  std::vector<const char*> keys{"base_color", "thin", "sheen_color", "eta", "k"};
+  std::vector<const char*> keys{"base_color", "thin", "sheen_color", "metal", "eta", "k"};
   for (const PrincipledNumber& number : kPrincipledNumbers) keys.push_back(number.name);
   const Fields fields(node, "a principled material", keys);
   PrincipledMaterial principled;
@@ -64,6 +67,11 @@ void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
   read_textured(load, fields["sheen_color"], p.sheen_color, principled.sheen_color_texture);
   load.values.read(fields["thin"], p.thin);
   p.conductor = read_conductor(load, fields, node);
+  if (fields["metal"]) {
+    if (!fields["metallic"]) p.metallic = 1;
+    // What shows no indices of refraction shows this.
+    if (!fields["base_color"]) p.base_color = m.color = head_on_color(*p.conductor);
+  }
   m.principled = principled;
   resemble_principled(m);
 }
@@ -73,9 +81,9 @@ constexpr const char* kPhongKeys[] = {"color",    "specular_color", "ambient",  
                                       "phong",    "reflection",     "transparency", "ior",     "roughness",
                                       "metallic", "map_color",      "map_specular"};
 constexpr const char* kCommonKeys[] = {
-    "principled",  "emits",    "emission",          "map_emission",        "opacity",
-    "map_opacity", "map_bump", "map_normal",        "bump_scale",          "surface",
-    "interior",    "priority", "attenuation_color", "attenuation_distance"};
+    "principled",  "emits",    "emission",          "map_emission",         "opacity",
+    "map_opacity", "map_bump", "map_normal",        "bump_scale",           "surface",
+    "interior",    "priority", "attenuation_color", "attenuation_distance", "light_group"};
 
 /// Throws Error if a principled material also has keys of Phong's model.
 void refuse_phong_keys(const YamlNode& node) {
@@ -110,6 +118,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   read_roughness(load, fields["roughness"], fields["metallic"], m);
   if (const YamlNode* emits = fields["emits"])
     m.emits_behind = values.choice<bool>(*emits, {{"both", true}, {"front", false}});
+  if (const YamlNode* group = fields["light_group"]) m.light_group = read_light_group(load, *group);
   read_map(load, fields["map_color"], m.color_texture);
   read_map(load, fields["map_specular"], m.specular_texture);
   read_map(load, fields["map_emission"], m.emission_texture);

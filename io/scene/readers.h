@@ -29,6 +29,8 @@ void read_scene_tree(const YamlNode& root);
 
 /// Adds the lights in a list.
 void read_lights(SceneLoad& load, const YamlNode& node);
+/// The name of a light group; empty for the default one.
+std::string read_light_group(SceneLoad& load, const YamlNode& node);
 /// Adds the named media in the map `media` to the scene.
 void define_media(SceneLoad& load, const YamlNode& media);
 /// Sets what fills the space around the scene, by the name of a medium.

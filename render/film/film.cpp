@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "render/film/cryptomatte.h"
+#include "render/film/light_layers.h"
+#include "render/light_groups.h"
 
 namespace oktett {
 namespace {
@@ -100,7 +102,7 @@ bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
 bool operator==(const FilmFormat& a, const FilmFormat& b) {
   const auto numbers = [](const FilmFormat& f) {
     return std::make_tuple(f.window.x0, f.window.y0, f.window.x1, f.window.y1, f.full_width, f.full_height,
-                           f.data_layers, f.sample_counts, f.mattes);
+                           f.data_layers, f.sample_counts, f.mattes, f.light_groups);
   };
   return numbers(a) == numbers(b);
 }
@@ -112,7 +114,8 @@ FilmFormat format_of(const RenderContext& context) {
           context.full_height,
           layers,
           layers && context.settings.error > 0,
-          layers && context.mattes != nullptr};
+          layers && context.mattes != nullptr,
+          context.light_groups != nullptr ? context.light_groups->names : std::vector<std::string>{}};
 }
 
 Picture make_picture(const FilmFormat& format) {
@@ -138,6 +141,7 @@ Picture make_picture(const FilmFormat& format) {
     picture.planes.push_back(
         {kSampleCountPlane, PlaneType::unsigned_int, {}, Column<std::uint32_t>(size, 0)});
   if (format.mattes) add_matte_planes(picture);
+  add_light_planes(format.light_groups, picture);
   return picture;
 }
 

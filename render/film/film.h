@@ -2,6 +2,7 @@
 /// \file Sums the samples of a pixel and writes pixels to the picture.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "render/picture.h"
@@ -33,8 +34,9 @@ struct FilmFormat {
   PixelWindow window;
   std::uint32_t full_width = 1, full_height = 1;
   bool data_layers = false;
-  bool sample_counts = false;  ///< the plane kSampleCountPlane; only with data layers
-  bool mattes = false;         ///< the planes of add_matte_planes; only with data layers
+  bool sample_counts = false;               ///< the plane kSampleCountPlane; only with data layers
+  bool mattes = false;                      ///< the planes of add_matte_planes; only with data layers
+  std::vector<std::string> light_groups{};  ///< of the planes of add_light_planes; only with data layers
 };
 bool operator==(const FilmFormat& a, const FilmFormat& b);
 
@@ -55,7 +57,7 @@ FilmFormat format_of(const RenderContext& context);
 ///   are those of the sample nearest to the pixel's centre, never filtered.
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.
 /// - sampleCount.I, in adaptive sampling only, is the number of the pixel's samples.
-/// Planes of mattes follow.
+/// Planes of mattes and of light groups follow.
 Picture make_picture(const FilmFormat& format);
 
 /// R, G, B and A of the pixels of a tile, in the order of their numbers. A tile without data layers is

@@ -31,12 +31,14 @@ void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work)
   for (const WavefrontPixel& p : work.order) work.numbers[p.y * width + p.x] = p.number;
 }
 
-void clamp_samples(double most, ColorColumn& colors) {
+void clamp_samples(double most, SampleBatch& samples) {
   const auto limit = static_cast<float>(most);
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const Color color = colors[i];
+  for (std::size_t i = 0; i < samples.color.size(); ++i) {
+    const Color color = samples.color[i];
     const float peak = max_component(color);
-    if (peak > limit && is_finite(color)) colors.set(i, color * (limit / peak));
+    if (!(peak > limit) || !is_finite(color)) continue;
+    samples.color.set(i, color * (limit / peak));
+    for (ColorColumn& layer : samples.grouped) layer.set(i, layer[i] * (limit / peak));
   }
 }
 
@@ -79,7 +81,7 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
     for (std::uint32_t s = 0; s < samples; s += samples_per_wavefront) {
       start_wavefront(context, pixels, s, std::min(samples, s + samples_per_wavefront), wavefront);
       if (!trace_wavefront(context, wavefront)) continue;
-      if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples.color);
+      if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples);
       if (samples == 1 && !context.data_layers) {
         counts.bad_samples += work.colors.set(number, wavefront.samples);
         continue;

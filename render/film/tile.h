@@ -38,8 +38,9 @@ inline constexpr std::uint32_t kWavefrontSamples = 4096;
 /// that neighbours in the list make coherent packets.
 void list_pixels(std::uint32_t width, std::uint32_t height, TileWorkspace& work);
 
-/// Darkens colours with a component above `most` until none is. Those that are not finite stay so.
-void clamp_samples(double most, ColorColumn& colors);
+/// Darkens samples with a component above `most` until none is, and their layers of light groups by the same
+/// factor. Those that are not finite stay so.
+void clamp_samples(double most, SampleBatch& samples);
 
 /// Renders the pixels of `tile` into `picture` and touches no others.
 TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, Picture& picture,

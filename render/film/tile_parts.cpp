@@ -4,6 +4,8 @@
 #include <span>
 
 #include "render/film/adaptive.h"
+#include "render/film/light_layers.h"
+#include "render/light_groups.h"
 #include "render/moments.h"
 
 namespace oktett {
@@ -19,6 +21,8 @@ class TileParts {
     sums_.resize(pixels_.size(), empty_sum());
     if (adaptive_) luminance_.resize(pixels_.size());
     if (context.mattes != nullptr) objects_.resize(pixels_.size()), materials_.resize(pixels_.size());
+    if (context.light_groups != nullptr) channels_ = 3 * context.light_groups->names.size();
+    grouped_.resize(pixels_.size() * channels_);
     counts_.resize(pixels_.size(), context.settings.samples);
   }
 
@@ -28,6 +32,7 @@ class TileParts {
       if (!is_inside(p)) continue;
       const std::size_t at = place(p);
       sums_[p.number] = sums.pixels[at], counts_[p.number] = sums.samples[at];
+      std::copy_n(sums.grouped.begin() + at * channels_, channels_, grouped_.begin() + p.number * channels_);
       if (context_.mattes == nullptr) continue;
       objects_[p.number] = sums.objects[at], materials_[p.number] = sums.materials[at];
     }
@@ -57,12 +62,13 @@ class TileParts {
   TileSums sums() const {
     TileSums sums;
     const std::size_t size = std::size_t{tile_.width} * tile_.height;
-    sums.pixels.resize(size), sums.samples.resize(size);
+    sums.pixels.resize(size), sums.samples.resize(size), sums.grouped.resize(size * channels_);
     if (context_.mattes != nullptr) sums.objects.resize(size), sums.materials.resize(size);
     for (const WavefrontPixel& p : pixels_) {
       if (!is_inside(p)) continue;
       const std::size_t at = place(p);
       sums.pixels[at] = sums_[p.number], sums.samples[at] = counts_[p.number];
+      std::copy_n(grouped_.begin() + p.number * channels_, channels_, sums.grouped.begin() + at * channels_);
       if (context_.mattes == nullptr) continue;
       sums.objects[at] = objects_[p.number], sums.materials[at] = materials_[p.number];
     }
@@ -169,7 +175,7 @@ class TileParts {
     wavefront.whole_pixels = false;
     trace_wavefront(context, wavefront);
     const SampleBatch& samples = wavefront.samples;
-    if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples.color);
+    if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const std::uint32_t pixel = samples.pixel[i];
       if (!add_to_pixel(sums_[pixel], samples, i)) {
@@ -178,6 +184,7 @@ class TileParts {
       }
       if (in_pilot_) luminance_[pixel].add(samples.color[i]);
       if (context.mattes != nullptr) add_to_mattes(pixel, samples.first[i]);
+      add_to_layers(samples, i, grouped_.data() + pixel * channels_);
     }
   }
 
@@ -191,6 +198,8 @@ class TileParts {
   std::vector<WavefrontPixel> pixels_;               ///< numbered in their order
   std::vector<PixelSum> sums_;                       ///< of each pixel
   std::vector<MatteSums> objects_, materials_;       ///< of each pixel, if mattes are wanted
+  std::size_t channels_ = 0;                         ///< three for each light group
+  std::vector<double> grouped_;                      ///< of each pixel and channel
   std::vector<LuminanceSums> luminance_;             ///< of its first samples
   std::vector<std::uint32_t> counts_;                ///< of its samples
   std::uint64_t bad_samples_ = 0;
@@ -199,7 +208,8 @@ class TileParts {
 }  // namespace
 
 bool needs_parts(const RenderContext& context) {
-  return context.settings.error > 0 || context.moments != nullptr || context.mattes != nullptr;
+  return context.settings.error > 0 || context.moments != nullptr || context.mattes != nullptr ||
+         context.light_groups != nullptr;
 }
 
 TileCounts render_tile_in_parts(const RenderContext& context, const FinishedTile& tile, Picture& picture,

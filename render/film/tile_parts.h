@@ -1,5 +1,6 @@
 #pragma once
-/// \file Tiles whose samples are traced in parts: adaptive sampling, moments of the shutter, mattes.
+/// \file Tiles whose samples are traced in parts: adaptive sampling, moments of the shutter, mattes,
+/// layers of light groups.
 
 #include "render/film/tile.h"
 #include "render/film/tile_sums.h"

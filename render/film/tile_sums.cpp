@@ -5,6 +5,7 @@
 
 #include "core/bytes.h"
 #include "core/error.h"
+#include "render/film/light_layers.h"
 
 namespace oktett {
 namespace {
@@ -103,6 +104,7 @@ void write_tile(const FilmFormat& format, const FinishedTile& tile, const TileSu
   PicturePlane* counts = format.sample_counts ? picture.find(kSampleCountPlane) : nullptr;
   const std::size_t object_planes = first_matte_plane(picture, kObjectLayer);
   const std::size_t material_planes = first_matte_plane(picture, kMaterialLayer);
+  const std::size_t light_planes = first_light_plane(picture), channels = 3 * format.light_groups.size();
   std::size_t i = 0;
   for (std::uint32_t y = tile.y; y < tile.y + tile.height; ++y)
     for (std::uint32_t x = tile.x; x < tile.x + tile.width; ++x, ++i) {
@@ -112,6 +114,8 @@ void write_tile(const FilmFormat& format, const FinishedTile& tile, const TileSu
       else
         write_color(picture, x, y, sums.pixels[i]);
       if (counts != nullptr) counts->ids[at] = sums.samples[i];
+      write_layers(picture, light_planes, at, {sums.grouped.data() + i * channels, channels},
+                   sums.pixels[i].good);
       if (!format.mattes) continue;
       sums.objects[i].write(picture, object_planes, at, sums.pixels[i].good);
       sums.materials[i].write(picture, material_planes, at, sums.pixels[i].good);
@@ -126,6 +130,9 @@ std::string encode_tile(const FilmFormat& format, const TileSums& sums) {
     encode_column(bytes_of(sums.pixels.data()) + offset, count, sizeof(PixelSum), size, bytes);
   });
   encode_mattes(sums.objects, bytes), encode_mattes(sums.materials, bytes);
+  const std::size_t channels = 3 * format.light_groups.size();
+  for (std::size_t k = 0; k < channels; ++k)
+    encode_column(bytes_of(sums.grouped.data() + k), count, channels * sizeof(double), sizeof(double), bytes);
   return bytes;
 }
 
@@ -139,6 +146,11 @@ TileSums decode_tile(const FilmFormat& format, std::size_t pixels, std::string_v
   });
   if (format.mattes)
     sums.objects = decode_mattes(reader, pixels), sums.materials = decode_mattes(reader, pixels);
+  const std::size_t channels = 3 * format.light_groups.size();
+  sums.grouped.resize(pixels * channels);
+  for (std::size_t k = 0; k < channels; ++k)
+    decode_column(reader, bytes_of(sums.grouped.data() + k), pixels, channels * sizeof(double),
+                  sizeof(double));
   if (reader.left() != 0) throw Error("a tile has not the length that it says");
   check_counts(sums);
   return sums;

@@ -19,6 +19,7 @@ struct TileSums {
   std::vector<PixelSum> pixels;
   std::vector<std::uint32_t> samples;         ///< of each pixel, those that were left out included
   std::vector<MatteSums> objects, materials;  ///< of each pixel; empty unless mattes are wanted
+  std::vector<double> grouped;                ///< of each pixel: red, green and blue of each light group
 
   /// Samples that were left out.
   std::uint64_t bad_samples() const;

@@ -77,6 +77,8 @@ class LightSet {
   /// `points` the densities are 0.
   void environment_values(const MapCode& code, std::size_t count, const LightPoint* points,
                           const float* const (&direction)[3], EnvironmentValues& out) const;
+  /// The numbers of the infinite emitters that are not delta lights.
+  const std::vector<std::uint32_t>& visible() const { return visible_; }
   /// Whether infinite emitters overlap, so that samples of one need environment_values.
   bool environment_overlaps() const { return visible_.size() > 1; }
 

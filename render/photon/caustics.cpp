@@ -23,8 +23,8 @@ Caustics::Caustics(std::shared_ptr<const PhotonMap> map, const PassRange& passes
   for (std::uint32_t i = 0; i < source.emitter_count(); ++i) brings_.push_back(source.brings(i) ? 1 : 0);
 }
 
-Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p,
-                      const SurfaceBsdf& bsdf) const {
+Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p, const SurfaceBsdf& bsdf,
+                      Color* of_group) const {
   const PhotonPass& pass = map_->passes[passes_.first + passes_.step * (sample % passes_.count)];
   Color sum;
   pass.visit_near(p.surface.position, p.ng, [&](const Photon& photon, float weight) {
@@ -32,7 +32,9 @@ Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint
     const Vec3f to_light = -unpack_direction(photon.direction);
     // Photons arrive in proportion to the cosine at the true surface.
     const float cosine = std::max(kLeastCosine, std::abs(dot(to_light, p.ng)));
-    sum += bsdf.evaluate(to_light).value * photon.power * (weight / cosine);
+    const Color found = bsdf.evaluate(to_light).value * photon.power * (weight / cosine);
+    sum += found;
+    if (of_group != nullptr) of_group[photon.light_group] += found;
   });
   return sum;
 }

@@ -29,8 +29,10 @@ class Caustics {
   const std::shared_ptr<const PhotonMap>& map() const { return map_; }
 
   /// Light from photons that leaves `p` towards the camera, for a path that reached `p` after `bounces`
-  /// bounces and belongs to sample number `sample` of its pixel.
-  Color light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p, const SurfaceBsdf& bsdf) const;
+  /// bounces and belongs to sample number `sample` of its pixel. Adds the light of each light group to
+  /// `of_group`, if that is not null.
+  Color light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p, const SurfaceBsdf& bsdf,
+              Color* of_group = nullptr) const;
 
   /// Whether the light of this emitter that passes mirrors or glass on its way to a surface is left to
   /// photons.

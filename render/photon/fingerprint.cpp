@@ -49,7 +49,7 @@ std::uint64_t geometry_hash(const RenderContext& context) {
   return hash.value();
 }
 
-std::uint64_t lights_hash(const PhotonSource& source) {
+std::uint64_t lights_hash(const RenderContext& context, const PhotonSource& source) {
   Hasher hash;
   hash.add(std::uint64_t{source.emitter_count()});
   if (source.empty()) return hash.value();
@@ -58,6 +58,8 @@ std::uint64_t lights_hash(const PhotonSource& source) {
     hash.add(std::uint64_t{start.has_value()});
     if (!start) continue;
     hash.add(start->ray.origin), hash.add(start->ray.direction), hash.add(start->power);
+    if (const std::uint8_t group = context.sampled->group(start->emitter); group != 0)
+      hash.add(std::uint64_t{group});
   }
   return hash.value();
 }
@@ -89,7 +91,7 @@ SceneFingerprint fingerprint(std::span<const RenderContext> moments, const std::
   for (std::size_t m = 0; m < moments.size(); ++m) {
     geometry.add(geometry_hash(moments[m]));
     materials.add(materials_hash(moments[m], sources[m], plan));
-    lights.add(lights_hash(sources[m]));
+    lights.add(lights_hash(moments[m], sources[m]));
   }
   return {geometry.value(), materials.value(), lights.value()};
 }

@@ -13,9 +13,9 @@ struct Photon {
   /// In W per colour channel, divided by the square of the index of refraction around the surface, as
   /// radiance is in render/bsdf/bsdf.h.
   Color power;
-  std::uint32_t direction = 0;  ///< in which the light travels, see pack_direction
-  std::uint16_t bounces = 0;    ///< at mirrors and glass, > 0
-  std::uint16_t unused = 0;     ///< 0
+  std::uint32_t direction = 0;    ///< in which the light travels, see pack_direction
+  std::uint16_t bounces = 0;      ///< at mirrors and glass, > 0
+  std::uint16_t light_group = 0;  ///< number of the light's, see LightGroups
   bool operator==(const Photon&) const = default;
 };
 static_assert(sizeof(Photon) == 32);

@@ -77,6 +77,7 @@ class PhotonChunk {
       : context_(context), source_(source), plan_(plan), choices_(plan.seed, pass) {}
 
   void trace(std::uint32_t first, std::uint32_t last) {
+    first_ = first;
     emit(first, last);
     const unsigned most_levels = plan_.depth + 1 + kMostHoles;
     for (level_ = 0; level_ < most_levels && queue_.size() > 0; ++level_) {
@@ -108,6 +109,7 @@ class PhotonChunk {
       const auto start = source_.emit(choices_.point(number, PhotonDecision::light).x,
                                       choices_.point(number, PhotonDecision::place),
                                       choices_.point(number, PhotonDecision::direction));
+      light_groups_.push_back(start ? context_.sampled->group(start->emitter) : std::uint8_t{0});
       if (!start) continue;
       starts.push_back(*start), numbers.push_back(choices_.before_start(number));
       queue_.push_back(start->ray, number, start->power * share, 1, 0, 0);
@@ -198,7 +200,7 @@ class PhotonChunk {
     if (stored)
       stored_.push_back({number,
                          {p.surface.position, power * (1 / index_square), pack_direction(p.direction),
-                          static_cast<std::uint16_t>(bounces)}});
+                          static_cast<std::uint16_t>(bounces), light_groups_[number - first_]}});
     const auto ends = [&](const Color& rest) {
       (stored ? energy_.stored : energy_.absorbed) +=
           double{color_weight(power)} - double{color_weight(rest)};
@@ -234,6 +236,8 @@ class PhotonChunk {
   const PhotonPlan& plan_;
   PhotonChoices choices_;
   unsigned level_ = 0;
+  std::uint32_t first_ = 0;                 ///< number of the first photon
+  std::vector<std::uint8_t> light_groups_;  ///< of all photons
   PhotonQueue queue_, next_;
   HitBatch hits_;
   std::vector<Stored> stored_;

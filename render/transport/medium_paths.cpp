@@ -6,6 +6,7 @@
 
 #include "render/medium/phase.h"
 #include "render/sampling/owen_sobol.h"
+#include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/path_choices.h"
 
@@ -94,6 +95,7 @@ static void shade_scattering(const RenderContext& context, Wavefront& wavefront,
 void shade_media(const RenderContext& context, Wavefront& wavefront) {
   for (const MediumEvent& event : wavefront.medium_events) {
     wavefront.radiance.add(event.ray, event.passage.emitted);
+    add_to_layer(wavefront, event.ray, 0, event.passage.emitted);
     if (event.passage.scattered && wavefront.rays.bounces[event.ray] <= context.settings.depth)
       shade_scattering(context, wavefront, event);
   }

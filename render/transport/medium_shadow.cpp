@@ -106,7 +106,7 @@ void trace_shadows_in_media(const RenderContext& context, Wavefront& wavefront, 
   for (int layer = 0; layer < kMostShadowLayers && !walks.states.empty(); ++layer)
     walker.step(walks, arriving);
   for (std::size_t i = 0; i < queue.size(); ++i)
-    if (!is_black(arriving[i])) wavefront.radiance.add(queue.owner[i], arriving[i]);
+    if (!is_black(arriving[i])) add_arriving(context, wavefront, queue, i, arriving[i]);
 }
 
 }  // namespace oktett

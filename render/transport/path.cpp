@@ -4,6 +4,7 @@
 
 #include "render/photon/caustics.h"
 #include "render/surface_bsdf.h"
+#include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/path_choices.h"
 #include "render/transport/path_emission.h"
@@ -35,6 +36,20 @@ void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_
               enclosures(wavefront, ray, boundary, behind));
 }
 
+/// Adds the light that photons bring.
+void add_caustics(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
+                  const SurfaceBsdf& bsdf) {
+  const Color throughput = wavefront.rays.throughput[ray];
+  Color of_group[kMostLightGroups];
+  const bool grouped = context.light_groups != nullptr;
+  const Color light =
+      context.caustics->light(wavefront.samples.number[wavefront.rays.sample[ray]],
+                              wavefront.rays.bounces[ray], p, bsdf, grouped ? of_group : nullptr);
+  wavefront.radiance.add(ray, throughput * light);
+  for (std::size_t group = 0; group < wavefront.samples.grouped.size(); ++group)
+    add_to_layer(wavefront, ray, static_cast<std::uint8_t>(group), throughput * of_group[group]);
+}
+
 /// Passes straight on. Light behind the surface could have been chosen where the ray left the last one.
 void pass_straight(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Boundary* boundary) {
   push_bounce(wavefront, ray, p, p.direction, wavefront.rays.throughput[ray], Bounce::straight);
@@ -51,19 +66,20 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
     return pass_straight(wavefront, ray, p, boundary);
 
   const Color throughput = wavefront.rays.throughput[ray];
-  if (!(p.emission == Color{0, 0, 0}))
-    wavefront.radiance.add(
-        ray, throughput * p.emission * emission_weight(context, wavefront, ray, p.surface.position));
+  if (!(p.emission == Color{0, 0, 0})) {
+    const Color emitted =
+        throughput * p.emission * emission_weight(context, wavefront, ray, p.surface.position);
+    wavefront.radiance.add(ray, emitted);
+    add_emission_to_layer(context, wavefront, ray,
+                          material_index(*context.world, p.surface.user, p.surface.material_slot), emitted);
+  }
   if (wavefront.rays.bounces[ray] > context.settings.depth) return;
 
   const SurfaceBsdf bsdf(p);
   const LightPoint from{p.surface.position, p.ng, !bsdf.transmits()};
   if (!bsdf.only_delta()) {
     sample_light(context, wavefront, ray, p, bsdf, from, choices, boundary);
-    if (context.caustics != nullptr)
-      wavefront.radiance.add(
-          ray, throughput * context.caustics->light(wavefront.samples.number[wavefront.rays.sample[ray]],
-                                                    wavefront.rays.bounces[ray], p, bsdf));
+    if (context.caustics != nullptr) add_caustics(context, wavefront, ray, p, bsdf);
   }
 
   const std::optional<BsdfSample> next =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/path_emission.h"
 #include "render/transport/path_lights.h"
@@ -138,10 +139,12 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     } else if (from_camera) {
       wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
     }
-    if (!(surface.emission == Color{0, 0, 0}))
-      wavefront.radiance.add(
-          i, wavefront.rays.throughput[i] * surface.emission *
-                 emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k)));
+    if (!(surface.emission == Color{0, 0, 0})) {
+      const Color emitted = wavefront.rays.throughput[i] * surface.emission *
+                            emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k));
+      wavefront.radiance.add(i, emitted);
+      add_emission_to_layer(context, wavefront, i, number / 2, emitted);
+    }
     if (wavefront.rays.bounces[i] > context.settings.depth) continue;
     c.light_kind[k] = LightKind::none;
     if (!surface.only_delta)
@@ -149,6 +152,10 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
   }
   sample_lights(context, found, asks, front_only, asking, c);
+  if (context.light_groups != nullptr)
+    for (std::size_t i = 0; i < asking; ++i)
+      if (c.light_kind[asks[i]] != LightKind::none)
+        wavefront.sampled_emitter[c.ray[asks[i]]] = c.light_emitter[asks[i]];
   std::stable_sort(shown, shown + in_lanes,
                    [](const Shown& a, const Shown& b) { return a.surface < b.surface; });
   if (in_lanes > 0) shade_runs(context, wavefront, found, c, shown, in_lanes);

@@ -47,6 +47,7 @@ struct PathBlock {
   double light[kMost], light_x[kMost], light_y[kMost];
 
   LightKind light_kind[kMost];
+  std::uint32_t light_emitter[kMost];  ///< of the LightSet, where there is a sample
   float light_direction[3][kMost], light_distance[kMost], light_pdf[kMost];
   float light_color[3][kMost];  ///< radiance or irradiance that arrives, textures included
 };

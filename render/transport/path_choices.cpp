@@ -54,6 +54,7 @@ void queue_light(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, con
     shadow.direction = place - shadow.origin;
     shadow.tmax = light.delta ? kBeforeLight : before_surface(place, light.distance);
   }
+  if (!wavefront.sampled_emitter.empty()) wavefront.sampled_emitter[ray] = light.emitter;
   ShadowQueue& queue = wavefront.shadows[straight ? 0 : kAreaQueue];
   queue.push_back(shadow, static_cast<std::uint32_t>(ray), arriving);
   if (around != nullptr) queue.enclosures.push_back(*around);

@@ -77,6 +77,7 @@ class LightSampler {
 
   void set(std::uint32_t k, const LightSample& s) {
     c_.light_kind[k] = s.delta ? LightKind::delta : LightKind::area;
+    c_.light_emitter[k] = s.emitter;
     InteractionBlock::put(c_.light_direction, k, s.direction);
     InteractionBlock::put(c_.light_color, k, s.radiance * context_.sampled->texture_at(s, context_.textures));
     c_.light_distance[k] = s.distance, c_.light_pdf[k] = s.pdf;

@@ -5,6 +5,7 @@
 
 #include "accel/accel.h"
 #include "render/shading_point.h"
+#include "render/transport/grouped_light.h"
 
 namespace oktett {
 
@@ -61,14 +62,20 @@ static void follow_through(const RenderContext& context, const ShadowQueue& queu
   for (const std::uint32_t i : left) passed[i] = {0, 0, 0};
 }
 
-void trace_shadows(const RenderContext& context, ShadowQueue& queue, ShadowRule rule, ColorColumn& radiance) {
+void add_arriving(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue,
+                  std::size_t entry, const Color& light) {
+  wavefront.radiance.add(queue.owner[entry], light);
+  if (context.light_groups != nullptr) add_shadow_to_layers(context, wavefront, queue, entry, light);
+}
+
+void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue, ShadowRule rule) {
   if (queue.size() == 0) return;
   Column<std::uint8_t>& occluded = queue.occluded;
   occluded.resize_uninitialized(queue.size());
   any_hit(*context.world->accel, queue.rays, occluded, context.isa);
   if (!context.world->see_through) {
     for (std::size_t i = 0; i < queue.size(); ++i)
-      if (!occluded[i]) radiance.add(queue.owner[i], queue.light[i]);
+      if (!occluded[i]) add_arriving(context, wavefront, queue, i, queue.light[i]);
     return;
   }
   std::vector<Color> passed(queue.size(), {1, 1, 1});
@@ -77,7 +84,7 @@ void trace_shadows(const RenderContext& context, ShadowQueue& queue, ShadowRule 
     if (occluded[i]) left.push_back(i);
   follow_through(context, queue, rule, std::move(left), passed);
   for (std::size_t i = 0; i < queue.size(); ++i)
-    if (!is_black(passed[i])) radiance.add(queue.owner[i], queue.light[i] * passed[i]);
+    if (!is_black(passed[i])) add_arriving(context, wavefront, queue, i, queue.light[i] * passed[i]);
 }
 
 }  // namespace oktett

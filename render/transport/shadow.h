@@ -7,9 +7,15 @@
 
 namespace oktett {
 
-/// Traces all rays of `queue` and adds to entry `owner` of `radiance` the light that arrives, in the order of
-/// the queue.
-void trace_shadows(const RenderContext& context, ShadowQueue& queue, ShadowRule rule, ColorColumn& radiance);
+struct Wavefront;
+
+/// Adds `light` to the radiance of the owner of an entry of `queue`, and to the layer of its light group.
+void add_arriving(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue,
+                  std::size_t entry, const Color& light);
+
+/// Traces all rays of `queue`, one of the wavefront's, and adds the light that arrives to their owners, in
+/// the order of the queue.
+void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue, ShadowRule rule);
 
 /// Surfaces that a shadow ray may pass before it counts as blocked.
 inline constexpr int kMostShadowLayers = 128;

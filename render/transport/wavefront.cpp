@@ -6,6 +6,7 @@
 #include "accel/accel.h"
 #include "accel/surface/offset_origin.h"
 #include "render/photon/caustics.h"
+#include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/medium_paths.h"
 #include "render/transport/path_emission.h"
@@ -48,6 +49,7 @@ void add_environment(const RenderContext& context, Wavefront& wavefront, const s
     const float weight = by_photons ? 0 : pdf == 0 ? 1 : power_weight(pdf, found.pdf[k]);
     const Color light = InteractionBlock::get(found.radiance, k);
     wavefront.radiance.set(i, wavefront.rays.throughput[i] * (context.background + light * weight));
+    if (context.light_groups != nullptr) add_environment_to_layers(context, wavefront, i, light, weight);
   }
 }
 
@@ -58,7 +60,9 @@ void add_background(const RenderContext& context, Wavefront& wavefront) {
   for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
     if (wavefront.hits.item[i] != kNoId) continue;
     if (!context.sampled->has_environment()) {
-      wavefront.radiance.set(i, wavefront.rays.throughput[i] * context.background);
+      const Color light = wavefront.rays.throughput[i] * context.background;
+      wavefront.radiance.set(i, light);
+      add_to_layer(wavefront, i, 0, light);
       continue;
     }
     misses[count++] = i;
@@ -76,6 +80,7 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
   wavefront.radiance.resize_uninitialized(count);
   wavefront.hit_rays.resize_uninitialized(count);
   wavefront.radiance.fill(count, {0, 0, 0});
+  if (context.light_groups != nullptr) wavefront.sampled_emitter.resize_uninitialized(count);
   std::size_t hits = 0;
   for (std::size_t i = 0; i < count; ++i) {
     wavefront.hit_rays[hits] = static_cast<std::uint32_t>(i);
@@ -108,7 +113,7 @@ void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
     if (context.tracks_enclosures)
       trace_shadows_in_media(context, wavefront, queue, rule);
     else
-      trace_shadows(context, queue, rule, wavefront.radiance);
+      trace_shadows(context, wavefront, queue, rule);
     wavefront.counts.shadow += queue.size();
     wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
     queue.clear();
@@ -217,6 +222,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
       fill_samples(wavefront.samples);
       fill_camera_rays(wavefront);
+      start_layers(context, wavefront);
       if (context.tracks_enclosures) enclose_camera_rays(context, wavefront);
     }
     if (context.tracks_enclosures) pass_media(context, wavefront);

@@ -32,8 +32,9 @@ struct SampleBatch {
   Column<Vec2f> offset;          ///< from the pixel's centre, in pixels
   ColorColumn color;
   Column<float> alpha;
-  Column<std::uint16_t> spawned;  ///< number of rays that Whitted's integrator queued for the next bounce
-  Column<FirstHit> first;         ///< empty unless data layers are wanted
+  Column<std::uint16_t> spawned;     ///< number of rays that Whitted's integrator queued for the next bounce
+  Column<FirstHit> first;            ///< empty unless data layers are wanted
+  std::vector<ColorColumn> grouped;  ///< per light group its part of `color`; empty unless wanted
 
   std::size_t size() const { return pixel.size(); }
   void resize_uninitialized(std::size_t n, bool data_layers) {
@@ -72,6 +73,8 @@ struct Wavefront {
   PathColumns paths, next_paths;  ///< of `rays` after the camera rays and of `next`, in path tracing
   HitBatch hits;                  ///< of `rays`
   ColorColumn radiance;           ///< light found by each of `rays`, throughput included
+  /// Emitter of the light sample that each of `rays` has queued, if layers of light groups are wanted.
+  Column<std::uint32_t> sampled_emitter;
   /// In Whitted's model one queue per light, so that all rays of a queue lead to the same light. In path
   /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
   /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.

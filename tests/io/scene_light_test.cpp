@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "io/image/image.h"
 #include "tests/io/scene_test_support.h"
@@ -145,6 +148,98 @@ TEST(SceneMaterial, ReadsPrincipledOnes) {
   EXPECT_FALSE(m.emits_behind);
 }
 
+/// The rows of the published tables on both sides of 630, 532 and 467 nm.
+struct MeasuredMetal {
+  const char* name;
+  Conductor below, above;  ///< by wavelength
+};
+constexpr MeasuredMetal kMeasured[] = {
+    {"gold",
+     {{0.21f, 0.62f, 1.38f}, {3.272f, 2.081f, 1.914f}},
+     {{0.14f, 0.43f, 1.31f}, {3.697f, 2.455f, 1.849f}}},
+    {"silver",
+     {{0.06f, 0.05f, 0.04f}, {4.152f, 3.324f, 2.657f}},
+     {{0.05f, 0.06f, 0.05f}, {4.483f, 3.586f, 2.869f}}},
+    {"copper",
+     {{0.3f, 1.18f, 1.24f}, {3.205f, 2.608f, 2.397f}},
+     {{0.22f, 1.02f, 1.25f}, {3.747f, 2.577f, 2.483f}}},
+    {"aluminium",
+     {{1.366f, 0.8734f, 0.6079f}, {7.4052f, 6.2418f, 5.3676f}},
+     {{1.5724f, 1.0728f, 0.7278f}, {7.7354f, 6.7839f, 5.7781f}}},
+    {"iron", {{2.88f, 2.86f, 2.59f}, {3.05f, 2.91f, 2.77f}}, {{2.92f, 2.95f, 2.67f}, {3.1f, 2.93f, 2.82f}}},
+    {"nickel",
+     {{1.99f, 1.85f, 1.73f}, {4.02f, 3.42f, 2.95f}},
+     {{1.99f, 1.92f, 1.78f}, {4.26f, 3.61f, 3.09f}}},
+    {"chromium",
+     {{3.17f, 2.94f, 2.33f}, {3.3f, 3.33f, 3.14f}},
+     {{3.09f, 3.18f, 2.51f}, {3.34f, 3.33f, 3.24f}}},
+    {"titanium",
+     {{2.67f, 2.44f, 2.27f}, {3.72f, 3.3f, 3.04f}},
+     {{2.76f, 2.54f, 2.32f}, {3.84f, 3.43f, 3.1f}}}};
+
+TEST(SceneMaterial, MetalsLieBetweenTheRowsOfTheirTables) {
+  for (const MeasuredMetal& measured : kMeasured) {
+    const Scene scene =
+        SceneFiles().load_v1(std::string("materials: {a: {principled: {metal: ") + measured.name + "}}}\n");
+    const Material& m = scene.materials.at(0);
+    const PrincipledParameters& p = m.principled->parameters;
+    ASSERT_TRUE(p.conductor);
+    EXPECT_EQ(p.metallic, 1);
+    EXPECT_EQ(p.base_color, m.color);
+    for (int c = 0; c < 3; ++c) {
+      SCOPED_TRACE(std::string(measured.name) + std::to_string(c));
+      const auto expect_between = [](float x, float a, float b) {
+        EXPECT_GE(x, std::min(a, b) - 5e-4f);
+        EXPECT_LE(x, std::max(a, b) + 5e-4f);
+      };
+      expect_between(p.conductor->eta[c], measured.below.eta[c], measured.above.eta[c]);
+      expect_between(p.conductor->k[c], measured.below.k[c], measured.above.k[c]);
+      const float n = p.conductor->eta[c], k = p.conductor->k[c];
+      EXPECT_NEAR(m.color[c], ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k), 1e-5f);
+    }
+  }
+  const Scene other = SceneFiles().load_v1(
+      "materials: {a: {principled: {metal: gold, metallic: 0.5, base_color: [1, 0, 0]}}}\n");
+  EXPECT_EQ(other.materials.at(0).color, (Color{1, 0, 0}));
+  EXPECT_EQ(other.materials.at(0).principled->parameters.metallic, 0.5f);
+}
+
+TEST(SceneLight, HasAGroup) {
+  SceneFiles files;
+  const Scene scene = files.load_v1(
+      "lights:\n"
+      "  - point: {position: [0, 1, 0], light_group: key}\n"
+      "  - sky: {}\n"
+      "  - spot: {position: [0, 1, 0], light_group: default}\n"
+      "  - directional: {light_group: rim,\n"
+      "      motion: [{time: 0, transform: []}, {time: 1, transform: {rotate: [0, 0, 90]}}]}\n"
+      "  - sphere: {center: [0, 3, 0], light_group: key}\n"
+      "materials: {a: {emission: [1, 1, 1], light_group: a-1_B}, b: {}}\n");
+  ASSERT_EQ(scene.lights.size(), 4u);
+  ASSERT_EQ(scene.light_traits.size(), 4u);
+  EXPECT_EQ(scene.light_traits[0].group, "key");
+  EXPECT_EQ(scene.light_traits[1].group, "");
+  EXPECT_EQ(scene.light_traits[2].group, "");
+  EXPECT_EQ(scene.light_traits[3].group, "rim");
+  EXPECT_NE(scene.light_traits[3].motion, nullptr);
+  EXPECT_EQ(scene.materials[scene.objects.at(0).material].light_group, "key");
+  std::set<std::string> groups;
+  for (const Material& m : scene.materials) groups.insert(m.light_group);
+  EXPECT_EQ(groups, (std::set<std::string>{"", "key", "a-1_B"}));
+}
+
+TEST(SceneLight, RefusesOddGroups) {
+  for (const char* name : {"a.b", "'a b'", "''", "\u00e4", "a/b"})
+    expect_error(std::string("lights: [{point: {position: [0, 0, 0], light_group: ") + name + "}}]\n",
+                 "letters, digits");
+  std::string many = "lights:\n";
+  for (int i = 1; i <= 64; ++i)
+    many += "  - point: {position: [0, 0, 0], light_group: g" + std::to_string(i) + "}\n";
+  expect_error(many, "more than 63 light groups");
+  expect_error("lights: [{point: {position: [0, 0, 0], group: a}}]\n", "unknown key 'group'");
+  expect_error("materials: {a: {light_group: [a]}}\n", "expected text");
+}
+
 TEST(SceneMaterial, RoughnessAndMetallicMakeItPrincipled) {
   const Scene scene = SceneFiles().load_v1(
       "materials:\n  a: {color: [1, 0, 0], ior: 1.25, transparency: 0.5, metallic: 0.75}\n  b: {color: [1, "
@@ -164,6 +259,8 @@ TEST(SceneMaterial, ErrorsOfPrincipledOnes) {
   expect_error("materials: {a: {principled: {roughness: 2}}}\n", "from 0 to 1");
   expect_error("materials: {a: {principled: {base_color: [-1, 0, 0]}}}\n", "at least 0");
   expect_error("materials: {a: {principled: {eta: [1, 1, 1]}}}\n", "both 'eta' and 'k'");
+  expect_error("materials: {a: {principled: {metal: tin}}}\n", "titanium");
+  expect_error("materials: {a: {principled: {metal: gold, eta: [1, 1, 1], k: [1, 1, 1]}}}\n", "not both");
   expect_error("materials: {a: {principled: {eta: [1, 0, 1], k: [1, 1, 1]}}}\n", "greater than 0");
   expect_error("materials: {a: {principled: {}, phong: 3}}\n", "'phong' has no meaning beside 'principled'");
   expect_error("materials: {a: {emits: left}}\n", "front");

@@ -53,6 +53,10 @@ std::vector<Case> cases() {
   all.back().scene.integrator.caustics.photons = 2000, all.back().scene.integrator.caustics.passes = 3;
   all.push_back({"mattes", balls(IntegratorKind::whitted, 4)});
   all.back().scene.film.cryptomatte = true;
+  all.push_back({"light groups", balls(IntegratorKind::path, 4)});
+  all.back().scene.light_traits = {{.group = "key"}, {.group = "sun"}};
+  all.push_back({"adaptive light groups", all.back().scene});
+  all.back().scene.integrator.error = 0.05, all.back().scene.integrator.max_samples = 24;
   all.push_back({"motion", balls(IntegratorKind::path, 8)});
   Object& ball = all.back().scene.objects.front();
   ball.motion =
