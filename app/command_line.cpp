@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -13,12 +14,6 @@ namespace oktett {
 std::string program_version() { return "oktett " OKTETT_VERSION; }
 
 namespace {
-
-std::string joined(int argc, char** argv) {
-  std::string line = "oktett";
-  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  return line;
-}
 
 /// The verb that was being parsed, or the program itself.
 const CLI::App* current(const CLI::App& app) {
@@ -58,10 +53,10 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{} '{}'{}", what, typed, near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
 }
 
-int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+int usage_error(const CLI::App& app, const std::string& explanation) {
   const CLI::App* verb = current(app);
   const std::string help = verb == &app ? "oktett --help" : "oktett " + verb->get_name() + " --help";
-  fmt::print(stderr, "oktett: {}\nRun '{}' for a list of what there is.\n", explain(app, error), help);
+  fmt::print(stderr, "oktett: {}\nRun '{}' for a list of what there is.\n", explanation, help);
   return kExitBadInput;
 }
 
@@ -81,6 +76,15 @@ void Verb::positional(const char* name, std::string& target, const char* value, 
   app_->add_option(name, target, help)->required()->type_name(value);
 }
 
+void Verb::optional_positional(const char* name, std::string& target, const char* value, const char* help) {
+  app_->add_option(name, target, help)->type_name(value);
+}
+
+void Verb::positionals(const char* name, std::vector<std::string>& targets, const char* value,
+                       const char* help) {
+  app_->add_option(name, targets, help)->required()->type_name(value);
+}
+
 void Verb::flag(const char* names, bool& target, const char* help) { app_->add_flag(names, target, help); }
 
 void Verb::flag(const char* names, std::string& target, const char* help) {
@@ -98,9 +102,10 @@ void Verb::notice(const char* names, std::function<std::string()> text, const ch
 void Verb::footer(const char* text) { app_->footer(text); }
 
 CommandLine::CommandLine(int argc, char** argv)
-    : argc_(argc),
-      argv_(argv),
-      text_(joined(argc, argv)),
+    : CommandLine(std::vector<std::string>(argv + std::min(argc, 1), argv + argc)) {}
+
+CommandLine::CommandLine(std::vector<std::string> words)
+    : words_(std::move(words)),
       app_(std::make_unique<CLI::App>("A data-oriented SIMD packet ray tracer for CPUs.", "oktett")) {
   app_->set_version_flag("--version", program_version(), "Print the version and exit");
   app_->require_subcommand(1);
@@ -117,12 +122,32 @@ Verb CommandLine::add_verb(const char* name, const char* help, std::function<int
 
 std::optional<int> CommandLine::parse() {
   try {
-    app_->parse(argc_, argv_);
+    // The library takes words from the back.
+    app_->parse(std::vector<std::string>(words_.rbegin(), words_.rend()));
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
-    return asked ? app_->exit(error) : usage_error(*app_, error);
+    return asked ? app_->exit(error) : usage_error(*app_, explain(*app_, error));
   }
+}
+
+bool CommandLine::read() {
+  try {
+    app_->parse(std::vector<std::string>(words_.rbegin(), words_.rend()));
+    return true;
+  } catch (const CLI::ParseError&) {
+    return false;
+  }
+}
+
+int CommandLine::missing(const char* name) const {
+  return usage_error(*app_, fmt::format("{} is required", name));
+}
+
+std::string CommandLine::text() const {
+  std::string line = "oktett";
+  for (const std::string& word : words_) line += " " + word;
+  return line;
 }
 
 }  // namespace oktett

@@ -29,6 +29,10 @@ class Verb {
   void option(const char* names, OptionTarget target, const char* value, const char* help);
   /// A word that must be given and that no option's name precedes.
   void positional(const char* name, std::string& target, const char* value, const char* help);
+  /// Such a word that may be missing.
+  void optional_positional(const char* name, std::string& target, const char* value, const char* help);
+  /// One or more such words.
+  void positionals(const char* name, std::vector<std::string>& targets, const char* value, const char* help);
   void flag(const char* names, bool& target, const char* help);
   /// A flag that may have a value, as in --stats=json. `names` ends with the value that the flag alone stands
   /// for, as in "--stats{text}".
@@ -45,6 +49,8 @@ class Verb {
 class CommandLine {
  public:
   CommandLine(int argc, char** argv);
+  /// The words after `oktett`.
+  explicit CommandLine(std::vector<std::string> words);
   ~CommandLine();
 
   /// `run` does the verb's work after the options are set, and returns the program's exit status.
@@ -52,15 +58,19 @@ class CommandLine {
   /// Reads the words. Returns nothing if run() is to follow. Otherwise the program ends with the status
   /// returned: help or the version was asked for and has been printed, or a complaint has been.
   std::optional<int> parse();
+  /// Reads the words without printing anything; false if that cannot be done.
+  bool read();
+  /// Complains that the word `name` of the verb is missing; the exit status.
+  int missing(const char* name) const;
   int run() const { return run_(); }
 
   /// All words as they were typed.
-  const std::string& text() const { return text_; }
+  std::string text() const;
+  /// The same without the name of the program.
+  const std::vector<std::string>& words() const { return words_; }
 
  private:
-  int argc_;
-  char** argv_;
-  std::string text_;
+  std::vector<std::string> words_;
   std::unique_ptr<CLI::App> app_;
   std::function<int()> run_;
 };
@@ -71,8 +81,11 @@ std::string program_version();
 // The verbs, each in a file of its own.
 void add_render_command(CommandLine& line);
 void add_info_command(CommandLine& line);
+void add_merge_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
 
+/// Exit status for files that cannot be read or written.
+inline constexpr int kExitIo = 1;
 /// Exit status for wrong words and for files that say something wrong.
 inline constexpr int kExitBadInput = 2;
 

@@ -11,7 +11,6 @@
 namespace oktett {
 namespace {
 
-constexpr int kExitIo = 1;
 constexpr int kExitInternal = 3;
 
 /// An error with a location begins with it, so that editors can jump there.
@@ -24,6 +23,7 @@ int run(int argc, char** argv) {
   CommandLine line(argc, argv);
   add_render_command(line);
   add_info_command(line);
+  add_merge_command(line);
   add_verify_command(line);
   if (const std::optional<int> status = line.parse()) return *status;
   try {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/interrupt.h"
 #include "app/json.h"
@@ -24,6 +25,7 @@
 #include "io/image/texture.h"
 #include "io/photon/photon_map_file.h"
 #include "io/scene/scene_file.h"
+#include "io/text/files_read.h"
 #include "render/film/denoise.h"
 #include "render/look/default_look.h"
 #include "render/render.h"
@@ -70,13 +72,18 @@ void print_plan(const Scene& scene, const RenderOptions& options, const std::str
              to_string(options.isa), options.threads == 0 ? "all" : std::to_string(options.threads), output);
 }
 
-ImageMetadata metadata_of(const CommandLine& line, const RenderArguments& arguments,
-                          const RenderResult& result) {
+ImageMetadata first_metadata(const CommandLine& line, const RenderArguments& arguments, const Scene& scene) {
   ImageMetadata metadata;
   metadata.software = program_version();
   metadata.command_line = line.text();
   metadata.scene = arguments.scene;
-  metadata.samples = result.scene.integrator.samples;
+  metadata.samples = scene.integrator.samples;
+  return metadata;
+}
+
+ImageMetadata metadata_of(const CommandLine& line, const RenderArguments& arguments,
+                          const RenderResult& result) {
+  ImageMetadata metadata = first_metadata(line, arguments, result.scene);
   metadata.render_seconds = result.report.render_seconds;
   metadata.camera =
       camera_matrices(result.scene.camera, result.picture.full_width, result.picture.full_height);
@@ -86,12 +93,14 @@ ImageMetadata metadata_of(const CommandLine& line, const RenderArguments& argume
 /// What is shown while tracing: the progress line and, if asked for, the live preview.
 class Watch {
  public:
-  Watch(const RenderArguments& arguments, RenderOptions& options)
-      : line_(arguments.quiet      ? ProgressLine::Mode::never
+  Watch(const RenderArguments& arguments, Checkpoint& checkpoint, RenderOptions& options)
+      : checkpoint_(checkpoint),
+        line_(arguments.quiet      ? ProgressLine::Mode::never
               : arguments.progress ? ProgressLine::Mode::always
                                    : ProgressLine::Mode::automatic) {
     options.progress = [this](const RenderProgress& progress) {
       last_ = progress;
+      print_warning(checkpoint_.take_warning());
       line_.show(progress);
     };
     if (arguments.display_server.empty()) return;
@@ -99,15 +108,16 @@ class Watch {
     display_ = std::make_unique<Display>(arguments.display_server, title);
     options.tile_finished = [this](const Picture& picture, const FinishedTile& tile) {
       display_->update(picture, tile);
-      print_display_warning();
+      print_warning(display_->take_warning());
     };
   }
 
   void finish() {
     if (display_) {
       display_->finish();
-      print_display_warning();
+      print_warning(display_->take_warning());
     }
+    print_warning(checkpoint_.take_warning());
     line_.finish();
   }
 
@@ -118,13 +128,13 @@ class Watch {
   }
 
  private:
-  void print_display_warning() {
-    const std::string warning = display_->take_warning();
+  void print_warning(const std::string& warning) {
     if (warning.empty()) return;
     line_.clear();
     fmt::print(stderr, "warning: {}\n", warning);
   }
 
+  Checkpoint& checkpoint_;
   ProgressLine line_;
   std::unique_ptr<Display> display_;
   RenderProgress last_;
@@ -273,18 +283,49 @@ void print_summary(const RenderArguments& arguments, const StageTimes& times, co
     fmt::print(stderr, "warning: {} samples were NaN or infinite and were left out\n", report.bad_samples);
 }
 
-int run_render(const CommandLine& line, const RenderArguments& arguments) {
+/// Writes the film for the last time. What goes wrong is returned, since there may be a picture to write,
+/// too.
+std::optional<Error> finish_film(Checkpoint& checkpoint, const ImageMetadata& metadata) {
+  try {
+    checkpoint.finish(metadata);
+  } catch (const Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+/// Tells the user unless that was done before; the exit status.
+int say_unsaved(const Error& error, const Checkpoint& checkpoint) {
+  if (!checkpoint.has_told(error.what())) throw Error(error);
+  return kExitIo;
+}
+
+/// Says that a signal stopped the render; the exit status.
+int say_stopped(int signal, double percent, const Checkpoint& checkpoint) {
+  const std::string rest = checkpoint.path().empty()
+                               ? "the rest is black"
+                               : "go on with: oktett render --resume " + checkpoint.path();
+  fmt::print(stderr, "stopped by {}: {:.1f}% of the picture is finished, {}\n",
+             signal == SIGTERM ? "SIGTERM" : "SIGINT", percent, rest);
+  return 128 + signal;
+}
+
+int run_render(const CommandLine& line, RenderArguments arguments) {
   check_stats(arguments.stats);
-  const std::string output = output_path(arguments);
-  check_output(output);
+  Checkpoint checkpoint(line, arguments);
+  if (arguments.scene.empty()) return line.missing("scene");
+  const bool writes_picture = checkpoint.film_output().empty();
+  const std::string output = writes_picture ? output_path(arguments) : checkpoint.film_output();
+  if (writes_picture) check_output(output);
   RenderOptions options;
   options.isa = choose_isa(arguments.isa);
   options.threads = arguments.threads;
   options.build = parse_bvh_option(arguments.bvh);
-  options.data_layers = keeps_all_planes(output) || arguments.film.denoise;
+  options.data_layers = !writes_picture || keeps_all_planes(output) || arguments.film.denoise;
 
   Stopwatch watch;
   StageTimes times;
+  const FilesRead files;
   Scene scene = load(arguments);
   const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
   print_warnings(scene.warnings, most_warnings);
@@ -294,12 +335,13 @@ int run_render(const CommandLine& line, const RenderArguments& arguments) {
   if (arguments.verbose && !arguments.quiet) print_plan(scene, options, output);
   times.load = watch.lap();
 
+  checkpoint.start(scene, files.paths(), arguments, first_metadata(line, arguments, scene), options);
   PhotonFile photons(arguments, scene, options);
 
   // A first signal ends the tracing, not the writing.
   const StopOnSignal interrupt;
   options.stop = interrupt.flag();
-  Watch shown(arguments, options);
+  Watch shown(arguments, checkpoint, options);
   RenderResult result = render(std::move(scene), options);
   shown.finish();
   photons.keep(result);
@@ -307,18 +349,19 @@ int run_render(const CommandLine& line, const RenderArguments& arguments) {
   times.render = result.report.render_seconds;
   watch.lap();
   // The rest of a picture that was stopped is black.
-  if (arguments.film.denoise && !result.report.stopped) denoise(result.picture);
+  if (arguments.film.denoise && writes_picture && !result.report.stopped) denoise(result.picture);
   times.denoise = watch.lap();
-  const ImageMetadata metadata = metadata_of(line, arguments, result);
+  ImageMetadata metadata = metadata_of(line, arguments, result);
+  checkpoint.complete(metadata);
+  const std::optional<Error> unsaved = finish_film(checkpoint, metadata);
   // The library that writes images takes as much memory as a large scene: free the scene before it is loaded.
   result.scene = Scene{};
-  write_image(output, result.picture, metadata);
+  if (writes_picture) write_image(output, result.picture, metadata);
   times.write = watch.lap();
+  if (unsaved && !writes_picture) return say_unsaved(*unsaved, checkpoint);
   print_summary(arguments, times, result.report, output);
-  if (!result.report.stopped) return 0;
-  fmt::print(stderr, "stopped by {}: {:.1f}% of the picture is finished, the rest is black\n",
-             interrupt.signal() == SIGTERM ? "SIGTERM" : "SIGINT", shown.percent_done());
-  return 128 + interrupt.signal();
+  if (unsaved) return say_unsaved(*unsaved, checkpoint);
+  return result.report.stopped ? say_stopped(interrupt.signal(), shown.percent_done(), checkpoint) : 0;
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ const char* to_string(IntegratorKind kind) {
 }
 
 void add_render_options(Verb& verb, RenderArguments& a) {
-  verb.positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh (.obj)");
+  verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh (.obj)");
   verb.option("-o,--outfile", &a.outfile, "FILE",
               "Picture to write; default: the scene's name with .png, here");
   verb.option("-t,--nthreads", &a.threads, "N", "Threads; default: all processors");
@@ -94,6 +94,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.flag("--caustics", a.caustics, "Light through mirrors and glass by photons, with --integrator path");
   verb.option("--photon-map", &a.photon_map, "FILE",
               "Photons for --caustics: read from FILE, or written if it is missing");
+  add_checkpoint_options(verb, a.checkpoints);
   verb.option("--look", &a.look, "LOOK", "How a mesh given alone is shown: studio, clay, normals or wire");
   verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
   add_bvh_option(verb, a.bvh);
@@ -104,6 +105,13 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
   verb.option("--display-server", &a.display_server, "HOST:PORT",
               "Live preview in a viewer that speaks tev's protocol");
+}
+
+void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments) {
+  CommandLine line(words);
+  Verb verb = line.add_verb("render", "", [] { return 0; });
+  add_render_options(verb, arguments);
+  if (!line.read()) throw Error("the command line that began the picture is not one of this version");
 }
 
 void add_bvh_option(Verb& verb, std::string& quality) {

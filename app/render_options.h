@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/film_options.h"
 #include "io/scene/scene_file.h"
@@ -34,12 +35,16 @@ struct RenderArguments {
   std::string display_server;
   bool caustics = false;
   std::string photon_map;  ///< file; empty: photons are not kept
+  CheckpointArguments checkpoints;
   bool quiet = false;
   bool verbose = false;
   bool progress = false;
 };
 
 void add_render_options(Verb& verb, RenderArguments& arguments);
+/// Reads the words of a command line of `oktett render`. Those that are not given leave `arguments` as it is.
+/// Throws Error.
+void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments);
 
 /// Overrides settings of the scene by the arguments. Throws Error for unknown words.
 void override_scene(const RenderArguments& arguments, Scene& scene);

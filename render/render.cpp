@@ -107,7 +107,9 @@ std::vector<FinishedTile> plan_tiles(const RenderContext& context, const Picture
   if (options.film == nullptr) return cut_tiles(picture.width, picture.height, options.tile_size);
   options.film->begin({format_of(context), picture.attributes, picture.tone, context.settings.samples,
                        context.moments != nullptr});
-  return options.film->tiles();
+  std::vector<FinishedTile> tiles;
+  for (std::size_t i = 0; i < options.film->tile_count(); ++i) tiles.push_back(options.film->tile(i));
+  return tiles;
 }
 
 void render_tiles(const RenderContext& context, const std::vector<FinishedTile>& tiles, FilmState* film,

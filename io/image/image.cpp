@@ -10,6 +10,7 @@
 #include "io/image/library.h"
 #include "io/image/output.h"
 #include "io/image/writers.h"
+#include "io/text/files_read.h"
 
 namespace oktett {
 namespace {
@@ -72,7 +73,7 @@ void check_output(const std::string& path) {
   if (!layout)
     throw Error(Location{path}, "unknown image format '" + extension_of(path) +
                                     "': known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp");
-  const OutputFile file(path);
+  OutputFile file(path);
   library.write(path, file.temporary(), flatten(one_pixel(), *layout), {});
 }
 
@@ -97,9 +98,13 @@ void write_image(const std::string& path, const Picture& picture, const ImageMet
   file.commit();
 }
 
-Picture read_image(const std::string& path) { return image_library().read(path); }
+Picture read_image(const std::string& path) {
+  note_file_read(path);
+  return image_library().read(path);
+}
 
 HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels) {
+  note_file_read(path);
   return image_library().read_heights(path, most_side, most_pixels);
 }
 

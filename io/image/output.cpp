@@ -45,18 +45,33 @@ void check_target(const std::string& path, const fs::path& target) {
   if (fs::exists(status) && access(target.c_str(), W_OK) != 0) fail(path, "cannot write: " + reason(errno));
 }
 
-/// Creates a new file beside `target`, puts its name into `name` and returns it open for writing; the number
-/// makes names unique within the process.
-int create_beside(const std::string& path, const fs::path& target, std::string& name) {
+/// Calls `create(name)` with new names beside `target` until it does not fail because there is such a file;
+/// the number makes names unique within the process. Returns its result and puts the name into `name`.
+template <class Create>
+int create_beside(const std::string& path, const fs::path& target, std::string& name, const Create& create) {
   static std::atomic<unsigned> counter{0};
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const std::string stem = ".oktett-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
     name = (target.parent_path() / (stem + target.extension().string())).string();
-    const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file >= 0) return file;
-    if (errno != EEXIST) fail(path, "cannot write: " + reason(errno));
+    const int result = create(name.c_str());
+    if (result >= 0) return result;
+    if (errno != EEXIST) break;
   }
-  fail(path, "cannot write: no free temporary name in the directory");
+  name.clear();
+  fail(path, "cannot write: " + reason(errno));
+}
+
+/// Where a file that is open can be found without its name.
+std::string place_of(int file) { return "/proc/self/fd/" + std::to_string(file); }
+
+/// A file without a name in the directory of `target`; -1 if the file system has none or cannot name it
+/// later.
+int create_unnamed(const fs::path& target) {
+  const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const int file = open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  if (file < 0 || access(place_of(file).c_str(), F_OK) == 0) return file;
+  close(file);
+  return -1;
 }
 
 }  // namespace
@@ -65,12 +80,24 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   const fs::path target = resolve(path);
   check_target(path, target);
   target_ = target.string();
-  file_ = create_beside(path, target, temporary_);
+  file_ = create_unnamed(target);
+  if (file_ >= 0) return;
+  file_ = create_beside(path, target, temporary_, [](const char* name) {
+    return open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  });
 }
 
 OutputFile::~OutputFile() {
   close(file_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+const std::string& OutputFile::temporary() {
+  if (temporary_.empty())
+    create_beside(path_, target_, temporary_, [this](const char* name) {
+      return linkat(AT_FDCWD, place_of(file_).c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+    });
+  return temporary_;
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -88,7 +115,7 @@ void OutputFile::commit() {
   // cannot flush; that is no reason to lose a picture.
   if (fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(path_, "cannot write: " + reason(errno));
   std::error_code error;
-  fs::rename(temporary_, target_, error);
+  fs::rename(temporary(), target_, error);
   if (error) fail(path_, "cannot write: " + error.message());
   temporary_.clear();
 }

@@ -8,8 +8,9 @@
 
 namespace oktett {
 
-/// Reserves a temporary name beside `path`, with the same extension, on construction; `commit` moves it to
-/// `path`. Without that the destructor removes it.
+/// Is written to a temporary file in the directory of `path`, which `commit` renames to `path`; without that
+/// it is gone with the object. Where the file system can, the temporary has no name until then, so nothing is
+/// left of it even if the process is killed.
 class OutputFile {
  public:
   /// Creates the temporary, empty. Throws Error of kind io if `path` is no place to write to.
@@ -18,7 +19,8 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  const std::string& temporary() const { return temporary_; }
+  /// The name of the temporary, with the extension of `path`, for those who write by name.
+  const std::string& temporary();
   /// Writes `bytes` at place() and moves it behind them. Throws Error of kind io.
   void write(std::string_view bytes);
   /// Where the next byte is written, counted from the start of the file.
@@ -28,10 +30,10 @@ class OutputFile {
   void commit();
 
  private:
-  std::string path_;    ///< as the user gave it
-  std::string target_;  ///< where symbolic links lead
-  std::string temporary_;
-  int file_ = -1;  ///< the temporary, open for writing
+  std::string path_;       ///< as the user gave it
+  std::string target_;     ///< where symbolic links lead
+  std::string temporary_;  ///< empty while the temporary has no name
+  int file_ = -1;          ///< the temporary, open for writing
   std::uint64_t place_ = 0;
 };
 

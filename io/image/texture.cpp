@@ -4,11 +4,14 @@
 #include <utility>
 
 #include "io/image/library.h"
+#include "io/text/files_read.h"
 
 namespace oktett {
 
 ImageTextures::ImageTextures(std::vector<Texture> textures) {
   const auto is_image = [](const Texture& texture) { return !texture.pattern; };
+  for (const Texture& texture : textures)
+    if (is_image(texture)) note_file_read(texture.path);
   if (std::ranges::any_of(textures, is_image))
     sampler_ = image_library().load_textures(std::move(textures), warnings_);
 }

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "io/scene/utf8.h"
+#include "io/text/files_read.h"
 
 namespace oktett {
 namespace {
@@ -201,6 +202,7 @@ std::string why_unreadable(const std::string& path) {
 }
 
 std::string read_text_file(const std::string& path, std::size_t max_bytes) {
+  note_file_read(path);
   const Location place{path, 0, 0};
   if (const std::string reason = why_unreadable(path); !reason.empty())
     throw Error(place, reason, ErrorKind::io);

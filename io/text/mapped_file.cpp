@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "io/text/files_read.h"
 
 namespace oktett {
 namespace {
@@ -45,6 +46,7 @@ std::size_t page_size() {
 }  // namespace
 
 MappedFile::MappedFile(const std::string& path) {
+  note_file_read(path);
   const Descriptor file(path);
   struct stat status;
   if (file.get() < 0 || fstat(file.get(), &status) != 0) fail_with_errno(path);

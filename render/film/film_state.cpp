@@ -10,10 +10,8 @@
 namespace oktett {
 namespace {
 
-std::size_t tile_count(const FilmFormat& format, std::uint32_t size) {
-  const auto along = [&](std::uint32_t pixels) { return std::size_t{(pixels + size - 1) / size}; };
-  return along(format.window.width()) * along(format.window.height());
-}
+/// Tiles along an edge of so many pixels.
+std::size_t tiles_along(std::uint32_t pixels, std::uint32_t size) { return (pixels + size - 1) / size; }
 
 std::size_t pixels_of(const FinishedTile& tile) { return std::size_t{tile.width} * tile.height; }
 
@@ -21,19 +19,28 @@ std::size_t pixels_of(const FinishedTile& tile) { return std::size_t{tile.width}
 
 std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares) {
   std::uint32_t size = 32;
-  while (size > 8 && shares > 1 && tile_count(format, size) < std::size_t{4} * shares) size /= 2;
+  const auto tiles = [&] {
+    return tiles_along(format.window.width(), size) * tiles_along(format.window.height(), size);
+  };
+  while (size > 8 && shares > 1 && tiles() < std::size_t{4} * shares) size /= 2;
   return size;
+}
+
+bool is_same_film(const FilmPlan& a, const FilmPlan& b) {
+  return a.format == b.format && a.attributes == b.attributes && a.samples == b.samples && a.moves == b.moves;
 }
 
 void FilmState::begin(const FilmPlan& plan) {
   const std::lock_guard lock(mutex_);
   if (begun_) {
-    if (!(plan == plan_)) throw Error("the film is of another picture");
+    if (!is_same_film(plan, plan_)) throw Error("the film is of another picture");
+    plan_.tone = plan.tone;
     return;
   }
   plan_ = plan;
   tile_size_ = tile_size_of(plan.format, share_.count);
-  tiles_ = cut_tiles(plan.format.window.width(), plan.format.window.height(), tile_size_);
+  columns_ = tiles_along(plan.format.window.width(), tile_size_);
+  rows_ = tiles_along(plan.format.window.height(), tile_size_);
   if (plan.moves && added_ % plan.samples != 0)
     throw Error("things move, so samples are added by multiples of " + std::to_string(plan.samples));
   begun_ = true;
@@ -44,10 +51,16 @@ bool FilmState::has_begun() const {
   return begun_;
 }
 
+FinishedTile FilmState::tile(std::size_t number) const {
+  const auto x = static_cast<std::uint32_t>(number % columns_) * tile_size_,
+             y = static_cast<std::uint32_t>(number / columns_) * tile_size_;
+  return {x, y, std::min(tile_size_, plan_.format.window.width() - x),
+          std::min(tile_size_, plan_.format.window.height() - y)};
+}
+
 bool FilmState::in_share(std::size_t tile) const {
-  const std::size_t columns = (plan_.format.window.width() + tile_size_ - 1) / tile_size_;
-  const std::size_t row = tile / columns, column = tile % columns;
-  return (row * columns + (column + row) % columns) % share_.count + 1 == share_.number;
+  const std::size_t row = tile / columns_, column = tile % columns_;
+  return (row * columns_ + (column + row) % columns_) % share_.count + 1 == share_.number;
 }
 
 void FilmState::add_samples(std::uint32_t count) {
@@ -82,9 +95,7 @@ std::uint64_t FilmState::version() const {
 }
 
 std::size_t FilmState::tiles_wanted() const {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < tiles_.size(); ++i) count += in_share(i) ? 1 : 0;
-  return count;
+  return tile_count() / share_.count + (share_.number <= tile_count() % share_.count ? 1 : 0);
 }
 
 std::size_t FilmState::tiles_finished() const {
@@ -96,7 +107,7 @@ std::size_t FilmState::tiles_finished() const {
 TileCounts render_film_tile(const RenderContext& context, FilmState& film, std::size_t tile, Picture& picture,
                             TileWorkspace& work) {
   const FilmFormat& format = film.plan().format;
-  const FinishedTile& place = film.tiles()[tile];
+  const FinishedTile place = film.tile(tile);
   const TileRecordPointer known = film.record(tile);
   TileCounts counts;
   work.wavefront.counts = {};
@@ -123,7 +134,7 @@ void write_tiles(const FilmState& film, Picture& picture) {
   const auto records = film.records();
   std::vector<std::pair<std::size_t, TileRecordPointer>> list(records.begin(), records.end());
   tbb::parallel_for(std::size_t{0}, list.size(), [&](std::size_t i) {
-    const FinishedTile& place = film.tiles()[list[i].first];
+    const FinishedTile place = film.tile(list[i].first);
     const FilmFormat& format = film.plan().format;
     write_tile(format, place, decode_tile(format, pixels_of(place), list[i].second->bytes), picture);
   });

@@ -30,8 +30,10 @@ struct FilmPlan {
   Tone tone;
   std::uint32_t samples = 1;  ///< of each pixel, without those that are added
   bool moves = false;         ///< samples are added by multiples of `samples` only
-  bool operator==(const FilmPlan&) const = default;
 };
+
+/// Whether the sums of one picture are of use for another: all members are the same but for the tone.
+bool is_same_film(const FilmPlan& a, const FilmPlan& b);
 
 /// The edge of tiles: 32 pixels, or 16 or 8 if a picture in so many shares would else have fewer than four
 /// tiles for each of them.
@@ -52,13 +54,14 @@ class FilmState {
   /// `added`: samples of each pixel beyond those of the plan.
   explicit FilmState(FilmShare share, std::uint32_t added = 0) : share_(share), added_(added) {}
 
-  /// Sets the plan. If there is one, this must be the same; else throws Error.
+  /// Sets the plan. If there is one, it must be the same film; else throws Error.
   void begin(const FilmPlan& plan);
   bool has_begun() const;
   // The following need a plan.
   const FilmPlan& plan() const { return plan_; }
   std::uint32_t tile_size() const { return tile_size_; }
-  const std::vector<FinishedTile>& tiles() const { return tiles_; }
+  std::size_t tile_count() const { return columns_ * rows_; }
+  FinishedTile tile(std::size_t number) const;
   FilmShare share() const { return share_; }
   bool in_share(std::size_t tile) const;
   std::uint32_t added() const { return added_; }
@@ -83,14 +86,14 @@ class FilmState {
   std::uint32_t added_;
   std::uint32_t tile_size_ = 0;
   FilmPlan plan_;
-  std::vector<FinishedTile> tiles_;
+  std::size_t columns_ = 0, rows_ = 0;  ///< of tiles
   mutable std::mutex mutex_;
   std::map<std::size_t, TileRecordPointer> records_;
   std::uint64_t version_ = 0;
   bool begun_ = false;
 };
 
-/// Does what render_tile does for one of film.tiles(): traces the samples that the film lacks, keeps the sums
+/// Does what render_tile does for a tile of the film: traces the samples that the film lacks, keeps the sums
 /// and writes the planes.
 TileCounts render_film_tile(const RenderContext& context, FilmState& film, std::size_t tile, Picture& picture,
                             TileWorkspace& work);

@@ -173,7 +173,7 @@ TEST(FilmState, EachTileIsOfOneShare) {
       FilmPlan plan;
       plan.format.window = {3, 5, 3 + 250, 5 + 130};
       film.begin(plan);
-      tiles = film.tiles().size();
+      tiles = film.tile_count();
       std::size_t own = 0;
       for (std::size_t i = 0; i < tiles; ++i)
         if (film.in_share(i)) seen.insert(i), ++own;
@@ -201,7 +201,8 @@ TEST(TileSums, BytesGiveBackAllSums) {
     rendered(c, &film);
     const FilmFormat& format = film.plan().format;
     for (const auto& [number, record] : film.records()) {
-      const std::size_t pixels = std::size_t{film.tiles()[number].width} * film.tiles()[number].height;
+      const FinishedTile tile = film.tile(number);
+      const std::size_t pixels = std::size_t{tile.width} * tile.height;
       EXPECT_EQ(encode_tile(format, decode_tile(format, pixels, record->bytes)), record->bytes) << c.name;
     }
   }
@@ -214,8 +215,8 @@ TEST(TileSums, DamagedBytesAreSafe) {
     FilmState film(FilmShare{});
     rendered(c, &film);
     const FilmFormat& format = film.plan().format;
-    const std::size_t number = film.tiles().size() - 1;
-    const FinishedTile tile = film.tiles()[number];
+    const std::size_t number = film.tile_count() - 1;
+    const FinishedTile tile = film.tile(number);
     const std::size_t pixels = std::size_t{tile.width} * tile.height;
     const std::string bytes = film.record(number)->bytes;
     EXPECT_THROW(decode_tile(format, pixels, bytes + '\0'), Error);

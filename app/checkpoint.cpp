@@ -1,0 +1,147 @@
+#include "app/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "app/fingerprint.h"
+#include "app/render_options.h"
+#include "core/error.h"
+
+namespace oktett {
+namespace {
+
+constexpr double kMostSeconds = 86400;
+
+FilmShare parse_share(std::string_view text) {
+  FilmShare share;
+  const char* end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, share.number);
+  const bool slash = first.ec == std::errc{} && first.ptr != end && *first.ptr == '/';
+  const auto second = slash ? std::from_chars(first.ptr + 1, end, share.count) : first;
+  if (!slash || second.ec != std::errc{} || second.ptr != end || share.number < 1 ||
+      share.number > share.count || share.count > FilmShare::kMost)
+    throw Error(fmt::format("--shard: '{}' is not of the form k/n with 1 <= k <= n <= {}, e.g. 3/7", text,
+                            FilmShare::kMost));
+  return share;
+}
+
+double parse_seconds(std::string_view text) {
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (error != std::errc{} || end != text.data() + text.size() || !(seconds > 0) || seconds > kMostSeconds)
+    throw Error(fmt::format("--every: '{}' is out of range; expected seconds, more than 0 and at most {}",
+                            text, kMostSeconds));
+  return seconds;
+}
+
+/// In the place of a picture.
+std::string film_path(const RenderArguments& arguments, const FilmShare& share) {
+  if (is_film_name(arguments.outfile)) return arguments.outfile;
+  if (share.count == 1) return {};
+  if (!arguments.outfile.empty())
+    throw Error(fmt::format("--shard renders a part of a picture, which goes to a film; expected -o FILE{}",
+                            kFilmExtension));
+  return fmt::format("{}-{}-of-{}{}", std::filesystem::path(arguments.scene).stem().string(), share.number,
+                     share.count, kFilmExtension);
+}
+
+}  // namespace
+
+void add_checkpoint_options(Verb& verb, CheckpointArguments& a) {
+  verb.option("--checkpoint", &a.checkpoint, "FILE", "Keep what is finished in FILE, for --resume");
+  verb.option("--every", &a.every, "SECONDS", "Time between two checkpoints; default: 60");
+  verb.option("--resume", &a.resume, "FILE", "Go on with the picture of a checkpoint or share");
+  verb.option("--add-spp", &a.added_samples, "N", "More samples per pixel than the picture was begun with");
+  verb.option("--shard", &a.shard, "k/n", "Render the k-th of n parts of the picture, for oktett merge");
+}
+
+bool is_film_name(const std::string& path) {
+  return std::filesystem::path(path).extension() == kFilmExtension;
+}
+
+RenderArguments resumed_arguments(const CommandLine& line, const RenderArguments& arguments,
+                                  const FilmFile& film) {
+  RenderArguments all;
+  if (film.words.empty() || film.words.front() != "render")
+    throw Error(Location{arguments.checkpoints.resume}, "holds no command line of oktett render");
+  read_render_words(film.words, all);
+  all.threads = 0;
+  for (std::string* word : {&all.isa, &all.stats, &all.display_server, &all.photon_map}) word->clear();
+  all.quiet = all.verbose = all.progress = false;
+  // The film may have been moved, and is its own checkpoint.
+  const bool film_only = is_film_name(all.outfile) || !all.checkpoints.shard.empty();
+  if (film_only) all.outfile = arguments.checkpoints.resume;
+  all.checkpoints = {};
+  read_render_words(line.words(), all);
+  return all;
+}
+
+Checkpoint::Checkpoint(const CommandLine& line, RenderArguments& arguments) {
+  const CheckpointArguments given = arguments.checkpoints;
+  if (!given.every.empty()) seconds_ = parse_seconds(given.every);
+  FilmShare share = given.shard.empty() ? FilmShare{} : parse_share(given.shard);
+  if (given.added_samples && (*given.added_samples < 1 || *given.added_samples > kMostAddedSamples))
+    throw Error(fmt::format("--add-spp: {} is out of range; expected 1 to {}", *given.added_samples,
+                            kMostAddedSamples));
+  added_ = given.added_samples.value_or(0);
+  if (!given.resume.empty()) {
+    resumed_ = true;
+    file_ = read_film(given.resume);
+    arguments = resumed_arguments(line, arguments, file_);
+    if (!given.shard.empty() && !(share == file_.film->share()))
+      throw Error(Location{given.resume},
+                  fmt::format("is share {}/{}", file_.film->share().number, file_.film->share().count));
+    share = file_.film->share();
+  } else {
+    file_.words = line.words();
+    file_.film = std::make_shared<FilmState>(share, added_);
+  }
+  film_output_ = film_path(arguments, share);
+  if (!film_output_.empty() && !given.checkpoint.empty())
+    throw Error(fmt::format("--checkpoint: '{}' is a checkpoint itself", film_output_));
+  path_ = !film_output_.empty() ? film_output_ : !given.checkpoint.empty() ? given.checkpoint : given.resume;
+  if (path_.empty() && !given.every.empty()) throw Error("--every needs --checkpoint or --resume");
+}
+
+void Checkpoint::start(const Scene& scene, const std::vector<std::string>& files,
+                       const RenderArguments& arguments, const ImageMetadata& metadata,
+                       RenderOptions& options) {
+  if (path_.empty() && added_ == 0) return;
+  if (resumed_) options.data_layers = file_.film->plan().format.data_layers;
+  const FilmFingerprint now = fingerprint_of(scene, files, arguments, options.data_layers);
+  if (resumed_) {
+    const std::string other = difference(file_.fingerprint, now);
+    if (!other.empty())
+      throw Error(Location{arguments.checkpoints.resume}, "is of another picture: " + other);
+    file_.film->add_samples(added_);
+  } else {
+    file_.metadata = metadata;
+  }
+  file_.fingerprint = now;
+  options.film = file_.film.get();
+  if (path_.empty()) return;
+  const bool at_once = added_ > 0 || !std::filesystem::exists(path_);
+  saver_ = std::make_unique<FilmSaver>(FilmSaver::Options{path_, seconds_, at_once}, file_);
+}
+
+std::string Checkpoint::take_warning() { return saver_ ? saver_->take_warning() : std::string(); }
+
+void Checkpoint::complete(ImageMetadata& metadata) const {
+  if (file_.film->has_begun()) metadata.samples += file_.film->added();
+  if (!resumed_) return;
+  metadata.render_seconds += file_.metadata.render_seconds;
+  metadata.command_line = file_.metadata.command_line, metadata.scene = file_.metadata.scene;
+}
+
+void Checkpoint::finish(const ImageMetadata& metadata) {
+  if (saver_) saver_->finish(metadata);
+}
+
+std::string Checkpoint::path() const { return saver_ ? path_ : std::string(); }
+
+}  // namespace oktett

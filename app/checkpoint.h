@@ -1,0 +1,72 @@
+#pragma once
+/// \file Options of `oktett render` for pictures that are rendered in several runs: checkpoints and shares.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command_line.h"
+#include "app/film_saver.h"
+#include "io/film/film_file.h"
+#include "render/render.h"
+
+namespace oktett {
+
+struct RenderArguments;
+
+/// The words of the command line, not checked yet. Empty: not given.
+struct CheckpointArguments {
+  std::string checkpoint, every, resume, shard;
+  std::optional<std::uint32_t> added_samples;
+};
+
+void add_checkpoint_options(Verb& verb, CheckpointArguments& arguments);
+
+/// The extension of film files.
+inline constexpr const char* kFilmExtension = ".film";
+/// Whether the file is a film by its name.
+bool is_film_name(const std::string& path);
+
+/// What `arguments` and the film that --resume names ask for together: words that say how a picture looks
+/// count as when it was begun, unless they are given again. Words that only say how it is computed are those
+/// of now. `line` holds the words of now.
+RenderArguments resumed_arguments(const CommandLine& line, const RenderArguments& arguments,
+                                  const FilmFile& film);
+
+/// The film of a render and its file.
+class Checkpoint {
+ public:
+  /// Reads the film that --resume names and replaces `arguments` by resumed_arguments. Throws Error for
+  /// options that do not go together.
+  Checkpoint(const CommandLine& line, RenderArguments& arguments);
+
+  /// Where the film goes in the place of a picture; empty: a picture is written.
+  const std::string& film_output() const { return film_output_; }
+  /// Sets options.film and, of a film that was begun before, options.data_layers, and lets the film be
+  /// written from now on. Throws Error if the film that was begun is of another scene. `files` were read for
+  /// the scene.
+  void start(const Scene& scene, const std::vector<std::string>& files, const RenderArguments& arguments,
+             const ImageMetadata& metadata, RenderOptions& options);
+  /// A problem since the last call, for the user; empty if there was none.
+  std::string take_warning();
+  /// Whether the user knows of that problem.
+  bool has_told(const std::string& problem) const { return saver_ && saver_->has_told(problem); }
+  /// Adds what earlier runs took, and keeps the words of the first.
+  void complete(ImageMetadata& metadata) const;
+  /// Writes the film for the last time. Throws Error of kind io.
+  void finish(const ImageMetadata& metadata);
+  /// Where the film is written to; empty: nowhere.
+  std::string path() const;
+
+ private:
+  FilmFile file_;
+  bool resumed_ = false;
+  std::uint32_t added_ = 0;
+  std::string path_, film_output_;
+  double seconds_ = 60;
+  std::unique_ptr<FilmSaver> saver_;
+};
+
+}  // namespace oktett
