@@ -16,6 +16,13 @@ static std::uint8_t number_of(const std::string& name, std::vector<std::string>&
   return static_cast<std::uint8_t>(number);
 }
 
+bool is_light_group_name(const std::string& name) {
+  const auto is_plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), is_plain);
+}
+
 LightGroups light_groups(const Scene& scene) {
   LightGroups groups;
   groups.names.emplace_back(kDefaultLightGroup);

@@ -23,6 +23,9 @@ struct LightGroups {
   }
 };
 
+/// Whether layers of a picture can be named after a group of this name: letters, digits, '_' and '-'.
+bool is_light_group_name(const std::string& name);
+
 /// Throws Error if there are more than kMostLightGroups.
 LightGroups light_groups(const Scene& scene);
 

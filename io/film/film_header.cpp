@@ -1,9 +1,13 @@
 #include "io/film/film_header.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <vector>
 
 #include "core/bytes.h"
 #include "core/error.h"
+#include "render/light_groups.h"
 
 namespace oktett {
 namespace {
@@ -26,6 +30,27 @@ FilmFingerprint::Entries take_pairs(ByteReader& reader) {
     pairs.emplace_back(std::move(name), reader.text());
   }
   return pairs;
+}
+
+void append_texts(std::string& bytes, const std::vector<std::string>& texts) {
+  append_number(bytes, static_cast<std::uint32_t>(texts.size()));
+  for (const std::string& text : texts) append_text(bytes, text);
+}
+
+std::vector<std::string> take_texts(ByteReader& reader) {
+  std::vector<std::string> texts;
+  for (std::uint32_t left = reader.count(4); left > 0; --left) texts.push_back(reader.text());
+  return texts;
+}
+
+/// Planes are named after light groups, and found by the name of the first.
+void check_light_groups(const FilmFormat& format) {
+  const std::vector<std::string>& names = format.light_groups;
+  if (names.empty()) return;
+  const std::set<std::string> different(names.begin(), names.end());
+  if (!format.data_layers || names.size() > kMostLightGroups || names.front() != kDefaultLightGroup ||
+      different.size() != names.size() || !std::ranges::all_of(names, is_light_group_name))
+    throw Error("its light groups cannot be");
 }
 
 void append_metadata(std::string& bytes, const ImageMetadata& metadata) {
@@ -92,12 +117,12 @@ std::string film_header(const FilmFile& file, std::uint32_t tiles) {
   append_number(bytes, plan.tone.exposure);
   for (const std::uint32_t x : {plan.samples, film.added(), film.share().number, film.share().count, tiles})
     append_number(bytes, x);
+  append_texts(bytes, plan.format.light_groups);
   append_pairs(bytes, plan.attributes);
   append_metadata(bytes, file.metadata);
   append_pairs(bytes, file.fingerprint.settings);
   append_pairs(bytes, file.fingerprint.files);
-  append_number(bytes, static_cast<std::uint32_t>(file.words.size()));
-  for (const std::string& word : file.words) append_text(bytes, word);
+  append_texts(bytes, file.words);
   return bytes;
 }
 
@@ -118,11 +143,13 @@ std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
   if (plan.samples < 1 || plan.samples > kMostSamples || added > kMostAddedSamples)
     throw Error("its number of samples cannot be");
   if (number < 1 || number > count || count > FilmShare::kMost) throw Error("its share cannot be");
+  plan.format.light_groups = take_texts(reader);
+  check_light_groups(plan.format);
   plan.attributes = take_pairs(reader);
   file.metadata = take_metadata(reader, (flags & kCamera) != 0);
   file.fingerprint.settings = take_pairs(reader);
   file.fingerprint.files = take_pairs(reader);
-  for (std::uint32_t left = reader.count(4); left > 0; --left) file.words.push_back(reader.text());
+  file.words = take_texts(reader);
   if (reader.left() != 0) throw Error("the header has not the length that it says");
   file.film = std::make_shared<FilmState>(FilmShare{number, count}, added);
   file.film->begin(plan);

@@ -12,6 +12,7 @@
 #include "io/photometry/ies_file.h"
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
+#include "render/light_groups.h"
 #include "render/moved.h"
 
 namespace oktett {
@@ -252,10 +253,7 @@ constexpr LightKind kLightKinds[] = {{"point", read_point},
 
 std::string read_light_group(SceneLoad& load, const YamlNode& node) {
   std::string name = load.values.text(node);
-  const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  if (name.empty() || !std::ranges::all_of(name, is_plain))
+  if (!is_light_group_name(name))
     throw Error(node.where(),
                 "a light group's name has letters, digits, '_' and '-' only, because layers of "
                 "the picture are named after it; found " +

@@ -176,8 +176,8 @@ BvhNode node_of(const std::vector<Box>& boxes) {
 }
 
 // The fused slab test meets every box that the ray meets, at every scale, also if it only touches a corner.
-/// Short rays enter the tree at what the box around them meets. The ends of these all lie on one plane, most of
-/// them off by a rounding error in the same direction.
+/// Short rays enter the tree at what the box around them meets. The ends of these all lie on one plane, most
+/// of them off by a rounding error in the same direction.
 TEST(Interleaved, ShortRaysThatEndOnASurface) {
   CaseRandom random(71);
   for (int axis = 0; axis < 3; ++axis) {

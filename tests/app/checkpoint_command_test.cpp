@@ -33,7 +33,7 @@ constexpr const char* kScene =
     "integrator: {kind: path, samples: 4}\n"
     "camera: {from: [0, 2, 6], at: [0, 0, 0]}\n"
     "materials: {mirror: {reflection: 1, diffuse: 0}}\n"
-    "lights: [{point: {position: [3, 5, 4]}}]\n"
+    "lights: [{point: {position: [3, 5, 4], light_group: key}}]\n"
     "objects:\n"
     "  - {sphere: {radius: 1}, material: mirror}\n"
     "  - {sphere: {radius: 0.1}, name: '${x}'}\n"

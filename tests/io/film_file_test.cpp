@@ -22,6 +22,7 @@ FilmPlan small_plan() {
   plan.format.window = {4, 8, 44, 48};
   plan.format.full_width = 64, plan.format.full_height = 50;
   plan.format.data_layers = plan.format.mattes = plan.format.sample_counts = true;
+  plan.format.light_groups = {"default", "key-1"};
   plan.attributes = {{"cryptomatte/1/name", "CryptoObject"}};
   plan.tone = {ToneKind::aces, -1.5};
   plan.samples = 8;
@@ -49,6 +50,8 @@ FilmFile small_film() {
     sums.pixels.resize(std::size_t{tile.width} * tile.height);
     sums.samples.resize(sums.pixels.size(), 8);
     sums.objects.resize(sums.pixels.size()), sums.materials.resize(sums.pixels.size());
+    sums.grouped.resize(6 * sums.pixels.size());
+    sums.grouped[19] = 0.75;
     sums.pixels[3].color[1] = 0.25, sums.pixels[3].good = 8, sums.pixels[3].has_ids = true;
     sums.objects[3].add(1.5f);
     file.film->set_record(number, {number > 4 ? 16u : 0u, encode_tile(small_plan().format, sums)});
@@ -157,6 +160,31 @@ TEST_F(FilmFiles, HeadersThatLieAreSafe) {
     refused += problem(file + rest).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, 1000);
+}
+
+// Planes are named after them.
+TEST_F(FilmFiles, OddLightGroupsAreRefused) {
+  const auto problem_with = [&](const std::vector<std::string>& names, bool layers = true) {
+    FilmPlan plan = small_plan();
+    plan.format.light_groups = names;
+    plan.format.data_layers = plan.format.mattes = plan.format.sample_counts = layers;
+    FilmFile file;
+    file.film = std::make_shared<FilmState>(FilmShare{});
+    file.film->begin(plan);
+    write_film(path(), file);
+    return problem(bytes());
+  };
+  EXPECT_EQ(problem_with({"default", "key"}), "");
+  EXPECT_EQ(problem_with({}), "");
+  const std::string odd = "its light groups cannot be";
+  EXPECT_EQ(problem_with({"default", "a.b"}), odd);
+  EXPECT_EQ(problem_with({"default", ""}), odd);
+  EXPECT_EQ(problem_with({"key", "default"}), odd);
+  EXPECT_EQ(problem_with({"default", "key", "key"}), odd);
+  EXPECT_EQ(problem_with({"default", "key"}, false), odd);
+  std::vector<std::string> many{"default"};
+  for (int i = 0; i < 64; ++i) many.push_back("g" + std::to_string(i));
+  EXPECT_EQ(problem_with(many), odd);
 }
 
 TEST_F(FilmFiles, WhatCannotBeWrittenLeavesTheOldFile) {
