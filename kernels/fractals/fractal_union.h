@@ -37,6 +37,29 @@ class UnionWalk {
   UnionWalk(const T& tree, const Node& root, const UnionSpan& bounds, int depth)
       : tree_(tree), root_(root), bounds_(bounds), depth_(depth) {}
 
+  /// The first crossing after a, at most b, as `next` tells it; finds out whether the line is inside right
+  /// after a.
+  bool first(double a, double b, bool& inside, double& t, Place& place) {
+    bool found = false, within = false;
+    double best = b;
+    walk(
+        [&](const Node& node, int level) {
+          UnionSpan s;
+          if (!tree_.solid(node, s) || !(a < s.far)) return;
+          if (s.near <= a) {
+            within = true;
+          } else if (found ? s.near < best : s.near <= best) {
+            best = s.near, found = true, held_until_ = s.far;
+            keep(node, level, place);
+          }
+        },
+        [&](const UnionSpan& s) { return !within && s.near <= best && a < s.far; });
+    inside = within;
+    if (within) return next(a, b, inside, t, place);
+    t = best;
+    return inside = found;
+  }
+
   /// The next crossing after a, at most b, as the solids tell that are entered and left; false if there is
   /// none. `inside` says whether the line is inside right after a, and afterwards whether it is beyond what
   /// was found.
@@ -45,6 +68,8 @@ class UnionWalk {
       if (!enter(a, b, t, place)) return false;
       return inside = true;
     }
+    // The solid that was entered last is not left before b, so neither are all.
+    if (held_until_ > b) return false;
     double out = a;
     if (!leave(out, place)) return false;
     for (;;) {
@@ -60,13 +85,6 @@ class UnionWalk {
     if (!(out <= b)) return false;
     t = out, inside = false;
     return true;
-  }
-
-  /// Whether the line is inside of a solid right after a.
-  bool is_inside(double a) {
-    Place place;
-    double t = a;
-    return leave(t, place);
   }
 
  private:
@@ -128,7 +146,7 @@ class UnionWalk {
         [&](const Node& node, int level) {
           UnionSpan s;
           if (!tree_.solid(node, s) || !(a < s.near) || !(found ? s.near < best : s.near <= best)) return;
-          best = s.near, found = true;
+          best = s.near, found = true, held_until_ = s.far;
           keep(node, level, place);
         },
         [&](const UnionSpan& s) { return s.near <= best && a < s.far; });
@@ -155,6 +173,7 @@ class UnionWalk {
   const Node& root_;
   UnionSpan bounds_;
   int depth_;
+  double held_until_ = -std::numeric_limits<double>::infinity();  ///< where the solid entered last ends
   Level levels_[kMaxDepth];
   std::uint8_t path_[kMaxDepth];
 };
@@ -176,11 +195,12 @@ Box bounds_by_support(const Affine& to_world, double slack, double radius, Suppo
 /// F::find for a union: `tell(place, crossing)` adds the point and the normal.
 template <class Walk, class Tell>
 int find_in_union(Walk& walk, const FractalQuery& query, FractalCrossing* out, int room, Tell&& tell) {
-  bool inside = walk.is_inside(query.a);
+  bool inside = false;
   double at = query.a;
   int count = 0;
   typename Walk::Place place;
-  while (count < room && walk.next(at, query.b, inside, at, place)) {
+  while (count < room && (count == 0 ? walk.first(at, query.b, inside, at, place)
+                                     : walk.next(at, query.b, inside, at, place))) {
     FractalCrossing& c = out[count++];
     c = {};
     c.t = at, c.turn = inside ? -1 : 1;

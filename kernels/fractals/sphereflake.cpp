@@ -40,6 +40,18 @@ std::array<Frame, kChildren> make_frames() {
 }
 const std::array<Frame, kChildren> kFrames = make_frames();
 
+/// The y axes of the children in columns, so that the compiler takes several at once.
+struct Axes {
+  double x[kChildren], y[kChildren], z[kChildren];
+};
+Axes make_axes() {
+  Axes axes;
+  for (int k = 0; k < kChildren; ++k)
+    axes.x[k] = kFrames[k].y.x, axes.y[k] = kFrames[k].y.y, axes.z[k] = kFrames[k].y.z;
+  return axes;
+}
+const Axes kAxes = make_axes();
+
 /// The line in the space of one ball: the points p + x u, with p nearest to the ball's centre; s is where p
 /// is, in units of the first ball.
 struct FlakeNode {
@@ -67,17 +79,27 @@ struct FlakeTree {
   /// What rounding leaves no length of is not met.
   bool solid(const Node& node, UnionSpan& out) const { return span(node, 1, out) && out.near < out.far; }
 
+  /// A child and its descendants are in a ball about it, between two planes across its y axis.
   int children(const Node& node, UnionSpan* out) const {
+    const int below = node.generation + 1;
     const double away = 1 + e.ratio, size = e.radius[node.generation];
-    const double reach = e.ratio * e.reach[node.generation + 1], pp = dot(node.p, node.p);
+    const double reach = e.ratio * e.reach[below], pp = dot(node.p, node.p);
+    double yp[kChildren], yu[kChildren], h2[kChildren];
+    for (int k = 0; k < kChildren; ++k) {
+      yp[k] = kAxes.x[k] * node.p.x + kAxes.y[k] * node.p.y + kAxes.z[k] * node.p.z;
+      yu[k] = kAxes.x[k] * node.u.x + kAxes.y[k] * node.u.y + kAxes.z[k] * node.u.z;
+      h2[k] = reach * reach - (pp - 2 * away * yp[k] + away * away * (1 - yu[k] * yu[k]));
+    }
+    const double low = away + e.ratio * e.low[below], high = away + e.ratio * e.high[below];
     int n = 0;
     for (int k = 0; k < kChildren; ++k) {
-      const Vec3d& y = kFrames[k].y;
-      const double yp = dot(y, node.p), yu = dot(y, node.u);
-      const double off = pp - 2 * away * yp + away * away * (1 - yu * yu), h2 = reach * reach - off;
-      if (!(h2 > 0)) continue;
-      const double h = std::sqrt(h2), along = away * yu;
-      out[n++] = {to_t(node.s + (along - h) * size), to_t(node.s + (along + h) * size), k};
+      if (!(h2[k] > 0)) continue;
+      const double h = std::sqrt(h2[k]), along = away * yu[k], inverse = 1 / yu[k];
+      double a = (low - yp[k]) * inverse, b = (high - yp[k]) * inverse;
+      if (b < a) std::swap(a, b);
+      // Where the line is parallel to the planes and in one of them, NaN leaves the ball's range as it is.
+      a = a > along - h ? a : along - h, b = b < along + h ? b : along + h;
+      if (a <= b) out[n++] = {to_t(node.s + a * size), to_t(node.s + b * size), k};
     }
     return n;
   }
@@ -92,7 +114,10 @@ struct FlakeTree {
 
 using Walk = UnionWalk<FlakeTree, kMaxSphereflakeDepth>;
 
-void grow_support(const SphereflakeElement& e, int generation, double from, const Vec3d& w, double& best) {
+/// Raises `best` to how far a ball and its descendants reach along the unit vector `w`, from where `from` is
+/// its centre: by no less than the truth minus `slack`. Lengths are those of the first ball.
+void grow_support(const SphereflakeElement& e, int generation, double from, const Vec3d& w, double slack,
+                  double& best) {
   const double size = e.radius[generation];
   best = std::max(best, from + size);
   if (generation == e.depth) return;
@@ -102,19 +127,53 @@ void grow_support(const SphereflakeElement& e, int generation, double from, cons
   const double reach = e.radius[generation + 1] * e.reach[generation + 1];
   for (const auto& [down, k] : order) {
     const double at = from - down * (1 + e.ratio) * size;
-    if (at + reach <= best + 0x1p-11) return;
-    grow_support(e, generation + 1, at, kFrames[k].inwards(w), best);
+    if (at + reach <= best + slack) return;
+    grow_support(e, generation + 1, at, kFrames[k].inwards(w), slack, best);
   }
+}
+
+/// How far a ball of a generation and its descendants reach along the unit vector `w`, from its centre in
+/// units of its radius: no less, and more by no more than 1/1000.
+double reach_along(const SphereflakeElement& e, int generation, const Vec3d& w) {
+  const double size = e.radius[generation], slack = 0x1p-11;
+  double best = 0;
+  grow_support(e, generation, 0, w, slack * size, best);
+  return best / size + slack + 0x1p-40;
 }
 
 /// How far it reaches along `direction`, from its centre in lengths of the direction: no less, and more by
 /// no more than 1/1000.
 double support(const SphereflakeElement& e, const Vec3d& direction) {
   const double l = length(direction);
-  if (!(l > 0)) return 0;
-  double best = 0;
-  grow_support(e, 0, 0, direction / l, best);
-  return best + 0x1p-11 + 0x1p-40;
+  return l > 0 ? reach_along(e, 0, direction / l) : 0;
+}
+
+/// Raises `best` to the distance of the farthest point of a ball and its descendants from the origin, up to
+/// 2^-11. `centre` is that of the ball, whose axes are those of `frame`.
+void grow_reach(const SphereflakeElement& e, int generation, const Vec3d& centre, const Frame& frame,
+                double size, double& best) {
+  const double away = length(centre);
+  best = std::max(best, away + size);
+  if (generation == e.depth || away + size * e.reach[generation] <= best + 0x1p-11) return;
+  for (const Frame& f : kFrames) {
+    const Frame turned{frame.outwards(f.x), frame.outwards(f.y), frame.outwards(f.z)};
+    grow_reach(e, generation + 1, centre + turned.y * ((1 + e.ratio) * size), turned, size * e.ratio, best);
+  }
+}
+
+/// Sets the bounds of all generations. That of a generation helps to find that of the one before.
+void set_bounds(SphereflakeElement& e) {
+  for (int g = e.depth; g >= 0; --g) {
+    const bool last = g == e.depth;
+    e.reach[g] = with_margin(last ? 1 : 1 + e.ratio + e.ratio * e.reach[g + 1], e.radius[g]);
+    if (!last) {
+      double best = 1;
+      grow_reach(e, g, {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1, best);
+      e.reach[g] = std::min(e.reach[g], with_margin(best + 0x1p-11 + 0x1p-40, e.radius[g]));
+    }
+    e.low[g] = -with_margin(reach_along(e, g, {0, -1, 0}), e.radius[g]);
+    e.high[g] = with_margin(reach_along(e, g, {0, 1, 0}), e.radius[g]);
+  }
 }
 
 bool holds(const SphereflakeElement& e, int generation, const Vec3d& p) {
@@ -137,9 +196,7 @@ void Sphereflake::add(Pool& pool, const SphereflakeShape& s, const ExactPlace& p
     if (next < kLeastRadius) break;
     e.radius[e.depth + 1] = next;
   }
-  e.reach[e.depth] = with_margin(1, e.radius[e.depth]);
-  for (int g = e.depth; g-- > 0;)
-    e.reach[g] = with_margin(1 + e.ratio + e.ratio * e.reach[g + 1], e.radius[g]);
+  set_bounds(e);
   add_element(pool, e, place.to_world, place);
   const auto side = [&](const Vec3d& w) { return support(pool.elements.back(), w); };
   add_cell(pool, {-side({-1, 0, 0}), -side({0, -1, 0}), -side({0, 0, -1})},

@@ -19,6 +19,8 @@ struct SphereflakeElement {
   /// Of each generation g: its balls' radius, and the radius, in their own spaces, of a ball about one of
   /// them that holds all its descendants.
   double radius[kMaxSphereflakeDepth + 1], reach[kMaxSphereflakeDepth + 1];
+  /// How far the descendants of one of them, and itself, reach down and up along the y axis of its space.
+  double low[kMaxSphereflakeDepth + 1], high[kMaxSphereflakeDepth + 1];
 };
 
 struct Sphereflake : Fractal<Sphereflake, SphereflakeShape, SphereflakeElement> {
