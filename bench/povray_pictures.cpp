@@ -36,10 +36,12 @@ struct Shot {
 };
 
 Shot by_oktett(Scene scene, std::uint32_t samples, const Options& o) {
-  scene.integrator.samples = samples;
+  IntegratorSettings& settings = scene.integrator;
+  (settings.light_samples > 0 ? settings.light_samples : settings.samples) = samples;
   RenderOptions options;
   options.threads = static_cast<unsigned>(o.threads);
   options.data_layers = false;
+  options.tile_size = 64;
   const RenderResult result = render(std::move(scene), options);
   const auto& values = result.picture.find("G")->values;
   return {{values.begin(), values.end()}, result.report.render_seconds};

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/eighth_turn.h"
+
 namespace oktett::portable {
 
 static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -122,27 +124,10 @@ static double reduce_angle(double x, int& quadrant) {
   return ((x - k * kPart[0]) - k * kPart[1]) - k * kPart[2];
 }
 
-static double sin_taylor(double r) {
-  static constexpr double kTaylor[] = {
-      1 / 355687428096000.0, -1 / 1307674368000.0, 1 / 6227020800.0, -1 / 39916800.0,
-      1 / 362880.0,          -1 / 5040.0,          1 / 120.0,        -1 / 6.0};
-  const double r2 = r * r;
-  return r + r * (r2 * polynomial(kTaylor, r2));
-}
+using OneLane = Simd<double, 1, ScalarIsa>;
 
-static double cos_taylor(double r) {
-  static constexpr double kTaylor[] = {-1 / 6402373705728000.0,
-                                       1 / 20922789888000.0,
-                                       -1 / 87178291200.0,
-                                       1 / 479001600.0,
-                                       -1 / 3628800.0,
-                                       1 / 40320.0,
-                                       -1 / 720.0,
-                                       1 / 24.0,
-                                       -1 / 2.0,
-                                       1};
-  return polynomial(kTaylor, r * r);
-}
+static double sin_taylor(double r) { return sin_of_eighth(OneLane(r)).part[0].v; }
+static double cos_taylor(double r) { return cos_of_eighth(OneLane(r)).part[0].v; }
 
 double sin(double x) {
   if (!std::isfinite(x)) return kNan;

@@ -5,6 +5,7 @@
 #include "core/random.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/transport/integrators.h"
+#include "render/transport/render_code.h"
 #include "render/transport/sample_dimensions.h"
 #include "render/transport/wavefront.h"
 
@@ -38,9 +39,11 @@ void spread_samples(const RenderContext& context, std::span<const WavefrontPixel
   std::size_t i = 0;
   for (const WavefrontPixel& pixel : pixels) {
     const std::uint64_t key = key_of(context, pixel);
-    const std::uint64_t places = sequence_key(key, dimension(Decision::film));
+    render_code(context.isa)
+        .sobol_points(first, last, sequence_key(key, dimension(Decision::film)), wavefront.film_x.data() + i,
+                      wavefront.film_y.data() + i);
     for (std::uint32_t number = first; number < last; ++number, ++i) {
-      SquareSample at = sobol_point(number, places);
+      SquareSample at{wavefront.film_x[i], wavefront.film_y[i]};
       if (!square) at = {context.filter.offset(at.x) + 0.5, context.filter.offset(at.y) + 0.5};
       wavefront.film_x[i] = pixel.x + at.x, wavefront.film_y[i] = pixel.y + at.y;
       s.pixel[i] = pixel.number, s.number[i] = number, s.key[i] = key;
@@ -56,12 +59,21 @@ void spread_over_lens(const RenderContext& context, std::span<const WavefrontPix
   wavefront.lens_x.resize_uninitialized(count), wavefront.lens_y.resize_uninitialized(count);
   std::size_t i = 0;
   for (const WavefrontPixel& pixel : pixels) {
-    const std::uint64_t places = sequence_key(key_of(context, pixel), kLensDimension);
-    for (std::uint32_t number = first; number < last; ++number, ++i) {
-      const SquareSample at = sobol_point(number, places);
-      wavefront.lens_x[i] = at.x, wavefront.lens_y[i] = at.y;
-    }
+    render_code(context.isa)
+        .sobol_points(first, last, sequence_key(key_of(context, pixel), kLensDimension),
+                      wavefront.lens_x.data() + i, wavefront.lens_y.data() + i);
+    i += last - first;
   }
+}
+
+/// Chooses the points of area lights for samples [first, last) of each pixel.
+void choose_patterns(const RenderContext& context, std::span<const WavefrontPixel> pixels,
+                     std::uint32_t first, std::uint32_t last, SampleBatch& samples) {
+  samples.pattern.resize_uninitialized(samples.size());
+  std::size_t i = 0;
+  for (const WavefrontPixel& pixel : pixels)
+    for (std::uint32_t number = first; number < last; ++number)
+      samples.pattern[i++] = context.area_lights.pattern(pixel.x, pixel.y, number);
 }
 
 }  // namespace
@@ -73,7 +85,8 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
   wavefront.whole_pixels = last - first == context.settings.samples;
   wavefront.next.clear();
   const bool path = context.settings.kind == IntegratorKind::path;
-  wavefront.shadows.resize(path ? kAreaQueue + 1 : std::max<std::size_t>(1, context.lights.size()));
+  const std::size_t lights = context.lights.size() + context.area_lights.samples;
+  wavefront.shadows.resize(path ? kAreaQueue + 1 : std::max<std::size_t>(1, lights));
   wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);
   wavefront.samples.resize_uninitialized(count, context.data_layers);
   wavefront.rays.resize_uninitialized(count);
@@ -81,6 +94,7 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
     centre_samples(context, pixels, wavefront);
   else
     spread_samples(context, pixels, first, last, wavefront);
+  if (!context.area_lights.empty()) choose_patterns(context, pixels, first, last, wavefront.samples);
   if (context.camera.lens_radius > 0) spread_over_lens(context, pixels, first, last, wavefront);
   camera_rays(context.camera, {wavefront.film_x, wavefront.film_y, &wavefront.lens_x, &wavefront.lens_y},
               wavefront.rays.rays, context.isa);

@@ -117,6 +117,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.settings.depth = std::min(c.settings.depth, 64u);
   c.sampled = &lights;
   c.lights = light_sources(scene);
+  c.area_lights = area_lights(lights, textures, c.settings);
   c.interiors = interiors(scene, world);
   c.tracks_enclosures = world.tracks_enclosures;
   if (c.tracks_enclosures) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/isa.h"
+#include "render/area_lights.h"
 #include "render/camera.h"
 #include "render/enclosures.h"
 #include "render/geometry.h"
@@ -22,18 +23,6 @@ struct LightGroups;
 struct PathSurface;
 struct Mattes;
 
-/// A light in the precision of shading.
-struct LightSource {
-  Vec3f place;  ///< position, or the unit vector towards a directional light
-  Color color;
-  bool directional = false;
-  bool falloff = false;
-  bool spot = false;
-  Vec3f axis;                          ///< of a spot: unit vector along the middle of its cone
-  float cos_inner = 1, cos_outer = 0;  ///< of a spot: cosines of the angles between which it fades
-  AimedProfile profile = {};
-};
-
 class Caustics;
 
 struct RenderContext {
@@ -47,6 +36,7 @@ struct RenderContext {
   FilterSampler filter;
   IntegratorSettings settings;
   std::vector<LightSource> lights;         ///< those that have a place or a direction, for Whitted's model
+  AreaLights area_lights;                  ///< glowing surfaces, for Whitted's model
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
   const Caustics* caustics = nullptr;      ///< photons that path tracing asks for light; may be null
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials

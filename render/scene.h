@@ -116,6 +116,9 @@ struct IntegratorSettings {
   double error = 0;
   std::uint32_t max_samples = 1024;  ///< most samples of a pixel if `error` is given, [1, 65536]
   CausticSettings caustics = {};
+  /// Shadow rays of each hit to points of glowing surfaces in Whitted's model, [0, 1024]; 0: these light
+  /// nothing.
+  std::uint32_t light_samples = 0;
   bool operator==(const IntegratorSettings&) const = default;
 };
 

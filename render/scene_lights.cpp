@@ -218,8 +218,10 @@ SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLigh
     const bool point = directional != nullptr ? directional->angle == 0 : has_place(light);
     has_environment_ |= !point;
   }
-  // Only path tracing asks for surfaces, of which there may be millions.
-  if (scene.integrator.kind == IntegratorKind::path)
+  // There may be millions of surfaces, so they are listed only for those who ask.
+  const IntegratorSettings& asking = scene.integrator;
+  const bool whitted = asking.kind == IntegratorKind::whitted && asking.light_samples > 0;
+  if (whitted || asking.kind == IntegratorKind::path)
     EmitterCollector(world, groups, *this, emitters).collect();
   set_ = LightSet(std::move(emitters));
 }

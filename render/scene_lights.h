@@ -32,7 +32,7 @@ AimedProfile profile_of(const SpotLight& light);
 /// paths that happen to meet them.
 class SceneLights {
  public:
-  /// The lights of `scene`, whose lights are filled in, and if it is for path tracing, of the glowing
+  /// The lights of `scene`, whose lights are filled in, and if the integrator samples them, of the glowing
   /// surfaces in `world`.
   /// `like`, which may be null, was made for the same scene at another moment: its environments are used
   /// again.

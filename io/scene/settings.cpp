@@ -119,9 +119,9 @@ static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings
 }
 
 void read_integrator(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(
-      node, "integrator",
-      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples", "caustics"});
+  const Fields fields(node, "integrator",
+                      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples",
+                       "caustics", "light_samples"});
   SceneValues& values = load.values;
   IntegratorSettings& integrator = load.scene.integrator;
   if (const YamlNode* kind = fields["kind"])
@@ -134,6 +134,8 @@ void read_integrator(SceneLoad& load, const YamlNode& node) {
   values.read(fields["clamp"], integrator.clamp, kNonNegative);
   values.read(fields["error"], integrator.error, kErrors);
   if (const YamlNode* most = fields["max_samples"]) integrator.max_samples = values.integer(*most, 1, 65536);
+  if (const YamlNode* lights = fields["light_samples"])
+    integrator.light_samples = values.integer(*lights, 0, 1024);
   if (const YamlNode* caustics = fields["caustics"]) read_caustics(load, *caustics, integrator.caustics);
 }
 

@@ -157,7 +157,7 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
   std::size_t end = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const Vec3<F> position = load_lanes<F>(s.position, i);
-    Vec3<F> l = place, color = light_color;
+    Vec3<F> target = place, l = place, color = light_color;
     if (!light.directional) {
       const auto square = turn_to_light(light.place, position, l);
       if (light.falloff) color = scale_lanes(color, falloff(square));
@@ -165,6 +165,7 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
         const F cosine = -dot_lanes(l, broadcast<F>(light.axis));
         color = scale_lanes(color, spot_share(cosine, light.cos_inner, light.cos_outer));
       }
+      if (light.glows) color = scale_lanes(color, glow(l, light, target));
     }
     const PhongCosines<F> at =
         phong_cosines(load_lanes<F>(c.direction, i), load_lanes<F>(c.ng, i), load_lanes<F>(c.ns, i), l);
@@ -176,7 +177,7 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     lit &= ~bits((arriving.x == zero) & (arriving.y == zero) & (arriving.z == zero));
     const Vec3<F> origin =
         offset_lanes(position, load_lanes<F>(s.position_error, i), load_lanes<F>(s.geometric_normal, i), l);
-    const Vec3<F> direction = light.directional ? place : sub_lanes(place, origin);
+    const Vec3<F> direction = light.directional ? place : sub_lanes(target, origin);
     const auto store_lit = [&](const auto* values, auto* to) {
       for (int k = 0; k < F::kWidth; k += 8) to += store_compact<A>(lit >> k & 0xff, values + k, to);
     };

@@ -46,23 +46,28 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
                     .part[0]
                     .v;
   if (light.profile.profile != nullptr) color = color * light.profile(-Vec3d(l));
+  Vec3<Lane> end = broadcast<Lane>(light.place);
+  if (light.glows) color = color * only_lane(glow(towards, light, end));
   offset_origin(p.surface, l, ray.origin);
-  ray.direction = light.place - ray.origin;
+  ray.direction = only_lane(end) - ray.origin;
   ray.tmax = kBeforeLight;
   return ray;
 }
 
 void add_direct_light(const RenderContext& context, const ShadingPoint& p, const Color& throughput,
-                      std::uint32_t owner, std::vector<ShadowQueue>& shadows) {
-  for (std::size_t i = 0; i < context.lights.size(); ++i) {
-    const LightSource& light = context.lights[i];
+                      std::uint32_t pattern, std::uint32_t owner, std::vector<ShadowQueue>& shadows) {
+  const auto add = [&](const LightSource& light, ShadowQueue& queue) {
     Vec3f l;
     Color color;
     const Ray ray = light_ray(p, light, l, color);
     const Color arriving = throughput * phong_here(p, l) * color;
-    if (arriving == Color{0, 0, 0}) continue;
-    shadows[i].push_back(ray, owner, arriving);
-  }
+    if (!(arriving == Color{0, 0, 0})) queue.push_back(ray, owner, arriving);
+  };
+  const std::size_t points = context.lights.size();
+  for (std::size_t i = 0; i < points; ++i) add(context.lights[i], shadows[i]);
+  const AreaLights& area = context.area_lights;
+  for (std::size_t i = 0; i < area.samples; ++i)
+    add(area.points[std::size_t{pattern} * area.samples + i], shadows[points + i]);
 }
 
 }  // namespace oktett

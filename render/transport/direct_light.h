@@ -34,8 +34,9 @@ OKTETT_INLINE Color phong_sum(const PhongValues& m, const Color& color, const Co
 Color phong(const ShadingPoint& p, const Vec3f& l);
 
 /// For each light that could reach `p`, a shadow ray in that light's queue that adds throughput * light *
-/// phong to the radiance of `owner`. There is a queue per light.
+/// phong to the radiance of `owner`. There is a queue per light, and then one for each point of a pattern of
+/// the area lights, of which those of `pattern` are asked.
 void add_direct_light(const RenderContext& context, const ShadingPoint& p, const Color& throughput,
-                      std::uint32_t owner, std::vector<ShadowQueue>& shadows);
+                      std::uint32_t pattern, std::uint32_t owner, std::vector<ShadowQueue>& shadows);
 
 }  // namespace oktett

@@ -13,6 +13,10 @@ namespace oktett {
 struct RenderCode {
   std::size_t whitted_lanes, path_lanes;  ///< hits that are shaded at once
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
+  /// Sets origins and directions of the rays to those that camera_ray gives for a camera with a lens.
+  void (*lens_rays)(const CameraFrame&, const FilmPoints&, RayBatch&);
+  /// Sets x and y to sobol_point of the samples [first, last) of the sequence that `key` chooses.
+  void (*sobol_points)(std::uint32_t first, std::uint32_t last, std::uint64_t key, double* x, double* y);
   /// Fills all columns after `ray` and `material` from the rays and from a table of materials, and adds their
   /// unlit light, except for materials that vary, to the radiance of the rays.
   void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ShadedRays&,

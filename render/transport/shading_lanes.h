@@ -4,6 +4,7 @@
 
 #include "core/affine_lanes.h"
 #include "core/quotients.h"
+#include "render/light_source.h"
 
 namespace oktett {
 
@@ -48,6 +49,18 @@ template <class F>
 OKTETT_INLINE F spot_share(const F& cosine, float cos_inner, float cos_outer) {
   const F t = min(max((cosine - F(cos_outer)) / F(cos_inner - cos_outer), F(0.0f)), F(1.0f));
   return t * t * (F(3.0f) - F(2.0f) * t);
+}
+
+/// The part of the light of a point of a glowing surface that leaves towards `-l`: the cosine at the surface,
+/// or 0 behind a surface that glows at the front only. Sets the end of the shadow ray.
+template <class F>
+OKTETT_INLINE F glow(const Vec3<F>& l, const LightSource& light, Vec3<F>& end) {
+  const Vec3<F> axis = broadcast<F>(light.axis);
+  const F cosine = -dot_lanes(l, axis), zero(0.0f);
+  const auto behind = cosine < zero;
+  end =
+      add_lanes(broadcast<F>(light.place), scale_lanes(axis, select(behind, F(-light.lift), F(light.lift))));
+  return select(behind, F(-light.back) * cosine, cosine);
 }
 
 /// What Phong's model needs of the directions at a surface.

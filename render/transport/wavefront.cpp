@@ -127,33 +127,62 @@ bool shadows_are_full(const Wavefront& wavefront) {
 }
 
 /// Shades hits in blocks, so that their surface interactions stay in the nearest cache until they are used.
-void shade_hits(const RenderContext& context, Wavefront& wavefront) {
-  const Integrator integrator = integrator_for(context.settings.kind);
-  const bool in_blocks = shades_in_blocks(context);
-  const auto shade_block =
-      context.settings.kind == IntegratorKind::path ? shade_path_block : shade_whitted_block;
-  InteractionBlock found;
-  for (std::size_t first = 0; first < wavefront.hit_rays.size(); first += kShadeBlock) {
-    const std::size_t count = std::min(kShadeBlock, wavefront.hit_rays.size() - first);
-    const std::uint32_t* which = wavefront.hit_rays.data() + first;
-    surface_interactions(*context.world->accel, wavefront.rays.rays, wavefront.hits, {which, count}, found,
-                         context.isa);
-    if (in_blocks) {
-      shade_block(context, wavefront, which, count, found);
-      if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
-      continue;
+class HitShader {
+ public:
+  HitShader(const RenderContext& context, Wavefront& wavefront)
+      : context_(context),
+        wavefront_(wavefront),
+        integrator_(integrator_for(context.settings.kind)),
+        in_blocks_(shades_in_blocks(context)) {}
+
+  void shade(std::span<const std::uint32_t> hits) {
+    for (std::size_t first = 0; first < hits.size(); first += kShadeBlock) {
+      shade_block(hits.subspan(first, std::min(kShadeBlock, hits.size() - first)));
+      if (shadows_are_full(wavefront_)) flush_shadows(context_, wavefront_);
     }
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t i = which[k];
-      const bool from_camera = wavefront.rays.from_camera[i] != 0;
-      const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
-                                           {wavefront.rays.distance[i], from_camera}, found[k]);
-      if (from_camera) record_first_hit(context, wavefront, i, p);
-      integrator(context, wavefront, i, p);
-    }
-    if (shadows_are_full(wavefront)) flush_shadows(context, wavefront);
+    flush_shadows(context_, wavefront_);
   }
-  flush_shadows(context, wavefront);
+
+ private:
+  void shade_block(std::span<const std::uint32_t> which) {
+    surface_interactions(*context_.world->accel, wavefront_.rays.rays, wavefront_.hits, which, found_,
+                         context_.isa);
+    if (in_blocks_) {
+      const bool path = context_.settings.kind == IntegratorKind::path;
+      return (path ? shade_path_block : shade_whitted_block)(context_, wavefront_, which.data(), which.size(),
+                                                             found_);
+    }
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      const std::uint32_t i = which[k];
+      const bool from_camera = wavefront_.rays.from_camera[i] != 0;
+      const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
+                                           {wavefront_.rays.distance[i], from_camera}, found_[k]);
+      if (from_camera) record_first_hit(context_, wavefront_, i, p);
+      integrator_(context_, wavefront_, i, p);
+    }
+  }
+
+  const RenderContext& context_;
+  Wavefront& wavefront_;
+  Integrator integrator_;
+  bool in_blocks_;
+  InteractionBlock found_;
+};
+
+/// Shades all hits; those that ask the same points of area lights together.
+void shade_hits(const RenderContext& context, Wavefront& wavefront) {
+  HitShader shader(context, wavefront);
+  const std::span<std::uint32_t> hits(wavefront.hit_rays.data(), wavefront.hit_rays.size());
+  if (context.area_lights.empty()) return shader.shade(hits);
+  const auto pattern = [&](std::uint32_t ray) {
+    return wavefront.samples.pattern[wavefront.rays.sample[ray]];
+  };
+  std::stable_sort(hits.begin(), hits.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return pattern(a) < pattern(b); });
+  for (std::size_t first = 0, last; first < hits.size(); first = last) {
+    for (last = first + 1; last < hits.size() && pattern(hits[last]) == pattern(hits[first]);) ++last;
+    shader.shade(hits.subspan(first, last - first));
+  }
 }
 
 void add_to_samples(Wavefront& wavefront) {

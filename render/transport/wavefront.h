@@ -26,10 +26,11 @@ struct FirstHit {
 
 /// Camera samples in columns: their places and their results.
 struct SampleBatch {
-  Column<std::uint32_t> pixel;   ///< the caller's number of the pixel
-  Column<std::uint32_t> number;  ///< of the sample in its pixel
-  Column<std::uint64_t> key;     ///< of the pixel's random numbers, if the integrator draws any
-  Column<Vec2f> offset;          ///< from the pixel's centre, in pixels
+  Column<std::uint32_t> pixel;    ///< the caller's number of the pixel
+  Column<std::uint32_t> number;   ///< of the sample in its pixel
+  Column<std::uint64_t> key;      ///< of the pixel's random numbers, if the integrator draws any
+  Column<std::uint32_t> pattern;  ///< of RenderContext::area_lights; empty if there are none
+  Column<Vec2f> offset;           ///< from the pixel's centre, in pixels
   ColorColumn color;
   Column<float> alpha;
   Column<std::uint16_t> spawned;     ///< number of rays that Whitted's integrator queued for the next bounce
@@ -75,7 +76,8 @@ struct Wavefront {
   ColorColumn radiance;           ///< light found by each of `rays`, throughput included
   /// Emitter of the light sample that each of `rays` has queued, if layers of light groups are wanted.
   Column<std::uint32_t> sampled_emitter;
-  /// In Whitted's model one queue per light, so that all rays of a queue lead to the same light. In path
+  /// In Whitted's model one queue per light, and one per point of a pattern of area lights, so that all rays
+  /// of a queue lead to the same point. In path
   /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
   /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.
   std::vector<ShadowQueue> shadows;

@@ -141,6 +141,11 @@ void push_shadow_rays(const RenderContext& context, const InteractionBlock& foun
   queue.resize_uninitialized(first + count);
 }
 
+/// Which points of the area lights the hit of a ray asks.
+std::uint32_t pattern_of(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
+  return context.area_lights.empty() ? 0 : wavefront.samples.pattern[wavefront.rays.sample[ray]];
+}
+
 }  // namespace
 
 void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
@@ -149,7 +154,8 @@ void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size
   if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(ray, wavefront.rays.throughput[ray] * left);
   const Color throughput = wavefront.rays.throughput[ray] * p.opacity;
   add_unlit(context, wavefront, ray, p, throughput);
-  add_direct_light(context, p, throughput, static_cast<std::uint32_t>(ray), wavefront.shadows);
+  add_direct_light(context, p, throughput, pattern_of(context, wavefront, ray),
+                   static_cast<std::uint32_t>(ray), wavefront.shadows);
   push_bounces(context, wavefront, ray, p);
 }
 
@@ -179,6 +185,10 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   }
   for (std::size_t n = 0; n < context.lights.size(); ++n)
     push_shadow_rays(context, found, context.lights[n], c, wavefront.shadows[n]);
+  const AreaLights& area = context.area_lights;
+  const LightSource* points = area.points.data() + area.samples * pattern_of(context, wavefront, which[0]);
+  for (std::size_t n = 0; n < area.samples; ++n)
+    push_shadow_rays(context, found, points[n], c, wavefront.shadows[context.lights.size() + n]);
 }
 
 }  // namespace oktett

@@ -61,6 +61,13 @@ TEST(SceneFilm, ReadsAdaptiveSampling) {
                 "scene.yaml:2:27: expected a whole number from 1 to 65536");
 }
 
+TEST(SceneFilm, ReadsLightSamples) {
+  EXPECT_EQ(SceneFiles().load_v1("integrator: {light_samples: 9}\n").integrator.light_samples, 9u);
+  EXPECT_EQ(SceneFiles().load_v1("integrator: {}\n").integrator.light_samples, 0u);
+  expect_starts(SceneFiles().error_v1("integrator: {light_samples: 1025}\n"),
+                "scene.yaml:2:29: expected a whole number from 0 to 1024");
+}
+
 TEST(SceneFilm, ReadsMotions) {
   const Scene scene = SceneFiles().load_v1(
       "camera: {shutter: [0, 0.5], motion: [{time: 0, transform: []}, {time: 1, transform: {translate: [1, "

@@ -104,6 +104,34 @@ TEST(Lens, SmallThingsOutOfFocusAreSpread) {
   }
 }
 
+// Rays in lanes have the bits of rays alone, whatever their number; also at the corners and the middle of the
+// square, and where its diagonals cross sectors.
+TEST(Lens, RaysInLanesHaveTheBitsOfOne) {
+  Column<double> x, y, u, v;
+  const double odd[] = {0, 0.25, 0.5, 0.75, 1 - 0x1p-32};
+  for (int i = 0; i < 333; ++i) {
+    x.push_back(0.37 * (i % 64)), y.push_back(0.2 * (i % 48));
+    u.push_back(i < 25 ? odd[i % 5] : (i * 7 % 333 + 0.5) / 333);
+    v.push_back(i < 25 ? odd[i / 5] : (i * 31 % 333 + 0.5) / 333);
+  }
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const CameraFrame frame = camera_frame(lens_camera(projection, 0.5, 3), film(64, 48));
+    for (const Isa isa : available_isas())
+      for (const std::size_t count : {1u, 7u, 8u, 333u}) {
+        RayBatch rays;
+        rays.resize_uninitialized(count);
+        camera_rays(frame, {x, y, &u, &v}, rays, isa);
+        for (std::size_t i = 0; i < count; ++i) {
+          const Ray one = camera_ray(frame, x[i], y[i], u[i], v[i]), ray = rays[i];
+          EXPECT_EQ(ray.origin, one.origin) << to_string(isa) << ' ' << i;
+          EXPECT_EQ(ray.direction, one.direction) << to_string(isa) << ' ' << i;
+          EXPECT_EQ(ray.tmin, one.tmin);
+          EXPECT_EQ(ray.tmax, one.tmax);
+        }
+      }
+  }
+}
+
 TEST(Lens, FocusIsADistanceAPointOrWhatTheCameraLooksAt) {
   Camera camera;
   camera.from = {0, 0, 5}, camera.aperture = 1;
