@@ -147,6 +147,7 @@ TileSums decode_tile(const FilmFormat& format, std::size_t pixels, std::string_v
   if (format.mattes)
     sums.objects = decode_mattes(reader, pixels), sums.materials = decode_mattes(reader, pixels);
   const std::size_t channels = 3 * format.light_groups.size();
+  if (channels > reader.left() / sizeof(double)) throw Error("the file is cut short");
   sums.grouped.resize(pixels * channels);
   for (std::size_t k = 0; k < channels; ++k)
     decode_column(reader, bytes_of(sums.grouped.data() + k), pixels, channels * sizeof(double),
