@@ -261,6 +261,30 @@ TEST_F(CheckpointCommand, RendersOutliveTheirCheckpoints) {
   EXPECT_EQ(difference(dir_, "a.exr", "b.exr"), "");
 }
 
+/// A disk that is full: files may have 4 KiB. What was there before stays, and nothing is left beside it.
+TEST_F(CheckpointCommand, FullDisksLeaveTheOldFilm) {
+  expect_success({"render", "a.yaml", "-o", "old.exr", "--checkpoint", "c.film"});
+  const std::string before = file_content(dir_.file("c.film"));
+  ASSERT_GT(before.size(), 8192u);
+  const auto limited = [&](const std::string& words) {
+    return run_command(dir_, {"-c", "trap '' XFSZ; ulimit -f 8; exec " OKTETT_COMMAND " " + words},
+                       "/bin/sh");
+  };
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  // The picture is small enough.
+  const CommandResult render = limited("render --resume c.film --add-spp 4 -o a.png --every 0.01");
+  EXPECT_EQ(render.status, 1) << render.err;
+  EXPECT_TRUE(contains(render.err, "c.film: cannot write: File too large")) << render.err;
+  EXPECT_EQ(lines(render.err), 1) << render.err;
+  EXPECT_TRUE(fs::exists(dir_.file("a.png")));
+  EXPECT_EQ(file_content(dir_.file("c.film")), before);
+  const CommandResult share = limited("render a.yaml --shard 1/2 -o c.film");
+  EXPECT_EQ(share.status, 1) << share.err;
+  EXPECT_EQ(lines(share.err), 1) << share.err;
+  EXPECT_EQ(file_content(dir_.file("c.film")), before);
+  EXPECT_EQ(file_count(dir_), 4u);
+}
+
 TEST_F(CheckpointCommand, SignalsLeaveACheckpoint) {
   CommandProcess process(dir_, {"render", "a.yaml", "-o", "a.exr", "--spp", "600", "-t", "1", "--checkpoint",
                                 "c.film", "--progress"});
