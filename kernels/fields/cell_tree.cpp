@@ -1,5 +1,8 @@
 #include "kernels/fields/cell_tree.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <utility>
 
 #include "core/parallel.h"
@@ -11,6 +14,11 @@ namespace {
 constexpr int kMaxDepth = 64;
 /// Halves of boxes in which fewer parts matter are not worth a task.
 constexpr std::size_t kTaskSize = 64;
+/// Parts that may be looked at for the cells of an element: so many for each of its own parts, and as long as
+/// CellTree::spare lasts, more for elements of few parts.
+constexpr std::int64_t kWorkPerPart = 1 << 12, kMostSpare = 1 << 20;
+/// By which cells grow from one attempt to the next.
+constexpr double kCoarser = 16;
 /// Time to visit a node of the scene's tree.
 constexpr double kNodeCost = 1;
 
@@ -24,11 +32,18 @@ double area(const CellBox& box) {
   return e.x * e.y + e.y * e.z + e.z * e.x;
 }
 
+/// What one attempt may cost. Whether it costs more does not depend on the order in which threads work.
+struct Effort {
+  double coarseness;
+  std::atomic<std::int64_t> left;
+};
+
 /// Divides to the end, then keeps the divisions that are expected to save time (surface area heuristic).
 class Division {
  public:
-  Division(const CellRule& rule, CellTree& tree, std::uint32_t element, std::vector<ExactCell>& cells)
-      : rule_(rule), tree_(tree), element_(element), cells_(cells) {}
+  Division(const CellRule& rule, Effort& effort, CellTree& tree, std::uint32_t element,
+           std::vector<ExactCell>& cells)
+      : rule_(rule), effort_(effort), tree_(tree), element_(element), cells_(cells) {}
 
   struct Part {
     std::uint32_t node;
@@ -41,10 +56,12 @@ class Division {
     const CellRange range = rule_.narrow(widened(box, 2 * kCellOverlap), around, part);
     const auto node = static_cast<std::uint32_t>(tree_.nodes.size());
     tree_.nodes.push_back({});
+    // What comes of an attempt that costs too much is thrown away.
+    if ((effort_.left -= static_cast<std::int64_t>(around.size()) + 1) < 0) return finish(node, true);
     if (range.lo > 0 || range.hi < 0) return finish(node, range.lo > 0);
     const Vec3d e = box.hi - box.lo;
     const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
-    if (depth >= kMaxDepth || !(e[axis] > rule_.least_size(part))) return leaf(node, box, part);
+    if (depth >= kMaxDepth || !(e[axis] > least_size(part))) return leaf(node, box, part);
 
     const std::size_t nodes = tree_.nodes.size(), lists = tree_.lists.size(), cells = cells_.size();
     CellBox low = box, high = box;
@@ -68,6 +85,11 @@ class Division {
   }
 
  private:
+  double least_size(const std::vector<std::uint32_t>& part) const {
+    const double n = static_cast<double>(part.size());
+    return rule_.least_size(part) * std::max(1.0, effort_.coarseness / (n * n));
+  }
+
   std::pair<Part, Part> grow_both(const CellBox& low, const CellBox& high,
                                   const std::vector<std::uint32_t>& part, int depth) {
     if (part.size() < kTaskSize) {
@@ -78,7 +100,7 @@ class Division {
     std::vector<ExactCell> cells;
     Part a, b;
     run_both([&] { a = grow(low, part, depth); },
-             [&] { b = Division(rule_, other, element_, cells).grow(high, part, depth); });
+             [&] { b = Division(rule_, effort_, other, element_, cells).grow(high, part, depth); });
     b.node = append(other, cells, b.node);
     return {a, b};
   }
@@ -116,6 +138,7 @@ class Division {
   }
 
   const CellRule& rule_;
+  Effort& effort_;
   CellTree& tree_;
   std::uint32_t element_;
   std::vector<ExactCell>& cells_;
@@ -125,7 +148,16 @@ class Division {
 
 std::uint32_t CellTree::divide(const CellRule& rule, const CellBox& box, std::span<const std::uint32_t> part,
                                std::uint32_t element, std::vector<ExactCell>& cells) {
-  return Division(rule, *this, element, cells).grow(box, part, 0).node;
+  const std::size_t nodes_before = nodes.size(), lists_before = lists.size(), cells_before = cells.size();
+  const std::int64_t own = kWorkPerPart * static_cast<std::int64_t>(part.size() + 1);
+  for (double coarseness = 1;; coarseness *= kCoarser) {
+    const std::int64_t work = own + std::min(kMostSpare, spare);
+    Effort effort{coarseness, work};
+    const std::uint32_t root = Division(rule, effort, *this, element, cells).grow(box, part, 0).node;
+    spare -= std::max<std::int64_t>(work - std::max<std::int64_t>(effort.left, 0) - own, 0);
+    if (effort.left >= 0) return root;
+    nodes.resize(nodes_before), lists.resize(lists_before), cells.resize(cells_before);
+  }
 }
 
 const CellNode& CellTree::leaf_at(std::uint32_t root, const Vec3d& p) const {

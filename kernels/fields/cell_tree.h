@@ -53,9 +53,15 @@ struct CellNode {
 struct CellTree {
   std::vector<CellNode> nodes;
   std::vector<std::uint32_t> lists;
+  /// Work that all elements together may take beyond what is meant for each.
+  std::int64_t spare = std::int64_t{1} << 26;
 
   /// Divides `box`, in all of which `part` may matter, for the element; returns the root of its nodes. The
   /// cells are appended to `cells` and refer to `lists`. In parallel; the same for any number of threads.
+  ///
+  /// The work grows with the number of parts alone: if cells as small as the rule wants them would be too
+  /// many, because something is small beside the box and yet everywhere in it, larger ones must do, first of
+  /// all where few parts matter.
   std::uint32_t divide(const CellRule& rule, const CellBox& box, std::span<const std::uint32_t> part,
                        std::uint32_t element, std::vector<ExactCell>& cells);
   /// The leaf below `root` that a point in the box is in. Points that are not in it lead anywhere.

@@ -9,12 +9,20 @@
 ///   everything that the line meets of the child and its descendants;
 /// - `tree.child(node, number)`.
 /// Everything is a function of the line alone.
+///
+/// A walk that has looked at kMostUnionSteps parts is given up: it finds nothing more, and is counted
+/// (interval::count_uncertified). Parts that overlap almost entirely, would take
+/// forever.
 
 #include <limits>
 
+#include "kernels/exact/march.h"
 #include "kernels/fractals/fractal.h"
 
 namespace oktett {
+
+/// Parts that the walk along one line may look at.
+inline constexpr int kMostUnionSteps = 1 << 16;
 
 /// Where a line is inside of something convex, in t; with the number of the child that it is.
 struct UnionSpan {
@@ -57,7 +65,7 @@ class UnionWalk {
     inside = within;
     if (within) return next(a, b, inside, t, place);
     t = best;
-    return inside = found;
+    return inside = found && !given_up();
   }
 
   /// The next crossing after a, at most b, as the solids tell that are entered and left; false if there is
@@ -87,6 +95,9 @@ class UnionWalk {
     return true;
   }
 
+  /// Whether the walk was given up.
+  bool given_up() const { return steps_ > kMostUnionSteps; }
+
  private:
   struct Level {
     Node node;
@@ -103,7 +114,7 @@ class UnionWalk {
     int at = 0;
     if (depth_ == 0) return;
     open(0, root_, wanted);
-    while (at >= 0) {
+    while (at >= 0 && !given_up()) {
       Level& level = levels_[at];
       if (level.next == level.count) {
         --at;
@@ -124,6 +135,7 @@ class UnionWalk {
     level.node = node, level.next = 0;
     UnionSpan all[T::kMaxChildren];
     const int n = tree_.children(node, all);
+    steps_ += n + 1;
     level.count = 0;
     for (int k = 0; k < n; ++k) {
       if (!wanted(all[k])) continue;
@@ -151,7 +163,7 @@ class UnionWalk {
         },
         [&](const UnionSpan& s) { return s.near <= best && a < s.far; });
     t = best;
-    return found;
+    return found && !given_up();
   }
 
   /// Of the solids that hold the line right after t, the farthest end; false if there is none.
@@ -166,13 +178,13 @@ class UnionWalk {
           keep(node, level, place);
         },
         [&](const UnionSpan& s) { return s.near <= at && t < s.far; });
-    return found;
+    return found && !given_up();
   }
 
   const T& tree_;
   const Node& root_;
   UnionSpan bounds_;
-  int depth_;
+  int depth_, steps_ = 0;
   double held_until_ = -std::numeric_limits<double>::infinity();  ///< where the solid entered last ends
   Level levels_[kMaxDepth];
   std::uint8_t path_[kMaxDepth];
@@ -206,6 +218,7 @@ int find_in_union(Walk& walk, const FractalQuery& query, FractalCrossing* out, i
     c.t = at, c.turn = inside ? -1 : 1;
     if (query.with_surface) tell(place, c);
   }
+  if (OKTETT_UNLIKELY(walk.given_up())) interval::count_uncertified(1);
   return count;
 }
 

@@ -184,7 +184,9 @@ double support(const IfsElement& e, const Vec3d& w) {
   return (s.best + s.slack + e.balls.back().radius * 0x1p-40) * l;
 }
 
-bool holds(const IfsElement& e, const Vec3d& p, const Depth& depth) {
+/// Whether a piece holds p. After kMostUnionSteps `steps` none does.
+bool holds(const IfsElement& e, const Vec3d& p, const Depth& depth, int& steps) {
+  if (++steps > kMostUnionSteps) return false;
   const Ball& ball = e.balls[e.depth() - depth.level];
   const Vec3d m = p - ball.center;
   const double radius = ball.radius + depth.margin;
@@ -197,7 +199,7 @@ bool holds(const IfsElement& e, const Vec3d& p, const Depth& depth) {
   }
   if (leaf) return false;
   for (const IfsElement::Map& map : e.maps)
-    if (holds(e, map.to_piece.point(p), depth.below(e, map))) return true;
+    if (holds(e, map.to_piece.point(p), depth.below(e, map), steps)) return true;
   return false;
 }
 
@@ -299,7 +301,10 @@ int Ifs::find(const Element& e, const FractalQuery& query, FractalCrossing* out,
 }
 
 bool Ifs::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
-  return holds(pool.elements[i], p, Depth::root(pool.elements[i]));
+  int steps = 0;
+  const bool held = holds(pool.elements[i], p, Depth::root(pool.elements[i]), steps);
+  if (steps > kMostUnionSteps) interval::count_uncertified(1);
+  return held;
 }
 
 Box Ifs::world_bounds(const Pool& pool, std::size_t i) {

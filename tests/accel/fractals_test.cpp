@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernels/exact/march.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/fractal_cases.h"
 
@@ -27,6 +28,22 @@ TEST(Fractals, InsideIsInsideOfAPart) {
   }
   EXPECT_GT(in_balls, 50);
   EXPECT_GT(in_cubes, 50);
+}
+
+// 64^32 parts that all but coincide: a ray is given up after a while, finds nothing, and is counted.
+TEST(Fractals, RaysThatWouldNeverEndAreGivenUp) {
+  IfsShape s;
+  for (int i = 0; i < 64; ++i) s.maps.push_back(shrink(0.999, {0.001 * i, 0.0005 * i, 0}));
+  s.depth = 32;
+  const std::uint64_t before = interval::uncertified_count();
+  const auto accel = build_accel({{ExactShape{s}, {}, kNoId}});
+  std::vector<Hit> hits;
+  for (const float x : {0.0f, 0.2f, 0.5f})
+    all_hits(*accel, {{x, 0, 9}, 0, {0, 0, -1}, kInf}, hits, default_isa());
+  Ifs::Pool pool;
+  Ifs::add(pool, s, {});
+  Ifs::inside(pool, 0, {0.1, 3, 0.1});
+  EXPECT_GE(interval::uncertified_count(), before + 3);
 }
 
 /// Rays through a combination of a fractal and a ball, compared with samples of both along the ray.

@@ -50,6 +50,25 @@ TEST(Metaballs, OneBallIsASphere) {
   expect_at(crossings(one_ball(), {-3, 0, 0}, {1, 0, 0}), {3 - kHalf, 3 + kHalf});
 }
 
+/// A wire of any length beside a ball: what rays meet far out on it is a cylinder.
+TEST(BlobTrees, AWireIsACylinder) {
+  for (const double end : {100.0, 65536.0, 1e9}) {
+    Potential potential;
+    potential.scale = 0.5;
+    const BlobTreeShape wire =
+        blend(Blend::Op::sum,
+              {element(SegmentSkeleton{{0, 0, 0}, {end, 0, 0}}, potential), element(PointSkeleton{})});
+    const double radius = 0.5 * kHalf;
+    for (const double part : {0.1, 0.37, 0.9}) {
+      const double x = part * end, slack = std::max(1e-6, 1e-15 * end);
+      expect_at(crossings(wire, {static_cast<float>(x), 0, 8}, {0, 0, -1}), {8 - radius, 8 + radius}, slack);
+      const double off = 0.6 * radius, half = 0.8 * radius;
+      expect_at(crossings(wire, {static_cast<float>(x), static_cast<float>(off), -2}, {0, 0, 1}),
+                {2 - half, 2 + half}, slack + 1e-6);
+    }
+  }
+}
+
 TEST(Metaballs, OneWayOutFromInside) {
   const auto hits = crossings(one_ball(), {0, 0, 0}, {0, 2, 0});
   ASSERT_EQ(hits.size(), 1u);

@@ -99,5 +99,52 @@ TEST(CellTree, LeavesListWhatMatters) {
   EXPECT_GT(leaves, 1000);
 }
 
+FieldElement thin(const Skeleton& skeleton, double radius) {
+  FieldElement e;
+  e.skeleton = skeleton;
+  e.potential.scale = radius;
+  return e;
+}
+
+BlobTreeShape sum_of(const std::vector<FieldElement>& elements) {
+  BlobTreeShape s;
+  s.elements = elements;
+  for (std::uint32_t i = 0; i < elements.size(); ++i) s.blends.push_back({Blend::Op::element, i, 0});
+  s.blends.push_back({Blend::Op::sum, 0, static_cast<std::uint32_t>(elements.size())});
+  return s;
+}
+
+/// The number of cells follows from that of the elements, however small these are beside their distances.
+TEST(CellTree, CellsDoNotGrowWithTheRatioOfLengths) {
+  for (const double length : {65536.0, 1e9, 1e15}) {
+    const std::vector<BlobTreeShape> trees{
+        sum_of({thin(SegmentSkeleton{{0, 0, 0}, {length, 0, 0}}, 0.3), thin(PointSkeleton{}, 1)}),
+        sum_of({thin(SegmentSkeleton{{0, 0, 0}, {length, 0.3 * length, 0.2 * length}}, 0.3),
+                thin(PolygonSkeleton{{{0, 0, 0}, {length, 0, 0}, {0, length, 0}}}, 1e-3),
+                thin(EllipsoidSkeleton{{0, 0, 0}, {length, 1, 1e-3}, {10, 20, 30}}, 1)})};
+    for (const BlobTreeShape& tree : trees) {
+      BlobTree::Pool pool;
+      BlobTree::add(pool, tree, {});
+      EXPECT_FALSE(pool.cells.empty()) << length;
+      EXPECT_LT(pool.cells.size(), 100000u) << length;
+      EXPECT_LT(pool.tree.nodes.size(), 400000u) << length;
+    }
+    Metaballs::Pool pool;
+    MetaballsShape balls{0.5, {{{0, 0, 0}, length, 1}}};
+    for (int i = 0; i < 50; ++i) balls.balls.push_back({{0.01 * i * length, 0, 0}, 1e-3, i % 2 ? 1.0 : -1.0});
+    Metaballs::add(pool, balls, {});
+    EXPECT_FALSE(pool.cells.empty()) << length;
+    EXPECT_LT(pool.cells.size(), 200000u) << length;
+  }
+}
+
+// Also where larger cells must do, the result does not depend on how threads share the work.
+TEST(CellTree, LargerCellsAreTheSameForAnyNumberOfThreads) {
+  std::vector<FieldElement> elements;
+  for (int i = 0; i < 200; ++i)
+    elements.push_back(thin(SegmentSkeleton{{0, 0.5 * i, 0}, {1e5, 0.3 * i, 0.1 * i * i}}, 0.4));
+  expect_same_for_any_threads<BlobTree>(sum_of(elements));
+}
+
 }  // namespace
 }  // namespace oktett
