@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/image/image_access.h"
 #include "io/image/library.h"
 #include "io/image/output.h"
 #include "io/image/writers.h"
@@ -98,13 +99,21 @@ void write_image(const std::string& path, const Picture& picture, const ImageMet
   file.commit();
 }
 
+/// Throws Error if the image must not be read.
+static void check_access(const std::string& path) {
+  if (const std::string why = why_not_an_image(path); !why.empty())
+    throw Error(Location{path}, why, ErrorKind::io);
+}
+
 Picture read_image(const std::string& path) {
   note_file_read(path);
+  check_access(path);
   return image_library().read(path);
 }
 
 HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels) {
   note_file_read(path);
+  check_access(path);
   return image_library().read_heights(path, most_side, most_pixels);
 }
 

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <new>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -75,6 +77,10 @@ const ImageLibrary* load() {
   const std::string name = found.empty() ? std::string(OKTETT_IMAGE_LIBRARY) : found.string();
   const auto fail = [] {
     const char* why = dlerror();
+    // The dynamic linker tells by words alone that it was refused memory.
+    for (const char* sign : {"annot allocate memory", "failed to map segment", "out of memory"})
+      if (why != nullptr && std::string_view(why).find(sign) != std::string_view::npos)
+        throw std::bad_alloc();
     throw Error(std::string("cannot load ") + OKTETT_IMAGE_LIBRARY +
                     ", which reads and writes images: " + (why != nullptr ? why : "unknown reason"),
                 ErrorKind::io);

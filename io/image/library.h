@@ -34,7 +34,7 @@ class ImageLibrary {
   /// See read_heights.
   virtual HeightImage read_heights(const std::string& path, std::uint32_t most_side,
                                    std::size_t most_pixels) const = 0;
-  /// See ImageTextures. Appends one warning per file that cannot be used.
+  /// See ImageTextures. Appends one warning per file that cannot be used. A texture without a path is white.
   virtual std::unique_ptr<TextureSampler> load_textures(std::vector<Texture> textures,
                                                         std::vector<Warning>& warnings) const = 0;
 

@@ -3,8 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
 #include <filesystem>
 #include <system_error>
 
@@ -45,6 +47,35 @@ void check_target(const std::string& path, const fs::path& target) {
   if (fs::exists(status) && access(target.c_str(), W_OK) != 0) fail(path, "cannot write: " + reason(errno));
 }
 
+// The names of temporaries that exist, for remove_unfinished_files(). More than these at a time are not known
+// there.
+constexpr std::size_t kMostNames = 16;
+constexpr std::size_t kLongestName = 4096;
+struct UnfinishedName {
+  std::atomic<bool> taken{false}, complete{false};
+  char text[kLongestName];
+};
+UnfinishedName unfinished[kMostNames];
+
+void remember(const std::string& name) {
+  if (name.size() >= kLongestName) return;
+  for (UnfinishedName& u : unfinished) {
+    if (u.taken.exchange(true)) continue;
+    std::copy_n(name.c_str(), name.size() + 1, u.text);
+    u.complete = true;
+    return;
+  }
+}
+
+void forget(const std::string& name) {
+  for (UnfinishedName& u : unfinished) {
+    if (!u.complete || name != u.text) continue;
+    u.complete = false;
+    u.taken = false;
+    return;
+  }
+}
+
 /// Calls `create(name)` with new names beside `target` until it does not fail because there is such a file;
 /// the number makes names unique within the process. Returns its result and puts the name into `name`.
 template <class Create>
@@ -54,7 +85,10 @@ int create_beside(const std::string& path, const fs::path& target, std::string& 
     const std::string stem = ".oktett-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
     name = (target.parent_path() / (stem + target.extension().string())).string();
     const int result = create(name.c_str());
-    if (result >= 0) return result;
+    if (result >= 0) {
+      remember(name);
+      return result;
+    }
     if (errno != EEXIST) break;
   }
   name.clear();
@@ -76,6 +110,11 @@ int create_unnamed(const fs::path& target) {
 
 }  // namespace
 
+void remove_unfinished_files() {
+  for (UnfinishedName& u : unfinished)
+    if (u.complete) unlink(u.text);
+}
+
 OutputFile::OutputFile(const std::string& path) : path_(path) {
   const fs::path target = resolve(path);
   check_target(path, target);
@@ -89,7 +128,9 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
 
 OutputFile::~OutputFile() {
   close(file_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  unlink(temporary_.c_str());
+  forget(temporary_);
 }
 
 const std::string& OutputFile::temporary() {
@@ -117,6 +158,7 @@ void OutputFile::commit() {
   std::error_code error;
   fs::rename(temporary(), target_, error);
   if (error) fail(path_, "cannot write: " + error.message());
+  forget(temporary_);
   temporary_.clear();
 }
 

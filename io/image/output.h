@@ -37,4 +37,8 @@ class OutputFile {
   std::uint64_t place_ = 0;
 };
 
+/// Removes the temporaries of all OutputFiles that exist. For the end of a process in which destructors do
+/// not run; may be called in a signal handler.
+void remove_unfinished_files();
+
 }  // namespace oktett

@@ -1,17 +1,28 @@
 #include "io/image/texture.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
+#include "io/image/image_access.h"
 #include "io/image/library.h"
 #include "io/text/files_read.h"
 
 namespace oktett {
 
 ImageTextures::ImageTextures(std::vector<Texture> textures) {
-  const auto is_image = [](const Texture& texture) { return !texture.pattern; };
-  for (const Texture& texture : textures)
-    if (is_image(texture)) note_file_read(texture.path);
+  std::set<std::string> refused;
+  for (Texture& texture : textures) {
+    if (texture.path.empty()) continue;
+    note_file_read(texture.path);
+    const std::string why = why_not_an_image(texture.path);
+    if (why.empty()) continue;
+    if (refused.insert(texture.path).second)
+      warnings_.push_back({Location{texture.path}, "texture not used: " + why + "; white instead"});
+    texture.path.clear();
+  }
+  const auto is_image = [](const Texture& texture) { return !texture.path.empty(); };
   if (std::ranges::any_of(textures, is_image))
     sampler_ = image_library().load_textures(std::move(textures), warnings_);
 }

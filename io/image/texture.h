@@ -22,7 +22,8 @@ namespace oktett {
 class ImageTextures : public TextureSampler {
  public:
   /// Reads all images, in parallel. One that is missing or damaged gives a warning and is white (value 1)
-  /// everywhere.
+  /// everywhere. So is a
+  /// texture without a path.
   explicit ImageTextures(std::vector<Texture> textures);
 
   /// One per file that could not be used.

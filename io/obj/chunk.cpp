@@ -33,6 +33,12 @@ void note_skipped(ObjChunk& chunk, const char* where, std::string_view keyword) 
   chunk.skipped.push_back({where, keyword});
 }
 
+/// The end of the joined line from `p` on, without a backslash at the end of the text.
+const char* statement_end(const char* p) {
+  const char* end = find_joined_line_end(p);
+  return end > p && *end == '\0' && end[-1] == '\\' ? end - 1 : end;
+}
+
 /// A statement other than those that make up the bulk of a file.
 void note_statement(ObjChunk& chunk, const char* p) {
   const std::string_view keyword = word_at(p);
@@ -40,9 +46,9 @@ void note_statement(ObjChunk& chunk, const char* p) {
   if (!is_printable_word(keyword)) {
     keep_first(chunk.failure, p, "expected an OBJ keyword, found " + quote_word(p));
   } else if (keyword == "usemtl") {
-    chunk.material_uses.push_back({p, trimmed(rest, find_joined_line_end(p)), chunk.counts.triangles});
+    chunk.material_uses.push_back({p, trimmed(rest, statement_end(p)), chunk.counts.triangles});
   } else if (keyword == "mtllib") {
-    chunk.libraries.push_back({p, trimmed(rest, find_joined_line_end(p))});
+    chunk.libraries.push_back({p, trimmed(rest, statement_end(p))});
   } else if (keyword == "{" || keyword == "vertices{" || keyword == "triangles{") {
     note_brace(chunk, p, true, rest);
   } else if (keyword == "}") {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/obj/chunk.h"
+#include "io/obj/material_textures.h"
 
 namespace oktett {
 namespace {
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 struct Library {
   std::vector<Material> materials;
   std::vector<Texture> textures;
+  std::vector<Location> texture_places;
   std::unordered_map<std::string, std::size_t> by_name;
   bool complete = true;  ///< every file could be read
 };
@@ -52,7 +54,7 @@ Library load_libraries(const std::vector<ObjChunk>& chunks, const std::string& o
       for (const std::string& path : split_library_names(statement.names, directory)) {
         if (!seen.emplace(path, true).second) continue;
         try {
-          load_mtl(path, library.materials, library.textures, obj.warnings);
+          load_mtl(path, library.materials, library.textures, obj.warnings, &library.texture_places);
         } catch (const Error& error) {
           library.complete = false;
           notices.push_back(
@@ -85,10 +87,7 @@ class Slots {
     const auto found = library_.by_name.find(name);
     if (found != library_.by_name.end()) {
       Material material = library_.materials[found->second];
-      for (std::uint32_t* texture :
-           {&material.color_texture, &material.specular_texture, &material.emission_texture,
-            &material.opacity_texture, &material.bump_texture, &material.normal_texture})
-        *texture = take_texture(*texture);
+      for_each_texture(material, [this](std::uint32_t& texture) { texture = take_texture(texture); });
       obj_.materials.push_back(std::move(material));
       return;
     }
@@ -106,6 +105,7 @@ class Slots {
     if (textures_[texture] == kNoId) {
       textures_[texture] = static_cast<std::uint32_t>(obj_.textures.size());
       obj_.textures.push_back(library_.textures[texture]);
+      obj_.texture_places.push_back(library_.texture_places[texture]);
     }
     return textures_[texture];
   }

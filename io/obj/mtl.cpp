@@ -64,13 +64,14 @@ constexpr PrincipledStatement kPrincipled[] = {
 class MtlReader {
  public:
   MtlReader(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
-            std::vector<Warning>& warnings)
+            std::vector<Warning>& warnings, std::vector<Location>* texture_places)
       : path_(path),
         directory_(std::filesystem::path(path).parent_path().string()),
         materials_(materials),
         first_(materials.size()),
         textures_(textures),
-        warnings_(warnings) {}
+        warnings_(warnings),
+        texture_places_(texture_places) {}
 
   void run() {
     const MappedFile file(path_);
@@ -132,7 +133,7 @@ class MtlReader {
       if (key == kPrincipled[i].key) read(line.take_number(), said_.principled[i].value);
       if (key == std::string("map_").append(kPrincipled[i].key))
         if (const auto texture = read_mtl_texture(line, directory_))
-          said_.principled[i].texture = textures_.add(texture->texture);
+          said_.principled[i].texture = add_texture(*texture, line);
     }
   }
 
@@ -150,10 +151,17 @@ class MtlReader {
     return std::nullopt;
   }
 
+  std::uint32_t add_texture(const MtlTexture& texture, const MtlLine& line) {
+    const std::uint32_t index = textures_.add(texture.texture);
+    if (texture_places_ != nullptr && index >= texture_places_->size())
+      texture_places_->push_back(line.where());
+    return index;
+  }
+
   void read_texture(MtlLine& line, std::uint32_t Material::*slot, Material& material) {
     const std::optional<MtlTexture> texture = read_mtl_texture(line, directory_);
     if (!texture) return;
-    material.*slot = textures_.add(texture->texture);
+    material.*slot = add_texture(*texture, line);
     if (slot == &Material::bump_texture) material.bump_scale = texture->bump_scale;
   }
 
@@ -229,6 +237,7 @@ class MtlReader {
   const std::size_t first_;
   TextureList textures_;
   std::vector<Warning>& warnings_;
+  std::vector<Location>* texture_places_;
   std::unordered_set<std::string> names_;
   Statements said_;
   bool in_material_ = false;
@@ -237,8 +246,8 @@ class MtlReader {
 }  // namespace
 
 void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
-              std::vector<Warning>& warnings) {
-  MtlReader(path, materials, textures, warnings).run();
+              std::vector<Warning>& warnings, std::vector<Location>* texture_places) {
+  MtlReader(path, materials, textures, warnings, texture_places).run();
 }
 
 }  // namespace oktett

@@ -27,10 +27,10 @@ std::string MtlLine::take_rest() {
   std::string rest;
   for (;;) {
     const LineShape line = measure_line(next_);
-    const bool continued = line.end > next_ && line.continued();
-    rest += trimmed(next_, line.end - (continued ? 1 : 0));
+    const bool joint = line.end > next_ && line.ends_in_joint();
+    rest += trimmed(next_, line.end - (joint ? 1 : 0));
     next_ = line.end;
-    if (!continued) return rest;
+    if (!joint || *line.end == '\0') return rest;
     next_ = skip_line_end(line.end);
     rest += ' ';
   }
@@ -72,6 +72,11 @@ std::optional<Color> MtlLine::take_color() {
   if (*r >= 0 && *g >= 0 && *b >= 0) return Color{*r, *g, *b};
   warn("a colour has a negative part; it counts as 0");
   return max(Color{*r, *g, *b}, Color{0, 0, 0});
+}
+
+Location MtlLine::where() const {
+  const TextPosition line = lines_.at(start_);
+  return {path_, line.line, line.column};
 }
 
 void MtlLine::warn(const std::string& message) const {

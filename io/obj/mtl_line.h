@@ -38,6 +38,8 @@ class MtlLine {
   std::optional<Color> take_color();
 
   void warn(const std::string& message) const;
+  /// Where the line begins.
+  Location where() const;
 
  private:
   const char* start_;

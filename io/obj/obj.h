@@ -15,7 +15,8 @@ struct ObjFile {
   TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
   std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
   std::vector<Texture> textures;    ///< what the materials' texture indices refer to
-  std::vector<Warning> warnings;    ///< what was skipped
+  std::vector<Location> texture_places;  ///< where each texture is named first
+  std::vector<Warning> warnings;         ///< what was skipped
 };
 
 /// Reads `path` and the MTL files that it names, which are looked for in the same directory. Throws Error
@@ -23,8 +24,9 @@ struct ObjFile {
 ObjFile load_obj(const std::string& path);
 
 /// Reads the MTL file `path` and appends what is in it. Texture paths, which the file states relative to
-/// itself, are joined to its directory. Throws Error as load_obj does.
+/// itself, are joined to its directory. `texture_places`, if given, gets the place of each texture's
+/// statement. Throws Error as load_obj does.
 void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
-              std::vector<Warning>& warnings);
+              std::vector<Warning>& warnings, std::vector<Location>* texture_places = nullptr);
 
 }  // namespace oktett

@@ -7,14 +7,9 @@
 namespace oktett {
 namespace {
 
-/// Comparisons that one corner may cost on average. Polygons up to about this size are always cut exactly;
-/// larger ones unless they are contrived, because only blockers within an ear's range of x are looked at.
-constexpr std::int64_t kBudgetPerCorner = 1024;
-
-template <class Point>
-double cross(const Point& a, const Point& b, const Point& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
+/// Corners that may be looked at while a polygon is cut: enough for all pairs of a thousand corners, and
+/// beyond that for any that do not meet themselves again and again.
+constexpr std::int64_t kBudget = 1 << 20, kBudgetPerCorner = 64;
 
 Vec3d area_vector(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return cross(b - a, c - a); }
 
@@ -74,9 +69,8 @@ void PolygonTriangulator::link() {
 /// touches or crosses itself and the demands are lowered step by step until one can be cut off.
 void PolygonTriangulator::clip_ears() {
   const std::size_t count = points_.size();
-  budget_ = kBudgetPerCorner * static_cast<std::int64_t>(count);
+  budget_ = kBudget + kBudgetPerCorner * static_cast<std::int64_t>(count);
   find_blocking();
-  collect_blockers();
 
   std::uint32_t corner = 1;
   Rule rule = Rule::no_contact;
@@ -106,7 +100,7 @@ void PolygonTriangulator::cut_off(std::uint32_t corner) {
   next_[before] = after;
   previous_[after] = before;
   --remaining_;
-  if (blocking_[corner]) --blocking_count_;
+  if (blocking_[corner]) blockers_.change(corner, -1);
   blocking_[corner] = 0;
   update_blocking(before);
   update_blocking(after);
@@ -147,30 +141,19 @@ bool PolygonTriangulator::may_cut_off(std::uint32_t corner, Rule rule) {
 /// Whether the rest of the polygon reaches into the triangle at `corner`. If it does, one of its reflex
 /// corners lies there, or a corner at the same place as one of the triangle's leads into it.
 bool PolygonTriangulator::is_blocked(std::uint32_t corner, Rule rule) {
-  if (blocking_count_ == 0) return false;
-  if (blockers_stale_ || blockers_.size() > 2 * blocking_count_ + 8) collect_blockers();
+  if (blockers_.blocking() == 0) return false;
   const std::uint32_t before = previous_[corner], after = next_[corner];
   const Point &a = points_[before], &b = points_[corner], &c = points_[after];
-  const double low = std::min({a.x, b.x, c.x}), high = std::max({a.x, b.x, c.x});
-
-  auto it = std::lower_bound(blockers_.begin(), blockers_.end(), low,
-                             [this](std::uint32_t i, double x) { return points_[i].x < x; });
-  for (; it != blockers_.end() && points_[*it].x <= high; ++it) {
+  return blockers_.any_in(a, b, c, [&](std::uint32_t other) {
     --budget_;
-    const std::uint32_t other = *it;
-    if (!blocking_[other] || other == before || other == corner || other == after) continue;
+    if (!blocking_[other] || other == before || other == corner || other == after) return false;
     const Point& p = points_[other];
-    if (p == a || p == b || p == c) {
-      if (p == a   ? enters(before, corner, after, other)
-          : p == b ? enters(corner, after, before, other)
-                   : enters(after, before, corner, other))
-        return true;
-      continue;
-    }
+    if (p == a) return enters(before, corner, after, other);
+    if (p == b) return enters(corner, after, before, other);
+    if (p == c) return enters(after, before, corner, other);
     const double ab = cross(a, b, p), bc = cross(b, c, p), ca = cross(c, a, p);
-    if (rule == Rule::no_contact ? ab >= 0 && bc >= 0 && ca >= 0 : ab > 0 && bc > 0 && ca > 0) return true;
-  }
-  return false;
+    return rule == Rule::no_contact ? ab >= 0 && bc >= 0 && ca >= 0 : ab > 0 && bc > 0 && ca > 0;
+  });
 }
 
 /// Whether an edge at `twin`, which stands at the same place as `corner`, leads between the directions to
@@ -188,43 +171,25 @@ void PolygonTriangulator::update_blocking(std::uint32_t corner) {
   const bool blocks = twin_[corner] || !(turn(corner) > 0);
   if (blocks == static_cast<bool>(blocking_[corner])) return;
   blocking_[corner] = blocks;
-  if (blocks) {
-    ++blocking_count_;
-    blockers_stale_ = true;
-  } else {
-    --blocking_count_;
-  }
-}
-
-void PolygonTriangulator::sort_by_place(std::vector<std::uint32_t>& corners) const {
-  std::sort(corners.begin(), corners.end(), [this](std::uint32_t i, std::uint32_t j) {
-    const Point &p = points_[i], &q = points_[j];
-    return p.x != q.x ? p.x < q.x : p.y < q.y;
-  });
+  blockers_.change(corner, blocks ? 1 : -1);
 }
 
 void PolygonTriangulator::find_blocking() {
   const std::size_t count = points_.size();
-  blockers_.resize(count);
-  std::iota(blockers_.begin(), blockers_.end(), 0u);
-  sort_by_place(blockers_);
+  blockers_.build(points_);
+  by_place_.resize(count);
+  std::iota(by_place_.begin(), by_place_.end(), 0u);
+  std::sort(by_place_.begin(), by_place_.end(), [this](std::uint32_t i, std::uint32_t j) {
+    const Point &p = points_[i], &q = points_[j];
+    return p.x != q.x ? p.x < q.x : p.y < q.y;
+  });
   twin_.assign(count, 0);
   for (std::size_t i = 1; i < count; ++i) {
-    const std::uint32_t p = blockers_[i - 1], q = blockers_[i];
+    const std::uint32_t p = by_place_[i - 1], q = by_place_[i];
     if (points_[p] == points_[q]) twin_[p] = twin_[q] = 1;
   }
   blocking_.assign(count, 0);
-  blocking_count_ = 0;
   for (std::uint32_t i = 0; i < count; ++i) update_blocking(i);
-}
-
-void PolygonTriangulator::collect_blockers() {
-  blockers_.clear();
-  for (std::uint32_t i = 0; i < points_.size(); ++i)
-    if (blocking_[i]) blockers_.push_back(i);
-  sort_by_place(blockers_);
-  blockers_stale_ = false;
-  budget_ -= static_cast<std::int64_t>(points_.size());
 }
 
 }  // namespace oktett

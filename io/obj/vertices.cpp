@@ -6,6 +6,9 @@
 namespace oktett {
 namespace {
 
+/// Beyond it, products of coordinates overflow in the tests of boxes (docs/numerics.md, Domain).
+constexpr float kMostCoordinate = 1e30f;
+
 [[noreturn]] void stop_at_number(const char* p, NumberProblem problem) {
   if (is_line_end(*p) || *p == '#') stop_at(p, "expected a number, found the end of the line");
   if (problem == NumberProblem::overflow)
@@ -26,6 +29,10 @@ const char* read_coordinate(const char* p, float& x) {
   if (!std::isfinite(x)) {
     p = skip_blanks(p);
     stop_at(p, "expected a finite number, found " + quote_word(p));
+  }
+  if (std::abs(x) > kMostCoordinate) {
+    p = skip_blanks(p);
+    stop_at(p, "coordinate out of range: " + quote_word(p) + " (magnitude at most 1e30)");
   }
   return end;
 }

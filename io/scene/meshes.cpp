@@ -7,10 +7,27 @@
 #include <system_error>
 #include <utility>
 
+#include "io/image/image_access.h"
+#include "io/obj/material_textures.h"
 #include "io/obj/obj.h"
+#include "io/text/files_read.h"
 
 namespace oktett {
 namespace {
+
+/// Images that cannot be read at all are told of here, where the statement that names them is known. Their
+/// textures lose the path, and are white.
+void check_textures(ObjFile& obj) {
+  for (std::size_t i = 0; i < obj.textures.size(); ++i) {
+    Texture& texture = obj.textures[i];
+    note_file_read(texture.path);
+    const std::string why = why_not_an_image(texture.path);
+    if (why.empty()) continue;
+    obj.warnings.push_back(
+        {obj.texture_places[i], "texture " + texture.path + " not used: " + why + "; white instead"});
+    texture.path.clear();
+  }
+}
 
 /// Appends what `obj` brings to `scene` and returns the new index of each of its materials.
 std::vector<std::uint32_t> append_materials(ObjFile& obj, Scene& scene) {
@@ -18,10 +35,9 @@ std::vector<std::uint32_t> append_materials(ObjFile& obj, Scene& scene) {
   std::move(obj.textures.begin(), obj.textures.end(), std::back_inserter(scene.textures));
   std::vector<std::uint32_t> indices;
   for (Material& material : obj.materials) {
-    for (std::uint32_t* texture :
-         {&material.color_texture, &material.specular_texture, &material.emission_texture,
-          &material.opacity_texture, &material.bump_texture, &material.normal_texture})
-      if (*texture != kNoId) *texture += first_texture;
+    for_each_texture(material, [first_texture](std::uint32_t& texture) {
+      if (texture != kNoId) texture += first_texture;
+    });
     indices.push_back(static_cast<std::uint32_t>(scene.materials.size()));
     scene.materials.push_back(std::move(material));
   }
@@ -47,6 +63,7 @@ const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, Scene& scen
   const auto found = entries_.find(key);
   if (found != entries_.end()) return found->second;
   ObjFile obj = load_obj(path);
+  check_textures(obj);
   Entry entry;
   entry.slot_materials = append_materials(obj, scene);
   entry.mesh = std::make_shared<const TriangleMesh>(std::move(obj.mesh));

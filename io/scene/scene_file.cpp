@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "io/scene/readers.h"
+#include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
 #include "io/scene/yaml.h"
+#include "io/text/file_access.h"
 #include "render/default_view.h"
 
 namespace oktett {
@@ -30,8 +32,12 @@ class FileReader {
     seen_.push_back(chain_.back().canonical);
     YamlFile file;
     file.path = path;
-    file.text = read_text_file(path, kMaxYamlBytes);
-    parse_yaml(file, kMaxYamlNodes - nodes_);
+    file.text = read_text_file(path, kMaxSceneBytes);
+    bytes_ += file.text.size();
+    if (bytes_ > kMaxSceneBytes)
+      throw Error(Location{path, 0, 0}, "the scene and the files that it includes are larger than " +
+                                            std::to_string(kMaxSceneBytes >> 20) + " MiB in all");
+    parse_yaml(file, kMaxSceneNodes - nodes_);
     nodes_ += file.expanded_nodes;
     read_sections(*file.root);
     chain_.pop_back();
@@ -99,9 +105,9 @@ class FileReader {
   }
 
   SceneLoad& load_;
-  std::vector<Link> chain_;        ///< the files being read, outermost first
-  std::vector<std::string> seen_;  ///< canonical paths; a file that is included twice is merged once
-  std::size_t nodes_ = 0;
+  std::vector<Link> chain_;            ///< the files being read, outermost first
+  std::vector<std::string> seen_;      ///< canonical paths; a file that is included twice is merged once
+  std::size_t nodes_ = 0, bytes_ = 0;  ///< of the files so far
 };
 
 void expect_readable(const std::string& path) {

@@ -10,6 +10,7 @@
 
 #include "io/scene/read_probe.h"
 #include "io/scene/utf8.h"
+#include "io/text/file_access.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett {

@@ -1,13 +1,10 @@
 #include "io/scene/yaml.h"
 
-#include <unistd.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string_view>
@@ -15,8 +12,11 @@
 #include <unordered_set>
 #include <utility>
 
+#include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
+#include "io/text/file_access.h"
 #include "io/text/files_read.h"
+#include "io/text/mapped_file.h"
 
 namespace oktett {
 namespace {
@@ -107,7 +107,7 @@ class TreeBuilder : public YAML::EventHandler {
   void count(const YAML::Mark& mark, std::size_t nodes) {
     file_.expanded_nodes += nodes;
     if (file_.expanded_nodes > max_nodes_)
-      fail(mark, "the scene has more than " + std::to_string(kMaxYamlNodes) + " values, aliases expanded");
+      fail(mark, "the scene has more than " + std::to_string(kMaxSceneNodes) + " values, aliases expanded");
   }
 
   YamlNode& create(YamlKind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
@@ -190,33 +190,15 @@ std::string YamlNode::describe() const {
   return kind == YamlKind::null ? "nothing" : kind == YamlKind::sequence ? "a list" : "a map";
 }
 
-std::string why_unreadable(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) return "no such file";
-  if (error) return error.message();
-  if (std::filesystem::is_directory(status)) return "is a directory";
-  if (!std::filesystem::is_regular_file(status)) return "is not a regular file";
-  if (access(path.c_str(), R_OK) != 0) return "permission denied";
-  return "";
-}
-
 std::string read_text_file(const std::string& path, std::size_t max_bytes) {
   note_file_read(path);
   const Location place{path, 0, 0};
   if (const std::string reason = why_unreadable(path); !reason.empty())
     throw Error(place, reason, ErrorKind::io);
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw Error(place, error.message(), ErrorKind::io);
-  if (size > max_bytes)
+  const MappedFile file(path);
+  if (file.text().size() > max_bytes)
     throw Error(place, "the file is larger than " + std::to_string(max_bytes >> 20) + " MiB");
-  std::string text(static_cast<std::size_t>(size), '\0');
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(text.data(), static_cast<std::streamsize>(size));
-  if (stream.bad() || !stream.is_open()) throw Error(place, "cannot be read", ErrorKind::io);
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  return std::string(file.text());
 }
 
 void parse_yaml(YamlFile& file, std::size_t max_nodes) {

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "io/text/file_access.h"
 #include "io/text/files_read.h"
 
 namespace oktett {
@@ -50,8 +51,7 @@ MappedFile::MappedFile(const std::string& path) {
   const Descriptor file(path);
   struct stat status;
   if (file.get() < 0 || fstat(file.get(), &status) != 0) fail_with_errno(path);
-  if (S_ISDIR(status.st_mode)) fail(path, "it is a directory");
-  if (!S_ISREG(status.st_mode)) fail(path, "it is not a regular file");
+  if (const std::string why = why_unreadable(file.get()); !why.empty()) fail(path, "it " + why);
   size_ = static_cast<std::size_t>(status.st_size);
 
   // The file is laid over the front of zero pages: what follows it in its last page reads as zero too.

@@ -27,7 +27,8 @@ inline const char* next_line(const char* line_end, const char* text_end) {
   return line_end < text_end ? line_end + 1 : text_end;
 }
 
-inline bool is_continuation(const char* p) { return p[0] == '\\' && (p[1] == '\n' || p[1] == '\r'); }
+/// A backslash at the end of the text joins nothing, and means nothing.
+inline bool is_continuation(const char* p) { return p[0] == '\\' && is_line_end(p[1]); }
 
 /// Past blanks and joints of lines.
 inline const char* skip_blanks(const char* p) {
@@ -56,8 +57,10 @@ struct LineShape {
 
   /// Whether the physical line is all there is, without a comment.
   bool plain() const { return !hash && !backslash; }
+  /// Whether a backslash ends it that is no part of a word.
+  bool ends_in_joint() const { return backslash && !hash && end[-1] == '\\'; }
   /// Whether the next physical line belongs to this one.
-  bool continued() const { return backslash && !hash && end[-1] == '\\' && *end != '\0'; }
+  bool continued() const { return ends_in_joint() && *end != '\0'; }
 };
 
 /// Number of ones; the baseline has no instruction for it.

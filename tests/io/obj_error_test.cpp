@@ -182,6 +182,12 @@ TEST(ObjError, UnreadableFilesAreInputOutputErrors) {
   EXPECT_EQ(kind_of(files.dir.file("missing.obj")), ErrorKind::io);
   EXPECT_EQ(kind_of(files.dir.path().string()), ErrorKind::io);
   EXPECT_EQ(kind_of("/dev/null"), ErrorKind::io);
+  // They look like regular files, but reading them may never end, or change something.
+  for (const char* special :
+       {"/proc/self/mem", "/proc/self/maps", "/proc/cpuinfo", "/sys/kernel/uevent_seqnum"})
+    if (std::filesystem::exists(special)) {
+      EXPECT_EQ(kind_of(special), ErrorKind::io) << special;
+    }
   const std::string pipe = files.dir.file("pipe.obj");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(kind_of(pipe), ErrorKind::io);
@@ -190,6 +196,15 @@ TEST(ObjError, UnreadableFilesAreInputOutputErrors) {
     ASSERT_EQ(chmod(secret.c_str(), 0), 0);
     EXPECT_EQ(kind_of(secret), ErrorKind::io);
   }
+}
+
+TEST(ObjError, CoordinatesHaveADomain) {
+  const ObjFiles files;
+  EXPECT_EQ(files.error("v 1e30 -1e30 0\n"), "no error");
+  EXPECT_EQ(files.error("v 0 0 0\nv 1 -1e36 0\n"),
+            "mesh.obj:2:5: coordinate out of range: '-1e36' (magnitude at most 1e30)");
+  EXPECT_EQ(files.error("v 1.001e30 0 0\n"),
+            "mesh.obj:1:3: coordinate out of range: '1.001e30' (magnitude at most 1e30)");
 }
 
 TEST(ObjError, BadInputIsToldFromInputOutput) {

@@ -108,6 +108,29 @@ TEST(ObjMaterials, OnlyTexturesInUseAreKept) {
   EXPECT_EQ(file.materials[1].specular_texture, file.materials[0].color_texture);
 }
 
+TEST(ObjMaterials, TexturesKnowWhereTheyAreNamed) {
+  const ObjFiles files;
+  files.dir.write("m.mtl",
+                  "newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n  map_Ks c.png\nnewmtl c\nmap_Kd c.png\n");
+  const ObjFile file = files.load("mtllib m.mtl\n" + kSquare + "usemtl c\n" + kFace + "usemtl b\n" + kFace);
+  ASSERT_EQ(file.texture_places.size(), file.textures.size());
+  for (std::size_t i = 0; i < file.textures.size(); ++i)
+    EXPECT_EQ(files.without_directory(to_string(file.texture_places[i])),
+              files.without_directory(file.textures[i].path) == "b.png" ? "m.mtl:4:1" : "m.mtl:5:3");
+}
+
+// The textures of the principled model are renumbered like all others, here and in scenes.
+TEST(ObjMaterials, PrincipledTexturesAreRenumbered) {
+  const ObjFiles files;
+  files.dir.write("m.mtl", "newmtl a\nmap_Kd a.png\nmap_Pr b.png\nnewmtl b\nmap_Pr c.png\nmap_Pm d.png\n");
+  const ObjFile file = files.load("mtllib m.mtl\n" + kSquare + "usemtl b\n" + kFace);
+  ASSERT_EQ(file.textures.size(), 2u);
+  ASSERT_TRUE(file.materials[0].principled);
+  const PrincipledMaterial& b = *file.materials[0].principled;
+  EXPECT_EQ(files.without_directory(file.textures.at(b.roughness_texture).path), "c.png");
+  EXPECT_EQ(files.without_directory(file.textures.at(b.metallic_texture).path), "d.png");
+}
+
 TEST(ObjMaterials, WarningsOfLibrariesAreHandedOn) {
   const ObjFiles files;
   files.dir.write("m.mtl", "newmtl a\nNs x\n");

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <random>
 #include <string>
@@ -199,6 +200,77 @@ TEST(Polygon, HugeOnesTakeAboutLinearTime) {
   }
   expect_covered(gear);
   triangulate(tangle);
+}
+
+/// Twice the corner count in at most about twice the time: contrived polygons of 100 000 corners.
+TEST(Polygon, ContrivedOnesTakeAboutLinearTime) {
+  constexpr int n = 50000;
+  std::vector<Polygon> covered;
+  Polygon star, comb, lying_comb;
+  for (int i = 0; i < 2 * n; ++i) {
+    const double angle = kPi * i / n, radius = i % 2 ? 1 : 0.05;
+    star.push_back(
+        {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
+    const auto x = static_cast<float>(i), y = i % 2 ? 10.0f : 0.1f;
+    comb.push_back({x, y, 0});
+    lying_comb.push_back({y, -x, 0});
+  }
+  comb.insert(comb.end(), {{2 * n, -1, 0}, {0, -1, 0}});
+  lying_comb.insert(lying_comb.end(), {{-1, -2 * n, 0}, {-1, 0, 0}});
+  for (const Polygon& polygon : {star, comb, lying_comb}) expect_covered(polygon);
+}
+
+// The same three corners again and again, a path there and back, and one place that is visited often.
+TEST(Polygon, RepeatedCornersTakeLinearTime) {
+  const auto start = std::chrono::steady_clock::now();
+  Polygon turns, ways, flower;
+  constexpr int n = 300000;
+  for (int i = 0; i < n; ++i) {
+    turns.push_back({i % 3 == 1 ? 1.0f : 0.0f, i % 3 == 2 ? 1.0f : 0.0f, 0});
+    ways.push_back({static_cast<float>(i % 2), static_cast<float>(i % 5), 0});
+    const double angle = 2 * kPi * (i + i % 3 * 0.3) / n;
+    flower.push_back(
+        i % 3 == 0 ? Vec3f{0, 0, 0}
+                   : Vec3f{static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
+  }
+  for (const Polygon& polygon : {turns, ways, flower}) triangulate(polygon);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(elapsed.count(), 20);
+}
+
+// Removing ears by brute force, with every corner compared with every other, cuts the same triangles.
+TEST(Polygon, TheTreeOfBlockersMissesNone) {
+  std::mt19937 random(11);
+  const auto unit = [&] { return static_cast<double>(random() % 64) / 64; };
+  for (int round = 0; round < 300; ++round) {
+    std::vector<PlanePoint> points(1 + random() % 200);
+    for (PlanePoint& p : points) p = {unit(), unit()};
+    BlockerTree tree;
+    tree.build(points);
+    std::vector<bool> blocks(points.size());
+    for (int change = 0; change < 300; ++change) {
+      const auto i = static_cast<std::uint32_t>(random() % points.size());
+      tree.change(i, blocks[i] ? -1 : 1);
+      blocks[i] = !blocks[i];
+    }
+    EXPECT_EQ(tree.blocking(), std::count(blocks.begin(), blocks.end(), true));
+    for (int query = 0; query < 20; ++query) {
+      PlanePoint a{unit(), unit()}, b{unit(), unit()}, c{unit(), unit()};
+      if (cross(a, b, c) < 0) std::swap(b, c);
+      std::vector<bool> visited(points.size());
+      EXPECT_FALSE(tree.any_in(a, b, c, [&](std::uint32_t i) {
+        visited[i] = true;
+        return false;
+      }));
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const PlanePoint& p = points[i];
+        const bool within = cross(a, b, p) >= 0 && cross(b, c, p) >= 0 && cross(c, a, p) >= 0;
+        if (blocks[i] && within && cross(a, b, c) > 0) {
+          EXPECT_TRUE(visited[i]);
+        }
+      }
+    }
+  }
 }
 
 TEST(Polygon, FacesKeepUvsAndNormalsWithTheirCorners) {

@@ -119,7 +119,16 @@ TEST(Obj, BackslashJoinsLines) {
   EXPECT_EQ(indices_of(file), (Indices{0, 1, 3, 0, 3, 2}));
   // A path at the end of a comment must not swallow the next line.
   EXPECT_EQ(files.load("# from C:\\meshes\\\nv 1 2 3\n").mesh.positions.size(), 1u);
+  // A backslash at the very end joins nothing.
   EXPECT_EQ(files.load("v 1 2 3 \\").mesh.positions.size(), 1u);
+  EXPECT_EQ(files.load("v 1 2 3\\").mesh.positions[0], (Vec3f{1, 2, 3}));
+  for (const char* face : {"f 1 2 3\\", "f 1 2 3 \\", "f 1// 2// 3//\\", "f -3 -2 -1\\"})
+    EXPECT_EQ(files.load(std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\n") + face).mesh.triangle_count(), 1u)
+        << face;
+  files.write("end.mtl", "newmtl a\nKd 1 0 0\nmap_Kd t.png\\");
+  const ObjFile named = files.load("v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nmtllib end.mtl\\");
+  ASSERT_EQ(named.textures.size(), 1u);
+  EXPECT_EQ(files.without_directory(named.textures[0].path), "t.png");
 }
 
 TEST(Obj, NamesGroupsAndSmoothingChangeNothing) {
@@ -176,13 +185,13 @@ TEST(Obj, FilesWithoutFacesAreEmptyMeshes) {
 }
 
 TEST(Obj, KeepsDenormalAndTinyNumbers) {
-  const ObjFile file = ObjFiles().load("v 1e-40 1e-60 -0.0\nv 3.4028234e38 1e-999 -1e-45\n");
+  const ObjFile file = ObjFiles().load("v 1e-40 1e-60 -0.0\nvn 3.4028234e38 1e-999 -1e-45\n");
   EXPECT_EQ(file.mesh.positions[0].x, 1e-40f);
   EXPECT_EQ(file.mesh.positions[0].y, 0.0f);
   EXPECT_TRUE(std::signbit(file.mesh.positions[0].z));
-  EXPECT_EQ(file.mesh.positions[1].x, std::numeric_limits<float>::max());
-  EXPECT_EQ(file.mesh.positions[1].y, 0.0f);
-  EXPECT_EQ(file.mesh.positions[1].z, -std::numeric_limits<float>::denorm_min());
+  EXPECT_EQ(file.mesh.normals[0].x, std::numeric_limits<float>::max());
+  EXPECT_EQ(file.mesh.normals[0].y, 0.0f);
+  EXPECT_EQ(file.mesh.normals[0].z, -std::numeric_limits<float>::denorm_min());
 }
 
 TEST(Obj, KeepsDegenerateTriangles) {

@@ -53,7 +53,7 @@ TEST(SceneLimit, AliasBombs) {
         "k" + std::to_string(i) + ": &p" + std::to_string(i) + " [" + repeat(alias + ", ", 7) + alias + "]\n";
   }
   const std::string message = SceneFiles().error_v1(text);
-  EXPECT_NE(message.find("the scene has more than 4000000 values, aliases expanded"), std::string::npos)
+  EXPECT_NE(message.find("the scene has more than 1000000 values, aliases expanded"), std::string::npos)
       << message;
   EXPECT_NE(SceneFiles().error_v1("objects: &a [*a]").find("the alias stands inside what it names"),
             std::string::npos);
@@ -87,8 +87,21 @@ TEST(SceneLimit, Includes) {
 
 TEST(SceneLimit, FileSize) {
   SceneFiles files;
-  EXPECT_EQ(files.error("oktett: 1\n#" + std::string(std::size_t{33} << 20, 'x')),
-            "scene.yaml: the file is larger than 32 MiB");
+  EXPECT_EQ(files.error("oktett: 1\n#" + std::string(std::size_t{17} << 20, 'x')),
+            "scene.yaml: the file is larger than 16 MiB");
+  // A long key and a long list are refused before they take long, and so is what several files hold together.
+  expect_starts(files.error("oktett: 1\n? " + std::string(20'000'000, 'k') + "\n: 1\n"),
+                "scene.yaml: the file is larger than 16 MiB");
+  expect_starts(files.error_v1("objects: [" + repeat("1,", 1'000'000) + "1]\n"),
+                "scene.yaml:2:2000001: the scene has more than 1000000 values");
+  std::string includes = "include: [";
+  for (int i = 0; i < 4; ++i) {
+    files.dir.write("h" + std::to_string(i) + ".yaml",
+                    "oktett: 1\n#" + std::string(std::size_t{5} << 20, 'x') + "\n");
+    includes += "h" + std::to_string(i) + ".yaml, ";
+  }
+  expect_starts(files.error_v1(includes + "]\n"),
+                "h3.yaml: the scene and the files that it includes are larger than 16 MiB in all");
 }
 
 TEST(SceneLimit, PolygonVertices) {

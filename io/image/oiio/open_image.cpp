@@ -79,6 +79,8 @@ OIIO::ImageInput::unique_ptr open_image(const std::string& path) {
   OIIO::ImageInput::unique_ptr input;
   try {
     input = OIIO::ImageInput::open(path, &config);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     fail(path, "cannot read the image: " + first_line(error.what(), "damaged file"));
   }

@@ -11,6 +11,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,9 @@ namespace {
 
 using OIIO::TextureSystem;
 using OIIO::TypeDesc;
+
+/// Set when memory ran out in the library's threads, whose exceptions end up as messages about a file.
+std::atomic<bool> memory_refused{false};
 
 /// Presents an image file to a texture cache as six channels: linear R, G, B, then the first three as
 /// stored (a grey one repeated). Halves for 8-bit files, which lose nothing that 8 bits hold, floats for all
@@ -46,6 +50,9 @@ class TextureInput final : public OIIO::ImageInput {
       input_ = open_image(std::string(config.get_string_attribute("oktett:path")));
     } catch (const Error& error) {
       errorfmt("{}", error.what());
+      return false;
+    } catch (const std::bad_alloc&) {
+      memory_refused = true;
       return false;
     }
     const OIIO::ImageSpec& file = input_->spec();
@@ -90,6 +97,8 @@ class TextureInput final : public OIIO::ImageInput {
       pixels_.resize(count);
       if (input_->read_image(0, 0, 0, file_channels_, TypeDesc::FLOAT, pixels_.data())) return true;
       why = input_->geterror();
+    } catch (const std::bad_alloc&) {
+      memory_refused = true;
     } catch (const std::exception& error) {
       why = error.what();
     }
@@ -237,9 +246,11 @@ class FileTextures final : public TextureSampler {
       bytes += file.bytes;
     }
     reserve_memory(bytes);
+    memory_refused = false;
     tbb::parallel_for(std::size_t{0}, files_.size(), [this](std::size_t i) {
       if (files_[i].problem.empty()) load(files_[i]);
     });
+    if (memory_refused) throw std::bad_alloc();
     for (const ImageFile& file : files_)
       if (file.handle == nullptr)
         warnings.push_back({Location{file.path}, "texture not used: " + file.problem + "; white instead"});
@@ -274,12 +285,12 @@ class FileTextures final : public TextureSampler {
   }
 
  private:
-  static constexpr std::size_t kNoFile = ~std::size_t{0};  ///< of a pattern
+  static constexpr std::size_t kNoFile = ~std::size_t{0};  ///< of a pattern, or white
 
   void list_files() {
     std::map<std::string, std::size_t> known;
     for (const Texture& texture : textures_) {
-      if (texture.pattern) {
+      if (texture.path.empty()) {
         file_of_.push_back(kNoFile);
         continue;
       }
