@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "app/text.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -56,8 +57,13 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 int usage_error(const CLI::App& app, const std::string& explanation) {
   const CLI::App* verb = current(app);
   const std::string help = verb == &app ? "oktett --help" : "oktett " + verb->get_name() + " --help";
-  fmt::print(stderr, "oktett: {}\nRun '{}' for a list of what there is.\n", explanation, help);
+  say("oktett: {}\nRun '{}' for a list of what there is.\n", explanation, help);
   return kExitBadInput;
+}
+
+/// For options that take a word. An empty one would count as if the option were not there.
+std::string is_not_empty(const std::string& value) {
+  return value.empty() ? "expected a value, found nothing" : "";
 }
 
 }  // namespace
@@ -66,6 +72,7 @@ void Verb::option(const char* names, OptionTarget target, const char* value, con
   std::visit(
       [&](auto* variable) {
         CLI::Option* option = app_->add_option(names, *variable, help)->type_name(value);
+        if constexpr (std::is_same_v<decltype(variable), std::string*>) option->check(is_not_empty);
         if constexpr (std::is_same_v<decltype(variable), std::vector<std::string>*>)
           option->allow_extra_args(false);
       },

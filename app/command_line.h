@@ -84,9 +84,11 @@ void add_info_command(CommandLine& line);
 void add_merge_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
 
-/// Exit status for files that cannot be read or written.
+/// Exit status for files that cannot be read or written, and for what the system refuses: memory, threads.
 inline constexpr int kExitIo = 1;
 /// Exit status for wrong words and for files that say something wrong.
 inline constexpr int kExitBadInput = 2;
+/// Exit status for errors of the program itself, and for what `verify` finds.
+inline constexpr int kExitInternal = 3;
 
 }  // namespace oktett

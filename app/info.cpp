@@ -12,6 +12,7 @@
 #include "accel/traverse/trace_counts.h"
 #include "app/command_line.h"
 #include "app/json.h"
+#include "app/limits.h"
 #include "app/render_options.h"
 #include "app/scene_summary.h"
 #include "app/text.h"
@@ -27,6 +28,7 @@ namespace {
 
 struct InfoArguments {
   std::string file;
+  LimitArguments limits;
   std::vector<std::string> definitions;
   std::string bvh;
   bool json = false;
@@ -153,6 +155,7 @@ void print_json(const Scene& scene, const SceneSummary& summary, const TreeSumma
 }
 
 int run_info(const InfoArguments& arguments) {
+  apply_limits(arguments.limits);
   const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions));
   print_warnings(scene.warnings);
   const SceneSummary summary = summarize(scene);
@@ -175,6 +178,7 @@ void add_info_command(CommandLine& line) {
   add_bvh_option(verb, arguments->bvh);
   verb.flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb.flag("--json", arguments->json, "Print one JSON object");
+  add_limit_options(verb, arguments->limits);
   verb.notice("--shapes", surface_table, "Print the shapes of scene files as a table and exit");
   verb.notice("--patterns", pattern_table, "Print the patterns of textures as a table and exit");
   verb.notice("--schema", scene_schema, "Print the JSON Schema of scene files and exit");

@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "io/image/output.h"
+
 namespace oktett {
 namespace {
 
@@ -9,13 +11,19 @@ std::atomic<bool> stop_flag{false};
 std::atomic<int> stop_signal{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-constexpr int kSignals[] = {SIGINT, SIGTERM};
-struct sigaction previous[2];
+// SIGALRM is that of --timeout.
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM};
+constexpr int kCount = 4;
+struct sigaction previous[kCount];
 
 void on_signal(int number) {
   if (stop_flag.exchange(true)) {
+    // The time may be up after a person has asked for the end already.
+    if (number == SIGALRM) return;
+    remove_unfinished_files();
     std::signal(number, SIG_DFL);
     std::raise(number);
+    return;
   }
   stop_signal = number;
 }
@@ -29,7 +37,7 @@ StopOnSignal::StopOnSignal() {
   action.sa_handler = &on_signal;
   // Neither signal is blocked while the first is handled, because the second may be of the other kind.
   action.sa_flags = SA_RESTART | SA_NODEFER;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < kCount; ++i) {
     sigaction(kSignals[i], nullptr, &previous[i]);
     // A signal that the parent made us ignore (nohup, background jobs) stays ignored.
     if (previous[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
@@ -37,7 +45,7 @@ StopOnSignal::StopOnSignal() {
 }
 
 StopOnSignal::~StopOnSignal() {
-  for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &previous[i], nullptr);
+  for (int i = 0; i < kCount; ++i) sigaction(kSignals[i], &previous[i], nullptr);
 }
 
 const std::atomic<bool>* StopOnSignal::flag() const { return &stop_flag; }

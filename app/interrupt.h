@@ -5,8 +5,8 @@
 
 namespace oktett {
 
-/// While an object of this class exists, the first SIGINT or SIGTERM sets a flag and the second ends the
-/// process at once. Only one may exist at a time.
+/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP or SIGALRM (of --timeout) sets a
+/// flag. A second one that is not SIGALRM ends the process at once. Only one object may exist at a time.
 class StopOnSignal {
  public:
   StopOnSignal();

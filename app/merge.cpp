@@ -136,8 +136,7 @@ int run_merge(const MergeArguments& arguments) {
   if (!arguments.quiet) fmt::print("wrote {}\n", arguments.outfile);
   std::fflush(stdout);
   if (missing > 0)
-    fmt::print(stderr, "warning: {} of {} tiles are missing and transparent\n", missing,
-               shares.first().film->tile_count());
+    say("warning: {} of {} tiles are missing and transparent\n", missing, shares.first().film->tile_count());
   return 0;
 }
 

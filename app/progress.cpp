@@ -36,20 +36,20 @@ void ProgressLine::show(const RenderProgress& progress) {
 
 void ProgressLine::print(const RenderProgress& progress) {
   // The escape sequence clears the rest of a longer previous line.
-  fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", progress_text(progress), terminal_ ? "\x1b[K" : "\n");
+  say("{}{}{}", terminal_ ? "\r" : "", progress_text(progress), terminal_ ? "\x1b[K" : "\n");
   std::fflush(stderr);
   line_open_ = terminal_;
 }
 
 void ProgressLine::clear() {
-  if (line_open_) fmt::print(stderr, "\r\x1b[K");
+  if (line_open_) say("\r\x1b[K");
   line_open_ = false;
 }
 
 void ProgressLine::finish() {
   if (held_back_) print(last_);
   held_back_ = false;
-  if (line_open_) fmt::print(stderr, "\n");
+  if (line_open_) say("\n");
   line_open_ = false;
 }
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <chrono>
 #include <csignal>
@@ -26,6 +27,7 @@
 #include "io/photon/photon_map_file.h"
 #include "io/scene/scene_file.h"
 #include "io/text/files_read.h"
+#include "kernels/exact/march.h"
 #include "render/film/denoise.h"
 #include "render/look/default_look.h"
 #include "render/render.h"
@@ -65,11 +67,11 @@ Scene load(const RenderArguments& arguments) {
 }
 
 void print_plan(const Scene& scene, const RenderOptions& options, const std::string& output) {
-  fmt::print(stderr, "{}: {} objects, {} materials, {} lights\n", scene.source, scene.objects.size(),
-             scene.materials.size(), scene.lights.size());
-  fmt::print(stderr, "{} x {} pixels, {} samples each, integrator {}, {}, {} threads, to {}\n",
-             scene.film.width, scene.film.height, scene.integrator.samples, to_string(scene.integrator.kind),
-             to_string(options.isa), options.threads == 0 ? "all" : std::to_string(options.threads), output);
+  say("{}: {} objects, {} materials, {} lights\n", scene.source, scene.objects.size(), scene.materials.size(),
+      scene.lights.size());
+  say("{} x {} pixels, {} samples each, integrator {}, {}, {} threads, to {}\n", scene.film.width,
+      scene.film.height, scene.integrator.samples, to_string(scene.integrator.kind), to_string(options.isa),
+      options.threads == 0 ? "all" : std::to_string(options.threads), output);
 }
 
 ImageMetadata first_metadata(const CommandLine& line, const RenderArguments& arguments, const Scene& scene) {
@@ -131,7 +133,7 @@ class Watch {
   void print_warning(const std::string& warning) {
     if (warning.empty()) return;
     line_.clear();
-    fmt::print(stderr, "warning: {}\n", warning);
+    say("warning: {}\n", warning);
   }
 
   Checkpoint& checkpoint_;
@@ -167,9 +169,10 @@ class PhotonFile {
   std::string path_;  ///< to write; empty: none
 };
 
-/// Wall-clock seconds of the stages of the command.
+/// Wall-clock seconds of the stages of the command, and what is known of no other report.
 struct StageTimes {
   double load = 0, build = 0, render = 0, denoise = 0, write = 0;
+  std::uint64_t given_up = 0;  ///< searches for a hit that would have taken too many steps
 };
 
 std::uint64_t rays_of(const RenderReport& r) {
@@ -210,7 +213,7 @@ std::vector<double> by_bounce(const RenderReport& report, const Of& of) {
 }
 
 /// A table of counts, one per line.
-std::string stats_text(const RenderReport& report) {
+std::string stats_text(const StageTimes& times, const RenderReport& report) {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) {
     text += fmt::format("{:<20}{:>16}\n", name, value);
@@ -234,6 +237,7 @@ std::string stats_text(const RenderReport& report) {
   line("bytes per triangle", fmt::format("{:.1f}", bytes_per_triangle(report)));
   line("sah cost", fmt::format("{:.2f}", report.sah_cost));
   line("bad samples", grouped(report.bad_samples));
+  line("given up", grouped(times.given_up));
   return text;
 }
 
@@ -266,6 +270,7 @@ std::string stats_json(const StageTimes& times, const RenderReport& report, cons
                        {"bytes_per_triangle", bytes_per_triangle(report)},
                        {"sah_cost", report.sah_cost},
                        {"bad_samples", report.bad_samples},
+                       {"given_up", times.given_up},
                        {"stopped", report.stopped}};
   return all.text();
 }
@@ -273,14 +278,26 @@ std::string stats_json(const StageTimes& times, const RenderReport& report, cons
 void print_summary(const RenderArguments& arguments, const StageTimes& times, const RenderReport& report,
                    const std::string& output) {
   const bool json = arguments.stats == "json";
-  if (arguments.stats == "text") fmt::print("{}", stats_text(report));
+  if (arguments.stats == "text") fmt::print("{}", stats_text(times, report));
   if (json) fmt::print("{}\n", stats_json(times, report, output));
+  const std::string end = fmt::format("{}\n{}", times_text(times, report),
+                                      output.empty() ? "" : fmt::format("wrote {}\n", output));
   // With --stats=json standard output holds nothing but JSON.
-  if (!arguments.quiet)
-    fmt::print(json ? stderr : stdout, "{}\nwrote {}\n", times_text(times, report), output);
+  if (!arguments.quiet && json) say("{}", end);
+  if (!arguments.quiet && !json) fmt::print("{}", end);
   std::fflush(stdout);
   if (report.bad_samples > 0)
-    fmt::print(stderr, "warning: {} samples were NaN or infinite and were left out\n", report.bad_samples);
+    say("warning: {} samples were NaN or infinite and were left out\n", report.bad_samples);
+  if (times.given_up > 0)
+    say("warning: {} times, finding where a ray meets a surface took too many steps and was given up\n",
+        times.given_up);
+}
+
+const char* signal_name(int signal) {
+  return signal == SIGALRM   ? "--timeout"
+         : signal == SIGHUP  ? "SIGHUP"
+         : signal == SIGTERM ? "SIGTERM"
+                             : "SIGINT";
 }
 
 /// Writes the film for the last time. What goes wrong is returned, since there may be a picture to write,
@@ -305,23 +322,27 @@ int say_stopped(int signal, double percent, const Checkpoint& checkpoint) {
   const std::string rest = checkpoint.path().empty()
                                ? "the rest is black"
                                : "go on with: oktett render --resume " + checkpoint.path();
-  fmt::print(stderr, "stopped by {}: {:.1f}% of the picture is finished, {}\n",
-             signal == SIGTERM ? "SIGTERM" : "SIGINT", percent, rest);
-  return 128 + signal;
+  say("stopped by {}: {:.1f}% of the picture is finished, {}\n", signal_name(signal), percent, rest);
+  return signal == SIGALRM ? kExitTimeout : 128 + signal;
 }
 
 int run_render(const CommandLine& line, RenderArguments arguments) {
   check_stats(arguments.stats);
   Checkpoint checkpoint(line, arguments);
   if (arguments.scene.empty()) return line.missing("scene");
-  const bool writes_picture = checkpoint.film_output().empty();
-  const std::string output = writes_picture ? output_path(arguments) : checkpoint.film_output();
+  apply_limits(arguments.limits);
+  // Loading shares its work among threads, too, and one thread asked for is none that can be refused.
+  std::optional<tbb::global_control> threads;
+  if (arguments.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, arguments.threads);
+  const bool writes_film = !checkpoint.film_output().empty();
+  const std::string output = writes_film ? checkpoint.film_output() : output_path(arguments);
+  const bool writes_picture = !writes_film && !output.empty();
   if (writes_picture) check_output(output);
   RenderOptions options;
   options.isa = choose_isa(arguments.isa);
   options.threads = arguments.threads;
   options.build = parse_bvh_option(arguments.bvh);
-  options.data_layers = !writes_picture || keeps_all_planes(output) || arguments.film.denoise;
+  options.data_layers = writes_film || (writes_picture && keeps_all_planes(output)) || arguments.film.denoise;
 
   Stopwatch watch;
   StageTimes times;
@@ -342,7 +363,9 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   const StopOnSignal interrupt;
   options.stop = interrupt.flag();
   Watch shown(arguments, checkpoint, options);
+  const std::uint64_t given_up_before = interval::uncertified_count();
   RenderResult result = render(std::move(scene), options);
+  times.given_up = interval::uncertified_count() - given_up_before;
   shown.finish();
   photons.keep(result);
   times.build = result.report.build_seconds;

@@ -83,6 +83,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh (.obj)");
   verb.option("-o,--outfile", &a.outfile, "FILE",
               "Picture to write; default: the scene's name with .png, here");
+  verb.flag("--no-output", a.no_output, "Write no picture, for measuring");
   verb.option("-t,--nthreads", &a.threads, "N", "Threads; default: all processors");
   verb.option("--spp", &a.samples, "N", "Samples per pixel");
   verb.option("--size", &a.size, "WxH", "Size of the full frame in pixels");
@@ -105,6 +106,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
   verb.option("--display-server", &a.display_server, "HOST:PORT",
               "Live preview in a viewer that speaks tev's protocol");
+  add_limit_options(verb, a.limits);
 }
 
 void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments) {
@@ -169,6 +171,9 @@ Definitions parse_definitions(const std::vector<std::string>& words) {
 }
 
 std::string output_path(const RenderArguments& arguments) {
+  if (arguments.no_output && !arguments.outfile.empty())
+    throw Error("--no-output and --outfile exclude each other");
+  if (arguments.no_output) return "";
   if (!arguments.outfile.empty()) return arguments.outfile;
   return std::filesystem::path(arguments.scene).stem().string() + ".png";
 }

@@ -10,6 +10,7 @@
 #include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/film_options.h"
+#include "app/limits.h"
 #include "io/scene/scene_file.h"
 #include "render/look/default_look.h"
 #include "render/scene.h"
@@ -19,7 +20,9 @@ namespace oktett {
 /// The words of the command line. Numbers are read, words are not checked yet.
 struct RenderArguments {
   std::string scene;
+  LimitArguments limits;
   std::string outfile;
+  bool no_output = false;
   unsigned threads = 0;
   std::optional<std::uint32_t> samples;
   std::optional<std::uint32_t> seed;
@@ -57,7 +60,8 @@ Definitions parse_definitions(const std::vector<std::string>& words);
 void add_bvh_option(Verb& verb, std::string& quality);
 /// Build options of the quality that --bvh names; empty: the default. Throws Error for an unknown word.
 BuildOptions parse_bvh_option(const std::string& quality);
-/// `outfile`, or the scene's name with .png in the current directory.
+/// `outfile`, or the scene's name with .png in the current directory; empty if no picture shall be written.
+/// Throws Error if both are asked for.
 std::string output_path(const RenderArguments& arguments);
 
 const char* to_string(IntegratorKind kind);

@@ -1,8 +1,12 @@
 #pragma once
 /// \file Text for people: numbers with units, warnings.
 
+#include <fmt/format.h>
+
 #include <cstdint>
+#include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -17,6 +21,14 @@ inline std::string bytes_text(std::uint64_t bytes) { return with_prefix(static_c
 std::string grouped(std::uint64_t value);
 /// "0.123 s", "12.3 s", "2 min 05 s", "3 h 07 min".
 std::string duration_text(double seconds);
+
+/// Prints to stderr, formatted as by fmt. A message that nobody can read is no reason to lose a picture, so a
+/// closed or full stream is no error.
+template <class... T>
+void say(fmt::format_string<T...> format, T&&... values) {
+  const std::string text = fmt::format(format, std::forward<T>(values)...);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
 
 /// Prints the first `most` warnings to stderr, and the number of the others.
 void print_warnings(const std::vector<Warning>& warnings, std::size_t most = 20);

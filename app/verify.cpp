@@ -22,14 +22,13 @@
 namespace oktett {
 namespace {
 
-constexpr int kExitFailed = 3;
-
 struct VerifyArguments {
   std::uint64_t rays = 0;
   std::vector<std::string> meshes;
   std::vector<std::string> surfaces;
   std::string isa;
   std::string bvh;
+  bool meshes_only = false;
   bool quick = false;
   bool json = false;
 
@@ -110,7 +109,7 @@ class Report {
                  failure_.empty() ? "all is well" : fmt::format("{} rows FAILED", failed_rows_));
       if (!failure_.empty()) fmt::print("first failure: {}\n", failure_);
     }
-    return failure_.empty() ? 0 : kExitFailed;
+    return failure_.empty() ? 0 : kExitInternal;
   }
 
  private:
@@ -158,9 +157,11 @@ void verify_surfaces(const VerifyArguments& arguments, std::uint64_t rays, Repor
       report.exact(names[form], verify_exact(form, rays, chosen_isas(arguments.isa)));
 }
 
-/// The generated closed meshes and the meshes of files.
+/// The meshes of files, and the generated closed ones unless something else is asked for.
 std::vector<OracleMesh> oracle_meshes(const VerifyArguments& arguments) {
-  std::vector<OracleMesh> meshes = make_closed_meshes();
+  const bool only_files = !arguments.surfaces.empty() || (arguments.meshes_only && !arguments.meshes.empty());
+  std::vector<OracleMesh> meshes;
+  if (!only_files) meshes = make_closed_meshes();
   for (const std::string& file : arguments.meshes)
     meshes.push_back({std::filesystem::path(file).stem().string(), load_obj(file).mesh, false});
   return meshes;
@@ -205,14 +206,17 @@ int run_verify(const VerifyArguments& arguments) {
   parse_bvh_option(arguments.bvh);
   chosen_isas(arguments.isa);
   check_surfaces(arguments.surfaces);
-  const bool all = arguments.surfaces.empty();
-  const std::vector<OracleMesh> meshes = all ? oracle_meshes(arguments) : std::vector<OracleMesh>();
+  if (arguments.meshes_only && !arguments.surfaces.empty())
+    throw Error("--meshes-only and --surface exclude each other");
+  const bool all = arguments.surfaces.empty() && !arguments.meshes_only;
+  const std::vector<OracleMesh> meshes = oracle_meshes(arguments);
   const std::uint64_t rays = arguments.rays > 0 ? arguments.rays : arguments.quick ? 100'000 : 10'000'000;
   Report report(arguments.json);
   if (all) verify_kernels(arguments, rays, report);
-  verify_surfaces(arguments, rays / 10, report);
-  if (all) verify_meshes(arguments, meshes, rays / 100 + 1, report);
-  if (arguments.wants("combinations")) verify_combinations(arguments, rays / 10, report);
+  if (!arguments.meshes_only) verify_surfaces(arguments, rays / 10, report);
+  if (!meshes.empty()) verify_meshes(arguments, meshes, rays / 100 + 1, report);
+  if (!arguments.meshes_only && arguments.wants("combinations"))
+    verify_combinations(arguments, rays / 10, report);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   return report.finish(seconds.count());
 }
@@ -225,9 +229,12 @@ void add_verify_command(CommandLine& line) {
                             [arguments] { return run_verify(*arguments); });
   verb.option("--rays", &arguments->rays, "N",
               "Rays per kernel; a hundredth of it per mesh and placement (default 10 million)");
-  verb.option("--mesh", &arguments->meshes, "FILE.obj", "Check this mesh too; may be repeated");
+  verb.option("--mesh", &arguments->meshes, "FILE.obj",
+              "Check this mesh too, also beside --surface; may be repeated");
   verb.option("--surface", &arguments->surfaces, "NAME",
               "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated");
+  verb.flag("--meshes-only", arguments->meshes_only,
+            "Check meshes only: those given, else the generated ones");
   verb.option("--isa", &arguments->isa, "NAME",
               "One instruction set instead of all: scalar, sse4.2, avx2, avx512");
   add_bvh_option(verb, arguments->bvh);

@@ -309,13 +309,13 @@ std::vector<std::string> long_render() {
 TEST(RenderCommand, TheFirstSignalWritesWhatIsFinished) {
   const TempDir dir;
   dir.write("ball.yaml", kScene);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     CommandProcess process(dir, long_render());
     ASSERT_TRUE(process.wait_for_err("%", 60)) << process.err();
     process.send(signal);
     EXPECT_EQ(process.wait(), 128 + signal);
-    EXPECT_TRUE(contains(process.err(), signal == SIGINT ? "stopped by SIGINT" : "stopped by SIGTERM"))
-        << process.err();
+    const char* name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+    EXPECT_TRUE(contains(process.err(), std::string("stopped by ") + name)) << process.err();
     EXPECT_TRUE(contains(process.err(), "% of the picture is finished")) << process.err();
     EXPECT_TRUE(contains(process.out(), "wrote long.png"));
     EXPECT_EQ(header(dir.file("long.png")).width, 2048);

@@ -30,6 +30,27 @@ TEST(VerifyCommand, ChecksWhatItIsAskedFor) {
   EXPECT_TRUE(contains(trees.out, "\"wrong_spans\": 0"));
 }
 
+TEST(VerifyCommand, MeshesBesideSurfacesAndAlone) {
+  const TempDir dir;
+  dir.write("tetrahedron.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const CommandResult both =
+      run_command(dir, {"verify", "--surface", "torus", "--mesh", "tetrahedron.obj", "--rays", "2000"});
+  EXPECT_EQ(both.status, 0) << both.out << both.err;
+  EXPECT_TRUE(contains(both.out, "\ntorus ")) << both.out;
+  EXPECT_TRUE(contains(both.out, "\ntetrahedron ")) << both.out;
+  EXPECT_FALSE(contains(both.out, "kernel")) << both.out;
+  const CommandResult alone =
+      run_command(dir, {"verify", "--meshes-only", "--mesh", "tetrahedron.obj", "--rays", "2000"});
+  EXPECT_EQ(alone.status, 0) << alone.out << alone.err;
+  EXPECT_TRUE(contains(alone.out, "\ntetrahedron ")) << alone.out;
+  for (const char* other : {"kernel", "surface ", "random trees", "torus"})
+    EXPECT_FALSE(contains(alone.out, other)) << other << alone.out;
+  const CommandResult made =
+      run_command(dir, {"verify", "--meshes-only", "--rays", "100", "--isa", "scalar"});
+  EXPECT_EQ(made.status, 0) << made.out << made.err;
+  EXPECT_TRUE(contains(made.out, "closed")) << made.out;
+}
+
 /// Errors are reported before any work is done.
 TEST(VerifyCommand, BadArgumentsAreErrors) {
   const TempDir dir;
@@ -42,6 +63,8 @@ TEST(VerifyCommand, BadArgumentsAreErrors) {
   EXPECT_TRUE(contains(error({"verify", "--surface", "torsu"}), "did you mean 'torus'"));
   EXPECT_TRUE(contains(error({"verify", "--surface", "qqqqqq"}), "expected one of"));
   EXPECT_TRUE(contains(error({"verify", "--mesh", "absent.obj"}, 1), "absent.obj"));
+  EXPECT_TRUE(contains(error({"verify", "--surface", "torus", "--mesh", "absent.obj"}, 1), "absent.obj"));
+  EXPECT_TRUE(contains(error({"verify", "--surface", "torus", "--meshes-only"}), "exclude each other"));
   EXPECT_TRUE(contains(error({"verify", "--isa", "mmx"}), "mmx"));
   EXPECT_TRUE(contains(error({"verify", "--bvh", "bast"}), "did you mean"));
 }

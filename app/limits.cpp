@@ -1,0 +1,89 @@
+#include "app/limits.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <system_error>
+
+#include "core/error.h"
+#include "io/image/output.h"
+#include "io/text/file_access.h"
+
+namespace oktett {
+namespace {
+
+constexpr double kMostSeconds = 1e8;
+
+/// "1500000", "512M" and the like, in bytes.
+std::uint64_t parse_bytes(const std::string& text) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  int shift = 0;
+  if (rest + 1 == end) shift = *rest == 'K' ? 10 : *rest == 'M' ? 20 : *rest == 'G' ? 30 : -1;
+  const bool good = error == std::errc{} && rest + 1 >= end && shift >= 0 && number > 0;
+  if (!good || number > UINT64_MAX >> shift)
+    throw Error(fmt::format("--max-memory: '{}' is no number of bytes such as 800000000, 800M or 4G", text));
+  return number << shift;
+}
+
+double parse_seconds(const std::string& text) {
+  double seconds = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, seconds);
+  if (error != std::errc{} || rest != end || !(seconds >= 1e-3 && seconds <= kMostSeconds))
+    throw Error(
+        fmt::format("--timeout: '{}' is no number of seconds from 0.001 to {:g}", text, kMostSeconds));
+  return seconds;
+}
+
+/// Private memory that can be written to, and not the whole address space: files that are mapped for reading,
+/// and address space that allocators only reserve, take no memory.
+void limit_memory(std::uint64_t bytes) {
+  rlimit limit{};
+  getrlimit(RLIMIT_DATA, &limit);
+  if (bytes >= limit.rlim_cur) return;
+  limit.rlim_cur = bytes;
+  if (setrlimit(RLIMIT_DATA, &limit) != 0)
+    throw Error(fmt::format("--max-memory: {}", std::generic_category().message(errno)), ErrorKind::io);
+}
+
+void on_time_up(int) {
+  constexpr char kLine[] = "oktett: --timeout: the time is up before there is anything to keep\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kLine, sizeof kLine - 1);
+  remove_unfinished_files();
+  _exit(kExitTimeout);
+}
+
+void limit_time(double seconds) {
+  std::signal(SIGALRM, &on_time_up);
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - std::floor(seconds)) * 1e6);
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+}  // namespace
+
+void add_limit_options(Verb& verb, LimitArguments& a) {
+  verb.option("--max-memory", &a.memory, "BYTES", "Most memory to use, e.g. 800M or 4G");
+  verb.option("--timeout", &a.seconds, "SECONDS", "Most time to take; what is finished then is kept");
+  verb.option("--root", &a.root, "DIR", "Read no files outside of this folder");
+}
+
+void apply_limits(const LimitArguments& arguments) {
+  const std::uint64_t bytes = arguments.memory.empty() ? 0 : parse_bytes(arguments.memory);
+  const double seconds = arguments.seconds.empty() ? 0 : parse_seconds(arguments.seconds);
+  if (!arguments.root.empty()) confine_files(arguments.root);
+  if (bytes > 0) limit_memory(bytes);
+  if (seconds > 0) limit_time(seconds);
+}
+
+}  // namespace oktett

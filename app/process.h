@@ -1,0 +1,18 @@
+#pragma once
+/// \file How the command meets what the system refuses: memory, threads, large files, closed streams.
+
+namespace oktett {
+
+/// Call first. From then on a file that grows too large or a reader that has gone is an error of the call
+/// that writes, not a signal that ends the process; an exception that nobody can catch and a refused stack
+/// end the process with one line and a documented status, and without temporary files.
+void prepare_process();
+
+/// Prints one line about the exception that is being handled. Returns the exit status for it.
+int report_current_exception();
+
+/// Flushes standard output. If some of the output was lost, prints one line and
+/// returns kExitIo instead of a `status` of 0.
+int finish_output(int status);
+
+}  // namespace oktett
