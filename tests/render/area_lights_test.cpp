@@ -180,13 +180,15 @@ TEST(AreaLights, GlowingSurfacesLightNothingUnlessAsked) {
 // Lamps without area, light or a finite number give nothing, and no NaN.
 TEST(AreaLights, OddLampsAreLeftOut) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  for (const Color& color : {Color{kNan, 1, 1}, Color{1e38f, 1e38f, 1e38f}, Color{-1, -1, -1}, Color{0, 0, 0}}) {
+  for (const Color& color :
+       {Color{kNan, 1, 1}, Color{1e38f, 1e38f, 1e38f}, Color{-1, -1, -1}, Color{0, 0, 0}}) {
     Scene scene = floor_scene(3);
     add_object(scene, DiskShape{{0, 0, 2}, {0, 0, 1}, 0}, add_material(scene, glowing({1, 1, 1})));
     add_object(scene, square(1e30, 2), add_material(scene, glowing(color)));
     const World world = build_world(scene, {});
     const AreaLights area = area_lights(SceneLights(scene, world), nullptr, scene.integrator);
-    for (const LightSource& light : area.points) EXPECT_TRUE(is_finite(light.place) && is_finite(light.color));
+    for (const LightSource& light : area.points)
+      EXPECT_TRUE(is_finite(light.place) && is_finite(light.color));
   }
   // Shadow rays that end on a lamp do not meet it, however it is turned.
   for (int turn = 0; turn < 20; ++turn) {
