@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <tuple>
 
 #include "accel/placed_geometry.h"
 #include "core/math.h"
+#include "render/light/rectangle_pair.h"
 #include "render/light/sky.h"
 #include "render/light_groups.h"
 #include "render/surface_textures.h"
@@ -132,6 +134,9 @@ class EmitterCollector {
     const TriangleMesh& mesh = *shape.mesh;
     // A mirror reverses the winding of the corners, but the front stays the front.
     const bool mirrored = p.to_world.determinant() < 0;
+    // The last emitter and its material, if it is a triangle that may be half of a rectangle.
+    std::optional<TriangleEmitter> half;
+    const Material* of_half = nullptr;
     for (std::uint32_t k = 0; k < mesh.triangle_count(); ++k) {
       const Material* m = material(p, mesh.material_slots.empty() ? 0u : mesh.material_slots[k]);
       if (m == nullptr) continue;
@@ -144,8 +149,18 @@ class EmitterCollector {
         if (m->emission_texture != kNoId) continue;
         std::swap(e.b, e.c);
       }
+      const bool textured = m->emission_texture != kNoId;
+      if (half && m == of_half && !textured)
+        if (const auto whole = rectangle_of(*half, e)) {
+          emitters_.back() = *whole;
+          const std::uint32_t number = lights_.keys_.back().emitter;
+          lights_.keys_.push_back({p.instance, p.first_item + k, number});
+          half.reset();
+          continue;
+        }
       const std::uint32_t number = add_emitter(p, k, *m, e);
-      if (m->emission_texture != kNoId) lights_.textured_.push_back({number, m->emission_texture, k, &mesh});
+      of_half = m, half = textured ? std::nullopt : std::optional(e);
+      if (textured) lights_.textured_.push_back({number, m->emission_texture, k, &mesh});
     }
   }
 

@@ -6,6 +6,7 @@
 #include "core/picked_lanes.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/transport/path_block.h"
+#include "render/transport/path_numbers.h"
 #include "render/transport/sample_dimensions.h"
 #include "render/transport/shading_lanes.h"
 
@@ -68,9 +69,12 @@ void begin_path_code(const InteractionBlock& s, const PathRays& rays, unsigned l
   const auto of = [&](Decision decision) { return dimension(decision, level); };
   sobol_numbers_of<A>(c, of(Decision::lobe), c.lobe);
   sobol_points_of<A>(c, of(Decision::direction), c.direction_x, c.direction_y);
-  sobol_points_of<A>(c, of(Decision::light), c.light, nullptr);
-  sobol_points_of<A>(c, of(Decision::light_place), c.light_x, c.light_y);
-  sobol_numbers_of<A>(c, of(Decision::roulette), c.roulette);
+  if (c.asks_lights) {
+    sobol_points_of<A>(c, of(Decision::light), c.light, nullptr);
+    sobol_points_of<A>(c, of(Decision::light_place), c.light_x, c.light_y);
+  }
+  // A path has no more bounces than its wavefront.
+  if (level + 1 > kSureBounces) sobol_numbers_of<A>(c, of(Decision::roulette), c.roulette);
 }
 
 }  // namespace oktett

@@ -1,7 +1,6 @@
 /// \file Path tracing of hits in blocks, see integrators.h.
 
 #include <algorithm>
-#include <bit>
 
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
@@ -41,6 +40,7 @@ void begin_block(const RenderContext& context, const Wavefront& wavefront, const
   };
   for (std::size_t k = 0; k < c.count; ++k) name(k, which[k]);
   for (std::size_t k = c.count; k < kMost; ++k) name(k, which[c.count - 1]);
+  c.asks_lights = !context.sampled->set().empty();
   render_code(context.isa).begin_path(found, path_rays(wavefront), wavefront.level, c);
 }
 
@@ -77,20 +77,34 @@ void fill_rays(RayBatch& rays, std::size_t first, std::size_t end, bool with_tma
   if (with_tmax) std::fill(rays.tmax.data() + first, rays.tmax.data() + end, like.tmax);
 }
 
-/// Shades the hits in `shown`, which are in the order of their surfaces.
+/// Moves the entries of the first surface in `shown` to `entry`, without branches that depend on the
+/// surfaces. Returns their number.
+std::size_t take_first_surface(Shown* shown, std::size_t count, std::uint32_t* entry) {
+  const std::uint32_t number = shown[0].surface;
+  std::size_t taken = 0, kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Shown one = shown[i];
+    const bool same = one.surface == number;
+    entry[taken] = one.entry, shown[kept] = one;
+    taken += same ? 1 : 0, kept += same ? 0 : 1;
+  }
+  return taken;
+}
+
+/// Shades the hits in `shown`, surface by surface.
 void shade_runs(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
-                const PathBlock& c, const Shown* shown, std::size_t count) {
+                const PathBlock& c, Shown* shown, std::size_t count) {
   const RenderCode& code = render_code(context.isa);
   const PathRays rays = path_rays(wavefront);
   ShadowQueue &delta = wavefront.shadows[0], &area = wavefront.shadows[kAreaQueue];
   const std::size_t deltas = delta.size(), areas = area.size(), onward = wavefront.next.size();
   PathQueues out{end_of(delta, count), end_of(area, count),
                  end_of(wavefront.next, wavefront.next_paths, count)};
-  for (std::size_t first = 0; first < count;) {
+  while (count > 0) {
     std::uint32_t entry[kMost + kGroup];
-    PathRun run{entry, 0};
-    const std::uint32_t number = shown[first].surface;
-    for (; first < count && shown[first].surface == number; ++first) entry[run.count++] = shown[first].entry;
+    const std::uint32_t number = shown[0].surface;
+    const PathRun run{entry, take_first_surface(shown, count, entry)};
+    count -= run.count;
     count_lanes(wavefront, run.count, code.path_lanes);
     for (std::size_t k = 0; k < kGroup; ++k) entry[run.count + k] = entry[run.count - 1];
     const PathSurface& surface = (*context.path_surfaces)[number];
@@ -151,13 +165,11 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
       asks[asking] = static_cast<std::uint32_t>(k), front_only[asking++] = !surface.transmits;
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
   }
-  sample_lights(context, found, asks, front_only, asking, c);
+  if (c.asks_lights) sample_lights(context, found, asks, front_only, asking, c);
   if (context.light_groups != nullptr)
     for (std::size_t i = 0; i < asking; ++i)
       if (c.light_kind[asks[i]] != LightKind::none)
         wavefront.sampled_emitter[c.ray[asks[i]]] = c.light_emitter[asks[i]];
-  std::stable_sort(shown, shown + in_lanes,
-                   [](const Shown& a, const Shown& b) { return a.surface < b.surface; });
   if (in_lanes > 0) shade_runs(context, wavefront, found, c, shown, in_lanes);
 }
 

@@ -36,15 +36,16 @@ struct PathBlock {
   std::uint64_t key[kMost];     ///< of the pixel's random numbers
   std::uint32_t number[kMost];  ///< of the sample in its pixel
   std::uint8_t bounces[kMost];
+  bool asks_lights;  ///< some light can be sampled
 
   float direction[3][kMost];  ///< unit direction in which the ray travels
   float throughput[3][kMost];
   float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
   std::uint64_t behind = 0;          ///< bit k: hit k is seen from behind
 
-  float lobe[kMost], roulette[kMost];  ///< [0, 1)
+  float lobe[kMost], roulette[kMost];  ///< [0, 1); the latter only for paths that may end
   double direction_x[kMost], direction_y[kMost];
-  double light[kMost], light_x[kMost], light_y[kMost];
+  double light[kMost], light_x[kMost], light_y[kMost];  ///< only if `asks_lights`
 
   LightKind light_kind[kMost];
   std::uint32_t light_emitter[kMost];  ///< of the LightSet, where there is a sample

@@ -5,9 +5,10 @@
 
 namespace oktett {
 
-/// Bounces before Russian roulette begins.
-inline constexpr unsigned kSureBounces = 3;
-inline constexpr float kMostSurvival = 0.95f;
+/// Bounces before Russian roulette begins. From then on a path goes on with the square root of its throughput
+/// as probability: the noise of bounces grows less than the time falls. The root, as short paths bring most
+/// of the noise, and long ones most of the time.
+inline constexpr unsigned kSureBounces = 2;
 
 /// tmax of a shadow ray over the vector to a point on a light: it ends before the light's surface, whose
 /// place is known to a few units in the last place of its coordinates only. It is 1 less the larger of

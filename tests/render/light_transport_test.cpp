@@ -356,12 +356,41 @@ TEST(SceneLights, NamesTheEmitterOfAHit) {
   const auto emitter_at = [&](float x) {
     return lights.emitter_at(closest_hit(*world.accel, Ray{{x, 0.5f, 9}, 0, {0, 0, -1}}));
   };
-  EXPECT_EQ(lights.set().emitters().size(), 4u) << "the light, a ball and two triangles";
+  EXPECT_EQ(lights.set().emitters().size(), 3u) << "the light, a ball and a rectangle";
   EXPECT_EQ(emitter_at(-3), kNoId);
   EXPECT_EQ(emitter_at(0), 1u);
   EXPECT_EQ(emitter_at(3), kNoId) << "an ellipsoid is not sampled";
-  EXPECT_NE(emitter_at(5.1f), emitter_at(6.9f));
-  EXPECT_NE(emitter_at(5.1f), kNoId);
+  EXPECT_EQ(emitter_at(5.1f), 2u) << "one triangle of the rectangle";
+  EXPECT_EQ(emitter_at(6.9f), 2u) << "the other";
+}
+
+// Rectangles among other triangles: each hit finds the emitter that it is part of.
+TEST(SceneLights, TrianglesOfAMeshAreJoinedOnlyToRectangles) {
+  Scene scene = bare_scene();
+  scene.integrator.kind = IntegratorKind::path;
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const Vec3f& p :
+       {Vec3f{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2.5f, 1, 0}, {3, 0, 0}, {4, 1, 0}})
+    mesh->positions.push_back(p);
+  // A triangle, a rectangle, two triangles that make a kite-like shape, and the half of a rectangle.
+  for (const std::uint32_t i : {1, 4, 2, 0, 1, 2, 0, 2, 3, 4, 6, 5, 6, 7, 5, 0, 1, 2})
+    mesh->indices.push_back(i);
+  for (const std::uint16_t slot : {0, 0, 0, 0, 0, 1}) mesh->material_slots.push_back(slot);
+  MeshShape shape;
+  shape.mesh = mesh, shape.smooth = false;
+  shape.slot_materials = {add_material(scene, glowing({1, 1, 1})), add_material(scene, glowing({2, 2, 2}))};
+  const std::uint32_t lamp = shape.slot_materials[0];
+  add_object(scene, shape, lamp);
+  const World world = build_world(scene);
+  const SceneLights lights(scene, world);
+  const auto emitter_at = [&](float x, float y) {
+    return lights.emitter_at(closest_hit(*world.accel, Ray{{x, y, 9}, 0, {0, 0, -1}}));
+  };
+  EXPECT_EQ(lights.set().emitters().size(), 5u);
+  EXPECT_EQ(emitter_at(1.3f, 0.1f), 0u);
+  EXPECT_EQ(emitter_at(0.1f, 0.9f), 1u) << "the half that nothing covers";
+  EXPECT_EQ(emitter_at(2.5f, 0.5f), 2u);
+  EXPECT_EQ(emitter_at(3.2f, 0.5f), 3u);
 }
 
 }  // namespace

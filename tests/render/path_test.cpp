@@ -125,14 +125,23 @@ TEST(Path, IndirectLightMatchesQuadrature) {
 }
 
 TEST(Path, DepthBoundsThePath) {
-  Scene scene = path_scene(4, 16, 2);
   Material m = diffuse({0.9f, 0.9f, 0.9f});
   m.emission = {0.1f, 0.1f, 0.1f};
-  add_object(scene, BoxShape{{-9, -9, -9}, {9, 9, 9}}, add_material(scene, m));
-  const RenderResult r = run(scene);
-  EXPECT_EQ(r.report.reflected_rays, 16u * 16 * 3);
-  // Three surfaces scatter light, and the last one sees the emission of a fourth.
-  EXPECT_NEAR(mean(r.picture, "R"), 0.1 * (1 + 0.9 + 0.81 + 0.729), 1e-5);
+  const auto box = [&](unsigned depth) {
+    Scene scene = path_scene(4, 16, depth);
+    add_object(scene, BoxShape{{-9, -9, -9}, {9, 9, 9}}, add_material(scene, m));
+    return run(scene);
+  };
+  const RenderResult sure = box(1);
+  EXPECT_EQ(sure.report.reflected_rays, 16u * 16 * 2) << "before Russian roulette begins";
+  // Two surfaces scatter light, and the last one sees the emission of a third.
+  EXPECT_NEAR(mean(sure.picture, "R"), 0.1 * (1 + 0.9 + 0.81), 1e-5);
+
+  const RenderResult deep = box(6);
+  EXPECT_EQ(deep.report.bounces.size(), 8u);
+  double light = 0;
+  for (int k = 0; k < 8; ++k) light += 0.1 * std::pow(0.9, k);
+  EXPECT_NEAR(mean(deep.picture, "R"), light, 0.03 * light);
 }
 
 TEST(AmbientOcclusion, IsTheOpenFractionOfTheSky) {
