@@ -364,6 +364,22 @@ TEST(SceneLights, NamesTheEmitterOfAHit) {
   EXPECT_EQ(emitter_at(6.9f), 2u) << "the other";
 }
 
+// Two materials may be in two light groups, even if their light is the same.
+TEST(SceneLights, HalvesOfTwoMaterialsStayTwoLamps) {
+  for (const bool same : {true, false}) {
+    Scene scene = bare_scene();
+    scene.integrator.kind = IntegratorKind::path;
+    auto mesh = parallelogram({5, -1, 0}, {2, 0, 0}, {0, 2, 0});
+    for (const int slot : {0, same ? 0 : 1}) mesh->material_slots.push_back(static_cast<std::uint16_t>(slot));
+    MeshShape shape;
+    shape.mesh = mesh;
+    shape.slot_materials = {add_material(scene, glowing({1, 1, 1})), add_material(scene, glowing({1, 1, 1}))};
+    add_object(scene, shape, kNoId);
+    const World world = build_world(scene);
+    EXPECT_EQ(SceneLights(scene, world).set().emitters().size(), same ? 1u : 2u);
+  }
+}
+
 // Rectangles among other triangles: each hit finds the emitter that it is part of.
 TEST(SceneLights, TrianglesOfAMeshAreJoinedOnlyToRectangles) {
   Scene scene = bare_scene();
@@ -379,8 +395,7 @@ TEST(SceneLights, TrianglesOfAMeshAreJoinedOnlyToRectangles) {
   MeshShape shape;
   shape.mesh = mesh, shape.smooth = false;
   shape.slot_materials = {add_material(scene, glowing({1, 1, 1})), add_material(scene, glowing({2, 2, 2}))};
-  const std::uint32_t lamp = shape.slot_materials[0];
-  add_object(scene, shape, lamp);
+  add_object(scene, shape, kNoId);
   const World world = build_world(scene);
   const SceneLights lights(scene, world);
   const auto emitter_at = [&](float x, float y) {
