@@ -22,18 +22,23 @@ double AlbedoTable::node_alpha(int j) const {
   return rho * rho;
 }
 
+double AlbedoTable::width(double alpha) const {
+  if (width_ == NodeWidth::alpha) return alpha;
+  const double rho = std::sqrt(alpha);
+  return width_ == NodeWidth::root ? rho : rho * std::sqrt(rho);
+}
+
 double AlbedoTable::node_mu(int i, double alpha) const {
   if (i == nodes_ - 1) return 1;
-  const double y = static_cast<double>(i) / (nodes_ - 1),
-               width = wide_ ? std::sqrt(alpha * std::sqrt(alpha)) : alpha;
-  return y * y * width / (1 + width - y * y);
+  const double y = static_cast<double>(i) / (nodes_ - 1), w = width(alpha);
+  return y * y * w / (1 + w - y * y);
 }
 
 AlbedoRow AlbedoTable::row(double alpha) const {
   const double rho = std::sqrt(alpha);
   double y = rho * (nodes_ - 1);
   const int j = interval(y, nodes_ - 1);
-  return {&value_[j], nodes_, wide_ ? rho * std::sqrt(rho) : alpha, y};
+  return {&value_[j], nodes_, width(alpha), y};
 }
 
 double AlbedoTable::at(double mu, double alpha) const {

@@ -30,15 +30,20 @@ struct AlbedoRow {
   }
 };
 
+/// Up to which mu nodes of an AlbedoTable lie close together: a power of alpha.
+enum class NodeWidth { alpha, three_quarters, root };
+
 /// A quantity in [0, 1] by the cosine `mu` of a direction with the normal and by the width `alpha` of the
-/// facets, both in [0, 1]. Linear between nodes that lie close together where the quantity changes fast:
-/// where mu is of the order of `alpha` or, for wide tables, of its root.
+/// facets, both in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That
+/// is where mu is at most of the order of the table's power of alpha; with a lower power the other nodes are
+/// closer.
 class AlbedoTable {
  public:
   AlbedoTable() = default;
   /// `entry(mu, alpha)` gives the values at the nodes.
   template <class Entry>
-  AlbedoTable(int nodes, bool wide, Entry&& entry) : nodes_(nodes), wide_(wide), value_(nodes * nodes) {
+  AlbedoTable(int nodes, NodeWidth width, Entry&& entry)
+      : nodes_(nodes), width_(width), value_(nodes * nodes) {
     for (int i = 0; i < nodes; ++i)
       for (int j = 0; j < nodes; ++j) {
         const double alpha = node_alpha(j);
@@ -52,9 +57,10 @@ class AlbedoTable {
  private:
   double node_alpha(int j) const;
   double node_mu(int i, double alpha) const;
+  double width(double alpha) const;
 
   int nodes_ = 0;
-  bool wide_ = false;
+  NodeWidth width_ = NodeWidth::alpha;
   std::vector<float> value_;  ///< [mu][alpha]
 };
 

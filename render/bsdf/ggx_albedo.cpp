@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/math.h"
 #include "render/bsdf/ggx.h"
 #include "render/bsdf/optics.h"
 #include "render/sampling/square_sample.h"
@@ -14,7 +15,7 @@
 namespace oktett {
 namespace {
 
-constexpr int kMirrorNodes = 32, kNodes = 24, kInsideNodes = 32;
+constexpr int kMirrorNodes = 32, kNodes = 24, kInsideNodes = 40;
 using Lane = Simd<double, 1, ScalarIsa>;
 
 Vec3d visible_normal(const Vec3d& w, double alpha, double x, double y) {
@@ -96,7 +97,7 @@ double reflected_and_transmitted(double mu, double alpha, double eta) {
 }
 
 struct MirrorTables {
-  AlbedoTable albedo{kMirrorNodes, false, [](double mu, double alpha) {
+  AlbedoTable albedo{kMirrorNodes, NodeWidth::alpha, [](double mu, double alpha) {
                        return reflected(mu, alpha, [](double) { return 1.0; });
                      }};
   double at(double mu, double alpha) const { return 1 - lowered(1 - albedo.at(mu, alpha), kMirrorError); }
@@ -171,7 +172,7 @@ struct ReflectedAlbedo::Tables {
 
   explicit Tables(double ior)
       : eta(ior),
-        difference(kNodes, false,
+        difference(kNodes, NodeWidth::alpha,
                    [&](double mu, double alpha) {
                      return reflected(mu, alpha, [&](double c) { return fresnel(c, eta); }) -
                             like_smooth(mu, alpha, eta);
@@ -207,7 +208,8 @@ struct GlassAlbedo::Tables {
   LossTable loss;
 
   explicit Tables(double eta)
-      : albedo(eta < 1 ? kInsideNodes : kNodes, true,
+      // From inside, the albedo has a bend near the critical angle, far from grazing.
+      : albedo(eta < 1 ? kInsideNodes : kNodes, eta < 1 ? NodeWidth::root : NodeWidth::three_quarters,
                [=](double mu, double alpha) { return reflected_and_transmitted(mu, alpha, eta); }),
         loss(4, [this](double mu, double alpha) { return at(mu, alpha); }) {}
   double at(double mu, double alpha) const { return 1 - lowered(1 - albedo.at(mu, alpha), kGlassError); }
@@ -219,6 +221,14 @@ GlassAlbedo::GlassAlbedo(double eta, double alpha) {
   rows_ = tables.rows(&Tables::albedo, alpha);
 }
 
-double mean_fresnel(double eta) { return (eta - 1) / (4.08567 + 1.00071 * eta); }
+double mean_fresnel(double eta) {
+  // Close to 1 the formula's terms cancel.
+  if (eta < 1.001) return (eta - 1) * (1 / 3.0 - 3 * (eta - 1));
+  const double e2 = eta * eta, e3 = e2 * eta, e4 = e2 * e2, sum = e2 + 1, difference = e4 - 1;
+  return 0.5 + (eta - 1) * (3 * eta + 1) / (6 * (eta + 1) * (eta + 1)) +
+         e2 * (e2 - 1) * (e2 - 1) / (sum * sum * sum) * portable::log((eta - 1) / (eta + 1)) -
+         2 * e3 * (e2 + 2 * eta - 1) / (sum * difference) +
+         8 * e4 * (e4 + 1) / (sum * difference * difference) * portable::log(eta);
+}
 
 }  // namespace oktett

@@ -102,8 +102,8 @@ class GlassAlbedo {
   AlbedoRows rows_;
 };
 
-/// The fraction of diffuse light that a smooth dielectric reflects, within 0.001 for `eta` in [1, 4]
-/// (Kulla 2017). From inside it is 1 - (1 - that) / eta^2.
+/// The fraction of diffuse light that a smooth dielectric of index `eta` >= 1 reflects (Walsh 1926). From
+/// inside it is 1 - (1 - that) / eta^2.
 double mean_fresnel(double eta);
 
 }  // namespace oktett

@@ -27,6 +27,21 @@ IntegratorSettings settings(std::uint32_t samples, double error, std::uint32_t m
 }
 
 // Samples 0 and 2 in turn have the mean 1 and, of four, the variance 4 / 3: for an error of E, 4 / (3 E^2).
+TEST(Adaptive, CountsLuminance) {
+  LuminanceSums sums;
+  const double weights[] = {0.2126, 0.7152, 0.0722};  // of Rec. 709
+  for (int k = 0; k < 3; ++k) {
+    LuminanceSums one;
+    Color c;
+    c[k] = 2;
+    one.add(c), sums.add(c);
+    EXPECT_NEAR(one.sum, 2 * weights[k], 1e-12);
+    EXPECT_NEAR(one.square, 4 * weights[k] * weights[k], 1e-12);
+  }
+  EXPECT_NEAR(sums.sum, 2, 1e-12);
+  EXPECT_EQ(sums.count, 3u);
+}
+
 TEST(Adaptive, CountsFollowFromVariance) {
   const auto wanted = [](double error, std::uint32_t most) {
     ErrorEstimate estimate;

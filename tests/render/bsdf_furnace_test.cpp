@@ -31,8 +31,8 @@ double furnace(const PrincipledParameters& p, double mu, bool front) {
 void expect_white(const PrincipledParameters& material, bool front = true) {
   PrincipledParameters p = material;
   p.base_color = {1, 1, 1};
-  for (const float roughness : {0.032f, 0.1f, 0.15f, 0.2f, 0.3f, 0.45f, 0.6f, 0.8f, 1.0f})
-    for (const double mu : {0.01, 0.1, 0.2, 0.45, 0.7, 1.0}) {
+  for (const float roughness : {0.032f, 0.1f, 0.15f, 0.2f, 0.3f, 0.37f, 0.45f, 0.6f, 0.8f, 1.0f})
+    for (const double mu : {0.01, 0.1, 0.2, 0.45, 0.7, 0.85, 0.93, 1.0}) {
       p.roughness = roughness;
       const double sum = furnace(p, mu, front);
       EXPECT_GE(sum, 0.99) << "roughness " << roughness << " cosine " << mu;
@@ -58,8 +58,12 @@ TEST(BsdfFurnace, OpaqueDielectricIsWhiteAtEveryRoughness) {
 TEST(BsdfFurnace, GlassIsWhiteAtEveryRoughnessFromBothSides) {
   PrincipledParameters p;
   p.transmission = 1;
-  expect_white(p, true);
-  expect_white(p, false);
+  for (const float ior : {1.1f, 1.33f, 1.5f, 1.8f, 2.4f}) {
+    SCOPED_TRACE(ior);
+    p.ior = ior;
+    expect_white(p, true);
+    expect_white(p, false);
+  }
 }
 
 TEST(BsdfFurnace, ThinGlassIsWhiteAtEveryRoughness) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Tools for tests of Bsdf: integrals over directions and the chi-squared test.
+/// \file Tools for tests of Bsdf: facets, integrals over directions and the chi-squared test.
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,16 @@ inline Vec3f direction_at(double mu, double phi) {
   const double sine = std::sqrt(1 - mu * mu);
   return {static_cast<float>(sine * std::cos(phi)), static_cast<float>(sine * std::sin(phi)),
           static_cast<float>(mu)};
+}
+
+/// GGX as in Walter 2007, in terms of angles, unlike the code.
+inline double walter_density(double cosine, double alpha) {
+  const double angle = std::acos(std::min(cosine, 1.0)), t = std::tan(angle) / alpha;
+  return 1 / (std::numbers::pi * alpha * alpha * std::pow(std::cos(angle), 4) * (1 + t * t) * (1 + t * t));
+}
+inline double lambda(double cosine, double alpha) {
+  const double t = alpha * std::tan(std::acos(cosine));
+  return (std::sqrt(1 + t * t) - 1) / 2;
 }
 
 /// Polar coordinates about an axis: the unit square maps to the half of the sphere, above or below z = 0,

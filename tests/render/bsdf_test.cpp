@@ -5,6 +5,7 @@
 #include <cfloat>
 
 #include "render/bsdf/optics.h"
+#include "render/bsdf/sheen.h"
 #include "tests/render/bsdf_support.h"
 
 namespace oktett {
@@ -29,16 +30,6 @@ Color mean_weight(const Bsdf& bsdf, int lobes = 1000, int directions = 16) {
       if (s) sum += Vec3d(s->weight);
     }
   return Color(sum / (lobes * directions));
-}
-
-/// GGX as in Walter 2007, in terms of angles, unlike the code.
-double walter_density(double cosine, double alpha) {
-  const double angle = std::acos(std::min(cosine, 1.0)), t = std::tan(angle) / alpha;
-  return 1 / (std::numbers::pi * alpha * alpha * std::pow(std::cos(angle), 4) * (1 + t * t) * (1 + t * t));
-}
-double lambda(double cosine, double alpha) {
-  const double t = alpha * std::tan(std::acos(cosine));
-  return (std::sqrt(1 + t * t) - 1) / 2;
 }
 
 TEST(Bsdf, BlackDielectricIsTheMicrofacetFormula) {
@@ -182,6 +173,19 @@ TEST(Bsdf, SheenLobeKeepsWhatItTakes) {
     last = sheen;
   }
   EXPECT_GT(last, 0.2);
+}
+
+// The albedo that the paper's fit gives, computed apart from its published coefficients.
+TEST(Bsdf, SheenHasTheAlbedoOfItsFit) {
+  const auto albedo = [](double mu, double roughness) {
+    return SheenLobe(Vec3d{std::sqrt(1 - mu * mu), 0, mu}, roughness).albedo();
+  };
+  EXPECT_NEAR(albedo(0.1, 0.3), 0.439954, 1e-5);
+  EXPECT_NEAR(albedo(0.5, 0.3), 0.020821, 1e-5);
+  EXPECT_NEAR(albedo(0.3, 0.6), 0.390237, 1e-5);
+  EXPECT_NEAR(albedo(0.8, 0.6), 0.094970, 1e-5);
+  EXPECT_NEAR(albedo(0.2, 1.0), 0.643234, 1e-5);
+  EXPECT_NEAR(albedo(0.9, 1.0), 0.364234, 1e-5);
 }
 
 TEST(BsdfPhong, IsTheModelOfLamps) {

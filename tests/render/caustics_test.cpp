@@ -92,6 +92,37 @@ TEST(Caustics, PhotonsAndPathsFindTheSameLight) {
   expect_same_light(lamp_over_glass(mirror()), caustics, 0.01);
 }
 
+// A pane of thin glass, whose other side is as dense as this one, and a smooth coat on a rough base.
+TEST(Caustics, ThinGlassAndCoats) {
+  CausticSettings caustics;
+  caustics.photons = 20000, caustics.passes = 64;
+  Material thin = diffuse({0.9f, 0.9f, 0.9f});
+  thin.principled.emplace();
+  thin.principled->parameters.roughness = 0, thin.principled->parameters.transmission = 1;
+  thin.principled->parameters.thin = true;
+  Scene scene = lamp_over_glass(thin);
+  scene.objects[1].shape = DiskShape{{-0.5, 0.8, 0}, normalize(Vec3d{0.2, 1, 0.3}), 0.6};
+  expect_same_light(scene, caustics, 0.01);
+  Material coated = diffuse({0.3f, 0.3f, 0.3f});
+  coated.principled.emplace();
+  coated.principled->parameters.roughness = 0.7f, coated.principled->parameters.coat = 1;
+  coated.principled->parameters.coat_roughness = 0, coated.principled->parameters.coat_ior = 2.4f;
+  scene = lamp_over_glass(coated);
+  expect_same_light(scene, caustics, 0.01);
+}
+
+// A coarse mesh whose shading normals are those of a ball: backwards as forwards.
+TEST(Caustics, MeshesWithSmoothNormals) {
+  CausticSettings caustics;
+  caustics.photons = 20000, caustics.passes = 64;
+  for (const Material& material : {glass(1.5f), mirror()}) {
+    Scene scene = lamp_over_glass(material);
+    scene.objects[1].shape =
+        MeshShape{sphere_mesh(4, {-0.5, 0.7, 0}, 0.5), {}, true, TriangleTest::watertight, true};
+    expect_same_light(scene, caustics, 0.01);
+  }
+}
+
 // The number of bounces is bounded alike.
 TEST(Caustics, PathsOfTheSameLengthAreFound) {
   CausticSettings caustics;

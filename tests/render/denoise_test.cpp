@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -135,6 +136,17 @@ TEST(Denoise, FeaturesKeepEdges) {
     left += static_cast<double>(value(p, "G", 31, y)) / 64,
         right += static_cast<double>(value(p, "G", 32, y)) / 64;
   EXPECT_NEAR(right - left, 0.5, 0.07);
+}
+
+// Depth counts relative to the nearest one, so that the scene's unit of length does not matter.
+TEST(Denoise, TheUnitOfLengthDoesNotMatter) {
+  Picture near = noise(32, 0.5f);
+  for (std::uint32_t i = 0; i < 32 * 32; ++i) near.find("Z")->values[i] = i % 32 < 16 ? 1.0f : 1.5f;
+  Picture far = near;
+  for (float& z : far.find("Z")->values) z *= 1024;
+  denoise(near), denoise(far);
+  EXPECT_TRUE(std::equal(near.find("G")->values.begin(), near.find("G")->values.end(),
+                         far.find("G")->values.begin()));
 }
 
 TEST(Denoise, BadPixelsAndOddSizesDoNoHarm) {

@@ -106,12 +106,36 @@ TEST(Film, BadSamplesAreLeftOutAndReported) {
   EXPECT_EQ(pixel.color[0], 4);
 }
 
+// The variance of the mean: sum of (x - mean)^2 over n (n - 1).
+TEST(Film, VarianceIsThatOfTheMean) {
+  const auto variance = [](const std::vector<float>& values) {
+    const SampleBatch s = samples_of(values);
+    PixelSum pixel;
+    for (std::size_t i = 0; i < s.size(); ++i) add_to_pixel(pixel, s, i);
+    FilmFormat format;
+    format.window = {0, 0, 1, 1}, format.full_width = format.full_height = 1, format.data_layers = true;
+    Picture picture = make_picture(format);
+    write_pixel(picture, 0, 0, pixel);
+    return value(picture, "Variance.R", 0, 0);
+  };
+  EXPECT_EQ(variance({5}), 0);
+  EXPECT_EQ(variance({1, 3}), 1);
+  EXPECT_EQ(variance({1, 3, 5}), 8 / 6.0f);
+  EXPECT_EQ(variance({2, 2, 2, 2}), 0);
+}
+
 TEST(Film, IdsAreThoseOfTheSampleNearestToTheCentre) {
   const SampleBatch s = samples_of({1, 1, 1, 1, 1, 1, 1, 1});  // offsets 0.4, 0.3, ..., -0.3
   PixelSum pixel;
   for (std::size_t i = 0; i < s.size(); ++i) add_to_pixel(pixel, s, i);
   EXPECT_EQ(pixel.primitive, 4u);
   EXPECT_EQ(pixel.object, 7u);
+  // Of two that are equally near, the first.
+  SampleBatch two = samples_of({1, 1});
+  two.offset[0] = {0.25f, 0}, two.offset[1] = {0, -0.25f};
+  PixelSum tie;
+  for (std::size_t i = 0; i < 2; ++i) add_to_pixel(tie, two, i);
+  EXPECT_EQ(tie.primitive, 0u);
 }
 
 }  // namespace

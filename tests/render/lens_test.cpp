@@ -77,6 +77,13 @@ TEST(Lens, PointsOfTheDiskAreUniform) {
   }
   for (const auto& ring : count)
     for (const int n : ring) EXPECT_NEAR(n, kSide * kSide / (kRings * kSectors), 0.02 * n);
+  // Neighbours stay neighbours across the diagonals, where the map changes.
+  for (const double d : {-0.49, -0.2, -0.01, 0.01, 0.2, 0.49})
+    for (const double side : {-1.0, 1.0}) {
+      const SquareSample p = disk_point({0.5 + d, 0.5 + side * d - 1e-9});
+      const SquareSample q = disk_point({0.5 + d, 0.5 + side * d + 1e-9});
+      EXPECT_LT(std::hypot(p.x - q.x, p.y - q.y), 1e-7) << d;
+    }
   for (const SquareSample& s : {SquareSample{0.5, 0.5}, SquareSample{0, 0}, SquareSample{1 - 1e-16, 0}}) {
     const SquareSample p = disk_point(s);
     EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));

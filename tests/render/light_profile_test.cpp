@@ -81,6 +81,9 @@ TEST(LightProfile, IsAimedAlongItsAxis) {
   for (const double v : {10.5, 50.0, 120.0})
     for (const double h : {0.0, 45.0, 95.0, 200.0, 359.0}) {
       EXPECT_NEAR(down(at(v, h)), profile_value(*down.profile, v, h), 1e-5) << v << ' ' << h;
+      // Straight up it is turned by half a turn about x.
+      const Vec3d d = at(v, h);
+      EXPECT_NEAR(aim(down.profile, {0, 1, 0}, 0)({d.x, -d.y, -d.z}), down(d), 1e-5) << v << ' ' << h;
       const auto turned = aim(down.profile, {0, -1, 0}, 30);
       EXPECT_NEAR(turned(at(v, h)), profile_value(*down.profile, v, h < 30 ? h + 330 : h - 30), 1e-5);
     }

@@ -257,6 +257,26 @@ TEST(LightTree, ChoosesNearAndFacingEmittersMoreOften) {
   }
 }
 
+TEST(LightBounds, OfDisksAreTight) {
+  Random random(8);
+  for (int i = 0; i < 200; ++i) {
+    DiskEmitter disk{random.direction() * 2.0f, random.direction(), 0.7f, {1, 1, 1}, false};
+    if (i < 3) disk.normal = {i == 0 ? 1.0f : 0, i == 1 ? 1.0f : 0, i == 2 ? 1.0f : 0};
+    const Box box = light_bounds(disk)->box;
+    Vec3d across, along;
+    make_basis(Vec3d(disk.normal), across, along);
+    Vec3d lo{9, 9, 9}, hi{-9, -9, -9};
+    for (int k = 0; k < 4000; ++k) {
+      const double angle = 2 * kPi * k / 4000;
+      const Vec3d rim =
+          Vec3d(disk.center) + across * (0.7 * std::cos(angle)) + along * (0.7 * std::sin(angle));
+      lo = min(lo, rim), hi = max(hi, rim);
+    }
+    EXPECT_LT(length(Vec3d(box.lo) - lo), 1e-5) << i;
+    EXPECT_LT(length(Vec3d(box.hi) - hi), 1e-5) << i;
+  }
+}
+
 TEST(LightBounds, JoinedConesHoldBoth) {
   Random random(6);
   for (int i = 0; i < 20000; ++i) {

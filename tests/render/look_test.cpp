@@ -159,6 +159,17 @@ TEST(SmoothNormals, RoundThingsAreRoundAndEdgesStaySharp) {
     const Vec3f n = box.normals[box.normal_indices[i]];
     EXPECT_EQ(max_component(abs(n)), 1);
   }
+  // A fold of just less than the angle is smooth, one of just more is an edge.
+  for (const double degrees : {39.7, 40.3}) {
+    TriangleMesh fold;
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3f down(Vec3d{0, -std::cos(angle), -std::sin(angle)});
+    for (const Vec3f& p : {Vec3f{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, down}) fold.positions.push_back(p);
+    for (const std::uint32_t i : {0u, 1u, 2u, 0u, 3u, 1u}) fold.indices.push_back(i);
+    add_smooth_normals(fold, 40);
+    EXPECT_NEAR(fold.normals[fold.normal_indices[0]].z, degrees < 40 ? std::cos(angle / 2) : 1, 1e-5)
+        << degrees;
+  }
   TriangleMesh flat;  // without area
   add_triangle(flat, {0, 0, 0}, {1, 1, 1}, {2, 2, 2});
   add_smooth_normals(flat, 40);

@@ -81,6 +81,21 @@ TEST(BlockWalk, CoversTheRayWithBounds) {
   }
 }
 
+// A dense plane on the border of two blocks belongs to both.
+TEST(BlockWalk, BordersCountOnBothSides) {
+  Column<float> values(17 * 2 * 2, 0.0f);
+  for (std::size_t row = 0; row < 4; ++row) values[17 * row + 8] = 1;
+  const DensityGrid grid(17, 2, 2, std::move(values));
+  BlockWalk walk(grid, {0, 0.5, 0.5}, {1, 0, 0}, 16);
+  BlockSpan span;
+  for (int block = 0; block < 2; ++block) {
+    ASSERT_TRUE(walk.next(span));
+    EXPECT_EQ(span.end, 8 * (block + 1));
+    EXPECT_EQ(span.most, 1);
+  }
+  EXPECT_FALSE(walk.next(span));
+}
+
 TEST(BlockWalk, EndsForAnyRay) {
   const auto grid = random_grid(20, 20, 20);
   const double inf = std::numeric_limits<double>::infinity();

@@ -154,6 +154,20 @@ TEST(MediumTracker, HomogeneousPassagesHaveTheRightMeans) {
   }
 }
 
+// Glow in thin and thick media, where 1 - e^-x cancels and where it does not.
+TEST(MediumTracker, GlowIsExactAtEveryThickness) {
+  Medium m;
+  m.emission = {1, 1, 1};
+  for (double sigma = 1e-8; sigma < 100; sigma *= 1.7) {
+    m.absorption = {static_cast<float>(sigma), 0, 0};
+    TrackingNumbers numbers(1, 0);
+    const MediumPassage p = MediumTracker(m).pass({{0, 0, 0}, {0, 0, 1}, 1}, {1, 1, 1}, {0.5, 0.5}, numbers);
+    const auto depth = static_cast<double>(m.absorption.x);
+    EXPECT_NEAR(p.emitted.x, -std::expm1(-depth) / depth, 2e-7) << sigma;
+    EXPECT_EQ(p.emitted.y, 1);
+  }
+}
+
 TEST(MediumTracker, ExtremeMediaAreDefined) {
   Medium m;
   m.scattering = {1e9f, 1e9f, 1e9f};

@@ -98,6 +98,27 @@ TEST(GridTracking, MatchesRayMarching) {
 }
 
 // Media that only absorb are not scattered, and those that only glow have no extinction.
+// Little light passes, of which Russian roulette keeps the mean.
+TEST(GridTracking, ThickMediaPassWhatBeersLawSays) {
+  Medium m;
+  m.absorption = {4, 1.3f, 1.25f};
+  m.grid = std::make_shared<DensityGrid>(2, 2, 2, Column<float>(8, 1.0f));
+  m.grid_place = Affine::scaling({2, 1, 1});
+  const MediumTracker tracker(m);
+  Vec3d sum, squares;
+  const int count = 400000;
+  for (int i = 0; i < count; ++i) {
+    TrackingNumbers numbers(5, static_cast<std::uint32_t>(i));
+    const Vec3d passed(tracker.transmittance({{-1, 0.5f, 0.5f}, {1, 0, 0}, 4}, numbers));
+    sum += passed, squares += passed * passed;
+  }
+  for (int c = 0; c < 3; ++c) {
+    const double mean = sum[c] / count, error = std::sqrt((squares[c] / count - mean * mean) / count);
+    EXPECT_NEAR(mean, std::exp(-2 * static_cast<double>(m.absorption[c])), 3.5 * error);
+    EXPECT_LT(error, (c == 0 ? 0.1 : 0.005) * mean);
+  }
+}
+
 TEST(GridTracking, MediaWithoutScatteringPassOrGlow) {
   Medium m = cloud();
   m.scattering = {0, 0, 0};

@@ -1,4 +1,4 @@
-/// \file Patterns by closed forms, and bumps of patterns on surfaces of all kinds.
+/// \file Patterns by closed forms, and textures of single numbers.
 
 #include "render/pattern.h"
 
@@ -151,103 +151,6 @@ TEST(Pattern, SlopesFollowTheChainRule) {
     const Vec3d slope = pattern_slope(texture, p);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(slope[k], 0.5 * texture.to_pattern.m[2][k], 1e-9);
   }
-}
-
-// --- on surfaces
-
-/// Towards three lights of red, green and blue.
-constexpr Vec3d kLights[3] = {{0.6, 0, 0.8}, {-0.36, 0.48, 0.8}, {-0.36, -0.48, 0.8}};
-
-/// A scene of one object about the origin, seen from the front at (0, 0, 4).
-struct Seen {
-  Scene scene = bare_scene(48);
-  Picture picture;
-
-  explicit Seen(const Shape& shape, const Affine& transform, const Material& material,
-                const Texture& texture) {
-    scene.camera.from = {0.3, 0.5, 6};
-    for (int k = 0; k < 3; ++k)
-      scene.lights.push_back(
-          DirectionalLight{-kLights[k], {k == 0 ? 1.0f : 0, k == 1 ? 1.0f : 0, k == 2 ? 1.0f : 0}});
-    scene.textures.push_back(texture);
-    add_object(scene, shape, add_material(scene, material), transform);
-    picture = test::run(scene).picture;
-  }
-  /// The normal by which a pixel is lit: each channel is its cosine to one light. Zero where not all reach
-  /// it.
-  Vec3d lit(std::size_t i) const {
-    Vec3d n;
-    for (int k = 0; k < 3; ++k) {
-      const double cosine = picture.find(k == 0 ? "R" : k == 1 ? "G" : "B")->values[i];
-      if (!(cosine > 0)) return {};
-      const Vec3d &b = kLights[(k + 1) % 3], &c = kLights[(k + 2) % 3];
-      n = n + cross(b, c) * (cosine / dot(kLights[k], cross(b, c)));
-    }
-    return n;
-  }
-  Vec3d at(const char* prefix, std::size_t i) const {
-    const auto plane = [&](const char* axis) { return picture.find(std::string(prefix) + axis)->values[i]; };
-    return {plane(".X"), plane(".Y"), plane(".Z")};
-  }
-};
-
-Texture linear_heights(const Vec3d& direction, float gain) {
-  PatternTexture pattern;
-  pattern.pattern = GradientPattern{direction * -50.0, direction * 50.0};
-  pattern.colors = {{-50, 0, 0}, {50, 0, 0}};
-  Texture texture;
-  texture.pattern = pattern;
-  texture.gain = gain;
-  return texture;
-}
-
-/// Compares the bent normals with those of the plain surface, tilted in the object's own space.
-void expect_bumps(const Shape& shape, const Affine& map, const char* what) {
-  const Vec3d direction = normalize(Vec3d{0.3, 0.8, 0.5});
-  Material plain = test::diffuse({1, 1, 1}), bumpy = plain;
-  bumpy.bump_texture = 0;
-  bumpy.bump_scale = 2;
-  const Seen flat(shape, map, plain, linear_heights(direction, 0.25f));
-  const Seen bent(shape, map, bumpy, linear_heights(direction, 0.25f));
-  int compared = 0;
-  for (std::size_t i = 0; i < 48 * 48; ++i) {
-    const Vec3d n = flat.at("N", i);
-    if (!(length(n) > 0.5)) continue;
-    // Normals are mapped by the inverse transpose of M, so M^T leads back.
-    Vec3d own;
-    for (int k = 0; k < 3; ++k) own[k] = map.m[0][k] * n.x + map.m[1][k] * n.y + map.m[2][k] * n.z;
-    own = normalize(own);
-    const Vec3d along = direction - own * dot(direction, own);
-    const Vec3d tilted = own - along * 0.5;
-    const Affine back = map.inverse();
-    Vec3d expected;
-    for (int k = 0; k < 3; ++k)
-      expected[k] = back.m[0][k] * tilted.x + back.m[1][k] * tilted.y + back.m[2][k] * tilted.z;
-    expected = normalize(expected);
-    // Where the bent normal turns away from the viewer, shading bends it less.
-    if (dot(expected, normalize(Vec3d{0.3, 0.5, 6} - flat.at("P", i))) < 0.05) continue;
-    const Vec3d found = bent.lit(i);
-    if (found == Vec3d{0, 0, 0}) continue;
-    EXPECT_LT(length(found - expected), 2e-4) << what << " pixel " << i;
-    ++compared;
-  }
-  EXPECT_GT(compared, 100) << what;
-}
-
-Shape exact(auto form) { return ExactShape{form, NormalMethod::gradient}; }
-
-TEST(PatternBump, TiltsTheNormalsOfEverySurface) {
-  const Affine map = Affine::rotation({20, 30, 40}) * Affine::scaling({1.5, 1, 0.8});
-  expect_bumps(SphereShape{}, {}, "sphere");
-  expect_bumps(SphereShape{}, map, "ellipsoid");
-  expect_bumps(BoxShape{}, map, "box");
-  expect_bumps(exact(TorusShape{}), map, "torus");
-  auto operands = std::make_shared<std::vector<Object>>(2);
-  // Operands have materials of their own.
-  (*operands)[0].material = (*operands)[1].material = 0;
-  (*operands)[0].shape = SphereShape{};
-  (*operands)[1].shape = SphereShape{{0.6, 0.6, 0.6}, 0.8};
-  expect_bumps(CsgShape{CsgOp::unite, operands}, map, "combination");
 }
 
 /// Answers everything with one number.

@@ -76,6 +76,10 @@ TEST(PhotonEnergy, LightsSendTheirPowerToTheTarget) {
   expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 60, 60}), 2 * kPi * cap, "wide spot");
   expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 5, 5}),
                2 * kPi * 2 * kPi * (1 - std::cos(5 * kPi / 180)), "narrow spot");
+  // The edge of a soft one counts half.
+  expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 2, 6}),
+               2 * kPi * 2 * kPi * (1 - (std::cos(2 * kPi / 180) + std::cos(6 * kPi / 180)) / 2),
+               "soft spot");
   expect_power(light(DirectionalLight{{1, -2, 3}, {1, 2, 3}, 0}), 2 * kPi * kPi * r * r, "parallel");
   expect_power(light(DirectionalLight{{1, -2, 3}, {1, 2, 3}, 0.5}), 2 * kPi * kPi * r * r, "sun disk");
   auto picture = std::make_shared<EnvironmentPicture>();
@@ -167,6 +171,19 @@ TEST(PhotonEnergy, WhatIsEmittedIsStoredAbsorbedOrEscapes) {
     e = expect_conserved(scene);
     EXPECT_GT(e.stored, 0.1 * e.emitted) << light.index();
   }
+}
+
+// In a room of grey mirrors all light ends at their walls, most of it after Russian roulette has begun.
+TEST(PhotonEnergy, RouletteKeepsTheMean) {
+  Material grey = mirror();
+  grey.reflection = 0.7f;
+  Scene scene = bare_scene(1);
+  add_object(scene, BoxShape{{-1, -1, -1}, {1, 1, 1}}, add_material(scene, grey));
+  scene.lights = {PointLight{{0.1, 0.2, 0.3}, {1, 1, 1}, true}};
+  const PhotonScene photons(scene);
+  const PhotonEnergy e = trace_photons(photons.context, photons.source, plan_of(100000, 64), 0).energy;
+  EXPECT_NEAR(e.absorbed, e.emitted, 5e-3 * e.emitted);
+  EXPECT_LT(e.cut, 1e-3 * e.emitted);
 }
 
 // What a mirror ball in a room sends to the walls is what falls on it: a closed form.

@@ -87,4 +87,11 @@ inline void expect_same_light(const Scene& scene, const CausticSettings& caustic
   EXPECT_LE(apart, 1);
 }
 
+/// Settings for expect_same_light.
+inline CausticSettings many_photons() {
+  CausticSettings caustics;
+  caustics.photons = 20000, caustics.passes = 64;
+  return caustics;
+}
+
 }  // namespace oktett::test
