@@ -9,6 +9,7 @@
 #include "accel/hit_list.h"
 #include "accel/shape_hits.h"
 #include "core/double_lanes.h"
+#include "core/isa_select.h"
 #include "core/lanes.h"
 #include "kernels/kinds.h"
 
@@ -74,6 +75,12 @@ struct ExactTable {
   OKTETT_INLINE const ExactCode<A>& operator[](Kind kind) const { return of[static_cast<int>(kind)]; }
   static const ExactTable table;
 };
+// accel/isa/exact.cpp, compiled once per set, defines them.
+extern template struct ExactTable<ScalarIsa>;
+extern template struct ExactTable<Sse42Isa>;
+extern template struct ExactTable<Avx2Isa>;
+extern template struct ExactTable<Avx512Isa>;
+
 template <class A>
 OKTETT_INLINE const ExactCode<A>& exact_code(Kind kind) {
   return ExactTable<A>::table[kind];

@@ -27,7 +27,7 @@ target_link_libraries(oktett
 
 # Holds a copy of the scalar traversal: compiled as that is. GCC 12 warns of lanes that a mask leaves out.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp
-  PROPERTIES COMPILE_OPTIONS "-O2;-fno-tree-vectorize;-Wno-maybe-uninitialized")
+  PROPERTIES COMPILE_OPTIONS "-O2;-fno-tree-vectorize;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>")
 include(cmake/instruction_sets.cmake)
 file(GLOB OKTETT_ISA_SOURCES CONFIGURE_DEPENDS accel/isa/*.cpp render/isa/*.cpp)
 oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES})

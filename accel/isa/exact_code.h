@@ -224,17 +224,17 @@ template <class S, class A>
 bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, const ShapeHits& hits) {
   using D = SurfaceLanes<A>;
   if constexpr (HasSlope<S, D>) {
-    using F = Simd<float, D::kWidth, A>;
+    using Floats = Simd<float, D::kWidth, A>;
     const auto& pool = static_cast<const typename S::Pool&>(base);
     const std::size_t element = hits.element[0];
     if (pool.frames[element].normals != NormalMethod::gradient) return false;
     for (std::size_t i = 0; i < hits.count; i += D::kWidth) {
-      const PickedLanes<F> ray(hits.ray + i);
+      const PickedLanes<Floats> ray(hits.ray + i);
       const HitPoints<D> hit(hits, ray);
       Vec3<D> own;
       const SurfacePoints<D> at =
           exact_surface_points<S>(pool, element, to_double(ray.load(hits.part)), hit, own);
-      store_surface(hit, at, PickedLanes<F>(hits.entry + i), *hits.out);
+      store_surface(hit, at, PickedLanes<Floats>(hits.entry + i), *hits.out);
     }
     return true;
   }

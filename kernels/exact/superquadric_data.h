@@ -25,9 +25,9 @@ struct SuperquadricShape {
   bool open = false;                    ///< without the faces of the box
 
   static void surfaces(auto& v) {
-    const auto of = [](Form form, bool ratio) {
+    const auto of = [](Form kind, bool pseudo) {
       SuperquadricShape s;
-      s.form = form, s.ratio = ratio, s.q = form == Form::toroid ? 0.5 : 2;
+      s.form = kind, s.ratio = pseudo, s.q = kind == Form::toroid ? 0.5 : 2;
       return s;
     };
     v.surface({"superellipsoid", "\\|x/a\\|^p + \\|y/b\\|^q + \\|z/c\\|^r <= 1"}, of(Form::ellipsoid, false));

@@ -128,7 +128,7 @@ OKTETT_INLINE void find_intervals(const double* const (&sums)[W], std::int32_t c
     for (int k = 0; k < W; ++k) {
       const std::int32_t next = found[k] + step;
       const std::int32_t last = next <= count ? next - 1 : count - 1;
-      found[k] = (next <= count) & (sums[k][last] <= values[k]) ? next : found[k];
+      found[k] = ((next <= count) & (sums[k][last] <= values[k])) != 0 ? next : found[k];
     }
   for (int k = 0; k < W; ++k) {
     // A value that is rounded up to the whole sum lies in the last interval that is not empty.

@@ -194,7 +194,7 @@ double half_diagonal(const Box& box) { return length(Vec3d(box.hi) - Vec3d(box.l
 
 PhotonSource::PhotonSource(const World& world, const SceneLights& lights, const TextureSampler* textures,
                            const Casters& casters)
-    : world_(world), lights_(lights), textures_(textures) {
+    : lights_(lights), textures_(textures) {
   const std::vector<Emitter>& emitters = lights.set().emitters();
   brings_.assign(emitters.size(), 0);
   if (casters.none()) return;

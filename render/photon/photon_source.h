@@ -29,7 +29,7 @@ class PhotonSource {
     double radius = 0;
   };
 
-  /// Photons go to the bounds of `casters`; in all directions if these have none. `world`, `lights` and
+  /// Photons go to the bounds of `casters`; in all directions if these have none. `lights` and
   /// `textures` must outlive the source.
   PhotonSource(const World& world, const SceneLights& lights, const TextureSampler* textures,
                const Casters& casters);
@@ -51,7 +51,6 @@ class PhotonSource {
                                   const SquareSample& direction) const;
 
  private:
-  const World& world_;
   const SceneLights& lights_;
   const TextureSampler* textures_;
   std::optional<Target> target_;
