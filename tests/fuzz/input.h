@@ -1,0 +1,78 @@
+#pragma once
+/// \file What the fuzz targets share: reading values from the bytes of an input, and files that hold them.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "tests/support/temp_dir.h"
+
+namespace oktett::test {
+
+/// Ends the process, which the fuzzer counts as a finding, unless `ok`.
+inline void require(bool ok, const char* what) {
+  if (ok) return;
+  std::fprintf(stderr, "required, but not true: %s\n", what);
+  std::abort();
+}
+
+/// The bytes of an input, from first to last. After the end all bytes are 0.
+class InputBytes {
+ public:
+  InputBytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+
+  template <class T>
+  T take() {
+    unsigned char bytes[sizeof(T)] = {};
+    const std::size_t n = sizeof(T) < size_ ? sizeof(T) : size_;
+    std::memcpy(bytes, data_, n);
+    data_ += n, size_ -= n;
+    T value;
+    std::memcpy(&value, bytes, sizeof(T));
+    return value;
+  }
+
+  /// Any float: by its first byte a small whole number, a multiple of 1/8, or any bits. Small numbers make
+  /// points that coincide and rays that touch edges likely.
+  float number() {
+    const auto kind = take<std::uint8_t>();
+    if (kind < 0x60) return static_cast<float>(kind % 7) - 3;
+    if (kind < 0xc0) return static_cast<float>(take<std::int8_t>()) / 8;
+    return std::bit_cast<float>(take<std::uint32_t>());
+  }
+
+  bool empty() const { return size_ == 0; }
+  std::string_view rest() const { return {reinterpret_cast<const char*>(data_), size_}; }
+
+ private:
+  const std::uint8_t* data_;
+  std::size_t size_;
+};
+
+/// A file for inputs of readers that want a path; each input replaces the one before.
+class InputFile {
+ public:
+  explicit InputFile(const char* name) : path_(dir_.file(name)) {}
+
+  const std::string& write(std::string_view text) {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc)
+        .write(text.data(), static_cast<std::streamsize>(text.size()));
+    return path_;
+  }
+  const TempDir& dir() const { return dir_; }
+
+ private:
+  TempDir dir_;
+  std::string path_;
+};
+
+}  // namespace oktett::test
+
+/// What the fuzzer calls; each target has one. Returns 0.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
