@@ -12,6 +12,7 @@
 #include "app/command_line.h"
 #include "app/json.h"
 #include "app/render_options.h"
+#include "app/verify_endless.h"
 #include "core/error.h"
 #include "io/obj/obj.h"
 #include "verify/checks/csg.h"
@@ -29,6 +30,7 @@ struct VerifyArguments {
   std::string isa;
   std::string bvh;
   bool meshes_only = false;
+  EndlessArguments endless;
   bool quick = false;
   bool json = false;
 
@@ -200,11 +202,24 @@ void check_surfaces(const std::vector<std::string>& asked) {
   }
 }
 
+/// --hours or --replay.
+int run_everything(const VerifyArguments& arguments) {
+  EndlessArguments endless = arguments.endless;
+  endless.json = arguments.json;
+  if (arguments.rays > 0 || arguments.quick || !arguments.meshes.empty() || !arguments.surfaces.empty() ||
+      !arguments.bvh.empty() || arguments.meshes_only || (!endless.hours.empty() && !endless.replay.empty()))
+    throw Error("--hours and --replay go with --isa and --json, --hours also with --seed and --findings");
+  const std::vector<Isa> isas = chosen_isas(arguments.isa);
+  return (endless.replay.empty() ? run_endless(endless, isas) : run_replay(endless, isas)) ? 0
+                                                                                           : kExitInternal;
+}
+
 int run_verify(const VerifyArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   // Complains before the work begins.
   parse_bvh_option(arguments.bvh);
   chosen_isas(arguments.isa);
+  if (!arguments.endless.hours.empty() || !arguments.endless.replay.empty()) return run_everything(arguments);
   check_surfaces(arguments.surfaces);
   if (arguments.meshes_only && !arguments.surfaces.empty())
     throw Error("--meshes-only and --surface exclude each other");
@@ -238,6 +253,12 @@ void add_verify_command(CommandLine& line) {
   verb.option("--isa", &arguments->isa, "NAME",
               "One instruction set instead of all: scalar, sse4.2, avx2, avx512");
   add_bvh_option(verb, arguments->bvh);
+  verb.option("--hours", &arguments->endless.hours, "H",
+              "Check new random cases of everything for so many hours; 0.1 is six minutes");
+  verb.option("--seed", &arguments->endless.seed, "S", "Which cases --hours checks (default 1)");
+  verb.option("--findings", &arguments->endless.findings, "DIR",
+              "Where --hours saves scene files of what is wrong (default: here)");
+  verb.option("--replay", &arguments->endless.replay, "FILE", "Run what such a file says again");
   verb.flag("--quick", arguments->quick, "100 000 rays per kernel");
   verb.flag("--json", arguments->json, "Print one JSON object");
   verb.footer("Exits with status 3 if anything is found wrong.");

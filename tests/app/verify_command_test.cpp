@@ -69,5 +69,52 @@ TEST(VerifyCommand, BadArgumentsAreErrors) {
   EXPECT_TRUE(contains(error({"verify", "--bvh", "bast"}), "did you mean"));
 }
 
+/// A short run covers something and finds nothing.
+TEST(VerifyCommand, GoesThroughEverythingForSomeTime) {
+  const TempDir dir;
+  const CommandResult run = run_command(dir, {"verify", "--hours", "0.00003", "--seed", "7", "--isa",
+                                              "scalar", "--findings", dir.path().string()});
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
+  EXPECT_TRUE(contains(run.out, "kernels x classes")) << run.out;
+  EXPECT_TRUE(contains(run.out, "seed 7, instruction sets scalar: all is well")) << run.out;
+  const CommandResult json = run_command(dir, {"verify", "--hours", "1e-5", "--json"});
+  EXPECT_TRUE(contains(json.out, "\"passed\": true")) << json.out;
+  EXPECT_TRUE(contains(json.out, "\"kernels\": {\"covered\": ")) << json.out;
+}
+
+/// A file that claims that a sphere of radius 1.001 is a certain box.
+TEST(VerifyCommand, RunsFindingsAgain) {
+  const TempDir dir;
+  const std::string head =
+      "# wrong: something\n# repeat: kernel disk far 5\n"
+      "# ray: origin 0x0p+0 0x0p+0 0x1.4p+2 direction 0x0p+0 0x0p+0 -0x1p+0 tmin 0x0p+0 tmax inf\noktett: "
+      "1\n";
+  const std::string lie = dir.write("lie.yaml", head + "objects: [{sphere: {radius: 1.001}, name: box.7}]\n");
+  const std::string truth = dir.write("truth.yaml", head + "objects: [{sphere: {radius: 1.001}}]\n");
+  const CommandResult found = run_command(dir, {"verify", "--replay", lie});
+  EXPECT_EQ(found.status, 3);
+  EXPECT_TRUE(contains(found.out, "this scene: box.7 is hit at 3.999")) << found.out;
+  const CommandResult nothing = run_command(dir, {"verify", "--replay", truth});
+  EXPECT_EQ(nothing.status, 0) << nothing.out << nothing.err;
+  EXPECT_TRUE(contains(nothing.out, "all is well; it was: something")) << nothing.out;
+  const std::string scene = dir.write("scene.yaml", "oktett: 1\nobjects: []\n");
+  const CommandResult bad = run_command(dir, {"verify", "--replay", scene});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_TRUE(contains(bad.err, "expected a finding of oktett verify")) << bad.err;
+}
+
+TEST(VerifyCommand, BadHoursAreErrors) {
+  const TempDir dir;
+  for (const char* hours : {"0", "-1", "x", "1h", "inf", "nan"}) {
+    const CommandResult run = run_command(dir, {"verify", "--hours", hours});
+    EXPECT_EQ(run.status, 2) << hours;
+    EXPECT_TRUE(contains(run.err, "greater than 0")) << run.err;
+  }
+  EXPECT_EQ(run_command(dir, {"verify", "--hours", "1", "--quick"}).status, 2);
+  EXPECT_EQ(run_command(dir, {"verify", "--hours", "1", "--replay", "x"}).status, 2);
+  EXPECT_EQ(run_command(dir, {"verify", "--hours", "1", "--findings", "/nowhere/at/all"}).status, 1);
+  EXPECT_EQ(run_command(dir, {"verify", "--replay", "absent.yaml"}).status, 1);
+}
+
 }  // namespace
 }  // namespace oktett

@@ -22,7 +22,6 @@ namespace {
 
 using Inside = std::function<bool(const Vec3l&)>;
 
-constexpr std::size_t kRaysPerTree = 256;
 constexpr int kSamples = 256;
 constexpr int kMaxOperands = 64, kMaxDepth = 12;
 constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::interleaved, TraceMode::packet8,
@@ -141,9 +140,11 @@ class TreeMaker {
 
   /// Any of the surfaces that have an inside, some of them without bounds.
   Inside exact(CsgExpression& e, const Vec3d& c) {
-    std::vector<ExactOracle> all = draw_exact_oracles(random_);
+    static const std::size_t forms = exact_oracle_names().size();
     ExactOracle oracle;
-    do oracle = all[static_cast<std::size_t>(random_.unit() * static_cast<double>(all.size()))];
+    do
+      oracle =
+          draw_exact_oracle(static_cast<std::size_t>(random_.unit() * static_cast<double>(forms)), random_);
     while (oracle.where || (simple_ && !exact_ops(kind_of(oracle.shape.form)).lists_at_once()));
     return placed(e, oracle, turned_to(c));
   }
@@ -261,17 +262,19 @@ void add(CsgTally& sum, const CsgTally& t) {
   sum.rays += t.rays, sum.crossings += t.crossings, sum.samples += t.samples;
   sum.wrong_spans += t.wrong_spans, sum.wrong_first += t.wrong_first, sum.wrong_normal += t.wrong_normal;
   sum.differing += t.differing;
-  if (sum.failure.empty()) sum.failure = t.failure;
+  if (sum.failure.empty()) sum.failure = t.failure, sum.tree = t.tree;
 }
 
 }  // namespace
 
-CsgTally verify_csg(std::uint64_t rays, const std::vector<Isa>& isas) {
+CsgTally verify_csg(std::uint64_t rays, const std::vector<Isa>& isas, std::uint64_t first) {
   const std::size_t trees = (rays + kRaysPerTree - 1) / kRaysPerTree;
   std::vector<CsgTally> tallies(trees);
   tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t k) {
-    Checker(k, isas, tallies[k]).run();
-    if (!tallies[k].failure.empty()) tallies[k].failure = fmt::format("tree {}: {}", k, tallies[k].failure);
+    CsgTally& tally = tallies[k];
+    tally.tree = first + k;
+    Checker(tally.tree, isas, tally).run();
+    if (!tally.failure.empty()) tally.failure = fmt::format("tree {}: {}", tally.tree, tally.failure);
   });
   CsgTally sum;
   for (const CsgTally& t : tallies) add(sum, t);

@@ -10,6 +10,9 @@
 
 namespace oktett {
 
+/// Rays through one tree.
+inline constexpr std::size_t kRaysPerTree = 256;
+
 struct CsgTally {
   std::uint64_t rays = 0, crossings = 0, samples = 0;
   std::uint64_t wrong_spans = 0;  ///< samples on the wrong side, farther from any change than the error bound
@@ -17,12 +20,14 @@ struct CsgTally {
   std::uint64_t wrong_normal = 0;  ///< the normal does not point out of the combination
   std::uint64_t differing = 0;     ///< a mode, width or instruction set gave other bits
   std::string failure;             ///< the first one
+  std::uint64_t tree = 0;          ///< the number of its tree
 
   std::uint64_t wrong() const { return wrong_spans + wrong_first + wrong_normal + differing; }
 };
 
 /// `rays` rays through random trees of up to 64 operands and depth 12: spheres, boxes, tori, planes, convex
-/// meshes, instances, some of them coincident. A function of its arguments alone.
-CsgTally verify_csg(std::uint64_t rays, const std::vector<Isa>& isas);
+/// meshes, instances, some of them coincident. Trees are numbered from `first`. A function of its arguments
+/// alone.
+CsgTally verify_csg(std::uint64_t rays, const std::vector<Isa>& isas, std::uint64_t first = 0);
 
 }  // namespace oktett

@@ -13,6 +13,7 @@
 #include "kernels/exact/march.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/checks/kernels.h"
+#include "verify/oracles/along_ray.h"
 
 namespace oktett {
 
@@ -20,118 +21,6 @@ namespace {
 
 constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,   TraceMode::interleaved,
                                 TraceMode::packet8,   TraceMode::packet16, TraceMode::beam};
-/// Rays against one shape: a camera's worth, so that beams and packets are formed.
-constexpr std::size_t kRaysPerShape = 512;
-/// Samples along a ray; what is thinner than a step may escape the oracle, never the tracer.
-constexpr int kSamples = 768;
-/// Samples within the rounding of a hit at which three do not show a crossing.
-constexpr int kFineSamples = 1024;
-
-/// The function along a ray, in the space of the shape's description.
-class AlongRay {
- public:
-  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray)
-      : f_(oracle.f),
-        where_(oracle.where),
-        o_(mapped(to_own, Vec3l(ray.origin))),
-        d_(mapped(to_own, Vec3l(ray.direction), 0)) {
-    // The sphere around the box, a little larger.
-    const Vec3l c = (Vec3l(oracle.lo) + Vec3l(oracle.hi)) * 0.5L, m = o_ - c;
-    const Vec3l half = (Vec3l(oracle.hi) - Vec3l(oracle.lo)) * 0.5L;
-    const long double dd = dot(d_, d_), b = dot(m, d_) / dd;
-    const long double h = dot(half, half) * 1.02L - (dot(m, m) - b * b * dd);
-    size_ = std::sqrt(dot(half, half) / dd);
-    if (h < 0) return;
-    const long double w = std::sqrt(h / dd);
-    begin = std::max(-b - w, static_cast<long double>(ray.tmin));
-    end = std::min(-b + w, static_cast<long double>(ray.tmax));
-  }
-  long double operator()(long double t) const { return f_(o_ + d_ * t); }
-  /// Where t may be off: what rounding to float and the ray's way into the own space allow.
-  long double slack(long double t) const {
-    const long double far = std::abs(t) + std::sqrt(dot(o_, o_) / dot(d_, d_));
-    return 0x1p-24L * 1.01L * std::abs(t) + 0x1p-44L * far + 0x1p-36L * size_;
-  }
-  /// Crossings, each by bisection.
-  std::vector<long double> crossings() const {
-    std::vector<long double> found;
-    if (!(begin < end)) return found;
-    long double t0 = begin, f0 = (*this)(t0);
-    for (int i = 1; i <= kSamples; ++i) {
-      const long double t1 = begin + (end - begin) * i / kSamples, f1 = (*this)(t1);
-      if ((f0 < 0) != (f1 < 0)) {
-        const long double t = bisected(*this, t0, t1);
-        if (ends(t) < 0) found.push_back(t);
-      }
-      t0 = t1, f0 = f1;
-    }
-    return found;
-  }
-  /// Whether an open surface is there: -1 surely, 1 surely not, 0 if rounding may decide.
-  int ends(long double t) const {
-    if (!where_) return -1;
-    const long double s = slack(t), a = where_(o_ + d_ * (t - s)), b = where_(o_ + d_ * (t + s));
-    const long double rounding = std::abs(a - b) + 0x1p-36L * size_ * std::sqrt(dot(d_, d_));
-    return a < -rounding && b < -rounding ? -1 : a > rounding && b > rounding ? 1 : 0;
-  }
-  /// Whether f changes its sign near t, or comes so near to zero that rounding the ray decides.
-  enum class Crossing { yes, nearly, no };
-  Crossing crosses(long double t) const {
-    const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
-    if (ends(t) > 0) return Crossing::no;
-    if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
-    // Cusps may be thinner than what rounding to float moves t by.
-    const long double step = 2 * s / kFineSamples;
-    long double l = t - s, fl = before, steepest = 0, cliff = l, least = HUGE_VALL, tip = l;
-    for (int i = 1; i < kFineSamples; ++i) {
-      const long double r = t - s + step * i, fr = (*this)(r);
-      if ((fr < 0) != (before < 0)) return Crossing::nearly;
-      if (std::abs(fr - fl) > steepest) steepest = std::abs(fr - fl), cliff = l;
-      if (std::abs(fr) < least) least = std::abs(fr), tip = r;
-      l = r, fl = fr;
-    }
-    if (hides_at_cliff(cliff, cliff + step) || hides_at_tip(tip - step, tip + step)) return Crossing::nearly;
-    // Touching: |f| has its least value hereabouts, small against what it is a little farther off.
-    const long double off = 0x1p-14L * size_,
-                      rim = std::min(std::abs((*this)(t - off)), std::abs((*this)(t + off)));
-    return std::abs(here) <= 0x1p-8L * rim ? Crossing::nearly : Crossing::no;
-  }
-
-  long double begin = 0, end = -1;
-
- private:
-  /// Whether f, of one sign at l and r, has the other one next to where it is steepest.
-  bool hides_at_cliff(long double l, long double r) const {
-    long double fl = (*this)(l), fr = (*this)(r);
-    for (int k = 0; k < 64; ++k) {
-      const long double mid = l + (r - l) / 2, f = (*this)(mid);
-      if ((f < 0) != (fl < 0)) return true;
-      if (std::abs(f - fl) > std::abs(fr - f))
-        r = mid, fr = f;
-      else
-        l = mid, fl = f;
-    }
-    return false;
-  }
-  /// Whether f has the other sign where it comes nearest to zero between l and r.
-  bool hides_at_tip(long double l, long double r) const {
-    const bool negative = (*this)(l) < 0;
-    for (int k = 0; k < 128; ++k) {
-      const long double a = l + (r - l) * 0.4L, b = l + (r - l) * 0.6L;
-      const long double fa = (*this)(a), fb = (*this)(b);
-      if ((fa < 0) != negative || (fb < 0) != negative) return true;
-      if (std::abs(fa) < std::abs(fb))
-        r = b;
-      else
-        l = a;
-    }
-    return false;
-  }
-  const SurfaceFunction &f_, &where_;
-  Vec3l o_, d_;
-  long double size_ = 0;
-};
-
 /// A shape in a random place, its rays, and what the tracer says.
 struct Trial {
   ExactOracle oracle;
@@ -143,10 +32,7 @@ struct Trial {
 Affine random_place(CaseRandom& random) {
   const double size = random.unit() < 0.5 ? 1 : random.magnitude(-2, 2);
   const double far = random.unit() < 0.25 ? 300 : 1;
-  Affine a = Affine::rotation(random.vector() * 180.0);
-  if (random.unit() < 0.5)
-    a = a * Affine::scaling({0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()});
-  if (random.unit() < 0.2) a = Affine{};
+  const Affine a = random_turn(random);
   return Affine::translation(random.vector() * (size * far)) * Affine::scaling({size, size, size}) * a;
 }
 
@@ -334,25 +220,35 @@ void add(ExactTally& sum, const ExactTally& t) {
   sum.touched += t.touched, sum.creased += t.creased, sum.off_surface += t.off_surface, sum.lists += t.lists;
   sum.differing += t.differing;
   sum.worst_residual = std::max(sum.worst_residual, t.worst_residual);
-  if (sum.failure.empty()) sum.failure = t.failure;
+  if (sum.failure.empty()) sum.failure = t.failure, sum.trial = t.trial;
 }
 
 }  // namespace
 
-ExactTally verify_exact(std::size_t form, std::uint64_t rays, const std::vector<Isa>& isas) {
+ExactTrial exact_trial(std::size_t form, std::uint64_t trial) {
+  CaseRandom random(exact_key(form, trial));
+  ExactTrial out{draw_exact_oracle(form, random), {}};
+  out.to_world = random_place(random);
+  return out;
+}
+
+ExactTally verify_exact(std::size_t form, std::uint64_t rays, const std::vector<Isa>& isas,
+                        std::uint64_t first) {
   const std::size_t trials = (rays + kRaysPerShape - 1) / kRaysPerShape;
   std::vector<ExactTally> tallies(trials);
   const std::uint64_t uncertified_before = interval::uncertified_count();
   tbb::parallel_for(std::size_t{0}, trials, [&](std::size_t k) {
-    CaseRandom random(mix_bits(form + 1) + k);
+    CaseRandom random(exact_key(form, first + k));
     Trial trial;
-    trial.oracle = draw_exact_oracles(random)[form];
+    trial.oracle = draw_exact_oracle(form, random);
     trial.to_world = random_place(random);
     trial.to_own = trial.to_world.inverse();
     trial.accel = build_accel({{trial.oracle.shape, trial.to_world}}, {BuildQuality::balanced, false});
     shoot(trial, random);
-    Checker(trial, random, isas, k, tallies[k]).run();
-    if (!tallies[k].failure.empty()) tallies[k].failure = fmt::format("trial {}: {}", k, tallies[k].failure);
+    ExactTally& tally = tallies[k];
+    tally.trial = first + k;
+    Checker(trial, random, isas, k, tally).run();
+    if (!tally.failure.empty()) tally.failure = fmt::format("trial {}: {}", tally.trial, tally.failure);
   });
   ExactTally sum;
   for (const ExactTally& t : tallies) add(sum, t);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "verify/oracles/closed.h"
@@ -27,6 +28,17 @@ bool must_be_right(KernelId id, CaseClass c) {
 std::string exact_text(const Ray& r) {
   return fmt::format("origin {:a} {:a} {:a} direction {:a} {:a} {:a} tmin {:a} tmax {:a}", r.origin.x,
                      r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.tmin, r.tmax);
+}
+
+std::optional<Ray> ray_in_text(const std::string& text) {
+  const std::size_t at = text.find("origin ");
+  Ray r;
+  if (at == std::string::npos ||
+      std::sscanf(text.c_str() + at, "origin %f %f %f direction %f %f %f tmin %f tmax %f", &r.origin.x,
+                  &r.origin.y, &r.origin.z, &r.direction.x, &r.direction.y, &r.direction.z, &r.tmin,
+                  &r.tmax) != 8)
+    return std::nullopt;
+  return r;
 }
 
 namespace {
@@ -141,12 +153,13 @@ KernelTally verify_chunk(KernelId id, CaseClass c, std::uint64_t first, std::siz
 
 }  // namespace
 
-KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas) {
+KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas,
+                          std::uint64_t first_pair) {
   const std::size_t chunks = static_cast<std::size_t>((rays + kChunk - 1) / kChunk);
   std::vector<KernelTally> parts(chunks);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
     const std::uint64_t first = k * kChunk;
-    parts[k] = verify_chunk(id, c, first, std::min<std::uint64_t>(kChunk, rays - first), isas);
+    parts[k] = verify_chunk(id, c, first_pair + first, std::min<std::uint64_t>(kChunk, rays - first), isas);
   });
   KernelTally total;
   for (const KernelTally& part : parts) total.add(part);

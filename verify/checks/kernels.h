@@ -2,6 +2,7 @@
 /// \file Single kernels against the oracle, and against themselves in every width and instruction set.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace oktett {
 
-/// The failure with the least number.
+/// The failure with the least number; numbers below the greatest 64-bit one.
 struct FirstFailure {
   std::uint64_t first_failure = ~std::uint64_t{0};
   std::string failure;
@@ -36,9 +37,13 @@ struct KernelTally : FirstFailure {
 /// their floats overflow or underflow.
 bool must_be_right(KernelId id, CaseClass c);
 
-KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas);
+/// Pairs are numbered from `first`. A function of its arguments alone.
+KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas,
+                          std::uint64_t first = 0);
 
 /// A ray in hexadecimal floats, exactly.
 std::string exact_text(const Ray& ray);
+/// The first ray that stands in a text as exact_text writes it; nothing if there is none.
+std::optional<Ray> ray_in_text(const std::string& text);
 
 }  // namespace oktett

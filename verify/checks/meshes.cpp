@@ -152,15 +152,18 @@ class ChunkCheck {
 
 }  // namespace
 
-MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, std::uint64_t rays,
-                      const std::vector<Isa>& isas, const BuildOptions& build) {
+TriangleMesh placed_as(const TriangleMesh& mesh, const MeshPlacement& placement) {
   Box box;
-  for (const Vec3f& p : mesh.mesh.positions)
+  for (const Vec3f& p : mesh.positions)
     if (is_finite(p)) box.grow(p);
-  Subject subject;
   const double extent = max_component(box.extent());
-  subject.mesh =
-      placed(mesh.mesh, placement.size > 0 && extent > 0 ? placement.size / extent : 1, placement.offset);
+  return placed(mesh, placement.size > 0 && extent > 0 ? placement.size / extent : 1, placement.offset);
+}
+
+MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, std::uint64_t rays,
+                      const std::vector<Isa>& isas, const BuildOptions& build, std::uint64_t first_ray) {
+  Subject subject;
+  subject.mesh = placed_as(mesh.mesh, placement);
   subject.accel = build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}}, build);
   const bool plain = build.quality == BuildQuality::balanced;
   subject.plain = plain ? subject.accel : build_accel({{MeshGeometry{&subject.mesh}, {}, kNoId}});
@@ -183,7 +186,8 @@ MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, st
   std::vector<MeshTally> parts(chunks);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
     const std::uint64_t first = k * kChunk;
-    parts[k] = ChunkCheck(subject, first).run(std::min<std::uint64_t>(kChunk, rays - first), isas, key);
+    parts[k] =
+        ChunkCheck(subject, first_ray + first).run(std::min<std::uint64_t>(kChunk, rays - first), isas, key);
   });
   for (const MeshTally& part : parts) total.add(part);
   return total;

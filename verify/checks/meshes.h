@@ -21,6 +21,9 @@ struct MeshPlacement {
 };
 std::vector<MeshPlacement> mesh_placements();
 
+/// A mesh where it stands.
+TriangleMesh placed_as(const TriangleMesh& mesh, const MeshPlacement& placement);
+
 /// Counts over the rays of one mesh in one placement.
 struct MeshTally : FirstFailure {
   std::uint64_t rays = 0, hits = 0, open_edges = 0;
@@ -35,8 +38,9 @@ struct MeshTally : FirstFailure {
 };
 
 /// Rays from points inside and outside, aimed at vertices, at points of edges and at random, through a tree
-/// built as `build` says. Hits are compared with those of a tree built by default, too.
+/// built as `build` says. Hits are compared with those of a tree built by default, too. Rays are numbered
+/// from `first`. A function of its arguments alone.
 MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, std::uint64_t rays,
-                      const std::vector<Isa>& isas, const BuildOptions& build = {});
+                      const std::vector<Isa>& isas, const BuildOptions& build = {}, std::uint64_t first = 0);
 
 }  // namespace oktett

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/random.h"
 #include "verify/cases/random_parameters.h"
 #include "verify/oracles/exact_families.h"
 
@@ -67,7 +68,7 @@ ExactOracle cyclide(CaseRandom& random) {
   return {{s}, f, {-a - c - d, -a - d, -c - d}, {std::max(a + d - c, a - d + c), a + d, c + d}};
 }
 
-std::vector<ExactCase> all_cases() {
+std::vector<ExactCase> make_cases() {
   std::vector<ExactCase> all{
       {"torus", [](CaseRandom& random) { return oracle_of(draw_shape<TorusShape>(random)); }},
       {"cyclide", cyclide}};
@@ -77,12 +78,34 @@ std::vector<ExactCase> all_cases() {
   return all;
 }
 
+const std::vector<ExactCase>& all_cases() {
+  static const std::vector<ExactCase> all = make_cases();
+  return all;
+}
+
 }  // namespace
+
+ExactOracle draw_exact_oracle(std::size_t form, CaseRandom& random) {
+  const ExactCase& one = all_cases()[form];
+  ExactOracle oracle = one.draw(random);
+  oracle.name = one.name;
+  return oracle;
+}
 
 std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random) {
   std::vector<ExactOracle> oracles;
-  for (const ExactCase& one : all_cases()) oracles.emplace_back(one.draw(random)).name = one.name;
+  for (std::size_t form = 0; form < all_cases().size(); ++form)
+    oracles.push_back(draw_exact_oracle(form, random));
   return oracles;
+}
+
+std::uint64_t exact_key(std::size_t form, std::uint64_t trial) { return mix_bits(form + 1) + trial; }
+
+Affine random_turn(CaseRandom& random) {
+  Affine a = Affine::rotation(random.vector() * 180.0);
+  if (random.unit() < 0.5)
+    a = a * Affine::scaling({0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()});
+  return random.unit() < 0.2 ? Affine{} : a;
 }
 
 std::vector<std::string> exact_oracle_names() {

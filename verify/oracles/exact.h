@@ -55,9 +55,15 @@ ExactOracle oracle_of(const RevolutionShape& shape);
 ExactOracle oracle_of(const SuperquadricShape& shape);
 ExactOracle oracle_of(const MetaballsShape& shape);
 
-/// One of each form, with parameters from `random`.
+/// Number `form` of exact_oracle_names, with parameters from `random`.
+ExactOracle draw_exact_oracle(std::size_t form, CaseRandom& random);
+/// One of each form.
 std::vector<ExactOracle> draw_exact_oracles(CaseRandom& random);
 /// Names of what draw_exact_oracles draws, in its order.
 std::vector<std::string> exact_oracle_names();
+/// The key of the random numbers of shape number `trial` of a form.
+std::uint64_t exact_key(std::size_t form, std::uint64_t trial);
+/// A random rotation, often with different scales along the axes, sometimes nothing.
+Affine random_turn(CaseRandom& random);
 
 }  // namespace oktett

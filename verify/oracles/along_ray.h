@@ -1,0 +1,41 @@
+#pragma once
+/// \file What an oracle's function does along a ray: dense sampling, then bisection.
+
+#include <vector>
+
+#include "core/ray.h"
+#include "verify/oracles/exact.h"
+
+namespace oktett {
+
+/// The function along a ray, in the space of the shape's description. What is thinner than one of its samples
+/// may escape it, never the tracer.
+class AlongRay {
+ public:
+  /// `to_own` maps to that space. The oracle must outlive this object.
+  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray);
+
+  long double operator()(long double t) const { return f_(o_ + d_ * t); }
+  /// Where t may be off: what rounding to float and the ray's way into the own space allow.
+  long double slack(long double t) const;
+  /// Crossings, each by bisection.
+  std::vector<long double> crossings() const;
+  /// Whether an open surface is there: -1 surely, 1 surely not, 0 if rounding may decide.
+  int ends(long double t) const;
+  /// Whether f changes its sign near t, or comes so near to zero that rounding the ray decides.
+  enum class Crossing { yes, nearly, no };
+  Crossing crosses(long double t) const;
+
+  /// The part of the ray that may meet the surface; empty if begin >= end.
+  long double begin = 0, end = -1;
+
+ private:
+  bool hides_at_cliff(long double l, long double r) const;
+  bool hides_at_tip(long double l, long double r) const;
+
+  const SurfaceFunction &f_, &where_;
+  Vec3l o_, d_;
+  long double size_ = 0;
+};
+
+}  // namespace oktett

@@ -1,0 +1,220 @@
+#include "verify/oracles/known_shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "core/random.h"
+#include "verify/oracles/exact_families.h"
+#include "verify/oracles/mesh.h"
+
+namespace oktett {
+namespace {
+
+KnownShape sphere(CaseRandom& random) {
+  const SphereShape s{random.vector() * 0.5, random.magnitude(-1, 0.2)};
+  KnownShape known{s, {}};
+  known.truth.f = [s](const Vec3l& p) {
+    const Vec3l d = p - Vec3l(s.center);
+    return dot(d, d) - static_cast<Real>(s.radius) * s.radius;
+  };
+  known.truth.grow(s.center, s.radius);
+  return known;
+}
+
+/// Each sphere is seen, also inside of others, so the function changes its sign at each.
+KnownShape spheres(CaseRandom& random) {
+  SpheresShape s;
+  KnownShape known;
+  const int count = 1 + static_cast<int>(random.magnitude(0, 1.5));
+  for (int i = 0; i < count; ++i) {
+    s.spheres.push_back({random.vector(), random.magnitude(-2, -0.3)});
+    known.truth.grow(s.spheres.back().center, s.spheres.back().radius);
+  }
+  known.shape = s;
+  known.truth.f = [s](const Vec3l& p) {
+    Real product = 1;
+    for (const SphereShape& one : s.spheres) {
+      const Vec3l d = p - Vec3l(one.center);
+      product *= std::sqrt(dot(d, d)) - one.radius;
+    }
+    return product;
+  };
+  // They have no common inside.
+  known.truth.where = [](const Vec3l&) { return Real(-1); };
+  return known;
+}
+
+KnownShape plane(CaseRandom& random) {
+  const PlaneShape s{random.vector() * random.magnitude(-3, 3), random.sign()};
+  KnownShape known{s, {}};
+  known.truth.f = [s](const Vec3l& p) {
+    const Vec3l n(s.normal);
+    return dot(n, p) / std::sqrt(dot(n, n)) - s.offset;
+  };
+  known.truth.lo = {-4, -4, -4}, known.truth.hi = {4, 4, 4};
+  return known;
+}
+
+KnownShape disk(CaseRandom& random) {
+  const DiskShape s{random.vector() * 0.5, random.vector(), random.magnitude(-1, 0.2)};
+  KnownShape known{s, {}};
+  known.truth.f = [s](const Vec3l& p) {
+    const Vec3l n(s.normal);
+    return dot(n, p - Vec3l(s.center)) / std::sqrt(dot(n, n));
+  };
+  known.truth.where = [s](const Vec3l& p) {
+    const Vec3l d = p - Vec3l(s.center);
+    return std::sqrt(dot(d, d)) - s.radius;
+  };
+  known.truth.grow(s.center, s.radius);
+  return known;
+}
+
+KnownShape box(CaseRandom& random) {
+  BoxShape s{random.vector(), {}};
+  for (int k = 0; k < 3; ++k) s.max[k] = s.min[k] + random.magnitude(-1.5, 0.3);
+  KnownShape known{s, {}};
+  known.truth.f = [s](const Vec3l& p) { return outside(s.min, s.max, p); };
+  known.truth.lo = s.min, known.truth.hi = s.max;
+  return known;
+}
+
+/// How far p is outside of the polygon in its plane, negative inside: the distance from the nearest edge. Its
+/// sign is that of the angle by which the edges turn about p.
+Real outside_polygon(const std::vector<Vec3d>& vertices, const Vec3l& normal, const Vec3l& p) {
+  Real nearest = HUGE_VALL, angle = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vec3l a = Vec3l(vertices[i]) - p, b = Vec3l(vertices[(i + 1) % vertices.size()]) - p, e = b - a;
+    const Real t = std::clamp(-dot(a, e) / dot(e, e), Real(0), Real(1));
+    const Vec3l q = a + e * t;
+    nearest = std::min(nearest, std::sqrt(dot(q, q)));
+    angle += std::atan2(dot(normal, cross(a, b)), dot(a, b));
+  }
+  return std::abs(angle) > std::numbers::pi_v<Real> ? -nearest : nearest;
+}
+
+/// A star of points at random distances in a plane.
+KnownShape polygon(CaseRandom& random) {
+  PolygonShape s;
+  const Affine turn = Affine::translation(random.vector() * 0.5) * Affine::rotation(random.vector() * 180.0);
+  const int count = 3 + static_cast<int>(random.magnitude(0, 1.6)) - 1;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + 0.8 * random.unit()) / count;
+    const double radius = count == 3 ? 1 : 0.2 + random.unit();
+    s.vertices.push_back(turn.point({radius * std::cos(angle), radius * std::sin(angle), 0}));
+  }
+  KnownShape known{s, {}};
+  const Vec3d at = turn.point({0, 0, 0});
+  const Vec3l normal(turn.vector({0, 0, 1}));
+  const auto height = [at, normal](const Vec3l& p) { return dot(normal, p - Vec3l(at)); };
+  known.truth.f = height;
+  known.truth.where = [s, normal, height](const Vec3l& p) {
+    return outside_polygon(s.vertices, normal, p - normal * height(p));
+  };
+  known.truth.grow(at, 1.2);
+  return known;
+}
+
+KnownShape triangle(CaseRandom& random) {
+  TriangleShape s;
+  for (Vec3d& v : s.v) v = random.vector();
+  if (random.unit() < 0.2) s.v[1] = s.v[0] + (s.v[1] - s.v[0]) * random.magnitude(-4, -1);
+  return {s, {}};
+}
+
+KnownShape closed_mesh(CaseRandom& random) {
+  static const std::vector<std::shared_ptr<const TriangleMesh>> meshes = [] {
+    std::vector<std::shared_ptr<const TriangleMesh>> all;
+    for (const OracleMesh& m : {make_cube(), make_icosphere(1), make_icosphere(3), make_torus(24, 12),
+                                make_globe(30, 10), make_needles(40)})
+      all.push_back(std::make_shared<TriangleMesh>(m.mesh));
+    return all;
+  }();
+  MeshShape s;
+  s.mesh = meshes[random.bits() % meshes.size()];
+  if (random.unit() < 0.2) s.test = static_cast<TriangleTest>(random.bits() % 4);
+  return {s, {}};
+}
+
+/// Triangles that cross each other, of many sizes, some of them slivers, and some with equal corners.
+KnownShape triangle_soup(CaseRandom& random) {
+  const auto mesh = std::make_shared<TriangleMesh>();
+  const int count = static_cast<int>(random.magnitude(0, 2.5));
+  for (int i = 0; i < count; ++i) {
+    const Vec3d at = random.vector();
+    const double size = random.magnitude(-3, 0.3), thin = random.unit() < 0.2 ? random.magnitude(-5, 0) : 1;
+    const Vec3d a = random.vector() * size, b = random.vector() * (size * thin);
+    for (const Vec3d& p : {at, at + a, at + a * random.unit() + b}) {
+      const bool again = random.unit() < 0.1 && !mesh->positions.empty();
+      if (!again) mesh->positions.push_back(Vec3f(p));
+      const std::size_t last = mesh->positions.size() - 1;
+      mesh->indices.push_back(static_cast<std::uint32_t>(again ? random.bits() % (last + 1) : last));
+    }
+  }
+  MeshShape s;
+  s.mesh = mesh;
+  return {s, {}};
+}
+
+struct Kind {
+  const char* name;
+  KnownShape (*draw)(CaseRandom&);
+};
+constexpr Kind kOtherKinds[] = {{"sphere", sphere},
+                                {"spheres", spheres},
+                                {"plane", plane},
+                                {"disk", disk},
+                                {"box", box},
+                                {"polygon", polygon},
+                                {"triangle", triangle},
+                                {"closed_mesh", closed_mesh},
+                                {"triangle_soup", triangle_soup}};
+
+}  // namespace
+
+const std::vector<std::string>& known_kinds() {
+  static const std::vector<std::string> kinds = [] {
+    std::vector<std::string> names = exact_oracle_names();
+    for (const Kind& kind : kOtherKinds) names.emplace_back(kind.name);
+    return names;
+  }();
+  return kinds;
+}
+
+KnownShape draw_known_shape(std::size_t kind, std::uint64_t number) {
+  CaseRandom random(exact_key(kind, number));
+  const std::size_t exact = known_kinds().size() - std::size(kOtherKinds);
+  if (kind >= exact) return kOtherKinds[kind - exact].draw(random);
+  ExactOracle oracle = draw_exact_oracle(kind, random);
+  // Any of the root finders that prove their answers for all degrees.
+  constexpr roots::Method kFinders[] = {roots::Method::automatic, roots::Method::closed,
+                                        roots::Method::bernstein};
+  const roots::Method finder = kFinders[random.bits() % 3];
+  std::visit(
+      [&](auto& form) {
+        if constexpr (requires { form.root_finder; }) form.root_finder = finder;
+      },
+      oracle.shape.form);
+  return {oracle.shape, std::move(oracle)};
+}
+
+std::string known_name(std::size_t kind, std::uint64_t number) {
+  return fmt::format("{}.{}", known_kinds()[kind], number);
+}
+
+std::optional<KnownShape> known_shape(const std::string& name) {
+  const std::size_t dot = name.find('.');
+  if (dot == std::string::npos) return std::nullopt;
+  const auto& kinds = known_kinds();
+  const auto kind = std::ranges::find(kinds, std::string_view(name).substr(0, dot));
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data() + dot + 1, name.data() + name.size(), number);
+  if (kind == kinds.end() || error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return draw_known_shape(static_cast<std::size_t>(kind - kinds.begin()), number);
+}
+
+}  // namespace oktett
