@@ -53,9 +53,11 @@ OKTETT_INLINE SurfacePoints<D> exact_surface_points(const typename S::Pool& pool
       g = broadcast<D>(gradient_by_differences<S>(pool, i, static_cast<int>(only_lane(part)), only_lane(p)));
   Vec3<D> n = map_normal(frame.to_own, g);
   D l = length_lanes(n);
-  // At a singular point any normal is as good as another.
+  // At a singular point any normal is as good as another. Differences, since the sign of minus zero depends
+  // on the instruction set.
   const auto known = (D(0.0) < l) & (l <= D(std::numeric_limits<double>::max()));
-  n = select_lanes(known, n, Vec3<D>{-hit.d.x, -hit.d.y, -hit.d.z});
+  const D zero(0.0);
+  n = select_lanes(known, n, Vec3<D>{zero - hit.d.x, zero - hit.d.y, zero - hit.d.z});
   l = select(known, l, length_lanes(hit.d));
   const Vec3<D> point = map_point(frame.to_world, p);
   const D size = length_lanes(point) + D(length(frame.to_world.vector({1, 1, 1})));
