@@ -148,7 +148,8 @@ TEST(ImageTextures, MissingAndDamagedFilesWarnOnceAndAreWhite) {
     EXPECT_EQ(textures.normal(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Vec3f{0.5f, 0.5f, 1})) << i;
   }
   EXPECT_EQ(textures.color(3, {0.25f, 0.25f}, kNoChange, kNoChange), (Color{0, 0, 1}));
-  ASSERT_EQ(textures.warnings().size(), 6u);
+  // Readers clear the path of a texture that they have warned of.
+  ASSERT_EQ(textures.warnings().size(), 5u);
   EXPECT_EQ(textures.warnings()[0].where.file, dir.file("missing.png"));
   EXPECT_NE(textures.warnings()[0].message.find("no such file"), std::string::npos);
   for (const Warning& warning : textures.warnings()) EXPECT_EQ(warning.message.find('\n'), std::string::npos);

@@ -36,6 +36,7 @@ struct Part {
   World world;
   std::optional<KnownShape> known;  ///< of a single object
   Affine to_own;
+  bool in_instance = false;  ///< as a sphere with unequal scales: the tracer makes an instance of it
   HitBatch closest;
   HitLists lists;
 };
@@ -213,6 +214,7 @@ class Checker {
     for (Part& part : parts) {
       part.closest.resize_uninitialized(rays_.size());
       closest_hit(*part.world.accel, rays_.span(), part.closest.span(), isa_);
+      for (std::size_t i = 0; i < rays_.size(); ++i) part.in_instance |= part.closest[i].instance != kNoId;
       all_hits(*part.world.accel, rays_.span(), part.lists, isa_);
     }
     // Parts without items are no geometries, so that numbers do not tell which is which.
@@ -266,7 +268,7 @@ class Checker {
     const bool sampled = i % kSampledRays == 0;
     if (!hit.valid() && !sampled) return;
     ++tally_.compared;
-    const AlongRay f(part.known->truth, part.to_own, rays_[i]);
+    const AlongRay f(part.known->truth, part.to_own, rays_[i], part.in_instance);
     const std::string& name = scene_.objects[part.first].name;
     if (hit.valid() && f.crosses(hit.t) == AlongRay::Crossing::no)
       fail(tally_.untrue, i, fmt::format("{} is hit at {} where nothing is", name, hit.t));

@@ -14,11 +14,12 @@ constexpr int kFineSamples = 1024;
 
 }  // namespace
 
-AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray)
+AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray, bool rounded)
     : f_(oracle.f),
       where_(oracle.where),
       o_(mapped(to_own, Vec3l(ray.origin))),
-      d_(mapped(to_own, Vec3l(ray.direction), 0)) {
+      d_(mapped(to_own, Vec3l(ray.direction), 0)),
+      rounding_(rounded ? 0x1p-24L : 0) {
   // The sphere around the box, a little larger.
   const Vec3l c = (Vec3l(oracle.lo) + Vec3l(oracle.hi)) * 0.5L, m = o_ - c;
   const Vec3l half = (Vec3l(oracle.hi) - Vec3l(oracle.lo)) * 0.5L;
@@ -33,7 +34,7 @@ AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& r
 
 long double AlongRay::slack(long double t) const {
   const long double far = std::abs(t) + std::sqrt(dot(o_, o_) / dot(d_, d_));
-  return 0x1p-24L * 1.01L * std::abs(t) + 0x1p-44L * far + 0x1p-36L * size_;
+  return 0x1p-24L * 1.01L * std::abs(t) + (0x1p-44L + 2 * rounding_) * far + 0x1p-36L * size_;
 }
 
 std::vector<long double> AlongRay::crossings() const {

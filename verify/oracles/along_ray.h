@@ -12,8 +12,9 @@ namespace oktett {
 /// may escape it, never the tracer.
 class AlongRay {
  public:
-  /// `to_own` maps to that space. The oracle must outlive this object.
-  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray);
+  /// `to_own` maps to that space. `rounded`: the tracer rounds the ray to float there, as it does inside of
+  /// instances. The oracle must outlive this object.
+  AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray, bool rounded = false);
 
   long double operator()(long double t) const { return f_(o_ + d_ * t); }
   /// Where t may be off: what rounding to float and the ray's way into the own space allow.
@@ -35,7 +36,7 @@ class AlongRay {
 
   const SurfaceFunction &f_, &where_;
   Vec3l o_, d_;
-  long double size_ = 0;
+  long double size_ = 0, rounding_ = 0;
 };
 
 }  // namespace oktett
