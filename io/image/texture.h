@@ -22,8 +22,7 @@ namespace oktett {
 class ImageTextures : public TextureSampler {
  public:
   /// Reads all images, in parallel. One that is missing or damaged gives a warning and is white (value 1)
-  /// everywhere. So is a
-  /// texture without a path.
+  /// everywhere. So is a texture without a path, without a warning: its reader has given one.
   explicit ImageTextures(std::vector<Texture> textures);
 
   /// One per file that could not be used.
