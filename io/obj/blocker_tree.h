@@ -18,8 +18,7 @@ inline double cross(const PlanePoint& a, const PlanePoint& b, const PlanePoint& 
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// All corners in a balanced kd-tree (J. L. Bentley: Multidimensional Binary Search Trees, 1975) whose nodes
-/// count the corners that block.
+/// All corners in a balanced kd-tree (Bentley 1975) whose nodes count the corners that block.
 class BlockerTree {
  public:
   /// For these points, none of which blocks.
