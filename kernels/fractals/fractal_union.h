@@ -63,7 +63,11 @@ class UnionWalk {
         },
         [&](const UnionSpan& s) { return !within && s.near <= best && a < s.far; });
     inside = within;
-    if (within) return next(a, b, inside, t, place);
+    if (within) {
+      // What is entered later does not hold the line until then.
+      held_until_ = -std::numeric_limits<double>::infinity();
+      return next(a, b, inside, t, place);
+    }
     t = best;
     return inside = found && !given_up();
   }

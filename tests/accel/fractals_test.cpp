@@ -98,6 +98,31 @@ std::vector<ExactForm> all_forms() {
           sponge(7), tetrahedron(4), plant(6), plant(32), terrain(3), terrain(9), terrain(20, 0.7)};
 }
 
+/// The first hit of a ray does not depend on where the ray ends, also where it begins inside.
+TEST(Fractals, EndsOfRaysHideNothing) {
+  Numbers random{11};
+  for (const ExactForm& form :
+       {ExactForm{flake(3)}, ExactForm{flake(2, 0.6)}, ExactForm{sponge(3)}, ExactForm{tetrahedron(4)}}) {
+    const auto accel = build_accel({{ExactShape{form}, {}, kNoId}});
+    int inside = 0;
+    std::vector<Hit> hits;
+    for (int i = 0; i < 2000; ++i) {
+      Ray ray{Vec3f(random.vector()), 0, Vec3f(random.vector()), kInf};
+      hits.clear();
+      all_hits(*accel, ray, hits, Isa::scalar);
+      if (hits.empty()) continue;
+      inside += hits.size() % 2;
+      for (std::size_t k = 0; k < hits.size(); ++k) {
+        ray.tmax = k + 1 < hits.size() ? (hits[k].t + hits[k + 1].t) / 2 : 2 * hits[k].t;
+        if (!(hits[k].t <= ray.tmax)) continue;
+        const Hit first = closest_hit(*accel, ray, Isa::scalar);
+        ASSERT_EQ(first.t, hits[0].t) << form.index() << " ray " << i << " up to " << ray.tmax;
+      }
+    }
+    EXPECT_GT(inside, 50) << form.index();
+  }
+}
+
 TEST(Fractals, BadRaysHitNothing) {
   for (const ExactForm& form : all_forms()) {
     const auto accel = build_accel({{ExactShape{form}, {}}});

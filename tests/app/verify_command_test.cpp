@@ -72,8 +72,8 @@ TEST(VerifyCommand, BadArgumentsAreErrors) {
 /// A short run covers something and finds nothing.
 TEST(VerifyCommand, GoesThroughEverythingForSomeTime) {
   const TempDir dir;
-  const CommandResult run = run_command(dir, {"verify", "--hours", "0.0005", "--seed", "7", "--isa",
-                                              "scalar", "--findings", dir.path().string()});
+  const CommandResult run = run_command(dir, {"verify", "--hours", "0.0005", "--seed", "7", "--isa", "scalar",
+                                              "--findings", dir.path().string()});
   EXPECT_EQ(run.status, 0) << run.out << run.err;
   EXPECT_TRUE(contains(run.out, "kernels x classes")) << run.out;
   EXPECT_TRUE(contains(run.out, "seed 7, instruction sets scalar: all is well")) << run.out;
