@@ -1,6 +1,7 @@
 #include "app/process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -38,9 +39,13 @@ void write_line(const char* text) {
 
 /// Ends the process where no destructor runs any more.
 [[noreturn]] void leave(const char* text, int status) {
-  // Several threads may end the process at the same time; one line is enough.
+  // Several threads may end the process at the same time; one line is enough. The others wait until it is
+  // written.
   static std::atomic_flag told;
-  if (!told.test_and_set()) write_line(text);
+  if (!told.test_and_set())
+    write_line(text);
+  else
+    poll(nullptr, 0, 500);
   remove_unfinished_files();
   _exit(status);
 }
