@@ -1,16 +1,10 @@
 // Density grids in files.
 
-#include "core/error.h"
 #include "io/scene/density_file.h"
 #include "tests/fuzz/input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace oktett;
-  static test::InputFile file("a.density");
-  try {
-    (void)read_density_file(file.write({reinterpret_cast<const char*>(data), size}));
-  } catch (const Error& e) {
-    test::require(*e.what() != 0 && !e.where().file.empty(), "an error names the file");
-  }
-  return 0;
+  return test::fuzz_reader("a.density", data, size,
+                           [](const std::string& path) { (void)read_density_file(path); });
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/error.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::test {
@@ -71,6 +72,19 @@ class InputFile {
   TempDir dir_;
   std::string path_;
 };
+
+/// Calls `read` with the path of a file `name` that holds the input. An error must have a text and name the
+/// file. Returns 0, as targets do.
+template <class Read>
+int fuzz_reader(const char* name, const std::uint8_t* data, std::size_t size, Read read) {
+  static InputFile file(name);
+  try {
+    read(file.write({reinterpret_cast<const char*>(data), size}));
+  } catch (const Error& e) {
+    require(*e.what() != 0 && !e.where().file.empty(), "an error names the file");
+  }
+  return 0;
+}
 
 }  // namespace oktett::test
 

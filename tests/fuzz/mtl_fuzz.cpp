@@ -7,14 +7,10 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace oktett;
-  static test::InputFile file("a.mtl");
-  std::vector<Material> materials;
-  std::vector<Texture> textures;
-  std::vector<Warning> warnings;
-  try {
-    load_mtl(file.write({reinterpret_cast<const char*>(data), size}), materials, textures, warnings);
-  } catch (const Error& e) {
-    test::require(*e.what() != 0 && !e.where().file.empty(), "an error names the file");
-  }
-  return 0;
+  return test::fuzz_reader("a.mtl", data, size, [](const std::string& path) {
+    std::vector<Material> materials;
+    std::vector<Texture> textures;
+    std::vector<Warning> warnings;
+    load_mtl(path, materials, textures, warnings);
+  });
 }

@@ -1,47 +1,31 @@
 // Shapes with raw numbers in all their parameters, in any space, solids of them, and rays through them.
 
 #include <memory>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "tests/fuzz/tracing.h"
+#include "verify/cases/random_parameters.h"
 
 namespace oktett {
 namespace {
 
-/// Fills numbers, vectors and flags from the input and leaves everything else as it is.
-class RawParameters : public ParameterVisitor<RawParameters> {
- public:
-  explicit RawParameters(test::InputBytes& bytes) : bytes_(bytes) {}
+/// Raw numbers within the range of their parameter: what the readers of files refuse is not asked.
+struct RawSource {
+  test::InputBytes& bytes;
 
-  template <class T>
-  bool visit(const Parameter& parameter, T& value) {
-    if constexpr (std::is_same_v<T, bool>)
-      value = bytes_.take<std::uint8_t>() & 1;
-    else if constexpr (std::is_same_v<T, double>)
-      value = number(parameter.range);
-    else if constexpr (std::is_same_v<T, Vec3d>)
-      for (int k = 0; k < 3; ++k) value[k] = number(parameter.range);
-    return false;
-  }
-  void normals() {}
-
- private:
-  /// Within the range of the parameter: what the readers of files refuse is not asked.
+  bool flag() { return bytes.take<std::uint8_t>() & 1; }
   double number(const Range& range) {
-    const double x = static_cast<double>(bytes_.number());
+    const double x = static_cast<double>(bytes.number());
     return x >= range.lo && x <= range.hi ? x : 1.0;
   }
-
-  test::InputBytes& bytes_;
 };
 
 template <class T>
 T take_shape(test::InputBytes& bytes) {
   T shape;
-  RawParameters parameters(bytes);
+  DrawnParameters parameters(RawSource{bytes});
   if constexpr (requires { shape.describe(parameters); }) shape.describe(parameters);
   return shape;
 }
