@@ -21,7 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 using test::CommandProcess;
 using test::CommandResult;
+using test::contains;
 using test::file_content;
+using test::file_count;
 using test::run_command;
 using test::TempDir;
 using Words = std::vector<std::string>;
@@ -38,15 +40,6 @@ constexpr const char* kScene =
     "  - {sphere: {radius: 1}, material: mirror}\n"
     "  - {sphere: {radius: 0.1}, name: '${x}'}\n"
     "  - plane: {normal: [0, 1, 0], offset: -1}\n";
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-std::size_t file_count(const TempDir& dir) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator()));
-}
 
 /// The first plane in which two picture files differ by a bit; empty: none.
 std::string difference(const TempDir& dir, const std::string& a, const std::string& b) {

@@ -11,14 +11,11 @@ namespace oktett {
 namespace {
 
 using test::CommandResult;
+using test::contains;
 using test::run_command;
 using test::TempDir;
 
 using Words = std::vector<std::string>;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 

@@ -10,15 +10,12 @@ namespace oktett {
 namespace {
 
 using test::CommandResult;
+using test::contains;
 using test::run_command;
 using test::TempDir;
 
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 TEST(InfoCommand, TellsAClosedMeshFromAnOpenOne) {
   const TempDir dir;

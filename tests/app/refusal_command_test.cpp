@@ -7,7 +7,6 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::CommandResult;
+using test::contains;
 using test::file_content;
+using test::file_count;
+using test::kBall;
 using test::run_command;
 using test::TempDir;
 
@@ -30,23 +32,7 @@ constexpr bool kCanLimitMemory = false;
 constexpr bool kCanLimitMemory = true;
 #endif
 
-constexpr const char* kScene =
-    "oktett: 1\n"
-    "film: {width: 16, height: 12}\n"
-    "integrator: {samples: 1}\n"
-    "camera: {from: [0, 0, 5], at: [0, 0, 0]}\n"
-    "objects:\n"
-    "  - sphere: {radius: 1}\n";
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
-
-std::ptrdiff_t file_count(const TempDir& dir) {
-  return std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator());
-}
 
 /// Runs `oktett WORDS` in a shell after `before`; the words may redirect.
 CommandResult run_in_shell(const TempDir& dir, const std::string& before, const std::string& words) {
@@ -98,7 +84,7 @@ TEST(Refusal, MemoryIsOneLine) {
       ++(result.status == 0 ? done : refused);
       fs::remove(dir.file("a.exr"));
       fs::remove(dir.file("a.jpg"));
-      EXPECT_EQ(file_count(dir), 1) << limit << rest;
+      EXPECT_EQ(file_count(dir), 1u) << limit << rest;
     }
   }
   EXPECT_GT(refused, 3);
@@ -131,18 +117,18 @@ TEST(Refusal, MostMemoryIsAnOption) {
 
 TEST(Refusal, AFileThatMustNotGrowLeavesWhatWasThere) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   dir.write("a.exr", "old");
   const CommandResult result = run_in_shell(dir, "ulimit -f 1;", "render ball.yaml --size 200x200 -o a.exr");
   EXPECT_EQ(result.status, 1);
   EXPECT_EQ(result.err, "a.exr: cannot write: File too large\n");
   EXPECT_EQ(file_content(dir.file("a.exr")), "old");
-  EXPECT_EQ(file_count(dir), 2);
+  EXPECT_EQ(file_count(dir), 2u);
 }
 
 TEST(Refusal, LostOutputIsAnError) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   for (const char* words : {"info ball.yaml", "info ball.yaml --json", "render ball.yaml --stats",
                             "render ball.yaml --stats=json", "--version", "info --shapes",
                             "verify --surface torus --rays 1000"}) {
@@ -158,7 +144,7 @@ TEST(Refusal, LostOutputIsAnError) {
 // Messages that nobody can read are no reason to lose a picture, and no message becomes a part of it.
 TEST(Refusal, LostMessagesAreNone) {
   const TempDir dir;
-  dir.write("ball.yaml", std::string(kScene) + "  - sphere: {radius: 0}\n");
+  dir.write("ball.yaml", std::string(kBall) + "  - sphere: {radius: 0}\n");
   for (const char* to : {" 2>/dev/full", " 2>&-", " <&- 2>&-"}) {
     EXPECT_EQ(run_in_shell(dir, "", std::string("render ball.yaml --progress -o b.png") + to).status, 0)
         << to;
@@ -171,12 +157,12 @@ TEST(Refusal, LostMessagesAreNone) {
 
 TEST(Refusal, OutputMayBeUnwanted) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   const CommandResult result = run_command(dir, {"render", "ball.yaml", "--no-output"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_TRUE(contains(result.out, "rays/s"));
   EXPECT_FALSE(contains(result.out, "wrote"));
-  EXPECT_EQ(file_count(dir), 1);
+  EXPECT_EQ(file_count(dir), 1u);
   for (const std::vector<std::string>& words : {std::vector<std::string>{"render", "ball.yaml", "-o", ""},
                                                 {"render", "ball.yaml", "--outfile="},
                                                 {"render", "ball.yaml", "--size", ""},
@@ -185,12 +171,12 @@ TEST(Refusal, OutputMayBeUnwanted) {
     EXPECT_EQ(bad.status, 2) << words.back();
     EXPECT_EQ(bad.out, "");
   }
-  EXPECT_EQ(file_count(dir), 1);
+  EXPECT_EQ(file_count(dir), 1u);
 }
 
 TEST(Refusal, TimeKeepsWhatIsDone) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   const CommandResult result = run_command(dir, {"render", "ball.yaml", "--size", "2048x2048", "--spp", "256",
                                                  "--timeout", "1.5", "-o", "long.png"});
   EXPECT_EQ(result.status, 124);
@@ -217,7 +203,7 @@ struct Strangers {
   TempDir dir;
   Strangers() {
     fs::create_directories(dir.path() / "jail/inner");
-    dir.write("secret.yaml", kScene);
+    dir.write("secret.yaml", kBall);
     dir.write("secret.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     dir.write("jail/inner/mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     fs::create_symlink("../secret.obj", dir.path() / "jail/link.obj");

@@ -5,7 +5,6 @@
 #include <bit>
 #include <csignal>
 #include <filesystem>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -18,26 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 using test::CommandProcess;
 using test::CommandResult;
+using test::contains;
 using test::file_content;
+using test::file_count;
+using test::kBall;
 using test::run_command;
 using test::TempDir;
-
-constexpr const char* kScene =
-    "oktett: 1\n"
-    "film: {width: 16, height: 12}\n"
-    "integrator: {samples: 1}\n"
-    "camera: {from: [0, 0, 5], at: [0, 0, 0]}\n"
-    "objects:\n"
-    "  - sphere: {radius: 1}\n";
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-std::size_t file_count(const TempDir& dir) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(dir.path()), fs::directory_iterator()));
-}
 
 OIIO::ImageSpec header(const std::string& path) {
   const auto input = OIIO::ImageInput::open(path);
@@ -48,7 +33,7 @@ OIIO::ImageSpec header(const std::string& path) {
 TEST(RenderCommand, WritesThePictureAndTellsTimes) {
   const TempDir dir;
   fs::create_directory(dir.path() / "scenes");
-  dir.write("scenes/ball.yaml", kScene);
+  dir.write("scenes/ball.yaml", kBall);
   const CommandResult result = run_command(dir, {"render", "scenes/ball.yaml"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");
@@ -62,7 +47,7 @@ TEST(RenderCommand, WritesThePictureAndTellsTimes) {
 
 TEST(RenderCommand, OptionsOverrideTheScene) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   const CommandResult result = run_command(
       dir, {"render", "ball.yaml", "--size", "40x20", "--cropwindow", "0.25,0.5,0,0.5", "--spp", "3",
             "--seed", "7", "--integrator", "normal", "--isa", "scalar", "-t", "1", "-o", "a.exr", "--quiet"});
@@ -86,7 +71,7 @@ TEST(RenderCommand, OptionsOverrideTheScene) {
 
 TEST(RenderCommand, FilmOptionsOverrideTheScene) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   const CommandResult result = run_command(
       dir, {"render",    "ball.yaml", "--size",     "16x16", "--spp",   "4",      "--filter", "tent",
             "--tone",    "filmic",    "--exposure", "-1.5",  "--clamp", "3",      "--error",  "0.1",
@@ -152,7 +137,7 @@ TEST(RenderCommand, CryptomatteCanBeReadByOthers) {
 
 TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   const CommandResult text = run_command(dir, {"render", "ball.yaml", "--stats"});
   EXPECT_EQ(text.status, 0) << text.err;
   for (const char* word :
@@ -171,7 +156,7 @@ TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
 
 TEST(RenderCommand, ProgressIsShownOnlyOnDemandWithoutATerminal) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   EXPECT_EQ(run_command(dir, {"render", "ball.yaml"}).err, "");
   // A small picture may be done before the first report is due.
   const CommandResult result = run_command(dir, {"render", "ball.yaml", "--progress", "--size", "800x800"});
@@ -217,7 +202,7 @@ TEST(RenderCommand, MissesTheLibraryOfImagesFirst) {
   EXPECT_TRUE(contains(result.err, "cannot load liboktett_images.so")) << result.err;
   EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1);
 
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   for (const char* name : {"a.png", "a.exr"})
     EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "-o", name}, alone).status, 0);
   fs::copy(fs::path(OKTETT_COMMAND).parent_path().parent_path() / "lib", dir.path() / "lib");
@@ -237,7 +222,7 @@ TEST(RenderCommand, ABadSceneLeavesTheOldPicture) {
 
 TEST(RenderCommand, WarningsAreBounded) {
   const TempDir dir;
-  std::string scene = kScene;
+  std::string scene = kBall;
   for (int i = 0; i < 30; ++i) scene += "  - sphere: {radius: 0}\n";
   dir.write("many.yaml", scene);
   const CommandResult bounded = run_command(dir, {"render", "many.yaml"});
@@ -250,7 +235,7 @@ TEST(RenderCommand, WarningsAreBounded) {
 
 TEST(RenderCommand, AnAbsentDisplayServerIsAWarning) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   const CommandResult result = run_command(dir, {"render", "ball.yaml", "--display-server", "127.0.0.1:1"});
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(contains(result.err, "warning: no live preview")) << result.err;
@@ -270,7 +255,7 @@ std::vector<float> pixels(const std::string& path) {
 
 TEST(RenderCommand, ThePhotonMapIsWrittenOnceAndThenRead) {
   const TempDir dir;
-  dir.write("ball.yaml", std::string(kScene) +
+  dir.write("ball.yaml", std::string(kBall) +
                              "    material: {transparency: 1}\n"
                              "  - plane: {normal: [0, 1, 0], offset: -1}\n"
                              "lights:\n"
@@ -308,7 +293,7 @@ std::vector<std::string> long_render() {
 
 TEST(RenderCommand, TheFirstSignalWritesWhatIsFinished) {
   const TempDir dir;
-  dir.write("ball.yaml", kScene);
+  dir.write("ball.yaml", kBall);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     CommandProcess process(dir, long_render());
     ASSERT_TRUE(process.wait_for_err("%", 60)) << process.err();

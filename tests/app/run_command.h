@@ -7,8 +7,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,9 +15,17 @@
 
 namespace oktett::test {
 
-inline std::string file_content(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+/// A scene file: a sphere of radius 1 before the camera, 16x12 pixels, one sample each.
+inline constexpr const char* kBall =
+    "oktett: 1\n"
+    "film: {width: 16, height: 12}\n"
+    "integrator: {samples: 1}\n"
+    "camera: {from: [0, 0, 5], at: [0, 0, 0]}\n"
+    "objects:\n"
+    "  - sphere: {radius: 1}\n";
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
 }
 
 /// A running command whose output goes to files in a directory of its own.

@@ -9,12 +9,9 @@ namespace oktett {
 namespace {
 
 using test::CommandResult;
+using test::contains;
 using test::run_command;
 using test::TempDir;
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 TEST(VerifyCommand, ChecksWhatItIsAskedFor) {
   const TempDir dir;

@@ -64,10 +64,7 @@ class FilmFiles : public testing::Test {
   FilmFiles() { write_film(path(), small_film()); }
 
   std::string path() const { return dir_.file("a.film"); }
-  std::string bytes() const {
-    std::ifstream in(path(), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string bytes() const { return test::file_content(path()); }
   /// The message of the Error of parse_film; empty if there is none.
   static std::string problem(const std::string& bytes) {
     try {

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "core/error.h"
 #include "core/random.h"
@@ -36,10 +35,7 @@ class PhotonMapFile : public testing::Test {
   PhotonMapFile() { write_photon_map(path(), small_map()); }
 
   std::string path() const { return (dir_.path() / "map.photons").string(); }
-  std::string bytes() const {
-    std::ifstream in(path(), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string bytes() const { return test::file_content(path()); }
   void put(const std::string& bytes) const {
     std::ofstream(path(), std::ios::binary | std::ios::trunc) << bytes;
   }

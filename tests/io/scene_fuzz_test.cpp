@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -77,9 +76,7 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
   std::filesystem::copy(scenes, dir.path(), std::filesystem::copy_options::recursive);
   std::vector<std::string> texts;
   for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
-    if (entry.path().extension() != ".yaml") continue;
-    std::ifstream stream(entry.path(), std::ios::binary);
-    texts.emplace_back(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+    if (entry.path().extension() == ".yaml") texts.push_back(test::file_content(entry.path()));
   }
   std::sort(texts.begin(), texts.end());
   ASSERT_GE(texts.size(), 4u);

@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <regex>
 #include <string>
@@ -132,10 +130,6 @@ class SceneSchema : public testing::Test {
     parse_yaml(file);
     return validator.accepts(*file.root);
   }
-  static std::string content(const std::filesystem::path& path) {
-    std::ifstream stream(path);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
 
   const std::filesystem::path source = OKTETT_SOURCE_DIR;
   const std::string schema = scene_schema();
@@ -144,7 +138,7 @@ class SceneSchema : public testing::Test {
 };
 
 TEST_F(SceneSchema, TheCopyIsCurrent) {
-  EXPECT_EQ(content(source / "docs/oktett.schema.json"), schema)
+  EXPECT_EQ(test::file_content(source / "docs/oktett.schema.json"), schema)
       << "expected the output of `oktett info --schema` in docs/oktett.schema.json";
 }
 
@@ -161,7 +155,7 @@ TEST_F(SceneSchema, AcceptsEveryExample) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(source / "scenes")) {
     if (entry.path().extension() != ".yaml") continue;
-    const std::string text = content(entry.path());
+    const std::string text = test::file_content(entry.path());
     EXPECT_TRUE(accepts(text)) << entry.path();
     EXPECT_EQ(text.find("# yaml-language-server: $schema=../docs/oktett.schema.json\n"), 0u) << entry.path();
     ++count;

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <variant>
 #include <vector>
@@ -94,15 +92,13 @@ class SurfaceTable : public testing::Test {
 };
 
 TEST_F(SurfaceTable, IsInTheDocument) {
-  std::ifstream stream(std::string(OKTETT_SOURCE_DIR) + "/docs/scene-format.md");
-  const std::string document{std::istreambuf_iterator<char>(stream), {}};
+  const std::string document = test::file_content(OKTETT_SOURCE_DIR "/docs/scene-format.md");
   EXPECT_NE(document.find("\n\n" + surface_table() + "\n"), std::string::npos)
       << "expected the output of `oktett info --shapes` in docs/scene-format.md";
 }
 
 TEST_F(SurfaceTable, ThePatternsAreInTheDocument) {
-  std::ifstream stream(std::string(OKTETT_SOURCE_DIR) + "/docs/scene-format.md");
-  const std::string document{std::istreambuf_iterator<char>(stream), {}};
+  const std::string document = test::file_content(OKTETT_SOURCE_DIR "/docs/scene-format.md");
   EXPECT_NE(document.find("\n\n" + pattern_table() + "\n"), std::string::npos)
       << "expected the output of `oktett info --patterns` in docs/scene-format.md";
 }

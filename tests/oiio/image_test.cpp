@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <string>
@@ -43,15 +42,6 @@ Picture color_picture(std::uint32_t width, std::uint32_t height, float r, float 
   for (int c = 0; c < 4; ++c)
     picture.planes.push_back({names[c], PlaneType::half_float, Column<float>(pixels, values[c]), {}});
   return picture;
-}
-
-std::size_t file_count(const fs::path& directory) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(directory), fs::directory_iterator()));
-}
-
-std::string content(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// The bytes of an 8-bit image as they stand in the file.
@@ -268,7 +258,7 @@ TEST(CheckOutput, RefusesWhatCannotBeWritten) {
   EXPECT_EQ(kind(dir.path().string() + "/"), ErrorKind::io);
   fs::create_directory(dir.path() / "directory.png");
   EXPECT_EQ(kind(dir.file("directory.png")), ErrorKind::io);
-  EXPECT_EQ(file_count(dir.path()), 2u);
+  EXPECT_EQ(test::file_count(dir), 2u);
 }
 
 TEST(CheckOutput, NamesKnownFormats) {
@@ -285,8 +275,8 @@ TEST(CheckOutput, LeavesAnExistingFileAlone) {
   const TempDir dir;
   const std::string path = dir.write("a.png", "old");
   check_output(path);
-  EXPECT_EQ(content(path), "old");
-  EXPECT_EQ(file_count(dir.path()), 1u);
+  EXPECT_EQ(test::file_content(path), "old");
+  EXPECT_EQ(test::file_count(dir), 1u);
 }
 
 // A failure after writing began: the format cannot hold the picture.
@@ -294,8 +284,8 @@ TEST(WriteImage, FailureLeavesTheOldFileAndNoTemporary) {
   const TempDir dir;
   const std::string path = dir.write("a.ico", "old");
   EXPECT_EQ(kind_of([&] { write_image(path, color_picture(1000, 1, 1, 1, 1, 1)); }), ErrorKind::io);
-  EXPECT_EQ(content(path), "old");
-  EXPECT_EQ(file_count(dir.path()), 1u);
+  EXPECT_EQ(test::file_content(path), "old");
+  EXPECT_EQ(test::file_count(dir), 1u);
   EXPECT_EQ(kind_of([&] { write_image(dir.file("missing/a.png"), color_picture(1, 1, 1, 1, 1, 1)); }),
             ErrorKind::io);
 }
@@ -315,7 +305,7 @@ TEST(WriteImage, RefusesPlanesOfWrongSize) {
   picture.planes[1].values.resize_uninitialized(3);
   EXPECT_THROW(write_image(dir.file("a.exr"), picture), Error);
   EXPECT_THROW(write_image(dir.file("a.exr"), Picture{}), Error);
-  EXPECT_EQ(file_count(dir.path()), 0u);
+  EXPECT_EQ(test::file_count(dir), 0u);
 }
 
 TEST(ReadImage, GreyGivesThreeColours) {
@@ -349,7 +339,7 @@ TEST(ReadImage, DamagedFilesAreErrorsOrPictures) {
   picture.planes[0] = float_plane("R", PlaneType::half_float, 256, 0, 0.003f);
   for (const char* name : {"a.exr", "a.tif", "a.hdr", "a.tga", "a.bmp"}) {
     write_image(dir.file(name), picture);
-    const std::string whole = content(dir.file(name));
+    const std::string whole = test::file_content(dir.file(name));
     std::size_t refused = 0;
     for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 40) {
       try {

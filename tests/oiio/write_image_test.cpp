@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <random>
@@ -215,8 +214,7 @@ TEST(WriteImage, AFullDiskLeavesTheOldFileAndNoTemporary) {
       }
       setrlimit(RLIMIT_FSIZE, &before);
       EXPECT_EQ(message, path + ": cannot write: File too large") << bytes;
-      std::ifstream stream(path);
-      EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "old");
+      EXPECT_EQ(test::file_content(path), "old");
     }
   std::signal(SIGXFSZ, handler);
   const std::filesystem::directory_iterator files(dir.path());

@@ -38,16 +38,6 @@ double deviation(const Scene& scene) {
   return std::sqrt(static_cast<double>(value(run(scene).picture, "Variance.G", 0, 0)));
 }
 
-/// Two triangles with the corners of a parallelogram; the front is where cross(u, v) points.
-std::shared_ptr<TriangleMesh> parallelogram(const Vec3f& corner, const Vec3f& u, const Vec3f& v) {
-  auto mesh = std::make_shared<TriangleMesh>();
-  for (const Vec3f& p : {corner, corner + u, corner + u + v, corner + v}) mesh->positions.push_back(p);
-  for (const Vec2f& p : {Vec2f{0, 0}, Vec2f{1, 0}, Vec2f{1, 1}, Vec2f{0, 1}}) mesh->uvs.push_back(p);
-  for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u})
-    mesh->indices.push_back(i), mesh->uv_indices.push_back(i);
-  return mesh;
-}
-
 /// Irradiance / pi at the origin of the plane y = 0 by a parallelogram of radiance 1 that emits on both
 /// sides: the midpoint rule over its area.
 double quadrature(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
@@ -339,73 +329,6 @@ TEST(LightTransport, PicturesDependNeitherOnThreadsNorTilesNorSets) {
         EXPECT_TRUE(same_bytes(first, run(scene, [&](RenderOptions& o) {
                                         o.isa = isa, o.threads = threads, o.tile_size = tile;
                                       }).picture));
-}
-
-TEST(SceneLights, NamesTheEmitterOfAHit) {
-  Scene scene = bare_scene();
-  scene.integrator.kind = IntegratorKind::path;
-  const std::uint32_t lamp = add_material(scene, glowing({1, 1, 1})),
-                      dark = add_material(scene, diffuse({1, 1, 1}));
-  add_object(scene, SphereShape{{-3, 0, 0}, 1}, dark);
-  add_object(scene, SphereShape{{0, 0, 0}, 1}, lamp);
-  add_object(scene, SphereShape{{3, 0, 0}, 1}, lamp, Affine::scaling({1, 2, 1}));
-  add_object(scene, MeshShape{parallelogram({5, -1, 0}, {2, 0, 0}, {0, 2, 0}), {}, false}, lamp);
-  scene.lights = {PointLight{}};
-  const World world = build_world(scene);
-  const SceneLights lights(scene, world);
-  const auto emitter_at = [&](float x) {
-    return lights.emitter_at(closest_hit(*world.accel, Ray{{x, 0.5f, 9}, 0, {0, 0, -1}}));
-  };
-  EXPECT_EQ(lights.set().emitters().size(), 3u) << "the light, a ball and a rectangle";
-  EXPECT_EQ(emitter_at(-3), kNoId);
-  EXPECT_EQ(emitter_at(0), 1u);
-  EXPECT_EQ(emitter_at(3), kNoId) << "an ellipsoid is not sampled";
-  EXPECT_EQ(emitter_at(5.1f), 2u) << "one triangle of the rectangle";
-  EXPECT_EQ(emitter_at(6.9f), 2u) << "the other";
-}
-
-// Two materials may be in two light groups, even if their light is the same.
-TEST(SceneLights, HalvesOfTwoMaterialsStayTwoLamps) {
-  for (const bool same : {true, false}) {
-    Scene scene = bare_scene();
-    scene.integrator.kind = IntegratorKind::path;
-    auto mesh = parallelogram({5, -1, 0}, {2, 0, 0}, {0, 2, 0});
-    for (const int slot : {0, same ? 0 : 1}) mesh->material_slots.push_back(static_cast<std::uint16_t>(slot));
-    MeshShape shape;
-    shape.mesh = mesh;
-    shape.slot_materials = {add_material(scene, glowing({1, 1, 1})), add_material(scene, glowing({1, 1, 1}))};
-    add_object(scene, shape, kNoId);
-    const World world = build_world(scene);
-    EXPECT_EQ(SceneLights(scene, world).set().emitters().size(), same ? 1u : 2u);
-  }
-}
-
-// Rectangles among other triangles: each hit finds the emitter that it is part of.
-TEST(SceneLights, TrianglesOfAMeshAreJoinedOnlyToRectangles) {
-  Scene scene = bare_scene();
-  scene.integrator.kind = IntegratorKind::path;
-  auto mesh = std::make_shared<TriangleMesh>();
-  for (const Vec3f& p :
-       {Vec3f{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2.5f, 1, 0}, {3, 0, 0}, {4, 1, 0}})
-    mesh->positions.push_back(p);
-  // A triangle, a rectangle, two triangles that make a kite-like shape, and the half of a rectangle.
-  for (const std::uint32_t i : {1, 4, 2, 0, 1, 2, 0, 2, 3, 4, 6, 5, 6, 7, 5, 0, 1, 2})
-    mesh->indices.push_back(i);
-  for (const std::uint16_t slot : {0, 0, 0, 0, 0, 1}) mesh->material_slots.push_back(slot);
-  MeshShape shape;
-  shape.mesh = mesh, shape.smooth = false;
-  shape.slot_materials = {add_material(scene, glowing({1, 1, 1})), add_material(scene, glowing({2, 2, 2}))};
-  add_object(scene, shape, kNoId);
-  const World world = build_world(scene);
-  const SceneLights lights(scene, world);
-  const auto emitter_at = [&](float x, float y) {
-    return lights.emitter_at(closest_hit(*world.accel, Ray{{x, y, 9}, 0, {0, 0, -1}}));
-  };
-  EXPECT_EQ(lights.set().emitters().size(), 5u);
-  EXPECT_EQ(emitter_at(1.3f, 0.1f), 0u);
-  EXPECT_EQ(emitter_at(0.1f, 0.9f), 1u) << "the half that nothing covers";
-  EXPECT_EQ(emitter_at(2.5f, 0.5f), 2u);
-  EXPECT_EQ(emitter_at(3.2f, 0.5f), 3u);
 }
 
 }  // namespace

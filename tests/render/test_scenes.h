@@ -135,4 +135,14 @@ inline std::shared_ptr<TriangleMesh> sphere_mesh(int rings, const Vec3d& center 
   return mesh;
 }
 
+/// Two triangles with the corners of a parallelogram; the front is where cross(u, v) points.
+inline std::shared_ptr<TriangleMesh> parallelogram(const Vec3f& corner, const Vec3f& u, const Vec3f& v) {
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const Vec3f& p : {corner, corner + u, corner + u + v, corner + v}) mesh->positions.push_back(p);
+  for (const Vec2f& p : {Vec2f{0, 0}, Vec2f{1, 0}, Vec2f{1, 1}, Vec2f{0, 1}}) mesh->uvs.push_back(p);
+  for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u})
+    mesh->indices.push_back(i), mesh->uv_indices.push_back(i);
+  return mesh;
+}
+
 }  // namespace oktett::test

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 namespace oktett::test {
@@ -24,6 +25,16 @@ std::string TempDir::write(const std::string& name, const std::string& content) 
   stream << content;
   if (!stream.flush()) throw std::runtime_error("cannot write " + path);
   return path;
+}
+
+std::string file_content(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::size_t file_count(const TempDir& directory) {
+  using Entries = std::filesystem::directory_iterator;
+  return static_cast<std::size_t>(std::distance(Entries(directory.path()), Entries()));
 }
 
 }  // namespace oktett::test

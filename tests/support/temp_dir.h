@@ -1,6 +1,7 @@
 #pragma once
 /// \file A directory that lives as long as a test.
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -23,5 +24,11 @@ class TempDir {
  private:
   std::filesystem::path path_;
 };
+
+/// The bytes of a file; none if it cannot be read.
+std::string file_content(const std::filesystem::path& path);
+
+/// The number of files and folders directly in a directory.
+std::size_t file_count(const TempDir& directory);
 
 }  // namespace oktett::test
