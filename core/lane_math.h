@@ -57,17 +57,24 @@ OKTETT_INLINE void sin_cos_of_turn(const Simd<double, W, A>& turn, Simd<double, 
   sine = select(second | third, -across, across);
 }
 
+/// The angle whose tangent is `x`, 0 <= x <= 1.
+template <class D>
+OKTETT_INLINE D atan_unit(D x) {
+  static constexpr double kSeries[] = {1 / 25.0,  -1 / 23.0, 1 / 21.0,  -1 / 19.0, 1 / 17.0,
+                                       -1 / 15.0, 1 / 13.0,  -1 / 11.0, 1 / 9.0,   -1 / 7.0,
+                                       1 / 5.0,   -1 / 3.0,  1};
+  // atan x = 2 atan(x / (1 + sqrt(1 + x^2))), twice: x falls below tan(pi/16).
+  for (int i = 0; i < 2; ++i) x = x / (D(1.0) + sqrt(D(1.0) + x * x));
+  return D(4.0) * x * polynomial_lanes(kSeries, x * x);
+}
+
 /// portable::atan2 in lanes, with the same bits, for finite numbers that are not both 0.
 template <int W, class A>
 OKTETT_INLINE Simd<double, W, A> atan2_lanes(const Simd<double, W, A>& y, const Simd<double, W, A>& x) {
   using D = Simd<double, W, A>;
-  constexpr double kSeries[] = {1 / 25.0,  -1 / 23.0, 1 / 21.0, -1 / 19.0, 1 / 17.0, -1 / 15.0, 1 / 13.0,
-                                -1 / 11.0, 1 / 9.0,   -1 / 7.0, 1 / 5.0,   -1 / 3.0, 1};
-  const D zero(0.0), one(1.0), half_pi(std::numbers::pi / 2), ax = abs(x), ay = abs(y);
+  const D zero(0.0), half_pi(std::numbers::pi / 2), ax = abs(x), ay = abs(y);
   const auto flat = ay < ax;
-  D t = select(flat, ay, ax) / select(flat, ax, ay);
-  for (int i = 0; i < 2; ++i) t = t / (one + sqrt(one + t * t));
-  const D unit = D(4.0) * t * polynomial_lanes(kSeries, t * t);
+  const D unit = atan_unit(select(flat, ay, ax) / select(flat, ax, ay));
   D angle = select(flat, unit, half_pi - unit);
   angle = select(ax == ay, half_pi * D(0.5), angle);
   angle = select(x < zero, D(std::numbers::pi) - angle, angle);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/eighth_turn.h"
 #include "core/simd_bits.h"
 
 namespace oktett::lane {
@@ -21,14 +22,6 @@ template <class D>
 OKTETT_INLINE D round_even(const D& x) {
   const D magic(0x1.8p52);
   return (x + magic) - magic;
-}
-
-/// Horner's scheme; `c` from the highest power down.
-template <std::size_t N, class D>
-OKTETT_INLINE D horner(const double (&c)[N], const D& x) {
-  D sum(c[0]);
-  for (std::size_t i = 1; i < N; ++i) sum = sum * x + D(c[i]);
-  return sum;
 }
 
 /// Estrin's scheme for sixteen coefficients, from the lowest power up: shorter chains than Horner's.
@@ -132,41 +125,17 @@ OKTETT_INLINE D pow_whole(D x, int n) {
 /// Sine and cosine of x radians, |x| <= kMaxAngle.
 template <class D>
 OKTETT_INLINE void sin_cos(const D& x, D& sin, D& cos) {
-  static constexpr double kSin[] = {
-      1 / 355687428096000.0, -1 / 1307674368000.0, 1 / 6227020800.0, -1 / 39916800.0,
-      1 / 362880.0,          -1 / 5040.0,          1 / 120.0,        -1 / 6.0};
-  static constexpr double kCos[] = {-1 / 6402373705728000.0,
-                                    1 / 20922789888000.0,
-                                    -1 / 87178291200.0,
-                                    1 / 479001600.0,
-                                    -1 / 3628800.0,
-                                    1 / 40320.0,
-                                    -1 / 720.0,
-                                    1 / 24.0,
-                                    -1 / 2.0,
-                                    1};
   // pi/2 in three parts of 33 bits: k times a part is exact for k < 2^20 (Cody and Waite 1980).
   const D k = round_even(x * D(2 / std::numbers::pi));
   const D r = ((x - k * D(1.57079632673412561417e+00)) - k * D(6.07710050630396597660e-11)) -
               k * D(2.02226624871116645580e-21);
-  const D r2 = r * r, s = r + r * (r2 * horner(kSin, r2)), c = horner(kCos, r2);
+  const D s = sin_of_eighth(r), c = cos_of_eighth(r);
   // The quadrant, k mod 4 as -2, -1, 0, 1 or 2.
   const D quadrant = k - D(4.0) * round_even(k * D(0.25));
   const auto odd = abs(quadrant) == D(1.0), opposite = abs(quadrant) == D(2.0);
   const D a = select(odd, c, s), b = select(odd, s, c);
   sin = select(opposite | (quadrant == D(-1.0)), -a, a);
   cos = select(opposite | (quadrant == D(1.0)), -b, b);
-}
-
-/// For 0 <= x <= 1.
-template <class D>
-OKTETT_INLINE D atan_unit(D x) {
-  static constexpr double kSeries[] = {1 / 25.0,  -1 / 23.0, 1 / 21.0,  -1 / 19.0, 1 / 17.0,
-                                       -1 / 15.0, 1 / 13.0,  -1 / 11.0, 1 / 9.0,   -1 / 7.0,
-                                       1 / 5.0,   -1 / 3.0,  1};
-  // atan x = 2 atan(x / (1 + sqrt(1 + x^2))), twice: x falls below tan(pi/16).
-  for (int i = 0; i < 2; ++i) x = x / (D(1.0) + sqrt(D(1.0) + x * x));
-  return D(4.0) * x * horner(kSeries, x * x);
 }
 
 /// Angle of the point (x, y) for x >= 0, y >= 0, not both 0 or infinite.
