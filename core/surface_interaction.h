@@ -12,7 +12,7 @@ namespace oktett {
 /// side), whatever side the ray came from.
 struct SurfaceInteraction {
   Vec3f position;
-  Vec3f position_error;  ///< bound per component on |position - true hit point|
+  Vec3f position_error;  ///< per component; what it bounds is guarantee 4 of docs/numerics.md
   Vec3f geometric_normal;
   Vec3f shading_normal;  ///< interpolated from the mesh if it is smooth, else the geometric normal
   Vec3f tangent;         ///< dp/du, not normalised; zero where the shape has no uv

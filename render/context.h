@@ -39,6 +39,8 @@ struct RenderContext {
   AreaLights area_lights;                  ///< glowing surfaces, for Whitted's model
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
   const Caustics* caustics = nullptr;      ///< photons that path tracing asks for light; may be null
+  /// Paths that leave the first surface that scatters light, in path tracing; 1: as many as reach it.
+  std::uint32_t branches = 1;
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;

@@ -16,7 +16,7 @@ namespace {
 /// Begins every file; the number is the version of the format.
 constexpr std::string_view kMagic = "oktett film 1\n";
 /// The number of a tile, its added samples, the length of its sums.
-constexpr std::size_t kRecordHeader = 4 + 4 + 8, kChecksum = 8;
+constexpr std::size_t kRecordHeader = 4 + 4 + 8;
 
 std::string record_bytes(std::size_t number, const TileRecord& record) {
   std::string bytes;

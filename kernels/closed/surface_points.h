@@ -50,9 +50,9 @@ OKTETT_INLINE Simd<float, W, A> round_up_lanes(const Simd<double, W, A>& x) {
   return select(mask_cast<float>(to_double(nearest) < x), next, nearest);
 }
 
-/// Bound on |position - true hit point| per component where `point`, rounded to float, is the position: half
-/// an ulp of t along the ray, the rounding of the point itself, and `surface_error`, the shape's own
-/// uncertainty.
+/// SurfaceInteraction::position_error where `point`, rounded to float, is the position: an ulp of t along the
+/// ray, the rounding of the point itself, and `surface_error`, by which `point` may be off the surface.
+///
 template <int W, class A>
 OKTETT_INLINE Vec3<Simd<float, W, A>> position_error(const HitPoints<Simd<double, W, A>>& hit,
                                                      const Vec3<Simd<double, W, A>>& point,

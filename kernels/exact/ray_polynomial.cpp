@@ -32,7 +32,10 @@ void find_sign_changes(const double* c, int degree, roots::Method method, int wa
     for (int i = 0; i < answer.count && out.count < wanted; ++i)
       if (answer.root[i].multiplicity % 2 == 1) out.s[out.count++] = answer.root[i].x;
   };
-  const roots::Roots some = roots::solve(p, -1, 1, method, wanted);
+  roots::Roots some = roots::solve(p, -1, 1, method, wanted);
+  // A chain that has run out of digits invents and misses roots.
+  if (method == roots::Method::sturm && !some.certified)
+    method = roots::Method::bernstein, some = roots::solve(p, -1, 1, method, wanted);
   keep(some);
   // Those that only touch took the place of others.
   if (out.count < some.count && some.count == wanted) keep(roots::solve(p, -1, 1, method));

@@ -1,13 +1,15 @@
 #pragma once
 /// \file What the fuzz targets share: reading values from the bytes of an input, and files that hold them.
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -56,14 +58,35 @@ class InputBytes {
   std::size_t size_;
 };
 
+/// A file that gets other bytes again and again. It is not made anew each time, which would wait for the
+/// disk.
+class RewrittenFile {
+ public:
+  explicit RewrittenFile(const std::string& path)
+      : file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+    require(file_ >= 0, "the file of the inputs can be written");
+  }
+  ~RewrittenFile() { close(file_); }
+  RewrittenFile(const RewrittenFile&) = delete;
+  RewrittenFile& operator=(const RewrittenFile&) = delete;
+
+  void write(std::string_view bytes) {
+    const auto size = static_cast<off_t>(bytes.size());
+    require(pwrite(file_, bytes.data(), bytes.size(), 0) == size && ftruncate(file_, size) == 0,
+            "there is room for the file");
+  }
+
+ private:
+  int file_;
+};
+
 /// A file for inputs of readers that want a path; each input replaces the one before.
 class InputFile {
  public:
-  explicit InputFile(const char* name) : path_(dir_.file(name)) {}
+  explicit InputFile(const char* name) : path_(dir_.file(name)), file_(path_) {}
 
-  const std::string& write(std::string_view text) {
-    std::ofstream(path_, std::ios::binary | std::ios::trunc)
-        .write(text.data(), static_cast<std::streamsize>(text.size()));
+  const std::string& write(std::string_view bytes) {
+    file_.write(bytes);
     return path_;
   }
   const TempDir& dir() const { return dir_; }
@@ -71,6 +94,7 @@ class InputFile {
  private:
   TempDir dir_;
   std::string path_;
+  RewrittenFile file_;
 };
 
 /// Calls `read` with the path of a file `name` that holds the input. An error must have a text and name the

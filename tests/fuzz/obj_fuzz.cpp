@@ -6,13 +6,14 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace oktett;
   static test::InputFile mesh("a.obj");
+  static test::RewrittenFile library(mesh.dir().file("a.mtl"));
   std::string_view text(reinterpret_cast<const char*>(data), size);
   std::string_view materials;
   if (const std::size_t at = text.find("\n%%\n"); at != std::string_view::npos) {
     materials = text.substr(at + 4);
     text = text.substr(0, at + 1);
   }
-  mesh.dir().write("a.mtl", std::string(materials));
+  library.write(materials);
   try {
     const ObjFile file = load_obj(mesh.write(text));
     const TriangleMesh& m = file.mesh;

@@ -37,6 +37,30 @@ long double AlongRay::slack(long double t) const {
   return 0x1p-24L * 1.01L * std::abs(t) + (0x1p-44L + 2 * rounding_) * far + 0x1p-36L * size_;
 }
 
+/// Whether f has another sign where rounding the ray may move its point at t.
+bool AlongRay::may_turn(long double t) const {
+  // A component is rounded by at most 2^-24 of the way; that is 1.8 times as much along the diagonal.
+  const long double reach = 2 * rounding_ * (std::sqrt(dot(o_, o_)) + std::abs(t) * std::sqrt(dot(d_, d_)));
+  const Vec3l p = o_ + d_ * t;
+  const bool negative = f_(p) < 0;
+  for (int k = 0; k < 6; ++k) {
+    Vec3l q = p;
+    q[k / 2] += k % 2 == 0 ? reach : -reach;
+    if ((f_(q) < 0) != negative) return true;
+  }
+  return false;
+}
+
+long double AlongRay::room(long double t) const {
+  const long double s = slack(t);
+  if (rounding_ == 0) return s;
+  for (long double r = s; r < size_; r *= 2) {
+    const bool crosses = ((*this)(t - r) < 0) != ((*this)(t + r) < 0);
+    if (crosses && !may_turn(t - r) && !may_turn(t + r)) return r;
+  }
+  return HUGE_VALL;
+}
+
 std::vector<long double> AlongRay::crossings() const {
   std::vector<long double> found;
   if (!(begin < end)) return found;
@@ -63,6 +87,7 @@ AlongRay::Crossing AlongRay::crosses(long double t) const {
   const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
   if (ends(t) > 0) return Crossing::no;
   if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
+  if (rounding_ > 0 && may_turn(t)) return Crossing::nearly;
   // Cusps may be thinner than what rounding to float moves t by.
   const long double step = 2 * s / kFineSamples;
   long double l = t - s, fl = before, steepest = 0, cliff = l, least = HUGE_VALL, tip = l;

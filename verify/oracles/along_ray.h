@@ -19,6 +19,9 @@ class AlongRay {
   long double operator()(long double t) const { return f_(o_ + d_ * t); }
   /// Where t may be off: what rounding to float and the ray's way into the own space allow.
   long double slack(long double t) const;
+  /// How far from a crossing at t the tracer's hit may be: the slack, or more where rounding displaces a ray
+  /// that meets the surface at a slant. Infinite if rounding may leave the crossing out.
+  long double room(long double t) const;
   /// Crossings, each by bisection.
   std::vector<long double> crossings() const;
   /// Whether an open surface is there: -1 surely, 1 surely not, 0 if rounding may decide.
@@ -31,6 +34,7 @@ class AlongRay {
   long double begin = 0, end = -1;
 
  private:
+  bool may_turn(long double t) const;
   bool hides_at_cliff(long double l, long double r) const;
   bool hides_at_tip(long double l, long double r) const;
 

@@ -190,10 +190,10 @@ KnownShape draw_known_shape(std::size_t kind, std::uint64_t number) {
   const std::size_t exact = known_kinds().size() - std::size(kOtherKinds);
   if (kind >= exact) return kOtherKinds[kind - exact].draw(random);
   ExactOracle oracle = draw_exact_oracle(kind, random);
-  // Any of the root finders that prove their answers for all degrees.
+  // Any of the root finders whose answers are proved, or replaced by such as are.
   constexpr roots::Method kFinders[] = {roots::Method::automatic, roots::Method::closed,
-                                        roots::Method::bernstein};
-  const roots::Method finder = kFinders[random.bits() % 3];
+                                        roots::Method::bernstein, roots::Method::sturm};
+  const roots::Method finder = kFinders[random.bits() % std::size(kFinders)];
   std::visit(
       [&](auto& form) {
         if constexpr (requires { form.root_finder; }) form.root_finder = finder;
