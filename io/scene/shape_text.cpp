@@ -5,7 +5,6 @@
 #include <variant>
 
 #include "io/scene/readers.h"
-#include "kernels/functions/expression.h"
 #include "kernels/functions/tape_data.h"
 #include "kernels/heights/height_grid.h"
 
@@ -228,112 +227,6 @@ std::string transform_text(const Affine& map) {
   std::array<double, 12> rows;
   map.to_rows(rows.data());
   return "{matrix: " + list_text(rows, number_text) + "}";
-}
-
-std::string function_text(const FunctionTape& tape) {
-  std::vector<std::string> r(static_cast<std::size_t>(tape.registers));
-  r[0] = "x", r[1] = "y", r[2] = "z";
-  for (const TapeStep& s : tape.steps) {
-    // Copies, since a result may overwrite what it is made of.
-    const std::string a = r[s.a], b = r[s.b], c = "(" + number_text(s.c) + ")";
-    const auto call = [&](const char* name) { return fmt::format("{}({})", name, a); };
-    const auto call2 = [&](const char* name) { return fmt::format("{}({}, {})", name, a, b); };
-    const auto join = [&](char op, const std::string& other) { return "(" + a + op + other + ")"; };
-    std::string& out = r[s.out];
-    switch (s.op) {
-      case TapeOp::constant:
-        out = c;
-        break;
-      case TapeOp::negate:
-        out = "(-" + a + ")";
-        break;
-      case TapeOp::add:
-        out = join('+', b);
-        break;
-      case TapeOp::add_constant:
-        out = join('+', c);
-        break;
-      case TapeOp::subtract:
-        out = join('-', b);
-        break;
-      case TapeOp::multiply:
-        out = join('*', b);
-        break;
-      case TapeOp::multiply_constant:
-        out = join('*', c);
-        break;
-      case TapeOp::divide:
-        out = join('/', b);
-        break;
-      case TapeOp::square:
-        out = join('^', "2");
-        break;
-      case TapeOp::whole_power:
-        out = join('^', fmt::format("({})", s.n));
-        break;
-      case TapeOp::real_power:
-        out = join('^', c);
-        break;
-      case TapeOp::sqrt:
-        out = call("sqrt");
-        break;
-      case TapeOp::abs:
-        out = call("abs");
-        break;
-      case TapeOp::sin:
-        out = call("sin");
-        break;
-      case TapeOp::cos:
-        out = call("cos");
-        break;
-      case TapeOp::sin_cos:
-        out = call("sin"), r[s.b] = call("cos");
-        break;
-      case TapeOp::tan:
-        out = call("tan");
-        break;
-      case TapeOp::asin:
-        out = call("asin");
-        break;
-      case TapeOp::acos:
-        out = call("acos");
-        break;
-      case TapeOp::atan:
-        out = call("atan");
-        break;
-      case TapeOp::atan2:
-        out = call2("atan2");
-        break;
-      case TapeOp::exp:
-        out = call("exp");
-        break;
-      case TapeOp::log:
-        out = call("log");
-        break;
-      case TapeOp::min:
-        out = call2("min");
-        break;
-      case TapeOp::max:
-        out = call2("max");
-        break;
-      case TapeOp::floor:
-        out = call("floor");
-        break;
-      case TapeOp::ceil:
-        out = call("ceil");
-        break;
-      case TapeOp::round:
-        out = call("round");
-        break;
-      case TapeOp::sign:
-        out = call("sign");
-        break;
-    }
-    if (out.size() > kMaxExpressionLength)
-      throw Error(fmt::format("the function has more than {} characters when it is written out",
-                              kMaxExpressionLength));
-  }
-  return r[tape.result];
 }
 
 std::string shape_text(const Shape& shape, SideFiles& files) {
