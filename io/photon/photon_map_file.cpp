@@ -1,11 +1,11 @@
 #include "io/photon/photon_map_file.h"
 
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "core/bytes.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "io/image/output.h"
@@ -16,10 +16,8 @@
 namespace oktett {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "photons are written as they lie in memory");
-
 /// Begins every file; the number is the version of the format.
-constexpr std::string_view kMagic = "oktett photons 2\n";
+constexpr std::string_view kMagic = "oktett photons 3\n";
 constexpr std::uint32_t kMostPasses = 4096, kMostBounces = 65;
 
 struct Header {
@@ -44,60 +42,52 @@ std::string_view bytes_of(const Column<Photon>& photons) {
   return {reinterpret_cast<const char*>(photons.data()), photons.size() * sizeof(Photon)};
 }
 
-std::uint64_t checksum(std::string_view bytes) {
-  Hasher hash;
-  std::uint64_t word;
-  for (; bytes.size() >= sizeof word; bytes.remove_prefix(sizeof word)) {
-    std::memcpy(&word, bytes.data(), sizeof word);
-    hash.add(word);
-  }
-  for (const char c : bytes) hash.add(std::uint64_t{static_cast<unsigned char>(c)});
-  return hash.value();
-}
-
-/// Takes pieces off the front of a file.
-class Pieces {
- public:
-  Pieces(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
-
-  std::string_view take(std::size_t size) {
-    if (bytes_.size() < size) fail("the file is cut short");
-    const std::string_view piece = bytes_.substr(0, size);
-    bytes_.remove_prefix(size);
-    return piece;
-  }
-  template <class T>
-  T take() {
-    T value;
-    std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
-    return value;
-  }
-  std::size_t left() const { return bytes_.size(); }
-  [[noreturn]] void fail(const std::string& message) const { throw Error(Location{path_}, message); }
-
- private:
-  const std::string& path_;
-  std::string_view bytes_;
-};
-
 bool is_possible(const Photon& p) {
   const bool power = p.power.x >= 0 && p.power.y >= 0 && p.power.z >= 0;
   return is_finite(p.position) && is_finite(p.power) && power && p.bounces > 0 && p.bounces <= kMostBounces &&
          p.light_group < kMostLightGroups;
 }
 
-PhotonPass read_pass(Pieces& pieces) {
-  const auto header = pieces.take<PassHeader>();
+/// Takes a value off the front of a file; the same bytes go into the hash.
+template <class T>
+T take(ByteReader& bytes, Hasher& hash) {
+  T value;
+  const std::string_view piece = bytes.take(sizeof(T));
+  hash.add(checksum(piece));
+  std::memcpy(&value, piece.data(), sizeof(T));
+  return value;
+}
+
+PhotonPass read_pass(ByteReader& bytes, Hasher& hash) {
+  const auto header = take<PassHeader>(bytes, hash);
   if (!(header.radius > 0) || !std::isfinite(header.radius))
-    pieces.fail("the radius of a pass is not positive");
-  // Compared before the memory is asked for.
-  if (header.count > pieces.left() / sizeof(Photon)) pieces.fail("the file is cut short");
+    throw Error("the radius of a pass is not positive");
+  // Before the memory is asked for.
+  const std::string_view piece = bytes.take(header.count * sizeof(Photon));
+  hash.add(checksum(piece));
   Column<Photon> photons(header.count);
-  const std::string_view bytes = pieces.take(header.count * sizeof(Photon));
-  if (!bytes.empty()) std::memcpy(photons.data(), bytes.data(), bytes.size());
+  if (!piece.empty()) std::memcpy(photons.data(), piece.data(), piece.size());
   for (const Photon& photon : photons)
-    if (!is_possible(photon)) pieces.fail("a photon has numbers that none can have");
+    if (!is_possible(photon)) throw Error("a photon has numbers that none can have");
   return {std::move(photons), header.radius};
+}
+
+std::shared_ptr<PhotonMap> parse_photon_map(std::string_view text) {
+  if (!text.starts_with(kMagic)) throw Error("is not a photon map of version 3");
+  ByteReader bytes(text);
+  Hasher hash;
+  hash.add(checksum(bytes.take(kMagic.size())));
+  const auto header = take<Header>(bytes, hash);
+  auto map = std::make_shared<PhotonMap>();
+  map->plan = {header.photons, header.passes, header.depth, header.seed, header.radius, header.moments};
+  map->scene = {header.geometry, header.materials, header.lights};
+  if (header.photons == 0 || header.passes == 0 || header.passes > kMostPasses)
+    throw Error("the numbers of photons and passes are out of range");
+  for (std::uint32_t pass = 0; pass < header.passes; ++pass) map->passes.push_back(read_pass(bytes, hash));
+  if (bytes.left() != sizeof(std::uint64_t)) throw Error("the file has not the length that it says");
+  if (bytes.number<std::uint64_t>() != hash.value())
+    throw Error("the checksum is wrong: the file is damaged");
+  return map;
 }
 
 }  // namespace
@@ -123,27 +113,13 @@ void write_photon_map(const std::string& path, const PhotonMap& map) {
 
 std::shared_ptr<const PhotonMap> read_photon_map(const std::string& path) {
   const MappedFile file(path);
-  Pieces pieces(path, file.text());
-  if (pieces.left() < kMagic.size() || pieces.take(kMagic.size()) != kMagic)
-    pieces.fail("is not a photon map of version 2");
-  const auto header = pieces.take<Header>();
-  auto map = std::make_shared<PhotonMap>();
-  map->path = path;
-  map->plan = {header.photons, header.passes, header.depth, header.seed, header.radius, header.moments};
-  map->scene = {header.geometry, header.materials, header.lights};
-  if (header.photons == 0 || header.passes == 0 || header.passes > kMostPasses)
-    pieces.fail("the numbers of photons and passes are out of range");
-  Hasher hash;
-  hash.add(checksum(kMagic)), hash.add(checksum(bytes_of(header)));
-  for (std::uint32_t pass = 0; pass < header.passes; ++pass) {
-    Pieces again = pieces;
-    map->passes.push_back(read_pass(pieces));
-    hash.add(checksum(again.take(sizeof(PassHeader))));
-    hash.add(checksum(again.take(map->passes.back().photons().size() * sizeof(Photon))));
+  try {
+    const std::shared_ptr<PhotonMap> map = parse_photon_map(file.text());
+    map->path = path;
+    return map;
+  } catch (const Error& error) {
+    throw Error(Location{path}, error.what(), error.kind());
   }
-  if (pieces.left() != sizeof(std::uint64_t)) pieces.fail("the file has not the length that it says");
-  if (pieces.take<std::uint64_t>() != hash.value()) pieces.fail("the checksum is wrong: the file is damaged");
-  return map;
 }
 
 }  // namespace oktett

@@ -280,7 +280,7 @@ TEST(RenderCommand, ThePhotonMapIsWrittenOnceAndThenRead) {
   dir.write("p.map", "no photons");
   result = run_command(dir, first);
   EXPECT_EQ(result.status, 2);
-  EXPECT_TRUE(contains(result.err, "p.map: is not a photon map of version 2")) << result.err;
+  EXPECT_TRUE(contains(result.err, "p.map: is not a photon map of version 3")) << result.err;
   result = run_command(dir, {"render", "ball.yaml", "--caustics"});
   EXPECT_EQ(result.status, 2);
   EXPECT_TRUE(contains(result.err, "--caustics needs the integrator 'path'")) << result.err;

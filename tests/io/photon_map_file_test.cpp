@@ -91,9 +91,9 @@ TEST_F(PhotonMapFile, EveryCutAndEveryChangedByteIsFound) {
 TEST_F(PhotonMapFile, ErrorsSayWhatIsWrong) {
   const std::string good = bytes();
   put("oktett photons 1\n" + good.substr(17));
-  expect_error("version 2");
+  expect_error("version 3");
   put("");
-  expect_error("version 2");
+  expect_error("version 3");
   put(good.substr(0, good.size() - 9));
   expect_error("cut short");
   std::string bad = good;
