@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,6 +19,7 @@
 #include "app/command_line.h"
 #include "app/text.h"
 #include "core/error.h"
+#include "core/virtual_array.h"
 #include "io/image/output.h"
 
 namespace oktett {
@@ -69,14 +69,8 @@ Diagnosis diagnose(const std::exception& error) {
   return {nullptr, kExitInternal};
 }
 
-/// Whether the system refuses what a library with some threads may ask for.
-bool memory_is_short() {
-  constexpr std::size_t kBytes = std::size_t{128} << 20;
-  void* const probe = mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (probe == MAP_FAILED) return true;
-  munmap(probe, kBytes);
-  return false;
-}
+/// What a library with some threads may ask the system for.
+constexpr std::size_t kSomeMemory = std::size_t{128} << 20;
 
 [[noreturn]] void on_terminate() {
   const char* text = "internal error";
@@ -90,7 +84,7 @@ bool memory_is_short() {
     leave(line, kExitInternal);
   } catch (...) {}
   // Libraries that are refused their second thread end the process while they clean up after the first.
-  if (memory_is_short()) leave("out of memory", kExitIo);
+  if (!can_reserve(kSomeMemory)) leave("out of memory", kExitIo);
   leave(text, kExitInternal);
 }
 
@@ -103,7 +97,7 @@ void on_bad_access(int number, siginfo_t* info, void*) {
   if (number == SIGBUS) leave("a file was cut short by another program while it was read", kExitIo);
   if (address < stack_top && address > stack_top - stack_bytes) leave("out of memory for the stack", kExitIo);
   // Libraries for images use memory that they were refused.
-  if (memory_is_short()) leave("out of memory", kExitIo);
+  if (!can_reserve(kSomeMemory)) leave("out of memory", kExitIo);
   std::signal(number, SIG_DFL);
 }
 

@@ -10,6 +10,13 @@
 
 namespace oktett {
 
+/// Whether the system would give so many more bytes of address space now.
+inline bool can_reserve(std::size_t bytes) {
+  void* const p =
+      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return p != MAP_FAILED && munmap(p, bytes) == 0;
+}
+
 /// Reserves address space for `capacity` elements; pages are allocated when first written. `truncate`
 /// releases the rest. Neither growing nor shrinking copies elements. New elements read as zero bytes.
 template <class T>

@@ -1,7 +1,6 @@
 #include "io/image/library.h"
 
 #include <dlfcn.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -10,6 +9,8 @@
 #include <string_view>
 #include <system_error>
 #include <vector>
+
+#include "core/virtual_array.h"
 
 namespace oktett {
 
@@ -73,18 +74,11 @@ fs::path find_file() {
 }
 
 /// Among the libraries that come along are some whose constructors start threads, and wait for ever where the
-/// system refuses one. So nothing is loaded where memory is limited to less than they need.
-bool has_room() {
-  constexpr std::size_t kNeeded = std::size_t{512} << 20;
-  void* const room =
-      mmap(nullptr, kNeeded, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (room == MAP_FAILED) return false;
-  munmap(room, kNeeded);
-  return true;
-}
+/// system refuses one. So nothing is loaded where less address space than this is left.
+constexpr std::size_t kNeededSpace = std::size_t{512} << 20;
 
 const ImageLibrary* load() {
-  if (!has_room()) throw std::bad_alloc();
+  if (!can_reserve(kNeededSpace)) throw std::bad_alloc();
   // Without a path, the dynamic linker searches by name, its cache included.
   const fs::path found = find_file();
   const std::string name = found.empty() ? std::string(OKTETT_IMAGE_LIBRARY) : found.string();
