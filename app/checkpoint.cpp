@@ -10,12 +10,11 @@
 
 #include "app/fingerprint.h"
 #include "app/render_options.h"
+#include "app/text.h"
 #include "core/error.h"
 
 namespace oktett {
 namespace {
-
-constexpr double kMostSeconds = 86400;
 
 FilmShare parse_share(std::string_view text) {
   FilmShare share;
@@ -28,15 +27,6 @@ FilmShare parse_share(std::string_view text) {
     throw Error(fmt::format("--shard: '{}' is not of the form k/n with 1 <= k <= n <= {}, e.g. 3/7", text,
                             FilmShare::kMost));
   return share;
-}
-
-double parse_seconds(std::string_view text) {
-  double seconds = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (error != std::errc{} || end != text.data() + text.size() || !(seconds > 0) || seconds > kMostSeconds)
-    throw Error(fmt::format("--every: '{}' is out of range; expected seconds, more than 0 and at most {}",
-                            text, kMostSeconds));
-  return seconds;
 }
 
 /// In the place of a picture.
@@ -83,7 +73,7 @@ RenderArguments resumed_arguments(const CommandLine& line, const RenderArguments
 
 Checkpoint::Checkpoint(const CommandLine& line, RenderArguments& arguments) {
   const CheckpointArguments given = arguments.checkpoints;
-  if (!given.every.empty()) seconds_ = parse_seconds(given.every);
+  if (!given.every.empty()) seconds_ = parse_amount("--every", given.every, "seconds", 1e-3, 86400);
   FilmShare share = given.shard.empty() ? FilmShare{} : parse_share(given.shard);
   if (given.added_samples && (*given.added_samples < 1 || *given.added_samples > kMostAddedSamples))
     throw Error(fmt::format("--add-spp: {} is out of range; expected 1 to {}", *given.added_samples,

@@ -12,14 +12,13 @@
 #include <cstdint>
 #include <system_error>
 
+#include "app/text.h"
 #include "core/error.h"
 #include "io/image/output.h"
 #include "io/text/file_access.h"
 
 namespace oktett {
 namespace {
-
-constexpr double kMostSeconds = 1e8;
 
 /// "1500000", "512M" and the like, in bytes.
 std::uint64_t parse_bytes(const std::string& text) {
@@ -32,16 +31,6 @@ std::uint64_t parse_bytes(const std::string& text) {
   if (!good || number > UINT64_MAX >> shift)
     throw Error(fmt::format("--max-memory: '{}' is no number of bytes such as 800000000, 800M or 4G", text));
   return number << shift;
-}
-
-double parse_seconds(const std::string& text) {
-  double seconds = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, seconds);
-  if (error != std::errc{} || rest != end || !(seconds >= 1e-3 && seconds <= kMostSeconds))
-    throw Error(
-        fmt::format("--timeout: '{}' is no number of seconds from 0.001 to {:g}", text, kMostSeconds));
-  return seconds;
 }
 
 /// Private memory that can be written to, and not the whole address space: files that are mapped for reading,
@@ -80,7 +69,8 @@ void add_limit_options(Verb& verb, LimitArguments& a) {
 
 void apply_limits(const LimitArguments& arguments) {
   const std::uint64_t bytes = arguments.memory.empty() ? 0 : parse_bytes(arguments.memory);
-  const double seconds = arguments.seconds.empty() ? 0 : parse_seconds(arguments.seconds);
+  const double seconds =
+      arguments.seconds.empty() ? 0 : parse_amount("--timeout", arguments.seconds, "seconds", 1e-3, 1e8);
   if (!arguments.root.empty()) confine_files(arguments.root);
   if (bytes > 0) limit_memory(bytes);
   if (seconds > 0) limit_time(seconds);

@@ -1,7 +1,9 @@
 #include "app/text.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 namespace oktett {
 
@@ -33,6 +35,16 @@ std::string duration_text(double seconds) {
   const auto whole = static_cast<std::uint64_t>(std::lround(seconds));
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+double parse_amount(std::string_view option, std::string_view text, std::string_view unit, double least,
+                    double most) {
+  double amount = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), amount);
+  if (error != std::errc{} || end != text.data() + text.size() || !(amount >= least && amount <= most))
+    throw Error(fmt::format("{}: '{}' is out of range; expected {} from {:g} to {:g}", option, text, unit,
+                            least, most));
+  return amount;
 }
 
 void print_warnings(const std::vector<Warning>& warnings, std::size_t most) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,11 @@ inline std::string bytes_text(std::uint64_t bytes) { return with_prefix(static_c
 std::string grouped(std::uint64_t value);
 /// "0.123 s", "12.3 s", "2 min 05 s", "3 h 07 min".
 std::string duration_text(double seconds);
+
+/// The number given to an option. Throws Error unless it is from `least` to `most`; the message names the
+/// option and the unit.
+double parse_amount(std::string_view option, std::string_view text, std::string_view unit, double least,
+                    double most);
 
 /// Prints to stderr, formatted as by fmt. A message that nobody can read is no reason to lose a picture, so a
 /// closed or full stream is no error.

@@ -2,26 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "app/json.h"
+#include "app/text.h"
 #include "core/error.h"
 #include "verify/checks/endless.h"
 #include "verify/checks/findings.h"
 
 namespace oktett {
 namespace {
-
-double parse_hours(const std::string& text) {
-  double hours = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hours);
-  if (error != std::errc() || end != text.data() + text.size() || !(hours > 0) || !(hours <= 1e6))
-    throw Error(fmt::format("--hours: expected a number of hours greater than 0, found '{}'", text));
-  return hours;
-}
 
 std::string sets_text(const std::vector<Isa>& isas) {
   std::string out;
@@ -58,17 +50,17 @@ void print_json(const Coverage& coverage, std::uint64_t seed, const std::vector<
 
 bool run_endless(const EndlessArguments& arguments, const std::vector<Isa>& isas) {
   EndlessOptions options;
-  options.seconds = 3600 * parse_hours(arguments.hours);
+  options.seconds = 3600 * parse_amount("--hours", arguments.hours, "hours", 1e-6, 1e6);
   options.seed = arguments.seed, options.isas = isas, options.folder = arguments.findings;
   if (!std::filesystem::is_directory(options.folder))
     throw Error(Location{options.folder, 0, 0}, "no such folder for findings", ErrorKind::io);
   EndlessReport report;
   report.progress = [&](const Coverage& c) {
-    fmt::print(stderr, "oktett: {:.0f} of {:.0f} min, {} rounds, {:.3g} rays, {} wrong\n", c.seconds / 60,
-               options.seconds / 60, c.rounds, static_cast<double>(c.rays()), c.wrong());
+    say("oktett: {:.0f} of {:.0f} min, {} rounds, {:.3g} rays, {} wrong\n", c.seconds / 60,
+        options.seconds / 60, c.rounds, static_cast<double>(c.rays()), c.wrong());
   };
   report.finding = [](const std::string& path, const std::string& what) {
-    fmt::print(stderr, "oktett: {}: {}\n", path, what);
+    say("oktett: {}: {}\n", path, what);
   };
   const Coverage coverage = verify_endless(options, report);
   arguments.json ? print_json(coverage, arguments.seed, isas) : print_table(coverage, arguments.seed, isas);
