@@ -10,9 +10,6 @@
 namespace oktett {
 namespace {
 
-/// At least this many instances in a row become a list, which takes less memory.
-constexpr std::size_t kLeastList = 64;
-
 /// Turns lists of objects into acceleration structures, one list after the other.
 class WorldBuilder {
  public:
@@ -43,7 +40,7 @@ class WorldBuilder {
         continue;
       }
       Geometry geometry;
-      if (const std::size_t run = instances_from(objects, k); run >= kLeastList) {
+      if (const std::size_t run = instances_from(objects, k); run >= kLeastInstanceList) {
         geometries.push_back({instance_list(objects, k, run), {}, kNoId});
         instances += run;
         k += run - 1;

@@ -13,6 +13,9 @@
 
 namespace oktett {
 
+/// At least this many instances in a row become one geometry, which takes less memory.
+inline constexpr std::size_t kLeastInstanceList = 64;
+
 /// What an object of the scene contributes to shading its hits; indexed by SurfaceInteraction::user.
 struct ObjectMaterials {
   std::uint32_t material = kNoId;    ///< of the whole object; kNoId = by slot
