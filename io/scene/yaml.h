@@ -13,9 +13,7 @@
 namespace oktett {
 
 /// What a file may ask for, so that no file exhausts the stack, memory or patience.
-inline constexpr std::size_t kMaxYamlBytes = std::size_t{32} << 20;
 inline constexpr int kMaxYamlNesting = 100;  ///< maps and lists inside each other, aliases followed
-inline constexpr std::size_t kMaxYamlNodes = 4'000'000;  ///< keys, scalars, maps and lists, aliases expanded
 
 enum class YamlKind : std::uint8_t { null, scalar, sequence, map };
 
@@ -66,6 +64,6 @@ std::string read_text_file(const std::string& path, std::size_t max_bytes);
 /// Parses `file.text`, which has been read from `file.path`, into `file.root`. Throws Error with line and
 /// column for text that is not UTF-8 or not YAML, tags, keys that are no scalars or appear twice, no or
 /// several documents, and for more than `max_nodes` nodes or deeper nesting than kMaxYamlNesting.
-void parse_yaml(YamlFile& file, std::size_t max_nodes = kMaxYamlNodes);
+void parse_yaml(YamlFile& file, std::size_t max_nodes);
 
 }  // namespace oktett

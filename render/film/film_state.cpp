@@ -15,6 +15,12 @@ std::size_t tiles_along(std::uint32_t pixels, std::uint32_t size) { return (pixe
 
 std::size_t pixels_of(const FinishedTile& tile) { return std::size_t{tile.width} * tile.height; }
 
+/// The samples of a pixel are spread over the time that is seen, so that what is added must be so, too.
+void expect_whole_turns(const FilmPlan& plan, std::uint32_t added) {
+  if (plan.moves && added % plan.samples != 0)
+    throw Error("things move, so samples are added by multiples of " + std::to_string(plan.samples));
+}
+
 }  // namespace
 
 std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares) {
@@ -41,8 +47,7 @@ void FilmState::begin(const FilmPlan& plan) {
   tile_size_ = tile_size_of(plan.format, share_.count);
   columns_ = tiles_along(plan.format.window.width(), tile_size_);
   rows_ = tiles_along(plan.format.window.height(), tile_size_);
-  if (plan.moves && added_ % plan.samples != 0)
-    throw Error("things move, so samples are added by multiples of " + std::to_string(plan.samples));
+  expect_whole_turns(plan, added_);
   begun_ = true;
 }
 
@@ -66,8 +71,7 @@ bool FilmState::in_share(std::size_t tile) const {
 void FilmState::add_samples(std::uint32_t count) {
   if (count > kMostAddedSamples - added_)
     throw Error("more than " + std::to_string(kMostAddedSamples) + " samples would be added");
-  if (plan_.moves && count % plan_.samples != 0)
-    throw Error("things move, so samples are added by multiples of " + std::to_string(plan_.samples));
+  expect_whole_turns(plan_, count);
   added_ += count;
 }
 

@@ -141,7 +141,8 @@ class PathShading {
     unsigned may_end = 0;
     for (int k = 0; k < W; ++k) may_end |= (c_.bounces[entry_[k]] + 1u > kSureBounces ? 1u : 0u) << k;
     if (may_end != 0) {
-      const F most = max(max(onward.x, onward.y), onward.z), chance = min(sqrt(most * at.load(c_.paths)), one);
+      const F most = max(max(onward.x, onward.y), onward.z),
+              chance = min(sqrt(most * at.load(c_.paths)), one);
       sent &= ~(may_end & bits(at.load(c_.roulette) >= chance));
       onward = onward * select(M::from_bits(may_end), one / chance, one);
     }

@@ -180,7 +180,8 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     if (!surface.only_delta)
       asks[asking] = static_cast<std::uint32_t>(k), front_only[asking++] = !surface.transmits;
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
-    if (!surface.only_delta && wavefront.samples.may_branch(c.sample[k])) branching[split++] = shown[in_lanes - 1];
+    if (!surface.only_delta && wavefront.samples.may_branch(c.sample[k]))
+      branching[split++] = shown[in_lanes - 1];
   }
   if (c.asks_lights) sample_lights(context, found, asks, front_only, asking, c);
   if (context.light_groups != nullptr)

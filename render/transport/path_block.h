@@ -39,9 +39,10 @@ struct PathBlock {
   bool asks_lights;  ///< some light can be sampled
 
   std::uint32_t sample[kMost];  ///< of the wavefront, to which the ray of the next bounce belongs
-  float paths[kMost];  ///< how many paths share the light of the sample
-  float share[kMost];  ///< of the light that the ray of the next bounce stands for: 1 unless the path branches
-  bool onward_only;    ///< the rays to lights have been sent
+  float paths[kMost];           ///< how many paths share the light of the sample
+  float
+      share[kMost];  ///< of the light that the ray of the next bounce stands for: 1 unless the path branches
+  bool onward_only;  ///< the rays to lights have been sent
 
   float direction[3][kMost];  ///< unit direction in which the ray travels
   float throughput[3][kMost];

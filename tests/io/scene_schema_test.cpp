@@ -12,6 +12,7 @@
 #include <regex>
 #include <string>
 
+#include "io/scene/scene_limits.h"
 #include "io/scene/yaml.h"
 #include "tests/io/scene_test_support.h"
 
@@ -51,7 +52,7 @@ class Validator {
  public:
   explicit Validator(const std::string& schema) {
     file_.path = "schema.json", file_.text = schema;
-    parse_yaml(file_);
+    parse_yaml(file_, kMaxSceneNodes);
   }
   bool accepts(const YamlNode& node) const { return accepts(node, *file_.root); }
 
@@ -127,7 +128,7 @@ class SceneSchema : public testing::Test {
   bool accepts(const std::string& text) const {
     YamlFile file;
     file.path = "scene.yaml", file.text = text;
-    parse_yaml(file);
+    parse_yaml(file, kMaxSceneNodes);
     return validator.accepts(*file.root);
   }
 
