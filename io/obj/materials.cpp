@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "io/obj/chunk.h"
 #include "io/obj/material_textures.h"
+#include "io/obj/parsed_obj.h"
 
 namespace oktett {
 namespace {
@@ -44,22 +44,20 @@ bool ends_like_library(std::string_view name) {
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + ('a' - 'A') : a) == b; });
 }
 
-Library load_libraries(const std::vector<ObjChunk>& chunks, const std::string& obj_path, ObjFile& obj,
-                       std::vector<ObjNotice>& notices) {
+Library load_libraries(const std::vector<ObjStatement>& statements, const std::string& obj_path, ObjFile& obj,
+                       std::vector<ObjStatement>& notices) {
   Library library;
   const std::string directory = fs::path(obj_path).parent_path().string();
   std::unordered_map<std::string, bool> seen;
-  for (const ObjChunk& chunk : chunks) {
-    for (const ObjLibrary& statement : chunk.libraries) {
-      for (const std::string& path : split_library_names(statement.names, directory)) {
-        if (!seen.emplace(path, true).second) continue;
-        try {
-          load_mtl(path, library.materials, library.textures, obj.warnings, &library.texture_places);
-        } catch (const Error& error) {
-          library.complete = false;
-          notices.push_back(
-              {statement.where, std::string(error.what()) + "; its materials are replaced by a grey one"});
-        }
+  for (const ObjStatement& statement : statements) {
+    for (const std::string& path : split_library_names(statement.words, directory)) {
+      if (!seen.emplace(path, true).second) continue;
+      try {
+        load_mtl(path, library.materials, library.textures, obj.warnings, &library.texture_places);
+      } catch (const Error& error) {
+        library.complete = false;
+        notices.push_back(
+            {statement.at, std::string(error.what()) + "; its materials are replaced by a grey one", {}});
       }
     }
   }
@@ -69,22 +67,14 @@ Library load_libraries(const std::vector<ObjChunk>& chunks, const std::string& o
   return library;
 }
 
-/// Hands out slots in the order of first use.
-class Slots {
+/// Adds the materials of the slots in their order.
+class SlotMaterials {
  public:
-  Slots(const Library& library, ObjFile& obj, std::vector<ObjNotice>& notices)
+  SlotMaterials(const Library& library, ObjFile& obj, std::vector<ObjStatement>& notices)
       : library_(library), obj_(obj), notices_(notices), textures_(library.textures.size(), kNoId) {}
 
-  /// The slot of `name`; beyond the last one if there are too many. `where` is null if there is no statement.
-  std::size_t of(std::string_view name, const char* where) {
-    const auto [entry, is_new] = by_name_.try_emplace(std::string(name), obj_.materials.size());
-    if (is_new) add(entry->first, where);
-    return entry->second;
-  }
-
- private:
-  void add(const std::string& name, const char* where) {
-    const auto found = library_.by_name.find(name);
+  void add(const ObjStatement& slot) {
+    const auto found = library_.by_name.find(slot.words);
     if (found != library_.by_name.end()) {
       Material material = library_.materials[found->second];
       for_each_texture(material, [this](std::uint32_t& texture) { texture = take_texture(texture); });
@@ -92,13 +82,15 @@ class Slots {
       return;
     }
     Material material;
-    material.name = name.empty() ? "default" : name;
+    material.name = slot.words.empty() ? "default" : slot.words;
     obj_.materials.push_back(std::move(material));
     // Of a library that is missing, one warning is enough.
-    if (where != nullptr && !name.empty() && library_.complete)
-      notices_.push_back({where, "material " + quote_name(name) + " is not defined; a grey one is used"});
+    if (slot.at == ObjStatement::kNowhere || slot.words.empty() || !library_.complete) return;
+    notices_.push_back(
+        {slot.at, "material " + quote_name(slot.words) + " is not defined; a grey one is used", {}});
   }
 
+ private:
   /// Keeps only textures that some used material refers to.
   std::uint32_t take_texture(std::uint32_t texture) {
     if (texture == kNoId) return kNoId;
@@ -112,8 +104,24 @@ class Slots {
 
   const Library& library_;
   ObjFile& obj_;
-  std::vector<ObjNotice>& notices_;
+  std::vector<ObjStatement>& notices_;
   std::vector<std::uint32_t> textures_;
+};
+
+/// Hands out slots in the order of first use.
+class Slots {
+ public:
+  explicit Slots(std::vector<ObjStatement>& materials) : materials_(materials) {}
+
+  /// The slot of `name`, which is the last one if it is new.
+  std::size_t of(std::string_view name, std::uint64_t at) {
+    const auto [entry, is_new] = by_name_.try_emplace(std::string(name), materials_.size());
+    if (is_new) materials_.push_back({at, entry->first, {}});
+    return entry->second;
+  }
+
+ private:
+  std::vector<ObjStatement>& materials_;
   std::unordered_map<std::string, std::size_t> by_name_;
 };
 
@@ -156,29 +164,38 @@ std::vector<std::string> split_library_names(std::string_view text, const std::s
   return paths;
 }
 
-void assign_materials(std::vector<ObjChunk>& chunks, const std::string& obj_path, ObjFile& obj,
-                      std::vector<ObjNotice>& notices) {
-  const Library library = load_libraries(chunks, obj_path, obj, notices);
-  const std::size_t count = obj.mesh.triangle_count();
+void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedObj& parsed) {
+  const auto offset = [text](const char* where) { return static_cast<std::uint64_t>(where - text); };
+  for (const ObjChunk& chunk : chunks)
+    for (const ObjLibrary& library : chunk.libraries)
+      parsed.libraries.push_back({offset(library.where), std::string(library.names), {}});
+  const std::size_t count = parsed.mesh.triangle_count();
   const std::vector<Run> runs = collect_runs(chunks, count);
   if (runs.empty()) return;
 
   constexpr std::size_t max_slots = std::numeric_limits<std::uint16_t>::max();
-  Slots slots(library, obj, notices);
-  obj.mesh.material_slots.resize_uninitialized(count);
-  std::uint16_t* const out = obj.mesh.material_slots.data();
+  Slots slots(parsed.materials);
+  parsed.mesh.material_slots.resize_uninitialized(count);
+  std::uint16_t* const out = parsed.mesh.material_slots.data();
   const std::uint64_t first = runs.front().use.triangle;
-  if (first > 0) std::fill_n(out, first, static_cast<std::uint16_t>(slots.of("", nullptr)));
+  if (first > 0) std::fill_n(out, first, static_cast<std::uint16_t>(slots.of("", ObjStatement::kNowhere)));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const ObjMaterialUse& use = runs[i].use;
     const std::uint64_t end = i + 1 < runs.size() ? runs[i + 1].use.triangle : count;
-    const std::size_t slot = slots.of(use.name, use.where);
+    const std::size_t slot = slots.of(use.name, offset(use.where));
     if (slot >= max_slots) {
       keep_first(runs[i].chunk->failure, use.where, "more than " + std::to_string(max_slots) + " materials");
       return;
     }
     std::fill(out + use.triangle, out + end, static_cast<std::uint16_t>(slot));
   }
+}
+
+void resolve_materials(const std::vector<ObjStatement>& libraries, const std::vector<ObjStatement>& materials,
+                       const std::string& obj_path, ObjFile& obj, std::vector<ObjStatement>& notices) {
+  const Library library = load_libraries(libraries, obj_path, obj, notices);
+  SlotMaterials slots(library, obj, notices);
+  for (const ObjStatement& material : materials) slots.add(material);
 }
 
 }  // namespace oktett

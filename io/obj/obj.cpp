@@ -3,10 +3,12 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
-#include "io/obj/chunk.h"
+#include "io/obj/parsed_obj.h"
 #include "io/text/mapped_file.h"
 
 namespace oktett {
@@ -21,16 +23,20 @@ class ObjLoad {
     if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
   }
 
-  ObjFile run() {
+  ParsedObj run() {
     count();
     read_all_vertices();
     read_all_faces();
-    assign_materials(chunks_, path_, obj_, notices_);
+    assign_slots(chunks_, text_.data(), obj_);
     stop_at_first_failure();
     drop_unused_columns();
-    report_notices();
+    note_skipped();
+    obj_.has_faces = total_.faces > 0;
     return std::move(obj_);
   }
+
+  LineCounter lines() const { return LineCounter(text_); }
+  const char* text() const { return text_.data(); }
 
  private:
   template <class Work>
@@ -105,20 +111,6 @@ class ObjLoad {
     if (!uses_normals) obj_.mesh.normal_indices.clear();
   }
 
-  void report_notices() {
-    note_skipped();
-    std::stable_sort(notices_.begin(), notices_.end(),
-                     [](const ObjNotice& a, const ObjNotice& b) { return a.where < b.where; });
-    LineCounter lines(text_);
-    std::vector<Warning> warnings;
-    for (const ObjNotice& notice : notices_) {
-      const TextPosition position = lines.at(notice.where);
-      warnings.push_back({Location{path_, position.line, position.column}, notice.message});
-    }
-    if (total_.faces == 0) warnings.push_back({Location{path_}, "no faces"});
-    obj_.warnings.insert(obj_.warnings.begin(), warnings.begin(), warnings.end());
-  }
-
   /// One warning for lines and points together, and one for each unknown keyword.
   void note_skipped() {
     std::vector<std::string_view> seen;
@@ -126,19 +118,23 @@ class ObjLoad {
     for (const ObjChunk& chunk : chunks_) {
       for (const ObjSkipped& skipped : chunk.skipped) {
         if (skipped.keyword == "l" || skipped.keyword == "p") {
-          if (!lines_seen) notices_.push_back({skipped.where, "lines and points are skipped"});
+          if (!lines_seen) note(skipped.where, "lines and points are skipped");
           lines_seen = true;
           continue;
         }
         if (std::find(seen.begin(), seen.end(), skipped.keyword) != seen.end()) continue;
         if (seen.size() == kMaxSkippedKeywords) {
-          notices_.push_back({skipped.where, "more unknown keywords are ignored"});
+          note(skipped.where, "more unknown keywords are ignored");
           return;
         }
         seen.push_back(skipped.keyword);
-        notices_.push_back({skipped.where, "unknown keyword " + quote_name(skipped.keyword) + " is ignored"});
+        note(skipped.where, "unknown keyword " + quote_name(skipped.keyword) + " is ignored");
       }
     }
+  }
+
+  void note(const char* where, std::string message) {
+    obj_.notices.push_back({static_cast<std::uint64_t>(where - text_.data()), std::move(message), {}});
   }
 
   const std::string path_;
@@ -147,14 +143,57 @@ class ObjLoad {
   std::string_view text_;
   std::vector<ObjChunk> chunks_;
   ObjCounts total_;
-  ObjFile obj_;
-  std::vector<ObjNotice> notices_;
+  ParsedObj obj_;
 };
 
 }  // namespace
 
-ObjFile load_obj(const std::string& path, const ObjOptions& options) { return ObjLoad(path, options).run(); }
+ObjFile load_obj(const std::string& path, const ObjOptions& options) {
+  ObjLoad load(path, options);
+  ParsedObj parsed = load.run();
+  LineCounter lines = load.lines();
+  return finish_obj(path, std::move(parsed), [&](std::uint64_t at) { return lines.at(load.text() + at); });
+}
 
 ObjFile load_obj(const std::string& path) { return load_obj(path, ObjOptions{}); }
+
+ParsedObj parse_obj(const std::string& path) {
+  ObjLoad load(path, ObjOptions{});
+  ParsedObj parsed = load.run();
+  std::vector<ObjStatement*> statements;
+  for (auto* list : {&parsed.libraries, &parsed.materials, &parsed.notices})
+    for (ObjStatement& statement : *list)
+      if (statement.at != ObjStatement::kNowhere) statements.push_back(&statement);
+  std::ranges::sort(statements, {}, &ObjStatement::at);
+  LineCounter lines = load.lines();
+  for (ObjStatement* statement : statements) statement->position = lines.at(load.text() + statement->at);
+  return parsed;
+}
+
+ObjFile finish_obj(const std::string& path, ParsedObj parsed,
+                   const std::function<TextPosition(std::uint64_t)>& position) {
+  ObjFile obj;
+  obj.mesh = std::move(parsed.mesh);
+  // Those about materials stand before others of the same place.
+  std::vector<ObjStatement> notices;
+  resolve_materials(parsed.libraries, parsed.materials, path, obj, notices);
+  std::ranges::move(parsed.notices, std::back_inserter(notices));
+  std::ranges::stable_sort(notices, {}, &ObjStatement::at);
+  std::vector<Warning> warnings;
+  for (const ObjStatement& notice : notices) {
+    const TextPosition place = position(notice.at);
+    warnings.push_back({Location{path, place.line, place.column}, notice.words});
+  }
+  if (!parsed.has_faces) warnings.push_back({Location{path}, "no faces"});
+  obj.warnings.insert(obj.warnings.begin(), warnings.begin(), warnings.end());
+  return obj;
+}
+
+ObjFile finish_obj(const std::string& path, ParsedObj parsed) {
+  std::unordered_map<std::uint64_t, TextPosition> positions;
+  for (const auto* list : {&parsed.libraries, &parsed.materials, &parsed.notices})
+    for (const ObjStatement& statement : *list) positions.emplace(statement.at, statement.position);
+  return finish_obj(path, std::move(parsed), [&](std::uint64_t at) { return positions[at]; });
+}
 
 }  // namespace oktett
