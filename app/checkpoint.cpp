@@ -62,6 +62,7 @@ RenderArguments resumed_arguments(const CommandLine& line, const RenderArguments
   read_render_words(film.words, all);
   all.threads = 0;
   for (std::string* word : {&all.isa, &all.stats, &all.display_server, &all.photon_map}) word->clear();
+  all.cache = {};
   all.quiet = all.verbose = all.progress = false;
   // The film may have been moved, and is its own checkpoint.
   const bool film_only = is_film_name(all.outfile) || !all.checkpoints.shard.empty();

@@ -20,19 +20,6 @@
 namespace oktett {
 namespace {
 
-/// "1500000", "512M" and the like, in bytes.
-std::uint64_t parse_bytes(const std::string& text) {
-  std::uint64_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  int shift = 0;
-  if (rest + 1 == end) shift = *rest == 'K' ? 10 : *rest == 'M' ? 20 : *rest == 'G' ? 30 : -1;
-  const bool good = error == std::errc{} && rest + 1 >= end && shift >= 0 && number > 0;
-  if (!good || number > UINT64_MAX >> shift)
-    throw Error(fmt::format("--max-memory: '{}' is no number of bytes such as 800000000, 800M or 4G", text));
-  return number << shift;
-}
-
 /// Private memory that can be written to, and not the whole address space: files that are mapped for reading,
 /// and address space that allocators only reserve, take no memory.
 void limit_memory(std::uint64_t bytes) {
@@ -61,6 +48,18 @@ void limit_time(double seconds) {
 
 }  // namespace
 
+std::uint64_t parse_bytes(const char* option, const std::string& text) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  int shift = 0;
+  if (rest + 1 == end) shift = *rest == 'K' ? 10 : *rest == 'M' ? 20 : *rest == 'G' ? 30 : -1;
+  const bool good = error == std::errc{} && rest + 1 >= end && shift >= 0 && number > 0;
+  if (!good || number > UINT64_MAX >> shift)
+    throw Error(fmt::format("{}: '{}' is no number of bytes such as 800000000, 800M or 4G", option, text));
+  return number << shift;
+}
+
 void add_limit_options(Verb& verb, LimitArguments& a) {
   verb.option("--max-memory", &a.memory, "BYTES", "Most memory to use, e.g. 800M or 4G");
   verb.option("--timeout", &a.seconds, "SECONDS", "Most time to take; what is finished then is kept");
@@ -68,7 +67,7 @@ void add_limit_options(Verb& verb, LimitArguments& a) {
 }
 
 void apply_limits(const LimitArguments& arguments) {
-  const std::uint64_t bytes = arguments.memory.empty() ? 0 : parse_bytes(arguments.memory);
+  const std::uint64_t bytes = arguments.memory.empty() ? 0 : parse_bytes("--max-memory", arguments.memory);
   const double seconds =
       arguments.seconds.empty() ? 0 : parse_amount("--timeout", arguments.seconds, "seconds", 1e-3, 1e8);
   if (!arguments.root.empty()) confine_files(arguments.root);

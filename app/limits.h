@@ -1,6 +1,7 @@
 #pragma once
 /// \file What a run may use, for services that render scenes of strangers: memory, time, folders.
 
+#include <cstdint>
 #include <string>
 
 #include "app/command_line.h"
@@ -16,6 +17,9 @@ struct LimitArguments {
 
 /// Exit status after --timeout, as of the command `timeout`.
 inline constexpr int kExitTimeout = 124;
+
+/// "1500000", "512M" and the like, in bytes. Throws Error that names the option.
+std::uint64_t parse_bytes(const char* option, const std::string& text);
 
 void add_limit_options(Verb& verb, LimitArguments& arguments);
 

@@ -223,6 +223,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   Stopwatch watch;
   StageTimes times;
   const FilesRead files;
+  const std::unique_ptr<SceneCache> cache = open_cache(arguments.cache);
   Scene scene = load(arguments);
   const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
   print_warnings(scene.warnings, most_warnings);

@@ -96,6 +96,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.option("--photon-map", &a.photon_map, "FILE",
               "Photons for --caustics: read from FILE, or written if it is missing");
   add_checkpoint_options(verb, a.checkpoints);
+  add_cache_options(verb, a.cache);
   verb.option("--look", &a.look, "LOOK", "How a mesh given alone is shown: studio, clay, normals or wire");
   verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
   add_bvh_option(verb, a.bvh);

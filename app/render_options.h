@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "app/cache_options.h"
 #include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/film_options.h"
@@ -39,6 +40,7 @@ struct RenderArguments {
   bool caustics = false;
   std::string photon_map;  ///< file; empty: photons are not kept
   CheckpointArguments checkpoints;
+  CacheArguments cache;
   bool quiet = false;
   bool verbose = false;
   bool progress = false;

@@ -5,6 +5,7 @@
 
 #include "accel/build/fill_pools.h"
 #include "accel/build/mesh_source.h"
+#include "accel/build/tree_store.h"
 #include "accel/build/wide_tree.h"
 #include "accel/csg/csg.h"
 #include "accel/geometry_bounds.h"
@@ -123,9 +124,12 @@ void add_listed(Accel& accel, Geometry& geometry, std::uint32_t first, Column<Pr
   list.places = {};
 }
 
-void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& refs, ItemOrder& order,
-                    const BuildOptions& options) {
+/// Adds everything but triangles. Returns how many references there are before each geometry.
+std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrder& order,
+                                    const BuildOptions& options) {
+  std::vector<std::size_t> first_ref;
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
+    first_ref.push_back(refs.size());
     const Geometry& geometry = accel.geometries[g];
     const Kind kind = kind_of(geometry);
     const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
@@ -134,10 +138,7 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
       add_listed(accel, accel.geometries[g], first, refs, order);
       continue;
     }
-    if (kind == Kind::triangle) {
-      accel.bounds.grow(meshes.add_references(g, refs, options.parallel));
-      continue;
-    }
+    if (kind == Kind::triangle) continue;
     if (kind == Kind::csg) {
       add_combination(accel, geometry, first, options, refs, order);
       continue;
@@ -161,6 +162,41 @@ void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& ref
       accel.bounds.grow(box);
     }
   }
+  return first_ref;
+}
+
+/// All references in the order of their geometries: to triangles, and `others`, which it uses up.
+Column<PrimRef> add_triangles(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
+                              const std::vector<std::size_t>& first_other, bool parallel) {
+  if (accel.stats.triangles == 0) return std::move(others);
+  Column<PrimRef> refs;
+  const PrimRef* next = others.begin();
+  const auto add_others_before = [&](const PrimRef* end) {
+    for (; next != end; ++next) refs.push_back(*next);
+  };
+  for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
+    const bool usable = accel.geometries[g].transform.is_invertible();
+    if (static_cast<Kind>(accel.kinds[g]) != Kind::triangle || !usable) continue;
+    add_others_before(others.begin() + first_other[g]);
+    accel.bounds.grow(meshes.add_references(g, refs, parallel));
+  }
+  add_others_before(others.end());
+  others.clear();
+  return refs;
+}
+
+/// Makes tree, bounds and the order of the items, or takes them from the store.
+void make_tree(Accel& accel, ItemOrder& order, const BuildOptions& options) {
+  Column<PrimRef> others;
+  const std::vector<std::size_t> first_other = add_others(accel, others, order, options);
+  TreeStore* const store = tree_store();
+  const bool keeps = store != nullptr && accel.stats.triangles >= store->least_triangles();
+  const std::uint64_t key = keeps ? tree_key(accel, others, options) : 0;
+  if (keeps && load_kept_tree(accel, order, others, key, *store)) return;
+  const MeshSource meshes(accel);
+  Column<PrimRef> refs = add_triangles(accel, meshes, others, first_other, options.parallel);
+  build_tree(accel, refs, meshes, order, options, build_kernels(available_isas().back()));
+  if (keeps) store->keep(key, accel, order);
 }
 
 /// Expected node and leaf visits of a random ray that meets the root's box (MacDonald and Booth 1990).
@@ -209,11 +245,8 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   for (std::size_t g = 0; g < accel->geometries.size(); ++g)
     accel->one_item_each &= accel->first_item[g + 1] == g + 1;
 
-  Column<PrimRef> refs;
   ItemOrder order;
-  const MeshSource meshes(*accel);
-  add_references(*accel, meshes, refs, order, options);
-  build_tree(*accel, refs, meshes, order, options, build_kernels(available_isas().back()));
+  make_tree(*accel, order, options);
   fill_pools(*accel, order);
   accel->stats.unbounded = accel->unbounded.size();
   accel->stats.sah_cost = sah_cost(*accel);

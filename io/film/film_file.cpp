@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "io/film/film_header.h"
 #include "io/image/output.h"
+#include "io/text/files_read.h"
 #include "io/text/mapped_file.h"
 
 namespace oktett {
@@ -78,6 +79,7 @@ std::string difference(const FilmFingerprint& film, const FilmFingerprint& now) 
 
 /// What a scene can do without has a hash, too, while it is missing.
 static std::string hash_of_file(const std::string& path) {
+  if (const auto known = known_content(path)) return fmt::format("{:016x}", *known);
   try {
     const MappedFile file(path);
     return fmt::format("{:016x}", checksum(file.text()));

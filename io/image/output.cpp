@@ -1,6 +1,7 @@
 #include "io/image/output.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -155,6 +156,18 @@ void OutputFile::commit() {
   // A rename may reach the disk before the data it names, unless the data is flushed first. Some file systems
   // cannot flush; that is no reason to lose a picture.
   if (fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(path_, "cannot write: " + reason(errno));
+  rename_to_target();
+}
+
+void OutputFile::commit_unflushed(std::int64_t time) {
+  timespec times[2];
+  for (timespec& t : times)
+    t.tv_sec = static_cast<time_t>(time / 1'000'000'000), t.tv_nsec = static_cast<long>(time % 1'000'000'000);
+  if (futimens(file_, times) != 0) fail(path_, "cannot write: " + reason(errno));
+  rename_to_target();
+}
+
+void OutputFile::rename_to_target() {
   std::error_code error;
   fs::rename(temporary(), target_, error);
   if (error) fail(path_, "cannot write: " + error.message());

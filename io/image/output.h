@@ -28,8 +28,13 @@ class OutputFile {
   void seek(std::uint64_t place) { place_ = place; }
   /// Flushes the temporary to the disk and renames it to the path. Throws Error of kind io.
   void commit();
+  /// The same without flushing: after a crash of the machine the file may lack some of its bytes. It counts
+  /// as changed last at `time`, in nanoseconds since 1970.
+  void commit_unflushed(std::int64_t time);
 
  private:
+  void rename_to_target();
+
   std::string path_;       ///< as the user gave it
   std::string target_;     ///< where symbolic links lead
   std::string temporary_;  ///< empty while the temporary has no name

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/cache/scene_cache.h"
 #include "io/image/image_access.h"
 #include "io/obj/material_textures.h"
 #include "io/obj/obj.h"
@@ -62,7 +63,8 @@ const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, Scene& scen
   const std::string key = canonical_path(path);
   const auto found = entries_.find(key);
   if (found != entries_.end()) return found->second;
-  ObjFile obj = load_obj(path);
+  SceneCache* const cache = SceneCache::current();
+  ObjFile obj = cache != nullptr ? cache->load_mesh(path) : load_obj(path);
   check_textures(obj);
   Entry entry;
   entry.slot_materials = append_materials(obj, scene);

@@ -1,6 +1,8 @@
 #pragma once
 /// \file Which files a scene is read from.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +22,9 @@ class FilesRead {
 
 /// Called by whoever opens a file of a scene. Threads may call it at the same time.
 void note_file_read(const std::string& path);
+
+/// The checksum of the content of a file that is being noted, where it is known without reading the file.
+void note_content(const std::string& path, std::uint64_t checksum);
+std::optional<std::uint64_t> known_content(const std::string& path);
 
 }  // namespace oktett

@@ -1,0 +1,116 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include "core/bytes.h"
+#include "core/error.h"
+#include "io/cache/entries.h"
+
+namespace oktett {
+namespace {
+
+/// The number changes with what parse_obj makes of a file.
+constexpr std::string_view kKind = "mesh 1 " OKTETT_VERSION;
+
+void append(std::string& bytes, const std::vector<ObjStatement>& statements) {
+  append_number(bytes, static_cast<std::uint32_t>(statements.size()));
+  for (const ObjStatement& s : statements) {
+    append_number(bytes, s.at);
+    append_text(bytes, s.words);
+    append_number(bytes, std::int32_t{s.position.line});
+    append_number(bytes, std::int32_t{s.position.column});
+  }
+}
+
+std::vector<ObjStatement> take_statements(ByteReader& reader) {
+  std::vector<ObjStatement> statements;
+  for (std::uint32_t left = reader.count(20); left > 0; --left) {
+    ObjStatement s;
+    s.at = reader.number<std::uint64_t>();
+    s.words = reader.text();
+    s.position.line = reader.number<std::int32_t>();
+    s.position.column = reader.number<std::int32_t>();
+    statements.push_back(std::move(s));
+  }
+  return statements;
+}
+
+/// Whether `good` holds for all elements.
+template <class T, class Good>
+bool all_of(const Column<T>& column, const Good& good) {
+  using Range = tbb::blocked_range<std::size_t>;
+  return tbb::parallel_reduce(
+      Range(0, column.size(), std::size_t{1} << 16), true,
+      [&](const Range& range, bool all) {
+        // Without an early end, so that it goes in lanes.
+        for (std::size_t i = range.begin(); i < range.end(); ++i) all &= good(column[i]);
+        return all;
+      },
+      [](bool a, bool b) { return a && b; });
+}
+
+/// One index per corner, or none at all; below `count`, or kNoId.
+bool are_indices(const Column<std::uint32_t>& indices, std::size_t corners, std::size_t count) {
+  if (indices.empty()) return true;
+  return indices.size() == corners &&
+         all_of(indices, [count](std::uint32_t index) { return index < count || index == kNoId; });
+}
+
+}  // namespace
+
+std::string mesh_header(const MeshEntry& entry) {
+  std::string bytes;
+  append_text(bytes, kKind);
+  append_text(bytes, entry.path);
+  for (const std::uint64_t n : {entry.stamp.size, entry.stamp.inode}) append_number(bytes, n);
+  for (const std::int64_t n : {entry.stamp.content_time, entry.stamp.status_time}) append_number(bytes, n);
+  append_number(bytes, entry.checksum);
+  append_number(bytes, static_cast<std::uint8_t>(entry.parsed.has_faces));
+  append(bytes, entry.parsed.libraries);
+  append(bytes, entry.parsed.materials);
+  append(bytes, entry.parsed.notices);
+  return bytes;
+}
+
+std::vector<CacheSection> mesh_sections(const MeshEntry& entry) {
+  const TriangleMesh& mesh = entry.parsed.mesh;
+  return {section_of(mesh.positions),     section_of(mesh.normals),        section_of(mesh.uvs),
+          section_of(mesh.indices),       section_of(mesh.normal_indices), section_of(mesh.uv_indices),
+          section_of(mesh.material_slots)};
+}
+
+MeshEntry read_mesh_header(const CacheFile& file) {
+  MeshEntry entry;
+  try {
+    ByteReader reader(file.header());
+    if (reader.text() != kKind) throw Error("is not of this version");
+    entry.path = reader.text();
+    for (std::uint64_t* n : {&entry.stamp.size, &entry.stamp.inode}) *n = reader.number<std::uint64_t>();
+    for (std::int64_t* n : {&entry.stamp.content_time, &entry.stamp.status_time})
+      *n = reader.number<std::int64_t>();
+    entry.checksum = reader.number<std::uint64_t>();
+    entry.parsed.has_faces = reader.number<std::uint8_t>() != 0;
+    for (auto* list : {&entry.parsed.libraries, &entry.parsed.materials, &entry.parsed.notices})
+      *list = take_statements(reader);
+  } catch (const Error& error) {
+    file.fail(error.what());
+  }
+  return entry;
+}
+
+void read_mesh_columns(const CacheFile& file, MeshEntry& entry) {
+  TriangleMesh& mesh = entry.parsed.mesh;
+  file.copy(0, mesh.positions), file.copy(1, mesh.normals), file.copy(2, mesh.uvs);
+  file.copy(3, mesh.indices), file.copy(4, mesh.normal_indices), file.copy(5, mesh.uv_indices);
+  file.copy(6, mesh.material_slots);
+  const std::size_t corners = mesh.indices.size(), positions = mesh.positions.size();
+  const std::size_t slots = entry.parsed.materials.size();
+  const bool good = corners % 3 == 0 &&
+                    all_of(mesh.indices, [=](std::uint32_t index) { return index < positions; }) &&
+                    are_indices(mesh.normal_indices, corners, mesh.normals.size()) &&
+                    are_indices(mesh.uv_indices, corners, mesh.uvs.size()) &&
+                    mesh.material_slots.size() == (slots > 0 ? corners / 3 : 0) &&
+                    all_of(mesh.material_slots, [=](std::uint16_t slot) { return slot < slots; });
+  if (!good) file.fail("has indices that lead nowhere");
+}
+
+}  // namespace oktett

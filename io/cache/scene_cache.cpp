@@ -1,0 +1,144 @@
+#include "io/cache/scene_cache.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "core/block_checksum.h"
+#include "core/bytes.h"
+#include "core/error.h"
+#include "io/cache/entries.h"
+#include "io/text/file_access.h"
+#include "io/text/files_read.h"
+#include "io/text/mapped_file.h"
+
+namespace oktett {
+namespace {
+
+std::atomic<SceneCache*> current_cache{nullptr};
+
+/// File systems may give two changes within this time the same time.
+constexpr std::int64_t kTick = 2'000'000'000;
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+/// Nanoseconds since 1970.
+std::int64_t now() {
+  timespec time{};
+  clock_gettime(CLOCK_REALTIME, &time);
+  return nanoseconds(time);
+}
+
+/// The stamp of a file that may be read; nothing for all others.
+std::optional<FileStamp> stamp_of(const std::string& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return std::nullopt;
+  struct stat s {};
+  const bool good = fstat(file, &s) == 0 && why_unreadable(file).empty();
+  close(file);
+  if (!good) return std::nullopt;
+  return FileStamp{static_cast<std::uint64_t>(s.st_size), static_cast<std::uint64_t>(s.st_ino),
+                   nanoseconds(s.st_mtim), nanoseconds(s.st_ctim)};
+}
+
+std::uint64_t content_checksum(const std::string& path) { return checksum(MappedFile(path).text()); }
+
+/// Fills in what the cache holds of the file with the path and stamp of `entry`; false if that is nothing.
+bool read_mesh(const CacheFolder& folder, const std::string& name, const std::string& path,
+               MeshEntry& entry) {
+  bool found = false;
+  folder.read(name, [&](const CacheFile& file) {
+    const std::int64_t start = now();
+    MeshEntry kept = read_mesh_header(file);
+    if (kept.path != entry.path || kept.stamp != entry.stamp) return;
+    // The file may have changed again, at the same time by its file system's clock, after it was read.
+    const bool settled = file.time() >= kept.stamp.status_time + kTick;
+    if (!settled && content_checksum(path) != kept.checksum) return;
+    read_mesh_columns(file, kept);
+    if (start >= kept.stamp.status_time + kTick) file.touch();
+    entry = std::move(kept);
+    found = true;
+  });
+  return found;
+}
+
+std::string tree_name(std::uint64_t key) { return fmt::format("{:016x}.tree", key); }
+
+}  // namespace
+
+SceneCache::SceneCache(const std::string& folder, SceneCacheOptions options)
+    : options_(std::move(options)), folder_(folder, options_.most_bytes, options_.tell) {
+  current_cache = this;
+  set_tree_store(this);
+}
+
+SceneCache::~SceneCache() {
+  set_tree_store(nullptr);
+  current_cache = nullptr;
+}
+
+SceneCache* SceneCache::current() { return current_cache; }
+
+ObjFile SceneCache::load_mesh(const std::string& path) {
+  const std::optional<FileStamp> stamp = stamp_of(path);
+  // What is wrong with the file is said by load_obj.
+  if (!stamp || stamp->size < options_.least_file_bytes) return load_obj(path);
+  MeshEntry entry;
+  std::error_code error;
+  entry.path = std::filesystem::canonical(path, error).string();
+  entry.stamp = *stamp;
+  const std::string name = fmt::format("{:016x}.mesh", checksum(entry.path + "\n" OKTETT_VERSION));
+  bool found = read_mesh(folder_, name, path, entry);
+  if (!found) {
+    const std::shared_ptr<CacheFolder::Lock> lock = folder_.lock(name);
+    found = read_mesh(folder_, name, path, entry);
+    if (!found) {
+      const std::int64_t start = now();
+      entry.parsed = parse_obj(path);
+      entry.checksum = content_checksum(path);
+      if (stamp_of(path) == stamp) folder_.write(name, mesh_header(entry), mesh_sections(entry), start);
+    }
+  }
+  note_file_read(path);
+  if (found) note_content(path, entry.checksum);
+  return finish_obj(path, std::move(entry.parsed));
+}
+
+bool SceneCache::load(std::uint64_t key, Accel& accel, ItemOrder& order) {
+  const std::string name = tree_name(key);
+  const auto read = [&] {
+    return folder_.read(name, [&](const CacheFile& file) {
+      read_tree(file, key, accel, order);
+      file.touch();
+    });
+  };
+  if (read()) return true;
+  std::shared_ptr<CacheFolder::Lock> lock = folder_.lock(name);
+  if (read()) return true;
+  const std::lock_guard guard(mutex_);
+  building_[key] = std::move(lock);
+  return false;
+}
+
+void SceneCache::refuse(std::uint64_t key, const std::string& why) {
+  folder_.tell_of(tree_name(key) + " in the cache: " + why + "; not used");
+}
+
+void SceneCache::keep(std::uint64_t key, const Accel& accel, const ItemOrder& order) {
+  std::vector<std::uint32_t> items;
+  const std::vector<CacheSection> sections = tree_sections(accel, order, items);
+  folder_.write(tree_name(key), tree_header(key, accel, order), sections, now());
+  const std::lock_guard guard(mutex_);
+  building_.erase(key);
+}
+
+}  // namespace oktett
