@@ -29,7 +29,8 @@ class Endless {
                       {"scenes", "kinds of shapes", 0, known_kinds().size()},
                       {"surfaces", "exact surfaces", 0, exact_oracle_names().size()},
                       {"combinations", "trees of any shape", 0, 1},
-                      {"meshes", "meshes x placements", 0, meshes_.size() * mesh_placements().size()}};
+                      {"meshes", "meshes x placements", 0, meshes_.size() * mesh_placements().size()},
+                      {"roots", "degrees", 0, kKnownRootsDegree}};
     for (std::size_t k = 0; k < coverage_.rows.size(); ++k)
       next_.push_back(mix_bits(mix_bits(options.seed) + k) >> 1);
   }
@@ -38,7 +39,7 @@ class Endless {
     while (in_time()) {
       const std::uint64_t size = std::uint64_t{1} << std::min(coverage_.rounds, kLargestRound);
       const bool complete = kernels(2048 * size) && scenes(8 * size) && surfaces(512 * size) &&
-                            combinations(4 * size) && meshes(512 * size);
+                            combinations(4 * size) && meshes(512 * size) && roots(512 * size);
       coverage_.rounds += complete;
     }
     coverage_.seconds = seconds();
@@ -46,7 +47,7 @@ class Endless {
   }
 
  private:
-  enum Family : std::size_t { kKernelRow, kSceneRow, kSurfaceRow, kCombinationRow, kMeshRow };
+  enum Family : std::size_t { kKernelRow, kSceneRow, kSurfaceRow, kCombinationRow, kMeshRow, kRootsRow };
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool in_time() const { return seconds() < options_.seconds; }
@@ -116,6 +117,17 @@ class Endless {
     return true;
   }
 
+  bool roots(std::uint64_t polynomials) {
+    for (int degree = 1; degree <= kKnownRootsDegree; ++degree) {
+      if (!in_time()) return false;
+      const RootsTally t = verify_roots(degree, polynomials, take(kRootsRow, polynomials));
+      count(kRootsRow, {fmt::format("{}", degree)}, t.polynomials, 0);
+      if (!t.failure.empty())
+        found(kRootsRow, fmt::format("{}", degree), [&] { return finding_of(degree, t); });
+    }
+    return true;
+  }
+
   void count(Family family, const std::set<std::string>& what, std::uint64_t cases, std::uint64_t rays) {
     CoverageRow& row = coverage_.rows[family];
     seen_[family].insert(what.begin(), what.end());
@@ -153,7 +165,7 @@ class Endless {
   double next_report_ = 60;
   Coverage coverage_;
   std::vector<std::uint64_t> next_;
-  std::set<std::string> seen_[5];
+  std::set<std::string> seen_[6];
   std::set<std::string> known_;
 };
 

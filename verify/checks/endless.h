@@ -23,7 +23,7 @@ struct CoverageRow {
   std::string family;
   std::string unit;  ///< what `covered` counts, e.g. "kernels x classes"
   std::size_t covered = 0, of = 0;
-  std::uint64_t cases = 0;  ///< shapes, trees or scenes
+  std::uint64_t cases = 0;  ///< shapes, trees, scenes or polynomials
   std::uint64_t rays = 0;
   std::uint64_t wrong = 0;  ///< checks with a failure
 };
@@ -44,9 +44,10 @@ struct EndlessReport {
   std::function<void(const std::string& path, const std::string& what)> finding;
 };
 
-/// Checks rounds of cases until the time is over: single kernels, random scenes, exact surfaces, combinations
-/// and closed meshes. The first round is small and holds something of everything. Which cases come is a
-/// function of the seed; how many, of the time. Throws Error if a finding cannot be saved.
+/// Checks rounds of cases until the time is over: single kernels, random scenes, exact surfaces,
+/// combinations, closed meshes and root finders. The first round is small and holds something of everything.
+/// Which cases come is a function of the seed; how many, of the time. Throws Error if a finding cannot be
+/// saved.
 Coverage verify_endless(const EndlessOptions& options, const EndlessReport& report);
 
 }  // namespace oktett

@@ -191,6 +191,7 @@ std::string repeated(const std::string& repeat, const std::vector<Isa>& isas) {
   std::istringstream words(repeat);
   std::string check, name, kind;
   std::uint64_t first = 0, count = 0, placement = 0;
+  int degree = 0;
   words >> check;
   if (check == "kernel" && words >> name >> kind >> first) {
     for (int k = 0; k < kKernels; ++k)
@@ -206,6 +207,8 @@ std::string repeated(const std::string& repeat, const std::vector<Isa>& isas) {
     return verify_csg(kOneTrial, isas, first).failure;
   } else if (check == "scene" && words >> first) {
     return verify_scenes(1, isas, first).failure;
+  } else if (check == "roots" && words >> degree >> first && degree >= 1 && degree <= kKnownRootsDegree) {
+    return verify_roots(degree, 1, first).failure;
   } else if (check == "mesh" && words >> name >> placement >> first >> count) {
     const auto placements = mesh_placements();
     for (const OracleMesh& mesh : make_closed_meshes())
@@ -247,6 +250,10 @@ Finding finding_of(const OracleMesh& mesh, std::size_t placement, std::uint64_t 
   shape.mesh = std::make_shared<TriangleMesh>(placed_as(mesh.mesh, mesh_placements()[placement]));
   finding.scene.objects.push_back(object_of(shape, {}));
   return finding;
+}
+
+Finding finding_of(int degree, const RootsTally& tally) {
+  return {tally.failure, fmt::format("roots {} {}", degree, tally.first_failure), {}, {}};
 }
 
 Finding finding_of(const SceneTally& tally) {

@@ -11,6 +11,7 @@
 #include "verify/checks/exact.h"
 #include "verify/checks/kernels.h"
 #include "verify/checks/meshes.h"
+#include "verify/checks/roots.h"
 #include "verify/checks/scenes.h"
 
 namespace oktett {
@@ -29,6 +30,7 @@ Finding finding_of(const CsgTally& tally);
 /// `placement` is an index into mesh_placements(); `count` rays from number `first` on were checked.
 Finding finding_of(const OracleMesh& mesh, std::size_t placement, std::uint64_t first, std::uint64_t count,
                    const MeshTally& tally);
+Finding finding_of(int degree, const RootsTally& tally);
 /// Of a random scene; with all of its objects and rays.
 Finding finding_of(const SceneTally& tally);
 
