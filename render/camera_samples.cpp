@@ -76,17 +76,6 @@ void choose_patterns(const RenderContext& context, std::span<const WavefrontPixe
       samples.pattern[i++] = context.area_lights.pattern(pixel.x, pixel.y, number);
 }
 
-/// Gives the branches of the samples numbers of their own, so that together they are spread as evenly as so
-/// many samples.
-void number_branches(SampleBatch& samples) {
-  for (std::uint32_t b = 0; b < samples.branches; ++b)
-    for (std::uint32_t i = 0; i < samples.size(); ++i) {
-      const std::uint32_t entry = samples.branch_entry(i, b);
-      samples.number[entry] = samples.number[i] * samples.branches + b;
-      samples.key[entry] = mix_bits(samples.key[i]);
-    }
-}
-
 }  // namespace
 
 void start_wavefront(const RenderContext& context, std::span<const WavefrontPixel> pixels,
@@ -99,13 +88,12 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
   const std::size_t lights = context.lights.size() + context.area_lights.samples;
   wavefront.shadows.resize(path ? kAreaQueue + 1 : std::max<std::size_t>(1, lights));
   wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);
-  wavefront.samples.resize_uninitialized(count, context.branches, context.data_layers);
+  wavefront.samples.resize_uninitialized(count, context.data_layers);
   wavefront.rays.resize_uninitialized(count);
   if (context.settings.samples == 1 && first == 0)
     centre_samples(context, pixels, wavefront);
   else
     spread_samples(context, pixels, first, last, wavefront);
-  if (context.branches > 1) number_branches(wavefront.samples);
   if (!context.area_lights.empty()) choose_patterns(context, pixels, first, last, wavefront.samples);
   if (context.camera.lens_radius > 0) spread_over_lens(context, pixels, first, last, wavefront);
   camera_rays(context.camera, {wavefront.film_x, wavefront.film_y, &wavefront.lens_x, &wavefront.lens_y},

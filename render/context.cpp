@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include "core/math.h"
@@ -129,7 +128,6 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
   if (c.settings.kind == IntegratorKind::path)
-    c.branches = getenv("BR") ? atoi(getenv("BR")) : 1,
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));

@@ -66,17 +66,13 @@ void begin_path_code(const InteractionBlock& s, const PathRays& rays, unsigned l
     c.behind |= std::uint64_t{bits(behind)} << i;
     put(direction, c.direction), put(load(rays.throughput), c.throughput), put(ng, c.ng), put(ns, c.ns);
   }
-  if (c.asks_lights) {
-    sobol_points_of<A>(c, dimension(Decision::light, level), c.light, nullptr);
-    sobol_points_of<A>(c, dimension(Decision::light_place, level), c.light_x, c.light_y);
-  }
-}
-
-template <class A>
-void onward_numbers_code(unsigned level, PathBlock& c) {
   const auto of = [&](Decision decision) { return dimension(decision, level); };
   sobol_numbers_of<A>(c, of(Decision::lobe), c.lobe);
   sobol_points_of<A>(c, of(Decision::direction), c.direction_x, c.direction_y);
+  if (c.asks_lights) {
+    sobol_points_of<A>(c, of(Decision::light), c.light, nullptr);
+    sobol_points_of<A>(c, of(Decision::light_place), c.light_x, c.light_y);
+  }
   // A path has no more bounces than its wavefront.
   if (level + 1 > kSureBounces) sobol_numbers_of<A>(c, of(Decision::roulette), c.roulette);
 }

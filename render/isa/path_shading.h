@@ -59,7 +59,7 @@ class PathShading {
     ng_ = load(at, c_.ng), z_ = load(at, c_.ns), throughput_ = load(at, c_.throughput);
     basis_lanes(z_, x_, y_);
     const Lobes lobes(surface, to_local(-load(at, c_.direction)));
-    if (!c_.onward_only) send_shadow_rays(lobes, at, real);
+    send_shadow_rays(lobes, at, real);
     send_onward(lobes, at, real);
   }
 
@@ -141,20 +141,18 @@ class PathShading {
     unsigned may_end = 0;
     for (int k = 0; k < W; ++k) may_end |= (c_.bounces[entry_[k]] + 1u > kSureBounces ? 1u : 0u) << k;
     if (may_end != 0) {
-      const F most = max(max(onward.x, onward.y), onward.z),
-              chance = min(sqrt(most * at.load(c_.paths)), one);
+      const F chance = min(sqrt(max(max(onward.x, onward.y), onward.z)), one);
       sent &= ~(may_end & bits(at.load(c_.roulette) >= chance));
       onward = onward * select(M::from_bits(may_end), one / chance, one);
     }
     if (sent == 0) return;
-    onward = onward * at.load(c_.share);
     PathOnward& to = out_.next;
     append_lanes(sent, offset_lanes(position_, error_, n_, direction), to.origin, to.size);
     append_lanes(sent, direction, to.direction, to.size), append_lanes(sent, onward, to.throughput, to.size);
     append_lanes(sent, s.pdf, to.pdf + to.size);
     for (unsigned left = sent; left != 0; left &= left - 1, ++to.size) {
       const std::uint32_t k = entry_[__builtin_ctz(left)], ray = c_.ray[k];
-      to.sample[to.size] = c_.sample[k];
+      to.sample[to.size] = rays_.sample[ray];
       to.distance[to.size] = rays_.distance[ray] + rays_.t[ray];
       to.bounces[to.size] = static_cast<std::uint8_t>(c_.bounces[k] + 1);
       to.from[to.size] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k),

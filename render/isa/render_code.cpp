@@ -12,11 +12,10 @@ namespace oktett {
 
 template <class A>
 const RenderCode& render_code() {
-  static const RenderCode code = {ShadingLanes<A>::kWidth, kDoubleLanes<A>,      view_directions_code<A>,
-                                  lens_rays_code<A>,       sobol_points_code<A>, begin_shading_code<A>,
-                                  shadow_rays_code<A>,     mirror_rays_code<A>,  begin_path_code<A>,
-                                  onward_numbers_code<A>,  shade_phong_code<A>,  shade_principled_code<A>,
-                                  light_code<A>()};
+  static const RenderCode code = {ShadingLanes<A>::kWidth, kDoubleLanes<A>,          view_directions_code<A>,
+                                  lens_rays_code<A>,       sobol_points_code<A>,     begin_shading_code<A>,
+                                  shadow_rays_code<A>,     mirror_rays_code<A>,      begin_path_code<A>,
+                                  shade_phong_code<A>,     shade_principled_code<A>, light_code<A>()};
   return code;
 }
 

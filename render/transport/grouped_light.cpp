@@ -33,7 +33,7 @@ void add_infinite(const RenderContext& context, Wavefront& wavefront, std::size_
 void start_layers(const RenderContext& context, Wavefront& wavefront) {
   if (context.light_groups == nullptr) return;
   wavefront.samples.grouped.resize(context.light_groups->names.size());
-  const std::size_t count = wavefront.samples.entries();
+  const std::size_t count = wavefront.samples.size();
   for (ColorColumn& layer : wavefront.samples.grouped)
     layer.resize_uninitialized(count), layer.fill(count, {0, 0, 0});
 }

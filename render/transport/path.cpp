@@ -59,24 +59,6 @@ void pass_straight(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
       !camera && wavefront.paths.scattered[ray] != 0, enclosures(wavefront, ray, boundary, true));
 }
 
-/// Sends `sample`, that of entry `ray` or one of its branches, on to the next bounce.
-void send_onward(Wavefront& wavefront, std::size_t ray, std::uint32_t sample, const ShadingPoint& p,
-                 const SurfaceBsdf& bsdf, const LightPoint& from, const Boundary* boundary) {
-  const Choices choices(wavefront, sample);
-  const std::optional<BsdfSample> next =
-      bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
-  if (!next) return;
-  Color onward = wavefront.rays.throughput[ray] * next->weight;
-  if (!survives(wavefront, ray, choices, onward)) return;
-  if (sample != wavefront.rays.sample[ray]) onward *= 1 / static_cast<float>(wavefront.samples.branches);
-  push_bounce(wavefront, ray, p, next->direction, onward,
-              next->transmitted ? Bounce::refracted : Bounce::reflected);
-  wavefront.next.sample[wavefront.next.size() - 1] = sample;
-  const bool scattered = wavefront.level > 0 && wavefront.paths.scattered[ray] != 0;
-  wavefront.next_paths.push_back(next->pdf, from, scattered || next->pdf > 0,
-                                 enclosures(wavefront, ray, boundary, next->transmitted));
-}
-
 void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                    const Boundary* boundary) {
   const Choices choices(wavefront, ray);
@@ -100,11 +82,16 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
     if (context.caustics != nullptr) add_caustics(context, wavefront, ray, p, bsdf);
   }
 
-  const std::uint32_t sample = wavefront.rays.sample[ray];
-  if (bsdf.only_delta() || !wavefront.samples.may_branch(sample))
-    return send_onward(wavefront, ray, sample, p, bsdf, from, boundary);
-  for (std::uint32_t b = 0; b < wavefront.samples.branches; ++b)
-    send_onward(wavefront, ray, wavefront.samples.branch_entry(sample, b), p, bsdf, from, boundary);
+  const std::optional<BsdfSample> next =
+      bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
+  if (!next) return;
+  Color onward = throughput * next->weight;
+  if (!survives(wavefront, ray, choices, onward)) return;
+  push_bounce(wavefront, ray, p, next->direction, onward,
+              next->transmitted ? Bounce::refracted : Bounce::reflected);
+  const bool scattered = wavefront.level > 0 && wavefront.paths.scattered[ray] != 0;
+  wavefront.next_paths.push_back(next->pdf, from, scattered || next->pdf > 0,
+                                 enclosures(wavefront, ray, boundary, next->transmitted));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 /// \file Path tracing of hits in blocks, see integrators.h.
 
 #include <algorithm>
-#include <span>
 
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
@@ -27,6 +26,7 @@ PathRays path_rays(const Wavefront& wavefront) {
     rays.throughput[k] = wavefront.rays.throughput.part[k].data();
   }
   rays.distance = wavefront.rays.distance.data(), rays.t = wavefront.hits.t.data();
+  rays.sample = wavefront.rays.sample.data();
   return rays;
 }
 
@@ -37,7 +37,6 @@ void begin_block(const RenderContext& context, const Wavefront& wavefront, const
     const std::uint32_t sample = wavefront.rays.sample[i];
     c.ray[k] = i, c.key[k] = wavefront.samples.key[sample], c.number[k] = wavefront.samples.number[sample];
     c.bounces[k] = wavefront.rays.bounces[i];
-    c.sample[k] = sample, c.paths[k] = static_cast<float>(wavefront.samples.paths_of(sample)), c.share[k] = 1;
   };
   for (std::size_t k = 0; k < c.count; ++k) name(k, which[k]);
   for (std::size_t k = c.count; k < kMost; ++k) name(k, which[c.count - 1]);
@@ -106,7 +105,7 @@ void shade_runs(const RenderContext& context, Wavefront& wavefront, const Intera
     const std::uint32_t number = shown[0].surface;
     const PathRun run{entry, take_first_surface(shown, count, entry)};
     count -= run.count;
-    if (!c.onward_only) count_lanes(wavefront, run.count, code.path_lanes);
+    count_lanes(wavefront, run.count, code.path_lanes);
     for (std::size_t k = 0; k < kGroup; ++k) entry[run.count + k] = entry[run.count - 1];
     const PathSurface& surface = (*context.path_surfaces)[number];
     if (surface.principled)
@@ -125,21 +124,6 @@ void shade_runs(const RenderContext& context, Wavefront& wavefront, const Intera
   wavefront.counts.reflected += out.next.size - onward - out.next.transmitted;
 }
 
-/// Shades the hits in `shown`, which is overwritten. Those in `branching` send out branch `b` of their
-/// samples; the rays to lights go with branch 0.
-void shade_branch(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
-                  std::uint32_t b, std::span<const Shown> branching, std::span<Shown> shown, PathBlock& c) {
-  const SampleBatch& samples = wavefront.samples;
-  for (const Shown& one : branching) {
-    const std::uint32_t k = one.entry, sample = samples.branch_entry(wavefront.rays.sample[c.ray[k]], b);
-    c.sample[k] = sample, c.key[k] = samples.key[sample], c.number[k] = samples.number[sample];
-    c.share[k] = 1 / static_cast<float>(samples.branches);
-  }
-  c.onward_only = b > 0;
-  render_code(context.isa).onward_numbers(wavefront.level, c);
-  shade_runs(context, wavefront, found, c, shown.data(), shown.size());
-}
-
 }  // namespace
 
 void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
@@ -147,10 +131,10 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   PathBlock c;
   c.count = count;
   begin_block(context, wavefront, which, found, c);
-  Shown shown[kMost], branching[kMost];
+  Shown shown[kMost];
   std::uint32_t asks[kMost];
   bool front_only[kMost];
-  std::size_t in_lanes = 0, asking = 0, split = 0;
+  std::size_t in_lanes = 0, asking = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = c.ray[k];
     const bool behind = c.behind >> k & 1;
@@ -180,20 +164,13 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     if (!surface.only_delta)
       asks[asking] = static_cast<std::uint32_t>(k), front_only[asking++] = !surface.transmits;
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
-    if (!surface.only_delta && wavefront.samples.may_branch(c.sample[k]))
-      branching[split++] = shown[in_lanes - 1];
   }
   if (c.asks_lights) sample_lights(context, found, asks, front_only, asking, c);
   if (context.light_groups != nullptr)
     for (std::size_t i = 0; i < asking; ++i)
       if (c.light_kind[asks[i]] != LightKind::none)
         wavefront.sampled_emitter[c.ray[asks[i]]] = c.light_emitter[asks[i]];
-  if (in_lanes == 0) return;
-  shade_branch(context, wavefront, found, 0, {branching, split}, {shown, in_lanes}, c);
-  for (std::uint32_t b = 1; split > 0 && b < wavefront.samples.branches; ++b) {
-    std::copy_n(branching, split, shown);
-    shade_branch(context, wavefront, found, b, {branching, split}, {shown, split}, c);
-  }
+  if (in_lanes > 0) shade_runs(context, wavefront, found, c, shown, in_lanes);
 }
 
 }  // namespace oktett

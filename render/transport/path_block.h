@@ -38,12 +38,6 @@ struct PathBlock {
   std::uint8_t bounces[kMost];
   bool asks_lights;  ///< some light can be sampled
 
-  std::uint32_t sample[kMost];  ///< of the wavefront, to which the ray of the next bounce belongs
-  float paths[kMost];           ///< how many paths share the light of the sample
-  float
-      share[kMost];  ///< of the light that the ray of the next bounce stands for: 1 unless the path branches
-  bool onward_only;  ///< the rays to lights have been sent
-
   float direction[3][kMost];  ///< unit direction in which the ray travels
   float throughput[3][kMost];
   float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
@@ -63,6 +57,7 @@ struct PathBlock {
 struct PathRays {
   const float *direction[3], *throughput[3], *distance;
   const float* t;  ///< of the hits
+  const std::uint32_t* sample;
 };
 
 /// Hits of one PathSurface: entries of a PathBlock, the last one repeated to the end of its group.

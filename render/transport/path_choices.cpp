@@ -12,10 +12,8 @@
 namespace oktett {
 
 Choices::Choices(const Wavefront& wavefront, std::size_t ray)
-    : Choices(wavefront, wavefront.rays.sample[ray]) {}
-Choices::Choices(const Wavefront& wavefront, std::uint32_t sample)
-    : pixel_(wavefront.samples.key[sample]),
-      sample_(wavefront.samples.number[sample]),
+    : pixel_(wavefront.samples.key[wavefront.rays.sample[ray]]),
+      sample_(wavefront.samples.number[wavefront.rays.sample[ray]]),
       level_(wavefront.level) {}
 
 std::uint64_t Choices::key(Decision decision) const {
@@ -64,8 +62,7 @@ void queue_light(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, con
 
 bool survives(const Wavefront& wavefront, std::size_t ray, const Choices& choices, Color& throughput) {
   if (wavefront.rays.bounces[ray] + 1u <= kSureBounces) return true;
-  const auto paths = static_cast<float>(wavefront.samples.paths_of(wavefront.rays.sample[ray]));
-  const float chance = std::min(1.0f, std::sqrt(max_component(throughput) * paths));
+  const float chance = std::min(1.0f, std::sqrt(max_component(throughput)));
   if (choices.number(Decision::roulette) >= chance) return false;
   throughput *= 1 / chance;
   return true;

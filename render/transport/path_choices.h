@@ -17,8 +17,6 @@ class Choices {
  public:
   /// Those of entry `ray` of the wavefront's rays.
   Choices(const Wavefront& wavefront, std::size_t ray);
-  /// Those of entry `sample` of the wavefront's samples.
-  Choices(const Wavefront& wavefront, std::uint32_t sample);
 
   float number(Decision decision) const;
   SquareSample point(Decision decision) const;
@@ -48,7 +46,7 @@ void queue_light(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, con
                  const EnclosureStack* around);
 
 /// Russian roulette: ends paths of small weight at random and raises the weight of the others, so that the
-/// mean does not change. False if the path ends. `throughput` is that of one of the branches of a sample.
+/// mean does not change. False if the path ends.
 bool survives(const Wavefront& wavefront, std::size_t ray, const Choices& choices, Color& throughput);
 
 }  // namespace oktett

@@ -28,11 +28,9 @@ struct RenderCode {
   /// Fills `out` with the rays that opaque mirrors send out. Returns a set bit for each hit that sends one.
   std::uint64_t (*mirror_rays)(const InteractionBlock&, const ShadingColumns&, MirrorColumns& out);
 
-  /// Fills the columns of a PathBlock for directions, throughput and normals, and the random numbers of
-  /// lights. `ray`, `key`, `number` and `bounces` are given.
+  /// Fills the columns of a PathBlock up to the random numbers, but those for `ray`, `key`, `number` and
+  /// `bounces`, which are given.
   void (*begin_path)(const InteractionBlock&, const PathRays&, unsigned level, PathBlock&);
-  /// Fills the columns for the random numbers of the next bounce, by `key` and `number`.
-  void (*onward_numbers)(unsigned level, PathBlock&);
   /// Writes the shadow rays and the rays of the next bounce of hits of one surface. All columns of the block
   /// are filled.
   void (*shade_phong)(const InteractionBlock&, const PathRays&, const PathBlock&, const PhongSurface&,

@@ -199,20 +199,6 @@ void add_to_samples(Wavefront& wavefront) {
   }
 }
 
-/// Adds the light of the branches to the samples.
-void join_branches(SampleBatch& samples) {
-  if (samples.branches == 1) return;
-  const std::size_t count = samples.size();
-  const auto join = [&](ColorColumn& color) {
-    for (Column<float>& part : color.part)
-      for (std::uint32_t b = 0; b < samples.branches; ++b)
-        for (std::size_t i = 0; i < count; ++i) part[i] += part[(b + 1) * count + i];
-    color.resize_uninitialized(count);
-  };
-  join(samples.color);
-  for (ColorColumn& layer : samples.grouped) join(layer);
-}
-
 bool meets_anything(const Wavefront& wavefront) {
   for (const std::uint32_t item : wavefront.hits.item)
     if (item != kNoId) return true;
@@ -234,7 +220,6 @@ void fill_camera_rays(Wavefront& wavefront) {
 /// Resets the results of samples, except for their colour.
 void fill_samples(SampleBatch& samples) {
   std::fill_n(samples.alpha.data(), samples.size(), 0.0f);
-  for (Column<float>& part : samples.color.part) std::fill(part.begin() + samples.size(), part.end(), 0.0f);
   for (FirstHit& first : samples.first) {
     // The other members are written when a hit is found.
     first.found = false, first.primitive = first.object = kNoId;
@@ -278,7 +263,6 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     std::swap(wavefront.rays, wavefront.next);
     std::swap(wavefront.paths, wavefront.next_paths);
   }
-  join_branches(wavefront.samples);
   return true;
 }
 

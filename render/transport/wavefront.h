@@ -24,8 +24,7 @@ struct FirstHit {
   std::uint32_t material = kNoId;  ///< index into World::materials
 };
 
-/// Camera samples in columns: their places and their results. With branches (see RenderContext::branches)
-/// `number`, `key`, `color` and `grouped` hold, behind the entries of the samples, one entry for each branch.
+/// Camera samples in columns: their places and their results.
 struct SampleBatch {
   Column<std::uint32_t> pixel;    ///< the caller's number of the pixel
   Column<std::uint32_t> number;   ///< of the sample in its pixel
@@ -37,26 +36,11 @@ struct SampleBatch {
   Column<std::uint16_t> spawned;     ///< number of rays that Whitted's integrator queued for the next bounce
   Column<FirstHit> first;            ///< empty unless data layers are wanted
   std::vector<ColorColumn> grouped;  ///< per light group its part of `color`; empty unless wanted
-  std::uint32_t branches = 1;        ///< of each sample
 
   std::size_t size() const { return pixel.size(); }
-  /// Entries of the samples and of their branches. A path that does not branch has no entry for it.
-  std::size_t entries() const { return branches > 1 ? size() * (1 + branches) : size(); }
-  /// The entry of branch `b` of a sample.
-  std::uint32_t branch_entry(std::uint32_t sample, std::uint32_t b) const {
-    return static_cast<std::uint32_t>((b + 1) * size() + sample);
-  }
-  bool is_branch(std::uint32_t entry) const { return entry >= size(); }
-  /// Whether the path of `entry` branches at the next surface that scatters light.
-  bool may_branch(std::uint32_t entry) const { return branches > 1 && !is_branch(entry); }
-  /// How many paths share the light of the sample to which `entry` belongs.
-  std::uint32_t paths_of(std::uint32_t entry) const { return is_branch(entry) ? branches : 1; }
-
-  void resize_uninitialized(std::size_t n, std::uint32_t branches_of_each, bool data_layers) {
-    pixel.resize_uninitialized(n), branches = branches_of_each;
-    number.resize_uninitialized(entries()), key.resize_uninitialized(entries());
-    color.resize_uninitialized(entries());
-    offset.resize_uninitialized(n), alpha.resize_uninitialized(n);
+  void resize_uninitialized(std::size_t n, bool data_layers) {
+    pixel.resize_uninitialized(n), number.resize_uninitialized(n), key.resize_uninitialized(n);
+    offset.resize_uninitialized(n), color.resize_uninitialized(n), alpha.resize_uninitialized(n);
     spawned.resize_uninitialized(n), first.resize_uninitialized(data_layers ? n : 0);
   }
 };
