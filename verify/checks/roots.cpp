@@ -36,7 +36,8 @@ class RootsMaker {
     KnownRoots known;
     known.p.degree = degree_;
     for (int i = 0; i <= degree_; ++i)
-      known.p.c[i] = sign * std::ldexp(static_cast<double>(c_[static_cast<std::size_t>(i)]), size + i * (bits_ - shift));
+      known.p.c[i] =
+          sign * std::ldexp(static_cast<double>(c_[static_cast<std::size_t>(i)]), size + i * (bits_ - shift));
     // Ends lie halfway between points of the grid.
     const double half = std::ldexp(1.0, shift - bits_ - 1);
     double ends[2];
@@ -66,7 +67,8 @@ class RootsMaker {
   void add_factor() {
     const std::int64_t k = coordinate();
     if (degree_ + 1 - std::ssize(c_) >= 2 && random_.unit() < 0.25) {
-      const auto j = static_cast<std::int64_t>(std::pow(static_cast<double>(std::int64_t{1} << bits_), random_.unit()));
+      const auto j =
+          static_cast<std::int64_t>(std::pow(static_cast<double>(std::int64_t{1} << bits_), random_.unit()));
       return multiply({k * k + j * j, -2 * k, 1});
     }
     roots_.push_back(k);
@@ -90,13 +92,17 @@ class RootsMaker {
 std::string judge(const KnownRoots& known, const roots::Roots& answer) {
   const auto holds = [](const roots::Root& r, double x) { return std::abs(x - r.x) <= r.error; };
   for (const double x : known.inside)
-    if (std::none_of(answer.root, answer.root + answer.count, [&](const roots::Root& r) { return holds(r, x); }))
+    if (std::none_of(answer.root, answer.root + answer.count,
+                     [&](const roots::Root& r) { return holds(r, x); }))
       return fmt::format("the root {} is missed", x);
   for (int i = 0; i < answer.count; ++i) {
     const roots::Root& r = answer.root[i];
     // Intervals that overlap share their roots.
-    const auto apart = [&](const roots::Root& other) { return std::abs(r.x - other.x) > r.error + other.error; };
-    if ((i > 0 && !apart(answer.root[i - 1])) || (i + 1 < answer.count && !apart(answer.root[i + 1]))) continue;
+    const auto apart = [&](const roots::Root& other) {
+      return std::abs(r.x - other.x) > r.error + other.error;
+    };
+    if ((i > 0 && !apart(answer.root[i - 1])) || (i + 1 < answer.count && !apart(answer.root[i + 1])))
+      continue;
     const auto held = std::ranges::count_if(known.inside, [&](double x) { return holds(r, x); });
     if (held > r.multiplicity || (r.multiplicity - held) % 2 != 0)
       return fmt::format("{} +- {} should be {} roots, but {} are there", r.x, r.error, r.multiplicity, held);
@@ -123,7 +129,8 @@ RootsTally verify_roots(int degree, std::uint64_t count, std::uint64_t first) {
         ++tally.uncertain;
       if (wrong.empty()) continue;
       if (tally.failure.empty())
-        tally.failure = fmt::format("{}, degree {}: {}", to_string(method), degree, wrong), tally.first_failure = number;
+        tally.failure = fmt::format("{}, degree {}: {}", to_string(method), degree, wrong),
+        tally.first_failure = number;
       ++tally.wrong;
     }
   }
