@@ -15,10 +15,11 @@ OKTETT_INLINE Line<D> own_line(const Affine& to_own, const RayLanes<F>& rays) {
   return {map_point(to_own, to_double(rays.o)), map_vector(to_own, to_double(rays.d))};
 }
 
-/// What a ray may hit begins here: a little beyond tmin, so that it does not round to tmin.
+/// What a ray may hit begins here: a little beyond tmin, so that it does not round to tmin. Not before 0,
+/// where the factor would lead back.
 template <class D>
 OKTETT_INLINE D range_begin(const D& tmin) {
-  return tmin * D(1 + 0x1p-24) + D(0x1p-151);
+  return max(tmin, D(0.0)) * D(1 + 0x1p-24) + D(0x1p-151);
 }
 
 template <class D>
@@ -72,9 +73,11 @@ OKTETT_INLINE unsigned first_crossings(const typename S::Pool& pool, std::uint32
     hits.u = select(valid, to_float(c.part[0]), hits.u);
     hits.v = select(valid, to_float(c.turn[0]), hits.v);
     met |= bits(valid);
-    // A root so near to the beginning that it rounds to tmin is not the first that counts.
+    // A root so near to the beginning that it rounds to tmin is not the first that counts. One that was found
+    // before the beginning is as uncertain as it is far from there: the next begins as far behind.
     active = mask_cast<double>(found & (t <= rays.tmin)) & (range.a < range.b);
-    cut_range(range, max(range.a, c.t[0]) * D(1 + 0x1p-24) + D(0x1p-151));
+    const D before = max(range.a - c.t[0], D(0.0));
+    cut_range(range, max(range.a, c.t[0]) * D(1 + 0x1p-24) + D(0x1p-151) + before);
     active = active & (range.a <= range.b);
   }
   return met;

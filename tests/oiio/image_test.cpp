@@ -364,6 +364,14 @@ TEST(ReadImage, ClaimedSizesAreBounded) {
   const TempDir dir;
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n";
   EXPECT_EQ(kind_of([&] { read_image(dir.write("a.hdr", header)); }), ErrorKind::io);
+  // OpenEXR would ask for the 1.9 GB of this text.
+  const std::string attribute("\x76\x2f\x31\x01\x02\0\0\0text\0string\0\0\0\0\x70short\0", 30);
+  try {
+    read_image(dir.write("a.exr", attribute));
+    ADD_FAILURE() << "is read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("longer than the file"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace
