@@ -176,11 +176,11 @@ const char* signal_name(int signal) {
                              : "SIGINT";
 }
 
-/// Writes the film for the last time. What goes wrong is returned, since there may be a picture to write,
-/// too.
-std::optional<Error> finish_film(Checkpoint& checkpoint, const ImageMetadata& metadata) {
+/// Calls `write`. What goes wrong is returned, since there may be a picture to write, too.
+template <class Write>
+std::optional<Error> try_to(const Write& write) {
   try {
-    checkpoint.finish(metadata);
+    write();
   } catch (const Error& error) {
     return error;
   }
@@ -244,7 +244,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   RenderResult result = render(std::move(scene), options);
   times.given_up = interval::uncertified_count() - given_up_before;
   shown.finish();
-  photons.keep(result);
+  const std::optional<Error> lost_photons = try_to([&] { photons.keep(result); });
   times.build = result.report.build_seconds;
   times.render = result.report.render_seconds;
   watch.lap();
@@ -253,13 +253,14 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   times.denoise = watch.lap();
   ImageMetadata metadata = metadata_of(line, arguments, result);
   checkpoint.complete(metadata);
-  const std::optional<Error> unsaved = finish_film(checkpoint, metadata);
+  const std::optional<Error> unsaved = try_to([&] { checkpoint.finish(metadata); });
   // The library that writes images takes as much memory as a large scene: free the scene before it is loaded.
   result.scene = Scene{};
   if (writes_picture) write_image(output, result.picture, metadata);
   times.write = watch.lap();
   if (unsaved && !writes_picture) return say_unsaved(*unsaved, checkpoint);
   print_summary(arguments, times, result.report, output);
+  if (lost_photons) throw Error(*lost_photons);
   if (unsaved) return say_unsaved(*unsaved, checkpoint);
   return result.report.stopped ? say_stopped(interrupt.signal(), shown.percent_done(), checkpoint) : 0;
 }
