@@ -141,7 +141,8 @@ class PathShading {
     unsigned may_end = 0;
     for (int k = 0; k < W; ++k) may_end |= (c_.bounces[entry_[k]] + 1u > kSureBounces ? 1u : 0u) << k;
     if (may_end != 0) {
-      const F chance = min(sqrt(max(max(onward.x, onward.y), onward.z)), one);
+      const auto greatest = [](const Vec3<F>& v) { return max(max(v.x, v.y), v.z); };
+      const F chance = min(sqrt(select(delta, greatest(s.weight), greatest(onward))), one);
       sent &= ~(may_end & bits(at.load(c_.roulette) >= chance));
       onward = onward * select(M::from_bits(may_end), one / chance, one);
     }

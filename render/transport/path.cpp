@@ -86,7 +86,7 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
       bsdf.sample(choices.number(Decision::lobe), choices.point(Decision::direction));
   if (!next) return;
   Color onward = throughput * next->weight;
-  if (!survives(wavefront, ray, choices, onward)) return;
+  if (!survives(wavefront, ray, choices, next->pdf == 0 ? next->weight : onward, onward)) return;
   push_bounce(wavefront, ray, p, next->direction, onward,
               next->transmitted ? Bounce::refracted : Bounce::reflected);
   const bool scattered = wavefront.level > 0 && wavefront.paths.scattered[ray] != 0;

@@ -60,9 +60,10 @@ void queue_light(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, con
   if (around != nullptr) queue.enclosures.push_back(*around);
 }
 
-bool survives(const Wavefront& wavefront, std::size_t ray, const Choices& choices, Color& throughput) {
+bool survives(const Wavefront& wavefront, std::size_t ray, const Choices& choices, const Color& kept,
+              Color& throughput) {
   if (wavefront.rays.bounces[ray] + 1u <= kSureBounces) return true;
-  const float chance = std::min(1.0f, std::sqrt(max_component(throughput)));
+  const float chance = std::min(1.0f, std::sqrt(max_component(kept)));
   if (choices.number(Decision::roulette) >= chance) return false;
   throughput *= 1 / chance;
   return true;
