@@ -16,6 +16,7 @@ PhongSurface::PhongSurface(const PhongParameters& parameters, bool front)
   mirror = specular_color * limited(parameters.reflection, 0, kMost);
   const double ior = limited(parameters.ior, 1e-3, 1e3);
   eta = static_cast<float>(front ? ior : 1 / ior);
+  only_diffuse = max_component(diffuse) > 0 && highlight == Vec3d{} && mirror == Vec3d{} && transparency == 0;
 }
 
 }  // namespace oktett

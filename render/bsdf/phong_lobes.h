@@ -26,6 +26,7 @@ struct PhongSurface {
 
   Vec3d color, diffuse, highlight, mirror;
   double exponent = 0, transparency = 0, eta = 1;
+  bool only_diffuse = false;  ///< all other lobes are black
 };
 
 /// The sum of (Phong 1975, each light as it is lit by lamps divided by pi)
@@ -43,6 +44,8 @@ class PhongLobes {
   using Surface = PhongSurface;
 
   PhongLobes(const PhongSurface& surface, const Vec3<F>& wo) : s_(&surface) {
+    choice_[kDiffuse] = D(surface.only_diffuse ? 1.0 : 0.0);
+    if (surface.only_diffuse) return;
     const Vec3<D> w = direction_above<D>(wo);
     mirrored_viewer_ = {-w.x, -w.y, w.z};
     mirror_ = broadcast<D>(s_->mirror);
@@ -62,6 +65,7 @@ class PhongLobes {
     const Vec3<D> w = unit_lanes(to_double(wi));
     Vec3<D> value = broadcast<D>(s_->diffuse) * w.z;
     D pdf = choice_[kDiffuse] * w.z;
+    if (s_->only_diffuse) return lit(above, value, pdf);
     const D cosine = min(D(1.0), dot_lanes(mirrored_viewer_, w));
     const auto shines = (choice_[kHighlight] > zero) & (cosine > zero);
     if (any(shines)) {
@@ -69,14 +73,12 @@ class PhongLobes {
       value = value + broadcast<D>(s_->highlight) * shine;
       pdf = pdf + choice_[kHighlight] * D((s_->exponent + 1) / 2) * shine;
     }
-    const D share(1 / std::numbers::pi);
-    const F dark(0.0f);
-    return {select_lanes(above, to_float(value * share), Vec3<F>{dark, dark, dark}),
-            select(above, to_float(pdf * share), dark)};
+    return lit(above, value, pdf);
   }
 
   /// As Bsdf::sample.
   BsdfSamples<D> sample(const D& lobe, const D& x, const D& y) const {
+    if (s_->only_diffuse) return sample_diffuse(x, y);
     D place = lobe;
     const D chosen = choice_.pick(place);
     const auto diffuse = chosen == D(kDiffuse), highlight = chosen == D(kHighlight);
@@ -114,6 +116,25 @@ class PhongLobes {
 
  private:
   enum Lobe { kDiffuse, kHighlight, kMirror, kRefracted, kLobes };
+
+  /// Value and density times pi, where the light is above the surface.
+  static BsdfValues<D> lit(const typename F::M& above, const Vec3<D>& value, const D& pdf) {
+    const D share(1 / std::numbers::pi);
+    const F dark(0.0f);
+    return {select_lanes(above, to_float(value * share), Vec3<F>{dark, dark, dark}),
+            select(above, to_float(pdf * share), dark)};
+  }
+
+  BsdfSamples<D> sample_diffuse(const D& x, const D& y) const {
+    const Vec3<D> direction = cosine_above(x, y);
+    BsdfSamples<D> sample;
+    sample.direction = to_float(direction);
+    sample.transmitted = sample.direction.z < F(0.0f);
+    sample.weight = to_float(broadcast<D>(s_->diffuse));
+    sample.pdf = to_float(direction.z * D(1 / std::numbers::pi));
+    sample.found = sample.pdf > F(0.0f);
+    return sample;
+  }
 
   void set_glass(const Vec3<D>& w) {
     const D eta(s_->eta), ratio(1 / s_->eta), zero(0.0);
