@@ -46,7 +46,8 @@ void queue_light(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, con
                  const EnclosureStack* around);
 
 /// Russian roulette: ends paths of small weight at random and raises the `throughput` of the others, so that
-/// the mean does not change. `kept` is what the path is to go on by, see kSureBounces. False if the path ends.
+/// the mean does not change. `kept` is what the path is to go on by, see kSureBounces. False if the path
+/// ends.
 bool survives(const Wavefront& wavefront, std::size_t ray, const Choices& choices, const Color& kept,
               Color& throughput);
 

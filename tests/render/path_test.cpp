@@ -54,6 +54,22 @@ TEST(Path, MirrorsAndGlassKeepTheEnergyOfTheFurnace) {
   EXPECT_NEAR(mean(run(scene).picture, "R"), 1, 0.02);
 }
 
+// Inside of a glowing mirror ball the light is the sum of what all reflections show, whether Russian roulette
+// ends few paths or most of them.
+TEST(Path, MirrorsThatTakeLightAwayShowTheSumOfTheirReflections) {
+  for (const float kept : {0.05f, 0.3f, 0.7f, 1.0f}) {
+    constexpr int kDepth = 7;
+    Scene scene = path_scene(16, 256, kDepth);
+    scene.camera.from = {0.2, 0.1, 0.3};
+    Material m = mirror();
+    m.reflection = kept, m.emission = {1, 1, 1};
+    add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, m));
+    double sum = 0, part = 1;
+    for (int k = 0; k <= kDepth + 1; ++k, part *= static_cast<double>(kept)) sum += part;
+    EXPECT_NEAR(mean(run(scene).picture, "R"), sum, 0.005 * sum) << kept;
+  }
+}
+
 // A convex body sees nothing but the void: it shows exactly albedo times background, without any noise in the
 // mean.
 TEST(Path, ConvexBodyInAWhiteVoidShowsItsAlbedo) {
