@@ -11,7 +11,7 @@
 
 #include "app/choice.h"
 #include "core/error.h"
-#include "io/scene/meshes.h"
+#include "io/mesh/load/load_mesh.h"
 
 namespace oktett {
 namespace {
@@ -80,7 +80,7 @@ const char* to_string(IntegratorKind kind) {
 }
 
 void add_render_options(Verb& verb, RenderArguments& a) {
-  verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh (.obj)");
+  verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh");
   verb.option("-o,--outfile", &a.outfile, "FILE",
               "Picture to write; default: the scene's name with .png, here");
   verb.flag("--no-output", a.no_output, "Write no picture, for measuring");

@@ -14,7 +14,7 @@
 #include "app/render_options.h"
 #include "app/verify_endless.h"
 #include "core/error.h"
-#include "io/obj/obj.h"
+#include "io/mesh/load/load_mesh.h"
 #include "verify/checks/csg.h"
 #include "verify/checks/exact.h"
 #include "verify/checks/kernels.h"
@@ -165,7 +165,8 @@ std::vector<OracleMesh> oracle_meshes(const VerifyArguments& arguments) {
   std::vector<OracleMesh> meshes;
   if (!only_files) meshes = make_closed_meshes();
   for (const std::string& file : arguments.meshes)
-    meshes.push_back({std::filesystem::path(file).stem().string(), load_obj(file).mesh, false});
+    meshes.push_back({std::filesystem::path(file).stem().string(),
+                      load_mesh(file, {.weld = repeats_vertices(file)}).mesh, false});
   return meshes;
 }
 
@@ -244,7 +245,7 @@ void add_verify_command(CommandLine& line) {
                             [arguments] { return run_verify(*arguments); });
   verb.option("--rays", &arguments->rays, "N",
               "Rays per kernel; a hundredth of it per mesh and placement (default 10 million)");
-  verb.option("--mesh", &arguments->meshes, "FILE.obj",
+  verb.option("--mesh", &arguments->meshes, "FILE",
               "Check this mesh too, also beside --surface; may be repeated");
   verb.option("--surface", &arguments->surfaces, "NAME",
               "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated");

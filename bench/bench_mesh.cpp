@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "io/obj/obj.h"
+#include "io/mesh/load/load_mesh.h"
 
 namespace oktett::bench {
 
@@ -29,7 +29,7 @@ static TriangleMesh wavy_sphere(std::uint32_t n) {
 const TriangleMesh& bench_mesh() {
   static const TriangleMesh mesh = [] {
     const char* path = std::getenv("OKTETT_BENCH_MESH");
-    return path != nullptr && *path != 0 ? load_obj(path).mesh : wavy_sphere(224);
+    return path != nullptr && *path != 0 ? load_mesh(path).mesh : wavy_sphere(224);
   }();
   return mesh;
 }

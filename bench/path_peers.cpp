@@ -16,7 +16,7 @@
 #include "bench/peer_timing.h"
 #include "bench/program.h"
 #include "io/image/image.h"
-#include "io/obj/obj.h"
+#include "io/mesh/load/load_mesh.h"
 #include "io/text/mapped_file.h"
 #include "render/render.h"
 
@@ -278,7 +278,7 @@ int run(int argc, char** argv) {
                            ? fs::temp_directory_path() / fmt::format("oktett-paths-{}", seconds([] {}) * 1e9)
                            : fs::path(o.keep);
   fs::create_directories(dir);
-  const TriangleMesh model = fs::exists(o.mesh) ? load_obj(o.mesh).mesh : bench_mesh();
+  const TriangleMesh model = fs::exists(o.mesh) ? load_mesh(o.mesh).mesh : bench_mesh();
   const std::vector<PathScene> scenes = path_scenes(model);
   std::vector<std::string> json;
   if (o.cycles && !has_program("blender"))

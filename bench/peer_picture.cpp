@@ -7,7 +7,7 @@
 #include "bench/peer_timing.h"
 #include "bench/peer_trace.h"
 #include "core/error.h"
-#include "io/obj/obj.h"
+#include "io/mesh/load/load_mesh.h"
 
 #ifdef OKTETT_HAVE_TINYOBJLOADER
 #include <tiny_obj_loader.h>
@@ -42,9 +42,9 @@ TriangleMesh load_with_tinyobjloader(const std::string& path) {
 }
 
 Stages with_oktett(const PictureTask& task, const Workload& work, Answers& answers) {
-  ObjFile file;
+  MeshFile file;
   std::shared_ptr<const Accel> accel;
-  return {seconds([&] { file = load_obj(task.path); }), seconds([&] {
+  return {seconds([&] { file = load_mesh(task.path); }), seconds([&] {
             accel = build_accel({{MeshGeometry{&file.mesh}, {}}}, task.build);
           }),
           seconds([&] { trace(*accel, work, task.isa, task.threads, answers); })};

@@ -6,7 +6,7 @@
 
 #include "bench/meadow.h"
 #include "core/random.h"
-#include "io/obj/obj.h"
+#include "io/mesh/load/load_mesh.h"
 
 namespace oktett::bench {
 namespace {
@@ -62,7 +62,7 @@ Box PeerScene::bounds() const {
 PeerScene file_scene(const std::string& path) {
   PeerScene scene;
   scene.name = path.substr(path.rfind('/') + 1), scene.path = path;
-  scene.meshes.push_back(std::make_shared<TriangleMesh>(load_obj(path).mesh));
+  scene.meshes.push_back(std::make_shared<TriangleMesh>(load_mesh(path).mesh));
   return scene;
 }
 

@@ -195,11 +195,13 @@ struct MeshShape {
   bool smooth = true;  ///< interpolate the mesh's normals; false: flat shading
   TriangleTest test = TriangleTest::watertight;
   bool by_winding = false;  ///< take part in combinations even if the mesh is not closed
+  bool weld = false;        ///< what the scene file asked for; `mesh` is as it says
 
   static constexpr Surface kSurface{"mesh", "the triangles of a file"};
   void describe(auto& p) {
-    p.required("file", ByHand{"file (`.obj`)"}, "triangles and, in its MTL file, their materials");
+    p.required("file", ByHand{"mesh file"}, "triangles and, with OBJ, their materials");
     p.field("smooth", smooth, "interpolates the normals of the file");
+    p.field("weld", weld, "makes one of all vertices at the same place, which an STL file does not share");
     p.choice("test", test,
              {{"watertight", TriangleTest::watertight},
               {"moller_trumbore", TriangleTest::moller_trumbore},

@@ -6,7 +6,7 @@
 
 #include "accel/build/tree_store.h"
 #include "io/cache/cache_file.h"
-#include "io/obj/parsed_obj.h"
+#include "io/mesh/parsed_mesh.h"
 
 namespace oktett {
 
@@ -22,7 +22,7 @@ struct MeshEntry {
   std::string path;  ///< canonical
   FileStamp stamp;
   std::uint64_t checksum = 0;  ///< of the content of the file, as in core/bytes.h
-  ParsedObj parsed;
+  ParsedMesh parsed;
 };
 
 /// The header of an entry and its sections; the columns belong to `entry`.

@@ -8,12 +8,12 @@
 namespace oktett {
 namespace {
 
-/// The number changes with what parse_obj makes of a file.
+/// The number changes with what parse_mesh makes of a file.
 constexpr std::string_view kKind = "mesh 1 " OKTETT_VERSION;
 
-void append(std::string& bytes, const std::vector<ObjStatement>& statements) {
+void append(std::string& bytes, const std::vector<MeshStatement>& statements) {
   append_number(bytes, static_cast<std::uint32_t>(statements.size()));
-  for (const ObjStatement& s : statements) {
+  for (const MeshStatement& s : statements) {
     append_number(bytes, s.at);
     append_text(bytes, s.words);
     append_number(bytes, std::int32_t{s.position.line});
@@ -21,10 +21,10 @@ void append(std::string& bytes, const std::vector<ObjStatement>& statements) {
   }
 }
 
-std::vector<ObjStatement> take_statements(ByteReader& reader) {
-  std::vector<ObjStatement> statements;
+std::vector<MeshStatement> take_statements(ByteReader& reader) {
+  std::vector<MeshStatement> statements;
   for (std::uint32_t left = reader.count(20); left > 0; --left) {
-    ObjStatement s;
+    MeshStatement s;
     s.at = reader.number<std::uint64_t>();
     s.words = reader.text();
     s.position.line = reader.number<std::int32_t>();

@@ -15,6 +15,8 @@
 #include "core/bytes.h"
 #include "core/error.h"
 #include "io/cache/entries.h"
+#include "io/mesh/load/parse_mesh.h"
+#include "io/mesh/weld.h"
 #include "io/text/file_access.h"
 #include "io/text/files_read.h"
 #include "io/text/mapped_file.h"
@@ -88,10 +90,10 @@ SceneCache::~SceneCache() {
 
 SceneCache* SceneCache::current() { return current_cache; }
 
-ObjFile SceneCache::load_mesh(const std::string& path) {
+MeshFile SceneCache::load_mesh(const std::string& path, const MeshOptions& options) {
   const std::optional<FileStamp> stamp = stamp_of(path);
-  // What is wrong with the file is said by load_obj.
-  if (!stamp || stamp->size < options_.least_file_bytes) return load_obj(path);
+  // What is wrong with the file is said by load_mesh.
+  if (!stamp || stamp->size < options_.least_file_bytes) return oktett::load_mesh(path, options);
   MeshEntry entry;
   std::error_code error;
   entry.path = std::filesystem::canonical(path, error).string();
@@ -103,14 +105,16 @@ ObjFile SceneCache::load_mesh(const std::string& path) {
     found = read_mesh(folder_, name, path, entry);
     if (!found) {
       const std::int64_t start = now();
-      entry.parsed = parse_obj(path);
+      entry.parsed = parse_mesh(path);
       entry.checksum = content_checksum(path);
       if (stamp_of(path) == stamp) folder_.write(name, mesh_header(entry), mesh_sections(entry), start);
     }
   }
   note_file_read(path);
   if (found) note_content(path, entry.checksum);
-  return finish_obj(path, std::move(entry.parsed));
+  MeshFile file = finish_mesh(path, std::move(entry.parsed));
+  if (options.weld) weld_positions(file.mesh);
+  return file;
 }
 
 bool SceneCache::load(std::uint64_t key, Accel& accel, ItemOrder& order) {

@@ -13,7 +13,7 @@
 
 #include "accel/build/tree_store.h"
 #include "io/cache/cache_folder.h"
-#include "io/obj/parsed_obj.h"
+#include "io/mesh/load/load_mesh.h"
 
 namespace oktett {
 
@@ -27,7 +27,7 @@ struct SceneCacheOptions {
 /// While an object of this class exists, load_scene and build_accel use the cache in its folder. Only one may
 /// exist at a time. Any number of processes may use the same folder.
 ///
-/// An entry of a mesh holds what parse_obj makes of an OBJ file. It counts while the file has the same path,
+/// An entry of a mesh holds what parse_mesh makes of a file. It counts while the file has the same path,
 /// size, number of the inode and times of its last change; materials are read from their files each time. An
 /// entry of a tree is found by a hash of all that the tree depends on. What an entry says is checked before
 /// it is used.
@@ -42,8 +42,8 @@ class SceneCache final : public TreeStore {
   /// The one that exists, or null.
   static SceneCache* current();
 
-  /// As load_obj.
-  ObjFile load_mesh(const std::string& path);
+  /// As oktett::load_mesh.
+  MeshFile load_mesh(const std::string& path, const MeshOptions& options = {});
 
   std::size_t least_triangles() const override { return options_.least_triangles; }
   bool load(std::uint64_t key, Accel& accel, ItemOrder& order) override;

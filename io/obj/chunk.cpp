@@ -131,16 +131,16 @@ ObjCounts sum_counts(std::vector<ObjChunk>& chunks) {
   return total;
 }
 
-std::optional<ObjFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks) {
+std::optional<MeshFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks) {
   ObjBrace last;
   for (const ObjChunk& chunk : chunks) {
     if (chunk.first_brace.where == nullptr) continue;
     if (chunk.first_brace.open == last.open)
-      return ObjFailure{chunk.first_brace.where, last.open ? kBraceInBlock : kBraceAlone};
+      return MeshFailure{chunk.first_brace.where, last.open ? kBraceInBlock : kBraceAlone};
     last = chunk.last_brace;
   }
   if (last.open)
-    return ObjFailure{last.where, "a block is not closed; expected '}' before the end of the file"};
+    return MeshFailure{last.where, "a block is not closed; expected '}' before the end of the file"};
   return std::nullopt;
 }
 

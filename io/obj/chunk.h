@@ -9,18 +9,13 @@
 #include <vector>
 
 #include "core/mesh.h"
-#include "io/obj/failure.h"
+#include "io/mesh/failure.h"
+#include "io/mesh/parsed_mesh.h"
 #include "io/obj/obj.h"
 
 namespace oktett {
 
-/// How an OBJ file is taken apart. The result does not depend on it; tests use it to reach corner cases.
-struct ObjOptions {
-  /// Bytes that one task reads at a time, rounded up to whole lines.
-  std::size_t chunk_bytes = std::size_t{1} << 20;
-  /// The most positions, normals, uvs or triangles there may be: what 32-bit indices reach beside kNoId.
-  std::size_t max_elements = 0xfffffffeu;
-};
+using ObjOptions = MeshReadOptions;
 
 /// As load_obj(path).
 ObjFile load_obj(const std::string& path, const ObjOptions& options);
@@ -75,9 +70,9 @@ struct ObjChunk {
   std::vector<ObjSkipped> skipped;  ///< each keyword once, in order; not many more than kMaxSkippedKeywords
   ObjBrace first_brace;
   ObjBrace last_brace;
-  bool uses_uvs = false;              ///< found in the second pass
-  bool uses_normals = false;          ///< found in the second pass
-  std::optional<ObjFailure> failure;  ///< the first one
+  bool uses_uvs = false;               ///< found in the second pass
+  bool uses_normals = false;           ///< found in the second pass
+  std::optional<MeshFailure> failure;  ///< the first one
 };
 
 /// A file with more unknown keywords than this is something else; they are not listed one by one.
@@ -94,7 +89,7 @@ void count_chunk(ObjChunk& chunk);
 ObjCounts sum_counts(std::vector<ObjChunk>& chunks);
 
 /// A brace that does not pair with another, if there is one.
-std::optional<ObjFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks);
+std::optional<MeshFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks);
 
 /// Calls `read` with the start of each line of the chunk; it returns where it stopped in the line. Ends at
 /// the first failure and keeps it.
@@ -105,7 +100,7 @@ void read_lines(ObjChunk& chunk, const Read& read) {
       const char* rest = read(skip_blanks(p));
       p = next_line(is_line_end(*rest) ? rest : find_joined_line_end(rest), chunk.end);
     }
-  } catch (const ObjFailure& failure) {
+  } catch (const MeshFailure& failure) {
     keep_first(chunk.failure, failure.where, failure.message);
   }
 }

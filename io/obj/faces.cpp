@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "io/mesh/polygon.h"
 #include "io/obj/chunk.h"
-#include "io/obj/polygon.h"
 #include "io/text/number.h"
 
 namespace oktett {

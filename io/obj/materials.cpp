@@ -44,12 +44,12 @@ bool ends_like_library(std::string_view name) {
                     [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + ('a' - 'A') : a) == b; });
 }
 
-Library load_libraries(const std::vector<ObjStatement>& statements, const std::string& obj_path, ObjFile& obj,
-                       std::vector<ObjStatement>& notices) {
+Library load_libraries(const std::vector<MeshStatement>& statements, const std::string& obj_path,
+                       ObjFile& obj, std::vector<MeshStatement>& notices) {
   Library library;
   const std::string directory = fs::path(obj_path).parent_path().string();
   std::unordered_map<std::string, bool> seen;
-  for (const ObjStatement& statement : statements) {
+  for (const MeshStatement& statement : statements) {
     for (const std::string& path : split_library_names(statement.words, directory)) {
       if (!seen.emplace(path, true).second) continue;
       try {
@@ -70,10 +70,10 @@ Library load_libraries(const std::vector<ObjStatement>& statements, const std::s
 /// Adds the materials of the slots in their order.
 class SlotMaterials {
  public:
-  SlotMaterials(const Library& library, ObjFile& obj, std::vector<ObjStatement>& notices)
+  SlotMaterials(const Library& library, ObjFile& obj, std::vector<MeshStatement>& notices)
       : library_(library), obj_(obj), notices_(notices), textures_(library.textures.size(), kNoId) {}
 
-  void add(const ObjStatement& slot) {
+  void add(const MeshStatement& slot) {
     const auto found = library_.by_name.find(slot.words);
     if (found != library_.by_name.end()) {
       Material material = library_.materials[found->second];
@@ -85,7 +85,7 @@ class SlotMaterials {
     material.name = slot.words.empty() ? "default" : slot.words;
     obj_.materials.push_back(std::move(material));
     // Of a library that is missing, one warning is enough.
-    if (slot.at == ObjStatement::kNowhere || slot.words.empty() || !library_.complete) return;
+    if (slot.at == MeshStatement::kNowhere || slot.words.empty() || !library_.complete) return;
     notices_.push_back(
         {slot.at, "material " + quote_name(slot.words) + " is not defined; a grey one is used", {}});
   }
@@ -104,14 +104,14 @@ class SlotMaterials {
 
   const Library& library_;
   ObjFile& obj_;
-  std::vector<ObjStatement>& notices_;
+  std::vector<MeshStatement>& notices_;
   std::vector<std::uint32_t> textures_;
 };
 
 /// Hands out slots in the order of first use.
 class Slots {
  public:
-  explicit Slots(std::vector<ObjStatement>& materials) : materials_(materials) {}
+  explicit Slots(std::vector<MeshStatement>& materials) : materials_(materials) {}
 
   /// The slot of `name`, which is the last one if it is new.
   std::size_t of(std::string_view name, std::uint64_t at) {
@@ -121,7 +121,7 @@ class Slots {
   }
 
  private:
-  std::vector<ObjStatement>& materials_;
+  std::vector<MeshStatement>& materials_;
   std::unordered_map<std::string, std::size_t> by_name_;
 };
 
@@ -164,7 +164,7 @@ std::vector<std::string> split_library_names(std::string_view text, const std::s
   return paths;
 }
 
-void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedObj& parsed) {
+void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedMesh& parsed) {
   const auto offset = [text](const char* where) { return static_cast<std::uint64_t>(where - text); };
   for (const ObjChunk& chunk : chunks)
     for (const ObjLibrary& library : chunk.libraries)
@@ -178,7 +178,7 @@ void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedObj& pa
   parsed.mesh.material_slots.resize_uninitialized(count);
   std::uint16_t* const out = parsed.mesh.material_slots.data();
   const std::uint64_t first = runs.front().use.triangle;
-  if (first > 0) std::fill_n(out, first, static_cast<std::uint16_t>(slots.of("", ObjStatement::kNowhere)));
+  if (first > 0) std::fill_n(out, first, static_cast<std::uint16_t>(slots.of("", MeshStatement::kNowhere)));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const ObjMaterialUse& use = runs[i].use;
     const std::uint64_t end = i + 1 < runs.size() ? runs[i + 1].use.triangle : count;
@@ -191,11 +191,12 @@ void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedObj& pa
   }
 }
 
-void resolve_materials(const std::vector<ObjStatement>& libraries, const std::vector<ObjStatement>& materials,
-                       const std::string& obj_path, ObjFile& obj, std::vector<ObjStatement>& notices) {
+void resolve_materials(const std::vector<MeshStatement>& libraries,
+                       const std::vector<MeshStatement>& materials, const std::string& obj_path, ObjFile& obj,
+                       std::vector<MeshStatement>& notices) {
   const Library library = load_libraries(libraries, obj_path, obj, notices);
   SlotMaterials slots(library, obj, notices);
-  for (const ObjStatement& material : materials) slots.add(material);
+  for (const MeshStatement& material : materials) slots.add(material);
 }
 
 }  // namespace oktett

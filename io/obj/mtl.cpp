@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/obj/failure.h"
+#include "io/mesh/failure.h"
 #include "io/obj/mtl_line.h"
 #include "io/obj/mtl_texture.h"
 #include "io/obj/obj.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "io/obj/failure.h"
+#include "io/mesh/failure.h"
 #include "io/text/number.h"
 
 namespace oktett {

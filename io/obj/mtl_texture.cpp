@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "io/obj/failure.h"
+#include "io/mesh/failure.h"
 
 namespace oktett {
 namespace {

@@ -23,7 +23,7 @@ class ObjLoad {
     if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
   }
 
-  ParsedObj run() {
+  ParsedMesh run() {
     count();
     read_all_vertices();
     read_all_faces();
@@ -48,10 +48,10 @@ class ObjLoad {
     chunks_ = cut_into_chunks(text_, std::max<std::size_t>(options_.chunk_bytes, 1));
     for_each_chunk([](ObjChunk& chunk) { count_chunk(chunk); });
     total_ = sum_counts(chunks_);
-    check_limit(total_.positions, "vertices");
-    check_limit(total_.uvs, "uvs");
-    check_limit(total_.normals, "normals");
-    check_limit(total_.triangles, "triangles");
+    check_limit(path_, total_.positions, "vertices", options_.max_elements);
+    check_limit(path_, total_.uvs, "uvs", options_.max_elements);
+    check_limit(path_, total_.normals, "normals", options_.max_elements);
+    check_limit(path_, total_.triangles, "triangles", options_.max_elements);
     const bool has_slash =
         std::any_of(chunks_.begin(), chunks_.end(), [](const ObjChunk& chunk) { return chunk.has_slash; });
     TriangleMesh& mesh = obj_.mesh;
@@ -61,12 +61,6 @@ class ObjLoad {
     mesh.indices.resize_uninitialized(3 * total_.triangles);
     if (has_slash && total_.uvs > 0) mesh.uv_indices.resize_uninitialized(3 * total_.triangles);
     if (has_slash && total_.normals > 0) mesh.normal_indices.resize_uninitialized(3 * total_.triangles);
-  }
-
-  void check_limit(std::uint64_t count, const char* what) const {
-    if (count <= options_.max_elements) return;
-    throw Error(Location{path_}, std::to_string(count) + " " + what + ", but indices reach only " +
-                                     std::to_string(options_.max_elements));
   }
 
   void read_all_vertices() {
@@ -87,18 +81,16 @@ class ObjLoad {
     });
   }
 
-  std::optional<ObjFailure> first_failure() const {
-    std::optional<ObjFailure> first;
+  std::optional<MeshFailure> first_failure() const {
+    std::optional<MeshFailure> first;
     for (const ObjChunk& chunk : chunks_) keep_first(first, chunk.failure);
     keep_first(first, find_unpaired_brace(chunks_));
     return first;
   }
 
   void stop_at_first_failure() const {
-    const std::optional<ObjFailure> failure = first_failure();
-    if (!failure) return;
-    const TextPosition position = LineCounter(text_).at(failure->where);
-    throw Error(Location{path_, position.line, position.column}, failure->message);
+    const std::optional<MeshFailure> failure = first_failure();
+    if (failure) fail_at_line(path_, text_, *failure);
   }
 
   void drop_unused_columns() {
@@ -143,44 +135,44 @@ class ObjLoad {
   std::string_view text_;
   std::vector<ObjChunk> chunks_;
   ObjCounts total_;
-  ParsedObj obj_;
+  ParsedMesh obj_;
 };
 
 }  // namespace
 
 ObjFile load_obj(const std::string& path, const ObjOptions& options) {
   ObjLoad load(path, options);
-  ParsedObj parsed = load.run();
+  ParsedMesh parsed = load.run();
   LineCounter lines = load.lines();
   return finish_obj(path, std::move(parsed), [&](std::uint64_t at) { return lines.at(load.text() + at); });
 }
 
 ObjFile load_obj(const std::string& path) { return load_obj(path, ObjOptions{}); }
 
-ParsedObj parse_obj(const std::string& path) {
+ParsedMesh parse_obj(const std::string& path) {
   ObjLoad load(path, ObjOptions{});
-  ParsedObj parsed = load.run();
-  std::vector<ObjStatement*> statements;
+  ParsedMesh parsed = load.run();
+  std::vector<MeshStatement*> statements;
   for (auto* list : {&parsed.libraries, &parsed.materials, &parsed.notices})
-    for (ObjStatement& statement : *list)
-      if (statement.at != ObjStatement::kNowhere) statements.push_back(&statement);
-  std::ranges::sort(statements, {}, &ObjStatement::at);
+    for (MeshStatement& statement : *list)
+      if (statement.at != MeshStatement::kNowhere) statements.push_back(&statement);
+  std::ranges::sort(statements, {}, &MeshStatement::at);
   LineCounter lines = load.lines();
-  for (ObjStatement* statement : statements) statement->position = lines.at(load.text() + statement->at);
+  for (MeshStatement* statement : statements) statement->position = lines.at(load.text() + statement->at);
   return parsed;
 }
 
-ObjFile finish_obj(const std::string& path, ParsedObj parsed,
+ObjFile finish_obj(const std::string& path, ParsedMesh parsed,
                    const std::function<TextPosition(std::uint64_t)>& position) {
   ObjFile obj;
   obj.mesh = std::move(parsed.mesh);
   // Those about materials stand before others of the same place.
-  std::vector<ObjStatement> notices;
+  std::vector<MeshStatement> notices;
   resolve_materials(parsed.libraries, parsed.materials, path, obj, notices);
   std::ranges::move(parsed.notices, std::back_inserter(notices));
-  std::ranges::stable_sort(notices, {}, &ObjStatement::at);
+  std::ranges::stable_sort(notices, {}, &MeshStatement::at);
   std::vector<Warning> warnings;
-  for (const ObjStatement& notice : notices) {
+  for (const MeshStatement& notice : notices) {
     const TextPosition place = position(notice.at);
     warnings.push_back({Location{path, place.line, place.column}, notice.words});
   }
@@ -189,10 +181,10 @@ ObjFile finish_obj(const std::string& path, ParsedObj parsed,
   return obj;
 }
 
-ObjFile finish_obj(const std::string& path, ParsedObj parsed) {
+ObjFile finish_obj(const std::string& path, ParsedMesh parsed) {
   std::unordered_map<std::uint64_t, TextPosition> positions;
   for (const auto* list : {&parsed.libraries, &parsed.materials, &parsed.notices})
-    for (const ObjStatement& statement : *list) positions.emplace(statement.at, statement.position);
+    for (const MeshStatement& statement : *list) positions.emplace(statement.at, statement.position);
   return finish_obj(path, std::move(parsed), [&](std::uint64_t at) { return positions[at]; });
 }
 

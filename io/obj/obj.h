@@ -5,19 +5,12 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/mesh.h"
+#include "io/mesh/mesh_file.h"
 #include "render/material.h"
 
 namespace oktett {
 
-/// Everything in an OBJ file that can be rendered.
-struct ObjFile {
-  TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
-  std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
-  std::vector<Texture> textures;    ///< what the materials' texture indices refer to
-  std::vector<Location> texture_places;  ///< where each texture is named first
-  std::vector<Warning> warnings;         ///< what was skipped
-};
+using ObjFile = MeshFile;
 
 /// Reads `path` and the MTL files that it names, which are looked for in the same directory. Throws Error
 /// with file and line for what the format does not allow, with ErrorKind::io if the file cannot be read.

@@ -5,20 +5,17 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/mesh.h"
+#include "io/mesh/load/load_mesh.h"
 #include "render/scene.h"
 
 namespace oktett {
 
-/// ".obj" of "a.OBJ".
-std::string lower_case_extension(const std::string& path);
 /// One path for all that lead to the same file; `path` itself if there is no such file.
 std::string canonical_path(const std::string& path);
-
-/// True if `path` ends like a mesh file that can be read.
-inline bool is_mesh_file(const std::string& path) { return lower_case_extension(path) == ".obj"; }
 
 class MeshLibrary {
  public:
@@ -29,11 +26,11 @@ class MeshLibrary {
   };
 
   /// The mesh of a file that exists. The first time it is read and its materials, textures and warnings are
-  /// appended to `scene`. Throws Error as load_obj does.
-  const Entry& load(const std::string& path, Scene& scene);
+  /// appended to `scene`. Throws Error as load_mesh does.
+  const Entry& load(const std::string& path, const MeshOptions& options, Scene& scene);
 
  private:
-  std::map<std::string, Entry> entries_;  ///< by canonical path
+  std::map<std::pair<std::string, bool>, Entry> entries_;  ///< by canonical path and MeshOptions::weld
 };
 
 }  // namespace oktett

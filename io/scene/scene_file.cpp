@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "io/mesh/load/load_mesh.h"
 #include "io/scene/readers.h"
 #include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
 #include "io/scene/yaml.h"
+#include "io/text/extension.h"
 #include "io/text/file_access.h"
 #include "render/default_view.h"
 
@@ -136,7 +138,7 @@ Scene scene_from_mesh(const std::string& path) {
   Scene scene;
   scene.source = path;
   MeshLibrary meshes;
-  const MeshLibrary::Entry& entry = meshes.load(path, scene);
+  const MeshLibrary::Entry& entry = meshes.load(path, {.weld = repeats_vertices(path)}, scene);
   MeshShape shape;
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
@@ -165,7 +167,8 @@ Scene load_scene(const std::string& path, const Definitions& definitions) {
   if (extension == ".yaml" || extension == ".yml") return load_scene_file(path, definitions);
   if (!is_mesh_file(path))
     throw Error(Location{path, 0, 0},
-                "unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj)");
+                std::string("unknown kind of file; expected a scene (.yaml, .yml) or a mesh (") +
+                    mesh_extensions() + ")");
   Scene scene = scene_from_mesh(path);
   for (const Warning& warning : SceneParameters(definitions).unused()) scene.warnings.push_back(warning);
   return scene;

@@ -19,7 +19,8 @@ Scene load_scene_file(const std::string& path, const Definitions& definitions = 
 /// Throws Error as load_obj does.
 Scene scene_from_mesh(const std::string& path);
 
-/// Calls load_scene_file for .yaml and .yml, scene_from_mesh for .obj; throws Error for any other extension.
+/// Calls load_scene_file for .yaml and .yml, scene_from_mesh for mesh files; throws Error for any other
+/// extension.
 Scene load_scene(const std::string& path, const Definitions& definitions = {});
 
 }  // namespace oktett

@@ -2,6 +2,7 @@
 #include <utility>
 #include <variant>
 
+#include "io/mesh/load/load_mesh.h"
 #include "io/scene/exact.h"
 #include "io/scene/readers.h"
 #include "io/scene/shape_reader.h"
@@ -16,8 +17,9 @@ using MaybeShape = std::optional<Shape>;
 bool finish(const ShapeNode& at, MeshShape& shape) {
   const YamlNode& file = at.fields.require("file");
   const std::string path = at.load.values.existing_file(file);
-  if (!is_mesh_file(path)) throw Error(file.where(), "unknown kind of mesh file; expected .obj");
-  const MeshLibrary::Entry& entry = at.load.meshes.load(path, at.load.scene);
+  if (!is_mesh_file(path))
+    throw Error(file.where(), std::string("unknown kind of mesh file; expected ") + mesh_extensions());
+  const MeshLibrary::Entry& entry = at.load.meshes.load(path, {.weld = shape.weld}, at.load.scene);
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
   if (shape.mesh->triangle_count() == 0) at.skip("the mesh has no triangles");

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,27 @@ using test::TempDir;
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
+/// The same as PLY and STL.
+constexpr const char* kPlyTetrahedron =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+std::string stl_tetrahedron() {
+  std::string text = "solid\n";
+  const char* const corners[] = {"0 0 0", "1 0 0", "0 1 0", "0 0 1"};
+  for (const auto& face : {std::array{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : face) text.append("vertex ").append(corners[corner]).append("\n");
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid\n";
+}
+
 /// The pixels of the picture, or the message on stderr if another status than 0 is expected.
-std::string picture(const TempDir& dir, const std::vector<std::string>& options, int status = 0) {
-  std::vector<std::string> words{"render", "mesh.obj", "--size", "32x18", "-o", "x.png", "--spp", "2"};
+std::string picture(const TempDir& dir, const std::vector<std::string>& options, int status = 0,
+                    const char* mesh = "mesh.obj") {
+  std::vector<std::string> words{"render", mesh, "--size", "32x18", "-o", "x.png", "--spp", "2"};
   words.insert(words.end(), options.begin(), options.end());
   const CommandResult result = run_command(dir, words);
   EXPECT_EQ(result.status, status) << result.err;
@@ -42,6 +61,16 @@ TEST(LookCommand, ShowsMeshesAloneInEachLook) {
   // The bits do not depend on the threads or the instruction set.
   EXPECT_EQ(picture(dir, {"-t", "1"}), usual);
   EXPECT_EQ(picture(dir, {"--isa", "scalar"}), usual);
+}
+
+TEST(LookCommand, TheFormatOfTheMeshChangesNothing) {
+  const TempDir dir;
+  dir.write("mesh.obj", kTetrahedron);
+  dir.write("mesh.ply", kPlyTetrahedron);
+  dir.write("mesh.stl", stl_tetrahedron());
+  const std::string usual = picture(dir, {});
+  EXPECT_EQ(picture(dir, {}, 0, "mesh.ply"), usual);
+  EXPECT_EQ(picture(dir, {}, 0, "mesh.stl"), usual);
 }
 
 TEST(LookCommand, RefusesWhatHasNoLook) {

@@ -115,6 +115,8 @@ static_assert(has<Scene(const std::string&, const Definitions&)>(load_scene));
 static_assert(has<Scene(const std::string&, const Definitions&)>(load_scene_file));
 static_assert(has<Scene(const std::string&)>(scene_from_mesh));
 static_assert(has<ObjFile(const std::string&)>(load_obj));
+static_assert(has<MeshFile(const std::string&, const MeshOptions&)>(load_mesh) &&
+              has<bool(const std::string&)>(is_mesh_file));
 static_assert(has<void(const std::string&)>(check_output));
 static_assert(has<void(const std::string&, const Picture&, const ImageMetadata&)>(write_image));
 static_assert(has<Picture(const std::string&)>(read_image));

@@ -19,6 +19,7 @@
 #include "core/error.h"
 #include "io/cache/entries.h"
 #include "io/cache/scene_cache.h"
+#include "io/obj/obj.h"
 #include "io/text/files_read.h"
 #include "tests/support/temp_dir.h"
 

@@ -311,11 +311,11 @@ TEST(LoadScene, ChoosesByExtension) {
   EXPECT_EQ(load_scene(files.dir.write("a.yml", "oktett: 1\n")).objects.size(), 0u);
   EXPECT_EQ(load_scene(files.dir.write("a.obj", kTetrahedron)).objects.size(), 1u);
   try {
-    load_scene(files.dir.write("a.stl", "x"));
+    load_scene(files.dir.write("a.3ds", "x"));
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(files.without_directory(e.what()),
-              "a.stl: unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj)");
+              "a.3ds: unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj, .ply or .stl)");
     EXPECT_EQ(e.kind(), ErrorKind::bad_input);
   }
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/vec3.h"
-#include "io/obj/blocker_tree.h"
+#include "io/mesh/blocker_tree.h"
 
 namespace oktett {
 

@@ -1,6 +1,23 @@
-#include "io/obj/failure.h"
+#include "io/mesh/failure.h"
+
+#include "core/error.h"
 
 namespace oktett {
+
+void fail_at_line(const std::string& path, std::string_view text, const MeshFailure& failure) {
+  const TextPosition position = LineCounter(text).at(failure.where);
+  throw Error(Location{path, position.line, position.column}, failure.message);
+}
+
+void fail_at_byte(const std::string& path, std::string_view text, const MeshFailure& failure) {
+  throw Error(Location{path}, "byte " + std::to_string(failure.where - text.data()) + ": " + failure.message);
+}
+
+void check_limit(const std::string& path, std::uint64_t count, const char* what, std::size_t most) {
+  if (count > most)
+    throw Error(Location{path},
+                std::to_string(count) + " " + what + ", but indices reach only " + std::to_string(most));
+}
 
 std::string quote_name(std::string_view text) {
   constexpr std::size_t most = 40;

@@ -1,4 +1,4 @@
-#include "io/obj/polygon.h"
+#include "io/mesh/polygon.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "io/obj/blocker_tree.h"
+#include "io/mesh/blocker_tree.h"
 
 #include <numeric>
 

@@ -1,4 +1,4 @@
-#include "io/obj/polygon.h"
+#include "io/mesh/polygon.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

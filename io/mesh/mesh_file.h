@@ -1,0 +1,22 @@
+#pragma once
+/// \file What is read from a mesh file of any format.
+
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/mesh.h"
+#include "render/material.h"
+
+namespace oktett {
+
+/// Everything in a mesh file that can be rendered.
+struct MeshFile {
+  TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
+  std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
+  std::vector<Texture> textures;    ///< what the materials' texture indices refer to
+  std::vector<Location> texture_places;  ///< where each texture is named first
+  std::vector<Warning> warnings;         ///< what was skipped
+};
+
+}  // namespace oktett

@@ -1,0 +1,227 @@
+#include "io/ply/ply.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "io/ply/body.h"
+#include "io/text/mapped_file.h"
+
+namespace oktett {
+namespace {
+
+static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec2f) == 2 * sizeof(float));
+
+/// The loading of one file, step by step.
+class PlyLoad {
+ public:
+  PlyLoad(const std::string& path, const MeshReadOptions& options)
+      : path_(path), options_(options), file_(path), text_(file_.text()) {}
+
+  ParsedMesh run() {
+    try {
+      header_ = read_ply_header(text_);
+      in_header_ = false;
+      choose_parts();
+      const bool is_text = header_.format == PlyFormat::ascii;
+      body_ = (is_text ? make_ascii_body : make_binary_body)(header_, text_, options_.chunk_bytes);
+      note_rest(body_->locate(parts_), is_text);
+      for (PlyFaces& faces : faces_) body_->count_faces(faces);
+      stop_at_first_failure();
+      allocate();
+      read_vertices();
+      read_faces();
+    } catch (const MeshFailure& failure) {
+      const bool is_line = in_header_ || header_.format == PlyFormat::ascii || failure.where < header_.body;
+      (is_line ? fail_at_line : fail_at_byte)(path_, text_, failure);
+    }
+    finish();
+    return std::move(parsed_);
+  }
+
+ private:
+  /// What each element is to the mesh. Places of the parts are those of the elements.
+  void choose_parts() {
+    faces_.reserve(header_.elements.size());
+    others_.reserve(header_.elements.size());
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") {
+        choose_vertices(element);
+        parts_.push_back(&vertices_);
+      } else if (element.name == "face" || element.name == "tristrips") {
+        parts_.push_back(&choose_faces(element));
+      } else {
+        parts_.push_back(&others_.emplace_back());
+        if (element.count > 0) note(element.where, "element " + quote_name(element.name) + " is not read");
+      }
+      parts_.back()->element = &element;
+    }
+    if (vertices_.element == nullptr) stop_at(header_.body, "expected an element 'vertex' in the header");
+  }
+
+  void choose_vertices(const PlyElement& element) {
+    const auto scalar = [&](std::initializer_list<std::string_view> names) {
+      const int i = element.find(names);
+      return i != PlyElement::kNone && element.properties[static_cast<std::size_t>(i)].is_list
+                 ? PlyElement::kNone
+                 : i;
+    };
+    vertices_.roles = {scalar({"x"}),  scalar({"y"}),  scalar({"z"}),     scalar({"nx"}),
+                       scalar({"ny"}), scalar({"nz"}), PlyElement::kNone, PlyElement::kNone};
+    constexpr std::pair<std::string_view, std::string_view> kUvNames[] = {
+        {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+    for (const auto& [u, v] : kUvNames)
+      if (!has(6, 8) && scalar({u}) != PlyElement::kNone && scalar({v}) != PlyElement::kNone)
+        vertices_.roles[6] = scalar({u}), vertices_.roles[7] = scalar({v});
+    if (!has(0, 3)) stop_at(element.where, "expected the properties x, y and z of element 'vertex'");
+    vertices_.has_normals = has(3, 6);
+    vertices_.has_uvs = has(6, 8);
+    note_colours(element, "vertices");
+  }
+
+  bool has(std::size_t first, std::size_t last) const {
+    return std::all_of(vertices_.roles.begin() + static_cast<std::ptrdiff_t>(first),
+                       vertices_.roles.begin() + static_cast<std::ptrdiff_t>(last),
+                       [](int property) { return property != PlyElement::kNone; });
+  }
+
+  PlyFaces& choose_faces(const PlyElement& element) {
+    PlyFaces& faces = faces_.emplace_back();
+    faces.strips = element.name == "tristrips";
+    faces.indices = element.find({"vertex_indices", "vertex_index"});
+    if (faces.indices == PlyElement::kNone)
+      stop_at(element.where, "expected a property 'vertex_indices' of element " + quote_name(element.name));
+    const PlyProperty& indices = element.properties[static_cast<std::size_t>(faces.indices)];
+    if (!indices.is_list || !is_whole(indices.type))
+      stop_at(indices.where, "expected a list of whole numbers, the indices of vertices");
+    const int texcoords = faces.strips ? PlyElement::kNone : element.find({"texcoord"});
+    if (texcoords != PlyElement::kNone && element.properties[static_cast<std::size_t>(texcoords)].is_list)
+      faces.texcoords = texcoords;
+    note_colours(element, "faces");
+    return faces;
+  }
+
+  void note_colours(const PlyElement& element, const char* whose) {
+    const int red = element.find({"red", "diffuse_red", "r"});
+    if (red == PlyElement::kNone) return;
+    note(element.properties[static_cast<std::size_t>(red)].where,
+         std::string("colours of ") + whose + " are not read");
+  }
+
+  void note(const char* where, std::string words) {
+    parsed_.notices.push_back(
+        {static_cast<std::uint64_t>(where - text_.data()), std::move(words), lines_.at(where)});
+  }
+
+  void note_rest(std::uint64_t rest, bool is_text) {
+    if (rest > 0)
+      parsed_.notices.push_back(
+          {text_.size(),
+           std::to_string(rest) + (is_text ? " lines" : " bytes") + " behind the last element are not read",
+           {0, 0}});
+  }
+
+  void stop_at_first_failure() const {
+    std::optional<MeshFailure> first;
+    for (const PlyPart* part : parts_)
+      for (const PlyChunk& chunk : part->chunks) keep_first(first, chunk.failure);
+    if (first) throw *first;
+  }
+
+  void allocate() {
+    std::uint64_t triangles = 0, uvs = 0;
+    for (PlyFaces& faces : faces_) {
+      for (PlyChunk& chunk : faces.chunks) {
+        chunk.triangles_before = triangles, chunk.uvs_before = uvs;
+        triangles += chunk.triangles, uvs += chunk.uvs;
+      }
+      corner_uvs_ = corner_uvs_ || uvs > 0;
+    }
+    const std::uint64_t count = vertices_.element->count;
+    check_limit(path_, count, "vertices", options_.max_elements);
+    check_limit(path_, triangles, "triangles", options_.max_elements);
+    check_limit(path_, uvs, "uvs", options_.max_elements);
+    TriangleMesh& mesh = parsed_.mesh;
+    mesh.positions.resize_uninitialized(count);
+    if (vertices_.has_normals) mesh.normals.resize_uninitialized(count);
+    if (corner_uvs_)
+      mesh.uvs.resize_uninitialized(uvs);
+    else if (vertices_.has_uvs)
+      mesh.uvs.resize_uninitialized(count);
+    mesh.indices.resize_uninitialized(3 * triangles);
+    if (corner_uvs_) mesh.uv_indices.resize_uninitialized(3 * triangles);
+  }
+
+  /// Calls read(chunk) for all chunks, and gives back the pages of the file.
+  template <class Read>
+  void for_each_chunk(PlyPart& part, const Read& read) {
+    oneapi::tbb::parallel_for(std::size_t{0}, part.chunks.size(), [&](std::size_t i) {
+      PlyChunk& chunk = part.chunks[i];
+      try {
+        read(chunk);
+      } catch (const MeshFailure& failure) {
+        keep_first(chunk.failure, failure.where, failure.message);
+      }
+      file_.release(chunk.begin, chunk.end);
+    });
+  }
+
+  void read_vertices() {
+    TriangleMesh& mesh = parsed_.mesh;
+    PlyVertexColumns columns;
+    columns.step = {3, 3, 3, 3, 3, 3, 2, 2};
+    const auto place = [&](std::size_t role, std::size_t size, void* column) {
+      for (std::size_t k = 0; k < size; ++k) columns.base[role + k] = static_cast<float*>(column) + k;
+    };
+    if (vertices_.element->count == 0) return;
+    place(0, 3, mesh.positions.data());
+    if (vertices_.has_normals) place(3, 3, mesh.normals.data());
+    if (vertices_.has_uvs && !corner_uvs_) place(6, 2, mesh.uvs.data());
+    for_each_chunk(vertices_,
+                   [&](const PlyChunk& chunk) { body_->read_vertices(vertices_, chunk, columns); });
+    stop_at_first_failure();
+  }
+
+  /// After the vertices, because how a polygon is cut depends on them.
+  void read_faces() {
+    for (PlyFaces& faces : faces_)
+      for_each_chunk(faces, [&](const PlyChunk& chunk) {
+        PlyFaceWriter writer(faces, chunk, parsed_.mesh);
+        body_->read_faces(faces, chunk, writer);
+      });
+    stop_at_first_failure();
+  }
+
+  void finish() {
+    TriangleMesh& mesh = parsed_.mesh;
+    parsed_.has_faces = mesh.triangle_count() > 0;
+    if (vertices_.has_normals) mesh.normal_indices = mesh.indices;
+    if (vertices_.has_uvs && !corner_uvs_) mesh.uv_indices = mesh.indices;
+  }
+
+  const std::string path_;
+  const MeshReadOptions options_;
+  const MappedFile file_;
+  const std::string_view text_;
+  LineCounter lines_{text_};
+  bool in_header_ = true;
+  PlyHeader header_;
+  std::vector<PlyPart*> parts_;
+  PlyVertices vertices_;
+  std::vector<PlyFaces> faces_;
+  std::vector<PlyPart> others_;
+  std::unique_ptr<PlyBody> body_;
+  bool corner_uvs_ = false;  ///< texture coordinates are those of faces
+  ParsedMesh parsed_;
+};
+
+}  // namespace
+
+ParsedMesh parse_ply(const std::string& path, const MeshReadOptions& options) {
+  return PlyLoad(path, options).run();
+}
+
+}  // namespace oktett

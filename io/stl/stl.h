@@ -1,0 +1,15 @@
+#pragma once
+/// \file STL meshes, as text and as bytes. Within io/ only.
+
+#include <string>
+
+#include "io/mesh/parsed_mesh.h"
+
+namespace oktett {
+
+/// Reads `path`. Every triangle has three vertices of its own. Normals and attributes of facets are not used.
+/// Throws Error with the line, or the byte, for what the format does not allow, with ErrorKind::io if the
+/// file cannot be read.
+ParsedMesh parse_stl(const std::string& path, const MeshReadOptions& options = {});
+
+}  // namespace oktett

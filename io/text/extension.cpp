@@ -1,0 +1,14 @@
+#include "io/text/extension.h"
+
+#include <cctype>
+#include <filesystem>
+
+namespace oktett {
+
+std::string lower_case_extension(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+}  // namespace oktett
