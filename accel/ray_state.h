@@ -114,6 +114,11 @@ struct alignas(64) RayState {
     tmax[i] = one.tmax[0], u[i] = one.u[0], v[i] = one.v[0], item[i] = one.item[0], path[i] = one.path[0];
   }
 
+  /// Ray i's nearest hit becomes `h`, if that is valid.
+  OKTETT_INLINE void set_hit(int i, const Hit& h) {
+    if (h.valid()) tmax[i] = h.t, u[i] = h.u, v[i] = h.v, item[i] = h.item, path[i] = h.instance;
+  }
+
   OKTETT_INLINE Hit hit(int i) const {
     Hit h;
     if (item[i] != kNoId) h = {tmax[i], u[i], v[i], item[i], path[i]};

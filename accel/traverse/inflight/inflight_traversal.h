@@ -162,9 +162,11 @@ class InflightTraversal {
   OKTETT_NOINLINE RayState<1, A>& exact_state(InflightRay& ray) {
     RayState<1, A>& r = states_[&ray - inflight_];
     if (ray.has_state == 0) {
+      const Hit nearest = ray.candidate == kDecidedHit ? r.hit(0) : Hit{};
       Ray whole = rays_[ray.index];
       whole.tmax = ray.tmax;
       r.set(whole, accel_.bounds);
+      r.set_hit(0, nearest);
       ray.has_state = 1;
     }
     if (ray.candidate < kDecidedHit)
@@ -197,6 +199,45 @@ class InflightTraversal {
     shorten<A>(ray, r.tmax[0]);
   }
 
+  /// Keeps a hit in no instance of a ray without an undecided candidate, if it is the nearest so far.
+  OKTETT_INLINE void keep_hit(InflightRay& ray, const Hit& hit) {
+    if constexpr (Q == Query::any) return found(ray);
+    RayState<1, A>& r = states_[&ray - inflight_];
+    if (ray.candidate == kDecidedHit &&
+        !(hit.t < ray.tmax || id_before(hit.instance, hit.item, r.path[0], r.item[0])))
+      return;
+    ray.candidate = kDecidedHit;
+    r.set_hit(0, hit);
+    ray.hit_lo = hit.t;
+    shorten<A>(ray, hit.t);
+  }
+
+  /// One ray against a leaf of closed-form shapes outside instances. Needs less than exact_state() sets.
+  template <class S>
+  OKTETT_INLINE void shape_leaf(const typename S::Pool& pool, const LeafEntry& leaf, InflightRay& ray) {
+    constexpr int N = kShapeLanes<S>;
+    using F = Simd<float, N, A>;
+    using D = Simd<double, N, A>;
+    for (int k = 0; k < leaf.count; k += N) {
+      const RayLanes<F> lanes{{F(ray.o[0]), F(ray.o[1]), F(ray.o[2])},
+                              {F(ray.d[0]), F(ray.d[1]), F(ray.d[2])},
+                              F(ray.tmin),
+                              F(ray.tmax)};
+      HitLanes<F> hit;
+      const std::size_t first = leaf.begin + static_cast<std::size_t>(k);
+      const auto found_here = first_root<S>(lanes, to_double(lanes), S::template load<D>(pool, first), hit);
+      unsigned met = bits(found_here) & ((2u << (std::min(leaf.count - k, N) - 1)) - 1);
+      if (met == 0) continue;
+      alignas(64) float t[N];
+      hit.t.store(t);
+      for (; met != 0; met &= met - 1) {
+        const int i = __builtin_ctz(met);
+        if (t[i] <= ray.tmax) keep_hit(ray, {t[i], 0, 0, pool.item[first + static_cast<std::size_t>(i)], kNoId});
+        if (Q == Query::any) return;
+      }
+    }
+  }
+
   /// Tests the ray's block of triangles exactly.
   OKTETT_NOINLINE void decide_leaf(InflightRay& ray) {
     const NodeRef leaf = ray.current;
@@ -219,6 +260,10 @@ class InflightTraversal {
     if constexpr (kEnter)
       for (InflightRay** at = rays.leaving; at != rays.leaving_end; ++at) leave(**at, tail);
     for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end;) {
+      if (at_shapes(**at)) {
+        pop(**at++, tail);
+        continue;
+      }
       const int count = rays_at_leaf<kInstances>(accel_, at, rays.at_leaf_end, ExactCode<A>::kLanes);
       if (count > 0)
         exact_leaf(at, count, tail);
@@ -228,6 +273,15 @@ class InflightTraversal {
     }
     if constexpr (kEnter) go_inside(tail);
     queues_.keep(tail);
+  }
+
+  /// Tests the ray if its leaf holds spheres and its hit so far is decided.
+  OKTETT_INLINE bool at_shapes(InflightRay& ray) {
+    if (ray.candidate < kDecidedHit || (kInstances && ray.in.instance != kNoInstance)) return false;
+    const LeafEntry& leaf = accel_.leaves[ray.current.table_index()];
+    if (leaf.kind != Kind::sphere) return false;
+    shape_leaf<Sphere>(std::get<Sphere::Pool>(accel_.pools), leaf, ray);
+    return true;
   }
 
   /// Rays of one leaf of exact surfaces, several at once.

@@ -53,7 +53,10 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
       const int i = static_cast<int>(next_ % Base::kChunk);
       if constexpr (Q == Query::any)
         if (next_ % kBundleRays == 0) set_entry();
-      if (i == 0) chunk_.set(rays_, next_, extent_);
+      if (i == 0) {
+        chunk_.set(rays_, next_, extent_);
+        if (OKTETT_UNLIKELY(!accel_.unbounded.empty()) && only_planes_) meet_planes();
+      }
       if ((chunk_.tame >> i & 1) != 0) {
         start(ray, i, tail);
         ++next_;
@@ -62,6 +65,17 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
       // The ray is not valid, or its numbers are too large or too small for the fast arithmetic.
       out_.set(next_, trace_exact<Q, A>(accel_, rays_[next_]));
     }
+  }
+
+  /// Tests the rays of the chunk against planes, all at once.
+  OKTETT_NOINLINE void meet_planes() {
+    using F = Simd<float, Base::kChunk, A>;
+    const auto vec = [](const float(&v)[3][Base::kChunk]) {
+      return Vec3<F>{F::load(v[0]), F::load(v[1]), F::load(v[2])};
+    };
+    planes_.set_rays(vec(chunk_.o), vec(chunk_.d), F::load(chunk_.tmin), F::load(chunk_.tmax));
+    for (const LeafEntry& leaf : accel_.unbounded)
+      leaf_shape_packet<Plane>(std::get<Plane::Pool>(accel_.pools), leaf.begin, leaf.count, planes_, chunk_.tame);
   }
 
   /// Prepares the entry of the next bundle.
@@ -86,7 +100,10 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
       }
     }
     ray.index = static_cast<std::uint32_t>(next_);
-    if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
+    if (OKTETT_UNLIKELY(only_planes_)) {
+      const Hit hit = planes_.hit(i);
+      if (hit.valid()) this->keep_hit(ray, hit);
+    } else if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
       RayState<1, A>& r = this->exact_state(ray);
       for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, r);
       this->adopt(ray);
@@ -98,6 +115,12 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
   const float extent_;
   std::size_t next_ = 0;
   bool has_entry_ = false;
+  /// All unbounded shapes are planes, and there are some.
+  const bool only_planes_ =
+      !accel_.unbounded.empty() && std::ranges::all_of(accel_.unbounded, [](const LeafEntry& leaf) {
+        return leaf.kind == Kind::plane;
+      });
+  RayState<Base::kChunk, A> planes_;  ///< the chunk and its hits on them
   BundleEntry<A> entry_;
 };
 
