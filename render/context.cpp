@@ -37,9 +37,9 @@ static LightSource light_source(const Light& light) {
   return source;
 }
 
-std::int32_t highlight_exponent(float specular, float phong) {
+std::int16_t highlight_exponent(float specular, float phong) {
   if (specular == 0) return 0;
-  return by_squaring(phong) ? static_cast<std::int32_t>(phong) : ShadingMaterial::kAnyPower;
+  return by_squaring(phong) ? static_cast<std::int16_t>(phong) : ShadingMaterial::kAnyPower;
 }
 
 static ShadingMaterial shading_material(const Material& m, const RenderContext& context) {
@@ -51,7 +51,7 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   s.varies = has_textures(m) || m.opacity != 1 || (!m.emits_behind && !(m.emission == Color{0, 0, 0})) ||
              !m.surface || m.interior != kNoId;
   s.reflection = m.reflection;
-  s.transparent = m.transparency != 0;
+  s.transparency = m.transparency, s.ior = m.ior;
   return s;
 }
 

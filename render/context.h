@@ -74,7 +74,7 @@ std::vector<LightSource> light_sources(const Scene& scene);
 void enclose_camera(const Camera& camera, RenderContext& context);
 
 /// ShadingMaterial::exponent of a highlight of that weight and power.
-std::int32_t highlight_exponent(float specular, float phong);
+std::int16_t highlight_exponent(float specular, float phong);
 
 /// `scene` has its camera and lights filled in. `scene`, `world`, `lights` and `textures` must outlive the
 /// result.

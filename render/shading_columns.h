@@ -9,18 +9,19 @@ namespace oktett {
 
 /// What local shading needs of a material, in one cache line. Numbered like World::materials.
 struct alignas(64) ShadingMaterial {
-  static constexpr std::int32_t kAnyPower = -1;
+  static constexpr std::int16_t kAnyPower = -1;
 
   Color color, specular_color;
   Color unlit;  ///< light that needs no lamp: emission + color * ambient * ambient light
-  float diffuse, specular, phong, reflection;
+  float diffuse, specular, phong, reflection, transparency, ior;
   /// `phong` if highlights are raised to it by squaring, 0 if there are none, else kAnyPower.
-  std::int32_t exponent;
-  bool varies;       ///< colours, normal or emission are known only at the hit
-  bool transparent;  ///< lets light pass
+  std::int16_t exponent;
+  /// Colours, normal, emission or what light loses inside are known only at the hit. Such hits are finished
+  /// one by one, not in lanes.
+  bool varies;
 
-  /// Whether its hits are finished one by one, not in lanes.
-  bool alone() const { return varies || transparent; }
+  /// Whether it sends rays on.
+  bool sends_rays() const { return reflection != 0 || transparency != 0; }
 };
 static_assert(sizeof(ShadingMaterial) == 64);
 
@@ -38,7 +39,8 @@ struct ShadingColumns {
   float throughput[3][kMost];        ///< of the ray, times the opacity of the surface
   float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
   float color[3][kMost], specular_color[3][kMost];
-  float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost];
+  float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost], transparency[kMost];
+  float eta[kMost];  ///< index of refraction behind the surface, as the ray sees it, relative to before it
   std::int32_t exponent[kMost];
 };
 
@@ -49,10 +51,19 @@ struct ShadedRays {
   float* radiance[3];
 };
 
-/// The rays that mirrors send out; entry k leaves hit k.
-struct MirrorColumns {
+/// Rays that change a pixel by less than this are not traced.
+inline constexpr float kLeastThroughput = 1 / 4096.0f;
+
+/// The mirrored or the refracted rays of hits; entry k leaves hit k.
+struct BounceColumns {
   float origin[3][ShadingColumns::kMost], direction[3][ShadingColumns::kMost];
   float throughput[3][ShadingColumns::kMost];
+  std::uint64_t sent = 0;  ///< bit k: hit k sends such a ray
+};
+
+/// The columns of a queue of rays from its end on. Seven entries more than are added may be overwritten.
+struct QueuedRays {
+  float *origin[3], *direction[3], *throughput[3];
 };
 
 /// The columns of a queue of shadow rays from its end on. `kGroup` entries more than there are hits may

@@ -1,5 +1,6 @@
 #include "render/transport/render_code.h"
 
+#include "render/isa/bounce_rays.h"
 #include "render/isa/lens_rays.h"
 #include "render/isa/light_code.h"
 #include "render/isa/path_begin.h"
@@ -12,10 +13,11 @@ namespace oktett {
 
 template <class A>
 const RenderCode& render_code() {
-  static const RenderCode code = {ShadingLanes<A>::kWidth, kDoubleLanes<A>,          view_directions_code<A>,
-                                  lens_rays_code<A>,       sobol_points_code<A>,     begin_shading_code<A>,
-                                  shadow_rays_code<A>,     mirror_rays_code<A>,      begin_path_code<A>,
-                                  shade_phong_code<A>,     shade_principled_code<A>, light_code<A>()};
+  static const RenderCode code = {ShadingLanes<A>::kWidth, kDoubleLanes<A>,      view_directions_code<A>,
+                                  lens_rays_code<A>,       sobol_points_code<A>, begin_shading_code<A>,
+                                  shadow_rays_code<A>,     bounce_rays_code<A>,  queue_rays_code<A>,
+                                  begin_path_code<A>,      shade_phong_code<A>,  shade_principled_code<A>,
+                                  light_code<A>()};
   return code;
 }
 

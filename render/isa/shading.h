@@ -37,7 +37,8 @@ OKTETT_INLINE unsigned real_lanes(const ShadingColumns& c, std::size_t i) {
   return (left < F::kWidth ? 1u << left : 1u << F::kWidth) - 1u;
 }
 
-/// Fills the columns of materials in entries i ... of a group. Returns their unlit light.
+/// Fills the columns of materials in entries i ... of a group, `eta` as for rays from the front. Returns
+/// their unlit light.
 template <class F>
 OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColumns& c, std::size_t i) {
   constexpr int W = F::kWidth;
@@ -49,7 +50,8 @@ OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColum
     store_lanes(broadcast<F>(m.color), c.color, i);
     store_lanes(broadcast<F>(m.specular_color), c.specular_color, i);
     F(m.diffuse).store(c.diffuse + i), F(m.specular).store(c.specular + i), F(m.phong).store(c.phong + i);
-    F(m.reflection).store(c.reflection + i);
+    F(m.reflection).store(c.reflection + i), F(m.transparency).store(c.transparency + i);
+    F(m.ior).store(c.eta + i);
     for (int k = 0; k < W; ++k) c.exponent[i + k] = m.exponent;
     return broadcast<F>(m.unlit);
   }
@@ -61,7 +63,8 @@ OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColum
       unlit[axis][k] = m.unlit[axis];
     }
     c.diffuse[i + k] = m.diffuse, c.specular[i + k] = m.specular, c.phong[i + k] = m.phong;
-    c.reflection[i + k] = m.reflection, c.exponent[i + k] = m.exponent;
+    c.reflection[i + k] = m.reflection, c.transparency[i + k] = m.transparency, c.eta[i + k] = m.ior;
+    c.exponent[i + k] = m.exponent;
   }
   return {F::load(unlit[0]), F::load(unlit[1]), F::load(unlit[2])};
 }
@@ -78,9 +81,12 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
                              ray.load(rays.throughput[2])};
     store_lanes(direction, c.direction, i), store_lanes(throughput, c.throughput, i);
     Vec3<F> ng, ns;
-    face_ray(direction, load_lanes<F>(s.geometric_normal, i), load_lanes<F>(s.shading_normal, i), ng, ns);
+    const auto behind =
+        face_ray(direction, load_lanes<F>(s.geometric_normal, i), load_lanes<F>(s.shading_normal, i), ng, ns);
     store_lanes(ng, c.ng, i), store_lanes(ns, c.ns, i);
     const Vec3<F> unlit = fetch_materials<F>(table, c, i);
+    const F ior = F::load(c.eta + i);
+    select(behind, F(1.0f) / ior, ior).store(c.eta + i);
     // Light that varies over the surface is added when it is known.
     unsigned known = 0;
     for (int k = 0; k < F::kWidth; ++k) {
@@ -156,6 +162,7 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
   const Vec3<F> place = broadcast<F>(light.place), light_color = broadcast<F>(light.color);
   std::size_t end = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
+    if (none(~(F::load(c.diffuse + i) == zero) | ~(F::load(c.specular + i) == zero))) continue;
     const Vec3<F> position = load_lanes<F>(s.position, i);
     Vec3<F> target = place, l = place, color = light_color;
     if (!light.directional) {
@@ -195,41 +202,6 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     end += static_cast<std::size_t>(__builtin_popcount(lit));
   }
   return end;
-}
-
-/// reflect_above of render/bsdf/optics.h in lanes.
-template <class F>
-OKTETT_INLINE Vec3<F> reflect_above_lanes(const Vec3<F>& d, const Vec3<F>& n, const Vec3<F>& ng) {
-  const F two(2.0f);
-  const Vec3<F> r = unit_lanes(sub_lanes(d, scale_lanes(n, two * dot_lanes(d, n))));
-  const F height = dot_lanes(r, ng);
-  const auto below = height < F(0.0f);
-  if (none(below)) return r;
-  return select_lanes(below, unit_lanes(sub_lanes(r, scale_lanes(ng, two * height))), r);
-}
-
-template <class A>
-std::uint64_t mirror_rays_code(const InteractionBlock& s, const ShadingColumns& c, MirrorColumns& out) {
-  using F = ShadingLanes<A>;
-  const F zero(0.0f);
-  std::uint64_t sent = 0;
-  for (std::size_t i = 0; i < c.count; i += F::kWidth) {
-    const Vec3<F> mirror = scale_lanes(load_lanes<F>(c.specular_color, i), F::load(c.reflection + i));
-    const unsigned shines =
-        ~bits((mirror.x == zero) & (mirror.y == zero) & (mirror.z == zero)) & real_lanes<F>(c, i);
-    if (shines == 0) continue;
-    sent |= std::uint64_t{shines} << i;
-    const Vec3<F> throughput = load_lanes<F>(c.throughput, i);
-    const Vec3<F> direction =
-        reflect_above_lanes(load_lanes<F>(c.direction, i), load_lanes<F>(c.ns, i), load_lanes<F>(c.ng, i));
-    store_lanes(offset_lanes(load_lanes<F>(s.position, i), load_lanes<F>(s.position_error, i),
-                             load_lanes<F>(s.geometric_normal, i), direction),
-                out.origin, i);
-    store_lanes(direction, out.direction, i);
-    store_lanes(Vec3<F>{throughput.x * mirror.x, throughput.y * mirror.y, throughput.z * mirror.z},
-                out.throughput, i);
-  }
-  return sent;
 }
 
 }  // namespace oktett

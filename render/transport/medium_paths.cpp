@@ -88,7 +88,7 @@ static void shade_scattering(const RenderContext& context, Wavefront& wavefront,
   const Vec3f direction = phase_direction(ray.direction, anisotropy, choices.point(Decision::direction));
   Color onward = throughput;
   if (!survives(wavefront, event.ray, choices, onward, onward)) return;
-  push_bounce(wavefront, event.ray, from.position, direction, onward, Bounce::reflected);
+  push_bounce(wavefront, wavefront.next, event.ray, from.position, direction, onward, Bounce::reflected);
   wavefront.next_paths.push_back(phase_value(ray.direction, direction, anisotropy), from, false, &around);
 }
 

@@ -52,7 +52,8 @@ void add_caustics(const RenderContext& context, Wavefront& wavefront, std::size_
 
 /// Passes straight on. Light behind the surface could have been chosen where the ray left the last one.
 void pass_straight(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Boundary* boundary) {
-  push_bounce(wavefront, ray, p, p.direction, wavefront.rays.throughput[ray], Bounce::straight);
+  push_bounce(wavefront, wavefront.next, ray, p, p.direction, wavefront.rays.throughput[ray],
+              Bounce::straight);
   const bool camera = wavefront.level == 0;
   wavefront.next_paths.push_back(
       camera ? 0 : wavefront.paths.pdf[ray], camera ? LightPoint{} : wavefront.paths.from[ray],
@@ -87,7 +88,7 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
   if (!next) return;
   Color onward = throughput * next->weight;
   if (!survives(wavefront, ray, choices, next->pdf == 0 ? next->weight : onward, onward)) return;
-  push_bounce(wavefront, ray, p, next->direction, onward,
+  push_bounce(wavefront, wavefront.next, ray, p, next->direction, onward,
               next->transmitted ? Bounce::refracted : Bounce::reflected);
   const bool scattered = wavefront.level > 0 && wavefront.paths.scattered[ray] != 0;
   wavefront.next_paths.push_back(next->pdf, from, scattered || next->pdf > 0,

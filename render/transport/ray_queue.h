@@ -1,6 +1,7 @@
 #pragma once
 /// \file Queues of rays to trace, each with the sample that it belongs to.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/ray.h"
@@ -29,6 +30,21 @@ struct RayQueue {
     rays.resize_uninitialized(n);
     sample.resize_uninitialized(n), throughput.resize_uninitialized(n), distance.resize_uninitialized(n);
     bounces.resize_uninitialized(n), from_camera.resize_uninitialized(n);
+  }
+
+  /// Adds the rays of another queue.
+  void append(const RayQueue& other) {
+    const std::size_t first = size();
+    resize_uninitialized(first + other.size());
+    const auto copy = [&](const auto& from, auto& to) {
+      std::copy_n(from.data(), other.size(), to.data() + first);
+    };
+    for (int k = 0; k < 3; ++k) {
+      copy(other.rays.origin[k], rays.origin[k]), copy(other.rays.direction[k], rays.direction[k]);
+      copy(other.throughput.part[k], throughput.part[k]);
+    }
+    copy(other.rays.tmin, rays.tmin), copy(other.rays.tmax, rays.tmax), copy(other.sample, sample);
+    copy(other.distance, distance), copy(other.bounces, bounces), copy(other.from_camera, from_camera);
   }
 
   /// One entry of the columns.

@@ -25,8 +25,11 @@ struct RenderCode {
   /// it could reach. Returns their number.
   std::size_t (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&,
                              const ShadowColumns& out);
-  /// Fills `out` with the rays that opaque mirrors send out. Returns a set bit for each hit that sends one.
-  std::uint64_t (*mirror_rays)(const InteractionBlock&, const ShadingColumns&, MirrorColumns& out);
+  /// Adds the rays that mirrors and glass send out. Those that would bring next to no light are left out.
+  void (*bounce_rays)(const InteractionBlock&, const ShadingColumns&, BounceColumns& mirrored,
+                      BounceColumns& refracted);
+  /// Writes the rays that are sent, in the order of their hits.
+  void (*queue_rays)(const BounceColumns&, const QueuedRays& to);
 
   /// Fills the columns of a PathBlock up to the random numbers, but those for `ray`, `key`, `number` and
   /// `bounces`, which are given.

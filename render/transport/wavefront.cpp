@@ -91,7 +91,7 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
       wavefront.level == 0 && context.background == Color{0, 0, 0} && !context.sampled->has_environment();
   if (hits < count && !black) add_background(context, wavefront);
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
-  wavefront.next.clear(), wavefront.next_paths.clear();
+  wavefront.next.clear(), wavefront.next_paths.clear(), wavefront.refracted.clear();
 }
 
 /// A background that is part of the picture counts as covering.
@@ -260,6 +260,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     if (context.tracks_enclosures) shade_media(context, wavefront);
     shade_hits(context, wavefront);
     add_to_samples(wavefront);
+    if (!wavefront.refracted.empty()) wavefront.next.append(wavefront.refracted);
     std::swap(wavefront.rays, wavefront.next);
     std::swap(wavefront.paths, wavefront.next_paths);
   }
@@ -285,15 +286,15 @@ void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::s
            material_index(*context.world, s.user, s.material_slot)};
 }
 
-void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
-                 const Color& throughput, Bounce bounce) {
+void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const ShadingPoint& p,
+                 const Vec3f& direction, const Color& throughput, Bounce bounce) {
   Vec3f origin;
   offset_origin(p.surface, direction, origin);
-  push_bounce(wavefront, ray, origin, direction, throughput, bounce);
+  push_bounce(wavefront, queue, ray, origin, direction, throughput, bounce);
 }
 
-void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
-                 const Color& throughput, Bounce bounce) {
+void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const Vec3f& origin,
+                 const Vec3f& direction, const Color& throughput, Bounce bounce) {
   const std::uint32_t sample = wavefront.rays.sample[ray];
   const bool straight = bounce == Bounce::straight;
   RayQueue::Entry entry;
@@ -303,7 +304,7 @@ void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, con
   entry.distance = wavefront.rays.distance[ray] + wavefront.hits.t[ray];
   entry.bounces = static_cast<std::uint8_t>(wavefront.rays.bounces[ray] + (straight ? 0 : 1));
   entry.from_camera = straight && wavefront.rays.from_camera[ray];
-  wavefront.next.push_back(entry);
+  queue.push_back(entry);
   ++(bounce == Bounce::reflected ? wavefront.counts.reflected : wavefront.counts.refracted);
 }
 

@@ -70,7 +70,10 @@ struct MediumEvent {
 /// sums its rays in the order of the queue, which other samples do not change.
 struct Wavefront {
   SampleBatch samples;
-  RayQueue rays, next;            ///< of this bounce and the next
+  RayQueue rays, next;  ///< of this bounce and the next
+  /// In Whitted's model those rays of the next bounce that are refracted. They follow the others, so that
+  /// rays side by side are more alike.
+  RayQueue refracted;
   PathColumns paths, next_paths;  ///< of `rays` after the camera rays and of `next`, in path tracing
   HitBatch hits;                  ///< of `rays`
   ColorColumn radiance;           ///< light found by each of `rays`, throughput included
@@ -114,10 +117,10 @@ enum class Bounce {
 };
 
 /// Queues for the next bounce the ray that leaves `p`, the hit of entry `ray`, in `direction`.
-void push_bounce(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
-                 const Color& throughput, Bounce bounce);
+void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const ShadingPoint& p,
+                 const Vec3f& direction, const Color& throughput, Bounce bounce);
 /// The same from `origin`, see offset_origin.
-void push_bounce(Wavefront& wavefront, std::size_t ray, const Vec3f& origin, const Vec3f& direction,
-                 const Color& throughput, Bounce bounce);
+void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const Vec3f& origin,
+                 const Vec3f& direction, const Color& throughput, Bounce bounce);
 
 }  // namespace oktett

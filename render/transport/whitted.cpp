@@ -10,10 +10,10 @@
 namespace oktett {
 namespace {
 
-/// Rays that change a pixel by less than this are not traced.
-constexpr float kLeastThroughput = 1 / 4096.0f;
 /// Limits the rays of a sample in one bounce, which mirrors and glass would double each time.
 constexpr std::uint16_t kMostRaysPerLevel = 256;
+/// The limit cannot be met below this bounce: a hit sends at most three rays, and 3^5 = 243.
+constexpr unsigned kFirstLimitedLevel = 5;
 
 /// Whether a ray of this throughput may be queued for the sample of entry `ray`. Counts it.
 bool admit(Wavefront& wavefront, std::size_t ray, const Color& throughput) {
@@ -27,7 +27,9 @@ bool admit(Wavefront& wavefront, std::size_t ray, const Color& throughput) {
 /// Queues the ray that leaves `p` if it is worth it.
 void push_admitted(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
                    const Color& throughput, Bounce bounce) {
-  if (admit(wavefront, ray, throughput)) push_bounce(wavefront, ray, p, direction, throughput, bounce);
+  if (!admit(wavefront, ray, throughput)) return;
+  RayQueue& queue = bounce == Bounce::refracted ? wavefront.refracted : wavefront.next;
+  push_bounce(wavefront, queue, ray, p, direction, throughput, bounce);
 }
 
 bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
@@ -107,19 +109,62 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
   return left;
 }
 
-/// Queues the mirrored rays of hits on opaque mirrors, of which the columns know all.
-void push_mirrored(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
-                   const ShadingColumns& c) {
-  MirrorColumns mirrored;
-  std::uint64_t sent = render_code(context.isa).mirror_rays(found, c, mirrored);
-  for (; sent != 0; sent &= sent - 1) {
-    const int k = std::countr_zero(sent);
-    if (wavefront.rays.bounces[c.ray[k]] >= context.settings.depth) continue;
-    const Color throughput = InteractionBlock::get(mirrored.throughput, k);
-    if (!admit(wavefront, c.ray[k], throughput)) continue;
-    push_bounce(wavefront, c.ray[k], InteractionBlock::get(mirrored.origin, k),
-                InteractionBlock::get(mirrored.direction, k), throughput, Bounce::reflected);
+/// Takes out rays beyond the depth of the picture or the limit of rays per sample.
+void limit_bounces(const RenderContext& context, Wavefront& wavefront, const ShadingColumns& c,
+                   BounceColumns& mirrored, BounceColumns& refracted) {
+  if (wavefront.level < std::min(context.settings.depth, kFirstLimitedLevel)) return;
+  for (std::size_t k = 0; k < c.count; ++k) {
+    const bool deep = wavefront.rays.bounces[c.ray[k]] >= context.settings.depth;
+    std::uint16_t& spawned = wavefront.samples.spawned[wavefront.rays.sample[c.ray[k]]];
+    for (BounceColumns* b : {&mirrored, &refracted}) {
+      if ((b->sent >> k & 1) == 0) continue;
+      if (deep || spawned >= kMostRaysPerLevel)
+        b->sent &= ~(std::uint64_t{1} << k);
+      else
+        ++spawned;
+    }
   }
+}
+
+void queue_bounces(const RenderContext& context, const Wavefront& wavefront, const ShadingColumns& c,
+                   const BounceColumns& sent, RayQueue& queue) {
+  if (sent.sent == 0) return;
+  const std::size_t first = queue.size(), end = first + static_cast<std::size_t>(std::popcount(sent.sent));
+  queue.resize_uninitialized(end + 8);
+  QueuedRays to;
+  for (int k = 0; k < 3; ++k) {
+    to.origin[k] = queue.rays.origin[k].data() + first;
+    to.direction[k] = queue.rays.direction[k].data() + first;
+    to.throughput[k] = queue.throughput.part[k].data() + first;
+  }
+  render_code(context.isa).queue_rays(sent, to);
+  queue.resize_uninitialized(end);
+  const Ray like;
+  std::fill_n(queue.rays.tmin.data() + first, end - first, like.tmin);
+  std::fill_n(queue.rays.tmax.data() + first, end - first, like.tmax);
+  std::fill_n(queue.from_camera.data() + first, end - first, std::uint8_t{0});
+  std::size_t at = first;
+  for (std::uint64_t rest = sent.sent; rest != 0; rest &= rest - 1, ++at) {
+    const std::uint32_t i = c.ray[std::countr_zero(rest)];
+    queue.sample[at] = wavefront.rays.sample[i];
+    queue.distance[at] = wavefront.rays.distance[i] + wavefront.hits.t[i];
+    queue.bounces[at] = static_cast<std::uint8_t>(wavefront.rays.bounces[i] + 1);
+  }
+}
+
+/// Queues the mirrored and refracted rays of hits on materials that do not vary, of which the columns know
+/// all.
+void push_bounces(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                  const ShadingColumns& c) {
+  const auto deep = [&](std::uint32_t ray) { return wavefront.rays.bounces[ray] >= context.settings.depth; };
+  if (std::all_of(c.ray, c.ray + c.count, deep)) return;
+  BounceColumns mirrored, refracted;
+  render_code(context.isa).bounce_rays(found, c, mirrored, refracted);
+  limit_bounces(context, wavefront, c, mirrored, refracted);
+  queue_bounces(context, wavefront, c, mirrored, wavefront.next);
+  queue_bounces(context, wavefront, c, refracted, wavefront.refracted);
+  wavefront.counts.reflected += static_cast<unsigned>(std::popcount(mirrored.sent));
+  wavefront.counts.refracted += static_cast<unsigned>(std::popcount(refracted.sent));
 }
 
 /// Queues the rays to one light.
@@ -166,17 +211,17 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   name_hits(context, which, found, c);
   count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
   render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
-  bool alone = false, mirrors = false;
+  bool alone = false, sends = false;
   for (std::size_t k = 0; k < count; ++k) {
     const ShadingMaterial& m = context.materials[c.material[k]];
-    alone |= m.alone(), mirrors |= m.reflection != 0;
+    alone |= m.varies, sends |= m.sends_rays();
   }
   // The rays of a sample must be queued in the order of its hits: one by one if any of them is.
-  if (!alone && mirrors) push_mirrored(context, wavefront, found, c);
+  if (!alone && sends) push_bounces(context, wavefront, found, c);
   for (std::size_t k = 0; k < count; ++k) {
     const ShadingMaterial& m = context.materials[c.material[k]];
     Color left{1, 1, 1};
-    if (alone && (m.alone() || m.reflection != 0)) left = finish_alone(context, wavefront, found[k], k, c);
+    if (alone && (m.varies || m.sends_rays())) left = finish_alone(context, wavefront, found[k], k, c);
     const std::uint32_t i = c.ray[k];
     if (wavefront.rays.from_camera[i])
       wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];

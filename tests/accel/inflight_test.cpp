@@ -294,5 +294,52 @@ TEST(Interleaved, RaysAtOneLeafOfExactSurfacesGoTogether) {
   EXPECT_EQ(gather(std::true_type{}, 0, 8), 0);
 }
 
+/// Spheres, planes and triangles, many of which are there twice, so that their items decide which is hit.
+/// Planes that pass through the triangles tie with them.
+TEST(Interleaved, SpheresAndPlanesAmongTriangles) {
+  CaseRandom random(41);
+  TriangleMesh mesh;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3d center = random.vector();
+    for (int k = 0; k < 3; ++k) {
+      Vec3d corner = center + random.vector() * 0.2;
+      corner.z = i % 2 == 0 ? 0.25 : corner.z;
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(Vec3f(corner));
+    }
+  }
+  std::vector<SphereShape> balls;
+  for (int i = 0; i < 200; ++i) balls.push_back({random.vector(), i % 3 == 0 ? 0.2 : 0.03});
+  RayBatch rays;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3d from = random.vector() * (i % 4 == 0 ? 20 : 1.2);
+    const Vec3d to = i % 2 == 0 ? random.vector() : balls[random.bits() % balls.size()].center;
+    Ray ray{Vec3f(from), 0, Vec3f(to - from), i % 5 == 0 ? 1.0f : kInf};
+    if (i % 7 == 0) ray.tmin = 0.5f;
+    if (i % 11 == 0) ray.direction.z = 0;
+    if (i % 113 == 0) ray.direction.x = kNan;
+    rays.push_back(ray);
+  }
+  // With planes and without, in either order, and spheres before and after the triangles.
+  for (int order = 0; order < 4; ++order) {
+    std::vector<Geometry> geometries;
+    const auto add_planes = [&] {
+      for (const double height : {0.25, -0.9, 0.25})
+        geometries.push_back({PlaneShape{{0, 0, 1}, height}, {}, kNoId});
+    };
+    if (order == 1) add_planes();
+    if (order % 2 == 0) geometries.push_back({MeshGeometry{&mesh}, {}, kNoId});
+    geometries.push_back({SpheresShape{balls}, {}, kNoId});
+    if (order % 2 == 1) geometries.push_back({MeshGeometry{&mesh}, {}, kNoId});
+    geometries.push_back({SpheresShape{balls}, {}, kNoId});
+    if (order == 2) add_planes();
+    const auto accel = build_accel(geometries);
+    const int hits = expect_hits(*accel, rays, scalar_hits(*accel, rays),
+                                 {TraceMode::interleaved, TraceMode::single, TraceMode::automatic},
+                                 "order " + std::to_string(order));
+    EXPECT_GT(hits, 1500);
+  }
+}
+
 }  // namespace
 }  // namespace oktett

@@ -232,7 +232,8 @@ class InflightTraversal {
       hit.t.store(t);
       for (; met != 0; met &= met - 1) {
         const int i = __builtin_ctz(met);
-        if (t[i] <= ray.tmax) keep_hit(ray, {t[i], 0, 0, pool.item[first + static_cast<std::size_t>(i)], kNoId});
+        if (t[i] <= ray.tmax)
+          keep_hit(ray, {t[i], 0, 0, pool.item[first + static_cast<std::size_t>(i)], kNoId});
         if (Q == Query::any) return;
       }
     }

@@ -75,7 +75,8 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     };
     planes_.set_rays(vec(chunk_.o), vec(chunk_.d), F::load(chunk_.tmin), F::load(chunk_.tmax));
     for (const LeafEntry& leaf : accel_.unbounded)
-      leaf_shape_packet<Plane>(std::get<Plane::Pool>(accel_.pools), leaf.begin, leaf.count, planes_, chunk_.tame);
+      leaf_shape_packet<Plane>(std::get<Plane::Pool>(accel_.pools), leaf.begin, leaf.count, planes_,
+                               chunk_.tame);
   }
 
   /// Prepares the entry of the next bundle.
@@ -117,9 +118,8 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
   bool has_entry_ = false;
   /// All unbounded shapes are planes, and there are some.
   const bool only_planes_ =
-      !accel_.unbounded.empty() && std::ranges::all_of(accel_.unbounded, [](const LeafEntry& leaf) {
-        return leaf.kind == Kind::plane;
-      });
+      !accel_.unbounded.empty() &&
+      std::ranges::all_of(accel_.unbounded, [](const LeafEntry& leaf) { return leaf.kind == Kind::plane; });
   RayState<Base::kChunk, A> planes_;  ///< the chunk and its hits on them
   BundleEntry<A> entry_;
 };

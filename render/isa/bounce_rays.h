@@ -1,0 +1,107 @@
+#pragma once
+/// \file The rays that mirrors and glass send out, for hits in columns: specular_rays of render/specular.h in
+/// lanes.
+
+#include "render/bsdf/lobe_lanes.h"
+#include "render/isa/shading.h"
+
+namespace oktett {
+
+/// reflect_above of render/bsdf/optics.h in lanes.
+template <class F>
+OKTETT_INLINE Vec3<F> reflect_above_lanes(const Vec3<F>& d, const Vec3<F>& n, const Vec3<F>& ng) {
+  const F two(2.0f);
+  const Vec3<F> r = unit_lanes(sub_lanes(d, scale_lanes(n, two * dot_lanes(d, n))));
+  const F height = dot_lanes(r, ng);
+  const auto below = height < F(0.0f);
+  if (none(below)) return r;
+  return select_lanes(below, unit_lanes(sub_lanes(r, scale_lanes(ng, two * height))), r);
+}
+
+/// refract in lanes. Returns the lanes in which there is a refracted direction.
+template <int W, class A>
+OKTETT_INLINE Mask<float, W, A> refract_lanes(const Vec3<Simd<float, W, A>>& d,
+                                              const Vec3<Simd<float, W, A>>& n, const Simd<float, W, A>& eta,
+                                              Vec3<Simd<float, W, A>>& out) {
+  using D = Simd<double, W, A>;
+  const Vec3<D> dd = to_double(d), nd = to_double(n);
+  const D one(1.0), ratio = one / to_double(eta);
+  const D cos_in = -dot_lanes(dd, nd);
+  const D sin2_out = ratio * ratio * (one - cos_in * cos_in);
+  const D cos_out = sqrt(max(one - sin2_out, D(0.0)));
+  const Vec3<D> bent = add_lanes(scale_lanes(dd, ratio), scale_lanes(nd, ratio * cos_in - cos_out));
+  const auto straight = eta == Simd<float, W, A>(1.0f);
+  out = select_lanes(straight, d, float_quotients(bent, length_lanes(bent)));
+  return straight | ~mask_cast<float>(one <= sin2_out);
+}
+
+/// Writes rays that leave hits i, i + 1, ... in `lanes` with these directions and weights, except those that
+/// are not worth tracing.
+template <class F>
+OKTETT_INLINE void put_bounces(const InteractionBlock& s, const ShadingColumns& c, std::size_t i,
+                               unsigned lanes, const Vec3<F>& direction, const Vec3<F>& weight,
+                               BounceColumns& out) {
+  const F zero(0.0f), least(kLeastThroughput);
+  const Vec3<F> arriving = load_lanes<F>(c.throughput, i);
+  const Vec3<F> throughput{arriving.x * weight.x, arriving.y * weight.y, arriving.z * weight.z};
+  const unsigned sent = lanes & ~bits((weight.x == zero) & (weight.y == zero) & (weight.z == zero)) &
+                        ~bits((throughput.x < least) & (throughput.y < least) & (throughput.z < least));
+  if (sent == 0) return;
+  out.sent |= std::uint64_t{sent} << i;
+  store_lanes(offset_lanes(load_lanes<F>(s.position, i), load_lanes<F>(s.position_error, i),
+                           load_lanes<F>(s.geometric_normal, i), direction),
+              out.origin, i);
+  store_lanes(direction, out.direction, i), store_lanes(throughput, out.throughput, i);
+}
+
+template <class A>
+void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, BounceColumns& mirrored,
+                      BounceColumns& refracted) {
+  using F = ShadingLanes<A>;
+  const F zero(0.0f), one(1.0f);
+  for (std::size_t i = 0; i < c.count; i += F::kWidth) {
+    const F reflection = F::load(c.reflection + i), transparency = F::load(c.transparency + i);
+    const unsigned real = real_lanes<F>(c, i);
+    const unsigned clear = ~bits(transparency == zero) & real;
+    if (((~bits(reflection == zero) & real) | clear) == 0) continue;
+    const Vec3<F> d = load_lanes<F>(c.direction, i), ns = load_lanes<F>(c.ns, i), ng = load_lanes<F>(c.ng, i);
+    Vec3<F> mirror = scale_lanes(load_lanes<F>(c.specular_color, i), reflection);
+    if (clear != 0) {
+      const F eta = F::load(c.eta + i);
+      Vec3<F> direction;
+      auto exists = refract_lanes(d, ns, eta, direction);
+      // The direction must lead below the true surface.
+      const auto above = exists & (zero <= dot_lanes(direction, ng));
+      if (any(above)) {
+        Vec3<F> other;
+        const auto there = refract_lanes(d, ng, eta, other);
+        direction = select_lanes(above, other, direction);
+        exists = (exists & ~above) | (above & there);
+      }
+      const F reflectance =
+          select(exists, to_float(fresnel_lanes(to_double(-dot_lanes(d, ns)), to_double(eta))), one);
+      const F more = transparency * reflectance;
+      mirror = {mirror.x + more, mirror.y + more, mirror.z + more};
+      put_bounces(s, c, i, clear & bits(exists), direction,
+                  scale_lanes(load_lanes<F>(c.color, i), transparency * (one - reflectance)), refracted);
+    }
+    put_bounces(s, c, i, real, reflect_above_lanes(d, ns, ng), mirror, mirrored);
+  }
+}
+
+template <class A>
+void queue_rays_code(const BounceColumns& rays, const QueuedRays& to) {
+  std::size_t end = 0;
+  for (std::size_t i = 0; rays.sent >> i != 0; i += 8) {
+    const auto lanes = static_cast<unsigned>(rays.sent >> i & 0xff);
+    for (int k = 0; k < 3; ++k) {
+      store_compact<A>(lanes, rays.origin[k] + i, to.origin[k] + end);
+      store_compact<A>(lanes, rays.direction[k] + i, to.direction[k] + end);
+      store_compact<A>(lanes, rays.throughput[k] + i, to.throughput[k] + end);
+    }
+    end += static_cast<std::size_t>(__builtin_popcount(lanes));
+    if (i == 56) return;
+  }
+}
+
+}  // namespace oktett
