@@ -85,6 +85,7 @@ static void move_by_instances(const HitPlace& place, const Ray& ray, float t, Su
   s.geometric_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.geometric_normal))));
   s.shading_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.shading_normal))));
   s.tangent = Vec3f(m.vector(Vec3d(s.tangent)));
+  s.bitangent = Vec3f(m.vector(Vec3d(s.bitangent)));
 }
 
 static Ray moved_ray(const Affine& m, const Ray& ray) {

@@ -57,7 +57,7 @@ inline HitNames identify_in(const HitPlace& place, const Hit& hit) {
   return names;
 }
 
-/// The surface interaction of a hit whose place is known. uv and tangent may be missing unless `uv`.
+/// The surface interaction of a hit whose place is known. uv and tangents may be missing unless `uv`.
 void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
                     SurfaceInteraction& s);
 

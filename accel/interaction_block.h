@@ -17,7 +17,7 @@ struct InteractionBlock {
   float geometric_normal[3][kMost], shading_normal[3][kMost];
   std::uint32_t geometry[kMost], primitive[kMost], user[kMost], material_slot[kMost];
 
-  /// Entry i, with uv and tangent zero.
+  /// Entry i, with uv and tangents zero.
   SurfaceInteraction operator[](std::size_t i) const {
     SurfaceInteraction s;
     s.position = get(position, i), s.position_error = get(position_error, i);

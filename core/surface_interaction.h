@@ -15,7 +15,8 @@ struct SurfaceInteraction {
   Vec3f position_error;  ///< per component; what it bounds is guarantee 4 of docs/numerics.md
   Vec3f geometric_normal;
   Vec3f shading_normal;  ///< interpolated from the mesh if it is smooth, else the geometric normal
-  Vec3f tangent;         ///< dp/du, not normalised; zero where the shape has no uv
+  Vec3f tangent;         ///< dp/du, not normalised; zero where the shape has no uv, or at a pole
+  Vec3f bitangent;       ///< dp/dv, likewise
   Vec2f uv;
   std::uint32_t geometry = kNoId;   ///< index of the geometry in the structure that holds it
   std::uint32_t primitive = kNoId;  ///< index inside the geometry, e.g. the triangle of a mesh

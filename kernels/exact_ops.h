@@ -28,7 +28,7 @@ struct ExactOps {
   /// Sets all but the names of the interaction of a hit that `ray` had with the element.
   void (*interaction)(const ExactPoolBase& pool, std::size_t element, const Ray& ray, const Hit& hit,
                       SurfaceInteraction& s);
-  /// The same; uv and tangent may be missing.
+  /// The same; uv and tangents may be missing.
   void (*interaction_without_uv)(const ExactPoolBase& pool, std::size_t element, const Ray& ray,
                                  const Hit& hit, SurfaceInteraction& s);
   std::size_t (*bytes)(const ExactPoolBase& pool);

@@ -16,15 +16,19 @@ struct Footprint {
   Vec2f dx, dy;
 };
 
-/// The footprint from vectors in the tangent plane. dp/dv is not known; it is assumed to be as long as dp/du
-/// and perpendicular to it, which is exact for textures without distortion.
+/// The footprint from vectors in the tangent plane, by what u and v add to the point. Where one of them adds
+/// nothing, as on a wall of a height field, by the other alone.
 Footprint footprint(const SurfaceInteraction& s, const Vec3f& x, const Vec3f& y, float scale) {
-  const float square = dot(s.tangent, s.tangent);
-  const Vec3f du = s.tangent * (scale / square);
-  const Vec3f dv = cross(s.geometric_normal, du);
-  const Footprint f{{dot(x, du), dot(x, dv)}, {dot(y, du), dot(y, dv)}};
-  const bool known = square > 0 && std::isfinite(f.dx.x) && std::isfinite(f.dx.y) && std::isfinite(f.dy.x) &&
-                     std::isfinite(f.dy.y);
+  const Vec3f &du = s.tangent, &dv = s.bitangent;
+  const float uu = dot(du, du), uv = dot(du, dv), vv = dot(dv, dv), det = uu * vv - uv * uv;
+  const auto along = [&](const Vec3f& w) -> Vec2f {
+    const float wu = dot(w, du) * scale, wv = dot(w, dv) * scale;
+    if (det > 0) return {(wu * vv - wv * uv) / det, (wv * uu - wu * uv) / det};
+    return {uu > 0 ? wu / uu : 0, vv > 0 ? wv / vv : 0};
+  };
+  const Footprint f{along(x), along(y)};
+  const bool known =
+      std::isfinite(f.dx.x) && std::isfinite(f.dx.y) && std::isfinite(f.dy.x) && std::isfinite(f.dy.y);
   return known ? f : Footprint{};
 }
 
@@ -85,21 +89,21 @@ Vec3f unit_normal(const Vec3f& bent, const Vec3f& n) {
   return is_finite(bent) && dot(bent, bent) > 0 ? normalize(bent) : n;
 }
 
-/// The normal of the surface displaced by a height map along `n` (Blinn 1978), dp/dv as in `footprint`.
+/// The normal of the surface displaced by a height map along `n` (Blinn 1978).
 Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const TexturePlace& place) {
-  const float size = length(s.tangent);
-  if (c.textures == nullptr || !(size > 0)) return n;
-  const Vec3f t = s.tangent / size, b = cross(n, t);
-  const auto step = [](float across, float down) {
-    return std::max(0.5f * (std::abs(across) + std::abs(down)), 0x1p-11f);
-  };
+  const Vec3f across = cross(s.tangent, s.bitangent);
+  if (c.textures == nullptr || !(dot(across, across) > 0)) return n;
+  const auto step = [](float x, float y) { return std::max(0.5f * (std::abs(x) + std::abs(y)), 0x1p-11f); };
   const float du = step(place.dx.x, place.dy.x), dv = step(place.dx.y, place.dy.y);
   const auto height = [&](float u, float v) {
     return m.bump_scale * c.textures->value(m.bump_texture, {s.uv.x + u, s.uv.y + v}, place.dx, place.dy);
   };
-  const float here = height(0, 0);
-  return unit_normal(n * size - t * ((height(du, 0) - here) / du) - b * ((height(0, dv) - here) / dv), n);
+  const float here = height(0, 0), by_u = (height(du, 0) - here) / du, by_v = (height(0, dv) - here) / dv;
+  // cross(dp/du + by_u n, dp/dv + by_v n) without the square of n, on the side of n.
+  const float area = dot(across, n);
+  const Vec3f tilt = cross(s.bitangent, n) * by_u + cross(n, s.tangent) * by_v;
+  return unit_normal(n * std::abs(area) - (area < 0 ? -tilt : tilt), n);
 }
 
 /// The same for a pattern, whose heights are given in space: the surface where F = 0 becomes that where
@@ -112,12 +116,13 @@ Vec3f bumped_by_pattern(const PatternTexture& pattern, float scale, const Affine
   return unit_normal(Vec3f(normalize(to_object.normal_by_inverse(own - (slope - own * dot(slope, own))))), n);
 }
 
-/// The normal from a tangent-space normal map.
+/// The normal from a tangent-space normal map: its first axis runs along dp/du, its second to the side of
+/// dp/dv.
 Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
              const TexturePlace& place) {
   const Vec3f flat = s.tangent - n * dot(s.tangent, n);
   if (c.textures == nullptr || !(dot(flat, flat) > 0)) return n;
-  const Vec3f t = normalize(flat), b = cross(n, t);
+  const Vec3f t = normalize(flat), left = cross(n, t), b = dot(left, s.bitangent) < 0 ? -left : left;
   const Vec3f texel = c.textures->normal(m.normal_texture, s.uv, place.dx, place.dy) * 2 - Vec3f{1, 1, 1};
   return unit_normal(t * texel.x + b * texel.y + n * texel.z, n);
 }

@@ -8,7 +8,7 @@
 namespace oktett {
 namespace {
 
-/// uv and dp/du of a mesh hit.
+/// uv, dp/du and dp/dv of a mesh hit.
 void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, const Vec3f (&p)[3],
              SurfaceInteraction& s) {
   const std::array<Vec2f, 3> uv = corner_uvs(mesh, triangle);
@@ -17,7 +17,9 @@ void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
   const float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y, du2 = uv[2].x - uv[0].x,
               dv2 = uv[2].y - uv[0].y;
   const float det = du1 * dv2 - du2 * dv1;
-  if (det != 0) s.tangent = ((p[1] - p[0]) * dv2 - (p[2] - p[0]) * dv1) / det;
+  if (det == 0) return;
+  s.tangent = ((p[1] - p[0]) * dv2 - (p[2] - p[0]) * dv1) / det;
+  s.bitangent = ((p[2] - p[0]) * du1 - (p[1] - p[0]) * du2) / det;
 }
 
 void mesh_interaction(const Geometry& g, const GeometryFrame& g_frame, std::uint32_t triangle, const Hit& hit,
@@ -57,7 +59,7 @@ Affine object_transform(const Accel& accel, const Hit& hit) {
   return place.moved ? place.to_world * transform : transform;
 }
 
-/// The surface in the space of the structure that holds the item; `uv` says whether uv and tangent are
+/// The surface in the space of the structure that holds the item; `uv` says whether uv and tangents are
 /// wanted.
 static void interaction_inside(const HitNames& names, const Accel& a, const Ray& inner, const Hit& hit,
                                bool uv, SurfaceInteraction& s) {

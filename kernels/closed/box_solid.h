@@ -107,9 +107,10 @@ struct BoxSolid {
     const Vec3d q = cube.point(hit);
     const int k = dominant_axis(q), a = (k + 1) % 3, b = (k + 2) % 3;
     s.uv = {static_cast<float>(0.5 + 0.5 * q[a]), static_cast<float>(0.5 + 0.5 * q[b])};
-    Vec3d tangent{0, 0, 0};
-    tangent[a] = 2;
-    s.tangent = Vec3f(cube.inverse().vector(tangent));
+    Vec3d tangent{0, 0, 0}, bitangent{0, 0, 0};
+    tangent[a] = 2, bitangent[b] = 2;
+    const Affine to_world = cube.inverse();
+    s.tangent = Vec3f(to_world.vector(tangent)), s.bitangent = Vec3f(to_world.vector(bitangent));
   }
 };
 

@@ -12,7 +12,8 @@
 ///   width and instruction set gives the same bits;
 /// - `S::surface(pool, fetch, hits)`: SurfacePoints at HitPoints; fetch(column) returns the elements of a
 ///   pool's column in lanes;
-/// - `S::uv(pool, i, hit, point, s)`: uv and tangent of a single hit, from its place on the ray and its place
+/// - `S::uv(pool, i, hit, point, s)`: uv and tangents of a single hit, from its place on the ray and its
+/// place
 ///   on the surface;
 /// - `S::bounds(pool, i)`, except for unbounded shapes;
 /// - `S::kSolid`: whether it has an inside; if so, `S::inside(pool, i, point)`.
@@ -50,7 +51,7 @@ OKTETT_INLINE Mask<float, W, A> first_root(const RayLanes<Simd<float, W, A>>& ra
   return found;
 }
 
-/// A single hit of primitive i at distance t; without uv and tangent unless `with_uv`. Does not set the
+/// A single hit of primitive i at distance t; without uv and tangents unless `with_uv`. Does not set the
 /// names.
 template <class S>
 void closed_interaction(const typename S::Pool& pool, std::size_t i, const Ray& ray, double t, bool with_uv,

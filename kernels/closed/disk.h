@@ -84,6 +84,7 @@ struct Disk {
     s.uv = {static_cast<float>(0.5 + portable::atan2(dot(q, b), dot(q, a)) * 0.5 / std::numbers::pi),
             static_cast<float>(length(q) / p.radius[i])};
     s.tangent = Vec3f(cross(n, q) * (2 * std::numbers::pi));
+    if (const double away = length(q); away > 0) s.bitangent = Vec3f(q * (p.radius[i] / away));
   }
 };
 

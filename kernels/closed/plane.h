@@ -79,7 +79,7 @@ struct Plane {
     const Vec3d u = normalize(k == 1 ? cross(n, Vec3d{0, 0, -1}) * -1.0 : cross(Vec3d{0, 1, 0}, n));
     const Vec3d v = cross(n, u);
     s.uv = {static_cast<float>(dot(u, point)), static_cast<float>(dot(v, point))};
-    s.tangent = Vec3f(u);
+    s.tangent = Vec3f(u), s.bitangent = Vec3f(v);
   }
 };
 

@@ -118,10 +118,13 @@ struct Polygon {
     const Vec3f e = box.extent();
     s.uv = {(s.position[a] - box.lo[a]) / (e[a] > 0 ? e[a] : 1),
             (s.position[b] - box.lo[b]) / (e[b] > 0 ? e[b] : 1)};
-    Vec3d tangent{0, 0, 0};
-    tangent[a] = e[a];
-    tangent[p.axis[i]] = -n[a] * e[a] / n[p.axis[i]];
-    s.tangent = Vec3f(tangent);
+    // Along one of the two axes, and along the third as far as the plane rises.
+    const auto along = [&](int k) {
+      Vec3d v{0, 0, 0};
+      v[k] = e[k], v[p.axis[i]] = -n[k] * e[k] / n[p.axis[i]];
+      return Vec3f(v);
+    };
+    s.tangent = along(a), s.bitangent = along(b);
   }
 };
 

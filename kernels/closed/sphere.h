@@ -112,6 +112,8 @@ struct Sphere {
     s.uv = {static_cast<float>(0.5 + phi * 0.5 / std::numbers::pi),
             static_cast<float>(0.5 + theta / std::numbers::pi)};
     s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * p.radius[i]));
+    const double across = std::sqrt(n.x * n.x + n.z * n.z), turn = std::numbers::pi * p.radius[i];
+    if (across > 0) s.bitangent = Vec3f(Vec3d{-n.y * n.x / across, across, -n.y * n.z / across} * turn);
   }
 };
 

@@ -26,10 +26,10 @@ bool Cone::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return slope_at<Cone>(pool, i, 0, p).value < 0 && std::abs(p.z) < 1;
 }
 
-void Cone::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Cone::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   const ConeElement& e = pool.elements[i];
   const double radius = part == 1 ? e.middle - e.slope : e.middle + e.slope;
-  frustum_uv(part, radius > 0 ? radius : 1, p, s);
+  return frustum_uv(part, radius > 0 ? radius : 1, p);
 }
 
 }  // namespace oktett

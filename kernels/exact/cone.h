@@ -107,7 +107,7 @@ struct Cone {
   }
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// As for a cylinder.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 }  // namespace oktett

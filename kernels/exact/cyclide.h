@@ -56,7 +56,7 @@ struct Cyclide {
   }
   /// Along the lines of curvature, which are circles: u around the axis from +x towards +y, v around the tube
   /// from the outside upwards, both in [0, 1].
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 }  // namespace oktett

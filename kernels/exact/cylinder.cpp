@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 
@@ -32,8 +32,10 @@ Box frustum_bounds(const Affine& to_world, double r0, double r1) {
   return b;
 }
 
-void frustum_uv(int part, double radius, const Vec3d& p, SurfaceInteraction& s) {
-  set_uv_around_z(s, p, part == 0 ? 0.5 + 0.5 * p.z : std::sqrt(p.x * p.x + p.y * p.y) / radius);
+SurfaceUv frustum_uv(int part, double radius, const Vec3d& p) {
+  const SpaceFunction v =
+      part == 0 ? component(p, 2) * 0.5 + 0.5 : radius_of(component(p, 0), component(p, 1)) / radius;
+  return {turn_around_z(p), v};
 }
 
 void Cylinder::add(Pool& pool, const CylinderShape& s, const ExactPlace& place) {
@@ -51,8 +53,6 @@ bool Cylinder::inside(const Pool&, std::size_t, const Vec3d& p) {
   return p.x * p.x + p.y * p.y < 1 && std::abs(p.z) < 1;
 }
 
-void Cylinder::uv(const Pool&, std::size_t, int part, const Vec3d& p, SurfaceInteraction& s) {
-  frustum_uv(part, 1, p, s);
-}
+SurfaceUv Cylinder::uv(const Pool&, std::size_t, int part, const Vec3d& p) { return frustum_uv(part, 1, p); }
 
 }  // namespace oktett

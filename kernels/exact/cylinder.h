@@ -79,7 +79,7 @@ struct Cylinder {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis; v on the side from `from` to `to`, on an end the distance from its centre. All in
   /// [0, 1].
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 /// A map from z in [-1, 1] to the axis from `from` to `to`, with `radius` the unit of x and y; exact for axes
@@ -87,7 +87,7 @@ struct Cylinder {
 Affine along_axis(const Vec3d& from, const Vec3d& to, double radius);
 /// Bounds of the image of a frustum with radii r0 at z = -1 and r1 at z = 1, rounded outwards.
 Box frustum_bounds(const Affine& to_world, double r0, double r1);
-/// uv and tangent of an end of a frustum, `radius` wide, or of its side.
-void frustum_uv(int part, double radius, const Vec3d& p, SurfaceInteraction& s);
+/// uv of an end of a frustum, `radius` wide, or of its side.
+SurfaceUv frustum_uv(int part, double radius, const Vec3d& p);
 
 }  // namespace oktett

@@ -20,7 +20,7 @@
 /// It may have
 /// - `S::inside(pool, i, p)`, where what is inside is not the points of the element's box `lo`, `hi` (if it
 ///   has one) at which the function of part 0 is negative;
-/// - `S::uv(pool, i, part, p, surface)`: sets uv and tangent in its own space;
+/// - `S::uv(pool, i, part, p)`: texture coordinates as functions in its own space;
 /// - `S::kOneCell`: each element is one cell, and its crossings are listed as they are. Without it an
 ///   element may have several cells. Two cells that meet may both list the crossing there, so the lists are
 ///   merged;
@@ -39,6 +39,7 @@
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 #include "kernels/exact/exact_pool.h"
+#include "kernels/exact/surface_uv.h"
 #include "kernels/roots/roots.h"
 
 namespace oktett {

@@ -77,9 +77,14 @@ SurfaceInteraction exact_interaction(const typename S::Pool& pool, std::size_t i
   set_position(s, only_lane(at.point), ray, hit.t, only_lane(at.error));
   s.geometric_normal = s.shading_normal = Vec3f(only_lane(at.normal));
   if constexpr (kWithUv) {
-    if constexpr (requires { S::uv(pool, i, 0, Vec3d{}, s); })
-      S::uv(pool, i, static_cast<int>(hit.u), only_lane(own), s);
-    s.tangent = Vec3f(pool.frames[i].to_world.vector(Vec3d(s.tangent)));
+    if constexpr (requires { S::uv(pool, i, 0, Vec3d{}); }) {
+      const int part = static_cast<int>(hit.u);
+      const Vec3d p = only_lane(own);
+      set_uv(s, S::uv(pool, i, part, p), slope_at<S>(pool, i, part, p).gradient);
+      const Affine& to_world = pool.frames[i].to_world;
+      s.tangent = Vec3f(to_world.vector(Vec3d(s.tangent)));
+      s.bitangent = Vec3f(to_world.vector(Vec3d(s.bitangent)));
+    }
   }
   return s;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kernels/exact/cubic.h"
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 namespace {
@@ -346,10 +346,17 @@ bool Lathe::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return odd;
 }
 
-void Lathe::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Lathe::uv(const Pool& pool, std::size_t i, int, const Vec3d& p) {
   const LatheElement& e = pool.elements[i];
-  const Nearest at = nearest_point(e, std::sqrt(p.x * p.x + p.z * p.z), p.y);
-  set_uv_around_y(s, p, (static_cast<double>(at.piece) + 0.5 * (at.v + 1)) / e.pieces.size());
+  const double rho = std::sqrt(p.x * p.x + p.z * p.z), pieces = static_cast<double>(e.pieces.size());
+  const Nearest at = nearest_point(e, rho, p.y);
+  // A step along the curve, which is its derivative times that of v, changes v by as much.
+  const Piece& piece = e.pieces[at.piece];
+  const double dr = cubic_slope(piece.r, at.v), dy = cubic_slope(piece.y, at.v);
+  const double per_rho = rho > 0 ? dr / rho : 0;
+  const Vec3d along{p.x * per_rho, dy, p.z * per_rho};
+  const double v = (static_cast<double>(at.piece) + 0.5 * (at.v + 1)) / pieces;
+  return {turn_around_y(p), {v, along * (0.5 / (pieces * (dr * dr + dy * dy)))}};
 }
 
 }  // namespace oktett

@@ -80,7 +80,7 @@ struct Lathe {
   static Slope slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +z towards +x, v along the curve, both in [0, 1].
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 
  private:
   /// A ray that rises by less than this times its way is taken as level: within the surface it goes astray by

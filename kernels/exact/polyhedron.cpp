@@ -56,11 +56,10 @@ bool Polyhedron::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return true;
 }
 
-void Polyhedron::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Polyhedron::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   Vec3d u, v;
   make_basis(slope_at<Polyhedron>(pool, i, part, p).gradient, u, v);
-  s.uv = {static_cast<float>(0.5 + 0.5 * dot(u, p)), static_cast<float>(0.5 + 0.5 * dot(v, p))};
-  s.tangent = Vec3f(u * 2.0);
+  return {{0.5 + 0.5 * dot(u, p), u * 0.5}, {0.5 + 0.5 * dot(v, p), v * 0.5}};
 }
 
 }  // namespace oktett

@@ -81,7 +81,7 @@ struct Polyhedron {
   }
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// Position in the plane of the face, in [0, 1] over the size of the solid.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 }  // namespace oktett

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 #include "kernels/roots/double_double.h"
 
 namespace oktett {
@@ -207,16 +207,12 @@ bool Quadric::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return slope_at<Quadric>(pool, i, 0, p).value < 0;
 }
 
-void Quadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Quadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   const QuadricElement& e = pool.elements[i];
-  if (part > 0) return set_face_uv(s, part, e.lo, e.hi, p);
+  if (part > 0) return face_uv(part, e.lo, e.hi, p);
   const double height = e.hi.z - e.lo.z;
-  set_uv(s, turn_of(p.y, p.x), std::isfinite(height) ? (p.z - e.lo.z) / height : p.z);
-  // Around z on the surface at one height.
-  const Vec3d g = slope_at<Quadric>(pool, i, 0, p).gradient;
-  const double speed = p.x * g.x + p.y * g.y;
-  if (speed == 0) return;
-  s.tangent = Vec3f(Vec3d{-g.y, g.x, 0} * (2 * std::numbers::pi * (p.x * p.x + p.y * p.y) / speed));
+  const SpaceFunction z = component(p, 2);
+  return {turn_around_z(p), std::isfinite(height) ? (z - e.lo.z) / height : z};
 }
 
 }  // namespace oktett

@@ -127,7 +127,7 @@ struct Quadric {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// On the surface, u around z and v the height in the box, both in [0, 1]; v = z where the box is infinite.
   /// On a face of the box, the position on it.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 
  private:
   template <class D>

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/exact/cubic.h"
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 namespace {
@@ -130,10 +130,10 @@ bool Revolution::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return slope_at<Revolution>(pool, i, 0, p).value < 0;
 }
 
-void Revolution::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Revolution::uv(const Pool& pool, std::size_t i, int, const Vec3d& p) {
   const RevolutionElement& e = pool.elements[i];
   const double lo = e.pieces.front().ends[0].height, hi = e.pieces.back().ends[1].height;
-  set_uv_around_y(s, p, (p.y - lo) / (hi - lo));
+  return {turn_around_y(p), (component(p, 1) - lo) / (hi - lo)};
 }
 
 }  // namespace oktett

@@ -209,7 +209,7 @@ struct Revolution {
   }
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u around the axis from +z towards +x, v the height, both in [0, 1].
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 
  private:
   /// What is known where a ray passes an end of a piece.

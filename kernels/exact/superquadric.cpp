@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 
@@ -87,16 +87,15 @@ void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace&
   add_cell(pool, e.lo, e.hi);
 }
 
-void Superquadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Superquadric::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   const SuperquadricElement& e = pool.elements[i];
-  if (part > 0) return set_face_uv(s, part, e.lo, e.hi, p);
-  const double x = p.x * e.inverse[0], y = p.y * e.inverse[1], z = p.z * e.inverse[2];
-  const double rho = std::sqrt(x * x + y * y), turn = 0.5 / std::numbers::pi;
-  double v = (p.z - e.lo.z) / (e.hi.z - e.lo.z);
-  if (e.form == Form::ellipsoid) v = 0.5 + portable::atan2(z, rho) * 2 * turn;
-  if (e.form == Form::toroid) v = 0.5 + portable::atan2(z, rho - e.d) * turn;
-  set_uv(s, 0.5 + portable::atan2(y, x) * turn, v);
-  s.tangent = Vec3f(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
+  if (part > 0) return face_uv(part, e.lo, e.hi, p);
+  const auto scaled = [&](int k) { return component(p, k) * e.inverse[k]; };
+  const SpaceFunction x = scaled(0), y = scaled(1), z = scaled(2), rho = radius_of(x, y);
+  SpaceFunction v = (component(p, 2) - e.lo.z) / (e.hi.z - e.lo.z);
+  if (e.form == Form::ellipsoid) v = angle_of(z, rho) / std::numbers::pi + 0.5;
+  if (e.form == Form::toroid) v = turn_of(z, rho - e.d);
+  return {turn_of(y, x), v};
 }
 
 }  // namespace oktett

@@ -151,7 +151,7 @@ struct Superquadric {
   }
   /// u around z; v from bottom to top of an ellipsoid, around the tube of a toroid, the height z of a
   /// hyperboloid. On a face of the box the position on it.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 }  // namespace oktett

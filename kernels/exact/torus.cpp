@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 
@@ -14,10 +14,10 @@ void Torus::add(Pool& pool, const TorusShape& s, const ExactPlace& place) {
   add_cell(pool, {-1, -1, -e.minor}, {1, 1, e.minor});
 }
 
-void Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv Torus::uv(const Pool& pool, std::size_t i, int, const Vec3d& p) {
   const TorusElement& e = pool.elements[i];
-  const double rho = std::sqrt(p.x * p.x + p.y * p.y);
-  set_uv_around_z(s, p, turn_of(p.z, rho - e.major));
+  const SpaceFunction rho = radius_of(component(p, 0), component(p, 1));
+  return {turn_around_z(p), turn_of(component(p, 2), rho - e.major)};
 }
 
 }  // namespace oktett

@@ -88,7 +88,7 @@ struct Torus {
     gradient = {(p.x - k * p.x) * D(2.0), (p.y - k * p.y) * D(2.0), p.z * D(2.0)};
   }
   /// u around the axis from +x towards +y, v around the tube from the outside upwards, both in [0, 1].
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 }  // namespace oktett

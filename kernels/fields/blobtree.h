@@ -6,7 +6,7 @@
 /// zero, and branches that are surely below or above what they are blended with, are left out.
 
 #include "kernels/exact/march.h"
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 #include "kernels/fields/blobtree_data.h"
 #include "kernels/fields/cell_tree.h"
 #include "kernels/fields/potential_lanes.h"
@@ -169,7 +169,7 @@ struct BlobTree {
 
   static Slope slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p);
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
-  static void uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) { set_globe_uv(s, p); }
+  static SurfaceUv uv(const Pool&, std::size_t, int, const Vec3d& p) { return globe_uv(p); }
 };
 
 }  // namespace oktett

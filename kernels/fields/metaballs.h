@@ -7,7 +7,7 @@
 /// surface is a sphere. Each lane goes from cut to cut on its own until a piece may hold a crossing; then all
 /// are solved at once.
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 #include "kernels/fields/cell_tree.h"
 #include "kernels/fields/metaballs_data.h"
 #include "kernels/roots/bernstein_lanes.h"
@@ -282,7 +282,7 @@ struct Metaballs {
     });
   }
   /// Longitude and latitude about the middle of the element's bounds, as for a sphere.
-  static void uv(const Pool&, std::size_t, int, const Vec3d& p, SurfaceInteraction& s) { set_globe_uv(s, p); }
+  static SurfaceUv uv(const Pool&, std::size_t, int, const Vec3d& p) { return globe_uv(p); }
 };
 
 }  // namespace oktett

@@ -12,6 +12,7 @@
 
 #include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
+#include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 
@@ -26,7 +27,7 @@ struct FractalQuery {
 /// A crossing: `turn` as in Crossings; the rest, in the element's own space, only if it was asked for.
 struct FractalCrossing {
   double t = 0, turn = 0, part = 0;
-  Vec3d point, normal, tangent;
+  Vec3d point, normal, tangent, bitangent;  ///< the last two as in SurfaceInteraction
   double u = 0, v = 0;
 };
 
@@ -127,8 +128,17 @@ inline FractalCrossing wall_crossing(const FractalQuery& query, const GridLine::
   if (!query.with_surface) return c;
   c.point = query.o + query.d * gate.t;
   c.point[axis] = place, c.normal[axis] = out;
-  c.u = 0.5 * (c.point[u] + 1), c.v = 0.5 * (c.point[v] + 1), c.tangent[u] = 2;
+  c.u = 0.5 * (c.point[u] + 1), c.v = 0.5 * (c.point[v] + 1), c.tangent[u] = 2, c.bitangent[v] = 2;
   return c;
+}
+
+/// uv of the point p of the unit sphere as of globe_uv, dp/du and dp/dv.
+inline void set_ball_uv(const Vec3d& p, FractalCrossing& c, Vec3d& tangent, Vec3d& bitangent) {
+  const double across = std::sqrt(p.x * p.x + p.z * p.z);
+  c.u = turn_of(p.z, p.x), c.v = 0.5 + portable::atan2(p.y, across) / std::numbers::pi;
+  tangent = Vec3d{-p.z, 0, p.x} * (2 * std::numbers::pi);
+  bitangent = {0, 0, 0};
+  if (across > 0) bitangent = Vec3d{-p.y * p.x / across, across, -p.y * p.z / across} * std::numbers::pi;
 }
 
 /// The crossing that `hit` was before its t was rounded to float, on the line of `query`, whose range is not
@@ -200,6 +210,7 @@ struct Fractal {
     s.geometric_normal = s.shading_normal = Vec3f(n / length(n));
     s.uv = {static_cast<float>(c.u), static_cast<float>(c.v)};
     s.tangent = Vec3f(frame.to_world.vector(c.tangent));
+    s.bitangent = Vec3f(frame.to_world.vector(c.bitangent));
     return s;
   }
 };

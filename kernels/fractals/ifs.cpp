@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 #include "kernels/fractals/fractal_union.h"
 
 namespace oktett {
@@ -208,24 +208,22 @@ void tell_surface(const IfsElement& e, const FractalQuery& query, const Walk::Pl
                   FractalCrossing& c) {
   const IfsNode& node = place.node;
   const Vec3d p = node.o + node.d * (c.t - node.at);
-  Vec3d n = p, tangent;
+  Vec3d n = p, tangent, bitangent;
   if (face == 0) {
-    const double across = std::sqrt(p.x * p.x + p.z * p.z);
-    c.u = turn_of(p.z, p.x);
-    c.v = 0.5 + portable::atan2(p.y, across) / std::numbers::pi;
-    tangent = Vec3d{-p.z, 0, p.x} * (2 * std::numbers::pi);
+    set_ball_uv(p, c, tangent, bitangent);
   } else {
     const int axis = (face - 1) / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
     n = face_gradient(face);
     c.u = std::clamp(0.5 * (p[u] + 1), 0.0, 1.0), c.v = std::clamp(0.5 * (p[v] + 1), 0.0, 1.0);
-    tangent[u] = 2;
+    tangent[u] = 2, bitangent[v] = 2;
   }
   for (int k = place.level; k-- > 0;) {
     const IfsElement::Map& map = e.maps[place.path[k]];
-    n = map.to_piece.normal_by_inverse(n), tangent = map.to_parent.vector(tangent);
+    n = map.to_piece.normal_by_inverse(n);
+    tangent = map.to_parent.vector(tangent), bitangent = map.to_parent.vector(bitangent);
     n = n / length(n);
   }
-  c.normal = n, c.tangent = tangent, c.point = query.o + query.d * c.t;
+  c.normal = n, c.tangent = tangent, c.bitangent = bitangent, c.point = query.o + query.d * c.t;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <array>
 #include <numbers>
 
-#include "kernels/exact/round_uv.h"
+#include "kernels/exact/surface_uv.h"
 #include "kernels/fractals/fractal_union.h"
 
 namespace oktett {
@@ -216,17 +216,15 @@ int Sphereflake::find(const Element& e, const FractalQuery& query, FractalCrossi
   return find_in_union(walk, query, out, room, [&](const Walk::Place& place, FractalCrossing& c) {
     const double h = std::sqrt(1 - dot(place.node.p, place.node.p));
     Vec3d n = place.node.p + place.node.u * (h * c.turn);
-    const double across = std::sqrt(n.x * n.x + n.z * n.z);
-    c.u = turn_of(n.z, n.x);
-    c.v = 0.5 + portable::atan2(n.y, across) / std::numbers::pi;
-    Vec3d east{-n.z, 0, n.x}, at{0, 0, 0};
+    Vec3d east, north, at{0, 0, 0};
+    set_ball_uv(n, c, east, north);
     for (int g = place.level; g-- > 0;) {
       const Frame& f = kFrames[place.path[g]];
-      n = f.outwards(n), east = f.outwards(east);
+      n = f.outwards(n), east = f.outwards(east), north = f.outwards(north);
       at = f.y * (1 + e.ratio) + f.outwards(at) * e.ratio;
     }
     c.normal = n, c.point = at + n * e.radius[place.level];
-    c.tangent = east * (2 * std::numbers::pi * e.radius[place.level]);
+    c.tangent = east * e.radius[place.level], c.bitangent = north * e.radius[place.level];
   });
 }
 

@@ -231,7 +231,8 @@ class TerrainWalk {
     const double dx = Triangles{c}.slope_x(right) * (e_.side * 0.5),
                  dz = Triangles{c}.slope_z(right) * (e_.side * 0.5);
     found.point = query_.o + query_.d * t, found.normal = {-dx, 1, -dz};
-    found.u = 0.5 * (found.point.x + 1), found.v = 0.5 * (found.point.z + 1), found.tangent = {2, 2 * dx, 0};
+    found.u = 0.5 * (found.point.x + 1), found.v = 0.5 * (found.point.z + 1), found.tangent = {2, 2 * dx, 0},
+    found.bitangent = {0, 2 * dz, 2};
     return found;
   }
 

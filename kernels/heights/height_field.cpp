@@ -58,12 +58,10 @@ bool HeightField::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
   return slope_at<HeightField>(pool, i, 0, p).value < 0;
 }
 
-void HeightField::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s) {
+SurfaceUv HeightField::uv(const Pool& pool, std::size_t i, int, const Vec3d& p) {
   const HeightFieldElement& e = pool.elements[i];
-  const double width = e.hi.x - e.lo.x, depth = e.hi.z - e.lo.z;
-  s.uv = {static_cast<float>((p.x - e.lo.x) / width), static_cast<float>((e.hi.z - p.z) / depth)};
-  const Vec3d g = part == 0 ? slope_at<HeightField>(pool, i, part, p).gradient : Vec3d{0, 1, 0};
-  s.tangent = Vec3f(Vec3d{width, -g.x * width, 0});
+  return {(component(p, 0) - e.lo.x) / (e.hi.x - e.lo.x),
+          (component(p, 2) * -1 + e.hi.z) / (e.hi.z - e.lo.z)};
 }
 
 }  // namespace oktett

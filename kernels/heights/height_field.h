@@ -147,7 +147,7 @@ struct HeightField {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// u from the first column to the last, v from the last row to the first, as in an image that is looked at
   /// from above.
-  static void uv(const Pool& pool, std::size_t i, int part, const Vec3d& p, SurfaceInteraction& s);
+  static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
 
 }  // namespace oktett

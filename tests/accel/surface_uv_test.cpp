@@ -28,7 +28,7 @@ struct Uv {
 };
 
 /// Expects these uv at random hits of the shape, which is moved; NaN: not compared. Also expects that a small
-/// step along the tangent changes u by what the tangent's length says.
+/// step along dp/du changes only u, and one along dp/dv only v, by what their lengths say.
 void expect_uv(const ExactForm& form, const std::function<Uv(const Vec3d&)>& want, const char* what) {
   const Affine place =
       Affine::translation({1, 2, 3}) * Affine::rotation({30, 40, 50}) * Affine::scaling({2, 2, 2});
@@ -64,6 +64,13 @@ void expect_uv(const ExactForm& form, const std::function<Uv(const Vec3d&)>& wan
     if (!std::isnan(next.v)) {
       EXPECT_NEAR(next.v, before.v, 1e-3 * step) << what;
     }
+    const Vec3d up = back.vector(Vec3d(s.bitangent));
+    // A step past the edge of a part is none along dp/dv.
+    if (!(length(up) > 1e-3) || std::isnan(next.v)) continue;
+    const double rise = 1e-4 / length(up);
+    const Uv above = want(p + up * rise), below = want(p - up * rise);
+    EXPECT_LT(apart(above.u, below.u), 0.02 * rise) << what;
+    EXPECT_LT(apart(above.v - below.v, 2 * rise), 0.02 * rise) << what;
   }
   EXPECT_GT(found, 100) << what;
 }

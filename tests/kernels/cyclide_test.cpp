@@ -137,7 +137,8 @@ TEST(Cyclide, UvAndTangentFollowTheParametricForm) {
     const Cyclide::Pool pool = pool_of(s);
     const double u = 6 * random.unit() - 3, v = 6 * random.unit() - 3, h = 1e-6;
     SurfaceInteraction at;
-    Cyclide::uv(pool, 0, 0, pool.frames[0].to_own.point(point(s, u, v)), at);
+    const Vec3d own = pool.frames[0].to_own.point(point(s, u, v));
+    set_uv(at, Cyclide::uv(pool, 0, 0, own), slope_at<Cyclide>(pool, 0, 0, own).gradient);
     EXPECT_NEAR(at.uv.x, 0.5 + u * 0.5 / std::numbers::pi, 1e-5);
     // The angle of the parametric form is 0 on the inside.
     EXPECT_NEAR(std::cos(2 * std::numbers::pi * (at.uv.y - 0.5) - (v + std::numbers::pi)), 1, 1e-9);

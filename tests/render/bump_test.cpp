@@ -177,6 +177,12 @@ Vec3d around_ring(const Affine& map, const Vec3d& place) {
   return map.vector(Vec3d{-p.y, p.x, 0} * (2 * std::numbers::pi));
 }
 
+/// Its derivative by v.
+Vec3d around_tube(const Affine& map, const Vec3d& place) {
+  const Vec3d p = map.inverse().point(place), out = Vec3d{p.x, p.y, 0} / std::hypot(p.x, p.y);
+  return map.vector((out * -p.z + Vec3d{0, 0, std::hypot(p.x, p.y) - kMajor}) * (2 * std::numbers::pi));
+}
+
 /// A ring that a box cuts.
 Shape cut_ring() {
   auto operands = std::make_shared<std::vector<Object>>(2);
@@ -203,14 +209,14 @@ TEST(ImageBump, TiltsNormalsAlongTheTangent) {
       return on_ring(place) ? n * dot(by_u, by_u) - by_u : Vec3d{0, 0, -1};
     };
     expect_bent(flat, {shape, at, bumpy, {}, &along_u, stands}, bend_u, what, 1e-3);
-    // Up the tube, which counts as being as long as the ring's way around.
     const auto bend_v = [&](const Vec3d& place, const Vec3d& n) {
-      const Vec3d by_u = around_ring(at, place), up = normalize(cross(n, by_u));
-      return on_ring(place) ? n * length(by_u) - up : Vec3d{0, 0, -1};
+      const Vec3d by_v = around_tube(at, place);
+      return on_ring(place) ? n * dot(by_v, by_v) - by_v : Vec3d{0, 0, -1};
     };
     expect_bent(flat, {shape, at, bumpy, {}, &along_v, stands}, bend_v, what, 1e-3);
   };
   compare(ring(), map, Stands::alone, "ring");
+  compare(ring(), map * Affine::scaling({-1, 1, 1}), Stands::alone, "mirrored ring");
   compare(ring(), map, Stands::in_prototype, "ring in a prototype");
   compare(cut_ring(), map, Stands::alone, "cut ring");
 }
@@ -220,14 +226,14 @@ TEST(ImageNormals, StandInTheFrameOfTheTangent) {
   mapped.normal_texture = 0;
   const Affine map = Affine::rotation({60, 30, 40}) * Affine::scaling({1.3, 1.3, 1.3});
   const Slopes texture(0, 0, {0.5f + 0.24f, 0.5f + 0.18f, 0.5f + 0.4f});
-  for (const Stands stands : {Stands::alone, Stands::in_prototype}) {
-    const auto bend = [&](const Vec3d& place, const Vec3d& n) {
-      const Vec3d t = normalize(around_ring(map, place));
-      return t * 0.48 + cross(n, t) * 0.36 + n * 0.8;
-    };
-    expect_bent({ring(), map, plain, {}, nullptr, stands}, {ring(), map, mapped, {}, &texture, stands}, bend,
-                "ring");
-  }
+  for (const Stands stands : {Stands::alone, Stands::in_prototype})
+    for (const Affine& at : {map, map * Affine::scaling({1, 1, -1})}) {
+      const auto bend = [&](const Vec3d& place, const Vec3d& n) {
+        return normalize(around_ring(at, place)) * 0.48 + normalize(around_tube(at, place)) * 0.36 + n * 0.8;
+      };
+      expect_bent({ring(), at, plain, {}, nullptr, stands}, {ring(), at, mapped, {}, &texture, stands}, bend,
+                  "ring");
+    }
 }
 
 // Without texture coordinates there is no direction in which an image's heights could rise.
