@@ -22,14 +22,17 @@ struct TreeBytes {
   OKTETT_INLINE const BvhNode* nodes() const { return reinterpret_cast<const BvhNode*>(of[0]); }
   OKTETT_INLINE const TriangleBlock* blocks() const { return reinterpret_cast<const TriangleBlock*>(of[1]); }
 
-  /// Prefetches a node or a block. For any other leaf the address means nothing.
+  /// Prefetches a node or a block. For any other leaf the address means nothing, so it is a number here: a
+  /// pointer may not leave its array.
   OKTETT_INLINE void prefetch(NodeRef ref) const {
     const std::uint32_t is_leaf = ref.bits() >> 31;
     const std::size_t index = ref.block();
-    const char* at = of[is_leaf] + index * sizeof(BvhNode) +
-                     (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(BvhNode));
+    const std::uintptr_t at =
+        reinterpret_cast<std::uintptr_t>(of[is_leaf]) + index * sizeof(BvhNode) +
+        (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(BvhNode));
     for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
-      __builtin_prefetch(at + (line < sizeof(BvhNode) ? line : is_leaf * line));
+      __builtin_prefetch(
+          reinterpret_cast<const void*>(at + (line < sizeof(BvhNode) ? line : is_leaf * line)));
   }
 };
 
