@@ -99,7 +99,7 @@ TEST_P(UvOfKind, TangentsTellHowThePlaceChanges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, UvOfKind, testing::Range(std::size_t{0}, known_kinds().size()),
-                         [](const auto& info) { return known_kinds()[info.param]; });
+                         [](const auto& shape) { return known_kinds()[shape.param]; });
 
 }  // namespace
 }  // namespace oktett
