@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include ""
 #include "accel/accel_data.h"
 #include "core/error.h"
 #include "io/cache/entries.h"
@@ -170,7 +171,7 @@ void fuzz_mesh(test::InputBytes& bytes) {
     MeshEntry read = read_mesh_header(cache);
     read_mesh_columns(cache, read);
     expect_indices(read.parsed.mesh);
-    (void)finish_obj("/a.obj", std::move(read.parsed));
+    (void)finish_mesh("/a.obj", std::move(read.parsed));
   } catch (const Error& e) {
     test::require(*e.what() != 0 && !e.where().file.empty(), "an error names the file");
   }
