@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include ""
+#include "io/mesh/load/parse_mesh.h"
 #include "accel/accel_data.h"
 #include "core/error.h"
 #include "io/cache/entries.h"
