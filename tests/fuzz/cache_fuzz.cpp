@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/load/parse_mesh.h"
 #include "accel/accel_data.h"
 #include "core/error.h"
 #include "io/cache/entries.h"
 #include "io/cache/scene_cache.h"
+#include "io/mesh/load/parse_mesh.h"
 #include "tests/fuzz/tracing.h"
 #include "tests/support/mixed_geometry.h"
 

@@ -86,7 +86,7 @@ TEST_P(UvOfKind, TangentsTellHowThePlaceChanges) {
   const std::string& kind = known_kinds()[GetParam()];
   if (with_uv == 0) {
     // Those that the documents list as having none.
-    const std::vector<std::string> none = {"implicit", "polynomial",  "blob",
+    const std::vector<std::string> none = {"implicit", "polynomial",  "blob",         "julia",
                                            "triangle", "closed_mesh", "triangle_soup"};
     EXPECT_TRUE(std::ranges::any_of(none, [&](const std::string& name) { return kind.starts_with(name); }))
         << kind;
