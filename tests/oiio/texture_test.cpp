@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <tbb/parallel_for.h>
 
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "io/image/color.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {
@@ -182,6 +184,50 @@ TEST(ImageTextures, AnyCoordinatesAreSafe) {
 }
 
 // The same lookups in another order, from many threads and in a fresh cache, give the same bits.
+TEST(ImageTextures, OthersDoNotShowThrough) {
+  // The cache uses its entries again, here also for files of other sizes and types and for damaged ones.
+  const TempDir dir;
+  std::vector<std::string> files;
+  for (int k = 0; k < 8; ++k) {
+    const int side = 1 + 37 * k % 90;
+    const std::uint8_t grey = static_cast<std::uint8_t>(20 + 30 * k);
+    const std::size_t count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    files.push_back(write_pixels(dir.file(std::to_string(k) + (k % 2 == 0 ? ".png" : ".tif")), side, side, 1,
+                                 Bytes(count, grey)));
+  }
+  const std::string damaged = dir.write("damaged.png", "nothing");
+  tbb::parallel_for(0, 400, [&](int i) {
+    const int k = i % 8;
+    std::vector<Texture> list = {texture_of(files[static_cast<std::size_t>(k)])};
+    if (i % 3 == 0) list.insert(list.begin(), texture_of(damaged));
+    if (i % 5 == 0) list.push_back(texture_of(files[static_cast<std::size_t>((k + 1) % 8)]));
+    const ImageTextures textures(list);
+    ASSERT_EQ(textures.warnings().size(), i % 3 == 0 ? 1u : 0u);
+    const std::uint32_t at = i % 3 == 0 ? 1 : 0;
+    for (const float width : {0.0f, 0.01f, 0.9f}) {
+      const Vec2f dx{width, 0}, dy{0, width};
+      ASSERT_NEAR(textures.value(at, {0.4f, 0.6f}, dx, dy), float(20 + 30 * k) / 255, 1e-3f) << i;
+      if (i % 5 != 0) continue;
+      const int next = (k + 1) % 8;
+      ASSERT_NEAR(textures.value(at + 1, {0.4f, 0.6f}, dx, dy), float(20 + 30 * next) / 255, 1e-3f);
+    }
+  });
+}
+
+TEST(ImageTextures, MemoryIsFreed) {
+  if (test::kSanitized)
+    GTEST_SKIP() << "sanitizers have an allocator of their own, and find leaks by themselves";
+  const TempDir dir;
+  const std::vector<Texture> list = {texture_of(checkers(dir)),
+                                     texture_of(dir.write("damaged.png", "nothing"))};
+  const auto allocated = [] { return mallinfo2().uordblks; };
+  for (int i = 0; i < 100; ++i) ImageTextures{list};
+  const std::size_t before = allocated();
+  for (int i = 0; i < 500; ++i) ImageTextures{list};
+  // One leaked object per image would be more.
+  EXPECT_LT(allocated(), before + 500 * 32);
+}
+
 TEST(ImageTextures, ResultsDependOnArgumentsAlone) {
   const TempDir dir;
   Bytes noise;
