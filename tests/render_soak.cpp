@@ -27,6 +27,7 @@
 #include "render/film/denoise.h"
 #include "render/look/default_look.h"
 #include "render/render.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 #include "verify/oracles/random_scene.h"
 
@@ -35,11 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kWatchesMemory = false;  // sanitizers keep what was freed, and find leaks by themselves
-#else
-constexpr bool kWatchesMemory = true;
-#endif
+constexpr bool kWatchesMemory = !kSanitized;  // sanitizers keep what was freed, and find leaks by themselves
 
 std::size_t open_files() {
   std::size_t count = 0;

@@ -6,6 +6,7 @@
 #include "accel/query.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/height_field_cases.h"
+#include "tests/support/sanitizers.h"
 
 namespace oktett {
 namespace {
@@ -71,7 +72,7 @@ TEST(HeightWalks, PyramidsLeaveNothingOut) {
         HeightFieldShape s = hills(columns, rows, interpolation, words);
         if (closed) s = solid(s, -14);
         RayBatch rays;
-        for (std::uint32_t n = 0; n < 400; ++n) {
+        for (std::uint32_t n = 0; n < test::cases(400); ++n) {
           const Vec3f half{columns * 0.5f, 20, rows * 0.5f};
           Vec3f at = random_point(2 * n, half), from = random_point(2 * n + 1, half * 1.2f);
           if (n % 4 == 1) from = at + (from - at) * 1e3f;
@@ -126,7 +127,7 @@ TEST(HeightWalks, PyramidsBearHostileRays) {
         return static_cast<float>(k - (samples - 1) / 2.0) * unit;
       };
       RayBatch rays;
-      for (std::uint32_t n = 0; n < 300; ++n) {
+      for (std::uint32_t n = 0; n < test::cases(300); ++n) {
         const auto pick = [&](std::uint32_t k, std::uint32_t most) {
           return static_cast<std::uint32_t>(random_float(7, n, k) * 0.999f * static_cast<float>(most));
         };
@@ -156,7 +157,7 @@ TEST(HeightWalks, PyramidsBearHostileRays) {
         EXPECT_EQ(found[i], all[i]) << columns << " x " << rows << ", kind " << kind << ", ray " << i;
         hits += all[i].valid();
       }
-      EXPECT_GT(hits, kind == 3 ? 10u : 30u) << columns << " x " << rows << ", kind " << kind;
+      EXPECT_GT(hits, test::cases(kind == 3 ? 10 : 30)) << columns << " x " << rows << ", kind " << kind;
     }
 }
 
@@ -168,7 +169,7 @@ TEST(HeightWalks, AllWalksFindTheSame) {
         HeightFieldShape s = rough(columns, rows, interpolation);
         if (closed) s = solid(s, -1);
         std::vector<Ray> rays = hostile_rays(s);
-        for (std::uint32_t n = 0; n < 500; ++n) {
+        for (std::uint32_t n = 0; n < test::cases(500); ++n) {
           const Vec3f half{columns * 1.0f, 4, rows * 1.0f};
           const Vec3f from = random_point(2 * n, half), at = random_point(2 * n + 1, half * 0.4f);
           const float tmin = n % 3 == 0 ? 0.5f * random_float(9, n, 0) : 0;

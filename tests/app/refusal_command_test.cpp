@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/app/run_command.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {
@@ -26,11 +27,7 @@ using test::run_command;
 using test::TempDir;
 
 // Sanitizers need terabytes of address space.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCanLimitMemory = false;
-#else
-constexpr bool kCanLimitMemory = true;
-#endif
+constexpr bool kCanLimitMemory = !test::kSanitized;
 
 std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 

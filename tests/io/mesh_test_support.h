@@ -19,6 +19,7 @@
 #include "io/mesh/load/load_mesh.h"
 #include "io/mesh/parsed_mesh.h"
 #include "tests/io/obj_test_support.h"
+#include "tests/support/sanitizers.h"
 
 namespace oktett::test {
 
@@ -148,16 +149,10 @@ class ParsedFiles {
   ObjFiles files_;
 };
 
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kMemoryCanBeLimited = false;
-#else
-inline constexpr bool kMemoryCanBeLimited = true;
-#endif
-
 /// Runs f() with 256 MB of address space beside what the process has; std::bad_alloc fails the test.
 template <class F>
 void with_little_memory(const F& f) {
-  if (!kMemoryCanBeLimited) return f();
+  if (kSanitized) return f();  // sanitizers need terabytes of address space
   rlimit limit{};
   getrlimit(RLIMIT_AS, &limit);
   std::size_t pages = 0;

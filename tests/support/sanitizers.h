@@ -9,7 +9,8 @@ constexpr bool kSanitized = true;
 constexpr bool kSanitized = false;
 #endif
 
-/// How many of `all` random cases a slow test tries: under sanitizers, which take ten times as long, an eighth.
+/// How many of `all` random cases a slow test tries: under sanitizers, which take ten times as long, an
+/// eighth.
 constexpr unsigned cases(unsigned all) { return kSanitized ? (all + 7) / 8 : all; }
 
 }  // namespace oktett::test
