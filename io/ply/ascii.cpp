@@ -232,16 +232,21 @@ class AsciiBody final : public PlyBody {
     lines_left_ -= left;
     while (left > 0) {
       PlyChunk& source = chunks_[next_];
-      PlyChunk chunk{.begin = source.begin, .end = source.end, .first = part.element->count - left};
-      chunk.records = std::min(left, source.records);
+      const std::uint64_t records = std::min(left, source.records);
+      const char* const begin = source.begin;
+      const char* end = source.end;
       if (left < source.records) {
-        source.begin = chunk.end = for_each_line(source.begin, source.end, left, [](const char*) {});
+        source.begin = end = for_each_line(source.begin, source.end, left, [](const char*) {});
         source.records -= left;
       } else {
         ++next_;
       }
-      left -= chunk.records;
-      if (chunk.records > 0) part.chunks.push_back(std::move(chunk));
+      if (records > 0) {
+        PlyChunk& chunk = part.chunks.emplace_back();
+        chunk.begin = begin, chunk.end = end;
+        chunk.first = part.element->count - left, chunk.records = records;
+      }
+      left -= records;
     }
   }
 
