@@ -19,6 +19,7 @@
 #include "app/command_line.h"
 #include "app/text.h"
 #include "core/error.h"
+#include "core/platform.h"
 #include "core/virtual_array.h"
 #include "io/image/output.h"
 
@@ -101,7 +102,7 @@ void on_bad_access(int number, siginfo_t* info, void*) {
   std::signal(number, SIG_DFL);
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(OKTETT_SANITIZED)
 constexpr bool kWatchesAccess = false;  // the sanitizer does
 #else
 constexpr bool kWatchesAccess = true;

@@ -1,9 +1,11 @@
 #pragma once
 /// \file Whether a sanitizer watches the tests.
 
+#include "core/platform.h"
+
 namespace oktett::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(OKTETT_SANITIZED)
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
