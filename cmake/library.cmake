@@ -11,14 +11,18 @@ target_link_libraries(oktett_internal INTERFACE TBB::tbb Threads::Threads)
 file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp accel/*.cpp render/*.cpp io/*.cpp)
 list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/|/io/image/oiio/")
 
+# The static library, too, may become part of a shared one, such as the Python module. Its functions are never replaced by
+# others of the same name, so they may be inlined as in a program.
+set(OKTETT_PIC_OPTIONS -fno-semantic-interposition)
 add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES})
 add_library(oktett::oktett ALIAS oktett)
 target_compile_features(oktett PUBLIC cxx_std_20)
-target_compile_options(oktett PRIVATE -ffp-contract=off)
+target_compile_options(oktett PRIVATE -ffp-contract=off ${OKTETT_PIC_OPTIONS})
 oktett_target_warnings(oktett)
 oktett_precompile(oktett)
 set_target_properties(oktett PROPERTIES
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
+  POSITION_INDEPENDENT_CODE ON)
 include(cmake/public_headers.cmake)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
