@@ -12,6 +12,7 @@
 #include "io/image/output.h"
 #include "io/image/writers.h"
 #include "io/text/files_read.h"
+#include "io/text/stand_ins.h"
 
 namespace oktett {
 namespace {
@@ -108,13 +109,13 @@ static void check_access(const std::string& path) {
 Picture read_image(const std::string& path) {
   note_file_read(path);
   check_access(path);
-  return image_library().read(path);
+  return image_library().read(path_to_open(path));
 }
 
 HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels) {
   note_file_read(path);
   check_access(path);
-  return image_library().read_heights(path, most_side, most_pixels);
+  return image_library().read_heights(path_to_open(path), most_side, most_pixels);
 }
 
 }  // namespace oktett

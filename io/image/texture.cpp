@@ -8,6 +8,7 @@
 #include "io/image/image_access.h"
 #include "io/image/library.h"
 #include "io/text/files_read.h"
+#include "io/text/stand_ins.h"
 
 namespace oktett {
 
@@ -17,7 +18,10 @@ ImageTextures::ImageTextures(std::vector<Texture> textures) {
     if (texture.path.empty()) continue;
     note_file_read(texture.path);
     const std::string why = why_not_an_image(texture.path);
-    if (why.empty()) continue;
+    if (why.empty()) {
+      texture.path = path_to_open(texture.path);
+      continue;
+    }
     if (refused.insert(texture.path).second)
       warnings_.push_back({Location{texture.path}, "texture not used: " + why + "; white instead"});
     texture.path.clear();

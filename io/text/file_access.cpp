@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "io/text/stand_ins.h"
 
 namespace oktett {
 
@@ -53,7 +54,8 @@ void confine_files(const std::string& root) {
 
 bool files_are_confined() { return !root_folder.empty(); }
 
-std::string why_unreadable(const std::string& path) {
+std::string why_unreadable(const std::string& named) {
+  const std::string path = path_to_open(named);
   std::error_code error;
   // Strangers learn nothing about what is outside.
   if (files_are_confined() && (!is_in_root(fs::weakly_canonical(path, error)) || error)) return kOutside;

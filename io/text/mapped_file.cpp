@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "io/text/file_access.h"
 #include "io/text/files_read.h"
+#include "io/text/stand_ins.h"
 
 namespace oktett {
 namespace {
@@ -48,7 +49,7 @@ std::size_t page_size() {
 
 MappedFile::MappedFile(const std::string& path) {
   note_file_read(path);
-  const Descriptor file(path);
+  const Descriptor file(path_to_open(path));
   struct stat status;
   if (file.get() < 0 || fstat(file.get(), &status) != 0) fail_with_errno(path);
   if (const std::string why = why_unreadable(file.get()); !why.empty()) fail(path, "it " + why);
