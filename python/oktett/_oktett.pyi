@@ -1,0 +1,106 @@
+"""The compiled part of oktett."""
+
+import os
+from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._results import HitLists, Hits
+
+__version__: str
+
+Field = Literal["t", "object", "primitive", "instance", "uv", "normal", "position"]
+Quality = Literal["fast", "balanced", "best"]
+
+def set_threads(count: int) -> None: ...
+def isa() -> str: ...
+
+class Scene:
+    def __init__(
+        self,
+        vertices: Optional[npt.ArrayLike] = None,
+        faces: Optional[npt.ArrayLike] = None,
+        *,
+        transform: Optional[npt.ArrayLike] = None,
+        quality: Quality = "balanced",
+    ) -> None: ...
+    @staticmethod
+    def from_file(
+        path: Union[str, os.PathLike[str]],
+        *,
+        definitions: Mapping[str, str] = {},
+        quality: Quality = "balanced",
+    ) -> Scene: ...
+    @staticmethod
+    def from_text(
+        text: str,
+        *,
+        name: str = "<text>.yaml",
+        files: Mapping[str, bytes] = {},
+        definitions: Mapping[str, str] = {},
+        quality: Quality = "balanced",
+    ) -> Scene: ...
+    @staticmethod
+    def from_dict(
+        description: Mapping[str, Any],
+        *,
+        name: str = "<dict>.yaml",
+        files: Mapping[str, bytes] = {},
+        definitions: Mapping[str, str] = {},
+        quality: Quality = "balanced",
+    ) -> Scene: ...
+    def add_mesh(
+        self,
+        vertices: npt.ArrayLike,
+        faces: npt.ArrayLike,
+        *,
+        transform: Optional[npt.ArrayLike] = None,
+        name: str = "",
+    ) -> int: ...
+    def build(self) -> None: ...
+    @property
+    def bounds(self) -> Optional[npt.NDArray[np.float32]]: ...
+    @property
+    def objects(self) -> List[str]: ...
+    @property
+    def warnings(self) -> List[str]: ...
+    @property
+    def primitive_count(self) -> int: ...
+    @property
+    def source(self) -> str: ...
+    def closest_hit(
+        self,
+        rays: npt.ArrayLike,
+        tmin: npt.ArrayLike = 0.0,
+        tmax: npt.ArrayLike = ...,
+        *,
+        fields: Sequence[Field] = ...,
+    ) -> Hits: ...
+    def any_hit(
+        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ...
+    ) -> npt.NDArray[np.bool_]: ...
+    def count_hits(
+        self, rays: npt.ArrayLike, tmin: npt.ArrayLike = 0.0, tmax: npt.ArrayLike = ...
+    ) -> npt.NDArray[np.uint32]: ...
+    def all_hits(
+        self,
+        rays: npt.ArrayLike,
+        tmin: npt.ArrayLike = 0.0,
+        tmax: npt.ArrayLike = ...,
+        *,
+        fields: Sequence[Field] = ...,
+    ) -> HitLists: ...
+    def render(
+        self,
+        width: Optional[int] = None,
+        height: Optional[int] = None,
+        *,
+        samples: Optional[int] = None,
+        depth: Optional[int] = None,
+        seed: Optional[int] = None,
+        integrator: Optional[str] = None,
+        camera: Optional[Dict[str, Any]] = None,
+        planes: Optional[Sequence[str]] = None,
+        progress: Optional[Callable[[float], object]] = None,
+    ) -> Dict[str, npt.NDArray[Any]]: ...

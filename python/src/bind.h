@@ -1,0 +1,24 @@
+#pragma once
+/// \file The parts of the Python module.
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "python/src/scene_store.h"
+
+namespace oktett::python {
+
+using SceneClass = pybind11::class_<SceneStore, std::shared_ptr<SceneStore>>;
+
+/// Making scenes, pickling, what they hold.
+void bind_scene(SceneClass& scene);
+/// Scene.render.
+void bind_render(SceneClass& scene);
+/// Queries with rays.
+void bind_ray_queries(SceneClass& scene);
+
+/// The structure of a scene, built without the interpreter's lock if that is still to be done.
+std::shared_ptr<const World> world_of(SceneStore& scene);
+
+}  // namespace oktett::python

@@ -1,0 +1,158 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "python/src/arrays.h"
+#include "python/src/bind.h"
+#include "python/src/unlocked.h"
+
+namespace oktett::python {
+namespace {
+
+Vec3d parse_vector(const py::handle& value, const std::string& name) {
+  const FloatArray floats = float_rows(value, name.c_str(), 3);
+  if (floats.ndim() != 1) throw py::value_error(name + ": expected three numbers");
+  const auto numbers = py::cast<std::vector<double>>(py::array_t<double>::ensure(value));
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+double parse_number(const py::handle& value, const std::string& name, const Range& range) {
+  const auto number = value.cast<double>();
+  if (!range.contains(number))
+    throw py::value_error(name + ": " + std::to_string(number) + " is out of range");
+  return number;
+}
+
+/// Changes what `camera` names of a scene's camera.
+void override_camera(const py::dict& camera, Scene& scene) {
+  for (const auto& [key, value] : camera) {
+    const auto name = key.cast<std::string>();
+    const std::string what = "camera['" + name + "']";
+    if (name == "from")
+      scene.camera.from = parse_vector(value, what);
+    else if (name == "at")
+      scene.camera.at = parse_vector(value, what);
+    else if (name == "up")
+      scene.camera.up = parse_vector(value, what);
+    else if (name == "fov")
+      scene.camera.fov = parse_number(value, what, {0, 180, true, true});
+    else
+      throw py::value_error("camera: there is no key '" + name + "'; expected from, at, up, fov");
+  }
+  // Without a place the scene is framed.
+  if (camera.contains("from")) scene.camera_given = true;
+}
+
+IntegratorKind parse_integrator(const std::string& name) {
+  std::string known;
+  for (const auto& choice : kIntegratorKinds) {
+    if (name == choice.name) return choice.value;
+    known += (known.empty() ? "" : ", ") + std::string(choice.name);
+  }
+  throw py::value_error("integrator: there is no '" + name + "'; expected " + known);
+}
+
+using Whole = std::optional<std::int64_t>;
+
+void override_whole(const Whole& given, const char* name, std::int64_t lo, std::int64_t hi,
+                    std::uint32_t& out) {
+  if (!given) return;
+  if (*given < lo || *given > hi)
+    throw py::value_error(std::string(name) + ": expected " + std::to_string(lo) + " to " +
+                          std::to_string(hi) + ", found " + std::to_string(*given));
+  out = static_cast<std::uint32_t>(*given);
+}
+
+/// A plane as an array that shares its memory with the picture.
+py::array plane_array(const std::shared_ptr<const Picture>& picture, const PicturePlane& plane) {
+  const py::capsule owner(new std::shared_ptr<const Picture>(picture),
+                          [](void* p) { delete static_cast<std::shared_ptr<const Picture>*>(p); });
+  const Shape shape{picture->height, picture->width};
+  if (plane.type == PlaneType::unsigned_int)
+    return py::array_t<std::uint32_t>(shape, plane.ids.data(), owner);
+  return py::array_t<float>(shape, plane.values.data(), owner);
+}
+
+py::dict planes_of(const std::shared_ptr<const Picture>& picture,
+                   const std::optional<std::vector<std::string>>& wanted) {
+  py::dict planes;
+  std::string known;
+  for (const PicturePlane& plane : picture->planes) {
+    known += (known.empty() ? "" : ", ") + plane.name;
+    if (!wanted) planes[py::str(plane.name)] = plane_array(picture, plane);
+  }
+  if (!wanted) return planes;
+  for (const std::string& name : *wanted) {
+    const PicturePlane* plane = picture->find(name);
+    if (plane == nullptr) throw py::value_error("planes: the picture has no '" + name + "'; it has " + known);
+    planes[py::str(name)] = plane_array(picture, *plane);
+  }
+  return planes;
+}
+
+bool is_colour(const std::string& name) { return name == "R" || name == "G" || name == "B" || name == "A"; }
+
+py::dict render_scene(SceneStore& store, const Whole& width, const Whole& height, const Whole& samples,
+                      const Whole& depth, const Whole& seed, const std::optional<std::string>& integrator,
+                      const std::optional<py::dict>& camera,
+                      const std::optional<std::vector<std::string>>& wanted, const py::object& progress) {
+  Scene scene = store.scene();
+  override_whole(width, "width", 1, 65536, scene.film.width);
+  override_whole(height, "height", 1, 65536, scene.film.height);
+  override_whole(samples, "samples", 1, 65536, scene.integrator.samples);
+  override_whole(depth, "depth", 0, 64, scene.integrator.depth);
+  override_whole(seed, "seed", 0, 0xffffffff, scene.integrator.seed);
+  if (integrator) scene.integrator.kind = parse_integrator(*integrator);
+  if (camera) override_camera(*camera, scene);
+
+  RenderOptions options;
+  std::atomic<bool> stop = false;
+  std::atomic<double> done = 0;
+  options.stop = &stop;
+  options.progress = [&done](const RenderProgress& p) {
+    if (p.pixels_total > 0) done = static_cast<double>(p.pixels_done) / static_cast<double>(p.pixels_total);
+  };
+  if (wanted) options.data_layers = !std::all_of(wanted->begin(), wanted->end(), is_colour);
+  std::shared_ptr<Picture> picture;
+  run_watched(
+      [&] {
+        const std::shared_ptr<const ImageTextures> textures = store.textures();
+        options.textures = textures.get();
+        picture = std::make_shared<Picture>(render(std::move(scene), options).picture);
+      },
+      [&] { stop = true; }, progress.is_none() ? std::function<void()>() : [&] { progress(done.load()); });
+  return planes_of(picture, wanted);
+}
+
+constexpr const char* kRenderDoc = R"(Renders the scene.
+
+width, height, samples (per pixel), depth (bounces), seed, integrator ("whitted", "path", "ao", "normal", ...):
+    instead of what the scene says.
+camera: a dict with some of "from", "at", "up" (three numbers each) and "fov" (degrees), instead of the
+    scene's. A scene without camera is framed, one without lights gets some.
+planes: the names of the planes that are wanted; all if left out. A picture of colours alone renders faster.
+progress: called with the finished part, 0 to 1, about twenty times a second.
+
+Returns a dict of arrays (height, width), row 0 on top: "R", "G", "B" (float32, linear, premultiplied by "A"),
+"A", "Z" (depth), "N.X" (normals), "P.X" (positions), "Albedo.R", "u", "v", "primID.I", "geomID.I" (uint32) and
+others, named as in EXR files. The numbers are those that `oktett render` writes to an EXR file, which rounds
+R, G, B and A to 16 bits.
+
+Ctrl-C stops it. Raises ValueError for arguments out of range.)";
+
+}  // namespace
+
+void bind_render(SceneClass& scene) {
+  using namespace pybind11::literals;
+  const py::none none;
+  scene.def("render", render_scene, "width"_a = none, "height"_a = none, py::kw_only(), "samples"_a = none,
+            "depth"_a = none, "seed"_a = none, "integrator"_a = none, "camera"_a = none, "planes"_a = none,
+            "progress"_a = none, kRenderDoc);
+}
+
+}  // namespace oktett::python

@@ -1,0 +1,263 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/src/arrays.h"
+#include "python/src/bind.h"
+#include "python/src/unlocked.h"
+
+namespace oktett::python {
+namespace {
+
+using StorePointer = std::shared_ptr<SceneStore>;
+using Files = std::map<std::string, py::bytes>;
+
+/// Grows with what pickles hold.
+constexpr int kPickleVersion = 1;
+
+const std::pair<const char*, BuildQuality> kQualities[] = {
+    {"fast", BuildQuality::fast}, {"balanced", BuildQuality::balanced}, {"best", BuildQuality::best}};
+
+BuildQuality parse_quality(const std::string& name) {
+  for (const auto& [known, quality] : kQualities)
+    if (name == known) return quality;
+  throw py::value_error("quality: expected 'fast', 'balanced' or 'best', found '" + name + "'");
+}
+
+const char* quality_name(BuildQuality quality) { return kQualities[static_cast<int>(quality)].first; }
+
+/// A 3x4 or 4x4 matrix; None is the identity.
+Affine parse_transform(const py::object& value) {
+  if (value.is_none()) return {};
+  using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  const py::array given = py::array::ensure(value);
+  if (!given || given.ndim() != 2 || (given.shape(0) != 3 && given.shape(0) != 4) || given.shape(1) != 4) {
+    PyErr_Clear();
+    throw py::value_error("transform: expected a matrix of shape (3, 4) or (4, 4)" +
+                          (given ? ", found the shape " + shape_text(given) : std::string()));
+  }
+  const auto rows = Doubles::ensure(given);
+  if (!rows) throw py::error_already_set();
+  const Affine map = Affine::from_rows(rows.data());
+  const double* const last = rows.data() + 12;
+  if (given.shape(0) == 4 && (last[0] != 0 || last[1] != 0 || last[2] != 0 || last[3] != 1))
+    throw py::value_error("transform: expected the last row 0, 0, 0, 1");
+  if (!map.is_invertible()) throw py::value_error("transform: the matrix has no inverse");
+  return map;
+}
+
+std::shared_ptr<const TriangleMesh> make_mesh(const py::object& vertices, const py::object& faces) {
+  const FloatArray positions = float_rows(vertices, "vertices", 3);
+  if (positions.ndim() != 2)
+    throw py::value_error("vertices: expected an array of numbers of shape (n, 3), found the shape " +
+                          shape_text(positions));
+  const auto count = static_cast<std::size_t>(positions.shape(0));
+  const auto indices = triangle_rows(faces, count);
+  auto mesh = std::make_shared<TriangleMesh>();
+  mesh->positions.resize_uninitialized(count);
+  mesh->indices.resize_uninitialized(static_cast<std::size_t>(indices.size()));
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+  if (count > 0)
+    std::memcpy(static_cast<void*>(mesh->positions.data()), positions.data(), count * sizeof(Vec3f));
+  if (indices.size() > 0)
+    std::memcpy(mesh->indices.data(), indices.data(), static_cast<std::size_t>(indices.nbytes()));
+  return mesh;
+}
+
+std::uint32_t add_mesh(SceneStore& scene, const py::object& vertices, const py::object& faces,
+                       const py::object& transform, const std::string& name) {
+  return scene.add({make_mesh(vertices, faces), parse_transform(transform), name});
+}
+
+StorePointer make_scene(const py::object& vertices, const py::object& faces, const py::object& transform,
+                        const std::string& quality) {
+  auto store = std::make_shared<SceneStore>();
+  store->set_quality(parse_quality(quality));
+  if (vertices.is_none() != faces.is_none())
+    throw py::value_error("expected both vertices and faces, or neither");
+  if (!vertices.is_none()) add_mesh(*store, vertices, faces, transform, "");
+  return store;
+}
+
+StorePointer load(const std::string& path, const Definitions& definitions, FileContents files,
+                  BuildQuality quality) {
+  StorePointer store;
+  run_watched([&] { store = SceneStore::load(path, definitions, std::move(files)); });
+  store->set_quality(quality);
+  return store;
+}
+
+StorePointer from_file(const py::object& path, const Definitions& definitions, const std::string& quality) {
+  const auto text = py::module_::import("os").attr("fspath")(path).cast<std::string>();
+  return load(text, definitions, {}, parse_quality(quality));
+}
+
+StorePointer from_text(const std::string& text, const std::string& name, const Files& files,
+                       const Definitions& definitions, const std::string& quality) {
+  FileContents contents;
+  // As the reader of scene files joins them.
+  const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+  for (const auto& [file, content] : files) contents.emplace((folder / file).string(), content);
+  contents.insert_or_assign(name, text);
+  return load(name, definitions, std::move(contents), parse_quality(quality));
+}
+
+StorePointer from_dict(const py::object& description, const std::string& name, const Files& files,
+                       const Definitions& definitions, const std::string& quality) {
+  const auto [text, meshes] = py::module_::import("oktett._description")
+                                  .attr("to_text")(description)
+                                  .cast<std::pair<std::string, Files>>();
+  Files all = files;
+  all.insert(meshes.begin(), meshes.end());
+  return from_text(text, name, all, definitions, quality);
+}
+
+py::tuple pickled(const SceneStore& scene) {
+  py::dict files;
+  for (const auto& [path, content] : scene.contents()) files[py::str(path)] = py::bytes(content);
+  py::list meshes;
+  for (const AddedMesh& added : scene.added()) {
+    const TriangleMesh& mesh = *added.mesh;
+    py::array_t<float> positions(Shape{static_cast<py::ssize_t>(mesh.positions.size()), 3});
+    py::array_t<std::uint32_t> indices(Shape{static_cast<py::ssize_t>(mesh.triangle_count()), 3});
+    py::array_t<double> transform(Shape{3, 4});
+    if (positions.size() > 0)
+      std::memcpy(positions.mutable_data(), mesh.positions.data(),
+                  static_cast<std::size_t>(positions.nbytes()));
+    if (indices.size() > 0)
+      std::memcpy(indices.mutable_data(), mesh.indices.data(), static_cast<std::size_t>(indices.nbytes()));
+    added.transform.to_rows(transform.mutable_data());
+    meshes.append(py::make_tuple(positions, indices, transform, added.name));
+  }
+  return py::make_tuple(kPickleVersion, scene.path(), scene.definitions(), files, meshes,
+                        quality_name(scene.quality()));
+}
+
+StorePointer unpickled(const py::tuple& state) {
+  if (state.size() != 6 || state[0].cast<int>() != kPickleVersion)
+    throw py::value_error("the pickle was made by another version of oktett");
+  const auto path = state[1].cast<std::string>();
+  const BuildQuality quality = parse_quality(state[5].cast<std::string>());
+  StorePointer store;
+  if (path.empty()) {
+    store = std::make_shared<SceneStore>();
+    store->set_quality(quality);
+  } else {
+    FileContents files;
+    for (const auto& [file, content] : state[3].cast<Files>()) files.emplace(file, content);
+    store = load(path, state[2].cast<Definitions>(), std::move(files), quality);
+  }
+  for (const py::handle entry : state[4].cast<py::list>()) {
+    const auto mesh = entry.cast<py::tuple>();
+    add_mesh(*store, mesh[0], mesh[1], mesh[2], mesh[3].cast<std::string>());
+  }
+  return store;
+}
+
+py::object scene_bounds(SceneStore& scene) {
+  const Box box = world_of(scene)->bounds;
+  if (!(box.lo.x <= box.hi.x)) return py::none();
+  py::array_t<float> result(Shape{2, 3});
+  for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = box.lo[k], result.mutable_at(1, k) = box.hi[k];
+  return result;
+}
+
+std::vector<std::string> object_names(SceneStore& scene) {
+  std::vector<std::string> names;
+  for (const ObjectMaterials& object : world_of(scene)->objects) names.push_back(object.name);
+  return names;
+}
+
+std::vector<std::string> warnings(const SceneStore& scene) {
+  std::vector<std::string> lines;
+  for (const Warning& warning : scene.scene().warnings) lines.push_back(to_string(warning));
+  return lines;
+}
+
+constexpr const char* kFromTextDoc = R"(A scene of the text of a scene file.
+
+text: the document, see the scene file format.
+name: what errors call it. Files that it names are looked for in the folder of that name.
+files: contents (bytes) of files that the text names, by these names; they need not exist.
+definitions: values for ${name} in the text.
+quality: of the acceleration structure: "fast" to build, "balanced", or "best" to trace.
+
+Raises ValueError with name, line and column for what the format does not allow, OSError for a file that
+cannot be read.)";
+
+constexpr const char* kFromDictDoc = R"(A scene of a dict with the keys of scene files.
+
+description: what a scene file says, as dicts, lists, numbers and strings; "oktett": 1 may be left out. Numpy
+    arrays may stand for lists. A mesh may be {"vertices": (n, 3), "faces": (m, 3)} instead of {"file": ...},
+    wherever a mesh may stand: in objects, prototypes and combinations.
+
+The others, and errors, are those of from_text.)";
+
+void bind_making(SceneClass& scene) {
+  using namespace pybind11::literals;
+  const Definitions none;
+  scene.def(py::init(&make_scene), "vertices"_a = py::none(), "faces"_a = py::none(), py::kw_only(),
+            "transform"_a = py::none(), "quality"_a = "balanced",
+            "A scene of one mesh, see add_mesh, or an empty one.");
+  scene.def_static(
+      "from_file", from_file, "path"_a, py::kw_only(), "definitions"_a = none, "quality"_a = "balanced",
+      "A scene of a scene file (.yaml) or a mesh file. Arguments and errors are those of from_text.");
+  scene.def_static("from_text", from_text, "text"_a, py::kw_only(), "name"_a = "<text>.yaml",
+                   "files"_a = Files{}, "definitions"_a = none, "quality"_a = "balanced", kFromTextDoc);
+  scene.def_static("from_dict", from_dict, "description"_a, py::kw_only(), "name"_a = "<dict>.yaml",
+                   "files"_a = Files{}, "definitions"_a = none, "quality"_a = "balanced", kFromDictDoc);
+  scene.def("add_mesh", add_mesh, "vertices"_a, "faces"_a, py::kw_only(), "transform"_a = py::none(),
+            "name"_a = "",
+            R"(Adds a triangle mesh and returns the number of the new object.
+
+vertices: numbers of shape (n, 3), rounded to float32.
+faces: whole numbers of shape (m, 3), indices into vertices. Corners run counter-clockwise seen from outside.
+transform: a matrix of shape (3, 4) or (4, 4) that maps columns (x, y, z, 1) to the space of the scene.
+
+The arrays are copied. Triangles of zero area, and with vertices that are not finite, are never hit. Raises
+ValueError for other shapes and for indices out of range.)");
+  scene.def(py::pickle(&pickled, &unpickled));
+}
+
+}  // namespace
+
+std::shared_ptr<const World> world_of(SceneStore& scene) {
+  std::shared_ptr<const World> world = scene.built_world();
+  if (world == nullptr) run_watched([&] { world = scene.world(); });
+  return world;
+}
+
+void bind_scene(SceneClass& scene) {
+  bind_making(scene);
+  scene.def(
+      "build", [](SceneStore& s) { world_of(s); },
+      "Builds the acceleration structure now rather than with the first query.");
+  scene.def_property_readonly(
+      "bounds", scene_bounds,
+      "float32 (2, 3): the least and the greatest corner of the box around everything "
+      "that is bounded; None if nothing is.");
+  scene.def_property_readonly(
+      "objects", object_names,
+      "The names of all objects by their numbers: through the prototypes in order, then "
+      "the scene's own. Operands of combinations are objects, too.");
+  scene.def_property_readonly("warnings", warnings,
+                              "What was skipped or given a default while files were read.");
+  scene.def_property_readonly(
+      "primitive_count", [](SceneStore& s) { return world_of(s)->primitives; },
+      "How many triangles and other shapes there are; each counts once, however many instances show it.");
+  scene.def_property_readonly("source", &SceneStore::path,
+                              "The file that was read, or the name of the text.");
+  scene.def("__repr__", [](SceneStore& s) {
+    const std::string& path = s.path();
+    return "<oktett.Scene" + (path.empty() ? std::string() : " from " + path) + ", " +
+           std::to_string(s.object_count()) + " objects>";
+  });
+}
+
+}  // namespace oktett::python

@@ -1,0 +1,222 @@
+#include "python/src/ray_queries.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "accel/accel.h"
+#include "accel/hit_place.h"
+
+namespace oktett::python {
+namespace {
+
+/// Rays of one task: their columns stay in the cache of a core.
+constexpr std::size_t kPiece = 4096;
+
+/// Calls work(begin, end) for the pieces of [begin, end), in parallel.
+template <class Work>
+void for_pieces(std::size_t begin, std::size_t end, const Work& work) {
+  const std::size_t pieces = (end - begin + kPiece - 1) / kPiece;
+  const auto piece = [&](std::size_t k) {
+    const std::size_t first = begin + k * kPiece;
+    work(first, std::min(end, first + kPiece));
+  };
+  if (pieces <= 1) return pieces == 1 ? piece(0) : void();
+  tbb::parallel_for(std::size_t{0}, pieces, piece);
+}
+
+/// Turns rows into columns.
+void set_columns(const RayRows& rays, std::size_t begin, std::size_t end, RayBatch& columns) {
+  const std::size_t count = end - begin;
+  columns.resize_uninitialized(count);
+  const float* row = rays.rows + 6 * begin;
+  for (std::size_t i = 0; i < count; ++i, row += 6)
+    for (int k = 0; k < 3; ++k) columns.origin[k][i] = row[k], columns.direction[k][i] = row[3 + k];
+  for (std::size_t i = 0; i < count; ++i) {
+    columns.tmin[i] = rays.tmin[(begin + i) * rays.tmin_step];
+    columns.tmax[i] = rays.tmax[(begin + i) * rays.tmax_step];
+  }
+}
+
+/// Fills the columns of `out` for hits of the rays of the same number.
+class HitDescriber {
+ public:
+  HitDescriber(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const HitColumns& out)
+      : accel_(accel), rays_(rays), hits_(hits), out_(out) {}
+
+  void describe() {
+    if (out_.instance) std::copy_n(hits_.instance, hits_.size, out_.instance);
+    std::uint32_t which[InteractionBlock::kMost];
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < hits_.size; ++i) {
+      if (hits_.item[i] == kNoId) {
+        set_miss(i);
+        continue;
+      }
+      name(i);
+      if (!out_.normal && !out_.position) continue;
+      which[count++] = static_cast<std::uint32_t>(i);
+      if (count == InteractionBlock::kMost) flush(which, count), count = 0;
+    }
+    flush(which, count);
+  }
+
+ private:
+  void set_miss(std::size_t i) {
+    if (out_.object) out_.object[i] = kNoId;
+    if (out_.primitive) out_.primitive[i] = kNoId;
+    if (out_.uv) out_.uv[2 * i] = out_.uv[2 * i + 1] = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (out_.normal) out_.normal[3 * i + k] = 0;
+      if (out_.position) out_.position[3 * i + k] = 0;
+    }
+  }
+
+  void name(std::size_t i) {
+    if (!out_.object && !out_.primitive && !out_.uv && !out_.normal && !out_.position) return;
+    const Hit hit = hits_[i];
+    if (place_.accel == nullptr || hit.instance != path_) {
+      place_ = follow_path(accel_, hit.instance);
+      path_ = hit.instance;
+    }
+    const HitNames names = identify_in(place_, hit);
+    if (out_.object) out_.object[i] = names.user;
+    if (out_.primitive) out_.primitive[i] = names.primitive;
+    if (names.kind == Kind::triangle && (out_.normal || out_.position)) {
+      const Geometry& geometry = place_.accel->geometries[names.geometry];
+      const TriangleMesh& mesh = *std::get<MeshGeometry>(geometry.shape).mesh;
+      corners_[corner_count_++] = {&mesh, &mesh.indices[3 * std::size_t{names.primitive}]};
+      __builtin_prefetch(corners_[corner_count_ - 1].indices);
+    }
+    if (!out_.uv) return;
+    // Other shapes keep numbers of their own there.
+    const bool triangle = names.kind == Kind::triangle;
+    out_.uv[2 * i] = triangle ? hit.u : 0, out_.uv[2 * i + 1] = triangle ? hit.v : 0;
+  }
+
+  void flush(const std::uint32_t* which, std::size_t count) {
+    // What the corners of all 64 triangles wait for in memory is fetched at the same time.
+    for (const Corners& c : std::span(corners_, corner_count_))
+      for (int k = 0; k < 3; ++k) __builtin_prefetch(&c.mesh->positions[c.indices[k]]);
+    corner_count_ = 0;
+    if (count == 0) return;
+    static thread_local InteractionBlock block;
+    surface_interactions(accel_, rays_, hits_, {which, count}, block);
+    for (std::size_t n = 0; n < count; ++n)
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (out_.normal) out_.normal[3 * std::size_t{which[n]} + k] = block.geometric_normal[k][n];
+        if (out_.position) out_.position[3 * std::size_t{which[n]} + k] = block.position[k][n];
+      }
+  }
+
+  /// Where the corners of a triangle are found.
+  struct Corners {
+    const TriangleMesh* mesh;
+    const std::uint32_t* indices;
+  };
+
+  const Accel& accel_;
+  Corners corners_[InteractionBlock::kMost];  ///< of the hits since the last flush
+  std::size_t corner_count_ = 0;
+  RaySpan rays_;
+  HitSpan hits_;
+  HitColumns out_;
+  HitPlace place_;
+  std::uint32_t path_ = kNoId;
+};
+
+template <class T>
+void shift(T*& column, std::size_t count) {
+  if (column != nullptr) column += count;
+}
+
+/// A column for `count` more numbers at the end of `values`, or null.
+template <class T>
+T* grow(std::vector<T>& values, const void* wanted, std::size_t count) {
+  if (wanted == nullptr) return nullptr;
+  values.resize(values.size() + count);
+  return values.data() + (values.size() - count);
+}
+
+}  // namespace
+
+HitColumns HitColumns::from(std::size_t begin) const {
+  HitColumns c = *this;
+  shift(c.t, begin), shift(c.object, begin), shift(c.primitive, begin), shift(c.instance, begin);
+  shift(c.uv, 2 * begin), shift(c.normal, 3 * begin), shift(c.position, 3 * begin);
+  return c;
+}
+
+void closest_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+                  const HitColumns& out) {
+  for_pieces(begin, end, [&](std::size_t first, std::size_t last) {
+    static thread_local RayBatch columns;
+    static thread_local HitBatch batch;
+    set_columns(rays, first, last, columns);
+    batch.resize_uninitialized(last - first);
+    HitSpan hits = batch.span();
+    const HitColumns piece = out.from(first);
+    if (piece.t) hits.t = piece.t;
+    closest_hit(*world.accel, columns.span(), hits);
+    HitDescriber(*world.accel, columns.span(), hits, piece).describe();
+  });
+}
+
+void any_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+              std::uint8_t* occluded) {
+  for_pieces(begin, end, [&](std::size_t first, std::size_t last) {
+    static thread_local RayBatch columns;
+    set_columns(rays, first, last, columns);
+    any_hit(*world.accel, columns.span(), std::span(occluded + first, last - first));
+  });
+}
+
+void count_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+                std::uint32_t* counts) {
+  for_pieces(begin, end, [&](std::size_t first, std::size_t last) {
+    static thread_local RayBatch columns;
+    set_columns(rays, first, last, columns);
+    oktett::count_hits(*world.accel, columns.span(), std::span(counts + first, last - first));
+  });
+}
+
+void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+              const HitColumns& wanted, FoundHits& lists) {
+  RayBatch columns;
+  set_columns(rays, begin, end, columns);
+  oktett::HitLists found;
+  oktett::all_hits(*world.accel, columns.span(), found);
+  const std::size_t count = found.hits.size();
+  const std::int64_t before = lists.splits.back();
+  for (std::size_t i = 1; i < found.begin.size(); ++i)
+    lists.splits.push_back(before + static_cast<std::int64_t>(found.begin[i]));
+  HitColumns out;
+  out.t = grow(lists.t, wanted.t, count);
+  out.object = grow(lists.object, wanted.object, count);
+  out.primitive = grow(lists.primitive, wanted.primitive, count);
+  out.instance = grow(lists.instance, wanted.instance, count);
+  out.uv = grow(lists.uv, wanted.uv, 2 * count);
+  out.normal = grow(lists.normal, wanted.normal, 3 * count);
+  out.position = grow(lists.position, wanted.position, 3 * count);
+  std::vector<std::size_t> ray_of(count);
+  for (std::size_t i = 0; i + 1 < found.begin.size(); ++i)
+    std::fill(ray_of.begin() + static_cast<std::ptrdiff_t>(found.begin[i]),
+              ray_of.begin() + static_cast<std::ptrdiff_t>(found.begin[i + 1]), i);
+  for_pieces(0, count, [&](std::size_t first, std::size_t last) {
+    RayBatch hit_rays;
+    HitBatch hits;
+    hit_rays.resize_uninitialized(last - first), hits.resize_uninitialized(last - first);
+    for (std::size_t k = first; k < last; ++k) {
+      hit_rays.set(k - first, columns[ray_of[k]]);
+      hits.span().set(k - first, found.hits[k]);
+    }
+    const HitColumns piece = out.from(first);
+    if (piece.t) std::copy_n(hits.t.data(), last - first, piece.t);
+    HitDescriber(*world.accel, hit_rays.span(), hits.span(), piece).describe();
+  });
+}
+
+}  // namespace oktett::python

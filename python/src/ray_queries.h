@@ -1,0 +1,59 @@
+#pragma once
+/// \file Queries on the arrays of Python: rays in rows, answers in columns.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/ray.h"
+#include "render/geometry.h"
+
+namespace oktett::python {
+
+/// Rays in rows of six floats, origin and direction, each with its interval.
+struct RayRows {
+  const float* rows = nullptr;
+  const float* tmin = nullptr;  ///< of ray i: tmin[i * tmin_step]
+  const float* tmax = nullptr;
+  std::size_t tmin_step = 0, tmax_step = 0;  ///< 0: one number for all rays
+  std::size_t size = 0;
+};
+
+/// Where the answers of hits go. A column that is null is not wanted.
+struct HitColumns {
+  float* t = nullptr;
+  std::uint32_t* object = nullptr;
+  std::uint32_t* primitive = nullptr;
+  std::uint32_t* instance = nullptr;
+  float* uv = nullptr;        ///< 2 per hit
+  float* normal = nullptr;    ///< 3 per hit
+  float* position = nullptr;  ///< 3 per hit
+
+  /// The columns from hit `begin` on.
+  HitColumns from(std::size_t begin) const;
+};
+
+/// The nearest hits of rays [begin, end). A miss has t infinite, all ids kNoId and all else 0.
+void closest_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+                  const HitColumns& out);
+
+/// occluded[i] becomes 1 or 0 for the rays [begin, end).
+void any_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+              std::uint8_t* occluded);
+
+/// counts[i] becomes the number of hits, for the rays [begin, end).
+void count_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+                std::uint32_t* counts);
+
+/// Columns of all hits of some rays.
+struct FoundHits {
+  std::vector<std::int64_t> splits{0};  ///< where the hits of each ray begin; one more than there are rays
+  std::vector<float> t, uv, normal, position;
+  std::vector<std::uint32_t> object, primitive, instance;
+};
+
+/// Appends the hits of the rays [begin, end) to those columns of `lists` that are not null in `wanted`.
+void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
+              const HitColumns& wanted, FoundHits& lists);
+
+}  // namespace oktett::python

@@ -1,0 +1,89 @@
+#pragma once
+/// \file What a Scene of Python holds: a scene, what it was read from, and the structure that answers
+/// queries.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/mesh.h"
+#include "core/transform.h"
+#include "io/image/texture.h"
+#include "io/scene/scene_file.h"
+#include "render/geometry.h"
+#include "render/render.h"
+#include "render/scene.h"
+
+namespace oktett::python {
+
+/// Contents of files by name.
+using FileContents = std::map<std::string, std::string>;
+
+/// A mesh that was added from arrays.
+struct AddedMesh {
+  std::shared_ptr<const TriangleMesh> mesh;
+  Affine transform;
+  std::string name;
+};
+
+/// A scene to which meshes can be added. The acceleration structure is built when it is first needed. Any
+/// number of threads may use one object.
+class SceneStore {
+ public:
+  SceneStore() = default;
+
+  /// Reads the scene file or mesh `path`, with `files` in place of the files of their names.
+  static std::shared_ptr<SceneStore> load(const std::string& path, const Definitions& definitions,
+                                          FileContents files);
+
+  /// Adds an object and returns its number. The structure is built anew by the next query.
+  std::uint32_t add(AddedMesh added);
+
+  /// Waits while another thread builds.
+  std::shared_ptr<const World> world();
+  /// Null if it has to be built. Never waits.
+  std::shared_ptr<const World> built_world() const;
+  /// The images of the scene's textures, read by the first call.
+  std::shared_ptr<const ImageTextures> textures();
+  Scene scene() const;
+  std::uint32_t object_count() const;
+
+  /// What load() has to be given so that it makes the same scene, whatever becomes of the files. Throws Error
+  /// if one of them has changed since.
+  FileContents contents() const;
+  const std::string& path() const { return path_; }
+  const Definitions& definitions() const { return definitions_; }
+  std::vector<AddedMesh> added() const;
+  void set_quality(BuildQuality quality);
+  BuildQuality quality() const;
+
+ private:
+  /// A file as it was when it was read.
+  struct FileState {
+    std::int64_t modified = 0;  ///< ns
+    std::uint64_t size = 0;
+    bool operator==(const FileState&) const = default;
+  };
+  static FileState state_of(const std::string& path);
+
+  std::mutex building_;        ///< held while textures are read or a structure is built; before mutex_
+  mutable std::mutex mutex_;   ///< of all members below, held for moments only
+  std::uint64_t changes_ = 0;  ///< of what the structure depends on
+  Scene scene_;
+  std::string path_;  ///< empty: the scene was not read
+  Definitions definitions_;
+  FileContents files_;                     ///< those that were given, by path
+  std::map<std::string, FileState> read_;  ///< those that were read from the disk
+  std::vector<AddedMesh> added_;
+  BuildQuality quality_ = BuildQuality::balanced;
+  std::shared_ptr<const World> world_;  ///< null: to be built
+  std::shared_ptr<const ImageTextures> textures_;
+};
+
+/// How many numbers build_world gives to the objects of `scene`.
+std::uint32_t object_count(const Scene& scene);
+
+}  // namespace oktett::python

@@ -1,0 +1,151 @@
+"""The adapter for users of Open3D: names, shapes, types and values of answers."""
+
+import numpy as np
+import pytest
+
+from oktett.open3d import RaycastingScene
+from oracle import CUBE_FACES, CUBE_VERTICES, ball, crossings, random_rays
+
+INVALID = RaycastingScene.INVALID_ID
+
+
+class Tensor:
+    """As much of a tensor as the adapter needs."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def numpy(self):
+        return self.array
+
+
+@pytest.fixture
+def scene():
+    made = RaycastingScene(nthreads=2)
+    assert made.add_triangles(CUBE_VERTICES, CUBE_FACES) == 0
+    assert made.add_triangles(Tensor(CUBE_VERTICES + np.float32([4, 0, 0])), Tensor(CUBE_FACES)) == 1
+    return made
+
+
+def test_rays_have_the_answers_of_the_oracle(scene):
+    vertices = np.concatenate([CUBE_VERTICES, CUBE_VERTICES + np.float32([4, 0, 0])])
+    faces = np.concatenate([CUBE_FACES, CUBE_FACES + 8])
+    rays = random_rays(2000, 3.0, seed=1).reshape(20, 100, 6)
+    answers = scene.cast_rays(Tensor(rays), nthreads=1)
+    kinds = {"t_hit": "f4", "geometry_ids": "u4", "primitive_ids": "u4", "primitive_uvs": "f4", "primitive_normals": "f4"}
+    assert {name: array.dtype for name, array in answers.items()} == {k: np.dtype(v) for k, v in kinds.items()}
+    assert [answers[k].shape for k in kinds] == [(20, 100)] * 3 + [(20, 100, 2), (20, 100, 3)]
+    counts = scene.count_intersections(rays)
+    assert counts.dtype == np.int32 and counts.shape == (20, 100)
+    occluded = scene.test_occlusions(rays)
+    assert occluded.dtype == bool and np.array_equal(occluded, counts > 0)
+    lists = scene.list_intersections(rays)
+    assert list(lists) == ["ray_splits", "ray_ids", "t_hit", "geometry_ids", "primitive_ids", "primitive_uvs"]
+    splits = lists["ray_splits"]
+    assert splits.shape == (2001,) and splits.dtype == np.int64 and splits[-1] == len(lists["t_hit"])
+    assert np.array_equal(np.bincount(lists["ray_ids"], minlength=2000), counts.ravel())
+    expected, uncertain = crossings(vertices, faces, rays.reshape(-1, 6))
+    struck = 0
+    for i, wanted in enumerate(expected):
+        if uncertain[i]:
+            continue
+        one = {name: array.reshape(2000, *array.shape[2:])[i] for name, array in answers.items()}
+        assert counts.ravel()[i] == len(wanted)
+        part = slice(splits[i], splits[i + 1])
+        assert lists["t_hit"][part] == pytest.approx([t for t, _, _, _ in wanted], rel=2e-5)
+        assert (lists["geometry_ids"][part] * 12 + lists["primitive_ids"][part]).tolist() == [k for _, k, _, _ in wanted]
+        if not wanted:
+            assert one["t_hit"] == np.inf and one["geometry_ids"] == one["primitive_ids"] == INVALID
+            assert not one["primitive_uvs"].any() and not one["primitive_normals"].any()
+            continue
+        struck += 1
+        t, k, u, v = wanted[0]
+        assert one["t_hit"] == pytest.approx(t, rel=2e-5)
+        assert (one["geometry_ids"], one["primitive_ids"]) == (k // 12, k % 12)
+        assert one["primitive_uvs"] == pytest.approx([u, v], abs=2e-5)
+        a, b, c = vertices[faces[k]].astype(float)
+        assert one["primitive_normals"] == pytest.approx(np.cross(b - a, c - a) / 4, abs=1e-6)
+    assert struck > 500
+
+
+def test_occlusion_is_tested_between_tnear_and_tfar(scene):
+    rays = np.float32([[0.1, 0.2, 5, 0, 0, -2]])
+    cases = {(0, np.inf): True, (0, 1.9): False, (2.1, 2.9): False, (2.1, 3.1): True, (3.1, 9): False}
+    for (near, far), wanted in cases.items():
+        assert scene.test_occlusions(rays, tnear=near, tfar=far)[0] == wanted
+    assert scene.cast_rays(rays)["t_hit"].tolist() == [2]
+
+
+def test_meshes_of_other_packages_are_added():
+    class Legacy:
+        vertices, triangles = CUBE_VERTICES.astype(float), CUBE_FACES.astype(np.int32)
+
+    class New:
+        vertex, triangle = {"positions": Tensor(CUBE_VERTICES)}, {"indices": Tensor(CUBE_FACES.astype(np.int64))}
+
+    class Trimesh:
+        vertices, faces = CUBE_VERTICES, CUBE_FACES
+
+    ray = np.float32([[0.1, 0.2, 5, 0, 0, -1]])
+    for mesh in (Legacy, New, Trimesh):
+        made = RaycastingScene()
+        assert made.add_triangles(mesh()) == 0
+        assert made.cast_rays(ray)["t_hit"] == [4]
+    with pytest.raises(ValueError, match="expected positions and triangles, or a mesh, found int"):
+        RaycastingScene().add_triangles(3)
+
+
+def test_an_empty_scene_has_no_hits():
+    answers = RaycastingScene().cast_rays(np.ones((2, 3, 6), np.float32))
+    assert (answers["geometry_ids"] == INVALID).all() and np.isinf(answers["t_hit"]).all()
+
+
+def test_other_shapes_are_refused(scene):
+    for query in (scene.cast_rays, scene.test_occlusions, scene.count_intersections, scene.list_intersections):
+        with pytest.raises(ValueError, match=r"\(\.\.\., 6\), found the shape \(3, 5\)"):
+            query(np.zeros((3, 5), np.float32))
+
+
+def test_pinhole_rays_pass_the_pixels_of_their_matrices():
+    intrinsic = np.array([[100, 0, 8.5], [0, 120, 6], [0, 0, 1]])
+    angle = 0.7
+    rotation = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+    extrinsic = np.eye(4)
+    extrinsic[:3, :3], extrinsic[:3, 3] = rotation, [1, 2, 3]
+    rays = RaycastingScene.create_rays_pinhole(Tensor(intrinsic), extrinsic, 17, 12)
+    assert rays.shape == (12, 17, 6) and rays.dtype == np.float32
+    # Projected by the matrices, a point of the ray of a pixel is its middle.
+    points = rays[..., :3] + 3.7 * rays[..., 3:].astype(float)
+    camera = points @ rotation.T + [1, 2, 3]
+    assert camera[..., 2] == pytest.approx(3.7, abs=1e-5)
+    pixels = camera @ intrinsic.T / camera[..., 2:]
+    assert pixels[..., 0] == pytest.approx(np.tile(np.arange(17) + 0.5, (12, 1)), abs=1e-3)
+    assert pixels[..., 1] == pytest.approx(np.tile((np.arange(12) + 0.5)[:, None], (1, 17)), abs=1e-3)
+    assert (rays[..., :3] == rays[0, 0, :3]).all()
+
+
+def test_pinhole_rays_of_a_view_span_its_angle():
+    # These numbers are Open3D's 0.16.1: the up direction counts as that of growing rows.
+    rays = RaycastingScene.create_rays_pinhole(
+        fov_deg=90, center=[0, 0, 0], eye=[0, 0, 5], up=[0, 1, 0], width_px=4, height_px=2
+    )
+    assert (rays[..., :3] == [0, 0, 5]).all()
+    assert rays[0, :, 3:] == pytest.approx(np.array([[x, -0.25, -1] for x in (0.75, 0.25, -0.25, -0.75)]), abs=1e-6)
+    assert rays[1, :, 3:] == pytest.approx(np.array([[x, 0.25, -1] for x in (0.75, 0.25, -0.25, -0.75)]), abs=1e-6)
+    tilted = RaycastingScene.create_rays_pinhole(60, [1, 0, 0], [1, 2, 3], [0, 5, 0], 101, 51)
+    middle = tilted[25, 50, 3:]
+    assert middle == pytest.approx(np.array([0, -2, -3]) / np.sqrt(13), abs=1e-6)
+    left, right = tilted[25, 0, 3:].astype(float), tilted[25, 100, 3:].astype(float)
+    angle = np.degrees(np.arccos(left @ right / np.linalg.norm(left) / np.linalg.norm(right)))
+    assert angle == pytest.approx(60, abs=0.7)
+    with pytest.raises(ValueError, match="intrinsic_matrix"):
+        RaycastingScene.create_rays_pinhole(np.eye(4), np.eye(4), 4, 2)
+
+
+def test_scenes_are_those_of_open3d_where_it_is_installed():
+    open3d = pytest.importorskip("open3d")
+    theirs = open3d.t.geometry.RaycastingScene
+    for arguments in ((60, [1, 0, 0.5], [1, 2, 3], [0.1, 5, 0], 31, 21), (np.diag([9.0, 8, 1]), np.eye(4), 5, 4)):
+        tensors = [open3d.core.Tensor(np.asarray(a, float)) if np.ndim(a) else a for a in arguments]
+        wanted = theirs.create_rays_pinhole(*tensors).numpy()
+        assert RaycastingScene.create_rays_pinhole(*arguments) == pytest.approx(wanted, abs=1e-6)
