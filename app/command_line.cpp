@@ -66,7 +66,39 @@ std::string is_not_empty(const std::string& value) {
   return value.empty() ? "expected a value, found nothing" : "";
 }
 
+/// Where the choices of an option are kept.
+std::string choices_key(const CLI::App& verb, const CLI::Option& option) {
+  return verb.get_name() + " " + option.get_name(false, true);
+}
+
+OptionText describe(const CLI::App& verb, const CLI::Option& option, const OptionChoices& choices) {
+  OptionText text;
+  text.positional = option.get_positional();
+  if (text.positional) {
+    text.names = {option.get_name(true, false)};
+  } else {
+    for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
+  }
+  // Flags may have a type too, but take no words.
+  if (option.get_items_expected_max() > 0) text.value = option.get_type_name();
+  text.help = option.get_description();
+  text.required = option.get_required();
+  text.repeated = option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll ||
+                  option.get_items_expected_max() > 1;
+  const auto known = choices.find(choices_key(verb, option));
+  if (known != choices.end()) text.choices = known->second;
+  return text;
+}
+
 }  // namespace
+
+std::string or_list(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
+}
 
 void Verb::option(const char* names, OptionTarget target, const char* value, const char* help) {
   std::visit(
@@ -77,6 +109,13 @@ void Verb::option(const char* names, OptionTarget target, const char* value, con
           option->allow_extra_args(false);
       },
       target);
+}
+
+void Verb::choice(const char* names, std::string& target, const char* value, const char* help,
+                  std::vector<std::string> choices) {
+  const std::string text = fmt::format("{}: {}", help, or_list(choices));
+  option(names, &target, value, text.c_str());
+  (*choices_)[choices_key(*app_, *app_->get_options().back())] = std::move(choices);
 }
 
 void Verb::positional(const char* name, std::string& target, const char* value, const char* help) {
@@ -90,6 +129,11 @@ void Verb::optional_positional(const char* name, std::string& target, const char
 void Verb::positionals(const char* name, std::vector<std::string>& targets, const char* value,
                        const char* help) {
   app_->add_option(name, targets, help)->required()->type_name(value);
+}
+
+void Verb::optional_positionals(const char* name, std::vector<std::string>& targets, const char* value,
+                                const char* help) {
+  app_->add_option(name, targets, help)->type_name(value);
 }
 
 void Verb::flag(const char* names, bool& target, const char* help) { app_->add_flag(names, target, help); }
@@ -116,6 +160,14 @@ CommandLine::CommandLine(std::vector<std::string> words)
       app_(std::make_unique<CLI::App>("A data-oriented SIMD packet ray tracer for CPUs.", "oktett")) {
   app_->set_version_flag("--version", program_version(), "Print the version and exit");
   app_->require_subcommand(1);
+  app_->footer(
+      "Examples:\n"
+      "  oktett render mesh.obj                      a mesh alone, in a studio, to mesh.png\n"
+      "  oktett render scene.yaml -o scene.exr       a scene, with all layers\n"
+      "  oktett render scene.yaml --size 320x180 --spp 1\n"
+      "  oktett examples whitted                     copies an example here\n"
+      "  oktett info scene.yaml                      what is in it\n"
+      "Each command has its own help: oktett render --help.");
 }
 
 CommandLine::~CommandLine() = default;
@@ -124,7 +176,7 @@ Verb CommandLine::add_verb(const char* name, const char* help, std::function<int
   CLI::App* verb = app_->add_subcommand(name, help);
   verb->set_version_flag("--version", program_version(), "Print the version and exit");
   verb->callback([this, run = std::move(run)] { run_ = run; });
-  return Verb(*verb);
+  return Verb(*verb, choices_);
 }
 
 std::optional<int> CommandLine::parse() {
@@ -155,6 +207,18 @@ std::string CommandLine::text() const {
   std::string line = "oktett";
   for (const std::string& word : words_) line += " " + word;
   return line;
+}
+
+std::vector<VerbText> CommandLine::verbs() const {
+  std::vector<VerbText> verbs;
+  const CLI::App& app = *app_;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    VerbText text{verb->get_name(), verb->get_description(), verb->get_footer(), {}};
+    for (const CLI::Option* option : verb->get_options())
+      text.options.push_back(describe(*verb, *option, choices_));
+    verbs.push_back(std::move(text));
+  }
+  return verbs;
 }
 
 }  // namespace oktett

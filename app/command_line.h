@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,31 @@ class App;
 
 namespace oktett {
 
+/// An option or word of a verb, for help in other forms than --help.
+struct OptionText {
+  std::vector<std::string>
+      names;          ///< "-o", "--outfile"; of a word without a name only what it is called, "scene"
+  std::string value;  ///< "FILE"; empty for flags
+  std::string help;
+  std::vector<std::string> choices;  ///< all that the value may be; empty if there are others
+  bool positional = false;
+  bool required = false;
+  bool repeated = false;
+
+  bool takes_value() const { return !positional && !value.empty(); }
+};
+
+struct VerbText {
+  std::string name, help, footer;
+  std::vector<OptionText> options;
+};
+
+/// The choices of options, by verb and names.
+using OptionChoices = std::map<std::string, std::vector<std::string>>;
+
+/// "fast, balanced or best".
+std::string or_list(const std::vector<std::string>& words);
+
 /// The variable that an option's value goes to. An option for a vector may be repeated.
 using OptionTarget = std::variant<std::string*, unsigned*, std::uint64_t*, std::optional<std::uint32_t>*,
                                   std::vector<std::string>*>;
@@ -24,15 +50,21 @@ using OptionTarget = std::variant<std::string*, unsigned*, std::uint64_t*, std::
 /// word for the option's value in the help text. Targets must live as long as the CommandLine.
 class Verb {
  public:
-  explicit Verb(CLI::App& app) : app_(&app) {}
+  Verb(CLI::App& app, OptionChoices& choices) : app_(&app), choices_(&choices) {}
 
   void option(const char* names, OptionTarget target, const char* value, const char* help);
+  /// An option for one of several words, which the help text lists after `help`.
+  void choice(const char* names, std::string& target, const char* value, const char* help,
+              std::vector<std::string> choices);
   /// A word that must be given and that no option's name precedes.
   void positional(const char* name, std::string& target, const char* value, const char* help);
   /// Such a word that may be missing.
   void optional_positional(const char* name, std::string& target, const char* value, const char* help);
   /// One or more such words.
   void positionals(const char* name, std::vector<std::string>& targets, const char* value, const char* help);
+  /// Any number of such words, also none.
+  void optional_positionals(const char* name, std::vector<std::string>& targets, const char* value,
+                            const char* help);
   void flag(const char* names, bool& target, const char* help);
   /// A flag that may have a value, as in --stats=json. `names` ends with the value that the flag alone stands
   /// for, as in "--stats{text}".
@@ -44,6 +76,7 @@ class Verb {
 
  private:
   CLI::App* app_;
+  OptionChoices* choices_;
 };
 
 class CommandLine {
@@ -66,12 +99,15 @@ class CommandLine {
 
   /// All words as they were typed.
   std::string text() const;
+  /// All verbs in the order in which they were added.
+  std::vector<VerbText> verbs() const;
   /// The same without the name of the program.
   const std::vector<std::string>& words() const { return words_; }
 
  private:
   std::vector<std::string> words_;
   std::unique_ptr<CLI::App> app_;
+  OptionChoices choices_;
   std::function<int()> run_;
 };
 
@@ -83,6 +119,9 @@ void add_render_command(CommandLine& line);
 void add_info_command(CommandLine& line);
 void add_merge_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
+void add_examples_command(CommandLine& line);
+/// `completion` and `manual`, which describe the verbs that `line` has.
+void add_description_commands(CommandLine& line);
 
 /// Exit status for files that cannot be read or written, and for what the system refuses: memory, threads.
 inline constexpr int kExitIo = 1;

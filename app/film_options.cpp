@@ -28,9 +28,13 @@ void read_number(const char* option, std::string_view text, const Range& range, 
 
 }  // namespace
 
+void add_tone_option(Verb& verb, std::string& tone) {
+  verb.choice("--tone", tone, "K", "Tone curve of 8-bit pictures", names_of<ToneKind>(kToneKinds));
+}
+
 void add_film_options(Verb& verb, FilmArguments& a) {
-  verb.option("--filter", &a.filter, "K", "Filter of pixels: box, tent, gaussian or blackman_harris");
-  verb.option("--tone", &a.tone, "K", "Tone curve of 8-bit pictures: srgb, filmic, aces or neutral");
+  verb.choice("--filter", a.filter, "K", "Filter of pixels", names_of<FilterKind>(kFilterKinds));
+  add_tone_option(verb, a.tone);
   verb.option("--exposure", &a.exposure, "STOPS", "Exposure of 8-bit pictures");
   verb.option("--clamp", &a.clamp, "RADIANCE",
               "Darken samples that are brighter; loses light, but removes bright dots");

@@ -17,6 +17,7 @@ struct FilmArguments {
   bool denoise = false, cryptomatte = false;
 };
 
+void add_tone_option(Verb& verb, std::string& tone);
 void add_film_options(Verb& verb, FilmArguments& arguments);
 
 /// Overrides settings of the scene by the arguments. Throws Error for unknown words and numbers out of range.

@@ -12,6 +12,8 @@ int run(int argc, char** argv) {
   add_info_command(line);
   add_merge_command(line);
   add_verify_command(line);
+  add_examples_command(line);
+  add_description_commands(line);
   if (const std::optional<int> status = line.parse()) return *status;
   return line.run();
 }

@@ -148,7 +148,7 @@ void add_merge_command(CommandLine& line) {
   verb.positionals("films", a->films, "FILM...", "Film files of oktett render --shard or --checkpoint");
   verb.option("-o,--outfile", &a->outfile, "FILE", "Picture to write");
   verb.flag("--allow-missing", a->allow_missing, "Leave pixels transparent that no film has");
-  verb.option("--tone", &a->film.tone, "K", "Tone curve of 8-bit pictures: srgb, filmic, aces or neutral");
+  add_tone_option(verb, a->film.tone);
   verb.option("--exposure", &a->film.exposure, "STOPS", "Exposure of 8-bit pictures");
   verb.flag("--denoise", a->film.denoise, "Smooth the noise of the merged picture");
   verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");

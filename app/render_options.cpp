@@ -89,16 +89,17 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.option("--size", &a.size, "WxH", "Size of the full frame in pixels");
   verb.option("--cropwindow", &a.crop, "x0,x1,y0,y1", "Part of the frame to render, as fractions of it");
   verb.option("--seed", &a.seed, "N", "Seed of the random numbers");
-  verb.option("--integrator", &a.integrator, "K",
-              "whitted, path, ao, normal, depth, albedo, uv, position, object, primitive, facing or wire");
+  verb.choice("--integrator", a.integrator, "K", "What is computed for a pixel",
+              names_of<IntegratorKind>(kIntegratorKinds));
   add_film_options(verb, a.film);
   verb.flag("--caustics", a.caustics, "Light through mirrors and glass by photons, with --integrator path");
   verb.option("--photon-map", &a.photon_map, "FILE",
               "Photons for --caustics: read from FILE, or written if it is missing");
   add_checkpoint_options(verb, a.checkpoints);
   add_cache_options(verb, a.cache);
-  verb.option("--look", &a.look, "LOOK", "How a mesh given alone is shown: studio, clay, normals or wire");
-  verb.option("--isa", &a.isa, "NAME", "Instruction set: auto, sse4.2, avx2, avx512 or scalar");
+  verb.choice("--look", a.look, "LOOK", "How a mesh given alone is shown",
+              {std::begin(kLooks), std::end(kLooks)});
+  verb.choice("--isa", a.isa, "NAME", "Instruction set", {"auto", "sse4.2", "avx2", "avx512", "scalar"});
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
   verb.flag("--stats{text}", a.stats, "Print counts; --stats=json prints them as one JSON object");
@@ -118,7 +119,8 @@ void read_render_words(const std::vector<std::string>& words, RenderArguments& a
 }
 
 void add_bvh_option(Verb& verb, std::string& quality) {
-  verb.option("--bvh", &quality, "QUALITY", "How hard to build the tree: fast, balanced or best");
+  verb.choice("--bvh", quality, "QUALITY", "How hard to build the tree",
+              {std::begin(kQualities), std::end(kQualities)});
 }
 
 BuildOptions parse_bvh_option(const std::string& quality) {

@@ -251,8 +251,8 @@ void add_verify_command(CommandLine& line) {
               "Check this exact surface only, or `combinations`, on a tenth of the rays; may be repeated");
   verb.flag("--meshes-only", arguments->meshes_only,
             "Check meshes only: those given, else the generated ones");
-  verb.option("--isa", &arguments->isa, "NAME",
-              "One instruction set instead of all: scalar, sse4.2, avx2, avx512");
+  verb.choice("--isa", arguments->isa, "NAME", "One instruction set instead of all",
+              {"scalar", "sse4.2", "avx2", "avx512"});
   add_bvh_option(verb, arguments->bvh);
   verb.option("--hours", &arguments->endless.hours, "H",
               "Check new random cases of everything for so many hours; 0.1 is six minutes");

@@ -10,6 +10,15 @@ install(TARGETS oktett EXPORT oktett-targets
 install(TARGETS oktett_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
 if(TARGET oktett_app)
   install(TARGETS oktett_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
+  install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.bash
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME oktett)
+  install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.zsh
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _oktett)
+  install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  # The scenes name the schema of their files as ../docs/oktett.schema.json.
+  install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/oktett)
+  install(FILES docs/oktett.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/oktett/docs)
 endif()
 install(DIRECTORY ${OKTETT_PUBLIC_INCLUDE_DIR}/oktett DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
