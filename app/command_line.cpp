@@ -174,6 +174,7 @@ CommandLine::~CommandLine() = default;
 
 Verb CommandLine::add_verb(const char* name, const char* help, std::function<int()> run) {
   CLI::App* verb = app_->add_subcommand(name, help);
+  verb->footer("");
   verb->set_version_flag("--version", program_version(), "Print the version and exit");
   verb->callback([this, run = std::move(run)] { run_ = run; });
   return Verb(*verb, choices_);

@@ -39,11 +39,12 @@ const OptionText* positional_of(const VerbText& verb) {
 std::string bash_offer(const OptionText& option) {
   switch (offer_of(option)) {
     case Offer::choices:
-      return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$cur\"))", joined(option.choices, " "));
+      return fmt::format("mapfile -t COMPREPLY < <(compgen -W '{}' -- \"$cur\")",
+                         joined(option.choices, " "));
     case Offer::files:
-      return "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$cur\"))";
+      return "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")";
     case Offer::folders:
-      return "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$cur\"))";
+      return "compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- \"$cur\")";
     case Offer::nothing:
       break;
   }
@@ -55,7 +56,6 @@ std::string bash_script(const std::vector<VerbText>& verbs) {
       "# Completion of oktett for bash. Made by: oktett completion bash\n"
       "_oktett() {\n"
       "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} verb= i\n"
-      "  local IFS=$' \\n'\n"
       "  COMPREPLY=()\n"
       "  # --option=value comes as three words.\n"
       "  if [[ $cur == = ]]; then cur=\n"
@@ -73,7 +73,7 @@ std::string bash_script(const std::vector<VerbText>& verbs) {
       script += fmt::format("    {}) {}; return ;;\n", joined(patterns, "|"), bash_offer(option));
     }
   script += "  esac\n  case $verb in\n";
-  script += fmt::format("    '') COMPREPLY=($(compgen -W '{} --help --version' -- \"$cur\")) ;;\n",
+  script += fmt::format("    '') mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- \"$cur\") ;;\n",
                         verb_names(verbs));
   for (const VerbText& verb : verbs) {
     std::vector<std::string> names;
@@ -82,7 +82,7 @@ std::string bash_script(const std::vector<VerbText>& verbs) {
     const OptionText* word = positional_of(verb);
     script += fmt::format(
         "    {})\n"
-        "      if [[ $cur == -* ]]; then COMPREPLY=($(compgen -W '{}' -- \"$cur\"))\n"
+        "      if [[ $cur == -* ]]; then mapfile -t COMPREPLY < <(compgen -W '{}' -- \"$cur\")\n"
         "      else {}\n"
         "      fi ;;\n",
         verb.name, joined(names, " "), word == nullptr ? ":" : bash_offer(*word));

@@ -48,7 +48,7 @@ std::vector<std::string> example_names(const fs::path& folder) {
   return names;
 }
 
-/// The first paragraph of comments at the head of a scene file.
+/// The first sentence of the comments at the head of a scene file.
 std::string summary_of(const fs::path& path) {
   std::ifstream file(path);
   std::string text;
@@ -58,8 +58,11 @@ std::string summary_of(const fs::path& path) {
     if (start == std::string::npos) break;
     text += (text.empty() ? "" : " ") + line.substr(start);
   }
-  const std::size_t end = text.find(". ");
-  return end == std::string::npos ? text : text.substr(0, end + 1);
+  // Its first sentence.
+  for (std::size_t i = 1; i + 2 < text.size(); ++i)
+    if (text.compare(i, 2, ". ") == 0 && text[i + 2] >= 'A' && text[i + 2] <= 'Z')
+      return text.substr(0, i + 1);
+  return text;
 }
 
 /// The scene file `name` and all files in `folder` that it reads, relative to `folder`.

@@ -38,16 +38,14 @@ std::set<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The words and options of a verb as its --help lists them.
+/// The long options of a verb, which begin lines of its --help.
 std::set<std::string> long_options(const TempDir& dir, const std::string& verb) {
   std::set<std::string> options;
-  std::istringstream stream(run_command(dir, {verb, "--help"}).out);
-  for (std::string word; stream >> word;) {
-    const std::size_t start = word.starts_with("--") ? 0 : word.find(",--");
-    if (start == std::string::npos || (start > 0 && word[0] != '-')) continue;
-    std::string name = word.substr(start == 0 ? 0 : start + 1);
-    name = name.substr(0, name.find_first_of("{=;,.)"));
-    options.insert(name);
+  for (const std::string& line : lines_of(run_command(dir, {verb, "--help"}).out)) {
+    if (!line.starts_with("  -")) continue;
+    const std::size_t start = line.find("--");
+    if (start == 2 || (start == 5 && line[4] == ','))
+      options.insert(line.substr(start, line.find_first_of(" {", start) - start));
   }
   return options;
 }
@@ -67,18 +65,19 @@ class Completion : public testing::Test {
 
   /// What bash offers for the last of `words`, which it splits as it would a line.
   std::set<std::string> bash(const std::string& words, int count) {
-    const CommandResult result = run_shell(
-        dir, "/bin/bash",
-        "source ./oktett.bash; compopt() { :; }; COMP_WORDS=(" + words +
-            "); COMP_CWORD=" + std::to_string(count - 1) + "; _oktett; printf '%s\\n' \"${COMPREPLY[@]}\"");
+    const CommandResult result = run_shell(dir, "/bin/bash",
+                                           "source ./oktett.bash; compopt() { :; }; COMP_WORDS=(" + words +
+                                               "); COMP_CWORD=" + std::to_string(count - 1) +
+                                               "; _oktett; printf '%s\\n' \"${COMPREPLY[@]}\"");
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "") << words;
     return lines_of(result.out);
   }
 
   std::set<std::string> fish(const std::string& line) {
+    const std::string text = "complete -e -c oktett; source ./oktett.fish; complete -C '" + line + "'";
     const CommandResult result =
-        run_shell(dir, "fish", "complete -e -c oktett; source ./oktett.fish; complete -C '" + line + "'");
+        run_command(dir, {"HOME=.", "fish", "--no-config", "-c", text}, "/usr/bin/env");
     EXPECT_EQ(result.status, 0) << result.err;
     std::set<std::string> words;
     for (const std::string& offer : lines_of(result.out)) words.insert(offer.substr(0, offer.find('\t')));
@@ -122,7 +121,8 @@ TEST_F(Completion, Zsh) {
     const CommandResult result = run_shell(
         dir, "/bin/sh",
         "zsh -f -c 'function _arguments { print -rl -- $@ }; function _describe { print -rl -- ${(P)4} };"
-        "words=(" + words + "); CURRENT=" + std::to_string(current) + "; source ./oktett.zsh'");
+        "words=(" +
+            words + "); CURRENT=" + std::to_string(current) + "; source ./oktett.zsh'");
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "");
     return result.out;
@@ -177,9 +177,10 @@ TEST(Examples, AreListedWithWhatTheyShow) {
   const TempDir dir;
   const CommandResult list = run_command(dir, {"examples"});
   EXPECT_EQ(list.status, 0) << list.err;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(OKTETT_SOURCE_DIR) / "scenes"))
-    if (entry.path().extension() == ".yaml")
-      EXPECT_TRUE(contains("\n" + list.out, "\n" + entry.path().stem().string() + " ")) << entry.path();
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(OKTETT_SOURCE_DIR) / "scenes")) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_TRUE(contains("\n" + list.out, "\n" + entry.path().stem().string() + " ")) << entry.path();
+  }
   EXPECT_TRUE(contains(list.out, "Boolean combinations of solids.")) << list.out;
 }
 

@@ -73,6 +73,18 @@ elseif(STEP STREQUAL "cmake_package")
   run(${build}/example ${build})
   execute_process(COMMAND ${build}/documents WORKING_DIRECTORY ${build}
     COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+elseif(STEP STREQUAL "command")
+  foreach(file man/man1/oktett.1 man/man1/oktett-render.1 bash-completion/completions/oktett
+          zsh/vendor-completions/_oktett fish/vendor_completions.d/oktett.fish oktett/docs/oktett.schema.json)
+    file(SIZE ${prefix}/share/${file} size)
+    if(size LESS 500)
+      message(FATAL_ERROR "${prefix}/share/${file} has ${size} bytes")
+    endif()
+  endforeach()
+  # The installed command finds the installed scenes.
+  file(REMOVE_RECURSE ${WORK}/command)
+  run(${prefix}/bin/oktett examples csg shapes -o ${WORK}/command)
+  run(${prefix}/bin/oktett render ${WORK}/command/shapes.yaml --size 16x12 --spp 1 -o ${WORK}/command/shapes.png)
 elseif(STEP STREQUAL "pkg_config")
   set(ENV{PKG_CONFIG_PATH} ${prefix}/${LIBDIR}/pkgconfig)
   execute_process(COMMAND ${PKG_CONFIG} --cflags --libs oktett
