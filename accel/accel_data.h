@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "accel/accel.h"
@@ -87,6 +88,9 @@ class Accel {
   std::vector<CsgItem> combinations;
   std::vector<PathStep> path_steps;  ///< ordered by first_path
   AccelStats stats;
+  /// What is shown that closest_point does not answer for, in words; empty if there is nothing of the kind.
+  /// [1]: if an instance shows this structure distorted.
+  std::string no_closest_point[2];
 
   OKTETT_INLINE const ExactPoolBase& exact_pool(Kind kind) const { return *exact[static_cast<int>(kind)]; }
 

@@ -46,9 +46,10 @@ void for_each_piece(const Rays& rays, Trace&& trace) {
   tbb::parallel_for(std::size_t{0}, piece_count(size), [&](std::size_t k) { trace_from(k * kPieceRays); });
 }
 
-inline void require_same_size(std::size_t rays, std::size_t answers, const char* query) {
-  if (rays != answers)
-    throw Error(std::string(query) + ": " + std::to_string(rays) + " rays, but room for " +
+inline void require_same_size(std::size_t size, std::size_t answers, const char* query,
+                              const char* what = "rays") {
+  if (size != answers)
+    throw Error(std::string(query) + ": " + std::to_string(size) + " " + what + ", but room for " +
                 std::to_string(answers) + " answers");
 }
 

@@ -65,6 +65,33 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path) {
   return place;
 }
 
+CrossedSolid crossed_solid(const Accel& accel, const Hit& hit) {
+  CrossedSolid solid{&accel, kNoId, hit.item, 0};
+  std::uint32_t path = hit.instance;
+  while (path != kNoId) {
+    const PathStep& step = step_of(*solid.accel, path);
+    const std::uint32_t inner = path - step.first_path;
+    if (step.is_combination) {
+      solid.item = step.item;
+      break;
+    }
+    if (step.stride != 0) {
+      const ListedInstance& listed = listed_instance(*solid.accel, step, path);
+      solid.instance += listed.first_path + 1;
+      solid.accel = solid.accel->listed_children[listed.child];
+      path = inner % step.stride - 1;
+    } else {
+      solid.instance += step.first_path + 1;
+      solid.accel = step.child;
+      path = inner - 1;
+    }
+  }
+  solid.geometry = solid.accel->geometry_of(solid.item);
+  if (static_cast<Kind>(solid.accel->kinds[solid.geometry]) == Kind::triangle)
+    solid.item = solid.accel->first_item[solid.geometry];
+  return solid;
+}
+
 /// From the space of the structure that holds the item to the world.
 static void move_by_instances(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
   const Affine& m = place.to_world;

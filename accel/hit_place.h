@@ -25,6 +25,16 @@ struct HitPlace {
 /// Follows an instance path to the structure that contains the item.
 HitPlace follow_path(const Accel& accel, std::uint32_t path);
 
+/// The solid whose boundary a hit is on, where one chain of instances shows it: a primitive, or a whole mesh
+/// or combination.
+struct CrossedSolid {
+  const Accel* accel;      ///< the structure that holds it
+  std::uint32_t instance;  ///< the number of the chain of instances that leads there
+  std::uint32_t item;      ///< the primitive, the first of a mesh, or the combination
+  std::uint32_t geometry;  ///< in `accel`
+};
+CrossedSolid crossed_solid(const Accel& accel, const Hit& hit);
+
 /// The ray in the space of the structure at `place`.
 Ray ray_inside(const HitPlace& place, const Ray& ray);
 

@@ -1,6 +1,7 @@
 /// \file The tables of this layer's code by instruction set.
 
 #include "accel/build/sah.h"
+#include "accel/point_code.h"
 #include "accel/surface/interaction_code.h"
 #include "accel/trace_code.h"
 #include "core/isa_select.h"
@@ -9,6 +10,10 @@ namespace oktett {
 
 const TraceCode& trace_code(Isa isa) {
   return with_isa(isa, []<class A>() -> const TraceCode& { return trace_code<A>(); });
+}
+
+const PointCode& point_code(Isa isa) {
+  return with_isa(isa, []<class A>() -> const PointCode& { return point_code<A>(); });
 }
 
 const BuildKernels& build_kernels(Isa isa) {

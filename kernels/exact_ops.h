@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/box.h"
+#include "kernels/closed/surface_nearest.h"
 #include "kernels/exact/exact.h"
 #include "kernels/exact_form.h"
 #include "kernels/kinds.h"
@@ -32,6 +33,12 @@ struct ExactOps {
   void (*interaction_without_uv)(const ExactPoolBase& pool, std::size_t element, const Ray& ray,
                                  const Hit& hit, SurfaceInteraction& s);
   std::size_t (*bytes)(const ExactPoolBase& pool);
+  /// The point of the surface nearest to p. `to_world` takes the element's own space to that of p; is_kept_by
+  /// must be true for it. Null if the surface does not tell.
+  SurfaceNearest (*closest)(const ExactPoolBase& pool, std::size_t element, const Affine& to_world,
+                            const Vec3d& p);
+  /// Whether the surface keeps its form, up to its size, under the map from an element's own space.
+  bool (*is_kept_by)(const Affine& to_world);
 
   /// Whether a cell lists all of its crossings, at most four, at once.
   bool lists_at_once() const { return one_cell && most_crossings <= 4; }

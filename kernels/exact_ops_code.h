@@ -34,16 +34,30 @@ struct ExactOpsCode {
       s = exact_interaction<S, kWithUv>(cast(pool), element, ray, hit);
   }
   static std::size_t bytes(const ExactPoolBase& pool) { return cast(pool).bytes(); }
+  static SurfaceNearest closest(const ExactPoolBase& pool, std::size_t element, const Affine& to_world,
+                                const Vec3d& p) {
+    return S::closest(cast(pool), element, to_world, p);
+  }
 };
 
 template <class S>
 constexpr ExactOps make_exact_ops(const char* name) {
   using Code = ExactOpsCode<S>;
-  return {name, S::kMaxCrossings, requires {S::kOneCell;
-}
-, Code::make_pool, Code::add, Code::bounds, Code::inside, Code::template interaction<true>,
-    Code::template interaction<false>, Code::bytes
-};  // namespace oktett
+  constexpr bool one_cell = requires { S::kOneCell; };
+  ExactOps ops{name,
+               S::kMaxCrossings,
+               one_cell,
+               Code::make_pool,
+               Code::add,
+               Code::bounds,
+               Code::inside,
+               Code::template interaction<true>,
+               Code::template interaction<false>,
+               Code::bytes,
+               nullptr,
+               nullptr};
+  if constexpr (requires { &S::closest; }) ops.closest = Code::closest, ops.is_kept_by = S::is_kept_by;
+  return ops;
 }
 
 }  // namespace oktett

@@ -1,12 +1,10 @@
 #pragma once
 /// \file Which objects of a scene have an inside.
 
+#include "kernels/open_surface.h"
 #include "render/scene.h"
 
 namespace oktett {
-
-/// Whether the surface is open: parts of its boundary are missing.
-bool is_open(const ExactShape& shape);
 
 /// Whether the shape has an inside. A mesh that is not closed has none, unless it is `by_winding`; an
 /// instance has one if all objects of its prototype have.

@@ -7,6 +7,7 @@
 #include "accel/build/mesh_source.h"
 #include "accel/build/tree_store.h"
 #include "accel/build/wide_tree.h"
+#include "accel/closest.h"
 #include "accel/csg/csg.h"
 #include "accel/geometry_bounds.h"
 #include "core/error.h"
@@ -250,6 +251,7 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
   fill_pools(*accel, order);
   accel->stats.unbounded = accel->unbounded.size();
   accel->stats.sah_cost = sah_cost(*accel);
+  note_missing_closest(*accel);
   return accel;
 }
 

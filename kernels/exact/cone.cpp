@@ -32,4 +32,14 @@ SurfaceUv Cone::uv(const Pool& pool, std::size_t i, int part, const Vec3d& p) {
   return frustum_uv(part, radius > 0 ? radius : 1, p);
 }
 
+bool Cone::is_kept_by(const Affine& to_world) { return RoundFrame(to_world).is_round(); }
+
+SurfaceNearest Cone::closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p) {
+  const ConeElement& e = pool.elements[i];
+  RoundFrame frame(to_world);
+  const double scale = frame.radial_scale();
+  return closest_on_frustum(frame, (e.middle - e.slope) * scale, (e.middle + e.slope) * scale,
+                            frame.axial_scale(), e.open, p);
+}
+
 }  // namespace oktett

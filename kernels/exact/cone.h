@@ -4,6 +4,7 @@
 
 #include "kernels/exact/cone_data.h"
 #include "kernels/exact/quadratic.h"
+#include "kernels/exact/round_profile.h"
 
 namespace oktett {
 
@@ -108,6 +109,9 @@ struct Cone {
   static bool inside(const Pool& pool, std::size_t i, const Vec3d& p);
   /// As for a cylinder.
   static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  /// See ExactOps::closest.
+  static SurfaceNearest closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p);
+  static bool is_kept_by(const Affine& to_world);
 };
 
 }  // namespace oktett

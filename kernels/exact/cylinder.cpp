@@ -55,4 +55,12 @@ bool Cylinder::inside(const Pool&, std::size_t, const Vec3d& p) {
 
 SurfaceUv Cylinder::uv(const Pool&, std::size_t, int part, const Vec3d& p) { return frustum_uv(part, 1, p); }
 
+bool Cylinder::is_kept_by(const Affine& to_world) { return RoundFrame(to_world).is_round(); }
+
+SurfaceNearest Cylinder::closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p) {
+  RoundFrame frame(to_world);
+  const double radius = frame.radial_scale();
+  return closest_on_frustum(frame, radius, radius, frame.axial_scale(), pool.elements[i].open, p);
+}
+
 }  // namespace oktett

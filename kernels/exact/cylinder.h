@@ -3,6 +3,7 @@
 
 #include "kernels/exact/cylinder_data.h"
 #include "kernels/exact/quadratic.h"
+#include "kernels/exact/round_profile.h"
 
 namespace oktett {
 
@@ -80,6 +81,9 @@ struct Cylinder {
   /// u around the axis; v on the side from `from` to `to`, on an end the distance from its centre. All in
   /// [0, 1].
   static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  /// See ExactOps::closest.
+  static SurfaceNearest closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p);
+  static bool is_kept_by(const Affine& to_world);
 };
 
 /// A map from z in [-1, 1] to the axis from `from` to `to`, with `radius` the unit of x and y; exact for axes

@@ -31,7 +31,8 @@
 ///   the ray does;
 /// - `S::interaction(pool, i, ray, hit)` in place of slope and uv: a fractal (fractal.h);
 /// - `S::world_bounds(pool, i)`: bounds of element i in the world, its only cell's, where they can be tighter
-///   than the image of the cell.
+///   than the image of the cell;
+/// - `S::closest(pool, i, to_world, p)` and `S::is_kept_by(to_world)`: see ExactOps.
 
 #include <limits>
 

@@ -2,6 +2,7 @@
 /// \file Tori (slides: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
 
 #include "kernels/exact/centered_quartic.h"
+#include "kernels/exact/round_profile.h"
 #include "kernels/exact/segment.h"
 #include "kernels/exact/torus_data.h"
 
@@ -89,6 +90,9 @@ struct Torus {
   }
   /// u around the axis from +x towards +y, v around the tube from the outside upwards, both in [0, 1].
   static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
+  /// See ExactOps::closest.
+  static SurfaceNearest closest(const Pool& pool, std::size_t i, const Affine& to_world, const Vec3d& p);
+  static bool is_kept_by(const Affine& to_world);
 };
 
 }  // namespace oktett

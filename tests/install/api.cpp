@@ -39,6 +39,15 @@ static_assert(has<void(const Accel&, const RaySpan&, HitLists&, Isa)>(all_hits))
 static_assert(has<void(const Accel&, std::span<const Ray>, HitLists&, Isa)>(all_hits));
 static_assert(has<void(const Accel&, const RaySpan&, std::span<std::uint32_t>, Isa)>(count_hits));
 static_assert(has<void(const Accel&, std::span<const Ray>, std::span<std::uint32_t>, Isa)>(count_hits));
+static_assert(has<ClosestPoint(const Accel&, const Vec3f&, Isa)>(closest_point));
+static_assert(has<void(const Accel&, const PointSpan&, const ClosestPointSpan&, Isa)>(closest_point));
+static_assert(has<void(const Accel&, std::span<const Vec3f>, std::span<ClosestPoint>, Isa)>(closest_point));
+static_assert(has<bool(const Accel&, const Vec3f&, Isa)>(inside));
+static_assert(has<void(const Accel&, const PointSpan&, Bytes, Isa)>(inside));
+static_assert(has<void(const Accel&, std::span<const Vec3f>, Bytes, Isa)>(inside));
+static_assert(has<float(const Accel&, const Vec3f&, Isa)>(signed_distance));
+static_assert(has<void(const Accel&, const PointSpan&, std::span<float>, Isa)>(signed_distance));
+static_assert(has<void(const Accel&, std::span<const Vec3f>, std::span<float>, Isa)>(signed_distance));
 static_assert(has<SurfaceInteraction(const Accel&, const Ray&, const Hit&)>(surface_interaction));
 static_assert(has<SurfaceInteraction(const Accel&, const Hit&)>(identify));
 static_assert(has<void(const Accel&, const RaySpan&, const HitSpan&, std::span<const std::uint32_t>,

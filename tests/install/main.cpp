@@ -81,6 +81,12 @@ void check_batches(const oktett::TriangleMesh& mesh) {
     std::vector<oktett::Hit> all;
     oktett::all_hits(*accel, rays[6], all, isa);
     expect(all.size() == 2, "a ray enters the sphere and leaves it");
+    const oktett::ClosestPoint closest = oktett::closest_point(*accel, {4, 0, 3}, isa);
+    expect(closest.item == 2 && near(closest.distance, 2) && closest.normal.z > 0.99f,
+           "the nearest point of the sphere");
+    expect(oktett::inside(*accel, {4, 0, 0.5f}, isa) && !oktett::inside(*accel, {0, 0, -1}, isa),
+           "inside of the sphere");
+    expect(near(oktett::signed_distance(*accel, {4, 0, 0.5f}, isa), -0.5), "half a unit below its surface");
   }
 
   const oktett::SurfaceInteraction s = oktett::surface_interaction(*accel, rays[2], hits[2]);

@@ -1,0 +1,332 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "accel/point_query.h"
+#include "core/error.h"
+#include "verify/cases/kernel_cases.h"
+
+namespace oktett {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+template <class Shape>
+Geometry geometry(Shape shape) {
+  Geometry g;
+  g.shape = std::move(shape);
+  return g;
+}
+
+/// A surface in its own space: points on it, drawn at random, and how far a point is from satisfying its
+/// equation.
+struct Sampled {
+  const char* name;
+  Geometry geometry;
+  std::function<Vec3d(CaseRandom&)> draw;
+  std::function<double(const Vec3d&)> off;
+  std::vector<Vec3d> special = {};  ///< points with many nearest ones
+};
+
+double radius_of(const Vec3d& p) { return std::sqrt(p.x * p.x + p.y * p.y); }
+
+/// On the box of half-lengths `h`: 0.
+double off_box(const Vec3d& p, const Vec3d& h) {
+  const Vec3d d = abs(p) - h;
+  return length(max(d, Vec3d{0, 0, 0})) + std::min(max_component(d), 0.0);
+}
+
+Vec3d on_sphere(CaseRandom& r) {
+  const double z = r.sign(), angle = kPi * r.sign(), rho = std::sqrt(1 - z * z);
+  return {rho * std::cos(angle), rho * std::sin(angle), z};
+}
+
+/// A point of a disk about the z axis, often on its edge.
+Vec3d on_disk(CaseRandom& r, double radius, double z) {
+  const double rho = r.unit() < 0.1 ? radius : radius * std::sqrt(r.unit()), angle = kPi * r.sign();
+  return {rho * std::cos(angle), rho * std::sin(angle), z};
+}
+
+/// A frustum about the z axis from radius a at z = -h to radius b at h.
+Sampled frustum(const char* name, const ExactForm& form, double a, double b, double h, bool open) {
+  Sampled s{
+      name, geometry(ExactShape{form}), {}, {}, {{0, 0, 0}, {0, 0, h}, {0, 0, 3 * h}, {0, 0, -0.3 * h}}};
+  s.draw = [=](CaseRandom& r) {
+    const double part = r.unit();
+    if (!open && part < 0.2) return on_disk(r, a, -h);
+    if (!open && part < 0.4) return on_disk(r, b, h);
+    const double z = h * r.sign(), rho = 0.5 * (a + b) + 0.5 * (b - a) * z / h, angle = kPi * r.sign();
+    return Vec3d{rho * std::cos(angle), rho * std::sin(angle), z};
+  };
+  s.off = [=](const Vec3d& p) {
+    const double rho = radius_of(p), z = p.z;
+    const double beyond = std::max(std::abs(z) - h, 0.0);
+    const double side = std::abs(rho - (0.5 * (a + b) + 0.5 * (b - a) * z / h)) + beyond;
+    if (open) return side;
+    const double low = std::abs(z + h) + std::max(rho - a, 0.0),
+                 high = std::abs(z - h) + std::max(rho - b, 0.0);
+    return std::min({side, low, high});
+  };
+  return s;
+}
+
+Sampled torus(const char* name, double major, double minor) {
+  Sampled s{name,
+            geometry(ExactShape{TorusShape{major, minor}}),
+            {},
+            {},
+            {{0, 0, 0}, {0, 0, 1}, {0, 0, -5}, {major, 0, 0}, {0, -major, 0}}};
+  s.draw = [=](CaseRandom& r) {
+    for (;;) {
+      const double around = kPi * r.sign(), tube = kPi * r.sign(), rho = major + minor * std::cos(tube);
+      // What meets itself is cut off at the axis.
+      if (rho >= 0) return Vec3d{rho * std::cos(around), rho * std::sin(around), minor * std::sin(tube)};
+    }
+  };
+  s.off = [=](const Vec3d& p) { return std::abs(std::hypot(radius_of(p) - major, p.z) - minor); };
+  return s;
+}
+
+std::vector<Sampled> surfaces() {
+  std::vector<Sampled> all;
+  all.push_back({"sphere",
+                 geometry(SpheresShape{{{{0, 0, 0}, 1}}}),
+                 on_sphere,
+                 [](const Vec3d& p) { return length(p) - 1; },
+                 {{0, 0, 0}}});
+  const Vec3d h{1, 0.5, 2};
+  all.push_back({"box",
+                 geometry(BoxShape{-h, h}),
+                 [h](CaseRandom& r) {
+                   Vec3d p = r.vector() * h;
+                   const int axis = static_cast<int>(r.unit() * 3);
+                   p[axis] = r.sign() < 0 ? -h[axis] : h[axis];
+                   return p;
+                 },
+                 [h](const Vec3d& p) { return off_box(p, h); },
+                 {{0, 0, 0}, {0, 0, 1.5}, {0.5, 0, 0}}});
+  all.push_back({"plane", geometry(PlaneShape{{0, 0, 2}, 0.25}),
+                 [](CaseRandom& r) {
+                   return Vec3d{4 * r.sign(), 4 * r.sign(), 0.25};
+                 },
+                 [](const Vec3d& p) { return p.z - 0.25; }});
+  all.push_back({"disk",
+                 geometry(DiskShape{{0, 0, 0}, {0, 0, 3}, 1}),
+                 [](CaseRandom& r) { return on_disk(r, 1, 0); },
+                 [](const Vec3d& p) { return std::abs(p.z) + std::max(radius_of(p) - 1, 0.0); },
+                 {{0, 0, 0}, {0, 0, 1}}});
+  // An L, which is not convex.
+  const std::vector<Vec3d> corners{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};
+  all.push_back({"polygon",
+                 geometry(PolygonShape{corners}),
+                 [](CaseRandom& r) {
+                   const double x = r.unit(), y = r.unit(), part = r.unit() * 3;
+                   return Vec3d{x + (part < 1 ? 1 : 0), y + (part > 2 ? 1 : 0), 0};
+                 },
+                 [](const Vec3d& p) {
+                   const auto beyond = [](double x, double end) { return std::max({-x, x - end, 0.0}); };
+                   return std::abs(p.z) +
+                          std::min(beyond(p.x, 2) + beyond(p.y, 1), beyond(p.x, 1) + beyond(p.y, 2));
+                 },
+                 {{1.5, 1.5, 0}, {1.5, 1.5, 1}}});
+  const Vec3d low{0, 0, -1.5}, high{0, 0, 1.5};
+  all.push_back(frustum("cylinder", CylinderShape{low, high, 0.7}, 0.7, 0.7, 1.5, false));
+  all.push_back(frustum("open cylinder", CylinderShape{low, high, 0.7, true}, 0.7, 0.7, 1.5, true));
+  all.push_back(frustum("cone", ConeShape{low, high, 1, 0}, 1, 0, 1.5, false));
+  all.push_back(frustum("frustum", ConeShape{low, high, 0.4, 1.2}, 0.4, 1.2, 1.5, false));
+  all.push_back(frustum("open frustum", ConeShape{low, high, 0.4, 1.2, true}, 0.4, 1.2, 1.5, true));
+  all.push_back(torus("torus", 0.7, 0.3));
+  all.push_back(torus("torus that meets itself", 0.5, 0.8));
+  return all;
+}
+
+/// Rotated, mirrored and scaled; the box and the polygon may also be sheared.
+Affine random_map(CaseRandom& r, bool any) {
+  const double scale = r.magnitude(-2, 2);
+  const Affine turn = Affine::translation(r.vector() * (2 * scale)) * Affine::rotation(r.vector() * 180.0);
+  if (!any) return turn * Affine::scaling({scale, scale, -scale});
+  return turn * Affine::scaling({scale, 2 * scale, -0.5 * scale}) * Affine::rotation(r.vector() * 180.0);
+}
+
+/// A surface under a map as it stands, in an instance, or in an instance of a list.
+std::shared_ptr<const Accel> placed(Geometry g, const Affine& m, int how) {
+  if (how == 0) {
+    g.transform = m;
+    return build_accel({g});
+  }
+  // Half of the map is the instance's.
+  g.transform = m;
+  const auto child = build_accel({g});
+  if (how == 1) return build_accel({{InstanceGeometry{child}, Affine{}, kNoId}});
+  InstanceList list{{child}, {{{}, 0, kNoId}}};
+  Affine{}.to_rows(list.places[0].to_list);
+  return build_accel({{list, {}, kNoId}});
+}
+
+/// The nearest point is on the surface, at the distance that is told, with the normal along the way, and no
+/// sample is nearer.
+void check_point(const Sampled& s, const Affine& m, const Vec3f& p, const ClosestPoint& c,
+                 const std::vector<Vec3d>& samples) {
+  const double scale = length(m.vector({1, 0, 0})), far = length(Vec3d(p)) + scale * 4;
+  const Vec3d point(c.point);
+  ASSERT_TRUE(c.valid());
+  ASSERT_NEAR(length(Vec3d(p) - point), c.distance, 1e-6 * far);
+  ASSERT_NEAR(s.off(m.inverse().point(point)) * scale, 0, 4e-6 * far);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3d& q : samples) {
+    const Vec3d d = q - Vec3d(p);
+    least = std::min(least, dot(d, d));
+  }
+  ASSERT_LE(c.distance, std::sqrt(least) * (1 + 1e-7) + 1e-12 * far);
+  ASSERT_NEAR(length(c.normal), 1, 1e-6);
+}
+
+/// OKTETT_POINT_EFFORT = 1000 makes 10^6 samples and 10^5 points for each shape.
+TEST(ClosestShapes, NoSampleIsNearer) {
+  const char* wanted = std::getenv("OKTETT_POINT_EFFORT");
+  const int effort = wanted != nullptr ? std::max(1, std::atoi(wanted)) : 1;
+  for (const Sampled& s : surfaces()) {
+    const bool any = std::holds_alternative<BoxShape>(s.geometry.shape) ||
+                     std::holds_alternative<PolygonShape>(s.geometry.shape) ||
+                     std::holds_alternative<PlaneShape>(s.geometry.shape);
+    CaseRandom r(17);
+    for (int round = 0; round < 4; ++round) {
+      const Affine m = round == 0 ? Affine{} : random_map(r, any && round == 3);
+      const auto accel = placed(s.geometry, m, round % 3);
+      std::vector<Vec3d> samples;
+      for (int i = 0; i < std::max(1000, 1000 * effort); ++i) samples.push_back(m.point(s.draw(r)));
+      std::vector<Vec3f> points;
+      for (const Vec3d& p : s.special) points.push_back(Vec3f(m.point(p)));
+      for (int i = 0; i < 60 + 25 * effort; ++i)
+        points.push_back(Vec3f(m.point(r.vector() * (i % 5 == 0 ? 30.0 : 3.0))));
+      std::vector<ClosestPoint> found(points.size()), other(points.size());
+      closest_point(*accel, points, found, Isa::scalar);
+      for (const Isa isa : available_isas()) {
+        closest_point(*accel, points, other, isa);
+        ASSERT_EQ(found, other) << s.name;
+      }
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        check_point(s, m, points[i], found[i], samples);
+        if (HasFatalFailure())
+          FAIL() << s.name << ", round " << round << ", point " << i << ": " << points[i].x << " "
+                 << points[i].y << " " << points[i].z;
+      }
+    }
+  }
+}
+
+// The normal points from the surface to points outside.
+TEST(ClosestShapes, NormalsPointOutwards) {
+  CaseRandom r(4);
+  for (const Sampled& s : surfaces()) {
+    const bool is_solid = inside(*build_accel({s.geometry}), Vec3f(Vec3d{0.6, 0.01, 0.02}));
+    if (!is_solid) continue;
+    const auto plain = build_accel({s.geometry});
+    for (int i = 0; i < 300; ++i) {
+      const Vec3f p = Vec3f(r.vector() * 2.0);
+      const ClosestPoint c = closest_point(*plain, p);
+      if (c.distance < 1e-4f) continue;
+      const float along = dot(p - c.point, c.normal);
+      EXPECT_EQ(along > 0, !inside(*plain, p)) << s.name << " " << p.x << " " << p.y << " " << p.z;
+    }
+  }
+}
+
+// Of all things in a scene the nearest counts, at equal distance the first.
+TEST(ClosestShapes, AmongOthers) {
+  std::vector<Geometry> things;
+  SpheresShape spheres;
+  CaseRandom r(5);
+  for (int i = 0; i < 300; ++i) spheres.spheres.push_back({r.vector() * 10.0, 0.1 + 0.4 * r.unit()});
+  spheres.spheres.push_back(spheres.spheres[7]);
+  things.push_back({spheres, {}, kNoId});
+  for (int i = 0; i < 100; ++i)
+    things.push_back({ExactShape{TorusShape{0.5, 0.2}},
+                      Affine::translation(r.vector() * 10.0) * Affine::rotation(r.vector() * 90.0), kNoId});
+  for (int i = 0; i < 100; ++i)
+    things.push_back(
+        {BoxShape{{-0.3, -0.2, -0.1}, {0.3, 0.2, 0.1}}, Affine::translation(r.vector() * 10.0), kNoId});
+  std::vector<std::shared_ptr<const Accel>> alone;
+  for (const Geometry& g : things) alone.push_back(build_accel({g}));
+  const auto accel = build_accel(things);
+  things.push_back({PlaneShape{{0, 1, 0}, -9}, {}, kNoId});
+  const auto with_plane = build_accel(things);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3f p = Vec3f(r.vector() * 12.0);
+    ClosestPoint best;
+    std::uint32_t first_item = 0;
+    for (std::size_t g = 0; g < alone.size(); ++g) {
+      ClosestPoint c = closest_point(*alone[g], p);
+      c.item += first_item;
+      if (c.distance < best.distance) best = c;
+      first_item += g == 0 ? 301 : 1;
+    }
+    for (const Isa isa : available_isas()) {
+      EXPECT_EQ(closest_point(*accel, p, isa), best);
+      const float height = std::abs(p.y + 9);
+      const ClosestPoint c = closest_point(*with_plane, p, isa);
+      EXPECT_EQ(c.distance, std::min(best.distance, height));
+      EXPECT_TRUE(height >= best.distance || c.item == first_item);
+    }
+  }
+}
+
+std::string error_of(const std::vector<Geometry>& things) {
+  const auto accel = build_accel(things);
+  try {
+    closest_point(*accel, {0, 0, 0});
+  } catch (const Error& e) {
+    EXPECT_THROW(signed_distance(*accel, {0, 0, 0}), Error);
+    return e.what();
+  }
+  return "";
+}
+
+// What does not tell its nearest points is named, also inside instances; rays and inside() still work.
+TEST(ClosestShapes, WhatDoesNotTellIsAnError) {
+  const std::string others =
+      " has no nearest points; meshes, spheres, boxes, planes, disks, polygons, cylinders, cones and tori "
+      "have. Ask "
+      "it with rays or with inside()";
+  ImplicitShape implicit;
+  implicit.function = compile_function("x^2 + y^2 + z^2 - 0.5");
+  const Geometry field{ExactShape{implicit}, {}, kNoId};
+  EXPECT_EQ(error_of({field}), "closest_point: a surface of kind 'implicit'" + others);
+  EXPECT_TRUE(inside(*build_accel({field}), {0, 0, 0}));
+  const auto expression = std::make_shared<CsgExpression>();
+  expression->solids = {{BoxShape{}, {}, kNoId}};
+  const Geometry combination{CsgGeometry{expression}, {}, kNoId};
+  EXPECT_EQ(error_of({{InstanceGeometry{build_accel({combination})}, {}, kNoId}}),
+            "closest_point: a Boolean combination" + others);
+
+  const Affine stretch = Affine::scaling({1, 2, 1}), turn = Affine::rotation({30, 40, 50});
+  const auto distorted = [&](const char* name) {
+    return std::string("closest_point: a ") + name + " that its transform distorts" + others;
+  };
+  const Geometry sphere{SpheresShape{{{{0, 0, 0}, 1}}}, {}, kNoId};
+  const Geometry cylinder{ExactShape{CylinderShape{}}, {}, kNoId}, ring{ExactShape{TorusShape{}}, {}, kNoId};
+  const auto under = [](Geometry g, const Affine& m) {
+    g.transform = m;
+    return g;
+  };
+  const auto shown = [](const Geometry& g, const Affine& m) {
+    return Geometry{InstanceGeometry{build_accel({g})}, m, kNoId};
+  };
+  EXPECT_EQ(error_of({under(sphere, stretch)}), distorted("sphere"));
+  EXPECT_EQ(error_of({shown(sphere, stretch)}), distorted("sphere"));
+  EXPECT_EQ(error_of({under(ring, stretch)}), distorted("torus"));
+  EXPECT_EQ(error_of({under(cylinder, stretch * turn)}), distorted("cylinder"));
+  EXPECT_EQ(error_of({shown(shown(cylinder, stretch), turn)}), distorted("cylinder"));
+  // Along its axis a cylinder may be stretched; boxes may be sheared.
+  EXPECT_EQ(
+      error_of({under(cylinder, turn * stretch), shown(under(ring, turn), Affine::scaling({-3, 3, 3}))}), "");
+  EXPECT_EQ(error_of({shown({BoxShape{}, turn, kNoId}, stretch)}), "");
+}
+
+}  // namespace
+}  // namespace oktett
