@@ -189,6 +189,13 @@ PointPlace place_point(const Accel& accel, const Vec3f& point) {
   return place;
 }
 
+Nearest nearest_by(const PointPlace& place, const Vec3d& other, const Nearest& of_other) {
+  // A little more, so that the surface itself is nearer than this, however it is rounded.
+  const double reach =
+      (std::sqrt(of_other.d2) + length(place.world - other)) * (1 + 0x1p-40) + 4 * place.slack;
+  return {reach * reach};
+}
+
 PointPlace place_in_instance(const PointPlace& outer, const Accel& accel, std::uint32_t number) {
   PointPlace place;
   place.world = outer.world, place.moved = true;

@@ -48,6 +48,9 @@ struct PointPlace {
 
 /// The place of a point, which is finite, in the structure that is asked.
 PointPlace place_point(const Accel& accel, const Vec3f& point);
+/// What is known of the nearest surface before it is looked for, given that of another point: no more than
+/// the way to that point farther, by the triangle inequality.
+Nearest nearest_by(const PointPlace& place, const Vec3d& other, const Nearest& of_other);
 /// Its place in what an instance shows: `number` as in each_instance's leaves, see first_instance().
 PointPlace place_in_instance(const PointPlace& outer, const Accel& accel, std::uint32_t number);
 

@@ -6,12 +6,20 @@ namespace oktett {
 
 template <class A>
 static void closest(const Accel& accel, const PointSpan& points, Nearest* nearest) {
+  Vec3d last_point;
+  Nearest last;
   for (std::size_t i = 0; i < points.size; ++i) {
-    nearest[i] = {};
     const Vec3f p = points[i];
-    const float sum = (p.x - p.x) + (p.y - p.y) + (p.z - p.z);
+    const float zero = (p.x - p.x) + (p.y - p.y) + (p.z - p.z);
     // Nothing is nearest to a point that is not finite.
-    if (sum == 0) ClosestSearch<A>(accel, nearest[i]).run(place_point(accel, p));
+    nearest[i] = {};
+    if (zero != 0) continue;
+    const PointPlace place = place_point(accel, p);
+    Nearest best = nearest_by(place, last_point, last);
+    ClosestSearch<A>(accel, best).run(place);
+    if (best.item == kNoId) continue;
+    nearest[i] = last = best;
+    last_point = place.world;
   }
 }
 
