@@ -1,24 +1,31 @@
-# Installs the library, its public headers and a CMake package: find_package(oktett CONFIG) gives oktett::oktett.
+# Installs the library, its public headers and a CMake package: find_package(oktett CONFIG) gives oktett::oktett. The
+# components are the packages of cmake/package.cmake.
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/oktett)
 target_include_directories(oktett PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 
 install(TARGETS oktett EXPORT oktett-targets
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT command NAMELINK_COMPONENT dev
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS oktett_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
+install(TARGETS oktett_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP COMPONENT command)
 if(TARGET oktett_app)
-  install(TARGETS oktett_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING PATTERN "*.1")
+  set(data ${CMAKE_INSTALL_DATADIR})
+  install(TARGETS oktett_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/pages/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT command
+    FILES_MATCHING PATTERN "*.1")
   install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.bash
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME oktett)
+    DESTINATION ${data}/bash-completion/completions RENAME oktett COMPONENT command)
   install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.zsh
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _oktett)
-  install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+    DESTINATION ${data}/zsh/vendor-completions RENAME _oktett COMPONENT command)
+  install(FILES ${PROJECT_BINARY_DIR}/pages/oktett.fish
+    DESTINATION ${data}/fish/vendor_completions.d COMPONENT command)
   # The scenes name the schema of their files as ../docs/oktett.schema.json.
-  install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/oktett)
-  install(FILES docs/oktett.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/oktett/docs)
+  install(DIRECTORY scenes DESTINATION ${data}/oktett COMPONENT command)
+  install(FILES docs/oktett.schema.json DESTINATION ${data}/oktett/docs COMPONENT command)
+  # Files NAME.oktett.yaml have a type of their own on desktops.
+  install(FILES cmake/package/oktett.xml DESTINATION ${data}/mime/packages COMPONENT command)
 endif()
 install(DIRECTORY ${OKTETT_PUBLIC_INCLUDE_DIR}/oktett DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
