@@ -322,7 +322,7 @@ TEST(Quality, MixedKindsShareATree) {
     if (i % 3 == 0)
       geometries.push_back({SpheresShape{{{c, 0.05}}}, {}, kNoId});
     else if (i % 3 == 1)
-      geometries.push_back({BoxShape{c, c + Vec3d(0.1, 0.1, 0.1)}, {}, kNoId});
+      geometries.push_back({BoxShape{c, c + Vec3d{0.1, 0.1, 0.1}}, {}, kNoId});
     else
       geometries.push_back({InstanceGeometry{child}, Affine::translation(c), kNoId});
   }

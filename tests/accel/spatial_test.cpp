@@ -70,7 +70,7 @@ Sides split(const Soup& soup, std::size_t room, bool every_axis = true, bool par
 // Far-away, huge and tiny scenes round the crossings of edges with the plane.
 TEST(Spatial, PartsCoverTheirTriangles) {
   for (const double scale : {1.0, 1e30, 1e-20, 1e-38})
-    for (const Vec3d& middle : {Vec3d(0, 0, 0), Vec3d(3e4, -1e6, 70) * scale}) {
+    for (const Vec3d& middle : {Vec3d{0, 0, 0}, Vec3d{3e4, -1e6, 70} * scale}) {
       const Soup soup = random_soup(200, scale, middle, 3);
       const Sides s = split(soup, 400);
       if (s.left.empty()) continue;
