@@ -5,8 +5,8 @@ oktett.trimesh offer the same with the names and conventions of those packages.
 """
 
 from ._oktett import Scene, __version__, isa, set_threads
-from ._results import HitLists, Hits
+from ._results import ClosestPoints, HitLists, Hits
 
-__all__ = ["HitLists", "Hits", "Scene", "isa", "set_threads", "__version__"]
+__all__ = ["ClosestPoints", "HitLists", "Hits", "Scene", "isa", "set_threads", "__version__"]
 
 Scene.__module__ = "oktett"

@@ -6,11 +6,12 @@ from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequen
 import numpy as np
 import numpy.typing as npt
 
-from ._results import HitLists, Hits
+from ._results import ClosestPoints, HitLists, Hits
 
 __version__: str
 
 Field = Literal["t", "object", "primitive", "instance", "uv", "normal", "position"]
+PointField = Literal["distance", "point", "object", "primitive", "instance", "uv", "normal"]
 Quality = Literal["fast", "balanced", "best"]
 
 def set_threads(count: int) -> None: ...
@@ -91,6 +92,11 @@ class Scene:
         *,
         fields: Sequence[Field] = ...,
     ) -> HitLists: ...
+    def closest_point(
+        self, points: npt.ArrayLike, *, fields: Sequence[PointField] = ...
+    ) -> ClosestPoints: ...
+    def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]: ...
+    def signed_distance(self, points: npt.ArrayLike) -> npt.NDArray[np.float32]: ...
     def render(
         self,
         width: Optional[int] = None,

@@ -21,6 +21,18 @@ class Hits(NamedTuple):
     position: Optional[Floats] = None
 
 
+class ClosestPoints(NamedTuple):
+    """The nearest point of all surfaces, see Scene.closest_point. Fields that were not asked for are None."""
+
+    distance: Optional[Floats] = None
+    point: Optional[Floats] = None
+    object: Optional[Ids] = None
+    primitive: Optional[Ids] = None
+    instance: Optional[Ids] = None
+    uv: Optional[Floats] = None
+    normal: Optional[Floats] = None
+
+
 class HitLists(NamedTuple):
     """All hits of each ray, see Scene.all_hits. Fields that were not asked for are None."""
 

@@ -89,6 +89,53 @@ class RaycastingScene:
             "primitive_uvs": hits.uv,
         }
 
+    def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> Dict[str, Array]:
+        """The nearest point of all triangles: a dict of
+
+        points             float32 {.., 3}
+        geometry_ids       uint32  {..}
+        primitive_ids      uint32  {..}    triangle
+        primitive_uvs      float32 {.., 2} barycentric weights of its second and third corner
+        primitive_normals  float32 {.., 3} of unit length
+        """
+        nearest = self._scene.closest_point(
+            _array(query_points), fields=["point", "object", "primitive", "uv", "normal"]
+        )
+        return {
+            "points": nearest.point,
+            "geometry_ids": nearest.object,
+            "primitive_ids": nearest.primitive,
+            "primitive_uvs": nearest.uv,
+            "primitive_normals": nearest.normal,
+        }
+
+    def compute_distance(self, query_points: Any, nthreads: int = 0) -> Array:
+        """The distance to the nearest triangle: float32 {..}."""
+        return self._scene.closest_point(_array(query_points), fields=["distance"]).distance
+
+    def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
+        """The same, negative for points inside, see compute_occupancy: float32 {..}."""
+        distance = self.compute_distance(query_points)
+        return np.where(self._is_inside(_array(query_points)), -distance, distance)
+
+    def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Array:
+        """1 for points inside of closed meshes, else 0: float32 {..}.
+
+        A ray from a point inside meets the meshes an odd number of times. Edges and vertices count once, so one
+        ray is enough; nsamples is accepted and must be odd.
+        """
+        if nsamples < 1 or nsamples % 2 == 0:
+            raise ValueError(f"nsamples: expected an odd number, found {nsamples}")
+        return self._is_inside(_array(query_points)).astype(np.float32)
+
+    def _is_inside(self, points: Array) -> Array:
+        # One mesh in another is a hole in it, so all meshes count together.
+        if points.ndim < 1 or points.shape[-1] != 3:
+            raise ValueError(f"query_points: expected numbers of shape (..., 3), found the shape {points.shape}")
+        rays = np.empty((*points.shape[:-1], 6), np.float32)
+        rays[..., :3], rays[..., 3:] = points, (0.2390512, 0.4395064, 0.8658552)
+        return self._scene.count_hits(rays) % 2 == 1
+
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Array:
         """Rays of a pinhole camera, float32 {height_px, width_px, 6}. Two forms:

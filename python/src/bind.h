@@ -17,6 +17,8 @@ void bind_scene(SceneClass& scene);
 void bind_render(SceneClass& scene);
 /// Queries with rays.
 void bind_ray_queries(SceneClass& scene);
+/// Queries with points.
+void bind_point_queries(SceneClass& scene);
 
 /// The structure of a scene, built without the interpreter's lock if that is still to be done.
 std::shared_ptr<const World> world_of(SceneStore& scene);

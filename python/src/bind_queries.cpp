@@ -7,13 +7,12 @@
 
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
+#include "python/src/fields.h"
 #include "python/src/ray_queries.h"
 #include "python/src/unlocked.h"
 
 namespace oktett::python {
 namespace {
-
-using Fields = std::vector<std::string>;
 
 /// The arguments of a query: arrays that are kept alive, and where they lie.
 struct RayArguments {
@@ -37,9 +36,9 @@ struct RayArguments {
   }
 };
 
-const char* const kFields[] = {"t", "object", "primitive", "instance", "uv", "normal", "position"};
+const Fields kFields{"t", "object", "primitive", "instance", "uv", "normal", "position"};
 
-/// Finds the column of a field by its name.
+/// Calls visit(name, column, components) for each column.
 template <class Visit>
 void visit_fields(HitColumns& columns, const Visit& visit) {
   visit("t", columns.t, 0);
@@ -51,38 +50,17 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
   visit("position", columns.position, 3);
 }
 
-bool contains(const Fields& fields, const std::string& name) {
-  return std::find(fields.begin(), fields.end(), name) != fields.end();
-}
-
-void check_fields(const Fields& fields) {
-  for (const std::string& field : fields)
-    if (std::find(std::begin(kFields), std::end(kFields), field) == std::end(kFields))
-      throw py::value_error("fields: there is no field '" + field +
-                            "'; expected t, object, primitive, instance, uv, normal, position");
-}
-
-/// A field that is a vector adds its components as the last dimension.
-Shape field_shape(const Shape& shape, py::ssize_t components) {
-  return components == 0 ? shape : with_last(shape, components);
-}
-
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
                            const Fields& fields) {
-  check_fields(fields);
+  check_fields(fields, kFields);
   const RayArguments arguments(rays, tmin, tmax);
   HitColumns columns;
   py::dict result;
   visit_fields(columns, [&](const char* name, auto*& column, py::ssize_t components) {
-    using Value = std::remove_reference_t<decltype(*column)>;
-    result[name] = py::none();
-    if (!contains(fields, name)) return;
-    py::array_t<Value> array(field_shape(arguments.shape, components));
-    column = array.mutable_data();
-    result[name] = array;
+    column = make_column(result, name, fields, arguments.shape, components, column);
   });
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_parts(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
+  run_in_pieces(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
     closest_hits(*world, arguments.rows, begin, end, columns);
   });
   return py::module_::import("oktett._results").attr("Hits")(**result);
@@ -93,7 +71,7 @@ py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::h
   py::array_t<bool> result(arguments.shape);
   auto* const out = reinterpret_cast<std::uint8_t*>(result.mutable_data());
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_parts(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
+  run_in_pieces(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
     any_hits(*world, arguments.rows, begin, end, out);
   });
   return result;
@@ -103,25 +81,43 @@ py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py
   const RayArguments arguments(rays, tmin, tmax);
   py::array_t<std::uint32_t> result(arguments.shape);
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_parts(arguments.rows.size, [&, out = result.mutable_data()](std::size_t begin, std::size_t end) {
+  run_in_pieces(arguments.rows.size, [&, out = result.mutable_data()](std::size_t begin, std::size_t end) {
     count_hits(*world, arguments.rows, begin, end, out);
   });
   return result;
 }
 
-/// An array that owns `values`.
+/// One column of the hits of all pieces, as an array.
 template <class T>
-py::array own(std::vector<T>&& values, py::ssize_t components) {
-  auto* const kept = new std::vector<T>(std::move(values));
-  const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<T>*>(p); });
-  const auto size = static_cast<py::ssize_t>(kept->size());
-  const Shape shape = components == 0 ? Shape{size} : Shape{size / components, components};
-  return py::array_t<T>(shape, kept->data(), owner);
+py::object joined(const std::vector<FoundHits>& pieces, std::vector<T> FoundHits::*column, const void* wanted,
+                  py::ssize_t components) {
+  if (wanted == nullptr) return py::none();
+  std::size_t size = 0;
+  for (const FoundHits& piece : pieces) size += (piece.*column).size();
+  const auto count = static_cast<py::ssize_t>(size);
+  py::array_t<T> array(components == 0 ? Shape{count} : Shape{count / components, components});
+  T* out = array.mutable_data();
+  for (const FoundHits& piece : pieces) out = std::copy((piece.*column).begin(), (piece.*column).end(), out);
+  return array;
+}
+
+/// Where the hits of each ray begin in the columns of all pieces.
+py::array joined_splits(const std::vector<FoundHits>& pieces, std::size_t rays) {
+  py::array_t<std::int64_t> splits(static_cast<py::ssize_t>(rays + 1));
+  std::int64_t* out = splits.mutable_data();
+  std::int64_t before = 0;
+  for (const FoundHits& piece : pieces) {
+    for (std::size_t i = 0; i + 1 < piece.begin.size(); ++i)
+      *out++ = before + static_cast<std::int64_t>(piece.begin[i]);
+    before += static_cast<std::int64_t>(piece.begin.back());
+  }
+  *out = before;
+  return splits;
 }
 
 py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
                         const Fields& fields) {
-  check_fields(fields);
+  check_fields(fields, kFields);
   const RayArguments arguments(rays, tmin, tmax);
   // Only whether a column is null counts.
   HitColumns wanted;
@@ -134,26 +130,20 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
     else
       column = &some_id;
   });
-  FoundHits found;
+  std::vector<FoundHits> pieces(piece_count(arguments.rows.size));
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_parts(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
-    all_hits(*world, arguments.rows, begin, end, wanted, found);
+  run_in_pieces(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
+    all_hits(*world, arguments.rows, begin, end, wanted, pieces[begin / kPiece]);
   });
   py::dict result;
-  const auto add = [&](const char* name, auto&& values, const void* column, py::ssize_t components) {
-    if (column == nullptr)
-      result[name] = py::none();
-    else
-      result[name] = own(std::move(values), components);
-  };
-  add("t", found.t, wanted.t, 0);
-  add("object", found.object, wanted.object, 0);
-  add("primitive", found.primitive, wanted.primitive, 0);
-  add("instance", found.instance, wanted.instance, 0);
-  add("uv", found.uv, wanted.uv, 2);
-  add("normal", found.normal, wanted.normal, 3);
-  add("position", found.position, wanted.position, 3);
-  add("splits", found.splits, &found, 0);
+  result["splits"] = joined_splits(pieces, arguments.rows.size);
+  result["t"] = joined(pieces, &FoundHits::t, wanted.t, 0);
+  result["object"] = joined(pieces, &FoundHits::object, wanted.object, 0);
+  result["primitive"] = joined(pieces, &FoundHits::primitive, wanted.primitive, 0);
+  result["instance"] = joined(pieces, &FoundHits::instance, wanted.instance, 0);
+  result["uv"] = joined(pieces, &FoundHits::uv, wanted.uv, 2);
+  result["normal"] = joined(pieces, &FoundHits::normal, wanted.normal, 3);
+  result["position"] = joined(pieces, &FoundHits::position, wanted.position, 3);
   return py::module_::import("oktett._results").attr("HitLists")(**result);
 }
 

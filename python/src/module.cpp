@@ -51,6 +51,7 @@ PYBIND11_MODULE(_oktett, module) {
   bind_scene(scene);
   bind_render(scene);
   bind_ray_queries(scene);
+  bind_point_queries(scene);
 }
 
 }  // namespace oktett::python

@@ -1,8 +1,5 @@
 #include "python/src/ray_queries.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -12,21 +9,6 @@
 
 namespace oktett::python {
 namespace {
-
-/// Rays of one task: their columns stay in the cache of a core.
-constexpr std::size_t kPiece = 4096;
-
-/// Calls work(begin, end) for the pieces of [begin, end), in parallel.
-template <class Work>
-void for_pieces(std::size_t begin, std::size_t end, const Work& work) {
-  const std::size_t pieces = (end - begin + kPiece - 1) / kPiece;
-  const auto piece = [&](std::size_t k) {
-    const std::size_t first = begin + k * kPiece;
-    work(first, std::min(end, first + kPiece));
-  };
-  if (pieces <= 1) return pieces == 1 ? piece(0) : void();
-  tbb::parallel_for(std::size_t{0}, pieces, piece);
-}
 
 /// Turns rows into columns.
 void set_columns(const RayRows& rays, std::size_t begin, std::size_t end, RayBatch& columns) {
@@ -133,12 +115,12 @@ void shift(T*& column, std::size_t count) {
   if (column != nullptr) column += count;
 }
 
-/// A column for `count` more numbers at the end of `values`, or null.
+/// A column of `count` numbers in `values`, or null.
 template <class T>
-T* grow(std::vector<T>& values, const void* wanted, std::size_t count) {
+T* sized(std::vector<T>& values, const void* wanted, std::size_t count) {
   if (wanted == nullptr) return nullptr;
-  values.resize(values.size() + count);
-  return values.data() + (values.size() - count);
+  values.resize(count);
+  return values.data();
 }
 
 }  // namespace
@@ -150,73 +132,62 @@ HitColumns HitColumns::from(std::size_t begin) const {
   return c;
 }
 
+void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, const HitColumns& out) {
+  HitDescriber(*world.accel, rays, hits, out).describe();
+}
+
 void closest_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
                   const HitColumns& out) {
-  for_pieces(begin, end, [&](std::size_t first, std::size_t last) {
-    static thread_local RayBatch columns;
-    static thread_local HitBatch batch;
-    set_columns(rays, first, last, columns);
-    batch.resize_uninitialized(last - first);
-    HitSpan hits = batch.span();
-    const HitColumns piece = out.from(first);
-    if (piece.t) hits.t = piece.t;
-    closest_hit(*world.accel, columns.span(), hits);
-    HitDescriber(*world.accel, columns.span(), hits, piece).describe();
-  });
+  static thread_local RayBatch columns;
+  static thread_local HitBatch batch;
+  set_columns(rays, begin, end, columns);
+  batch.resize_uninitialized(end - begin);
+  HitSpan hits = batch.span();
+  const HitColumns piece = out.from(begin);
+  if (piece.t) hits.t = piece.t;
+  closest_hit(*world.accel, columns.span(), hits);
+  describe_hits(world, columns.span(), hits, piece);
 }
 
 void any_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
               std::uint8_t* occluded) {
-  for_pieces(begin, end, [&](std::size_t first, std::size_t last) {
-    static thread_local RayBatch columns;
-    set_columns(rays, first, last, columns);
-    any_hit(*world.accel, columns.span(), std::span(occluded + first, last - first));
-  });
+  static thread_local RayBatch columns;
+  set_columns(rays, begin, end, columns);
+  any_hit(*world.accel, columns.span(), std::span(occluded + begin, end - begin));
 }
 
 void count_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
                 std::uint32_t* counts) {
-  for_pieces(begin, end, [&](std::size_t first, std::size_t last) {
-    static thread_local RayBatch columns;
-    set_columns(rays, first, last, columns);
-    oktett::count_hits(*world.accel, columns.span(), std::span(counts + first, last - first));
-  });
+  static thread_local RayBatch columns;
+  set_columns(rays, begin, end, columns);
+  oktett::count_hits(*world.accel, columns.span(), std::span(counts + begin, end - begin));
 }
 
 void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
               const HitColumns& wanted, FoundHits& lists) {
-  RayBatch columns;
+  static thread_local RayBatch columns, hit_rays;
+  static thread_local HitBatch hits;
+  static thread_local oktett::HitLists found;
   set_columns(rays, begin, end, columns);
-  oktett::HitLists found;
   oktett::all_hits(*world.accel, columns.span(), found);
   const std::size_t count = found.hits.size();
-  const std::int64_t before = lists.splits.back();
-  for (std::size_t i = 1; i < found.begin.size(); ++i)
-    lists.splits.push_back(before + static_cast<std::int64_t>(found.begin[i]));
-  HitColumns out;
-  out.t = grow(lists.t, wanted.t, count);
-  out.object = grow(lists.object, wanted.object, count);
-  out.primitive = grow(lists.primitive, wanted.primitive, count);
-  out.instance = grow(lists.instance, wanted.instance, count);
-  out.uv = grow(lists.uv, wanted.uv, 2 * count);
-  out.normal = grow(lists.normal, wanted.normal, 3 * count);
-  out.position = grow(lists.position, wanted.position, 3 * count);
-  std::vector<std::size_t> ray_of(count);
-  for (std::size_t i = 0; i + 1 < found.begin.size(); ++i)
-    std::fill(ray_of.begin() + static_cast<std::ptrdiff_t>(found.begin[i]),
-              ray_of.begin() + static_cast<std::ptrdiff_t>(found.begin[i + 1]), i);
-  for_pieces(0, count, [&](std::size_t first, std::size_t last) {
-    RayBatch hit_rays;
-    HitBatch hits;
-    hit_rays.resize_uninitialized(last - first), hits.resize_uninitialized(last - first);
-    for (std::size_t k = first; k < last; ++k) {
-      hit_rays.set(k - first, columns[ray_of[k]]);
-      hits.span().set(k - first, found.hits[k]);
+  lists.begin.assign(found.begin.begin(), found.begin.end());
+  hit_rays.resize_uninitialized(count), hits.resize_uninitialized(count);
+  for (std::size_t ray = 0; ray + 1 < found.begin.size(); ++ray)
+    for (std::size_t k = found.begin[ray]; k < found.begin[ray + 1]; ++k) {
+      hit_rays.set(k, columns[ray]);
+      hits.span().set(k, found.hits[k]);
     }
-    const HitColumns piece = out.from(first);
-    if (piece.t) std::copy_n(hits.t.data(), last - first, piece.t);
-    HitDescriber(*world.accel, hit_rays.span(), hits.span(), piece).describe();
-  });
+  HitColumns out;
+  out.t = sized(lists.t, wanted.t, count);
+  out.object = sized(lists.object, wanted.object, count);
+  out.primitive = sized(lists.primitive, wanted.primitive, count);
+  out.instance = sized(lists.instance, wanted.instance, count);
+  out.uv = sized(lists.uv, wanted.uv, 2 * count);
+  out.normal = sized(lists.normal, wanted.normal, 3 * count);
+  out.position = sized(lists.position, wanted.position, 3 * count);
+  if (out.t) std::copy_n(hits.t.data(), count, out.t);
+  describe_hits(world, hit_rays.span(), hits.span(), out);
 }
 
 }  // namespace oktett::python

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Queries on the arrays of Python: rays in rows, answers in columns.
+/// \file Queries on the arrays of Python: rays in rows, answers in columns. Each function works on one
+/// thread.
 
 #include <cstddef>
 #include <cstdint>
@@ -33,6 +34,10 @@ struct HitColumns {
   HitColumns from(std::size_t begin) const;
 };
 
+/// Fills the columns of `out` but for `t` for hits, and for misses among them. `rays`, those of the same
+/// number, are only needed for normals and positions.
+void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, const HitColumns& out);
+
 /// The nearest hits of rays [begin, end). A miss has t infinite, all ids kNoId and all else 0.
 void closest_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
                   const HitColumns& out);
@@ -47,12 +52,12 @@ void count_hits(const World& world, const RayRows& rays, std::size_t begin, std:
 
 /// Columns of all hits of some rays.
 struct FoundHits {
-  std::vector<std::int64_t> splits{0};  ///< where the hits of each ray begin; one more than there are rays
+  std::vector<std::size_t> begin;  ///< where the hits of each ray begin; one more than there are rays
   std::vector<float> t, uv, normal, position;
   std::vector<std::uint32_t> object, primitive, instance;
 };
 
-/// Appends the hits of the rays [begin, end) to those columns of `lists` that are not null in `wanted`.
+/// Replaces those columns of `lists` that are not null in `wanted` by the hits of the rays [begin, end).
 void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
               const HitColumns& wanted, FoundHits& lists);
 

@@ -1,9 +1,7 @@
 #include "python/src/unlocked.h"
 
 #include <condition_variable>
-#include <exception>
 #include <mutex>
-#include <thread>
 
 namespace oktett::python {
 
@@ -46,6 +44,21 @@ void run_watched(const std::function<void()>& work, const std::function<void()>&
   }
   if (raised != nullptr) std::rethrow_exception(raised);
   if (failure != nullptr) std::rethrow_exception(failure);
+}
+
+void SignalWatch::poll() {
+  if (std::this_thread::get_id() != thread_ || stopped_) return;
+  const Clock::time_point now = Clock::now();
+  if (now - last_ < std::chrono::milliseconds(50)) return;
+  last_ = now;
+  const pybind11::gil_scoped_acquire locked;
+  if (PyErr_CheckSignals() == 0) return;
+  raised_ = std::make_exception_ptr(pybind11::error_already_set());
+  stopped_ = true;
+}
+
+void SignalWatch::rethrow() const {
+  if (raised_ != nullptr) std::rethrow_exception(raised_);
 }
 
 }  // namespace oktett::python

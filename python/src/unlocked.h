@@ -2,11 +2,15 @@
 /// \file Long work without the interpreter's lock, which Ctrl-C can end.
 
 #include <pybind11/pybind11.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <exception>
 #include <functional>
+#include <thread>
 
 namespace oktett::python {
 
@@ -16,27 +20,44 @@ namespace oktett::python {
 void run_watched(const std::function<void()>& work, const std::function<void()>& stop = {},
                  const std::function<void()>& poll = {});
 
-/// Calls work(begin, end) for consecutive parts of [0, count), without the interpreter's lock, and lets
-/// signal handlers run in between. The parts are as large as take about a tenth of a second.
-template <class Work>
-void run_in_parts(std::size_t count, const Work& work) {
+/// Lets signal handlers run now and then while the calling thread works without the interpreter's lock.
+class SignalWatch {
+ public:
+  /// Called on any thread between pieces of work. On the one that made the object, which has to be the one
+  /// that Python called, it looks for signals about twenty times a second.
+  void poll();
+  /// True when a handler has raised an exception: the work should come to its end.
+  bool stopped() const { return stopped_; }
+  /// Throws that exception, if there is one. With the lock.
+  void rethrow() const;
+
+ private:
   using Clock = std::chrono::steady_clock;
-  pybind11::gil_scoped_release unlocked;
-  std::size_t part = std::size_t{1} << 14;
-  for (std::size_t begin = 0; begin < count;) {
-    const std::size_t end = begin + std::min(part, count - begin);
-    const auto start = Clock::now();
-    work(begin, end);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (seconds < 0.05)
-      part *= 4;
-    else if (seconds > 0.2 && part > 4096)
-      part /= 2;
-    begin = end;
-    if (begin == count) return;
-    pybind11::gil_scoped_acquire locked;
-    if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+  std::thread::id thread_ = std::this_thread::get_id();
+  Clock::time_point last_ = Clock::now();
+  std::atomic<bool> stopped_ = false;
+  std::exception_ptr raised_;
+};
+
+/// Rays or points of one task: their columns stay in the cache of a core.
+inline constexpr std::size_t kPiece = 4096;
+
+inline std::size_t piece_count(std::size_t size) { return (size + kPiece - 1) / kPiece; }
+
+/// Calls work(begin, end) for the pieces of [0, size) in parallel, without the interpreter's lock. Ctrl-C
+/// ends it.
+template <class Work>
+void run_in_pieces(std::size_t size, const Work& work) {
+  SignalWatch watch;
+  {
+    const pybind11::gil_scoped_release unlocked;
+    tbb::parallel_for(std::size_t{0}, piece_count(size), [&](std::size_t k) {
+      if (watch.stopped()) return;
+      work(k * kPiece, std::min(size, (k + 1) * kPiece));
+      watch.poll();
+    });
   }
+  watch.rethrow();
 }
 
 }  // namespace oktett::python

@@ -1,0 +1,98 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include "python/src/bind.h"
+#include "python/src/fields.h"
+#include "python/src/point_queries.h"
+#include "python/src/unlocked.h"
+
+namespace oktett::python {
+namespace {
+
+const Fields kFields{"distance", "point", "object", "primitive", "instance", "uv", "normal"};
+
+py::object ask_closest_point(SceneStore& scene, py::handle given, const Fields& fields) {
+  check_fields(fields, kFields);
+  const FloatArray points = float_rows(given, "points", 3);
+  const Shape shape = row_shape(points);
+  ClosestColumns columns;
+  py::dict result;
+  const auto add = [&](const char* name, auto*& column, py::ssize_t components) {
+    column = make_column(result, name, fields, shape, components, column);
+  };
+  add("distance", columns.distance, 0);
+  add("point", columns.point, 3);
+  add("object", columns.hit.object, 0);
+  add("primitive", columns.hit.primitive, 0);
+  add("instance", columns.hit.instance, 0);
+  add("uv", columns.hit.uv, 2);
+  add("normal", columns.hit.normal, 3);
+  const std::shared_ptr<const World> world = world_of(scene);
+  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
+    closest_points(*world, points.data(), begin, end, columns);
+  });
+  return py::module_::import("oktett._results").attr("ClosestPoints")(**result);
+}
+
+py::array ask_inside(SceneStore& scene, py::handle given) {
+  const FloatArray points = float_rows(given, "points", 3);
+  py::array_t<bool> result(row_shape(points));
+  auto* const answers = reinterpret_cast<std::uint8_t*>(result.mutable_data());
+  const std::shared_ptr<const World> world = world_of(scene);
+  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
+    inside(*world, points.data(), begin, end, answers);
+  });
+  return result;
+}
+
+py::array ask_signed_distance(SceneStore& scene, py::handle given) {
+  const FloatArray points = float_rows(given, "points", 3);
+  py::array_t<float> result(row_shape(points));
+  float* const distances = result.mutable_data();
+  const std::shared_ptr<const World> world = world_of(scene);
+  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
+    signed_distances(*world, points.data(), begin, end, distances);
+  });
+  return result;
+}
+
+constexpr const char* kClosestPointDoc = R"(The point of all surfaces that is nearest to each point.
+
+points: shape (..., 3). C-contiguous float32 is read in place, anything else is copied.
+fields: what is wanted. The others are None in the result.
+
+Returns ClosestPoints:
+    distance   float32 (...)     inf if there are no surfaces or if the point is not finite
+    point      float32 (..., 3)  the nearest point
+    object, primitive, instance, uv, normal: as in Hits, see closest_hit
+
+Of points at equal distance that of the lowest (instance, object, primitive) counts. Meshes, spheres, boxes,
+planes, disks, polygons, cylinders, cones, tori and instances of them are answered. Raises ValueError if the
+scene holds another shape, or one of the round ones distorted, and for other shapes of arrays.)";
+
+constexpr const char* kInsideDoc = R"(Whether each point is inside of any solid: bool (...).
+
+points: shape (..., 3).
+
+Solids are closed meshes, each of which counts on its own, spheres, boxes, half-spaces of planes, exact
+surfaces that are not open, combinations, and instances of them. Of points on a boundary nothing is promised.
+A point that is not finite is outside. Raises ValueError for other shapes of arrays.)";
+
+constexpr const char* kSignedDistanceDoc =
+    R"(The distance of each point to the nearest surface: float32 (...).
+
+It is that of closest_point, and negative where inside says that the point is inside. points and errors are
+those of closest_point.)";
+
+}  // namespace
+
+void bind_point_queries(SceneClass& scene) {
+  using namespace pybind11::literals;
+  const Fields usual{"distance", "point", "object", "primitive", "uv", "normal"};
+  scene.def("closest_point", ask_closest_point, "points"_a, py::kw_only(), "fields"_a = usual,
+            kClosestPointDoc);
+  scene.def("inside", ask_inside, "points"_a, kInsideDoc);
+  scene.def("signed_distance", ask_signed_distance, "points"_a, kSignedDistanceDoc);
+}
+
+}  // namespace oktett::python

@@ -1,0 +1,14 @@
+#include "python/src/fields.h"
+
+namespace oktett::python {
+
+void check_fields(const Fields& fields, const Fields& known) {
+  for (const std::string& field : fields) {
+    if (contains(known, field)) continue;
+    std::string names;
+    for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+    throw py::value_error("fields: there is no field '" + field + "'; expected " + names);
+  }
+}
+
+}  // namespace oktett::python

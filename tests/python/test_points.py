@@ -1,0 +1,145 @@
+"""Queries with points against oracles."""
+
+import numpy as np
+import pytest
+
+import oktett
+from oktett.open3d import RaycastingScene
+from oracle import CUBE_FACES, CUBE_VERTICES, ball
+
+MISS = 0xFFFFFFFF
+FIELDS = ["distance", "point", "object", "primitive", "instance", "uv", "normal"]
+
+
+def nearest_on_triangles(vertices, faces, points):
+    """Distance and nearest point of each point to all triangles, in float64: the best of the plane's foot where it is
+    inside, of the three edges and of the corners."""
+    corners = np.asarray(vertices, float)[faces]
+    best, place = np.full(len(points), np.inf), np.zeros((len(points), 3))
+
+    def consider(candidates, valid):
+        distances = np.where(valid, np.linalg.norm(candidates - points[:, None], axis=2), np.inf)
+        k = distances.argmin(axis=1)
+        nearer = distances[np.arange(len(points)), k] < best
+        best[nearer] = distances[nearer, k[nearer]]
+        place[nearer] = candidates[nearer, k[nearer]]
+
+    for k in range(3):
+        a, b = corners[:, k], corners[:, (k + 1) % 3]
+        along = ((points[:, None] - a) * (b - a)).sum(-1) / ((b - a) ** 2).sum(-1)
+        consider(a + np.clip(along, 0, 1)[..., None] * (b - a), np.full(along.shape, True))
+    a, u, v = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(u, v)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    foot = points[:, None] - ((points[:, None] - a) * normal).sum(-1)[..., None] * normal
+    inside = np.full(foot.shape[:2], True)
+    for k in range(3):
+        p, q = corners[:, k], corners[:, (k + 1) % 3]
+        inside &= (np.cross(q - p, foot - p) * normal).sum(-1) >= 0
+    consider(foot, inside)
+    return best, place
+
+
+@pytest.fixture
+def points():
+    return np.random.default_rng(1).uniform(-2, 2, (1500, 3)).astype(np.float32)
+
+
+@pytest.mark.parametrize("mesh", [(CUBE_VERTICES, CUBE_FACES), ball(2)], ids=["cube", "ball"])
+def test_nearest_points_are_those_of_the_oracle(mesh, points):
+    vertices, faces = mesh
+    scene = oktett.Scene(vertices, faces)
+    found = scene.closest_point(points, fields=FIELDS)
+    distance, place = nearest_on_triangles(vertices, faces, points.astype(float))
+    assert found.distance == pytest.approx(distance, abs=2e-6)
+    # Inside, several points may be equally near.
+    outside = ~scene.inside(points)
+    assert found.point[outside] == pytest.approx(place[outside], abs=3e-5)
+    a, b, c = (vertices[faces[found.primitive]][:, k].astype(float) for k in range(3))
+    u, v = found.uv.T[:, :, None]
+    assert found.point == pytest.approx(a * (1 - u - v) + b * u + c * v, abs=2e-6)
+    normal = np.cross(b - a, c - a)
+    assert found.normal == pytest.approx(normal / np.linalg.norm(normal, axis=1)[:, None], abs=1e-6)
+    assert (found.object == 0).all() and (found.instance == MISS).all()
+    signed = scene.signed_distance(points)
+    assert np.array_equal(np.abs(signed), found.distance) and np.array_equal(signed < 0, ~outside)
+    if len(faces) == 12:
+        assert np.array_equal(outside, ~(np.abs(points) < 1).all(axis=1))
+    grid = scene.closest_point(points.reshape(30, 50, 3).astype(float))
+    assert grid.point.shape == (30, 50, 3) and np.array_equal(grid.distance.ravel(), found.distance)
+    assert scene.closest_point(points[3]).distance == found.distance[3]
+
+
+def test_exact_surfaces_answer_by_their_formulas(points):
+    scene = oktett.Scene.from_dict(
+        {
+            "define": {"ball": {"sphere": {"radius": 0.5}}},
+            "objects": [
+                {"sphere": {"center": [1, 0, 0], "radius": 0.7}},
+                {"instance": "ball", "transform": [{"translate": [-1, 0, 0]}]},
+            ],
+        }
+    )
+    distances = np.stack([np.linalg.norm(points - [x, 0, 0], axis=1) - r for x, r in ((1, 0.7), (-1, 0.5))])
+    found = scene.closest_point(points, fields=FIELDS)
+    assert found.distance == pytest.approx(np.abs(distances).min(axis=0), abs=2e-6)
+    assert np.array_equal(found.instance == MISS, np.abs(distances[0]) < np.abs(distances[1]))
+    assert scene.signed_distance(points) == pytest.approx(
+        np.where((distances < 0).any(axis=0), -1, 1) * np.abs(distances).min(axis=0), abs=2e-6
+    )
+    assert not found.uv.any()
+    combination = oktett.Scene.from_dict({"objects": [{"difference": [{"box": {}}, {"sphere": {"radius": 1.2}}]}]})
+    inside = (np.abs(points) < 1).all(axis=1) & (np.linalg.norm(points, axis=1) > 1.2)
+    assert np.array_equal(combination.inside(points), inside)
+    for query in (combination.closest_point, combination.signed_distance):
+        with pytest.raises(ValueError):
+            query(points)
+
+
+def test_misses_and_other_shapes(points):
+    nothing = oktett.Scene()
+    found = nothing.closest_point(points[:5], fields=FIELDS)
+    assert np.isinf(found.distance).all() and (found.object == MISS).all() and (found.instance == MISS).all()
+    assert not found.point.any() and not found.normal.any() and not nothing.inside(points).any()
+    scene = oktett.Scene(CUBE_VERTICES, CUBE_FACES)
+    bad = scene.closest_point([[np.nan, 0, 0], [np.inf, 0, 0], [0, 0, 3]])
+    assert bad.distance.tolist() == [np.inf, np.inf, 2] and bad.primitive[0] == MISS
+    assert scene.inside([[np.nan, 0, 0], [0, 0, 0]]).tolist() == [False, True]
+    assert scene.closest_point(np.zeros((0, 3))).point.shape == (0, 3)
+    assert scene.signed_distance(np.zeros((2, 0, 3))).shape == (2, 0)
+    for query in (scene.closest_point, scene.inside, scene.signed_distance):
+        with pytest.raises(ValueError, match=r"points: expected .* \(\.\.\., 3\), found the shape \(3, 6\)"):
+            query(np.zeros((3, 6)))
+    with pytest.raises(ValueError, match="fields: there is no field 't'; expected distance, point"):
+        scene.closest_point(points, fields=["t"])
+
+
+def test_open3d_has_the_same_by_its_names(points):
+    vertices, faces = ball(2)
+    scene = RaycastingScene()
+    scene.add_triangles(vertices, faces)
+    # A hole in the ball: in Open3D all meshes count together.
+    assert scene.add_triangles(CUBE_VERTICES * np.float32(0.3), CUBE_FACES) == 1
+    all_vertices = np.concatenate([vertices, CUBE_VERTICES * np.float32(0.3)])
+    all_faces = np.concatenate([faces, CUBE_FACES + len(vertices)])
+    distance, _ = nearest_on_triangles(all_vertices, all_faces, points.astype(float))
+    found = scene.compute_closest_points(points)
+    assert list(found) == ["points", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_normals"]
+    assert np.linalg.norm(found["points"] - points, axis=1) == pytest.approx(distance, abs=2e-6)
+    near = np.where(found["geometry_ids"] == 0, 0, len(faces)) + found["primitive_ids"]
+    a, b, c = (all_vertices[all_faces[near]][:, k] for k in range(3))
+    u, v = found["primitive_uvs"].T[:, :, None]
+    assert found["points"] == pytest.approx(a * (1 - u - v) + b * u + c * v, abs=2e-6)
+    assert scene.compute_distance(points) == pytest.approx(distance, abs=2e-6)
+    in_ball = oktett.Scene(vertices, faces).inside(points)
+    inside = in_ball & ~(np.abs(points) < 0.3).all(axis=1)
+    assert np.array_equal(scene.compute_occupancy(points), inside.astype(np.float32))
+    assert scene.compute_occupancy(points, nsamples=3).dtype == np.float32
+    signed = scene.compute_signed_distance(points.reshape(30, 50, 3))
+    assert signed.dtype == np.float32 and np.array_equal(signed.ravel() < 0, inside)
+    assert np.abs(signed).ravel() == pytest.approx(distance, abs=2e-6)
+    with pytest.raises(ValueError, match="nsamples"):
+        scene.compute_occupancy(points, nsamples=2)
+    for query in (scene.compute_closest_points, scene.compute_distance, scene.compute_signed_distance, scene.compute_occupancy):
+        with pytest.raises(ValueError, match=r"\(\.\.\., 3\)"):
+            query(np.zeros((4, 2)))
