@@ -11,7 +11,6 @@ namespace {
 
 using namespace test;
 
-
 /// A mirror ball of radius 0.02 at the origin in a parallel beam along -z, which it sends evenly in all
 /// directions. Away from the light lies a white floor, y = -1, whose middle the camera sees from below the
 /// light's way.
