@@ -8,6 +8,7 @@
 
 #include "kernels/fields/blobtree.h"
 #include "kernels/fields/metaballs.h"
+#include "tests/support/sanitizers.h"
 
 namespace oktett {
 namespace {
@@ -117,6 +118,7 @@ BlobTreeShape sum_of(const std::vector<FieldElement>& elements) {
 /// The number of cells follows from that of the elements, however small these are beside their distances.
 TEST(CellTree, CellsDoNotGrowWithTheRatioOfLengths) {
   for (const double length : {65536.0, 1e9, 1e15}) {
+    if (test::kSanitized && length > 1e9) break;  // takes minutes
     const std::vector<BlobTreeShape> trees{
         sum_of({thin(SegmentSkeleton{{0, 0, 0}, {length, 0, 0}}, 0.3), thin(PointSkeleton{}, 1)}),
         sum_of({thin(SegmentSkeleton{{0, 0, 0}, {length, 0.3 * length, 0.2 * length}}, 0.3),
@@ -141,7 +143,8 @@ TEST(CellTree, CellsDoNotGrowWithTheRatioOfLengths) {
 // Also where larger cells must do, the result does not depend on how threads share the work.
 TEST(CellTree, LargerCellsAreTheSameForAnyNumberOfThreads) {
   std::vector<FieldElement> elements;
-  for (int i = 0; i < 200; ++i)
+  const int count = static_cast<int>(test::cases(200));
+  for (int i = 0; i < count; ++i)
     elements.push_back(thin(SegmentSkeleton{{0, 0.5 * i, 0}, {1e5, 0.3 * i, 0.1 * i * i}}, 0.4));
   expect_same_for_any_threads<BlobTree>(sum_of(elements));
 }
