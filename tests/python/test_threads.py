@@ -59,7 +59,7 @@ def test_threads_ask_one_scene_at_the_same_time():
 WORK = {
     "render": "scene.render(2000, 2000, samples=64)",
     "closest_hit": "[scene.closest_hit(rays) for _ in range(100)]",
-    "one query": "scene.all_hits(np.tile(rays, (60, 1)))",
+    "one query": "scene.all_hits(np.tile(rays, (12, 1)))",
     "progress": "scene.render(2000, 2000, samples=64, progress=lambda part: 1 / 0)",
 }
 
