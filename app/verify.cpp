@@ -89,11 +89,12 @@ class Report {
 
   void csg(const CsgTally& t) {
     row(t, "combinations",
-        fmt::format("{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>9}{:>11}", "random trees", t.rays, t.crossings,
-                    t.samples, t.wrong_spans, t.wrong_first, t.wrong_normal, t.differing));
+        fmt::format("{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>8}{:>9}{:>11}", "random trees", t.rays, t.crossings,
+                    t.samples, t.wrong_spans, t.wrong_first, t.wrong_inside, t.wrong_normal, t.differing));
     combinations_.add("rays", t.rays), combinations_.add("crossings", t.crossings);
     combinations_.add("samples", t.samples), combinations_.add("wrong_spans", t.wrong_spans);
-    combinations_.add("wrong_first", t.wrong_first), combinations_.add("wrong_normal", t.wrong_normal);
+    combinations_.add("wrong_first", t.wrong_first), combinations_.add("wrong_inside", t.wrong_inside);
+    combinations_.add("wrong_normal", t.wrong_normal);
     combinations_.add("differing", t.differing);
   }
 
@@ -183,8 +184,8 @@ void verify_meshes(const VerifyArguments& arguments, const std::vector<OracleMes
 }
 
 void verify_combinations(const VerifyArguments& arguments, std::uint64_t rays, Report& report) {
-  report.heading(fmt::format("\n{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>9}{:>11}", "combinations", "rays",
-                             "crossings", "samples", "spans", "firsts", "normals", "differing"));
+  report.heading(fmt::format("\n{:<25}{:>10}{:>11}{:>13}{:>8}{:>8}{:>8}{:>9}{:>11}", "combinations", "rays",
+                             "crossings", "samples", "spans", "firsts", "inside", "normals", "differing"));
   report.csg(verify_csg(rays, chosen_isas(arguments.isa)));
 }
 

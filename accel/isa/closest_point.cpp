@@ -7,6 +7,7 @@ namespace oktett {
 template <class A>
 static void closest(const Accel& accel, const PointSpan& points, Nearest* nearest) {
   Vec3d last_point;
+  NodeRef hint = NodeRef::none();
   Nearest last;
   for (std::size_t i = 0; i < points.size; ++i) {
     const Vec3f p = points[i];
@@ -16,7 +17,10 @@ static void closest(const Accel& accel, const PointSpan& points, Nearest* neares
     if (zero != 0) continue;
     const PointPlace place = place_point(accel, p);
     Nearest best = nearest_by(place, last_point, last);
-    ClosestSearch<A>(accel, best).run(place);
+    ClosestSearch<A> search(accel, best);
+    search.start(place, hint);
+    search.run(place);
+    hint = search.found();
     if (best.item == kNoId) continue;
     nearest[i] = last = best;
     last_point = place.world;

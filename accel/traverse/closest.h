@@ -32,6 +32,13 @@ class ClosestSearch {
  public:
   ClosestSearch(const Accel& accel, Nearest& best) : accel_(accel), best_(best) {}
 
+  /// First the triangles of block `hint`, which were nearest to another point, if it is one.
+  OKTETT_INLINE void start(const PointPlace& at, NodeRef hint) {
+    if (hint.is_triangles()) leaf(hint, at, std::numeric_limits<float>::infinity());
+  }
+  /// The leaf of the tree that holds what is nearest.
+  NodeRef found() const { return found_; }
+
   /// Everything in `accel`. Instances that are nested are searched by a search of their own.
   OKTETT_NOINLINE void run(const PointPlace& at) {
     for (const LeafEntry& leaf : accel_.unbounded) table_leaf(leaf, at);
@@ -72,10 +79,12 @@ class ClosestSearch {
   }
 
   OKTETT_INLINE void leaf(NodeRef ref, const PointPlace& at, float limit) {
+    const double before = best_.d2;
     if (ref.is_triangles())
       triangles(accel_.blocks[ref.block()], ref.triangle_count(), at, limit);
     else
       table_leaf(accel_.leaves[ref.table_index()], at);
+    if (best_.d2 < before) found_ = ref;
   }
 
   OKTETT_NOINLINE void table_leaf(const LeafEntry& leaf, const PointPlace& at) {
@@ -126,6 +135,7 @@ class ClosestSearch {
 
   const Accel& accel_;
   Nearest& best_;
+  NodeRef found_ = NodeRef::none();
 };
 
 }  // namespace oktett

@@ -59,8 +59,8 @@ OKTETT_INLINE ClosestOnTriangle<D> closest_on_triangle(const Vec3<D>& p, const V
   // ratio of the longest edge to the height.
   const Vec3<D> e1 = sub_lanes(b, a), e2 = sub_lanes(c, a), f = sub_lanes(p, a);
   const Vec3<D> n = cross_lanes(e1, e2);
-  const D nn = dot_lanes(n, n);
-  const D u = dot_lanes(n, cross_lanes(f, e2)) / nn, v = dot_lanes(n, cross_lanes(e1, f)) / nn;
+  const D inverse = one / dot_lanes(n, n);
+  const D u = dot_lanes(n, cross_lanes(f, e2)) * inverse, v = dot_lanes(n, cross_lanes(e1, f)) * inverse;
   const Vec3<D> r = sub_lanes(f, add_lanes(scale_lanes(e1, u), scale_lanes(e2, v)));
   const D d2 = dot_lanes(r, r);
   take((zero < u) & (zero < v) & (u + v < one) & (d2 < best.d2), d2, u, v);

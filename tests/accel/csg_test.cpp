@@ -76,8 +76,9 @@ using Distances = std::vector<float>;
 /// everywhere.
 TEST(Csg, AgreesWithSampling) {
   const CsgTally t = verify_csg(20000, available_isas());
-  EXPECT_EQ(t.wrong(), 0u) << t.wrong_spans << " spans, " << t.wrong_first << " firsts, " << t.wrong_normal
-                           << " normals, " << t.differing << " differing; " << t.failure;
+  EXPECT_EQ(t.wrong(), 0u) << t.wrong_spans << " spans, " << t.wrong_first << " firsts, " << t.wrong_inside
+                           << " points, " << t.wrong_normal << " normals, " << t.differing << " differing; "
+                           << t.failure;
   EXPECT_GT(t.crossings, t.rays / 4);
 }
 

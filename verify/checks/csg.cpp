@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "accel/accel.h"
+#include "accel/point_query.h"
 #include "core/random.h"
 #include "kernels/exact_ops.h"
 #include "verify/cases/kernel_cases.h"
@@ -194,6 +195,7 @@ class Checker {
     closest_hit(*accel_, rays.span(), hits.span(), isas_.front(), TraceMode::single);
     compare_modes(rays, hits);
     for (std::size_t i = 0; i < rays.size(); ++i) check(rays[i], hits[i]);
+    check_inside();
   }
 
  private:
@@ -240,6 +242,34 @@ class Checker {
     if (first.valid()) check_normal(ray, first);
   }
 
+  /// As many points as there are rays.
+  void check_inside() {
+    std::vector<Vec3f> points;
+    while (points.size() < kRaysPerTree) points.push_back(Vec3f(random_.vector() * 1.8));
+    std::vector<std::uint8_t> answers(points.size()), others(points.size());
+    inside(*accel_, points, answers, isas_.front());
+    for (const Isa isa : isas_) {
+      inside(*accel_, points, others, isa);
+      if (others != answers)
+        fail(tally_.differing, {points[0], 0, {}}, fmt::format("inside differs on {}", to_string(isa)));
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3l p(points[i]);
+      const bool expected = inside_(p);
+      if ((answers[i] != 0) == expected) continue;
+      bool near = false;
+      for (int k = 0; k < 3; ++k)
+        for (const long double step : {-0x1p-16L, 0x1p-16L}) {
+          Vec3l q = p;
+          q[k] += step;
+          near |= inside_(q) != expected;
+        }
+      if (!near)
+        fail(tally_.wrong_inside, {points[i], 0, {}},
+             expected ? "the point is inside" : "the point is outside");
+    }
+  }
+
   void check_normal(const Ray& ray, const Hit& hit) {
     const SurfaceInteraction s = surface_interaction(*accel_, ray, hit);
     const Vec3f n = s.geometric_normal;
@@ -261,6 +291,7 @@ class Checker {
 void add(CsgTally& sum, const CsgTally& t) {
   sum.rays += t.rays, sum.crossings += t.crossings, sum.samples += t.samples;
   sum.wrong_spans += t.wrong_spans, sum.wrong_first += t.wrong_first, sum.wrong_normal += t.wrong_normal;
+  sum.wrong_inside += t.wrong_inside;
   sum.differing += t.differing;
   if (sum.failure.empty()) sum.failure = t.failure, sum.tree = t.tree;
 }

@@ -17,12 +17,14 @@ struct CsgTally {
   std::uint64_t rays = 0, crossings = 0, samples = 0;
   std::uint64_t wrong_spans = 0;  ///< samples on the wrong side, farther from any change than the error bound
   std::uint64_t wrong_first = 0;  ///< closest_hit is not the first crossing of all_hits, or any_hit disagrees
+  std::uint64_t wrong_inside =
+      0;  ///< inside() differs from the oracle, farther from any change than its error
   std::uint64_t wrong_normal = 0;  ///< the normal does not point out of the combination
   std::uint64_t differing = 0;     ///< a mode, width or instruction set gave other bits
   std::string failure;             ///< the first one
   std::uint64_t tree = 0;          ///< the number of its tree
 
-  std::uint64_t wrong() const { return wrong_spans + wrong_first + wrong_normal + differing; }
+  std::uint64_t wrong() const { return wrong_spans + wrong_first + wrong_inside + wrong_normal + differing; }
 };
 
 /// `rays` rays through random trees of up to 64 operands and depth 12: spheres, boxes, tori, planes, convex
