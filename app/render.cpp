@@ -60,6 +60,13 @@ Scene load(const RenderArguments& arguments) {
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
   override_scene(arguments, scene);
   if (!look) return scene;
+  if (!is_mesh_alone(scene)) {
+    if (!arguments.look.empty())
+      throw Error(
+          fmt::format("--look is for meshes given alone; {} has a camera, lights or instances of its own",
+                      arguments.scene));
+    return scene;
+  }
   apply_look(scene, *look);
   // The look chooses the number of samples.
   override_scene(arguments, scene);

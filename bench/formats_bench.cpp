@@ -1,5 +1,5 @@
-/// \file Reading binary PLY and STL files, against reading their bytes block by block and copying them to
-/// fresh memory. The files hold a wavy sheet and take about OKTETT_BENCH_MEGABYTES (20) each.
+/// \file Reading binary PLY, STL and GLB files, against reading their bytes block by block and copying them
+/// to fresh memory. The files hold a wavy sheet and take about OKTETT_BENCH_MEGABYTES (20) each.
 
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
@@ -80,6 +80,32 @@ std::string stl_bytes() {
   return bytes;
 }
 
+std::string glb_bytes() {
+  const Sheet sheet{static_cast<std::uint32_t>(std::sqrt(static_cast<double>(wanted_bytes()) / 36))};
+  const std::uint32_t vertices = (sheet.n + 1) * (sheet.n + 1), corners = 6 * sheet.n * sheet.n;
+  std::string json = fmt::format(
+      R"({{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{0}}}],"bufferViews":[{{"buffer":0,"byteLength":{1}}},)"
+      R"({{"buffer":0,"byteOffset":{1},"byteLength":{2}}}],"accessors":[{{"bufferView":0,"componentType":5126,)"
+      R"("count":{3},"type":"VEC3"}},{{"bufferView":1,"componentType":5125,"count":{4},"type":"SCALAR"}}],)"
+      R"("meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"nodes":[{{"mesh":0}}],)"
+      R"("scenes":[{{"nodes":[0]}}]}})",
+      12 * vertices + 4 * corners, 12 * vertices, 4 * corners, vertices, corners);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::uint32_t data = 12 * vertices + 4 * corners;
+  std::string bytes = "glTF";
+  append_number(bytes, std::uint32_t{2});
+  append_number(bytes, static_cast<std::uint32_t>(28 + json.size() + data));
+  append_number(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON" + json;
+  append_number(bytes, data);
+  bytes.append("BIN\0", 4);
+  for (std::uint32_t i = 0; i < vertices; ++i) sheet.append_vertex(bytes, i);
+  sheet.for_each_triangle([&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    for (const std::uint32_t i : {a, b, c}) append_number(bytes, i);
+  });
+  return bytes;
+}
+
 /// A generated file, which is removed at the end of the program.
 struct TemporaryFile {
   TemporaryFile(const char* extension, const std::string& bytes)
@@ -96,13 +122,15 @@ struct TemporaryFile {
 const std::string& file_of(int format) {
   static const TemporaryFile ply(".ply", ply_bytes());
   static const TemporaryFile stl(".stl", stl_bytes());
-  return format == 0 ? ply.path : stl.path;
+  static const TemporaryFile glb(".glb", glb_bytes());
+  return format == 0 ? ply.path : format == 1 ? stl.path : glb.path;
 }
 
 void report(benchmark::State& state, const std::string& path) {
   const auto bytes = static_cast<double>(fs::file_size(path));
   state.counters["MB/s"] = benchmark::Counter(bytes / 1e6, benchmark::Counter::kIsIterationInvariantRate);
-  state.SetLabel(state.range(0) == 0 ? "PLY" : "STL");
+  constexpr const char* kNames[] = {"PLY", "STL", "GLB"};
+  state.SetLabel(kNames[state.range(0)]);
 }
 
 void load(benchmark::State& state) {
@@ -110,7 +138,7 @@ void load(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(load_mesh(path).mesh.indices.data());
   report(state, path);
 }
-BENCHMARK(load)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(load)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// As `cat` and memcpy do.
 void read_and_copy(benchmark::State& state) {
@@ -128,7 +156,7 @@ void read_and_copy(benchmark::State& state) {
   }
   report(state, path);
 }
-BENCHMARK(read_and_copy)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(read_and_copy)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace oktett::bench

@@ -27,7 +27,12 @@ include(cmake/public_headers.cmake)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
 target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
 target_link_libraries(oktett
-  PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt PNG::PNG OpenEXR::OpenEXR ${CMAKE_DL_LIBS})
+  PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt PNG::PNG ZLIB::ZLIB OpenEXR::OpenEXR
+  ${OKTETT_GLTF_LIBRARIES} ${CMAKE_DL_LIBS})
+
+file(GLOB OKTETT_GLTF_SOURCES CONFIGURE_DEPENDS io/gltf/*.cpp)
+set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_DEFINITIONS ${OKTETT_GLTF_DEFINITIONS})
+set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY INCLUDE_DIRECTORIES ${OKTETT_GLTF_INCLUDES})
 
 # Holds a copy of the scalar traversal: compiled as that is. GCC 12 warns of lanes that a mask leaves out.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp

@@ -36,7 +36,7 @@ on every machine.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME liboktett-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-  "oktett (= ${PROJECT_VERSION}), libtbb-dev, libfmt-dev, libyaml-cpp-dev, libpng-dev, libopenexr-dev, zlib1g-dev")
+  "oktett (= ${PROJECT_VERSION}), libtbb-dev, libfmt-dev, libyaml-cpp-dev, libpng-dev, libopenexr-dev, zlib1g-dev${OKTETT_DEB_GLTF}")
 set(CPACK_COMPONENT_DEV_DESCRIPTION "ray tracing library - development files
 Oktett is a C++20 library that builds trees over triangle meshes and exact
 surfaces, traces batches of rays through them and renders pictures.

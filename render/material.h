@@ -2,6 +2,7 @@
 /// \file Materials and textures as data.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,6 +13,9 @@
 
 namespace oktett {
 
+/// A channel of an image as it is stored. An image without alpha has 1 there.
+enum class ImageChannel : std::uint8_t { red, green, blue, alpha };
+
 /// An image file and how it is laid over the uv square, or a pattern. ImageTextures reads the file.
 struct Texture {
   std::string path;                         ///< of the image; empty for a pattern
@@ -21,6 +25,10 @@ struct Texture {
   float gain = 1;                           ///< multiplies the texel (MTL `-mm base gain`)
   float base = 0;                           ///< added to the texel (MTL `-mm base gain`)
   std::optional<PatternTexture> pattern{};  ///< instead of an image; only gain and base apply to it
+  /// What a number is taken from (colours and normals are those of all channels).
+  ImageChannel channel = ImageChannel::red;
+  /// If not null, the bytes of the image file; `path` is only its name then.
+  std::shared_ptr<const std::string> content{};
   bool operator==(const Texture&) const = default;
 };
 

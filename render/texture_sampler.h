@@ -15,7 +15,7 @@ class TextureSampler {
   /// Filtered linear Rec.709 colour of texture `index` (into Scene::textures) at `uv`; (0,0) is the lower
   /// left corner. `dx` and `dy` are the changes of uv from this pixel to its neighbours, zero when unknown.
   virtual Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
-  /// The same for data that carries no colour space (opacity, height): the first channel as stored.
+  /// The same for data that carries no colour space (opacity, height): the texture's channel as stored.
   virtual float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const = 0;
   /// The same for tangent-space normals: the first three channels as stored. (0.5, 0.5, 1), the answer of
   /// samplers without normal maps, leaves the normal as it is.

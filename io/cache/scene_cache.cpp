@@ -93,7 +93,8 @@ SceneCache* SceneCache::current() { return current_cache; }
 MeshFile SceneCache::load_mesh(const std::string& path, const MeshOptions& options) {
   const std::optional<FileStamp> stamp = stamp_of(path);
   // What is wrong with the file is said by load_mesh.
-  if (!stamp || stamp->size < options_.least_file_bytes) return oktett::load_mesh(path, options);
+  if (!stamp || stamp->size < options_.least_file_bytes || !can_parse_mesh(path))
+    return oktett::load_mesh(path, options);
   MeshEntry entry;
   std::error_code error;
   entry.path = std::filesystem::canonical(path, error).string();

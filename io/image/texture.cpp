@@ -15,7 +15,7 @@ namespace oktett {
 ImageTextures::ImageTextures(std::vector<Texture> textures) {
   std::set<std::string> refused;
   for (Texture& texture : textures) {
-    if (texture.path.empty()) continue;
+    if (texture.path.empty() || texture.content) continue;
     note_file_read(texture.path);
     const std::string why = why_not_an_image(texture.path);
     if (why.empty()) {

@@ -14,7 +14,7 @@ namespace oktett {
 /// footprint is known.
 ///
 /// Colours are made linear before they are filtered: 8-bit images count as sRGB unless the file says
-/// otherwise. `value` gives the first channel as stored, `normal` the first three. Unassociated alpha is
+/// otherwise. `value` gives the texture's channel as stored, `normal` the first three. Unassociated alpha is
 /// ignored. uv is multiplied by `scale`, moved by `offset`, then repeated or clamped; (0, 0) is the lower
 /// left corner of the image. The result is base + gain * texel.
 ///

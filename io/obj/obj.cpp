@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "io/obj/parsed_obj.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett {
 namespace {
@@ -131,7 +131,7 @@ class ObjLoad {
 
   const std::string path_;
   const ObjOptions options_;
-  const MappedFile file_;
+  const FileContent file_;
   std::string_view text_;
   std::vector<ObjChunk> chunks_;
   ObjCounts total_;

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "io/ply/body.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett {
 namespace {
@@ -204,7 +204,7 @@ class PlyLoad {
 
   const std::string path_;
   const MeshReadOptions options_;
-  const MappedFile file_;
+  const FileContent file_;
   const std::string_view text_;
   LineCounter lines_{text_};
   bool in_header_ = true;

@@ -12,13 +12,11 @@
 #include "io/text/files_read.h"
 
 namespace oktett {
-namespace {
 
-/// Images that cannot be read at all are told of here, where the statement that names them is known. Their
-/// textures lose the path, and are white.
 void check_textures(MeshFile& file) {
   for (std::size_t i = 0; i < file.textures.size(); ++i) {
     Texture& texture = file.textures[i];
+    if (texture.content) continue;
     note_file_read(texture.path);
     const std::string why = why_not_an_image(texture.path);
     if (why.empty()) continue;
@@ -28,7 +26,6 @@ void check_textures(MeshFile& file) {
   }
 }
 
-/// Appends what `file` brings to `scene` and returns the new index of each of its materials.
 std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene) {
   const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
   std::move(file.textures.begin(), file.textures.end(), std::back_inserter(scene.textures));
@@ -43,8 +40,6 @@ std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene) {
   return indices;
 }
 
-}  // namespace
-
 std::string canonical_path(const std::string& path) {
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::canonical(path, error);
@@ -58,12 +53,16 @@ const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, const MeshO
   if (found != entries_.end()) return found->second;
   SceneCache* const cache = SceneCache::current();
   MeshFile file = cache != nullptr ? cache->load_mesh(path, options) : load_mesh(path, options);
+  return entries_.emplace(key, add(std::move(file), scene)).first->second;
+}
+
+MeshLibrary::Entry MeshLibrary::add(MeshFile file, Scene& scene) {
   check_textures(file);
   Entry entry;
   entry.slot_materials = append_materials(file, scene);
   entry.mesh = std::make_shared<const TriangleMesh>(std::move(file.mesh));
   std::move(file.warnings.begin(), file.warnings.end(), std::back_inserter(scene.warnings));
-  return entries_.emplace(key, std::move(entry)).first->second;
+  return entry;
 }
 
 }  // namespace oktett

@@ -17,6 +17,13 @@ namespace oktett {
 /// One path for all that lead to the same file; `path` itself if there is no such file.
 std::string canonical_path(const std::string& path);
 
+/// Images that cannot be read at all are told of in the warnings of `file`, where the statement that names
+/// them is known. Their textures lose the path, and are white.
+void check_textures(MeshFile& file);
+
+/// Appends the materials and textures of `file` to `scene` and returns the new index of each material.
+std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene);
+
 class MeshLibrary {
  public:
   struct Entry {
@@ -28,6 +35,9 @@ class MeshLibrary {
   /// The mesh of a file that exists. The first time it is read and its materials, textures and warnings are
   /// appended to `scene`. Throws Error as load_mesh does.
   const Entry& load(const std::string& path, const MeshOptions& options, Scene& scene);
+
+  /// What `file` brings to `scene`, where it is not kept in a library.
+  static Entry add(MeshFile file, Scene& scene);
 
  private:
   std::map<std::pair<std::string, bool>, Entry> entries_;  ///< by canonical path and MeshOptions::weld

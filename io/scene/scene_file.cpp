@@ -1,12 +1,14 @@
 #include "io/scene/scene_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "io/mesh/load/load_mesh.h"
+#include "io/scene/gltf.h"
 #include "io/scene/readers.h"
 #include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
@@ -20,6 +22,10 @@ namespace {
 
 constexpr std::size_t kMaxIncludeDepth = 16;
 constexpr std::size_t kMaxIncludedFiles = 256;
+/// Behind things that stand in no scene.
+constexpr Color kPlainBackground{0.30f, 0.34f, 0.40f};
+/// Per pixel, of a glTF file with a camera or lights of its own.
+constexpr std::uint32_t kSceneSamples = 64;
 
 /// Reads a scene file and, before its own sections, those that it includes.
 class FileReader {
@@ -88,6 +94,12 @@ class FileReader {
       const std::string canonical = canonical_path(path);
       check_cycle(*item, path, canonical);
       if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) continue;
+      if (is_gltf_file(path)) {
+        seen_.push_back(canonical);
+        add_gltf(path, load_gltf_scene(path), load_.scene);
+        load_.prototype_levels.resize(load_.scene.prototypes.size());
+        continue;
+      }
       if (chain_.size() > kMaxIncludeDepth)
         throw Error(item->where(),
                     "included files are nested deeper than " + std::to_string(kMaxIncludeDepth) + " levels");
@@ -117,6 +129,22 @@ void expect_readable(const std::string& path) {
     throw Error(Location{path, 0, 0}, reason, ErrorKind::io);
 }
 
+/// A scene of its own: path tracing, which its materials are made for.
+Scene scene_from_gltf(const std::string& path, GltfScene file) {
+  Scene scene;
+  scene.source = path;
+  scene.background = kPlainBackground;
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.samples = kSceneSamples;
+  scene.film.tone.kind = ToneKind::neutral;
+  if (!file.lights.empty()) scene.background = {0, 0, 0};
+  if (file.aspect > 0)
+    scene.film.width =
+        static_cast<std::uint32_t>(std::clamp(std::round(scene.film.height * file.aspect), 1.0, 4096.0));
+  add_gltf(path, std::move(file), scene);
+  return scene;
+}
+
 }  // namespace
 
 void read_scene_tree(const YamlNode& root) {
@@ -138,7 +166,15 @@ Scene scene_from_mesh(const std::string& path) {
   Scene scene;
   scene.source = path;
   MeshLibrary meshes;
-  const MeshLibrary::Entry& entry = meshes.load(path, {.weld = repeats_vertices(path)}, scene);
+  MeshLibrary::Entry entry;
+  if (is_gltf_file(path)) {
+    GltfScene file = load_gltf_scene(path);
+    if (file.camera || !file.lights.empty() || !can_be_one_mesh(file))
+      return scene_from_gltf(path, std::move(file));
+    entry = MeshLibrary::add(one_mesh(path, std::move(file)), scene);
+  } else {
+    entry = meshes.load(path, {.weld = repeats_vertices(path)}, scene);
+  }
   MeshShape shape;
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
@@ -151,11 +187,12 @@ Scene scene_from_mesh(const std::string& path) {
     scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
     return scene;
   }
-  scene.camera.up = guess_up(*shape.mesh);
-  scene.background = {0.30f, 0.34f, 0.40f};
+  // In glTF, +y points up.
+  if (!is_gltf_file(path)) scene.camera.up = guess_up(*shape.mesh);
+  scene.background = kPlainBackground;
   Object object;
   object.shape = std::move(shape);
-  object.name = std::filesystem::path(path).stem().string();
+  object.name = std::filesystem::path(without_packing(path)).stem().string();
   object.where = {path, 0, 0};
   scene.objects.push_back(std::move(object));
   return scene;

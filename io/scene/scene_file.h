@@ -16,6 +16,8 @@ using Definitions = std::map<std::string, std::string>;
 Scene load_scene_file(const std::string& path, const Definitions& definitions = {});
 
 /// A scene of one mesh file. Camera and lights are left to render(): camera_given and lights_given are false.
+/// A glTF file that has a camera or lights, or shows too many instances for one mesh, is a scene of its own
+/// instead.
 /// Throws Error as load_obj does.
 Scene scene_from_mesh(const std::string& path);
 

@@ -13,7 +13,7 @@
 namespace oktett {
 namespace {
 
-constexpr const char* kImageKeys[] = {"file", "scale", "offset", "clamp"};
+constexpr const char* kImageKeys[] = {"file", "scale", "offset", "clamp", "channel"};
 /// Most colours of a pattern.
 constexpr std::size_t kMostColors = 64;
 
@@ -70,6 +70,11 @@ void read_image(SceneLoad& load, const Fields& fields, Texture& texture) {
   read_layout(values, fields["scale"], texture.scale, true);
   read_layout(values, fields["offset"], texture.offset, false);
   values.read(fields["clamp"], texture.clamp);
+  if (const YamlNode* channel = fields["channel"])
+    texture.channel = values.choice<ImageChannel>(*channel, {{"red", ImageChannel::red},
+                                                             {"green", ImageChannel::green},
+                                                             {"blue", ImageChannel::blue},
+                                                             {"alpha", ImageChannel::alpha}});
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "io/mesh/numbers.h"
 #include "io/stl/facets.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett {
 namespace {
@@ -138,7 +138,7 @@ class StlLoad {
 
   const std::string path_;
   const MeshReadOptions options_;
-  const MappedFile file_;
+  const FileContent file_;
   const std::string_view text_;
   ParsedMesh parsed_;
 };

@@ -11,4 +11,10 @@ std::string lower_case_extension(const std::string& path) {
   return extension;
 }
 
+bool is_packed(const std::string& path) { return lower_case_extension(path) == ".gz"; }
+
+std::string without_packing(const std::string& path) {
+  return is_packed(path) ? path.substr(0, path.size() - 3) : path;
+}
+
 }  // namespace oktett

@@ -157,6 +157,11 @@ bool is_neutral(const Scene& scene) {
 
 }  // namespace
 
+bool is_mesh_alone(const Scene& scene) {
+  if (scene.camera_given || scene.lights_given || scene.objects.size() > 1) return false;
+  return scene.objects.empty() || std::holds_alternative<MeshShape>(scene.objects[0].shape);
+}
+
 void apply_look(Scene& scene, Look look) {
   if (scene.objects.empty()) return;
   auto& shape = std::get<MeshShape>(scene.objects[0].shape);

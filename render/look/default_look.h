@@ -12,6 +12,9 @@ enum class Look {
   wire,     ///< the edges of triangles, without a ground
 };
 
+/// Whether the scene holds at most one object, a mesh, and neither a camera nor lights.
+bool is_mesh_alone(const Scene& scene);
+
 /// Completes a scene that holds nothing but one mesh: camera, ground, light, integrator, and a material for
 /// what has none. A room is shown from inside. Film, seed and what else it says stay. A scene without objects
 /// stays as it is.

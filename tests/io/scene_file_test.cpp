@@ -315,7 +315,8 @@ TEST(LoadScene, ChoosesByExtension) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(files.without_directory(e.what()),
-              "a.3ds: unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj, .ply or .stl)");
+              "a.3ds: unknown kind of file; expected a scene (.yaml, .yml) or a mesh (.obj, .ply, .stl, "
+              ".gltf or .glb, also packed as .gz)");
     EXPECT_EQ(e.kind(), ErrorKind::bad_input);
   }
 }

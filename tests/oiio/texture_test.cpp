@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -104,6 +105,51 @@ TEST(ImageTextures, AlphaDoesNotDarkenColours) {
   const ImageTextures textures(
       {texture_of(write_pixels(dir.file("a.png"), 1, 1, 4, Bytes{255, 255, 255, 0}))});
   EXPECT_EQ(textures.color(0, {0, 0}, kNoChange, kNoChange), (Color{1, 1, 1}));
+}
+
+// Numbers of one image from each of its channels, beside its colours; an image without alpha is opaque.
+TEST(ImageTextures, ChannelsOfNumbers) {
+  const TempDir dir;
+  const std::string with_alpha = write_pixels(dir.file("a.png"), 1, 1, 4, Bytes{10, 100, 200, 50});
+  const std::string grey = write_pixels(dir.file("b.png"), 1, 1, 2, Bytes{30, 60});
+  const std::string opaque = write_pixels(dir.file("c.png"), 1, 1, 3, Bytes{10, 100, 200});
+  std::vector<Texture> list;
+  for (const std::string& path : {with_alpha, grey, opaque})
+    for (const ImageChannel channel :
+         {ImageChannel::red, ImageChannel::green, ImageChannel::blue, ImageChannel::alpha}) {
+      list.push_back(texture_of(path));
+      list.back().channel = channel;
+    }
+  const ImageTextures textures(list);
+  const int expected[] = {10, 100, 200, 50, 30, 30, 30, 60, 10, 100, 200, 255};
+  for (std::uint32_t i = 0; i < 12; ++i)
+    EXPECT_NEAR(textures.value(i, {0.3f, 0.6f}, kNoChange, kNoChange), static_cast<float>(expected[i]) / 255,
+                2e-4f)
+        << i;
+  EXPECT_NEAR(textures.color(3, {0, 0}, kNoChange, kNoChange).y, srgb_to_linear(100 / 255.0f), 2e-4f);
+}
+
+// Bytes in memory give what the same bytes in a file do.
+TEST(ImageTextures, ImagesInMemory) {
+  const TempDir dir;
+  std::vector<Texture> list;
+  for (const char* name : {"a.png", "a.jpg", "a.webp"}) {
+    const std::string path = write_pixels(dir.file(name), 2, 2, 3, Bytes(12, 77));
+    list.push_back(texture_of(path));
+    list.push_back(texture_of("model.glb, images[" + std::to_string(list.size()) + "]"));
+    list.back().content = std::make_shared<const std::string>(test::file_content(path));
+  }
+  list.push_back(texture_of("no image"));
+  list.back().content = std::make_shared<const std::string>("\x89PNG and then nothing");
+  const ImageTextures textures(list);
+  for (std::uint32_t i = 0; i < 6; i += 2) {
+    const Color color = textures.color(i, {0.5f, 0.5f}, kNoChange, kNoChange);
+    EXPECT_LT(color.x, 0.2f) << i;
+    EXPECT_EQ(textures.color(i + 1, {0.5f, 0.5f}, kNoChange, kNoChange), color) << i;
+  }
+  EXPECT_EQ(textures.color(6, {0, 0}, kNoChange, kNoChange), (Color{1, 1, 1}));
+  ASSERT_EQ(textures.warnings().size(), 1u);
+  EXPECT_EQ(textures.warnings()[0].where.file, "no image");
 }
 
 TEST(ImageTextures, ScaleOffsetGainAndBase) {

@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include "core/error.h"
@@ -72,13 +73,33 @@ ColorEncoding color_encoding(const OIIO::ImageSpec& spec) {
   return {};
 }
 
-OIIO::ImageInput::unique_ptr open_image(const std::string& path) {
-  check_exists(path);
+/// Opens the image that `memory` holds, or returns null.
+static OIIO::ImageInput::unique_ptr open_memory(OIIO::Filesystem::IOMemReader& memory,
+                                                const OIIO::ImageSpec& config) {
+  char start[12] = {};
+  memory.pread(start, sizeof start, 0);
+  const std::string_view text(start, sizeof start);
+  const char* format = nullptr;
+  if (text.starts_with("\x89PNG")) format = "png";
+  if (text.starts_with("\xff\xd8\xff")) format = "jpeg";
+  if (text.starts_with("RIFF") && text.substr(8) == "WEBP") format = "webp";
+  if (format == nullptr) return nullptr;
+  OIIO::ImageInput::unique_ptr input = OIIO::ImageInput::create(format);
+  OIIO::ImageSpec spec;
+  // The name says nothing but the format: no file of it is opened.
+  if (input == nullptr || !input->set_ioproxy(&memory) ||
+      !input->open(std::string("image.") + format, spec, config))
+    return nullptr;
+  return input;
+}
+
+OIIO::ImageInput::unique_ptr open_image(const std::string& path, OIIO::Filesystem::IOMemReader* memory) {
+  if (memory == nullptr) check_exists(path);
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
   OIIO::ImageInput::unique_ptr input;
   try {
-    input = OIIO::ImageInput::open(path, &config);
+    input = memory != nullptr ? open_memory(*memory, config) : OIIO::ImageInput::open(path, &config);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -2,6 +2,7 @@
 /// \file The shared library of images, see io/image/library.h, and what its parts share. Not for other
 /// folders.
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <cstdint>
@@ -41,7 +42,11 @@ ColorEncoding color_encoding(const OIIO::ImageSpec& spec);
 /// Opens an image for reading with colours as they are stored, not multiplied by an unassociated alpha. The
 /// file is not trusted: throws Error of kind io if it cannot be opened, is not a plain two-dimensional image,
 /// or would take more than a quarter of this machine's memory once read.
-OIIO::ImageInput::unique_ptr open_image(const std::string& path);
+///
+/// With `memory`, its bytes are those of the file, and `path` only names it; they must be a PNG, JPEG or WebP
+/// image. It must live as long as the result.
+OIIO::ImageInput::unique_ptr open_image(const std::string& path,
+                                        OIIO::Filesystem::IOMemReader* memory = nullptr);
 
 /// Reads channels [begin, end) of all pixels, row by row from the top, converted to `type`. Throws Error of
 /// kind io, which names `path`, if the file is damaged.

@@ -21,7 +21,7 @@ using OIIO::TextureSystem;
 
 /// An image file, shared by all textures that show it.
 struct ImageFile {
-  std::string path;
+  ImageSource source;
   TextureSystem::TextureHandle* handle = nullptr;  ///< null: white
   int entry = -1;                                  ///< in the texture cache; -1: none
   std::string problem;
@@ -69,12 +69,12 @@ OIIO::TextureOpt lookup_options(bool clamp, int first_channel) {
 /// Reads the header only.
 void inspect(ImageFile& file) {
   try {
-    const OIIO::ImageSpec spec = open_image(file.path)->spec();
+    const OIIO::ImageSpec spec = OpenedImage(file.source).input->spec();
     const double channel_bytes = spec.format.size() == 1 ? 2 : 4;
-    file.bytes = kTextureChannels * channel_bytes * spec.width * spec.height * 4 / 3;
+    file.bytes = file.source.channels() * channel_bytes * spec.width * spec.height * 4 / 3;
   } catch (const Error& error) {
     const std::string message = error.what();
-    const std::string place = file.path + ": ";
+    const std::string place = file.source.path + ": ";
     file.problem = message.starts_with(place) ? message.substr(place.size()) : message;
   }
 }
@@ -82,12 +82,12 @@ void inspect(ImageFile& file) {
 /// Brings the finest level into the cache, which is also how damage beyond the header is found.
 void load(ImageFile& file) {
   TextureSystem& system = texture_system();
-  file.entry = add_to_cache(file.path);
+  file.entry = add_to_cache(file.source);
   TextureSystem::TextureHandle* handle = system.get_texture_handle(entry_name(file.entry));
-  float texel[kTextureChannels];
+  float texel[kMostTextureChannels];
   OIIO::TextureOpt options = lookup_options(true, 0);
   if (handle != nullptr && system.good(handle) &&
-      system.texture(handle, nullptr, options, 0.5f, 0.5f, 0, 0, 0, 0, kTextureChannels, texel)) {
+      system.texture(handle, nullptr, options, 0.5f, 0.5f, 0, 0, 0, 0, file.source.channels(), texel)) {
     file.handle = handle;
   } else {
     file.problem = first_line(system.geterror(), "cannot read the image: damaged file");
@@ -112,7 +112,8 @@ class FileTextures final : public TextureSampler {
     if (memory_was_refused()) throw std::bad_alloc();
     for (const ImageFile& file : files_)
       if (file.handle == nullptr)
-        warnings.push_back({Location{file.path}, "texture not used: " + file.problem + "; white instead"});
+        warnings.push_back(
+            {Location{file.source.path}, "texture not used: " + file.problem + "; white instead"});
   }
   ~FileTextures() override {
     for (const ImageFile& file : files_)
@@ -133,7 +134,9 @@ class FileTextures final : public TextureSampler {
 
   float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
     float texel;
-    if (!look_up(index, uv, dx, dy, kStoredChannel, 1, &texel)) return 1;
+    if (index >= textures_.size()) return 1;
+    const int channel = kStoredChannel + static_cast<int>(textures_[index].channel);
+    if (!look_up(index, uv, dx, dy, channel, 1, &texel)) return 1;
     return texel * textures_[index].gain + textures_[index].base;
   }
 
@@ -147,14 +150,16 @@ class FileTextures final : public TextureSampler {
   static constexpr std::size_t kNoFile = ~std::size_t{0};  ///< of a pattern, or white
 
   void list_files() {
-    std::map<std::string, std::size_t> known;
+    std::map<std::pair<std::string, const std::string*>, std::size_t> known;
     for (const Texture& texture : textures_) {
       if (texture.path.empty()) {
         file_of_.push_back(kNoFile);
         continue;
       }
-      const auto [place, is_new] = known.try_emplace(texture.path, files_.size());
-      if (is_new) files_.push_back({texture.path, nullptr, -1, {}, 0});
+      const auto [place, is_new] = known.try_emplace({texture.path, texture.content.get()}, files_.size());
+      if (is_new) files_.push_back({{texture.path, texture.content}, nullptr, -1, {}, 0});
+      ImageSource& source = files_[place->second].source;
+      source.alpha = source.alpha || texture.channel == ImageChannel::alpha;
       file_of_.push_back(place->second);
     }
   }

@@ -8,6 +8,10 @@
 
 namespace oktett {
 
+/// Whether files of the format of `path` are read in two steps: not those of glTF, whose numbers stand in the
+/// file as they are in memory.
+bool can_parse_mesh(const std::string& path);
+
 /// What the mesh file `path` says by itself. Throws Error as load_mesh does.
 ParsedMesh parse_mesh(const std::string& path);
 

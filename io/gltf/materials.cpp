@@ -1,0 +1,167 @@
+#include "io/gltf/materials.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "io/obj/mtl_texture.h"
+#include "render/material.h"
+
+namespace oktett {
+namespace {
+
+using namespace std::string_view_literals;
+
+/// How steeply a mask goes from nothing to all: a hard edge, as glTF has it.
+constexpr float kMaskSlope = 1e4f;
+
+/// Whether the bytes begin like an image of the kinds that glTF knows.
+bool is_known_image(std::string_view bytes) {
+  return bytes.starts_with("\x89PNG\r\n"sv) || bytes.starts_with("\xff\xd8\xff"sv) ||
+         (bytes.starts_with("RIFF"sv) &&
+          bytes.substr(std::min<std::size_t>(bytes.size(), 8)).starts_with("WEBP"sv));
+}
+
+/// Converts all materials of a file.
+class Materials {
+ public:
+  Materials(const GltfFile& file, GltfScene& scene) : file_(file), scene_(scene), list_(scene.textures) {}
+
+  void run() {
+    for (const GltfMaterial& m : file_.model().materials) scene_.materials.push_back(convert(m));
+    scene_.texture_places.assign(scene_.textures.size(), Location{file_.path()});
+  }
+
+ private:
+  Material convert(const GltfMaterial& in) {
+    Material m;
+    m.name = in.name;
+    m.color = in.base_color;
+    m.emission = in.emission, m.emits_behind = in.double_sided;
+    m.color_texture = add(in.base_texture);
+    m.normal_texture = add(in.normal_texture);
+    m.emission_texture = add(in.emission_texture);
+    set_opacity(in, m);
+    PrincipledMaterial principled;
+    set_surface(in, principled);
+    if (in.unlit) {
+      // What it shows does not depend on light.
+      m.emission = in.base_color, m.emission_texture = m.color_texture, m.emits_behind = true;
+      m.color = {0, 0, 0}, m.color_texture = kNoId;
+      principled = {};
+      principled.parameters.specular = 0, principled.parameters.roughness = 1;
+    }
+    principled.parameters.base_color = m.color;
+    m.principled = principled;
+    resemble_principled(m);
+    note_uv_sets(in);
+    return m;
+  }
+
+  void set_opacity(const GltfMaterial& in, Material& m) {
+    if (in.alpha_mode == GltfMaterial::Alpha::opaque) return;
+    if (in.alpha_mode == GltfMaterial::Alpha::blend) {
+      m.opacity = in.alpha;
+      m.opacity_texture = add(in.base_texture, ImageChannel::alpha);
+    } else if (in.base_texture.texture == kNoId) {
+      m.opacity = in.alpha >= in.alpha_cutoff ? 1 : 0;
+    } else {
+      m.opacity_texture = add(in.base_texture, ImageChannel::alpha, kMaskSlope * in.alpha,
+                              0.5f - kMaskSlope * in.alpha_cutoff);
+    }
+  }
+
+  void set_surface(const GltfMaterial& in, PrincipledMaterial& out) {
+    PrincipledParameters& p = out.parameters;
+    p.metallic = in.metallic, p.roughness = in.roughness;
+    out.metallic_texture = add(in.metallic_roughness_texture, ImageChannel::blue);
+    out.roughness_texture = add(in.metallic_roughness_texture, ImageChannel::green);
+    p.ior = std::clamp(in.ior == 0 ? 4.0f : in.ior, 1.0f, 4.0f);
+    p.specular = 0.5f * in.specular;
+    out.specular_texture = add(in.specular_texture, ImageChannel::alpha);
+    p.transmission = in.transmission, p.thin = in.thickness == 0;
+    out.transmission_texture = add(in.transmission_texture, ImageChannel::red);
+    p.coat = in.coat, p.coat_roughness = in.coat_roughness;
+    out.coat_texture = add(in.coat_texture, ImageChannel::red);
+    out.coat_roughness_texture = add(in.coat_roughness_texture, ImageChannel::green);
+    if (in.sheen_color == Color{0, 0, 0}) return;
+    p.sheen = 1, p.sheen_color = in.sheen_color, p.sheen_roughness = in.sheen_roughness;
+    out.sheen_color_texture = add(in.sheen_color_texture);
+    out.sheen_roughness_texture = add(in.sheen_roughness_texture, ImageChannel::alpha);
+  }
+
+  /// Adds the texture, whose number is gain * texel + base, and returns its index; kNoId for none.
+  std::uint32_t add(const GltfTextureUse& use, ImageChannel channel = ImageChannel::red, float gain = 1,
+                    float base = 0) {
+    if (use.texture == kNoId) return kNoId;
+    const GltfTexture& in = file_.model().textures[use.texture];
+    Texture texture;
+    texture.clamp = in.clamp, texture.channel = channel, texture.gain = gain, texture.base = base;
+    // Here v points up.
+    texture.scale = {use.scale.x, use.scale.y, 1};
+    texture.offset = {use.offset.x, 1 - use.scale.y - use.offset.y, 0};
+    if (in.image != kNoId) set_image(in.image, texture);
+    return list_.add(texture);
+  }
+
+  void set_image(std::uint32_t number, Texture& texture) {
+    const auto [found, is_new] = images_.try_emplace(number);
+    if (is_new) found->second = image(number);
+    texture.path = found->second.path, texture.content = found->second.content;
+  }
+
+  /// The path and content of an image.
+  Texture image(std::uint32_t number) {
+    const GltfSource& source = file_.model().images[number];
+    const std::string where = "images[" + std::to_string(number) + "]";
+    Texture texture;
+    std::string bytes;
+    if (source.view != kNoId)
+      bytes = file_.bytes(file_.model().views[source.view].range, where);
+    else if (source.data_uri != kNoId)
+      bytes = file_.data_uri(source.data_uri, where);
+    else if (source.uri.starts_with("data:"))
+      bytes = decode_data_uri(file_.path(), where, source.uri);
+    else
+      texture.path = file_.path_of(source.uri, where);
+    if (!texture.path.empty()) return texture;
+    if (is_known_image(bytes)) {
+      texture.path = file_.path() + ", " + where;
+      texture.content = std::make_shared<const std::string>(std::move(bytes));
+    } else {
+      scene_.warnings.push_back(
+          {Location{file_.path()}, where + ": is no PNG, JPEG or WebP image; white instead"});
+    }
+    return texture;
+  }
+
+  void note_uv_sets(const GltfMaterial& m) {
+    std::uint32_t used = kNoId;
+    bool differ = false;
+    for (const GltfTextureUse* use :
+         {&m.base_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
+          &m.transmission_texture, &m.coat_texture, &m.specular_texture, &m.coat_roughness_texture,
+          &m.sheen_color_texture, &m.sheen_roughness_texture}) {
+      if (use->texture == kNoId) continue;
+      differ = differ || (used != kNoId && use->uvs != used);
+      if (used == kNoId) used = use->uvs;
+    }
+    if (differ)
+      scene_.warnings.push_back(
+          {Location{file_.path()}, "material '" + m.name +
+                                       "': its textures lie by several sets of coordinates; the "
+                                       "first of them is used for all"});
+  }
+
+  const GltfFile& file_;
+  GltfScene& scene_;
+  TextureList list_;
+  std::map<std::uint32_t, Texture> images_;
+};
+
+}  // namespace
+
+void add_gltf_materials(const GltfFile& file, GltfScene& scene) { Materials(file, scene).run(); }
+
+}  // namespace oktett

@@ -1,0 +1,13 @@
+#pragma once
+/// \file Materials of glTF files as ours. Within io/ only.
+
+#include "io/gltf/gltf.h"
+#include "io/gltf/gltf_file.h"
+
+namespace oktett {
+
+/// Sets the materials and textures of `scene`; the images of textures that are not in files are copied from
+/// the buffers. Throws Error.
+void add_gltf_materials(const GltfFile& file, GltfScene& scene);
+
+}  // namespace oktett

@@ -1,0 +1,75 @@
+#include "io/gltf/accessor.h"
+
+#ifdef OKTETT_HAVE_MESHOPTIMIZER
+#include <meshoptimizer.h>
+#endif
+
+namespace oktett {
+
+#ifdef OKTETT_HAVE_MESHOPTIMIZER
+
+namespace {
+
+/// The library demands it of its arguments.
+bool are_proper(const GltfPacking& p) {
+  using Filter = GltfPacking::Filter;
+  if (p.mode != GltfPacking::Mode::attributes)
+    return (p.stride == 2 || p.stride == 4) && p.filter == Filter::none &&
+           (p.mode == GltfPacking::Mode::indices || p.count % 3 == 0);
+  if (p.stride == 0 || p.stride > 256 || p.stride % 4 != 0) return false;
+  if (p.filter == Filter::octahedral) return p.stride == 4 || p.stride == 8;
+  return p.filter != Filter::quaternion || p.stride == 8;
+}
+
+int unpack_to(void* out, const GltfPacking& p, std::string_view bytes) {
+  const auto* const in = reinterpret_cast<const unsigned char*>(bytes.data());
+  switch (p.mode) {
+    case GltfPacking::Mode::attributes:
+      return meshopt_decodeVertexBuffer(out, p.count, p.stride, in, bytes.size());
+    case GltfPacking::Mode::triangles:
+      return meshopt_decodeIndexBuffer(out, p.count, p.stride, in, bytes.size());
+    case GltfPacking::Mode::indices:
+      return meshopt_decodeIndexSequence(out, p.count, p.stride, in, bytes.size());
+  }
+  return 1;
+}
+
+void apply_filter(void* data, const GltfPacking& p) {
+  switch (p.filter) {
+    case GltfPacking::Filter::none:
+      return;
+    case GltfPacking::Filter::octahedral:
+      return meshopt_decodeFilterOct(data, p.count, p.stride);
+    case GltfPacking::Filter::quaternion:
+      return meshopt_decodeFilterQuat(data, p.count, p.stride);
+    case GltfPacking::Filter::exponential:
+      return meshopt_decodeFilterExp(data, p.count, p.stride);
+  }
+}
+
+}  // namespace
+
+std::string unpack_meshopt(const GltfFile& file, const GltfPacking& p, const std::string& where) {
+  const std::string_view bytes = file.bytes(p.packed, where);
+  if (!are_proper(p))
+    file.fail(where + ": its stride, count or filter do not go with its mode of compression");
+  // The densest data are those of equal vertices: 64 bytes come from one.
+  if (p.count > (std::uint64_t{1} << 32) || p.count * p.stride > 64 * bytes.size() + 65536)
+    file.fail(where + ": " + std::to_string(p.count) + " elements cannot be packed in " +
+              std::to_string(bytes.size()) + " bytes");
+  std::string out;
+  out.resize(p.count * p.stride);
+  if (unpack_to(out.data(), p, bytes) != 0) file.fail(where + ": its packed data are damaged");
+  apply_filter(out.data(), p);
+  return out;
+}
+
+#else
+
+std::string unpack_meshopt(const GltfFile& file, const GltfPacking&, const std::string& where) {
+  file.fail(where + ": is packed by meshoptimizer, without which this program is built");
+}
+
+#endif
+
+}  // namespace oktett

@@ -1,0 +1,198 @@
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/error.h"
+#include "io/gltf/gltf.h"
+#include "io/mesh/failure.h"
+#include "io/mesh/numbers.h"
+
+namespace oktett {
+namespace {
+
+/// Elements that nodes which show the same mesh may add: corners of four million triangles.
+constexpr std::uint64_t kMostAdded = 12'000'000;
+
+/// Elements in the columns of a mesh.
+struct Sizes {
+  std::uint64_t positions = 0, normals = 0, uvs = 0, corners = 0;
+
+  void add(const TriangleMesh& m) {
+    positions += m.positions.size(), normals += m.normals.size(), uvs += m.uvs.size(),
+        corners += m.indices.size();
+  }
+  std::uint64_t most() const { return std::max({positions, normals, uvs, corners}); }
+};
+
+Sizes once(const GltfScene& scene) {
+  Sizes sizes;
+  for (const GltfSharedMesh& shared : scene.meshes) sizes.add(*shared.mesh);
+  return sizes;
+}
+
+Sizes placed(const GltfScene& scene) {
+  Sizes sizes;
+  for (const GltfPlacement& placement : scene.placements) sizes.add(*scene.meshes[placement.mesh].mesh);
+  return sizes;
+}
+
+/// Calls f(i) for all i below `count` at the same time.
+template <class F>
+void for_all(std::size_t count, const F& f) {
+  oneapi::tbb::parallel_for(std::size_t{0}, (count + 65535) / 65536, [&](std::size_t task) {
+    for (std::size_t i = task * 65536; i < std::min(count, (task + 1) * 65536); ++i) f(i);
+  });
+}
+
+/// Appends meshes to one.
+class Joining {
+ public:
+  Joining(const std::string& path, const GltfScene& scene) : path_(path), scene_(scene) {
+    const Sizes sizes = placed(scene);
+    check_limit(path, sizes.positions, "vertices", 0xfffffffeu);
+    check_limit(path, sizes.corners / 3, "triangles", 0xfffffffeu);
+    mesh_.positions.resize_uninitialized(sizes.positions);
+    mesh_.normals.resize_uninitialized(sizes.normals);
+    mesh_.uvs.resize_uninitialized(sizes.uvs);
+    mesh_.indices.resize_uninitialized(sizes.corners);
+    if (sizes.normals > 0) mesh_.normal_indices.resize_uninitialized(sizes.corners);
+    if (sizes.uvs > 0) mesh_.uv_indices.resize_uninitialized(sizes.corners);
+  }
+
+  TriangleMesh run(const std::vector<std::vector<std::uint16_t>>& slots) {
+    if (!slots.empty()) mesh_.material_slots.resize_uninitialized(mesh_.triangle_count());
+    for (const GltfPlacement& placement : scene_.placements) {
+      const TriangleMesh& part = *scene_.meshes[placement.mesh].mesh;
+      move_points(placement, part);
+      copy_corners(placement.to_world.determinant() < 0, part);
+      if (!slots.empty()) {
+        const std::vector<std::uint16_t>& own = slots[placement.mesh];
+        for_all(part.triangle_count(), [&](std::size_t i) {
+          mesh_.material_slots[before_.corners / 3 + i] =
+              own[part.material_slots.empty() ? 0 : part.material_slots[i]];
+        });
+      }
+      before_.add(part);
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  void move_points(const GltfPlacement& placement, const TriangleMesh& part) {
+    const Affine& map = placement.to_world;
+    const bool is_identity = map.is_identity();
+    const Affine inverse = map.inverse();
+    for_all(part.positions.size(), [&](std::size_t i) {
+      Vec3f& out = mesh_.positions[before_.positions + i];
+      out = is_identity ? part.positions[i] : Vec3f(map.point(Vec3d(part.positions[i])));
+    });
+    for_all(part.normals.size(), [&](std::size_t i) {
+      Vec3f& out = mesh_.normals[before_.normals + i];
+      out = part.normals[i];
+      if (is_identity) return;
+      const Vec3d moved = inverse.normal_by_inverse(Vec3d(out));
+      const double size = length(moved);
+      if (size > 0) out = Vec3f(moved * (1 / size));
+    });
+    std::ranges::copy(part.uvs, mesh_.uvs.begin() + static_cast<std::ptrdiff_t>(before_.uvs));
+    for (std::size_t i = 0; i < part.positions.size() && !is_identity; ++i) {
+      const Vec3f& p = mesh_.positions[before_.positions + i];
+      for (const float x : {p.x, p.y, p.z})
+        if (!is_coordinate(x))
+          throw Error(Location{path_}, "node '" + placement.name + "': " + bad_coordinate(x));
+    }
+  }
+
+  /// A mirror turns the corners around, so that the front stays the front.
+  void copy_corners(bool is_mirror, const TriangleMesh& part) {
+    const auto copy = [&](const Column<std::uint32_t>& from, std::uint64_t shift, Column<std::uint32_t>& to) {
+      if (to.empty()) return;
+      for_all(part.indices.size(), [&](std::size_t i) {
+        const std::size_t corner = i % 3;
+        const std::size_t source = is_mirror && corner > 0 ? i - corner + 3 - corner : i;
+        const std::uint32_t index = from.empty() ? kNoId : from[source];
+        to[before_.corners + i] = index == kNoId ? kNoId : index + static_cast<std::uint32_t>(shift);
+      });
+    };
+    copy(part.indices, before_.positions, mesh_.indices);
+    copy(part.normal_indices, before_.normals, mesh_.normal_indices);
+    copy(part.uv_indices, before_.uvs, mesh_.uv_indices);
+  }
+
+  const std::string& path_;
+  const GltfScene& scene_;
+  TriangleMesh mesh_;
+  Sizes before_;
+};
+
+/// Gives each material that is shown a slot of the whole mesh.
+class Slots {
+ public:
+  Slots(const std::string& path, GltfScene& scene)
+      : path_(path), scene_(scene), slot_of_(scene.materials.size() + 1, kNoId) {
+    for (const GltfSharedMesh& shared : scene.meshes) {
+      std::vector<std::uint16_t>& own = own_.emplace_back();
+      for (const std::uint32_t material : shared.slots) own.push_back(slot(material));
+    }
+  }
+
+  std::vector<Material> materials;
+  /// Per mesh of the scene and slot of it; empty if all are in slot 0.
+  std::vector<std::vector<std::uint16_t>> take() {
+    return materials.size() > 1 ? std::move(own_) : std::vector<std::vector<std::uint16_t>>{};
+  }
+
+ private:
+  std::uint16_t slot(std::uint32_t material) {
+    std::uint32_t& slot = slot_of_[std::min<std::size_t>(material, scene_.materials.size())];
+    if (slot != kNoId) return static_cast<std::uint16_t>(slot);
+    if (materials.size() > 0xfffe) throw Error(Location{path_}, "more than 65535 materials in a mesh");
+    slot = static_cast<std::uint32_t>(materials.size());
+    materials.push_back(material == kNoId ? Material{} : scene_.materials[material]);
+    return static_cast<std::uint16_t>(slot);
+  }
+
+  const std::string& path_;
+  GltfScene& scene_;
+  std::vector<std::uint32_t> slot_of_;  ///< the last one is that of no material
+  std::vector<std::vector<std::uint16_t>> own_;
+};
+
+}  // namespace
+
+bool can_be_one_mesh(const GltfScene& scene) {
+  return placed(scene).most() <= once(scene).most() + kMostAdded;
+}
+
+MeshFile one_mesh(const std::string& path, GltfScene scene) {
+  if (!can_be_one_mesh(scene))
+    throw Error(Location{path},
+                "its nodes show " + std::to_string(placed(scene).corners / 3) + " triangles, of which " +
+                    std::to_string(once(scene).corners / 3) +
+                    " are different; too many for one mesh, but 'include' keeps them as instances");
+  MeshFile file;
+  Slots slots(path, scene);
+  const bool is_whole = scene.placements.size() == 1 && scene.placements[0].to_world.is_identity();
+  if (is_whole) {
+    file.mesh = std::move(*scene.meshes[0].mesh);
+  } else {
+    file.mesh = Joining(path, scene).run(slots.take());
+  }
+  const bool has_materials = std::ranges::any_of(scene.meshes, [](const GltfSharedMesh& m) {
+    return std::ranges::any_of(m.slots, [](auto s) { return s != kNoId; });
+  });
+  if (has_materials) {
+    file.materials = std::move(slots.materials);
+    file.textures = std::move(scene.textures);
+    file.texture_places = std::move(scene.texture_places);
+  } else {
+    file.mesh.material_slots.clear();
+  }
+  file.warnings = std::move(scene.warnings);
+  if (file.mesh.triangle_count() == 0) file.warnings.push_back({Location{path}, "no triangles"});
+  return file;
+}
+
+}  // namespace oktett

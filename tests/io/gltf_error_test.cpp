@@ -1,0 +1,229 @@
+#include <sys/resource.h>
+
+#include "io/text/file_access.h"
+#include "tests/io/gltf_test_support.h"
+
+namespace oktett::test {
+namespace {
+
+/// A good file with a texture, lights, sparse elements and everything else that can be damaged.
+std::string good_json() {
+  return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":84}],)"
+         R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12},)"
+         R"({"buffer":0,"byteOffset":48,"byteLength":36,"byteStride":12}],)"
+         R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+         R"({"bufferView":1,"componentType":5125,"count":3,"type":"SCALAR"},)"
+         R"({"bufferView":2,"componentType":5126,"count":3,"type":"VEC3",)"
+         R"("sparse":{"count":1,"indices":{"bufferView":1,"componentType":5125},"values":{"bufferView":0}}}],)"
+         R"("images":[{"uri":"a.png"}],"textures":[{"source":0}],)"
+         R"("materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],)"
+         R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],)"
+         R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":1}]}},)"
+         R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":2},"indices":1,"material":0}]}],)"
+         R"("nodes":[{"mesh":0},{"camera":0,"children":[2]},{"extensions":{"KHR_lights_punctual":{"light":0}}}],)"
+         R"("scenes":[{"nodes":[0,1]}],"scene":0})";
+}
+
+std::string good_binary() {
+  std::string bytes;
+  for (const float x : {0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}) append_bytes(bytes, x);
+  for (const std::uint32_t i : {0u, 1u, 2u}) append_bytes(bytes, i);
+  for (int i = 0; i < 9; ++i) append_bytes(bytes, 0.5f);
+  return bytes;
+}
+
+/// The error of the good file with `part` of its JSON replaced.
+std::string error_with(const std::string& part, const std::string& other) {
+  const GltfFiles files;
+  std::string json = good_json();
+  EXPECT_NE(json.find(part), std::string::npos) << part;
+  return files.error(glb_of(json.replace(json.find(part), part.size(), other), good_binary()));
+}
+
+TEST(GltfError, Json) {
+  EXPECT_EQ(error_with("asset", "asset"), "no error");
+  const std::pair<std::pair<const char*, const char*>, const char*> cases[] = {
+      {{"\"asset\"", "asset"}, "byte 1 of the JSON: expected other text there"},
+      {{"\"version\":\"2.0\"", "\"version\":\"1.0\""}, "expected glTF version 2, found '1.0'"},
+      {{"\"version\":\"2.0\"", ""}, "expected a glTF file: the version in 'asset' is missing"},
+      {{"\"scene\":0", "\"extensionsRequired\":[\"EXT_other\"]"},
+       "needs the extension 'EXT_other', which is not known here"},
+      {{"\"buffer\":0,\"byteLength\":36", "\"buffer\":1,\"byteLength\":36"},
+       "bufferViews[0]: there is no buffer 1: the file has 1"},
+      {{"\"byteLength\":84", "\"byteLength\":85"}, "buffers[0]: expected 85 bytes, found 84"},
+      {{"\"byteLength\":84", "\"byteLength\":-1"}, "buffers[0]: expected a whole number of bytes"},
+      {{"\"byteLength\":84", "\"byteLength\":20"},
+       "accessors[0]: bufferViews[0]: bytes 0 to 36 of buffer 0, which has 20"},
+      {{"\"byteLength\":84", "\"byteLength\":84,\"uri\":\"none.bin\""},
+       "none.bin: cannot read: No such file or directory"},
+      {{"\"byteLength\":84", "\"byteLength\":84,\"uri\":\"http://a.b/c\""},
+       "buffers[0]: expected the path of a file, found 'http://a.b/c'"},
+      {{"\"byteLength\":84", "\"byteLength\":84,\"uri\":\"data:x;base64,AAA*\""},
+       "buffers[0]: its data URI is not base64 at character 17"},
+      {{"\"byteLength\":84", "\"byteLength\":84,\"uri\":\"data:x,AAAA\""},
+       "buffers[0]: expected a data URI in base64"},
+      {{"\"byteStride\":12", "\"byteStride\":8"}, "accessors[2]: elements of 12 bytes, but a stride of 8"},
+      {{"\"byteStride\":12", "\"byteStride\":256"},
+       "not a proper glTF file: Invalid `byteStride' value. `byteStride' must be the multiple of 4 : 256"},
+      {{"\"byteStride\":12", "\"byteStride\":16"},
+       "accessors[2]: 3 elements from byte 0 on do not fit into bufferViews[2], which has 36 bytes"},
+      {{"\"count\":3", "\"count\":4"},
+       "accessors[0]: 4 elements from byte 0 on do not fit into bufferViews[0], which has 36 bytes"},
+      {{"\"count\":3", "\"count\":18446744073709551615"},
+       "accessors[0]: 18446744073709551615 elements from byte 0 on do not fit into bufferViews[0], which has "
+       "36 bytes"},
+      {{"\"bufferView\":0,\"componentType\":5126,\"count\":3", "\"componentType\":5126,\"count\":4000000000"},
+       "accessors[0]: 4000000000 elements, but no view that holds them"},
+      {{"\"count\":3", "\"byteOffset\":18446744073709551600,\"count\":3"},
+       "accessors[0]: 3 elements from byte 18446744073709551600 on do not fit into bufferViews[0], which has "
+       "36 bytes"},
+      {{"\"bufferView\":0,\"componentType\":5126", "\"bufferView\":7,\"componentType\":5126"},
+       "accessors[0]: there is no view 7: the file has 3"},
+      {{"\"bufferView\":0,\"componentType\":5126", "\"bufferView\":4294967296,\"componentType\":5126"},
+       "the number 4294967296 in the JSON is out of range"},
+      {{"\"componentType\":5126", "\"componentType\":5124"}, "accessors[0]: unknown component type 5124"},
+      {{"\"componentType\":5125,\"count\":3", "\"componentType\":5126,\"count\":3"},
+       "accessors[1]: expected whole numbers, the indices of vertices"},
+      {{"\"VEC3\"", "\"VEC2\""}, "accessors[0]: expected vectors of 3 numbers, found 2"},
+      {{"\"sparse\":{\"count\":1", "\"sparse\":{\"count\":4"},
+       "accessors[2]: 4 elements from byte 0 on do not fit into bufferViews[1], which has 12 bytes"},
+      {{"\"sparse\":{\"count\":1", "\"sparse\":{\"count\":-4"},
+       "accessors[2]: a negative number of sparse elements"},
+      {{"\"indices\":{\"bufferView\":1", "\"indices\":{\"bufferView\":0,\"byteOffset\":12"},
+       "accessors[2]: sparse element 1065353216 is out of range: it has 3"},
+      {{"\"POSITION\":0", "\"POSITION\":3"},
+       "meshes[0].primitives[0]: there is no accessor 3: the file has 3"},
+      {{"\"POSITION\":0", "\"OTHER\":0"}, "meshes[0].primitives[0]: expected an attribute POSITION"},
+      {{"\"indices\":1", "\"indices\":1,\"mode\":9"}, "meshes[0].primitives[0]: unknown mode 9"},
+      {{"\"material\":0", "\"material\":1"},
+       "meshes[0].primitives[0]: there is no material 1: the file has 1"},
+      {{"\"index\":0", "\"index\":5"}, "materials[0]: there is no texture 5: the file has 1"},
+      {{"\"source\":0", "\"source\":5"}, "textures[0]: there is no image 5: the file has 1"},
+      {{"\"uri\":\"a.png\"", "\"bufferView\":5"}, "images[0]: there is no view 5: the file has 3"},
+      {{"\"baseColorTexture\":{\"index\":0}", "\"metallicFactor\":2"},
+       "materials[0]: 'metallicFactor' is out of range"},
+      {{"\"yfov\":1", "\"yfov\":4"}, "cameras[0]: its field of view is out of range"},
+      {{"\"intensity\":1", "\"intensity\":-1"}, "lights[0]: its intensity or angles are out of range"},
+      {{"\"light\":0", "\"light\":1"}, "nodes[2]: there is no light 1: the file has 1"},
+      {{"{\"mesh\":0}", "{\"mesh\":1}"}, "nodes[0]: there is no mesh 1: the file has 1"},
+      {{"{\"mesh\":0}", "{\"mesh\":0,\"rotation\":[0,0,0,0]}"},
+       "nodes[0]: the quaternion of its rotation is zero or out of range"},
+      {{"{\"mesh\":0}", "{\"mesh\":0,\"matrix\":[1,2]}"},
+       "nodes[0]: expected 16 numbers in 'matrix', found 2"},
+      {{"\"children\":[2]", "\"children\":[3]"}, "nodes[1]: there is no node 3: the file has 3"},
+      {{"\"children\":[2]", "\"children\":[1]"},
+       "nodes[1] is in more than one place; nodes must form a tree"},
+      {{"\"children\":[2]", "\"children\":[0]"},
+       "nodes[0] is in more than one place; nodes must form a tree"},
+      {{"\"nodes\":[0,1]", "\"nodes\":[0,3]"}, "scenes[0]: there is no node 3: the file has 3"},
+      {{"\"scene\":0", "\"scene\":1"}, "scene: there is no scene 1: the file has 1"},
+  };
+  for (const auto& [change, message] : cases) {
+    const std::string error = error_with(change.first, change.second);
+    EXPECT_TRUE(error == std::string("a.glb: ") + message || error == message)
+        << error << "\nexpected: " << message;
+  }
+}
+
+TEST(GltfError, Numbers) {
+  const GltfFiles files;
+  const auto error = [&](std::size_t at, auto value) {
+    std::string bytes = good_binary();
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    return files.error(glb_of(good_json(), bytes));
+  };
+  EXPECT_EQ(error(16, std::nanf("")), "a.glb: accessors[0]: element 1: expected a finite number, found nan");
+  EXPECT_EQ(error(32, 2e30f),
+            "a.glb: accessors[0]: element 2: coordinate out of range: 2e+30 (magnitude at most 1e30)");
+  EXPECT_EQ(error(40, std::uint32_t{3}),
+            "a.glb: accessors[1]: element 1: vertex index 3 is out of range: there are 3 vertices");
+  EXPECT_EQ(error(80, -INFINITY), "a.glb: accessors[2]: element 2: expected a finite number, found -inf");
+}
+
+TEST(GltfError, TextFilesSayTheLine) {
+  const GltfFiles files;
+  EXPECT_EQ(files.error("{\"asset\":\n{\"version\" 2}}", "a.gltf"),
+            "a.gltf:2:12: expected other JSON text here");
+  EXPECT_EQ(files.error("", "a.gltf"), "a.gltf:1:1: expected other JSON text here");
+  EXPECT_EQ(files.error("[]", "a.gltf"), "a.gltf: expected a JSON object that describes a glTF scene");
+  EXPECT_EQ(files.error(std::string(100000, '['), "a.gltf"),
+            "a.gltf: the JSON is nested deeper than 64 levels");
+}
+
+TEST(GltfError, Chunks) {
+  const GltfFiles files;
+  const std::string good = glb_of(good_json(), good_binary());
+  EXPECT_EQ(files.error(good), "no error");
+  for (std::size_t size = 4; size < good.size(); size += 7)
+    EXPECT_NE(files.error(good.substr(0, size)), "no error") << size;
+  EXPECT_EQ(files.error(good.substr(0, 11)), "a.glb: the file ends within its header, at byte 11");
+  const auto changed = [&](std::size_t at, std::uint32_t value) {
+    std::string bytes = good;
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    return files.error(bytes);
+  };
+  const std::string size = std::to_string(good.size());
+  EXPECT_EQ(changed(4, 1), "a.glb: expected version 2 of the format, found 1");
+  EXPECT_EQ(changed(8, 0xffffffff),
+            "a.glb: byte 8: the file should have 4294967295 bytes, but ends at byte " + size);
+  EXPECT_EQ(changed(8, 12), "a.glb: expected a chunk with the JSON behind the header");
+  EXPECT_EQ(changed(12, 0xfffffff0),
+            "a.glb: byte 12: a chunk of 4294967280 bytes, but the file ends at byte " + size);
+  EXPECT_EQ(changed(16, 7), "a.glb: byte 16: expected the chunk with the JSON first");
+}
+
+// A few bytes that ask for much get an error, not the memory.
+TEST(GltfError, NothingIsAllocatedThatTheFileDoesNotJustify) {
+  const GltfFiles files;
+  with_little_memory([&] {
+    // Nodes that show the same mesh as one.
+    GltfWriter out;
+    std::vector<std::uint8_t> corners(30000, 0);
+    out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    out.array(corners, kUint8, "SCALAR", 1);
+    std::string nodes, numbers;
+    for (int i = 0; i < 3000; ++i) {
+      nodes += i == 0 ? "{\"mesh\":0}" : ",{\"mesh\":0}";
+      numbers += (i == 0 ? "" : ",") + std::to_string(i);
+    }
+    const std::string rest =
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],\"nodes\":[" +
+        nodes + "],\"scenes\":[{\"nodes\":[" + numbers + "]}]";
+    EXPECT_EQ(
+        files.error(out.glb(rest)),
+        "a.glb: its nodes show 30000000 triangles, of which 10000 are different; too many for one mesh, but "
+        "'include' keeps them as instances");
+    EXPECT_EQ(files.scene(out.glb(rest)).placements.size(), 3000u);
+    // Primitives that share the indices.
+    std::string primitives;
+    for (int i = 0; i < 3000; ++i)
+      primitives += std::string(i == 0 ? "" : ",") + "{\"attributes\":{\"POSITION\":0},\"indices\":1}";
+    EXPECT_NE(files.error(out.glb(one_node(primitives))).find("too many for"), std::string::npos);
+  });
+}
+
+// Buffers and images stand where scenes may read files from.
+TEST(GltfError, FilesOutsideOfTheRootAreRefused) {
+  const GltfFiles files;
+  EXPECT_EXIT(
+      {
+        std::filesystem::create_directory(files.files.dir.file("in"));
+        files.files.dir.write("out.bin", good_binary());
+        std::string json = good_json();
+        const std::string part = "\"byteLength\":84";
+        json.replace(json.find(part), part.size(), part + ",\"uri\":\"../out.bin\"");
+        const std::string path = files.files.dir.write("in/a.gltf", json);
+        confine_files(files.files.dir.file("in"));
+        try {
+          load_mesh(path);
+        } catch (const Error& e) {
+          std::fputs(e.what(), stderr);
+          std::_Exit(3);
+        }
+        std::_Exit(0);
+      },
+      testing::ExitedWithCode(3), "it lies outside of the folder that files may be read from");
+}
+
+}  // namespace
+}  // namespace oktett::test
