@@ -231,8 +231,7 @@ class Build {
     const std::size_t count = 3 * part.triangles;
     std::vector<std::uint32_t> used(corners, corners + count);
     std::ranges::sort(used);
-    const auto rest = std::ranges::unique(used);
-    used.erase(rest.begin(), rest.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
     for (std::size_t i = 0; i < count; ++i)
       corners[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(used, corners[i]) - used.begin());
     for (std::size_t role = 0; role < kRoles; ++role)
