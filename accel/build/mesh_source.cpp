@@ -106,7 +106,8 @@ void MeshSource::fill(const std::uint32_t* items, int count, TriangleBlock& bloc
 }
 
 void MeshSource::prefetch(const std::uint32_t* items, int count) const {
-  if (meshes_.size() > 1) return;
+  // One geometry, and it is a mesh.
+  if (meshes_.size() != 1 || meshes_[0].indices == nullptr) return;
   const Mesh& mesh = meshes_[0];
   for (int i = 0; i < count; ++i)
     __builtin_prefetch(mesh.indices + 3 * std::size_t{items[i] - mesh.first_item});
