@@ -84,7 +84,7 @@ void check_batches(const oktett::TriangleMesh& mesh) {
     const oktett::ClosestPoint closest = oktett::closest_point(*accel, {4, 0, 3}, isa);
     expect(closest.item == 2 && near(closest.distance, 2) && closest.normal.z > 0.99f,
            "the nearest point of the sphere");
-    expect(oktett::inside(*accel, {4, 0, 0.5f}, isa) && !oktett::inside(*accel, {0, 0, -1}, isa),
+    expect(oktett::inside(*accel, {4, 0, 0.5f}, isa) && !oktett::inside(*accel, {4, 0, 2}, isa),
            "inside of the sphere");
     expect(near(oktett::signed_distance(*accel, {4, 0, 0.5f}, isa), -0.5), "half a unit below its surface");
   }
