@@ -33,8 +33,8 @@ void find_sign_changes(const double* c, int degree, roots::Method method, int wa
       if (answer.root[i].multiplicity % 2 == 1) out.s[out.count++] = answer.root[i].x;
   };
   roots::Roots some = roots::solve(p, -1, 1, method, wanted);
-  // A chain that has run out of digits invents and misses roots, and so does a closed form whose roots are close
-  // together.
+  // A chain that has run out of digits invents and misses roots, and so does a closed form whose roots are
+  // close together.
   if ((method == roots::Method::sturm || method == roots::Method::closed) && !some.certified)
     method = roots::Method::bernstein, some = roots::solve(p, -1, 1, method, wanted);
   keep(some);
