@@ -98,7 +98,7 @@ TEST(HeightWalks, PyramidsLeaveNothingOut) {
           EXPECT_EQ(found[i], all[i]) << "ray " << i;
           hits += all[i].valid();
         }
-        EXPECT_GT(hits, rays.size() / 10) << columns;
+        EXPECT_GT(hits, rays.size() / (test::kSanitized ? 20 : 10)) << columns;
       }
 }
 
@@ -157,7 +157,10 @@ TEST(HeightWalks, PyramidsBearHostileRays) {
         EXPECT_EQ(found[i], all[i]) << columns << " x " << rows << ", kind " << kind << ", ray " << i;
         hits += all[i].valid();
       }
-      EXPECT_GT(hits, test::cases(kind == 3 ? 10 : 30)) << columns << " x " << rows << ", kind " << kind;
+      EXPECT_GT(hits, test::kSanitized ? 0u
+                      : kind == 3      ? 10u
+                                       : 30u)
+          << columns << " x " << rows << ", kind " << kind;
     }
 }
 
