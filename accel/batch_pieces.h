@@ -3,6 +3,7 @@
 /// parallel.
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <span>
@@ -15,6 +16,14 @@ namespace oktett {
 
 /// Larger batches are traced in pieces of this size, each a task.
 inline constexpr std::size_t kPieceRays = 4096;
+
+/// Calls work(k) for k from 0 to `count` - 1, in parallel. A thread that waits for the others takes no other
+/// task meanwhile: it would run in the middle of the task that asked, with the thread's own data half
+/// changed.
+template <class Work>
+void for_each_task(std::size_t count, Work&& work) {
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, count, work); });
+}
 
 inline std::size_t piece_count(std::size_t size) { return (size + kPieceRays - 1) / kPieceRays; }
 
@@ -43,7 +52,7 @@ void for_each_piece(const Rays& rays, Trace&& trace) {
     trace(begin, piece_columns(rays, begin, std::min(kPieceRays, size - begin)));
   };
   if (size <= kPieceRays) return trace_from(0);
-  tbb::parallel_for(std::size_t{0}, piece_count(size), [&](std::size_t k) { trace_from(k * kPieceRays); });
+  for_each_task(piece_count(size), [&](std::size_t k) { trace_from(k * kPieceRays); });
 }
 
 inline void require_same_size(std::size_t size, std::size_t answers, const char* query,

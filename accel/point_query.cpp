@@ -1,7 +1,5 @@
 #include "accel/point_query.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <vector>
 
@@ -19,8 +17,8 @@ constexpr std::size_t kPiecePoints = 1024;
 template <class Answer>
 void for_each_points(std::size_t size, Answer&& answer) {
   if (size <= kPiecePoints) return answer(std::size_t{0}, size);
-  tbb::parallel_for(std::size_t{0}, (size + kPiecePoints - 1) / kPiecePoints,
-                    [&](std::size_t k) { answer(k * kPiecePoints, std::min(size, (k + 1) * kPiecePoints)); });
+  for_each_task((size + kPiecePoints - 1) / kPiecePoints,
+                [&](std::size_t k) { answer(k * kPiecePoints, std::min(size, (k + 1) * kPiecePoints)); });
 }
 
 void require_closest(const Accel& accel, const char* query) {

@@ -119,6 +119,26 @@ TEST(Render, PictureDependsNeitherOnThreadsNorTilesNorInstructionSet) {
   }
 }
 
+// A bounce of a tile may have more rays than one call traces on one thread. While a thread waits for the
+// others, it must not begin another tile.
+TEST(Render, BouncesOfManyRaysDependOnNoOtherTile) {
+  Scene scene = bare_scene(512);
+  scene.camera.from = {0, 0, 10};
+  scene.lights = {PointLight{{3, 4, 5}}};
+  scene.integrator.depth = 4;
+  Material clear = glass(1.5f);
+  clear.reflection = 0.3f;
+  const std::uint32_t pane = add_material(scene, clear);
+  for (int i = 0; i < 400; ++i)
+    add_object(scene, SphereShape{{0.45 * (i % 20 - 9.5), 0.45 * (i / 20 - 9.5), 0.01 * (i % 7)}, 0.3}, pane);
+  const auto at = [&](unsigned threads) {
+    return run(scene, [&](RenderOptions& o) { o.tile_size = 64, o.threads = threads, o.data_layers = false; })
+        .picture;
+  };
+  const Picture alone = at(1);
+  for (int i = 0; i < 6; ++i) EXPECT_TRUE(same_bytes(alone, at(4))) << i;
+}
+
 TEST(Render, ManySamplesAreSplitIntoWavesWithoutATrace) {
   Scene scene = busy_scene(IntegratorKind::path);
   scene.film.width = 3, scene.film.height = 2;
