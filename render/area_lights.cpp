@@ -1,6 +1,7 @@
 #include "render/area_lights.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -132,7 +133,8 @@ AreaLights area_lights(const SceneLights& lights, const TextureSampler* textures
   if (settings.kind != IntegratorKind::whitted || settings.light_samples == 0) return area;
   const std::vector<Lamp> lamps = lamps_of(lights.set().emitters());
   if (lamps.empty()) return area;
-  area.samples = settings.light_samples;
+  area.samples = settings.light_samples,
+  area.penumbra = std::bit_floor(std::clamp(settings.penumbra_factor, 1u, kPlaces));
   // As many as a pixel has samples, if they are not too many.
   const std::uint32_t most = std::max(kMostPoints / area.samples / kPlaces, 1u);
   const std::uint32_t samples = std::max(settings.samples, settings.error > 0 ? settings.max_samples : 1);

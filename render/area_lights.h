@@ -17,9 +17,12 @@ namespace oktett {
 struct AreaLights {
   std::uint32_t samples = 0;        ///< points of a pattern; 0: nothing glows
   std::uint32_t patterns = 0;       ///< a multiple of 16
+  std::uint32_t penumbra = 1;       ///< patterns that a hit in a penumbra asks, its own included; divides 16
   std::vector<LightSource> points;  ///< those of pattern p are points[p * samples] and on
 
   bool empty() const { return points.empty(); }
+  /// The first of the patterns that a hit of pattern `p` asks if it lies in a penumbra.
+  std::uint32_t first_in_penumbra(std::uint32_t p) const { return p - p % penumbra; }
   /// The pattern of a sample of the pixel in column x and row y.
   std::uint32_t pattern(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const;
 };

@@ -119,6 +119,9 @@ struct IntegratorSettings {
   /// Shadow rays of each hit to points of glowing surfaces in Whitted's model, [0, 1024]; 0: these light
   /// nothing.
   std::uint32_t light_samples = 0;
+  /// Hits for which some of these points are hidden and others are not ask this many times as many: 1, 2, 4,
+  /// 8 or 16.
+  std::uint32_t penumbra_factor = 4;
   bool operator==(const IntegratorSettings&) const = default;
 };
 

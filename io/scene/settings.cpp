@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <bit>
 #include <limits>
 #include <memory>
 
@@ -121,7 +124,7 @@ static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings
 void read_integrator(SceneLoad& load, const YamlNode& node) {
   const Fields fields(node, "integrator",
                       {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples",
-                       "caustics", "light_samples"});
+                       "caustics", "light_samples", "penumbra_factor"});
   SceneValues& values = load.values;
   IntegratorSettings& integrator = load.scene.integrator;
   if (const YamlNode* kind = fields["kind"])
@@ -136,6 +139,12 @@ void read_integrator(SceneLoad& load, const YamlNode& node) {
   if (const YamlNode* most = fields["max_samples"]) integrator.max_samples = values.integer(*most, 1, 65536);
   if (const YamlNode* lights = fields["light_samples"])
     integrator.light_samples = values.integer(*lights, 0, 1024);
+  if (const YamlNode* factor = fields["penumbra_factor"]) {
+    integrator.penumbra_factor = values.integer(*factor, 1, 16);
+    if (!std::has_single_bit(integrator.penumbra_factor))
+      throw Error(factor->where(),
+                  fmt::format("expected 1, 2, 4, 8 or 16, found {}", integrator.penumbra_factor));
+  }
   if (const YamlNode* caustics = fields["caustics"]) read_caustics(load, *caustics, integrator.caustics);
 }
 

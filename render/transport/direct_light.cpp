@@ -54,20 +54,23 @@ static OKTETT_INLINE Ray light_ray(const ShadingPoint& p, const LightSource& lig
   return ray;
 }
 
+void add_light(const ShadingPoint& p, const Color& throughput, const LightSource& light, std::uint32_t owner,
+               ShadowQueue& queue) {
+  Vec3f l;
+  Color color;
+  const Ray ray = light_ray(p, light, l, color);
+  const Color arriving = throughput * phong_here(p, l) * color;
+  if (!(arriving == Color{0, 0, 0})) queue.push_back(ray, owner, arriving);
+}
+
 void add_direct_light(const RenderContext& context, const ShadingPoint& p, const Color& throughput,
                       std::uint32_t pattern, std::uint32_t owner, std::vector<ShadowQueue>& shadows) {
-  const auto add = [&](const LightSource& light, ShadowQueue& queue) {
-    Vec3f l;
-    Color color;
-    const Ray ray = light_ray(p, light, l, color);
-    const Color arriving = throughput * phong_here(p, l) * color;
-    if (!(arriving == Color{0, 0, 0})) queue.push_back(ray, owner, arriving);
-  };
   const std::size_t points = context.lights.size();
-  for (std::size_t i = 0; i < points; ++i) add(context.lights[i], shadows[i]);
+  for (std::size_t i = 0; i < points; ++i) add_light(p, throughput, context.lights[i], owner, shadows[i]);
   const AreaLights& area = context.area_lights;
   for (std::size_t i = 0; i < area.samples; ++i)
-    add(area.points[std::size_t{pattern} * area.samples + i], shadows[points + i]);
+    add_light(p, throughput, area.points[std::size_t{pattern} * area.samples + i], owner,
+              shadows[points + i]);
 }
 
 }  // namespace oktett

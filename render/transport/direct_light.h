@@ -33,6 +33,11 @@ OKTETT_INLINE Color phong_sum(const PhongValues& m, const Color& color, const Co
 /// shading surface.
 Color phong(const ShadingPoint& p, const Vec3f& l);
 
+/// A shadow ray in `queue` that adds throughput * light * phong to the radiance of `owner`, if the light
+/// could reach `p`.
+void add_light(const ShadingPoint& p, const Color& throughput, const LightSource& light, std::uint32_t owner,
+               ShadowQueue& queue);
+
 /// For each light that could reach `p`, a shadow ray in that light's queue that adds throughput * light *
 /// phong to the radiance of `owner`. There is a queue per light, and then one for each point of a pattern of
 /// the area lights, of which those of `pattern` are asked.

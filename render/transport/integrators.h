@@ -30,6 +30,13 @@ void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found);
 
+/// Queues the shadow rays of hits in a penumbra to the points of area lights that their own pattern lacks: of
+/// the rays `which`, which share a pattern, with the surface interactions `found`. Rays of a hit follow each
+/// other in `queue`, in the order of the points.
+void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
+                         std::span<const std::uint32_t> which, const InteractionBlock& found,
+                         ShadowQueue& queue);
+
 /// Unidirectional path tracing (Kajiya 1986). Each hit sends one ray to a light that is chosen at random and
 /// one in a direction that the material chooses. Light that both can find is weighted by the power heuristic
 /// (Veach 1997). After `depth` bounces the next surface gives only what it emits. Nothing is cut off: the

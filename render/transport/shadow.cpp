@@ -68,23 +68,32 @@ void add_arriving(const RenderContext& context, Wavefront& wavefront, const Shad
   if (context.light_groups != nullptr) add_shadow_to_layers(context, wavefront, queue, entry, light);
 }
 
-void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue, ShadowRule rule) {
-  if (queue.size() == 0) return;
-  Column<std::uint8_t>& occluded = queue.occluded;
-  occluded.resize_uninitialized(queue.size());
-  any_hit(*context.world->accel, queue.rays, occluded, context.isa);
-  if (!context.world->see_through) {
-    for (std::size_t i = 0; i < queue.size(); ++i)
-      if (!occluded[i]) add_arriving(context, wavefront, queue, i, queue.light[i]);
-    return;
-  }
+/// Multiplies the light of the blocked rays by what the surfaces in their way leave of it.
+static void pass_surfaces(const RenderContext& context, ShadowQueue& queue, ShadowRule rule) {
   std::vector<Color> passed(queue.size(), {1, 1, 1});
   std::vector<std::uint32_t> left;
   for (std::uint32_t i = 0; i < queue.size(); ++i)
-    if (occluded[i]) left.push_back(i);
-  follow_through(context, queue, rule, std::move(left), passed);
+    if (queue.occluded[i]) left.push_back(i);
+  follow_through(context, queue, rule, left, passed);
+  for (const std::uint32_t i : left)
+    queue.light.set(i, is_black(passed[i]) ? Color{0, 0, 0} : queue.light[i] * passed[i]);
+}
+
+void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule rule) {
+  queue.occluded.resize_uninitialized(queue.size());
+  any_hit(*context.world->accel, queue.rays, queue.occluded, context.isa);
+  if (context.world->see_through) return pass_surfaces(context, queue, rule);
   for (std::size_t i = 0; i < queue.size(); ++i)
-    if (!is_black(passed[i])) add_arriving(context, wavefront, queue, i, queue.light[i] * passed[i]);
+    if (queue.occluded[i]) queue.light.set(i, {0, 0, 0});
+}
+
+void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue, ShadowRule rule) {
+  if (queue.size() == 0) return;
+  find_arriving(context, queue, rule);
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const Color light = queue.light[i];
+    if (!is_black(light)) add_arriving(context, wavefront, queue, i, light);
+  }
 }
 
 }  // namespace oktett

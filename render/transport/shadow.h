@@ -17,6 +17,10 @@ void add_arriving(const RenderContext& context, Wavefront& wavefront, const Shad
 /// the order of the queue.
 void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue, ShadowRule rule);
 
+/// Traces all rays of `queue`, one of the wavefront's, and leaves in `queue.light` what arrives: black where
+/// something is in the way.
+void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule rule);
+
 /// Surfaces that a shadow ray may pass before it counts as blocked.
 inline constexpr int kMostShadowLayers = 128;
 

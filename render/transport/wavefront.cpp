@@ -10,6 +10,7 @@
 #include "render/transport/integrators.h"
 #include "render/transport/medium_paths.h"
 #include "render/transport/path_emission.h"
+#include "render/transport/penumbra.h"
 #include "render/transport/render_code.h"
 #include "render/transport/shadow.h"
 
@@ -91,6 +92,7 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
       wavefront.level == 0 && context.background == Color{0, 0, 0} && !context.sampled->has_environment();
   if (hits < count && !black) add_background(context, wavefront);
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
+  start_penumbras(context, wavefront);
   wavefront.next.clear(), wavefront.next_paths.clear(), wavefront.refracted.clear();
 }
 
@@ -106,7 +108,8 @@ void cover_background(const RenderContext& context, Wavefront& wavefront) {
 /// entry.
 void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
   const bool path = context.settings.kind == IntegratorKind::path;
-  for (std::size_t n = 0; n < wavefront.shadows.size(); ++n) {
+  const std::size_t lights = context.area_lights.empty() ? wavefront.shadows.size() : context.lights.size();
+  for (std::size_t n = 0; n < lights; ++n) {
     ShadowQueue& queue = wavefront.shadows[n];
     const bool holes = path && n == kAreaQueue;
     const ShadowRule rule = holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes;
@@ -118,6 +121,7 @@ void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
     wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
     queue.clear();
   }
+  if (!context.area_lights.empty()) flush_lamp_shadows(context, wavefront);
 }
 
 bool shadows_are_full(const Wavefront& wavefront) {
@@ -183,6 +187,7 @@ void shade_hits(const RenderContext& context, Wavefront& wavefront) {
     for (last = first + 1; last < hits.size() && pattern(hits[last]) == pattern(hits[first]);) ++last;
     shader.shade(hits.subspan(first, last - first));
   }
+  shade_penumbras(context, wavefront);
 }
 
 void add_to_samples(Wavefront& wavefront) {

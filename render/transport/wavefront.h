@@ -84,6 +84,11 @@ struct Wavefront {
   /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
   /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.
   std::vector<ShadowQueue> shadows;
+  /// With area lights: which of the points that the hit of a ray has asked it sees, see penumbra.cpp; the
+  /// rays whose hits lie in penumbras; and shadow rays of these.
+  Column<std::uint8_t> lamp_view;
+  std::vector<std::uint32_t> penumbra;
+  ShadowQueue penumbra_shadows;
   std::vector<MediumEvent> medium_events;  ///< of rays that are scattered or find light in media
   Column<std::uint32_t> hit_rays;          ///< entries of `rays` that hit something
   Column<double> film_x, film_y;           ///< where the camera rays pass the film

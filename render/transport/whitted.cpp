@@ -85,6 +85,16 @@ ShadedRays shaded_rays(Wavefront& wavefront) {
   return rays;
 }
 
+/// Sets what varies over a surface, for hit `k`.
+void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, ShadingColumns& c) {
+  InteractionBlock::put(c.throughput, k, throughput);
+  InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
+  InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
+  c.diffuse[k] = p.values.diffuse, c.specular[k] = p.values.specular, c.phong[k] = p.values.phong;
+  c.reflection[k] = p.values.reflection;
+  c.exponent[k] = highlight_exponent(p.values.specular, p.values.phong);
+}
+
 /// What hit `k` needs beyond lanes: its textures, and the rays that leave it. Returns what the interior that
 /// the ray comes through leaves of its light.
 OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wavefront,
@@ -97,12 +107,7 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
   if (context.materials[c.material[k]].varies) {
     const Color throughput = wavefront.rays.throughput[i] * p.opacity;
     add_unlit(context, wavefront, i, p, throughput * left);
-    InteractionBlock::put(c.throughput, k, throughput);
-    InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
-    InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
-    c.diffuse[k] = p.values.diffuse, c.specular[k] = p.values.specular, c.phong[k] = p.values.phong;
-    c.reflection[k] = p.values.reflection;
-    c.exponent[k] = highlight_exponent(p.values.specular, p.values.phong);
+    put_varying(p, throughput, k, c);
   }
   if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
   push_bounces(context, wavefront, i, p);
@@ -234,6 +239,45 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   const LightSource* points = area.points.data() + area.samples * pattern_of(context, wavefront, which[0]);
   for (std::size_t n = 0; n < area.samples; ++n)
     push_shadow_rays(context, found, points[n], c, wavefront.shadows[context.lights.size() + n]);
+}
+
+void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
+                         std::span<const std::uint32_t> which, const InteractionBlock& found,
+                         ShadowQueue& queue) {
+  const AreaLights& area = context.area_lights;
+  const std::uint32_t own = pattern_of(context, wavefront, which[0]), begin = area.first_in_penumbra(own);
+  const auto for_other_points = [&](auto&& visit) {
+    for (std::uint32_t p = begin; p < begin + area.penumbra; ++p)
+      for (std::uint32_t n = 0; n < area.samples && p != own; ++n) visit(area.points[p * area.samples + n]);
+  };
+  const auto point_at = [&](std::size_t k) {
+    const std::uint32_t i = which[k];
+    const bool from_camera = wavefront.rays.from_camera[i] != 0;
+    return shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
+                         {wavefront.rays.distance[i], from_camera}, found[k]);
+  };
+  if (!shades_in_blocks(context)) {
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      const ShadingPoint p = point_at(k);
+      const Color throughput = wavefront.rays.throughput[which[k]] * p.opacity;
+      for_other_points([&](const LightSource& point) { add_light(p, throughput, point, which[k], queue); });
+    }
+    return;
+  }
+  ShadingColumns c;
+  c.count = which.size();
+  name_hits(context, which.data(), found, c);
+  // Their light that needs no lamp has been added before.
+  Color radiance[ShadingColumns::kMost];
+  for (std::size_t k = 0; k < which.size(); ++k) radiance[k] = wavefront.radiance[which[k]];
+  render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    wavefront.radiance.set(which[k], radiance[k]);
+    if (!context.materials[c.material[k]].varies) continue;
+    const ShadingPoint p = point_at(k);
+    put_varying(p, wavefront.rays.throughput[which[k]] * p.opacity, k, c);
+  }
+  for_other_points([&](const LightSource& point) { push_shadow_rays(context, found, point, c, queue); });
 }
 
 }  // namespace oktett

@@ -66,6 +66,10 @@ TEST(SceneFilm, ReadsLightSamples) {
   EXPECT_EQ(SceneFiles().load_v1("integrator: {}\n").integrator.light_samples, 0u);
   expect_starts(SceneFiles().error_v1("integrator: {light_samples: 1025}\n"),
                 "scene.yaml:2:29: expected a whole number from 0 to 1024");
+  EXPECT_EQ(SceneFiles().load_v1("integrator: {penumbra_factor: 16}\n").integrator.penumbra_factor, 16u);
+  EXPECT_EQ(SceneFiles().load_v1("integrator: {}\n").integrator.penumbra_factor, 4u);
+  expect_starts(SceneFiles().error_v1("integrator: {penumbra_factor: 3}\n"),
+                "scene.yaml:2:31: expected 1, 2, 4, 8 or 16, found 3");
 }
 
 TEST(SceneFilm, ReadsMotions) {

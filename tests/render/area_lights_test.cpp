@@ -81,6 +81,34 @@ TEST(AreaLights, HalfALampHasHalfTheLight) {
   EXPECT_NEAR(shown(scene), open / 2, 0.005 * open);
 }
 
+// Where a lamp is half hidden, a hit asks as many points as if `light_samples` were greater by the factor:
+// the same points, so the light is the same. In full light and in full shadow it asks no more.
+TEST(AreaLights, HitsInPenumbrasAskMorePoints) {
+  const auto light = [](std::uint32_t samples, std::uint32_t factor, double edge, std::uint64_t& shadow_rays,
+                        bool data_layers) {
+    Scene scene = floor_scene(samples);
+    scene.integrator.penumbra_factor = factor;
+    add_object(scene, DiskShape{{0, 0, 2}, {0, 0, 1}, 0.5}, add_material(scene, glowing({1, 1, 1})));
+    add_object(scene, PolygonShape{{{edge, -9, 1}, {9, -9, 1}, {9, 9, 1}, {edge, 9, 1}}}, 0);
+    scene.camera.from = {-3, 0, 2};
+    const RenderResult result = run(scene, [&](RenderOptions& o) { o.data_layers = data_layers; });
+    shadow_rays = result.report.shadow_rays;
+    return value(result.picture, "G", 0, 0);
+  };
+  for (const bool data_layers : {false, true})
+    for (const std::uint32_t factor : {1u, 2u, 4u, 8u, 16u}) {
+      std::uint64_t few = 0, many = 0;
+      const float half = light(16, factor, 0.03, few, data_layers);
+      EXPECT_NEAR(half, light(16 * factor, 1, 0.03, many, data_layers), 1e-5f * half) << factor;
+      EXPECT_EQ(few, many) << factor;
+      light(16, factor, 2, few, data_layers), light(16, 1, 2, many, data_layers);
+      EXPECT_EQ(few, many) << factor;
+      EXPECT_EQ(light(16, factor, -1, few, data_layers), 0.0f);
+      light(16, 1, -1, many, data_layers);
+      EXPECT_EQ(few, many) << factor;
+    }
+}
+
 /// Several lamps of each kind over balls and a mirror.
 Scene lamps_scene(std::uint32_t size) {
   Scene scene = bare_scene(size);
