@@ -3,6 +3,7 @@
 /// speed, never a hit.
 
 #include <algorithm>
+#include <limits>
 
 #include "accel/isa/trace_query.h"
 #include "accel/traverse/beam/traverse_beam.h"
@@ -15,17 +16,33 @@ namespace oktett {
 template <class A>
 inline constexpr int kPacketRays = std::is_same_v<A, Avx512Isa> ? 16 : 8;
 
-/// Rays are coherent if all of them keep within about 25 degrees of the first.
+/// How far apart the rays of a packet may start along each axis: a part of what they are traced through.
+/// Beyond that, rays of one direction meet different nodes, and interleaved ones are faster.
+OKTETT_INLINE Vec3f packet_reach(const Accel& accel) {
+  constexpr float kPart = 1.0f / 32;
+  Vec3f reach = accel.bounds.extent() * kPart;
+  for (int k = 0; k < 3; ++k)
+    if (!(reach[k] > 0)) reach[k] = std::numeric_limits<float>::infinity();
+  return reach;
+}
+
+/// Rays are coherent if all of them keep within about 25 degrees of the first and start within `reach` of it.
 template <int W, class A>
-OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, unsigned lanes) {
+OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, const Vec3f& reach, unsigned lanes) {
   using F = Simd<float, W, A>;
   const Vec3<F> d = r.d;
   alignas(64) float x[W], y[W], z[W];
   d.x.store(x), d.y.store(y), d.z.store(z);
   const int first = __builtin_ctz(lanes);
+  auto near = F(0.0f) <= F(0.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    alignas(64) float start[W];
+    r.o[axis].store(start);
+    near = near & (abs(r.o[axis] - F(start[first])) <= F(reach[axis]));
+  }
   const Vec3<F> axis{F(x[first]), F(y[first]), F(z[first])};
   const F along = fast_dot(d, axis), square = fast_dot(d, d) * fast_dot(axis, axis);
-  return (lanes & ~bits((F(0.0f) < along) & (F(0.8f) * square <= along * along))) == 0;
+  return (lanes & ~bits(near & (F(0.0f) < along) & (F(0.8f) * square <= along * along))) == 0;
 }
 
 template <Query Q, class A>
@@ -53,11 +70,12 @@ void trace_packets(const Accel& accel, const RaySpan& rays, const HitSink<Q>& ou
       trace_interleaved<Q, A>(accel, rays.part(begin, end - begin), out.part(begin, end - begin));
   };
   RayState<W, A> state;
+  const Vec3f reach = packet_reach(accel);
   for (std::size_t b = 0; b < rays.size; b += W) {
     const RayLanes<F> r = load_span<F>(rays, b);
     const std::size_t count = std::min<std::size_t>(rays.size - b, W);
     const unsigned present = (1u << count) - 1;
-    if (coherent_only && !is_coherent(r, present)) continue;
+    if (coherent_only && !is_coherent(r, reach, present)) continue;
     interleave_until(b);
     begin = b + count;
     const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & present;
