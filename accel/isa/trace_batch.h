@@ -16,19 +16,17 @@ namespace oktett {
 template <class A>
 inline constexpr int kPacketRays = std::is_same_v<A, Avx512Isa> ? 16 : 8;
 
-/// How far apart the rays of a packet may start along each axis: a part of what they are traced through.
-/// Beyond that, rays of one direction meet different nodes, and interleaved ones are faster.
-OKTETT_INLINE Vec3f packet_reach(const Accel& accel) {
-  constexpr float kPart = 1.0f / 32;
-  Vec3f reach = accel.bounds.extent() * kPart;
-  for (int k = 0; k < 3; ++k)
-    if (!(reach[k] > 0)) reach[k] = std::numeric_limits<float>::infinity();
-  return reach;
+/// How far apart the rays of a packet may start along each axis: a part of the scene's longest edge. Beyond
+/// that, rays of one direction meet different nodes, and interleaved ones are faster.
+OKTETT_INLINE float packet_reach(const Accel& accel) {
+  constexpr float kPart = 1.0f / 16;
+  const float reach = max_component(accel.bounds.extent()) * kPart;
+  return reach > 0 ? reach : std::numeric_limits<float>::infinity();
 }
 
 /// Rays are coherent if all of them keep within about 25 degrees of the first and start within `reach` of it.
 template <int W, class A>
-OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, const Vec3f& reach, unsigned lanes) {
+OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, float reach, unsigned lanes) {
   using F = Simd<float, W, A>;
   const Vec3<F> d = r.d;
   alignas(64) float x[W], y[W], z[W];
@@ -38,7 +36,7 @@ OKTETT_INLINE bool is_coherent(const RayLanes<Simd<float, W, A>>& r, const Vec3f
   for (int axis = 0; axis < 3; ++axis) {
     alignas(64) float start[W];
     r.o[axis].store(start);
-    near = near & (abs(r.o[axis] - F(start[first])) <= F(reach[axis]));
+    near = near & (abs(r.o[axis] - F(start[first])) <= F(reach));
   }
   const Vec3<F> axis{F(x[first]), F(y[first]), F(z[first])};
   const F along = fast_dot(d, axis), square = fast_dot(d, d) * fast_dot(axis, axis);
@@ -70,7 +68,7 @@ void trace_packets(const Accel& accel, const RaySpan& rays, const HitSink<Q>& ou
       trace_interleaved<Q, A>(accel, rays.part(begin, end - begin), out.part(begin, end - begin));
   };
   RayState<W, A> state;
-  const Vec3f reach = packet_reach(accel);
+  const float reach = packet_reach(accel);
   for (std::size_t b = 0; b < rays.size; b += W) {
     const RayLanes<F> r = load_span<F>(rays, b);
     const std::size_t count = std::min<std::size_t>(rays.size - b, W);
