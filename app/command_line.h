@@ -117,6 +117,7 @@ std::string program_version();
 // The verbs, each in a file of its own.
 void add_render_command(CommandLine& line);
 void add_info_command(CommandLine& line);
+void add_check_command(CommandLine& line);
 void add_merge_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
 void add_examples_command(CommandLine& line);

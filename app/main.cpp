@@ -10,6 +10,7 @@ int run(int argc, char** argv) {
   CommandLine line(argc, argv);
   add_render_command(line);
   add_info_command(line);
+  add_check_command(line);
   add_merge_command(line);
   add_verify_command(line);
   add_examples_command(line);

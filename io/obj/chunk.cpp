@@ -18,11 +18,10 @@ void note_brace(ObjChunk& chunk, const char* where, bool open, const char* rest)
   if (chunk.first_brace.where == nullptr)
     chunk.first_brace = brace;
   else if (chunk.last_brace.open == open)
-    keep_first(chunk.failure, where, open ? kBraceInBlock : kBraceAlone);
+    chunk.fail(where, open ? kBraceInBlock : kBraceAlone);
   chunk.last_brace = brace;
   rest = next_word(rest);
-  if (!is_line_end(*rest))
-    keep_first(chunk.failure, rest, "expected the end of the line, found " + quote_word(rest));
+  if (!is_line_end(*rest)) chunk.fail(rest, "expected the end of the line, found " + quote_word(rest));
 }
 
 void note_skipped(ObjChunk& chunk, const char* where, std::string_view keyword) {
@@ -44,7 +43,7 @@ void note_statement(ObjChunk& chunk, const char* p) {
   const std::string_view keyword = word_at(p);
   const char* rest = p + keyword.size();
   if (!is_printable_word(keyword)) {
-    keep_first(chunk.failure, p, "expected an OBJ keyword, found " + quote_word(p));
+    chunk.fail(p, "expected an OBJ keyword, found " + quote_word(p));
   } else if (keyword == "usemtl") {
     chunk.material_uses.push_back({p, trimmed(rest, statement_end(p)), chunk.counts.triangles});
   } else if (keyword == "mtllib") {
@@ -117,7 +116,7 @@ void count_chunk(ObjChunk& chunk) {
   for (const char* p = chunk.begin; p < chunk.end;) {
     p = skip_blanks(p);
     const char* end = count_line(chunk, p);
-    if (*end == '\0' && end < chunk.end) keep_first(chunk.failure, end, "unexpected zero byte");
+    if (*end == '\0' && end < chunk.end) chunk.fail(end, "unexpected zero byte");
     p = next_line(end, chunk.end);
   }
 }

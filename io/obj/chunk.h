@@ -17,6 +17,9 @@ namespace oktett {
 
 using ObjOptions = MeshReadOptions;
 
+/// As find_obj_errors(path).
+std::vector<Error> find_obj_errors(const std::string& path, const ObjOptions& options);
+
 /// As load_obj(path).
 ObjFile load_obj(const std::string& path, const ObjOptions& options);
 
@@ -58,8 +61,18 @@ struct ObjBrace {
   bool open = false;
 };
 
+/// Most failures of a chunk that are kept where all are gathered.
+inline constexpr std::size_t kMostObjFailures = 1000;
+
 /// A run of whole lines and what the first pass finds in it.
 struct ObjChunk {
+  void fail(const char* where, std::string message) {
+    if (gathers) failures.push_back({where, message});
+    keep_first(failure, where, std::move(message));
+  }
+  /// Whether there is more to find after a failure.
+  bool goes_on() const { return gathers && failures.size() < kMostObjFailures; }
+
   const char* begin = nullptr;
   const char* end = nullptr;
   ObjCounts counts;        ///< within the chunk
@@ -73,6 +86,8 @@ struct ObjChunk {
   bool uses_uvs = false;               ///< found in the second pass
   bool uses_normals = false;           ///< found in the second pass
   std::optional<MeshFailure> failure;  ///< the first one
+  bool gathers = false;                ///< lines behind a failure are read, too
+  std::vector<MeshFailure> failures;   ///< all, in any order, if they are gathered
 };
 
 /// A file with more unknown keywords than this is something else; they are not listed one by one.
@@ -91,18 +106,29 @@ ObjCounts sum_counts(std::vector<ObjChunk>& chunks);
 /// A brace that does not pair with another, if there is one.
 std::optional<MeshFailure> find_unpaired_brace(const std::vector<ObjChunk>& chunks);
 
-/// Calls `read` with the start of each line of the chunk; it returns where it stopped in the line. Ends at
-/// the first failure and keeps it.
+/// Calls `read` with the start of each line from `p` on; it returns where it stopped in the line. Ends at the
+/// first failure and keeps it. Returns the line after it, or the end of the chunk.
 template <class Read>
-void read_lines(ObjChunk& chunk, const Read& read) {
+const char* read_lines_from(const char* p, ObjChunk& chunk, const Read& read) {
   try {
-    for (const char* p = chunk.begin; p < chunk.end;) {
+    while (p < chunk.end) {
       const char* rest = read(skip_blanks(p));
       p = next_line(is_line_end(*rest) ? rest : find_joined_line_end(rest), chunk.end);
     }
+    return p;
   } catch (const MeshFailure& failure) {
-    keep_first(chunk.failure, failure.where, failure.message);
+    chunk.fail(failure.where, failure.message);
+    return next_line(find_joined_line_end(failure.where), chunk.end);
   }
+}
+
+/// Calls `read` for the lines of the chunk up to the first failure, or for all if failures are gathered.
+template <class Read>
+void read_lines(ObjChunk& chunk, const Read& read) {
+  const char* p = chunk.begin;
+  do {
+    p = read_lines_from(p, chunk, read);
+  } while (p < chunk.end && chunk.goes_on());
 }
 
 /// Reads `v`, `vt` and `vn` of a counted chunk to their place in `mesh`, whose columns have their final size.

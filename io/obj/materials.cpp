@@ -184,7 +184,7 @@ void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedMesh& p
     const std::uint64_t end = i + 1 < runs.size() ? runs[i + 1].use.triangle : count;
     const std::size_t slot = slots.of(use.name, offset(use.where));
     if (slot >= max_slots) {
-      keep_first(runs[i].chunk->failure, use.where, "more than " + std::to_string(max_slots) + " materials");
+      runs[i].chunk->fail(use.where, "more than " + std::to_string(max_slots) + " materials");
       return;
     }
     std::fill(out + use.triangle, out + end, static_cast<std::uint16_t>(slot));

@@ -35,6 +35,28 @@ class ObjLoad {
     return std::move(obj_);
   }
 
+  /// Every line that is wrong.
+  std::vector<Error> find_errors() {
+    gathers_ = true;
+    count();
+    read_all_vertices();
+    read_all_faces();
+    assign_slots(chunks_, text_.data(), obj_);
+    std::vector<MeshFailure> failures;
+    for (ObjChunk& chunk : chunks_) std::ranges::move(chunk.failures, std::back_inserter(failures));
+    if (std::optional<MeshFailure> brace = find_unpaired_brace(chunks_))
+      failures.push_back(std::move(*brace));
+    std::ranges::stable_sort(failures, {}, &MeshFailure::where);
+    std::vector<Error> errors;
+    LineCounter counter = lines();
+    for (const MeshFailure& failure : failures) {
+      const TextPosition position = counter.at(failure.where);
+      if (!errors.empty() && errors.back().where().line == position.line) continue;
+      errors.emplace_back(Location{path_, position.line, position.column}, failure.message);
+    }
+    return errors;
+  }
+
   LineCounter lines() const { return LineCounter(text_); }
   const char* text() const { return text_.data(); }
 
@@ -46,7 +68,10 @@ class ObjLoad {
 
   void count() {
     chunks_ = cut_into_chunks(text_, std::max<std::size_t>(options_.chunk_bytes, 1));
-    for_each_chunk([](ObjChunk& chunk) { count_chunk(chunk); });
+    for_each_chunk([this](ObjChunk& chunk) {
+      chunk.gathers = gathers_;
+      count_chunk(chunk);
+    });
     total_ = sum_counts(chunks_);
     check_limit(path_, total_.positions, "vertices", options_.max_elements);
     check_limit(path_, total_.uvs, "uvs", options_.max_elements);
@@ -136,6 +161,7 @@ class ObjLoad {
   std::vector<ObjChunk> chunks_;
   ObjCounts total_;
   ParsedMesh obj_;
+  bool gathers_ = false;
 };
 
 }  // namespace
@@ -148,6 +174,12 @@ ObjFile load_obj(const std::string& path, const ObjOptions& options) {
 }
 
 ObjFile load_obj(const std::string& path) { return load_obj(path, ObjOptions{}); }
+
+std::vector<Error> find_obj_errors(const std::string& path, const ObjOptions& options) {
+  return ObjLoad(path, options).find_errors();
+}
+
+std::vector<Error> find_obj_errors(const std::string& path) { return find_obj_errors(path, ObjOptions{}); }
 
 ParsedMesh parse_obj(const std::string& path) {
   ObjLoad load(path, ObjOptions{});

@@ -16,6 +16,10 @@ using ObjFile = MeshFile;
 /// with file and line for what the format does not allow, with ErrorKind::io if the file cannot be read.
 ObjFile load_obj(const std::string& path);
 
+/// All lines of an OBJ file that are wrong, in order, as load_obj would report each if it were the first:
+/// after about a thousand the rest is not looked at. Throws Error for what is wrong with the file as a whole.
+std::vector<Error> find_obj_errors(const std::string& path);
+
 /// Reads the MTL file `path` and appends what is in it. Texture paths, which the file states relative to
 /// itself, are joined to its directory. `texture_places`, if given, gets the place of each texture's
 /// statement. Throws Error as load_obj does.

@@ -69,8 +69,10 @@ void read_light_motion(SceneLoad& load, const Fields& fields) {
 template <class PointOrSpot>
 void read_profile(SceneLoad& load, const Fields& fields, const YamlNode& node, PointOrSpot& light) {
   if (const YamlNode* file = fields["profile"]) {
-    light.profile =
-        std::make_shared<const LightProfile>(read_light_profile(load.values.existing_file(*file)));
+    attempt(*file, [&] {
+      light.profile =
+          std::make_shared<const LightProfile>(read_light_profile(load.values.existing_file(*file)));
+    });
     load.values.read(fields["rotate"], light.rotation, kAnyNumber);
   } else if (fields["rotate"] != nullptr) {
     throw Error(fields["rotate"]->where(), "'rotate' turns a 'profile', which is missing");
@@ -161,8 +163,10 @@ void read_environment(SceneLoad& load, const YamlNode& node) {
   load.values.read_color(fields["color"], light.color);
   load.values.read(fields["rotate"], light.rotation, kAnyNumber);
   add_light(load, fields, std::move(light));
-  std::get<EnvironmentLight>(load.scene.lights.back()).picture =
-      read_environment_picture(load, fields.require("file"));
+  const YamlNode& file = fields.require("file");
+  attempt(file, [&] {
+    std::get<EnvironmentLight>(load.scene.lights.back()).picture = read_environment_picture(load, file);
+  });
 }
 
 void read_sky(SceneLoad& load, const YamlNode& node) {
@@ -270,15 +274,16 @@ void read_lights(SceneLoad& load, const YamlNode& node) {
   load.scene.lights_given = true;
   std::vector<const char*> keys;
   for (const LightKind& kind : kLightKinds) keys.push_back(kind.key);
-  for (const YamlNode* item : list_items(node, "lights")) {
-    const Fields fields(*item, "a light", keys);
-    const std::vector<MapEntry> entries = map_entries(*item, "a light");
-    if (entries.size() != 1)
-      throw Error(item->where(),
-                  "expected one of point, spot, directional, environment, sky, sphere, disk and rectangle");
-    for (const LightKind& kind : kLightKinds)
-      if (entries[0].key->text == kind.key) kind.read(load, *entries[0].value);
-  }
+  for (const YamlNode* item : list_items(node, "lights"))
+    attempt(*item, [&] {
+      const Fields fields(*item, "a light", keys);
+      const std::vector<MapEntry> entries = map_entries(*item, "a light");
+      if (entries.size() != 1)
+        throw Error(item->where(),
+                    "expected one of point, spot, directional, environment, sky, sphere, disk and rectangle");
+      for (const LightKind& kind : kLightKinds)
+        if (entries[0].key->text == kind.key) kind.read(load, *entries[0].value);
+    });
 }
 
 }  // namespace oktett

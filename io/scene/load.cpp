@@ -8,7 +8,7 @@ namespace oktett {
 
 void NameTable::add(const std::string& name, std::uint32_t index, const Location& place,
                     const std::string& what) {
-  const auto [taken, is_new] = entries.try_emplace(name, Entry{index, place});
+  const auto [taken, is_new] = entries.try_emplace(name, Entry{index, place, false});
   if (is_new) return;
   throw Error(place,
               what + " " + quote(name) + " is defined twice; first at " + to_string(taken->second.where));
@@ -16,7 +16,14 @@ void NameTable::add(const std::string& name, std::uint32_t index, const Location
 
 const NameTable::Entry* NameTable::find(const std::string& name) const {
   const auto found = entries.find(name);
-  return found == entries.end() ? nullptr : &found->second;
+  if (found == entries.end()) return nullptr;
+  found->second.used = true;
+  return &found->second;
+}
+
+void NameTable::fail_unknown(const std::string& name, const Location& place, const std::string& what) const {
+  if (incomplete) throw FollowingError();
+  throw Error(place, "unknown " + what + " " + quote(name) + suggestion(name));
 }
 
 std::string NameTable::suggestion(const std::string& name) const {
@@ -27,12 +34,18 @@ std::string NameTable::suggestion(const std::string& name) const {
 }
 
 void SceneLoad::warn(const Location& place, const std::string& message) {
+  if (!is_clean()) return;
   constexpr std::size_t kMostWarnings = 1000;
   const std::size_t count = scene.warnings.size();
   if (count < kMostWarnings)
     scene.warnings.push_back(Warning{place, message});
   else if (count == kMostWarnings)
     scene.warnings.push_back(Warning{Location{}, "there are more warnings, which are not shown"});
+}
+
+void SceneLoad::miss_definitions() {
+  media.incomplete = materials.incomplete = prototypes.incomplete = true;
+  parameters.miss_definitions();
 }
 
 }  // namespace oktett

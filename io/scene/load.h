@@ -28,12 +28,17 @@ struct NameTable {
   struct Entry {
     std::uint32_t index;
     Location where;
+    mutable bool used = false;  ///< was looked for
   };
   std::unordered_map<std::string, Entry> entries;
+  bool incomplete = false;  ///< where errors are gathered: names may be missing because of one
 
   /// Throws Error at `place` if `name` is taken; `what` is the kind of thing, e.g. "material".
   void add(const std::string& name, std::uint32_t index, const Location& place, const std::string& what);
   const Entry* find(const std::string& name) const;
+  /// Throws Error at `place`: there is no such name.
+  [[noreturn]] void fail_unknown(const std::string& name, const Location& place,
+                                 const std::string& what) const;
   /// "; did you mean 'x'?" or nothing.
   std::string suggestion(const std::string& name) const;
 };
@@ -53,9 +58,15 @@ struct SceneLoad {
   std::set<std::string> light_groups;  ///< names that lights and materials have given
   std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;
+  ErrorList* errors = nullptr;  ///< where errors are gathered; null: the first one is thrown
 
-  /// Adds a warning; after the first thousand only says that there are more.
+  /// Adds a warning; after the first thousand only says that there are more. Where errors are gathered, says
+  /// nothing of what is known to be wrong.
   void warn(const Location& place, const std::string& message);
+  /// Whether nothing is known to be wrong in what is being read.
+  bool is_clean() const { return errors == nullptr || errors->is_clean(); }
+  /// Where errors are gathered: definitions may be missing, so that nothing is said of unknown names.
+  void miss_definitions();
 };
 
 }  // namespace oktett

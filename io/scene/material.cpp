@@ -142,8 +142,10 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
 void define_materials(SceneLoad& load, const YamlNode& materials) {
   for (const auto& [key, value] : map_entries(materials, "materials")) {
     const auto index = static_cast<std::uint32_t>(load.scene.materials.size());
-    load.materials.add(key->text, index, key->where(), "material");
-    append_material(load, *value, key->text);
+    attempt(*key, [&, k = key] { load.materials.add(k->text, index, k->where(), "material"); });
+    attempt(*value, [&, k = key, v = value] { append_material(load, *v, k->text); });
+    // The names of those that are wrong are known.
+    load.scene.materials.resize(std::size_t{index} + 1);
   }
 }
 
@@ -165,7 +167,7 @@ std::uint32_t read_material(SceneLoad& load, const YamlNode& node) {
     throw Error(node.where(), "expected the name of a material or a map, found " + node.describe());
   const std::string name = load.values.text(node);
   if (const NameTable::Entry* material = load.materials.find(name)) return material->index;
-  throw Error(node.where(), "unknown material " + quote(name) + load.materials.suggestion(name));
+  load.materials.fail_unknown(name, node.where(), "material");
 }
 
 }  // namespace oktett

@@ -90,7 +90,7 @@ std::uint32_t named_medium(SceneLoad& load, const YamlNode& node) {
     throw Error(node.where(), "expected the name of a medium, found " + node.describe());
   const std::string name = load.values.text(node);
   if (const NameTable::Entry* medium = load.media.find(name)) return medium->index;
-  throw Error(node.where(), "unknown medium " + quote(name) + load.media.suggestion(name));
+  load.media.fail_unknown(name, node.where(), "medium");
 }
 
 /// The medium that leaves `attenuation_color` of white light after `attenuation_distance`, as in glTF.
@@ -124,8 +124,10 @@ void refuse_surface_keys(const YamlNode& node) {
 void define_media(SceneLoad& load, const YamlNode& media) {
   for (const auto& [key, value] : map_entries(media, "media")) {
     const auto index = static_cast<std::uint32_t>(load.scene.media.size());
-    load.media.add(key->text, index, key->where(), "medium");
-    load.scene.media.push_back(read_medium(load, *value, key->text));
+    attempt(*key, [&, k = key] { load.media.add(k->text, index, k->where(), "medium"); });
+    Medium medium;
+    attempt(*value, [&, k = key, v = value] { medium = read_medium(load, *v, k->text); });
+    load.scene.media.push_back(std::move(medium));
   }
 }
 

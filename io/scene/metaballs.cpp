@@ -132,7 +132,8 @@ MaybeForm read_elements(const ShapeNode& at, const YamlNode& list, double iso) {
   const auto items = list_items(list, "elements");
   if (items.empty()) throw Error(list.where(), "the list of elements is empty");
   check_count(items.size(), list.where());
-  for (const YamlNode* item : items) tree.elements.push_back(read_element(at.load, *item));
+  for (const YamlNode* item : items)
+    attempt(*item, [&] { tree.elements.push_back(read_element(at.load, *item)); });
   if (none_positive(tree)) return at.skip("no element has a positive weight");
   if (all_metaballs(tree.elements)) {
     MetaballsShape shape{iso, {}};
@@ -173,7 +174,7 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
                   "blends are nested deeper than " + std::to_string(kMaxBlendLevels) + " levels");
     const auto items = list_items(*list, blend.name);
     if (items.empty()) throw Error(list->where(), std::string("the list of '") + blend.name + "' is empty");
-    for (const YamlNode* item : items) read_blend(load, *item, level + 1, tree);
+    for (const YamlNode* item : items) attempt(*item, [&] { read_blend(load, *item, level + 1, tree); });
     tree.blends.push_back({blend.value, 0, static_cast<std::uint32_t>(items.size())});
     return;
   }

@@ -11,7 +11,7 @@ static constexpr std::size_t kMostKeys = 4096;
 
 std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node) {
   std::vector<MotionKey> keys;
-  for (const YamlNode* item : list_items(node, "motion")) {
+  const auto read_key = [&](const YamlNode* item) {
     const Fields fields(*item, "a key of a motion", {"time", "transform"});
     MotionKey key;
     const YamlNode& time = fields.require("time");
@@ -28,7 +28,8 @@ std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node) {
     keys.push_back(key);
     if (keys.size() > kMostKeys)
       throw Error(item->where(), fmt::format("a motion has more than {} keys", kMostKeys));
-  }
+  };
+  for (const YamlNode* item : list_items(node, "motion")) attempt(*item, [&] { read_key(item); });
   if (keys.empty()) throw Error(node.where(), "a motion needs at least one key {time, transform}");
   return keys;
 }

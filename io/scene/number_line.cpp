@@ -60,7 +60,7 @@ void read_number_file(SceneLoad& load, const YamlNode& node, std::size_t max_byt
     end = std::min(text.find('\n', begin), text.size());
     ++place.line;
     NumberLine line(std::string_view(text).substr(begin, end - begin), place, expected);
-    if (!line.empty()) read(line);
+    if (!line.empty()) attempt(node, [&] { read(line); });
   }
 }
 

@@ -27,7 +27,8 @@ Object unite(std::vector<Object> members, const Location& where) {
   return object;
 }
 
-/// The one entry of an object that says what it is. Throws Error for keys that no object has.
+/// The one entry of an object that says what it is. Throws Error for keys that no object has. Where errors
+/// are gathered, an object without a shape has null entries.
 MapEntry find_shape(const YamlNode& node) {
   const std::vector<std::string>& shapes = object_keys();
   const std::string shape_names = fmt::format("{}", fmt::join(shapes, ", "));
@@ -39,16 +40,20 @@ MapEntry find_shape(const YamlNode& node) {
     const std::string& key = entry.key->text;
     if (std::ranges::find(known, key) == known.end()) {
       const std::string hint = suggest(key, known);
-      throw Error(entry.key->where(), "unknown key " + quote(key) + " in an object" +
-                                          (hint.empty() ? "; shapes are " + shape_names : hint));
+      report(*entry.key, "unknown key " + quote(key) + " in an object" +
+                             (hint.empty() ? "; shapes are " + shape_names : hint));
     }
     if (std::ranges::find(shapes, key) == shapes.end()) continue;
     if (shape.key)
-      throw Error(entry.key->where(), "an object has one shape, but " + quote(shape.key->text) + " and " +
-                                          quote(key) + " are given");
-    shape = entry;
+      report(*entry.key,
+             "an object has one shape, but " + quote(shape.key->text) + " and " + quote(key) + " are given");
+    else
+      shape = entry;
   }
-  if (!shape.key) throw Error(node.where(), "an object needs a shape: one of " + shape_names);
+  if (shape.key) return shape;
+  const Error error(node.where(), "an object needs a shape: one of " + shape_names);
+  if (node.file->errors == nullptr) throw error;
+  node.file->errors->add_if_first(error);
   return shape;
 }
 
@@ -61,45 +66,46 @@ class ObjectReader {
       : load_(load), out_(out), defining_(defining), name_(std::move(name)) {}
 
   void read(const YamlNode& node, const Surroundings& outer) {
+    attempt(node, [&] { read_object(node, outer); });
+  }
+
+  /// Levels of instances below what has been read.
+  int levels() const { return levels_; }
+
+ private:
+  void read_object(const YamlNode& node, const Surroundings& outer) {
     const auto [key, value] = find_shape(node);
-    const Fields fields(node, "an object", {key->text.c_str(), "material", "transform", "motion", "name"});
-    const bool is_group = key->text == "group", is_instance = key->text == "instance";
+    const std::string kind = key ? key->text : "";
+    const Fields fields(node, "an object", {kind.c_str(), "material", "transform", "motion", "name"});
+    const bool is_group = kind == "group", is_instance = kind == "instance";
 
     Object object;
     object.where = node.where();
-    if (const YamlNode* name = fields["name"]) {
-      object.name = load_.values.text(*name);
-      load_.objects.add(object.name, 0, name->where(), "object");
-    }
+    if (const YamlNode* name = fields["name"])
+      attempt(*name, [&] {
+        object.name = load_.values.text(*name);
+        load_.objects.add(object.name, 0, name->where(), "object");
+      });
     // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
     Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped, outer.motion};
-    if (const YamlNode* material = fields["material"]) inner.material = read_material(load_, *material);
-    if (const YamlNode* transform = fields["transform"]) {
-      const Affine own = read_transform(load_.values, *transform);
-      inner.transform = outer.transform * own;
-      inner.motion.factors.push_back({{0, own}});
-      std::string reason = why_degenerate(own);
-      if (reason.empty() && !outer.is_dropped) reason = why_degenerate(inner.transform);
-      if (!reason.empty()) {
-        inner.is_dropped = true;
-        load_.warn(transform->where(),
-                   reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
-      }
-    }
-    if (const YamlNode* motion = fields["motion"]) {
-      if (fields["transform"])
-        throw Error(motion->where(),
-                    "expected 'transform' or 'motion', not both; a group can have the other");
-      read_motion_of(*motion, inner);
-    }
+    if (const YamlNode* material = fields["material"])
+      attempt(*material, [&] { inner.material = read_material(load_, *material); });
+    if (const YamlNode* transform = fields["transform"])
+      attempt(*transform, [&] { read_transform_of(*transform, is_group, outer, inner); });
+    if (const YamlNode* motion = fields["motion"])
+      attempt(*motion, [&] {
+        if (fields["transform"])
+          throw Error(motion->where(),
+                      "expected 'transform' or 'motion', not both; a group can have the other");
+        read_motion_of(*motion, inner);
+      });
+    if (!key) return;
     if (is_group) {
       for (const YamlNode* member : list_items(*value, "group")) read(*member, inner);
       return;
     }
-    const auto* const csg = std::ranges::find(kCsgKeys, key->text, &Choice<CsgOp>::name);
-    std::optional<Shape> shape = csg != std::end(kCsgKeys) ? read_csg(csg->value, *key, *value, inner)
-                                 : is_instance             ? read_instance(*value)
-                                                           : read_shape(load_, *key, *value);
+    std::optional<Shape> shape;
+    if (!attempt(*value, [&, k = key, v = value] { shape = read_any_shape(*k, *v, inner); })) return;
     if (!shape || inner.is_dropped) return;
     object.shape = std::move(*shape);
     object.material = inner.material;
@@ -109,10 +115,24 @@ class ObjectReader {
     out_.push_back(std::move(object));
   }
 
-  /// Levels of instances below what has been read.
-  int levels() const { return levels_; }
+  void read_transform_of(const YamlNode& node, bool is_group, const Surroundings& outer,
+                         Surroundings& inner) {
+    const Affine own = read_transform(load_.values, node);
+    inner.transform = outer.transform * own;
+    inner.motion.factors.push_back({{0, own}});
+    std::string reason = why_degenerate(own);
+    if (reason.empty() && !outer.is_dropped) reason = why_degenerate(inner.transform);
+    if (reason.empty()) return;
+    inner.is_dropped = true;
+    load_.warn(node.where(), reason + (is_group ? "; the group is skipped" : "; the object is skipped"));
+  }
 
- private:
+  std::optional<Shape> read_any_shape(const YamlNode& key, const YamlNode& value, const Surroundings& inner) {
+    const auto* const csg = std::ranges::find(kCsgKeys, key.text, &Choice<CsgOp>::name);
+    if (csg != std::end(kCsgKeys)) return read_csg(csg->value, key, value, inner);
+    return key.text == "instance" ? read_instance(value) : read_shape(load_, key, value);
+  }
+
   void read_motion_of(const YamlNode& node, Surroundings& inner) {
     inner.motion.factors.push_back(read_motion(load_.values, node));
     if (inner.motion.factors.back().size() > 1 && !name_.empty())
@@ -146,7 +166,8 @@ class ObjectReader {
       reader.is_operand_ = true;
       reader.read(*node, inner);
       levels_ = std::max(levels_, reader.levels_);
-      for (const Object& member : members) require_solid(load_, member, "only solids can be combined");
+      for (const Object& member : members)
+        attempt(*node, [&] { require_solid(load_, member, "only solids can be combined"); });
       // What was skipped is nothing, and so is what it is intersected with or taken from.
       const bool is_needed = op == CsgOp::intersect || (op == CsgOp::subtract && node == nodes.front());
       if (members.empty())
@@ -183,7 +204,7 @@ class ObjectReader {
                       fmt::format("prototype {} is defined only later, at line {}; a prototype may hold "
                                   "instances of those before it",
                                   quote(name), key->line));
-    throw Error(node.where(), "unknown prototype " + quote(name) + load_.prototypes.suggestion(name));
+    load_.prototypes.fail_unknown(name, node.where(), "prototype");
   }
 
   SceneLoad& load_;
@@ -202,8 +223,10 @@ void define_prototypes(SceneLoad& load, const YamlNode& define) {
     ObjectReader reader(load, prototype.objects, &define, key->text);
     reader.read(*value, {});
     // Only now, so that the prototype cannot name itself.
-    load.prototypes.add(key->text, static_cast<std::uint32_t>(load.scene.prototypes.size()), key->where(),
-                        "prototype");
+    attempt(*key, [&, k = key] {
+      load.prototypes.add(k->text, static_cast<std::uint32_t>(load.scene.prototypes.size()), k->where(),
+                          "prototype");
+    });
     load.scene.prototypes.push_back(std::move(prototype));
     load.prototype_levels.push_back(reader.levels());
   }

@@ -20,32 +20,38 @@ SceneParameters::SceneParameters(const Definitions& definitions) {
   for (const auto& [name, text] : definitions) {
     if (!is_name(name)) throw Error("-D " + name + ": a name consists of letters, digits, '_' and '-'");
     if (text.size() > kMaxExpandedScalar) throw Error("-D " + name + ": the value is too long");
-    values_[name] = {text, true, false};
+    values_[name] = {text, true, false, false};
   }
 }
 
 void SceneParameters::add_defaults(const YamlNode& params) {
   const std::vector<MapEntry> entries = map_entries(params, "params");
-  for (const auto& [key, value] : entries) {
-    const std::string& name = key->text;
-    if (!is_name(name)) throw Error(key->where(), "a name consists of letters, digits, '_' and '-'");
-    if (value->kind != YamlKind::scalar)
-      throw Error(value->where(), "expected a number or text, found " + value->describe());
-    if (value->file->probe) value->file->probe->value(*value, {ReadType::Kind::text});
-    std::string text = expand(*value);
-    const auto [place, is_new] = values_.try_emplace(name, Value{std::move(text), false, false});
-    if (!is_new) place->second.used = true;
-    if (values_.size() > kMaxParameters)
-      throw Error(key->where(), "more than " + std::to_string(kMaxParameters) + " parameters");
-  }
+  for (const auto& [key, value] : entries)
+    if (!attempt(*key, [&, k = key, v = value] { add_default(*k, *v); }))
+      values_.try_emplace(key->text, Value{"", false, false, true});
+}
+
+void SceneParameters::add_default(const YamlNode& key, const YamlNode& value) {
+  const std::string& name = key.text;
+  if (!is_name(name)) throw Error(key.where(), "a name consists of letters, digits, '_' and '-'");
+  if (value.kind != YamlKind::scalar)
+    throw Error(value.where(), "expected a number or text, found " + value.describe());
+  if (value.file->probe) value.file->probe->value(value, {ReadType::Kind::text});
+  std::string text = expand(value);
+  const auto [place, is_new] = values_.try_emplace(name, Value{std::move(text), false, false, false});
+  if (!is_new) place->second.used = true;
+  if (values_.size() > kMaxParameters)
+    throw Error(key.where(), "more than " + std::to_string(kMaxParameters) + " parameters");
 }
 
 const std::string& SceneParameters::lookup(const YamlNode& scalar, std::size_t at, const std::string& name) {
   const auto found = values_.find(name);
   if (found != values_.end()) {
     found->second.used = true;
+    if (found->second.wrong) throw FollowingError();
     return found->second.text;
   }
+  if (incomplete_) throw FollowingError();
   std::vector<std::string> names;
   for (const auto& entry : values_) names.push_back(entry.first);
   throw Error(scalar.where(at), "no value for " + quote("${" + name + "}") + suggest(name, names) +

@@ -25,6 +25,9 @@ class SceneParameters {
   /// `${` of a name without a value, with the nearest name that has one.
   std::string expand(const YamlNode& scalar);
 
+  /// From here on nothing is said of names without a value: their definitions may be missing.
+  void miss_definitions() { incomplete_ = true; }
+
   /// One warning for each definition on the command line that nothing asked for or overrode.
   std::vector<Warning> unused() const;
 
@@ -33,11 +36,14 @@ class SceneParameters {
     std::string text;
     bool from_command_line = false;
     bool used = false;
+    bool wrong = false;  ///< where errors are gathered: the definition was
   };
 
+  void add_default(const YamlNode& key, const YamlNode& value);
   const std::string& lookup(const YamlNode& scalar, std::size_t at, const std::string& name);
 
   std::map<std::string, Value> values_;
+  bool incomplete_ = false;
 };
 
 }  // namespace oktett

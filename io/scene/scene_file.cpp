@@ -38,16 +38,7 @@ class FileReader {
   void read(const std::string& path) {
     chain_.push_back({path, canonical_path(path)});
     seen_.push_back(chain_.back().canonical);
-    YamlFile file;
-    file.path = path;
-    file.text = read_text_file(path, kMaxSceneBytes);
-    bytes_ += file.text.size();
-    if (bytes_ > kMaxSceneBytes)
-      throw Error(Location{path, 0, 0}, "the scene and the files that it includes are larger than " +
-                                            std::to_string(kMaxSceneBytes >> 20) + " MiB in all");
-    parse_yaml(file, kMaxSceneNodes - nodes_);
-    nodes_ += file.expanded_nodes;
-    read_sections(*file.root);
+    if (!attempt(load_.errors, [&] { read_file(path); })) load_.miss_definitions();
     chain_.pop_back();
   }
 
@@ -56,28 +47,46 @@ class FileReader {
     std::string path, canonical;
   };
 
+  void read_file(const std::string& path) {
+    YamlFile file;
+    file.path = path;
+    file.errors = load_.errors;
+    file.text = read_text_file(path, kMaxSceneBytes);
+    bytes_ += file.text.size();
+    if (bytes_ > kMaxSceneBytes)
+      throw Error(Location{path, 0, 0}, "the scene and the files that it includes are larger than " +
+                                            std::to_string(kMaxSceneBytes >> 20) + " MiB in all");
+    parse_yaml(file, kMaxSceneNodes - nodes_);
+    nodes_ += file.expanded_nodes;
+    read_sections(*file.root);
+  }
+
   void read_sections(const YamlNode& root) {
     if (root.kind != YamlKind::map)
       throw Error(root.where(), "expected a map that begins with 'oktett: 1', found " + root.describe());
     const Fields fields(root, "a scene",
                         {"oktett", "include", "params", "camera", "film", "integrator", "background",
                          "ambient_light", "media", "medium", "materials", "lights", "define", "objects"});
-    check_version(fields, root);
+    attempt(root, [&] { check_version(fields, root); });
     const auto section = [&](const char* key, auto read_section) {
-      if (const YamlNode* node = fields[key]) read_section(load_, *node);
+      const YamlNode* node = fields[key];
+      return node == nullptr || attempt(*node, [&] { read_section(load_, *node); });
     };
-    section("params", [](SceneLoad& load, const YamlNode& node) { load.parameters.add_defaults(node); });
-    if (const YamlNode* node = fields["include"]) read_includes(*node);
+    const auto definitions = [&](const char* key, auto read_section) {
+      if (!section(key, read_section)) load_.miss_definitions();
+    };
+    definitions("params", [](SceneLoad& load, const YamlNode& node) { load.parameters.add_defaults(node); });
+    definitions("include", [&](SceneLoad&, const YamlNode& node) { read_includes(node); });
     section("camera", read_camera);
     section("film", read_film);
     section("integrator", read_integrator);
     load_.values.read_color(fields["background"], load_.scene.background);
     load_.values.read_color(fields["ambient_light"], load_.scene.ambient_light);
-    section("media", define_media);
+    definitions("media", define_media);
     section("medium", read_outer_medium);
-    section("materials", define_materials);
+    definitions("materials", define_materials);
     section("lights", read_lights);
-    section("define", define_prototypes);
+    definitions("define", define_prototypes);
     section("objects", read_objects);
   }
 
@@ -89,24 +98,27 @@ class FileReader {
   }
 
   void read_includes(const YamlNode& node) {
-    for (const YamlNode* item : list_items(node, "include")) {
-      const std::string path = load_.values.existing_file(*item);
-      const std::string canonical = canonical_path(path);
-      check_cycle(*item, path, canonical);
-      if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) continue;
-      if (is_gltf_file(path)) {
-        seen_.push_back(canonical);
-        add_gltf(path, load_gltf_scene(path), load_.scene);
-        load_.prototype_levels.resize(load_.scene.prototypes.size());
-        continue;
-      }
-      if (chain_.size() > kMaxIncludeDepth)
-        throw Error(item->where(),
-                    "included files are nested deeper than " + std::to_string(kMaxIncludeDepth) + " levels");
-      if (seen_.size() > kMaxIncludedFiles)
-        throw Error(item->where(), "more than " + std::to_string(kMaxIncludedFiles) + " files are included");
-      read(path);
+    for (const YamlNode* item : list_items(node, "include"))
+      if (!attempt(*item, [&] { read_include(*item); })) load_.miss_definitions();
+  }
+
+  void read_include(const YamlNode& item) {
+    const std::string path = load_.values.existing_file(item);
+    const std::string canonical = canonical_path(path);
+    check_cycle(item, path, canonical);
+    if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) return;
+    if (is_gltf_file(path)) {
+      seen_.push_back(canonical);
+      add_gltf(path, load_gltf_scene(path), load_.scene);
+      load_.prototype_levels.resize(load_.scene.prototypes.size());
+      return;
     }
+    if (chain_.size() > kMaxIncludeDepth)
+      throw Error(item.where(),
+                  "included files are nested deeper than " + std::to_string(kMaxIncludeDepth) + " levels");
+    if (seen_.size() > kMaxIncludedFiles)
+      throw Error(item.where(), "more than " + std::to_string(kMaxIncludedFiles) + " files are included");
+    read(path);
   }
 
   void check_cycle(const YamlNode& place, const std::string& path, const std::string& canonical) {
@@ -152,12 +164,17 @@ void read_scene_tree(const YamlNode& root) {
   FileReader(load).read_tree(root);
 }
 
-Scene load_scene_file(const std::string& path, const Definitions& definitions) {
-  SceneLoad load(definitions);
+void read_scene_file(const std::string& path, SceneLoad& load) {
   load.scene.source = path;
   FileReader(load).read(path);
+  if (load.errors != nullptr && load.errors->failures() > 0) return;
   warn_of_energy(load);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
+}
+
+Scene load_scene_file(const std::string& path, const Definitions& definitions) {
+  SceneLoad load(definitions);
+  read_scene_file(path, load);
   return std::move(load.scene);
 }
 

@@ -13,13 +13,24 @@ namespace {
 
 using MaybeShape = std::optional<Shape>;
 
+/// Where errors are gathered, keeps all that is wrong in the file.
+const MeshLibrary::Entry& load_file(SceneLoad& load, const std::string& path, const MeshOptions& options) {
+  try {
+    return load.meshes.load(path, options, load.scene);
+  } catch (const Error&) {
+    if (load.errors != nullptr)
+      for (const Error& error : find_mesh_errors(path)) load.errors->add(error);
+    throw;
+  }
+}
+
 /// Loads the file of a mesh. Returns whether it has triangles.
 bool finish(const ShapeNode& at, MeshShape& shape) {
   const YamlNode& file = at.fields.require("file");
   const std::string path = at.load.values.existing_file(file);
   if (!is_mesh_file(path))
     throw Error(file.where(), std::string("unknown kind of mesh file; expected ") + mesh_extensions());
-  const MeshLibrary::Entry& entry = at.load.meshes.load(path, {.weld = shape.weld}, at.load.scene);
+  const MeshLibrary::Entry& entry = load_file(at.load, path, {.weld = shape.weld});
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
   if (shape.mesh->triangle_count() == 0) at.skip("the mesh has no triangles");
@@ -54,13 +65,15 @@ class ShapeReader {
     ParameterReader reader(load_, node_, fields);
     shape.describe(reader);
     const ShapeNode at{load_, key_, node_, fields};
+    // What follows relies on what the parameters promise.
+    if (reader.is_wrong()) return;
     if (reader.why_nothing) {
       at.skip(reader.why_nothing);
     } else if constexpr (is_one_of<T>(std::type_identity<Shape>{})) {
       if constexpr (requires { finish(at, shape); })
         if (!finish(at, shape)) return;
-      result = std::move(shape);
-    } else if (std::optional<ExactForm> form = form_of(at, shape)) {
+      if (load_.is_clean()) result = std::move(shape);
+    } else if (std::optional<ExactForm> form = form_of(at, shape); form && load_.is_clean()) {
       result = ExactShape{std::move(*form), reader.normal_method};
     }
   }

@@ -24,7 +24,7 @@ namespace {
 }  // namespace
 
 void ParameterReader::check(bool ok, const char* key, const char* message, const double* found) const {
-  if (ok || why_nothing) return;
+  if (ok || why_nothing || is_wrong_) return;
   const YamlNode* value = key ? fields_[key] : &node_;
   if (!value) value = last_ ? last_ : &node_;
   throw Error(value->where(), found ? fmt::format("{}, found {:.6g}", message, *found) : message);

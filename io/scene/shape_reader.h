@@ -62,14 +62,20 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
     const bool required = parameter.need == Parameter::Need::required;
     const YamlNode* const node = required ? &fields_.require(parameter.key) : fields_[parameter.key];
     if (!node) return false;
-    read(*node, parameter, value);
     last_ = node;
+    if (node->missing) is_wrong_ = true;
+    ErrorList* const errors = node->file->errors;
+    const std::size_t before = errors ? errors->failures() : 0;
+    attempt(*node, [&] { read(*node, parameter, value); });
+    if (errors && errors->failures() != before) is_wrong_ = true;
     return true;
   }
+  /// Where errors are gathered: whether some value was wrong and is made up, or missing.
+  bool is_wrong() const { return is_wrong_; }
   void normals() { describe_normals(*this, normal_method); }
   void check(bool ok, const char* key, const char* message, const double* found = nullptr) const;
   void nothing_if(bool is_empty, const char* reason) {
-    if (is_empty && !why_nothing) why_nothing = reason;
+    if (is_empty && !why_nothing && !is_wrong_) why_nothing = reason;
   }
 
   NormalMethod normal_method = NormalMethod::gradient;
@@ -99,7 +105,9 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   void read(const YamlNode& node, const Parameter& parameter, std::vector<T>& list) {
     for (const YamlNode* item : items_of(node, parameter)) {
       T value{};
-      if (read_item(load_, *item, value)) list.push_back(std::move(value));
+      bool keep = false;
+      attempt(*item, [&] { keep = read_item(load_, *item, value); });
+      if (keep) list.push_back(std::move(value));
     }
   }
   /// The items of a list whose length is checked.
@@ -109,6 +117,7 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   const YamlNode& node_;
   const Fields& fields_;
   const YamlNode* last_ = nullptr;  ///< the value that was read last
+  bool is_wrong_ = false;
 };
 
 /// Reads a map of parameters that has no special cases; `what` names it.

@@ -53,12 +53,13 @@ SphereShape sphere_of(NumberLine& line) {
 std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
   SphereList list(load);
   if (node.kind == YamlKind::sequence) {
-    for (const YamlNode* item : list_items(node, "spheres")) {
-      list.count(item->where());
-      SphereShape sphere;
-      read_described(load, *item, "sphere", sphere);
-      list.add(sphere, item->where());
-    }
+    for (const YamlNode* item : list_items(node, "spheres"))
+      attempt(*item, [&] {
+        list.count(item->where());
+        SphereShape sphere;
+        read_described(load, *item, "sphere", sphere);
+        list.add(sphere, item->where());
+      });
     return list.finish(key);
   }
   const Fields fields(node, "spheres", {"centers", "radius", "file"});

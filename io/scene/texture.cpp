@@ -79,21 +79,19 @@ void read_image(SceneLoad& load, const Fields& fields, Texture& texture) {
 
 }  // namespace
 
-void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
-  if (!node) return;
+static std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   SceneValues& values = load.values;
   Texture texture;
-  if (node->kind != YamlKind::map) {
-    texture.path = values.existing_file(*node);
-    out = load.textures.add(texture);
-    return;
+  if (node.kind != YamlKind::map) {
+    texture.path = values.existing_file(node);
+    return load.textures.add(texture);
   }
   std::vector<const char*> keys(std::begin(kImageKeys), std::end(kImageKeys));
   visit_patterns([&](const auto& pattern) { keys.push_back(std::decay_t<decltype(pattern)>::kSurface.key); });
   keys.insert(keys.end(), {"gain", "base"});
-  const Fields fields(*node, "a texture", keys);
+  const Fields fields(node, "a texture", keys);
   // A pattern stands alone but for gain and base.
-  const std::vector<MapEntry> entries = map_entries(*node, "a texture");
+  const std::vector<MapEntry> entries = map_entries(node, "a texture");
   for (const MapEntry& entry : entries) {
     texture.pattern = read_pattern(load, entry.key->text, *entry.value);
     if (!texture.pattern) continue;
@@ -106,7 +104,11 @@ void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
   if (!texture.pattern) read_image(load, fields, texture);
   values.read(fields["gain"], texture.gain, kAnyNumber);
   values.read(fields["base"], texture.base, kAnyNumber);
-  out = load.textures.add(texture);
+  return load.textures.add(texture);
+}
+
+void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
+  if (node) attempt(*node, [&] { out = read_texture(load, *node); });
 }
 
 }  // namespace oktett

@@ -58,7 +58,7 @@ Affine read_transform(SceneValues& values, const YamlNode& node) {
   if (node.kind == YamlKind::map) return read_operation(values, node);
   Affine total;
   for (const YamlNode* operation : list_items(node, "transform"))
-    total = read_operation(values, *operation) * total;
+    attempt(*operation, [&] { total = read_operation(values, *operation) * total; });
   return total;
 }
 

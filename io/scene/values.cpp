@@ -66,7 +66,7 @@ Fields::Fields(const YamlNode& node, const std::string& what, std::span<const ch
     const std::vector<std::string> names(known.begin(), known.end());
     std::string message = "unknown key " + quote(key->text) + " in " + what + suggest(key->text, names);
     if (message.back() != '?') message += fmt::format("; known are {}", fmt::join(names, ", "));
-    throw Error(key->where(), message);
+    report(*key, message);
   }
 }
 
@@ -80,7 +80,11 @@ const YamlNode* Fields::operator[](const char* key) const {
 const YamlNode& Fields::require(const char* key) const {
   if (const YamlNode* value = (*this)[key]) return *value;
   if (node_.file->probe && node_.kind == YamlKind::map) return node_.file->probe->required(node_, key);
-  throw Error(node_.where(), what_ + " needs " + quote(key));
+  const Error error(node_.where(), what_ + " needs " + quote(key));
+  ErrorList* const errors = node_.file->errors;
+  if (errors == nullptr) throw error;
+  if (!node_.missing) errors->add_if_first(error);
+  return errors->missing_value(node_);
 }
 
 /// Tells who watches what the value is read as. Returns whether someone does; then any value is allowed.
@@ -111,10 +115,13 @@ std::string SceneValues::text(const YamlNode& node) {
 
 bool SceneValues::boolean(const YamlNode& node) {
   if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::boolean})) return false;
-  const std::string word = node.kind == YamlKind::scalar ? text(node) : "";
-  if (word == "true") return true;
-  if (word == "false") return false;
-  throw Error(node.where(), "expected true or false, found " + node.describe());
+  const auto read = [&] {
+    const std::string word = node.kind == YamlKind::scalar ? text(node) : "";
+    if (word == "true") return true;
+    if (word == "false") return false;
+    throw Error(node.where(), "expected true or false, found " + node.describe());
+  };
+  return read_or(node, read, [] { return false; });
 }
 
 static bool is_plain_word(const std::string& text) {
@@ -140,6 +147,11 @@ double SceneValues::expression(const YamlNode& node, const std::string& text) {
 }
 
 double SceneValues::number(const YamlNode& node, const Range& range) {
+  return read_or(
+      node, [&] { return read_number(node, range); }, [&] { return some_number(range); });
+}
+
+double SceneValues::read_number(const YamlNode& node, const Range& range) {
   if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected a number, found " + node.describe());
   if (probed(node, {ReadType::Kind::number, range})) return some_number(range);
   const std::string written = text(node);
@@ -162,6 +174,11 @@ double SceneValues::number(const YamlNode& node, const Range& range) {
 }
 
 std::uint32_t SceneValues::integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi) {
+  return read_or(
+      node, [&] { return read_integer(node, lo, hi); }, [&] { return lo; });
+}
+
+std::uint32_t SceneValues::read_integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi) {
   const Range range = whole(lo, hi);
   if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::integer, range}))
     return static_cast<std::uint32_t>(some_number(range));
@@ -174,6 +191,11 @@ std::uint32_t SceneValues::integer(const YamlNode& node, std::uint32_t lo, std::
 }
 
 void SceneValues::numbers(const YamlNode& node, std::span<double> out, const Range& range) {
+  if (node.missing || !attempt(node, [&] { read_numbers(node, out, range); }))
+    std::fill(out.begin(), out.end(), some_number(range));
+}
+
+void SceneValues::read_numbers(const YamlNode& node, std::span<double> out, const Range& range) {
   if (node.kind != YamlKind::sequence)
     throw Error(node.where(),
                 fmt::format("expected a list of {} numbers, found {}", out.size(), node.describe()));
@@ -198,6 +220,14 @@ static float linear_from_srgb(int byte) {
 }
 
 Color SceneValues::color(const YamlNode& node) {
+  return read_or(
+      node, [&] { return color_of(node); },
+      [] {
+        return Color{1, 1, 1};
+      });
+}
+
+Color SceneValues::color_of(const YamlNode& node) {
   const bool fits = node.kind == YamlKind::sequence || node.kind == YamlKind::scalar;
   if (fits && probed(node, {ReadType::Kind::color})) return {1, 1, 1};
   if (node.kind == YamlKind::sequence) {
@@ -219,6 +249,7 @@ Color SceneValues::color(const YamlNode& node) {
 
 std::string SceneValues::existing_file(const YamlNode& node) {
   if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::file})) return "";
+  if (node.missing) throw FollowingError();
   const std::string written = text(node);
   if (written.empty()) throw Error(node.where(), "expected the path of a file, found nothing");
   // A NUL would cut the path short on its way to the system.
@@ -245,7 +276,7 @@ void SceneValues::read(const YamlNode* node, float& out, const Range& range) {
   out = static_cast<float>(number(*node, range));
   // A tiny number may become a zero that is not allowed.
   if (!range.contains(out))
-    throw Error(node->where(), "expected " + describe(range, "a number") + ", found " + node->describe());
+    report(*node, "expected " + describe(range, "a number") + ", found " + node->describe());
 }
 
 void SceneValues::read(const YamlNode* node, Vec3d& out) {

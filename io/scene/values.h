@@ -13,6 +13,7 @@
 #include "core/description.h"
 #include "core/transform.h"
 #include "core/vec3.h"
+#include "io/scene/error_list.h"
 #include "io/scene/parameters.h"
 #include "io/scene/yaml.h"
 
@@ -43,14 +44,15 @@ std::string suggest(const std::string& name, std::span<const std::string> known)
 class Fields {
  public:
   /// Throws Error if `node` is no map or has a key that is not in `known`; `what` names it. An empty node is
-  /// an empty map.
+  /// an empty map. Where errors are gathered, unknown keys are passed over.
   Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known);
   Fields(const YamlNode& node, const std::string& what, std::initializer_list<const char*> known)
       : Fields(node, what, std::span(known.begin(), known.size())) {}
 
   /// The value of `key`, or null if the map does not have it.
   const YamlNode* operator[](const char* key) const;
-  /// The value of `key`. Throws Error if the map does not have it.
+  /// The value of `key`. Throws Error if the map does not have it. Where errors are gathered, a node that is
+  /// `missing` stands for it.
   const YamlNode& require(const char* key) const;
 
  private:
@@ -58,7 +60,8 @@ class Fields {
   std::string what_;
 };
 
-/// Reads values; `${name}` is replaced in every scalar.
+/// Reads values; `${name}` is replaced in every scalar. Throws Error for values of another kind; where errors
+/// are gathered, makes up a value that is allowed.
 class SceneValues {
  public:
   explicit SceneValues(SceneParameters& parameters) : parameters_(parameters) {}
@@ -84,13 +87,16 @@ class SceneValues {
   template <class T>
   T choice(const YamlNode& node, std::span<const Choice<T>> choices) {
     if (node.file->probe) return choices[probe_choice(node, choices)].value;
-    const std::string word = text(node);
-    std::vector<std::string> names;
-    for (const Choice<T>& c : choices) {
-      if (word == c.name) return c.value;
-      names.push_back(c.name);
-    }
-    fail_choice(node, word, names);
+    const auto read = [&] {
+      const std::string word = text(node);
+      std::vector<std::string> names;
+      for (const Choice<T>& c : choices) {
+        if (word == c.name) return c.value;
+        names.push_back(c.name);
+      }
+      fail_choice(node, word, names);
+    };
+    return read_or(node, read, [&] { return choices[0].value; });
   }
 
   // The same for an optional field: `out` keeps its value if `node` is null.
@@ -111,6 +117,10 @@ class SceneValues {
   [[noreturn]] static void fail_choice(const YamlNode& node, const std::string& word,
                                        std::span<const std::string> names);
   double expression(const YamlNode& node, const std::string& text);
+  double read_number(const YamlNode& node, const Range& range);
+  std::uint32_t read_integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi);
+  void read_numbers(const YamlNode& node, std::span<double> out, const Range& range);
+  Color color_of(const YamlNode& node);
 
   SceneParameters& parameters_;
 };

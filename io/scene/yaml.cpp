@@ -12,6 +12,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "io/scene/error_list.h"
 #include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
 #include "io/text/file_access.h"
@@ -158,8 +159,8 @@ class TreeBuilder : public YAML::EventHandler {
     if (map.keys.insert(key.text).second) return;
     for (std::size_t i = 0; i < map.node->items.size(); i += 2)
       if (map.node->items[i]->text == key.text)
-        throw Error(key.where(), "duplicate key " + key.describe() + "; first at line " +
-                                     std::to_string(map.node->items[i]->line));
+        return report(key, "duplicate key " + key.describe() + "; first at line " +
+                               std::to_string(map.node->items[i]->line));
   }
 
   YamlFile& file_;

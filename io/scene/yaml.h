@@ -18,6 +18,7 @@ inline constexpr int kMaxYamlNesting = 100;  ///< maps and lists inside each oth
 enum class YamlKind : std::uint8_t { null, scalar, sequence, map };
 
 struct YamlFile;
+class ErrorList;
 class ReadProbe;
 
 /// One node. A map's `items` alternate between keys (scalars, all different) and values. Aliases share the
@@ -26,6 +27,7 @@ struct YamlNode {
   const YamlFile* file = nullptr;
   YamlKind kind = YamlKind::null;
   bool quoted = false;       ///< a scalar in quotes or a block scalar
+  bool missing = false;      ///< stands for a value that is missing, see ErrorList
   std::uint32_t line = 0;    ///< from 1
   std::uint32_t column = 0;  ///< in characters, from 1
   std::uint32_t offset = 0;  ///< in bytes, from the start of the file's text
@@ -47,6 +49,7 @@ struct YamlFile {
   std::deque<YamlNode> nodes;
   const YamlNode* root = nullptr;
   ReadProbe* probe = nullptr;      ///< of a tree that is no file but stands for all; else null
+  ErrorList* errors = nullptr;     ///< where errors are gathered; null: the first one is thrown
   std::size_t expanded_nodes = 0;  ///< number of nodes with each alias counted as what it stands for
 
   YamlFile() = default;

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "io/scene/check.h"
 #include "io/scene/scene_file.h"
 #include "tests/fuzz/input.h"
 
@@ -14,11 +15,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return true;
   }();
   test::require(prepared, "the assets are copied");
+  const Definitions definitions{{"bunny", "assets/tetrahedron.obj"}};
+  const std::string path = file.write({reinterpret_cast<const char*>(data), size});
+  std::string first;
   try {
-    load_scene_file(file.write({reinterpret_cast<const char*>(data), size}),
-                    {{"bunny", "assets/tetrahedron.obj"}});
+    load_scene_file(path, definitions);
   } catch (const Error& e) {
     test::require(*e.what() != 0 && !e.where().file.empty(), "an error names the file");
+    first = e.what();
   }
+  // Checking finds the same error among others, and none where there is none.
+  bool has_errors = false, has_first = false;
+  for (const Finding& finding : check_file(path, definitions).list) {
+    has_errors |= finding.kind != Finding::Kind::warning;
+    has_first |= finding.text == first;
+  }
+  test::require(has_errors == !first.empty(), "checking agrees with loading");
+  test::require(first.empty() || has_first, "checking tells the error that loading throws");
   return 0;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "io/scene/check.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett {
@@ -86,6 +87,7 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
     const std::string mutant =
         mutate(texts[random.below(texts.size())], texts[random.below(texts.size())], random);
     const std::string path = dir.write("mutant.yaml", mutant);
+    std::string first;
     try {
       // A small mesh in place of the bunny keeps this quick.
       load_scene_file(path, {{"bunny", "assets/tetrahedron.obj"}});
@@ -94,7 +96,16 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
       EXPECT_FALSE(std::string(e.what()).empty());
       EXPECT_FALSE(e.where().file.empty()) << e.what();
       ++refused;
+      first = e.what();
     }
+    // Checking finds the same error among others, and none where there is none.
+    bool has_errors = false, has_first = false;
+    for (const Finding& finding : check_file(path, {{"bunny", "assets/tetrahedron.obj"}}).list) {
+      has_errors |= finding.kind != Finding::Kind::warning;
+      has_first |= finding.text == first;
+    }
+    EXPECT_EQ(has_errors, !first.empty()) << first << "\n" << mutant;
+    EXPECT_TRUE(first.empty() || has_first) << first << "\n" << mutant;
   }
   EXPECT_GT(loaded, 100);
   EXPECT_GT(refused, 100);

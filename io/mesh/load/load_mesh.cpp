@@ -53,6 +53,11 @@ bool repeats_vertices(const std::string& path) {
   return lower_case_extension(without_packing(path)) == ".stl";
 }
 
+std::vector<Error> find_mesh_errors(const std::string& path) {
+  const Format* const format = find_format(path);
+  return format != nullptr && format->parse == parse_obj ? find_obj_errors(path) : std::vector<Error>{};
+}
+
 bool is_mesh_file(const std::string& path) { return find_format(path) != nullptr; }
 
 const char* mesh_extensions() { return ".obj, .ply, .stl, .gltf or .glb, also packed as .gz"; }

@@ -2,6 +2,7 @@
 /// \file Mesh files of all formats, told apart by the ends of their names.
 
 #include <string>
+#include <vector>
 
 #include "io/mesh/mesh_file.h"
 
@@ -16,6 +17,9 @@ struct MeshOptions {
 /// shows, as one mesh in world space. Throws Error with the file, and the line or byte, for what the format
 /// does not allow, with ErrorKind::io if the file cannot be read, and for names of other formats.
 MeshFile load_mesh(const std::string& path, const MeshOptions& options = {});
+
+/// All that is wrong in a file for which load_mesh threw an Error: all lines of an OBJ file, else nothing.
+std::vector<Error> find_mesh_errors(const std::string& path);
 
 /// Whether in files of the format of `path` (STL) each triangle has vertices of its own, so that no triangles
 /// share a normal unless the mesh is welded.

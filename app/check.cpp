@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command_line.h"
+#include "app/limits.h"
+#include "app/render_options.h"
+#include "app/text.h"
+#include "io/scene/check.h"
+
+namespace oktett {
+namespace {
+
+struct CheckArguments {
+  std::vector<std::string> files;
+  LimitArguments limits;
+  std::vector<std::string> definitions;
+  bool strict = false;
+};
+
+/// Most findings that are printed for one file.
+constexpr std::size_t kMostShown = 100;
+
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// Prints what is wrong in a file. Returns the exit status for it.
+int check(const std::string& path, const CheckArguments& arguments) {
+  const Findings findings = check_file(path, parse_definitions(arguments.definitions));
+  const std::vector<Finding>& list = findings.list;
+  const std::size_t shown = std::min(list.size(), kMostShown);
+  for (std::size_t i = 0; i < shown; ++i) fmt::print("{}\n", list[i].text);
+  if (findings.has_more)
+    fmt::print("... and more\n");
+  else if (list.size() > shown)
+    fmt::print("... and {} more\n", list.size() - shown);
+  const auto count = [&](Finding::Kind kind) {
+    return static_cast<std::size_t>(std::ranges::count(list, kind, &Finding::kind));
+  };
+  const std::size_t warnings = count(Finding::Kind::warning), errors = list.size() - warnings;
+  if (!list.empty())
+    say("oktett: {}: {}{}, {}\n", path, findings.has_more ? "more than " : "", counted(errors, "error"),
+        counted(warnings, "warning"));
+  if (count(Finding::Kind::io) > 0) return kExitIo;
+  return errors > 0 || (arguments.strict && warnings > 0) ? kExitBadInput : 0;
+}
+
+int run_check(const CheckArguments& arguments) {
+  apply_limits(arguments.limits);
+  int status = 0;
+  for (const std::string& path : arguments.files) {
+    const int found = check(path, arguments);
+    // A file that cannot be read counts more than one that is wrong.
+    if (status != kExitIo && found != 0) status = found;
+  }
+  return status;
+}
+
+}  // namespace
+
+void add_check_command(CommandLine& line) {
+  const auto arguments = std::make_shared<CheckArguments>();
+  Verb verb = line.add_verb("check", "Print all that is wrong in scene files, meshes and MTL files",
+                            [arguments] { return run_check(*arguments); });
+  verb.positionals("files", arguments->files, "FILE...", "Scene files (.yaml), meshes or .mtl files");
+  verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene files; may be repeated");
+  verb.flag("--strict", arguments->strict, "Exit with 2 for warnings, too");
+  add_limit_options(verb, arguments->limits);
+}
+
+}  // namespace oktett
