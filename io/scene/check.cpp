@@ -37,9 +37,8 @@ class Checking {
 
  private:
   void add(const Error& error) {
-    found_.list.push_back(
-        {error.where(), error.what(),
-         error.kind() == ErrorKind::io ? Finding::Kind::io : Finding::Kind::bad_input});
+    found_.list.push_back({error.where(), error.what(),
+                           error.kind() == ErrorKind::io ? Finding::Kind::io : Finding::Kind::bad_input});
   }
   void add(const std::vector<Warning>& warnings) {
     for (const Warning& warning : warnings)

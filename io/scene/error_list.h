@@ -1,5 +1,6 @@
 #pragma once
-/// \file All that is wrong in a scene, where the first error would end the reading otherwise. Within io/ only.
+/// \file All that is wrong in a scene, where the first error would end the reading otherwise. Within io/
+/// only.
 
 #include <cstddef>
 #include <deque>

@@ -89,7 +89,8 @@ TEST(SceneCheck, LeavesOutWhatFollowsFromAnError) {
             (Lines{"scene.yaml:2:12: expected a map for materials, found a list"}));
   // Nothing would be left of the difference, and the edges would not be perpendicular.
   EXPECT_EQ(check_v1("objects: [{difference: [{sphere: {radius: x}}, {disk: {}}]}]\n"),
-            (Lines{"scene.yaml:2:43: expected a number, found 'x'", "scene.yaml:2:48: a disk has no inside; only solids can be combined"}));
+            (Lines{"scene.yaml:2:43: expected a number, found 'x'",
+                   "scene.yaml:2:48: a disk has no inside; only solids can be combined"}));
   EXPECT_EQ(check_v1("lights: [{rectangle: {corner: [0, 0, 0], u: [1, 0, x], v: [0, 1, 0]}}]"),
             (Lines{"scene.yaml:2:52: expected a number, found 'x'"}));
 }
@@ -105,9 +106,10 @@ TEST(SceneCheck, IncludedFilesComeAfterTheFileItself) {
   files.dir.write("scene.yaml",
                   "oktett: 1\ninclude: [part.yaml]\nfilm: {with: 3}\n"
                   "objects: [{sphere: {}, material: gold}, {sphere: {}, material: lead}]\n");
-  EXPECT_EQ(check(files, "scene.yaml"),
-            (Lines{"scene.yaml:3:8: unknown key 'with' in film; did you mean 'width'?",
-                   "scene.yaml:4:64: unknown material 'lead'", "part.yaml:2:25: expected a number, found 'x'"}));
+  EXPECT_EQ(
+      check(files, "scene.yaml"),
+      (Lines{"scene.yaml:3:8: unknown key 'with' in film; did you mean 'width'?",
+             "scene.yaml:4:64: unknown material 'lead'", "part.yaml:2:25: expected a number, found 'x'"}));
 }
 
 TEST(SceneCheck, WarnsOfWhatNothingRefersTo) {
