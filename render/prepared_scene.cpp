@@ -138,7 +138,9 @@ std::vector<Caustics> share_photons(Moments& moments, RenderContext& context, co
 }  // namespace
 
 PreparedScene::PreparedScene(Scene scene, const BuildOptions& build)
-    : build_(build), scene_(std::move(scene)), follows_camera_(!scene_.lights_given && scene_.lights.empty()) {
+    : build_(build),
+      scene_(std::move(scene)),
+      follows_camera_(!scene_.lights_given && scene_.lights.empty()) {
   const Clock::time_point start = Clock::now();
   world_ = build_world(scene_, build_);
   bounds_ = world_.bounds;

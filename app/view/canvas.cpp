@@ -12,8 +12,7 @@ void Canvas::begin(std::uint64_t view, std::uint32_t width, std::uint32_t height
   if (view != view_) tiles_.clear(), coarse_ = {};
   view_ = view;
   coarse_pass_ = coarse;
-  if (!coarse && (width_ != width || height_ != height))
-    width_ = width, height_ = height, tiles_.clear();
+  if (!coarse && (width_ != width || height_ != height)) width_ = width, height_ = height, tiles_.clear();
 }
 
 void Canvas::show(const Picture& picture, const FinishedTile& tile, const Layer& layer) {

@@ -63,9 +63,8 @@ Vec3f color_of(std::uint64_t number) {
 }  // namespace
 
 std::vector<std::string> layer_names(const Scene& scene) {
-  std::vector<std::string> names{"beauty", "depth",     "normal",   "albedo",
-                                 "uv",     "position",  "object",   "primitive",
-                                 "noise"};
+  std::vector<std::string> names{"beauty",   "depth",  "normal",    "albedo", "uv",
+                                 "position", "object", "primitive", "noise"};
   if (scene.integrator.error > 0) names.emplace_back("samples");
   const LightGroups groups = light_groups(scene);
   if (groups.any() && scene.integrator.kind == IntegratorKind::path)
@@ -75,11 +74,14 @@ std::vector<std::string> layer_names(const Scene& scene) {
 
 std::string layer_pixels(const Picture& picture, const FinishedTile& tile, const Layer& layer) {
   const std::string& n = layer.name;
-  if (n == "beauty") return bytes_of(flatten(cut(picture, tile, {"R", "G", "B", "A"}, layer.tone), PixelLayout::srgb8_alpha));
+  if (n == "beauty")
+    return bytes_of(flatten(cut(picture, tile, {"R", "G", "B", "A"}, layer.tone), PixelLayout::srgb8_alpha));
   if (n == "albedo")
-    return bytes_of(flatten(cut(picture, tile, {"Albedo.R", "Albedo.G", "Albedo.B", ""}, {}), PixelLayout::srgb8_alpha));
+    return bytes_of(
+        flatten(cut(picture, tile, {"Albedo.R", "Albedo.G", "Albedo.B", ""}, {}), PixelLayout::srgb8_alpha));
   if (n.starts_with("light_"))
-    return bytes_of(flatten(cut(picture, tile, {n + ".R", n + ".G", n + ".B", ""}, layer.tone), PixelLayout::srgb8_alpha));
+    return bytes_of(flatten(cut(picture, tile, {n + ".R", n + ".G", n + ".B", ""}, layer.tone),
+                            PixelLayout::srgb8_alpha));
   const auto plane = [&](const char* name) -> const PicturePlane* { return picture.find(name); };
   const auto values = [&](std::size_t at, const char* a, const char* b, const char* c) -> Vec3f {
     const PicturePlane *x = plane(a), *y = plane(b), *z = plane(c);

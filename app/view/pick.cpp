@@ -46,8 +46,8 @@ std::string shape_of(const Scene& scene, std::uint32_t user) {
 
 }  // namespace
 
-std::string pick_json(const PreparedScene& prepared, const Camera& camera, const Film& film, std::uint32_t x, std::uint32_t y,
-                      Isa isa) {
+std::string pick_json(const PreparedScene& prepared, const Camera& camera, const Film& film, std::uint32_t x,
+                      std::uint32_t y, Isa isa) {
   const Scene& scene = prepared.scene();
   const World& world = prepared.world();
   const PixelWindow window = crop_window(film);
@@ -55,21 +55,23 @@ std::string pick_json(const PreparedScene& prepared, const Camera& camera, const
   const CameraFrame frame = camera_frame(camera, film);
   const Ray ray = camera_ray(frame, window.x0 + x + 0.5, window.y0 + y + 0.5);
   const Hit hit = closest_hit(*world.accel, ray, isa);
-  const std::string head = fmt::format("{{\"x\": {}, \"y\": {}, \"origin\": {}, \"direction\": {}, \"hit\": {}",
-                                       x, y, text(ray.origin), text(ray.direction), hit.valid());
+  const std::string head =
+      fmt::format("{{\"x\": {}, \"y\": {}, \"origin\": {}, \"direction\": {}, \"hit\": {}", x, y,
+                  text(ray.origin), text(ray.direction), hit.valid());
   if (!hit.valid()) return head + "}";
   const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
   const Material& material = material_at(world, s);
   const std::string name = s.user < world.objects.size() ? world.objects[s.user].name : "";
-  return head +
-         fmt::format(
-             ", \"t\": {}, \"u\": {}, \"v\": {}, \"item\": {}, \"instance\": {}, \"point\": {}, \"normal\": {}, "
-             "\"shading_normal\": {}, \"object\": {}, \"object_name\": {}, \"primitive\": {}, \"surface\": {}, "
-             "\"material\": {}, \"depth\": {}}}",
-             text(hit.t), text(hit.u), text(hit.v), hit.item, hit.instance, text(s.position),
-             text(s.geometric_normal), text(s.shading_normal), s.user, JsonValue(name).text, s.primitive,
-             JsonValue(shape_of(scene, s.user)).text, JsonValue(material.name).text,
-             camera_depth(frame, s.position));
+  return head + fmt::format(
+                    ", \"t\": {}, \"u\": {}, \"v\": {}, \"item\": {}, \"instance\": {}, \"point\": {}, "
+                    "\"normal\": {}, "
+                    "\"shading_normal\": {}, \"object\": {}, \"object_name\": {}, \"primitive\": {}, "
+                    "\"surface\": {}, "
+                    "\"material\": {}, \"depth\": {}}}",
+                    text(hit.t), text(hit.u), text(hit.v), hit.item, hit.instance, text(s.position),
+                    text(s.geometric_normal), text(s.shading_normal), s.user, JsonValue(name).text,
+                    s.primitive, JsonValue(shape_of(scene, s.user)).text, JsonValue(material.name).text,
+                    camera_depth(frame, s.position));
 }
 
 }  // namespace oktett

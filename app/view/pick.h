@@ -13,7 +13,7 @@ namespace oktett {
 /// corner of the part of the frame that is rendered. Numbers have as many digits as give back the bits that
 /// closest_hit and surface_interaction give. Motion is left out: things stand where they are at time 0.
 /// Throws Error for a pixel outside. While another thread renders, `prepared` may be asked.
-std::string pick_json(const PreparedScene& prepared, const Camera& camera, const Film& film, std::uint32_t x, std::uint32_t y,
-                      Isa isa);
+std::string pick_json(const PreparedScene& prepared, const Camera& camera, const Film& film, std::uint32_t x,
+                      std::uint32_t y, Isa isa);
 
 }  // namespace oktett

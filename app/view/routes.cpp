@@ -16,7 +16,8 @@ namespace {
 bool same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned differs = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) differs |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  for (std::size_t i = 0; i < a.size(); ++i)
+    differs |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
   return differs == 0;
 }
 
@@ -48,11 +49,12 @@ std::string vector_json(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x
 std::string view_json(const ViewState& state) {
   const Camera& c = state.camera;
   return fmt::format(
-      "{{\"from\": {}, \"at\": {}, \"up\": {}, \"fov\": {}, \"height\": {}, \"lens\": {}, \"orthographic\": {}, "
+      "{{\"from\": {}, \"at\": {}, \"up\": {}, \"fov\": {}, \"height\": {}, \"lens\": {}, \"orthographic\": "
+      "{}, "
       "\"tone\": \"{}\", \"exposure\": {}, \"layer\": {}}}",
-      vector_json(c.from), vector_json(c.at), vector_json(c.up), c.fov, c.height, c.aperture > 0 || c.f_number > 0,
-      c.projection == Projection::orthographic, kToneKinds[static_cast<int>(state.tone.kind)].name,
-      state.tone.exposure, JsonValue(state.layer).text);
+      vector_json(c.from), vector_json(c.at), vector_json(c.up), c.fov, c.height,
+      c.aperture > 0 || c.f_number > 0, c.projection == Projection::orthographic,
+      kToneKinds[static_cast<int>(state.tone.kind)].name, state.tone.exposure, JsonValue(state.layer).text);
 }
 
 }  // namespace
@@ -96,7 +98,8 @@ HttpResponse Routes::get(const std::string& name, const HttpRequest& request) {
   if (name == "frame")
     return {200, "application/octet-stream",
             session_.frame(whole(request, "since"), 5000, [this] { return status_json(); }), ""};
-  if (name == "pick") return {200, "application/json", session_.pick(pixel(request, "x"), pixel(request, "y")), ""};
+  if (name == "pick")
+    return {200, "application/json", session_.pick(pixel(request, "x"), pixel(request, "y")), ""};
   if (name == "camera") return {200, "text/plain; charset=utf-8", session_.camera(), ""};
   if (name == "picture.png") return {200, "image/png", session_.save(".png"), name};
   if (name == "picture.exr") return {200, "image/x-exr", session_.save(".exr"), name};
@@ -110,7 +113,8 @@ std::string Routes::status_json() const {
   std::string layers;
   for (const std::string& layer : s.layers) layers += (layers.empty() ? "" : ", ") + JsonValue(layer).text;
   std::string json = fmt::format(
-      "{{\"view\": {}, \"width\": {}, \"height\": {}, \"samples\": {}, \"wanted\": {}, \"settled\": {}, \"center\": "
+      "{{\"view\": {}, \"width\": {}, \"height\": {}, \"samples\": {}, \"wanted\": {}, \"settled\": {}, "
+      "\"center\": "
       "{}, \"radius\": {}, \"state\": {}, \"home\": {}, \"layers\": [{}], \"edits\": {}",
       s.view, s.width, s.height, s.samples, s.wanted_samples, s.settled, vector_json(s.center), s.radius,
       view_json(s.state), view_json(s.home), layers, s.edits);

@@ -261,7 +261,8 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
   if (scale > 1) canvas_.show(result.picture, whole, layer);
   if (last && arguments_.film.denoise) {
     denoise(result.picture);
-    for (const FinishedTile& tile : std::vector<FinishedTile>{whole}) canvas_.show(result.picture, tile, layer);
+    for (const FinishedTile& tile : std::vector<FinishedTile>{whole})
+      canvas_.show(result.picture, tile, layer);
   }
   const std::lock_guard lock(mutex_);
   if (status_.view != view) return false;
@@ -272,8 +273,7 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
   metadata_.software = program_version(), metadata_.command_line = command_line_;
   metadata_.scene = arguments_.scene, metadata_.samples = settings.integrator.samples;
   metadata_.render_seconds = result.report.render_seconds;
-  metadata_.camera =
-      camera_matrices(state.camera, result.picture.full_width, result.picture.full_height);
+  metadata_.camera = camera_matrices(state.camera, result.picture.full_width, result.picture.full_height);
   finished_ = std::make_shared<const Picture>(std::move(result.picture));
   changed_.notify_all();
   return true;
@@ -285,7 +285,8 @@ std::uint64_t Session::change(const std::string& lines) {
     const std::lock_guard lock(mutex_);
     ViewState state = parse_view(lines, status_.state);
     if (state.layer != status_.state.layer) {
-      if (std::ranges::find(status_.layers, state.layer) == status_.layers.end()) throw Error("layer: unknown");
+      if (std::ranges::find(status_.layers, state.layer) == status_.layers.end())
+        throw Error("layer: unknown");
     }
     status_.state = std::move(state);
     status_.settled = false, finished_.reset(), wants_layers_ = false;
@@ -329,7 +330,8 @@ std::string Session::save(const std::string& extension) {
     };
     if (layers && !complete()) wants_layers_ = true, changed_.notify_all();
     changed_.wait(lock, [&] { return stopping_ || status_.view != view || complete(); });
-    if (stopping_ || status_.view != view) throw Error("the view has changed before the picture was finished");
+    if (stopping_ || status_.view != view)
+      throw Error("the view has changed before the picture was finished");
     picture = finished_, metadata = metadata_;
   }
   std::string folder = (std::filesystem::temp_directory_path() / "oktett-XXXXXX").string();

@@ -34,7 +34,8 @@ void open_page(const std::string& address) {
   std::string program = "xdg-open", word = address;
   char* const words[] = {program.data(), word.data(), nullptr};
   pid_t process = 0;
-  if (posix_spawnp(&process, "xdg-open", nullptr, nullptr, words, environ) == 0) std::signal(SIGCHLD, SIG_IGN);
+  if (posix_spawnp(&process, "xdg-open", nullptr, nullptr, words, environ) == 0)
+    std::signal(SIGCHLD, SIG_IGN);
 }
 
 int run_view(const CommandLine& line, const ViewArguments& arguments) {

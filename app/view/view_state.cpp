@@ -91,8 +91,8 @@ ViewState parse_view(std::string_view text, ViewState state) {
 }
 
 std::string camera_yaml(const Camera& c) {
-  std::string out = fmt::format("camera:\n  from: {}\n  at: {}\n  up: {}\n", text_of(c.from), text_of(c.at),
-                                text_of(c.up));
+  std::string out =
+      fmt::format("camera:\n  from: {}\n  at: {}\n  up: {}\n", text_of(c.from), text_of(c.at), text_of(c.up));
   if (c.projection == Projection::orthographic)
     out += fmt::format("  projection: orthographic\n  height: {}\n", c.height);
   else
