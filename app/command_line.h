@@ -116,6 +116,7 @@ std::string program_version();
 
 // The verbs, each in a file of its own.
 void add_render_command(CommandLine& line);
+void add_view_command(CommandLine& line);
 void add_info_command(CommandLine& line);
 void add_check_command(CommandLine& line);
 void add_merge_command(CommandLine& line);

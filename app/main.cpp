@@ -9,6 +9,7 @@ namespace {
 int run(int argc, char** argv) {
   CommandLine line(argc, argv);
   add_render_command(line);
+  add_view_command(line);
   add_info_command(line);
   add_check_command(line);
   add_merge_command(line);

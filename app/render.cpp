@@ -17,6 +17,7 @@
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/render_stats.h"
+#include "app/scene_loading.h"
 #include "app/text.h"
 #include "core/error.h"
 #include "core/isa.h"
@@ -29,7 +30,6 @@
 #include "io/text/files_read.h"
 #include "kernels/exact/march.h"
 #include "render/film/denoise.h"
-#include "render/look/default_look.h"
 #include "render/render.h"
 
 namespace oktett {
@@ -50,27 +50,6 @@ class Stopwatch {
 void check_stats(const std::string& stats) {
   if (!stats.empty() && stats != "text" && stats != "json" && stats != "false")
     throw Error("--stats: unknown format '" + stats + "'; expected --stats or --stats=json");
-}
-
-Scene load(const RenderArguments& arguments) {
-  // A mistyped option should not cost the time to read a large scene.
-  Scene none;
-  override_scene(arguments, none);
-  const std::optional<Look> look = look_of(arguments);
-  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
-  override_scene(arguments, scene);
-  if (!look) return scene;
-  if (!is_mesh_alone(scene)) {
-    if (!arguments.look.empty())
-      throw Error(
-          fmt::format("--look is for meshes given alone; {} has a camera, lights or instances of its own",
-                      arguments.scene));
-    return scene;
-  }
-  apply_look(scene, *look);
-  // The look chooses the number of samples.
-  override_scene(arguments, scene);
-  return scene;
 }
 
 void print_plan(const Scene& scene, const RenderOptions& options, const std::string& output) {
@@ -231,7 +210,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   StageTimes times;
   const FilesRead files;
   const std::unique_ptr<SceneCache> cache = open_cache(arguments.cache);
-  Scene scene = load(arguments);
+  Scene scene = load_as_asked(arguments);
   const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
   print_warnings(scene.warnings, most_warnings);
   const ImageTextures textures(scene.textures);

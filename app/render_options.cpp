@@ -79,11 +79,7 @@ const char* to_string(IntegratorKind kind) {
   return "";
 }
 
-void add_render_options(Verb& verb, RenderArguments& a) {
-  verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh");
-  verb.option("-o,--outfile", &a.outfile, "FILE",
-              "Picture to write; default: the scene's name with .png, here");
-  verb.flag("--no-output", a.no_output, "Write no picture, for measuring");
+void add_picture_options(Verb& verb, RenderArguments& a) {
   verb.option("-t,--nthreads", &a.threads, "N", "Threads; default: all processors");
   verb.option("--spp", &a.samples, "N", "Samples per pixel");
   verb.option("--size", &a.size, "WxH", "Size of the full frame in pixels");
@@ -93,22 +89,30 @@ void add_render_options(Verb& verb, RenderArguments& a) {
               names_of<IntegratorKind>(kIntegratorKinds));
   add_film_options(verb, a.film);
   verb.flag("--caustics", a.caustics, "Light through mirrors and glass by photons, with --integrator path");
-  verb.option("--photon-map", &a.photon_map, "FILE",
-              "Photons for --caustics: read from FILE, or written if it is missing");
-  add_checkpoint_options(verb, a.checkpoints);
   add_cache_options(verb, a.cache);
   verb.choice("--look", a.look, "LOOK", "How a mesh given alone is shown",
               {std::begin(kLooks), std::end(kLooks)});
   verb.choice("--isa", a.isa, "NAME", "Instruction set", {"auto", "sse4.2", "avx2", "avx512", "scalar"});
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
+  add_limit_options(verb, a.limits);
+}
+
+void add_render_options(Verb& verb, RenderArguments& a) {
+  verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh");
+  verb.option("-o,--outfile", &a.outfile, "FILE",
+              "Picture to write; default: the scene's name with .png, here");
+  verb.flag("--no-output", a.no_output, "Write no picture, for measuring");
+  add_picture_options(verb, a);
+  verb.option("--photon-map", &a.photon_map, "FILE",
+              "Photons for --caustics: read from FILE, or written if it is missing");
+  add_checkpoint_options(verb, a.checkpoints);
   verb.flag("--stats{text}", a.stats, "Print counts; --stats=json prints them as one JSON object");
   verb.flag("--quiet", a.quiet, "Print nothing but warnings and errors");
   verb.flag("-v,--verbose", a.verbose, "Print more, and all warnings");
   verb.flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
   verb.option("--display-server", &a.display_server, "HOST:PORT",
               "Live preview in a viewer that speaks tev's protocol");
-  add_limit_options(verb, a.limits);
 }
 
 void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments) {

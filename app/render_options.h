@@ -46,6 +46,8 @@ struct RenderArguments {
   bool progress = false;
 };
 
+/// The options that say what a picture shows and with what means: those that all verbs with pictures have.
+void add_picture_options(Verb& verb, RenderArguments& arguments);
 void add_render_options(Verb& verb, RenderArguments& arguments);
 /// Reads the words of a command line of `oktett render`. Those that are not given leave `arguments` as it is.
 /// Throws Error.

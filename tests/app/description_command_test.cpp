@@ -154,7 +154,7 @@ TEST(Manual, PagesDescribeAllOptionsWithoutWarnings) {
   const TempDir dir;
   const bool formats = has_program(dir, "groff");
   for (const char* verb :
-       {"", "render", "info", "check", "merge", "verify", "examples", "completion", "manual"}) {
+       {"", "render", "view", "info", "check", "merge", "verify", "examples", "completion", "manual"}) {
     const bool program = std::string(verb).empty();
     const CommandResult page = run_command(dir, program ? Words{"manual"} : Words{"manual", verb});
     ASSERT_EQ(page.status, 0) << page.err;

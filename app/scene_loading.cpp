@@ -1,0 +1,34 @@
+#include "app/scene_loading.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "core/error.h"
+#include "io/scene/scene_file.h"
+#include "render/look/default_look.h"
+
+namespace oktett {
+
+Scene load_as_asked(const RenderArguments& arguments) {
+  // A mistyped option should not cost the time to read a large scene.
+  Scene none;
+  override_scene(arguments, none);
+  const std::optional<Look> look = look_of(arguments);
+  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
+  override_scene(arguments, scene);
+  if (!look) return scene;
+  if (!is_mesh_alone(scene)) {
+    if (!arguments.look.empty())
+      throw Error(
+          fmt::format("--look is for meshes given alone; {} has a camera, lights or instances of its own",
+                      arguments.scene));
+    return scene;
+  }
+  apply_look(scene, *look);
+  // The look chooses the number of samples.
+  override_scene(arguments, scene);
+  return scene;
+}
+
+}  // namespace oktett

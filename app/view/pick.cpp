@@ -1,0 +1,77 @@
+#include "app/view/pick.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/json.h"
+#include "core/error.h"
+#include "render/camera.h"
+
+namespace oktett {
+namespace {
+
+/// Fewest digits that give back the float.
+std::string text(float value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+std::string text(const Vec3f& v) { return "[" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "]"; }
+
+struct NameOfShape {
+  std::string operator()(const MeshShape&) const { return "mesh"; }
+  std::string operator()(const InstanceShape&) const { return "instance"; }
+  std::string operator()(const CsgShape&) const { return "combination"; }
+  std::string operator()(const SpheresShape&) const { return "spheres"; }
+  std::string operator()(const ExactShape& s) const {
+    return std::visit(
+        [](const auto& form) -> std::string {
+          if constexpr (requires { form.kSurface.key; }) return form.kSurface.key;
+          return "exact surface";
+        },
+        s.form);
+  }
+  template <class S>
+  std::string operator()(const S&) const {
+    return S::kSurface.key;
+  }
+};
+
+/// The shape of object number `user`; see World for how objects are numbered.
+std::string shape_of(const Scene& scene, std::uint32_t user) {
+  std::size_t at = user;
+  for (const Prototype& p : scene.prototypes) {
+    if (at < p.objects.size()) return std::visit(NameOfShape{}, p.objects[at].shape);
+    at -= p.objects.size();
+  }
+  return at < scene.objects.size() ? std::visit(NameOfShape{}, scene.objects[at].shape) : "";
+}
+
+}  // namespace
+
+std::string pick_json(const PreparedScene& prepared, const Camera& camera, const Film& film, std::uint32_t x,
+                      std::uint32_t y, Isa isa) {
+  const Scene& scene = prepared.scene();
+  const World& world = prepared.world();
+  const PixelWindow window = crop_window(film);
+  if (x >= window.width() || y >= window.height()) throw Error("the pixel lies outside of the picture");
+  const CameraFrame frame = camera_frame(camera, film);
+  const Ray ray = camera_ray(frame, window.x0 + x + 0.5, window.y0 + y + 0.5);
+  const Hit hit = closest_hit(*world.accel, ray, isa);
+  const std::string head =
+      fmt::format("{{\"x\": {}, \"y\": {}, \"origin\": {}, \"direction\": {}, \"hit\": {}", x, y,
+                  text(ray.origin), text(ray.direction), hit.valid());
+  if (!hit.valid()) return head + "}";
+  const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
+  const Material& material = material_at(world, s);
+  const std::string name = s.user < world.objects.size() ? world.objects[s.user].name : "";
+  return head + fmt::format(
+                    ", \"t\": {}, \"u\": {}, \"v\": {}, \"item\": {}, \"instance\": {}, \"point\": {}, "
+                    "\"normal\": {}, "
+                    "\"shading_normal\": {}, \"object\": {}, \"object_name\": {}, \"primitive\": {}, "
+                    "\"surface\": {}, "
+                    "\"material\": {}, \"depth\": {}}}",
+                    text(hit.t), text(hit.u), text(hit.v), hit.item, hit.instance, text(s.position),
+                    text(s.geometric_normal), text(s.shading_normal), s.user, JsonValue(name).text,
+                    s.primitive, JsonValue(shape_of(scene, s.user)).text, JsonValue(material.name).text,
+                    camera_depth(frame, s.position));
+}
+
+}  // namespace oktett

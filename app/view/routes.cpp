@@ -1,0 +1,128 @@
+#include "app/view/routes.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <charconv>
+#include <system_error>
+
+#include "app/json.h"
+#include "app/view/page_files.h"
+
+namespace oktett {
+namespace {
+
+/// Takes the same time wherever texts of equal length differ.
+bool same_secret(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned differs = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    differs |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  return differs == 0;
+}
+
+/// A whole number of the address. Throws Error if it is none.
+std::uint64_t whole(const HttpRequest& request, const char* name) {
+  const auto found = request.queries.find(name);
+  const std::string text = found == request.queries.end() ? "" : found->second;
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
+    throw Error(fmt::format("{}: expected a whole number", name));
+  return value;
+}
+
+std::uint32_t pixel(const HttpRequest& request, const char* name) {
+  const std::uint64_t value = whole(request, name);
+  if (value > 0xffffffffu) throw Error(fmt::format("{}: out of range", name));
+  return static_cast<std::uint32_t>(value);
+}
+
+const char* type_of(std::string_view name) {
+  return name.ends_with(".html")  ? "text/html; charset=utf-8"
+         : name.ends_with(".css") ? "text/css; charset=utf-8"
+                                  : "text/javascript; charset=utf-8";
+}
+
+std::string vector_json(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+
+std::string view_json(const ViewState& state) {
+  const Camera& c = state.camera;
+  return fmt::format(
+      "{{\"from\": {}, \"at\": {}, \"up\": {}, \"fov\": {}, \"height\": {}, \"lens\": {}, \"orthographic\": "
+      "{}, "
+      "\"tone\": \"{}\", \"exposure\": {}, \"layer\": {}}}",
+      vector_json(c.from), vector_json(c.at), vector_json(c.up), c.fov, c.height,
+      c.aperture > 0 || c.f_number > 0, c.projection == Projection::orthographic,
+      kToneKinds[static_cast<int>(state.tone.kind)].name, state.tone.exposure, JsonValue(state.layer).text);
+}
+
+}  // namespace
+
+std::string random_token() {
+  unsigned char bytes[16];
+  if (getrandom(bytes, sizeof bytes, 0) != sizeof bytes)
+    throw Error("the system gives no random numbers", ErrorKind::io);
+  std::string token;
+  for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+int Routes::gate(const HttpRequest& request) const {
+  const std::string local = fmt::format("127.0.0.1:{}", port_), named = fmt::format("localhost:{}", port_);
+  if (request.host != local && request.host != named) return 403;
+  if (!request.origin.empty() && request.origin != "http://" + request.host) return 403;
+  const std::string_view path = request.path;
+  if (path.size() < token_.size() + 2 || path[0] != '/' || path[token_.size() + 1] != '/') return 404;
+  if (!same_secret(path.substr(1, token_.size()), token_)) return 404;
+  // Forms of other pages cannot send this type without asking first.
+  if (request.method == "POST" && request.content_type != "application/x-oktett-view") return 415;
+  return path.size() > token_.size() + 40 ? 404 : 0;
+}
+
+HttpResponse Routes::answer(const HttpRequest& request) {
+  const std::string name = request.path.substr(token_.size() + 2);
+  try {
+    if (request.method == "GET") return get(name, request);
+    if (name == "view")
+      return {200, "application/json", fmt::format("{{\"view\": {}}}", session_.change(request.body)), ""};
+    return {404, "text/plain; charset=utf-8", "no such address\n", ""};
+  } catch (const Error& error) {
+    return {400, "text/plain; charset=utf-8", std::string(error.what()) + "\n", ""};
+  } catch (const std::exception& error) {
+    return {500, "text/plain; charset=utf-8", std::string(error.what()) + "\n", ""};
+  }
+}
+
+HttpResponse Routes::get(const std::string& name, const HttpRequest& request) {
+  if (name == "frame")
+    return {200, "application/octet-stream",
+            session_.frame(whole(request, "since"), 5000, [this] { return status_json(); }), ""};
+  if (name == "pick")
+    return {200, "application/json", session_.pick(pixel(request, "x"), pixel(request, "y")), ""};
+  if (name == "camera") return {200, "text/plain; charset=utf-8", session_.camera(), ""};
+  if (name == "picture.png") return {200, "image/png", session_.save(".png"), name};
+  if (name == "picture.exr") return {200, "image/x-exr", session_.save(".exr"), name};
+  const std::string file = name.empty() ? "page.html" : name;
+  if (const auto bytes = page_file(file)) return {200, type_of(file), std::string(*bytes), ""};
+  return {404, "text/plain; charset=utf-8", "no such address\n", ""};
+}
+
+std::string Routes::status_json() const {
+  const SessionStatus s = session_.status();
+  std::string layers;
+  for (const std::string& layer : s.layers) layers += (layers.empty() ? "" : ", ") + JsonValue(layer).text;
+  std::string json = fmt::format(
+      "{{\"view\": {}, \"width\": {}, \"height\": {}, \"samples\": {}, \"wanted\": {}, \"settled\": {}, "
+      "\"center\": "
+      "{}, \"radius\": {}, \"state\": {}, \"home\": {}, \"layers\": [{}], \"edits\": {}",
+      s.view, s.width, s.height, s.samples, s.wanted_samples, s.settled, vector_json(s.center), s.radius,
+      view_json(s.state), view_json(s.home), layers, s.edits);
+  if (s.error)
+    json += fmt::format(", \"error\": {}, \"file\": {}, \"line\": {}, \"column\": {}, \"text\": {}",
+                        JsonValue(s.error->what()).text, JsonValue(s.error->where().file).text,
+                        s.error->where().line, s.error->where().column, JsonValue(s.error_line).text);
+  return json;
+}
+
+}  // namespace oktett

@@ -1,0 +1,111 @@
+#pragma once
+/// \file A scene that is being looked at: it is read, rendered in finer and finer passes as the view changes,
+/// and read again when one of its files changes.
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/render_options.h"
+#include "app/view/canvas.h"
+#include "app/view/view_state.h"
+#include "app/view/watched_files.h"
+#include "core/error.h"
+#include "io/image/metadata.h"
+#include "io/image/texture.h"
+#include "render/prepared_scene.h"
+
+namespace oktett {
+
+/// What a page is told, apart from pixels.
+struct SessionStatus {
+  std::uint64_t view = 0;  ///< grows with each change of the view or the scene
+  std::uint32_t width = 0, height = 0, samples = 0, wanted_samples = 0;
+  bool settled = false;  ///< the picture is the one that `oktett render` gives
+  ViewState state;
+  std::uint64_t edits = 0;  ///< of the scene, read without an error
+  std::vector<std::string> layers;
+  ViewState home;  ///< the view of the scene file
+  Vec3d center;    ///< of the scene's bounds
+  double radius = 1;
+  std::optional<Error> error;  ///< why the scene could not be read again; the last good one is still shown
+  std::string error_line;      ///< the text of its line
+};
+
+/// All functions may be called by any thread.
+class Session {
+ public:
+  /// Reads the scene and begins to render. Throws Error.
+  Session(const RenderArguments& arguments, std::string command_line);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Applies lines of parse_view; returns the number of the view. Throws Error.
+  std::uint64_t change(const std::string& lines);
+  SessionStatus status() const;
+  /// The pixels that changed since `version`; waits up to `wait` for some. See Canvas::news.
+  template <class Status>
+  std::string frame(std::uint64_t version, int wait, const Status& status) {
+    return canvas_.news(version, wait, status);
+  }
+  /// See pick_json.
+  std::string pick(std::uint32_t x, std::uint32_t y);
+  std::string camera() const;
+  /// The bytes of the finished picture in a file of this extension, ".png" or ".exr". Waits until it is
+  /// finished; throws Error if the view changes before.
+  std::string save(const std::string& extension);
+  void stop();
+
+ private:
+  /// A scene and what belongs to it.
+  struct Loaded {
+    std::shared_ptr<PreparedScene> prepared;
+    std::unique_ptr<ImageTextures> textures;
+    std::vector<std::string> files;
+    std::shared_ptr<const PhotonMap> photons;
+  };
+
+  Loaded load(std::vector<std::string>& files) const;
+  void adopt(Loaded loaded);
+  void reload();
+  void work();
+  void watch();
+  /// Renders all passes of the present view; returns early if it changes.
+  /// `only_last`: the last pass alone.
+  void render_view(bool only_last);
+  bool render_pass(const ViewState& state, std::uint64_t view, std::uint32_t scale, std::uint32_t samples,
+                   bool last);
+  bool has_changed(std::uint64_t view) const;
+
+  const RenderArguments arguments_;
+  const std::string command_line_;
+  Isa isa_;
+  std::unique_ptr<SceneCache> cache_;
+  Canvas canvas_;
+  std::mutex using_scene_;  ///< held by whoever uses `loaded_`
+  Loaded loaded_;
+
+  mutable std::mutex mutex_;  ///< for all below
+  std::condition_variable changed_;
+  SessionStatus status_;
+  Film film_;                  ///< of the scene
+  bool wants_layers_ = false;  ///< the finished picture shall have all planes
+  bool reload_wanted_ = false, stopping_ = false;
+  std::shared_ptr<const Picture> finished_;  ///< of the present view; null while there is none
+  ImageMetadata metadata_;                   ///< of `finished_`
+  WatchedFiles files_;
+
+  std::atomic<bool> cancel_{false};
+  double seconds_per_pixel_ = 1e-6;  ///< of one sample, by the last coarse pass
+  std::thread worker_, watcher_;
+};
+
+}  // namespace oktett

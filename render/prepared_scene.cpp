@@ -1,0 +1,213 @@
+#include "render/prepared_scene.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <chrono>
+#include <mutex>
+
+#include "render/context.h"
+#include "render/default_view.h"
+#include "render/film/cryptomatte.h"
+#include "render/film/film.h"
+#include "render/film/film_state.h"
+#include "render/film/tile.h"
+#include "render/light_groups.h"
+#include "render/moments.h"
+#include "render/photon/caustics.h"
+
+namespace oktett {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Collects the reports of tiles and calls the caller's functions, one thread at a time.
+class Monitor {
+ public:
+  Monitor(const RenderOptions& options, const std::vector<FinishedTile>& tiles, const Picture& picture,
+          Clock::time_point start)
+      : options_(options), picture_(picture), start_(start) {
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      if (options.film == nullptr || options.film->in_share(i))
+        progress_.pixels_total += std::uint64_t{tiles[i].width} * tiles[i].height;
+  }
+
+  bool stop_wanted() const {
+    return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed);
+  }
+
+  void skip_tile() {
+    const std::lock_guard lock(mutex_);
+    report_.stopped = true;
+  }
+
+  void finish_tile(const FinishedTile& tile, const TileCounts& counts) {
+    const std::lock_guard lock(mutex_);
+    report_.camera_rays += counts.rays.camera, report_.shadow_rays += counts.rays.shadow;
+    report_.reflected_rays += counts.rays.reflected, report_.refracted_rays += counts.rays.refracted;
+    if (report_.bounces.size() < counts.rays.bounces.size())
+      report_.bounces.resize(counts.rays.bounces.size());
+    for (std::size_t i = 0; i < counts.rays.bounces.size(); ++i)
+      add(counts.rays.bounces[i], report_.bounces[i]);
+    report_.bad_samples += counts.bad_samples;
+    progress_.rays += counts.rays.total();
+    progress_.pixels_done += static_cast<std::uint64_t>(tile.width) * tile.height;
+    if (options_.tile_finished) options_.tile_finished(picture_, tile);
+    if (options_.progress && seconds_since(last_call_) >= 0.1) tell_progress();
+  }
+
+  void tell_progress() {
+    if (!options_.progress) return;
+    progress_.seconds = seconds_since(start_);
+    options_.progress(progress_);
+    last_call_ = Clock::now();
+  }
+
+  const RenderReport& report() const { return report_; }
+
+ private:
+  static void add(const BounceReport& more, BounceReport& sum) {
+    sum.rays += more.rays, sum.shadow_rays += more.shadow_rays, sum.batches += more.batches;
+    sum.shaded += more.shaded, sum.lanes += more.lanes;
+  }
+
+  const RenderOptions& options_;
+  const Picture& picture_;
+  Clock::time_point start_;
+  std::mutex mutex_;
+  RenderProgress progress_;
+  RenderReport report_;
+  Clock::time_point last_call_ = start_;
+};
+
+void describe_world(const World& world, RenderReport& report) {
+  report.triangles = world.triangles, report.primitives = world.primitives;
+  report.geometry_bytes = world.geometry_bytes, report.bvh_bytes = world.bvh_bytes;
+  report.sah_cost = world.sah_cost;
+}
+
+/// Begins the film, if there is one, and returns the tiles to render.
+std::vector<FinishedTile> plan_tiles(const RenderContext& context, const Picture& picture,
+                                     const RenderOptions& options) {
+  if (options.film == nullptr) return cut_tiles(picture.width, picture.height, options.tile_size);
+  options.film->begin({format_of(context), picture.attributes, picture.tone, context.settings.samples,
+                       context.moments != nullptr});
+  std::vector<FinishedTile> tiles;
+  for (std::size_t i = 0; i < options.film->tile_count(); ++i) tiles.push_back(options.film->tile(i));
+  return tiles;
+}
+
+void render_tiles(const RenderContext& context, const std::vector<FinishedTile>& tiles, FilmState* film,
+                  Picture& picture, Monitor& monitor) {
+  tbb::enumerable_thread_specific<TileWorkspace> workspaces;
+  // One tile per task: their costs differ greatly, and stopping should not wait for a block of tiles.
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          if (monitor.stop_wanted()) {
+            monitor.skip_tile();
+            continue;
+          }
+          TileWorkspace& work = workspaces.local();
+          if (film == nullptr)
+            monitor.finish_tile(tiles[i], render_tile(context, tiles[i], picture, work));
+          else if (film->in_share(i))
+            monitor.finish_tile(tiles[i], render_film_tile(context, *film, i, picture, work));
+        }
+      },
+      tbb::simple_partitioner());
+}
+
+/// Gives the context, or those of all moments, the photons that the settings ask for; none if they want none.
+std::vector<Caustics> share_photons(Moments& moments, RenderContext& context, const RenderOptions& options) {
+  if (!wants_photons(context.settings)) return {};
+  const PhotonOptions wanted{options.photons, options.keep_photons};
+  const std::span<RenderContext> all = moments.contexts();
+  std::vector<Caustics> caustics =
+      moments.things_move() ? make_caustics(all, wanted) : make_caustics({&context, 1}, wanted);
+  context.caustics = &caustics.front();
+  for (std::size_t m = 0; m < all.size(); ++m) all[m].caustics = &caustics[m % caustics.size()];
+  return caustics;
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(Scene scene, const BuildOptions& build)
+    : build_(build),
+      scene_(std::move(scene)),
+      follows_camera_(!scene_.lights_given && scene_.lights.empty()) {
+  const Clock::time_point start = Clock::now();
+  world_ = build_world(scene_, build_);
+  bounds_ = world_.bounds;
+  build_seconds_ = seconds_since(start);
+}
+
+void PreparedScene::fill_in_camera() {
+  if (scene_.camera_given) return;
+  scene_.camera = frame_bounds(world_.bounds, scene_.camera, scene_.film);
+  scene_.camera_given = true;
+}
+
+void PreparedScene::complete() {
+  if (scene_.camera_given) return;
+  const Moments widened(scene_, world_, build_);
+  fill_in_camera();
+  world_.bounds = bounds_;
+}
+
+void PreparedScene::set(const PictureSettings& settings) {
+  scene_.camera = settings.camera, scene_.film = settings.film, scene_.integrator = settings.integrator;
+  scene_.camera_given = true;
+}
+
+void PreparedScene::fill_in_lights() {
+  if (!follows_camera_ && lights_) return;
+  if (follows_camera_) scene_.lights = default_lights(scene_.camera, scene_.film);
+  lights_.emplace(scene_, world_);
+}
+
+RenderResult PreparedScene::render(const RenderOptions& options) {
+  RenderResult result;
+  const Clock::time_point start = Clock::now();
+  world_.bounds = bounds_;
+  Moments moments(scene_, world_, build_);
+  fill_in_camera();
+  const double build_seconds = build_seconds_ + seconds_since(start);
+
+  fill_in_lights();
+  RenderContext context = make_context(scene_, world_, *lights_, options.textures, options.isa);
+  context.data_layers = options.data_layers;
+  const bool wants_mattes = scene_.film.cryptomatte && options.data_layers;
+  const Mattes mattes = wants_mattes ? mattes_of(world_) : Mattes{};
+  if (wants_mattes) context.mattes = &mattes;
+  const LightGroups groups = light_groups(scene_);
+  if (groups.any() && context.settings.kind == IntegratorKind::path && options.data_layers)
+    context.light_groups = &groups;
+  result.picture = make_picture(format_of(context));
+  result.picture.attributes = mattes.attributes;
+  moments.share(scene_, context);
+  const Clock::time_point photons = Clock::now();
+  const std::vector<Caustics> caustics = share_photons(moments, context, options);
+  if (!caustics.empty()) result.photons = caustics.front().map();
+  const double photon_seconds = caustics.empty() ? 0 : seconds_since(photons);
+  result.picture.tone = scene_.film.tone;
+  const std::vector<FinishedTile> tiles = plan_tiles(context, result.picture, options);
+  const Clock::time_point tracing = Clock::now();
+  Monitor monitor(options, tiles, result.picture, tracing);
+  render_tiles(context, tiles, options.film, result.picture, monitor);
+  monitor.tell_progress();
+
+  result.report = monitor.report();
+  result.report.build_seconds = build_seconds;
+  result.report.photon_seconds = photon_seconds;
+  result.report.render_seconds = seconds_since(tracing);
+  describe_world(world_, result.report);
+  return result;
+}
+
+}  // namespace oktett
