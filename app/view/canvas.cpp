@@ -8,7 +8,7 @@ namespace oktett {
 
 void Canvas::begin(std::uint64_t view, std::uint32_t width, std::uint32_t height, bool coarse) {
   const std::lock_guard lock(mutex_);
-  // Tiles of the last view stay until those of the new one replace them, but are shown no more.
+  // The page keeps what it has drawn of the last view until tiles of the new one replace it.
   if (view != view_) tiles_.clear(), coarse_ = {};
   view_ = view;
   coarse_pass_ = coarse;

@@ -261,8 +261,7 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
   if (scale > 1) canvas_.show(result.picture, whole, layer);
   if (last && arguments_.film.denoise) {
     denoise(result.picture);
-    for (const FinishedTile& tile : std::vector<FinishedTile>{whole})
-      canvas_.show(result.picture, tile, layer);
+    canvas_.show(result.picture, whole, layer);
   }
   const std::lock_guard lock(mutex_);
   if (status_.view != view) return false;

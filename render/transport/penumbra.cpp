@@ -51,8 +51,7 @@ void trace_penumbra_rays(const RenderContext& context, Wavefront& wavefront, Sha
   for (std::size_t i = 0; i < queue.size(); ++i)
     if (const Color light = queue.light[i] * share; !is_black(light))
       add_arriving(context, wavefront, queue, i, light);
-  wavefront.counts.shadow += queue.size();
-  wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
+  count_shadow_rays(wavefront, queue.size());
   queue.clear();
 }
 
@@ -68,8 +67,7 @@ void start_penumbras(const RenderContext& context, Wavefront& wavefront) {
 void flush_lamp_shadows(const RenderContext& context, Wavefront& wavefront) {
   const std::span<ShadowQueue> queues = lamp_queues(context, wavefront);
   for (ShadowQueue& queue : queues) {
-    wavefront.counts.shadow += queue.size();
-    wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
+    count_shadow_rays(wavefront, queue.size());
     if (queue.size() == 0) continue;
     find_arriving(context, queue, ShadowRule::transparent_passes);
     note_view(queue, wavefront.lamp_view);
@@ -82,9 +80,7 @@ void flush_lamp_shadows(const RenderContext& context, Wavefront& wavefront) {
 
 void shade_penumbras(const RenderContext& context, Wavefront& wavefront) {
   const std::span<const std::uint32_t> hits(wavefront.penumbra);
-  const auto pattern = [&](std::uint32_t ray) {
-    return wavefront.samples.pattern[wavefront.rays.sample[ray]];
-  };
+  const auto pattern = [&](std::uint32_t ray) { return pattern_of(wavefront, ray); };
   ShadowQueue& queue = wavefront.penumbra_shadows;
   InteractionBlock found;
   for (std::size_t first = 0, last; first < hits.size(); first = last) {

@@ -117,8 +117,7 @@ void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
       trace_shadows_in_media(context, wavefront, queue, rule);
     else
       trace_shadows(context, wavefront, queue, rule);
-    wavefront.counts.shadow += queue.size();
-    wavefront.counts.bounces[wavefront.level].shadow_rays += queue.size();
+    count_shadow_rays(wavefront, queue.size());
     queue.clear();
   }
   if (!context.area_lights.empty()) flush_lamp_shadows(context, wavefront);
@@ -178,9 +177,7 @@ void shade_hits(const RenderContext& context, Wavefront& wavefront) {
   HitShader shader(context, wavefront);
   const std::span<std::uint32_t> hits(wavefront.hit_rays.data(), wavefront.hit_rays.size());
   if (context.area_lights.empty()) return shader.shade(hits);
-  const auto pattern = [&](std::uint32_t ray) {
-    return wavefront.samples.pattern[wavefront.rays.sample[ray]];
-  };
+  const auto pattern = [&](std::uint32_t ray) { return pattern_of(wavefront, ray); };
   std::stable_sort(hits.begin(), hits.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return pattern(a) < pattern(b); });
   for (std::size_t first = 0, last; first < hits.size(); first = last) {
@@ -237,6 +234,11 @@ static void begin_bounce(Wavefront& wavefront) {
   std::vector<BounceReport>& bounces = wavefront.counts.bounces;
   if (bounces.size() <= wavefront.level) bounces.resize(wavefront.level + 1);
   bounces[wavefront.level].rays += wavefront.rays.size(), ++bounces[wavefront.level].batches;
+}
+
+void count_shadow_rays(Wavefront& wavefront, std::size_t rays) {
+  wavefront.counts.shadow += rays;
+  wavefront.counts.bounces[wavefront.level].shadow_rays += rays;
 }
 
 void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width) {

@@ -98,6 +98,14 @@ struct Wavefront {
   RayCounts counts;
 };
 
+/// Counts shadow rays of the present bounce.
+void count_shadow_rays(Wavefront& wavefront, std::size_t rays);
+
+/// The pattern of RenderContext::area_lights that the hit of entry `ray` asks; there are area lights.
+inline std::uint32_t pattern_of(const Wavefront& wavefront, std::size_t ray) {
+  return wavefront.samples.pattern[wavefront.rays.sample[ray]];
+}
+
 /// Counts hits of the present bounce that were shaded in groups of `width` lanes.
 void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width);
 

@@ -193,7 +193,7 @@ void push_shadow_rays(const RenderContext& context, const InteractionBlock& foun
 
 /// Which points of the area lights the hit of a ray asks.
 std::uint32_t pattern_of(const RenderContext& context, const Wavefront& wavefront, std::size_t ray) {
-  return context.area_lights.empty() ? 0 : wavefront.samples.pattern[wavefront.rays.sample[ray]];
+  return context.area_lights.empty() ? 0 : oktett::pattern_of(wavefront, ray);
 }
 
 }  // namespace
