@@ -60,18 +60,9 @@ void print_plan(const Scene& scene, const RenderOptions& options, const std::str
       options.threads == 0 ? "all" : std::to_string(options.threads), output);
 }
 
-ImageMetadata first_metadata(const CommandLine& line, const RenderArguments& arguments, const Scene& scene) {
-  ImageMetadata metadata;
-  metadata.software = program_version();
-  metadata.command_line = line.text();
-  metadata.scene = arguments.scene;
-  metadata.samples = scene.integrator.samples;
-  return metadata;
-}
-
 ImageMetadata metadata_of(const CommandLine& line, const RenderArguments& arguments,
                           const RenderResult& result) {
-  ImageMetadata metadata = first_metadata(line, arguments, result.scene);
+  ImageMetadata metadata = first_metadata(line.text(), arguments, result.scene);
   metadata.render_seconds = result.report.render_seconds;
   metadata.camera =
       camera_matrices(result.scene.camera, result.picture.full_width, result.picture.full_height);
@@ -219,7 +210,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   if (arguments.verbose && !arguments.quiet) print_plan(scene, options, output);
   times.load = watch.lap();
 
-  checkpoint.start(scene, files.paths(), arguments, first_metadata(line, arguments, scene), options);
+  checkpoint.start(scene, files.paths(), arguments, first_metadata(line.text(), arguments, scene), options);
   PhotonFile photons(arguments, scene, options);
 
   // A first signal ends the tracing, not the writing.

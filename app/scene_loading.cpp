@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "app/command_line.h"
 #include "core/error.h"
 #include "io/scene/scene_file.h"
 #include "render/look/default_look.h"
@@ -29,6 +30,16 @@ Scene load_as_asked(const RenderArguments& arguments) {
   // The look chooses the number of samples.
   override_scene(arguments, scene);
   return scene;
+}
+
+ImageMetadata first_metadata(const std::string& command_line, const RenderArguments& arguments,
+                             const Scene& scene) {
+  ImageMetadata metadata;
+  metadata.software = program_version();
+  metadata.command_line = command_line;
+  metadata.scene = arguments.scene;
+  metadata.samples = scene.integrator.samples;
+  return metadata;
 }
 
 }  // namespace oktett

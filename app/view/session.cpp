@@ -268,9 +268,7 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
   status_.samples = samples;
   if (!last) return true;
   status_.settled = true;
-  metadata_ = {};
-  metadata_.software = program_version(), metadata_.command_line = command_line_;
-  metadata_.scene = arguments_.scene, metadata_.samples = settings.integrator.samples;
+  metadata_ = first_metadata(command_line_, arguments_, prepared.scene());
   metadata_.render_seconds = result.report.render_seconds;
   metadata_.camera = camera_matrices(state.camera, result.picture.full_width, result.picture.full_height);
   finished_ = std::make_shared<const Picture>(std::move(result.picture));
