@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,22 @@ std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+/// Prints a finding. What follows its last semicolon, such as a list of all keys that are known, is left out if it contains
+/// commas and `told` has it already: many findings of one file end with the same list.
+void print_finding(const std::string& text, std::set<std::string>& told) {
+  const std::size_t end = text.rfind("; ");
+  const bool again = end != std::string::npos && text.find(", ", end) != std::string::npos &&
+                     !told.insert(text.substr(end)).second;
+  fmt::print("{}\n", again ? text.substr(0, end) : text);
+}
+
 /// Prints what is wrong in a file. Returns the exit status for it.
 int check(const std::string& path, const CheckArguments& arguments) {
   const Findings findings = check_file(path, parse_definitions(arguments.definitions));
   const std::vector<Finding>& list = findings.list;
   const std::size_t shown = std::min(list.size(), kMostShown);
-  for (std::size_t i = 0; i < shown; ++i) fmt::print("{}\n", list[i].text);
+  std::set<std::string> told;
+  for (std::size_t i = 0; i < shown; ++i) print_finding(list[i].text, told);
   if (findings.has_more)
     fmt::print("... and more\n");
   else if (list.size() > shown)
