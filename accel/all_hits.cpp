@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <span>
 
 #include "accel/accel_data.h"
 #include "accel/batch_pieces.h"
@@ -27,6 +28,37 @@ bool is_mirrored(const Accel& accel, std::uint32_t item) {
   return accel.frames[accel.geometry_of(item)].mirrored;
 }
 
+/// Orders the crossings of one surface, which are sorted by t, so that they alternate where several have the
+/// same t: a ray that is inside leaves first, one that is outside enters first. Through a gap thinner than
+/// the spacing of floats a ray leaves and enters again at one t.
+static void order_equal_crossings(std::span<Crossing> crossings) {
+  const auto end_of_group = [&](std::size_t i) {
+    const float t = crossings[i].hit.t;
+    while (i < crossings.size() && crossings[i].hit.t == t) ++i;
+    return i;
+  };
+  const auto leaves = [](const Crossing& c) { return c.turn > 0; };
+  const auto is_mixed = [&](std::size_t begin, std::size_t end) {
+    return leaves(crossings[begin]) != leaves(crossings[end - 1]);
+  };
+  // A group with crossings both ways ends on the side where it began, so the first other group tells where
+  // the ray begins.
+  bool inside = false;
+  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
+    end = end_of_group(begin);
+    if (is_mixed(begin, end)) continue;
+    inside = leaves(crossings[begin]);
+    break;
+  }
+  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
+    end = end_of_group(begin);
+    if (!is_mixed(begin, end))
+      inside = !leaves(crossings[begin]);
+    else if (inside)
+      std::reverse(&crossings[begin], &crossings[end - 1] + 1);
+  }
+}
+
 void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
   // Surfaces of one cell list their crossings correctly by themselves.
   const auto own_exact = [&](const Hit& h) {
@@ -47,6 +79,11 @@ void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
     if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
     return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
   });
+  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
+    end = begin + 1;
+    while (end < crossings.size() && crossings[end].hit.item == crossings[begin].hit.item) ++end;
+    order_equal_crossings({&crossings[begin], end - begin});
+  }
   // Of several crossings inwards in a row the first counts, of several outwards the last.
   for (std::size_t i = 0; i < crossings.size(); ++i) {
     const auto same = [&](std::size_t k) {

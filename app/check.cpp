@@ -29,8 +29,8 @@ std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// Prints a finding. What follows its last semicolon, such as a list of all keys that are known, is left out if it contains
-/// commas and `told` has it already: many findings of one file end with the same list.
+/// Prints a finding. What follows its last semicolon, such as a list of all keys that are known, is left out
+/// if it contains commas and `told` has it already: many findings of one file end with the same list.
 void print_finding(const std::string& text, std::set<std::string>& told) {
   const std::size_t end = text.rfind("; ");
   const bool again = end != std::string::npos && text.find(", ", end) != std::string::npos &&

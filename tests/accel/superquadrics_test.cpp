@@ -41,6 +41,14 @@ void expect_at(const SuperquadricShape& s, const Vec3f& from, const Vec3f& direc
   }
 }
 
+// At z = 0 the ray is outside over a length of 2e-12, far less than the spacing of floats.
+TEST(Superquadrics, LeavesAndEntersAtOneFloat) {
+  const SuperquadricShape cusp = shape(Form::hyperboloid, 2, 2, 0.25);
+  expect_at(cusp, {1.0005f, 0, -3}, {0, 0, 1}, {1, 3, 3, 5});
+  expect_at(cusp, {1.0005f, 0, -1}, {0, 0, 1}, {1, 1, 3});
+  expect_at(cusp, {1.0005f, 0, 1}, {0, 0, -1}, {1, 1, 3});
+}
+
 TEST(Superquadrics, KnownCrossings) {
   // An octahedron, a rounded cube and what is hollow.
   expect_at(ellipsoid(1), {0.25f, 0.125f, -3}, {0, 0, 1}, {2.375, 3.625});

@@ -58,14 +58,17 @@ TEST(CheckCommand, PrintsAHundredFindings) {
 /// The same list of keys after each of many findings would hide them.
 TEST(CheckCommand, TellsWhatIsKnownOnce) {
   const TempDir dir;
-  dir.write("wrong.yaml", std::string(test::kBall) +
-                              "  - qqqqq: {}\n  - wwwww: {}\n  - sphere: {zzzzz: 1}\n  - spher: {}\n  - spher: {}\n");
+  dir.write("wrong.yaml",
+            std::string(test::kBall) +
+                "  - qqqqq: {}\n  - wwwww: {}\n  - sphere: {zzzzz: 1}\n  - spher: {}\n  - spher: {}\n");
   const std::string out = run_command(dir, {"check", "wrong.yaml"}).out;
   EXPECT_TRUE(contains(out, "wrong.yaml:7:5: unknown key 'qqqqq' in an object; shapes are mesh,")) << out;
   EXPECT_TRUE(contains(out, "wrong.yaml:8:5: unknown key 'wwwww' in an object\n")) << out;
   EXPECT_TRUE(contains(out, "wrong.yaml:9:14: unknown key 'zzzzz' in sphere; known are ")) << out;
-  EXPECT_TRUE(contains(out, "wrong.yaml:10:5: unknown key 'spher' in an object; did you mean 'sphere'?\n")) << out;
-  EXPECT_TRUE(contains(out, "wrong.yaml:11:5: unknown key 'spher' in an object; did you mean 'sphere'?\n")) << out;
+  EXPECT_TRUE(contains(out, "wrong.yaml:10:5: unknown key 'spher' in an object; did you mean 'sphere'?\n"))
+      << out;
+  EXPECT_TRUE(contains(out, "wrong.yaml:11:5: unknown key 'spher' in an object; did you mean 'sphere'?\n"))
+      << out;
 }
 
 TEST(CheckCommand, DefinitionsAndTheRootFolder) {
