@@ -1,7 +1,7 @@
 #include "bench/peer_options.h"
 
 #include <algorithm>
-#include <ranges>
+#include <sstream>
 
 #include "bench/program.h"
 
@@ -24,8 +24,8 @@ bool PeerOptions::wants_tracing() const {
 template <class F>
 static auto each(const std::string& list, const F& parse) {
   std::vector<decltype(parse(list))> values;
-  for (const auto word : std::views::split(list, ','))
-    values.push_back(parse(std::string(word.begin(), word.end())));
+  std::istringstream words(list + ',');
+  for (std::string word; std::getline(words, word, ',');) values.push_back(parse(word));
   return values;
 }
 
@@ -74,9 +74,9 @@ PeerOptions parse_peer_options(int argc, char** argv) {
       {"--json", "FILE", "all figures with their spread", [&](Text v) { o.json = v; }}};
   o.meshes = parse_options(argc, argv, head, options);
   const auto scenes =
-      std::ranges::stable_partition(o.works, [](Work work) { return work < Work::instances; });
-  o.scenes.assign(scenes.begin(), scenes.end());
-  o.works.erase(scenes.begin(), scenes.end());
+      std::stable_partition(o.works.begin(), o.works.end(), [](Work work) { return work < Work::instances; });
+  o.scenes.assign(scenes, o.works.end());
+  o.works.erase(scenes, o.works.end());
   if (o.meshes.empty() && o.scenes.empty()) throw Error(usage_text(head, options));
   if (o.works.empty() && o.scenes.empty())
     for (Work work = Work::build; work < Work::instances;

@@ -3,6 +3,7 @@
 /// at is tried (Wald 2007). The cost counts blocks of eight, so that leaves come out full. Compiled per
 /// instruction set.
 
+#include <algorithm>
 #include <cstring>
 
 #include "accel/build/collapse.h"
@@ -63,7 +64,9 @@ class Sweep {
     alignas(64) std::int32_t key[N];
     const std::uint32_t padded = (n_ + 15) / 16 * 16;
     for (std::uint32_t i = 0; i < n_; ++i) {
-      const float c = (box_[i].v[4 + axis] - box_[i].v[axis] - lo_[axis]) * scale;
+      // Centres beyond the range of float are infinite, and then all keys are 0: the first operand of
+      // std::max is taken for NaN.
+      const float c = std::max(0.0f, (box_[i].v[4 + axis] - box_[i].v[axis] - lo_[axis]) * scale);
       key[i] = static_cast<std::int32_t>(c) << 8 | static_cast<std::int32_t>(i);
     }
     for (std::uint32_t i = n_; i < padded; ++i) key[i] = std::numeric_limits<std::int32_t>::max();
