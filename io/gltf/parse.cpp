@@ -13,7 +13,6 @@
 #include "io/gltf/json_text.h"
 #include "io/gltf/tiny_model.h"
 #include "io/mesh/failure.h"
-#include "io/text/scan.h"
 
 namespace oktett {
 namespace {
@@ -63,8 +62,11 @@ class TinyParse {
     } catch (const json::parse_error& error) {
       const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
       if (in_bytes_) fail("byte " + std::to_string(at) + " of the JSON: expected other text there");
-      const TextPosition position = LineCounter(text).at(text.data() + at);
-      throw Error(Location{path_, position.line, position.column}, "expected other JSON text here");
+      const std::string_view before(text.data(), at);
+      const std::size_t line_begin = before.rfind('\n') + 1;  // 0 in the first line, since npos + 1 is 0
+      throw Error(Location{path_, 1 + static_cast<int>(std::ranges::count(before, '\n')),
+                           1 + static_cast<int>(at - line_begin)},
+                  "expected other JSON text here");
     } catch (const json::exception& error) {
       fail("the JSON cannot be read: " + quote_name(error.what()));
     }
