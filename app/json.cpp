@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "app/number_text.h"
 
 namespace oktett {
 
@@ -22,7 +22,7 @@ static std::string quoted(const std::string& text) {
 }
 
 JsonValue::JsonValue(const std::string& value) : text(quoted(value)) {}
-JsonValue::JsonValue(double value) : text(std::isfinite(value) ? fmt::format("{}", value) : "null") {}
+JsonValue::JsonValue(double value) : text(number_text(value)) {}
 JsonValue::JsonValue(const JsonObject& object) : text(object.text()) {}
 JsonValue::JsonValue(const std::vector<double>& values) {
   for (const double v : values) text += (text.empty() ? "[" : ", ") + JsonValue(v).text;

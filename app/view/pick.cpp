@@ -2,18 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "app/json.h"
+#include "app/number_text.h"
 #include "core/error.h"
 #include "render/camera.h"
 
 namespace oktett {
 namespace {
-
-/// Fewest digits that give back the float.
-std::string text(float value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
-std::string text(const Vec3f& v) { return "[" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "]"; }
 
 struct NameOfShape {
   std::string operator()(const MeshShape&) const { return "mesh"; }
@@ -57,7 +52,7 @@ std::string pick_json(const PreparedScene& prepared, const Camera& camera, const
   const Hit hit = closest_hit(*world.accel, ray, isa);
   const std::string head =
       fmt::format("{{\"x\": {}, \"y\": {}, \"origin\": {}, \"direction\": {}, \"hit\": {}", x, y,
-                  text(ray.origin), text(ray.direction), hit.valid());
+                  list_text(ray.origin), list_text(ray.direction), hit.valid());
   if (!hit.valid()) return head + "}";
   const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
   const Material& material = material_at(world, s);
@@ -68,10 +63,10 @@ std::string pick_json(const PreparedScene& prepared, const Camera& camera, const
                     "\"shading_normal\": {}, \"object\": {}, \"object_name\": {}, \"primitive\": {}, "
                     "\"surface\": {}, "
                     "\"material\": {}, \"depth\": {}}}",
-                    text(hit.t), text(hit.u), text(hit.v), hit.item, hit.instance, text(s.position),
-                    text(s.geometric_normal), text(s.shading_normal), s.user, JsonValue(name).text,
-                    s.primitive, JsonValue(shape_of(scene, s.user)).text, JsonValue(material.name).text,
-                    camera_depth(frame, s.position));
+                    number_text(hit.t), number_text(hit.u), number_text(hit.v), hit.item, hit.instance,
+                    list_text(s.position), list_text(s.geometric_normal), list_text(s.shading_normal), s.user,
+                    JsonValue(name).text, s.primitive, JsonValue(shape_of(scene, s.user)).text,
+                    JsonValue(material.name).text, camera_depth(frame, s.position));
 }
 
 }  // namespace oktett

@@ -6,7 +6,9 @@
 #include <charconv>
 #include <system_error>
 
+#include "app/choice.h"
 #include "app/json.h"
+#include "app/number_text.h"
 #include "app/view/page_files.h"
 
 namespace oktett {
@@ -44,17 +46,15 @@ const char* type_of(std::string_view name) {
                                   : "text/javascript; charset=utf-8";
 }
 
-std::string vector_json(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
-
 std::string view_json(const ViewState& state) {
   const Camera& c = state.camera;
   return fmt::format(
       "{{\"from\": {}, \"at\": {}, \"up\": {}, \"fov\": {}, \"height\": {}, \"lens\": {}, \"orthographic\": "
       "{}, "
       "\"tone\": \"{}\", \"exposure\": {}, \"layer\": {}}}",
-      vector_json(c.from), vector_json(c.at), vector_json(c.up), c.fov, c.height,
-      c.aperture > 0 || c.f_number > 0, c.projection == Projection::orthographic,
-      kToneKinds[static_cast<int>(state.tone.kind)].name, state.tone.exposure, JsonValue(state.layer).text);
+      list_text(c.from), list_text(c.at), list_text(c.up), c.fov, c.height, c.aperture > 0 || c.f_number > 0,
+      c.projection == Projection::orthographic, kToneKinds[static_cast<int>(state.tone.kind)].name,
+      state.tone.exposure, JsonValue(state.layer).text);
 }
 
 }  // namespace
@@ -110,14 +110,18 @@ HttpResponse Routes::get(const std::string& name, const HttpRequest& request) {
 
 std::string Routes::status_json() const {
   const SessionStatus s = session_.status();
-  std::string layers;
-  for (const std::string& layer : s.layers) layers += (layers.empty() ? "" : ", ") + JsonValue(layer).text;
+  const auto list = [](const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + JsonValue(name).text;
+    return "[" + all + "]";
+  };
   std::string json = fmt::format(
       "{{\"view\": {}, \"width\": {}, \"height\": {}, \"samples\": {}, \"wanted\": {}, \"settled\": {}, "
       "\"center\": "
-      "{}, \"radius\": {}, \"state\": {}, \"home\": {}, \"layers\": [{}], \"edits\": {}",
-      s.view, s.width, s.height, s.samples, s.wanted_samples, s.settled, vector_json(s.center), s.radius,
-      view_json(s.state), view_json(s.home), layers, s.edits);
+      "{}, \"radius\": {}, \"state\": {}, \"home\": {}, \"layers\": {}, \"tones\": {}, "
+      "\"edits\": {}",
+      s.view, s.width, s.height, s.samples, s.wanted_samples, s.settled, list_text(s.center), s.radius,
+      view_json(s.state), view_json(s.home), list(s.layers), list(names_of<ToneKind>(kToneKinds)), s.edits);
   if (s.error)
     json += fmt::format(", \"error\": {}, \"file\": {}, \"line\": {}, \"column\": {}, \"text\": {}",
                         JsonValue(s.error->what()).text, JsonValue(s.error->where().file).text,

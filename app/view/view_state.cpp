@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "app/choice.h"
+#include "app/number_text.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -74,8 +75,6 @@ void set(std::string_view key, std::string_view text, ViewState& state) {
   }
 }
 
-std::string text_of(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
-
 }  // namespace
 
 ViewState parse_view(std::string_view text, ViewState state) {
@@ -91,8 +90,8 @@ ViewState parse_view(std::string_view text, ViewState state) {
 }
 
 std::string camera_yaml(const Camera& c) {
-  std::string out =
-      fmt::format("camera:\n  from: {}\n  at: {}\n  up: {}\n", text_of(c.from), text_of(c.at), text_of(c.up));
+  std::string out = fmt::format("camera:\n  from: {}\n  at: {}\n  up: {}\n", list_text(c.from),
+                                list_text(c.at), list_text(c.up));
   if (c.projection == Projection::orthographic)
     out += fmt::format("  projection: orthographic\n  height: {}\n", c.height);
   else
@@ -102,7 +101,7 @@ std::string camera_yaml(const Camera& c) {
   else if (c.aperture > 0)
     out += fmt::format("  aperture: {}\n", c.aperture);
   if (c.focus_at)
-    out += fmt::format("  focus: {}\n", text_of(*c.focus_at));
+    out += fmt::format("  focus: {}\n", list_text(*c.focus_at));
   else if (c.focus > 0)
     out += fmt::format("  focus: {}\n", c.focus);
   if (c.shutter[0] != 0 || c.shutter[1] != 1)

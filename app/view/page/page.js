@@ -73,6 +73,7 @@ function showStatus() {
   showLayers(s.layers);
   if (document.activeElement !== $("exposure")) $("exposure").value = view.exposure;
   $("stops").textContent = String(view.exposure);
+  if ($("tone").length === 0) for (const name of s.tones) $("tone").add(new Option(name));
   $("tone").value = view.tone;
 }
 
@@ -253,5 +254,4 @@ $("png").addEventListener("click", () => save("png"));
 $("exr").addEventListener("click", () => save("exr"));
 $("exposure").addEventListener("input", () => change({exposure: Number($("exposure").value)}));
 $("tone").addEventListener("change", () => change({tone: $("tone").value}));
-for (const name of ["srgb", "filmic", "aces", "neutral"]) $("tone").add(new Option(name));
 follow();
