@@ -6,6 +6,7 @@
 #include <chrono>
 #include <mutex>
 
+#include "core/elapsed.h"
 #include "render/context.h"
 #include "render/default_view.h"
 #include "render/film/cryptomatte.h"
@@ -20,10 +21,6 @@ namespace oktett {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Collects the reports of tiles and calls the caller's functions, one thread at a time.
 class Monitor {

@@ -1,10 +1,7 @@
 #include "app/view/session.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,6 +9,8 @@
 #include "app/scene_loading.h"
 #include "app/text.h"
 #include "app/view/pick.h"
+#include "app/view/private_folder.h"
+#include "core/elapsed.h"
 #include "io/image/image.h"
 #include "io/text/files_read.h"
 #include "render/film/denoise.h"
@@ -23,10 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 /// How long a first coarse picture may take, so that dragging feels immediate.
 constexpr double kCoarseSeconds = 0.035;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Edges of tiles for so many samples: a tile is done soon, since a render stops between tiles only.
 std::uint32_t tile_edge(std::uint32_t samples) {
@@ -331,21 +326,10 @@ std::string Session::save(const std::string& extension) {
       throw Error("the view has changed before the picture was finished");
     picture = finished_, metadata = metadata_;
   }
-  std::string folder = (std::filesystem::temp_directory_path() / "oktett-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) throw Error("no temporary folder can be made", ErrorKind::io);
-  const std::filesystem::path path = std::filesystem::path(folder) / ("picture" + extension);
-  std::string bytes;
-  std::optional<Error> failure;
-  try {
-    write_image(path.string(), *picture, metadata);
-    bytes = content(path);
-  } catch (const Error& error) {
-    failure = error;
-  }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-  if (failure) throw Error(*failure);
-  return bytes;
+  const PrivateFolder folder;
+  const std::filesystem::path path = folder.path() / ("picture" + extension);
+  write_image(path.string(), *picture, metadata);
+  return content(path);
 }
 
 }  // namespace oktett

@@ -12,6 +12,7 @@
 #include "app/command_line.h"
 #include "app/interrupt.h"
 #include "app/text.h"
+#include "app/view/private_folder.h"
 #include "app/view/routes.h"
 
 extern char** environ;
@@ -29,13 +30,20 @@ int port_of(const std::string& text) {
   return text.empty() ? 0 : static_cast<int>(parse_amount("--port", text, "", 0, 65535));
 }
 
-/// Asks the desktop to show the page. Without a desktop the address on the terminal has to do.
-void open_page(const std::string& address) {
-  std::string program = "xdg-open", word = address;
+/// Asks the desktop to show the page. Without a desktop the address on the terminal has to do. Every user of
+/// the machine can read the arguments of programs, so the browser finds the secret address in a file.
+std::unique_ptr<PrivateFolder> open_page(const std::string& address) {
+  auto folder = std::make_unique<PrivateFolder>();
+  const std::string page = fmt::format(
+      "<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">"
+      "<meta http-equiv=\"refresh\" content=\"0; url={0}\"><title>Oktett</title><a href=\"{0}\">Oktett</a>\n",
+      address);
+  std::string program = "xdg-open", word = folder->write("open.html", page).string();
   char* const words[] = {program.data(), word.data(), nullptr};
   pid_t process = 0;
   if (posix_spawnp(&process, "xdg-open", nullptr, nullptr, words, environ) == 0)
     std::signal(SIGCHLD, SIG_IGN);
+  return folder;
 }
 
 int run_view(const CommandLine& line, const ViewArguments& arguments) {
@@ -55,7 +63,12 @@ int run_view(const CommandLine& line, const ViewArguments& arguments) {
                 [&](const HttpRequest& r) { return routes.answer(r); });
   const std::string address = fmt::format("http://127.0.0.1:{}/{}/", port, token);
   say("{}\nCtrl-C ends the viewer\n", address);
-  if (!arguments.no_open) open_page(address);
+  std::unique_ptr<PrivateFolder> page;
+  try {
+    if (!arguments.no_open) page = open_page(address);
+  } catch (const Error& error) {
+    say("the page is not opened: {}\n", error.what());
+  }
   while (!interrupt.flag()->load()) poll(nullptr, 0, 100);
   session.stop();
   server->stop();

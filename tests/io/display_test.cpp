@@ -12,16 +12,13 @@
 #include <thread>
 #include <vector>
 
+#include "core/elapsed.h"
 #include "core/error.h"
 
 namespace oktett {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// A TCP server on a free port of the loopback device that collects what one client sends.
 class Server {
