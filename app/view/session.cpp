@@ -30,6 +30,22 @@ std::uint32_t tile_edge(std::uint32_t samples) {
   return edge;
 }
 
+/// Gives a scene other settings, and its own back at the end of its life.
+class SettingsForOnePicture {
+ public:
+  SettingsForOnePicture(PreparedScene& scene, const PictureSettings& settings)
+      : scene_(scene), own_(scene.settings()) {
+    scene_.set(settings);
+  }
+  ~SettingsForOnePicture() { scene_.set(own_); }
+  SettingsForOnePicture(const SettingsForOnePicture&) = delete;
+  SettingsForOnePicture& operator=(const SettingsForOnePicture&) = delete;
+
+ private:
+  PreparedScene& scene_;
+  const PictureSettings own_;
+};
+
 /// Line `where.line` of its file, without what would not fit on a page.
 std::string line_of(const Location& where) {
   std::ifstream file(where.file);
@@ -243,10 +259,11 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
       canvas_.show(picture, tile, layer);
     };
   const Clock::time_point start = Clock::now();
-  prepared.set(settings);
   if (last) options.photons = loaded_.photons, options.keep_photons = true;
-  RenderResult result = prepared.render(options);
-  prepared.set(full);
+  RenderResult result = [&] {
+    const SettingsForOnePicture changed(prepared, settings);
+    return prepared.render(options);
+  }();
   if (last && result.photons != nullptr) loaded_.photons = result.photons;
   if (result.report.stopped) return false;
   const FinishedTile whole{0, 0, result.picture.width, result.picture.height};
