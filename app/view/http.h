@@ -27,6 +27,7 @@ struct HttpResponse {
 struct HttpLimits {
   static constexpr std::size_t kConnections = 24, kHeaderBytes = 16384, kBodyBytes = 4096;
   static constexpr int kRequestSeconds = 10;  ///< from the first byte of a request to its last
+  static constexpr int kAnswerSeconds = 60;   ///< from the first byte of an answer to its last
 };
 
 /// Listens on 127.0.0.1 alone.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <map>
 
 #include "app/view/http.h"
 
@@ -25,9 +26,10 @@ class BoundedStream : public httplib::Stream {
   void begin_request() {
     bytes_left_ = HttpLimits::kHeaderBytes + HttpLimits::kBodyBytes;
     end_ = Clock::now() + std::chrono::seconds(HttpLimits::kRequestSeconds);
+    answered_ = false, is_late_ = false;
   }
   bool is_readable() const override { return wait(POLLIN, 0); }
-  bool is_writable() const override { return wait(POLLOUT, HttpLimits::kRequestSeconds * 1000); }
+  bool is_writable() const override { return wait(POLLOUT, milliseconds_left()); }
   ssize_t read(char* to, std::size_t size) override {
     size = std::min({size, bytes_left_, fill()});
     if (size == 0) return -1;
@@ -38,8 +40,17 @@ class BoundedStream : public httplib::Stream {
   /// Whether a request has begun to arrive, after at most so long.
   bool has_begun(int milliseconds) const { return first_ < last_ || wait(POLLIN, milliseconds); }
   ssize_t write(const char* from, std::size_t size) override {
+    if (!answered_) end_ = Clock::now() + std::chrono::seconds(HttpLimits::kAnswerSeconds);
+    answered_ = true;
     if (!is_writable()) return -1;
     return send(socket_, from, size, MSG_NOSIGNAL);
+  }
+  /// Answers a request that was given up because it is too long or too slow, if nothing has answered it.
+  void answer_rest() {
+    if (answered_ || (!is_late_ && bytes_left_ > 0)) return;
+    const std::string status = is_late_ ? "408 Request Timeout" : "431 Request Header Fields Too Large";
+    const std::string text = "HTTP/1.1 " + status + "\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+    write(text.data(), text.size());
   }
   void get_remote_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
   void get_local_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
@@ -54,27 +65,66 @@ class BoundedStream : public httplib::Stream {
   /// The number of bytes in the buffer, which is filled if it is empty. 0 at the end or when time is up.
   std::size_t fill() {
     if (first_ < last_) return last_ - first_;
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end_ - Clock::now()).count();
-    if (left <= 0 || !wait(POLLIN, static_cast<int>(left))) return 0;
+    is_late_ = !wait(POLLIN, milliseconds_left());
+    if (is_late_) return 0;
     const ssize_t count = recv(socket_, buffer_, sizeof buffer_, 0);
     first_ = 0, last_ = count > 0 ? static_cast<std::size_t>(count) : 0;
     return last_;
+  }
+
+  int milliseconds_left() const {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end_ - Clock::now()).count();
+    return static_cast<int>(std::max<std::int64_t>(0, left));
   }
 
   socket_t socket_;
   char buffer_[4096];
   std::size_t first_ = 0, last_ = 0;  ///< of the bytes in the buffer that are not read yet
   std::size_t bytes_left_ = 0;
-  Clock::time_point end_;
+  bool answered_ = false;  ///< some of the answer is written
+  bool is_late_ = false;
+  Clock::time_point end_;  ///< of reading the request, then of writing the answer
 };
 
-/// Hands sockets to threads; whoever brings one waits while all are busy, so connections queue in the kernel.
+/// The connections that owe the server a request, with the time since when.
+class WaitingConnections {
+ public:
+  void add(socket_t socket) {
+    const std::lock_guard lock(mutex_);
+    since_[socket] = Clock::now();
+  }
+  /// Must be called before the socket is closed, since its number may then be that of another connection.
+  void remove(socket_t socket) {
+    const std::lock_guard lock(mutex_);
+    since_.erase(socket);
+  }
+  /// Ends the connection that has waited longest, if there is one.
+  void end_oldest() {
+    const std::lock_guard lock(mutex_);
+    const auto oldest = std::min_element(since_.begin(), since_.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (oldest == since_.end()) return;
+    ::shutdown(oldest->first, SHUT_RDWR);
+    since_.erase(oldest);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<socket_t, Clock::time_point> since_;
+};
+
+/// Hands sockets to threads. While all are busy, whoever brings a socket ends the connections that have
+/// waited longest for a request: clients that send slowly or nothing cannot keep others out.
 class BoundedPool : public httplib::TaskQueue {
  public:
-  BoundedPool() : pool_(HttpLimits::kConnections) {}
+  explicit BoundedPool(WaitingConnections& waiting) : waiting_(waiting), pool_(HttpLimits::kConnections) {}
   void enqueue(std::function<void()> task) override {
     std::unique_lock lock(mutex_);
-    free_.wait(lock, [&] { return busy_ < HttpLimits::kConnections; });
+    const auto has_room = [&] { return busy_ < HttpLimits::kConnections; };
+    while (!has_room()) {
+      waiting_.end_oldest();
+      free_.wait_for(lock, std::chrono::milliseconds(100), has_room);
+    }
     ++busy_;
     pool_.enqueue([this, task = std::move(task)] {
       task();
@@ -86,6 +136,7 @@ class BoundedPool : public httplib::TaskQueue {
   void shutdown() override { pool_.shutdown(); }
 
  private:
+  WaitingConnections& waiting_;
   std::mutex mutex_;
   std::condition_variable free_;
   std::size_t busy_ = 0;
@@ -104,8 +155,11 @@ HttpRequest plain(const httplib::Request& from) {
 /// The status for a request whose form is refused; 0 if it is in order.
 int check_form(const httplib::Request& r) {
   if (r.method != "GET" && r.method != "POST") return 405;
-  if (r.has_header("Transfer-Encoding") || r.has_header("Range") || r.has_header("Expect")) return 400;
-  if (r.get_header_value_count("Host") != 1 || r.get_header_value_count("Content-Length") > 1) return 400;
+  for (const char* name : {"Transfer-Encoding", "Range", "Upgrade"})
+    if (r.has_header(name)) return 400;
+  if (r.get_header_value_count("Host") != 1) return 400;
+  for (const char* name : {"Content-Length", "Content-Type", "Origin"})
+    if (r.get_header_value_count(name) > 1) return 400;
   const std::string text = r.get_header_value("Content-Length");
   if (r.method == "GET") return text.empty() || text == "0" ? 0 : 400;
   std::size_t length = 0;
@@ -117,7 +171,11 @@ int check_form(const httplib::Request& r) {
 class OwnServer : public HttpServer, private httplib::Server {
  public:
   OwnServer() {
-    new_task_queue = [] { return new BoundedPool; };
+    new_task_queue = [this] { return new BoundedPool(waiting_); };
+    set_expect_100_continue_handler([](const httplib::Request&, httplib::Response& to) {
+      refuse(400, to);
+      return to.status;
+    });
     // Other programs must not share the port, as the library's own choice would let them.
     set_socket_options([](socket_t socket) {
       const int yes = 1;
@@ -146,15 +204,16 @@ class OwnServer : public HttpServer, private httplib::Server {
       int status = check_form(from);
       if (status == 0) status = gate(plain(from));
       if (status != 0) {
-        to.set_header("Connection", "close");
-        answer({status, "text/plain; charset=utf-8", "refused\n", ""}, to);
+        refuse(status, to);
         return HandlerResponse::Handled;
       }
       if (from.method == "POST") return HandlerResponse::Unhandled;
+      has_arrived();
       answer(handler(plain(from)), to);
       return HandlerResponse::Handled;
     });
     Post(".*", [handler](const httplib::Request& from, httplib::Response& to) {
+      has_arrived();
       answer(handler(plain(from)), to);
     });
     thread_ = std::thread([this] { listen_after_bind(); });
@@ -169,6 +228,14 @@ class OwnServer : public HttpServer, private httplib::Server {
   }
 
  private:
+  /// What follows a refused request is its body, if not worse, so it is not read.
+  static void refuse(int status, httplib::Response& to) {
+    to.set_header("Connection", "close");
+    to.status = status;
+    to.set_content("refused\n", "text/plain; charset=utf-8");
+    arriving.refused = true;
+  }
+
   static void answer(HttpResponse from, httplib::Response& to) {
     to.status = from.status;
     if (!from.file_name.empty())
@@ -186,21 +253,40 @@ class OwnServer : public HttpServer, private httplib::Server {
     const int yes = 1;
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     BoundedStream stream(socket);
+    waiting_.add(socket);
     bool good = true, closed = false;
-    for (int idle = 0; good && !closed && !stopping_ && idle < 50; ++idle) {
+    arriving = {&waiting_, socket, false};
+    for (int idle = 0; good && !closed && !arriving.refused && !stopping_ && idle < 50; ++idle) {
       if (!stream.has_begun(100)) continue;
       idle = 0;
       stream.begin_request();
       good = process_request(stream, false, closed, nullptr);
+      if (good) waiting_.add(socket);
     }
+    if (!good) stream.answer_rest();
+    waiting_.remove(socket);
     ::shutdown(socket, SHUT_RDWR);
     ::close(socket);
     return good;
   }
 
+  /// The request that this thread reads is complete; from now on its connection waits for the server.
+  static void has_arrived() { arriving.connections->remove(arriving.socket); }
+
+  /// What this thread serves.
+  struct Arriving {
+    WaitingConnections* connections = nullptr;
+    socket_t socket = INVALID_SOCKET;
+    bool refused = false;  ///< the last request was
+  };
+  static thread_local Arriving arriving;
+
+  WaitingConnections waiting_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };
+
+thread_local OwnServer::Arriving OwnServer::arriving;
 
 }  // namespace
 }  // namespace oktett
