@@ -2,6 +2,7 @@
 import http.client
 import os
 import pathlib
+import signal
 import struct
 import subprocess
 import tempfile
@@ -21,6 +22,8 @@ objects:
   - sphere: {center: [1.2, 0.3, 0.4], radius: 0.3}
 """
 VIEW_TYPE = {"Content-Type": "application/x-oktett-view"}
+# What a shell starts in the background ignores SIGINT and hands that on to the programs that it starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class ViewerTest(unittest.TestCase):
