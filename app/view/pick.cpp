@@ -29,14 +29,31 @@ struct NameOfShape {
   }
 };
 
-/// The shape of object number `user`; see World for how objects are numbered.
-std::string shape_of(const Scene& scene, std::uint32_t user) {
-  std::size_t at = user;
-  for (const Prototype& p : scene.prototypes) {
-    if (at < p.objects.size()) return std::visit(NameOfShape{}, p.objects[at].shape);
-    at -= p.objects.size();
+/// An object, and its name; that of the combination around it if it has none.
+struct FoundObject {
+  const Object* object = nullptr;
+  std::string name;
+};
+
+/// Object number `left` of those that World counts: combinations come before their operands, and those inside
+/// of others do not count. If there are fewer, `left` becomes the rest.
+FoundObject find_object(const std::vector<Object>& objects, const Object* whole, std::uint32_t& left) {
+  for (const Object& object : objects) {
+    const auto* combination = std::get_if<CsgShape>(&object.shape);
+    if ((combination == nullptr || whole == nullptr) && left-- == 0)
+      return {&object, object.name.empty() && whole != nullptr ? whole->name : object.name};
+    if (combination == nullptr) continue;
+    FoundObject inside = find_object(*combination->operands, whole != nullptr ? whole : &object, left);
+    if (inside.object != nullptr) return inside;
   }
-  return at < scene.objects.size() ? std::visit(NameOfShape{}, scene.objects[at].shape) : "";
+  return {};
+}
+
+/// The object that SurfaceInteraction::user numbers; see World.
+FoundObject object_of(const Scene& scene, std::uint32_t user) {
+  for (const Prototype& p : scene.prototypes)
+    if (FoundObject found = find_object(p.objects, nullptr, user); found.object != nullptr) return found;
+  return find_object(scene.objects, nullptr, user);
 }
 
 }  // namespace
@@ -56,7 +73,8 @@ std::string pick_json(const PreparedScene& prepared, const Camera& camera, const
   if (!hit.valid()) return head + "}";
   const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
   const Material& material = material_at(world, s);
-  const std::string name = s.user < world.objects.size() ? world.objects[s.user].name : "";
+  const FoundObject object = object_of(scene, s.user);
+  const std::string shape = object.object != nullptr ? std::visit(NameOfShape{}, object.object->shape) : "";
   return head + fmt::format(
                     ", \"t\": {}, \"u\": {}, \"v\": {}, \"item\": {}, \"instance\": {}, \"point\": {}, "
                     "\"normal\": {}, "
@@ -65,7 +83,7 @@ std::string pick_json(const PreparedScene& prepared, const Camera& camera, const
                     "\"material\": {}, \"depth\": {}}}",
                     number_text(hit.t), number_text(hit.u), number_text(hit.v), hit.item, hit.instance,
                     list_text(s.position), list_text(s.geometric_normal), list_text(s.shading_normal), s.user,
-                    JsonValue(name).text, s.primitive, JsonValue(shape_of(scene, s.user)).text,
+                    JsonValue(object.name).text, s.primitive, JsonValue(shape).text,
                     JsonValue(material.name).text, camera_depth(frame, s.position));
 }
 
