@@ -119,6 +119,7 @@ void add_render_command(CommandLine& line);
 void add_view_command(CommandLine& line);
 void add_info_command(CommandLine& line);
 void add_check_command(CommandLine& line);
+void add_convert_command(CommandLine& line);
 void add_merge_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
 void add_examples_command(CommandLine& line);

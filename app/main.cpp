@@ -12,6 +12,7 @@ int run(int argc, char** argv) {
   add_view_command(line);
   add_info_command(line);
   add_check_command(line);
+  add_convert_command(line);
   add_merge_command(line);
   add_verify_command(line);
   add_examples_command(line);

@@ -13,9 +13,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// How steeply a mask goes from nothing to all: a hard edge, as glTF has it.
-constexpr float kMaskSlope = 1e4f;
-
 /// Whether the bytes begin like an image of the kinds that glTF knows.
 bool is_known_image(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n"sv) || bytes.starts_with("\xff\xd8\xff"sv) ||
@@ -67,8 +64,8 @@ class Materials {
     } else if (in.base_texture.texture == kNoId) {
       m.opacity = in.alpha >= in.alpha_cutoff ? 1 : 0;
     } else {
-      m.opacity_texture = add(in.base_texture, ImageChannel::alpha, kMaskSlope * in.alpha,
-                              0.5f - kMaskSlope * in.alpha_cutoff);
+      m.opacity_texture = add(in.base_texture, ImageChannel::alpha, kGltfMaskSlope * in.alpha,
+                              0.5f - kGltfMaskSlope * in.alpha_cutoff);
     }
   }
 

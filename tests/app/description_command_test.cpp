@@ -106,7 +106,7 @@ TEST_F(Completion, Bash) {
 }
 
 TEST_F(Completion, BashOffersAllOptions) {
-  for (const char* verb : {"render", "info", "check", "merge", "verify", "examples"}) {
+  for (const char* verb : {"render", "info", "check", "convert", "merge", "verify", "examples"}) {
     const Offers offers = bash(std::string("oktett ") + verb + " --", 3);
     for (const std::string& option : long_options(dir, verb)) EXPECT_EQ(offers.count(option), 1u) << option;
     EXPECT_GE(offers.size(), 3u) << verb;
@@ -153,8 +153,8 @@ TEST_F(Completion, UnknownShells) {
 TEST(Manual, PagesDescribeAllOptionsWithoutWarnings) {
   const TempDir dir;
   const bool formats = has_program(dir, "groff");
-  for (const char* verb :
-       {"", "render", "view", "info", "check", "merge", "verify", "examples", "completion", "manual"}) {
+  for (const char* verb : {"", "render", "view", "info", "check", "convert", "merge", "verify", "examples",
+                           "completion", "manual"}) {
     const bool program = std::string(verb).empty();
     const CommandResult page = run_command(dir, program ? Words{"manual"} : Words{"manual", verb});
     ASSERT_EQ(page.status, 0) << page.err;

@@ -48,7 +48,9 @@ constexpr Writer kWriters[] = {
     {"render a.yaml -o b.exr --checkpoint disk/a.film --every 0.01", "a.film", "b.exr"},
     {"render --resume disk/a.film --add-spp 2 -o b.exr", "a.film", "b.exr"},
     {"render a.yaml -o b.exr --photon-map disk/a.photons", "", "b.exr"},
-    {"merge a.film -o disk/a.exr", "a.exr", ""}};
+    {"merge a.film -o disk/a.exr", "a.exr", ""},
+    {"convert a.obj disk/a.stl", "a.stl", ""},
+    {"convert a.obj disk/a.glb", "a.glb", ""}};
 
 class DiskCommand : public testing::Test {
  protected:
@@ -57,6 +59,9 @@ class DiskCommand : public testing::Test {
     fs::create_directory(dir_.file("disk"));
     for (const char* file : {"a.exr", "a.png", "a.film"})
       EXPECT_EQ(run_command(dir_, {"render", "a.yaml", "-o", file}).status, 0);
+    dir_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (const char* file : {"a.stl", "a.glb"})
+      EXPECT_EQ(run_command(dir_, {"convert", "a.obj", file}).status, 0);
   }
 
   void SetUp() override {

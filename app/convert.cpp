@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/command_line.h"
+#include "app/limits.h"
+#include "app/text.h"
+#include "io/mesh/save/convert_mesh.h"
+
+namespace oktett {
+namespace {
+
+struct ConvertArguments {
+  std::string input, output;
+  ConvertOptions options;
+  LimitArguments limits;
+  bool quiet = false;
+};
+
+int run_convert(const ConvertArguments& arguments) {
+  apply_limits(arguments.limits);
+  // A file that cannot be written is refused before a long one is read.
+  check_mesh_output(arguments.output, arguments.options);
+  const Conversion done = convert_mesh(arguments.input, arguments.output, arguments.options);
+  print_warnings(done.warnings);
+  if (arguments.quiet) return 0;
+  for (const std::string& loss : done.losses) say("{}: {}\n", arguments.output, loss);
+  fmt::print("wrote {}: {} triangles, {} vertices\n", arguments.output, grouped(done.triangles),
+             grouped(done.vertices));
+  std::fflush(stdout);
+  return 0;
+}
+
+}  // namespace
+
+void add_convert_command(CommandLine& line) {
+  const auto a = std::make_shared<ConvertArguments>();
+  Verb verb =
+      line.add_verb("convert", "Write a mesh file in another format", [a] { return run_convert(*a); });
+  verb.positional("input", a->input, "INPUT", "Mesh to read: .obj, .ply, .stl, .gltf or .glb, also .gz");
+  verb.positional("output", a->output, "OUTPUT", "File to write: .obj, .ply, .stl or .glb");
+  verb.flag("--ascii", a->options.ascii, "Write text instead of bytes (.ply, .stl)");
+  verb.flag("--weld", a->options.weld, "Make one of all vertices at the same place");
+  verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");
+  add_limit_options(verb, a->limits);
+}
+
+}  // namespace oktett

@@ -1,0 +1,187 @@
+#include "io/gltf/write_glb.h"
+
+#include <algorithm>
+#include <limits>
+#include <ostream>
+#include <streambuf>
+#include <utility>
+
+#include "io/gltf/materials.h"
+#include "io/gltf/write_materials.h"
+#include "io/mesh/unify.h"
+#include "io/obj/written_materials.h"
+#include "io/text/file_access.h"
+
+namespace oktett {
+namespace {
+
+/// Hands what tinygltf writes to a file.
+class OutputBuffer : public std::streambuf {
+ public:
+  explicit OutputBuffer(OutputFile& file) : file_(file) {}
+
+ private:
+  std::streamsize xsputn(const char* bytes, std::streamsize size) override {
+    file_.write({bytes, static_cast<std::size_t>(size)});
+    return size;
+  }
+  int_type overflow(int_type c) override {
+    const char byte = static_cast<char>(c);
+    file_.write({&byte, 1});
+    return c;
+  }
+
+  OutputFile& file_;
+};
+
+class GlbWriting {
+ public:
+  GlbWriting(const std::string& path, const MeshFile& file)
+      : path_(path), file_(file), mesh_(unify_vertices(file.mesh)), materials_(model_, file) {}
+
+  MeshLosses run() {
+    OutputFile out(path_);
+    model_.asset.version = "2.0", model_.asset.generator = "Oktett";
+    model_.buffers.emplace_back();
+    add_vertices();
+    add_primitives();
+    add_node();
+    std::ranges::sort(model_.extensionsUsed);
+    model_.extensionsUsed.erase(std::unique(model_.extensionsUsed.begin(), model_.extensionsUsed.end()),
+                                model_.extensionsUsed.end());
+    write(out);
+    mesh_.note_changes(file_.mesh.positions.size(), losses_);
+    materials_.note_losses(losses_);
+    note_changed_materials(out.temporary());
+    out.commit();
+    return std::move(losses_);
+  }
+
+ private:
+  int add_accessor(int view, int type, int number, std::size_t count) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = view, accessor.type = type, accessor.componentType = number, accessor.count = count;
+    model_.accessors.push_back(accessor);
+    return static_cast<int>(model_.accessors.size()) - 1;
+  }
+  template <class T>
+  int add_floats(const std::vector<T>& values) {
+    const int view =
+        add_gltf_view(model_, values.data(), values.size() * sizeof(T), TINYGLTF_TARGET_ARRAY_BUFFER);
+    return add_accessor(view, sizeof(T) == 12 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC2,
+                        TINYGLTF_COMPONENT_TYPE_FLOAT, values.size());
+  }
+
+  void add_vertices() {
+    attributes_["POSITION"] = add_floats(mesh_.positions);
+    constexpr double kMost = std::numeric_limits<double>::max();
+    std::vector<double> lo(3, kMost), hi(3, -kMost);
+    for (const Vec3f& p : mesh_.positions)
+      for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        lo[i] = std::min(lo[i], static_cast<double>(p[k])),
+        hi[i] = std::max(hi[i], static_cast<double>(p[k]));
+      }
+    model_.accessors.back().minValues = lo, model_.accessors.back().maxValues = hi;
+    if (!mesh_.normals.empty()) attributes_["NORMAL"] = add_floats(mesh_.normals);
+    if (!mesh_.uvs.empty()) attributes_["TEXCOORD_0"] = add_floats(turned_uvs());
+  }
+
+  /// With v from the top.
+  std::vector<Vec2f> turned_uvs() {
+    std::vector<Vec2f> uvs = mesh_.uvs;
+    std::size_t rounded = 0;
+    for (Vec2f& uv : uvs) {
+      const float v = uv.y;
+      uv.y = 1 - v;
+      if (1 - uv.y != v) ++rounded;
+    }
+    if (rounded > 0)
+      losses_.push_back("lost: precision of " + count_of(rounded, "texture coordinate") +
+                        ", because glTF counts v from the top");
+    return uvs;
+  }
+
+  /// One for each slot, because a primitive has one material.
+  void add_primitives() {
+    const Column<std::uint16_t>& slots = file_.mesh.material_slots;
+    std::size_t count = 1;
+    for (const std::uint16_t slot : slots) count = std::max(count, std::size_t{slot} + 1);
+    std::vector<std::vector<std::uint32_t>> corners(count);
+    for (std::size_t i = 0; i < mesh_.indices.size(); ++i)
+      corners[slots.empty() ? 0 : slots[i / 3]].push_back(mesh_.indices[i]);
+    if (!std::is_sorted(slots.begin(), slots.end()))
+      losses_.push_back("changed: the order of triangles, which glTF has by material");
+    tinygltf::Mesh mesh;
+    for (std::size_t slot = 0; slot < count; ++slot) {
+      if (corners[slot].empty()) continue;
+      tinygltf::Primitive primitive;
+      primitive.attributes = attributes_;
+      primitive.mode = TINYGLTF_MODE_TRIANGLES;
+      if (slot < file_.materials.size()) primitive.material = materials_.add(file_.materials[slot]);
+      if (primitive.material >= 0) written_.push_back(slot);
+      const std::vector<std::uint32_t>& own = corners[slot];
+      const int view =
+          add_gltf_view(model_, own.data(), own.size() * sizeof own[0], TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+      primitive.indices =
+          add_accessor(view, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, own.size());
+      mesh.primitives.push_back(primitive);
+    }
+    model_.meshes.push_back(std::move(mesh));
+  }
+
+  void add_node() {
+    tinygltf::Node node;
+    node.mesh = 0;
+    model_.nodes.push_back(node);
+    tinygltf::Scene scene;
+    scene.nodes = {0};
+    model_.scenes.push_back(scene);
+    model_.defaultScene = 0;
+  }
+
+  void write(OutputFile& out) {
+    // A margin for the JSON beside the bytes.
+    if (model_.buffers[0].data.size() > std::numeric_limits<std::uint32_t>::max() - (std::size_t{64} << 20))
+      throw Error(Location{path_}, "cannot write: a GLB file has at most 4 GB");
+    OutputBuffer buffer(out);
+    std::ostream stream(&buffer);
+    // So that errors of the file come through.
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, stream, false, true))
+      throw Error(Location{path_}, "cannot write", ErrorKind::io);
+    model_ = {};
+  }
+
+  /// Reads the materials again, because that shows best what is another one now.
+  void note_changed_materials(const std::string& temporary) {
+    if (written_.empty()) return;
+    if (files_are_confined()) {
+      losses_.push_back(kNotCompared);
+      return;
+    }
+    GltfScene read;
+    add_gltf_materials(GltfFile(temporary), read);
+    std::vector<std::string> changed;
+    for (std::size_t i = 0; i < written_.size(); ++i) {
+      const Material& m = file_.materials[written_[i]];
+      if (i >= read.materials.size() || !is_same_material(read.materials[i], m)) changed.push_back(m.name);
+    }
+    note_changed(changed, "glTF", losses_);
+  }
+
+  const std::string& path_;
+  const MeshFile& file_;
+  const UnifiedMesh mesh_;
+  tinygltf::Model model_;
+  GltfMaterialWriter materials_;
+  std::map<std::string, int> attributes_;
+  std::vector<std::size_t> written_;  ///< the slots of the model's materials
+  MeshLosses losses_;
+};
+
+}  // namespace
+
+MeshLosses write_glb(const std::string& path, const MeshFile& file) { return GlbWriting(path, file).run(); }
+
+}  // namespace oktett

@@ -1,0 +1,81 @@
+#pragma once
+/// \file A mesh file while it is written. Within io/ only.
+
+#include <charconv>
+#include <concepts>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/image/output.h"
+
+namespace oktett {
+
+/// Gathers text and bytes to large writes. Throws Error of kind io, as OutputFile does.
+class MeshOutput {
+ public:
+  explicit MeshOutput(const std::string& path) : file_(path) { buffer_.reserve(kMost + kMargin); }
+
+  MeshOutput& text(std::string_view words) {
+    if (words.size() > kMargin) {
+      flush();
+      file_.write(words);
+    } else {
+      buffer_ += words;
+      flush_if_full();
+    }
+    return *this;
+  }
+  /// The shortest text that reads as `x` again.
+  MeshOutput& number(float x) { return digits(x); }
+  MeshOutput& number(std::integral auto x) { return digits(x); }
+  /// The bytes of a number or of a struct of numbers, as they are in memory (little-endian).
+  template <class T>
+  MeshOutput& bytes(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) < kMargin);
+    const std::size_t end = buffer_.size();
+    buffer_.resize(end + sizeof value);
+    std::memcpy(buffer_.data() + end, &value, sizeof value);
+    flush_if_full();
+    return *this;
+  }
+
+  /// Writes what was gathered.
+  void flush() {
+    file_.write(buffer_);
+    buffer_.clear();
+  }
+  /// The name under which what was flushed can be read before commit().
+  const std::string& temporary() { return file_.temporary(); }
+  /// Gives the file its name.
+  void commit() {
+    flush();
+    file_.commit();
+  }
+
+ private:
+  static constexpr std::size_t kMost = std::size_t{1} << 20, kMargin = 256;
+
+  MeshOutput& digits(auto x) {
+    char text[64];
+    return this->text(
+        {text, static_cast<std::size_t>(std::to_chars(text, text + sizeof text, x).ptr - text)});
+  }
+  void flush_if_full() {
+    if (buffer_.size() >= kMost) flush();
+  }
+
+  OutputFile file_;
+  std::string buffer_;
+};
+
+/// What a written file does not say of what was read: "lost: normals", or says otherwise: "changed: ...".
+using MeshLosses = std::vector<std::string>;
+
+/// "1 material", "2 materials".
+inline std::string count_of(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+}  // namespace oktett

@@ -1,0 +1,32 @@
+#pragma once
+/// \file Mesh files in other formats.
+
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+
+namespace oktett {
+
+struct ConvertOptions {
+  bool ascii = false;  ///< text instead of bytes, for .ply and .stl
+  bool weld = false;   ///< make one of all vertices at the same place, -0 as 0
+};
+
+/// What became of a mesh.
+struct Conversion {
+  std::size_t triangles = 0, vertices = 0;
+  std::vector<Warning> warnings;  ///< of reading
+  /// What the written file does not say, "lost: ...", or says otherwise, "changed: ...".
+  std::vector<std::string> losses;
+};
+
+/// Throws Error unless `path` names a format that can be written, and, of kind io, unless there can be a
+/// file.
+void check_mesh_output(const std::string& path, const ConvertOptions& options);
+
+/// Reads the mesh file `input` as load_mesh does and writes it to `output`: .obj, .ply, .stl or .glb, by its
+/// end. It appears under its name only when it is complete. Throws Error, also if there are no triangles.
+Conversion convert_mesh(const std::string& input, const std::string& output, const ConvertOptions& options);
+
+}  // namespace oktett

@@ -1,0 +1,34 @@
+#pragma once
+/// \file Meshes for formats in which a vertex has one position, one normal and one texture coordinate. Within
+/// io/ only.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/mesh.h"
+#include "io/mesh/mesh_output.h"
+
+namespace oktett {
+
+struct UnifiedMesh {
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;  ///< one for each position; empty if no triangle has normals
+  std::vector<Vec2f> uvs;      ///< likewise
+  std::vector<std::uint32_t> indices;
+  std::size_t split = 0;  ///< vertices behind those of the mesh, which repeat positions
+  std::size_t flat = 0;  ///< triangles without normals in a mesh that has some; theirs are the geometric ones
+
+  /// What is changed, for the losses of the file.
+  void note_changes(std::size_t before, MeshLosses& losses) const;
+};
+
+/// The vertices of `mesh` keep their numbers. A position that is shown with several normals or texture
+/// coordinates is repeated at the end for each further one. Triangles without texture coordinates in a mesh
+/// that has some get those of corner_uvs.
+UnifiedMesh unify_vertices(const TriangleMesh& mesh);
+
+/// Of length 1, to the front of the triangle; zero for a degenerate one.
+Vec3f flat_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c);
+
+}  // namespace oktett

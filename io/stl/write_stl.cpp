@@ -1,0 +1,68 @@
+#include "io/stl/write_stl.h"
+
+#include <array>
+#include <limits>
+
+#include "core/error.h"
+#include "io/mesh/unify.h"
+
+namespace oktett {
+namespace {
+
+struct Facet {
+  Vec3f normal;
+  std::array<Vec3f, 3> corners;
+};
+static_assert(sizeof(Facet) == 48);
+
+Facet facet_of(const TriangleMesh& mesh, std::size_t triangle) {
+  Facet facet;
+  for (std::size_t k = 0; k < 3; ++k) facet.corners[k] = mesh.positions[mesh.indices[3 * triangle + k]];
+  facet.normal = flat_normal(facet.corners[0], facet.corners[1], facet.corners[2]);
+  return facet;
+}
+
+void write_point(MeshOutput& out, const char* before, const Vec3f& p) {
+  out.text(before).number(p.x).text(" ").number(p.y).text(" ").number(p.z).text("\n");
+}
+
+void write_text(MeshOutput& out, const TriangleMesh& mesh) {
+  out.text("solid oktett\n");
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    const Facet facet = facet_of(mesh, i);
+    write_point(out, "facet normal ", facet.normal);
+    out.text("outer loop\n");
+    for (const Vec3f& corner : facet.corners) write_point(out, "vertex ", corner);
+    out.text("endloop\nendfacet\n");
+  }
+  out.text("endsolid oktett\n");
+}
+
+void write_bytes(MeshOutput& out, const std::string& path, const TriangleMesh& mesh) {
+  if (mesh.triangle_count() > std::numeric_limits<std::uint32_t>::max())
+    throw Error(Location{path}, "cannot write: STL counts triangles in 32 bits");
+  std::string header = "Written by Oktett";  // not "solid", by which text is told
+  header.resize(80, ' ');
+  out.text(header).bytes(static_cast<std::uint32_t>(mesh.triangle_count()));
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+    out.bytes(facet_of(mesh, i)).bytes(std::uint16_t{0});
+}
+
+}  // namespace
+
+MeshLosses write_stl(const std::string& path, const MeshFile& file, bool ascii) {
+  MeshOutput out(path);
+  if (ascii)
+    write_text(out, file.mesh);
+  else
+    write_bytes(out, path, file.mesh);
+  out.commit();
+  MeshLosses losses;
+  if (!file.mesh.uv_indices.empty()) losses.push_back("lost: texture coordinates");
+  if (!file.mesh.normal_indices.empty()) losses.push_back("lost: normals of vertices");
+  if (file.mesh.positions.size() < file.mesh.indices.size())
+    losses.push_back("lost: which triangles share vertices; read it with --weld to join them again");
+  return losses;
+}
+
+}  // namespace oktett

@@ -1,0 +1,58 @@
+// oktett convert: what it prints and returns.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/app/run_command.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+using test::CommandResult;
+using test::contains;
+using test::file_content;
+using test::run_command;
+using test::TempDir;
+
+constexpr const char* kMesh = "o thing\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+TEST(ConvertCommand, SaysWhatItWroteAndWhatIsLost) {
+  const TempDir dir;
+  dir.write("a.obj", kMesh);
+  const CommandResult result = run_command(dir, {"convert", "a.obj", "b.stl", "--ascii"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out, "wrote b.stl: 2 triangles, 4 vertices\n");
+  EXPECT_EQ(result.err,
+            "b.stl: lost: 1 name of objects and groups\n"
+            "b.stl: changed: polygons are cut into triangles (1 faces, 2 triangles)\n"
+            "b.stl: lost: which triangles share vertices; read it with --weld to join them again\n");
+  EXPECT_TRUE(file_content(dir.file("b.stl")).starts_with("solid oktett\nfacet normal 0 0 1\n"));
+  const CommandResult quiet = run_command(dir, {"convert", "b.stl", "c.ply", "--weld", "--quiet"});
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.out + quiet.err, "");
+  EXPECT_TRUE(contains(file_content(dir.file("c.ply")), "element vertex 4\n"));
+}
+
+TEST(ConvertCommand, WrongWordsAndFilesAreOneLine) {
+  const TempDir dir;
+  dir.write("a.obj", kMesh);
+  const auto expect = [&](const std::string& from, const std::string& to, int status,
+                          const std::string& line) {
+    const CommandResult result = run_command(dir, {"convert", from, to});
+    EXPECT_EQ(result.status, status) << to;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, line);
+  };
+  expect("a.obj", "b.dae", 2,
+         "b.dae: unknown kind of mesh file to write; expected .obj, .ply, .stl or .glb\n");
+  expect("a.obj", "no/b.ply", 1, "no/b.ply: cannot write: no directory 'no'\n");
+  expect("no.obj", "b.ply", 1, "no.obj: cannot read: No such file or directory\n");
+  expect("a.obj", "./a.obj", 2, "./a.obj: is the input, too\n");
+  EXPECT_EQ(test::file_count(dir), 1u);
+}
+
+}  // namespace
+}  // namespace oktett
