@@ -8,6 +8,7 @@
 #include "app/command_line.h"
 #include "core/description.h"
 #include "core/error.h"
+#include "core/suggest.h"
 
 namespace oktett {
 
@@ -22,14 +23,11 @@ std::vector<std::string> names_of(std::span<const Choice<T>> choices) {
 /// The choice that `word`, the value of `option`, names. Throws Error if there is none.
 template <class T>
 T choice_of(const char* option, const std::string& word, std::span<const Choice<T>> choices) {
-  std::vector<const char*> names;
-  for (const Choice<T>& c : choices) {
+  for (const Choice<T>& c : choices)
     if (word == c.name) return c.value;
-    names.push_back(c.name);
-  }
-  const std::string near = nearest_name(word, names.data(), names.size());
-  throw Error(std::string(option) + ": unknown kind '" + word + "'; " +
-              (near.empty() ? "expected " + or_list(names_of(choices)) : "did you mean '" + near + "'?"));
+  const std::vector<std::string> names = names_of(choices);
+  throw Error(std::string(option) + ": unknown kind '" + word + "'" +
+              did_you_mean(word, names, "expected " + or_list(names)));
 }
 
 }  // namespace oktett

@@ -9,6 +9,7 @@
 
 #include "app/text.h"
 #include "core/error.h"
+#include "core/suggest.h"
 
 namespace oktett {
 
@@ -22,21 +23,19 @@ const CLI::App* current(const CLI::App& app) {
   return verbs.empty() ? &app : verbs.front();
 }
 
-/// The long option of `app` that is nearest to the mistyped word `typed`; empty if none is near.
-std::string nearest_option(const CLI::App& app, const std::string& typed) {
+/// The hint for the mistyped word `typed` to the long option of `app` that is nearest.
+std::string suggest_option(const CLI::App& app, const std::string& typed) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  std::vector<const char*> known;
-  for (const std::string& name : names) known.push_back(name.c_str());
-  return nearest_name(typed.substr(0, typed.find('=')), known.data(), known.size());
+  return did_you_mean(typed.substr(0, typed.find('=')), names);
 }
 
-std::string nearest_verb(const CLI::App& app, const std::string& typed) {
-  std::vector<const char*> known;
-  const std::vector<const CLI::App*> verbs = app.get_subcommands([](const CLI::App*) { return true; });
-  for (const CLI::App* verb : verbs) known.push_back(verb->get_name().c_str());
-  return nearest_name(typed, known.data(), known.size());
+std::string suggest_verb(const CLI::App& app, const std::string& typed) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(verb->get_name());
+  return did_you_mean(typed, names);
 }
 
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
@@ -47,11 +46,11 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   }
   const std::string typed = extra.empty() ? app.remaining(true).front() : extra.front();
   const bool option = typed.starts_with('-') && typed != "-";
-  const std::string near = option          ? nearest_option(verb, typed)
-                           : &verb == &app ? nearest_verb(app, typed)
+  const std::string hint = option          ? suggest_option(verb, typed)
+                           : &verb == &app ? suggest_verb(app, typed)
                                            : "";
   const char* what = option ? "unknown option" : &verb == &app ? "unknown command" : "unexpected argument";
-  return fmt::format("{} '{}'{}", what, typed, near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
+  return fmt::format("{} '{}'{}", what, typed, hint);
 }
 
 int usage_error(const CLI::App& app, const std::string& explanation) {

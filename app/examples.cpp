@@ -12,6 +12,7 @@
 #include "app/command_line.h"
 #include "core/description.h"
 #include "core/error.h"
+#include "core/suggest.h"
 #include "io/scene/scene_file.h"
 #include "io/text/files_read.h"
 
@@ -104,14 +105,10 @@ int run_examples(const ExampleArguments& arguments) {
     fmt::print("\noktett examples NAME... copies scenes here, with the files that they need.\n");
     return 0;
   }
-  std::vector<const char*> known;
-  for (const std::string& name : names) known.push_back(name.c_str());
-  for (const std::string& name : arguments.names) {
-    if (std::ranges::find(names, name) != names.end()) continue;
-    const std::string near = nearest_name(name, known.data(), known.size());
-    throw Error(fmt::format("there is no example '{}'; {}", name,
-                            near.empty() ? "'oktett examples' lists them" : "did you mean '" + near + "'?"));
-  }
+  for (const std::string& name : arguments.names)
+    if (std::ranges::find(names, name) == names.end())
+      throw Error(fmt::format("there is no example '{}'{}", name,
+                              did_you_mean(name, names, "'oktett examples' lists them")));
   const fs::path target = arguments.folder.empty() ? fs::path(".") : fs::path(arguments.folder);
   std::vector<fs::path> files;
   for (const std::string& name : arguments.names)

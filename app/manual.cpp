@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/suggest.h"
 
 namespace oktett {
 namespace {
@@ -119,7 +120,9 @@ std::string manual_page(const std::vector<VerbText>& verbs, const std::string& v
   if (verb.empty()) return program_page(verbs);
   for (const VerbText& known : verbs)
     if (known.name == verb) return verb_page(verbs, known);
-  throw Error("manual: there is no command '" + verb + "'");
+  std::vector<std::string> names;
+  for (const VerbText& known : verbs) names.push_back(known.name);
+  throw Error("manual: there is no command '" + verb + "'" + did_you_mean(verb, names));
 }
 
 }  // namespace oktett

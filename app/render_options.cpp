@@ -11,6 +11,7 @@
 
 #include "app/choice.h"
 #include "core/error.h"
+#include "core/suggest.h"
 #include "io/mesh/load/load_mesh.h"
 
 namespace oktett {
@@ -65,10 +66,9 @@ std::size_t index_of(const char* complaint, const std::string& word, const char*
                      const char* all) {
   for (std::size_t i = 0; i < N; ++i)
     if (word == names[i]) return i;
-  const std::string near = nearest_name(word, names, N);
+  const std::vector<std::string> known(names, names + N);
   throw Error(
-      fmt::format("{} '{}'; {}", complaint, word,
-                  near.empty() ? fmt::format("expected {}", all) : fmt::format("did you mean '{}'?", near)));
+      fmt::format("{} '{}'{}", complaint, word, did_you_mean(word, known, fmt::format("expected {}", all))));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "app/render_options.h"
 #include "app/verify_endless.h"
 #include "core/error.h"
+#include "core/suggest.h"
 #include "io/mesh/load/load_mesh.h"
 #include "verify/checks/csg.h"
 #include "verify/checks/exact.h"
@@ -195,12 +196,9 @@ void check_surfaces(const std::vector<std::string>& asked) {
   names.push_back("combinations");
   for (const std::string& name : asked) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    std::vector<const char*> words;
-    for (const std::string& known : names) words.push_back(known.c_str());
-    const std::string near = nearest_name(name, words.data(), words.size());
-    throw Error(fmt::format("--surface: unknown surface '{}'; {}", name,
-                            near.empty() ? fmt::format("expected one of {}", fmt::join(names, ", "))
-                                         : fmt::format("did you mean '{}'?", near)));
+    throw Error(
+        fmt::format("--surface: unknown surface '{}'{}", name,
+                    did_you_mean(name, names, fmt::format("expected one of {}", fmt::join(names, ", ")))));
   }
 }
 

@@ -1,10 +1,11 @@
 #include "core/error.h"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 #include <utility>
 #include <vector>
+
+#include "core/suggest.h"
 
 namespace oktett {
 
@@ -28,20 +29,19 @@ std::string to_string(const Warning& warning) {
   return place_first(warning.where, "warning: " + warning.message);
 }
 
-static std::size_t edit_distance(const std::string& a, const char* b) {
-  const std::size_t n = std::strlen(b);
-  std::vector<std::size_t> row(n + 1);
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = row[0];
     row[0] = i;
-    for (std::size_t j = 1; j <= n; ++j) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
     }
   }
-  return row[n];
+  return row[b.size()];
 }
 
 std::string nearest_name(const std::string& name, const char* const* known, std::size_t known_count) {

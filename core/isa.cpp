@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "core/suggest.h"
 
 namespace oktett {
 
@@ -71,8 +72,12 @@ static std::string available_names() {
 
 static Isa require(const std::string& name, const std::string& source) {
   const std::optional<Isa> isa = parse_isa(name);
-  if (!isa)
-    throw Error(source + ": unknown instruction set '" + name + "'; this machine has " + available_names());
+  if (!isa) {
+    std::vector<std::string> known{"auto"};
+    for (const Isa available : available_isas()) known.emplace_back(to_string(available));
+    throw Error(source + ": unknown instruction set '" + name + "'" +
+                did_you_mean(name, known, "this machine has " + available_names()));
+  }
   if (!is_available(*isa))
     throw Error(source + ": this machine does not have '" + name + "'; it has " + available_names());
   return *isa;

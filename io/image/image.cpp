@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/suggest.h"
 #include "io/image/image_access.h"
 #include "io/image/library.h"
 #include "io/image/output.h"
@@ -48,6 +49,14 @@ void check_planes(const Picture& picture) {
   }
 }
 
+/// That nothing is known about files with that extension.
+std::string unknown_format(const std::string& extension) {
+  const std::vector<std::string> known{".exr", ".png", ".jpg", ".tif", ".hdr", ".bmp", ".tga", ".webp"};
+  const std::string near = extension.size() < 3 ? "" : did_you_mean(extension, known);
+  return "unknown image format '" + extension + "'" +
+         (near.empty() ? ": known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp" : near);
+}
+
 Picture one_pixel() {
   Picture picture;
   picture.width = picture.height = picture.full_width = picture.full_height = 1;
@@ -72,9 +81,7 @@ void check_output(const std::string& path) {
   }
   const ImageLibrary& library = image_library();
   const std::optional<PixelLayout> layout = library.layout(path);
-  if (!layout)
-    throw Error(Location{path}, "unknown image format '" + extension_of(path) +
-                                    "': known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp");
+  if (!layout) throw Error(Location{path}, unknown_format(extension_of(path)));
   OutputFile file(path);
   library.write(path, file.temporary(), flatten(one_pixel(), *layout), {});
 }

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/suggest.h"
 #include "io/obj/material_textures.h"
 #include "io/obj/parsed_obj.h"
 
@@ -86,11 +87,22 @@ class SlotMaterials {
     obj_.materials.push_back(std::move(material));
     // Of a library that is missing, one warning is enough.
     if (slot.at == MeshStatement::kNowhere || slot.words.empty() || !library_.complete) return;
-    notices_.push_back(
-        {slot.at, "material " + quote_name(slot.words) + " is not defined; a grey one is used", {}});
+    notices_.push_back({slot.at,
+                        "material " + quote_name(slot.words) + " is not defined; a grey one is used" +
+                            suggestion(slot.words),
+                        {}});
   }
 
  private:
+  /// For the first that are not defined: a file may have many, and many materials that each is compared to.
+  std::string suggestion(const std::string& name) {
+    constexpr int kMost = 20;
+    if (suggested_++ >= kMost) return "";
+    std::vector<std::string> known;
+    for (const Material& material : library_.materials) known.push_back(material.name);
+    return did_you_mean(name, known);
+  }
+
   /// Keeps only textures that some used material refers to.
   std::uint32_t take_texture(std::uint32_t texture) {
     if (texture == kNoId) return kNoId;
@@ -106,6 +118,7 @@ class SlotMaterials {
   ObjFile& obj_;
   std::vector<MeshStatement>& notices_;
   std::vector<std::uint32_t> textures_;
+  int suggested_ = 0;
 };
 
 /// Hands out slots in the order of first use.

@@ -25,7 +25,8 @@ inline bool is_same_material(Material a, Material b) {
 
 /// Instead, where files that were written may not be read.
 inline constexpr const char* kNotCompared =
-    "changed: perhaps materials, which are not compared because --root keeps what was written from being read";
+    "changed: perhaps materials, which are not compared because --root keeps what was written from being "
+    "read";
 
 /// Adds the loss that `format` cannot say the materials of these names as they are, if there are any.
 inline void note_changed(const std::vector<std::string>& names, const char* format, MeshLosses& losses) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/suggest.h"
 #include "io/scene/read_probe.h"
 #include "io/scene/utf8.h"
 #include "io/text/file_access.h"
@@ -50,12 +51,7 @@ std::span<const YamlNode* const> list_items(const YamlNode& node, const std::str
 }
 
 std::string suggest(const std::string& name, std::span<const std::string> known) {
-  // Enough for names that people write; a machine's million names would take too long to compare.
-  constexpr std::size_t kMostNames = 10000;
-  std::vector<const char*> names;
-  for (const std::string& k : known.first(std::min(known.size(), kMostNames))) names.push_back(k.c_str());
-  const std::string nearest = nearest_name(name, names.data(), names.size());
-  return nearest.empty() ? "" : "; did you mean " + quote(nearest) + "?";
+  return did_you_mean(name, known);
 }
 
 Fields::Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known)

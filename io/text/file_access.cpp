@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "io/text/similar_file.h"
 #include "io/text/stand_ins.h"
 
 namespace oktett {
@@ -60,7 +61,7 @@ std::string why_unreadable(const std::string& named) {
   // Strangers learn nothing about what is outside.
   if (files_are_confined() && (!is_in_root(fs::weakly_canonical(path, error)) || error)) return kOutside;
   const auto status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) return "no such file";
+  if (status.type() == fs::file_type::not_found) return "no such file" + did_you_mean_file(named);
   if (error) return error.message();
   if (fs::is_directory(status)) return "is a directory";
   if (!fs::is_regular_file(status)) return kNotRegular;

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "io/text/file_access.h"
 #include "io/text/files_read.h"
+#include "io/text/similar_file.h"
 #include "io/text/stand_ins.h"
 
 namespace oktett {
@@ -22,7 +23,8 @@ namespace {
 }
 
 [[noreturn]] void fail_with_errno(const std::string& path) {
-  fail(path, std::generic_category().message(errno));
+  const int error = errno;
+  fail(path, std::generic_category().message(error) + (error == ENOENT ? did_you_mean_file(path) : ""));
 }
 
 class Descriptor {

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <system_error>
 
+#include "core/suggest.h"
+
 namespace oktett {
 namespace {
 
@@ -175,12 +177,7 @@ class Parser {
     std::vector<std::string> names = {"pi", "e"};
     for (const std::string_view v : variables_) names.emplace_back(v);
     for (const Function& f : kFunctions) names.emplace_back(f.name);
-    std::vector<const char*> known;
-    for (const std::string& n : names) known.push_back(n.c_str());
-    // A suggestion for a one-letter word would be any other letter.
-    const std::string nearest =
-        word.size() < 2 ? "" : nearest_name(std::string(word), known.data(), known.size());
-    return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+    return did_you_mean(std::string(word), names);
   }
 
   std::uint32_t call(std::size_t place, const Function& function) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/suggest.h"
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 #include "python/src/unlocked.h"
@@ -42,19 +43,24 @@ void override_camera(const py::dict& camera, Scene& scene) {
     else if (name == "fov")
       scene.camera.fov = parse_number(value, what, {0, 180, true, true});
     else
-      throw py::value_error("camera: there is no key '" + name + "'; expected from, at, up, fov");
+      throw py::value_error("camera: there is no key '" + name + "'" +
+                            did_you_mean(name, std::vector<std::string>{"from", "at", "up", "fov"},
+                                         "expected from, at, up, fov"));
   }
   // Without a place the scene is framed.
   if (camera.contains("from")) scene.camera_given = true;
 }
 
 IntegratorKind parse_integrator(const std::string& name) {
-  std::string known;
+  std::string list;
+  std::vector<std::string> known;
   for (const auto& choice : kIntegratorKinds) {
     if (name == choice.name) return choice.value;
-    known += (known.empty() ? "" : ", ") + std::string(choice.name);
+    known.emplace_back(choice.name);
+    list += (list.empty() ? "" : ", ") + std::string(choice.name);
   }
-  throw py::value_error("integrator: there is no '" + name + "'; expected " + known);
+  throw py::value_error("integrator: there is no '" + name + "'" +
+                        did_you_mean(name, known, "expected " + list));
 }
 
 using Whole = std::optional<std::int64_t>;

@@ -1,5 +1,7 @@
 #include "python/src/fields.h"
 
+#include "core/suggest.h"
+
 namespace oktett::python {
 
 void check_fields(const Fields& fields, const Fields& known) {
@@ -7,7 +9,8 @@ void check_fields(const Fields& fields, const Fields& known) {
     if (contains(known, field)) continue;
     std::string names;
     for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-    throw py::value_error("fields: there is no field '" + field + "'; expected " + names);
+    throw py::value_error("fields: there is no field '" + field + "'" +
+                          did_you_mean(field, known, "expected " + names));
   }
 }
 
