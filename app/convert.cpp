@@ -7,6 +7,7 @@
 
 #include "app/command_line.h"
 #include "app/limits.h"
+#include "app/progress.h"
 #include "app/text.h"
 #include "io/mesh/save/convert_mesh.h"
 
@@ -24,7 +25,10 @@ int run_convert(const ConvertArguments& arguments) {
   apply_limits(arguments.limits);
   // A file that cannot be written is refused before a long one is read.
   check_mesh_output(arguments.output, arguments.options);
-  const Conversion done = convert_mesh(arguments.input, arguments.output, arguments.options);
+  const Conversion done = [&] {
+    const PhaseLine phases(arguments.quiet);
+    return convert_mesh(arguments.input, arguments.output, arguments.options);
+  }();
   print_warnings(done.warnings);
   if (arguments.quiet) return 0;
   for (const std::string& loss : done.losses) say("{}: {}\n", arguments.output, loss);

@@ -4,10 +4,22 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <utility>
 
 #include "app/text.h"
 
 namespace oktett {
+
+namespace {
+
+/// Names of files may hold anything, also what moves a terminal's cursor. Shortened to a line.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+  return text.substr(0, 200);
+}
+
+}  // namespace
 
 std::string progress_text(const RenderProgress& progress) {
   const double done = static_cast<double>(progress.pixels_done);
@@ -18,6 +30,30 @@ std::string progress_text(const RenderProgress& progress) {
   if (progress.seconds > 0)
     text += "  " + with_prefix(static_cast<double>(progress.rays) / progress.seconds) + "rays/s";
   return text;
+}
+
+std::string phase_text(const PhaseState& state) {
+  std::string text = state.kind;
+  if (!state.what.empty()) text += " " + state.what;
+  const double done = static_cast<double>(state.done), total = static_cast<double>(state.total);
+  if (total > 0) text += fmt::format("  {:5.1f}%", 100 * done / total);
+  if (state.seconds > 0) text += "  elapsed " + duration_text(state.seconds);
+  if (total > 0 && done > 0) text += "  remaining " + duration_text(state.seconds * (total - done) / done);
+  return text;
+}
+
+PhaseLine::PhaseLine(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) == 1) {
+  if (shown_)
+    watch_phases([](const PhaseState& state) {
+      say("\r{}\x1b[K", printable(phase_text(state)));
+      std::fflush(stderr);
+    });
+}
+
+void PhaseLine::end() {
+  if (!std::exchange(shown_, false)) return;
+  watch_phases({});
+  say("\r\x1b[K");
 }
 
 ProgressLine::ProgressLine(Mode mode) : terminal_(isatty(STDERR_FILENO) == 1) {

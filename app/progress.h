@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "core/phase.h"
 #include "render/render.h"
 
 namespace oktett {
@@ -34,6 +35,25 @@ class ProgressLine {
   RenderProgress last_;
   std::chrono::steady_clock::time_point next_{};
 };
+
+/// While it exists, a line on stderr shows what loading and building are busy with, if stderr is a terminal.
+/// Only one may exist at a time.
+class PhaseLine {
+ public:
+  explicit PhaseLine(bool quiet);
+  ~PhaseLine() { end(); }
+  PhaseLine(const PhaseLine&) = delete;
+  PhaseLine& operator=(const PhaseLine&) = delete;
+
+  /// Clears the line; nothing is shown any more.
+  void end();
+
+ private:
+  bool shown_ = false;
+};
+
+/// "reading bunny.obj   42.0%  elapsed 1.2 s  remaining 1.7 s"; without a total only what has elapsed.
+std::string phase_text(const PhaseState& state);
 
 /// " 42.0%  elapsed 1.2 s  remaining 1.7 s  12.3 Mrays/s".
 std::string progress_text(const RenderProgress& progress);

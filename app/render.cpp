@@ -74,11 +74,13 @@ class Watch {
  public:
   Watch(const RenderArguments& arguments, Checkpoint& checkpoint, RenderOptions& options)
       : checkpoint_(checkpoint),
+        phases_(arguments.quiet),
         line_(arguments.quiet      ? ProgressLine::Mode::never
               : arguments.progress ? ProgressLine::Mode::always
                                    : ProgressLine::Mode::automatic) {
     options.progress = [this](const RenderProgress& progress) {
       last_ = progress;
+      phases_.end();
       print_warning(checkpoint_.take_warning());
       line_.show(progress);
     };
@@ -96,6 +98,7 @@ class Watch {
       display_->finish();
       print_warning(display_->take_warning());
     }
+    phases_.end();
     print_warning(checkpoint_.take_warning());
     line_.finish();
   }
@@ -114,6 +117,7 @@ class Watch {
   }
 
   Checkpoint& checkpoint_;
+  PhaseLine phases_;  ///< of building
   ProgressLine line_;
   std::unique_ptr<Display> display_;
   RenderProgress last_;
@@ -201,7 +205,9 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   StageTimes times;
   const FilesRead files;
   const std::unique_ptr<SceneCache> cache = open_cache(arguments.cache);
+  std::optional<PhaseLine> loading(std::in_place, arguments.quiet);
   Scene scene = load_as_asked(arguments);
+  loading.reset();
   const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
   print_warnings(scene.warnings, most_warnings);
   const ImageTextures textures(scene.textures);

@@ -13,6 +13,7 @@
 #include "accel/build/morton.h"
 #include "accel/build/spatial.h"
 #include "accel/build/wide_tree.h"
+#include "core/phase.h"
 
 namespace oktett {
 namespace {
@@ -82,7 +83,8 @@ class Builder {
         least_overlap_(kLeastOverlap * half_area(bounds)),
         effort_(effort_of(options.quality)),
         parallel_(options.parallel),
-        kernels_(kernels) {}
+        kernels_(kernels),
+        phase_("building the tree", {}, refs.size()) {}
 
   BinaryTree run() {
     const std::size_t n = refs_.size();
@@ -191,6 +193,7 @@ class Builder {
     job.pieces = pieces_;  // set before the ranges below a spatial split are built
     job.nodes = nodes;
     kernels_.sweep(job);
+    phase_.add(r.size());
     cost = job.cost;
     const std::uint32_t rest = nodes_.fetch_add(job.node_count - 1);
     for (std::uint32_t i = 0; i < job.node_count; ++i) {
@@ -353,6 +356,7 @@ class Builder {
   const bool parallel_;
   std::atomic<bool> pieces_{false};  ///< some item has several references
   const BuildKernels& kernels_;
+  Phase phase_;
   BinaryTree tree_;
   std::atomic<std::uint32_t> nodes_{0};
 };

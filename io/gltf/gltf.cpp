@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <utility>
 
+#include "core/phase.h"
 #include "io/gltf/gltf_file.h"
 #include "io/gltf/materials.h"
 #include "io/gltf/mesh.h"
@@ -31,7 +33,11 @@ bool is_usable(const Affine& map) {
 /// Goes through the nodes of the scene.
 class SceneReader {
  public:
-  explicit SceneReader(const std::string& path) : file_(path), accessors_(file_), builder_(accessors_) {}
+  explicit SceneReader(const std::string& path)
+      : phase_("reading", std::filesystem::path(path).filename().string(), 0),
+        file_(path),
+        accessors_(file_),
+        builder_(accessors_) {}
 
   GltfScene run() {
     add_gltf_materials(file_, scene_);
@@ -145,6 +151,7 @@ class SceneReader {
     }
   }
 
+  const Phase phase_;
   const GltfFile file_;
   GltfAccessors accessors_;
   GltfMeshBuilder builder_;

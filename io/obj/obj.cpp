@@ -3,11 +3,13 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
+#include "core/phase.h"
 #include "io/obj/parsed_obj.h"
 #include "io/text/file_content.h"
 
@@ -18,7 +20,11 @@ namespace {
 class ObjLoad {
  public:
   ObjLoad(const std::string& path, const ObjOptions& options)
-      : path_(path), options_(options), file_(path), text_(file_.text()) {
+      : path_(path),
+        options_(options),
+        file_(path),
+        text_(file_.text()),
+        phase_("reading", std::filesystem::path(path).filename().string(), kPasses * text_.size()) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
   }
@@ -61,9 +67,15 @@ class ObjLoad {
   const char* text() const { return text_.data(); }
 
  private:
+  /// Lines are counted, vertices read, faces read.
+  static constexpr std::uint64_t kPasses = 3;
+
   template <class Work>
   void for_each_chunk(const Work& work) {
-    oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) { work(chunks_[i]); });
+    oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
+      work(chunks_[i]);
+      phase_.add(static_cast<std::uint64_t>(chunks_[i].end - chunks_[i].begin));
+    });
   }
 
   void count() {
@@ -158,6 +170,7 @@ class ObjLoad {
   const ObjOptions options_;
   const FileContent file_;
   std::string_view text_;
+  Phase phase_;
   std::vector<ObjChunk> chunks_;
   ObjCounts total_;
   ParsedMesh obj_;

@@ -3,10 +3,12 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "core/phase.h"
 #include "io/ply/body.h"
 #include "io/text/file_content.h"
 
@@ -166,6 +168,7 @@ class PlyLoad {
         keep_first(chunk.failure, failure.where, failure.message);
       }
       file_.release(chunk.begin, chunk.end);
+      phase_.add(static_cast<std::uint64_t>(chunk.end - chunk.begin));
     });
   }
 
@@ -206,6 +209,7 @@ class PlyLoad {
   const MeshReadOptions options_;
   const FileContent file_;
   const std::string_view text_;
+  Phase phase_{"reading", std::filesystem::path(path_).filename().string(), text_.size()};
   LineCounter lines_{text_};
   bool in_header_ = true;
   PlyHeader header_;

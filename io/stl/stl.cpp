@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "core/bytes.h"
 #include "core/error.h"
+#include "core/phase.h"
 #include "io/mesh/numbers.h"
 #include "io/stl/facets.h"
 #include "io/text/file_content.h"
@@ -79,6 +81,7 @@ class StlLoad {
       read_facets(chunks, i, parsed_.mesh.positions.data());
       number_corners(chunks[i].before, chunks[i].before + chunks[i].triangles);
       file_.release(chunks[i].begin, chunks[i].end);
+      phase_.add(static_cast<std::uint64_t>(chunks[i].end - chunks[i].begin));
     });
     std::optional<MeshFailure> first;
     for (const StlChunk& chunk : chunks) keep_first(first, chunk.failure);
@@ -122,6 +125,7 @@ class StlLoad {
     std::optional<MeshFailure> failure;
     if (!good) failure = find_bad(first, last);
     file_.release(begin, begin + kFacetBytes * (last - first));
+    phase_.add(kFacetBytes * (last - first));
     return failure;
   }
 
@@ -140,6 +144,7 @@ class StlLoad {
   const MeshReadOptions options_;
   const FileContent file_;
   const std::string_view text_;
+  Phase phase_{"reading", std::filesystem::path(path_).filename().string(), text_.size()};
   ParsedMesh parsed_;
 };
 

@@ -1,0 +1,90 @@
+// What a terminal shows while files are read and trees are built.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/app/run_command.h"
+#include "tests/support/temp_dir.h"
+
+namespace oktett {
+namespace {
+
+using test::contains;
+using test::TempDir;
+
+/// Runs the command with a terminal as its standard error, and returns what it prints there; nothing if this
+/// system has no terminals.
+std::string on_terminal(const TempDir& directory, std::vector<std::string> arguments) {
+  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
+  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return "";
+  const std::string name = ptsname(terminal);
+  arguments.insert(arguments.begin(), OKTETT_COMMAND);
+  std::vector<char*> words;
+  for (std::string& word : arguments) words.push_back(word.data());
+  words.push_back(nullptr);
+  const pid_t process = fork();
+  if (process == 0) {
+    const int side = open(name.c_str(), O_RDWR | O_NOCTTY), nothing = open("/dev/null", O_WRONLY);
+    if (side < 0 || chdir(directory.path().c_str()) != 0 || dup2(nothing, 1) < 0 || dup2(side, 2) < 0)
+      _exit(126);
+    close(terminal), close(side);
+    execv(words[0], words.data());
+    _exit(127);
+  }
+  std::string text;
+  char bytes[4096];
+  // Ends with an error when the last writer is gone.
+  for (ssize_t n; (n = read(terminal, bytes, sizeof bytes)) > 0;)
+    text.append(bytes, static_cast<std::size_t>(n));
+  close(terminal);
+  int status = 0;
+  waitpid(process, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text;
+  return text;
+}
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+TEST(PhaseCommand, TerminalsShowReadingBuildingAndRendering) {
+  const TempDir dir;
+  dir.write("mesh.obj", kTetrahedron);
+  const std::string text =
+      on_terminal(dir, {"render", "mesh.obj", "--size", "8x8", "--spp", "1", "-o", "a.png"});
+  if (text.empty()) GTEST_SKIP() << "there are no terminals here";
+  const std::size_t reading = text.find("\rreading mesh.obj    0.0%"),
+                    building = text.rfind("\rbuilding the tree"), rendering = text.find("100.0%  elapsed");
+  ASSERT_NE(reading, std::string::npos) << text;
+  ASSERT_NE(building, std::string::npos) << text;
+  ASSERT_NE(rendering, std::string::npos) << text;
+  EXPECT_LT(reading, building);
+  EXPECT_LT(building, rendering);
+  // The line is cleared before what stays.
+  EXPECT_NE(text.find("\r\x1b[K", building), std::string::npos);
+}
+
+TEST(PhaseCommand, QuietOnesShowNothing) {
+  const TempDir dir;
+  dir.write("mesh.obj", kTetrahedron);
+  EXPECT_EQ(on_terminal(dir, {"render", "mesh.obj", "--size", "8x8", "--spp", "1", "-o", "a.png", "--quiet"}),
+            "");
+}
+
+/// Names of files do not move the cursor.
+TEST(PhaseCommand, NamesAreShownWithoutControlCharacters) {
+  const TempDir dir;
+  dir.write("a\x1b[2Jx.obj", kTetrahedron);
+  const std::string text = on_terminal(dir, {"convert", "a\x1b[2Jx.obj", "b.ply"});
+  if (text.empty()) GTEST_SKIP() << "there are no terminals here";
+  EXPECT_TRUE(contains(text, "reading a?[2Jx.obj")) << text;
+  EXPECT_FALSE(contains(text, "\x1b[2J")) << text;
+}
+
+}  // namespace
+}  // namespace oktett
