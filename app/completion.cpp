@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/suggest.h"
 
 namespace oktett {
 namespace {
@@ -222,9 +221,7 @@ std::string completion_script(const std::vector<VerbText>& verbs, const std::str
   if (shell == "bash") return bash_script(verbs);
   if (shell == "zsh") return zsh_script(verbs);
   if (shell == "fish") return fish_script(verbs);
-  const std::vector<std::string> known{"bash", "zsh", "fish"};
-  throw Error("completion: unknown shell '" + shell + "'" +
-              did_you_mean(shell, known, "expected bash, zsh or fish"));
+  throw Error("completion: unknown shell '" + shell + "'; expected bash, zsh or fish");
 }
 
 }  // namespace oktett

@@ -64,7 +64,6 @@ TEST(Command, UsageErrorsExitWith2AndNameWhatIsNear) {
       {{"render", "a.yaml", "--bvh", "bset"}, "did you mean 'best'?"},
       {{"render", "a.yaml", "-o", "a.pgn"}, "unknown image format '.pgn'; did you mean '.png'?"},
       {{"manual", "rendr"}, "there is no command 'rendr'; did you mean 'render'?"},
-      {{"completion", "bahs"}, "unknown shell 'bahs'; did you mean 'bash'?"},
       {{"render", "a.yaml", "--stats=xml"}, "--stats"},
       {{"render", "a.yaml", "-D", "novalue"}, "-D"},
       {{"render", "a.yaml", "-t", "-1"}, "--nthreads"},
