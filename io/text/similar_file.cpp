@@ -46,6 +46,12 @@ std::size_t difference(const Name& a, const Name& b) {
   return distance <= 2 ? 100 + distance : kUnlike;
 }
 
+/// Not for links that lead nowhere: for those why_unreadable asks for similar files itself.
+bool is_readable(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && why_unreadable(path.string()).empty();
+}
+
 }  // namespace
 
 std::string did_you_mean_file(const std::string& path) {
@@ -59,10 +65,10 @@ std::string did_you_mean_file(const std::string& path) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end && seen < kMostFiles; ++seen) {
     const std::string other = it->path().filename().string();
-    const std::size_t d = other.size() > kLongest ? kUnlike : difference(name, Name(other));
+    const bool can_be = other != wanted && other.size() <= kLongest;
+    const std::size_t d = can_be ? difference(name, Name(other)) : kUnlike;
     // Of equal ones the first by name, because folders have no order.
-    if (d != kUnlike && (d < best || (d == best && other < nearest)) &&
-        why_unreadable(it->path().string()).empty())
+    if (d != kUnlike && (d < best || (d == best && other < nearest)) && is_readable(it->path()))
       best = d, nearest = other;
     it.increment(error);
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "io/mesh/load/load_mesh.h"
+#include "io/text/file_access.h"
 #include "tests/io/obj_test_support.h"
 
 namespace oktett::test {
@@ -42,6 +43,16 @@ TEST(SimilarFile, OnlyFilesThatCanBeRead) {
   const Files files{};
   std::filesystem::create_directory(files.dir.file("bunny.obj"));
   EXPECT_EQ(files.hint("buny.obj"), "");
+}
+
+/// Links that lead nowhere are similar to each other, and to themselves.
+TEST(SimilarFile, LinksThatLeadNowhere) {
+  const Files files{};
+  for (const char* name : {"bunny.obj", "bunny2.obj", "buny.obj"})
+    std::filesystem::create_symlink("nowhere", files.dir.file(name));
+  EXPECT_EQ(files.hint("bunny.obj"), "");
+  EXPECT_EQ(files.hint("bunn.obj"), "");
+  EXPECT_EQ(why_unreadable(files.dir.file("bunny.obj")), "no such file");
 }
 
 /// Equal ones in the order of names, whatever the order of the folder.
