@@ -12,6 +12,7 @@
 #include "io/obj/write_obj.h"
 #include "io/obj/written_materials.h"
 #include "io/text/file_access.h"
+#include "io/text/mapped_file.h"
 
 namespace oktett {
 namespace {
@@ -27,6 +28,17 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x
 const char* image_extension(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return ".png";
   return bytes.starts_with("RIFF") ? ".webp" : ".jpg";
+}
+
+/// Whether there is a file, and not with these bytes.
+bool is_another(const fs::path& path, std::string_view bytes) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return false;
+  try {
+    return MappedFile(path.string()).text() != bytes;
+  } catch (const Error&) {
+    return true;
+  }
 }
 
 /// Numbers near `guess`, the nearest first, until reads(number) is `target`; `guess` if none is.
@@ -169,9 +181,15 @@ class MtlWriting {
   std::string embedded_name(const Texture& t) {
     std::string& name = images_[t.content.get()];
     if (!name.empty()) return name;
-    const std::string stem = fs::path(path_).stem().string();
-    name = stem + "-" + std::to_string(images_.size()) + image_extension(*t.content);
-    OutputFile image((fs::path(path_).parent_path() / name).string());
+    const fs::path folder = fs::path(path_).parent_path();
+    fs::path file;
+    // Files that are there may be other textures.
+    do {
+      name = fs::path(path_).stem().string() + "-" + std::to_string(++image_number_) +
+             image_extension(*t.content);
+      file = folder / name;
+    } while (is_another(file, *t.content));
+    OutputFile image(file.string());
     image.write(*t.content);
     image.commit();
     losses_.push_back("changed: an image of a texture is written to '" + name + "'");
@@ -217,6 +235,7 @@ class MtlWriting {
   MeshLosses& losses_;
   std::set<std::uint32_t> written_;                   ///< textures
   std::map<const std::string*, std::string> images_;  ///< names of files by their content
+  int image_number_ = 0;
 };
 
 }  // namespace

@@ -268,6 +268,12 @@ TEST_F(Convert, MaterialsOfGltfStayTheSame) {
   EXPECT_EQ(std::ranges::count(losses, "changed: an image of a texture is written to 'a-1.png'"), 1);
   EXPECT_EQ(file_content(files.dir.file("a-1.png")), "\x89PNG\r\n\x1a\nno more");
   EXPECT_EQ(load("a.obj").textures[0].path, files.dir.file("a-1.png"));
+  // A file that is there is not written over.
+  files.write("a-1.png", "other");
+  convert("in.glb", "a.obj");
+  convert("in.glb", "a.obj");
+  EXPECT_EQ(file_content(files.dir.file("a-1.png")), "other");
+  EXPECT_EQ(load("a.obj").textures[0].path, files.dir.file("a-2.png"));
 }
 
 TEST_F(Convert, OddNamesOfMaterialsAreKeptApart) {
