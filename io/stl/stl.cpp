@@ -119,7 +119,8 @@ class StlLoad {
     for (std::uint64_t i = first; i < last; ++i, p += kFacetBytes, out += 3) {
       std::memcpy(out, p, kCornerBytes);
       for (int k = 0; k < 3; ++k)
-        good &= is_coordinate(out[k].x) & is_coordinate(out[k].y) & is_coordinate(out[k].z);
+        const bool x = is_coordinate(out[k].x), y = is_coordinate(out[k].y), z = is_coordinate(out[k].z);
+      good &= x & y & z;
     }
     number_corners(first, last);
     std::optional<MeshFailure> failure;
