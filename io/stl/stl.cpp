@@ -118,9 +118,10 @@ class StlLoad {
     bool good = true;
     for (std::uint64_t i = first; i < last; ++i, p += kFacetBytes, out += 3) {
       std::memcpy(out, p, kCornerBytes);
-      for (int k = 0; k < 3; ++k)
+      for (int k = 0; k < 3; ++k) {
         const bool x = is_coordinate(out[k].x), y = is_coordinate(out[k].y), z = is_coordinate(out[k].z);
-      good &= x & y & z;
+        good &= x & y & z;
+      }
     }
     number_corners(first, last);
     std::optional<MeshFailure> failure;
