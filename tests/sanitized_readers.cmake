@@ -1,0 +1,40 @@
+# The readers of mesh files a second time, under the address and undefined-behaviour sanitizers, and the tests and fuzz targets
+# that need nothing else: minutes to build where the whole library takes a quarter of an hour. They run with every run of the
+# tests; all else is for scripts/test --asan.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  return()
+endif()
+set(sanitized -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all)
+
+file(GLOB sources CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/core/*.cpp ${PROJECT_SOURCE_DIR}/io/text/*.cpp ${PROJECT_SOURCE_DIR}/io/mesh/*.cpp
+  ${PROJECT_SOURCE_DIR}/io/mesh/load/*.cpp ${PROJECT_SOURCE_DIR}/io/obj/*.cpp ${PROJECT_SOURCE_DIR}/io/ply/*.cpp
+  ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp)
+list(FILTER sources EXCLUDE REGEX "/write_[a-z_]*\\.cpp$")
+add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp support/temp_dir.cpp)
+target_compile_features(sanitized_readers PUBLIC cxx_std_20)
+target_compile_options(sanitized_readers PUBLIC ${sanitized})
+target_compile_definitions(sanitized_readers PUBLIC OKTETT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ${OKTETT_GLTF_DEFINITIONS})
+target_include_directories(sanitized_readers SYSTEM PUBLIC ${OKTETT_GLTF_INCLUDES})
+target_link_options(sanitized_readers PUBLIC ${sanitized})
+target_link_libraries(sanitized_readers PUBLIC oktett_internal fmt::fmt ZLIB::ZLIB ${OKTETT_GLTF_LIBRARIES} GTest::gtest rapidcheck)
+oktett_precompile(sanitized_readers)
+
+add_executable(test_readers)
+foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj_material obj_parallel ply ply_error similar_file
+    stl text_number)
+  target_sources(test_readers PRIVATE io/${name}_test.cpp)
+endforeach()
+target_link_libraries(test_readers PRIVATE sanitized_readers GTest::gtest_main)
+oktett_precompile(test_readers <gtest/gtest.h>)
+add_dependencies(oktett_tests test_readers)
+gtest_discover_tests(test_readers TEST_PREFIX sanitized. DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+
+add_library(sanitized_replay OBJECT fuzz/replay.cpp)
+target_link_libraries(sanitized_replay PRIVATE sanitized_readers)
+foreach(name gltf gzip mtl number obj ply stl)
+  add_executable(sanitized_${name}_fuzz fuzz/${name}_fuzz.cpp)
+  target_link_libraries(sanitized_${name}_fuzz PRIVATE sanitized_readers sanitized_replay)
+  add_dependencies(oktett_tests sanitized_${name}_fuzz)
+  add_test(NAME sanitized.fuzz.${name} COMMAND sanitized_${name}_fuzz --changes 20000 ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/seeds/${name})
+endforeach()
