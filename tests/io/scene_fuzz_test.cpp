@@ -11,6 +11,7 @@
 
 #include "io/scene/check.h"
 #include "tests/io/scene_test_support.h"
+#include "tests/support/sanitizers.h"
 
 namespace oktett {
 namespace {
@@ -83,7 +84,7 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
   ASSERT_GE(texts.size(), 4u);
   Random random(2024);
   int loaded = 0, refused = 0;
-  for (int i = 0; i < 5000; ++i) {
+  for (unsigned i = 0; i < test::cases(5000); ++i) {
     const std::string mutant =
         mutate(texts[random.below(texts.size())], texts[random.below(texts.size())], random);
     const std::string path = dir.write("mutant.yaml", mutant);
