@@ -19,8 +19,8 @@
 #include "app/command_line.h"
 #include "app/text.h"
 #include "core/error.h"
+#include "core/pages.h"
 #include "core/platform.h"
-#include "core/virtual_array.h"
 #include "io/image/output.h"
 
 namespace oktett {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -14,6 +13,11 @@ namespace oktett {
 
 /// Alignment of every column and block, in bytes: one cache line, one 512-bit register.
 inline constexpr std::size_t kAlignment = 64;
+
+/// Storage for a column of so many bytes, aligned to kAlignment. Large columns have pages of their own, see
+/// reserve_pages. Throws std::bad_alloc.
+void* allocate_column(std::size_t bytes);
+void free_column(void* storage, std::size_t bytes);
 
 /// An owning array of trivially copyable elements. The storage is aligned to and padded up to a multiple of
 /// 64 bytes, so full-width loads that start inside the array never leave it. New elements are not
@@ -82,7 +86,8 @@ class Column {
 
  private:
   struct Free {
-    void operator()(T* p) const { ::operator delete (p, std::align_val_t{kAlignment}); }
+    std::size_t bytes = 0;
+    void operator()(T* p) const { free_column(p, bytes); }
   };
 
   static std::size_t padded(std::size_t size) {
@@ -95,7 +100,7 @@ class Column {
     std::unique_ptr<T, Free> grown;
     if (capacity > 0) {
       const std::size_t bytes = (capacity * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment;
-      grown.reset(static_cast<T*>(::operator new (bytes, std::align_val_t{kAlignment})));
+      grown = {static_cast<T*>(allocate_column(bytes)), Free{bytes}};
       if (size_ > 0) std::memcpy(grown.get(), data_.get(), (size_ < size ? size_ : size) * sizeof(T));
     }
     data_ = std::move(grown);

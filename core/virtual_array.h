@@ -1,21 +1,13 @@
 #pragma once
 /// \file Large arrays that are filled by many threads before their size is known.
 
-#include <sys/mman.h>
-
 #include <cstddef>
-#include <new>
 #include <type_traits>
 #include <utility>
 
-namespace oktett {
+#include "core/pages.h"
 
-/// Whether the system would give so many more bytes of address space now.
-inline bool can_reserve(std::size_t bytes) {
-  void* const p =
-      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return p != MAP_FAILED && munmap(p, bytes) == 0;
-}
+namespace oktett {
 
 /// Reserves address space for `capacity` elements; pages are allocated when first written. `truncate`
 /// releases the rest. Neither growing nor shrinking copies elements. New elements read as zero bytes.
@@ -26,11 +18,7 @@ class VirtualArray {
  public:
   VirtualArray() = default;
   explicit VirtualArray(std::size_t capacity) : bytes_(rounded(capacity * sizeof(T))) {
-    if (bytes_ == 0) return;
-    void* p =
-        mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (p == MAP_FAILED) throw std::bad_alloc();
-    data_ = static_cast<T*>(p);
+    if (bytes_ > 0) data_ = static_cast<T*>(reserve_pages(bytes_));
   }
   VirtualArray(VirtualArray&& other) noexcept { swap(other); }
   VirtualArray& operator=(VirtualArray&& other) noexcept {
@@ -40,7 +28,7 @@ class VirtualArray {
   VirtualArray(const VirtualArray&) = delete;
   VirtualArray& operator=(const VirtualArray&) = delete;
   ~VirtualArray() {
-    if (data_ != nullptr) munmap(data_, bytes_);
+    if (data_ != nullptr) release_pages(data_, bytes_);
   }
 
   T* data() { return data_; }
@@ -52,7 +40,7 @@ class VirtualArray {
   void truncate(std::size_t size) {
     const std::size_t keep = rounded(size * sizeof(T));
     if (keep >= bytes_) return;
-    munmap(reinterpret_cast<char*>(data_) + keep, bytes_ - keep);
+    release_pages(reinterpret_cast<char*>(data_) + keep, bytes_ - keep);
     bytes_ = keep;
     if (keep == 0) data_ = nullptr;
   }

@@ -1,4 +1,4 @@
-# The readers of mesh files a second time, under the address and undefined-behaviour sanitizers, and the tests and fuzz targets
+# The readers of mesh files and the arrays they fill a second time, under the address and undefined-behaviour sanitizers, and the tests and fuzz targets
 # that need nothing else: minutes to build where the whole library takes a quarter of an hour. They run with every run of the
 # tests; all else is for scripts/test --asan.
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
@@ -25,6 +25,7 @@ foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj
     stl text_number)
   target_sources(test_readers PRIVATE io/${name}_test.cpp)
 endforeach()
+target_sources(test_readers PRIVATE core/bytes_test.cpp core/pages_test.cpp core/soa_test.cpp core/virtual_array_test.cpp)
 target_link_libraries(test_readers PRIVATE sanitized_readers GTest::gtest_main)
 oktett_precompile(test_readers <gtest/gtest.h>)
 add_dependencies(oktett_tests test_readers)

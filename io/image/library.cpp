@@ -10,7 +10,7 @@
 #include <system_error>
 #include <vector>
 
-#include "core/virtual_array.h"
+#include "core/pages.h"
 
 namespace oktett {
 
