@@ -8,6 +8,7 @@
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 #include "python/src/fields.h"
+#include "python/src/pieces.h"
 #include "python/src/ray_queries.h"
 #include "python/src/unlocked.h"
 
@@ -36,6 +37,20 @@ struct RayArguments {
   }
 };
 
+/// Calls work(k, places) for the pieces of all rays, in the order of a picture if they look like one.
+template <class Work>
+void run_in_places(const RayOrder& order, const Work& work) {
+  run_tasks(order.piece_count(), [&](std::size_t k) {
+    static thread_local std::vector<std::size_t> places;
+    order.piece(k, places);
+    work(k, Places(places));
+  });
+}
+
+RayOrder picture_order(const RayRows& rays) {
+  return RayOrder(rays.size, picture_width(rays.rows, rays.size));
+}
+
 const Fields kFields{"t", "object", "primitive", "instance", "uv", "normal", "position"};
 
 /// Calls visit(name, column, components) for each column.
@@ -60,9 +75,8 @@ py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, 
     column = make_column(result, name, fields, arguments.shape, components, column);
   });
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
-    closest_hits(*world, arguments.rows, begin, end, columns);
-  });
+  run_in_places(picture_order(arguments.rows),
+                [&](std::size_t, Places places) { closest_hits(*world, arguments.rows, places, columns); });
   return py::module_::import("oktett._results").attr("Hits")(**result);
 }
 
@@ -71,9 +85,8 @@ py::array ask_any_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::h
   py::array_t<bool> result(arguments.shape);
   auto* const out = reinterpret_cast<std::uint8_t*>(result.mutable_data());
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
-    any_hits(*world, arguments.rows, begin, end, out);
-  });
+  run_in_places(picture_order(arguments.rows),
+                [&](std::size_t, Places places) { any_hits(*world, arguments.rows, places, out); });
   return result;
 }
 
@@ -81,8 +94,8 @@ py::array ask_count_hits(SceneStore& scene, py::handle rays, py::handle tmin, py
   const RayArguments arguments(rays, tmin, tmax);
   py::array_t<std::uint32_t> result(arguments.shape);
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(arguments.rows.size, [&, out = result.mutable_data()](std::size_t begin, std::size_t end) {
-    count_hits(*world, arguments.rows, begin, end, out);
+  run_in_places(picture_order(arguments.rows), [&, out = result.mutable_data()](std::size_t, Places places) {
+    count_hits(*world, arguments.rows, places, out);
   });
   return result;
 }
@@ -130,10 +143,11 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
     else
       column = &some_id;
   });
-  std::vector<FoundHits> pieces(piece_count(arguments.rows.size));
+  const RayOrder order(arguments.rows.size, 0);
+  std::vector<FoundHits> pieces(order.piece_count());
   const std::shared_ptr<const World> world = world_of(scene);
-  run_in_pieces(arguments.rows.size, [&](std::size_t begin, std::size_t end) {
-    all_hits(*world, arguments.rows, begin, end, wanted, pieces[begin / kPiece]);
+  run_in_places(order, [&](std::size_t k, Places places) {
+    all_hits(*world, arguments.rows, places, wanted, pieces[k]);
   });
   py::dict result;
   result["splits"] = joined_splits(pieces, arguments.rows.size);

@@ -1,6 +1,8 @@
 #include "python/src/point_queries.h"
 
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include "accel/point_query.h"
 
@@ -54,10 +56,13 @@ void closest_points(const World& world, const float* points, std::size_t begin, 
   closest.item = hits.item, closest.instance = hits.instance;
   closest_point(*world.accel, asked, closest);
   copy_rows(columns.point, size, out.point ? out.point + 3 * begin : nullptr);
-  HitColumns named = out.hit.from(begin);
-  copy_rows(columns.normal, size, named.normal);
+  copy_rows(columns.normal, size, out.hit.normal ? out.hit.normal + 3 * begin : nullptr);
+  HitColumns named = out.hit;
   named.normal = nullptr;
-  describe_hits(world, {}, hits, named);
+  static thread_local std::vector<std::size_t> places;
+  places.resize(size);
+  std::iota(places.begin(), places.end(), begin);
+  describe_hits(world, {}, hits, places, named);
 }
 
 void inside(const World& world, const float* points, std::size_t begin, std::size_t end,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "accel/accel.h"
@@ -10,32 +11,32 @@
 namespace oktett::python {
 namespace {
 
-/// Turns rows into columns.
-void set_columns(const RayRows& rays, std::size_t begin, std::size_t end, RayBatch& columns) {
-  const std::size_t count = end - begin;
-  columns.resize_uninitialized(count);
-  const float* row = rays.rows + 6 * begin;
-  for (std::size_t i = 0; i < count; ++i, row += 6)
+/// Turns the rows of `places` into columns.
+void set_columns(const RayRows& rays, Places places, RayBatch& columns) {
+  columns.resize_uninitialized(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const float* const row = rays.rows + 6 * places[i];
     for (int k = 0; k < 3; ++k) columns.origin[k][i] = row[k], columns.direction[k][i] = row[3 + k];
-  for (std::size_t i = 0; i < count; ++i) {
-    columns.tmin[i] = rays.tmin[(begin + i) * rays.tmin_step];
-    columns.tmax[i] = rays.tmax[(begin + i) * rays.tmax_step];
+    columns.tmin[i] = rays.tmin[places[i] * rays.tmin_step];
+    columns.tmax[i] = rays.tmax[places[i] * rays.tmax_step];
   }
 }
 
-/// Fills the columns of `out` for hits of the rays of the same number.
+/// Fills the columns of `out` for hits of the rays of the same number, which belong to `places`.
 class HitDescriber {
  public:
-  HitDescriber(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const HitColumns& out)
-      : accel_(accel), rays_(rays), hits_(hits), out_(out) {}
+  HitDescriber(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Places places,
+               const HitColumns& out)
+      : accel_(accel), rays_(rays), hits_(hits), places_(places), out_(out) {}
 
   void describe() {
-    if (out_.instance) std::copy_n(hits_.instance, hits_.size, out_.instance);
+    if (out_.instance)
+      for (std::size_t i = 0; i < hits_.size; ++i) out_.instance[places_[i]] = hits_.instance[i];
     std::uint32_t which[InteractionBlock::kMost];
     std::size_t count = 0;
     for (std::size_t i = 0; i < hits_.size; ++i) {
       if (hits_.item[i] == kNoId) {
-        set_miss(i);
+        set_miss(places_[i]);
         continue;
       }
       name(i);
@@ -47,13 +48,13 @@ class HitDescriber {
   }
 
  private:
-  void set_miss(std::size_t i) {
-    if (out_.object) out_.object[i] = kNoId;
-    if (out_.primitive) out_.primitive[i] = kNoId;
-    if (out_.uv) out_.uv[2 * i] = out_.uv[2 * i + 1] = 0;
+  void set_miss(std::size_t to) {
+    if (out_.object) out_.object[to] = kNoId;
+    if (out_.primitive) out_.primitive[to] = kNoId;
+    if (out_.uv) out_.uv[2 * to] = out_.uv[2 * to + 1] = 0;
     for (int k = 0; k < 3; ++k) {
-      if (out_.normal) out_.normal[3 * i + k] = 0;
-      if (out_.position) out_.position[3 * i + k] = 0;
+      if (out_.normal) out_.normal[3 * to + k] = 0;
+      if (out_.position) out_.position[3 * to + k] = 0;
     }
   }
 
@@ -65,8 +66,9 @@ class HitDescriber {
       path_ = hit.instance;
     }
     const HitNames names = identify_in(place_, hit);
-    if (out_.object) out_.object[i] = names.user;
-    if (out_.primitive) out_.primitive[i] = names.primitive;
+    const std::size_t to = places_[i];
+    if (out_.object) out_.object[to] = names.user;
+    if (out_.primitive) out_.primitive[to] = names.primitive;
     if (names.kind == Kind::triangle && (out_.normal || out_.position)) {
       const Geometry& geometry = place_.accel->geometries[names.geometry];
       const TriangleMesh& mesh = *std::get<MeshGeometry>(geometry.shape).mesh;
@@ -76,7 +78,7 @@ class HitDescriber {
     if (!out_.uv) return;
     // Other shapes keep numbers of their own there.
     const bool triangle = names.kind == Kind::triangle;
-    out_.uv[2 * i] = triangle ? hit.u : 0, out_.uv[2 * i + 1] = triangle ? hit.v : 0;
+    out_.uv[2 * to] = triangle ? hit.u : 0, out_.uv[2 * to + 1] = triangle ? hit.v : 0;
   }
 
   void flush(const std::uint32_t* which, std::size_t count) {
@@ -89,8 +91,8 @@ class HitDescriber {
     surface_interactions(accel_, rays_, hits_, {which, count}, block);
     for (std::size_t n = 0; n < count; ++n)
       for (std::size_t k = 0; k < 3; ++k) {
-        if (out_.normal) out_.normal[3 * std::size_t{which[n]} + k] = block.geometric_normal[k][n];
-        if (out_.position) out_.position[3 * std::size_t{which[n]} + k] = block.position[k][n];
+        if (out_.normal) out_.normal[3 * places_[which[n]] + k] = block.geometric_normal[k][n];
+        if (out_.position) out_.position[3 * places_[which[n]] + k] = block.position[k][n];
       }
   }
 
@@ -105,15 +107,11 @@ class HitDescriber {
   std::size_t corner_count_ = 0;
   RaySpan rays_;
   HitSpan hits_;
+  Places places_;
   HitColumns out_;
   HitPlace place_;
   std::uint32_t path_ = kNoId;
 };
-
-template <class T>
-void shift(T*& column, std::size_t count) {
-  if (column != nullptr) column += count;
-}
 
 /// A column of `count` numbers in `values`, or null.
 template <class T>
@@ -125,50 +123,47 @@ T* sized(std::vector<T>& values, const void* wanted, std::size_t count) {
 
 }  // namespace
 
-HitColumns HitColumns::from(std::size_t begin) const {
-  HitColumns c = *this;
-  shift(c.t, begin), shift(c.object, begin), shift(c.primitive, begin), shift(c.instance, begin);
-  shift(c.uv, 2 * begin), shift(c.normal, 3 * begin), shift(c.position, 3 * begin);
-  return c;
+void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, Places places,
+                   const HitColumns& out) {
+  HitDescriber(*world.accel, rays, hits, places, out).describe();
 }
 
-void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, const HitColumns& out) {
-  HitDescriber(*world.accel, rays, hits, out).describe();
-}
-
-void closest_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-                  const HitColumns& out) {
+void closest_hits(const World& world, const RayRows& rays, Places places, const HitColumns& out) {
   static thread_local RayBatch columns;
   static thread_local HitBatch batch;
-  set_columns(rays, begin, end, columns);
-  batch.resize_uninitialized(end - begin);
-  HitSpan hits = batch.span();
-  const HitColumns piece = out.from(begin);
-  if (piece.t) hits.t = piece.t;
+  set_columns(rays, places, columns);
+  batch.resize_uninitialized(places.size());
+  const HitSpan hits = batch.span();
   closest_hit(*world.accel, columns.span(), hits);
-  describe_hits(world, columns.span(), hits, piece);
+  if (out.t)
+    for (std::size_t i = 0; i < places.size(); ++i) out.t[places[i]] = hits.t[i];
+  describe_hits(world, columns.span(), hits, places, out);
 }
 
-void any_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-              std::uint8_t* occluded) {
+void any_hits(const World& world, const RayRows& rays, Places places, std::uint8_t* occluded) {
   static thread_local RayBatch columns;
-  set_columns(rays, begin, end, columns);
-  any_hit(*world.accel, columns.span(), std::span(occluded + begin, end - begin));
+  static thread_local std::vector<std::uint8_t> answers;
+  set_columns(rays, places, columns);
+  answers.resize(places.size());
+  any_hit(*world.accel, columns.span(), answers);
+  for (std::size_t i = 0; i < places.size(); ++i) occluded[places[i]] = answers[i];
 }
 
-void count_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-                std::uint32_t* counts) {
+void count_hits(const World& world, const RayRows& rays, Places places, std::uint32_t* counts) {
   static thread_local RayBatch columns;
-  set_columns(rays, begin, end, columns);
-  oktett::count_hits(*world.accel, columns.span(), std::span(counts + begin, end - begin));
+  static thread_local std::vector<std::uint32_t> answers;
+  set_columns(rays, places, columns);
+  answers.resize(places.size());
+  oktett::count_hits(*world.accel, columns.span(), answers);
+  for (std::size_t i = 0; i < places.size(); ++i) counts[places[i]] = answers[i];
 }
 
-void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-              const HitColumns& wanted, FoundHits& lists) {
+void all_hits(const World& world, const RayRows& rays, Places places, const HitColumns& wanted,
+              FoundHits& lists) {
   static thread_local RayBatch columns, hit_rays;
   static thread_local HitBatch hits;
   static thread_local oktett::HitLists found;
-  set_columns(rays, begin, end, columns);
+  set_columns(rays, places, columns);
   oktett::all_hits(*world.accel, columns.span(), found);
   const std::size_t count = found.hits.size();
   lists.begin.assign(found.begin.begin(), found.begin.end());
@@ -187,7 +182,10 @@ void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::s
   out.normal = sized(lists.normal, wanted.normal, 3 * count);
   out.position = sized(lists.position, wanted.position, 3 * count);
   if (out.t) std::copy_n(hits.t.data(), count, out.t);
-  describe_hits(world, hit_rays.span(), hits.span(), out);
+  static thread_local std::vector<std::size_t> own_places;
+  own_places.resize(count);
+  std::iota(own_places.begin(), own_places.end(), std::size_t{0});
+  describe_hits(world, hit_rays.span(), hits.span(), own_places, out);
 }
 
 }  // namespace oktett::python

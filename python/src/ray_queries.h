@@ -1,15 +1,19 @@
 #pragma once
 /// \file Queries on the arrays of Python: rays in rows, answers in columns. Each function works on one
-/// thread.
+/// thread. `places` are the numbers of the rays to trace, in the order in which they are traced; the answer
+/// for a ray goes where its number says.
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/ray.h"
 #include "render/geometry.h"
 
 namespace oktett::python {
+
+using Places = std::span<const std::size_t>;
 
 /// Rays in rows of six floats, origin and direction, each with its interval.
 struct RayRows {
@@ -29,26 +33,21 @@ struct HitColumns {
   float* uv = nullptr;        ///< 2 per hit
   float* normal = nullptr;    ///< 3 per hit
   float* position = nullptr;  ///< 3 per hit
-
-  /// The columns from hit `begin` on.
-  HitColumns from(std::size_t begin) const;
 };
 
-/// Fills the columns of `out` but for `t` for hits, and for misses among them. `rays`, those of the same
-/// number, are only needed for normals and positions.
-void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, const HitColumns& out);
+/// Fills the columns of `out` but for `t` for hits, and for misses among them: what belongs to hit i at
+/// places[i]. `rays`, those of the hits, are only needed for normals and positions.
+void describe_hits(const World& world, const RaySpan& rays, const HitSpan& hits, Places places,
+                   const HitColumns& out);
 
-/// The nearest hits of rays [begin, end). A miss has t infinite, all ids kNoId and all else 0.
-void closest_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-                  const HitColumns& out);
+/// The nearest hits. A miss has t infinite, all ids kNoId and all else 0.
+void closest_hits(const World& world, const RayRows& rays, Places places, const HitColumns& out);
 
-/// occluded[i] becomes 1 or 0 for the rays [begin, end).
-void any_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-              std::uint8_t* occluded);
+/// occluded[i] becomes 1 or 0.
+void any_hits(const World& world, const RayRows& rays, Places places, std::uint8_t* occluded);
 
-/// counts[i] becomes the number of hits, for the rays [begin, end).
-void count_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-                std::uint32_t* counts);
+/// counts[i] becomes the number of hits.
+void count_hits(const World& world, const RayRows& rays, Places places, std::uint32_t* counts);
 
 /// Columns of all hits of some rays.
 struct FoundHits {
@@ -57,8 +56,9 @@ struct FoundHits {
   std::vector<std::uint32_t> object, primitive, instance;
 };
 
-/// Replaces those columns of `lists` that are not null in `wanted` by the hits of the rays [begin, end).
-void all_hits(const World& world, const RayRows& rays, std::size_t begin, std::size_t end,
-              const HitColumns& wanted, FoundHits& lists);
+/// Replaces those columns of `lists` that are not null in `wanted` by the hits of the rays, in the order of
+/// `places`.
+void all_hits(const World& world, const RayRows& rays, Places places, const HitColumns& wanted,
+              FoundHits& lists);
 
 }  // namespace oktett::python

@@ -12,6 +12,8 @@
 #include <functional>
 #include <thread>
 
+#include "python/src/pieces.h"
+
 namespace oktett::python {
 
 /// Runs `work` on a thread of its own while this one waits without the interpreter's lock and calls `poll`,
@@ -39,25 +41,25 @@ class SignalWatch {
   std::exception_ptr raised_;
 };
 
-/// Rays or points of one task: their columns stay in the cache of a core.
-inline constexpr std::size_t kPiece = 4096;
-
-inline std::size_t piece_count(std::size_t size) { return (size + kPiece - 1) / kPiece; }
-
-/// Calls work(begin, end) for the pieces of [0, size) in parallel, without the interpreter's lock. Ctrl-C
-/// ends it.
+/// Calls work(k) for k in [0, count) in parallel, without the interpreter's lock. Ctrl-C ends it.
 template <class Work>
-void run_in_pieces(std::size_t size, const Work& work) {
+void run_tasks(std::size_t count, const Work& work) {
   SignalWatch watch;
   {
     const pybind11::gil_scoped_release unlocked;
-    tbb::parallel_for(std::size_t{0}, piece_count(size), [&](std::size_t k) {
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
       if (watch.stopped()) return;
-      work(k * kPiece, std::min(size, (k + 1) * kPiece));
+      work(k);
       watch.poll();
     });
   }
   watch.rethrow();
+}
+
+/// Calls work(begin, end) for the pieces of [0, size) likewise.
+template <class Work>
+void run_in_pieces(std::size_t size, const Work& work) {
+  run_tasks(pieces_of(size), [&](std::size_t k) { work(k * kPiece, std::min(size, (k + 1) * kPiece)); });
 }
 
 }  // namespace oktett::python

@@ -64,6 +64,34 @@ def test_answers_do_not_depend_on_the_batch(mesh):
     assert np.array_equal(scene.any_hit(rays), counts > 0)
 
 
+def pinhole(width, height):
+    """Rays of the pixels of a camera, row after row, from outside the unit ball."""
+    y, x = np.mgrid[0:height, 0:width] + 0.5
+    size = max(width, height)
+    directions = np.stack([(x - width / 2) / size, (y - height / 2) / size, -np.ones(x.shape)], axis=-1)
+    return np.concatenate([np.broadcast_to([0.1, 0.2, 3], directions.shape), directions], axis=-1).astype(np.float32)
+
+
+@pytest.mark.parametrize("width, height", [(8, 16), (64, 48), (97, 61), (513, 37), (1100, 23), (20, 300)])
+def test_rays_of_pictures_have_the_hits_that_they_have_in_any_order(mesh, width, height):
+    scene = oktett.Scene(*mesh)
+    picture = pinhole(width, height)
+    # The last row of the second array is not whole.
+    for rays in (picture, picture.reshape(-1, 6)[: -width // 3]):
+        flat = rays.reshape(-1, 6)
+        order = np.random.default_rng(5).permutation(len(flat))
+        fields = ["t", "object", "primitive", "instance", "uv", "normal", "position"]
+        hits, mixed = scene.closest_hit(rays, fields=fields), scene.closest_hit(flat[order], fields=fields)
+        assert 0.1 < np.isfinite(hits.t).mean() < 1
+        for a, b in zip(hits, mixed):
+            assert np.array_equal(a.reshape(len(flat), -1)[order].ravel(), b.ravel())
+        assert np.array_equal(scene.any_hit(rays).ravel()[order], scene.any_hit(flat[order]))
+        assert np.array_equal(scene.count_hits(rays).ravel()[order], scene.count_hits(flat[order]))
+        tmax = np.linspace(1, 4, len(flat), dtype=np.float32)
+        cut = scene.closest_hit(flat, tmin=tmax / 2, tmax=tmax)
+        assert np.array_equal(cut.t[order], scene.closest_hit(flat[order], tmin=tmax[order] / 2, tmax=tmax[order]).t)
+
+
 def test_arrays_of_any_layout_and_type_give_the_same_hits(mesh):
     scene = oktett.Scene(*mesh)
     rays = random_rays(1000, 1.0, seed=3)
