@@ -104,27 +104,30 @@ void check_known(const KnownShape& known, const Affine& m, std::uint64_t how, in
 }
 
 // Every solid that a scene can hold, against its equation in extended precision.
-TEST(Inside, AgreesWithTheEquationOfEverySolid) {
-  const std::vector<std::string>& kinds = known_kinds();
-  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-    std::uint64_t asked = 0, doubtful = 0;
-    const int points = effort() == 1 ? 60 : 1000;
-    for (std::uint64_t number = 0; number < static_cast<std::uint64_t>(8 * effort()); ++number) {
-      const KnownShape known = draw_known_shape(kind, number);
-      if (!known.is_solid()) continue;
-      CaseRandom random(number * 1000 + kind);
-      const double scale = random.magnitude(-2, 2);
-      const Affine m = Affine::translation(random.vector() * (3 * scale)) *
-                       Affine::rotation(random.vector() * 180.0) * Affine::scaling({scale, scale, -scale});
-      check_known(known, number % 4 == 0 ? Affine{} : m, number, points, random, asked, doubtful);
-      if (HasFatalFailure()) FAIL() << kinds[kind] << "." << number;
-    }
-    EXPECT_LE(doubtful * 1000, asked) << kinds[kind];
-    if (effort() > 1 && asked > 0)
-      std::printf("%s: %llu points, %llu within rounding of the boundary\n", kinds[kind].c_str(),
-                  static_cast<unsigned long long>(asked), static_cast<unsigned long long>(doubtful));
+class InsideOfKind : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(InsideOfKind, AgreesWithTheEquation) {
+  const std::size_t kind = GetParam();
+  std::uint64_t asked = 0, doubtful = 0;
+  const int points = effort() == 1 ? 60 : 1000;
+  for (std::uint64_t number = 0; number < static_cast<std::uint64_t>(8 * effort()); ++number) {
+    const KnownShape known = draw_known_shape(kind, number);
+    if (!known.is_solid()) continue;
+    CaseRandom random(number * 1000 + kind);
+    const double scale = random.magnitude(-2, 2);
+    const Affine m = Affine::translation(random.vector() * (3 * scale)) *
+                     Affine::rotation(random.vector() * 180.0) * Affine::scaling({scale, scale, -scale});
+    check_known(known, number % 4 == 0 ? Affine{} : m, number, points, random, asked, doubtful);
+    if (HasFatalFailure()) FAIL() << known_kinds()[kind] << "." << number;
   }
+  EXPECT_LE(doubtful * 1000, asked);
+  if (effort() > 1)
+    std::printf("%s: %llu points, %llu within rounding of the boundary\n", known_kinds()[kind].c_str(),
+                static_cast<unsigned long long>(asked), static_cast<unsigned long long>(doubtful));
 }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, InsideOfKind, testing::Range<std::size_t>(0, known_kinds().size()),
+                         [](const auto& info) { return known_kinds()[info.param]; });
 
 // Points anywhere, and points from which the ray runs exactly, or nearly so, through corners and edges.
 TEST(Inside, OfClosedMeshesByWhereTheyWindAround) {
