@@ -5,15 +5,16 @@
 
 namespace oktett {
 
-/// From so many bytes on, pages are asked to be of 2 MB. Rays read nodes and triangles in no order: with pages of
-/// 4 kB most reads of a large tree would wait for the address of the page as well.
+/// From so many bytes on, pages are asked to be of 2 MB. Rays read nodes and triangles in no order: with
+/// pages of 4 kB most reads of a large tree would wait for the address of the page as well.
 inline constexpr std::size_t kLargePiece = std::size_t{4} << 20;
 
-/// Address space for so many bytes, which read as zero. Pages are allocated when they are first written. Throws
-/// std::bad_alloc.
+/// Address space for so many bytes, which read as zero. Pages are allocated when they are first written.
+/// Throws std::bad_alloc.
 void* reserve_pages(std::size_t bytes);
 
-/// Gives back address space of reserve_pages, from a page boundary on; a piece of it may be given back before the rest.
+/// Gives back address space of reserve_pages, from a page boundary on; a piece of it may be given back before
+/// the rest.
 void release_pages(void* begin, std::size_t bytes);
 
 /// Whether the system would give so many more bytes of address space now.

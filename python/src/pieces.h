@@ -11,13 +11,14 @@ inline constexpr std::size_t kPiece = 4096;
 
 inline std::size_t pieces_of(std::size_t size) { return (size + kPiece - 1) / kPiece; }
 
-/// How many rays a row of the picture has whose pixels `size` rays seem to be, row after row; 0 if they do not look
-/// like a picture. `rows` holds six floats a ray. A guess from samples: at the end of a row, rays jump; a ray is
-/// as close to the one a row later as to its neighbour, or nearly, and far from the one half a row away.
+/// How many rays a row of the picture has whose pixels `size` rays seem to be, row after row; 0 if they do
+/// not look like a picture. `rows` holds six floats a ray. A guess from samples: at the end of a row, rays
+/// jump; a ray is as close to the one a row later as to its neighbour, or nearly, and far from the one half a
+/// row away.
 std::size_t picture_width(const float* rows, std::size_t size);
 
-/// Divides rays into pieces of at most kPiece. Those of a picture are divided into tiles of 8x8 pixels: rays that are
-/// traced together then meet the same few nodes, which halves the time of camera rays.
+/// Divides rays into pieces of at most kPiece. Those of a picture are divided into tiles of 8x8 pixels: rays
+/// that are traced together then meet the same few nodes, which halves the time of camera rays.
 class RayOrder {
  public:
   /// `width` 0: in the order of the array.

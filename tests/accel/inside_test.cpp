@@ -127,7 +127,7 @@ TEST_P(InsideOfKind, AgreesWithTheEquation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, InsideOfKind, testing::Range<std::size_t>(0, known_kinds().size()),
-                         [](const auto& info) { return known_kinds()[info.param]; });
+                         [](const auto& kind) { return known_kinds()[kind.param]; });
 
 // Points anywhere, and points from which the ray runs exactly, or nearly so, through corners and edges.
 TEST(Inside, OfClosedMeshesByWhereTheyWindAround) {
