@@ -61,7 +61,8 @@ RenderArguments resumed_arguments(const CommandLine& line, const RenderArguments
     throw Error(Location{arguments.checkpoints.resume}, "holds no command line of oktett render");
   read_render_words(film.words, all);
   all.threads = 0;
-  for (std::string* word : {&all.isa, &all.stats, &all.display_server, &all.photon_map}) word->clear();
+  for (std::string* word : {&all.isa, &all.stats, &all.display_server, &all.show, &all.photon_map})
+    word->clear();
   all.cache = {};
   all.quiet = all.verbose = all.progress = false;
   // The film may have been moved, and is its own checkpoint.

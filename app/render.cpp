@@ -18,6 +18,7 @@
 #include "app/render_options.h"
 #include "app/render_stats.h"
 #include "app/scene_loading.h"
+#include "app/terminal/preview.h"
 #include "app/text.h"
 #include "core/error.h"
 #include "core/isa.h"
@@ -157,6 +158,21 @@ const char* signal_name(int signal) {
                              : "SIGINT";
 }
 
+/// What prints the picture where the summary will be printed, if that is asked for.
+std::optional<TerminalPreview> preview_of(const RenderArguments& arguments) {
+  if (arguments.show.empty()) return std::nullopt;
+  return TerminalPreview(arguments.show, arguments.stats == "json" ? stderr : stdout);
+}
+
+RenderOptions options_of(const RenderArguments& arguments, bool data_layers) {
+  RenderOptions options;
+  options.isa = choose_isa(arguments.isa);
+  options.threads = arguments.threads;
+  options.build = parse_bvh_option(arguments.bvh);
+  options.data_layers = data_layers || arguments.film.denoise;
+  return options;
+}
+
 /// Calls `write`. What goes wrong is returned, since there may be a picture to write, too.
 template <class Write>
 std::optional<Error> try_to(const Write& write) {
@@ -187,6 +203,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   check_stats(arguments.stats);
   Checkpoint checkpoint(line, arguments);
   if (arguments.scene.empty()) return line.missing("scene");
+  const std::optional<TerminalPreview> preview = preview_of(arguments);
   apply_limits(arguments.limits);
   // Loading shares its work among threads, too, and one thread asked for is none that can be refused.
   std::optional<tbb::global_control> threads;
@@ -195,11 +212,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   const std::string output = writes_film ? checkpoint.film_output() : output_path(arguments);
   const bool writes_picture = !writes_film && !output.empty();
   if (writes_picture) check_output(output);
-  RenderOptions options;
-  options.isa = choose_isa(arguments.isa);
-  options.threads = arguments.threads;
-  options.build = parse_bvh_option(arguments.bvh);
-  options.data_layers = writes_film || (writes_picture && keeps_all_planes(output)) || arguments.film.denoise;
+  RenderOptions options = options_of(arguments, writes_film || (writes_picture && keeps_all_planes(output)));
 
   Stopwatch watch;
   StageTimes times;
@@ -232,7 +245,8 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   times.render = result.report.render_seconds;
   watch.lap();
   // The rest of a picture that was stopped is black.
-  if (arguments.film.denoise && writes_picture && !result.report.stopped) denoise(result.picture);
+  const bool is_seen = writes_picture || (preview && !writes_film);
+  if (arguments.film.denoise && is_seen && !result.report.stopped) denoise(result.picture);
   times.denoise = watch.lap();
   ImageMetadata metadata = metadata_of(line, arguments, result);
   checkpoint.complete(metadata);
@@ -241,6 +255,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   result.scene = Scene{};
   if (writes_picture) write_image(output, result.picture, metadata);
   times.write = watch.lap();
+  if (preview) preview->print(result.picture);
   if (unsaved && !writes_picture) return say_unsaved(*unsaved, checkpoint);
   print_summary(arguments, times, result.report, output);
   if (lost_photons) throw Error(*lost_photons);

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "app/choice.h"
+#include "app/terminal/preview.h"
 #include "core/error.h"
 #include "core/suggest.h"
 #include "io/mesh/load/load_mesh.h"
@@ -113,6 +114,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.flag("--progress", a.progress, "Show progress even if stderr is not a terminal");
   verb.option("--display-server", &a.display_server, "HOST:PORT",
               "Live preview in a viewer that speaks tev's protocol");
+  add_show_option(verb, a.show);
 }
 
 void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments) {

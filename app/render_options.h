@@ -37,6 +37,7 @@ struct RenderArguments {
   std::vector<std::string> definitions;
   std::string stats;  ///< "", "text" or "json"
   std::string display_server;
+  std::string show;  ///< how to print the picture on the terminal; empty: not at all
   bool caustics = false;
   std::string photon_map;  ///< file; empty: photons are not kept
   CheckpointArguments checkpoints;

@@ -1,52 +1,30 @@
 // What a terminal shows while files are read and trees are built.
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "tests/app/run_command.h"
+#include "tests/app/run_on_terminal.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {
 namespace {
 
 using test::contains;
+using test::run_on_terminal;
 using test::TempDir;
+using test::TerminalResult;
+using test::TerminalSetting;
 
 /// Runs the command with a terminal as its standard error, and returns what it prints there; nothing if this
 /// system has no terminals.
-std::string on_terminal(const TempDir& directory, std::vector<std::string> arguments) {
-  const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return "";
-  const std::string name = ptsname(terminal);
-  arguments.insert(arguments.begin(), OKTETT_COMMAND);
-  std::vector<char*> words;
-  for (std::string& word : arguments) words.push_back(word.data());
-  words.push_back(nullptr);
-  const pid_t process = fork();
-  if (process == 0) {
-    const int side = open(name.c_str(), O_RDWR | O_NOCTTY), nothing = open("/dev/null", O_WRONLY);
-    if (side < 0 || chdir(directory.path().c_str()) != 0 || dup2(nothing, 1) < 0 || dup2(side, 2) < 0)
-      _exit(126);
-    close(terminal), close(side);
-    execv(words[0], words.data());
-    _exit(127);
-  }
-  std::string text;
-  char bytes[4096];
-  // Ends with an error when the last writer is gone.
-  for (ssize_t n; (n = read(terminal, bytes, sizeof bytes)) > 0;)
-    text.append(bytes, static_cast<std::size_t>(n));
-  close(terminal);
-  int status = 0;
-  waitpid(process, &status, 0);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text;
-  return text;
+std::string on_terminal(const TempDir& directory, const std::vector<std::string>& arguments) {
+  TerminalSetting setting;
+  setting.out = false;
+  const TerminalResult result = run_on_terminal(directory, arguments, setting);
+  EXPECT_EQ(result.status, 0) << result.text;
+  return result.text;
 }
 
 constexpr const char* kTetrahedron =
