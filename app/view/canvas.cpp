@@ -34,6 +34,12 @@ void Canvas::wake() {
   grown_.notify_all();
 }
 
+void Canvas::close() {
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  grown_.notify_all();
+}
+
 std::string Canvas::describe(std::uint64_t version, std::string header) const {
   header += fmt::format(", \"version\": {}, \"shown\": {}, \"tiles\": [", version_, view_);
   std::string pixels;

@@ -24,6 +24,8 @@ class Canvas {
   void show(const Picture& picture, const FinishedTile& tile, const Layer& layer);
   /// Makes waiting calls of `news` return, as when the status has changed.
   void wake();
+  /// From now on no call of `news` waits.
+  void close();
 
   /// Waits until something is newer than `version`, at most `wait` ms. A little-endian u32 count of bytes of
   /// a JSON header, the header, then the RGBA bytes of all its tiles one after the other. `status`, a JSON
@@ -44,14 +46,14 @@ class Canvas {
   std::uint64_t version_ = 1, view_ = 0;
   std::uint32_t width_ = 0, height_ = 0;
   Tile coarse_;
-  bool coarse_pass_ = false;
+  bool coarse_pass_ = false, closed_ = false;
   std::vector<Tile> tiles_;  ///< of the passes of full size; a newer tile replaces the one of its place
 };
 
 template <class Status>
 std::string Canvas::news(std::uint64_t version, int wait, const Status& status) {
   std::unique_lock lock(mutex_);
-  grown_.wait_for(lock, std::chrono::milliseconds(wait), [&] { return version_ > version; });
+  grown_.wait_for(lock, std::chrono::milliseconds(wait), [&] { return closed_ || version_ > version; });
   lock.unlock();
   std::string header = status();
   lock.lock();

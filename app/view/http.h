@@ -14,6 +14,8 @@ struct HttpRequest {
   std::string method, path, body;
   std::string host, origin, content_type;      ///< empty: not sent
   std::map<std::string, std::string> queries;  ///< behind the path; one of each name
+  /// Whether whoever asks has closed the connection meanwhile, or the half of it that it writes to.
+  std::function<bool()> is_gone = [] { return false; };
 };
 
 struct HttpResponse {

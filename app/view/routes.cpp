@@ -101,8 +101,8 @@ HttpResponse Routes::get(const std::string& name, const HttpRequest& request) {
   if (name == "pick")
     return {200, "application/json", session_.pick(pixel(request, "x"), pixel(request, "y")), ""};
   if (name == "camera") return {200, "text/plain; charset=utf-8", session_.camera(), ""};
-  if (name == "picture.png") return {200, "image/png", session_.save(".png"), name};
-  if (name == "picture.exr") return {200, "image/x-exr", session_.save(".exr"), name};
+  if (name == "picture.png") return {200, "image/png", session_.save(".png", request.is_gone), name};
+  if (name == "picture.exr") return {200, "image/x-exr", session_.save(".exr", request.is_gone), name};
   const std::string file = name.empty() ? "page.html" : name;
   if (const auto bytes = page_file(file)) return {200, type_of(file), std::string(*bytes), ""};
   return {404, "text/plain; charset=utf-8", "no such address\n", ""};

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <sstream>
+#include <stdexcept>
 
 #include "app/scene_loading.h"
 #include "app/text.h"
@@ -31,6 +33,10 @@ std::string content(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string reason_of(const std::exception& error) {
+  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr ? "out of memory" : error.what();
+}
+
 Session::Session(const RenderArguments& arguments, std::string command_line)
     : arguments_(arguments), command_line_(std::move(command_line)), isa_(choose_isa(arguments.isa)) {
   cache_ = open_cache(arguments_.cache);
@@ -52,7 +58,7 @@ void Session::stop() {
     stopping_ = true, cancel_ = true;
   }
   changed_.notify_all();
-  canvas_.wake();
+  canvas_.close();
   for (std::thread* thread : {&worker_, &watcher_})
     if (thread->joinable()) thread->join();
 }
@@ -93,21 +99,21 @@ void Session::adopt(Loaded loaded) {
   const PixelWindow window = crop_window(scene.film);
   status_.width = window.width(), status_.height = window.height();
   status_.wanted_samples = scene.integrator.samples;
-  status_.error.reset();
+  status_.error.reset(), failure_.reset();
   status_.settled = false, finished_.reset(), wants_layers_ = false;
   ++status_.view;
   loaded_ = std::move(loaded);
 }
 
-void Session::reload() {
+bool Session::reload() {
   std::vector<std::string> files;
   std::optional<Error> failure;
   try {
     adopt(load(files));
   } catch (const Error& error) {
     failure = error;
-  } catch (const std::bad_alloc&) {
-    failure = Error("out of memory", ErrorKind::io);
+  } catch (const std::exception& error) {
+    failure = Error(reason_of(error), ErrorKind::io);
   }
   const std::lock_guard lock(mutex_);
   if (failure) {
@@ -118,6 +124,7 @@ void Session::reload() {
   }
   loaded_.files = files;
   files_.watch(files);
+  return !failure;
 }
 
 void Session::watch() {
@@ -147,7 +154,7 @@ std::uint64_t Session::change(const std::string& lines) {
         throw Error("layer: unknown");
     }
     status_.state = std::move(state);
-    status_.settled = false, finished_.reset(), wants_layers_ = false;
+    status_.settled = false, finished_.reset(), failure_.reset(), wants_layers_ = false;
     view = ++status_.view;
     cancel_ = true;
   }
@@ -157,7 +164,9 @@ std::uint64_t Session::change(const std::string& lines) {
 
 SessionStatus Session::status() const {
   const std::lock_guard lock(mutex_);
-  return status_;
+  SessionStatus status = status_;
+  if (!status.error && failure_) status.error = failure_, status.error_line.clear();
+  return status;
 }
 
 std::string Session::pick(std::uint32_t x, std::uint32_t y) {
@@ -176,20 +185,22 @@ std::string Session::camera() const {
   return camera_yaml(status_.state.camera);
 }
 
-std::string Session::save(const std::string& extension) {
+std::string Session::save(const std::string& extension, const std::function<bool()>& is_gone) {
   std::shared_ptr<const Picture> picture;
   ImageMetadata metadata;
   {
     std::unique_lock lock(mutex_);
     const std::uint64_t view = status_.view;
     const bool layers = extension == ".exr";
-    const auto complete = [&] {
-      return finished_ != nullptr && (!layers || finished_->find("Z") != nullptr);
+    if (layers && !is_finished(true) && !failure_) wants_layers_ = true, changed_.notify_all();
+    const auto is_decided = [&] {
+      return stopping_ || status_.view != view || is_finished(layers) || failure_;
     };
-    if (layers && !complete()) wants_layers_ = true, changed_.notify_all();
-    changed_.wait(lock, [&] { return stopping_ || status_.view != view || complete(); });
+    while (!changed_.wait_for(lock, std::chrono::milliseconds(200), is_decided))
+      if (is_gone()) throw Error("nobody waits for the picture any more");
     if (stopping_ || status_.view != view)
       throw Error("the view has changed before the picture was finished");
+    if (!is_finished(layers)) throw std::runtime_error(std::string("cannot render: ") + failure_->what());
     picture = finished_, metadata = metadata_;
   }
   const PrivateFolder folder;

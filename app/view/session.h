@@ -6,6 +6,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -35,9 +37,13 @@ struct SessionStatus {
   ViewState home;  ///< the view of the scene file
   Vec3d center;    ///< of the scene's bounds
   double radius = 1;
-  std::optional<Error> error;  ///< why the scene could not be read again; the last good one is still shown
+  std::optional<Error> error;  ///< why the scene could not be read again, and the last good one is still
+                               ///< shown; or why it cannot be rendered
   std::string error_line;      ///< the text of its line
 };
+
+/// What went wrong, in words for people.
+std::string reason_of(const std::exception& error);
 
 /// All functions may be called by any thread.
 class Session {
@@ -60,8 +66,9 @@ class Session {
   std::string pick(std::uint32_t x, std::uint32_t y);
   std::string camera() const;
   /// The bytes of the finished picture in a file of this extension, ".png" or ".exr". Waits until it is
-  /// finished; throws Error if the view changes before.
-  std::string save(const std::string& extension);
+  /// finished. Throws Error if the view changes before, the session ends or `is_gone`, which is asked now and
+  /// then, returns true; std::runtime_error if the picture cannot be rendered.
+  std::string save(const std::string& extension, const std::function<bool()>& is_gone);
   void stop();
 
  private:
@@ -75,7 +82,8 @@ class Session {
 
   Loaded load(std::vector<std::string>& files) const;
   void adopt(Loaded loaded);
-  void reload();
+  /// Reads the scene again; false if it cannot be read.
+  bool reload();
   void work();
   void watch();
   /// Renders all passes of the present view; returns early if it changes.
@@ -84,6 +92,8 @@ class Session {
   bool render_pass(const ViewState& state, std::uint64_t view, std::uint32_t scale, std::uint32_t samples,
                    bool last);
   bool has_changed(std::uint64_t view) const;
+  /// There is a finished picture of the present view, with all planes if `layers`. Needs the lock.
+  bool is_finished(bool layers) const;
 
   const RenderArguments arguments_;
   const std::string command_line_;
@@ -101,6 +111,7 @@ class Session {
   bool reload_wanted_ = false, stopping_ = false;
   std::shared_ptr<const Picture> finished_;  ///< of the present view; null while there is none
   ImageMetadata metadata_;                   ///< of `finished_`
+  std::optional<Error> failure_;             ///< why the present view cannot be rendered
   WatchedFiles files_;
 
   std::atomic<bool> cancel_{false};

@@ -47,6 +47,10 @@ bool Session::has_changed(std::uint64_t view) const {
   return stopping_ || reload_wanted_ || status_.view != view;
 }
 
+bool Session::is_finished(bool layers) const {
+  return finished_ != nullptr && (!layers || finished_->find("Z") != nullptr);
+}
+
 void Session::work() {
   std::uint64_t done = 0;
   bool with_layers = false;
@@ -64,7 +68,10 @@ void Session::work() {
       done = status_.view, with_layers = wants_layers_;
     }
     if (reads) {
-      reload();
+      const bool adopted = reload();
+      const std::lock_guard lock(mutex_);
+      // The edit has ended a pass of the view that is still shown.
+      if (!adopted && !failure_ && !is_finished(wants_layers_)) done = 0;
       canvas_.wake();
       continue;
     }
@@ -72,8 +79,11 @@ void Session::work() {
       render_view(only_last);
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
-      status_.error = Error(error.what());
-      status_.error_line.clear();
+      if (status_.view == done) {
+        failure_ = Error(reason_of(error));
+        status_.settled = finished_ != nullptr;
+        changed_.notify_all();
+      }
     }
     canvas_.wake();
   }

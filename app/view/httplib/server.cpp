@@ -143,8 +143,14 @@ class BoundedPool : public httplib::TaskQueue {
   httplib::ThreadPool pool_;
 };
 
+bool is_closed(socket_t socket) {
+  pollfd entry{socket, POLLRDHUP, 0};
+  return ::poll(&entry, 1, 0) > 0 && (entry.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0;
+}
+
 HttpRequest plain(const httplib::Request& from) {
-  HttpRequest request{from.method, from.path, from.body, {}, {}, {}, {}};
+  HttpRequest request;
+  request.method = from.method, request.path = from.path, request.body = from.body;
   request.host = from.get_header_value("Host");
   request.origin = from.get_header_value("Origin");
   request.content_type = from.get_header_value("Content-Type");
@@ -208,14 +214,11 @@ class OwnServer : public HttpServer, private httplib::Server {
         return HandlerResponse::Handled;
       }
       if (from.method == "POST") return HandlerResponse::Unhandled;
-      has_arrived();
-      answer(handler(plain(from)), to);
+      answer(ask(handler, from), to);
       return HandlerResponse::Handled;
     });
-    Post(".*", [handler](const httplib::Request& from, httplib::Response& to) {
-      has_arrived();
-      answer(handler(plain(from)), to);
-    });
+    Post(".*",
+         [handler](const httplib::Request& from, httplib::Response& to) { answer(ask(handler, from), to); });
     thread_ = std::thread([this] { listen_after_bind(); });
     while (!is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -270,8 +273,13 @@ class OwnServer : public HttpServer, private httplib::Server {
     return good;
   }
 
-  /// The request that this thread reads is complete; from now on its connection waits for the server.
-  static void has_arrived() { arriving.connections->remove(arriving.socket); }
+  /// The answer to the request of this thread, which is complete: its connection now waits for the server.
+  static HttpResponse ask(const HttpServer::Handler& handler, const httplib::Request& from) {
+    arriving.connections->remove(arriving.socket);
+    HttpRequest request = plain(from);
+    request.is_gone = [socket = arriving.socket] { return is_closed(socket); };
+    return handler(request);
+  }
 
   /// What this thread serves.
   struct Arriving {
