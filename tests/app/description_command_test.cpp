@@ -187,9 +187,10 @@ TEST(Examples, AreListedWithWhatTheyShow) {
 
 TEST(Examples, AreCopiedWithWhatTheyNeed) {
   const TempDir dir;
-  const CommandResult copied = run_command(dir, {"examples", "shapes", "torus", "-o", "here"});
+  const CommandResult copied = run_command(dir, {"examples", "shapes", "torus", "pawns", "-o", "here"});
   ASSERT_EQ(copied.status, 0) << copied.err;
-  for (const char* name : {"shapes.yaml", "torus.yaml", "materials.yaml", "assets/tetrahedron.obj"}) {
+  for (const char* name : {"shapes.yaml", "torus.yaml", "materials.yaml", "assets/tetrahedron.obj",
+                           "pawns.yaml", "assets/pawns.gltf", "assets/pawns.bin"}) {
     EXPECT_TRUE(fs::exists(dir.file("here/" + std::string(name)))) << name;
     EXPECT_TRUE(contains(copied.out, "here/" + std::string(name))) << copied.out;
   }

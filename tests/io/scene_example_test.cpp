@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "io/image/texture.h"
@@ -83,6 +84,18 @@ TEST(SceneExample, TheBunnyStandsOnTheGround) {
     return;
   }
   FAIL() << "there is no mesh";
+}
+
+/// The glTF file shows one mesh for each material, whoever shares it, and gives the camera and a lamp.
+TEST(SceneExample, PawnsOfOneMaterialAreInstancesOfOneMesh) {
+  const Scene scene = load_scene(scene_path("pawns.yaml"));
+  std::map<std::uint32_t, int> instances;
+  for (const Object& object : scene.objects)
+    if (const auto* instance = std::get_if<InstanceShape>(&object.shape)) ++instances[instance->prototype];
+  EXPECT_EQ(instances.size(), 2u);
+  for (const auto& [prototype, count] : instances) EXPECT_EQ(count, 3) << prototype;
+  EXPECT_NEAR(scene.camera.from.z, 6.2, 1e-6);
+  EXPECT_EQ(scene.lights.size(), 1u);
 }
 
 TEST(SceneExample, TheBunnyCanBeReplaced) {
