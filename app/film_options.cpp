@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <string_view>
-#include <system_error>
 
 #include "app/choice.h"
+#include "app/text.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -18,9 +17,7 @@ namespace {
 void read_number(const char* option, std::string_view text, const Range& range, double& value) {
   if (text.empty()) return;
   double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw Error(fmt::format("{}: '{}' is no number", option, text));
+  if (!parse_number(text, number)) throw Error(fmt::format("{}: '{}' is no number", option, text));
   if (!std::isfinite(number) || !range.contains(number))
     throw Error(fmt::format("{}: {} is out of range; expected {} to {}", option, text, range.lo, range.hi));
   value = number;

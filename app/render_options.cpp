@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string_view>
-#include <system_error>
 
 #include "app/choice.h"
 #include "app/terminal/preview.h"
+#include "app/text.h"
 #include "core/error.h"
 #include "core/suggest.h"
 #include "io/mesh/load/load_mesh.h"
@@ -26,13 +25,6 @@ constexpr const char* kQualities[] = {"fast", "balanced", "best"};
 constexpr std::uint32_t kMaxSide = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
 constexpr std::uint32_t kMaxSamples = 65536;
-
-/// Reads a number. All of `text` must belong to it.
-template <class T>
-bool parse_number(std::string_view text, T& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size();
-}
 
 void parse_size(const std::string& text, Film& film) {
   const std::size_t cross = text.find('x');

@@ -1,9 +1,7 @@
 #include "app/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 namespace oktett {
 
@@ -40,8 +38,7 @@ std::string duration_text(double seconds) {
 double parse_amount(std::string_view option, std::string_view text, std::string_view unit, double least,
                     double most) {
   double amount = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), amount);
-  if (error != std::errc{} || end != text.data() + text.size() || !(amount >= least && amount <= most))
+  if (!parse_number(text, amount) || !(amount >= least && amount <= most))
     throw Error(fmt::format("{}: '{}' is out of range; expected {} from {:g} to {:g}", option, text, unit,
                             least, most));
   return amount;

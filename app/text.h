@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -22,6 +24,13 @@ inline std::string bytes_text(std::uint64_t bytes) { return with_prefix(static_c
 std::string grouped(std::uint64_t value);
 /// "0.123 s", "12.3 s", "2 min 05 s", "3 h 07 min".
 std::string duration_text(double seconds);
+
+/// Reads a number. False unless all of `text` belongs to it and it is in the range of its type.
+template <class T>
+bool parse_number(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
 
 /// The number given to an option. Throws Error unless it is from `least` to `most`; the message names the
 /// option and the unit.

@@ -5,11 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <string_view>
 #include <vector>
 
+#include "app/text.h"
 #include "core/error.h"
 #include "core/suggest.h"
 
@@ -27,11 +27,8 @@ std::string_view variable(const char* name) {
 
 /// The whole number that an environment variable holds; `otherwise` if it holds none from 1 to 10000.
 int number_of(const char* name, int otherwise) {
-  const std::string_view text = variable(name);
   int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && value >= 1 && value <= 10000 ? value
-                                                                                                  : otherwise;
+  return parse_number(variable(name), value) && value >= 1 && value <= 10000 ? value : otherwise;
 }
 
 /// Lines that stay free for the progress, the times, the name of the picture and the shell's next prompt.

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <sys/random.h>
 
-#include <charconv>
-#include <system_error>
-
 #include "app/choice.h"
 #include "app/json.h"
 #include "app/number_text.h"
+#include "app/text.h"
 #include "app/view/page_files.h"
 
 namespace oktett {
@@ -28,9 +26,7 @@ std::uint64_t whole(const HttpRequest& request, const char* name) {
   const auto found = request.queries.find(name);
   const std::string text = found == request.queries.end() ? "" : found->second;
   std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size())
-    throw Error(fmt::format("{}: expected a whole number", name));
+  if (!parse_number(text, value)) throw Error(fmt::format("{}: expected a whole number", name));
   return value;
 }
 

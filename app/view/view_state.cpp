@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 #include "app/choice.h"
 #include "app/number_text.h"
+#include "app/text.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -18,8 +17,7 @@ constexpr double kFarthest = 1e15;
 
 double number(std::string_view key, std::string_view text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !(std::abs(value) <= kFarthest))
+  if (!parse_number(text, value) || !(std::abs(value) <= kFarthest))
     throw Error(fmt::format("{}: expected a number", key));
   return value;
 }
