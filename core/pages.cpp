@@ -9,7 +9,7 @@ namespace oktett {
 namespace {
 
 constexpr std::size_t kPage = 4096;
-constexpr std::size_t kLargePage = std::size_t{2} << 20;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
 /// Null if the system refuses.
 char* map_pages(std::size_t bytes) {
@@ -18,27 +18,26 @@ char* map_pages(std::size_t bytes) {
   return p == MAP_FAILED ? nullptr : static_cast<char*>(p);
 }
 
-/// Address space that begins at a multiple of kLargePage, or null.
-char* map_large_pages(std::size_t bytes) {
-  const std::size_t all = (bytes + kPage - 1) / kPage * kPage + kLargePage;
+/// Address space that begins at a multiple of kHugePage, or null. What was reserved around it is given back.
+char* map_huge_pages(std::size_t bytes) {
+  const std::size_t all = (bytes + kPage - 1) / kPage * kPage + kHugePage;
   char* const reserved = all > bytes ? map_pages(all) : nullptr;
   if (reserved == nullptr) return nullptr;
-  // What lies around it is given back.
-  const std::size_t before = -reinterpret_cast<std::uintptr_t>(reserved) % kLargePage;
-  const std::size_t after = kLargePage - before;
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(reserved) % kHugePage;
+  const std::size_t after = kHugePage - before;  // at least a page, as `before` is below kHugePage
   if (before > 0) release_pages(reserved, before);
-  if (after > 0) release_pages(reserved + all - after, after);
+  release_pages(reserved + all - after, after);
   return reserved + before;
 }
 
 }  // namespace
 
 void* reserve_pages(std::size_t bytes) {
-  const bool large = bytes >= kLargePiece;
-  char* const pages = large ? map_large_pages(bytes) : map_pages(bytes);
+  const bool huge = bytes >= kLargePiece;
+  char* const pages = huge ? map_huge_pages(bytes) : map_pages(bytes);
   if (pages == nullptr) throw std::bad_alloc();
-  // A request: where the system has no large pages left, it takes small ones.
-  if (large) madvise(pages, bytes, MADV_HUGEPAGE);
+  // Only a request: the system takes small pages where it has no huge ones.
+  if (huge) madvise(pages, bytes, MADV_HUGEPAGE);
   return pages;
 }
 

@@ -5,8 +5,8 @@
 
 namespace oktett {
 
-/// From so many bytes on, pages are asked to be of 2 MB. Rays read nodes and triangles in no order: with
-/// pages of 4 kB most reads of a large tree would wait for the address of the page as well.
+/// Arrays of at least so many bytes ask for huge pages, of 2 MB. Rays read nodes and triangles in random
+/// order; with pages of 4 kB, most reads of a large tree miss the processor's table of addresses (TLB).
 inline constexpr std::size_t kLargePiece = std::size_t{4} << 20;
 
 /// Address space for so many bytes, which read as zero. Pages are allocated when they are first written.
