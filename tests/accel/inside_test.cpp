@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "accel/point_query.h"
@@ -103,11 +105,33 @@ void check_known(const KnownShape& known, const Affine& m, std::uint64_t how, in
   }
 }
 
+/// Kinds whose shapes enclose nothing, and meshes, which have a test of their own below.
+const std::set<std::string> kNoSolids{"cylinder_open",
+                                      "cone_open",
+                                      "polynomial_barth",
+                                      "heightfield",
+                                      "heightfield_triangles",
+                                      "heightfield_nearest",
+                                      "spheres",
+                                      "disk",
+                                      "polygon",
+                                      "triangle",
+                                      "closed_mesh",
+                                      "triangle_soup"};
+
+std::vector<std::string> kinds_of_solids() {
+  std::vector<std::string> kinds;
+  for (const std::string& kind : known_kinds())
+    if (!kNoSolids.contains(kind)) kinds.push_back(kind);
+  return kinds;
+}
+
 // Every solid that a scene can hold, against its equation in extended precision.
-class InsideOfKind : public testing::TestWithParam<std::size_t> {};
+class InsideOfKind : public testing::TestWithParam<std::string> {};
 
 TEST_P(InsideOfKind, AgreesWithTheEquation) {
-  const std::size_t kind = GetParam();
+  const auto kind =
+      static_cast<std::size_t>(std::ranges::find(known_kinds(), GetParam()) - known_kinds().begin());
   std::uint64_t asked = 0, doubtful = 0;
   const int points = effort() == 1 ? 60 : 1000;
   for (std::uint64_t number = 0; number < static_cast<std::uint64_t>(8 * effort()); ++number) {
@@ -118,16 +142,17 @@ TEST_P(InsideOfKind, AgreesWithTheEquation) {
     const Affine m = Affine::translation(random.vector() * (3 * scale)) *
                      Affine::rotation(random.vector() * 180.0) * Affine::scaling({scale, scale, -scale});
     check_known(known, number % 4 == 0 ? Affine{} : m, number, points, random, asked, doubtful);
-    if (HasFatalFailure()) FAIL() << known_kinds()[kind] << "." << number;
+    if (HasFatalFailure()) FAIL() << GetParam() << "." << number;
   }
+  EXPECT_GT(asked, 0u);
   EXPECT_LE(doubtful * 1000, asked);
   if (effort() > 1)
-    std::printf("%s: %llu points, %llu within rounding of the boundary\n", known_kinds()[kind].c_str(),
+    std::printf("%s: %llu points, %llu within rounding of the boundary\n", GetParam().c_str(),
                 static_cast<unsigned long long>(asked), static_cast<unsigned long long>(doubtful));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, InsideOfKind, testing::Range<std::size_t>(0, known_kinds().size()),
-                         [](const auto& kind) { return known_kinds()[kind.param]; });
+INSTANTIATE_TEST_SUITE_P(Kinds, InsideOfKind, testing::ValuesIn(kinds_of_solids()),
+                         [](const auto& kind) { return kind.param; });
 
 // Points anywhere, and points from which the ray runs exactly, or nearly so, through corners and edges.
 TEST(Inside, OfClosedMeshesByWhereTheyWindAround) {
