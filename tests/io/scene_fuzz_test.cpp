@@ -83,8 +83,9 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
   std::sort(texts.begin(), texts.end());
   ASSERT_GE(texts.size(), 4u);
   Random random(2024);
-  int loaded = 0, refused = 0;
-  for (unsigned i = 0; i < test::cases(5000); ++i) {
+  const unsigned mutants = test::cases(5000);
+  unsigned loaded = 0, refused = 0;
+  for (unsigned i = 0; i < mutants; ++i) {
     const std::string mutant =
         mutate(texts[random.below(texts.size())], texts[random.below(texts.size())], random);
     const std::string path = dir.write("mutant.yaml", mutant);
@@ -108,8 +109,8 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
     EXPECT_EQ(has_errors, !first.empty()) << first << "\n" << mutant;
     EXPECT_TRUE(first.empty() || has_first) << first << "\n" << mutant;
   }
-  EXPECT_GT(loaded, 100);
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(loaded, mutants / 50);
+  EXPECT_GT(refused, mutants / 50);
 }
 
 }  // namespace
