@@ -44,7 +44,7 @@ class Shares {
     const FilmState& film = *file.film;
     if (parts_.empty())
       first_ = file, first_.film = std::make_shared<FilmState>(film.share(), film.added()),
-      first_.film->begin(film.plan());
+      first_.film->begin(film.plan(), film.tone());
     else
       check_picture(path, file);
     const std::uint32_t number = film.share().number;
@@ -89,7 +89,7 @@ class Shares {
     if (what.empty() && film.share().count != before.share().count)
       what = fmt::format("it is one of {} shares there and of {} here", before.share().count,
                          film.share().count);
-    if (what.empty() && !is_same_film(film.plan(), before.plan())) what = "the planes are others";
+    if (what.empty() && !(film.plan() == before.plan())) what = "the planes are others";
     if (!what.empty()) fail(path, fmt::format("does not belong to '{}': {}", other, what));
   }
 
@@ -115,11 +115,10 @@ int run_merge(const MergeArguments& arguments) {
   Shares shares(arguments.allow_missing);
   for (const std::string& path : arguments.films) shares.add(path, read_film(path));
   shares.check_complete();
-  FilmPlan plan = shares.first().film->plan();
-  plan.tone = tone_of(arguments, plan.tone);
+  const FilmPlan& plan = shares.first().film->plan();
   if (arguments.film.denoise && !plan.format.data_layers)
     throw Error("--denoise needs the data layers of films that were made for EXR files");
-  Picture picture = make_picture(plan);
+  Picture picture = make_picture(plan, tone_of(arguments, shares.first().film->tone()));
   for (const auto& [number, part] : shares.parts()) {
     const FilmFile file = read_film(part.path);
     if (!(file.film->share() == part.share)) fail(part.path, "has changed meanwhile");

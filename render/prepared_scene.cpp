@@ -91,8 +91,9 @@ void describe_world(const World& world, RenderReport& report) {
 std::vector<FinishedTile> plan_tiles(const RenderContext& context, const Picture& picture,
                                      const RenderOptions& options) {
   if (options.film == nullptr) return cut_tiles(picture.width, picture.height, options.tile_size);
-  options.film->begin({format_of(context), picture.attributes, picture.tone, context.settings.samples,
-                       context.moments != nullptr});
+  options.film->begin(
+      {format_of(context), picture.attributes, context.settings.samples, context.moments != nullptr},
+      picture.tone);
   std::vector<FinishedTile> tiles;
   for (std::size_t i = 0; i < options.film->tile_count(); ++i) tiles.push_back(options.film->tile(i));
   return tiles;

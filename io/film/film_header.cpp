@@ -113,8 +113,9 @@ std::string film_header(const FilmFile& file, std::uint32_t tiles) {
                          (file.metadata.camera ? kCamera : 0u);
   append_number(bytes, static_cast<std::uint8_t>(flags));
   append_window(bytes, plan.format);
-  append_number(bytes, static_cast<std::uint8_t>(plan.tone.kind));
-  append_number(bytes, plan.tone.exposure);
+  const Tone tone = film.tone();
+  append_number(bytes, static_cast<std::uint8_t>(tone.kind));
+  append_number(bytes, tone.exposure);
   for (const std::uint32_t x : {plan.samples, film.added(), film.share().number, film.share().count, tiles})
     append_number(bytes, x);
   append_texts(bytes, plan.format.light_groups);
@@ -136,7 +137,7 @@ std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
   if (!plan.format.data_layers && (plan.format.sample_counts || plan.format.mattes))
     throw Error("its layers cannot be");
   take_window(reader, plan.format);
-  plan.tone = take_tone(reader);
+  const Tone tone = take_tone(reader);
   plan.samples = reader.number<std::uint32_t>();
   const auto added = reader.number<std::uint32_t>(), number = reader.number<std::uint32_t>(),
              count = reader.number<std::uint32_t>(), tiles = reader.number<std::uint32_t>();
@@ -152,7 +153,7 @@ std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
   file.words = take_texts(reader);
   if (reader.left() != 0) throw Error("the header has not the length that it says");
   file.film = std::make_shared<FilmState>(FilmShare{number, count}, added);
-  file.film->begin(plan);
+  file.film->begin(plan, tone);
   return tiles;
 }
 

@@ -32,17 +32,11 @@ std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares) {
   return size;
 }
 
-bool is_same_film(const FilmPlan& a, const FilmPlan& b) {
-  return a.format == b.format && a.attributes == b.attributes && a.samples == b.samples && a.moves == b.moves;
-}
-
-void FilmState::begin(const FilmPlan& plan) {
+void FilmState::begin(const FilmPlan& plan, const Tone& tone) {
   const std::lock_guard lock(mutex_);
-  if (begun_) {
-    if (!is_same_film(plan, plan_)) throw Error("the film is of another picture");
-    plan_.tone = plan.tone;
-    return;
-  }
+  if (begun_ && !(plan == plan_)) throw Error("the film is of another picture");
+  tone_ = tone;
+  if (begun_) return;
   plan_ = plan;
   tile_size_ = tile_size_of(plan.format, share_.count);
   columns_ = tiles_along(plan.format.window.width(), tile_size_);
@@ -54,6 +48,11 @@ void FilmState::begin(const FilmPlan& plan) {
 bool FilmState::has_begun() const {
   const std::lock_guard lock(mutex_);
   return begun_;
+}
+
+Tone FilmState::tone() const {
+  const std::lock_guard lock(mutex_);
+  return tone_;
 }
 
 FinishedTile FilmState::tile(std::size_t number) const {
@@ -127,10 +126,10 @@ TileCounts render_film_tile(const RenderContext& context, FilmState& film, std::
   return counts;
 }
 
-Picture make_picture(const FilmPlan& plan) {
+Picture make_picture(const FilmPlan& plan, const Tone& tone) {
   Picture picture = make_picture(plan.format);
   picture.attributes = plan.attributes;
-  picture.tone = plan.tone;
+  picture.tone = tone;
   return picture;
 }
 

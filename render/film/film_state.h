@@ -27,13 +27,12 @@ struct FilmShare {
 struct FilmPlan {
   FilmFormat format;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< see Picture::attributes
-  Tone tone;
   std::uint32_t samples = 1;  ///< of each pixel, without those that are added
   bool moves = false;         ///< samples are added by multiples of `samples` only
-};
 
-/// Whether the sums of one picture are of use for another: all members are the same but for the tone.
-bool is_same_film(const FilmPlan& a, const FilmPlan& b);
+  /// Whether the sums of one picture are of use for the other.
+  bool operator==(const FilmPlan&) const = default;
+};
 
 /// The edge of tiles: 32 pixels, or 16 or 8 if a picture in so many shares would else have fewer than four
 /// tiles for each of them.
@@ -54,9 +53,11 @@ class FilmState {
   /// `added`: samples of each pixel beyond those of the plan.
   explicit FilmState(FilmShare share, std::uint32_t added = 0) : share_(share), added_(added) {}
 
-  /// Sets the plan. If there is one, it must be the same film; else throws Error.
-  void begin(const FilmPlan& plan);
+  /// Sets the plan and the tone. A plan that is there already stays: throws Error unless it is the same.
+  void begin(const FilmPlan& plan, const Tone& tone);
   bool has_begun() const;
+  /// How formats that store no linear light show the colours: the tone of the last begin().
+  Tone tone() const;
   // The following need a plan.
   const FilmPlan& plan() const { return plan_; }
   std::uint32_t tile_size() const { return tile_size_; }
@@ -85,9 +86,10 @@ class FilmState {
   FilmShare share_;
   std::uint32_t added_;
   std::uint32_t tile_size_ = 0;
-  FilmPlan plan_;
+  FilmPlan plan_;                       ///< never changes once the film has begun
   std::size_t columns_ = 0, rows_ = 0;  ///< of tiles
-  mutable std::mutex mutex_;
+  mutable std::mutex mutex_;            ///< for all that follows
+  Tone tone_;
   std::map<std::size_t, TileRecordPointer> records_;
   std::uint64_t version_ = 0;
   bool begun_ = false;
@@ -98,8 +100,8 @@ class FilmState {
 TileCounts render_film_tile(const RenderContext& context, FilmState& film, std::size_t tile, Picture& picture,
                             TileWorkspace& work);
 
-/// An empty picture with the plan's planes, attributes and tone.
-Picture make_picture(const FilmPlan& plan);
+/// An empty picture with the plan's planes and attributes.
+Picture make_picture(const FilmPlan& plan, const Tone& tone);
 
 /// Writes all tiles that `film` has. Throws Error for records that it cannot have.
 void write_tiles(const FilmState& film, Picture& picture);

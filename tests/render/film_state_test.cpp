@@ -8,6 +8,7 @@
 #include <bit>
 #include <random>
 #include <set>
+#include <thread>
 
 #include "core/error.h"
 #include "tests/render/test_scenes.h"
@@ -102,7 +103,7 @@ TEST(FilmState, PicturesGoOnFromAnyTiles) {
     rendered(c, &film);
     for (const unsigned percent : {0u, 30u, 70u, 100u}) {
       FilmState begun(FilmShare{});
-      begun.begin(film.plan());
+      begun.begin(film.plan(), film.tone());
       for (const auto& [number, record] : film.records())
         if (random() % 100 < percent) begun.set_record(number, *record);
       EXPECT_EQ(difference(whole, rendered(c, &begun)), "") << c.name << " from " << percent << " %";
@@ -120,7 +121,7 @@ TEST(FilmState, SharesInAnyOrderMakeThePicture) {
       rendered(c, shares.back().get());
     }
     std::shuffle(shares.begin(), shares.end(), random);
-    Picture merged = make_picture(shares.front()->plan());
+    Picture merged = make_picture(shares.front()->plan(), {});
     for (const auto& share : shares) write_tiles(*share, merged);
     EXPECT_EQ(difference(whole, merged), "") << c.name;
   }
@@ -172,7 +173,7 @@ TEST(FilmState, EachTileIsOfOneShare) {
       FilmState film(FilmShare{k, count});
       FilmPlan plan;
       plan.format.window = {3, 5, 3 + 250, 5 + 130};
-      film.begin(plan);
+      film.begin(plan, {});
       tiles = film.tile_count();
       std::size_t own = 0;
       for (std::size_t i = 0; i < tiles; ++i)
@@ -185,6 +186,24 @@ TEST(FilmState, EachTileIsOfOneShare) {
     EXPECT_LE(most - least, 1u) << count;
     EXPECT_TRUE(count == 1 || tiles >= 4 * count) << count;
   }
+}
+
+// A film that is gone on with is saved by one thread while another begins to render it, with a tone of its
+// own.
+TEST(FilmState, HasOneToneOrTheOtherWhileItBegins) {
+  const FilmPlan plan;
+  const Tone a{ToneKind::srgb, -1}, b{ToneKind::aces, 2};
+  FilmState film(FilmShare{});
+  film.begin(plan, a);
+  std::thread begins([&] {
+    for (int i = 0; i < 20000; ++i) film.begin(plan, i % 2 == 0 ? b : a);
+  });
+  for (int i = 0; i < 20000; ++i) {
+    const Tone tone = film.tone();
+    EXPECT_TRUE(tone == a || tone == b);
+  }
+  begins.join();
+  EXPECT_EQ(film.tone(), a);
 }
 
 TEST(FilmState, AnotherPlanIsRefused) {
@@ -220,7 +239,7 @@ TEST(TileSums, DamagedBytesAreSafe) {
     const std::size_t pixels = std::size_t{tile.width} * tile.height;
     const std::string bytes = film.record(number)->bytes;
     EXPECT_THROW(decode_tile(format, pixels, bytes + '\0'), Error);
-    Picture picture = make_picture(film.plan());
+    Picture picture = make_picture(film.plan(), {});
     for (int i = 0; i < 300; ++i) {
       std::string damaged = bytes;
       if (i % 3 == 0) {
