@@ -2,30 +2,81 @@
 /// \file Four floats side by side for code that is compiled once, for the baseline.
 ///
 /// Made from the compiler's vectors, which exist on all targets and give the same bits as floats alone. They
-/// have the operators of floats; `mask ? a : b` chooses by lane. Code per instruction set uses core/simd.h.
+/// have the names of Simd<float, 4, A>, so that templates take either. Code per instruction set uses
+/// core/simd.h.
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "core/platform.h"
 
 namespace oktett {
 
-using Four = float __attribute__((vector_size(16)));
+/// True or false in each of four lanes.
+struct FourMask {
+  using Lanes = std::int32_t __attribute__((vector_size(16)));
+  Lanes lanes;  ///< 0 or -1
 
-inline Four four(float x) { return Four{x, x, x, x}; }
-inline Four four(const float (&x)[4]) { return Four{x[0], x[1], x[2], x[3]}; }
+  OKTETT_INLINE friend FourMask operator&(const FourMask& a, const FourMask& b) {
+    return {a.lanes & b.lanes};
+  }
+  OKTETT_INLINE friend FourMask operator|(const FourMask& a, const FourMask& b) {
+    return {a.lanes | b.lanes};
+  }
+  OKTETT_INLINE friend FourMask operator~(const FourMask& a) { return {~a.lanes}; }
+};
 
+OKTETT_INLINE bool any(const FourMask& m) { return (m.lanes[0] | m.lanes[1] | m.lanes[2] | m.lanes[3]) != 0; }
+
+struct Four {
+  static constexpr int kWidth = 4;
+  using Lanes = float __attribute__((vector_size(16)));
+  using M = FourMask;
+  Lanes lanes;
+
+  OKTETT_INLINE Four() = default;
+  OKTETT_INLINE Four(Lanes v) : lanes(v) {}
+  OKTETT_INLINE Four(float x) : lanes{x, x, x, x} {}
+  OKTETT_INLINE static Four load(const float* p) {
+    Four v;
+    std::memcpy(&v.lanes, p, sizeof(v.lanes));
+    return v;
+  }
+  OKTETT_INLINE void store(float* p) const { std::memcpy(p, &lanes, sizeof(lanes)); }
+
+  OKTETT_INLINE friend Four operator+(const Four& a, const Four& b) { return a.lanes + b.lanes; }
+  OKTETT_INLINE friend Four operator-(const Four& a, const Four& b) { return a.lanes - b.lanes; }
+  OKTETT_INLINE friend Four operator*(const Four& a, const Four& b) { return a.lanes * b.lanes; }
+  OKTETT_INLINE friend Four operator/(const Four& a, const Four& b) { return a.lanes / b.lanes; }
+  OKTETT_INLINE friend Four operator-(const Four& a) { return -a.lanes; }
+  OKTETT_INLINE friend M operator<(const Four& a, const Four& b) { return {a.lanes < b.lanes}; }
+  OKTETT_INLINE friend M operator>(const Four& a, const Four& b) { return {a.lanes > b.lanes}; }
+};
+
+OKTETT_INLINE Four select(const FourMask& m, const Four& a, const Four& b) {
+  return m.lanes ? a.lanes : b.lanes;
+}
 /// The lesser and the greater lane by lane; the second where either is NaN.
-inline Four min(Four a, Four b) { return a < b ? a : b; }
-inline Four max(Four a, Four b) { return a > b ? a : b; }
-inline Four min(Four a, float b) { return min(a, four(b)); }
-inline Four max(Four a, float b) { return max(a, four(b)); }
-
-inline Four magnitude(Four a) { return a < 0 ? -a : a; }
+OKTETT_INLINE Four min(const Four& a, const Four& b) { return select(a < b, a, b); }
+OKTETT_INLINE Four max(const Four& a, const Four& b) { return select(a > b, a, b); }
+OKTETT_INLINE Four abs(const Four& a) {
+  constexpr std::int32_t kBits = 0x7fffffff;
+  const FourMask::Lanes all{kBits, kBits, kBits, kBits};
+  FourMask::Lanes bits;
+  std::memcpy(&bits, &a.lanes, sizeof(bits));
+  bits &= all;
+  Four v;
+  std::memcpy(&v.lanes, &bits, sizeof(bits));
+  return v;
+}
 /// Correctly rounded.
-inline Four square_root(Four a) {
+OKTETT_INLINE Four sqrt(const Four& a) {
 #if defined(__SSE__)
-  return __builtin_ia32_sqrtps(a);
+  return __builtin_ia32_sqrtps(a.lanes);
 #else
-  return Four{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+  return Four::Lanes{std::sqrt(a.lanes[0]), std::sqrt(a.lanes[1]), std::sqrt(a.lanes[2]),
+                     std::sqrt(a.lanes[3])};
 #endif
 }
 

@@ -1,10 +1,16 @@
 #include "render/isa/light_code.h"
 
+#include "render/isa/light_choices.h"
+
 namespace oktett {
 
 template <class A>
 LightCode light_code() {
-  return {{map_values_code<A>}, map_samples_code<A>, rectangle_samples_code<A>, sphere_samples_code<A>};
+  return {choose_lights_code<A>,
+          {map_values_code<A>},
+          map_samples_code<A>,
+          rectangle_samples_code<A>,
+          sphere_samples_code<A>};
 }
 
 template LightCode light_code<OKTETT_ISA>();

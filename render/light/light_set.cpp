@@ -51,32 +51,36 @@ LightSet::Choice LightSet::choose_distant(double of_tree, double choice) const {
   return {distant_[i], (1 - of_tree) * (distant_irradiances_[i] / total), true};
 }
 
-void LightSet::choose(std::span<const LightPoint> points, const double* choices, Choice* out) const {
+void LightSet::choose(ChooseLights code, std::span<const LightPoint> points, const double* choices,
+                      SquareSample* s, Choice* out) const {
   constexpr std::size_t kMost = EnvironmentValues::kMost;
   LightPoint near[kMost];
-  double u[kMost], of_tree[kMost];
+  SquareSample rest[kMost];
+  double of_tree[kMost];
   std::size_t entry[kMost], count = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     out[k] = {0, 0, false};
     if (empty()) continue;
     const double share = tree_probability(points[k]);
-    if (choices[k] < share) {
-      near[count] = points[k], u[count] = choices[k] / share, of_tree[count] = share, entry[count++] = k;
-    } else {
+    if (!(choices[k] < share))
       out[k] = choose_distant(share, choices[k]);
-    }
+    else if (tree_.size() == 1)
+      out[k] = placed({0, 1}, share);
+    else
+      near[count] = points[k], rest[count] = s[k], of_tree[count] = share, entry[count++] = k;
   }
   if (count == 0) return;
   LightTree::Choice chosen[kMost];
-  tree_.choose({near, count}, u, chosen);
+  code(tree_, {near, count}, rest, chosen);
   for (std::size_t i = 0; i < count; ++i)
-    out[entry[i]] = {placed_[chosen[i].index], chosen[i].probability * of_tree[i], false};
+    out[entry[i]] = placed(chosen[i], of_tree[i]), s[entry[i]] = rest[i];
 }
 
-std::optional<LightSet::Choice> LightSet::choose(const LightPoint& point, double choice) const {
-  Choice chosen;
-  choose({&point, 1}, &choice, &chosen);
-  return chosen.probability > 0 ? std::optional(chosen) : std::nullopt;
+std::optional<LightSet::Choice> LightSet::choose(const LightPoint& point, double choice,
+                                                 SquareSample& s) const {
+  if (empty()) return std::nullopt;
+  const double share = tree_probability(point);
+  return choice < share ? placed(*tree_.choose(point, s), share) : choose_distant(share, choice);
 }
 
 std::optional<LightSample> LightSet::sample(const LightPoint& point, const Choice& chosen,
@@ -95,8 +99,9 @@ std::optional<LightSample> LightSet::sample(const LightPoint& point, const Choic
 
 std::optional<LightSample> LightSet::sample(const LightPoint& point, double choice,
                                             const SquareSample& s) const {
-  const auto chosen = choose(point, choice);
-  return chosen ? sample(point, *chosen, s) : std::nullopt;
+  SquareSample rest = s;
+  const auto chosen = choose(point, choice, rest);
+  return chosen ? sample(point, *chosen, rest) : std::nullopt;
 }
 
 double LightSet::distant_probability(std::uint32_t emitter) const {

@@ -42,10 +42,10 @@ class LightSet {
   /// True if sample() never finds anything.
   bool empty() const { return tree_.empty() && distant_.empty(); }
 
-  /// A light that may reach the point. The emitter is chosen by `choice` in [0, 1), which should have many
-  /// random bits if there are many emitters, and the direction by `s`. Nothing if there is no light, or if
-  /// the chosen emitter cannot light the point; that happens although others can, and counts as a sample that
-  /// is black.
+  /// A light that may reach the point. `choice` in [0, 1) decides between emitters that have a place and
+  /// others, and among these; `s` decides among the former, and for the direction. Nothing if there is no
+  /// light, or if the chosen emitter cannot light the point; that happens although others can, and counts as
+  /// a sample that is black.
   std::optional<LightSample> sample(const LightPoint& point, double choice, const SquareSample& s) const;
 
   /// The same in two steps, of which the second may be done for many points together.
@@ -54,9 +54,11 @@ class LightSet {
     double probability;  ///< of choosing it
     bool distant;        ///< it has no place
   };
-  std::optional<Choice> choose(const LightPoint& point, double choice) const;
+  /// What the choice leaves of `s` is spread evenly over the unit square again.
+  std::optional<Choice> choose(const LightPoint& point, double choice, SquareSample& s) const;
   /// The same for up to 64 points. Where nothing is chosen the probability is 0.
-  void choose(std::span<const LightPoint> points, const double* choices, Choice* out) const;
+  void choose(ChooseLights code, std::span<const LightPoint> points, const double* choices, SquareSample* s,
+              Choice* out) const;
   std::optional<LightSample> sample(const LightPoint& point, const Choice& chosen,
                                     const SquareSample& s) const;
 
@@ -86,6 +88,9 @@ class LightSet {
   /// The probability of choosing the tree.
   double tree_probability(const LightPoint& point) const;
 
+  Choice placed(const LightTree::Choice& chosen, double of_tree) const {
+    return {placed_[chosen.index], chosen.probability * of_tree, false};
+  }
   Choice choose_distant(double of_tree, double choice) const;
   /// The probability of a distant emitter among these.
   double distant_probability(std::uint32_t emitter) const;

@@ -1,11 +1,14 @@
 /// \file Building a LightTree top-down by the surface area orientation heuristic.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "core/error.h"
 #include "core/math.h"
 #include "core/parallel.h"
 #include "render/light/light_tree.h"
@@ -44,6 +47,13 @@ struct Split {
   int axis = -1;   ///< -1: none
   int bucket = 0;  ///< the last one on the left
 };
+
+/// The first `count` items of a range are on the left along `axis`; kNoAxis if that is not so.
+struct Division {
+  std::uint32_t count;
+  int axis;
+};
+constexpr int kNoAxis = 3;
 
 }  // namespace
 
@@ -119,21 +129,28 @@ static Split best_split(std::span<const Item> items, const Box& centers) {
   return best;
 }
 
-/// Moves the items left of the split to the front; returns their number, at least 1 and not all.
-static std::uint32_t divide(std::span<Item> items, std::uint32_t depth) {
+/// Moves the items left of the split to the front: at least one and not all.
+static Division divide(std::span<Item> items, std::uint32_t depth) {
   const auto half = static_cast<std::uint32_t>(items.size() / 2);
-  if (depth >= kDepthOfSplits || items.size() == 2) return half;
+  if (depth >= kDepthOfSplits) return {half, kNoAxis};
   const Box centers = box_of_centers(items);
+  if (items.size() == 2) {
+    const Vec3f e = centers.extent();
+    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+    if (items[0].bounds.box.center()[axis] > items[1].bounds.box.center()[axis])
+      std::swap(items[0], items[1]);
+    return {1, axis};
+  }
   const Split split = best_split(items, centers);
-  if (split.axis < 0) return half;
+  if (split.axis < 0) return {half, kNoAxis};
   const float lo = centers.lo[split.axis], scale = bucket_scale(centers, split.axis);
-  std::size_t count = 0;
+  std::uint32_t count = 0;
   for (Item& item : items) {
     if (bucket_of(item.bounds.box.center()[split.axis], lo, scale) > split.bucket) continue;
     if (&item != &items[count]) std::swap(item, items[count]);
     ++count;
   }
-  return static_cast<std::uint32_t>(count);
+  return {count, split.axis};
 }
 
 namespace {
@@ -143,6 +160,7 @@ struct BinaryNode {
   LightBounds bounds;
   std::uint32_t next;  ///< leaf: index of the emitter; else: the right child
   bool leaf;
+  int axis = kNoAxis;  ///< along which the left child lies before the right one
 };
 
 }  // namespace
@@ -154,16 +172,15 @@ static void build_binary(std::span<Item> items, BinaryNode* nodes, std::uint32_t
     *nodes = {items[0].bounds, items[0].index, true};
     return;
   }
-  const std::uint32_t count = divide(items, depth), right = 2 * count;
-  const auto build_left = [&] { build_binary(items.first(count), nodes + 1, first + 1, depth + 1); };
-  const auto build_right = [&] {
-    build_binary(items.subspan(count), nodes + right, first + right, depth + 1);
-  };
+  const Division division = divide(items, depth);
+  const std::uint32_t n = division.count, right = 2 * n;
+  const auto build_left = [&] { build_binary(items.first(n), nodes + 1, first + 1, depth + 1); };
+  const auto build_right = [&] { build_binary(items.subspan(n), nodes + right, first + right, depth + 1); };
   if (items.size() > kLongRange)
     run_both(build_left, build_right);
   else
     build_left(), build_right();
-  *nodes = {join(nodes[1].bounds, nodes[right].bounds), first + right, false};
+  *nodes = {join(nodes[1].bounds, nodes[right].bounds), first + right, false, division.axis};
 }
 
 /// How much is gained by looking at the children of a node instead of the node.
@@ -175,40 +192,74 @@ static float coarseness(const LightBounds& b) {
 /// Makes quads of the binary tree.
 class LightTree::Builder {
  public:
-  Builder(LightTree& tree, const std::vector<BinaryNode>& nodes) : tree_(tree), nodes_(nodes) {}
+  /// `wide` is the extent of the centres of all emitters: its two widest axes have a random number each.
+  Builder(LightTree& tree, const std::vector<BinaryNode>& nodes, const Vec3f& wide)
+      : tree_(tree), nodes_(nodes) {
+    const int least = wide.y <= wide.x && wide.y <= wide.z ? 1 : wide.z <= wide.x ? 2 : 0;
+    axis_dimension_[(least + 1) % 3] = 0, axis_dimension_[(least + 2) % 3] = 1;
+  }
 
-  /// Adds the quad whose children are the descendants of `node`, and all quads below.
-  void add_quad(std::uint32_t node, std::uint32_t parent) {
-    std::uint32_t children[kLanes] = {node}, count = 1;
-    while (count < kLanes) {
-      // The coarsest child makes room for its own children.
-      std::uint32_t opened = kLanes;
-      for (std::uint32_t i = 0; i < count; ++i) {
-        if (nodes_[children[i]].leaf) continue;
-        if (opened == kLanes ||
-            coarseness(nodes_[children[i]].bounds) > coarseness(nodes_[children[opened]].bounds))
-          opened = i;
-      }
-      if (opened == kLanes) break;
-      children[count++] = nodes_[children[opened]].next;
-      ++children[opened];
-    }
+  /// Adds the quad whose children are the descendants of `node`, and all quads below. `last` is the random
+  /// number that was used last on the way to it.
+  void add_quad(std::uint32_t node, std::uint32_t parent, std::uint32_t last) {
+    const Row row = open(node, last);
     const auto number = static_cast<std::uint32_t>(tree_.quads_.size());
     tree_.quads_.emplace_back();
     tree_.parents_.push_back(parent);
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const BinaryNode& child = nodes_[children[lane]];
+    for (std::uint32_t lane = 0; lane < row.count; ++lane) {
+      const BinaryNode& child = nodes_[row.node[lane]];
       write(child, tree_.quads_[number], lane);
       if (child.leaf)
         tree_.slots_[child.next] = 4 * number + lane;
       else
-        add_quad(children[lane], 4 * number + lane);
+        add_quad(row.node[lane], 4 * number + lane, row.last[lane]);
     }
+    for (std::uint32_t k = 0; k + 1 < row.count; ++k)
+      tree_.quads_[number].child[k] |= row.boundary[k] << 28 | row.dimension[k] << 30;
   }
 
  private:
+  static constexpr std::uint32_t kLanes = LightQuad::kLanes;
+
+  /// Children of a quad, and the decisions that lead to them.
+  struct Row {
+    std::uint32_t node[kLanes], last[kLanes], count = 1;
+    std::uint32_t boundary[kLanes - 1], dimension[kLanes - 1];
+  };
+
+  Row open(std::uint32_t node, std::uint32_t last) const {
+    Row row;
+    row.node[0] = node, row.last[0] = last;
+    while (row.count < kLanes) {
+      // The coarsest child makes room for its own children.
+      std::uint32_t opened = kLanes;
+      for (std::uint32_t i = 0; i < row.count; ++i) {
+        if (nodes_[row.node[i]].leaf) continue;
+        if (opened == kLanes ||
+            coarseness(nodes_[row.node[i]].bounds) > coarseness(nodes_[row.node[opened]].bounds))
+          opened = i;
+      }
+      if (opened == kLanes) break;
+      for (std::uint32_t k = 0; k + 1 < row.count; ++k)
+        if (row.boundary[k] > opened) ++row.boundary[k];
+      for (std::uint32_t i = row.count; i > opened + 1; --i)
+        row.node[i] = row.node[i - 1], row.last[i] = row.last[i - 1];
+      const BinaryNode& wide = nodes_[row.node[opened]];
+      const std::uint32_t dimension = dimension_of(wide.axis, row.last[opened]);
+      row.boundary[row.count - 1] = opened + 1, row.dimension[row.count - 1] = dimension;
+      row.node[opened + 1] = wide.next, ++row.node[opened];
+      row.last[opened] = row.last[opened + 1] = dimension;
+      ++row.count;
+    }
+    return row;
+  }
+
+  std::uint32_t dimension_of(int axis, std::uint32_t last) const {
+    return axis != kNoAxis && axis_dimension_[axis] != kEither ? axis_dimension_[axis] : 1 - last;
+  }
+
   /// Writes a child, apart from its own quad, which is the next one.
-  void write(const BinaryNode& child, Quad& quad, std::uint32_t lane) const {
+  void write(const BinaryNode& child, LightQuad& quad, std::uint32_t lane) const {
     const LightBounds& bounds = child.bounds;
     const Vec3f center = bounds.box.center(), axis = normalize(bounds.axis);
     const Vec3d half = max(Vec3d(bounds.box.hi) - Vec3d(center), Vec3d(center) - Vec3d(bounds.box.lo));
@@ -218,24 +269,30 @@ class LightTree::Builder {
     quad.sin_spread[lane] = cos_spread > 0 ? std::sqrt(std::max(1 - cos_spread * cos_spread, 0.0f)) : 1;
     const double limit = std::min(double{bounds.spread} + bounds.reach, std::numbers::pi);
     quad.cos_limit[lane] = static_cast<float>(portable::cos(limit));
-    quad.power[lane] = bounds.power;
+    quad.power[lane] = bounds.both_sides ? -bounds.power : bounds.power;
     const auto next = child.leaf ? child.next : static_cast<std::uint32_t>(tree_.quads_.size());
-    quad.child[lane] = 4 * next + (child.leaf ? kLeaf : 0) + (bounds.both_sides ? kBothSides : 0);
+    quad.child[lane] = 2 * next + (child.leaf ? LightQuad::kLeaf : 0);
   }
+
+  static constexpr std::uint32_t kEither = 2;
 
   LightTree& tree_;
   const std::vector<BinaryNode>& nodes_;
+  std::uint32_t axis_dimension_[3] = {kEither, kEither, kEither};  ///< per axis
 };
 
 LightTree::LightTree(std::span<const LightBounds> emitters) {
   if (emitters.empty()) return;
+  if (emitters.size() > LightQuad::kMostNumbers)
+    throw Error(fmt::format("{} lamps; at most {} can be sampled", emitters.size(), LightQuad::kMostNumbers));
   std::vector<Item> items(emitters.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = make_item(emitters[i], i);
+  const Vec3f wide = box_of_centers(items).extent();
   std::vector<BinaryNode> nodes(2 * items.size() - 1);
   build_binary(items, nodes.data(), 0, 0);
   quads_.reserve(items.size() / 2 + 1);
   slots_.resize(items.size());
-  Builder(*this, nodes).add_quad(0, kRoot);
+  Builder(*this, nodes, wide).add_quad(0, kRoot, 1);
   quads_.shrink_to_fit();
 }
 

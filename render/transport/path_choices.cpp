@@ -24,7 +24,6 @@ SquareSample Choices::point(Decision decision) const { return sobol_point(sample
 
 std::optional<LightSample> choose_light(const RenderContext& context, const LightPoint& from,
                                         const Choices& choices) {
-  // A single number of 24 bits is too coarse for millions of lights.
   const double which = choices.point(Decision::light).x;
   return context.sampled->set().sample(from, which, choices.point(Decision::light_place));
 }

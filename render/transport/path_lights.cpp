@@ -18,15 +18,18 @@ class LightSampler {
   void add(const std::uint32_t* entry, const bool* front_only, std::size_t count) {
     LightPoint from[kMost];
     double choices[kMost] = {};
+    SquareSample places[kMost];
     LightSet::Choice chosen[kMost];
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t k = entry[i];
       from[i] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k), front_only[i]};
-      choices[i] = c_.light[k];
+      choices[i] = c_.light[k], places[i] = {c_.light_x[k], c_.light_y[k]};
     }
-    set_.choose({from, count}, choices, chosen);
-    for (std::size_t i = 0; i < count; ++i)
+    set_.choose(render_code(context_.isa).lights.choose, {from, count}, choices, places, chosen);
+    for (std::size_t i = 0; i < count; ++i) {
+      c_.light_x[entry[i]] = places[i].x, c_.light_y[entry[i]] = places[i].y;
       if (chosen[i].probability > 0) add(entry[i], from[i], chosen[i]);
+    }
   }
 
   void finish() {

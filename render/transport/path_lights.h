@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "render/context.h"
+#include "render/light/light_tree.h"
 #include "render/transport/path_block.h"
 
 namespace oktett {
@@ -27,6 +28,7 @@ struct LightGroup {
 
 /// Code that samples the lights of groups.
 struct LightCode {
+  ChooseLights choose;
   MapCode map;
   void (*map_samples)(const EnvironmentTables&, LightGroup&);
   void (*rectangle_samples)(LightGroup&);

@@ -7,7 +7,9 @@
 #include <functional>
 #include <vector>
 
+#include "core/isa.h"
 #include "render/light/light_set.h"
+#include "render/transport/render_code.h"
 #include "tests/render/light_checks.h"
 #include "tests/render/test_scenes.h"
 
@@ -152,10 +154,11 @@ TEST(ManyLamps, AreChosenWithTheirProbabilities) {
     EXPECT_NEAR(sum, 1, 1e-9);
     const std::vector<LightPoint> same(kTogether, point);
     for (int round = 0; round < kRounds; ++round) {
-      double u[kTogether];
+      const double u[kTogether] = {};
+      SquareSample s[kTogether];
       LightSet::Choice chosen[kTogether];
-      for (double& x : u) x = random();
-      lights.choose(same, u, chosen);
+      for (SquareSample& x : s) x = random.square();
+      lights.choose(render_code(default_isa()).lights.choose, same, u, s, chosen);
       for (const LightSet::Choice& c : chosen) {
         ASSERT_EQ(c.probability, lights.probability(point, c.emitter));
         ++counted[c.emitter];

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/isa.h"
 #include "render/light/emitter.h"
+#include "render/transport/render_code.h"
 #include "tests/render/light_checks.h"
 
 namespace oktett {
@@ -94,13 +96,114 @@ TEST(LightTree, ChoosesAsOftenAsTheProbabilitySays) {
     std::vector<double> expected(kCount), counted(kCount);
     for (std::uint32_t j = 0; j < kCount; ++j) expected[j] = tree.probability(point, j) * kChoices;
     for (int j = 0; j < kChoices; ++j) {
-      const auto choice = tree.choose(point, random());
+      SquareSample s = random.square();
+      const auto choice = tree.choose(point, s);
       ASSERT_TRUE(choice);
       ASSERT_EQ(choice->probability, tree.probability(point, choice->index));
       ++counted[choice->index];
     }
     EXPECT_LT(chi_squared(expected, counted), 4);
   }
+}
+
+/// Chooses for all points by the code of a set, and expects what choose() answers for each alone.
+void expect_same_choices(const LightTree& tree, const std::vector<LightPoint>& points, Isa isa) {
+  Random random(points.size());
+  std::vector<SquareSample> samples(points.size());
+  for (SquareSample& s : samples) s = random.square();
+  std::vector<SquareSample> rest = samples;
+  std::vector<LightTree::Choice> chosen(points.size());
+  render_code(isa).lights.choose(tree, points, rest.data(), chosen.data());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto alone = tree.choose(points[i], samples[i]);
+    ASSERT_TRUE(alone);
+    ASSERT_EQ(chosen[i].index, alone->index) << to_string(isa) << ' ' << i;
+    ASSERT_EQ(chosen[i].probability, alone->probability) << to_string(isa) << ' ' << i;
+    ASSERT_EQ(rest[i].x, samples[i].x) << to_string(isa) << ' ' << i;
+    ASSERT_EQ(rest[i].y, samples[i].y) << to_string(isa) << ' ' << i;
+  }
+}
+
+TEST(LightTree, AllSetsChooseTheSame) {
+  for (const std::size_t count : {1, 2, 3, 4, 5, 17, 500}) {
+    const LightTree tree(bounds_of(mixed_emitters(count, 10, count)));
+    Random random(count);
+    // Fewer points than walks that run together, as many, and more.
+    for (const std::size_t size : {1, 2, 3, 15, 16, 17, 64, 500}) {
+      std::vector<LightPoint> points;
+      while (points.size() < size) points.push_back(random_point(random, 10));
+      for (const Isa isa : available_isas()) expect_same_choices(tree, points, isa);
+    }
+  }
+}
+
+// Nothing can be lit, sums overflow, and points lie in the middle of emitters.
+TEST(LightTree, AllSetsChooseTheSameInBadCases) {
+  std::vector<Emitter> back, strong;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3f p{static_cast<float>(i % 7), static_cast<float>(i / 7), 0};
+    back.emplace_back(DiskEmitter{p, {0, 0, 1}, 0.1f, {1, 1, 1}});
+    strong.emplace_back(PointEmitter{p, Color{1, 1, 1} * 1e38f});
+  }
+  std::vector<LightPoint> points;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3f at{static_cast<float>(i % 5), static_cast<float>(i / 5), 0};
+    points.push_back({at - Vec3f{0, 0, i % 2 == 0 ? 3.0f : 0.0f}, {0, 0, -1}, true});
+    points.push_back({at * 1e30f, {}, false});
+    points.push_back({at * 1e-30f, {0, 1, 0}, i % 3 == 0});
+  }
+  for (const Isa isa : available_isas()) {
+    expect_same_choices(LightTree(bounds_of(back)), points, isa);
+    expect_same_choices(LightTree(bounds_of(strong)), points, isa);
+  }
+}
+
+// Lamps in a plane, all as strong as each other at a far point: equal parts of the square choose them, in
+// their places. So points spread evenly over the square are spread evenly over the lamps.
+TEST(LightTree, MapsTheSquareToLampsInAPlane) {
+  constexpr std::uint32_t kSide = 16;
+  for (int flat = 0; flat < 3; ++flat) {
+    const int across = (flat + 1) % 3, along = (flat + 2) % 3;
+    std::vector<LightBounds> bounds;
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+      Vec3f p;
+      p[across] = static_cast<float>(i % kSide), p[along] = static_cast<float>(i / kSide);
+      bounds.push_back(*light_bounds(PointEmitter{p, {1, 1, 1}}));
+    }
+    const LightTree tree(bounds);
+    LightPoint point;
+    point.position[flat] = 1e5f;
+    for (std::uint32_t i = 0; i < bounds.size(); ++i) {
+      SquareSample s{(i % kSide + 0.25) / kSide, (i / kSide + 0.75) / kSide};
+      const auto choice = tree.choose(point, s);
+      ASSERT_EQ(choice->index, i) << flat;
+      ASSERT_NEAR(s.x, 0.25, 0.01);
+      ASSERT_NEAR(s.y, 0.75, 0.01);
+    }
+  }
+}
+
+// What a choice leaves of its numbers chooses the place on the emitter: each part of the square is as likely
+// as any other, whichever emitter is chosen.
+TEST(LightTree, LeavesNumbersThatAreUniform) {
+  constexpr std::size_t kCount = 25, kParts = 4;
+  constexpr int kChoices = 400000;
+  const LightTree tree(bounds_of(mixed_emitters(kCount, 3, 5)));
+  Random random(9);
+  const LightPoint point = random_point(random, 3);
+  std::vector<double> counted(kCount * kParts * kParts), expected;
+  for (int i = 0; i < kChoices; ++i) {
+    SquareSample s = random.square();
+    const auto choice = tree.choose(point, s);
+    ASSERT_TRUE(s.x >= 0 && s.x < 1 && s.y >= 0 && s.y < 1);
+    const auto part =
+        static_cast<std::size_t>(s.x * kParts) * kParts + static_cast<std::size_t>(s.y * kParts);
+    ++counted[choice->index * kParts * kParts + part];
+  }
+  for (std::uint32_t j = 0; j < kCount; ++j)
+    expected.insert(expected.end(), kParts * kParts,
+                    tree.probability(point, j) * kChoices / (kParts * kParts));
+  EXPECT_LT(chi_squared(expected, counted), 4);
 }
 
 // Points in and out of boxes, near and far, of either orientation; a point on the emitter, too.
@@ -156,7 +259,8 @@ TEST(LightTree, LeavesOutWhatIsBehindAnOpaqueSurfaceOnly) {
 TEST(LightTree, HoldsNoEmitters) {
   const LightTree tree(std::vector<LightBounds>{});
   EXPECT_TRUE(tree.empty());
-  EXPECT_FALSE(tree.choose({}, 0.5));
+  SquareSample s{0.5, 0.5};
+  EXPECT_FALSE(tree.choose({}, s));
   EXPECT_EQ(tree.importance({}), 0);
 }
 
@@ -181,7 +285,8 @@ TEST(LightTree, StaysShallowEnoughForItsTrails) {
   Random random(1);
   for (int i = 0; i < 100; ++i) {
     const LightPoint point{{static_cast<float>(std::exp(random.between(-80, 80))), 0, 1e-3f}, {}};
-    const auto choice = tree.choose(point, random());
+    SquareSample s = random.square();
+    const auto choice = tree.choose(point, s);
     ASSERT_EQ(choice->probability, tree.probability(point, choice->index));
     double sum = 0;
     for (std::uint32_t j = 0; j < bounds.size(); ++j) sum += tree.probability(point, j);
@@ -209,7 +314,8 @@ TEST(LightTree, HoldsAMillionEmitters) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const LightPoint point = random_point(random, 100);
-    const auto choice = tree.choose(point, random());
+    SquareSample s = random.square();
+    const auto choice = tree.choose(point, s);
     ASSERT_TRUE(choice);
     ASSERT_EQ(choice->probability, tree.probability(point, choice->index));
   }
@@ -222,8 +328,8 @@ TEST(LightTree, IsTheSameForEveryBuild) {
   Random random(4);
   for (int i = 0; i < 10000; ++i) {
     const LightPoint point = random_point(random, 100);
-    const double u = random();
-    const auto a = tree.choose(point, u), b = again.choose(point, u);
+    SquareSample s = random.square(), t = s;
+    const auto a = tree.choose(point, s), b = again.choose(point, t);
     ASSERT_EQ(a->index, b->index);
     ASSERT_EQ(a->probability, b->probability);
   }
