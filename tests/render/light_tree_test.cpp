@@ -45,13 +45,15 @@ std::vector<Emitter> mixed_emitters(std::size_t count, double size, std::uint64_
         all.emplace_back(SpotEmitter{p, random.direction(), color, inner, outer});
       }
     }
+    // Far from the origin, rounding leaves no area of small triangles.
+    if (!light_bounds(all.back())) all.pop_back();
   }
   return all;
 }
 
 std::vector<LightBounds> bounds_of(const std::vector<Emitter>& emitters) {
   std::vector<LightBounds> bounds;
-  for (const Emitter& e : emitters) bounds.push_back(*light_bounds(e));
+  for (const Emitter& e : emitters) bounds.push_back(light_bounds(e).value());
   return bounds;
 }
 
@@ -143,7 +145,7 @@ TEST(LightTree, AllSetsChooseTheSameInBadCases) {
   for (int i = 0; i < 40; ++i) {
     const Vec3f p{static_cast<float>(i % 7), static_cast<float>(i / 7), 0};
     back.emplace_back(DiskEmitter{p, {0, 0, 1}, 0.1f, {1, 1, 1}});
-    strong.emplace_back(PointEmitter{p, Color{1, 1, 1} * 1e38f});
+    strong.emplace_back(PointEmitter{p, Color{1, 1, 1} * 1e37f});
   }
   std::vector<LightPoint> points;
   for (int i = 0; i < 40; ++i) {
