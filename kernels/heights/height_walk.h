@@ -32,7 +32,8 @@ struct HeightSearch {
     wanted = wanted & (from <= to);
   }
 
-  /// A cell, passed as `p` says.
+  /// A cell, passed as `p` says. Cells that lines enter behind their ends are left out: crossings before
+  /// these cells may have been left out, too.
   template <class T>
   OKTETT_INLINE void look(const GridCell<T>& cell, const M& lanes, const CellPassage<D>& p) {
     CellCrossings<D> c;
@@ -40,7 +41,7 @@ struct HeightSearch {
       step_crossings(g, cell, p, c);
     else
       patch_crossings(grid.interpolation(), g, cell, p, c);
-    const M here = lanes & p.passes;
+    const M here = lanes & p.passes & (p.in <= to);
     for (int k = 0; k < 2; ++k) {
       const M found = here & c.found[k] & (begin < c.t[k]);
       if constexpr (K > 1) left_out = select(found & (list.count == D(K)), c.t[k], left_out);

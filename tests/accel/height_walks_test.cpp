@@ -333,4 +333,42 @@ TEST(HeightWalks, RaysEnd) {
 }
 
 }  // namespace
+/// The first of all hits, if it is not beyond the end of the ray.
+float first_before(const std::vector<Hit>& all, float end) {
+  return !all.empty() && all[0].t <= end ? all[0].t : kInf;
+}
+
+// A ray that ends between two crossings has looked at some cells behind its end, but not at all. What it has
+// found there must not tell whether it starts inside.
+TEST(HeightWalks, EndsOfRaysDoNotMoveTheStart) {
+  for (const Interpolation interpolation : kAll)
+    for (const HeightWalk walk : kWalks)
+      for (const bool closed : {false, true}) {
+        HeightFieldShape s = rough(13, 15, interpolation, 9);
+        if (closed) s = solid(s, -2);
+        s.walk = walk;
+        const auto accel = accel_of(s);
+        std::vector<Ray> rays;
+        std::vector<float> expected;
+        for (std::uint32_t i = 0; i < test::cases(3000); ++i) {
+          const Vec3f from = random_point(2 * i, {20, 12, 20});
+          Ray ray{from, 0, random_point(2 * i + 1, {6, 9, 7}) - from, kInf};
+          std::vector<Hit> all;
+          all_hits(*accel, ray, all);
+          for (float end = 0.05f; end < 2; end *= 1.1f) {
+            ray.tmax = end, rays.push_back(ray), expected.push_back(first_before(all, end));
+          }
+        }
+        for (const Isa isa : available_isas()) {
+          std::vector<Hit> hits(rays.size());
+          closest_hit(*accel, rays, hits, isa);
+          for (std::size_t i = 0; i < rays.size(); ++i)
+            ASSERT_EQ(hits[i].valid() ? hits[i].t : kInf, expected[i])
+                << "interpolation " << static_cast<int>(interpolation) << ", walk " << static_cast<int>(walk)
+                << ", " << (closed ? "closed" : "open") << ", up to " << rays[i].tmax << ", "
+                << to_string(isa);
+        }
+      }
+}
+
 }  // namespace oktett
