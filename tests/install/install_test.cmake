@@ -14,7 +14,9 @@ function(add_install_test name)
     -D INCLUDEDIR=${CMAKE_INSTALL_INCLUDEDIR}
     -D GENERATOR=${CMAKE_GENERATOR} -D CXX=${CMAKE_CXX_COMPILER} -D CXX_FLAGS=${CMAKE_CXX_FLAGS}
     -D PKG_CONFIG=${OKTETT_PKG_CONFIG} -P ${CMAKE_CURRENT_LIST_DIR}/run_install_test.cmake)
-  set_tests_properties(install.${name} PROPERTIES TIMEOUT 600)
+  # What is installed knows no folder of the build, but oneTBB may be in one (scripts/test --tsan).
+  set_tests_properties(install.${name} PROPERTIES TIMEOUT 600
+    ENVIRONMENT_MODIFICATION LD_LIBRARY_PATH=path_list_append:$<TARGET_FILE_DIR:TBB::tbb>)
 endfunction()
 
 include(GNUInstallDirs)
