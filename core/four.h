@@ -28,6 +28,16 @@ struct FourMask {
 };
 
 OKTETT_INLINE bool any(const FourMask& m) { return (m.lanes[0] | m.lanes[1] | m.lanes[2] | m.lanes[3]) != 0; }
+/// Bit k for lane k.
+OKTETT_INLINE unsigned bits(const FourMask& m) {
+#if defined(__SSE__)
+  float __attribute__((vector_size(16))) signs;
+  std::memcpy(&signs, &m.lanes, sizeof(signs));
+  return static_cast<unsigned>(__builtin_ia32_movmskps(signs));
+#else
+  return (m.lanes[0] & 1) | (m.lanes[1] & 2) | (m.lanes[2] & 4) | (m.lanes[3] & 8);
+#endif
+}
 
 struct Four {
   static constexpr int kWidth = 4;
@@ -52,6 +62,7 @@ struct Four {
   OKTETT_INLINE friend Four operator-(const Four& a) { return -a.lanes; }
   OKTETT_INLINE friend M operator<(const Four& a, const Four& b) { return {a.lanes < b.lanes}; }
   OKTETT_INLINE friend M operator>(const Four& a, const Four& b) { return {a.lanes > b.lanes}; }
+  OKTETT_INLINE friend M operator<=(const Four& a, const Four& b) { return {a.lanes <= b.lanes}; }
 };
 
 OKTETT_INLINE Four select(const FourMask& m, const Four& a, const Four& b) {

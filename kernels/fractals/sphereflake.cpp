@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 
+#include "core/four.h"
 #include "kernels/exact/surface_uv.h"
 #include "kernels/fractals/fractal_union.h"
 
@@ -40,17 +41,24 @@ std::array<Frame, kChildren> make_frames() {
 }
 const std::array<Frame, kChildren> kFrames = make_frames();
 
-/// The y axes of the children in columns, so that the compiler takes several at once.
-struct Axes {
-  double x[kChildren], y[kChildren], z[kChildren];
+/// The y axes of the children in columns, four to a group; the last group has empty lanes.
+constexpr int kGroups = (kChildren + 3) / 4;
+struct alignas(16) Axes {
+  float x[4 * kGroups], y[4 * kGroups], z[4 * kGroups];
 };
 Axes make_axes() {
-  Axes axes;
-  for (int k = 0; k < kChildren; ++k)
-    axes.x[k] = kFrames[k].y.x, axes.y[k] = kFrames[k].y.y, axes.z[k] = kFrames[k].y.z;
+  Axes axes{};
+  for (int k = 0; k < kChildren; ++k) {
+    const Vec3f y(kFrames[k].y);
+    axes.x[k] = y.x, axes.y[k] = y.y, axes.z[k] = y.z;
+  }
   return axes;
 }
 const Axes kAxes = make_axes();
+
+/// In units of a ball, by how much more than the rounding of floats its children's bounds are larger: all
+/// lengths there are below 4.
+constexpr float kFloatMargin = 0x1p-16f;
 
 /// The line in the space of one ball: the points p + x u, with p nearest to the ball's centre; s is where p
 /// is, in units of the first ball.
@@ -79,27 +87,39 @@ struct FlakeTree {
   /// What rounding leaves no length of is not met.
   bool solid(const Node& node, UnionSpan& out) const { return span(node, 1, out) && out.near < out.far; }
 
-  /// A child and its descendants are in a ball about it, between two planes across its y axis.
+  /// A child and its descendants are in a ball about it, between two planes across its y axis. In floats,
+  /// with room for their rounding: what a ray meets is decided by solid() alone.
   int children(const Node& node, UnionSpan* out) const {
     const int below = node.generation + 1;
-    const double away = 1 + e.ratio, size = e.radius[node.generation];
-    const double reach = e.ratio * e.reach[below], pp = dot(node.p, node.p);
-    double yp[kChildren], yu[kChildren], h2[kChildren];
-    for (int k = 0; k < kChildren; ++k) {
-      yp[k] = kAxes.x[k] * node.p.x + kAxes.y[k] * node.p.y + kAxes.z[k] * node.p.z;
-      yu[k] = kAxes.x[k] * node.u.x + kAxes.y[k] * node.u.y + kAxes.z[k] * node.u.z;
-      h2[k] = reach * reach - (pp - 2 * away * yp[k] + away * away * (1 - yu[k] * yu[k]));
-    }
-    const double low = away + e.ratio * e.low[below], high = away + e.ratio * e.high[below];
+    const double size = e.radius[node.generation];
+    const auto away = static_cast<float>(1 + e.ratio), reach = static_cast<float>(e.ratio * e.reach[below]);
+    const Vec3f p(node.p), u(node.u);
+    const float rest = reach * reach - dot(p, p) - away * away + kFloatMargin;
+    const Four low(away + static_cast<float>(e.ratio * e.low[below]) - kFloatMargin);
+    const Four high(away + static_cast<float>(e.ratio * e.high[below]) + kFloatMargin);
     int n = 0;
-    for (int k = 0; k < kChildren; ++k) {
-      if (!(h2[k] > 0)) continue;
-      const double h = std::sqrt(h2[k]), along = away * yu[k], inverse = 1 / yu[k];
-      double a = (low - yp[k]) * inverse, b = (high - yp[k]) * inverse;
-      if (b < a) std::swap(a, b);
-      // Where the line is parallel to the planes and in one of them, NaN leaves the ball's range as it is.
-      a = a > along - h ? a : along - h, b = b < along + h ? b : along + h;
-      if (a <= b) out[n++] = {to_t(node.s + a * size), to_t(node.s + b * size), k};
+    for (int group = 0; group < kGroups; ++group) {
+      const int first = 4 * group;
+      const Four x = Four::load(kAxes.x + first), y = Four::load(kAxes.y + first),
+                 z = Four::load(kAxes.z + first);
+      const Four yp = x * Four(p.x) + y * Four(p.y) + z * Four(p.z);
+      const Four along = (x * Four(u.x) + y * Four(u.y) + z * Four(u.z)) * Four(away);
+      const Four h2 = Four(rest) + Four(2 * away) * yp + along * along;
+      if (!any(h2 > Four(0.0f))) continue;
+      const Four h = sqrt(max(h2, Four(0.0f))) + Four(kFloatMargin), inverse = Four(away) / along;
+      const Four a = (low - yp) * inverse, b = (high - yp) * inverse;
+      // A line in one of the planes gives NaN: it gets the ball's range, or none, as the planes are beyond
+      // all.
+      const Four near = max(min(a, b) - Four(kFloatMargin), along - h),
+                 far = min(max(a, b) + Four(kFloatMargin), along + h);
+      unsigned met = bits((h2 > Four(0.0f)) & (near <= far)) & ((1u << std::min(4, kChildren - first)) - 1);
+      if (met == 0) continue;
+      float from[4], to[4];
+      near.store(from), far.store(to);
+      for (; met != 0; met &= met - 1) {
+        const int k = __builtin_ctz(met);
+        out[n++] = {to_t(node.s + from[k] * size), to_t(node.s + to[k] * size), first + k};
+      }
     }
     return n;
   }
