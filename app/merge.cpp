@@ -89,7 +89,7 @@ class Shares {
     if (what.empty() && film.share().count != before.share().count)
       what = fmt::format("it is one of {} shares there and of {} here", before.share().count,
                          film.share().count);
-    if (what.empty() && !(film.plan() == before.plan())) what = "the planes are others";
+    if (what.empty() && film.plan() != before.plan()) what = "the planes are others";
     if (!what.empty()) fail(path, fmt::format("does not belong to '{}': {}", other, what));
   }
 

@@ -108,8 +108,8 @@ struct FlakeTree {
       if (!any(h2 > Four(0.0f))) continue;
       const Four h = sqrt(max(h2, Four(0.0f))) + Four(kFloatMargin), inverse = Four(away) / along;
       const Four a = (low - yp) * inverse, b = (high - yp) * inverse;
-      // A line in one of the planes gives NaN: it gets the ball's range, or none, as the planes are beyond
-      // all.
+      // A line that lies in one of the planes divides 0 by 0. NaN leaves the range of the ball, or no range:
+      // both are right, because the planes stand apart from what is between them.
       const Four near = max(min(a, b) - Four(kFloatMargin), along - h),
                  far = min(max(a, b) + Four(kFloatMargin), along + h);
       unsigned met = bits((h2 > Four(0.0f)) & (near <= far)) & ((1u << std::min(4, kChildren - first)) - 1);

@@ -34,7 +34,7 @@ std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares) {
 
 void FilmState::begin(const FilmPlan& plan, const Tone& tone) {
   const std::lock_guard lock(mutex_);
-  if (begun_ && !(plan == plan_)) throw Error("the film is of another picture");
+  if (begun_ && plan != plan_) throw Error("the film is of another picture");
   tone_ = tone;
   if (begun_) return;
   plan_ = plan;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Choices of emitters of a LightTree for many points, for one instruction set.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -81,31 +82,17 @@ class LightChooser {
     for (auto& column : columns_) Q::load(column + kLanes * count_).store(column + kLanes * i);
   }
 
-  /// A column of quads side by side.
-  template <class Get>
-  static OKTETT_INLINE F column(const Get& get) {
-    if constexpr (kPlain)
-      return F::load(get(0));
-    else
-      return load_pieces<F::kWidth, A>(get);
-  }
-
   /// The weights of the walks from number `first` on, as many as fit into a register.
   OKTETT_INLINE void look_from(std::size_t first) {
     const LightQuad* quad[K];
     for (std::size_t k = 0; k < K; ++k)
       quad[k] = quads_ + (first + k < count_ ? LightQuad::number(walks_.child[first + k]) : 0);
-    const auto of = [&](auto member) { return column([&](int k) { return quad[k]->*member; }); };
-    const auto axis = [&](auto member, int i) {
-      return column([&](int k) { return (quad[k]->*member)[i]; });
-    };
-    LightQuadLanes<F> q;
-    for (int i = 0; i < 3; ++i)
-      q.center[i] = axis(&LightQuad::center, i), q.axis[i] = axis(&LightQuad::axis, i);
-    q.radius = of(&LightQuad::radius), q.power = of(&LightQuad::power);
-    q.cos_spread = of(&LightQuad::cos_spread), q.sin_spread = of(&LightQuad::sin_spread);
-    q.cos_limit = of(&LightQuad::cos_limit);
-
+    const LightQuadLanes<F> q([&](const auto& column) {
+      if constexpr (kPlain)
+        return F::load(column(*quad[0]));
+      else
+        return load_pieces<F::kWidth, A>([&](int k) { return column(*quad[k]); });
+    });
     const auto load = [&](int c) { return F::load(columns_[c] + kLanes * first); };
     const F zero(0.0f);
     const LightPointLanes<F> p{
@@ -133,6 +120,7 @@ class LightChooser {
 template <class A>
 void choose_lights_code(const LightTree& tree, std::span<const LightPoint> points, SquareSample* s,
                         LightTree::Choice* out) {
+  if (tree.size() == 1) return void(std::fill_n(out, points.size(), LightTree::Choice{0, 1}));
   LightChooser<A>(tree, points, s, out).run();
 }
 

@@ -64,8 +64,6 @@ void LightSet::choose(ChooseLights code, std::span<const LightPoint> points, con
     const double share = tree_probability(points[k]);
     if (!(choices[k] < share))
       out[k] = choose_distant(share, choices[k]);
-    else if (tree_.size() == 1)
-      out[k] = placed({0, 1}, share);
     else
       near[count] = points[k], rest[count] = s[k], of_tree[count] = share, entry[count++] = k;
   }

@@ -13,12 +13,7 @@ static LightPointLanes<Four> point_lanes(const LightPoint& point) {
 }
 
 static Four importances(const LightQuad& quad, const LightPointLanes<Four>& point) {
-  LightQuadLanes<Four> lanes;
-  for (int i = 0; i < 3; ++i)
-    lanes.center[i] = Four::load(quad.center[i]), lanes.axis[i] = Four::load(quad.axis[i]);
-  lanes.radius = Four::load(quad.radius), lanes.power = Four::load(quad.power);
-  lanes.cos_spread = Four::load(quad.cos_spread), lanes.sin_spread = Four::load(quad.sin_spread);
-  lanes.cos_limit = Four::load(quad.cos_limit);
+  const LightQuadLanes<Four> lanes([&](const auto& column) { return Four::load(column(quad)); });
   return light_importances(lanes, point);
 }
 

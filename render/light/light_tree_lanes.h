@@ -44,6 +44,20 @@ struct LightPointLanes {
 template <class F>
 struct LightQuadLanes {
   F center[3], radius, axis[3], cos_spread, sin_spread, cos_limit, power;
+
+  /// `load(column)` loads a column of all quads: column(quad) is where that of a quad begins.
+  template <class Load>
+  OKTETT_INLINE explicit LightQuadLanes(const Load& load) {
+    const auto of = [&](auto member) { return load([=](const LightQuad& q) { return q.*member; }); };
+    const auto axis_of = [&](auto member, int i) {
+      return load([=](const LightQuad& q) { return (q.*member)[i]; });
+    };
+    for (int i = 0; i < 3; ++i)
+      center[i] = axis_of(&LightQuad::center, i), axis[i] = axis_of(&LightQuad::axis, i);
+    radius = of(&LightQuad::radius), power = of(&LightQuad::power);
+    cos_spread = of(&LightQuad::cos_spread), sin_spread = of(&LightQuad::sin_spread);
+    cos_limit = of(&LightQuad::cos_limit);
+  }
 };
 
 /// The mean of max(0, x) for x uniform in [mean - width, mean + width].

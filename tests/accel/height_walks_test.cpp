@@ -332,14 +332,13 @@ TEST(HeightWalks, RaysEnd) {
     }
 }
 
-}  // namespace
 /// The first of all hits, if it is not beyond the end of the ray.
 float first_before(const std::vector<Hit>& all, float end) {
   return !all.empty() && all[0].t <= end ? all[0].t : kInf;
 }
 
-// A ray that ends between two crossings has looked at some cells behind its end, but not at all. What it has
-// found there must not tell whether it starts inside.
+// A walk may look at some of the cells behind the end of the ray. A crossing in them need not be the first
+// one, so it must not decide whether the ray starts inside.
 TEST(HeightWalks, EndsOfRaysDoNotMoveTheStart) {
   for (const Interpolation interpolation : kAll)
     for (const HeightWalk walk : kWalks)
@@ -371,4 +370,5 @@ TEST(HeightWalks, EndsOfRaysDoNotMoveTheStart) {
       }
 }
 
+}  // namespace
 }  // namespace oktett
