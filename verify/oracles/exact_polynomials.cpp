@@ -229,22 +229,32 @@ struct ProfileCurve {
   Real r[4], y[4];
 };
 
-/// About how far (rho, y) is from the profile, negative inside.
+/// What a point (rho, y) sees of a profile.
 template <class Real>
-Real outside_profile(const std::vector<ProfileCurve<Real>>& pieces, const std::array<ProfilePoint, 2>& ends,
-                     bool loop, Real rho, Real y) {
-  Real distance = 3;
-  bool odd = false;
+struct ProfileView {
+  Real wall = 3;     ///< about how far the curve is: the nearest along a level line or an upright one
+  Real disk = 3;     ///< how far the disks are that close the ends
+  bool odd = false;  ///< a level line outwards crosses the curve an odd number of times: inside
+};
+
+template <class Real>
+ProfileView<Real> view_of_profile(const std::vector<ProfileCurve<Real>>& pieces,
+                                  const std::array<ProfilePoint, 2>& ends, bool loop, Real rho, Real y) {
+  ProfileView<Real> view;
   for (const ProfileCurve<Real>& c : pieces) {
     for_places(c.y, y, [&](Real u) {
       const Real r = bezier(c.r, u);
-      distance = std::min(distance, std::abs(r - rho)), odd ^= r > rho;
+      view.wall = std::min(view.wall, std::abs(r - rho)), view.odd ^= r > rho;
     });
-    for_places(c.r, rho, [&](Real u) { distance = std::min(distance, std::abs(bezier(c.y, u) - y)); });
+    for_places(c.r, rho, [&](Real u) { view.wall = std::min(view.wall, std::abs(bezier(c.y, u) - y)); });
   }
-  for (const ProfilePoint& end : ends)
-    if (!loop && rho < end.radius) distance = std::min(distance, std::abs(static_cast<Real>(end.height) - y));
-  return odd ? -distance : distance;
+  if (loop) return view;
+  for (const ProfilePoint& end : ends) {
+    const Real beyond = rho - static_cast<Real>(end.radius), height = y - static_cast<Real>(end.height);
+    view.wall = std::min(view.wall, std::hypot(beyond, height));
+    view.disk = std::min(view.disk, std::hypot(std::max(beyond, Real(0)), height));
+  }
+  return view;
 }
 
 /// A point is inside if a level line outwards crosses the profile an odd number of times.
@@ -289,18 +299,20 @@ ExactOracle lathe(CaseRandom& random) {
   // In `Real` where `double` might not tell the sign.
   o.f = [rough, pieces, ends, loop](const Vec3l& p) {
     const Real rho = std::sqrt(p.x * p.x + p.z * p.z);
-    const double distance =
-        outside_profile<double>(rough, ends, loop, static_cast<double>(rho), static_cast<double>(p.y));
-    return std::abs(distance) > 0x1p-20 ? distance : outside_profile<Real>(pieces, ends, loop, rho, p.y);
+    const auto outside = [](const auto& view) {
+      const auto distance = std::min(view.wall, view.disk);
+      return view.odd ? -distance : distance;
+    };
+    const double distance = outside(
+        view_of_profile<double>(rough, ends, loop, static_cast<double>(rho), static_cast<double>(p.y)));
+    return std::abs(distance) > 0x1p-20 ? distance
+                                        : outside(view_of_profile<Real>(pieces, ends, loop, rho, p.y));
   };
-  // The disks at the ends are not there.
+  // The disks at the ends are not there: what is nearer to them than to the curve is no surface.
   if (s.open) {
-    o.where = [ends](const Vec3l& p) {
-      const Real rho = std::sqrt(p.x * p.x + p.z * p.z);
-      Real d = -1;
-      for (const ProfilePoint& end : ends)
-        d = std::max(d, std::min(end.radius - rho, 1e-6L - std::abs(p.y - end.height)));
-      return d;
+    o.where = [pieces, ends, loop](const Vec3l& p) {
+      const auto view = view_of_profile<Real>(pieces, ends, loop, std::sqrt(p.x * p.x + p.z * p.z), p.y);
+      return view.wall - view.disk;
     };
   }
   for (const ProfilePoint& p : s.points)
