@@ -7,10 +7,14 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/image/color.h"
 
 namespace oktett {
 namespace {
+
+/// Pixels that a task turns into bytes.
+constexpr std::size_t kPixelsOfPart = std::size_t{1} << 14;
 
 const PicturePlane& color_plane(const Picture& picture, const char* name) {
   const PicturePlane* plane = picture.find(name);
@@ -32,17 +36,19 @@ FlatImage flatten_to_srgb8(const Picture& picture, bool with_alpha) {
   const std::uint32_t channels = with_alpha ? 4 : 3;
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   FlatImage image{picture.width, picture.height, channels, std::vector<std::uint8_t>(pixels * channels), {}};
-  std::uint8_t* out = image.bytes.data();
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const float a = alpha != nullptr ? clamped_alpha(alpha->values[i]) : 1;
-    // Without coverage there is no colour to recover; what light there is (a glow) is kept as it is.
-    const float divisor = a > 0 ? a : 1;
-    const Color light{planes[0]->values[i] / divisor, planes[1]->values[i] / divisor,
-                      planes[2]->values[i] / divisor};
-    const Color shown = toned(picture.tone, light);
-    for (int k = 0; k < 3; ++k) *out++ = linear_to_srgb8(shown[k]);
-    if (alpha != nullptr) *out++ = static_cast<std::uint8_t>(a * 255 + 0.5f);
-  }
+  in_parts(pixels, kPixelsOfPart, [&](std::size_t begin, std::size_t end) {
+    std::uint8_t* out = image.bytes.data() + begin * channels;
+    for (std::size_t i = begin; i < end; ++i) {
+      const float a = alpha != nullptr ? clamped_alpha(alpha->values[i]) : 1;
+      // Without coverage there is no colour to recover; what light there is (a glow) is kept as it is.
+      const float divisor = a > 0 ? a : 1;
+      const Color light{planes[0]->values[i] / divisor, planes[1]->values[i] / divisor,
+                        planes[2]->values[i] / divisor};
+      const Color shown = toned(picture.tone, light);
+      for (int k = 0; k < 3; ++k) *out++ = linear_to_srgb8(shown[k]);
+      if (alpha != nullptr) *out++ = static_cast<std::uint8_t>(a * 255 + 0.5f);
+    }
+  });
   return image;
 }
 

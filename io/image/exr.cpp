@@ -22,6 +22,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/image/writers.h"
 
 namespace oktett {
@@ -108,19 +109,21 @@ Imf::Header header(const Picture& picture, const std::vector<Attribute>& attribu
 }
 
 /// The nearest halves, of two equally near ones the even one.
-std::vector<half> to_halves(const Column<float>& values) {
+Column<half> to_halves(const Column<float>& values) {
   const auto nearest = [](float v) {
     return half(std::isfinite(v) ? std::clamp<float>(v, -HALF_MAX, HALF_MAX) : v);
   };
-  std::vector<half> halves(values.size());
-  std::transform(values.begin(), values.end(), halves.begin(), nearest);
+  Column<half> halves(values.size());
+  in_parts(values.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    std::transform(values.begin() + begin, values.begin() + end, halves.begin() + begin, nearest);
+  });
   return halves;
 }
 
 void write(Stream& stream, const Picture& picture, const std::vector<Attribute>& attributes) {
   Imf::Header head = header(picture, attributes);
   Imf::FrameBuffer pixels;
-  std::list<std::vector<half>> halves;
+  std::list<Column<half>> halves;
   for (const PicturePlane& plane : picture.planes) {
     const std::string& name = plane.name;
     if (name.empty() || name.size() > Imf::Name::MAX_LENGTH || name.find('\0') != std::string::npos)

@@ -6,6 +6,8 @@
 #include <bit>
 #include <map>
 
+#include "core/parallel.h"
+
 namespace oktett {
 
 std::uint32_t murmur_hash(std::string_view text) {
@@ -96,7 +98,7 @@ void add_matte_planes(Picture& picture) {
     for (int k = 0; k < 2 * kMatteLevels; ++k)
       picture.planes.push_back({fmt::format("{}{:02}.{}", layer, k / 4, "RGBA"[k % 4]),
                                 PlaneType::single_float,
-                                Column<float>(size, 0.0f),
+                                filled_column(size, 0.0f),
                                 {}});
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/parallel.h"
 #include "render/film/cryptomatte.h"
 #include "render/film/light_layers.h"
 #include "render/light_groups.h"
@@ -130,16 +131,16 @@ Picture make_picture(const FilmFormat& format) {
     plane.name = kNames[i];
     if (i == kPrimId || i == kGeomId) {
       plane.type = PlaneType::unsigned_int;
-      plane.ids = Column<std::uint32_t>(size, kNoId);
+      plane.ids = filled_column(size, kNoId);
     } else {
       plane.type = i <= kA ? PlaneType::half_float : PlaneType::single_float;
-      plane.values = Column<float>(size, i == kZ ? std::numeric_limits<float>::infinity() : 0.0f);
+      plane.values = filled_column(size, i == kZ ? std::numeric_limits<float>::infinity() : 0.0f);
     }
     picture.planes.push_back(std::move(plane));
   }
   if (format.sample_counts)
     picture.planes.push_back(
-        {kSampleCountPlane, PlaneType::unsigned_int, {}, Column<std::uint32_t>(size, 0)});
+        {kSampleCountPlane, PlaneType::unsigned_int, {}, filled_column(size, std::uint32_t{0})});
   if (format.mattes) add_matte_planes(picture);
   add_light_planes(format.light_groups, picture);
   return picture;

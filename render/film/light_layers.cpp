@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "render/light_groups.h"
 
 namespace oktett {
@@ -17,7 +18,7 @@ void add_light_planes(const std::vector<std::string>& names, Picture& picture) {
   for (const std::string& name : names)
     for (const char channel : {'R', 'G', 'B'})
       picture.planes.push_back(
-          {plane_name(name, channel), PlaneType::half_float, Column<float>(size, 0.0f), {}});
+          {plane_name(name, channel), PlaneType::half_float, filled_column(size, 0.0f), {}});
 }
 
 std::size_t first_light_plane(const Picture& picture) {
