@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 namespace oktett {
 namespace {
 
+using test::CommandProcess;
 using test::CommandResult;
 using test::contains;
 using test::file_count;
@@ -275,6 +277,18 @@ TEST_F(Show, UnknownFormats) {
   EXPECT_EQ(result.err, "oktett: --show: unknown format 'sixels'; did you mean 'sixel'?\n");
   EXPECT_TRUE(contains(run_command(dir, {"render", "a.yaml", "--show=png"}).err,
                        "unknown format 'png'; expected kitty, iterm, sixel or blocks"));
+}
+
+/// A program that was copied without the libraries of its installation says where it looked for them.
+TEST_F(Show, MissingLibraries) {
+  const std::filesystem::path bin = dir.path() / "bin", program = bin / "oktett";
+  std::filesystem::create_directory(bin);
+  std::filesystem::copy_file(OKTETT_COMMAND, program);
+  CommandProcess process(dir, {"render", "a.yaml", "--no-output", "--show=blocks"}, program.string());
+  EXPECT_EQ(process.wait(), 1);
+  const std::string error = process.err();
+  EXPECT_TRUE(contains(error, "cannot load liboktett_terminal.so")) << error;
+  EXPECT_TRUE(contains(error, "it is neither in " + (dir.path() / "lib").string() + " nor in ")) << error;
 }
 
 TEST_F(Show, WhatIsFinishedWhenTimeIsUp) {
