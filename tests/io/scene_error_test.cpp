@@ -9,21 +9,9 @@
 namespace oktett {
 namespace {
 
+using test::expect_errors;
 using test::expect_starts;
 using test::SceneFiles;
-
-struct Case {
-  const char* text;   ///< stands from line 2 on
-  const char* error;  ///< the message begins with this
-};
-
-void expect_errors(std::initializer_list<Case> cases) {
-  SceneFiles files;
-  for (const Case& c : cases) {
-    SCOPED_TRACE(c.text);
-    expect_starts(files.error_v1(c.text), c.error);
-  }
-}
 
 TEST(SceneError, FilesThatCannotBeRead) {
   SceneFiles files;

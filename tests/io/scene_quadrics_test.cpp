@@ -5,7 +5,8 @@
 namespace oktett {
 namespace {
 
-using test::expect_starts;
+using test::expect_errors;
+using test::expect_skipped;
 using test::SceneFiles;
 
 template <class T>
@@ -74,69 +75,52 @@ TEST(SceneQuadrics, ErrorsHaveTheirPlace) {
   std::string many = "objects: [{polyhedron: {planes: [[1, 0, 0, 1]";
   for (int i = 0; i < 1024; ++i) many += ", [0, 1, 0, 1]";
   many += "]}}]";
-  const struct {
-    std::string text, error;
-  } kCases[] = {
-      {"objects: [{cylinder: {radius: -1}}]", "scene.yaml:2:31: expected a number of at least 0, found '-1'"},
-      {"objects: [{cylinder: {from: 1}}]", "scene.yaml:2:29: expected a list of 3 numbers, found '1'"},
-      {"objects: [{cylinder: {top: [0, 0, 0]}}]",
-       "scene.yaml:2:23: unknown key 'top' in cylinder; did you mean"},
-      {"objects: [{cylinder: {open: 1}}]", "scene.yaml:2:29: expected true or false, found '1'"},
-      {"objects: [{cone: {radius: 1}}]", "scene.yaml:2:19: unknown key 'radius' in cone"},
-      {"objects: [{cone: {to_radius: .nan}}]", "scene.yaml:2:30: expected a finite number"},
-      {"objects: [{cone: {from_radius: -0.5}}]", "scene.yaml:2:32: expected a number of at least 0"},
-      {"objects: [{polyhedron: {}}]", "scene.yaml:2:24: polyhedron needs 'planes'"},
-      {"objects: [{polyhedron: {planes: [[1, 0, 0]]}}]", "scene.yaml:2:34: expected 4 numbers, found 3"},
-      {"objects: [{polyhedron: {planes: [[0, 0, 0, 1]]}}]",
-       "scene.yaml:2:34: the normal of a plane must not be zero"},
-      {"objects: [{polyhedron: {planes: [[1, 0, 0, 1], [-1, 0, 0, 1]]}}]",
-       "scene.yaml:2:33: the planes do not bound a solid on all sides"},
-      {"objects: [{polyhedron: {planes: []}}]", "scene.yaml:2:33: the planes do not bound a solid"},
-      {many, "scene.yaml:2:33: expected at most 1024 planes, found 1025"},
-      {"objects: [{quadric: {coefficients: [1, 1, 1]}}]", "scene.yaml:2:36: expected 10 numbers, found 3"},
-      {"objects: [{quadric: {clip: {min: [0, 3, 0]}}}]",
-       "scene.yaml:2:28: the clip box has min > max along y"},
-      {"objects: [{quadric: {clip: {max: [-2, 0, 0]}}}]",
-       "scene.yaml:2:34: the clip box has min > max along x"},
-      {"objects: [{quadric: {clip: {low: 1}}}]", "scene.yaml:2:29: unknown key 'low' in clip"},
-      {"objects: [{infinite_cylinder: {radius: 1}}]",
-       "scene.yaml:2:32: unknown key 'radius' in infinite_cylinder"},
-      {"objects: [{paraboloid: {sheets: 1}}]", "scene.yaml:2:25: unknown key 'sheets' in paraboloid"},
-      {"objects: [{hyperboloid: {sheets: 3}}]",
-       "scene.yaml:2:34: expected a whole number from 1 to 2, found '3'"},
-      {"objects: [{hyperboloid: {normals: exact}}]",
-       "scene.yaml:2:35: expected gradient or forward or central"},
-  };
-  SceneFiles files;
-  for (const auto& c : kCases) {
-    SCOPED_TRACE(c.text.substr(0, 100));
-    expect_starts(files.error_v1(c.text), c.error);
-  }
+  expect_errors(
+      {{"objects: [{cylinder: {radius: -1}}]",
+        "scene.yaml:2:31: expected a number of at least 0, found '-1'"},
+       {"objects: [{cylinder: {from: 1}}]", "scene.yaml:2:29: expected a list of 3 numbers, found '1'"},
+       {"objects: [{cylinder: {top: [0, 0, 0]}}]",
+        "scene.yaml:2:23: unknown key 'top' in cylinder; did you mean"},
+       {"objects: [{cylinder: {open: 1}}]", "scene.yaml:2:29: expected true or false, found '1'"},
+       {"objects: [{cone: {radius: 1}}]", "scene.yaml:2:19: unknown key 'radius' in cone"},
+       {"objects: [{cone: {to_radius: .nan}}]", "scene.yaml:2:30: expected a finite number"},
+       {"objects: [{cone: {from_radius: -0.5}}]", "scene.yaml:2:32: expected a number of at least 0"},
+       {"objects: [{polyhedron: {}}]", "scene.yaml:2:24: polyhedron needs 'planes'"},
+       {"objects: [{polyhedron: {planes: [[1, 0, 0]]}}]", "scene.yaml:2:34: expected 4 numbers, found 3"},
+       {"objects: [{polyhedron: {planes: [[0, 0, 0, 1]]}}]",
+        "scene.yaml:2:34: the normal of a plane must not be zero"},
+       {"objects: [{polyhedron: {planes: [[1, 0, 0, 1], [-1, 0, 0, 1]]}}]",
+        "scene.yaml:2:33: the planes do not bound a solid on all sides"},
+       {"objects: [{polyhedron: {planes: []}}]", "scene.yaml:2:33: the planes do not bound a solid"},
+       {many, "scene.yaml:2:33: expected at most 1024 planes, found 1025"},
+       {"objects: [{quadric: {coefficients: [1, 1, 1]}}]", "scene.yaml:2:36: expected 10 numbers, found 3"},
+       {"objects: [{quadric: {clip: {min: [0, 3, 0]}}}]",
+        "scene.yaml:2:28: the clip box has min > max along y"},
+       {"objects: [{quadric: {clip: {max: [-2, 0, 0]}}}]",
+        "scene.yaml:2:34: the clip box has min > max along x"},
+       {"objects: [{quadric: {clip: {low: 1}}}]", "scene.yaml:2:29: unknown key 'low' in clip"},
+       {"objects: [{infinite_cylinder: {radius: 1}}]",
+        "scene.yaml:2:32: unknown key 'radius' in infinite_cylinder"},
+       {"objects: [{paraboloid: {sheets: 1}}]", "scene.yaml:2:25: unknown key 'sheets' in paraboloid"},
+       {"objects: [{hyperboloid: {sheets: 3}}]",
+        "scene.yaml:2:34: expected a whole number from 1 to 2, found '3'"},
+       {"objects: [{hyperboloid: {normals: exact}}]",
+        "scene.yaml:2:35: expected gradient or forward or central"}});
 }
 
 TEST(SceneQuadrics, DegenerateOnesAreSkipped) {
-  const struct {
-    const char *object, *warning;
-  } kCases[] = {
-      {"cylinder: {radius: 0}", "scene.yaml:2:13: warning: the radius is zero; the object is skipped"},
-      {"cylinder: {from: [1, 1, 1], to: [1, 1, 1]}",
-       "scene.yaml:2:13: warning: the ends of the axis coincide; the object is skipped"},
-      {"cone: {from: [0, 1, 0]}", "scene.yaml:2:13: warning: the ends of the axis coincide"},
-      {"cone: {from_radius: 0}", "scene.yaml:2:13: warning: both radii are zero"},
-      {"polyhedron: {planes: [[1, 0, 0, -2], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], "
-       "[0, 0, -1, 1]]}",
-       "scene.yaml:2:13: warning: there is nothing inside of all planes; the object is skipped"},
-      {"quadric: {coefficients: [0, 0, 0, 0, 0, 0, 0, 0, 0, 1]}",
-       "scene.yaml:2:13: warning: the equation does not depend on x, y or z"},
-      {"paraboloid: {clip: {min: [0, 0, 1]}}", "scene.yaml:2:13: warning: the clip box has no volume"},
-  };
-  SceneFiles files;
-  for (const auto& c : kCases) {
-    const Scene scene = files.load_v1(std::string("objects: [ {") + c.object + "}, {sphere: {}}]\n");
-    EXPECT_EQ(scene.objects.size(), 1u) << c.object;
-    ASSERT_EQ(scene.warnings.size(), 1u) << c.object;
-    expect_starts(files.without_directory(to_string(scene.warnings[0])), c.warning);
-  }
+  expect_skipped(
+      {{"cylinder: {radius: 0}", "scene.yaml:2:13: warning: the radius is zero; the object is skipped"},
+       {"cylinder: {from: [1, 1, 1], to: [1, 1, 1]}",
+        "scene.yaml:2:13: warning: the ends of the axis coincide; the object is skipped"},
+       {"cone: {from: [0, 1, 0]}", "scene.yaml:2:13: warning: the ends of the axis coincide"},
+       {"cone: {from_radius: 0}", "scene.yaml:2:13: warning: both radii are zero"},
+       {"polyhedron: {planes: [[1, 0, 0, -2], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1], [0, 0, 1, 1], "
+        "[0, 0, -1, 1]]}",
+        "scene.yaml:2:13: warning: there is nothing inside of all planes; the object is skipped"},
+       {"quadric: {coefficients: [0, 0, 0, 0, 0, 0, 0, 0, 0, 1]}",
+        "scene.yaml:2:13: warning: the equation does not depend on x, y or z"},
+       {"paraboloid: {clip: {min: [0, 0, 1]}}", "scene.yaml:2:13: warning: the clip box has no volume"}});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 namespace oktett {
 namespace {
 
+using test::expect_skipped;
 using test::expect_starts;
 using test::SceneFiles;
 using test::shape_of;
@@ -73,43 +74,32 @@ TEST(SceneShape, SphereFileErrorsHaveTheirPlace) {
 
 /// A shape that cannot be hit is skipped with a warning that names its line; the others are kept.
 TEST(SceneShape, DegenerateShapesAreSkipped) {
-  const struct {
-    const char* object;
-    const char* warning;
-  } kCases[] = {
-      {"sphere: {radius: 0}", "scene.yaml:2:13: warning: the radius is zero; the object is skipped"},
-      {"disk: {radius: 0}", "scene.yaml:2:13: warning: the radius is zero"},
-      {"disk: {normal: [0, 0, 0]}", "scene.yaml:2:13: warning: the normal is zero"},
-      {"plane: {normal: [0, 0, 0]}", "scene.yaml:2:13: warning: the normal is zero"},
-      {"box: {min: [1, 1, 1], max: [1, 1, 1]}", "scene.yaml:2:13: warning: the box has no area"},
-      {"box: {min: [1, 1, 0], max: [1, 1, 1]}", "scene.yaml:2:13: warning: the box has no area"},
-      {"triangle: {vertices: [[0, 0, 0], [1, 1, 1], [2, 2, 2]]}",
-       "scene.yaml:2:13: warning: the triangle has no area"},
-      {"polygon: {vertices: [[0, 0, 0], [1, 1, 1], [2, 2, 2]]}",
-       "scene.yaml:2:13: warning: the polygon has no area"},
-      {"polygon: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0.1], [0, 1, 0]]}",
-       "scene.yaml:2:13: warning: the polygon is not planar"},
-      {"polygon: {vertices: [[0, 0, 0], [3, 0, 0], [0, 1, 0], [2, 2, 0]]}",
-       "scene.yaml:2:13: warning: the polygon is not simple"},
-      {"polygon: {vertices: [[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 0, 0], [0, 2, 0]]}",
-       "scene.yaml:2:13: warning: the polygon is not simple"},
-      {"polygon: {vertices: [[0, 0, 0], [2, 0, 0], [4, 0, 0], [2, 0, 0], [2, 2, 0]]}",
-       "scene.yaml:2:13: warning: the polygon is not simple"},
-      {"spheres: []", "scene.yaml:2:13: warning: there are no spheres"},
-      {"spheres: [{radius: 0}]", "scene.yaml:2:23: warning: the radius is zero; the sphere is skipped"},
-      {"sphere: {}, transform: {scale: [1, 0, 1]}", "scene.yaml:2:36: warning: the transform is singular"},
-      {"group: [{sphere: {}}], transform: {scale: 0}",
-       "scene.yaml:2:47: warning: the transform is singular; the group is skipped"},
-      {"sphere: {}, transform: [{scale: 1e12}, {scale: 1e12}]",
-       "scene.yaml:2:36: warning: the transform moves things out of range"},
-  };
-  SceneFiles files;
-  for (const auto& c : kCases) {
-    const Scene scene = files.load_v1(std::string("objects: [ {") + c.object + "}, {sphere: {}}]\n");
-    EXPECT_EQ(scene.objects.size(), 1u) << c.object;
-    ASSERT_GE(scene.warnings.size(), 1u) << c.object;
-    expect_starts(files.without_directory(to_string(scene.warnings[0])), c.warning);
-  }
+  expect_skipped(
+      {{"sphere: {radius: 0}", "scene.yaml:2:13: warning: the radius is zero; the object is skipped"},
+       {"disk: {radius: 0}", "scene.yaml:2:13: warning: the radius is zero"},
+       {"disk: {normal: [0, 0, 0]}", "scene.yaml:2:13: warning: the normal is zero"},
+       {"plane: {normal: [0, 0, 0]}", "scene.yaml:2:13: warning: the normal is zero"},
+       {"box: {min: [1, 1, 1], max: [1, 1, 1]}", "scene.yaml:2:13: warning: the box has no area"},
+       {"box: {min: [1, 1, 0], max: [1, 1, 1]}", "scene.yaml:2:13: warning: the box has no area"},
+       {"triangle: {vertices: [[0, 0, 0], [1, 1, 1], [2, 2, 2]]}",
+        "scene.yaml:2:13: warning: the triangle has no area"},
+       {"polygon: {vertices: [[0, 0, 0], [1, 1, 1], [2, 2, 2]]}",
+        "scene.yaml:2:13: warning: the polygon has no area"},
+       {"polygon: {vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0.1], [0, 1, 0]]}",
+        "scene.yaml:2:13: warning: the polygon is not planar"},
+       {"polygon: {vertices: [[0, 0, 0], [3, 0, 0], [0, 1, 0], [2, 2, 0]]}",
+        "scene.yaml:2:13: warning: the polygon is not simple"},
+       {"polygon: {vertices: [[0, 0, 0], [2, 0, 0], [2, 2, 0], [1, 0, 0], [0, 2, 0]]}",
+        "scene.yaml:2:13: warning: the polygon is not simple"},
+       {"polygon: {vertices: [[0, 0, 0], [2, 0, 0], [4, 0, 0], [2, 0, 0], [2, 2, 0]]}",
+        "scene.yaml:2:13: warning: the polygon is not simple"},
+       {"spheres: []", "scene.yaml:2:13: warning: there are no spheres"},
+       {"spheres: [{radius: 0}]", "scene.yaml:2:23: warning: the radius is zero; the sphere is skipped", 2},
+       {"sphere: {}, transform: {scale: [1, 0, 1]}", "scene.yaml:2:36: warning: the transform is singular"},
+       {"group: [{sphere: {}}], transform: {scale: 0}",
+        "scene.yaml:2:47: warning: the transform is singular; the group is skipped"},
+       {"sphere: {}, transform: [{scale: 1e12}, {scale: 1e12}]",
+        "scene.yaml:2:36: warning: the transform moves things out of range"}});
 }
 
 TEST(SceneShape, PolygonsMayBeConcaveAndTurnEitherWay) {

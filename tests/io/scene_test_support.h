@@ -5,6 +5,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "io/scene/scene_file.h"
 #include "tests/support/temp_dir.h"
@@ -49,6 +50,34 @@ class SceneFiles {
 /// `part` stands at the start of `message`.
 inline void expect_starts(const std::string& message, const std::string& part) {
   EXPECT_EQ(message.substr(0, part.size()), part) << "the whole: " << message;
+}
+
+/// A scene, without its version line, and how the error starts that it must give.
+struct WrongScene {
+  std::string text, error;
+};
+inline void expect_errors(const std::vector<WrongScene>& scenes) {
+  const SceneFiles files;
+  for (const WrongScene& scene : scenes) {
+    SCOPED_TRACE(scene.text.substr(0, 100));
+    expect_starts(files.error_v1(scene.text), scene.error);
+  }
+}
+
+/// An object that has no surface, how the first warning starts that it must give, and how many there are.
+struct SkippedObject {
+  std::string object, warning;
+  std::size_t warnings = 1;
+};
+inline void expect_skipped(const std::vector<SkippedObject>& objects) {
+  const SceneFiles files;
+  for (const SkippedObject& skipped : objects) {
+    SCOPED_TRACE(skipped.object);
+    const Scene scene = files.load_v1("objects: [ {" + skipped.object + "}, {sphere: {}}]\n");
+    EXPECT_EQ(scene.objects.size(), 1u);
+    ASSERT_EQ(scene.warnings.size(), skipped.warnings);
+    expect_starts(files.without_directory(to_string(scene.warnings[0])), skipped.warning);
+  }
 }
 
 /// The shape of object i, which must be a T.
