@@ -55,7 +55,8 @@ struct RenderContext {
   /// transparent.
   bool opaque_background = false;
   bool data_layers = true;
-  float ao_radius = 1;                        ///< reach of ambient-occlusion rays
+  bool one_by_one = false;  ///< shades each hit alone, for tests: hits in lanes must have the same bits
+  float ao_radius = 1;      ///< reach of ambient-occlusion rays
   float near_depth = 0, far_depth = 1;        ///< what the depth integrator shows as white and black
   const Mattes* mattes = nullptr;             ///< null: no mattes are wanted
   const LightGroups* light_groups = nullptr;  ///< null: no layers of light groups are wanted

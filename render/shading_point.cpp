@@ -204,6 +204,18 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   return p;
 }
 
+ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
+                           const RayHistory& history, const SurfaceInteraction& found) {
+  const Material& m = material_at(*context.world, found);
+  if (has_textures(m)) {
+    const ShadingPoint p = shading_point(context, ray, hit, history, found);
+    return {p.surface, p.color, p.opacity};
+  }
+  const bool uv_shown = context.data_layers && history.from_camera;
+  return {uv_shown ? surface_interaction(*context.world->accel, ray, hit) : found, m.color,
+          opacity_at(context, m, {})};
+}
+
 bool is_opaque(const Material& m, ShadowRule rule) {
   if (!m.surface) return false;
   return (m.transparency == 0 || rule == ShadowRule::holes_pass) && m.opacity == 1 &&

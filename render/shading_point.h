@@ -38,6 +38,17 @@ struct ShadingPoint {
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);
 
+/// What alpha and the data layers show of a hit.
+struct ShownSurface {
+  SurfaceInteraction surface;
+  Color color;        ///< textures included
+  float opacity = 1;  ///< as in ShadingPoint
+};
+
+/// The same for a hit of which nothing else is needed. The arguments are those of shading_point().
+ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
+                           const RayHistory& history, const SurfaceInteraction& s);
+
 /// What stops light on its way from a lamp.
 enum class ShadowRule {
   /// Opaque materials. Transparent ones attenuate light by colour * transparency and do not bend it.

@@ -33,9 +33,10 @@ Integrator integrator_for(IntegratorKind kind) {
 }
 
 bool shades_in_blocks(const RenderContext& context) {
+  if (context.one_by_one) return false;
   if (context.settings.kind == IntegratorKind::path)
     return context.caustics == nullptr && !context.tracks_enclosures;
-  if (context.settings.kind != IntegratorKind::whitted || context.data_layers) return false;
+  if (context.settings.kind != IntegratorKind::whitted) return false;
   // Lanes know no profiles.
   return std::none_of(context.lights.begin(), context.lights.end(),
                       [](const LightSource& light) { return light.profile.profile != nullptr; });

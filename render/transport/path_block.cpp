@@ -142,17 +142,19 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
         2 * material_index(*context.world, found.user[k], found.material_slot[k]) + (behind ? 1 : 0);
     const PathSurface& surface = (*context.path_surfaces)[number];
     const bool from_camera = wavefront.rays.from_camera[i] != 0;
-    if (surface.alone || (from_camera && context.data_layers)) {
-      const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
-                                           {wavefront.rays.distance[i], from_camera}, found[k]);
-      if (from_camera) record_first_hit(context, wavefront, i, p);
-      if (surface.alone) {
-        shade_path(context, wavefront, i, p);
-        continue;
-      }
-    } else if (from_camera) {
-      wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
+    const RayHistory history{wavefront.rays.distance[i], from_camera};
+    if (surface.alone) {
+      const ShadingPoint p =
+          shading_point(context, wavefront.rays.rays[i], wavefront.hits[i], history, found[k]);
+      if (from_camera) record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
+      shade_path(context, wavefront, i, p);
+      continue;
     }
+    if (from_camera && context.data_layers)
+      record_first_hit(context, wavefront, i,
+                       shown_surface(context, wavefront.rays.rays[i], wavefront.hits[i], history, found[k]));
+    else if (from_camera)
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
     if (!(surface.emission == Color{0, 0, 0})) {
       const Color emitted = wavefront.rays.throughput[i] * surface.emission *
                             emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k));

@@ -160,7 +160,7 @@ class HitShader {
       const bool from_camera = wavefront_.rays.from_camera[i] != 0;
       const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
                                            {wavefront_.rays.distance[i], from_camera}, found_[k]);
-      if (from_camera) record_first_hit(context_, wavefront_, i, p);
+      if (from_camera) record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
       integrator_(context_, wavefront_, i, p);
     }
   }
@@ -275,18 +275,18 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
 }
 
 void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                      const ShadingPoint& p) {
+                      const ShownSurface& shown) {
   const std::uint32_t sample = wavefront.rays.sample[ray];
-  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * p.opacity;
+  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * shown.opacity;
   if (!context.data_layers) return;
   FirstHit& first = wavefront.samples.first[sample];
-  if (first.found || p.opacity == 0) return;
-  const SurfaceInteraction& s = p.surface;
+  if (first.found || shown.opacity == 0) return;
+  const SurfaceInteraction& s = shown.surface;
   first = {true,
            static_cast<float>(camera_depth(context.camera, s.position)),
            s.shading_normal,
            s.position,
-           p.color,
+           shown.color,
            s.uv,
            s.primitive,
            s.user,

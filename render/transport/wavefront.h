@@ -118,9 +118,9 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
 /// because no sample of the pixels met anything and the background is black.
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront);
 
-/// Adds the hit `p` of entry `ray`, a camera ray, to the alpha and the data layers of its sample.
+/// Adds the hit of entry `ray`, a camera ray, to the alpha and the data layers of its sample.
 void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                      const ShadingPoint& p);
+                      const ShownSurface& shown);
 
 /// How a ray continues at a surface.
 enum class Bounce {

@@ -103,6 +103,7 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
   const bool from_camera = wavefront.rays.from_camera[i] != 0;
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                                        {wavefront.rays.distance[i], from_camera}, found);
+  if (from_camera) record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
   const Color left = passing_interior(context, p);
   if (context.materials[c.material[k]].varies) {
     const Color throughput = wavefront.rays.throughput[i] * p.opacity;
@@ -112,6 +113,20 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
   if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
   push_bounces(context, wavefront, i, p);
   return left;
+}
+
+/// Adds hit `k`, on a material that does not vary, to alpha and the data layers if its ray is a camera ray.
+void record_camera_hit(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                       std::size_t k, const ShadingColumns& c) {
+  const std::uint32_t i = c.ray[k];
+  if (!wavefront.rays.from_camera[i]) return;
+  if (!context.data_layers) {
+    wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];
+    return;
+  }
+  record_first_hit(context, wavefront, i,
+                   shown_surface(context, wavefront.rays.rays[i], wavefront.hits[i],
+                                 {wavefront.rays.distance[i], true}, found[k]));
 }
 
 /// Takes out rays beyond the depth of the picture or the limit of rays per sample.
@@ -225,11 +240,11 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   if (!alone && sends) push_bounces(context, wavefront, found, c);
   for (std::size_t k = 0; k < count; ++k) {
     const ShadingMaterial& m = context.materials[c.material[k]];
-    Color left{1, 1, 1};
-    if (alone && (m.varies || m.sends_rays())) left = finish_alone(context, wavefront, found[k], k, c);
-    const std::uint32_t i = c.ray[k];
-    if (wavefront.rays.from_camera[i])
-      wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];
+    if (!alone || !(m.varies || m.sends_rays())) {
+      record_camera_hit(context, wavefront, found, k, c);
+      continue;
+    }
+    const Color left = finish_alone(context, wavefront, found[k], k, c);
     if (!(left == Color{1, 1, 1}))
       InteractionBlock::put(c.throughput, k, InteractionBlock::get(c.throughput, k) * left);
   }
