@@ -5,10 +5,10 @@
 /// The tree is a program for a stack machine, cut down in each cell to what matters there: elements that are
 /// zero, and branches that are surely below or above what they are blended with, are left out.
 
+#include "kernels/exact/cell_tree.h"
 #include "kernels/exact/march.h"
 #include "kernels/exact/surface_uv.h"
 #include "kernels/fields/blobtree_data.h"
-#include "kernels/fields/cell_tree.h"
 #include "kernels/fields/potential_lanes.h"
 
 namespace oktett {

@@ -7,8 +7,8 @@
 /// surface is a sphere. Each lane goes from cut to cut on its own until a piece may hold a crossing; then all
 /// are solved at once.
 
+#include "kernels/exact/cell_tree.h"
 #include "kernels/exact/surface_uv.h"
-#include "kernels/fields/cell_tree.h"
 #include "kernels/fields/metaballs_data.h"
 #include "kernels/roots/bernstein_lanes.h"
 

@@ -1,4 +1,4 @@
-#include "kernels/fields/cell_tree.h"
+#include "kernels/exact/cell_tree.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
