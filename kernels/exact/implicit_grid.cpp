@@ -107,7 +107,8 @@ bool is_worth(const Cells& fine, const Cells& coarse) {
 
 }  // namespace
 
-VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo, const Vec3d& hi) {
+VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo, const Vec3d& hi,
+                                  int most_side) {
   const auto empty_grid = [&](int side) {
     VariationGrid grid{side, lo, {}, {}};
     for (int k = 0; k < 3; ++k) grid.per_unit[k] = side / (hi[k] - lo[k]);
@@ -116,7 +117,7 @@ VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo,
   VariationGrid grid;
   bool pays = false;
   for (const int side : {1, 4, 8}) {
-    if (side == kMostGridSide && function.steps.size() > 128) break;
+    if (side > most_side || (side == kMostGridSide && function.steps.size() > 128)) break;
     VariationGrid next = empty_grid(side);
     if (!std::isfinite(max_component(next.per_unit))) break;
     const auto find = [&](bool all) {

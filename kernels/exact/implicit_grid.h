@@ -29,9 +29,10 @@ struct VariationGrid {
   std::vector<GridCell> cells;
 };
 
-/// The grid of a function over a box with lo < hi: of 1, 4 or 8 cells a side, as many as make bounds smaller.
-/// Functions of many steps get fewer.
-/// No cells at all if strides would not pay, or if the box is too small or too large for numbers.
-VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo, const Vec3d& hi);
+/// The grid of a function over a box with lo < hi: of 1, 4 or 8 cells a side, but at most `most_side`, as
+/// many as make bounds smaller. Functions of many steps get fewer. No cells at all if strides would not pay,
+/// or if the box is too small or too large for numbers.
+VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo, const Vec3d& hi,
+                                  int most_side = kMostGridSide);
 
 }  // namespace oktett

@@ -102,11 +102,13 @@ struct March {
   D first_sign = D(0.0);  ///< the first certain sign
   M uncertified;
 
-  /// From a to b; and where the sign at b is uncertain, on to where it is certain, as far as `limit`.
-  OKTETT_INLINE March(const Field& f, Jumps j, const D& a, const D& b, const D& limit, const M& active)
+  /// From a to b; and where the sign at b is uncertain, on to where it is certain, as far as `limit`. `range`
+  /// is what the least step is a part of.
+  OKTETT_INLINE March(const Field& f, Jumps j, const D& a, const D& b, const D& limit, const D& range,
+                      const M& active)
       : field(f), jumps(j), t(a), h(b - a), s(0.0), g(a) {
     for (int k = 0; k < K; ++k) found[k] = {a, a, D(0.0), D(0.0)};
-    const D least = (b - a) * D(0x1p-44);
+    const D least = range * D(0x1p-44);
     M live = active & (a < b);
     const M points = active & ~live;
     if (OKTETT_UNLIKELY(any(points))) first_sign = select(points, certain_sign(f.at(a)), first_sign);
@@ -176,13 +178,14 @@ struct March {
 };
 
 /// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Their parts are 0 or
-/// kJumpPart. A crossing that is not told apart from b may lie between b and `limit`.
-/// Returns the first certain sign from a on, 0 if there is none.
+/// kJumpPart. A crossing that is not told apart from b may lie between b and `limit`. `range` is the length
+/// of which the least step and the tolerance of crossings are parts: at least b - a, more where [a, b] is
+/// only a part of what is looked at. Returns the first certain sign from a on, 0 if there is none.
 template <int K, class Field, class D>
-OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const typename D::M& active,
-                      Jumps jumps, Crossings<K, D>& out) {
-  const March<K, Field, D> walk(field, jumps, a, b, limit, active);
-  const D tolerance = max((b - a) * D(0x1p-42), max(abs(a), abs(b)) * D(0x1p-50));
+OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const D& range,
+                      const typename D::M& active, Jumps jumps, Crossings<K, D>& out) {
+  const March<K, Field, D> walk(field, jumps, a, b, limit, range, active);
+  const D tolerance = max(range * D(0x1p-42), max(abs(a), abs(b)) * D(0x1p-50));
   CrossingList<K, D> list(out);
   for (int k = 0; k < K; ++k) {
     const auto here = active & (D(k) < walk.count);
@@ -196,6 +199,13 @@ OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit
   const unsigned lost = bits(walk.uncertified);
   if (OKTETT_UNLIKELY(lost != 0)) count_uncertified(__builtin_popcount(lost));
   return walk.first_sign;
+}
+
+/// The same, where [a, b] is all that is looked at.
+template <int K, class Field, class D>
+OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const typename D::M& active,
+                      Jumps jumps, Crossings<K, D>& out) {
+  return march(field, a, b, limit, b - a, active, jumps, out);
 }
 
 }  // namespace oktett::interval

@@ -8,20 +8,13 @@
 #include <tuple>
 
 #include "kernels/functions/expression.h"
+#include "kernels/functions/tape_values.h"
 
 namespace oktett {
 namespace {
 
 using Number = Simd<double, 1, ScalarIsa>;
 constexpr std::string_view kVariables[] = {"x", "y", "z"};
-
-/// A value to compute, with the values it is made of.
-struct Value {
-  TapeOp op = TapeOp::constant;
-  std::uint32_t a = kNoId, b = kNoId;
-  int n = 0;
-  double c = 0;
-};
 
 [[noreturn]] void fail(std::size_t place, const std::string& what) {
   throw Error(Location{"", 0, static_cast<int>(place) + 1}, what);
@@ -75,21 +68,14 @@ class Values {
     }
   }
 
-  const std::vector<Value>& list() const { return list_; }
+  const std::vector<TapeValue>& list() const { return list_; }
   bool is_constant(std::uint32_t v) const { return v > 2 && list_[v].op == TapeOp::constant; }
-  /// The cosine of what `v` is the sine of, or the other way round; kNoId if there is none.
-  std::uint32_t partner(std::uint32_t v) const {
-    Value other = list_[v];
-    other.op = other.op == TapeOp::sin ? TapeOp::cos : TapeOp::sin;
-    const auto found = index_.find(key(other));
-    return found == index_.end() ? kNoId : found->second;
-  }
 
  private:
   using Key = std::tuple<TapeOp, std::uint32_t, std::uint32_t, int, std::uint64_t>;
-  static Key key(const Value& v) { return {v.op, v.a, v.b, v.n, std::bit_cast<std::uint64_t>(v.c)}; }
+  static Key key(const TapeValue& v) { return {v.op, v.a, v.b, v.n, std::bit_cast<std::uint64_t>(v.c)}; }
 
-  std::uint32_t find(Value v) {
+  std::uint32_t find(TapeValue v) {
     const bool commutes =
         v.op == TapeOp::add || v.op == TapeOp::multiply || v.op == TapeOp::min || v.op == TapeOp::max;
     if (commutes && v.b < v.a) std::swap(v.a, v.b);
@@ -98,7 +84,7 @@ class Values {
     return at->second;
   }
 
-  std::uint32_t fold(const Value& v, std::size_t place) {
+  std::uint32_t fold(const TapeValue& v, std::size_t place) {
     Gradient<Number> r[3];
     tape::set(r[0], list_[v.a].c);
     tape::set(r[1], v.b == kNoId ? 0 : list_[v.b].c);
@@ -160,77 +146,8 @@ class Values {
         ->second;
   }
 
-  std::vector<Value> list_;  ///< x, y and z first
+  std::vector<TapeValue> list_;  ///< x, y and z first
   std::map<Key, std::uint32_t> index_;
-};
-
-/// Writes the steps for the values that count, and gives registers back after their last use.
-class Writer {
- public:
-  Writer(const Values& values, std::uint32_t root) : values_(values), list_(values.list()) {
-    uses_.assign(list_.size(), 0);
-    uses_[root] = 1;
-    for (std::size_t v = list_.size(); v-- > 3;) {
-      if (uses_[v] == 0) continue;
-      if (list_[v].a != kNoId) ++uses_[list_[v].a];
-      if (list_[v].b != kNoId) ++uses_[list_[v].b];
-    }
-    registers_.resize(list_.size());
-    for (std::uint32_t k = 0; k < 3; ++k) registers_[k] = static_cast<std::uint8_t>(k);
-    written_.assign(list_.size(), false);
-    for (std::uint32_t v = 3; v < list_.size(); ++v)
-      if (uses_[v] > 0 && !written_[v]) write(v);
-    tape_.result = registers_[root];
-  }
-  FunctionTape take() { return std::move(tape_); }
-
- private:
-  void write(std::uint32_t v) {
-    const Value& value = list_[v];
-    if (tape_.steps.size() == kMaxTapeSteps)
-      fail(0, "the function takes more than " + std::to_string(kMaxTapeSteps) + " steps");
-    TapeStep step{value.op, 0, 0, 0, value.n, value.c};
-    if (value.a != kNoId) step.a = registers_[value.a];
-    if (value.b != kNoId) step.b = registers_[value.b];
-    const bool wave = value.op == TapeOp::sin || value.op == TapeOp::cos;
-    const std::uint32_t other = wave ? values_.partner(v) : kNoId;
-    if (other != kNoId && uses_[other] > 0) {
-      // The angle is used by both; neither result may overwrite it before the other is there.
-      registers_[v] = acquire(), registers_[other] = acquire();
-      written_[other] = true;
-      release(value.a), release(value.a);
-      step.op = TapeOp::sin_cos;
-      step.out = registers_[value.op == TapeOp::sin ? v : other];
-      step.b = registers_[value.op == TapeOp::sin ? other : v];
-    } else {
-      // What a result overwrites is read before.
-      if (value.a != kNoId) release(value.a);
-      if (value.b != kNoId) release(value.b);
-      step.out = registers_[v] = acquire();
-    }
-    written_[v] = true;
-    tape_.steps.push_back(step);
-  }
-  void release(std::uint32_t v) {
-    if (--uses_[v] == 0 && v > 2) free_.push_back(registers_[v]);
-  }
-  std::uint8_t acquire() {
-    if (free_.empty()) {
-      if (tape_.registers == 3 + kMaxTapeRegisters)
-        fail(0, "the function needs more than " + std::to_string(kMaxTapeRegisters) + " values at a time");
-      return static_cast<std::uint8_t>(tape_.registers++);
-    }
-    const std::uint8_t r = free_.back();
-    free_.pop_back();
-    return r;
-  }
-
-  const Values& values_;
-  const std::vector<Value>& list_;
-  std::vector<std::uint32_t> uses_;
-  std::vector<std::uint8_t> registers_, free_;
-  std::vector<bool> written_;
-  FunctionTape tape_;
 };
 
 }  // namespace
@@ -246,9 +163,7 @@ FunctionTape compile_function(std::string_view text) {
                                     operands > 1 ? made[node.b] : kNoId));
   }
   const std::uint32_t root = made.back();
-  FunctionTape tape = Writer(values, root).take();
-  tape.varies = !values.is_constant(root);
-  return tape;
+  return write_tape(values.list(), root);
 }
 
 double value_at(const FunctionTape& tape, double x, double y, double z) {

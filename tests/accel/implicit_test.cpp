@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <string>
 
 #include "accel/accel.h"
 #include "kernels/exact/march.h"
@@ -129,6 +131,66 @@ TEST(Implicit, NothingForNan) {
     EXPECT_TRUE(crossings(s, {-3, 0.5f, 0}, {0, 0, 0}).empty());
     EXPECT_TRUE(crossings(s, {-3, 0.5f, 0}, {kInf, 0, 0}).empty());
     EXPECT_TRUE(crossings_of({{-3, 0.5f, 0}, 0, {1, 0, 0}, kNan}, s).empty());
+  }
+}
+
+/// The text of min(a, b) and max(a, b), or the same number without branches, which is traced in one cell.
+std::string lesser(const std::string& a, const std::string& b, bool branch) {
+  return branch ? "min(" + a + ", " + b + ")" : "0.5*(" + a + " + " + b + " - abs(" + a + " - (" + b + ")))";
+}
+std::string greater(const std::string& a, const std::string& b, bool branch) {
+  return branch ? "max(" + a + ", " + b + ")" : "0.5*(" + a + " + " + b + " + abs(" + a + " - (" + b + ")))";
+}
+
+/// Balls and a bar, together and cut by a slab; many reach through the faces of the box.
+std::string balls_and_bar(bool branch) {
+  std::mt19937 random(2);
+  const auto at = [&] { return std::to_string(static_cast<double>(random()) / 2147483648.0 - 1); };
+  std::string text = greater("abs(x - 0.31) - 0.171", "abs(y + 0.233) - 0.139", branch);
+  for (int k = 0; k < 3; ++k) {
+    const std::string x = at(), y = at(), z = at();
+    const std::string ball =
+        "(x - (" + x + "))^2 + (y - (" + y + "))^2 + (z - (" + z + "))^2 - 0." + std::to_string(15 + 6 * k);
+    text = lesser(text, ball, branch);
+  }
+  return greater(text, "abs(x + 0.3*z - 0.1) - 0.777", branch);
+}
+
+/// All crossings of a solid in many cells are those of the same solid in one cell.
+TEST(Implicit, CellsListEachCrossingOnce) {
+  std::mt19937 random(8);
+  for (const bool open : {false, true}) {
+    const ImplicitShape divided = function(balls_and_bar(true), 1, open);
+    const ImplicitShape whole = function(balls_and_bar(false), 1, open);
+    const auto divided_accel = build_accel({{ExactShape{divided}, {}}}),
+               whole_accel = build_accel({{ExactShape{whole}, {}}});
+    std::size_t hits = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const auto unit = [&] { return static_cast<float>(random() % 65536) / 32768.0f - 1; };
+      Ray ray{{3 * unit(), 3 * unit(), 3 * unit()}, 0, {unit(), unit(), unit()}, kInf};
+      if (i % 3 == 0) {
+        // Along an axis, also along the borders of cells; from outside or inside.
+        const auto axis = random() % 3;
+        for (unsigned k = 0; k < 3; ++k) {
+          ray.origin[k] = static_cast<float>(static_cast<int>(random() % 127) - 63) / 64;
+          ray.direction[k] = k == axis ? 1.0f : 0.0f;
+        }
+        if (random() % 2) ray.origin[axis] = -2;
+      } else if (i % 3 == 1) {
+        // Into the box from far away.
+        ray.direction = Vec3f{unit(), unit(), unit()} * 0.9f - ray.origin;
+      }
+      const std::vector<Hit> found = all_crossings(*divided_accel, ray),
+                             expected = all_crossings(*whole_accel, ray);
+      ASSERT_EQ(found.size(), expected.size()) << "ray " << i;
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        EXPECT_NEAR(found[k].t, expected[k].t, 1e-6f * (1 + expected[k].t));
+        EXPECT_EQ(found[k].u, expected[k].u);
+        EXPECT_EQ(found[k].v, expected[k].v);
+      }
+      hits += found.size();
+    }
+    EXPECT_GT(hits, 1000u);
   }
 }
 

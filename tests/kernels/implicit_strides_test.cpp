@@ -78,13 +78,24 @@ std::vector<std::string> functions() {
       "x^-2 + y^-2 + z - 9",
       "y - x^z*0.5",
       "y - tan(3*x)*z"};
+  // Branches that matter in some cells only, also at the faces of the box and next to what is not defined.
+  for (const char* text :
+       {"max(max(max(abs(x), abs(y)), abs(z)) - 0.8, 0.2 - hypot(x, y))",
+        "min(hypot(x - 0.5, hypot(y, z)) - 0.3, hypot(x + 0.5, hypot(y, z)) - 0.3)"
+        " - max(0.5 - abs(hypot(x - 0.5, hypot(y, z)) - hypot(x + 0.5, hypot(y, z))), 0)^2*0.5",
+        "max(min(x, min(y, z)) - 0.6, -hypot(x, hypot(y, z)) + 0.5)",
+        "min(sqrt(x) - 0.4, max(log(y + 0.5), z - 0.3))", "max(min(floor(4*x)/4 - y, z - 0.7), 1/(x - 0.1))",
+        "min(max(x, 0)*y, max(z, 0.5)*min(x, -0.5))", "max(x^2 + y^2 + z^2 - 9, min(-1, x - 0.9))",
+        "min(abs(x) - 1e-6, max(abs(y) - 1e-6, abs(z) - 0.5))"})
+    list.push_back(text);
   list.push_back(repeated("+", 20));
   list.push_back(repeated("min", 12));
   list.push_back(repeated("max", 12));
   return list;
 }
 
-/// A function with its grid, and without: then intervals find all crossings.
+/// A function as it is traced, in cells and by strides; and in one cell without a grid, where intervals find
+/// all crossings.
 struct Pair {
   Implicit::Pool strides, intervals;
 
@@ -94,7 +105,11 @@ struct Pair {
     s.open = open;
     Implicit::add(strides, s, {});
     Implicit::add(intervals, s, {});
-    for (ImplicitElement& e : intervals.elements) e.grid = std::make_shared<const VariationGrid>();
+    intervals.cells.clear();
+    for (ImplicitElement& e : intervals.elements) {
+      e.grid = std::make_shared<const VariationGrid>(), e.cells = nullptr;
+      add_cell(intervals, e.lo, e.hi);
+    }
   }
 };
 
@@ -107,7 +122,7 @@ struct Found {
   double t, turn, part;
 };
 
-/// First crossings with the only cell of a pool, in lanes.
+/// First crossings with the cells of a pool, in lanes.
 template <class D>
 void first_crossings(const Implicit::Pool& pool, const Way* ways, Found* found) {
   constexpr int W = D::kWidth;
@@ -120,19 +135,23 @@ void first_crossings(const Implicit::Pool& pool, const Way* ways, Found* found) 
                       lanes([](const Way& w) { return w.o.z; })},
                      {lanes([](const Way& w) { return w.d.x; }), lanes([](const Way& w) { return w.d.y; }),
                       lanes([](const Way& w) { return w.d.z; })}};
-  const ExactCell& cell = pool.cells[0];
-  LineRange<D> range;
-  auto active = clip_line(line, cell.lo, cell.hi, range);
   const D from = lanes([](const Way& w) { return w.from; });
-  range.enter_face = select(from > range.a, D(0.0), range.enter_face);
-  range.a = max(from, range.a);
-  active = active & (range.a <= range.b);
-  Crossings<1, D> c;
-  if (any(active)) Implicit::crossings<1>(pool, cell, line, range, active, c);
-  double t[W], turn[W], part[W];
-  c.t[0].store(t), c.turn[0].store(turn), c.part[0].store(part);
-  const unsigned met = bits(active & (c.t[0] < D(roots::kNoRoot)));
-  for (int i = 0; i < W; ++i) found[i] = met >> i & 1 ? Found{t[i], turn[i], part[i]} : Found{-1, 0, 0};
+  for (int i = 0; i < W; ++i) found[i] = {-1, 0, 0};
+  for (const ExactCell& cell : pool.cells) {
+    LineRange<D> range;
+    auto active = clip_line(line, cell.lo, cell.hi, range);
+    range.enter_face = select(from > range.a, D(0.0), range.enter_face);
+    range.a = max(from, range.a);
+    active = active & (range.a <= range.b);
+    if (none(active)) continue;
+    Crossings<1, D> c;
+    Implicit::crossings<1>(pool, cell, line, range, active, c);
+    double t[W], turn[W], part[W];
+    c.t[0].store(t), c.turn[0].store(turn), c.part[0].store(part);
+    const unsigned met = bits(active & (c.t[0] < D(roots::kNoRoot)));
+    for (int i = 0; i < W; ++i)
+      if ((met >> i & 1) != 0 && (found[i].t < 0 || t[i] < found[i].t)) found[i] = {t[i], turn[i], part[i]};
+  }
 }
 
 /// Any rays through the box of half-size 1, along its axes and through the borders of cells, far and long
@@ -158,9 +177,12 @@ void expect_the_same(const Pair& pair, int rays, std::mt19937& random, int& hits
   std::vector<Way> ways;
   std::vector<Found> expected;
   const auto add = [&](const Way& way) {
-    ways.push_back(way);
-    first_crossings<One>(pair.intervals, &way, &expected.emplace_back());
-    return expected.back();
+    const std::uint64_t given_up = interval::uncertified_count();
+    Found found;
+    first_crossings<One>(pair.intervals, &way, &found);
+    // Nothing is expected where intervals have given up.
+    if (interval::uncertified_count() == given_up) ways.push_back(way), expected.push_back(found);
+    return found;
   };
   while (rays-- > 0) {
     const Way way = any_way(random);
@@ -184,7 +206,10 @@ void expect_the_same(const Pair& pair, int rays, std::mt19937& random, int& hits
       const Found& e = expected[i + k];
       const Way& w = ways[i + k];
       hits += e.t >= 0;
-      ASSERT_EQ(static_cast<float>(found[k].t), static_cast<float>(e.t))
+      // In a cell the way is shorter, and so is the march's tolerance. A float near 0 tells the two apart.
+      const double tolerance = pair.strides.elements[0].cells != nullptr ? 0x1p-40 / length(w.d) : 0;
+      ASSERT_TRUE(static_cast<float>(found[k].t) == static_cast<float>(e.t) ||
+                  std::abs(found[k].t - e.t) <= tolerance)
           << found[k].t - e.t << " from " << w.o.x << " " << w.o.y << " " << w.o.z << " along " << w.d.x
           << " " << w.d.y << " " << w.d.z << ", t > " << w.from;
       ASSERT_EQ(found[k].turn, e.turn);
