@@ -341,5 +341,39 @@ TEST(Interleaved, SpheresAndPlanesAmongTriangles) {
   }
 }
 
+/// Rays that begin far from each other prefetch a tree that is larger than the cache of a core.
+TEST(Interleaved, ScatteredRaysPrefetchAndFindTheSameHits) {
+  TriangleRandom random(41);
+  TriangleMesh mesh;
+  while (mesh.positions.size() < 3 * 60000) {
+    const Vec3f at = random.vector();
+    for (int k = 0; k < 3; ++k) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(at + random.vector() * 0.02f);
+    }
+  }
+  RayBatch scattered, neighbours;
+  for (int i = 0; i < 1500; ++i) {
+    const Vec3f from = random.vector() * 1.5f, to = random.vector();
+    scattered.push_back({from, 0, to - from, i % 3 == 0 ? 1.0f : kInf});
+    neighbours.push_back({Vec3f{1.5f, 0.05f * random.sign(), 0}, 0, to, kInf});
+  }
+  const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
+  ASSERT_GT(tree_bytes(*accel), kPrefetchScatteredBytes);
+  EXPECT_TRUE(pays_to_prefetch(*accel, scattered.span()));
+  EXPECT_FALSE(pays_to_prefetch(*accel, neighbours.span()));
+  EXPECT_FALSE(pays_to_prefetch(*accel, scattered.span().part(0, 1)));
+  for (const RayBatch& rays : {scattered, neighbours})
+    EXPECT_GT(expect_hits(*accel, rays, scalar_hits(*accel, rays), {TraceMode::interleaved}), 300);
+
+  TriangleMesh small;
+  for (std::uint32_t k = 0; k < 3; ++k)
+    small.indices.push_back(k), small.positions.push_back(random.vector());
+  EXPECT_FALSE(pays_to_prefetch(*build_accel({{MeshGeometry{&small}, {}, kNoId}}), scattered.span()));
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < scattered.size(); ++i) scattered.origin[k][i] = kNan;
+  EXPECT_FALSE(are_scattered(scattered.span(), Box{{0, 0, 0}, {1, 1, 1}}));
+}
+
 }  // namespace
 }  // namespace oktett

@@ -134,7 +134,7 @@ template <Query Q, class A>
 void trace_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
   if (has_instances(accel))
     run_interleaved<Q, A, InflightTrees::instances>(accel, rays, out);
-  else if (tree_bytes(accel) > kPrefetchBytes)
+  else if (pays_to_prefetch(accel, rays))
     run_interleaved<Q, A, InflightTrees::large>(accel, rays, out);
   else
     run_interleaved<Q, A, InflightTrees::small>(accel, rays, out);
