@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "kernels/exact/implicit_grid.h"
 #include "kernels/exact/cell_tree.h"
+#include "kernels/exact/implicit_grid.h"
 #include "kernels/functions/tape_data.h"
 
 namespace oktett {

@@ -364,7 +364,7 @@ TEST(Interleaved, ScatteredRaysPrefetchAndFindTheSameHits) {
   EXPECT_FALSE(pays_to_prefetch(*accel, neighbours.span()));
   EXPECT_FALSE(pays_to_prefetch(*accel, scattered.span().part(0, 1)));
   for (const RayBatch& rays : {scattered, neighbours})
-    EXPECT_GT(expect_hits(*accel, rays, scalar_hits(*accel, rays), {TraceMode::interleaved}), 300);
+    EXPECT_GT(expect_hits(*accel, rays, scalar_hits(*accel, rays), {TraceMode::interleaved}), 200);
 
   TriangleMesh small;
   for (std::uint32_t k = 0; k < 3; ++k)
