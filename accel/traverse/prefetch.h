@@ -10,8 +10,7 @@
 namespace oktett {
 
 /// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
-/// saves. The second size is for rays that begin far from each other: only the part of the cache that a core
-/// has for itself helps them.
+/// saves. For rays that begin far from each other the limit is about the size of a core's own cache.
 inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20,
                              kPrefetchScatteredBytes = std::size_t{2} << 20;
 

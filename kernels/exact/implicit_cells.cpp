@@ -26,8 +26,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// order of computation, its number in the whole list and the numbers of its operands.
 using Part = std::vector<std::uint32_t>;
 using PartView = std::span<const std::uint32_t>;
-/// The only number of a part where the function is negative and nothing else matters.
-constexpr std::uint32_t kInside = kNoId;
 
 constexpr std::uint32_t pack(std::uint32_t a, std::uint32_t b) { return (a & 0xffff) | b << 16; }
 constexpr std::uint32_t unpack(std::uint32_t packed) {
@@ -84,7 +82,7 @@ class FunctionRule : public CellRule {
     const std::uint32_t root = same[part[0]];
     const CellRange range = range_of(value[root]);
     if (!box_.open && range.hi < 0 && is_at_face(box)) {
-      out = {kInside};
+      out = {unit(-1)};
       return {-1, 1};
     }
     keep(part, root, same, out);
@@ -92,7 +90,7 @@ class FunctionRule : public CellRule {
   }
 
   double least_size(PartView part) const override {
-    if (part[0] == kInside) return kInfinity;
+    if (part[0] == unit(-1)) return kInfinity;
     for (std::size_t k = 1; k < part.size(); k += 2)
       if (is_branch(list_[part[k]].op)) return least_size_;
     return kLeastPlainSize;
@@ -104,12 +102,7 @@ class FunctionRule : public CellRule {
 
   /// The tape for a part of the values.
   FunctionTape tape_of(PartView part) const {
-    std::vector<TapeValue> list(3);
-    if (part[0] == kInside) {
-      list.push_back({TapeOp::constant, kNoId, kNoId, 0, -1});
-      return write_tape(list, 3);
-    }
-    list = list_;
+    std::vector<TapeValue> list = list_;
     for (std::size_t k = 1; k < part.size(); k += 2)
       list[part[k]].a = unpack(part[k + 1]), list[part[k]].b = unpack(part[k + 1] >> 16);
     return write_tape(list, part[0]);

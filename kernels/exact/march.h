@@ -102,8 +102,8 @@ struct March {
   D first_sign = D(0.0);  ///< the first certain sign
   M uncertified;
 
-  /// From a to b; and where the sign at b is uncertain, on to where it is certain, as far as `limit`. `range`
-  /// is what the least step is a part of.
+  /// From a to b; and where the sign at b is uncertain, on to where it is certain, as far as `limit`. The
+  /// least step is 2^-44 of `range`.
   OKTETT_INLINE March(const Field& f, Jumps j, const D& a, const D& b, const D& limit, const D& range,
                       const M& active)
       : field(f), jumps(j), t(a), h(b - a), s(0.0), g(a) {
@@ -178,9 +178,9 @@ struct March {
 };
 
 /// The first K crossings of `field` on [a, b], finite, in the lanes of `active`. Their parts are 0 or
-/// kJumpPart. A crossing that is not told apart from b may lie between b and `limit`. `range` is the length
-/// of which the least step and the tolerance of crossings are parts: at least b - a, more where [a, b] is
-/// only a part of what is looked at. Returns the first certain sign from a on, 0 if there is none.
+/// kJumpPart. A crossing that is not told apart from b may lie between b and `limit`. The least step is
+/// 2^-44 of `range` and the tolerance of crossings 2^-42 of it; `range` is at least b - a, and more where
+/// [a, b] is one cell of a larger box. Returns the first certain sign from a on, 0 if there is none.
 template <int K, class Field, class D>
 OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const D& range,
                       const typename D::M& active, Jumps jumps, Crossings<K, D>& out) {
@@ -201,7 +201,7 @@ OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit
   return walk.first_sign;
 }
 
-/// The same, where [a, b] is all that is looked at.
+/// The same with b - a for `range`.
 template <int K, class Field, class D>
 OKTETT_INLINE D march(const Field& field, const D& a, const D& b, const D& limit, const typename D::M& active,
                       Jumps jumps, Crossings<K, D>& out) {
