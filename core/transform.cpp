@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "core/affine_lanes.h"
+#include "core/double_double.h"
 #include "core/math.h"
 
 namespace oktett {
@@ -64,7 +65,48 @@ Affine Affine::rotation(const Vec3d& axis, double degrees) {
 Vec3d Affine::point(const Vec3d& p) const { return map_point(*this, p); }
 Vec3d Affine::vector(const Vec3d& v) const { return map_vector(*this, v); }
 Vec3d Affine::normal_by_inverse(const Vec3d& n) const { return map_normal(*this, n); }
-Affine Affine::inverse() const { return inverse_map<double>(*this); }
+
+/// |M| v, with the absolute values of the entries of the linear part.
+static Vec3d magnitude(const Affine& a, const Vec3d& v) {
+  Vec3d sum;
+  for (int k = 0; k < 3; ++k)
+    sum[k] = std::abs(a.m[k][0]) * v.x + std::abs(a.m[k][1]) * v.y + std::abs(a.m[k][2]) * v.z;
+  return sum;
+}
+
+Vec3d displacement(const Affine& map, const Affine& inverse, const Vec3d& reach) {
+  const Vec3d offset{std::abs(map.m[0][3]), std::abs(map.m[1][3]), std::abs(map.m[2][3])};
+  return magnitude(inverse, (magnitude(map, reach) + offset) * 0x1p-50);
+}
+
+/// The inverse by cofactors in double-double arithmetic.
+static Affine long_inverse(const Affine& a) {
+  const auto minor = [&](int i, int j) {
+    const int r = (i + 1) % 3, s = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+    return two_product(a.m[r][c], a.m[s][d]) - two_product(a.m[r][d], a.m[s][c]);
+  };
+  DoubleDouble determinant = 0;
+  for (int j = 0; j < 3; ++j) determinant = determinant + minor(0, j) * DoubleDouble(a.m[0][j]);
+  Affine inverse;
+  for (int i = 0; i < 3; ++i) {
+    DoubleDouble shift = 0;
+    for (int j = 0; j < 3; ++j) {
+      const DoubleDouble entry = minor(j, i) / determinant;
+      inverse.m[i][j] = entry.hi;
+      shift = shift - entry * DoubleDouble(a.m[j][3]);
+    }
+    inverse.m[i][3] = shift.hi;
+  }
+  return inverse;
+}
+
+Affine Affine::inverse() const {
+  const Affine quick = inverse_map<double>(*this);
+  // The products of the cofactors cancel, and the inverse loses digits, where the map is flat in a direction
+  // that is none of the axes: where |M^-1| |M|, with absolute values of all entries, is large.
+  const double lost = max_component(magnitude(quick, magnitude(*this, {1, 1, 1})));
+  return lost > 16 ? long_inverse(*this) : quick;
+}
 
 static Vec3d column(const Affine& a, int j) { return {a.m[0][j], a.m[1][j], a.m[2][j]}; }
 

@@ -45,7 +45,8 @@ struct Affine {
 
   /// Determinant of the linear part; negative for a mirror.
   double determinant() const;
-  /// The inverse map. For a singular map the result holds non-finite numbers: ask `is_invertible` first.
+  /// The inverse map; each entry is off by a few roundings, measured in the greatest of its row. For a
+  /// singular map the result holds non-finite numbers: ask `is_invertible` first.
   Affine inverse() const;
   /// True if all entries are finite and the map has a finite inverse.
   bool is_invertible() const;
@@ -57,6 +58,11 @@ struct Affine {
   /// (a * b)(p) = a(b(p)).
   friend Affine operator*(const Affine& a, const Affine& b);
 };
+
+/// How far a point with |p[k]| <= reach[k] is displaced, at most, along each axis of its space by what rounds
+/// when `map` takes it to another space. `inverse` is the inverse of `map`. The displacement is greater than
+/// a few roundings of the coordinates where `map` stretches a direction that is none of the axes.
+Vec3d displacement(const Affine& map, const Affine& inverse, const Vec3d& reach);
 
 /// The bounds of the image of `box`, rounded outwards.
 Box transform_bounds(const Affine& map, const Box& box);

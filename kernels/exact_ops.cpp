@@ -41,17 +41,20 @@ Kind kind_of(const ExactForm& form) {
   return kinds[form.index()];
 }
 
-Box cell_bounds(const Affine& to_world, const ExactCell& cell) {
+Box cell_bounds(const ExactFrame& frame, const ExactCell& cell) {
   Box b;
   for (int k = 0; k < 3; ++k)
     if (!std::isfinite(cell.lo[k]) || !std::isfinite(cell.hi[k])) return b;
+  const Affine& to_world = frame.to_world;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3d p;
     for (int k = 0; k < 3; ++k) p[k] = (corner >> k & 1) != 0 ? cell.hi[k] : cell.lo[k];
     const Vec3d q = to_world.point(p);
-    // Taking a ray into the own space may displace it by a few roundings of the coordinates.
-    const double pad = 0x1p-45 * (length(q) + length(to_world.vector(p)));
-    b.grow(Box{round_down(q - Vec3d{pad, pad, pad}), round_up(q + Vec3d{pad, pad, pad})});
+    // What may be displaced when a ray is taken into the own space.
+    const double coordinates = 0x1p-45 * (length(q) + length(to_world.vector(p)));
+    const Vec3d pad =
+        displacement(frame.to_own, to_world, abs(q)) + Vec3d{coordinates, coordinates, coordinates};
+    b.grow(Box{round_down(q - pad), round_up(q + pad)});
   }
   return b;
 }

@@ -48,9 +48,8 @@ struct ExactOps {
 const ExactOps& exact_ops(Kind kind);
 Kind kind_of(const ExactForm& form);
 
-/// The image of a cell under the map from its element's own space, rounded outwards; empty if the cell is
-/// not bounded.
-Box cell_bounds(const Affine& to_world, const ExactCell& cell);
+/// The image of a cell of an element in `frame`, rounded outwards; empty if the cell is not bounded.
+Box cell_bounds(const ExactFrame& frame, const ExactCell& cell);
 /// Bounds of `shape`; empty if it is degenerate or not bounded.
 Box exact_bounds(const ExactShape& shape, const Affine& to_world);
 bool is_unbounded(const ExactShape& shape, const Affine& to_world);

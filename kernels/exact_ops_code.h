@@ -20,7 +20,7 @@ struct ExactOpsCode {
     if constexpr (requires { S::world_bounds(cast(pool), cell.element); })
       return S::world_bounds(cast(pool), cell.element);
     else
-      return cell_bounds(pool.frames[cell.element].to_world, cell);
+      return cell_bounds(pool.frames[cell.element], cell);
   }
   static bool inside(const ExactPoolBase& pool, std::size_t element, const Vec3d& p) {
     return is_inside<S>(cast(pool), element, p);

@@ -13,10 +13,11 @@ struct BoxSolid {
   static constexpr bool kSolid = true;
 
   struct Pool {
-    Column<double> m[12];  ///< row-major 3x4 map from the world to the cube [-1, 1]^3
+    Column<double> m[12];      ///< row-major 3x4 map from the world to the cube [-1, 1]^3
+    Column<double> world[12];  ///< its inverse
     Column<std::uint32_t> item;
     std::size_t size() const { return item.size(); }
-    std::size_t bytes() const { return m[0].bytes() * 12 + item.bytes(); }
+    std::size_t bytes() const { return m[0].bytes() * 24 + item.bytes(); }
   };
 
   template <class D>
@@ -29,7 +30,10 @@ struct BoxSolid {
     const Affine cube =
         to_world * Affine::translation((s.min + s.max) * 0.5) * Affine::scaling((s.max - s.min) * 0.5);
     const Affine inverse = cube.inverse();
-    for (int k = 0; k < 12; ++k) p.m[k].push_back(inverse.m[k / 4][k % 4]);
+    for (int k = 0; k < 12; ++k) {
+      p.m[k].push_back(inverse.m[k / 4][k % 4]);
+      p.world[k].push_back(cube.m[k / 4][k % 4]);
+    }
     p.item.push_back(item);
   }
   static void finish(Pool& p) {
@@ -70,14 +74,19 @@ struct BoxSolid {
     return meets & (near <= far);
   }
 
-  static Affine to_cube(const Pool& p, std::size_t i) {
-    Affine a;
-    for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = p.m[k][i];
-    return a;
-  }
+  static Affine to_cube(const Pool& p, std::size_t i) { return map_of(p.m, i); }
+  static Affine to_world(const Pool& p, std::size_t i) { return map_of(p.world, i); }
 
   static Box bounds(const Pool& p, std::size_t i) {
-    return transform_bounds(to_cube(p, i).inverse(), Box{{-1, -1, -1}, {1, 1, 1}});
+    const Affine world = to_world(p, i);
+    Vec3d middle, half, reach;
+    for (int k = 0; k < 3; ++k) {
+      middle[k] = world.m[k][3];
+      half[k] = std::abs(world.m[k][0]) + std::abs(world.m[k][1]) + std::abs(world.m[k][2]);
+      reach[k] = std::abs(middle[k]) + half[k];
+    }
+    half += displacement(to_cube(p, i), world, reach);
+    return {round_down(middle - half), round_up(middle + half)};
   }
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
@@ -86,9 +95,11 @@ struct BoxSolid {
 
   template <class D, class Fetch>
   OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
-    AffineLanes<D> to_cube;
-    for (int k = 0; k < 12; ++k) to_cube.m[k / 4][k % 4] = fetch(p.m[k]);
-    const AffineLanes<D> to_world = inverse_map<D>(to_cube);
+    AffineLanes<D> to_cube, to_world;
+    for (int k = 0; k < 12; ++k) {
+      to_cube.m[k / 4][k % 4] = fetch(p.m[k]);
+      to_world.m[k / 4][k % 4] = fetch(p.world[k]);
+    }
     const Vec3<D> q = map_point(to_cube, hit.point()), m{abs(q.x), abs(q.y), abs(q.z)};
     // The face met is the nearest one; the lowest axis wins ties.
     const auto x = (m.x >= m.y) & (m.x >= m.z), y = ~x & (m.y >= m.z), z = ~(x | y);
@@ -109,8 +120,15 @@ struct BoxSolid {
     s.uv = {static_cast<float>(0.5 + 0.5 * q[a]), static_cast<float>(0.5 + 0.5 * q[b])};
     Vec3d tangent{0, 0, 0}, bitangent{0, 0, 0};
     tangent[a] = 2, bitangent[b] = 2;
-    const Affine to_world = cube.inverse();
-    s.tangent = Vec3f(to_world.vector(tangent)), s.bitangent = Vec3f(to_world.vector(bitangent));
+    const Affine world = to_world(p, i);
+    s.tangent = Vec3f(world.vector(tangent)), s.bitangent = Vec3f(world.vector(bitangent));
+  }
+
+ private:
+  static Affine map_of(const Column<double> (&columns)[12], std::size_t i) {
+    Affine a;
+    for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = columns[k][i];
+    return a;
   }
 };
 

@@ -87,8 +87,10 @@ struct Sphere {
   }
 
   static Box bounds(const Pool& p, std::size_t i) {
-    const Vec3d c{p.x[i], p.y[i], p.z[i]}, r{p.radius[i], p.radius[i], p.radius[i]};
-    return {round_down(c - r), round_up(c + r)};
+    const Vec3d c{p.x[i], p.y[i], p.z[i]};
+    // `roots` finds hits a few roundings outside of the sphere, too.
+    const double r = p.radius[i] + 0x1p-45 * (p.radius[i] + max_component(abs(c)));
+    return {round_down(c - Vec3d{r, r, r}), round_up(c + Vec3d{r, r, r})};
   }
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {

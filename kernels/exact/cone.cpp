@@ -19,7 +19,7 @@ void Cone::add(Pool& pool, const ConeShape& s, const ExactPlace& place) {
 
 Box Cone::world_bounds(const Pool& pool, std::size_t i) {
   const ConeElement& e = pool.elements[i];
-  return frustum_bounds(pool.frames[i].to_world, e.middle - e.slope, e.middle + e.slope);
+  return frustum_bounds(pool.frames[i], e.middle - e.slope, e.middle + e.slope);
 }
 
 bool Cone::inside(const Pool& pool, std::size_t i, const Vec3d& p) {

@@ -16,7 +16,8 @@ Affine along_axis(const Vec3d& from, const Vec3d& to, double radius) {
   return a;
 }
 
-Box frustum_bounds(const Affine& to_world, double r0, double r1) {
+Box frustum_bounds(const ExactFrame& frame, double r0, double r1) {
+  const Affine& to_world = frame.to_world;
   const Vec3d u = to_world.vector({1, 0, 0}), v = to_world.vector({0, 1, 0});
   Box b;
   for (int end = 0; end < 2; ++end) {
@@ -27,6 +28,7 @@ Box frustum_bounds(const Affine& to_world, double r0, double r1) {
     // A circle of radius r reaches r (u_k cos + v_k sin) along axis k.
     Vec3d e;
     for (int k = 0; k < 3; ++k) e[k] = r * std::sqrt(u[k] * u[k] + v[k] * v[k]) + pad;
+    e += displacement(frame.to_own, to_world, abs(c) + e);
     b.grow(Box{round_down(c - e), round_up(c + e)});
   }
   return b;
@@ -45,9 +47,7 @@ void Cylinder::add(Pool& pool, const CylinderShape& s, const ExactPlace& place) 
   add_cell(pool, {-1, -1, -1}, {1, 1, 1});
 }
 
-Box Cylinder::world_bounds(const Pool& pool, std::size_t i) {
-  return frustum_bounds(pool.frames[i].to_world, 1, 1);
-}
+Box Cylinder::world_bounds(const Pool& pool, std::size_t i) { return frustum_bounds(pool.frames[i], 1, 1); }
 
 bool Cylinder::inside(const Pool&, std::size_t, const Vec3d& p) {
   return p.x * p.x + p.y * p.y < 1 && std::abs(p.z) < 1;

@@ -89,8 +89,8 @@ struct Cylinder {
 /// A map from z in [-1, 1] to the axis from `from` to `to`, with `radius` the unit of x and y; exact for axes
 /// along those of the world, so that rays along the axis stay so.
 Affine along_axis(const Vec3d& from, const Vec3d& to, double radius);
-/// Bounds of the image of a frustum with radii r0 at z = -1 and r1 at z = 1, rounded outwards.
-Box frustum_bounds(const Affine& to_world, double r0, double r1);
+/// Bounds in the world of a frustum in `frame` with radii r0 at z = -1 and r1 at z = 1, rounded outwards.
+Box frustum_bounds(const ExactFrame& frame, double r0, double r1);
 /// uv of an end of a frustum, `radius` wide, or of its side.
 SurfaceUv frustum_uv(int part, double radius, const Vec3d& p);
 

@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "kernels/roots/double_double.h"
+#include "core/double_double.h"
 
 namespace oktett {
 namespace {
 
-using roots::DoubleDouble;
 using Step = PolynomialElement::Step;
 
 int exponent_of(const Monomial& m, int axis) { return axis == 0 ? m.i : axis == 1 ? m.j : m.k; }

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <string>
 
+#include "core/double_double.h"
 #include "kernels/functions/expression.h"
-#include "kernels/roots/double_double.h"
 
 namespace oktett {
 namespace {
-
-using roots::DoubleDouble;
 
 /// Coefficients above this are refused; double-double products of two such are still right.
 constexpr double kGreatestCoefficient = 1e100;

@@ -2,12 +2,9 @@
 
 #include <cmath>
 
-#include "kernels/roots/double_double.h"
+#include "core/double_double.h"
 
 namespace oktett {
-
-using roots::DoubleDouble;
-using roots::two_product;
 
 static DoubleDouble cross(double a, double b, double c, double d) {
   return two_product(a, d) - two_product(b, c);

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/double_double.h"
 #include "kernels/exact/surface_uv.h"
-#include "kernels/roots/double_double.h"
 
 namespace oktett {
 
 namespace {
-
-using roots::DoubleDouble;
 
 constexpr double kInfinity = roots::kNoRoot;
 /// Boxes around what they bound are larger by this, so that the function is surely not negative outside.
@@ -36,11 +34,11 @@ Form<DoubleDouble> moved(const Form<double>& f, const Vec3d& center, const Vec3d
   DoubleDouble j = f.j;
   for (int i = 0; i < 3; ++i) {
     DoubleDouble qc = 0;
-    for (int k = 0; k < 3; ++k) qc = qc + roots::two_product(f.q[at(i, k)], center[k]);
+    for (int k = 0; k < 3; ++k) qc = qc + two_product(f.q[at(i, k)], center[k]);
     j = j + (qc + DoubleDouble(f.h[i]) + DoubleDouble(f.h[i])) * DoubleDouble(center[i]);
     out.h[i] = (qc + DoubleDouble(f.h[i])) * DoubleDouble(scale[i]);
     for (int k = i; k < 3; ++k)
-      out.q[at(i, k)] = roots::two_product(f.q[at(i, k)], scale[i]) * DoubleDouble(scale[k]);
+      out.q[at(i, k)] = two_product(f.q[at(i, k)], scale[i]) * DoubleDouble(scale[k]);
   }
   out.j = j;
   return out;
@@ -189,8 +187,8 @@ void Quadric::equation(const QuadricElement& e, const double (&in)[6], double (&
     const DoubleDouble p = in[i], d = in[3 + i], h = e.h[i];
     DoubleDouble qp = 0, qd = 0;
     for (int k = 0; k < 3; ++k) {
-      qp = qp + roots::two_product(e.q[at(i, k)], in[k]);
-      qd = qd + roots::two_product(e.q[at(i, k)], in[3 + k]);
+      qp = qp + two_product(e.q[at(i, k)], in[k]);
+      qd = qd + two_product(e.q[at(i, k)], in[3 + k]);
     }
     a = a + qd * d;
     b = b + (qp + h) * d;

@@ -194,18 +194,21 @@ class UnionWalk {
   std::uint8_t path_[kMaxDepth];
 };
 
-/// Bounds in the world of what reaches as far as support(w) along w, both in the element's own space, with
-/// room for rounding by `slack` times the coordinates; `radius` is about its size there.
+/// Bounds in the world of what reaches as far as support(w) along w, both in the own space of an element in
+/// `frame`, with room for rounding by `slack` times the coordinates; `radius` is about its size there.
 template <class Support>
-Box bounds_by_support(const Affine& to_world, double slack, double radius, Support&& support) {
-  Vec3d lo, hi;
+Box bounds_by_support(const ExactFrame& frame, double slack, double radius, Support&& support) {
+  Vec3d lo, hi, reach;
   for (int k = 0; k < 3; ++k) {
-    const auto& row = to_world.m[k];
+    const auto& row = frame.to_world.m[k];
     const Vec3d w{row[0], row[1], row[2]};
-    const double middle = row[3], pad = slack * (std::abs(middle) + length(w) * radius);
+    const double middle = row[3];
+    reach[k] = std::abs(middle) + length(w) * radius;
+    const double pad = slack * reach[k];
     lo[k] = middle - support(-w) - pad, hi[k] = middle + support(w) + pad;
   }
-  return {round_down(lo), round_up(hi)};
+  const Vec3d pad = displacement(frame.to_own, frame.to_world, reach);
+  return {round_down(lo - pad), round_up(hi + pad)};
 }
 
 /// F::find for a union: `tell(place, crossing)` adds the point and the normal.

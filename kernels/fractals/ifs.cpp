@@ -307,7 +307,7 @@ bool Ifs::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 
 Box Ifs::world_bounds(const Pool& pool, std::size_t i) {
   const Element& e = pool.elements[i];
-  return bounds_by_support(pool.frames[i].to_world, 0x1p-44, e.balls.back().radius,
+  return bounds_by_support(pool.frames[i], 0x1p-44, e.balls.back().radius,
                            [&](const Vec3d& w) { return support(e, w); });
 }
 

@@ -253,7 +253,7 @@ bool Sphereflake::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 }
 
 Box Sphereflake::world_bounds(const Pool& pool, std::size_t i) {
-  return bounds_by_support(pool.frames[i].to_world, 0x1p-45, 1,
+  return bounds_by_support(pool.frames[i], 0x1p-45, 1,
                            [&](const Vec3d& w) { return support(pool.elements[i], w) * length(w); });
 }
 

@@ -5,8 +5,8 @@
 /// section 5.1). All functions assume coefficients of at most about 1 and |x| <= 1, as `normalize`
 /// (methods.h) provides; then errors by underflow are below kUnderflow.
 
+#include "core/double_double.h"
 #include "core/platform.h"
-#include "kernels/roots/double_double.h"
 #include "kernels/roots/roots.h"
 
 namespace oktett::roots {

@@ -1,9 +1,12 @@
 #include "core/transform.h"
 
+#include <gmp.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
 #include <cmath>
+
+#include "tests/support/dice.h"
 
 namespace oktett {
 namespace {
@@ -47,6 +50,43 @@ TEST(Affine, InverseUndoes) {
     const Vec3d p{0.1, -0.7, 3};
     RC_ASSERT(distance(m.inverse().point(m.point(p)), p) < 1e-11);
   }));
+}
+
+/// The product of two maps in rational numbers, less the identity: the greatest entry of each row, relative
+/// to that of the row of `a`.
+double distance_from_inverse(const Affine& a, const Affine& b) {
+  mpq_t sum, x, y;
+  mpq_inits(sum, x, y, nullptr);
+  double worst = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      mpq_set_si(sum, i == j ? -1 : 0, 1);
+      double size = 0;
+      for (int k = 0; k < 3; ++k) {
+        mpq_set_d(x, a.m[i][k]), mpq_set_d(y, b.m[k][j]);
+        mpq_mul(x, x, y), mpq_add(sum, sum, x);
+        size += std::abs(a.m[i][k] * b.m[k][j]);
+      }
+      worst = std::max(worst, std::abs(mpq_get_d(sum)) / size);
+    }
+  mpq_clears(sum, x, y, nullptr);
+  return worst;
+}
+
+/// A map that turns, flattens and turns again has an inverse whose cofactors cancel.
+TEST(Affine, InvertsFlatMaps) {
+  Dice<double> dice(1);
+  for (int i = 0; i < 20000; ++i) {
+    const double flat = std::ldexp(1.0, -dice.below(41));
+    const Affine m = Affine::rotation(dice.vec(180)) * Affine::scaling({1, flat, 1}) *
+                     Affine::rotation(dice.vec(180)) * Affine::scaling({1, 1, dice.range(0.5, 2)});
+    if (!m.is_invertible()) continue;
+    EXPECT_LT(distance_from_inverse(m.inverse(), m), 0x1p-46) << "flat by " << flat;
+    const Vec3d p = dice.vec(3);
+    const Affine moved = Affine::translation(p) * m;
+    const Vec3d there = m.inverse().vector(p), shift = moved.inverse().point({0, 0, 0});
+    EXPECT_LT(distance(there, -shift), 0x1p-46 / flat);
+  }
 }
 
 TEST(Affine, NormalsStayPerpendicular) {

@@ -10,7 +10,7 @@
 
 #include "core/platform.h"
 
-namespace oktett::roots {
+namespace oktett {
 
 /// The number hi + lo; |lo| is at most half an ulp of hi.
 struct DoubleDouble {
@@ -69,4 +69,4 @@ inline constexpr double kUnit = 0x1p-53;
 template <>
 inline constexpr double kUnit<DoubleDouble> = 0x1p-102;
 
-}  // namespace oktett::roots
+}  // namespace oktett

@@ -1,4 +1,4 @@
-#include "kernels/roots/double_double.h"
+#include "core/double_double.h"
 
 #include <gmp.h>
 #include <gtest/gtest.h>
