@@ -61,7 +61,7 @@ Geometry take_geometry(test::InputBytes& bytes, std::uint32_t user) {
   }
   if (bytes.take<std::uint8_t>() & 1)
     for (auto& row : g.transform.m)
-      for (double& x : row) x = static_cast<double>(bytes.number());
+      for (double& x : row) x = RawSource{bytes}.number(kCoordinate);
   return g;
 }
 
