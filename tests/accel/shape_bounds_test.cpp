@@ -14,9 +14,9 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// Rays that start on the plane of a side of `box`, or up to two floats beside it, and hardly leave that plane: they
-/// move at most 1 and often less than 2^-100 along its normal. Half of them are aimed at the middle of the side,
-/// which is where a round shape touches it.
+/// Rays that start on the plane of a side of `box`, or up to two floats beside it, and hardly leave that
+/// plane: they move at most 1 and often less than 2^-100 along its normal. Half of them are aimed at the
+/// middle of the side, which is where a round shape touches it.
 RayBatch rays_along_sides(const Box& box, Dice<float>& dice, int count) {
   RayBatch rays;
   const Vec3f extent = box.extent();
