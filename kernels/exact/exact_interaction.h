@@ -6,6 +6,7 @@
 
 #include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
+#include "kernels/exact/stretch.h"
 
 namespace oktett {
 
@@ -25,9 +26,10 @@ Vec3d gradient_by_differences(const typename S::Pool& pool, std::size_t i, int p
   return g;
 }
 
-/// The surface near hits with element `i`: points moved onto it along the gradient by Newton's method. A
-/// point that would go farther than rounding can have brought it stays where it is: the function has no slope
-/// to go by there. `own` gets the points in the element's own space.
+/// The surface near hits with element `i`: points moved onto it by Newton's method, along the normal that it
+/// has in the world. The way along the gradient in the element's own space would be as short there, but not
+/// in the world: a flat map makes it longer. A point that would go farther than rounding can have brought it
+/// stays where it is: the function has no slope to go by there. `own` gets the points in the own space.
 ///
 /// Several lanes ask for S::slope and NormalMethod::gradient.
 template <class S, class D>
@@ -35,17 +37,19 @@ OKTETT_INLINE SurfacePoints<D> exact_surface_points(const typename S::Pool& pool
                                                     const D& part, const HitPoints<D>& hit, Vec3<D>& own) {
   const ExactFrame& frame = pool.frames[i];
   const Vec3<D> start = map_point(frame.to_own, hit.point());
+  const D extent(stretch(frame.to_world));
   // t was rounded to float: so far may the true point be; a slanting ray may lead twice as far.
-  const D reach = D(0x1p-22) * length_lanes(map_vector(frame.to_own, hit.d)) * hit.t + D(0x1p-40);
-  Vec3<D> p = start, g;
+  const D reach = D(0x1p-22) * length_lanes(hit.d) * hit.t + D(0x1p-40) * extent;
+  const D zero(0.0);
+  Vec3<D> p = start, moved = {zero, zero, zero}, g;
   D value;
   auto stays_near = D::M::all_true();
   for (int k = 0; k < 3; ++k) {
     slope_lanes<S>(pool, i, part, p, value, g);
-    const D step = value / dot_lanes(g, g);
-    p = {p.x - g.x * step, p.y - g.y * step, p.z - g.z * step};
-    stays_near = stays_near & (length_lanes(sub_lanes(p, start)) <= reach);
-    p = select_lanes(stays_near, p, start);
+    const Vec3<D> n = map_normal(frame.to_own, g);
+    moved = sub_lanes(moved, scale_lanes(n, value / dot_lanes(n, n)));
+    stays_near = stays_near & (length_lanes(moved) <= reach);
+    p = select_lanes(stays_near, add_lanes(start, map_vector(frame.to_own, moved)), start);
   }
   slope_lanes<S>(pool, i, part, p, value, g);
   if constexpr (D::kWidth == 1)
@@ -56,13 +60,11 @@ OKTETT_INLINE SurfacePoints<D> exact_surface_points(const typename S::Pool& pool
   // At a singular point any normal is as good as another. Differences, since the sign of minus zero depends
   // on the instruction set.
   const auto known = (D(0.0) < l) & (l <= D(std::numeric_limits<double>::max()));
-  const D zero(0.0);
   n = select_lanes(known, n, Vec3<D>{zero - hit.d.x, zero - hit.d.y, zero - hit.d.z});
   l = select(known, l, length_lanes(hit.d));
   const Vec3<D> point = map_point(frame.to_world, p);
-  const D size = length_lanes(point) + D(length(frame.to_world.vector({1, 1, 1})));
   own = p;
-  return {point, D(0x1p-44) * size, {n.x / l, n.y / l, n.z / l}};
+  return {point, D(0x1p-44) * (length_lanes(point) + extent), {n.x / l, n.y / l, n.z / l}};
 }
 
 /// All but the names of the interaction of a hit that `ray` had with element `i`.

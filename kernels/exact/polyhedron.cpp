@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/exact/half_spaces.h"
+#include "kernels/exact/stretch.h"
 
 namespace oktett {
 
@@ -37,7 +38,7 @@ void Polyhedron::add(Pool& pool, const PolyhedronShape& s, const ExactPlace& pla
   const Affine own_to_world =
       place.to_world * Affine::translation(center) * Affine::scaling({size, size, size});
   // Corners are known to 2^-40 of the size; taking a ray into the own space costs a few roundings more.
-  const double span = 0x1p-38 * length(own_to_world.vector({1, 1, 1}));
+  const double span = 0x1p-38 * stretch(own_to_world);
   for (const Vec3d& p : solid.vertices) {
     const Vec3d q = place.to_world.point(p);
     const double pad = span + 0x1p-45 * length(q);

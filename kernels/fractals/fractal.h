@@ -12,6 +12,7 @@
 
 #include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
+#include "kernels/exact/stretch.h"
 #include "kernels/exact/surface_uv.h"
 
 namespace oktett {
@@ -205,7 +206,7 @@ struct Fractal {
     const FractalCrossing c = resolve_crossing<F>(pool.elements[i], query, hit.t, hit.v);
     SurfaceInteraction s;
     const Vec3d point = frame.to_world.point(c.point);
-    set_position(s, point, ray, c.t, 0x1p-44 * (length(point) + length(frame.to_world.vector({1, 1, 1}))));
+    set_position(s, point, ray, c.t, 0x1p-44 * (length(point) + stretch(frame.to_world)));
     const Vec3d n = frame.to_own.normal_by_inverse(c.normal);
     s.geometric_normal = s.shading_normal = Vec3f(n / length(n));
     s.uv = {static_cast<float>(c.u), static_cast<float>(c.v)};

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/accel/same_hits.h"
-#include "tests/support/dice.h"
+#include "tests/support/flat_map.h"
 
 namespace oktett {
 namespace {
@@ -87,24 +87,11 @@ TEST(ShapeBounds, HoldATangentOfASphere) {
   }
 }
 
-/// A coordinate that floats hold exactly, or one that they do not.
-double coordinate(Dice<float>& dice) {
-  switch (dice.below(3)) {
-    case 0:
-      return dice.below(9) - 4;
-    case 1:
-      return double(dice.range(-4, 4));
-    default:
-      return double(dice.range(-4, 4)) + std::ldexp(1.0, -dice.below(80));
-  }
-}
-Vec3d point(Dice<float>& dice) { return {coordinate(dice), coordinate(dice), coordinate(dice)}; }
-
 TEST(ShapeBounds, HoldSpheres) {
   Dice<float> dice(1);
   std::vector<Geometry> shapes;
   for (int i = 0; i < 100; ++i)
-    shapes.push_back(of(SpheresShape{{{point(dice), std::abs(coordinate(dice)) + 0.25}}}));
+    shapes.push_back(of(SpheresShape{{{random_point(dice), std::abs(random_coordinate(dice)) + 0.25}}}));
   expect_bounds_hold_hits(shapes, 2);
 }
 
@@ -115,7 +102,7 @@ TEST(ShapeBounds, HoldDisks) {
     Vec3d normal{0, 0, 0};
     normal[dice.below(3)] = 1;
     if (dice.below(2) == 0) normal = Vec3d(dice.vec(1));
-    shapes.push_back(of(DiskShape{point(dice), normal, std::abs(coordinate(dice)) + 0.25}));
+    shapes.push_back(of(DiskShape{random_point(dice), normal, std::abs(random_coordinate(dice)) + 0.25}));
   }
   expect_bounds_hold_hits(shapes, 4);
 }
@@ -124,26 +111,19 @@ TEST(ShapeBounds, HoldPolygons) {
   Dice<float> dice(5);
   std::vector<Geometry> shapes;
   for (int i = 0; i < 100; ++i) {
-    const Vec3d at = point(dice), u = Vec3d(dice.vec(1)), v = Vec3d(dice.vec(1));
+    const Vec3d at = random_point(dice), u = Vec3d(dice.vec(1)), v = Vec3d(dice.vec(1));
     shapes.push_back(of(PolygonShape{{at, at + u, at + u + v, at + v}}));
   }
   expect_bounds_hold_hits(shapes, 6);
-}
-
-/// Maps that turn, flatten by up to 2^-40 along one axis, and turn again: their inverses have lost many
-/// digits.
-Affine flat_map(Dice<float>& dice, int most) {
-  return Affine::translation(point(dice)) * Affine::rotation(Vec3d(dice.vec(180))) *
-         Affine::scaling({1, std::ldexp(1.0, -dice.below(most)), 1}) * Affine::rotation(Vec3d(dice.vec(180)));
 }
 
 TEST(ShapeBounds, HoldBoxes) {
   Dice<float> dice(7);
   std::vector<Geometry> shapes;
   for (int i = 0; i < 100; ++i) {
-    const Vec3d at = point(dice);
+    const Vec3d at = random_point(dice);
     shapes.push_back(of(BoxShape{at, at + Vec3d{1, 1, 1} + Vec3d(dice.vec(0.75f))},
-                        i % 4 == 0 ? Affine{} : flat_map(dice, i % 4 == 1 ? 4 : 41)));
+                        i % 4 == 0 ? Affine{} : random_flat_map(dice, i % 4 == 1 ? 4 : 41)));
   }
   expect_bounds_hold_hits(shapes, 8);
 }
@@ -152,7 +132,7 @@ TEST(ShapeBounds, HoldExactSurfaces) {
   Dice<float> dice(9);
   std::vector<Geometry> shapes;
   for (int i = 0; i < 100; ++i) {
-    const Affine m = flat_map(dice, 41);
+    const Affine m = random_flat_map(dice, 41);
     switch (i % 4) {
       case 0:
         shapes.push_back(of(ExactShape{TorusShape{}}, m));
