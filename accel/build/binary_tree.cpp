@@ -11,6 +11,7 @@
 
 #include "accel/build/collapse.h"
 #include "accel/build/morton.h"
+#include "accel/build/populate.h"
 #include "accel/build/spatial.h"
 #include "accel/build/wide_tree.h"
 #include "core/phase.h"
@@ -24,6 +25,9 @@ constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
+
+/// Nodes whose pages are allocated together.
+constexpr std::size_t kNodePiece = (std::size_t{1} << 17) / sizeof(BinaryNode);
 
 /// A spatial split is tried only if the children of the best object split overlap by more than this part of
 /// the scene's surface (Stich et al. 2009, section 4.5).
@@ -73,6 +77,10 @@ Effort effort_of(BuildQuality quality) {
   return {32, 32, 32, false, 0.3, 0, true};
 }
 
+std::size_t room_for(std::size_t references, const Effort& effort) {
+  return references + static_cast<std::size_t>(effort.spatial * static_cast<double>(references));
+}
+
 class Builder {
  public:
   Builder(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
@@ -87,13 +95,16 @@ class Builder {
         phase_("building the tree", {}, refs.size()) {}
 
   BinaryTree run() {
-    const std::size_t n = refs_.size();
-    const std::size_t room = n + static_cast<std::size_t>(effort_.spatial * static_cast<double>(n));
+    const std::size_t n = refs_.size(), room = room_for(n, effort_);
     // A leaf has at least one item. Pages that are never written take no memory.
-    tree_.nodes = VirtualArray<BinaryNode>(2 * room + 2 * kMaxSweep);
+    node_room_ = 2 * room + 2 * kMaxSweep;
+    tree_.nodes = VirtualArray<BinaryNode>(node_room_);
     tree_.items.resize_uninitialized(room);
     refs_.resize_uninitialized(room);
     scratch_.resize_uninitialized(n > effort_.sweep ? room : 0);
+    populate(tree_.items.data(), n, parallel_);
+    populate(scratch_.data(), std::min(scratch_.size(), n), parallel_);
+    populate_nodes(0);
     nodes_ = 1;
     Range all{0, n, refs_.data(), scratch_.data(), {}, 0, room};
     bound(all);
@@ -130,6 +141,19 @@ class Builder {
     for (const Centers& p : parts) r.centers.grow(p);
   }
 
+  void populate_nodes(std::size_t piece) {
+    const std::size_t begin = std::min(piece * kNodePiece, node_room_);
+    populate(tree_.nodes.data() + begin, std::min(kNodePiece, node_room_ - begin), false);
+  }
+
+  /// The first of `count` new nodes. Whoever reaches a piece of the array first has its pages allocated.
+  std::uint32_t take_nodes(std::uint32_t count) {
+    const std::uint32_t first = nodes_.fetch_add(count);
+    const std::size_t piece = (first + count) / kNodePiece;
+    if (first / kNodePiece != piece) populate_nodes(piece);
+    return first;
+  }
+
   void build(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
     if (r.size() <= effort_.sweep) return sweep(r, depth, at, cost);
     Range left, right;
@@ -161,7 +185,7 @@ class Builder {
   template <class BuildSide>
   void build_children(Range& left, Range& right, std::uint32_t at, SubtreeCost& cost,
                       const BuildSide& build_side) {
-    const std::uint32_t children = nodes_.fetch_add(2);
+    const std::uint32_t children = take_nodes(2);
     SubtreeCost l, rr;
     if (parallel_ && left.size() + right.size() >= kParallelTask) {
       tbb::parallel_invoke([&] { build_side(left, children, l); },
@@ -195,7 +219,7 @@ class Builder {
     kernels_.sweep(job);
     phase_.add(r.size());
     cost = job.cost;
-    const std::uint32_t rest = nodes_.fetch_add(job.node_count - 1);
+    const std::uint32_t rest = take_nodes(job.node_count - 1);
     for (std::uint32_t i = 0; i < job.node_count; ++i) {
       BinaryNode& to = tree_.nodes[i == 0 ? at : rest + i - 1];
       to = nodes[i];
@@ -358,10 +382,15 @@ class Builder {
   const BuildKernels& kernels_;
   Phase phase_;
   BinaryTree tree_;
+  std::size_t node_room_ = 0;
   std::atomic<std::uint32_t> nodes_{0};
 };
 
 }  // namespace
+
+std::size_t reference_room(std::size_t count, const BuildOptions& options) {
+  return room_for(count, effort_of(options.quality));
+}
 
 float scene_unit(const Box& bounds) {
   float size = 0;

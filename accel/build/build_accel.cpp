@@ -168,9 +168,11 @@ std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrd
 
 /// All references in the order of their geometries: to triangles, and `others`, which it uses up.
 Column<PrimRef> add_triangles(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
-                              const std::vector<std::size_t>& first_other, bool parallel) {
+                              const std::vector<std::size_t>& first_other, const BuildOptions& options) {
   if (accel.stats.triangles == 0) return std::move(others);
   Column<PrimRef> refs;
+  refs.resize_uninitialized(reference_room(others.size() + accel.stats.triangles, options));
+  refs.resize_uninitialized(0);
   const PrimRef* next = others.begin();
   const auto add_others_before = [&](const PrimRef* end) {
     for (; next != end; ++next) refs.push_back(*next);
@@ -179,7 +181,7 @@ Column<PrimRef> add_triangles(Accel& accel, const MeshSource& meshes, Column<Pri
     const bool usable = accel.geometries[g].transform.is_invertible();
     if (static_cast<Kind>(accel.kinds[g]) != Kind::triangle || !usable) continue;
     add_others_before(others.begin() + first_other[g]);
-    accel.bounds.grow(meshes.add_references(g, refs, parallel));
+    accel.bounds.grow(meshes.add_references(g, refs, options.parallel));
   }
   add_others_before(others.end());
   others.clear();
@@ -195,7 +197,7 @@ void make_tree(Accel& accel, ItemOrder& order, const BuildOptions& options) {
   const std::uint64_t key = keeps ? tree_key(accel, others, options) : 0;
   if (keeps && load_kept_tree(accel, order, others, key, *store)) return;
   const MeshSource meshes(accel);
-  Column<PrimRef> refs = add_triangles(accel, meshes, others, first_other, options.parallel);
+  Column<PrimRef> refs = add_triangles(accel, meshes, others, first_other, options);
   build_tree(accel, refs, meshes, order, options, build_kernels(available_isas().back()));
   if (keeps) store->keep(key, accel, order);
 }

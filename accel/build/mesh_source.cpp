@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "accel/build/populate.h"
+
 namespace oktett {
 namespace {
 
@@ -54,6 +56,7 @@ Box MeshSource::add_references(std::uint32_t geometry, Column<PrimRef>& refs, bo
   const std::uint32_t kind =
       static_cast<std::uint32_t>(Kind::triangle) | static_cast<std::uint32_t>(shape.test) << 8;
   refs.resize_uninitialized(base + count);
+  populate(refs.data() + base, count, parallel);
   struct Part {
     Box bounds;
     std::size_t usable = 0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "accel/build/populate.h"
+
 namespace oktett {
 namespace {
 
@@ -70,6 +72,7 @@ void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool par
   float scale = kPerAxis / extent;
   if (!(extent > 0 && std::isfinite(extent) && std::isfinite(scale))) scale = 0;
   Column<Key> keys(n), other(n);
+  populate(keys.data(), n, parallel), populate(other.data(), n, parallel);
   chunks.each([&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t cell = 0;
@@ -85,6 +88,7 @@ void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool par
   sort_pass(chunks, keys, 0, other);
   sort_pass(chunks, other, kDigit, keys);
   sorted.resize_uninitialized(n), cells.resize_uninitialized(n);
+  populate(cells.data(), n, parallel);
   chunks.each([&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) sorted[i] = refs[keys[i].place], cells[i] = keys[i].cell;
   });

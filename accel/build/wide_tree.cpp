@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "accel/build/populate.h"
 #include "core/error.h"
 
 namespace oktett {
@@ -43,6 +44,8 @@ class WideBuilder {
     if (blocks > NodeRef::kMaxBlocks) throw Error("too many triangles for one structure");
     accel_.nodes = VirtualArray<BvhNode>(at.back().nodes);
     accel_.blocks = VirtualArray<TriangleBlock>(at.back().blocks);
+    populate(accel_.nodes.data(), at.back().nodes, parallel_);
+    populate(accel_.blocks.data(), at.back().blocks, parallel_);
     accel_.leaves.resize(at.back().leaves);
     for (std::uint32_t i = 0; i < top.size(); ++i) {
       std::uint32_t child[BvhNode::kWidth];

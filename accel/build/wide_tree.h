@@ -27,6 +27,10 @@ struct BinaryTree {
   bool pieces = false;  ///< triangles were split, so an item may stand in several leaves
 };
 
+/// How many references `count` ones may become by spatial splits. build_binary does not copy those that
+/// come in a column with such a capacity.
+std::size_t reference_room(std::size_t count, const BuildOptions& options);
+
 /// Builds the binary tree over `refs`, which it uses up; `bounds` are theirs. The same tree for any number of
 /// threads.
 BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
