@@ -10,7 +10,8 @@
 
 namespace oktett {
 
-/// Has the pages of `count` elements from `data` on allocated, see populate_pages; by all threads if `parallel`.
+/// Has the pages of `count` elements from `data` on allocated, see populate_pages; by all threads if
+/// `parallel`.
 template <class T>
 void populate(T* data, std::size_t count, bool parallel) {
   constexpr std::size_t kPiece = (std::size_t{1} << 19) / sizeof(T) + 1;
