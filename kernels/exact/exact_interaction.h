@@ -35,27 +35,35 @@ Vec3d gradient_by_differences(const typename S::Pool& pool, std::size_t i, int p
 template <class S, class D>
 OKTETT_INLINE SurfacePoints<D> exact_surface_points(const typename S::Pool& pool, std::size_t i,
                                                     const D& part, const HitPoints<D>& hit, Vec3<D>& own) {
+  // The second step is usually too short to matter; more are needed where the surface is sharp.
+  constexpr int kMostSteps = 3;
   const ExactFrame& frame = pool.frames[i];
-  const Vec3<D> start = map_point(frame.to_own, hit.point());
+  const Vec3<D> world = hit.point(), start = map_point(frame.to_own, world);
   const D extent(stretch(frame.to_world));
   // t was rounded to float: so far may the true point be; a slanting ray may lead twice as far.
   const D reach = D(0x1p-22) * length_lanes(hit.d) * hit.t + D(0x1p-40) * extent;
-  const D zero(0.0);
-  Vec3<D> p = start, moved = {zero, zero, zero}, g;
+  // A shorter step than that changes neither the point nor its normal.
+  const D least_step = D(0x1p-44) * (length_lanes(world) + extent), zero(0.0);
+  Vec3<D> p = start, moved = {zero, zero, zero}, n = moved, g;
   D value;
-  auto stays_near = D::M::all_true();
-  for (int k = 0; k < 3; ++k) {
+  auto stays_near = D::M::all_true(), done = ~stays_near;
+  for (int step = 0;; ++step) {
     slope_lanes<S>(pool, i, part, p, value, g);
-    const Vec3<D> n = map_normal(frame.to_own, g);
-    moved = sub_lanes(moved, scale_lanes(n, value / dot_lanes(n, n)));
-    stays_near = stays_near & (length_lanes(moved) <= reach);
-    p = select_lanes(stays_near, add_lanes(start, map_vector(frame.to_own, moved)), start);
+    const Vec3<D> here = map_normal(frame.to_own, g);
+    n = select_lanes(done, n, here);
+    if (step == kMostSteps) break;
+    const Vec3<D> back = scale_lanes(here, value / dot_lanes(here, here)), next = sub_lanes(moved, back);
+    stays_near = stays_near & (length_lanes(next) <= reach);
+    moved = select_lanes(done, moved, next);
+    const Vec3<D> there = add_lanes(start, map_vector(frame.to_own, moved));
+    p = select_lanes(done, p, select_lanes(stays_near, there, start));
+    done = done | (length_lanes(back) <= least_step);
+    if (none(~done)) break;
   }
-  slope_lanes<S>(pool, i, part, p, value, g);
   if constexpr (D::kWidth == 1)
     if (frame.normals != NormalMethod::gradient)
-      g = broadcast<D>(gradient_by_differences<S>(pool, i, static_cast<int>(only_lane(part)), only_lane(p)));
-  Vec3<D> n = map_normal(frame.to_own, g);
+      n = map_normal(frame.to_own, broadcast<D>(gradient_by_differences<S>(
+                                       pool, i, static_cast<int>(only_lane(part)), only_lane(p))));
   D l = length_lanes(n);
   // At a singular point any normal is as good as another. Differences, since the sign of minus zero depends
   // on the instruction set.
