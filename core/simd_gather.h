@@ -26,8 +26,8 @@ OKTETT_INLINE Simd<float, W, A> gather(const float* base, const Simd<std::int32_
 
 namespace native {
 
-template <class T, class B>
-OKTETT_INLINE B gather(const T* base, const B& index) {
+template <class B>
+OKTETT_INLINE B gather(const float* base, const B& index) {
   double lanes[B::size];
   native::store(lanes, index);
   for (double& lane : lanes) lane = static_cast<double>(base[static_cast<std::int32_t>(lane)]);
@@ -39,29 +39,18 @@ OKTETT_INLINE B gather(const T* base, const B& index) {
 OKTETT_INLINE batch<double, Avx> gather(const float* base, batch<double, Avx> index) {
   return _mm256_cvtps_pd(_mm_i32gather_ps(base, _mm256_cvttpd_epi32(index), sizeof(float)));
 }
-OKTETT_INLINE batch<double, Avx> gather(const std::uint16_t* base, batch<double, Avx> index) {
-  const __m128i pairs =
-      _mm_i32gather_epi32(reinterpret_cast<const int*>(base), _mm256_cvttpd_epi32(index), 2);
-  return _mm256_cvtepi32_pd(_mm_and_si128(pairs, _mm_set1_epi32(0xffff)));
-}
 #endif
 #if defined(OKTETT_COMPILED_AVX512)
 OKTETT_INLINE batch<double, Avx5> gather(const float* base, batch<double, Avx5> index) {
   return _mm512_cvtps_pd(_mm256_i32gather_ps(base, _mm512_cvttpd_epi32(index), sizeof(float)));
 }
-OKTETT_INLINE batch<double, Avx5> gather(const std::uint16_t* base, batch<double, Avx5> index) {
-  const __m256i pairs =
-      _mm256_i32gather_epi32(reinterpret_cast<const int*>(base), _mm512_cvttpd_epi32(index), 2);
-  return _mm512_cvtepi32_pd(_mm256_and_si256(pairs, _mm256_set1_epi32(0xffff)));
-}
 #endif
 
 }  // namespace native
 
-/// base[index[i]] in lane i, for floats and 16-bit numbers. The indices are whole numbers from 0 to 2^31 - 1.
-/// With 16-bit numbers it may also read the element that follows.
-template <class T, int W, class A>
-OKTETT_INLINE Simd<double, W, A> gather(const T* base, const Simd<double, W, A>& index) {
+/// base[index[i]] in lane i. The indices are whole numbers from 0 to 2^31 - 1.
+template <int W, class A>
+OKTETT_INLINE Simd<double, W, A> gather(const float* base, const Simd<double, W, A>& index) {
   Simd<double, W, A> r;
   for (int i = 0; i < r.kParts; ++i) r.part[i] = native::gather(base, index.part[i]);
   return r;

@@ -133,9 +133,8 @@ struct CellCorners {
   /// `Index` is std::uint32_t, or T of whole numbers.
   template <class Index>
   OKTETT_INLINE CellCorners(const HeightGrid& grid, const Index& i, const Index& j) {
-    const auto x0 = grid.column_place(i), x1 = grid.column_place(i + Index(1));
-    const auto z0 = grid.row_place(j), z1 = grid.row_place(j + Index(1));
-    h00 = grid.load(x0 + z0), h10 = grid.load(x1 + z0), h01 = grid.load(x0 + z1), h11 = grid.load(x1 + z1);
+    const auto place = grid.cell_place(i, j);
+    grid.load_pair(place, h00, h10), grid.load_pair(grid.place_below(place), h01, h11);
   }
   OKTETT_INLINE T mean() const { return ((h00 + h10) + (h01 + h11)) * T(0.25); }
 };

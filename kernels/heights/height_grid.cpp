@@ -31,7 +31,7 @@ HeightGrid::HeightGrid(std::uint32_t columns, std::uint32_t rows, HeightInterpol
     : columns_(columns),
       rows_(rows),
       interpolation_(interpolation),
-      tile_row_((columns + kTile - 1) / kTile * std::size_t{kTile} * kTile) {}
+      tile_row_(std::size_t{tiles(columns)} * kTileSamples) {}
 
 std::shared_ptr<const HeightGrid> HeightGrid::from_words(std::uint32_t columns, std::uint32_t rows,
                                                          Column<std::uint16_t> words,
@@ -61,12 +61,15 @@ template <class T>
 VirtualArray<T> HeightGrid::take(const Column<T>& samples) {
   const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
   least_ = *lo, greatest_ = *hi;
-  // Gathering words reads one more.
-  VirtualArray<T> tiles = large_array<T>(places() + 1);
-  for (std::uint32_t j = 0; j < rows_; ++j)
-    for (std::uint32_t i = 0; i < columns_; ++i)
-      tiles[column_place(i) + row_place(j)] = samples[i + std::size_t{j} * columns_];
-  return tiles;
+  VirtualArray<T> stored = large_array<T>(places());
+  T* tile = stored.data();
+  for (std::uint32_t z = 0; z < rows_ - 1; z += kTile)
+    for (std::uint32_t x = 0; x < columns_ - 1; x += kTile, tile += kTileSamples)
+      for (std::uint32_t j = 0; j < std::min(kRow, rows_ - z); ++j) {
+        const T* const row = samples.data() + x + std::size_t{z + j} * columns_;
+        std::copy_n(row, std::min(kRow, columns_ - x), tile + j * kRow);
+      }
+  return stored;
 }
 
 /// Of the samples that the surface over the cells of block (i, j) depends on: `nearest` has walls on the

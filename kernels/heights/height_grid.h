@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "core/platform.h"
-#include "core/simd_gather.h"
+#include "core/simd_gather_pairs.h"
 #include "core/soa.h"
 #include "core/virtual_array.h"
 #include "kernels/heights/height_field_data.h"
@@ -30,11 +30,13 @@ struct alignas(64) HeightRoot {
   float least[16], greatest[16];
 };
 
-/// Immutable. Samples are 16-bit numbers or floats; they stand in tiles of 8 x 8, so that what is near each
-/// other in the field is so in memory. Cell (i, j) lies between the columns i and i + 1 and the rows j and
-/// j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k + 1) cells, 4 x 4 of them to a node; the last
-/// level has one node. Every line tests it, so it should have more than 2 x 2 blocks; where it would not, the
-/// nodes of the level below have 2 x 2 blocks. The pyramid takes 2/15 of the bytes of 16-bit samples.
+/// Immutable. Samples are 16-bit numbers or floats; they stand in tiles, so that what is near each other in
+/// the field is so in memory. A tile has the 9 x 9 samples of 8 x 8 cells: those on its borders also stand in
+/// the next tiles, so that the samples of a cell are always at the same distances. Cell (i, j) lies between
+/// the columns i and i + 1 and the rows j and j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k +
+/// 1) cells, 4 x 4 of them to a node; the last level has one node. Every line tests it, so it should have
+/// more than 2 x 2 blocks; where it would not, the nodes of the level below have 2 x 2 blocks. The pyramid
+/// takes about a tenth of the bytes of 16-bit samples.
 class HeightGrid {
  public:
   /// Cells along a side of the smallest blocks, and blocks along a side of a node.
@@ -87,40 +89,46 @@ class HeightGrid {
 
   /// Sample (i, j) as stored.
   OKTETT_INLINE double at(std::uint32_t i, std::uint32_t j) const {
-    return load(column_place(i) + row_place(j));
+    // The last column and row have no cells of their own.
+    const std::uint32_t x = i < columns_ - 1 ? i : i - 1, z = j < rows_ - 1 ? j : j - 1;
+    return load(cell_place(x, z) + (i - x) + kRow * (j - z));
   }
-  /// Sample (i, j) stands at column_place(i) + row_place(j).
-  OKTETT_INLINE std::size_t column_place(std::uint32_t i) const {
-    return (std::size_t{i / kTile} * kTile * kTile) + i % kTile;
+  /// Where the samples of cell (i, j) stand: (i, j) there, (i + 1, j) next to it. In lanes, all are whole
+  /// numbers.
+  OKTETT_INLINE std::size_t cell_place(std::uint32_t i, std::uint32_t j) const {
+    return std::size_t{i / kTile} * kTileSamples + i % kTile + j / kTile * tile_row_ + j % kTile * kRow;
   }
-  OKTETT_INLINE std::size_t row_place(std::uint32_t j) const {
-    return j / kTile * tile_row_ + j % kTile * kTile;
+  template <class D>
+  OKTETT_INLINE D cell_place(const D& i, const D& j) const {
+    return (i + D(double{kTileSamples - kTile}) * tile_of(i)) +
+           (D(double{kRow}) * j + D(static_cast<double>(tile_row_) - kRow * kTile) * tile_of(j));
   }
-  OKTETT_INLINE double load(std::size_t place) const {
-    return word_data_ != nullptr ? static_cast<double>(word_data_[place])
-                                 : static_cast<double>(float_data_[place]);
+  /// Where the next row of a cell stands.
+  template <class Place>
+  static OKTETT_INLINE Place place_below(const Place& place) {
+    return place + Place(kRow);
+  }
+  /// The samples at `place` and next to it.
+  OKTETT_INLINE void load_pair(std::size_t place, double& first, double& second) const {
+    first = load(place), second = load(place + 1);
+  }
+  template <class D>
+  OKTETT_INLINE void load_pair(const D& place, D& first, D& second) const {
+    if (word_data_ != nullptr)
+      gather_pairs(word_data_, place, first, second);
+    else
+      gather_pairs(float_data_, place, first, second);
   }
   /// Prefetches the samples of the block whose first cell is (i, j).
   OKTETT_INLINE void prefetch_block(std::uint32_t i, std::uint32_t j) const {
     const std::size_t size = word_data_ != nullptr ? sizeof(std::uint16_t) : sizeof(float);
     const auto* samples = word_data_ != nullptr ? reinterpret_cast<const char*>(word_data_)
                                                 : reinterpret_cast<const char*>(float_data_);
-    for (const std::uint32_t x : {i, i + kBlock})
-      for (const std::uint32_t z : {j, j + kBlock})
-        __builtin_prefetch(samples + (column_place(x) + row_place(z)) * size);
-  }
-  /// Samples at `place`, one in each lane, and where they stand; columns and rows are whole numbers.
-  template <class D>
-  OKTETT_INLINE D load(const D& place) const {
-    return word_data_ != nullptr ? gather(word_data_, place) : gather(float_data_, place);
-  }
-  template <class D>
-  OKTETT_INLINE D column_place(const D& i) const {
-    return i + D(double{kTile * (kTile - 1)}) * tile_of(i);
-  }
-  template <class D>
-  OKTETT_INLINE D row_place(const D& j) const {
-    return D(double{kTile}) * j + D(static_cast<double>(tile_row_) - kTile * kTile) * tile_of(j);
+    // Its first, middle and last sample: they are less than a cache line apart if samples have 16 bits.
+    const std::size_t place = cell_place(i, j);
+    for (const std::size_t k :
+         {std::size_t{0}, std::size_t{kBlock / 2 * (kRow + 1)}, std::size_t{kBlock * (kRow + 1)}})
+      __builtin_prefetch(samples + (place + k) * size);
   }
   OKTETT_INLINE int levels() const { return levels_; }
   OKTETT_INLINE const Level& level(int k) const { return level_[k]; }
@@ -134,7 +142,8 @@ class HeightGrid {
   OKTETT_INLINE double step() const { return step_; }
 
  private:
-  static constexpr std::uint32_t kTile = 8;
+  /// Cells along a side of a tile; its samples, in a row and in all.
+  static constexpr std::uint32_t kTile = 8, kRow = kTile + 1, kTileSamples = kRow * kRow;
 
   HeightGrid(std::uint32_t columns, std::uint32_t rows, HeightInterpolation interpolation);
   /// Of a whole number: by rounding to a whole number what is at most 7/16 from it.
@@ -145,7 +154,13 @@ class HeightGrid {
   }
   template <class T>
   VirtualArray<T> take(const Column<T>& samples);
-  std::size_t places() const { return (rows_ + kTile - 1) / kTile * tile_row_; }
+  OKTETT_INLINE double load(std::size_t place) const {
+    return word_data_ != nullptr ? static_cast<double>(word_data_[place])
+                                 : static_cast<double>(float_data_[place]);
+  }
+  /// Tiles that `samples` along a side take.
+  static std::uint32_t tiles(std::uint32_t samples) { return (samples - 1 + kTile - 1) / kTile; }
+  std::size_t places() const { return tiles(rows_) * tile_row_; }
   void build_pyramid();
   void bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& least, std::uint16_t& greatest) const;
 

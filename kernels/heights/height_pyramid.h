@@ -25,9 +25,8 @@ class PyramidWalk {
     if (none(s_.wanted)) return;
     make_bundles();
     for (;;) {
-      queued_ = 0;
       for (int b = 0; b < size_; ++b) descend(bundles_[b]);
-      if (queued_ == 0) return;
+      if (count_ == 0) return;
       walk_blocks();
     }
   }
@@ -39,11 +38,12 @@ class PyramidWalk {
   /// Lines within this many cells of one of them make a bundle, if there are at least kLeastBundle.
   static constexpr float kClose = 12;
   static constexpr int kLeastBundle = 3;
-  static constexpr int kNode = 16, kQueue = 3 * kNode + 1;
+  /// Most blocks that wait at a time, and blocks of a node.
+  static constexpr int kMost = 64, kNode = 16;
 
-  /// One of the smallest blocks.
+  /// One of the smallest blocks: its first cell, and its least and greatest value.
   struct Block {
-    std::uint16_t i, j, least, greatest;
+    double i, j, least, greatest;
   };
   struct Node {
     std::uint32_t i, j;
@@ -113,8 +113,9 @@ class PyramidWalk {
         continue;
       }
       if (b.level == 0) {
+        if (count_ > kMost - kNode) return;
         queue_blocks(b, node, wanted);
-        if ((wanted & ~queued_) == 0 || *std::max_element(length_, length_ + W) >= kQueue - kNode) return;
+        if ((wanted & ~queued_) == 0) return;
         continue;
       }
       const HeightGrid::Level& level = s_.grid.level(b.level);
@@ -134,49 +135,45 @@ class PyramidWalk {
       const unsigned k = b.block_of(static_cast<unsigned>(std::countr_zero(node.left)), level);
       const std::uint32_t i = level.block_column(node.i, k), j = level.block_row(node.j, k);
       if (!level.has_block(i, j)) continue;
-      const Block block{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), heights.least[k],
-                        heights.greatest[k]};
+      const Block block{double{kBlock} * i, double{kBlock} * j,
+                        s_.grid.least() + s_.grid.step() * heights.least[k],
+                        s_.grid.least() + s_.grid.step() * heights.greatest[k]};
       const unsigned met = alone ? wanted : wanted & lines_at(b, block);
-      // Lines that do not meet the block overwrite it with the next one.
-      for (int lane = 0; lane < W; ++lane) {
-        queue_[lane][length_[lane]] = block;
-        length_[lane] += static_cast<int>(met >> lane & 1);
-      }
+      blocks_[count_] = block;
+      for (int lane = 0; lane < W; ++lane) queue_[lane] |= std::uint64_t{met >> lane & 1} << count_;
       queued_ |= met;
-      if (met != 0) s_.grid.prefetch_block(kBlock * block.i, kBlock * block.j);
+      if (met == 0) continue;
+      ++count_;
+      s_.grid.prefetch_block(kBlock * i, kBlock * j);
     }
   }
 
   OKTETT_INLINE unsigned lines_at(const HeightBundle& b, const Block& block) const {
-    const double i = kBlock * block.i, j = kBlock * block.j, end = kBlock;
+    const double i = block.i, j = block.j, end = kBlock;
     const bool forward_x = (b.flip() & 1) == 0, forward_z = (b.flip() & 4) == 0;
     const D x_in = g_.at_column(D(forward_x ? i : i + end)), x_out = g_.at_column(D(forward_x ? i + end : i));
     const D z_in = g_.at_row(D(forward_z ? j : j + end)), z_out = g_.at_row(D(forward_z ? j + end : j));
     const D in = max(max(x_in, z_in), s_.from), out = min(min(x_out, z_out), s_.to);
-    return bits((in <= out) & s_.meets(g_.height(in), g_.height(out), least_of(block), greatest_of(block)));
-  }
-  OKTETT_INLINE double least_of(const Block& b) const { return s_.grid.least() + s_.grid.step() * b.least; }
-  OKTETT_INLINE double greatest_of(const Block& b) const {
-    return s_.grid.least() + s_.grid.step() * b.greatest;
+    return bits((in <= out) & s_.meets(g_.height(in), g_.height(out), D(block.least), D(block.greatest)));
   }
 
   /// Lets all lines walk over the cells of their blocks.
   OKTETT_INLINE void walk_blocks() {
     Walk w;
-    int taken[W] = {};
     M walking = ~M::all_true();
     for (;;) {
       // Lines that have finished a block take their next one.
       unsigned fresh = 0;
       for (unsigned free = queued_ & bits(s_.wanted) & ~bits(walking); free != 0; free &= free - 1) {
         const int lane = std::countr_zero(free);
-        if (taken[lane] == length_[lane]) {
+        if (queue_[lane] == 0) {
           queued_ &= ~(1u << lane);
           continue;
         }
-        const Block& block = queue_[lane][taken[lane]++];
-        w.block_i[lane] = kBlock * block.i, w.block_j[lane] = kBlock * block.j;
-        w.least[lane] = least_of(block), w.greatest[lane] = greatest_of(block);
+        const Block& block = blocks_[std::countr_zero(queue_[lane])];
+        queue_[lane] &= queue_[lane] - 1;
+        w.block_i[lane] = block.i, w.block_j[lane] = block.j;
+        w.least[lane] = block.least, w.greatest[lane] = block.greatest;
         fresh |= 1u << lane;
       }
       if (fresh != 0) {
@@ -187,7 +184,8 @@ class PyramidWalk {
       if (none(walking)) break;
       step(w, walking);
     }
-    for (int& length : length_) length = 0;
+    for (std::uint64_t& blocks : queue_) blocks = 0;
+    count_ = 0, queued_ = 0;
   }
 
   /// Where lines are, in cells, and the block that each of them walks over.
@@ -244,9 +242,10 @@ class PyramidWalk {
   const GridLines<D>& g_;
   Bundle bundles_[W];
   int size_ = 0;
-  Block queue_[W][kQueue];
-  int length_[W] = {};
-  unsigned queued_ = 0;  ///< lanes with blocks to walk over
+  Block blocks_[kMost];
+  int count_ = 0;                               ///< of blocks_
+  alignas(8 * W) std::uint64_t queue_[W] = {};  ///< which of blocks_ each line may meet, as bits
+  unsigned queued_ = 0;                         ///< lanes with blocks to walk over
 };
 
 }  // namespace oktett

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/simd_gather.h"
+#include "core/simd_gather_pairs.h"
 #include "core/simd_words.h"
 
 namespace oktett {
@@ -31,20 +32,38 @@ TEST(SimdGather, TakesWhatTheIndexNames) {
   for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], base[index[i]]);
 }
 
-TEST(SimdGather, DoublesOfFloatsAndWords) {
+TEST(SimdGather, DoublesOfFloats) {
   using D = Simd<double, 8, ScalarIsa>;
   float floats[50];
-  std::uint16_t words[51] = {};
-  for (int i = 0; i < 50; ++i) {
-    floats[i] = 0.1f * static_cast<float>(i);
-    words[i] = static_cast<std::uint16_t>(65535 - 7 * i);
-  }
+  for (int i = 0; i < 50; ++i) floats[i] = 0.1f * static_cast<float>(i);
   double index[8], got[8];
   for (int i = 0; i < 8; ++i) index[i] = (i * 31 + 49) % 50;
   gather(floats, D::load(index)).store(got);
   for (int i = 0; i < 8; ++i) EXPECT_EQ(got[i], floats[static_cast<int>(index[i])]);
-  gather(words, D::load(index)).store(got);
-  for (int i = 0; i < 8; ++i) EXPECT_EQ(got[i], words[static_cast<int>(index[i])]);
+}
+
+template <class T>
+void expect_pairs(const T (&base)[51]) {
+  using D = Simd<double, 8, ScalarIsa>;
+  double index[8], first[8], second[8];
+  for (int i = 0; i < 8; ++i) index[i] = (i * 31 + 49) % 50;
+  D a, b;
+  gather_pairs(base, D::load(index), a, b);
+  a.store(first), b.store(second);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(first[i], base[static_cast<int>(index[i])]);
+    EXPECT_EQ(second[i], base[static_cast<int>(index[i]) + 1]);
+  }
+}
+
+TEST(SimdGather, PairsOfFloatsAndWords) {
+  float floats[51];
+  std::uint16_t words[51];
+  for (int i = 0; i < 51; ++i) {
+    floats[i] = 0.1f * static_cast<float>(i);
+    words[i] = static_cast<std::uint16_t>(65535 - 7 * i);
+  }
+  expect_pairs(floats), expect_pairs(words);
 }
 
 TEST(SimdWords, AreNumbersWithoutSign) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "kernels/heights/height_cell.h"
 
 namespace oktett {
 namespace {
@@ -75,12 +76,41 @@ TEST(HeightGrid, PyramidBoundsEverySample) {
       }
 }
 
-TEST(HeightGrid, PyramidAddsLittle) {
+/// Tiles hold 81 samples for each 64 of the field.
+TEST(HeightGrid, TilesAndPyramidAddLittle) {
   const auto words = random_grid(1025, 1025, true, HeightInterpolation::bilinear);
   const auto floats = random_grid(1025, 1025, false, HeightInterpolation::bilinear);
   const double samples = 1025.0 * 1025;
-  EXPECT_LT(static_cast<double>(words->bytes()), samples * 2 * (1 + 2.0 / 15) * 1.03);
-  EXPECT_LT(static_cast<double>(floats->bytes()), samples * 4 * (1 + 1.0 / 15) * 1.03);
+  EXPECT_LT(static_cast<double>(words->bytes()), samples * 2 * (81.0 / 64 + 2.0 / 15) * 1.001);
+  EXPECT_LT(static_cast<double>(floats->bytes()), samples * 4 * (81.0 / 64 + 1.0 / 15) * 1.001);
+}
+
+/// Samples on the borders of tiles stand in several of them.
+TEST(HeightGrid, KeepsEverySample) {
+  for (const auto& size : kSizes) {
+    const std::uint32_t columns = size[0], rows = size[1];
+    Column<std::uint16_t> samples(std::size_t{columns} * rows);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<std::uint16_t>(3 * i + 1);
+    const auto grid = HeightGrid::from_words(columns, rows, samples, HeightInterpolation::triangles);
+    for (std::uint32_t j = 0; j < rows; ++j)
+      for (std::uint32_t i = 0; i < columns; ++i) {
+        ASSERT_EQ(grid->at(i, j), samples[i + std::size_t{j} * columns]) << i << " " << j;
+        if (i == columns - 1 || j == rows - 1) continue;
+        const CellCorners<double> c(*grid, i, j);
+        const double row = 3.0 * columns;
+        ASSERT_EQ(c.h10 - c.h00, 3) << i << " " << j;
+        ASSERT_EQ(c.h01 - c.h00, row) << i << " " << j;
+        ASSERT_EQ(c.h11 - c.h00, row + 3) << i << " " << j;
+        using D = Simd<double, 4, ScalarIsa>;
+        const CellCorners<D> lanes(*grid, D(static_cast<double>(i)), D(static_cast<double>(j)));
+        for (int k = 0; k < 4; ++k) {
+          ASSERT_EQ(only_lane(lane_of(lanes.h00, k)), c.h00);
+          ASSERT_EQ(only_lane(lane_of(lanes.h10, k)), c.h10);
+          ASSERT_EQ(only_lane(lane_of(lanes.h01, k)), c.h01);
+          ASSERT_EQ(only_lane(lane_of(lanes.h11, k)), c.h11);
+        }
+      }
+  }
 }
 
 TEST(HeightGrid, LevelFieldsHaveOneHeight) {
