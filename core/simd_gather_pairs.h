@@ -20,8 +20,8 @@ OKTETT_INLINE void gather_pairs(const T* base, const B& index, B& first, B& seco
   native::load(first, at), native::load(second, next);
 }
 #if defined(OKTETT_COMPILED_AVX2)
-OKTETT_INLINE void gather_pairs(const std::uint16_t* base, batch<double, Avx> index, batch<double, Avx>& first,
-                                batch<double, Avx>& second) {
+OKTETT_INLINE void gather_pairs(const std::uint16_t* base, batch<double, Avx> index,
+                                batch<double, Avx>& first, batch<double, Avx>& second) {
   const __m128i pairs =
       _mm_i32gather_epi32(reinterpret_cast<const int*>(base), _mm256_cvttpd_epi32(index), 2);
   first = _mm256_cvtepi32_pd(_mm_and_si128(pairs, _mm_set1_epi32(0xffff)));
@@ -54,8 +54,8 @@ OKTETT_INLINE void gather_pairs(const float* base, batch<double, Avx5> index, ba
 
 }  // namespace native
 
-/// base[index[i]] and base[index[i] + 1] in lane i, for floats and 16-bit numbers. The indices are whole numbers
-/// from 0 to 2^31 - 1.
+/// base[index[i]] and base[index[i] + 1] in lane i, for floats and 16-bit numbers. The indices are whole
+/// numbers from 0 to 2^31 - 1.
 template <class T, int W, class A>
 OKTETT_INLINE void gather_pairs(const T* base, const Simd<double, W, A>& index, Simd<double, W, A>& first,
                                 Simd<double, W, A>& second) {
