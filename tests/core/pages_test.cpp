@@ -1,10 +1,13 @@
 #include "core/pages.h"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <cstdint>
 #include <new>
+#include <vector>
 
+#include "core/populate.h"
 #include "core/soa.h"
 
 namespace oktett {
@@ -44,6 +47,35 @@ TEST(Pages, RefuseWhatIsNotThere) {
   EXPECT_THROW(reserve_pages(std::size_t{1} << 60), std::bad_alloc);
   // What lies beside it must not overflow the sum.
   EXPECT_THROW(reserve_pages(~std::size_t{0} - 4095), std::bad_alloc);
+}
+
+/// Which of `count` pages from `begin` on are in memory.
+std::vector<bool> resident(char* begin, std::size_t count) {
+  std::vector<unsigned char> pages(count);
+  EXPECT_EQ(mincore(begin, count * 4096, pages.data()), 0);
+  std::vector<bool> in;
+  for (const unsigned char page : pages) in.push_back((page & 1) != 0);
+  return in;
+}
+
+TEST(Pages, ArePopulatedWhereAskedFor) {
+  constexpr std::size_t kPage = 4096, kCount = 12;
+  char* const p = static_cast<char*>(reserve_pages(kCount * kPage));
+  p[0] = 3;
+  p[5 * kPage + 7] = 4;
+  populate_pages(p, 0);
+  // From the middle of page 4 to the first byte of page 8.
+  populate_pages(p + 4 * kPage + 100, 4 * kPage - 99);
+  EXPECT_EQ(p[5 * kPage + 7], 4);
+  const std::vector<bool> in = resident(p, kCount);
+  // Systems that cannot populate pages leave those alone that have not been written.
+  const bool can = in[4];
+  for (std::size_t k = 0; k < kCount; ++k)
+    EXPECT_EQ(in[k], k == 0 || k == 5 || (can && 4 <= k && k <= 8)) << "page " << k;
+#ifdef MADV_POPULATE_WRITE
+  EXPECT_EQ(can, madvise(p + kPage, kPage, MADV_POPULATE_WRITE) == 0);
+#endif
+  release_pages(p, kCount * kPage);
 }
 
 // Columns move from the heap to pages of their own and back.
