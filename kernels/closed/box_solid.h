@@ -100,16 +100,18 @@ struct BoxSolid {
       to_cube.m[k / 4][k % 4] = fetch(p.m[k]);
       to_world.m[k / 4][k % 4] = fetch(p.world[k]);
     }
-    const Vec3<D> q = map_point(to_cube, hit.point()), m{abs(q.x), abs(q.y), abs(q.z)};
+    const Vec3<D> world = hit.point(), q = map_point(to_cube, world), m{abs(q.x), abs(q.y), abs(q.z)};
     // The face met is the nearest one; the lowest axis wins ties.
     const auto x = (m.x >= m.y) & (m.x >= m.z), y = ~x & (m.y >= m.z), z = ~(x | y);
-    const D zero(0.0);
+    const D zero(0.0), one(1.0);
     const auto side = [](const D& v) { return select(v < D(0.0), D(-1.0), D(1.0)); };
     const Vec3<D> face{select(x, side(q.x), zero), select(y, side(q.y), zero), select(z, side(q.z), zero)};
-    const Vec3<D> on_face{select(x, face.x, q.x), select(y, face.y, q.y), select(z, face.z, q.z)};
-    const Vec3<D> point = map_point(to_world, on_face);
-    const D one(1.0), extent = length_lanes(map_vector(to_world, Vec3<D>{one, one, one}));
-    return {point, D(0x1p-46) * (length_lanes(point) + extent), unit_lanes(map_normal(to_cube, face))};
+    // Onto the face along the normal that it has in the world: an axis of the cube is not upright on it under a
+    // flat map.
+    const Vec3<D> n = map_normal(to_cube, face);
+    const Vec3<D> point = sub_lanes(world, scale_lanes(n, (dot_lanes(face, q) - one) / dot_lanes(n, n)));
+    const D extent = length_lanes(map_vector(to_world, Vec3<D>{one, one, one}));
+    return {point, D(0x1p-46) * (length_lanes(point) + extent), unit_lanes(n)};
   }
 
   /// uv: position on the face, [0, 1]^2.
