@@ -11,9 +11,10 @@
 namespace oktett {
 
 /// Has the pages of `count` elements from `data` on allocated, see populate_pages; by all threads if
-/// `parallel`.
+/// `parallel`. Leaves small arrays alone: a call costs about as much as four page faults.
 template <class T>
 void populate(T* data, std::size_t count, bool parallel) {
+  if (count * sizeof(T) < (std::size_t{1} << 14)) return;
   constexpr std::size_t kPiece = (std::size_t{1} << 19) / sizeof(T) + 1;
   const std::size_t pieces = (count + kPiece - 1) / kPiece;
   const auto piece = [&](std::size_t i) {

@@ -106,8 +106,8 @@ struct BoxSolid {
     const D zero(0.0), one(1.0);
     const auto side = [](const D& v) { return select(v < D(0.0), D(-1.0), D(1.0)); };
     const Vec3<D> face{select(x, side(q.x), zero), select(y, side(q.y), zero), select(z, side(q.z), zero)};
-    // Onto the face along the normal that it has in the world: an axis of the cube is not upright on it under a
-    // flat map.
+    // Onto the face along the normal that it has in the world: an axis of the cube is not upright on it under
+    // a flat map.
     const Vec3<D> n = map_normal(to_cube, face);
     const Vec3<D> point = sub_lanes(world, scale_lanes(n, (dot_lanes(face, q) - one) / dot_lanes(n, n)));
     const D extent = length_lanes(map_vector(to_world, Vec3<D>{one, one, one}));
