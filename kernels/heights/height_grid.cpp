@@ -63,8 +63,8 @@ VirtualArray<T> HeightGrid::take(const Column<T>& samples) {
   least_ = *lo, greatest_ = *hi;
   VirtualArray<T> stored = large_array<T>(places());
   T* tile = stored.data();
-  for (std::uint32_t z = 0; z < rows_ - 1; z += kTile)
-    for (std::uint32_t x = 0; x < columns_ - 1; x += kTile, tile += kTileSamples)
+  for (std::uint32_t z = 0; z < cells(rows_); z += kTile)
+    for (std::uint32_t x = 0; x < cells(columns_); x += kTile, tile += kTileSamples)
       for (std::uint32_t j = 0; j < std::min(kRow, rows_ - z); ++j) {
         const T* const row = samples.data() + x + std::size_t{z + j} * columns_;
         std::copy_n(row, std::min(kRow, columns_ - x), tile + j * kRow);

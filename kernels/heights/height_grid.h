@@ -90,7 +90,7 @@ class HeightGrid {
   /// Sample (i, j) as stored.
   OKTETT_INLINE double at(std::uint32_t i, std::uint32_t j) const {
     // The last column and row have no cells of their own.
-    const std::uint32_t x = i < columns_ - 1 ? i : i - 1, z = j < rows_ - 1 ? j : j - 1;
+    const std::uint32_t x = i < cells(columns_) ? i : i - 1, z = j < cells(rows_) ? j : j - 1;
     return load(cell_place(x, z) + (i - x) + kRow * (j - z));
   }
   /// Where the samples of cell (i, j) stand: (i, j) there, (i + 1, j) next to it. In lanes, all are whole
@@ -158,8 +158,10 @@ class HeightGrid {
     return word_data_ != nullptr ? static_cast<double>(word_data_[place])
                                  : static_cast<double>(float_data_[place]);
   }
-  /// Tiles that `samples` along a side take.
-  static std::uint32_t tiles(std::uint32_t samples) { return (samples - 1 + kTile - 1) / kTile; }
+  /// Cells that `samples` along a side have a place for, and the tiles that these take. A single sample,
+  /// which has no cell, has a place too.
+  static OKTETT_INLINE std::uint32_t cells(std::uint32_t samples) { return samples > 2 ? samples - 1 : 1; }
+  static std::uint32_t tiles(std::uint32_t samples) { return (cells(samples) + kTile - 1) / kTile; }
   std::size_t places() const { return tiles(rows_) * tile_row_; }
   void build_pyramid();
   void bound_cells(std::uint32_t i, std::uint32_t j, std::uint16_t& least, std::uint16_t& greatest) const;

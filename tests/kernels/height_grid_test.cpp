@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/random.h"
 #include "kernels/heights/height_cell.h"
@@ -87,15 +89,16 @@ TEST(HeightGrid, TilesAndPyramidAddLittle) {
 
 /// Samples on the borders of tiles stand in several of them.
 TEST(HeightGrid, KeepsEverySample) {
-  for (const auto& size : kSizes) {
-    const std::uint32_t columns = size[0], rows = size[1];
+  std::vector<std::array<std::uint32_t, 2>> sizes = {{1, 1}, {1, 9}, {9, 1}, {8, 8}, {9, 9}, {10, 8}};
+  for (const auto& size : kSizes) sizes.push_back({size[0], size[1]});
+  for (const auto& [columns, rows] : sizes) {
     Column<std::uint16_t> samples(std::size_t{columns} * rows);
     for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<std::uint16_t>(3 * i + 1);
     const auto grid = HeightGrid::from_words(columns, rows, samples, HeightInterpolation::triangles);
     for (std::uint32_t j = 0; j < rows; ++j)
       for (std::uint32_t i = 0; i < columns; ++i) {
         ASSERT_EQ(grid->at(i, j), samples[i + std::size_t{j} * columns]) << i << " " << j;
-        if (i == columns - 1 || j == rows - 1) continue;
+        if (i + 1 == columns || j + 1 == rows) continue;
         const CellCorners<double> c(*grid, i, j);
         const double row = 3.0 * columns;
         ASSERT_EQ(c.h10 - c.h00, 3) << i << " " << j;
