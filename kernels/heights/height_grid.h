@@ -33,10 +33,10 @@ struct alignas(64) HeightRoot {
 /// Immutable. Samples are 16-bit numbers or floats; they stand in tiles, so that what is near each other in
 /// the field is so in memory. A tile has the 9 x 9 samples of 8 x 8 cells: those on its borders also stand in
 /// the next tiles, so that the samples of a cell are always at the same distances. Cell (i, j) lies between
-/// the columns i and i + 1 and the rows j and j + 1. Level k of the pyramid has blocks of 4^(k + 1) x 4^(k +
-/// 1) cells, 4 x 4 of them to a node; the last level has one node. Every line tests it, so it should have
-/// more than 2 x 2 blocks; where it would not, the nodes of the level below have 2 x 2 blocks. The pyramid
-/// takes about a tenth of the bytes of 16-bit samples.
+/// the columns i and i + 1 and the rows j and j + 1. Blocks of level k of the pyramid have 4^(k + 1) cells
+/// along a side, and a node has 4 x 4 blocks; the last level has one node. Every line tests it, so it should
+/// have more than 2 x 2 blocks; where it would not, the nodes of the level below have 2 x 2 blocks. The
+/// pyramid takes about a tenth of the bytes of 16-bit samples.
 class HeightGrid {
  public:
   /// Cells along a side of the smallest blocks, and blocks along a side of a node.
