@@ -1,7 +1,5 @@
 #include "kernels/heights/height_grid.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,20 +10,6 @@
 #include "kernels/heights/make_height_grid.h"
 
 namespace oktett {
-
-namespace {
-
-/// Rays come to a field in many places: with pages of 2 MiB their addresses are at hand.
-template <class T>
-VirtualArray<T> large_array(std::size_t count) {
-  constexpr std::size_t kWorthwhile = std::size_t{1} << 22;
-  VirtualArray<T> array(count);
-  // Only advice: whether it is taken changes nothing but the speed.
-  if (count * sizeof(T) >= kWorthwhile) madvise(array.data(), count * sizeof(T), MADV_HUGEPAGE);
-  return array;
-}
-
-}  // namespace
 
 HeightGrid::HeightGrid(std::uint32_t columns, std::uint32_t rows, HeightInterpolation interpolation)
     : columns_(columns),
@@ -61,7 +45,7 @@ template <class T>
 VirtualArray<T> HeightGrid::take(const Column<T>& samples) {
   const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
   least_ = *lo, greatest_ = *hi;
-  VirtualArray<T> stored = large_array<T>(places());
+  VirtualArray<T> stored(places());
   T* tile = stored.data();
   for (std::uint32_t z = 0; z < cells(rows_); z += kTile)
     for (std::uint32_t x = 0; x < cells(columns_); x += kTile, tile += kTileSamples)
@@ -107,7 +91,7 @@ void HeightGrid::build_pyramid() {
     side *= split, columns = level.columns, rows = level.rows;
     if (columns == 1 && rows == 1) break;
   }
-  nodes_ = large_array<HeightNode>(node_count_);
+  nodes_ = VirtualArray<HeightNode>(node_count_);
   node_data_ = nodes_.data();
   for (int k = 0; k < levels_; ++k) {
     const Level& level = level_[k];

@@ -7,7 +7,6 @@
 /// cells of these at the same time, each in a block of its own. Even neighbouring lines rarely meet the same
 /// cells, but this keeps all lanes busy.
 
-#include <algorithm>
 #include <bit>
 
 #include "kernels/heights/height_bundle.h"
