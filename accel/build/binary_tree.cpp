@@ -11,7 +11,7 @@
 
 #include "accel/build/collapse.h"
 #include "accel/build/morton.h"
-#include "accel/build/populate.h"
+#include "accel/build/node_supply.h"
 #include "accel/build/spatial.h"
 #include "accel/build/wide_tree.h"
 #include "core/phase.h"
@@ -25,9 +25,6 @@ constexpr std::size_t kParallelTask = 4096;
 constexpr std::size_t kParallelSplit = 1u << 15;
 constexpr std::size_t kMinChunk = 1u << 13;
 constexpr std::size_t kMaxChunks = 64;
-
-/// Nodes whose pages are allocated together.
-constexpr std::size_t kNodePiece = (std::size_t{1} << 17) / sizeof(BinaryNode);
 
 /// A spatial split is tried only if the children of the best object split overlap by more than this part of
 /// the scene's surface (Stich et al. 2009, section 4.5).
@@ -92,20 +89,18 @@ class Builder {
         effort_(effort_of(options.quality)),
         parallel_(options.parallel),
         kernels_(kernels),
-        phase_("building the tree", {}, refs.size()) {}
+        phase_("building the tree", {}, refs.size()),
+        // A leaf has at least one item.
+        nodes_(2 * room_for(refs.size(), effort_) + 2 * kMaxSweep) {}
 
   BinaryTree run() {
     const std::size_t n = refs_.size(), room = room_for(n, effort_);
-    // A leaf has at least one item. Pages that are never written take no memory.
-    node_room_ = 2 * room + 2 * kMaxSweep;
-    tree_.nodes = VirtualArray<BinaryNode>(node_room_);
     tree_.items.resize_uninitialized(room);
     refs_.resize_uninitialized(room);
     scratch_.resize_uninitialized(n > effort_.sweep ? room : 0);
     populate(tree_.items.data(), n, parallel_);
     populate(scratch_.data(), std::min(scratch_.size(), n), parallel_);
-    populate_nodes(0);
-    nodes_ = 1;
+    nodes_.take(1);
     Range all{0, n, refs_.data(), scratch_.data(), {}, 0, room};
     bound(all);
     SubtreeCost cost;
@@ -116,7 +111,7 @@ class Builder {
     } else {
       build(all, 1, 0, cost);
     }
-    tree_.nodes.truncate(nodes_);
+    tree_.nodes = nodes_.finish();
     tree_.pieces = pieces_;
     return std::move(tree_);
   }
@@ -139,19 +134,6 @@ class Builder {
       kernels_.bound(r.from + b, std::min(chunks.size, r.end - b), parts[c]);
     });
     for (const Centers& p : parts) r.centers.grow(p);
-  }
-
-  void populate_nodes(std::size_t piece) {
-    const std::size_t begin = std::min(piece * kNodePiece, node_room_);
-    populate(tree_.nodes.data() + begin, std::min(kNodePiece, node_room_ - begin), false);
-  }
-
-  /// The first of `count` new nodes. Whoever reaches a piece of the array first has its pages allocated.
-  std::uint32_t take_nodes(std::uint32_t count) {
-    const std::uint32_t first = nodes_.fetch_add(count);
-    const std::size_t piece = (first + count) / kNodePiece;
-    if (first / kNodePiece != piece) populate_nodes(piece);
-    return first;
   }
 
   void build(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
@@ -185,7 +167,7 @@ class Builder {
   template <class BuildSide>
   void build_children(Range& left, Range& right, std::uint32_t at, SubtreeCost& cost,
                       const BuildSide& build_side) {
-    const std::uint32_t children = take_nodes(2);
+    const std::uint32_t children = nodes_.take(2);
     SubtreeCost l, rr;
     if (parallel_ && left.size() + right.size() >= kParallelTask) {
       tbb::parallel_invoke([&] { build_side(left, children, l); },
@@ -194,8 +176,8 @@ class Builder {
       build_side(left, children, l);
       build_side(right, children + 1, rr);
     }
-    BinaryNode& node = tree_.nodes[at];
-    const BinaryNode &a = tree_.nodes[children], &b = tree_.nodes[children + 1];
+    BinaryNode& node = nodes_[at];
+    const BinaryNode &a = nodes_[children], &b = nodes_[children + 1];
     for (int k = 0; k < 3; ++k) {
       node.negative_lo[k] = std::max(a.negative_lo[k], b.negative_lo[k]);
       node.hi[k] = std::max(a.hi[k], b.hi[k]);
@@ -219,9 +201,9 @@ class Builder {
     kernels_.sweep(job);
     phase_.add(r.size());
     cost = job.cost;
-    const std::uint32_t rest = take_nodes(job.node_count - 1);
+    const std::uint32_t rest = nodes_.take(job.node_count - 1);
     for (std::uint32_t i = 0; i < job.node_count; ++i) {
-      BinaryNode& to = tree_.nodes[i == 0 ? at : rest + i - 1];
+      BinaryNode& to = nodes_[i == 0 ? at : rest + i - 1];
       to = nodes[i];
       if (!to.is_leaf()) to.link += rest - 1;
     }
@@ -382,8 +364,7 @@ class Builder {
   const BuildKernels& kernels_;
   Phase phase_;
   BinaryTree tree_;
-  std::size_t node_room_ = 0;
-  std::atomic<std::uint32_t> nodes_{0};
+  NodeSupply nodes_;
 };
 
 }  // namespace

@@ -171,6 +171,7 @@ Column<PrimRef> add_triangles(Accel& accel, const MeshSource& meshes, Column<Pri
                               const std::vector<std::size_t>& first_other, const BuildOptions& options) {
   if (accel.stats.triangles == 0) return std::move(others);
   Column<PrimRef> refs;
+  // Reserves all that build_tree may need, so that it copies nothing.
   refs.resize_uninitialized(reference_room(others.size() + accel.stats.triangles, options));
   refs.resize_uninitialized(0);
   const PrimRef* next = others.begin();
