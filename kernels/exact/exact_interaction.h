@@ -27,8 +27,8 @@ Vec3d gradient_by_differences(const typename S::Pool& pool, std::size_t i, int p
 }
 
 /// The surface near hits with element `i`: points moved onto it by Newton's method, along the normal that it
-/// has in the world. The way along the gradient in the element's own space would be as short there, but not
-/// in the world: a flat map makes it longer. A point that would go farther than rounding can have brought it
+/// has in the world. A step along the gradient in the element's own space is the shortest one there, but a
+/// flat map makes it longer in the world. A point that would go farther than rounding can have brought it
 /// stays where it is: the function has no slope to go by there. `own` gets the points in the own space.
 ///
 /// Several lanes ask for S::slope and NormalMethod::gradient.
