@@ -10,7 +10,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <cstdint>
 #include <ctime>
+#include <mutex>
+#include <stop_token>
 #include <thread>
 
 namespace oktett::bench {
@@ -63,16 +67,58 @@ void flush_denormals() {
 #endif
 }
 
+namespace {
+
+/// Threads that wait for work between measurements. A new thread would have its stack and all that it
+/// allocates brought in page by page, at the cost of those who need much of it.
+class Helpers {
+ public:
+  /// Runs `work` in `count` helpers and in the calling thread at the same time.
+  void run(std::size_t count, const std::function<void()>& work) {
+    while (threads_.size() < count)
+      threads_.emplace_back([this, number = threads_.size()](std::stop_token stop) { serve(number, stop); });
+    {
+      const std::scoped_lock lock(mutex_);
+      work_ = &work, wanted_ = running_ = count, ++round_;
+    }
+    changed_.notify_all();
+    work();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return running_ == 0; });
+  }
+
+ private:
+  void serve(std::size_t number, const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    for (std::uint64_t seen = 0;;) {
+      if (!changed_.wait(lock, stop, [&] { return round_ != seen && number < wanted_; })) return;
+      seen = round_;
+      const std::function<void()>& work = *work_;
+      lock.unlock();
+      work();
+      lock.lock();
+      if (--running_ == 0) changed_.notify_all();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  const std::function<void()>* work_ = nullptr;
+  std::size_t wanted_ = 0, running_ = 0;
+  std::uint64_t round_ = 0;
+  std::vector<std::jthread> threads_;  ///< the last member, so that they end first
+};
+
+}  // namespace
+
 void in_pieces(int threads, std::size_t size, const std::function<void(std::size_t, std::size_t)>& f) {
+  static Helpers helpers;
   constexpr std::size_t kPiece = 4096;
   std::atomic<std::size_t> next{0};
-  const auto work = [&] {
+  helpers.run(static_cast<std::size_t>(threads - 1), [&] {
     flush_denormals();
     for (std::size_t b; (b = next.fetch_add(kPiece)) < size;) f(b, std::min(kPiece, size - b));
-  };
-  std::vector<std::jthread> others;
-  for (int i = 1; i < threads; ++i) others.emplace_back(work);
-  work();
+  });
 }
 
 Rounds::Rounds(double budget, int least, int most)
