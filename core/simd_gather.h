@@ -24,6 +24,24 @@ OKTETT_INLINE Simd<float, W, A> gather(const float* base, const Simd<std::int32_
   return Simd<float, W, A>::load(lanes);
 }
 
+/// words[index[i]] in lane i. The word behind each of these is read too, and must exist.
+template <int W, class A>
+OKTETT_INLINE Simd<std::int32_t, W, A> gather(const std::uint16_t* words,
+                                              const Simd<std::int32_t, W, A>& index) {
+#if defined(OKTETT_COMPILED_AVX512)
+  if constexpr (std::is_same_v<A, Avx512Isa> && W == 16) {
+    Simd<std::int32_t, W, A> r;
+    r.part[0] = _mm512_and_si512(_mm512_i32gather_epi32(index.part[0], words, sizeof(std::uint16_t)),
+                                 _mm512_set1_epi32(0xffff));
+    return r;
+  }
+#endif
+  alignas(64) std::int32_t lanes[W];
+  index.store(lanes);
+  for (std::int32_t& lane : lanes) lane = words[lane];
+  return Simd<std::int32_t, W, A>::load(lanes);
+}
+
 namespace native {
 
 template <class B>

@@ -96,9 +96,11 @@ class Builder {
   BinaryTree run() {
     const std::size_t n = refs_.size(), room = room_for(n, effort_);
     tree_.items.resize_uninitialized(room);
+    tree_.corners.resize_uninitialized(room);
     refs_.resize_uninitialized(room);
     scratch_.resize_uninitialized(n > effort_.sweep ? room : 0);
     populate(tree_.items.data(), n, parallel_);
+    populate(tree_.corners.data(), n, parallel_);
     populate(scratch_.data(), std::min(scratch_.size(), n), parallel_);
     nodes_.take(1);
     Range all{0, n, refs_.data(), scratch_.data(), {}, 0, room};
@@ -188,11 +190,15 @@ class Builder {
 
   void sweep(const Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
     BinaryNode nodes[2 * kMaxSweep];
+    VertexNumbers vertices[kMaxSweep];
     SweepJob job;
     job.refs = r.from + r.begin;
     job.count = static_cast<std::uint32_t>(r.size());
+    triangles_.note_vertices(job.refs, job.count, vertices);
+    job.triangles = &triangles_, job.vertices = vertices;
     job.first = static_cast<std::uint32_t>(r.begin);
     job.items = tree_.items.data() + r.begin;
+    job.corners = tree_.corners.data() + r.begin;
     job.depth = depth;
     job.unit = unit_;
     job.effort = effort_;
@@ -371,6 +377,11 @@ class Builder {
 
 std::size_t reference_room(std::size_t count, const BuildOptions& options) {
   return room_for(count, effort_of(options.quality));
+}
+
+bool pack_corners(const TriangleSource& triangles, const std::uint32_t* items, int count,
+                  std::uint16_t* corners) {
+  return triangles.pack_corners(items, count, corners);
 }
 
 float scene_unit(const Box& bounds) {

@@ -22,21 +22,30 @@ bool is_usable(const Vec3f (&v)[3]) {
   return greatest < 0x7f800000u && v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
 }
 
+bool have_same_bits(const Vec3f& a, const Vec3f& b) {
+  for (int k = 0; k < 3; ++k)
+    if (std::bit_cast<std::uint32_t>(a[k]) != std::bit_cast<std::uint32_t>(b[k])) return false;
+  return true;
+}
+
 }  // namespace
 
 MeshSource::MeshSource(const Accel& accel) : accel_(accel) {
+  std::uint32_t vertices = 0;
   for (std::size_t g = 0; g < accel.geometries.size(); ++g) {
     const Geometry& geometry = accel.geometries[g];
     Mesh m;
-    if (const auto* shape = std::get_if<MeshGeometry>(&geometry.shape))
-      m = {shape->mesh->positions.data(), shape->mesh->indices.data(), accel.first_item[g],
+    if (const auto* shape = std::get_if<MeshGeometry>(&geometry.shape)) {
+      m = {shape->mesh->positions.data(), shape->mesh->indices.data(), accel.first_item[g], vertices,
            geometry.transform.is_identity() ? nullptr : &geometry.transform};
+      vertices += static_cast<std::uint32_t>(shape->mesh->positions.size());
+    }
     meshes_.push_back(m);
   }
 }
 
 inline void MeshSource::corners(const Mesh& mesh, std::uint32_t item, Vec3f (&v)[3]) const {
-  const std::uint32_t* index = mesh.indices + 3 * std::size_t{item - mesh.first_item};
+  const std::uint32_t* index = indices(mesh, item);
   for (int k = 0; k < 3; ++k) {
     v[k] = mesh.positions[index[k]];
     if (mesh.transform != nullptr) v[k] = Vec3f(mesh.transform->point(Vec3d(v[k])));
@@ -93,27 +102,59 @@ Box MeshSource::add_references(std::uint32_t geometry, Column<PrimRef>& refs, bo
   return bounds;
 }
 
-void MeshSource::fill(const std::uint32_t* items, int count, TriangleBlock& block) const {
+void MeshSource::note_vertices(const PrimRef* refs, std::uint32_t count, VertexNumbers* out) const {
+  const auto is_triangle = [&](std::uint32_t i) {
+    return static_cast<Kind>(refs[i].kind & 0xff) == Kind::triangle;
+  };
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (is_triangle(i)) __builtin_prefetch(indices(mesh_of(refs[i].item), refs[i].item));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_triangle(i)) continue;
+    const Mesh& mesh = mesh_of(refs[i].item);
+    const std::uint32_t* index = indices(mesh, refs[i].item);
+    for (int k = 0; k < 3; ++k) out[i].of[k] = mesh.first_vertex + index[k];
+  }
+}
+
+bool MeshSource::pack_corners(const std::uint32_t* items, int count, std::uint16_t* corners) const {
+  Vec3f known[TriangleBlock::kCorners];
+  int known_count = 0;
   for (int i = 0; i < count; ++i) {
     Vec3f v[3];
-    corners(mesh_of(items[i]), items[i], v);
+    this->corners(mesh_of(items[i]), items[i], v);
+    int packed = 0;
+    for (int k = 0; k < 3; ++k) {
+      int n = 0;
+      while (n < known_count && !have_same_bits(known[n], v[k])) ++n;
+      if (n == TriangleBlock::kCorners) return false;
+      if (n == known_count) known[known_count++] = v[k];
+      packed |= n << 4 * k;
+    }
+    corners[i] = static_cast<std::uint16_t>(packed);
+  }
+  return true;
+}
+
+void MeshSource::fill(const std::uint32_t* items, const std::uint16_t* corners, int count,
+                      TriangleBlock& block) const {
+  for (int i = 0; i < count; ++i) {
+    Vec3f v[3];
+    this->corners(mesh_of(items[i]), items[i], v);
+    if (i == 0)
+      for (int axis = 0; axis < 3; ++axis) std::ranges::fill(block.point[axis], v[0][axis]);
+    block.corners[i] = corners[i], block.item[i] = items[i];
     for (int k = 0; k < 3; ++k)
-      for (int axis = 0; axis < 3; ++axis) block.v[k][axis][i] = v[k][axis];
-    block.item[i] = items[i];
+      for (int axis = 0; axis < 3; ++axis) block.point[axis][block.corner(k, i)] = v[k][axis];
   }
-  for (int i = count; i < TriangleBlock::kSize; ++i) {
-    for (auto& corner : block.v)
-      for (int axis = 0; axis < 3; ++axis) corner[axis][i] = block.v[0][axis][0];
-    block.item[i] = kNoId;
-  }
+  for (int i = count; i < TriangleBlock::kSize; ++i) block.corners[i] = 0, block.item[i] = kNoId;
+  std::ranges::fill(block.padding, 0u);
 }
 
 void MeshSource::prefetch(const std::uint32_t* items, int count) const {
   // One geometry, and it is a mesh.
   if (meshes_.size() != 1 || meshes_[0].indices == nullptr) return;
   const Mesh& mesh = meshes_[0];
-  for (int i = 0; i < count; ++i)
-    __builtin_prefetch(mesh.indices + 3 * std::size_t{items[i] - mesh.first_item});
+  for (int i = 0; i < count; ++i) __builtin_prefetch(indices(mesh, items[i]));
 }
 
 }  // namespace oktett

@@ -16,7 +16,10 @@ class MeshSource final : public TriangleSource {
   /// are left out. Returns their bounds.
   Box add_references(std::uint32_t geometry, Column<PrimRef>& refs, bool parallel) const;
 
-  void fill(const std::uint32_t* items, int count, TriangleBlock& block) const override;
+  void note_vertices(const PrimRef* refs, std::uint32_t count, VertexNumbers* out) const override;
+  bool pack_corners(const std::uint32_t* items, int count, std::uint16_t* corners) const override;
+  void fill(const std::uint32_t* items, const std::uint16_t* corners, int count,
+            TriangleBlock& block) const override;
   void prefetch(const std::uint32_t* items, int count) const override;
   void corners(std::uint32_t item, Vec3f (&v)[3]) const override;
 
@@ -26,10 +29,14 @@ class MeshSource final : public TriangleSource {
     const Vec3f* positions = nullptr;
     const std::uint32_t* indices = nullptr;
     std::uint32_t first_item = 0;
+    std::uint32_t first_vertex = 0;     ///< vertices of the meshes before
     const Affine* transform = nullptr;  ///< null: identity
   };
   void corners(const Mesh& mesh, std::uint32_t item, Vec3f (&v)[3]) const;
   const Mesh& mesh_of(std::uint32_t item) const;
+  const std::uint32_t* indices(const Mesh& mesh, std::uint32_t item) const {
+    return mesh.indices + 3 * std::size_t{item - mesh.first_item};
+  }
 
   const Accel& accel_;
   std::vector<Mesh> meshes_;  ///< per geometry

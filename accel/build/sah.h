@@ -125,14 +125,28 @@ struct Effort {
   bool every_axis;  ///< spatial splits are tried across every axis, not only across the longest
 };
 
+class TriangleSource;
+
+/// TriangleSource::pack_corners. A function, so that code of an instruction set need not know the class.
+bool pack_corners(const TriangleSource& triangles, const std::uint32_t* items, int count,
+                  std::uint16_t* corners);
+
+/// Numbers of the vertices of a triangle.
+struct VertexNumbers {
+  std::uint32_t of[3];
+};
+
 /// Builds the binary tree over refs[0, count), count in [1, kMaxSweep].
 struct SweepJob {
   const PrimRef* refs;
   std::uint32_t count;
-  std::uint32_t first;   ///< place of the range among all items
-  std::uint32_t* items;  ///< out: the items in the order of the leaves
-  int depth;             ///< of the range; the tree stays below kMaxDepth
-  float unit;            ///< a power of two by which the scene is of size 1
+  const TriangleSource* triangles;
+  const VertexNumbers* vertices;  ///< of the triangles among `refs`
+  std::uint32_t first;            ///< place of the range among all items
+  std::uint32_t* items;           ///< out: the items in the order of the leaves
+  std::uint16_t* corners;         ///< out: of the triangles among them, TriangleBlock::corners
+  int depth;                      ///< of the range; the tree stays below kMaxDepth
+  float unit;                     ///< a power of two by which the scene is of size 1
   Effort effort;
   bool pieces;               ///< an item may occur more than once
   BinaryNode* nodes;         ///< out: up to 2 * count - 1, the root first; links to children count from here

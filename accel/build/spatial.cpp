@@ -114,8 +114,8 @@ void slice_triangle(const Slices& s, int axis, int first, int last, const Box& b
   }
 }
 
-void slice(const PrimRef* refs, std::size_t count, const Slices (&slices)[3], const TriangleSource& triangles,
-           Sliced& out) {
+void slice(const PrimRef* refs, std::size_t count, const Slices (&slices)[3],
+           const TriangleCorners& triangles, Sliced& out) {
   for (std::size_t i = 0; i < count; ++i) {
     const Box box = box_of(refs[i]);
     Vec3f v[3];
@@ -146,7 +146,7 @@ double half_area(const Box& box) {
 }
 
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
-                          const TriangleSource& triangles, bool every_axis, bool parallel) {
+                          const TriangleCorners& triangles, bool every_axis, bool parallel) {
   Slices slices[3];
   const float longest = max_component(box.extent());
   for (int axis = 0; axis < 3; ++axis)
@@ -190,7 +190,7 @@ SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box
 }
 
 SpatialParts partition_spatial(const PrimRef* refs, std::size_t count, std::size_t room,
-                               const SpatialSplit& split, const TriangleSource& triangles, PrimRef* left,
+                               const SpatialSplit& split, const TriangleCorners& triangles, PrimRef* left,
                                PrimRef* right) {
   const double area[2] = {half_area(split.side[0]), half_area(split.side[1])};
   const auto n0 = static_cast<double>(split.count[0]), n1 = static_cast<double>(split.count[1]);

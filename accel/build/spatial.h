@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "accel/build/wide_tree.h"
+#include "accel/build/triangle_source.h"
 
 namespace oktett {
 
@@ -23,7 +23,7 @@ double half_area(const Box& box);
 /// The plane of least surface-area cost among equidistant ones across the longest axis of `box`, which bounds
 /// refs[0, count), or across every axis.
 SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box,
-                          const TriangleSource& triangles, bool every_axis, bool parallel);
+                          const TriangleCorners& triangles, bool every_axis, bool parallel);
 
 /// Copies refs[0, count) to `left` upwards and to `right` downwards (the first goes to right[-1]). A triangle
 /// that crosses the plane becomes a reference on each side or, where that is cheaper, a whole one on one
@@ -33,7 +33,7 @@ struct SpatialParts {
   std::size_t left = 0, right = 0;
 };
 SpatialParts partition_spatial(const PrimRef* refs, std::size_t count, std::size_t room,
-                               const SpatialSplit& split, const TriangleSource& triangles, PrimRef* left,
+                               const SpatialSplit& split, const TriangleCorners& triangles, PrimRef* left,
                                PrimRef* right);
 
 }  // namespace oktett

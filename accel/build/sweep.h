@@ -4,6 +4,7 @@
 /// instruction set.
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 #include "accel/build/collapse.h"
@@ -81,14 +82,49 @@ class Sweep {
     }
   }
 
-  /// Whether a range is a leaf: few enough items, all of one kind. Shapes that cost more to test than a node
-  /// are leaves of their own.
-  bool one_leaf(std::uint32_t begin, std::uint32_t end, const std::uint8_t* order) const {
+  /// Whether a range is a leaf: few enough items, all of one kind, and of triangles few enough corners, whose
+  /// numbers it notes. Shapes that cost more to test than a node are leaves of their own.
+  bool one_leaf(std::uint32_t begin, std::uint32_t end, const std::uint8_t* order) {
     if (end - begin > TriangleBlock::kSize) return false;
+    if (packed_end_[begin] == end) return true;
     const std::uint32_t kind = job_.refs[order[begin]].kind;
     if (stands_alone(static_cast<Kind>(kind & 0xff))) return end - begin == 1;
     for (std::uint32_t i = begin + 1; i < end; ++i)
       if (job_.refs[order[i]].kind != kind) return false;
+    if (static_cast<Kind>(kind & 0xff) != Kind::triangle) return true;
+    if (!pack_corners(order + begin, end - begin, job_.corners + begin)) return false;
+    packed_end_[begin] = static_cast<std::uint16_t>(end);
+    return true;
+  }
+
+  /// Numbers the corners of `count` <= 8 triangles for TriangleBlock::corners, in the order in which they
+  /// come; false if a block does not hold so many. refs[reference[i]] is triangle i.
+  bool pack_corners(const std::uint8_t* reference, std::uint32_t count, std::uint16_t* corners) const {
+    constexpr std::uint32_t kAll = 3 * TriangleBlock::kSize;
+    alignas(64) std::int32_t vertex[32] = {};
+    for (std::uint32_t i = 0; i < count; ++i)
+      for (int k = 0; k < 3; ++k)
+        vertex[3 * i + k] = static_cast<std::int32_t>(job_.vertices[reference[i]].of[k]);
+    // Each corner is where its vertex comes first.
+    const I low = I::load(vertex), high = I::load(vertex + 16);
+    unsigned first[kAll], firsts = 0;
+    for (std::uint32_t i = 0; i < 3 * count; ++i) {
+      const I own(vertex[i]);
+      first[i] = static_cast<unsigned>(__builtin_ctz(bits(low == own) | bits(high == own) << 16));
+      firsts |= static_cast<unsigned>(first[i] == i) << i;
+    }
+    if (std::popcount(firsts) > TriangleBlock::kCorners) {
+      // Vertices with other numbers may stand at the same place.
+      std::uint32_t items[TriangleBlock::kSize];
+      for (std::uint32_t i = 0; i < count; ++i) items[i] = job_.refs[reference[i]].item;
+      return oktett::pack_corners(*job_.triangles, items, static_cast<int>(count), corners);
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      int packed = 0;
+      for (std::uint32_t k = 0; k < 3; ++k)
+        packed |= std::popcount(firsts & ((1u << first[3 * i + k]) - 1)) << 4 * k;
+      corners[i] = static_cast<std::uint16_t>(packed);
+    }
     return true;
   }
 
@@ -131,19 +167,20 @@ class Sweep {
       job_.items[i] = job_.refs[order[i]].item;
     }
     box.store(node.negative_lo);
-    const std::uint32_t count = job_.pieces ? distinct(job_.items + begin, end - begin) : end - begin;
+    const std::uint32_t count =
+        job_.pieces ? distinct(job_.items + begin, job_.corners + begin, end - begin) : end - begin;
     cost = leaf_cost(scaled_area(F::load(node.negative_lo), F::load(node.hi)));
     node.link = job_.first + begin;
     node.info = BinaryNode::leaf_info(count, job_.refs[order[begin]].kind);
   }
 
-  /// Removes repeated items; returns the number of those left.
-  static std::uint32_t distinct(std::uint32_t* items, std::uint32_t count) {
+  /// Removes repeated items and their corners; returns the number of items left.
+  static std::uint32_t distinct(std::uint32_t* items, std::uint16_t* corners, std::uint32_t count) {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       bool seen = false;
       for (std::uint32_t k = 0; k < kept; ++k) seen |= items[k] == items[i];
-      if (!seen) items[kept++] = items[i];
+      if (!seen) items[kept] = items[i], corners[kept++] = corners[i];
     }
     return kept;
   }
@@ -247,6 +284,7 @@ class Sweep {
   alignas(16) float lo_[4], hi_[4];
   alignas(16) float right_area_[N][4];  ///< by axis
   std::uint8_t order_[3][N], side_[N], order_start_[TriangleBlock::kSize];
+  std::uint16_t packed_end_[N] = {};  ///< where the range from here ends whose corners job_.corners holds
 };
 
 }  // namespace oktett

@@ -88,11 +88,8 @@ bool are_possible(const TriangleBlock& block, const Accel& accel) {
   for (int lane = 0; lane < TriangleBlock::kSize; ++lane) {
     const std::uint32_t item = block.item[lane];
     if (item == kNoId) {
-      for (const auto& corner : block.v)
-        for (int axis = 0; axis < 3; ++axis)
-          if (std::bit_cast<std::uint32_t>(corner[axis][lane]) !=
-              std::bit_cast<std::uint32_t>(block.v[0][axis][0]))
-            return false;
+      const int corner = block.corner(0, lane);
+      if (block.corner(1, lane) != corner || block.corner(2, lane) != corner) return false;
       continue;
     }
     if (item >= first && item < end) continue;

@@ -154,7 +154,8 @@ class WideBuilder {
     std::uint32_t begin = n.link;
     if (n.kind() == Kind::triangle) {
       begin = next.blocks++;
-      triangles_.fill(tree_.items.data() + n.link, n.count(), accel_.blocks[begin]);
+      triangles_.fill(tree_.items.data() + n.link, tree_.corners.data() + n.link, n.count(),
+                      accel_.blocks[begin]);
       if (!in_table(n)) return NodeRef::triangles(begin, n.count());
     }
     accel_.leaves[next.leaves] = {begin, static_cast<std::uint16_t>(n.count()), n.kind(), n.test()};

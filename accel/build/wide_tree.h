@@ -5,26 +5,17 @@
 
 #include "accel/accel_data.h"
 #include "accel/build/sah.h"
+#include "accel/build/triangle_source.h"
 #include "core/soa.h"
 
 namespace oktett {
-
-/// The triangles of the scene, for the builder. Called from many threads.
-class TriangleSource {
- public:
-  virtual ~TriangleSource() = default;
-  /// Fills a block with 1 to 8 items.
-  virtual void fill(const std::uint32_t* items, int count, TriangleBlock& block) const = 0;
-  /// Prefetches the memory that fill() will need for these items.
-  virtual void prefetch(const std::uint32_t* items, int count) const = 0;
-  virtual void corners(std::uint32_t item, Vec3f (&v)[3]) const = 0;
-};
 
 /// A binary tree whose leaves are blocks, and the items in the order of the leaves. The root is node 0.
 struct BinaryTree {
   VirtualArray<BinaryNode> nodes;
   Column<std::uint32_t> items;
-  bool pieces = false;  ///< triangles were split, so an item may stand in several leaves
+  Column<std::uint16_t> corners;  ///< of items that are triangles: TriangleBlock::corners
+  bool pieces = false;            ///< triangles were split, so an item may stand in several leaves
 };
 
 /// How many references `count` ones may become by spatial splits. build_binary does not copy those that

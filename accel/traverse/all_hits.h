@@ -10,7 +10,7 @@ namespace oktett {
 /// tell.
 template <class A>
 OKTETT_INLINE float turn_of(const TriangleBlock& block, int k, const RayState<1, A>& r) {
-  const auto corner = [&](int c, int axis) { return static_cast<double>(block.v[c][axis][k]); };
+  const auto corner = [&](int c, int axis) { return static_cast<double>(block.vertex(c, k)[axis]); };
   double side = 0;
   for (int x = 0; x < 3; ++x) {
     const int y = (x + 1) % 3, z = (x + 2) % 3;

@@ -53,14 +53,11 @@ struct TreeBytes {
   /// Prefetches a node or a block. For any other leaf the address means nothing, so it is a number here: a
   /// pointer may not leave its array.
   OKTETT_INLINE void prefetch(NodeRef ref) const {
-    const std::uint32_t is_leaf = ref.bits() >> 31;
-    const std::size_t index = ref.block();
+    static_assert(sizeof(TriangleBlock) == sizeof(BvhNode));
     const std::uintptr_t at =
-        reinterpret_cast<std::uintptr_t>(of[is_leaf]) + index * sizeof(BvhNode) +
-        (index & (0 - std::size_t{is_leaf})) * (sizeof(TriangleBlock) - sizeof(BvhNode));
-    for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64)
-      __builtin_prefetch(
-          reinterpret_cast<const void*>(at + (line < sizeof(BvhNode) ? line : is_leaf * line)));
+        reinterpret_cast<std::uintptr_t>(of[ref.bits() >> 31]) + ref.block() * sizeof(BvhNode);
+    for (std::size_t line = 0; line < sizeof(BvhNode); line += 64)
+      __builtin_prefetch(reinterpret_cast<const void*>(at + line));
   }
 };
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -55,7 +56,7 @@ class TreeWalk {
       const TriangleBlock& block = accel_.blocks[ref.block()];
       for (int i = 0; i < ref.triangle_count(); ++i) {
         ++count[block.item[i]];
-        for (const auto& v : block.v) EXPECT_TRUE(box.contains(Vec3f{v[0][i], v[1][i], v[2][i]}));
+        for (int k = 0; k < 3; ++k) EXPECT_TRUE(box.contains(block.vertex(k, i)));
       }
       return;
     }
@@ -76,6 +77,62 @@ void expect_whole_tree(const Accel& accel, std::size_t items) {
   const TreeWalk walk(accel, items);
   for (std::size_t i = 0; i < items; ++i) ASSERT_EQ(walk.count[i], 1) << "triangle " << i;
   EXPECT_LE(walk.depth, kMaxDepth);
+}
+
+/// Every lane of every block holds the corners of its triangle, bit by bit, or nothing. Returns how many
+/// triangles the fullest block has.
+int expect_corners(const Accel& accel, const TriangleMesh& mesh) {
+  int most = 0;
+  for (std::size_t b = 0; b < accel.stats.leaf_bytes / sizeof(TriangleBlock); ++b) {
+    const TriangleBlock& block = accel.blocks[b];
+    int count = 0;
+    for (int lane = 0; lane < TriangleBlock::kSize; ++lane) {
+      if (block.item[lane] == kNoId) {
+        EXPECT_EQ(block.corners[lane], 0);
+        continue;
+      }
+      ++count;
+      for (int k = 0; k < 3; ++k) {
+        const Vec3f &has = mesh.positions[mesh.indices[3 * block.item[lane] + static_cast<std::size_t>(k)]],
+                    got = block.vertex(k, lane);
+        for (int axis = 0; axis < 3; ++axis)
+          EXPECT_EQ(std::bit_cast<std::uint32_t>(got[axis]), std::bit_cast<std::uint32_t>(has[axis]));
+      }
+    }
+    most = std::max(most, count);
+  }
+  return most;
+}
+
+/// A square of 40 x 40 cells of two triangles each.
+TriangleMesh grid() {
+  TriangleMesh m;
+  for (int y = 0; y <= 40; ++y)
+    for (int x = 0; x <= 40; ++x) m.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
+  for (std::uint32_t y = 0; y < 40; ++y)
+    for (std::uint32_t x = 0; x < 40; ++x) {
+      const std::uint32_t a = 41 * y + x, c = a + 41;
+      for (const std::uint32_t index : {a, a + 1, c, c, a + 1, c + 1}) m.indices.push_back(index);
+    }
+  return m;
+}
+
+TEST(Build, BlocksHoldTheCornersOfTheirTriangles) {
+  const TriangleMesh shared = grid();
+  EXPECT_EQ(expect_corners(*build(shared), shared), 8);
+  // The same places under numbers of their own, as in files without indices.
+  TriangleMesh apart;
+  for (std::size_t i = 0; i < shared.indices.size(); i += 3)
+    add(apart, shared.positions[shared.indices[i]], shared.positions[shared.indices[i + 1]],
+        shared.positions[shared.indices[i + 2]]);
+  EXPECT_EQ(expect_corners(*build(apart), apart), 8);
+  // Sixteen corners are those of five triangles that share none.
+  const TriangleMesh loose = random_triangles(2000, 1, 0.1, 5);
+  EXPECT_EQ(expect_corners(*build(loose), loose), 5);
+  // Zeros of both signs are one place, but not the same bits.
+  TriangleMesh zeros = apart;
+  for (std::size_t i = 0; i < zeros.positions.size(); i += 2) zeros.positions[i].z = -0.0f;
+  expect_corners(*build(zeros), zeros);
 }
 
 TEST(Build, EmptySceneIsNeverHit) {

@@ -29,8 +29,9 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& ra
   for (int i = 0; i < N; ++i) {
     p.triangle[i] =
         i > 0 && same ? p.triangle[0] : random.below(static_cast<std::uint32_t>(blocks.size()) * 8);
-    const auto& v = blocks[p.triangle[i] / 8].v;
-    const std::uint32_t lane = p.triangle[i] % 8;
+    Vec3f v[3];
+    for (int k = 0; k < 3; ++k)
+      v[k] = blocks[p.triangle[i] / 8].vertex(k, static_cast<int>(p.triangle[i] % 8));
     const float w[3] = {random.sign(), random.below(2) ? random.sign() : 0, random.below(2) ? 0.5f : 0};
     const float sum = w[0] + w[1] + w[2];
     Ray r;
@@ -38,7 +39,7 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& ra
     r.tmin = random.below(4) == 0 ? 0.9f : 0;
     r.tmax = random.below(4) == 0 ? 1.0f : std::numeric_limits<float>::infinity();
     for (int k = 0; k < 3; ++k) {
-      const float target = (w[0] * v[0][k][lane] + w[1] * v[1][k][lane] + w[2] * v[2][k][lane]) / sum;
+      const float target = (w[0] * v[0][k] + w[1] * v[1][k] + w[2] * v[2][k]) / sum;
       r.direction[k] = target - r.origin[k];
       column[k][i] = r.origin[k], column[3 + k][i] = r.direction[k];
     }
@@ -57,13 +58,19 @@ Pairs<N> make_pairs(const std::vector<TriangleBlock>& blocks, TriangleRandom& ra
 std::vector<TriangleBlock> random_blocks(TriangleRandom& random) {
   std::vector<TriangleBlock> blocks(9);
   for (TriangleBlock& b : blocks) {
-    for (auto& corner : b.v)
-      for (auto& axis : corner)
-        for (float& x : axis) x = random.sign();
-    // Neighbours share corners, so that rays through edges and corners matter.
-    for (int lane = 1; lane < 8; lane += 2)
-      for (int axis = 0; axis < 3; ++axis)
-        b.v[0][axis][lane] = b.v[1][axis][lane - 1], b.v[1][axis][lane] = b.v[0][axis][lane - 1];
+    for (auto& axis : b.point)
+      for (float& x : axis) x = random.sign();
+    for (int lane = 0; lane < 8; ++lane) {
+      std::uint32_t n[3];
+      do
+        for (std::uint32_t& corner : n) corner = random.below(16);
+      while (n[0] == n[1] || n[1] == n[2] || n[2] == n[0]);
+      // Neighbours share corners, so that rays through edges and corners matter.
+      if (lane % 2 == 1)
+        n[0] = static_cast<std::uint32_t>(b.corner(1, lane - 1)),
+        n[1] = static_cast<std::uint32_t>(b.corner(0, lane - 1));
+      b.corners[lane] = static_cast<std::uint16_t>(n[0] | n[1] << 4 | n[2] << 8);
+    }
   }
   return blocks;
 }
@@ -131,9 +138,8 @@ TEST(DecidePairs, GathersNearAndFar) {
       float x[N], y[N], z[N];
       corners[k]->x.store(x), corners[k]->y.store(y), corners[k]->z.store(z);
       for (int i = 0; i < N; ++i) {
-        const auto& v = blocks[ids[i] / 8].v[k];
-        const std::uint32_t lane = ids[i] % 8;
-        ASSERT_TRUE(x[i] == v[0][lane] && y[i] == v[1][lane] && z[i] == v[2][lane]) << repeat << ' ' << i;
+        const Vec3f v = blocks[ids[i] / 8].vertex(k, static_cast<int>(ids[i] % 8));
+        ASSERT_TRUE(x[i] == v.x && y[i] == v.y && z[i] == v.z) << repeat << ' ' << i;
       }
     }
   }

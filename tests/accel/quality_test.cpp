@@ -252,14 +252,16 @@ TEST(Quality, TreesAreTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// The items in the order of the leaves.
-std::vector<std::uint32_t> leaf_items(const BinaryTree& tree) {
-  std::vector<std::uint32_t> items, stack{0};
+/// The items in the order of the leaves, each with its packed corners.
+std::vector<std::pair<std::uint32_t, std::uint16_t>> leaf_items(const BinaryTree& tree) {
+  std::vector<std::pair<std::uint32_t, std::uint16_t>> items;
+  std::vector<std::uint32_t> stack{0};
   while (!stack.empty()) {
     const BinaryNode& n = tree.nodes[stack.back()];
     stack.pop_back();
     if (n.is_leaf())
-      items.insert(items.end(), &tree.items[n.link], &tree.items[n.link] + n.count());
+      for (std::size_t i = n.link; i < n.link + static_cast<std::size_t>(n.count()); ++i)
+        items.emplace_back(tree.items[i], tree.corners[i]);
     else
       stack.insert(stack.end(), {n.link + 1, n.link});
   }

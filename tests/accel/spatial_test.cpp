@@ -11,7 +11,7 @@ namespace oktett {
 namespace {
 
 /// Triangles by their corners.
-class Soup final : public TriangleSource {
+class Soup final : public TriangleCorners {
  public:
   void add(const Vec3f& a, const Vec3f& b, const Vec3f& c, TriangleTest test = TriangleTest::watertight) {
     Box box;
@@ -23,8 +23,6 @@ class Soup final : public TriangleSource {
                     static_cast<std::uint32_t>(Kind::triangle) | static_cast<std::uint32_t>(test) << 8});
     bounds.grow(box);
   }
-  void fill(const std::uint32_t*, int, TriangleBlock&) const override {}
-  void prefetch(const std::uint32_t*, int) const override {}
   void corners(std::uint32_t item, Vec3f (&v)[3]) const override { std::copy_n(&corners_[3 * item], 3, v); }
   std::vector<PrimRef> refs;
   Box bounds;

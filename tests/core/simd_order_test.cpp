@@ -4,6 +4,7 @@
 
 #include "core/simd_gather.h"
 #include "core/simd_gather_pairs.h"
+#include "core/simd_lookup.h"
 #include "core/simd_words.h"
 
 namespace oktett {
@@ -30,6 +31,32 @@ TEST(SimdGather, TakesWhatTheIndexNames) {
   float got[16];
   gather(base, Simd<std::int32_t, 16, ScalarIsa>::load(index)).store(got);
   for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], base[index[i]]);
+}
+
+TEST(SimdGather, Words) {
+  std::uint16_t base[101];
+  for (int i = 0; i < 101; ++i) base[i] = static_cast<std::uint16_t>(0xffff - i * i);
+  std::int32_t index[16], got[16];
+  for (int i = 0; i < 16; ++i) index[i] = (i * 37 + 99) % 100;
+  gather(base, Simd<std::int32_t, 16, ScalarIsa>::load(index)).store(got);
+  for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], base[index[i]]);
+}
+
+TEST(SimdLookup, TakesNumbersFromRows) {
+  float rows[2][16];
+  std::uint16_t words[2][8];
+  for (int i = 0; i < 16; ++i) rows[0][i] = static_cast<float>(i), rows[1][i] = static_cast<float>(100 + i);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 2; ++j) words[j][i] = static_cast<std::uint16_t>(0x9e37 * (8 * j + i + 1));
+  const PackedIndices<8, ScalarIsa> one(words[0]);
+  const PackedIndexPair<ScalarIsa> two(words[0], words[1]);
+  for (int k = 0; k < 3; ++k) {
+    float got[16];
+    one.look_up(k, rows[1]).store(got);
+    for (int i = 0; i < 8; ++i) EXPECT_EQ(got[i], rows[1][words[0][i] >> 4 * k & 15]);
+    two.look_up(k, rows[0], rows[1]).store(got);
+    for (int i = 0; i < 16; ++i) EXPECT_EQ(got[i], rows[i / 8][words[i / 8][i % 8] >> 4 * k & 15]);
+  }
 }
 
 TEST(SimdGather, DoublesOfFloats) {

@@ -52,14 +52,16 @@ OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int coun
                                             const BeamWindow& w, ProjectedTriangles<A>& out) {
   using B = Simd<float, TriangleBlock::kSize, A>;
   const int kx = beam.axis[0], ky = beam.axis[1], kz = beam.axis[2];
-  const auto column = [&](int corner, int axis) { return B::load(block.v[corner][axis]); };
-  const auto along_z = [&](const B& p, const B& q) { return beam.mirrored ? q - p : p - q; };
-  const Vec3<B> c{column(0, kx) - B(beam.apex[0]), column(0, ky) - B(beam.apex[1]),
-                  along_z(column(0, kz), B(beam.apex[2]))};
-  const Vec3<B> e1{column(1, kx) - column(0, kx), column(1, ky) - column(0, ky),
-                   along_z(column(1, kz), column(0, kz))};
-  const Vec3<B> e2{column(2, kx) - column(0, kx), column(2, ky) - column(0, ky),
-                   along_z(column(2, kz), column(0, kz))};
+  const PackedIndices<TriangleBlock::kSize, A> corners(block.corners);
+  const auto corner = [&](int k) {
+    const auto axis = [&](int a) { return corners.look_up(k, block.point[a]); };
+    return Vec3<B>{axis(kx), axis(ky), axis(kz)};
+  };
+  const auto from = [&](const Vec3<B>& p, const Vec3<B>& q) {
+    return Vec3<B>{q.x - p.x, q.y - p.y, beam.mirrored ? p.z - q.z : q.z - p.z};
+  };
+  const Vec3<B> a = corner(0), apex{B(beam.apex[0]), B(beam.apex[1]), B(beam.apex[2])};
+  const Vec3<B> c = from(apex, a), e1 = from(a, corner(1)), e2 = from(a, corner(2));
   const Vec3<B> u = fast_cross(e2, c), v = fast_cross(c, e1), n = fast_cross(e1, e2);
   const B t = fast_dot(n, c);
 

@@ -35,10 +35,18 @@ OKTETT_INLINE BlockLanes<N, A> spread_blocks(Function&& number) {
 template <int N, class A, class RayOf, class BlockOf>
 OKTETT_INLINE TriangleGuess<BlockLanes<N, A>> guess_blocks(RayOf&& ray, BlockOf&& block) {
   using F = BlockLanes<N, A>;
-  const auto corner = [&](int c) {
-    const auto axis = [&](int k) {
-      return join_blocks<N>(
-          [&](int j) { return Simd<float, TriangleBlock::kSize, A>::load(block(j).v[c][k]); });
+  const auto corners = [&] {
+    if constexpr (N == 1)
+      return PackedIndices<TriangleBlock::kSize, A>(block(0).corners);
+    else
+      return PackedIndexPair<A>(block(0).corners, block(1).corners);
+  }();
+  const auto corner = [&](int k) {
+    const auto axis = [&](int a) {
+      if constexpr (N == 1)
+        return corners.look_up(k, block(0).point[a]);
+      else
+        return corners.look_up(k, block(0).point[a], block(1).point[a]);
     };
     return Vec3<F>{axis(0), axis(1), axis(2)};
   };

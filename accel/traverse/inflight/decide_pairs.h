@@ -11,6 +11,23 @@ namespace oktett {
 /// them.
 inline constexpr std::uint32_t kNearTriangles = std::uint32_t{1} << 27;
 
+/// Triangles of different structures: `block[i]` is that of triangle i, `ids[i]` its number as below.
+template <int N, class A>
+OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* const (&block)[N],
+                                                                const std::uint32_t* ids) {
+  using F = Simd<float, N, A>;
+  alignas(64) float row[9][N];
+  for (int i = 0; i < N; ++i)
+    for (int which = 0; which < 3; ++which) {
+      const Vec3f p = block[i]->vertex(which, static_cast<int>(ids[i] % TriangleBlock::kSize));
+      for (int axis = 0; axis < 3; ++axis) row[3 * which + axis][i] = p[axis];
+    }
+  const auto corner = [&](int k) {
+    return Vec3<F>{F::load(row[k]), F::load(row[k + 1]), F::load(row[k + 2])};
+  };
+  return {corner(0), corner(3), corner(6)};
+}
+
 /// Triangles of `blocks`, one in each lane, by their numbers `ids` = block * TriangleBlock::kSize + lane. If
 /// the numbers agree above bit `kNear`, a power of two up to kNearTriangles, they are gathered with one index
 /// vector.
@@ -19,45 +36,33 @@ OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBl
                                                                 const std::uint32_t* ids) {
   using F = Simd<float, N, A>;
   constexpr std::uint32_t kSize = TriangleBlock::kSize;
-  const auto corners = [](auto&& row) {
-    const auto corner = [&](int k) { return Vec3<F>{row(3 * k), row(3 * k + 1), row(3 * k + 2)}; };
-    return TriangleLanes<F>{corner(0), corner(1), corner(2)};
-  };
   std::uint32_t differing = 0;
   for (int i = 1; i < N; ++i) differing |= ids[i] ^ ids[0];
-  if (differing == 0) {
-    const float* p = &blocks[ids[0] / kSize].v[0][0][ids[0] % kSize];
-    return corners([&](int k) { return F(p[static_cast<std::uint32_t>(k) * kSize]); });
-  }
+  if (differing == 0) return broadcast_triangle<F>(blocks[ids[0] / kSize], static_cast<int>(ids[0] % kSize));
   if (OKTETT_LIKELY(differing < kNear)) {
-    alignas(64) std::int32_t at[N];
+    using I = Simd<std::int32_t, N, A>;
+    constexpr std::uint32_t kFloats = sizeof(TriangleBlock) / sizeof(float);
+    const TriangleBlock* near_blocks = blocks + ids[0] / kNear * (kNear / kSize);
+    alignas(64) std::int32_t at[N], packed[N];
     for (int i = 0; i < N; ++i) {
       const std::uint32_t id = ids[i] % kNear;
-      at[i] = static_cast<std::int32_t>(id / kSize * (sizeof(TriangleBlock) / sizeof(float)) + id % kSize);
+      at[i] = static_cast<std::int32_t>(id / kSize * (2 * kFloats) + id % kSize);
     }
-    const auto index = Simd<std::int32_t, N, A>::load(at);
-    const float* base = blocks[ids[0] / kNear * (kNear / kSize)].v[0][0];
-    return corners([&](int k) { return gather(base + static_cast<std::uint32_t>(k) * kSize, index); });
+    gather(near_blocks->corners, I::load(at)).store(packed);
+    const auto corner = [&](int which) {
+      for (int i = 0; i < N; ++i) {
+        const std::uint32_t block = ids[i] % kNear / kSize;
+        at[i] = static_cast<std::int32_t>(block * kFloats) + (packed[i] >> 4 * which & 15);
+      }
+      const I index = I::load(at);
+      const auto axis = [&](int k) { return gather(near_blocks->point[k], index); };
+      return Vec3<F>{axis(0), axis(1), axis(2)};
+    };
+    return {corner(0), corner(1), corner(2)};
   }
-  return corners([&](int k) {
-    float lanes[N];
-    for (int i = 0; i < N; ++i) lanes[i] = blocks[ids[i] / kSize].v[k / 3][k % 3][ids[i] % kSize];
-    return F::load(lanes);
-  });
-}
-
-/// Triangles of different structures: `block[i]` is that of triangle i, `ids[i]` its number as above.
-template <int N, class A>
-OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBlock* const (&block)[N],
-                                                                const std::uint32_t* ids) {
-  using F = Simd<float, N, A>;
-  alignas(64) float row[9][N];
-  for (int i = 0; i < N; ++i)
-    for (int k = 0; k < 9; ++k) row[k][i] = block[i]->v[k / 3][k % 3][ids[i] % TriangleBlock::kSize];
-  const auto corner = [&](int k) {
-    return Vec3<F>{F::load(row[k]), F::load(row[k + 1]), F::load(row[k + 2])};
-  };
-  return {corner(0), corner(3), corner(6)};
+  const TriangleBlock* block[N];
+  for (int i = 0; i < N; ++i) block[i] = blocks + ids[i] / kSize;
+  return gather_triangles<N, A>(block, ids);
 }
 
 /// Ray i of `ray` against triangle i of `tri`, for all i at once, with the same bits as decide_watertight of
