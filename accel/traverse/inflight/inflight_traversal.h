@@ -12,8 +12,8 @@
 
 #include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/enter_instance.h"
-#include "accel/traverse/inflight/exact_group.h"
 #include "accel/traverse/inflight/inflight_queues.h"
+#include "accel/traverse/inflight/leaf_group.h"
 #include "accel/traverse/inflight/pending_hits.h"
 
 namespace oktett {
@@ -261,19 +261,69 @@ class InflightTraversal {
     if constexpr (kEnter)
       for (InflightRay** at = rays.leaving; at != rays.leaving_end; ++at) leave(**at, tail);
     for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end;) {
-      if (at_shapes(**at)) {
-        pop(**at++, tail);
-        continue;
-      }
-      const int count = rays_at_leaf<kInstances>(accel_, at, rays.at_leaf_end, ExactCode<A>::kLanes);
-      if (count > 0)
-        exact_leaf(at, count, tail);
-      else
-        table_leaf(**at, tail);
+      const int count = group_at_leaf(at, rays.at_leaf_end, tail);
+      if (count == 0) alone_at_leaf(**at, tail);
       at += std::max(count, 1);
     }
     if constexpr (kEnter) go_inside(tail);
     queues_.keep(tail);
+  }
+
+  /// Tests rays at the leaf of *begin together, if that pays, and returns how many; these are moved to
+  /// `begin`.
+  OKTETT_INLINE int group_at_leaf(InflightRay** begin, InflightRay** end, Tails& tail) {
+    if (kInstances && (*begin)->in.instance != kNoInstance) return 0;
+    const LeafEntry& leaf = accel_.leaves[(*begin)->current.table_index()];
+    if (is_exact(leaf.kind)) {
+      const int count = rays_at_leaf<kInstances>(begin, end, ExactCode<A>::kLanes);
+      RayState<ExactCode<A>::kLanes, A> state;
+      take_hits(begin, count, meet_exact_leaf(accel_, leaf, rays_, begin, count, state), state, tail);
+      return count;
+    }
+    const int least = least_group(leaf);
+    if (end - begin < least) return 0;
+    const int count = rays_at_leaf<kInstances>(begin, end, kGroupRays);
+    if (count < least) return 0;
+    shapes_together(leaf, begin, count, tail);
+    return count;
+  }
+
+  /// Rays at one leaf of closed-form shapes or combinations.
+  OKTETT_NOINLINE void shapes_together(const LeafEntry& leaf, InflightRay* const* rays, int count,
+                                       Tails& tail) {
+    RayState<kGroupRays, A> state;
+    const unsigned met = meet_together(
+        rays_, rays, count, state,
+        [&](const auto& r) { return state.set(r.o, r.d, r.tmin, r.tmax, accel_.bounds); },
+        [&](unsigned lanes) { table_leaf_packet<Q>(accel_, leaf, state, lanes); });
+    take_hits(rays, count, met, state, tail);
+  }
+
+  /// The rays in `met` take over the hits in `state`; all go on.
+  template <int N>
+  OKTETT_INLINE void take_hits(InflightRay* const* rays, int count, unsigned met, const RayState<N, A>& state,
+                               Tails& tail) {
+    for (int i = 0; i < count; ++i) {
+      InflightRay& ray = *rays[i];
+      if ((met >> i & 1) != 0) {
+        if (ray.candidate < kDecidedHit) {
+          // The candidate is decided only now, so the hit may turn out to be no nearer.
+          accept_hit(exact_state(ray), 0, state.tmax[i], state.u[i], state.v[i], state.item[i],
+                     state.path[i]);
+          adopt(ray);
+        } else {
+          keep_hit(ray, state.hit(i));
+        }
+      }
+      pop(ray, tail);
+    }
+  }
+
+  OKTETT_INLINE void alone_at_leaf(InflightRay& ray, Tails& tail) {
+    if (at_shapes(ray))
+      pop(ray, tail);
+    else
+      table_leaf(ray, tail);
   }
 
   /// Tests the ray if its leaf holds spheres and its hit so far is decided.
@@ -283,21 +333,6 @@ class InflightTraversal {
     if (leaf.kind != Kind::sphere) return false;
     shape_leaf<Sphere>(std::get<Sphere::Pool>(accel_.pools), leaf, ray);
     return true;
-  }
-
-  /// Rays of one leaf of exact surfaces, several at once.
-  OKTETT_INLINE void exact_leaf(InflightRay* const* rays, int count, Tails& tail) {
-    RayState<ExactCode<A>::kLanes, A> state;
-    const unsigned met = meet_exact_leaf(accel_, rays_, rays, count, state);
-    for (int i = 0; i < count; ++i) {
-      InflightRay& ray = *rays[i];
-      if ((met >> i & 1) != 0) {
-        // A candidate is decided only now, so the hit may turn out to be no nearer.
-        accept_hit(exact_state(ray), 0, state.tmax[i], state.u[i], state.v[i], state.item[i], kNoId);
-        adopt(ray);
-      }
-      pop(ray, tail);
-    }
   }
 
   OKTETT_INLINE void table_leaf(InflightRay& ray, Tails& tail) {

@@ -1,0 +1,71 @@
+#pragma once
+/// \file Rays in flight that wait at the same leaf of shapes, tested together in lanes.
+
+#include <algorithm>
+#include <limits>
+
+#include "accel/exact.h"
+#include "accel/traverse/inflight/inflight_ray.h"
+#include "accel/traverse/packet.h"
+
+namespace oktett {
+
+/// Rays of a group at a leaf of closed-form shapes or combinations.
+inline constexpr int kGroupRays = 16;
+
+/// The least number of rays in kGroupRays lanes for which a leaf takes less time than with each ray alone,
+/// whose lanes hold shapes. Greater than kGroupRays if there is none.
+inline int least_group(const LeafEntry& leaf) {
+  // A combination or polygon tests a ray alone without lanes.
+  if (leaf.kind == Kind::polygon || leaf.kind == Kind::csg) return 3;
+  // One shape and sixteen rays are as many pairs as sixteen shapes and one ray.
+  if (is_closed_form(leaf.kind)) return 2 * leaf.count + 1;
+  return std::numeric_limits<int>::max();
+}
+
+/// Moves the rays that are at the same leaf as *begin next to it, and returns how many there are with *begin,
+/// at most `most`; 0 if that is inside an instance. `kInstances`: the rays may be inside instances; else
+/// their InflightRay::in is not set.
+template <bool kInstances>
+OKTETT_INLINE int rays_at_leaf(InflightRay** begin, InflightRay** end, int most) {
+  const auto is_here = [&](const InflightRay& ray) {
+    return (!kInstances || ray.in.instance == kNoInstance) && ray.current.bits() == (*begin)->current.bits();
+  };
+  if (!is_here(**begin)) return 0;
+  int count = 1;
+  for (InflightRay** at = begin + 1; at != end && count < most; ++at)
+    if (is_here(**at)) std::swap(*at, begin[count++]);
+  return count;
+}
+
+/// Tests `count` rays of a batch by meet(state, lanes), which `set_lanes` has prepared. Returns those that
+/// hit anything up to their present end, as bits; `state` has the hits.
+template <int N, class A, class SetLanes, class Meet>
+OKTETT_INLINE unsigned meet_together(const RaySpan& batch, InflightRay* const* rays, int count,
+                                     RayState<N, A>& state, SetLanes&& set_lanes, Meet&& meet) {
+  using F = Simd<float, N, A>;
+  // Lanes that are left over repeat the first ray.
+  alignas(64) float column[8][N];
+  for (int i = 0; i < N; ++i) {
+    const InflightRay& ray = *rays[i < count ? i : 0];
+    for (int k = 0; k < 3; ++k)
+      column[k][i] = batch.origin[k][ray.index], column[3 + k][i] = batch.direction[k][ray.index];
+    column[6][i] = batch.tmin[ray.index], column[7][i] = ray.tmax;
+  }
+  const auto load = [&](int k) { return F::load(column[k]); };
+  unsigned lanes = (1u << count) - 1;
+  lanes &= set_lanes(RayLanes<F>{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)});
+  if (lanes != 0) meet(lanes);
+  return found_lanes(state, lanes);
+}
+
+/// The same for a leaf of exact surfaces.
+template <int N, class A>
+OKTETT_INLINE unsigned meet_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& batch,
+                                       InflightRay* const* rays, int count, RayState<N, A>& state) {
+  return meet_together(
+      batch, rays, count, state, [&](const auto& r) { return state.set_rays(r.o, r.d, r.tmin, r.tmax); },
+      [&](unsigned lanes) { leaf_exact(accel, leaf, state, lanes); });
+}
+
+}  // namespace oktett
