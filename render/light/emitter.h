@@ -72,9 +72,15 @@ struct SpotEmitter {
 
 /// Light from infinitely far away: from one direction, or from a disk in the sky.
 struct DirectionalEmitter {
+  /// Sets the first three members, and the others from them.
+  DirectionalEmitter(const Vec3f& towards, const Color& facing, float diameter = 0);
+
   Vec3f direction;   ///< unit vector towards the light
   Color irradiance;  ///< on a surface that faces the light
-  float angle = 0;   ///< angular diameter in radians, [0, pi]
+  float angle;       ///< angular diameter in radians, [0, pi]
+  // Of the disk, if the angle is not 0:
+  double height = 0;  ///< 1 - cosine of the angular radius
+  Color radiance;
 };
 
 /// Light from all directions.

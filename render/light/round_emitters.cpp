@@ -90,22 +90,21 @@ std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
 
 // Directional light and environments.
 
-/// 1 - cosine of the angular radius.
-static double disk_height(const DirectionalEmitter& e) {
-  const double sine = portable::sin(e.angle / 4.0);
-  return 2 * sine * sine;
+DirectionalEmitter::DirectionalEmitter(const Vec3f& towards, const Color& facing, float diameter)
+    : direction(towards), irradiance(facing), angle(diameter) {
+  if (!(angle > 0)) return;
+  const double quarter = portable::sin(angle / 4.0), half = portable::sin(angle / 2.0);
+  height = 2 * quarter * quarter;
+  radiance = irradiance * static_cast<float>(1 / (kPi * half * half));
 }
 
-/// The radiance of the disk.
-static Color disk_radiance(const DirectionalEmitter& e) {
-  const double sine = portable::sin(e.angle / 2.0);
-  return e.irradiance * static_cast<float>(1 / (kPi * sine * sine));
-}
+/// The density of directions to the disk.
+static float disk_pdf(const DirectionalEmitter& e) { return static_cast<float>(1 / (2 * kPi * e.height)); }
 
 static bool in_disk(const DirectionalEmitter& e, const Vec3f& direction) {
   // The square of the chord between the directions keeps its accuracy for small angles.
   const Vec3d chord = Vec3d(direction) - Vec3d(e.direction);
-  return dot(chord, chord) <= 2 * disk_height(e);
+  return dot(chord, chord) <= 2 * e.height;
 }
 
 std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint&,
@@ -119,15 +118,15 @@ std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightP
                      .u = 0,
                      .v = 0};
   if (!(e.angle > 0)) return sample;
-  sample.direction = Vec3f(around(Vec3d(e.direction), s.x * disk_height(e), s.y));
-  sample.radiance = disk_radiance(e);
-  sample.pdf = static_cast<float>(1 / (2 * kPi * disk_height(e)));
+  sample.direction = Vec3f(around(Vec3d(e.direction), s.x * e.height, s.y));
+  sample.radiance = e.radiance;
+  sample.pdf = disk_pdf(e);
   sample.delta = false;
   return sample;
 }
 
 float pdf_kind(const DirectionalEmitter& e, const LightPoint&, const Vec3f& direction, float) {
-  return e.angle > 0 && in_disk(e, direction) ? static_cast<float>(1 / (2 * kPi * disk_height(e))) : 0;
+  return e.angle > 0 && in_disk(e, direction) ? disk_pdf(e) : 0;
 }
 
 std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint&,
@@ -152,7 +151,7 @@ Color infinite_radiance(const Emitter& emitter, const Vec3f& direction) {
   if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter))
     return e->map ? e->map->radiance(direction) : Color{};
   if (const auto* e = std::get_if<DirectionalEmitter>(&emitter))
-    return e->angle > 0 && in_disk(*e, direction) ? disk_radiance(*e) : Color{};
+    return e->angle > 0 && in_disk(*e, direction) ? e->radiance : Color{};
   return {};
 }
 

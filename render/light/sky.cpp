@@ -119,9 +119,7 @@ Color Sky::sun_irradiance() const {
   return irradiance;
 }
 
-DirectionalEmitter Sky::sun() const {
-  return {.direction = Vec3f(sun_), .irradiance = sun_irradiance(), .angle = static_cast<float>(kSunAngle)};
-}
+DirectionalEmitter Sky::sun() const { return {Vec3f(sun_), sun_irradiance(), static_cast<float>(kSunAngle)}; }
 
 EnvironmentPicture Sky::picture(std::uint32_t width, std::uint32_t height) const {
   EnvironmentPicture picture{width, height, {}};

@@ -39,6 +39,7 @@ class LightSampler {
     finish_placed(spheres_, code.sphere_samples,
                   [](const void* e) { return static_cast<const SphereEmitter*>(e)->radiance; });
     finish_environment(code);
+    finish_suns(code);
   }
 
  private:
@@ -52,6 +53,9 @@ class LightSampler {
       if (map_ == nullptr) map_ = e;
       if (map_ == e) return put(environment_, k, chosen, e, from.front_only);
     }
+    if (const auto* e = std::get_if<DirectionalEmitter>(&emitter);
+        e != nullptr && e->angle > 0 && set_.environment_overlaps())
+      return put(suns_, k, chosen, &emitter, from.front_only);
     if (const auto sample = set_.sample(from, chosen, {c_.light_x[k], c_.light_y[k]})) set(k, *sample);
   }
 
@@ -113,13 +117,27 @@ class LightSampler {
     if (group.count == 0 || map_->map == nullptr || !map_->map->samples()) return;
     repeat_last(group);
     code.map_samples(map_->map->tables(), group);
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    if (!set_.environment_overlaps()) {
-      for (std::size_t i = 0; i < group.count; ++i)
-        set(group, i, kFar, InteractionBlock::get(group.radiance, i),
-            static_cast<float>(group.pdf[i] * group.probability[i]));
-      return;
+    if (set_.environment_overlaps()) return set_by_direction(code, group);
+    for (std::size_t i = 0; i < group.count; ++i)
+      set(group, i, kFar, InteractionBlock::get(group.radiance, i),
+          static_cast<float>(group.pdf[i] * group.probability[i]));
+  }
+
+  /// Disks in the sky, with other light behind them.
+  void finish_suns(const LightCode& code) {
+    LightGroup& group = suns_;
+    if (group.count == 0) return;
+    repeat_last(group);
+    for (std::size_t i = 0; i < group.count || i % PathBlock::kGroup != 0; ++i) {
+      const auto& emitter = *static_cast<const Emitter*>(group.emitter[i]);
+      InteractionBlock::put(group.direction, i,
+                            sample_emitter(emitter, {}, {group.x[i], group.y[i]})->direction);
     }
+    set_by_direction(code, group);
+  }
+
+  /// Samples with the radiance and the density of all that is infinitely far away in their directions.
+  void set_by_direction(const LightCode& code, const LightGroup& group) {
     EnvironmentValues values;
     LightPoint points[kMost];
     for (std::size_t i = 0; i < group.count; ++i) {
@@ -133,12 +151,14 @@ class LightSampler {
       set(group, i, kFar, InteractionBlock::get(values.radiance, i), values.pdf[i]);
   }
 
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+
   const RenderContext& context_;
   const LightSet& set_;
   const InteractionBlock& found_;
   PathBlock& c_;
   const EnvironmentEmitter* map_ = nullptr;
-  LightGroup rectangles_, spheres_, environment_;
+  LightGroup rectangles_, spheres_, environment_, suns_;
 };
 
 }  // namespace
