@@ -69,8 +69,8 @@ void flush_denormals() {
 
 namespace {
 
-/// Threads that wait for work between measurements. A new thread would have its stack and all that it
-/// allocates brought in page by page, at the cost of those who need much of it.
+/// Threads that wait for work between measurements. The stack and the memory of a new thread come in by page
+/// faults, which would count against the program that uses more of it.
 class Helpers {
  public:
   /// Runs `work` in `count` helpers and in the calling thread at the same time.

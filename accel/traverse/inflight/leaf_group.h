@@ -13,12 +13,12 @@ namespace oktett {
 /// Rays of a group at a leaf of closed-form shapes or combinations.
 inline constexpr int kGroupRays = 16;
 
-/// The least number of rays in kGroupRays lanes for which a leaf takes less time than with each ray alone,
-/// whose lanes hold shapes. Greater than kGroupRays if there is none.
+/// The least number of rays at a leaf that are tested faster together, with a ray in each lane, than one by
+/// one, with a shape in each lane. Greater than kGroupRays if there is none.
 inline int least_group(const LeafEntry& leaf) {
-  // A combination or polygon tests a ray alone without lanes.
+  // A ray that is alone at a combination or a polygon uses one lane.
   if (leaf.kind == Kind::polygon || leaf.kind == Kind::csg) return 3;
-  // One shape and sixteen rays are as many pairs as sixteen shapes and one ray.
+  // Alone, each ray takes one step for up to eight shapes. Together, sixteen take two steps for each shape.
   if (is_closed_form(leaf.kind)) return 2 * leaf.count + 1;
   return std::numeric_limits<int>::max();
 }
@@ -38,8 +38,9 @@ OKTETT_INLINE int rays_at_leaf(InflightRay** begin, InflightRay** end, int most)
   return count;
 }
 
-/// Tests `count` rays of a batch by meet(state, lanes), which `set_lanes` has prepared. Returns those that
-/// hit anything up to their present end, as bits; `state` has the hits.
+/// Tests `count` rays of a batch together: set_lanes(rays) prepares `state` and returns the lanes that can
+/// hit anything, meet(lanes) tests them. Returns those that hit anything up to their present end, as bits;
+/// `state` has the hits.
 template <int N, class A, class SetLanes, class Meet>
 OKTETT_INLINE unsigned meet_together(const RaySpan& batch, InflightRay* const* rays, int count,
                                      RayState<N, A>& state, SetLanes&& set_lanes, Meet&& meet) {
