@@ -1,5 +1,5 @@
 #pragma once
-/// \file Numbers from rows of sixteen, by indices of four bits that are packed in words.
+/// \file Lookups in rows of sixteen floats, by indices of four bits that are packed in 16-bit words.
 
 #include <cstdint>
 

@@ -105,7 +105,7 @@ class Sweep {
     for (std::uint32_t i = 0; i < count; ++i)
       for (int k = 0; k < 3; ++k)
         vertex[3 * i + k] = static_cast<std::int32_t>(job_.vertices[reference[i]].of[k]);
-    // A vertex that comes several times has the number of the first time.
+    // A vertex that occurs several times has the number of its first occurrence.
     const I low = I::load(vertex), high = I::load(vertex + 16);
     unsigned first[kAll], firsts = 0;
     for (std::uint32_t i = 0; i < 3 * count; ++i) {

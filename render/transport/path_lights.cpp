@@ -123,7 +123,7 @@ class LightSampler {
           static_cast<float>(group.pdf[i] * group.probability[i]));
   }
 
-  /// Disks in the sky, with other light behind them.
+  /// Samples of suns where rays meet other infinite light too.
   void finish_suns(const LightCode& code) {
     LightGroup& group = suns_;
     if (group.count == 0) return;
@@ -136,7 +136,7 @@ class LightSampler {
     set_by_direction(code, group);
   }
 
-  /// Samples with the radiance and the density of all that is infinitely far away in their directions.
+  /// Sets samples with the sums of radiance and density over all infinite lights in their directions.
   void set_by_direction(const LightCode& code, const LightGroup& group) {
     EnvironmentValues values;
     LightPoint points[kMost];

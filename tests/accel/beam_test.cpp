@@ -8,6 +8,7 @@
 
 #include "tests/accel/same_hits.h"
 #include "tests/support/dice.h"
+#include "tests/support/grid_triangles.h"
 
 namespace oktett {
 namespace {
@@ -22,12 +23,7 @@ TriangleMesh grid_mesh(int n, bool flat, Dice<float>& dice) {
       m.positions.push_back({2.0f * static_cast<float>(x) / static_cast<float>(n) - 1,
                              2.0f * static_cast<float>(y) / static_cast<float>(n) - 1,
                              flat ? 0.0f : dice.range(-0.05f, 0.05f)});
-  const std::uint32_t w = static_cast<std::uint32_t>(n) + 1;
-  for (std::uint32_t y = 0; y < w - 1; ++y)
-    for (std::uint32_t x = 0; x < w - 1; ++x) {
-      const std::uint32_t a = y * w + x;
-      for (std::uint32_t i : {a, a + 1, a + w, a + w, a + 1, a + w + 1}) m.indices.push_back(i);
-    }
+  add_grid_triangles(m, static_cast<std::uint32_t>(n));
   return m;
 }
 

@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "accel/accel_data.h"
+#include "accel/build/tree_store.h"
+#include "tests/support/grid_triangles.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/oracles/mesh.h"
@@ -83,7 +85,7 @@ void expect_whole_tree(const Accel& accel, std::size_t items) {
 /// triangles the fullest block has.
 int expect_corners(const Accel& accel, const TriangleMesh& mesh) {
   int most = 0;
-  for (std::size_t b = 0; b < accel.stats.leaf_bytes / sizeof(TriangleBlock); ++b) {
+  for (std::size_t b = 0; b < block_count(accel); ++b) {
     const TriangleBlock& block = accel.blocks[b];
     int count = 0;
     for (int lane = 0; lane < TriangleBlock::kSize; ++lane) {
@@ -109,11 +111,7 @@ TriangleMesh grid() {
   TriangleMesh m;
   for (int y = 0; y <= 40; ++y)
     for (int x = 0; x <= 40; ++x) m.positions.push_back({static_cast<float>(x), static_cast<float>(y), 0});
-  for (std::uint32_t y = 0; y < 40; ++y)
-    for (std::uint32_t x = 0; x < 40; ++x) {
-      const std::uint32_t a = 41 * y + x, c = a + 41;
-      for (const std::uint32_t index : {a, a + 1, c, c, a + 1, c + 1}) m.indices.push_back(index);
-    }
+  add_grid_triangles(m, 40);
   return m;
 }
 

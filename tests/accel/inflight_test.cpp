@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "accel/traverse/inflight/leaf_group.h"
+#include "accel/traverse/inflight/inflight_ray.h"
 #include "tests/accel/same_hits.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/cases/kernel_cases.h"
@@ -267,128 +267,6 @@ TEST(Interleaved, NodesMissNoBox) {
   }
   EXPECT_GT(met, 20000);
   EXPECT_LT(more, 2 * met);
-}
-
-// Without instances nothing sets the tree that a ray is in, so whatever is there must not part the rays.
-TEST(Interleaved, RaysAtOneLeafOfExactSurfacesGoTogether) {
-  constexpr std::size_t kRays = 6;
-  const auto accel = build_accel({{ExactShape{TorusShape{}}, {}, kNoId}});
-  ASSERT_TRUE(accel->root.is_leaf());
-  const NodeRef elsewhere = NodeRef::leaf(accel->root.table_index() + 1);
-  std::vector<InflightRay> inflight(kRays);
-  const auto gather = [&](auto instances, std::uint32_t instance, int most) {
-    InflightRay* rays[kRays];
-    for (std::uint32_t i = 0; i < kRays; ++i) {
-      rays[i] = &inflight[i];
-      inflight[i].current = i == 1 || i == 2 ? elsewhere : accel->root;
-      inflight[i].in.instance = instance;
-    }
-    const int count = rays_at_leaf<instances.value>(rays, rays + kRays, most);
-    for (int i = 0; i < count; ++i) EXPECT_EQ(rays[i]->current.bits(), accel->root.bits()) << i;
-    return count;
-  };
-  for (const std::uint32_t instance : {0u, 77u, kNoInstance})
-    EXPECT_EQ(gather(std::false_type{}, instance, 8), 4) << instance;
-  EXPECT_EQ(gather(std::false_type{}, 0, 3), 3);
-  EXPECT_EQ(gather(std::true_type{}, kNoInstance, 8), 4);
-  EXPECT_EQ(gather(std::true_type{}, 0, 8), 0);
-}
-
-/// Spheres, planes and triangles, many of which are there twice, so that their items decide which is hit.
-/// Planes that pass through the triangles tie with them.
-TEST(Interleaved, SpheresAndPlanesAmongTriangles) {
-  CaseRandom random(41);
-  TriangleMesh mesh;
-  for (int i = 0; i < 60; ++i) {
-    const Vec3d center = random.vector();
-    for (int k = 0; k < 3; ++k) {
-      Vec3d corner = center + random.vector() * 0.2;
-      corner.z = i % 2 == 0 ? 0.25 : corner.z;
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-      mesh.positions.push_back(Vec3f(corner));
-    }
-  }
-  std::vector<SphereShape> balls;
-  for (int i = 0; i < 200; ++i) balls.push_back({random.vector(), i % 3 == 0 ? 0.2 : 0.03});
-  RayBatch rays;
-  for (int i = 0; i < 3000; ++i) {
-    const Vec3d from = random.vector() * (i % 4 == 0 ? 20 : 1.2);
-    const Vec3d to = i % 2 == 0 ? random.vector() : balls[random.bits() % balls.size()].center;
-    Ray ray{Vec3f(from), 0, Vec3f(to - from), i % 5 == 0 ? 1.0f : kInf};
-    if (i % 7 == 0) ray.tmin = 0.5f;
-    if (i % 11 == 0) ray.direction.z = 0;
-    if (i % 113 == 0) ray.direction.x = kNan;
-    rays.push_back(ray);
-  }
-  // With planes and without, in either order, and spheres before and after the triangles.
-  for (int order = 0; order < 4; ++order) {
-    std::vector<Geometry> geometries;
-    const auto add_planes = [&] {
-      for (const double height : {0.25, -0.9, 0.25})
-        geometries.push_back({PlaneShape{{0, 0, 1}, height}, {}, kNoId});
-    };
-    if (order == 1) add_planes();
-    if (order % 2 == 0) geometries.push_back({MeshGeometry{&mesh}, {}, kNoId});
-    geometries.push_back({SpheresShape{balls}, {}, kNoId});
-    if (order % 2 == 1) geometries.push_back({MeshGeometry{&mesh}, {}, kNoId});
-    geometries.push_back({SpheresShape{balls}, {}, kNoId});
-    if (order == 2) add_planes();
-    const auto accel = build_accel(geometries);
-    const int hits = expect_hits(*accel, rays, scalar_hits(*accel, rays),
-                                 {TraceMode::interleaved, TraceMode::single, TraceMode::automatic},
-                                 "order " + std::to_string(order));
-    EXPECT_GT(hits, 1500);
-  }
-}
-
-/// A few shapes of each closed form, so that many rays in flight are at one leaf: all of them twice, so that
-/// items decide, and triangles in the plane of a polygon and of the faces of a box, which tie with them.
-/// `count` of a kind fill a leaf or part of one.
-TEST(Interleaved, RaysAtOneLeafOfClosedFormsAndCombinationsGoTogether) {
-  CaseRandom random(43);
-  TriangleMesh mesh;
-  for (int i = 0; i < 40; ++i) {
-    const Vec3d center = random.vector();
-    for (int k = 0; k < 3; ++k) {
-      Vec3d corner = center + random.vector() * 0.3;
-      if (i % 2 == 0) corner.z = i % 4 == 0 ? 0.25 : -0.5;
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-      mesh.positions.push_back(Vec3f(corner));
-    }
-  }
-  RayBatch rays;
-  for (int i = 0; i < 3000; ++i) {
-    const Vec3d from = random.vector() * (i % 4 == 0 ? 20 : 1.2);
-    Ray ray{Vec3f(from), 0, Vec3f(random.vector() - from), i % 5 == 0 ? 1.0f : kInf};
-    if (i % 7 == 0) ray.tmin = 0.5f;
-    if (i % 11 == 0) ray.direction.z = 0;
-    if (i % 113 == 0) ray.direction.x = kNan;
-    rays.push_back(ray);
-  }
-  auto bite = std::make_shared<CsgExpression>();
-  bite->op = CsgOp::subtract;
-  bite->children.push_back({CsgOp::operand, {{BoxShape{{-0.9, -0.9, -0.5}, {-0.2, -0.2, 0.25}}, {}, 0}}, {}});
-  bite->children.push_back({CsgOp::operand, {{SpheresShape{{{{-0.3, -0.3, 0}, 0.3}}}, {}, 1}}, {}});
-  for (const int count : {1, 3, 8}) {
-    std::vector<Geometry> once;
-    for (int i = 0; i < count; ++i) {
-      const double at = 0.2 * i - 0.7;
-      once.push_back(
-          {PolygonShape{{{at, -0.8, 0.25}, {at + 0.5, -0.8, 0.25}, {at + 0.2, 0.9, 0.25}}}, {}, kNoId});
-      once.push_back({BoxShape{{at, 0.1, -0.5}, {at + 0.15, 0.6, 0.25}}, {}, kNoId});
-      once.push_back({DiskShape{{at, 0, -0.5}, {0, 0, 1}, 0.3}, {}, kNoId});
-      once.push_back({SpheresShape{{{{at, 0.5, 0.5}, 0.2}}}, {}, kNoId});
-      if (i < 2) once.push_back({CsgGeometry{bite}, {}, kNoId});
-    }
-    std::vector<Geometry> geometries = once;
-    geometries.push_back({MeshGeometry{&mesh}, {}, kNoId});
-    geometries.insert(geometries.end(), once.begin(), once.end());
-    const auto accel = build_accel(geometries);
-    const int hits = expect_hits(*accel, rays, scalar_hits(*accel, rays),
-                                 {TraceMode::interleaved, TraceMode::single, TraceMode::automatic},
-                                 std::to_string(count) + " of each");
-    EXPECT_GT(hits, 800);
-  }
 }
 
 /// Rays that begin far from each other prefetch a tree that is larger than the cache of a core.

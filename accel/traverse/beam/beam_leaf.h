@@ -51,17 +51,12 @@ template <class A>
 OKTETT_INLINE BlockCandidates project_block(const TriangleBlock& block, int count, const BeamRays<A>& beam,
                                             const BeamWindow& w, ProjectedTriangles<A>& out) {
   using B = Simd<float, TriangleBlock::kSize, A>;
-  const int kx = beam.axis[0], ky = beam.axis[1], kz = beam.axis[2];
-  const PackedIndices<TriangleBlock::kSize, A> corners(block.corners);
-  const auto corner = [&](int k) {
-    const auto axis = [&](int a) { return corners.look_up(k, block.point[a]); };
-    return Vec3<B>{axis(kx), axis(ky), axis(kz)};
-  };
+  const TriangleLanes<B> tri = load_triangles<B>(block, 0, beam.axis[2]);
   const auto from = [&](const Vec3<B>& p, const Vec3<B>& q) {
     return Vec3<B>{q.x - p.x, q.y - p.y, beam.mirrored ? p.z - q.z : q.z - p.z};
   };
-  const Vec3<B> a = corner(0), apex{B(beam.apex[0]), B(beam.apex[1]), B(beam.apex[2])};
-  const Vec3<B> c = from(apex, a), e1 = from(a, corner(1)), e2 = from(a, corner(2));
+  const Vec3<B> apex{B(beam.apex[0]), B(beam.apex[1]), B(beam.apex[2])};
+  const Vec3<B> c = from(apex, tri.a), e1 = from(tri.a, tri.b), e2 = from(tri.a, tri.c);
   const Vec3<B> u = fast_cross(e2, c), v = fast_cross(c, e1), n = fast_cross(e1, e2);
   const B t = fast_dot(n, c);
 

@@ -276,8 +276,7 @@ class InflightTraversal {
     const LeafEntry& leaf = accel_.leaves[(*begin)->current.table_index()];
     if (is_exact(leaf.kind)) {
       const int count = rays_at_leaf<kInstances>(begin, end, ExactCode<A>::kLanes);
-      RayState<ExactCode<A>::kLanes, A> state;
-      take_hits(begin, count, meet_exact_leaf(accel_, leaf, rays_, begin, count, state), state, tail);
+      exact_together(leaf, begin, count, tail);
       return count;
     }
     const int least = least_group(leaf);
@@ -288,18 +287,25 @@ class InflightTraversal {
     return count;
   }
 
+  OKTETT_INLINE void exact_together(const LeafEntry& leaf, InflightRay* const* rays, int count, Tails& tail) {
+    const auto r = gather_rays<ExactCode<A>::kLanes, A>(rays_, rays, count);
+    RayState<ExactCode<A>::kLanes, A> state;
+    const unsigned lanes = state.set_rays(r.o, r.d, r.tmin, r.tmax) & ((1u << count) - 1);
+    if (lanes != 0) leaf_exact(accel_, leaf, state, lanes);
+    take_hits(rays, count, found_lanes(state, lanes), state, tail);
+  }
+
   /// Rays at one leaf of closed-form shapes or combinations.
   OKTETT_NOINLINE void shapes_together(const LeafEntry& leaf, InflightRay* const* rays, int count,
                                        Tails& tail) {
+    const auto r = gather_rays<kGroupRays, A>(rays_, rays, count);
     RayState<kGroupRays, A> state;
-    const unsigned met = meet_together(
-        rays_, rays, count, state,
-        [&](const auto& r) { return state.set(r.o, r.d, r.tmin, r.tmax, accel_.bounds); },
-        [&](unsigned lanes) { table_leaf_packet<Q>(accel_, leaf, state, lanes); });
-    take_hits(rays, count, met, state, tail);
+    const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel_.bounds) & ((1u << count) - 1);
+    if (lanes != 0) table_leaf_packet<Q>(accel_, leaf, state, lanes);
+    take_hits(rays, count, found_lanes(state, lanes), state, tail);
   }
 
-  /// The rays in `met` take over the hits in `state`; all go on.
+  /// Gives the rays in `met` their hits from `state`, and takes each ray to its next node or leaf.
   template <int N>
   OKTETT_INLINE void take_hits(InflightRay* const* rays, int count, unsigned met, const RayState<N, A>& state,
                                Tails& tail) {

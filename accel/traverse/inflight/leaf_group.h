@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "accel/exact.h"
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/packet.h"
 
@@ -38,14 +37,11 @@ OKTETT_INLINE int rays_at_leaf(InflightRay** begin, InflightRay** end, int most)
   return count;
 }
 
-/// Tests `count` rays of a batch together: set_lanes(rays) prepares `state` and returns the lanes that can
-/// hit anything, meet(lanes) tests them. Returns those that hit anything up to their present end, as bits;
-/// `state` has the hits.
-template <int N, class A, class SetLanes, class Meet>
-OKTETT_INLINE unsigned meet_together(const RaySpan& batch, InflightRay* const* rays, int count,
-                                     RayState<N, A>& state, SetLanes&& set_lanes, Meet&& meet) {
+/// `count` rays of a batch side by side, up to their present ends. Lanes that are left over repeat the first.
+template <int N, class A>
+OKTETT_INLINE RayLanes<Simd<float, N, A>> gather_rays(const RaySpan& batch, InflightRay* const* rays,
+                                                      int count) {
   using F = Simd<float, N, A>;
-  // Lanes that are left over repeat the first ray.
   alignas(64) float column[8][N];
   for (int i = 0; i < N; ++i) {
     const InflightRay& ray = *rays[i < count ? i : 0];
@@ -54,19 +50,7 @@ OKTETT_INLINE unsigned meet_together(const RaySpan& batch, InflightRay* const* r
     column[6][i] = batch.tmin[ray.index], column[7][i] = ray.tmax;
   }
   const auto load = [&](int k) { return F::load(column[k]); };
-  unsigned lanes = (1u << count) - 1;
-  lanes &= set_lanes(RayLanes<F>{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)});
-  if (lanes != 0) meet(lanes);
-  return found_lanes(state, lanes);
-}
-
-/// The same for a leaf of exact surfaces.
-template <int N, class A>
-OKTETT_INLINE unsigned meet_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& batch,
-                                       InflightRay* const* rays, int count, RayState<N, A>& state) {
-  return meet_together(
-      batch, rays, count, state, [&](const auto& r) { return state.set_rays(r.o, r.d, r.tmin, r.tmax); },
-      [&](unsigned lanes) { leaf_exact(accel, leaf, state, lanes); });
+  return {{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
 }
 
 }  // namespace oktett
