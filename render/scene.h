@@ -230,9 +230,18 @@ struct CsgShape {
   std::shared_ptr<const std::vector<Object>> operands;
 };
 
-/// Any shape that an object can have.
-using Shape = std::variant<MeshShape, TriangleShape, SphereShape, SpheresShape, PlaneShape, DiskShape,
-                           BoxShape, PolygonShape, ExactShape, CsgShape, InstanceShape>;
+/// Any shape that an object can have. Copying, moving and destroying one are functions of scene.cpp: inline,
+/// they take the compiler a second in each file that needs them.
+struct Shape : std::variant<MeshShape, TriangleShape, SphereShape, SpheresShape, PlaneShape, DiskShape,
+                            BoxShape, PolygonShape, ExactShape, CsgShape, InstanceShape> {
+  using variant::variant;
+  Shape();
+  Shape(const Shape&);
+  Shape(Shape&&) noexcept;
+  Shape& operator=(const Shape&);
+  Shape& operator=(Shape&&) noexcept;
+  ~Shape();
+};
 
 /// A thing in the scene. The groups of a scene file are already multiplied into the transforms of their
 /// objects.
@@ -274,6 +283,14 @@ struct Scene {
   std::vector<Object> objects;
   std::vector<Warning> warnings;  ///< what was skipped or given a default while a file was read
   std::string source;             ///< path of the file that the scene was read from; else empty
+
+  // Functions of scene.cpp, for the same reason as those of Shape.
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
 };
 
 }  // namespace oktett

@@ -69,7 +69,7 @@ class ShapeReader {
     if (reader.is_wrong()) return;
     if (reader.why_nothing) {
       at.skip(reader.why_nothing);
-    } else if constexpr (is_one_of<T>(std::type_identity<Shape>{})) {
+    } else if constexpr (is_one_of<T>(std::type_identity<Shape::variant>{})) {
       if constexpr (requires { finish(at, shape); })
         if (!finish(at, shape)) return;
       if (load_.is_clean()) result = std::move(shape);

@@ -27,8 +27,8 @@ void visit_surfaces_of(V& v, std::type_identity<std::variant<T...>>) {
   (visit(std::type_identity<T>{}), ...);
 }
 void visit_surfaces(auto& v) {
-  visit_surfaces_of(v, std::type_identity<Shape>{});
-  visit_surfaces_of(v, std::type_identity<ExactForm>{});
+  visit_surfaces_of(v, std::type_identity<Shape::variant>{});
+  visit_surfaces_of(v, std::type_identity<ExactForm::variant>{});
 }
 
 /// The keys of a shape's parameters.

@@ -33,14 +33,16 @@ T take_shape(test::InputBytes& bytes) {
 template <std::size_t... I>
 ExactForm take_form(test::InputBytes& bytes, std::size_t form, std::index_sequence<I...>) {
   ExactForm result;
-  (void)((form == I && (result = take_shape<std::variant_alternative_t<I, ExactForm>>(bytes), true)) || ...);
+  (void)((form == I &&
+          (result = take_shape<std::variant_alternative_t<I, ExactForm::variant>>(bytes), true)) ||
+         ...);
   return result;
 }
 
 Geometry take_geometry(test::InputBytes& bytes, std::uint32_t user) {
   Geometry g;
   g.user = user;
-  constexpr std::size_t kForms = std::variant_size_v<ExactForm>;
+  constexpr std::size_t kForms = std::variant_size_v<ExactForm::variant>;
   const std::size_t kind = bytes.take<std::uint8_t>() % (kForms + 4);
   switch (kind) {
     case 0:

@@ -34,7 +34,7 @@ TEST(SceneExample, EveryExampleLoadsWithoutWarnings) {
 
 TEST(SceneExample, ShapesShowsEveryShape) {
   const Scene scene = load_scene(scene_path("shapes.yaml"));
-  std::vector<bool> seen(std::variant_size_v<Shape>);
+  std::vector<bool> seen(std::variant_size_v<Shape::variant>);
   for (const Object& object : scene.objects) seen[object.shape.index()] = true;
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_TRUE(seen[i]) << "alternative " << i << " of Shape";
 }

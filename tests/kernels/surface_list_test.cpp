@@ -27,7 +27,7 @@ const Listed kLines[] = {
 
 /// A line is one kind, one alternative of ExactForm and one table of functions.
 TEST(SurfaceList, KindsFormsAndTablesAgree) {
-  EXPECT_EQ(std::size(kLines), std::variant_size_v<ExactForm>);
+  EXPECT_EQ(std::size(kLines), std::variant_size_v<ExactForm::variant>);
   std::set<Kind> kinds;
   for (const Listed& line : kLines) {
     EXPECT_TRUE(kinds.insert(line.kind).second) << line.name;
