@@ -9,7 +9,6 @@ namespace oktett {
 namespace {
 
 constexpr std::size_t kPage = 4096;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
 /// Null if the system refuses.
 char* map_pages(std::size_t bytes) {
@@ -32,8 +31,15 @@ char* map_huge_pages(std::size_t bytes) {
 
 }  // namespace
 
+std::size_t whole_pages(std::size_t bytes) {
+  if (bytes > ~kHugePage) return bytes;
+  const std::size_t huge = bytes / kHugePage * kHugePage, rest = bytes - huge;
+  if (rest >= kHugePage / 2) return huge + kHugePage;
+  return huge + (rest + kPage - 1) / kPage * kPage;
+}
+
 void* reserve_pages(std::size_t bytes) {
-  const bool huge = bytes >= kLargePiece;
+  const bool huge = bytes >= kHugePage;
   char* const pages = huge ? map_huge_pages(bytes) : map_pages(bytes);
   if (pages == nullptr) throw std::bad_alloc();
   // Only a request: the system takes small pages where it has no huge ones.
@@ -42,6 +48,12 @@ void* reserve_pages(std::size_t bytes) {
 }
 
 void release_pages(void* begin, std::size_t bytes) { munmap(begin, bytes); }
+
+void discard_pages(void* begin, std::size_t bytes) {
+  const auto address = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (address + kPage - 1) / kPage * kPage, end = (address + bytes) / kPage * kPage;
+  if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
+}
 
 bool can_reserve(std::size_t bytes) {
   char* const p = map_pages(bytes);

@@ -5,17 +5,26 @@
 
 namespace oktett {
 
-/// Arrays of at least so many bytes ask for huge pages, of 2 MB. Rays read nodes and triangles in random
-/// order; with pages of 4 kB, most reads of a large tree miss the processor's table of addresses (TLB).
+/// Columns of at least so many bytes have pages of their own.
 inline constexpr std::size_t kLargePiece = std::size_t{4} << 20;
+inline constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+/// The bytes of whole pages for `bytes` bytes: of huge pages as far as they are at least half full, and of
+/// small ones, of 4 kB. More than can ever be had is returned as it is.
+std::size_t whole_pages(std::size_t bytes);
 
 /// Address space for so many bytes, which read as zero. Pages are allocated when they are first written.
-/// Throws std::bad_alloc.
+/// Whole huge pages are asked for: rays read nodes and triangles in random order, and with small pages, most
+/// reads of a large tree miss the processor's table of addresses (TLB). Throws std::bad_alloc.
 void* reserve_pages(std::size_t bytes);
 
 /// Gives back address space of reserve_pages, from a page boundary on; a piece of it may be given back before
 /// the rest.
 void release_pages(void* begin, std::size_t bytes);
+
+/// Gives back the memory of the whole pages among these bytes. Their contents are lost; the address space
+/// remains and may be written again.
+void discard_pages(void* begin, std::size_t bytes);
 
 /// Whether the system would give so many more bytes of address space now.
 bool can_reserve(std::size_t bytes);

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Large arrays that are filled by many threads before their size is known.
+/// \file Large arrays that many threads fill.
 
 #include <cstddef>
 #include <type_traits>
@@ -9,15 +9,15 @@
 
 namespace oktett {
 
-/// Reserves address space for `capacity` elements; pages are allocated when first written. `truncate`
-/// releases the rest. Neither growing nor shrinking copies elements. New elements read as zero bytes.
+/// Reserves address space for `size` elements; pages are allocated when first written. New elements read as
+/// zero bytes.
 template <class T>
 class VirtualArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   VirtualArray() = default;
-  explicit VirtualArray(std::size_t capacity) : bytes_(rounded(capacity * sizeof(T))) {
+  explicit VirtualArray(std::size_t size) : bytes_(whole_pages(size * sizeof(T))) {
     if (bytes_ > 0) data_ = static_cast<T*>(reserve_pages(bytes_));
   }
   VirtualArray(VirtualArray&& other) noexcept { swap(other); }
@@ -36,18 +36,7 @@ class VirtualArray {
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
 
-  /// Keeps the first `size` elements and their memory only.
-  void truncate(std::size_t size) {
-    const std::size_t keep = rounded(size * sizeof(T));
-    if (keep >= bytes_) return;
-    release_pages(reinterpret_cast<char*>(data_) + keep, bytes_ - keep);
-    bytes_ = keep;
-    if (keep == 0) data_ = nullptr;
-  }
-
  private:
-  static constexpr std::size_t kPage = 4096;
-  static std::size_t rounded(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
   void swap(VirtualArray& other) noexcept { std::swap(data_, other.data_), std::swap(bytes_, other.bytes_); }
 
   T* data_ = nullptr;

@@ -66,56 +66,38 @@ struct Chunks {
       : size(std::max(kMinChunk, (n + kMaxChunks - 1) / kMaxChunks)), count((n + size - 1) / size) {}
 };
 
-Effort effort_of(BuildQuality quality) {
-  if (quality == BuildQuality::fast) return {8, 256, 32, true, 0, 0, false};
-  // In scanned meshes the overlap stays below 0.3, so that they are built without spatial splits; in
-  // buildings it is greater near the root, where a split gains most.
-  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0.3, 0.4, false};
-  return {32, 32, 32, false, 0.3, 0, true};
-}
-
-std::size_t room_for(std::size_t references, const Effort& effort) {
-  return references + static_cast<std::size_t>(effort.spatial * static_cast<double>(references));
-}
-
 class Builder {
  public:
-  Builder(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
+  Builder(const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles, const Box& bounds,
           const BuildOptions& options, const BuildKernels& kernels)
-      : refs_(refs),
+      : arrays_(arrays),
+        count_(count),
         triangles_(triangles),
         unit_(scene_unit(bounds)),
         least_overlap_(kLeastOverlap * half_area(bounds)),
         effort_(effort_of(options.quality)),
         parallel_(options.parallel),
         kernels_(kernels),
-        phase_("building the tree", {}, refs.size()),
-        // A leaf has at least one item.
-        nodes_(2 * room_for(refs.size(), effort_) + 2 * kMaxSweep) {}
+        phase_("building the tree", {}, count),
+        nodes_(arrays) {}
 
   BinaryTree run() {
-    const std::size_t n = refs_.size(), room = room_for(n, effort_);
-    tree_.items.resize_uninitialized(room);
-    tree_.corners.resize_uninitialized(room);
-    refs_.resize_uninitialized(room);
-    scratch_.resize_uninitialized(n > effort_.sweep ? room : 0);
-    populate(tree_.items.data(), n, parallel_);
-    populate(tree_.corners.data(), n, parallel_);
-    populate(scratch_.data(), std::min(scratch_.size(), n), parallel_);
+    const std::size_t n = count_;
+    arrays_.populate(arrays_.items, n, parallel_);
+    arrays_.populate(arrays_.corners, n, parallel_);
+    if (n > effort_.sweep) arrays_.populate(arrays_.more_refs, n, parallel_);
     nodes_.take(1);
-    Range all{0, n, refs_.data(), scratch_.data(), {}, 0, room};
+    Range all{0, n, arrays_.refs, arrays_.more_refs, {}, 0, arrays_.room};
     bound(all);
     SubtreeCost cost;
     if (effort_.cells && n > effort_.sweep) {
-      sort_by_cells(refs_, all.centers, parallel_, scratch_, cells_);
+      sort_by_cells(arrays_, n, all.centers, parallel_);
       std::swap(all.from, all.to);
       build_cells(all, 1, 0, cost);
     } else {
       build(all, 1, 0, cost);
     }
-    tree_.nodes = nodes_.finish();
-    tree_.pieces = pieces_;
-    return std::move(tree_);
+    return {arrays_.nodes, arrays_.items, arrays_.corners, pieces_};
   }
 
  private:
@@ -151,14 +133,14 @@ class Builder {
   /// halves space (Lauterbach et al. 2009). Ranges within one cell are built by build().
   void build_cells(Range& r, int depth, std::uint32_t at, SubtreeCost& cost) {
     if (r.size() <= effort_.sweep) return sweep(r, depth, at, cost);
-    const std::uint32_t *first = cells_.data() + r.begin, *last = cells_.data() + r.end - 1;
+    const std::uint32_t *first = arrays_.cells + r.begin, *last = arrays_.cells + r.end - 1;
     if (*first == *last) {
       bound(r);
       return build(r, depth, at, cost);
     }
     const int bit = std::bit_width(*first ^ *last) - 1;
     const std::uint32_t upper = *last >> bit << bit;
-    const auto middle = static_cast<std::size_t>(std::lower_bound(first, last, upper) - cells_.data());
+    const auto middle = static_cast<std::size_t>(std::lower_bound(first, last, upper) - arrays_.cells);
     Range left{r.begin, middle, r.from, r.to, {}}, right{middle, r.end, r.from, r.to, {}};
     build_children(left, right, at, cost, [&](Range& side, std::uint32_t child, SubtreeCost& c) {
       build_cells(side, depth + 1, child, c);
@@ -197,8 +179,8 @@ class Builder {
     triangles_.note_vertices(job.refs, job.count, vertices);
     job.triangles = &triangles_, job.vertices = vertices;
     job.first = static_cast<std::uint32_t>(r.begin);
-    job.items = tree_.items.data() + r.begin;
-    job.corners = tree_.corners.data() + r.begin;
+    job.items = arrays_.items + r.begin;
+    job.corners = arrays_.corners + r.begin;
     job.depth = depth;
     job.unit = unit_;
     job.effort = effort_;
@@ -358,10 +340,9 @@ class Builder {
       left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);
   }
 
-  Column<PrimRef>& refs_;
+  const BuildArrays& arrays_;
+  const std::size_t count_;
   const TriangleSource& triangles_;
-  Column<PrimRef> scratch_;
-  Column<std::uint32_t> cells_;  ///< of the references, in their order
   float unit_;
   double least_overlap_;
   const Effort effort_;
@@ -369,14 +350,17 @@ class Builder {
   std::atomic<bool> pieces_{false};  ///< some item has several references
   const BuildKernels& kernels_;
   Phase phase_;
-  BinaryTree tree_;
   NodeSupply nodes_;
 };
 
 }  // namespace
 
-std::size_t reference_room(std::size_t count, const BuildOptions& options) {
-  return room_for(count, effort_of(options.quality));
+Effort effort_of(BuildQuality quality) {
+  if (quality == BuildQuality::fast) return {8, 256, 32, true, 0, 0, false};
+  // In scanned meshes the overlap stays below 0.3, so that they are built without spatial splits; in
+  // buildings it is greater near the root, where a split gains most.
+  if (quality == BuildQuality::balanced) return {16, 256, 64, false, 0.3, 0.4, false};
+  return {32, 32, 32, false, 0.3, 0, true};
 }
 
 bool pack_corners(const TriangleSource& triangles, const std::uint32_t* items, int count,
@@ -391,9 +375,9 @@ float scene_unit(const Box& bounds) {
   return std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
 }
 
-BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
-                        const BuildOptions& options, const BuildKernels& kernels) {
-  return Builder(refs, triangles, bounds, options, kernels).run();
+BinaryTree build_binary(const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
+                        const Box& bounds, const BuildOptions& options, const BuildKernels& kernels) {
+  return Builder(arrays, count, triangles, bounds, options, kernels).run();
 }
 
 }  // namespace oktett

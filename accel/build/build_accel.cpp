@@ -166,27 +166,26 @@ std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrd
   return first_ref;
 }
 
-/// All references in the order of their geometries: to triangles, and `others`, which it uses up.
-Column<PrimRef> add_triangles(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
-                              const std::vector<std::size_t>& first_other, const BuildOptions& options) {
-  if (accel.stats.triangles == 0) return std::move(others);
-  Column<PrimRef> refs;
-  // Reserves all that build_tree may need, so that it copies nothing.
-  refs.resize_uninitialized(reference_room(others.size() + accel.stats.triangles, options));
-  refs.resize_uninitialized(0);
+/// Writes all references in the order of their geometries into arrays.refs: to triangles, and `others`, which
+/// it uses up. Returns how many there are.
+std::size_t add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
+                           const std::vector<std::size_t>& first_other, const BuildArrays& arrays,
+                           bool parallel) {
+  std::size_t count = 0;
   const PrimRef* next = others.begin();
   const auto add_others_before = [&](const PrimRef* end) {
-    for (; next != end; ++next) refs.push_back(*next);
+    arrays.populate(arrays.refs + count, static_cast<std::size_t>(end - next), parallel);
+    for (; next != end; ++next) arrays.refs[count++] = *next;
   };
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     const bool usable = accel.geometries[g].transform.is_invertible();
     if (static_cast<Kind>(accel.kinds[g]) != Kind::triangle || !usable) continue;
     add_others_before(others.begin() + first_other[g]);
-    accel.bounds.grow(meshes.add_references(g, refs, options.parallel));
+    accel.bounds.grow(meshes.add_references(g, arrays, count, parallel));
   }
   add_others_before(others.end());
   others.clear();
-  return refs;
+  return count;
 }
 
 /// Makes tree, bounds and the order of the items, or takes them from the store.
@@ -197,9 +196,12 @@ void make_tree(Accel& accel, ItemOrder& order, const BuildOptions& options) {
   const bool keeps = store != nullptr && accel.stats.triangles >= store->least_triangles();
   const std::uint64_t key = keeps ? tree_key(accel, others, options) : 0;
   if (keeps && load_kept_tree(accel, order, others, key, *store)) return;
-  const MeshSource meshes(accel);
-  Column<PrimRef> refs = add_triangles(accel, meshes, others, first_other, options);
-  build_tree(accel, refs, meshes, order, options, build_kernels(available_isas().back()));
+  {
+    const MeshSource meshes(accel);
+    const BuildArrays arrays(others.size() + accel.stats.triangles, effort_of(options.quality));
+    const std::size_t count = add_references(accel, meshes, others, first_other, arrays, options.parallel);
+    build_tree(accel, arrays, count, meshes, order, options, build_kernels(available_isas().back()));
+  }
   if (keeps) store->keep(key, accel, order);
 }
 

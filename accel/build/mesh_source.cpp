@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <bit>
 
-#include "accel/build/populate.h"
-
 namespace oktett {
 namespace {
 
 /// References made by one task.
-constexpr std::size_t kChunk = 1u << 14;
+constexpr std::size_t kChunk = 1u << 12;
 
 /// Finite, and three corners in different places.
 bool is_usable(const Vec3f (&v)[3]) {
@@ -58,23 +56,24 @@ inline const MeshSource::Mesh& MeshSource::mesh_of(std::uint32_t item) const {
 
 void MeshSource::corners(std::uint32_t item, Vec3f (&v)[3]) const { corners(mesh_of(item), item, v); }
 
-Box MeshSource::add_references(std::uint32_t geometry, Column<PrimRef>& refs, bool parallel) const {
+Box MeshSource::add_references(std::uint32_t geometry, const BuildArrays& arrays, std::size_t& count,
+                               bool parallel) const {
   const MeshGeometry& shape = std::get<MeshGeometry>(accel_.geometries[geometry].shape);
   const Mesh& mesh = meshes_[geometry];
-  const std::size_t count = shape.mesh->triangle_count(), base = refs.size();
+  const std::size_t triangles = shape.mesh->triangle_count();
+  PrimRef* const refs = arrays.refs + count;
   const std::uint32_t kind =
       static_cast<std::uint32_t>(Kind::triangle) | static_cast<std::uint32_t>(shape.test) << 8;
-  refs.resize_uninitialized(base + count);
-  populate(refs.data() + base, count, parallel);
+  arrays.populate(refs, triangles, parallel);
   struct Part {
     Box bounds;
     std::size_t usable = 0;
   };
-  std::vector<Part> parts((count + kChunk - 1) / kChunk);
+  std::vector<Part> parts((triangles + kChunk - 1) / kChunk);
   const auto fill = [&](std::size_t chunk) {
     Part& part = parts[chunk];
-    PrimRef* out = refs.data() + base + chunk * kChunk;
-    for (std::size_t i = chunk * kChunk, end = std::min(i + kChunk, count); i < end; ++i) {
+    PrimRef* out = refs + chunk * kChunk;
+    for (std::size_t i = chunk * kChunk, end = std::min(i + kChunk, triangles); i < end; ++i) {
       const std::uint32_t item = mesh.first_item + static_cast<std::uint32_t>(i);
       Vec3f v[3];
       corners(mesh, item, v);
@@ -91,14 +90,14 @@ Box MeshSource::add_references(std::uint32_t geometry, Column<PrimRef>& refs, bo
     for (std::size_t c = 0; c < parts.size(); ++c) fill(c);
   // Close the gaps that unusable triangles left.
   Box bounds;
-  PrimRef* end = refs.data() + base;
+  PrimRef* end = refs;
   for (std::size_t c = 0; c < parts.size(); ++c) {
-    const PrimRef* from = refs.data() + base + c * kChunk;
+    const PrimRef* from = refs + c * kChunk;
     if (from != end) std::copy(from, from + parts[c].usable, end);
     end += parts[c].usable;
     if (parts[c].usable > 0) bounds.grow(parts[c].bounds);
   }
-  refs.resize_uninitialized(static_cast<std::size_t>(end - refs.data()));
+  count += static_cast<std::size_t>(end - refs);
   return bounds;
 }
 

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "accel/build/populate.h"
-
 namespace oktett {
 namespace {
 
-constexpr std::size_t kMinChunk = 1u << 14, kMaxChunks = 32;
+constexpr std::size_t kMinChunk = 1u << 13, kMaxChunks = 32;
 constexpr int kDigit = 11;  ///< bits sorted by in one pass
 constexpr std::uint32_t kDigits = 1u << kDigit;
 
@@ -21,11 +19,6 @@ std::uint32_t spread(std::uint32_t v) {
   v = (v | v << 4) & 0x000430c3u;
   return (v | v << 2) & 0x00049249u;
 }
-
-/// A reference's cell and its place.
-struct Key {
-  std::uint32_t cell, place;
-};
 
 struct Chunks {
   std::size_t total, size, count;
@@ -42,9 +35,9 @@ struct Chunks {
 
 /// One pass of a stable counting sort: each chunk counts its digits, then moves its keys to places of its
 /// own.
-void sort_pass(const Chunks& chunks, const Column<Key>& from, int shift, Column<Key>& to) {
+void sort_pass(const Chunks& chunks, const CellKey* from, int shift, CellKey* to) {
   std::vector<std::uint32_t> next(chunks.count * kDigits, 0);
-  const auto digit = [&](const Key& k) { return k.cell >> shift & (kDigits - 1); };
+  const auto digit = [&](const CellKey& k) { return k.cell >> shift & (kDigits - 1); };
   chunks.each([&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) ++next[c * kDigits + digit(from[i])];
   });
@@ -62,17 +55,17 @@ void sort_pass(const Chunks& chunks, const Column<Key>& from, int shift, Column<
 
 }  // namespace
 
-void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool parallel,
-                   Column<PrimRef>& sorted, Column<std::uint32_t>& cells) {
-  const std::size_t n = refs.size(), size = std::max(kMinChunk, (n + kMaxChunks - 1) / kMaxChunks);
-  const Chunks chunks{n, size, (n + size - 1) / size, parallel};
+void sort_by_cells(const BuildArrays& arrays, std::size_t count, const Centers& centers, bool parallel) {
+  const std::size_t size = std::max(kMinChunk, (count + kMaxChunks - 1) / kMaxChunks);
+  const Chunks chunks{count, size, (count + size - 1) / size, parallel};
+  const PrimRef* const refs = arrays.refs;
+  CellKey* const keys = arrays.keys;
   constexpr float kPerAxis = 1 << kMortonBits / 3;
   float extent = 0;
   for (int k = 0; k < 3; ++k) extent = std::max(extent, centers.hi[k] - centers.lo[k]);
   float scale = kPerAxis / extent;
   if (!(extent > 0 && std::isfinite(extent) && std::isfinite(scale))) scale = 0;
-  Column<Key> keys(n), other(n);
-  populate(keys.data(), n, parallel), populate(other.data(), n, parallel);
+  arrays.populate(keys, count, parallel), arrays.populate(arrays.more_keys, count, parallel);
   chunks.each([&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t cell = 0;
@@ -85,12 +78,12 @@ void sort_by_cells(const Column<PrimRef>& refs, const Centers& centers, bool par
       keys[i] = {cell, static_cast<std::uint32_t>(i)};
     }
   });
-  sort_pass(chunks, keys, 0, other);
-  sort_pass(chunks, other, kDigit, keys);
-  sorted.resize_uninitialized(n), cells.resize_uninitialized(n);
-  populate(cells.data(), n, parallel);
+  sort_pass(chunks, keys, 0, arrays.more_keys);
+  sort_pass(chunks, arrays.more_keys, kDigit, keys);
+  arrays.populate(arrays.cells, count, parallel);
   chunks.each([&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) sorted[i] = refs[keys[i].place], cells[i] = keys[i].cell;
+    for (std::size_t i = begin; i < end; ++i)
+      arrays.more_refs[i] = refs[keys[i].place], arrays.cells[i] = keys[i].cell;
   });
 }
 

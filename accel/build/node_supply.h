@@ -1,22 +1,20 @@
 #pragma once
 /// \file The nodes of a binary tree while it is built.
 
+#include <algorithm>
 #include <atomic>
-#include <utility>
 
-#include "accel/build/populate.h"
-#include "accel/build/sah.h"
-#include "core/virtual_array.h"
+#include "accel/build/build_arrays.h"
 
 namespace oktett {
 
-/// Hands out nodes to threads. Pages are allocated piece by piece, shortly before they are written.
+/// Hands out the nodes of a build to threads. Their pages are allocated piece by piece, shortly before they
+/// are written.
 class NodeSupply {
  public:
-  /// Room for `most` nodes; those that nobody takes cost no memory beyond their piece.
-  explicit NodeSupply(std::size_t most) : nodes_(most), most_(most) { populate_piece(0); }
+  explicit NodeSupply(const BuildArrays& arrays) : arrays_(arrays) { populate_piece(0); }
 
-  BinaryNode& operator[](std::size_t i) { return nodes_[i]; }
+  BinaryNode& operator[](std::size_t i) const { return arrays_.nodes[i]; }
 
   /// The first of `count` new nodes.
   std::uint32_t take(std::uint32_t count) {
@@ -27,22 +25,15 @@ class NodeSupply {
     return first;
   }
 
-  /// The nodes that were taken; the supply is empty then.
-  VirtualArray<BinaryNode> finish() {
-    nodes_.truncate(taken_);
-    return std::move(nodes_);
-  }
-
  private:
   static constexpr std::size_t kPiece = (std::size_t{1} << 17) / sizeof(BinaryNode);
 
-  void populate_piece(std::size_t piece) {
-    const std::size_t begin = std::min(piece * kPiece, most_);
-    populate(nodes_.data() + begin, std::min(kPiece, most_ - begin), false);
+  void populate_piece(std::size_t piece) const {
+    const std::size_t begin = std::min(piece * kPiece, arrays_.node_room);
+    arrays_.populate(arrays_.nodes + begin, std::min(kPiece, arrays_.node_room - begin), false);
   }
 
-  VirtualArray<BinaryNode> nodes_;
-  const std::size_t most_;
+  const BuildArrays& arrays_;
   std::atomic<std::uint32_t> taken_{0};
 };
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
+#include "core/pages.h"
 #include "core/populate.h"
 
 namespace oktett {
@@ -14,16 +16,19 @@ namespace oktett {
 /// `parallel`. Leaves small arrays alone: a call costs about as much as four page faults.
 template <class T>
 void populate(T* data, std::size_t count, bool parallel) {
-  if (count * sizeof(T) < (std::size_t{1} << 14)) return;
-  constexpr std::size_t kPiece = (std::size_t{1} << 19) / sizeof(T) + 1;
-  const std::size_t pieces = (count + kPiece - 1) / kPiece;
+  const std::size_t bytes = count * sizeof(T);
+  if (bytes < (std::size_t{1} << 14)) return;
+  // No huge page is asked for by two threads.
+  const auto first = reinterpret_cast<std::uintptr_t>(data), page = first / kHugePage;
+  const std::size_t pages = (first + bytes + kHugePage - 1) / kHugePage - page;
   const auto piece = [&](std::size_t i) {
-    populate_pages(data + i * kPiece, std::min(kPiece, count - i * kPiece) * sizeof(T));
+    const std::uintptr_t from = std::max(first, (page + i) * kHugePage);
+    const std::uintptr_t to = std::min(first + bytes, (page + i + 1) * kHugePage);
+    populate_pages(reinterpret_cast<std::byte*>(data) + (from - first), to - from);
   };
-  if (parallel && pieces > 1)
-    tbb::parallel_for(std::size_t{0}, pieces, piece);
+  if (parallel && pages > 1)
+    tbb::parallel_for(std::size_t{0}, pages, piece);
   else
-    for (std::size_t i = 0; i < pieces; ++i) piece(i);
+    for (std::size_t i = 0; i < pages; ++i) piece(i);
 }
-
 }  // namespace oktett

@@ -14,7 +14,7 @@ namespace oktett {
 namespace {
 
 /// The wide tree is written in parts: this many nodes at the top, then the subtrees below them.
-constexpr std::size_t kTopNodes = 256;
+constexpr std::size_t kTopNodes = 64;
 
 /// How many nodes, blocks and table entries a subtree takes.
 struct Sizes {
@@ -142,7 +142,7 @@ class WideBuilder {
     const int count = children(n, child);
     for (int i = 0; i < count; ++i) {
       const BinaryNode& c = tree_.nodes[child[i]];
-      if (c.is_leaf()) triangles_.prefetch(tree_.items.data() + c.link, c.count());
+      if (c.is_leaf()) triangles_.prefetch(tree_.items + c.link, c.count());
     }
     NodeRef refs[BvhNode::kWidth];
     for (int i = 0; i < count; ++i) refs[i] = write(child[i], next);
@@ -154,8 +154,7 @@ class WideBuilder {
     std::uint32_t begin = n.link;
     if (n.kind() == Kind::triangle) {
       begin = next.blocks++;
-      triangles_.fill(tree_.items.data() + n.link, tree_.corners.data() + n.link, n.count(),
-                      accel_.blocks[begin]);
+      triangles_.fill(tree_.items + n.link, tree_.corners + n.link, n.count(), accel_.blocks[begin]);
       if (!in_table(n)) return NodeRef::triangles(begin, n.count());
     }
     accel_.leaves[next.leaves] = {begin, static_cast<std::uint16_t>(n.count()), n.kind(), n.test()};
@@ -197,7 +196,7 @@ void order_pools(Accel& accel, const BinaryTree& tree, ItemOrder& order) {
   for (LeafEntry& leaf : accel.leaves) {
     if (leaf.kind == Kind::triangle) continue;
     std::vector<std::uint32_t>& list = order[static_cast<int>(leaf.kind)];
-    const std::uint32_t* items = tree.items.data() + leaf.begin;
+    const std::uint32_t* items = tree.items + leaf.begin;
     leaf.begin = static_cast<std::uint32_t>(list.size());
     list.insert(list.end(), items, items + leaf.count);
   }
@@ -205,12 +204,12 @@ void order_pools(Accel& accel, const BinaryTree& tree, ItemOrder& order) {
 
 }  // namespace
 
-void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles, ItemOrder& order,
-                const BuildOptions& options, const BuildKernels& kernels) {
-  if (refs.empty()) return;
-  const BinaryTree tree = build_binary(refs, triangles, accel.bounds, options, kernels);
+void build_tree(Accel& accel, const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
+                ItemOrder& order, const BuildOptions& options, const BuildKernels& kernels) {
+  if (count == 0) return;
+  const BinaryTree tree = build_binary(arrays, count, triangles, accel.bounds, options, kernels);
   accel.pieces = tree.pieces;
-  refs.clear();
+  arrays.discard_references();
   WideBuilder(accel, tree, triangles, options.parallel).run();
   order_pools(accel, tree, order);
 }

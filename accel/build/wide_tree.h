@@ -4,28 +4,27 @@
 #include <vector>
 
 #include "accel/accel_data.h"
-#include "accel/build/sah.h"
+#include "accel/build/build_arrays.h"
 #include "accel/build/triangle_source.h"
-#include "core/soa.h"
 
 namespace oktett {
 
-/// A binary tree whose leaves are blocks, and the items in the order of the leaves. The root is node 0.
+/// A binary tree whose leaves are blocks, and the items in the order of the leaves, in the arrays of a build.
+/// The root is node 0.
 struct BinaryTree {
-  VirtualArray<BinaryNode> nodes;
-  Column<std::uint32_t> items;
-  Column<std::uint16_t> corners;  ///< of items that are triangles: TriangleBlock::corners
-  bool pieces = false;            ///< triangles were split, so an item may stand in several leaves
+  const BinaryNode* nodes;
+  const std::uint32_t* items;
+  const std::uint16_t* corners;  ///< of items that are triangles: TriangleBlock::corners
+  bool pieces;                   ///< triangles were split, so an item may stand in several leaves
 };
 
-/// How many references `count` ones may become by spatial splits. build_binary does not copy those that
-/// come in a column with such a capacity.
-std::size_t reference_room(std::size_t count, const BuildOptions& options);
+/// The parameters of a quality.
+Effort effort_of(BuildQuality quality);
 
-/// Builds the binary tree over `refs`, which it uses up; `bounds` are theirs. The same tree for any number of
-/// threads.
-BinaryTree build_binary(Column<PrimRef>& refs, const TriangleSource& triangles, const Box& bounds,
-                        const BuildOptions& options, const BuildKernels& kernels);
+/// Builds the binary tree over arrays.refs[0, count), count > 0, which it uses up; `bounds` are theirs. The
+/// same tree for any number of threads.
+BinaryTree build_binary(const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
+                        const Box& bounds, const BuildOptions& options, const BuildKernels& kernels);
 
 /// The power of two by which a scene with these bounds is of size 1, so that areas neither overflow nor
 /// vanish.
@@ -35,10 +34,10 @@ float scene_unit(const Box& bounds);
 /// listed instances their places in the structure.
 using ItemOrder = std::vector<std::uint32_t>[kKinds];
 
-/// Builds the tree over `refs` (which it uses up) into accel.nodes, accel.blocks, accel.leaves, accel.root,
-/// accel.bounds and accel.stats. Leaves of closed-form shapes and instances are given as ranges of `order`:
-/// the caller lays out the pools so that element i of kind k is item order[k][i].
-void build_tree(Accel& accel, Column<PrimRef>& refs, const TriangleSource& triangles, ItemOrder& order,
-                const BuildOptions& options, const BuildKernels& kernels);
+/// Builds the tree over arrays.refs[0, count) (which it uses up) into accel.nodes, accel.blocks,
+/// accel.leaves, accel.root, accel.bounds and accel.stats. Leaves of closed-form shapes and instances are
+/// given as ranges of `order`: the caller lays out the pools so that element i of kind k is item order[k][i].
+void build_tree(Accel& accel, const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
+                ItemOrder& order, const BuildOptions& options, const BuildKernels& kernels);
 
 }  // namespace oktett

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include "core/populate.h"
@@ -13,32 +14,61 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{2} << 20;
-
 TEST(Pages, ReadAsZeroAndMayBeGivenBackInPieces) {
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{4096}, kLargePiece - 1, kLargePiece,
-                                  kLargePiece + 1, 3 * kLargePage + 12345}) {
+                                  kLargePiece + 1, 3 * kHugePage + 12345}) {
     char* const p = static_cast<char*>(reserve_pages(bytes));
     EXPECT_EQ(p[0], 0);
     p[bytes - 1] = 7;
     EXPECT_EQ(p[bytes / 2], bytes / 2 == bytes - 1 ? 7 : 0);
-    if (bytes > kLargePage) {
-      release_pages(p + kLargePage, bytes - kLargePage);
-      p[kLargePage - 1] = 5;
-      EXPECT_EQ(p[kLargePage - 1], 5);
+    if (bytes > kHugePage) {
+      release_pages(p + kHugePage, bytes - kHugePage);
+      p[kHugePage - 1] = 5;
+      EXPECT_EQ(p[kHugePage - 1], 5);
     }
-    release_pages(p, bytes < kLargePage ? bytes : kLargePage);
+    release_pages(p, bytes < kHugePage ? bytes : kHugePage);
   }
 }
 
-// The system has large pages only where they begin at multiples of their size.
-TEST(Pages, LargePiecesBeginAtLargePages) {
+TEST(Pages, HugePagesBeginAtMultiplesOfTheirSize) {
   for (int i = 0; i < 8; ++i) {
     const std::size_t bytes = kLargePiece + static_cast<std::size_t>(i) * 4096;
     void* const p = reserve_pages(bytes);
-    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(p) % kLargePage, 0u);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(p) % kHugePage, 0u);
     release_pages(p, bytes);
   }
+}
+
+TEST(Pages, HugeOnesAreAtLeastHalfFull) {
+  constexpr std::size_t kHalf = kHugePage / 2, kAll = ~std::size_t{0};
+  for (const auto& [bytes, whole] :
+       std::vector<std::pair<std::size_t, std::size_t>>{{0, 0},
+                                                        {1, 4096},
+                                                        {4096, 4096},
+                                                        {4097, 8192},
+                                                        {kHalf - 1, kHalf},
+                                                        {kHalf, kHugePage},
+                                                        {kHugePage, kHugePage},
+                                                        {kHugePage + 1, kHugePage + 4096},
+                                                        {3 * kHugePage + kHalf, 4 * kHugePage},
+                                                        {kAll - 1, kAll - 1},
+                                                        {kAll, kAll}})
+    EXPECT_EQ(whole_pages(bytes), whole) << bytes;
+}
+
+TEST(Pages, LoseWhatIsDiscarded) {
+  constexpr std::size_t kPage = 4096, kCount = 8;
+  char* const p = static_cast<char*>(reserve_pages(kCount * kPage));
+  for (std::size_t i = 0; i < kCount * kPage; ++i) p[i] = 1;
+  discard_pages(p, 0);
+  discard_pages(p + 100, kPage);
+  // Whole pages are 3 to 5.
+  discard_pages(p + 2 * kPage + 1, 4 * kPage);
+  for (std::size_t i = 0; i < kCount * kPage; ++i)
+    ASSERT_EQ(p[i], 3 * kPage <= i && i < 6 * kPage ? 0 : 1) << i;
+  p[4 * kPage] = 2;
+  EXPECT_EQ(p[4 * kPage], 2);
+  release_pages(p, kCount * kPage);
 }
 
 TEST(Pages, RefuseWhatIsNotThere) {

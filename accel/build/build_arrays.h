@@ -1,0 +1,52 @@
+#pragma once
+/// \file What a build works in until the tree is written.
+
+#include "accel/build/populate.h"
+#include "accel/build/sah.h"
+#include "core/soa.h"
+
+namespace oktett {
+
+/// A reference's cell along the space-filling curve, and its place.
+struct CellKey {
+  std::uint32_t cell, place;
+};
+
+/// The arrays of a build, side by side in one piece of memory. Alone, most are too small for pages of 2 MB;
+/// allocating and freeing small pages would take a large part of the time of a build.
+class BuildArrays {
+ public:
+  /// For `count` references and those that spatial splits add.
+  BuildArrays(std::size_t count, const Effort& effort);
+  BuildArrays(const BuildArrays&) = delete;
+  BuildArrays& operator=(const BuildArrays&) = delete;
+
+  // What makes the binary tree. `room` elements:
+  std::size_t room;
+  PrimRef *refs, *more_refs;  ///< the caller fills in the first ones of `refs`
+  // One element per reference; null without Effort::cells.
+  CellKey *keys, *more_keys;
+  std::uint32_t* cells;
+
+  // The binary tree. `room` items with their corners:
+  std::uint32_t* items;
+  std::uint16_t* corners;
+  std::size_t node_room;
+  BinaryNode* nodes;
+
+  /// Has the pages of `count` elements from `data` on allocated, which are about to be written; by all
+  /// threads if `parallel`. Leaves out what a huge page or two hold: those cost no more when they are
+  /// written.
+  template <class T>
+  void populate(T* data, std::size_t count, bool parallel) const {
+    if (memory_.size() < kLargePiece || count * sizeof(T) > 2 * kHugePage)
+      oktett::populate(data, count, parallel);
+  }
+  /// Gives back the memory, if it is much, of what is needed no more when the binary tree stands.
+  void discard_references() const;
+
+ private:
+  Column<std::byte> memory_;
+};
+
+}  // namespace oktett
