@@ -9,7 +9,7 @@ namespace oktett {
 TEST(Exact, AgreesWithItsOracle) {
   const std::vector<std::string> names = exact_oracle_names();
   for (std::size_t form = 0; form < names.size(); ++form) {
-    const ExactTally t = verify_exact(form, 8192, available_isas());
+    const ExactTally t = verify_exact(form, 2048, available_isas());
     EXPECT_EQ(t.wrong(), 0u) << names[form] << ": " << t.missed << " missed, " << t.invented << " invented, "
                              << t.off_surface << " off the surface, " << t.lists << " lists, " << t.differing
                              << " differing; " << t.failure;

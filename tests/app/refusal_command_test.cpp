@@ -68,10 +68,10 @@ void expect_refused_in_one_line(const CommandResult& result, const std::string& 
 TEST(Refusal, MemoryIsOneLine) {
   if (!kCanLimitMemory) GTEST_SKIP() << "sanitizers need terabytes of address space";
   const TempDir dir;
-  dir.write("mesh.obj", square(200));
+  dir.write("mesh.obj", square(120));
   int refused = 0, done = 0;
   for (const char* rest : {"-t 1 -o a.exr", "-t 8 -o a.exr", "-t 2 -o a.jpg"}) {
-    for (int kilobytes = 20000; kilobytes <= 900000; kilobytes += kilobytes / 6) {
+    for (int kilobytes = 20000; kilobytes <= 900000; kilobytes += kilobytes / 4) {
       const std::string limit = "ulimit -c 0; ulimit -v " + std::to_string(kilobytes) + ";";
       const CommandResult result =
           run_in_shell(dir, limit, std::string("render mesh.obj --size 32x32 --spp 1 --quiet ") + rest);

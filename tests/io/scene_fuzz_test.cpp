@@ -83,7 +83,7 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
   std::sort(texts.begin(), texts.end());
   ASSERT_GE(texts.size(), 4u);
   Random random(2024);
-  const unsigned mutants = test::cases(5000);
+  const unsigned mutants = test::cases(1000);
   unsigned loaded = 0, refused = 0;
   for (unsigned i = 0; i < mutants; ++i) {
     const std::string mutant =
