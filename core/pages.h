@@ -9,8 +9,8 @@ namespace oktett {
 inline constexpr std::size_t kLargePiece = std::size_t{4} << 20;
 inline constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
-/// The bytes of whole pages for `bytes` bytes: of huge pages as far as they are at least half full, and of
-/// small ones, of 4 kB. More than can ever be had is returned as it is.
+/// Rounds up to whole pages: to a huge page where the rest fills at least half of one, else to pages of 4 kB.
+/// Sizes near the greatest number, for which there is no memory, are returned unchanged.
 std::size_t whole_pages(std::size_t bytes);
 
 /// Address space for so many bytes, which read as zero. Pages are allocated when they are first written.

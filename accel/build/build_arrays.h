@@ -34,9 +34,9 @@ class BuildArrays {
   std::size_t node_room;
   BinaryNode* nodes;
 
-  /// Has the pages of `count` elements from `data` on allocated, which are about to be written; by all
-  /// threads if `parallel`. Leaves out what a huge page or two hold: those cost no more when they are
-  /// written.
+  /// Allocates the pages of `count` elements from `data` on before they are written, on all threads if
+  /// `parallel`. Does nothing in huge pages for arrays of at most two of them: there, the first writes
+  /// allocate as cheaply.
   template <class T>
   void populate(T* data, std::size_t count, bool parallel) const {
     if (memory_.size() < kLargePiece || count * sizeof(T) > 2 * kHugePage)
