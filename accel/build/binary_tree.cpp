@@ -68,21 +68,20 @@ struct Chunks {
 
 class Builder {
  public:
-  Builder(const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles, const Box& bounds,
+  Builder(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
           const BuildOptions& options, const BuildKernels& kernels)
       : arrays_(arrays),
-        count_(count),
         triangles_(triangles),
         unit_(scene_unit(bounds)),
         least_overlap_(kLeastOverlap * half_area(bounds)),
         effort_(effort_of(options.quality)),
         parallel_(options.parallel),
         kernels_(kernels),
-        phase_("building the tree", {}, count),
+        phase_("building the tree", {}, arrays.count),
         nodes_(arrays) {}
 
   BinaryTree run() {
-    const std::size_t n = count_;
+    const std::size_t n = arrays_.count;
     arrays_.populate(arrays_.items, n, parallel_);
     arrays_.populate(arrays_.corners, n, parallel_);
     if (n > effort_.sweep) arrays_.populate(arrays_.more_refs, n, parallel_);
@@ -91,7 +90,7 @@ class Builder {
     bound(all);
     SubtreeCost cost;
     if (effort_.cells && n > effort_.sweep) {
-      sort_by_cells(arrays_, n, all.centers, parallel_);
+      sort_by_cells(arrays_, all.centers, parallel_);
       std::swap(all.from, all.to);
       build_cells(all, 1, 0, cost);
     } else {
@@ -341,7 +340,6 @@ class Builder {
   }
 
   const BuildArrays& arrays_;
-  const std::size_t count_;
   const TriangleSource& triangles_;
   float unit_;
   double least_overlap_;
@@ -375,9 +373,9 @@ float scene_unit(const Box& bounds) {
   return std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
 }
 
-BinaryTree build_binary(const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
-                        const Box& bounds, const BuildOptions& options, const BuildKernels& kernels) {
-  return Builder(arrays, count, triangles, bounds, options, kernels).run();
+BinaryTree build_binary(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
+                        const BuildOptions& options, const BuildKernels& kernels) {
+  return Builder(arrays, triangles, bounds, options, kernels).run();
 }
 
 }  // namespace oktett

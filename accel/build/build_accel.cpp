@@ -167,25 +167,22 @@ std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrd
 }
 
 /// Writes all references in the order of their geometries into arrays.refs: to triangles, and `others`, which
-/// it uses up. Returns how many there are.
-std::size_t add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
-                           const std::vector<std::size_t>& first_other, const BuildArrays& arrays,
-                           bool parallel) {
-  std::size_t count = 0;
+/// it uses up.
+void add_references(Accel& accel, const MeshSource& meshes, Column<PrimRef>& others,
+                    const std::vector<std::size_t>& first_other, BuildArrays& arrays, bool parallel) {
   const PrimRef* next = others.begin();
   const auto add_others_before = [&](const PrimRef* end) {
-    arrays.populate(arrays.refs + count, static_cast<std::size_t>(end - next), parallel);
-    for (; next != end; ++next) arrays.refs[count++] = *next;
+    arrays.populate(arrays.refs + arrays.count, static_cast<std::size_t>(end - next), parallel);
+    for (; next != end; ++next) arrays.refs[arrays.count++] = *next;
   };
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
     const bool usable = accel.geometries[g].transform.is_invertible();
     if (static_cast<Kind>(accel.kinds[g]) != Kind::triangle || !usable) continue;
     add_others_before(others.begin() + first_other[g]);
-    accel.bounds.grow(meshes.add_references(g, arrays, count, parallel));
+    accel.bounds.grow(meshes.add_references(g, arrays, parallel));
   }
   add_others_before(others.end());
   others.clear();
-  return count;
 }
 
 /// Makes tree, bounds and the order of the items, or takes them from the store.
@@ -198,9 +195,9 @@ void make_tree(Accel& accel, ItemOrder& order, const BuildOptions& options) {
   if (keeps && load_kept_tree(accel, order, others, key, *store)) return;
   {
     const MeshSource meshes(accel);
-    const BuildArrays arrays(others.size() + accel.stats.triangles, effort_of(options.quality));
-    const std::size_t count = add_references(accel, meshes, others, first_other, arrays, options.parallel);
-    build_tree(accel, arrays, count, meshes, order, options, build_kernels(available_isas().back()));
+    BuildArrays arrays(others.size() + accel.stats.triangles, effort_of(options.quality));
+    add_references(accel, meshes, others, first_other, arrays, options.parallel);
+    build_tree(accel, arrays, meshes, order, options, build_kernels(available_isas().back()));
   }
   if (keeps) store->keep(key, accel, order);
 }

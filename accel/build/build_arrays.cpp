@@ -24,17 +24,17 @@ class Layout {
 
 }  // namespace
 
-BuildArrays::BuildArrays(std::size_t count, const Effort& effort)
-    : room(count + static_cast<std::size_t>(effort.spatial * static_cast<double>(count))),
+BuildArrays::BuildArrays(std::size_t most, const Effort& effort)
+    : room(most + static_cast<std::size_t>(effort.spatial * static_cast<double>(most))),
       // A leaf has at least one item.
       node_room(2 * room + 2 * kMaxSweep) {
-  const bool one_sweep = count <= effort.sweep;
+  const bool one_sweep = most <= effort.sweep;
   const auto place_all = [&](Layout layout) {
     layout.place(room, refs);
     layout.place(one_sweep ? 0 : room, more_refs);
-    layout.place(effort.cells ? count : 0, keys);
-    layout.place(effort.cells ? count : 0, more_keys);
-    layout.place(effort.cells ? count : 0, cells);
+    layout.place(effort.cells ? most : 0, keys);
+    layout.place(effort.cells ? most : 0, more_keys);
+    layout.place(effort.cells ? most : 0, cells);
     layout.place(room, items);
     layout.place(room, corners);
     // Most builds leave much of this untouched.

@@ -16,14 +16,15 @@ struct CellKey {
 /// allocating and freeing small pages would take a large part of the time of a build.
 class BuildArrays {
  public:
-  /// For `count` references and those that spatial splits add.
-  BuildArrays(std::size_t count, const Effort& effort);
+  /// For at most `most` references and those that spatial splits add.
+  BuildArrays(std::size_t most, const Effort& effort);
   BuildArrays(const BuildArrays&) = delete;
   BuildArrays& operator=(const BuildArrays&) = delete;
 
   // What makes the binary tree. `room` elements:
   std::size_t room;
-  PrimRef *refs, *more_refs;  ///< the caller fills in the first ones of `refs`
+  PrimRef *refs, *more_refs;
+  std::size_t count = 0;  ///< elements of `refs` that the caller has filled in
   // One element per reference; null without Effort::cells.
   CellKey *keys, *more_keys;
   std::uint32_t* cells;
@@ -34,13 +35,13 @@ class BuildArrays {
   std::size_t node_room;
   BinaryNode* nodes;
 
-  /// Allocates the pages of `count` elements from `data` on before they are written, on all threads if
+  /// Allocates the pages of `size` elements from `data` on before they are written, on all threads if
   /// `parallel`. Does nothing in huge pages for arrays of at most two of them: there, the first writes
   /// allocate as cheaply.
   template <class T>
-  void populate(T* data, std::size_t count, bool parallel) const {
-    if (memory_.size() < kLargePiece || count * sizeof(T) > 2 * kHugePage)
-      oktett::populate(data, count, parallel);
+  void populate(T* data, std::size_t size, bool parallel) const {
+    if (memory_.size() < kLargePiece || size * sizeof(T) > 2 * kHugePage)
+      oktett::populate(data, size, parallel);
   }
   /// Gives back the memory, if it is much, of what is needed no more when the binary tree stands.
   void discard_references() const;

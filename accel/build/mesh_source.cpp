@@ -56,12 +56,11 @@ inline const MeshSource::Mesh& MeshSource::mesh_of(std::uint32_t item) const {
 
 void MeshSource::corners(std::uint32_t item, Vec3f (&v)[3]) const { corners(mesh_of(item), item, v); }
 
-Box MeshSource::add_references(std::uint32_t geometry, const BuildArrays& arrays, std::size_t& count,
-                               bool parallel) const {
+Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool parallel) const {
   const MeshGeometry& shape = std::get<MeshGeometry>(accel_.geometries[geometry].shape);
   const Mesh& mesh = meshes_[geometry];
   const std::size_t triangles = shape.mesh->triangle_count();
-  PrimRef* const refs = arrays.refs + count;
+  PrimRef* const refs = arrays.refs + arrays.count;
   const std::uint32_t kind =
       static_cast<std::uint32_t>(Kind::triangle) | static_cast<std::uint32_t>(shape.test) << 8;
   arrays.populate(refs, triangles, parallel);
@@ -97,7 +96,7 @@ Box MeshSource::add_references(std::uint32_t geometry, const BuildArrays& arrays
     end += parts[c].usable;
     if (parts[c].usable > 0) bounds.grow(parts[c].bounds);
   }
-  count += static_cast<std::size_t>(end - refs);
+  arrays.count += static_cast<std::size_t>(end - refs);
   return bounds;
 }
 

@@ -12,10 +12,9 @@ class MeshSource final : public TriangleSource {
  public:
   explicit MeshSource(const Accel& accel);
 
-  /// Writes references to all triangles of mesh geometry `geometry` from arrays.refs[count] on; those that
-  /// are degenerate or not finite are left out. Adds to `count` and returns their bounds.
-  Box add_references(std::uint32_t geometry, const BuildArrays& arrays, std::size_t& count,
-                     bool parallel) const;
+  /// Adds references to all triangles of mesh geometry `geometry` to arrays.refs; those that are degenerate
+  /// or not finite are left out. Returns their bounds.
+  Box add_references(std::uint32_t geometry, BuildArrays& arrays, bool parallel) const;
 
   void note_vertices(const PrimRef* refs, std::uint32_t count, VertexNumbers* out) const override;
   bool pack_corners(const std::uint32_t* items, int count, std::uint16_t* corners) const override;

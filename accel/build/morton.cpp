@@ -55,7 +55,8 @@ void sort_pass(const Chunks& chunks, const CellKey* from, int shift, CellKey* to
 
 }  // namespace
 
-void sort_by_cells(const BuildArrays& arrays, std::size_t count, const Centers& centers, bool parallel) {
+void sort_by_cells(const BuildArrays& arrays, const Centers& centers, bool parallel) {
+  const std::size_t count = arrays.count;
   const std::size_t size = std::max(kMinChunk, (count + kMaxChunks - 1) / kMaxChunks);
   const Chunks chunks{count, size, (count + size - 1) / size, parallel};
   const PrimRef* const refs = arrays.refs;

@@ -8,8 +8,8 @@ namespace oktett {
 /// Bits of a cell's number: seven per axis, interleaved (Morton 1966).
 inline constexpr int kMortonBits = 21;
 
-/// Copies arrays.refs[0, count) to arrays.more_refs in the order of the cells that their centres lie in, of a
+/// Copies the references to arrays.more_refs in the order of the cells that their centres lie in, of a
 /// cubic grid over `centers`, and sets arrays.cells. References of one cell keep their order.
-void sort_by_cells(const BuildArrays& arrays, std::size_t count, const Centers& centers, bool parallel);
+void sort_by_cells(const BuildArrays& arrays, const Centers& centers, bool parallel);
 
 }  // namespace oktett

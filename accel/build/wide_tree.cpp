@@ -204,10 +204,10 @@ void order_pools(Accel& accel, const BinaryTree& tree, ItemOrder& order) {
 
 }  // namespace
 
-void build_tree(Accel& accel, const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
-                ItemOrder& order, const BuildOptions& options, const BuildKernels& kernels) {
-  if (count == 0) return;
-  const BinaryTree tree = build_binary(arrays, count, triangles, accel.bounds, options, kernels);
+void build_tree(Accel& accel, const BuildArrays& arrays, const TriangleSource& triangles, ItemOrder& order,
+                const BuildOptions& options, const BuildKernels& kernels) {
+  if (arrays.count == 0) return;
+  const BinaryTree tree = build_binary(arrays, triangles, accel.bounds, options, kernels);
   accel.pieces = tree.pieces;
   arrays.discard_references();
   WideBuilder(accel, tree, triangles, options.parallel).run();

@@ -21,10 +21,10 @@ struct BinaryTree {
 /// The parameters of a quality.
 Effort effort_of(BuildQuality quality);
 
-/// Builds the binary tree over arrays.refs[0, count), count > 0, which it uses up; `bounds` are theirs. The
+/// Builds the binary tree over the references, at least one, and uses them up; `bounds` are theirs. The
 /// same tree for any number of threads.
-BinaryTree build_binary(const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
-                        const Box& bounds, const BuildOptions& options, const BuildKernels& kernels);
+BinaryTree build_binary(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
+                        const BuildOptions& options, const BuildKernels& kernels);
 
 /// The power of two by which a scene with these bounds is of size 1, so that areas neither overflow nor
 /// vanish.
@@ -34,10 +34,10 @@ float scene_unit(const Box& bounds);
 /// listed instances their places in the structure.
 using ItemOrder = std::vector<std::uint32_t>[kKinds];
 
-/// Builds the tree over arrays.refs[0, count) (which it uses up) into accel.nodes, accel.blocks,
+/// Builds the tree over the references, which it uses up, into accel.nodes, accel.blocks,
 /// accel.leaves, accel.root, accel.bounds and accel.stats. Leaves of closed-form shapes and instances are
 /// given as ranges of `order`: the caller lays out the pools so that element i of kind k is item order[k][i].
-void build_tree(Accel& accel, const BuildArrays& arrays, std::size_t count, const TriangleSource& triangles,
-                ItemOrder& order, const BuildOptions& options, const BuildKernels& kernels);
+void build_tree(Accel& accel, const BuildArrays& arrays, const TriangleSource& triangles, ItemOrder& order,
+                const BuildOptions& options, const BuildKernels& kernels);
 
 }  // namespace oktett

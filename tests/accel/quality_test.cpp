@@ -278,9 +278,8 @@ TEST(Quality, TreesAreTheSameForAllInstructionSets) {
       BuildArrays& here =
           *arrays.emplace_back(std::make_unique<BuildArrays>(m.triangle_count(), effort_of(q)));
       const MeshSource source(*accel);
-      std::size_t count = 0;
-      source.add_references(0, here, count, false);
-      trees.push_back(build_binary(here, count, source, accel->bounds, {q, false}, build_kernels(isa)));
+      source.add_references(0, here, false);
+      trees.push_back(build_binary(here, source, accel->bounds, {q, false}, build_kernels(isa)));
       const BinaryTree &first = trees[0], &last = trees.back();
       EXPECT_EQ(leaf_items(last), leaf_items(first));
       // However full its leaves are, a tree has this many nodes.

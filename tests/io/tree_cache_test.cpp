@@ -186,11 +186,10 @@ TEST_F(TreeCache, NoTreeDependsOnTheInstructionSet) {
     accel.geometries = {{MeshGeometry{&mesh}, {}, kNoId}};
     accel.first_item = {0, static_cast<std::uint32_t>(mesh.triangle_count())};
     const MeshSource source(accel);
-    const BuildArrays arrays(mesh.triangle_count(), effort_of(BuildQuality::balanced));
-    std::size_t count = 0;
+    BuildArrays arrays(mesh.triangle_count(), effort_of(BuildQuality::balanced));
     ItemOrder order;
-    accel.bounds = source.add_references(0, arrays, count, true);
-    build_tree(accel, arrays, count, source, order, {}, build_kernels(isa));
+    accel.bounds = source.add_references(0, arrays, true);
+    build_tree(accel, arrays, source, order, {}, build_kernels(isa));
     ASSERT_EQ(accel.stats.bytes(), trees[0]->stats.bytes());
     EXPECT_EQ(std::memcmp(accel.nodes.data(), trees[0]->nodes.data(), accel.stats.node_bytes), 0);
     EXPECT_EQ(std::memcmp(accel.blocks.data(), trees[0]->blocks.data(), accel.stats.leaf_bytes), 0);
