@@ -11,7 +11,6 @@
 
 namespace oktett::portable {
 
-static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 static constexpr double kHalfPi = std::numbers::pi / 2;
 

@@ -1,10 +1,21 @@
 #pragma once
-/// \file Elementary functions whose results are the same bits on every machine.
+/// \file Numbers, and elementary functions whose results are the same bits on every machine.
 ///
 /// A C library may pick among several implementations by processor, and pictures computed with them would
 /// differ in the last bits. These use only + - * / and sqrt on doubles, in a fixed order. Relative error
 /// below 1e-12 unless stated otherwise. NaN in gives NaN out; the limits at zeros, poles and infinities are
 /// those of the C library.
+
+#include <limits>
+#include <numbers>
+
+namespace oktett {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A degree in radians.
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+}  // namespace oktett
 
 namespace oktett::portable {
 

@@ -88,6 +88,11 @@ Vec3<T> abs(const Vec3<T>& a) {
 }
 
 /// The greatest of the components.
+/// Whether every component is 0: for colours, no light.
+template <class T>
+constexpr bool is_black(const Vec3<T>& a) {
+  return a == Vec3<T>{0, 0, 0};
+}
 template <class T>
 constexpr T max_component(const Vec3<T>& a) {
   const T xy = a.x > a.y ? a.x : a.y;

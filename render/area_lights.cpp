@@ -21,8 +21,6 @@ constexpr double kMostWeight = 1e38;
 /// The key of the points' random numbers.
 constexpr std::uint32_t kDimension = 0xfffffffeu;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A point of an emitter, with what LightSample says of it.
 struct EmitterPoint {
   Vec3d place, normal;
@@ -44,7 +42,7 @@ EmitterPoint point_of(const RectangleEmitter& e, const SquareSample& s) {
   return {Vec3d(e.corner) + u * s.x + v * s.y, cross(u, v), s.x, s.y};
 }
 
-double area_of(const DiskEmitter& e) { return kPi * e.radius * e.radius; }
+double area_of(const DiskEmitter& e) { return std::numbers::pi * e.radius * e.radius; }
 EmitterPoint point_of(const DiskEmitter& e, const SquareSample& s) {
   const SquareSample at = disk_point(s);
   const Vec3d n(e.normal);
@@ -53,7 +51,7 @@ EmitterPoint point_of(const DiskEmitter& e, const SquareSample& s) {
   return {Vec3d(e.center) + (x * at.x + y * at.y) * double{e.radius}, n};
 }
 
-double area_of(const SphereEmitter& e) { return 4 * kPi * e.radius * e.radius; }
+double area_of(const SphereEmitter& e) { return 4 * std::numbers::pi * e.radius * e.radius; }
 EmitterPoint point_of(const SphereEmitter& e, const SquareSample& s) {
   // Both halves are disks whose areas are kept (Lambert's projection).
   const bool upper = s.x < 0.5;
@@ -109,7 +107,7 @@ LightSource light_at(const SceneLights& lights, const TextureSampler* textures,
           LightSample sample{};
           sample.emitter = lamp.emitter, sample.u = static_cast<float>(p.u),
           sample.v = static_cast<float>(p.v);
-          const double share = lamp.area * lamps.back().sum / (lamp.weight * kPi * count);
+          const double share = lamp.area * lamps.back().sum / (lamp.weight * std::numbers::pi * count);
           light.color = Color(Vec3d(e.radiance * lights.texture_at(sample, textures)) * share);
         }
       },

@@ -15,7 +15,6 @@
 
 namespace oktett {
 
-static constexpr double kDegree = std::numbers::pi / 180;
 /// A white diffuse surface shows 1 / pi of the irradiance on it.
 static constexpr auto kIrradiance = static_cast<float>(std::numbers::pi);
 

@@ -14,7 +14,9 @@ target_compile_definitions(sanitized_readers PUBLIC OKTETT_SOURCE_DIR="${PROJECT
 target_include_directories(sanitized_readers SYSTEM PUBLIC ${OKTETT_GLTF_INCLUDES})
 target_link_options(sanitized_readers PUBLIC ${sanitizers})
 target_link_libraries(sanitized_readers PUBLIC oktett_internal fmt::fmt ZLIB::ZLIB ${OKTETT_GLTF_LIBRARIES} GTest::gtest rapidcheck)
-oktett_precompile(sanitized_readers)
+oktett_unity(sanitized_readers)
+# Where it is included first, tinygltf gets its implementation.
+set_source_files_properties(${PROJECT_SOURCE_DIR}/io/gltf/parse.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 add_executable(test_readers)
 foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj_material obj_parallel ply ply_error similar_file

@@ -1,7 +1,6 @@
 /// \file From references to a binary tree, top-down: binned splits of large ranges (Wald 2007), sweeps of
 /// small ones.
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <bit>
 #include <cmath>
 
+#include "accel/build/chunks.h"
 #include "accel/build/collapse.h"
 #include "accel/build/morton.h"
 #include "accel/build/node_supply.h"
@@ -59,13 +59,6 @@ struct Range {
   std::size_t room() const { return last - first; }
 };
 
-/// How a large range is cut into chunks for threads. It depends on the size alone, so that the tree does too.
-struct Chunks {
-  std::size_t size, count;
-  explicit Chunks(std::size_t n)
-      : size(std::max(kMinChunk, (n + kMaxChunks - 1) / kMaxChunks)), count((n + size - 1) / size) {}
-};
-
 class Builder {
  public:
   Builder(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,
@@ -100,21 +93,12 @@ class Builder {
   }
 
  private:
-  template <class Body>
-  void each_chunk(const Chunks& chunks, Body&& body) const {
-    if (parallel_)
-      tbb::parallel_for(std::size_t{0}, chunks.count, body);
-    else
-      for (std::size_t c = 0; c < chunks.count; ++c) body(c);
-  }
-
   void bound(Range& r) const {
     if (r.size() <= effort_.sweep) return;
-    const Chunks chunks(r.size());
+    const Chunks chunks(r.size(), kMinChunk, kMaxChunks);
     std::vector<Centers> parts(chunks.count);
-    each_chunk(chunks, [&](std::size_t c) {
-      const std::size_t b = r.begin + c * chunks.size;
-      kernels_.bound(r.from + b, std::min(chunks.size, r.end - b), parts[c]);
+    chunks.each(parallel_, [&](std::size_t c, std::size_t begin, std::size_t end) {
+      kernels_.bound(r.from + r.begin + begin, end - begin, parts[c]);
     });
     for (const Centers& p : parts) r.centers.grow(p);
   }
@@ -205,20 +189,17 @@ class Builder {
       grid.origin[k] = r.centers.lo[k];
       grid.scale[k] = extent > 0 && std::isfinite(scale) && std::isfinite(extent) ? scale : 0;
     }
-    const Chunks chunks(r.size() >= kParallelSplit ? r.size() : 1);
+    const Chunks chunks =
+        r.size() >= kParallelSplit ? Chunks(r.size(), kMinChunk, kMaxChunks) : Chunks(r.size(), r.size());
     std::vector<Bins> more(chunks.count - 1);
     Bins first;
     const auto bins = [&](std::size_t c) -> Bins& { return c == 0 ? first : more[c - 1]; };
     Split best;
     // The remaining depth must suffice for splits in half.
     if (depth + std::bit_width(r.size()) + 7 < kMaxDepth) {
-      if (chunks.count == 1)
-        kernels_.bin({r.from + r.begin, r.size(), grid, &first});
-      else
-        each_chunk(chunks, [&](std::size_t c) {
-          const std::size_t b = r.begin + c * chunks.size;
-          kernels_.bin({r.from + b, std::min(chunks.size, r.end - b), grid, &bins(c)});
-        });
+      chunks.each(parallel_, [&](std::size_t c, std::size_t begin, std::size_t end) {
+        kernels_.bin({r.from + r.begin + begin, end - begin, grid, &bins(c)});
+      });
       best = find(grid, chunks.count, bins);
     }
     if (effort_.spatial > 0 && best.axis >= 0 && split_space(r, grid, best, chunks.count, bins, left, right))
@@ -320,20 +301,15 @@ class Builder {
       for (int b = 0; b <= s.bin; ++b) lefts[c + 1] += bins(c).count[s.axis][b];
     }
     std::vector<PartitionJob> jobs(chunks.count);
-    const auto run = [&](std::size_t c) {
+    chunks.each(parallel_, [&](std::size_t c, std::size_t begin, std::size_t end) {
       PartitionJob& job = jobs[c];
-      const std::size_t offset = c * chunks.size;
-      job.refs = r.from + r.begin + offset;
-      job.count = chunks.count == 1 ? r.size() : std::min(chunks.size, r.size() - offset);
+      job.refs = r.from + r.begin + begin;
+      job.count = end - begin;
       job.left = r.to + r.first + lefts[c];
-      job.right = r.to + r.last - (offset - lefts[c]);
+      job.right = r.to + r.last - (begin - lefts[c]);
       job.grid = grid, job.split = s;
       kernels_.partition(job);
-    };
-    if (chunks.count == 1)
-      run(0);
-    else
-      each_chunk(chunks, run);
+    });
     share_room(r, lefts[chunks.count], r.size() - lefts[chunks.count], left, right);
     for (const PartitionJob& job : jobs)
       left.centers.grow(job.centers[0]), right.centers.grow(job.centers[1]);

@@ -1,6 +1,5 @@
 #include "accel/build/mesh_source.h"
-
-#include <tbb/parallel_for.h>
+#include "accel/build/chunks.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +8,7 @@ namespace oktett {
 namespace {
 
 /// References made by one task.
-constexpr std::size_t kChunk = 1u << 12;
+constexpr std::size_t kTrianglesTogether = 1u << 12;
 
 /// Finite, and three corners in different places.
 bool is_usable(const Vec3f (&v)[3]) {
@@ -68,11 +67,12 @@ Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool
     Box bounds;
     std::size_t usable = 0;
   };
-  std::vector<Part> parts((triangles + kChunk - 1) / kChunk);
-  const auto fill = [&](std::size_t chunk) {
-    Part& part = parts[chunk];
-    PrimRef* out = refs + chunk * kChunk;
-    for (std::size_t i = chunk * kChunk, end = std::min(i + kChunk, triangles); i < end; ++i) {
+  const Chunks chunks(triangles, kTrianglesTogether);
+  std::vector<Part> parts(chunks.count);
+  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    Part& part = parts[c];
+    PrimRef* out = refs + begin;
+    for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t item = mesh.first_item + static_cast<std::uint32_t>(i);
       Vec3f v[3];
       corners(mesh, item, v);
@@ -82,16 +82,12 @@ Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool
       *out++ = {{-lo.x, -lo.y, -lo.z}, item, {hi.x, hi.y, hi.z}, kind};
       ++part.usable;
     }
-  };
-  if (parallel && parts.size() > 1)
-    tbb::parallel_for(std::size_t{0}, parts.size(), fill);
-  else
-    for (std::size_t c = 0; c < parts.size(); ++c) fill(c);
+  });
   // Close the gaps that unusable triangles left.
   Box bounds;
   PrimRef* end = refs;
   for (std::size_t c = 0; c < parts.size(); ++c) {
-    const PrimRef* from = refs + c * kChunk;
+    const PrimRef* from = refs + c * chunks.size;
     if (from != end) std::copy(from, from + parts[c].usable, end);
     end += parts[c].usable;
     if (parts[c].usable > 0) bounds.grow(parts[c].bounds);

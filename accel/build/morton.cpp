@@ -1,6 +1,5 @@
 #include "accel/build/morton.h"
-
-#include <tbb/parallel_for.h>
+#include "accel/build/chunks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +8,7 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kMinChunk = 1u << 13, kMaxChunks = 32;
+constexpr std::size_t kLeastKeys = 1u << 13, kMostKeyChunks = 32;
 constexpr int kDigit = 11;  ///< bits sorted by in one pass
 constexpr std::uint32_t kDigits = 1u << kDigit;
 
@@ -20,25 +19,12 @@ std::uint32_t spread(std::uint32_t v) {
   return (v | v << 2) & 0x00049249u;
 }
 
-struct Chunks {
-  std::size_t total, size, count;
-  bool parallel;
-  template <class Body>
-  void each(Body&& body) const {
-    const auto chunk = [&](std::size_t c) { body(c, c * size, std::min((c + 1) * size, total)); };
-    if (parallel && count > 1)
-      tbb::parallel_for(std::size_t{0}, count, chunk);
-    else
-      for (std::size_t c = 0; c < count; ++c) chunk(c);
-  }
-};
-
 /// One pass of a stable counting sort: each chunk counts its digits, then moves its keys to places of its
 /// own.
-void sort_pass(const Chunks& chunks, const CellKey* from, int shift, CellKey* to) {
+void sort_pass(const Chunks& chunks, bool parallel, const CellKey* from, int shift, CellKey* to) {
   std::vector<std::uint32_t> next(chunks.count * kDigits, 0);
   const auto digit = [&](const CellKey& k) { return k.cell >> shift & (kDigits - 1); };
-  chunks.each([&](std::size_t c, std::size_t begin, std::size_t end) {
+  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) ++next[c * kDigits + digit(from[i])];
   });
   std::uint32_t sum = 0;
@@ -48,7 +34,7 @@ void sort_pass(const Chunks& chunks, const CellKey* from, int shift, CellKey* to
       next[c * kDigits + d] = sum;
       sum += n;
     }
-  chunks.each([&](std::size_t c, std::size_t begin, std::size_t end) {
+  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[next[c * kDigits + digit(from[i])]++] = from[i];
   });
 }
@@ -57,8 +43,7 @@ void sort_pass(const Chunks& chunks, const CellKey* from, int shift, CellKey* to
 
 void sort_by_cells(const BuildArrays& arrays, const Centers& centers, bool parallel) {
   const std::size_t count = arrays.count;
-  const std::size_t size = std::max(kMinChunk, (count + kMaxChunks - 1) / kMaxChunks);
-  const Chunks chunks{count, size, (count + size - 1) / size, parallel};
+  const Chunks chunks(count, kLeastKeys, kMostKeyChunks);
   const PrimRef* const refs = arrays.refs;
   CellKey* const keys = arrays.keys;
   constexpr float kPerAxis = 1 << kMortonBits / 3;
@@ -67,7 +52,7 @@ void sort_by_cells(const BuildArrays& arrays, const Centers& centers, bool paral
   float scale = kPerAxis / extent;
   if (!(extent > 0 && std::isfinite(extent) && std::isfinite(scale))) scale = 0;
   arrays.populate(keys, count, parallel), arrays.populate(arrays.more_keys, count, parallel);
-  chunks.each([&](std::size_t, std::size_t begin, std::size_t end) {
+  chunks.each(parallel, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::uint32_t cell = 0;
       for (int k = 0; k < 3; ++k) {
@@ -79,10 +64,10 @@ void sort_by_cells(const BuildArrays& arrays, const Centers& centers, bool paral
       keys[i] = {cell, static_cast<std::uint32_t>(i)};
     }
   });
-  sort_pass(chunks, keys, 0, arrays.more_keys);
-  sort_pass(chunks, arrays.more_keys, kDigit, keys);
+  sort_pass(chunks, parallel, keys, 0, arrays.more_keys);
+  sort_pass(chunks, parallel, arrays.more_keys, kDigit, keys);
   arrays.populate(arrays.cells, count, parallel);
-  chunks.each([&](std::size_t, std::size_t begin, std::size_t end) {
+  chunks.each(parallel, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       arrays.more_refs[i] = refs[keys[i].place], arrays.cells[i] = keys[i].cell;
   });

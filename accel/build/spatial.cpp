@@ -1,6 +1,5 @@
 #include "accel/build/spatial.h"
-
-#include <tbb/parallel_for.h>
+#include "accel/build/chunks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +7,8 @@
 namespace oktett {
 namespace {
 
-constexpr int kSlices = 16;           ///< per axis; planes lie between them
-constexpr std::size_t kChunk = 4096;  ///< references sliced by one task
+constexpr int kSlices = 16;                    ///< per axis; planes lie between them
+constexpr std::size_t kSlicedTogether = 4096;  ///< references sliced by one task
 
 Box box_of(const PrimRef& r) {
   return {{-r.negative_lo[0], -r.negative_lo[1], -r.negative_lo[2]}, {r.hi[0], r.hi[1], r.hi[2]}};
@@ -151,14 +150,11 @@ SpatialSplit find_spatial(const PrimRef* refs, std::size_t count, const Box& box
   const float longest = max_component(box.extent());
   for (int axis = 0; axis < 3; ++axis)
     if (every_axis || box.extent()[axis] >= longest) slices[axis] = Slices(box.lo[axis], box.hi[axis]);
-  std::vector<Sliced> parts((count + kChunk - 1) / kChunk);
-  const auto chunk = [&](std::size_t c) {
-    slice(refs + c * kChunk, std::min(kChunk, count - c * kChunk), slices, triangles, parts[c]);
-  };
-  if (parallel && parts.size() > 1)
-    tbb::parallel_for(std::size_t{0}, parts.size(), chunk);
-  else
-    for (std::size_t c = 0; c < parts.size(); ++c) chunk(c);
+  const Chunks chunks(count, kSlicedTogether);
+  std::vector<Sliced> parts(chunks.count);
+  chunks.each(parallel, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    slice(refs + begin, end - begin, slices, triangles, parts[c]);
+  });
   for (std::size_t c = 1; c < parts.size(); ++c) parts[0].grow(parts[c]);
   const Sliced& all = parts[0];
 

@@ -24,10 +24,6 @@ constexpr std::uint64_t kMostHeader = std::uint64_t{1} << 28;
 
 std::uint64_t aligned(std::uint64_t place) { return (place + kAlign - 1) / kAlign * kAlign; }
 
-std::int64_t nanoseconds(const timespec& time) {
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
 /// Reads up to `size` bytes at `place`.
 std::string read_bytes(int file, std::uint64_t place, std::size_t size) {
   std::string bytes(size, '\0');
@@ -43,6 +39,10 @@ std::string read_bytes(int file, std::uint64_t place, std::size_t size) {
 }
 
 }  // namespace
+
+std::int64_t nanoseconds(const timespec& time) {
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
 
 std::uint64_t cache_file_bytes(std::string_view header, std::span<const CacheSection> sections) {
   std::uint64_t place = kMagic.size() + 8 + 4 + 16 * sections.size() + header.size() + 8;

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +29,9 @@ template <class T>
 CacheSection section_of(const Column<T>& column) {
   return {column.data(), column.size() * sizeof(T)};
 }
+
+/// Since 1970.
+std::int64_t nanoseconds(const timespec& time);
 
 /// The size of such a file.
 std::uint64_t cache_file_bytes(std::string_view header, std::span<const CacheSection> sections);

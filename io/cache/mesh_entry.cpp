@@ -9,7 +9,7 @@ namespace oktett {
 namespace {
 
 /// The number changes with what parse_mesh makes of a file.
-constexpr std::string_view kKind = "mesh 1 " OKTETT_VERSION;
+constexpr std::string_view kMeshKind = "mesh 1 " OKTETT_VERSION;
 
 void append(std::string& bytes, const std::vector<MeshStatement>& statements) {
   append_number(bytes, static_cast<std::uint32_t>(statements.size()));
@@ -59,7 +59,7 @@ bool are_indices(const Column<std::uint32_t>& indices, std::size_t corners, std:
 
 std::string mesh_header(const MeshEntry& entry) {
   std::string bytes;
-  append_text(bytes, kKind);
+  append_text(bytes, kMeshKind);
   append_text(bytes, entry.path);
   for (const std::uint64_t n : {entry.stamp.size, entry.stamp.inode}) append_number(bytes, n);
   for (const std::int64_t n : {entry.stamp.content_time, entry.stamp.status_time}) append_number(bytes, n);
@@ -82,7 +82,7 @@ MeshEntry read_mesh_header(const CacheFile& file) {
   MeshEntry entry;
   try {
     ByteReader reader(file.header());
-    if (reader.text() != kKind) throw Error("is not of this version");
+    if (reader.text() != kMeshKind) throw Error("is not of this version");
     entry.path = reader.text();
     for (std::uint64_t* n : {&entry.stamp.size, &entry.stamp.inode}) *n = reader.number<std::uint64_t>();
     for (std::int64_t* n : {&entry.stamp.content_time, &entry.stamp.status_time})

@@ -29,10 +29,6 @@ std::atomic<SceneCache*> current_cache{nullptr};
 /// File systems may give two changes within this time the same time.
 constexpr std::int64_t kTick = 2'000'000'000;
 
-std::int64_t nanoseconds(const timespec& time) {
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
 /// Nanoseconds since 1970.
 std::int64_t now() {
   timespec time{};

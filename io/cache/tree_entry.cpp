@@ -6,7 +6,7 @@ namespace oktett {
 namespace {
 
 /// The number changes with the tree that is built, and with the layout of nodes and blocks.
-constexpr std::string_view kKind = "tree 2 " OKTETT_VERSION;
+constexpr std::string_view kTreeKind = "tree 2 " OKTETT_VERSION;
 
 enum Section : std::size_t { kNodes, kBlocks, kLeaves, kItems };
 
@@ -14,7 +14,7 @@ enum Section : std::size_t { kNodes, kBlocks, kLeaves, kItems };
 
 std::string tree_header(std::uint64_t key, const Accel& accel, const ItemOrder& order) {
   std::string bytes;
-  append_text(bytes, kKind);
+  append_text(bytes, kTreeKind);
   append_number(bytes, key);
   append_number(bytes, accel.root.bits());
   for (const Vec3f& corner : {accel.bounds.lo, accel.bounds.hi})
@@ -41,7 +41,7 @@ void read_tree(const CacheFile& file, std::uint64_t key, Accel& accel, ItemOrder
   file.copy(kLeaves, leaves);
   try {
     ByteReader reader(file.header());
-    if (reader.text() != kKind || reader.number<std::uint64_t>() != key)
+    if (reader.text() != kTreeKind || reader.number<std::uint64_t>() != key)
       throw Error("is not of this version");
     accel.root = NodeRef::from_bits(reader.number<std::uint32_t>());
     for (Vec3f* corner : {&accel.bounds.lo, &accel.bounds.hi})

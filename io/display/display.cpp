@@ -19,17 +19,18 @@
 #include "io/display/socket.h"
 
 namespace oktett {
-namespace {
 
-constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
-
-struct Address {
+struct DisplayAddress {
   std::string host = "127.0.0.1";
   std::string port = "14158";
 };
 
-Address parse_address(const std::string& server) {
-  Address address;
+namespace {
+
+constexpr std::size_t kMostQueuedBytes = std::size_t{256} << 20;
+
+DisplayAddress parse_address(const std::string& server) {
+  DisplayAddress address;
   // An IPv6 address has colons of its own and stands in brackets: [::1]:14158.
   const std::size_t bracket = server.starts_with('[') ? server.find(']') : std::string::npos;
   const std::size_t colon = server.find(':', bracket == std::string::npos ? 0 : bracket);
@@ -128,7 +129,7 @@ std::vector<const PicturePlane*> shown_planes(const Picture& picture) {
 /// What the display and its thread share. The thread holds on to it: a name that takes minutes to resolve
 /// must not keep the display from being destroyed.
 struct Display::Link {
-  Address address;
+  DisplayAddress address;
   DisplayTimeouts timeouts;
   std::atomic<bool> stop{false};
   std::mutex mutex;

@@ -19,7 +19,7 @@ void read_up_to_three(MtlLine& line, Vec3f& v) {
   }
 }
 
-void read_number(MtlLine& line, float& value) {
+void read_option_number(MtlLine& line, float& value) {
   if (const std::optional<float> x = line.take_number()) value = *x;
 }
 
@@ -34,10 +34,10 @@ bool read_option(const std::string& name, MtlLine& line, MtlTexture& result) {
     Vec3f turbulence;
     read_up_to_three(line, turbulence);
   } else if (name == "-mm") {
-    read_number(line, texture.base);
-    read_number(line, texture.gain);
+    read_option_number(line, texture.base);
+    read_option_number(line, texture.gain);
   } else if (name == "-bm") {
-    read_number(line, result.bump_scale);
+    read_option_number(line, result.bump_scale);
   } else if (name == "-clamp") {
     texture.clamp = line.take() == "on";
   } else if (name == "-blendu" || name == "-blendv" || name == "-cc" || name == "-boost" ||

@@ -18,7 +18,6 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kNone = ~std::size_t{0};
 /// Lengths of lists that are tried.
 constexpr std::size_t kLengths[] = {1, 2, 3, 4, 12, 16};
 /// Words of a choice that are tried where other keys depend on it.
@@ -44,7 +43,8 @@ class Explorer final : public ReadProbe {
   }
 
   void value(const YamlNode& node, const ReadType& type) override {
-    if (const std::size_t slot = slot_of(node); slot != kNone) add(slot, SchemaType{type, kNone, kNone, {}});
+    if (const std::size_t slot = slot_of(node); slot != SchemaType::kNone)
+      add(slot, SchemaType{type, SchemaType::kNone, SchemaType::kNone, {}});
     read_.insert(&node);
   }
 
@@ -63,14 +63,14 @@ class Explorer final : public ReadProbe {
     }
     map_of_[&map] = type;
     read_.insert(&map);
-    if (slot != kNone) add(slot, SchemaType{std::nullopt, type, kNone, {}});
+    if (slot != SchemaType::kNone) add(slot, SchemaType{std::nullopt, type, SchemaType::kNone, {}});
   }
 
   void entries(const YamlNode& node, const std::string&) override {
     read_.insert(&node);
     const std::size_t slot = slot_of(node);
-    if (map_of_.contains(&node) || slot == kNone) return;
-    add(slot, SchemaType{std::nullopt, kNone, entry_slot(slot), {}, node.kind == YamlKind::map});
+    if (map_of_.contains(&node) || slot == SchemaType::kNone) return;
+    add(slot, SchemaType{std::nullopt, SchemaType::kNone, entry_slot(slot), {}, node.kind == YamlKind::map});
   }
 
   const YamlNode& required(const YamlNode& map, const char* key) override {
@@ -78,7 +78,8 @@ class Explorer final : public ReadProbe {
     missing_.insert({type, key});
     const SchemaMap& m = types_.maps[type];
     const auto at = std::ranges::find(m.keys, key);
-    return sample(at == m.keys.end() ? kNone : m.slots[static_cast<std::size_t>(at - m.keys.begin())]);
+    return sample(at == m.keys.end() ? SchemaType::kNone
+                                     : m.slots[static_cast<std::size_t>(at - m.keys.begin())]);
   }
 
   std::size_t chosen(std::size_t words) const override { return word_ % words; }
@@ -94,7 +95,7 @@ class Explorer final : public ReadProbe {
  private:
   std::size_t slot_of(const YamlNode& node) const {
     const auto found = slots_.find(&node);
-    return found == slots_.end() ? kNone : found->second;
+    return found == slots_.end() ? SchemaType::kNone : found->second;
   }
 
   void add(std::size_t slot, const SchemaType& type) {
@@ -115,18 +116,18 @@ class Explorer final : public ReadProbe {
     YamlNode& made = file_->nodes.emplace_back();
     made.file = &*file_, made.kind = kind;
     if (kind == YamlKind::scalar) made.text = "x";
-    if (slot != kNone) slots_[&made] = slot;
+    if (slot != SchemaType::kNone) slots_[&made] = slot;
     return made;
   }
 
   YamlNode& version() {
-    YamlNode& made = node(kNone, YamlKind::scalar);
+    YamlNode& made = node(SchemaType::kNone, YamlKind::scalar);
     made.text = "1";
     return made;
   }
 
   void put(YamlNode& map, const std::string& key, const YamlNode& value) {
-    YamlNode& name = node(kNone, YamlKind::scalar);
+    YamlNode& name = node(SchemaType::kNone, YamlKind::scalar);
     name.text = key;
     map.items.push_back(&name), map.items.push_back(&value);
   }
@@ -134,18 +135,19 @@ class Explorer final : public ReadProbe {
   /// A value of a kind that is known to be read at `slot`.
   YamlNode& sample(std::size_t slot) {
     const std::vector<SchemaType> none;
-    const std::vector<SchemaType>& found = slot == kNone ? none : types_.slots[slot].found;
+    const std::vector<SchemaType>& found = slot == SchemaType::kNone ? none : types_.slots[slot].found;
     if (found.empty()) return node(slot, YamlKind::scalar);
     const SchemaType& type = found.front();
-    if (type.map != kNone || type.names) return node(slot, YamlKind::map);
-    const bool list = type.entry != kNone || type.value->kind == ReadType::Kind::numbers;
+    if (type.map != SchemaType::kNone || type.names) return node(slot, YamlKind::map);
+    const bool list = type.entry != SchemaType::kNone || type.value->kind == ReadType::Kind::numbers;
     if (!list) return node(slot, YamlKind::scalar);
     return node(slot, YamlKind::sequence);
   }
 
   /// Reads a tree that leads to `slot`, where it has a value of `kind`, a list of `length` values if it is
   /// one, beside the key at the place `other`. Returns the value, or null if the reader gave up.
-  const YamlNode& read_tree(std::size_t slot, YamlKind kind, std::size_t length, std::size_t other = kNone) {
+  const YamlNode& read_tree(std::size_t slot, YamlKind kind, std::size_t length,
+                            std::size_t other = SchemaType::kNone) {
     file_.emplace();
     file_->probe = this;
     slots_.clear(), map_of_.clear(), read_.clear(), missing_.clear();
@@ -163,8 +165,8 @@ class Explorer final : public ReadProbe {
         parent.items.push_back(child);
       else
         put(parent, place.key.empty() ? "x" : place.key, *child);
-      const std::size_t beside = at == slot && other != kNone ? other : place.beside;
-      if (beside != kNone) put(parent, types_.slots[beside].key, sample(beside));
+      const std::size_t beside = at == slot && other != SchemaType::kNone ? other : place.beside;
+      if (beside != SchemaType::kNone) put(parent, types_.slots[beside].key, sample(beside));
       child = &parent;
     }
     if (slot != 0 || kind == YamlKind::map)
@@ -194,11 +196,11 @@ class Explorer final : public ReadProbe {
 
   // --- what to try
 
-  void try_all(std::size_t slot, std::size_t other = kNone) {
+  void try_all(std::size_t slot, std::size_t other = SchemaType::kNone) {
     note_missing(slot, read_tree(slot, YamlKind::scalar, 0, other));
     try_lists(slot, other);
     note_missing(slot, read_tree(slot, YamlKind::map, 0, other));
-    if (other == kNone) note_required(slot);
+    if (other == SchemaType::kNone) note_required(slot);
   }
 
   /// After a map without keys was read at `slot`: what was asked for is required, if it is in all such
@@ -218,7 +220,7 @@ class Explorer final : public ReadProbe {
   }
 
   void try_lists(std::size_t slot, std::size_t other) {
-    SchemaType direct{std::nullopt, kNone, kNone, {}};
+    SchemaType direct{std::nullopt, SchemaType::kNone, SchemaType::kNone, {}};
     for (const std::size_t length : kLengths) {
       const YamlNode& target = read_tree(slot, YamlKind::sequence, length, other);
       note_missing(slot, target);

@@ -10,8 +10,6 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kNone = ~std::size_t{0};
-
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -167,7 +165,7 @@ class Writer {
 
   std::string type_text(const SchemaType& type) const {
     if (type.value) return value_text(*type.value);
-    if (type.map != kNone) return fmt::format("{{\"$ref\": \"#/$defs/{}\"}}", names_[type.map]);
+    if (type.map != SchemaType::kNone) return fmt::format("{{\"$ref\": \"#/$defs/{}\"}}", names_[type.map]);
     const std::string entry = slot_text(type.entry);
     if (type.names)
       return fmt::format("{{\"type\": [\"object\", \"null\"], \"additionalProperties\": {}}}", entry);

@@ -13,9 +13,10 @@ namespace oktett {
 
 /// One thing that may stand at a place: a value, a map with known keys, or a list or map of like entries.
 struct SchemaType {
+  static constexpr std::size_t kNone = ~std::size_t{0};
   std::optional<ReadType> value;
-  std::size_t map;                ///< index into SchemaTypes::maps
-  std::size_t entry;              ///< the place of the entries
+  std::size_t map;                ///< index into SchemaTypes::maps, or kNone
+  std::size_t entry;              ///< the place of the entries, or kNone
   std::set<std::size_t> lengths;  ///< that a list may have; empty: any
   bool names = false;             ///< the entries have names
   bool operator==(const SchemaType&) const = default;
@@ -26,7 +27,7 @@ struct SchemaSlot {
   std::size_t parent = 0;  ///< index of the place of the map or list that it was found in
   std::string key;         ///< empty for entries
   std::vector<SchemaType> found;
-  std::size_t beside = ~std::size_t{0};  ///< the place of a key that must stand beside this one to be read
+  std::size_t beside = SchemaType::kNone;  ///< the place of a key that must stand beside this one to be read
 };
 
 /// A map with known keys, in the place of each.

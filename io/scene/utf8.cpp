@@ -8,7 +8,7 @@
 namespace oktett {
 namespace {
 
-bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
+bool is_inside_character(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
 
 /// Length of the well-formed character at `text[i]` (Unicode 15, table 3-7); 0 if it is malformed.
 std::size_t character_length(std::string_view text, std::size_t i) {
@@ -54,14 +54,14 @@ void check_text(std::string& text, const std::string& path) {
 }
 
 std::size_t character_count(std::string_view text) {
-  return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_continuation));
+  return text.size() - static_cast<std::size_t>(std::count_if(text.begin(), text.end(), is_inside_character));
 }
 
 std::string quote(std::string_view text, std::size_t max_characters) {
   std::string shown;
   std::size_t characters = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (!is_continuation(text[i]) && ++characters > max_characters) return "'" + shown + "...'";
+    if (!is_inside_character(text[i]) && ++characters > max_characters) return "'" + shown + "...'";
     const auto c = static_cast<unsigned char>(text[i]);
     shown += c < 0x20 || c == 0x7f ? '?' : text[i];
   }
@@ -69,7 +69,7 @@ std::string quote(std::string_view text, std::size_t max_characters) {
 }
 
 ColumnCounter::ColumnCounter(const std::string& text)
-    : text_(text), ascii_(std::none_of(text.begin(), text.end(), is_continuation)) {}
+    : text_(text), ascii_(std::none_of(text.begin(), text.end(), is_inside_character)) {}
 
 std::uint32_t ColumnCounter::of(std::size_t offset, std::size_t byte_column) {
   if (ascii_) return static_cast<std::uint32_t>(byte_column + 1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/math.h"
 #include "kernels/functions/function_tape.h"
 #include "kernels/functions/tape_values.h"
 
@@ -20,7 +21,6 @@ constexpr std::size_t kMostValues = 3 + 2 * kMaxTapeSteps + 3;
 constexpr double kTrialSize = 0x1p-4, kLeastSize = 0x1p-6, kLeastPlainSize = 0x1p-3;
 /// Times relative to that of a node of the tree: a cell, and each of its steps.
 constexpr double kCellCost = 20, kStepCost = 6;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The values that matter in a box, as numbers: first that of the result, then two for each value in the
 /// order of computation, its number in the whole list and the numbers of its operands.

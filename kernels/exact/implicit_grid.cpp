@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math.h"
 #include "kernels/functions/function_tape.h"
 #include "kernels/functions/variation.h"
 
@@ -12,8 +13,8 @@ namespace oktett {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr GridCell kUnknown{{kInfinity, kInfinity}, kInfinity, 0};
+constexpr float kNoLimit = std::numeric_limits<float>::infinity();
+constexpr GridCell kUnknown{{kNoLimit, kNoLimit}, kNoLimit, 0};
 
 /// Rounded up; bounds are computed with relative errors far below 2^-20.
 float upward(double x) { return static_cast<float>(x * (1 + 0x1p-20) + 0x1p-140); }

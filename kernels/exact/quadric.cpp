@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "core/double_double.h"
+#include "core/math.h"
 #include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 
 namespace {
 
-constexpr double kInfinity = roots::kNoRoot;
 /// Boxes around what they bound are larger by this, so that the function is surely not negative outside.
 constexpr double kMargin = 0x1p-20;
 

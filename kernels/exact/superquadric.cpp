@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math.h"
 #include "kernels/exact/surface_uv.h"
 
 namespace oktett {
 
 namespace {
-
-using Form = SuperquadricShape::Form;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The x >= 0 whose power is y; infinite if there is none.
 double root(double y, double p, bool ratio) {
@@ -41,12 +39,12 @@ constexpr double kGrow = 1 + 0x1p-36;
 
 Vec3d Superquadric::reach(const SuperquadricShape& s) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const bool toroid = s.form == Form::toroid;
+  const bool toroid = s.form == SuperquadricShape::Form::toroid;
   for (const double x : {s.radii.x, s.radii.y, s.radii.z, s.p, s.q, s.r, toroid ? s.m : 1, toroid ? s.n : 1,
                          toroid ? s.e : 1, toroid ? s.d + s.e : 1})
     if (!(x > 0 && std::isfinite(x))) return {nan, nan, nan};
-  if (s.form == Form::ellipsoid) return s.radii * kGrow;
-  if (s.form == Form::hyperboloid) {
+  if (s.form == SuperquadricShape::Form::ellipsoid) return s.radii * kGrow;
+  if (s.form == SuperquadricShape::Form::hyperboloid) {
     Vec3d v = {kInfinity, kInfinity, kInfinity};
     const double p[3] = {s.p, s.q, s.r};
     for (int k = 0; k < 3; ++k)
@@ -64,7 +62,7 @@ Vec3d Superquadric::reach(const SuperquadricShape& s) {
 void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace& place) {
   const Vec3d far = reach(s);
   Vec3d lo = -far, hi = far;
-  if (s.form == Form::hyperboloid)
+  if (s.form == SuperquadricShape::Form::hyperboloid)
     for (int k = 0; k < 3; ++k) lo[k] = std::max(lo[k], s.lo[k]), hi[k] = std::min(hi[k], s.hi[k]);
   for (int k = 0; k < 3; ++k)
     if (!(lo[k] < hi[k] && std::isfinite(hi[k] - lo[k]))) return;
@@ -72,15 +70,15 @@ void Superquadric::add(Pool& pool, const SuperquadricShape& s, const ExactPlace&
   for (int k = 0; k < 3; ++k) extent[k] = std::max(std::abs(lo[k]), std::abs(hi[k]));
   const double size = max_component(extent);
   SuperquadricElement e{};
-  const bool toroid = s.form == Form::toroid;
+  const bool toroid = s.form == SuperquadricShape::Form::toroid;
   const double p[3] = {toroid ? s.m : s.p, toroid ? s.n : s.q, toroid ? s.p : s.r};
   for (int k = 0; k < 3; ++k) {
     e.inverse[k] = size / s.radii[k], e.exponent[k] = SuperExponent(p[k]);
     if (!std::isfinite(e.inverse[k])) return;
   }
   e.q = SuperExponent(s.q), e.r = SuperExponent(s.r), e.d = s.d, e.ee = s.e * s.e;
-  e.form = s.form, e.ratio = s.ratio, e.closed = s.form == Form::hyperboloid && !s.open;
-  e.convex = s.form == Form::ellipsoid && s.p >= 1 && s.q >= 1 && s.r >= 1;
+  e.form = s.form, e.ratio = s.ratio, e.closed = s.form == SuperquadricShape::Form::hyperboloid && !s.open;
+  e.convex = s.form == SuperquadricShape::Form::ellipsoid && s.p >= 1 && s.q >= 1 && s.r >= 1;
   for (int k = 0; k < 3 && e.convex; ++k) e.rounding[k] = rounding(p[k], e.ratio, e.inverse[k]);
   e.lo = lo * (1 / size), e.hi = hi * (1 / size);
   add_element(pool, e, place.to_world * Affine::scaling({size, size, size}), place);
@@ -93,8 +91,8 @@ SurfaceUv Superquadric::uv(const Pool& pool, std::size_t i, int part, const Vec3
   const auto scaled = [&](int k) { return component(p, k) * e.inverse[k]; };
   const SpaceFunction x = scaled(0), y = scaled(1), z = scaled(2), rho = radius_of(x, y);
   SpaceFunction v = (component(p, 2) - e.lo.z) / (e.hi.z - e.lo.z);
-  if (e.form == Form::ellipsoid) v = angle_of(z, rho) / std::numbers::pi + 0.5;
-  if (e.form == Form::toroid) v = turn_of(z, rho - e.d);
+  if (e.form == SuperquadricShape::Form::ellipsoid) v = angle_of(z, rho) / std::numbers::pi + 0.5;
+  if (e.form == SuperquadricShape::Form::toroid) v = turn_of(z, rho - e.d);
   return {turn_of(y, x), v};
 }
 

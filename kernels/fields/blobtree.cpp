@@ -11,13 +11,12 @@ namespace oktett {
 namespace {
 
 /// Cells are divided down to this, in reaches of their smallest element.
-constexpr double kLeastSize = 0.25;
+constexpr double kLeastPartSize = 0.25;
 /// Times relative to that of a node: a cell, and each of its elements.
-constexpr double kCellCost = 20, kPartCost = 20;
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kPartCellCost = 20, kPartCost = 20;
 
 double square_end(PotentialKind kind) {
-  return kind == PotentialKind::inverse_square ? kInf
+  return kind == PotentialKind::inverse_square ? kInfinity
          : kind == PotentialKind::gaussian     ? field::kGaussianEnd
                                                : 1.0;
 }
@@ -43,7 +42,7 @@ void from_polygon(const BlobTreePool& pool, const FieldPart& part, double x, dou
   const double* corner = pool.corners.data() + 2 * std::size_t{part.corner};
   const double* a = corner + 2 * (part.corners - 1);
   bool within = false;
-  double nearest = kInf;
+  double nearest = kInfinity;
   for (std::uint32_t i = 0; i < part.corners; ++i) {
     const double* b = corner + 2 * i;
     const double ex = b[0] - a[0], ey = b[1] - a[1], px = x - a[0], py = y - a[1];
@@ -137,15 +136,15 @@ class BlobRule : public CellRule {
   }
 
   double least_size(std::span<const std::uint32_t> part) const override {
-    double reach = kInf;
+    double reach = kInfinity;
     for (const std::uint32_t code : part)
       if (BlobCode::op(code) == BlobCode::element)
         reach = std::min(reach, pool_.parts[BlobCode::index(code)].reach);
-    return kLeastSize * reach;
+    return kLeastPartSize * reach;
   }
 
   double cost(std::span<const std::uint32_t> part) const override {
-    double cost = kCellCost;
+    double cost = kPartCellCost;
     for (const std::uint32_t code : part)
       if (BlobCode::op(code) == BlobCode::element) {
         const FieldPart& p = pool_.parts[BlobCode::index(code)];

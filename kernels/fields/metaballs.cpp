@@ -10,9 +10,9 @@ namespace oktett {
 namespace {
 
 /// Cells are divided down to this, in radii of their smallest ball.
-constexpr double kLeastSize = 0.5;
+constexpr double kLeastBallSize = 0.5;
 /// Times relative to that of a node, measured with 8 rays at once: a cell, and each of its balls.
-constexpr double kCellCost = 6, kBallCost = 2;
+constexpr double kBallCellCost = 6, kBallCost = 2;
 
 class BallRule : public CellRule {
  public:
@@ -43,11 +43,11 @@ class BallRule : public CellRule {
   double least_size(std::span<const std::uint32_t> part) const override {
     double square = std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : part) square = std::min(square, balls_[i].square);
-    return kLeastSize * std::sqrt(square);
+    return kLeastBallSize * std::sqrt(square);
   }
 
   double cost(std::span<const std::uint32_t> part) const override {
-    return kCellCost + kBallCost * static_cast<double>(part.size());
+    return kBallCellCost + kBallCost * static_cast<double>(part.size());
   }
 
  private:

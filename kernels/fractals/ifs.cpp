@@ -9,7 +9,7 @@
 namespace oktett {
 namespace {
 
-using Ball = IfsElement::Ball;
+using IfsBall = IfsElement::Ball;
 
 /// Pieces that rounding displaces a line by more than this part of are not divided.
 constexpr double kMostMargin = 0x1p-8;
@@ -20,15 +20,15 @@ double base_radius(IfsShape::Base base) { return base == IfsShape::Base::ball ? 
 
 /// A ball about balls: its centre moves towards the farthest of them by ever smaller steps (M. Badoiu, K.
 /// Clarkson: Smaller Core-Sets for Balls, 2003), and its radius holds them all wherever that ends.
-Ball ball_about(const std::vector<Ball>& balls) {
-  Ball all = balls[0];
-  const auto far_side = [&](const Ball& b) { return length(b.center - all.center) + b.radius; };
+IfsBall ball_about(const std::vector<IfsBall>& balls) {
+  IfsBall all = balls[0];
+  const auto far_side = [&](const IfsBall& b) { return length(b.center - all.center) + b.radius; };
   const auto farthest = [&] {
     return *std::max_element(balls.begin(), balls.end(),
-                             [&](const Ball& a, const Ball& b) { return far_side(a) < far_side(b); });
+                             [&](const IfsBall& a, const IfsBall& b) { return far_side(a) < far_side(b); });
   };
   for (int k = 1; k <= 200; ++k) {
-    const Ball b = farthest();
+    const IfsBall b = farthest();
     const double away = length(b.center - all.center);
     if (!(away > 0)) break;
     // The point of that ball farthest away.
@@ -39,7 +39,7 @@ Ball ball_about(const std::vector<Ball>& balls) {
   return all;
 }
 
-Ball image(const IfsElement::Map& map, const Ball& b) {
+IfsBall image(const IfsElement::Map& map, const IfsBall& b) {
   return {map.to_parent.point(b.center), map.norm * b.radius};
 }
 
@@ -71,7 +71,7 @@ struct IfsTree {
   static constexpr int kMaxChildren = kMaxIfsMaps;
   const IfsElement& e;
 
-  const Ball& ball(const Node& node) const { return e.balls[e.depth() - node.depth.level]; }
+  const IfsBall& ball(const Node& node) const { return e.balls[e.depth() - node.depth.level]; }
   bool is_leaf(const Node& node) const { return node.depth.is_leaf(e); }
 
   Node make(const Vec3d& o, const Vec3d& d, double at, const Depth& depth) const {
@@ -154,7 +154,7 @@ struct Support {
     if (leaf) return;
     std::pair<double, int> order[kMaxIfsMaps];
     const int n = static_cast<int>(e.maps.size());
-    const Ball& below = e.balls[e.depth() - depth.level - 1];
+    const IfsBall& below = e.balls[e.depth() - depth.level - 1];
     const auto turned = [&](int k) { return e.maps[k].to_parent.normal_by_inverse(w); };
     const auto start = [&](int k) {
       const auto& m = e.maps[k].to_parent.m;
@@ -187,7 +187,7 @@ double support(const IfsElement& e, const Vec3d& w) {
 /// Whether a piece holds p. After kMostUnionSteps `steps` none does.
 bool holds(const IfsElement& e, const Vec3d& p, const Depth& depth, int& steps) {
   if (++steps > kMostUnionSteps) return false;
-  const Ball& ball = e.balls[e.depth() - depth.level];
+  const IfsBall& ball = e.balls[e.depth() - depth.level];
   const Vec3d m = p - ball.center;
   const double radius = ball.radius + depth.margin;
   if (dot(m, m) > radius * radius) return false;
@@ -264,9 +264,9 @@ void Ifs::add(Pool& pool, const IfsShape& s, const ExactPlace& place) {
     const Affine inverse = map.inverse();
     e.maps.push_back({inverse, map, n, norm(inverse)});
   }
-  const Ball base{{0, 0, 0}, base_radius(s.base)};
+  const IfsBall base{{0, 0, 0}, base_radius(s.base)};
   e.balls.push_back(base);
-  std::vector<Ball> parts;
+  std::vector<IfsBall> parts;
   for (std::uint32_t k = 0; k < s.depth; ++k) {
     // With the base, as a piece may end at any level.
     parts.assign(1, base);
@@ -275,10 +275,10 @@ void Ifs::add(Pool& pool, const IfsShape& s, const ExactPlace& place) {
   }
   // A few roundings in each level, of numbers as large as the ball and its distance.
   double size = 0;
-  for (const Ball& b : e.balls) size = std::max(size, b.radius + length(b.center));
+  for (const IfsBall& b : e.balls) size = std::max(size, b.radius + length(b.center));
   e.rounding = 0x1p-49 * size;
   add_element(pool, e, place.to_world, place);
-  const Ball& all = e.balls.back();
+  const IfsBall& all = e.balls.back();
   const Vec3d r = Vec3d{1, 1, 1} * (all.radius + e.rounding);
   add_cell(pool, all.center - r, all.center + r);
 }

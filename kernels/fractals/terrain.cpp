@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/math.h"
 #include "core/random.h"
 
 namespace oktett {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 /// Cells looked at for bounds; those that are left count with what bounds them.
 constexpr int kMostBoundSteps = 20000;
 
@@ -55,7 +55,7 @@ TerrainCell part(const TerrainElement& e, const TerrainCell& c, int right, int f
 /// An upper bound of all heights.
 struct Highest {
   const TerrainElement& e;
-  double slack, best = -kInf;
+  double slack, best = -kInfinity;
   int steps = 0;
 
   double bound(const TerrainCell& c) const { return c.highest() + e.rest[c.level]; }
@@ -182,7 +182,7 @@ class TerrainWalk {
   /// linear. The ends of the pieces are on edges, where all who share them find the same.
   void cross(const TerrainCell& c, const Gate& exit) {
     const Triangles triangles{c};
-    Gate near{-kInf};
+    Gate near{-kInfinity};
     for (const int k : {0, 2}) {
       const double low = k == 0 ? c.x : c.z;
       if (line_.way[k] == 0) continue;

@@ -7,13 +7,13 @@ namespace {
   throw py::value_error(std::string(name) + ": expected " + expected + ", found " + found);
 }
 
-std::string shape_text(const Shape& shape) {
+std::string text_of(const ArrayShape& shape) {
   std::string text = "(";
   for (std::size_t k = 0; k < shape.size(); ++k) text += (k > 0 ? ", " : "") + std::to_string(shape[k]);
   return text + (shape.size() == 1 ? ",)" : ")");
 }
 
-Shape shape_of(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
+ArrayShape shape_of(const py::array& array) { return {array.shape(), array.shape() + array.ndim()}; }
 
 /// Throws ValueError unless `value` is, or can become, an array of real numbers.
 py::array number_array(py::handle value, const char* name, const std::string& expected) {
@@ -36,7 +36,7 @@ FloatArray to_floats(const py::array& array) {
 
 }  // namespace
 
-std::string shape_text(const py::array& array) { return shape_text(shape_of(array)); }
+std::string shape_text(const py::array& array) { return text_of(shape_of(array)); }
 
 FloatArray float_rows(py::handle value, const char* name, py::ssize_t last) {
   const std::string expected = "an array of numbers of shape (..., " + std::to_string(last) + ")";
@@ -46,10 +46,10 @@ FloatArray float_rows(py::handle value, const char* name, py::ssize_t last) {
   return to_floats(array);
 }
 
-Shape row_shape(const FloatArray& rows) { return {rows.shape(), rows.shape() + rows.ndim() - 1}; }
+ArrayShape row_shape(const FloatArray& rows) { return {rows.shape(), rows.shape() + rows.ndim() - 1}; }
 
-FloatArray float_each(py::handle value, const char* name, const Shape& shape) {
-  const std::string expected = "a number or an array of shape " + shape_text(shape);
+FloatArray float_each(py::handle value, const char* name, const ArrayShape& shape) {
+  const std::string expected = "a number or an array of shape " + text_of(shape);
   const py::array array = number_array(value, name, expected);
   if (array.ndim() != 0 && shape_of(array) != shape) fail(name, expected, "the shape " + shape_text(array));
   return to_floats(array);
@@ -80,7 +80,7 @@ py::array_t<std::uint32_t, py::array::c_style> triangle_rows(py::handle value, s
   }
   const auto wide = Wide::ensure(array);
   if (!wide) throw py::error_already_set();
-  Narrow narrow(Shape{array.shape(0), 3});
+  Narrow narrow(ArrayShape{array.shape(0), 3});
   for (py::ssize_t k = 0; k < size; ++k) {
     check(wide.data()[k], k);
     narrow.mutable_data()[k] = static_cast<std::uint32_t>(wide.data()[k]);
@@ -88,7 +88,7 @@ py::array_t<std::uint32_t, py::array::c_style> triangle_rows(py::handle value, s
   return narrow;
 }
 
-Shape with_last(Shape shape, py::ssize_t last) {
+ArrayShape with_last(ArrayShape shape, py::ssize_t last) {
   shape.push_back(last);
   return shape;
 }

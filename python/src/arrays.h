@@ -13,7 +13,7 @@ namespace oktett::python {
 namespace py = pybind11;
 
 using FloatArray = py::array_t<float, py::array::c_style>;
-using Shape = std::vector<py::ssize_t>;
+using ArrayShape = std::vector<py::ssize_t>;
 
 /// "(4, 6)".
 std::string shape_text(const py::array& array);
@@ -24,15 +24,15 @@ std::string shape_text(const py::array& array);
 FloatArray float_rows(py::handle value, const char* name, py::ssize_t last);
 
 /// The dimensions of rows without the last one.
-Shape row_shape(const FloatArray& rows);
+ArrayShape row_shape(const FloatArray& rows);
 
 /// One number for each of `shape`, or one for all: tmin and tmax of rays. Throws ValueError for other shapes.
-FloatArray float_each(py::handle value, const char* name, const Shape& shape);
+FloatArray float_each(py::handle value, const char* name, const ArrayShape& shape);
 
 /// Indices of shape (m, 3), each below `vertices`. Throws ValueError for others.
 py::array_t<std::uint32_t, py::array::c_style> triangle_rows(py::handle value, std::size_t vertices);
 
 /// `shape` with `last` behind it.
-Shape with_last(Shape shape, py::ssize_t last);
+ArrayShape with_last(ArrayShape shape, py::ssize_t last);
 
 }  // namespace oktett::python

@@ -9,12 +9,12 @@
 namespace oktett::python {
 namespace {
 
-const Fields kFields{"distance", "point", "object", "primitive", "instance", "uv", "normal"};
+const Fields kPointFields{"distance", "point", "object", "primitive", "instance", "uv", "normal"};
 
 py::object ask_closest_point(SceneStore& scene, py::handle given, const Fields& fields) {
-  check_fields(fields, kFields);
+  check_fields(fields, kPointFields);
   const FloatArray points = float_rows(given, "points", 3);
-  const Shape shape = row_shape(points);
+  const ArrayShape shape = row_shape(points);
   ClosestColumns columns;
   py::dict result;
   const auto add = [&](const char* name, auto*& column, py::ssize_t components) {

@@ -18,7 +18,7 @@ namespace {
 /// The arguments of a query: arrays that are kept alive, and where they lie.
 struct RayArguments {
   FloatArray rays, tmin, tmax;
-  Shape shape;
+  ArrayShape shape;
   RayRows rows;
 
   RayArguments(py::handle given, py::handle given_tmin, py::handle given_tmax)
@@ -51,7 +51,7 @@ RayOrder picture_order(const RayRows& rays) {
   return RayOrder(rays.size, picture_width(rays.rows, rays.size));
 }
 
-const Fields kFields{"t", "object", "primitive", "instance", "uv", "normal", "position"};
+const Fields kHitFields{"t", "object", "primitive", "instance", "uv", "normal", "position"};
 
 /// Calls visit(name, column, components) for each column.
 template <class Visit>
@@ -67,7 +67,7 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
 
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
                            const Fields& fields) {
-  check_fields(fields, kFields);
+  check_fields(fields, kHitFields);
   const RayArguments arguments(rays, tmin, tmax);
   HitColumns columns;
   py::dict result;
@@ -108,7 +108,7 @@ py::object joined(const std::vector<FoundHits>& pieces, std::vector<T> FoundHits
   std::size_t size = 0;
   for (const FoundHits& piece : pieces) size += (piece.*column).size();
   const auto count = static_cast<py::ssize_t>(size);
-  py::array_t<T> array(components == 0 ? Shape{count} : Shape{count / components, components});
+  py::array_t<T> array(components == 0 ? ArrayShape{count} : ArrayShape{count / components, components});
   T* out = array.mutable_data();
   for (const FoundHits& piece : pieces) out = std::copy((piece.*column).begin(), (piece.*column).end(), out);
   return array;
@@ -130,7 +130,7 @@ py::array joined_splits(const std::vector<FoundHits>& pieces, std::size_t rays) 
 
 py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
                         const Fields& fields) {
-  check_fields(fields, kFields);
+  check_fields(fields, kHitFields);
   const RayArguments arguments(rays, tmin, tmax);
   // Only whether a column is null counts.
   HitColumns wanted;

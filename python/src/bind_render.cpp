@@ -78,7 +78,7 @@ void override_whole(const Whole& given, const char* name, std::int64_t lo, std::
 py::array plane_array(const std::shared_ptr<const Picture>& picture, const PicturePlane& plane) {
   const py::capsule owner(new std::shared_ptr<const Picture>(picture),
                           [](void* p) { delete static_cast<std::shared_ptr<const Picture>*>(p); });
-  const Shape shape{picture->height, picture->width};
+  const ArrayShape shape{picture->height, picture->width};
   if (plane.type == PlaneType::unsigned_int)
     return py::array_t<std::uint32_t>(shape, plane.ids.data(), owner);
   return py::array_t<float>(shape, plane.values.data(), owner);

@@ -124,9 +124,9 @@ py::tuple pickled(const SceneStore& scene) {
   py::list meshes;
   for (const AddedMesh& added : scene.added()) {
     const TriangleMesh& mesh = *added.mesh;
-    py::array_t<float> positions(Shape{static_cast<py::ssize_t>(mesh.positions.size()), 3});
-    py::array_t<std::uint32_t> indices(Shape{static_cast<py::ssize_t>(mesh.triangle_count()), 3});
-    py::array_t<double> transform(Shape{3, 4});
+    py::array_t<float> positions(ArrayShape{static_cast<py::ssize_t>(mesh.positions.size()), 3});
+    py::array_t<std::uint32_t> indices(ArrayShape{static_cast<py::ssize_t>(mesh.triangle_count()), 3});
+    py::array_t<double> transform(ArrayShape{3, 4});
     if (positions.size() > 0)
       std::memcpy(positions.mutable_data(), mesh.positions.data(),
                   static_cast<std::size_t>(positions.nbytes()));
@@ -163,7 +163,7 @@ StorePointer unpickled(const py::tuple& state) {
 py::object scene_bounds(SceneStore& scene) {
   const Box box = world_of(scene)->bounds;
   if (!(box.lo.x <= box.hi.x)) return py::none();
-  py::array_t<float> result(Shape{2, 3});
+  py::array_t<float> result(ArrayShape{2, 3});
   for (int k = 0; k < 3; ++k) result.mutable_at(0, k) = box.lo[k], result.mutable_at(1, k) = box.hi[k];
   return result;
 }

@@ -21,7 +21,7 @@ void check_fields(const Fields& fields, const Fields& known);
 /// Puts a new array of `shape`, with `components` as its last dimension if that is not 0, into `result` and
 /// returns where it lies; None and null if the field is not wanted. The last argument tells the type.
 template <class T>
-T* make_column(py::dict& result, const char* name, const Fields& wanted, const Shape& shape,
+T* make_column(py::dict& result, const char* name, const Fields& wanted, const ArrayShape& shape,
                py::ssize_t components, const T*) {
   result[name] = py::none();
   if (!contains(wanted, name)) return nullptr;

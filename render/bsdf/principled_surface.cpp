@@ -1,11 +1,11 @@
 #include "render/bsdf/principled_surface.h"
 
+#include <numbers>
 #include "render/bsdf/lobes.h"
 #include "render/bsdf/optics.h"
 
 namespace oktett {
 
-static constexpr double kPi = std::numbers::pi;
 static constexpr Vec3d kWhite{1, 1, 1};
 
 /// The fraction of diffuse light that metal reflects: the mean of `fresnel_of(cosine)` weighted by 2 cosine.
@@ -78,7 +78,7 @@ void PrincipledSurface::set_metal(const PrincipledParameters& p) {
   const Vec3d mean = has_conductor ? mean_of(of_conductor) : base_color + (kWhite - base_color) * (1 / 21.0);
   const Vec3d again{reflected_again(mean.x, mirror_loss), reflected_again(mean.y, mirror_loss),
                     reflected_again(mean.z, mirror_loss)};
-  metal_again = again / (kPi * mirror_loss);
+  metal_again = again / (std::numbers::pi * mirror_loss);
   metal_again_most = max_component(again);
 }
 

@@ -8,8 +8,6 @@
 
 namespace oktett {
 
-static constexpr double kDegree = std::numbers::pi / 180;
-
 float AimedProfile::operator()(const Vec3d& direction) const {
   if (profile == nullptr) return 1;
   const double x = dot(direction, zero), y = dot(direction, cross(zero, down)), z = dot(direction, down);

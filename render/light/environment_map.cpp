@@ -10,14 +10,13 @@
 
 namespace oktett {
 
-static constexpr double kPi = std::numbers::pi;
-
 /// A compensated map with less than this part of its light left counts as constant.
 static constexpr double kLeastLeft = 1e-6;
 
 Vec3f environment_direction(double u, double v) {
-  const double sine = portable::sin(kPi * v), angle = (u - 0.5) * 2 * kPi;
-  return Vec3f(Vec3d{sine * portable::sin(angle), portable::cos(kPi * v), -sine * portable::cos(angle)});
+  const double sine = portable::sin(std::numbers::pi * v), angle = (u - 0.5) * 2 * std::numbers::pi;
+  return Vec3f(
+      Vec3d{sine * portable::sin(angle), portable::cos(std::numbers::pi * v), -sine * portable::cos(angle)});
 }
 
 static float valid(float value) { return value > 0 && std::isfinite(value) ? value : 0; }
@@ -32,10 +31,10 @@ EnvironmentMap::EnvironmentMap(EnvironmentPicture picture, const EnvironmentOpti
   if (picture_.pixels.size() != pixels) throw Error("an environment map has a wrong number of pixels");
   for (Color& c : picture_.pixels) c = {valid(c.x), valid(c.y), valid(c.z)};
   prepare_density(0);
-  mean_ = total_ / (4 * kPi);
+  mean_ = total_ / (4 * std::numbers::pi);
   if (!options.compensate || total_ == 0) return;
   prepare_density(mean_);
-  if (total_ < mean_ * 4 * kPi * kLeastLeft) total_ = 0;
+  if (total_ < mean_ * 4 * std::numbers::pi * kLeastLeft) total_ = 0;
 }
 
 const Color& EnvironmentMap::pixel(std::int64_t x, std::int64_t y) const {
@@ -58,8 +57,8 @@ double EnvironmentMap::weight(std::int64_t x, std::int64_t y) const {
 
 double EnvironmentMap::pixel_solid_angle(std::size_t row) const {
   // The difference of the cosines of its edges times the angle of its width.
-  const double half = kPi / 2 / picture_.height;
-  return 4 * kPi / picture_.width * portable::sin(half * static_cast<double>(2 * row + 1)) *
+  const double half = std::numbers::pi / 2 / picture_.height;
+  return 4 * std::numbers::pi / picture_.width * portable::sin(half * static_cast<double>(2 * row + 1)) *
          portable::sin(half);
 }
 
@@ -80,7 +79,7 @@ void EnvironmentMap::prepare_density(double subtract) {
     rows_[y] = total_;
   }
   for (std::size_t y = 0; y <= height; ++y)
-    cosines_[y] = portable::cos(kPi * static_cast<double>(y) / picture_.height);
+    cosines_[y] = portable::cos(std::numbers::pi * static_cast<double>(y) / picture_.height);
   for (std::size_t i = 0; i < weights.size(); ++i) density_[i] = static_cast<float>(weights[i] / total_);
 }
 

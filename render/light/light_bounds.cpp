@@ -8,8 +8,6 @@
 
 namespace oktett {
 
-static constexpr double kPi = std::numbers::pi;
-
 /// Added to each joined cone, for the rounding of its axis.
 static constexpr double kSlack = 1e-6;
 
@@ -41,8 +39,8 @@ LightBounds join(const LightBounds& a, const LightBounds& b) {
   }
   const double spread = (a.spread + between + b.spread) / 2;
   // Opposite axes leave open where to turn.
-  if (spread + kSlack >= kPi || (sine < kSlack && dot(p, q) < 0)) {
-    sum.spread = static_cast<float>(kPi);
+  if (spread + kSlack >= std::numbers::pi || (sine < kSlack && dot(p, q) < 0)) {
+    sum.spread = static_cast<float>(std::numbers::pi);
     return sum;
   }
   const double turn = spread - a.spread;

@@ -7,8 +7,6 @@
 
 namespace oktett {
 
-static constexpr double kDegree = std::numbers::pi / 180;
-
 /// The interval of `angles`, which holds `angle`, as the index of its end, and the place in it. A single
 /// angle is an interval by itself.
 static std::size_t find_interval(const std::vector<double>& angles, double angle, double& place) {

@@ -153,21 +153,18 @@ static Division divide(std::span<Item> items, std::uint32_t depth) {
   return {count, split.axis};
 }
 
-namespace {
-
 /// A node of the binary tree, which stands depth first in memory: the left child of a node follows it.
-struct BinaryNode {
+struct BinaryLightNode {
   LightBounds bounds;
   std::uint32_t next;  ///< leaf: index of the emitter; else: the right child
   bool leaf;
   int axis = kNoAxis;  ///< along which the left child lies before the right one
 };
 
-}  // namespace
-
 /// Builds the subtree of `items` at the front of `nodes`; `first` is the number of that place. The subtree
 /// has one node less than twice as many as there are items.
-static void build_binary(std::span<Item> items, BinaryNode* nodes, std::uint32_t first, std::uint32_t depth) {
+static void build_binary(std::span<Item> items, BinaryLightNode* nodes, std::uint32_t first,
+                         std::uint32_t depth) {
   if (items.size() == 1) {
     *nodes = {items[0].bounds, items[0].index, true};
     return;
@@ -193,7 +190,7 @@ static float coarseness(const LightBounds& b) {
 class LightTree::Builder {
  public:
   /// `wide` is the extent of the centres of all emitters: its two widest axes have a random number each.
-  Builder(LightTree& tree, const std::vector<BinaryNode>& nodes, const Vec3f& wide)
+  Builder(LightTree& tree, const std::vector<BinaryLightNode>& nodes, const Vec3f& wide)
       : tree_(tree), nodes_(nodes) {
     const int least = wide.y <= wide.x && wide.y <= wide.z ? 1 : wide.z <= wide.x ? 2 : 0;
     axis_dimension_[(least + 1) % 3] = 0, axis_dimension_[(least + 2) % 3] = 1;
@@ -207,7 +204,7 @@ class LightTree::Builder {
     tree_.quads_.emplace_back();
     tree_.parents_.push_back(parent);
     for (std::uint32_t lane = 0; lane < row.count; ++lane) {
-      const BinaryNode& child = nodes_[row.node[lane]];
+      const BinaryLightNode& child = nodes_[row.node[lane]];
       write(child, tree_.quads_[number], lane);
       if (child.leaf)
         tree_.slots_[child.next] = 4 * number + lane;
@@ -244,7 +241,7 @@ class LightTree::Builder {
         if (row.boundary[k] > opened) ++row.boundary[k];
       for (std::uint32_t i = row.count; i > opened + 1; --i)
         row.node[i] = row.node[i - 1], row.last[i] = row.last[i - 1];
-      const BinaryNode& wide = nodes_[row.node[opened]];
+      const BinaryLightNode& wide = nodes_[row.node[opened]];
       const std::uint32_t dimension = dimension_of(wide.axis, row.last[opened]);
       row.boundary[row.count - 1] = opened + 1, row.dimension[row.count - 1] = dimension;
       row.node[opened + 1] = wide.next, ++row.node[opened];
@@ -259,7 +256,7 @@ class LightTree::Builder {
   }
 
   /// Writes a child, apart from its own quad, which is the next one.
-  void write(const BinaryNode& child, LightQuad& quad, std::uint32_t lane) const {
+  void write(const BinaryLightNode& child, LightQuad& quad, std::uint32_t lane) const {
     const LightBounds& bounds = child.bounds;
     const Vec3f center = bounds.box.center(), axis = normalize(bounds.axis);
     const Vec3d half = max(Vec3d(bounds.box.hi) - Vec3d(center), Vec3d(center) - Vec3d(bounds.box.lo));
@@ -277,7 +274,7 @@ class LightTree::Builder {
   static constexpr std::uint32_t kEither = 2;
 
   LightTree& tree_;
-  const std::vector<BinaryNode>& nodes_;
+  const std::vector<BinaryLightNode>& nodes_;
   std::uint32_t axis_dimension_[3] = {kEither, kEither, kEither};  ///< per axis
 };
 
@@ -288,7 +285,7 @@ LightTree::LightTree(std::span<const LightBounds> emitters) {
   std::vector<Item> items(emitters.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = make_item(emitters[i], i);
   const Vec3f wide = box_of_centers(items).extent();
-  std::vector<BinaryNode> nodes(2 * items.size() - 1);
+  std::vector<BinaryLightNode> nodes(2 * items.size() - 1);
   build_binary(items, nodes.data(), 0, 0);
   quads_.reserve(items.size() / 2 + 1);
   slots_.resize(items.size());

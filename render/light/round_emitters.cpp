@@ -10,8 +10,6 @@
 
 namespace oktett {
 
-static constexpr double kPi = std::numbers::pi;
-
 // Spheres.
 
 using Lane = Simd<double, 1, ScalarIsa>;
@@ -29,24 +27,25 @@ std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint&
   const Vec3d direction = around({0, 0, 1}, 2 * s.x, s.y);
   const double along = dot(to_center, direction);
   const double distance = along + std::sqrt(along * along + (r_square - square));
-  return sample_at(direction * distance, e.radiance, 1 / (4 * kPi), false);
+  return sample_at(direction * distance, e.radiance, 1 / (4 * std::numbers::pi), false);
 }
 
 float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f&, float) {
   const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position);
   const double square = dot(to_center, to_center), r_square = double{e.radius} * e.radius;
   if (square >= r_square)
-    return square > 0 ? static_cast<float>(1 / (2 * kPi * cap_height(r_square / square))) : 0;
-  return e.both_sides ? static_cast<float>(1 / (4 * kPi)) : 0;
+    return square > 0 ? static_cast<float>(1 / (2 * std::numbers::pi * cap_height(r_square / square))) : 0;
+  return e.both_sides ? static_cast<float>(1 / (4 * std::numbers::pi)) : 0;
 }
 
 std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
   const double r = e.radius;
   const Vec3d half{r, r, r};
-  return LightBounds{.box = {round_down(Vec3d(e.center) - half), round_up(Vec3d(e.center) + half)},
-                     .spread = static_cast<float>(kPi),
-                     .reach = static_cast<float>(kPi / 2),
-                     .power = r > 0 ? static_cast<float>(color_weight(e.radiance) * 4 * kPi * r * r) : 0};
+  return LightBounds{
+      .box = {round_down(Vec3d(e.center) - half), round_up(Vec3d(e.center) + half)},
+      .spread = static_cast<float>(std::numbers::pi),
+      .reach = static_cast<float>(std::numbers::pi / 2),
+      .power = r > 0 ? static_cast<float>(color_weight(e.radiance) * 4 * std::numbers::pi * r * r) : 0};
 }
 
 // Points and spots.
@@ -72,15 +71,15 @@ float pdf_kind(const SpotEmitter&, const LightPoint&, const Vec3f&, float) { ret
 std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
   if (!e.falloff) return std::nullopt;
   return LightBounds{.box = {e.position, e.position},
-                     .spread = static_cast<float>(kPi),
-                     .reach = static_cast<float>(kPi / 2),
-                     .power = static_cast<float>(color_weight(e.intensity) / lit_part(kPi))};
+                     .spread = static_cast<float>(std::numbers::pi),
+                     .reach = static_cast<float>(std::numbers::pi / 2),
+                     .power = static_cast<float>(color_weight(e.intensity) / lit_part(std::numbers::pi))};
 }
 
 std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
   const double inner = portable::acos(std::clamp(double{e.cos_inner}, -1.0, 1.0));
   const double outer = portable::acos(std::clamp(double{e.cos_outer}, -1.0, 1.0));
-  const double spread = std::max(std::min(inner, outer), outer - kPi / 2);
+  const double spread = std::max(std::min(inner, outer), outer - std::numbers::pi / 2);
   return LightBounds{.box = {e.position, e.position},
                      .axis = normalize(e.axis),
                      .spread = static_cast<float>(spread),
@@ -95,11 +94,13 @@ DirectionalEmitter::DirectionalEmitter(const Vec3f& towards, const Color& facing
   if (!(angle > 0)) return;
   const double quarter = portable::sin(angle / 4.0), half = portable::sin(angle / 2.0);
   height = 2 * quarter * quarter;
-  radiance = irradiance * static_cast<float>(1 / (kPi * half * half));
+  radiance = irradiance * static_cast<float>(1 / (std::numbers::pi * half * half));
 }
 
 /// The density of directions to the disk.
-static float disk_pdf(const DirectionalEmitter& e) { return static_cast<float>(1 / (2 * kPi * e.height)); }
+static float disk_pdf(const DirectionalEmitter& e) {
+  return static_cast<float>(1 / (2 * std::numbers::pi * e.height));
+}
 
 static bool in_disk(const DirectionalEmitter& e, const Vec3f& direction) {
   // The square of the chord between the directions keeps its accuracy for small angles.
@@ -157,7 +158,7 @@ Color infinite_radiance(const Emitter& emitter, const Vec3f& direction) {
 
 double distant_irradiance(const Emitter& emitter) {
   if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter))
-    return e->map && e->map->samples() ? kPi * e->map->mean_radiance() : 0;
+    return e->map && e->map->samples() ? std::numbers::pi * e->map->mean_radiance() : 0;
   if (const auto* e = std::get_if<DirectionalEmitter>(&emitter)) return color_weight(e->irradiance);
   if (const auto* e = std::get_if<PointEmitter>(&emitter)) return e->falloff ? 0 : color_weight(e->intensity);
   return 0;

@@ -8,10 +8,8 @@
 
 namespace oktett {
 
-static constexpr double kPi = std::numbers::pi;
-
 /// The angular diameter of the sun.
-static constexpr double kSunAngle = 0.53 * kPi / 180;
+static constexpr double kSunAngle = 0.53 * std::numbers::pi / 180;
 
 /// The sun's illuminance outside of the atmosphere in klx, and its colour there: a black body of 5778 K.
 static constexpr double kSunIlluminance = 128;
@@ -49,7 +47,7 @@ Sky::Sky(const SkyParameters& parameters)
       turbidity_(std::clamp(parameters.turbidity, 2.0, 10.0)) {
   if (!is_finite(sun_)) sun_ = {0, 1, 0};
   const double t = turbidity_, s = angle_between({0, 1, 0}, sun_), s2 = s * s, s3 = s2 * s;
-  const double chi = (4 / 9.0 - t / 120) * (kPi - 2 * s);
+  const double chi = (4 / 9.0 - t / 120) * (std::numbers::pi - 2 * s);
   const double zenith = (4.0453 * t - 4.9710) * portable::tan(chi) - 0.2155 * t + 2.4192;
   const double zenith_x = (0.00166 * s3 - 0.00375 * s2 + 0.00209 * s) * t * t +
                           (-0.02903 * s3 + 0.06377 * s2 - 0.03202 * s + 0.00394) * t +
@@ -86,11 +84,11 @@ Sky::Sky(const SkyParameters& parameters)
   for (int i = 0; i < kRows; ++i)
     for (int j = 0; j < 2 * kRows; ++j) {
       // Directions of equal weight times cosine.
-      const double sine = std::sqrt((i + 0.5) / kRows), turn = kPi * (j + 0.5) / kRows;
+      const double sine = std::sqrt((i + 0.5) / kRows), turn = std::numbers::pi * (j + 0.5) / kRows;
       const Vec3d d{sine * portable::cos(turn), std::sqrt(1 - sine * sine), sine * portable::sin(turn)};
-      falling += Vec3d(sky_radiance(d)) * (kPi / (2 * kRows * kRows));
+      falling += Vec3d(sky_radiance(d)) * (std::numbers::pi / (2 * kRows * kRows));
     }
-  ground_ = parameters.ground * Color(falling / kPi);
+  ground_ = parameters.ground * Color(falling / std::numbers::pi);
 }
 
 Color Sky::sky_radiance(const Vec3d& direction) const {
@@ -107,7 +105,7 @@ Color Sky::sun_irradiance() const {
   if (!(parameters_.sun.y > 0)) return {};
   // The way through the atmosphere, relative to that from the zenith; then Rayleigh's scattering, aerosols
   // and ozone.
-  const double degrees = angle_between({0, 1, 0}, sun_) * 180 / kPi;
+  const double degrees = angle_between({0, 1, 0}, sun_) * 180 / std::numbers::pi;
   const double mass = 1 / (sun_.y + 0.15 * portable::pow(93.885 - degrees, -1.253));
   const double beta = 0.04608 * turbidity_ - 0.04586;
   Color irradiance;

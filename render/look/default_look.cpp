@@ -33,9 +33,8 @@ struct Stance {
 };
 
 Stance stance_of(const TriangleMesh& mesh, const Vec3d& up) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   Box box;
-  Stance s{kInf, -kInf, 0, 0};
+  Stance s{kInfinity, -kInfinity, 0, 0};
   for (const std::uint32_t index : mesh.indices) {
     const Vec3f& p = mesh.positions[index];
     box.grow(p);

@@ -18,10 +18,6 @@
 namespace oktett {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
-
 /// Shares of the surface, from 0 to 1.
 struct Exposure {
   double front = 0, back = 0;  ///< that who stands outside sees from the front, from the back
@@ -130,7 +126,7 @@ class ViewSearch {
 
   Camera best() const {
     Camera best;
-    double best_score = -kInf;
+    double best_score = -kInfinity;
     for (const Vec3d& place : places())
       for (int turn = 0; turn < kTurns; ++turn) {
         const Camera camera = view(place, turn);
@@ -148,8 +144,8 @@ class ViewSearch {
     std::vector<Vec3d> candidates;
     for (const double elevation : {70, 58, 46, 35})
       for (int turn = 0; turn < kTurns; ++turn)
-        candidates.push_back(up_ * portable::sin(radians(elevation)) +
-                             heading(turn) * portable::cos(radians(elevation)));
+        candidates.push_back(up_ * portable::sin(elevation * kDegree) +
+                             heading(turn) * portable::cos(elevation * kDegree));
     std::vector<Ray> rays;
     for (const Vec3d& direction : candidates)
       for (std::size_t i = 0; i < seen.size(); ++i) {

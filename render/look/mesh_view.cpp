@@ -11,14 +11,10 @@
 namespace oktett {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-double radians(double degrees) { return degrees * (std::numbers::pi / 180); }
-
 /// The greatest values of four linear functions over the points: what bounds them on each side of a frustum.
 struct FrustumExtent {
-  double right = -kInf, left = -kInf, top = -kInf, bottom = -kInf;
-  double nearest = kInf, farthest = -kInf;
+  double right = -kInfinity, left = -kInfinity, top = -kInfinity, bottom = -kInfinity;
+  double nearest = kInfinity, farthest = -kInfinity;
 };
 
 FrustumExtent extent_of(const TriangleMesh& mesh, const CameraFrame& frame, double tan_x, double tan_y) {
@@ -41,7 +37,7 @@ Camera fit_mesh(const TriangleMesh& mesh, const Vec3d& forward, const Vec3d& up,
   camera.up = up, camera.fov = fov;
   camera.from = {}, camera.at = forward;
   const CameraFrame frame = camera_frame(camera, film);
-  const double tan_y = portable::tan(radians(fov) / 2) * (1 - 2 * margin);
+  const double tan_y = portable::tan(fov * kDegree / 2) * (1 - 2 * margin);
   const double tan_x = tan_y * std::max(film.width, 1u) / std::max(film.height, 1u);
   const FrustumExtent e = extent_of(mesh, frame, tan_x, tan_y);
   // Each side of the frustum is a plane through the camera (x, y, z): x - tan_x z >= e.right, and so on. The

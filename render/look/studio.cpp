@@ -9,7 +9,6 @@
 namespace oktett {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::uint32_t kWidth = 512, kHeight = 256;
 
 /// 0 below `lo`, 1 above `hi`, and a smooth cubic between.
@@ -25,7 +24,7 @@ struct SoftBox {
   Vec3d radiance;
 
   Vec3d towards(const Vec3d& d) const {
-    const double a = azimuth * (kPi / 180), e = elevation * (kPi / 180);
+    const double a = azimuth * (std::numbers::pi / 180), e = elevation * (std::numbers::pi / 180);
     const double ce = portable::cos(e), se = portable::sin(e), ca = portable::cos(a), sa = portable::sin(a);
     // In the studio's frame: x to the right, y up, z back.
     const Vec3d axis{ce * sa, se, ce * ca}, across{ca, 0, -sa}, along{-se * sa, ce, -se * ca};
@@ -82,7 +81,8 @@ EnvironmentPicture studio_picture(const StudioFrame& frame, double ground, doubl
     if (!(d.y > 0)) continue;
     box_light[i] = boxes(d);
     const double v = (static_cast<double>(i / kWidth) + 0.5) / kHeight;
-    const double part = d.y * portable::sin(kPi * v) * (2 * kPi / kWidth) * (kPi / kHeight);
+    const double part = d.y * portable::sin(std::numbers::pi * v) * (2 * std::numbers::pi / kWidth) *
+                        (std::numbers::pi / kHeight);
     from_boxes += box_light[i] * part;
     from_backdrop += backdrop(d.y) * part;
   }
@@ -90,7 +90,7 @@ EnvironmentPicture studio_picture(const StudioFrame& frame, double ground, doubl
   // average.
   const double mean = (from_boxes.x + from_boxes.y + from_boxes.z) / 3;
   const Vec3d wall = from_boxes * (horizon / mean);
-  const double scale = horizon * (kPi / ground - from_backdrop) / mean;
+  const double scale = horizon * (std::numbers::pi / ground - from_backdrop) / mean;
   for (std::size_t i = 0; i < box_light.size(); ++i)
     picture.pixels[i] = Color(box_light[i] * scale + wall * backdrop(std::max(ups[i], 0.0)));
   return picture;

@@ -11,7 +11,6 @@
 namespace oktett {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using Target = PhotonSource::Target;
 
 /// A choice of directions from one place: uniform over the cone around the target, or over all directions.
@@ -30,7 +29,7 @@ struct Cone {
     everywhere = false;
   }
 
-  double solid_angle() const { return 2 * kPi * height; }
+  double solid_angle() const { return 2 * std::numbers::pi * height; }
   Vec3d direction(const SquareSample& s) const { return around(axis, s.x * height, s.y); }
 };
 
@@ -57,15 +56,15 @@ GlowingPlace place_on(const DiskEmitter& e, const SquareSample& s) {
   const Vec3d n = normalize(Vec3d(e.normal));
   Vec3d tangent, bitangent;
   make_basis(n, tangent, bitangent);
-  const double radius = e.radius * std::sqrt(s.x), angle = 2 * kPi * s.y;
+  const double radius = e.radius * std::sqrt(s.x), angle = 2 * std::numbers::pi * s.y;
   return {Vec3d(e.center) + tangent * (radius * portable::cos(angle)) +
               bitangent * (radius * portable::sin(angle)),
-          n, kPi * e.radius * e.radius};
+          n, std::numbers::pi * e.radius * e.radius};
 }
 
 GlowingPlace place_on(const SphereEmitter& e, const SquareSample& s) {
   const Vec3d n = around({0, 0, 1}, 2 * s.x, s.y);
-  return {Vec3d(e.center) + n * double{e.radius}, n, 4 * kPi * e.radius * e.radius};
+  return {Vec3d(e.center) + n * double{e.radius}, n, 4 * std::numbers::pi * e.radius * e.radius};
 }
 
 /// A ray that starts off the surface of a lamp, whose place is known to some units in the last place only.
@@ -85,7 +84,7 @@ std::optional<PhotonStart> emit_area(const Area& e, const std::optional<Target>&
   if (cone.everywhere) {
     Vec3d n = place.normal;
     if (e.both_sides && side < 0.5) n = -n;
-    const double power = kPi * place.area * (e.both_sides ? 2 : 1);
+    const double power = std::numbers::pi * place.area * (e.both_sides ? 2 : 1);
     return PhotonStart{ray_from(place.position, n, Vec3d(cosine_direction(Vec3f(n), s))),
                        e.radiance * static_cast<float>(power)};
   }
@@ -122,7 +121,7 @@ Color intensity(const SpotEmitter& e, const Vec3d& direction) {
 double area_weight(const Color& radiance, double area, bool both, const Vec3d& center,
                    const std::optional<Target>& target) {
   const Cone cone(center, target);
-  const double angle = cone.everywhere ? kPi : std::min(kPi, cone.solid_angle());
+  const double angle = cone.everywhere ? std::numbers::pi : std::min(std::numbers::pi, cone.solid_angle());
   return color_weight(radiance) * area * angle * (both ? 2 : 1);
 }
 
@@ -135,8 +134,8 @@ struct NearWeight {
   double operator()(const DiskEmitter& e) const { return area(e); }
   double operator()(const SphereEmitter& e) const {
     // A quarter of a ball's surface is what a far place sees of it.
-    return e.radius > 0 ? area_weight(e.radiance, kPi * e.radius * e.radius * (target ? 2 : 4), e.both_sides,
-                                      Vec3d(e.center), target)
+    return e.radius > 0 ? area_weight(e.radiance, std::numbers::pi * e.radius * e.radius * (target ? 2 : 4),
+                                      e.both_sides, Vec3d(e.center), target)
                         : 0;
   }
   double operator()(const PointEmitter& e) const {
@@ -164,7 +163,7 @@ bool is_distant(const Emitter& e) {
 double distant_weight(const Emitter& emitter) {
   const double irradiance = distant_irradiance(emitter);
   if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter))
-    return e->map ? 4 * kPi * e->map->mean_radiance() : 0;
+    return e->map ? 4 * std::numbers::pi * e->map->mean_radiance() : 0;
   return irradiance;
 }
 
@@ -183,7 +182,7 @@ std::optional<Color> choose_distant(const Emitter& emitter, double half, const S
     direction = map.sample(s).direction;
   else
     direction = Vec3f(around({0, 0, 1}, 2 * s.x, s.y));
-  const double uniform = 1 / (4 * kPi);
+  const double uniform = 1 / (4 * std::numbers::pi);
   const double pdf = map.samples() ? (map.pdf(direction) + uniform) / 2 : uniform;
   return map.radiance(direction) * static_cast<float>(1 / pdf);
 }
@@ -210,7 +209,8 @@ PhotonSource::PhotonSource(const World& world, const SceneLights& lights, const 
   for (std::uint32_t i = 0; i < emitters.size(); ++i) {
     double weight = std::visit(NearWeight{target_}, emitters[i]);
     if (is_distant(emitters[i]))
-      weight = target_ ? distant_weight(emitters[i]) * kPi * target_->radius * target_->radius : 0;
+      weight =
+          target_ ? distant_weight(emitters[i]) * std::numbers::pi * target_->radius * target_->radius : 0;
     if (!(weight > 0) || !std::isfinite(weight)) weight = 0;
     brings_[i] = weight > 0;
     sums_.push_back(sum += weight);
@@ -235,11 +235,12 @@ std::optional<PhotonStart> PhotonSource::emit(double choice, const SquareSample&
     const Vec3d axis(to);
     Vec3d x, y;
     make_basis(axis, x, y);
-    const double radius = target_->radius * std::sqrt(place.x), angle = 2 * kPi * place.y;
+    const double radius = target_->radius * std::sqrt(place.x), angle = 2 * std::numbers::pi * place.y;
     const Vec3d from = target_->center + x * (radius * portable::cos(angle)) +
                        y * (radius * portable::sin(angle)) + axis * far_;
-    start = emit_from_point(Vec3f(from), -axis,
-                            *light * static_cast<float>(kPi * target_->radius * target_->radius));
+    start =
+        emit_from_point(Vec3f(from), -axis,
+                        *light * static_cast<float>(std::numbers::pi * target_->radius * target_->radius));
     start->distant = true;
   } else if (const auto* e = std::get_if<PointEmitter>(&emitter)) {
     const Cone cone(Vec3d(e->position), target_);

@@ -9,8 +9,6 @@
 namespace oktett {
 namespace {
 
-bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
-
 /// Shadow rays on their way through media and transparent surfaces.
 struct ShadowWalks {
   struct State {

@@ -7,8 +7,6 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kMost = LightGroup::kMost;
-
 /// Samples lights for some hits of a block.
 class LightSampler {
  public:
@@ -16,10 +14,10 @@ class LightSampler {
       : context_(context), set_(context.sampled->set()), found_(found), c_(block) {}
 
   void add(const std::uint32_t* entry, const bool* front_only, std::size_t count) {
-    LightPoint from[kMost];
-    double choices[kMost] = {};
-    SquareSample places[kMost];
-    LightSet::Choice chosen[kMost];
+    LightPoint from[LightGroup::kMost];
+    double choices[LightGroup::kMost] = {};
+    SquareSample places[LightGroup::kMost];
+    LightSet::Choice chosen[LightGroup::kMost];
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t k = entry[i];
       from[i] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k), front_only[i]};
@@ -139,7 +137,7 @@ class LightSampler {
   /// Sets samples with the sums of radiance and density over all infinite lights in their directions.
   void set_by_direction(const LightCode& code, const LightGroup& group) {
     EnvironmentValues values;
-    LightPoint points[kMost];
+    LightPoint points[LightGroup::kMost];
     for (std::size_t i = 0; i < group.count; ++i) {
       const std::uint32_t k = group.entry[i];
       points[i] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k),

@@ -16,8 +16,6 @@ enum View : std::uint8_t { kSeesPoint = 1, kMissesPoint = 2, kBoth = 3, kListed 
 /// Rays are traced when this many have gathered.
 constexpr std::size_t kBatch = 4096;
 
-bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
-
 std::span<ShadowQueue> lamp_queues(const RenderContext& context, Wavefront& wavefront) {
   return std::span(wavefront.shadows).subspan(context.lights.size(), context.area_lights.samples);
 }

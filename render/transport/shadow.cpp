@@ -9,8 +9,6 @@
 
 namespace oktett {
 
-static bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
-
 Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
   Ray rest = ray;
   rest.origin = offset_origin(s, ray.direction);

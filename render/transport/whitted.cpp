@@ -32,8 +32,6 @@ void push_admitted(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
   push_bounce(wavefront, queue, ray, p, direction, throughput, bounce);
 }
 
-bool is_black(const Color& c) { return c == Color{0, 0, 0}; }
-
 /// The part of the light that passes the interior of the solid that a ray leaves at `p` (Beer's law).
 Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
   const auto material = static_cast<std::size_t>(p.material - context.world->materials.data());

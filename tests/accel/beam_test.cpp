@@ -4,17 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/accel/same_hits.h"
 #include "tests/support/dice.h"
 #include "tests/support/grid_triangles.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TriangleMesh grid_mesh(int n, bool flat, Dice<float>& dice) {
   TriangleMesh m;

@@ -3,20 +3,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "accel/accel_data.h"
 #include "accel/build/tree_store.h"
 #include "tests/support/grid_triangles.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 std::shared_ptr<const Accel> build(const TriangleMesh& mesh, bool parallel = true) {
   BuildOptions options;

@@ -5,11 +5,10 @@
 
 #include "accel/accel.h"
 #include "tests/accel/all_crossings.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::shared_ptr<const Accel> accel_of(ExactForm form, const Affine& to_world = {}) {
   return build_accel({{ExactShape{std::move(form)}, to_world}});

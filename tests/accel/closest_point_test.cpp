@@ -11,12 +11,11 @@
 #include "core/error.h"
 #include "core/lanes.h"
 #include "kernels/closed/closest_triangle.h"
+#include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 using D = Simd<double, 1, ScalarIsa>;
 

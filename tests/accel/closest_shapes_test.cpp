@@ -15,8 +15,6 @@
 namespace oktett {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 template <class Shape>
 Geometry geometry(Shape shape) {
   Geometry g;
@@ -43,13 +41,14 @@ double off_box(const Vec3d& p, const Vec3d& h) {
 }
 
 Vec3d on_sphere(CaseRandom& r) {
-  const double z = r.sign(), angle = kPi * r.sign(), rho = std::sqrt(1 - z * z);
+  const double z = r.sign(), angle = std::numbers::pi * r.sign(), rho = std::sqrt(1 - z * z);
   return {rho * std::cos(angle), rho * std::sin(angle), z};
 }
 
 /// A point of a disk about the z axis, often on its edge.
 Vec3d on_disk(CaseRandom& r, double radius, double z) {
-  const double rho = r.unit() < 0.1 ? radius : radius * std::sqrt(r.unit()), angle = kPi * r.sign();
+  const double rho = r.unit() < 0.1 ? radius : radius * std::sqrt(r.unit()),
+               angle = std::numbers::pi * r.sign();
   return {rho * std::cos(angle), rho * std::sin(angle), z};
 }
 
@@ -61,7 +60,8 @@ Sampled frustum(const char* name, const ExactForm& form, double a, double b, dou
     const double part = r.unit();
     if (!open && part < 0.2) return on_disk(r, a, -h);
     if (!open && part < 0.4) return on_disk(r, b, h);
-    const double z = h * r.sign(), rho = 0.5 * (a + b) + 0.5 * (b - a) * z / h, angle = kPi * r.sign();
+    const double z = h * r.sign(), rho = 0.5 * (a + b) + 0.5 * (b - a) * z / h,
+                 angle = std::numbers::pi * r.sign();
     return Vec3d{rho * std::cos(angle), rho * std::sin(angle), z};
   };
   s.off = [=](const Vec3d& p) {
@@ -84,7 +84,8 @@ Sampled torus(const char* name, double major, double minor) {
             {{0, 0, 0}, {0, 0, 1}, {0, 0, -5}, {major, 0, 0}, {0, -major, 0}}};
   s.draw = [=](CaseRandom& r) {
     for (;;) {
-      const double around = kPi * r.sign(), tube = kPi * r.sign(), rho = major + minor * std::cos(tube);
+      const double around = std::numbers::pi * r.sign(), tube = std::numbers::pi * r.sign(),
+                   rho = major + minor * std::cos(tube);
       // What meets itself is cut off at the axis.
       if (rho >= 0) return Vec3d{rho * std::cos(around), rho * std::sin(around), minor * std::sin(tube)};
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/triangle_cases.h"
+#include "verify/checks/compare_mode.h"
 
 namespace oktett {
 namespace {
@@ -74,8 +75,6 @@ std::vector<TriangleBlock> random_blocks(TriangleRandom& random) {
   }
   return blocks;
 }
-
-bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 template <int N>
 void expect_same_as_alone() {

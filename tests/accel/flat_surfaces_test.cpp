@@ -1,16 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "accel/accel.h"
 #include "tests/support/flat_map.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// Shapes, and functions that are negative on one side of the surface and positive on the other.
 struct FormulaCase {

@@ -2,7 +2,6 @@
 /// \file Fractals and rays for their tests, and the parts of small fractals.
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/random.h"
@@ -13,14 +12,13 @@
 #include "kernels/fractals/sphereflake.h"
 #include "kernels/fractals/terrain.h"
 #include "tests/support/convex_union.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 
 using test::ConvexUnion;
 using test::LineSpan;
 using test::Vec3l;
-inline constexpr float kInf = std::numeric_limits<float>::infinity(),
-                       kNan = std::numeric_limits<float>::quiet_NaN();
 
 inline SphereflakeShape flake(std::uint32_t depth, double ratio = 1.0 / 3) { return {depth, ratio}; }
 inline MengerShape sponge(std::uint32_t depth) { return {depth}; }

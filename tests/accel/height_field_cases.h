@@ -2,19 +2,17 @@
 /// \file Height fields and rays for their tests.
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include "accel/accel.h"
 #include "core/random.h"
 #include "kernels/heights/height_grid.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 
 using Interpolation = HeightInterpolation;
-inline constexpr float kInf = std::numeric_limits<float>::infinity(),
-                       kNan = std::numeric_limits<float>::quiet_NaN();
 inline constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::triangles,
                                          Interpolation::bilinear};
 inline constexpr HeightWalk kWalks[] = {HeightWalk::pyramid, HeightWalk::cells, HeightWalk::spans};

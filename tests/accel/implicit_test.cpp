@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <string>
 
@@ -9,11 +8,10 @@
 #include "kernels/exact/march.h"
 #include "kernels/functions/function_tape.h"
 #include "tests/accel/all_crossings.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 ImplicitShape function(const std::string& text, double size, bool open = false) {
   ImplicitShape s;

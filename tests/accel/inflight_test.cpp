@@ -1,21 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "tests/accel/same_hits.h"
+#include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 #include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
   const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});

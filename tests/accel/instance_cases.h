@@ -4,18 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "accel/accel_data.h"
 #include "tests/accel/same_hits.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 
-inline constexpr float kInf = std::numeric_limits<float>::infinity();
 using AccelPtr = std::shared_ptr<const Accel>;
 
 /// Every set and mode finds what the scalar code finds. Returns the number of hits.

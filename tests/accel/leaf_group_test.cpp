@@ -2,19 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
 #include "tests/accel/same_hits.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// Triangles of which every second one is level, at each of `heights` in turn.
 TriangleMesh triangles_in_planes(CaseRandom& random, int count, double size,

@@ -1,19 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "accel/accel.h"
 #include "kernels/fields/blobtree.h"
 #include "kernels/fields/metaballs.h"
 #include "tests/accel/all_crossings.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<Hit> crossings(const ExactForm& form, const Vec3f& from, const Vec3f& direction) {
   return all_crossings(form, {from, 0, direction, kInf});

@@ -1,16 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "accel/accel.h"
 #include "kernels/exact/polynomial_expression.h"
 #include "tests/accel/all_crossings.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 PolynomialShape polynomial(const std::string& equation, double size, bool open = false) {
   PolynomialShape s;

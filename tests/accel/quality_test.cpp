@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <map>
 
 #include "accel/accel_data.h"
 #include "accel/build/mesh_source.h"
 #include "accel/query.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr BuildQuality kQualities[] = {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best};
 
 std::shared_ptr<const Accel> build(const TriangleMesh& mesh, BuildQuality quality, bool parallel = true) {

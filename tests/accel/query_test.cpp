@@ -9,11 +9,10 @@
 
 #include "accel/accel.h"
 #include "core/error.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// A wavy sheet of triangles over the square [-3, 3]^2 of x and z.
 TriangleMesh sheet() {

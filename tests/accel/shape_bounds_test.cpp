@@ -1,18 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "tests/accel/same_hits.h"
 #include "tests/support/flat_map.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// Rays that start on the plane of a side of `box`, or up to two floats beside it, and hardly leave that
 /// plane: they move at most 1 and often less than 2^-100 along its normal. Half of them are aimed at the

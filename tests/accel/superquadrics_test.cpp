@@ -1,16 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "accel/accel.h"
 #include "tests/accel/all_crossings.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
 
 using Form = SuperquadricShape::Form;
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 SuperquadricShape shape(Form form, double p, double q, double r, bool ratio = false) {
   SuperquadricShape s;

@@ -1,18 +1,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "tests/accel/same_hits.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/closed.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 Hit trace(const Accel& accel, const Ray& ray) {
   RayBatch rays;

@@ -1,18 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <limits>
 #include <vector>
 
 #include "accel/accel.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Equal bits, or both NaN.
 bool same(float a, float b) {

@@ -2,16 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "accel/accel_data.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 RayBatch random_rays(int count) {
   RayBatch rays;

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "tests/accel/same_hits.h"
+#include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
 namespace oktett {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::best};
 
 TriangleMesh soup(int count, std::uint64_t seed, double scale, const Vec3d& shift = {}) {

@@ -1,4 +1,5 @@
 #include "core/simd_floats.h"
+#include "tests/support/limits.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,6 @@
 namespace oktett {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kMax = std::numeric_limits<float>::max(), kMin = std::numeric_limits<float>::denorm_min();
 
 /// Random bits, mixed with numbers at the ends of ranges.

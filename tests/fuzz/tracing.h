@@ -3,6 +3,7 @@
 
 #include "accel/accel.h"
 #include "tests/fuzz/input.h"
+#include "verify/checks/compare_mode.h"
 
 namespace oktett::test {
 
@@ -19,8 +20,6 @@ inline std::vector<Ray> take_rays(InputBytes& bytes, std::size_t most) {
   }
   return rays;
 }
-
-inline bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
 
 /// Asks for all rays in all ways; returns the closest hits.
 inline std::vector<Hit> trace_every_way(const Accel& accel, const std::vector<Ray>& rays) {

@@ -14,8 +14,6 @@ namespace {
 
 using test::SceneFiles;
 
-constexpr double kPi = std::numbers::pi;
-
 /// The ten numbers that follow the tilt, and the three after them.
 std::string numbers(int rows, int columns, int type = 1) {
   return "1 1000 2.5 " + std::to_string(rows) + " " + std::to_string(columns) + " " + std::to_string(type) +
@@ -75,8 +73,8 @@ TEST_F(IesFile, SymmetriesAreFilledIn) {
         EXPECT_NEAR(profile_value(p, v, h), f(v, h) * greatest, 1e-5)
             << first << ' ' << last << ' ' << v << ' ' << h;
   };
-  const auto c = [](double h) { return std::cos(h * kPi / 180); };
-  const auto s = [](double h) { return std::sin(h * kPi / 180); };
+  const auto c = [](double h) { return std::cos(h * std::numbers::pi / 180); };
+  const auto s = [](double h) { return std::sin(h * std::numbers::pi / 180); };
   expect_table(0, 90, 22.5, [&](double v, double h) { return 5 + v / 100 + c(h) * c(h); });
   expect_table(0, 180, 22.5, [&](double v, double h) { return 5 + v / 100 + 3 * c(h); });
   expect_table(90, 270, 22.5, [&](double v, double h) { return 5 + v / 100 + 3 * s(h); });
@@ -146,9 +144,10 @@ TEST(SceneLightProfile, IsReadForPointsAndSpots) {
   ASSERT_NE(point.profile, nullptr);
   EXPECT_TRUE(point.falloff);
   EXPECT_EQ(point.rotation, 20);
-  EXPECT_NEAR(point.color.x, 8 / (4 * kPi * kPi), 1e-6);
-  EXPECT_NEAR(std::get<SpotLight>(scene.lights[1]).color.x, 3 / kPi, 1e-6);
-  EXPECT_NEAR(std::get<PointLight>(scene.lights[2]).color.x, 8 / (4 * kPi * kPi), 1e-6);
+  EXPECT_NEAR(point.color.x, 8 / (4 * std::numbers::pi * std::numbers::pi), 1e-6);
+  EXPECT_NEAR(std::get<SpotLight>(scene.lights[1]).color.x, 3 / std::numbers::pi, 1e-6);
+  EXPECT_NEAR(std::get<PointLight>(scene.lights[2]).color.x, 8 / (4 * std::numbers::pi * std::numbers::pi),
+              1e-6);
   const std::pair<const char*, const char*> cases[] = {
       {"lights: [{point: {position: [0, 1, 0], rotate: 3}}]", "scene.yaml:2:48: 'rotate' turns a 'profile'"},
       {"lights: [{point: {position: [0, 1, 0], power: [1, 1, 1], color: [1, 1, 1]}}]",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,8 +17,6 @@ namespace oktett::test {
 namespace {
 
 using Polygon = std::vector<Vec3f>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 Vec3d triangle_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)) * 0.5;
@@ -74,7 +73,7 @@ TEST(Polygon, ConvexOnes) {
   for (const int n : {3, 4, 5, 6, 7, 50, 1000}) {
     Polygon p;
     for (int i = 0; i < n; ++i) {
-      const double angle = 2 * kPi * i / n;
+      const double angle = 2 * std::numbers::pi * i / n;
       p.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
     }
     if (n < 10) expect_covered_in_all_poses(p);
@@ -161,7 +160,8 @@ RC_GTEST_PROP(Polygon, StarsAreCovered, (std::uint32_t seed)) {
   const int n = 5 + static_cast<int>(random() % 60);
   Polygon p;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * kPi * i / n, radius = 0.05 + static_cast<double>(random() % 1000) / 1000;
+    const double angle = 2 * std::numbers::pi * i / n,
+                 radius = 0.05 + static_cast<double>(random() % 1000) / 1000;
     p.push_back(
         {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
   }
@@ -193,7 +193,7 @@ TEST(Polygon, HugeOnesTakeAboutLinearTime) {
   std::mt19937 random(3);
   constexpr int n = 60000;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * kPi * i / n, radius = i % 2 ? 1 : 0.9;
+    const double angle = 2 * std::numbers::pi * i / n, radius = i % 2 ? 1 : 0.9;
     gear.push_back(
         {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
     tangle.push_back({static_cast<float>(random() % 1000), static_cast<float>(random() % 1000), 0});
@@ -208,7 +208,7 @@ TEST(Polygon, ContrivedOnesTakeAboutLinearTime) {
   std::vector<Polygon> covered;
   Polygon star, comb, lying_comb;
   for (int i = 0; i < 2 * n; ++i) {
-    const double angle = kPi * i / n, radius = i % 2 ? 1 : 0.05;
+    const double angle = std::numbers::pi * i / n, radius = i % 2 ? 1 : 0.05;
     star.push_back(
         {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
     const auto x = static_cast<float>(i), y = i % 2 ? 10.0f : 0.1f;
@@ -230,7 +230,7 @@ TEST(Polygon, RepeatedCornersTakeLinearTime) {
   for (int i = 0; i < n; ++i) {
     turns.push_back({i % 3 == 1 ? 1.0f : 0.0f, i % 3 == 2 ? 1.0f : 0.0f, 0});
     ways.push_back({static_cast<float>(i % 2), static_cast<float>(i % 5), 0});
-    const double angle = 2 * kPi * (i + i % 3 * 0.3) / n;
+    const double angle = 2 * std::numbers::pi * (i + i % 3 * 0.3) / n;
     flower.push_back(
         i % 3 == 0 ? Vec3f{0, 0, 0}
                    : Vec3f{static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});

@@ -13,8 +13,6 @@
 namespace oktett {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using namespace test;
 
 /// Expects the error that the file gives to hold `text`.
@@ -33,7 +31,7 @@ TEST(SceneLight, ReadsLampsWithoutArea) {
       "  - sky: {sun: [0, 1, 2], turbidity: 4, ground: [0.1, 0.2, 0.3], color: [1, 1, 1]}\n");
   ASSERT_EQ(scene.lights.size(), 5u);
   const auto& point = std::get<PointLight>(scene.lights[0]);
-  EXPECT_NEAR(static_cast<double>(point.color.y), 6 / kPi, 1e-6);
+  EXPECT_NEAR(static_cast<double>(point.color.y), 6 / std::numbers::pi, 1e-6);
   EXPECT_TRUE(point.falloff);
   const auto& spot = std::get<SpotLight>(scene.lights[1]);
   EXPECT_EQ(spot.direction, (Vec3d{0, -4, 3}));
@@ -42,7 +40,8 @@ TEST(SceneLight, ReadsLampsWithoutArea) {
   EXPECT_EQ(spot.inner_angle, 15);
   EXPECT_EQ(std::get<SpotLight>(scene.lights[2]).inner_angle, 5);
   EXPECT_EQ(std::get<DirectionalLight>(scene.lights[3]).angle, 0.5);
-  EXPECT_NEAR(static_cast<double>(std::get<DirectionalLight>(scene.lights[3]).color.x), 1 / kPi, 1e-6);
+  EXPECT_NEAR(static_cast<double>(std::get<DirectionalLight>(scene.lights[3]).color.x), 1 / std::numbers::pi,
+              1e-6);
   const auto& sky = std::get<SkyLight>(scene.lights[4]);
   EXPECT_EQ(sky.sun, (Vec3d{0, 1, 2}));
   EXPECT_EQ(sky.turbidity, 4);
@@ -60,9 +59,9 @@ TEST(SceneLight, LampsWithAnAreaAreObjects) {
   EXPECT_TRUE(scene.lights.empty());
   ASSERT_EQ(scene.objects.size(), 3u);
   const auto emission = [&](std::size_t i) { return scene.materials.at(scene.objects[i].material).emission; };
-  EXPECT_NEAR(static_cast<double>(emission(0).y), 20 / (kPi * 16 * kPi), 1e-6);
+  EXPECT_NEAR(static_cast<double>(emission(0).y), 20 / (std::numbers::pi * 16 * std::numbers::pi), 1e-6);
   EXPECT_EQ(emission(1), (Color{5, 6, 7}));
-  EXPECT_NEAR(static_cast<double>(emission(2).x), 1 / kPi, 1e-6);
+  EXPECT_NEAR(static_cast<double>(emission(2).x), 1 / std::numbers::pi, 1e-6);
   EXPECT_EQ(std::get<DiskShape>(scene.objects[1].shape).normal, (Vec3d{0, -1, 0}));
   EXPECT_EQ(std::get<PolygonShape>(scene.objects[2].shape).vertices[2], (Vec3d{2, 0, 3}));
   EXPECT_FALSE(scene.materials[scene.objects[1].material].emits_behind);

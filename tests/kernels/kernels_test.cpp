@@ -2,15 +2,12 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 
+#include "tests/support/limits.h"
 #include "verify/checks/kernels.h"
 
 namespace oktett {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 class Kernel : public testing::TestWithParam<int> {
  protected:

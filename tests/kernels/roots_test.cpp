@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "kernels/roots/methods.h"
 #include "kernels/roots/solve.h"
 #include "tests/support/exact_roots.h"
+#include "tests/support/limits.h"
 #include "tests/support/random_polynomials.h"
 
 namespace oktett::roots {
@@ -17,8 +17,6 @@ using test::Judgement;
 using test::RootClass;
 using test::RootProblem;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr Method kMethods[] = {Method::automatic, Method::closed,    Method::bernstein, Method::sturm,
                                Method::laguerre,  Method::bisection, Method::newton};
 
@@ -46,7 +44,7 @@ TEST(ExactRoots, CountsWhatIsKnown) {
   EXPECT_EQ(p.count(1.5, 2), 2);
   EXPECT_EQ(p.count(2, 2), 2);
   EXPECT_EQ(p.count(2.5, 4), 3);
-  EXPECT_EQ(p.count_distinct(-kInf, kInf), 3);
+  EXPECT_EQ(p.count_distinct(-kInfDouble, kInfDouble), 3);
   EXPECT_EQ(p.sign_at(2), 0);
   EXPECT_EQ(p.sign_at(std::nextafter(1, 2)), -1);
   const test::ExactPolynomial none(polynomial({0x1p-1000, 0, 1}));
@@ -125,7 +123,7 @@ TEST_P(AnyMethod, FindsWellSeparatedRoots) {
 }
 
 TEST_P(AnyMethod, BadInputIsNotCertified) {
-  for (const double bad : {kNan, kInf, -kInf}) {
+  for (const double bad : {kNanDouble, kInfDouble, -kInfDouble}) {
     for (int i = 0; i < 4; ++i) {
       Polynomial p = polynomial({-1, 2, 3, 4});
       p.c[i] = bad;
@@ -135,8 +133,8 @@ TEST_P(AnyMethod, BadInputIsNotCertified) {
     }
   }
   const Polynomial p = polynomial({-1, 2});
-  EXPECT_FALSE(solve(p, kNan, 1, GetParam()).certified);
-  EXPECT_FALSE(solve(p, 0, kNan, GetParam()).certified);
+  EXPECT_FALSE(solve(p, kNanDouble, 1, GetParam()).certified);
+  EXPECT_FALSE(solve(p, 0, kNanDouble, GetParam()).certified);
   Polynomial large;
   large.degree = kMaxDegree + 1;
   EXPECT_FALSE(solve(large, 0, 1, GetParam()).certified);
@@ -220,8 +218,10 @@ TEST(Roots, EndsOfTheIntervalBelongToIt) {
 
 TEST(Roots, IntervalsMayBeInfinite) {
   const Polynomial p = with_roots({-1e6, -3, 0.001, 7e8});
-  for (const auto& [a, b, count] :
-       {std::tuple{-kInf, kInf, 4}, {0.0, kInf, 2}, {-kInf, 0.0, 2}, {1.0, 1e300, 1}}) {
+  for (const auto& [a, b, count] : {std::tuple{-kInfDouble, kInfDouble, 4},
+                                    {0.0, kInfDouble, 2},
+                                    {-kInfDouble, 0.0, 2},
+                                    {1.0, 1e300, 1}}) {
     const Roots answer = solve(p, a, b);
     EXPECT_TRUE(answer.certified);
     EXPECT_EQ(answer.count, count);
@@ -272,13 +272,13 @@ TEST(Roots, HugeAndTinyCoefficients) {
   }
   // Roots at 2^-100, 1 and 2^100.
   const Polynomial wide = polynomial({-1, 0x1p100, -0x1p100, 1});
-  for (const auto& [b, count] : {std::pair{0x1p600, 3}, {kInf, 3}, {2.0, 2}}) {
+  for (const auto& [b, count] : {std::pair{0x1p600, 3}, {kInfDouble, 3}, {2.0, 2}}) {
     const Roots answer = solve(wide, 0, b);
     EXPECT_EQ(answer.count, count);
     EXPECT_TRUE(answer.certified);
   }
   // Roots farther apart than doubles reach are not all found, and that is not hidden.
-  EXPECT_FALSE(solve(polynomial({-1, 0x1p500, -0x1p500, 1}), 0, kInf).certified);
+  EXPECT_FALSE(solve(polynomial({-1, 0x1p500, -0x1p500, 1}), 0, kInfDouble).certified);
 }
 
 }  // namespace

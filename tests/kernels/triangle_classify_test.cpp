@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "accel/traverse/leaf.h"
+#include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 
 namespace oktett {
@@ -12,7 +11,6 @@ namespace {
 
 using F = Simd<float, 1, ScalarIsa>;
 using State = RayState<1, ScalarIsa>;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Exact {
   bool valid, hit;
@@ -56,9 +54,9 @@ void expect_sure_is_true(TriangleCase c, Tally& tally, int number) {
   const Exact whole = decide(c);
   if (!whole.valid) return;
   tally.hits += whole.hit;
-  const float before = std::nextafter(whole.t, 0.0f), after = std::nextafter(whole.t, kInfinity);
-  const float ranges[][2] = {{0, kInfinity},       {0, whole.t},    {0, before},        {0, after},
-                             {whole.t, kInfinity}, {before, after}, {before, kInfinity}};
+  const float before = std::nextafter(whole.t, 0.0f), after = std::nextafter(whole.t, kInf);
+  const float ranges[][2] = {{0, kInf},       {0, whole.t},    {0, before},   {0, after},
+                             {whole.t, kInf}, {before, after}, {before, kInf}};
   for (const auto& range : ranges) {
     c.ray.tmin = range[0], c.ray.tmax = range[1];
     if (!(c.ray.tmin < c.ray.tmax)) continue;

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "accel/traverse/leaf.h"
+#include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 
 namespace oktett {
@@ -15,7 +15,6 @@ constexpr int kLanes = 4;
 using F = Simd<float, kLanes, ScalarIsa>;
 using D = Simd<double, kLanes, ScalarIsa>;
 using State = RayState<kLanes, ScalarIsa>;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Decision {
   bool valid, hit;
@@ -56,7 +55,7 @@ TEST_P(FilterScale, NeverRejectsWhatTheDecisionAccepts) {
     ++accepted;
     const FilterTriangle<F> tri = filter_triangle(d.triangle);
     const F d_max = F::load(d.state.d_max);
-    for (const float tmax : {kInfinity, first_lane(d.lanes.t)}) {
+    for (const float tmax : {kInf, first_lane(d.lanes.t)}) {
       const RayLanes<F> ray{broadcast<F>(c.ray.origin), broadcast<F>(c.ray.direction), F(0.0f), F(tmax)};
       ASSERT_EQ(bits(filter_watertight(ray, d_max, tri)), 15u) << "case " << i << " tmax " << tmax;
       ASSERT_EQ(bits(filter_watertight(ray.d, ray.tmax, origin_triangle(tri, ray.o, d_max))), 15u)
@@ -81,7 +80,7 @@ TEST(Filter, KeepsTinyTrianglesFarAway) {
     const Decision d = decide(c);
     if (!d.hit) continue;
     ++accepted;
-    const RayLanes<F> ray{broadcast<F>(c.ray.origin), broadcast<F>(c.ray.direction), F(0.0f), F(kInfinity)};
+    const RayLanes<F> ray{broadcast<F>(c.ray.origin), broadcast<F>(c.ray.direction), F(0.0f), F(kInf)};
     ASSERT_NE(bits(filter_watertight(ray, F::load(d.state.d_max), filter_triangle(d.triangle))), 0u) << i;
   }
   EXPECT_GT(accepted, 100);

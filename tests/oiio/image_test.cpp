@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "io/image/color.h"
+#include "tests/support/limits.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett {
@@ -23,7 +24,6 @@ namespace fs = std::filesystem;
 using test::TempDir;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 PicturePlane float_plane(const char* name, PlaneType type, std::size_t pixels, float first, float step) {
   PicturePlane plane{name, type, Column<float>(pixels), {}};

@@ -3,17 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "tests/render/test_scenes.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
 
 using namespace test;
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 TEST(Film, DataLayersDescribeTheNearestSurface) {
   Scene scene = bare_scene(31);

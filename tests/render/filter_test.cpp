@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "render/sampling/filter_sampler.h"
@@ -12,8 +13,6 @@ namespace oktett {
 namespace {
 
 using namespace test;
-
-constexpr double kPi = std::numbers::pi;
 
 /// The filters once more, by their textbook formulas over [-radius, radius].
 double weight(FilterKind kind, double radius, double x) {
@@ -26,8 +25,8 @@ double weight(FilterKind kind, double radius, double x) {
       return std::exp(-x * x / (2 * (radius / 3) * (radius / 3)));
     case FilterKind::blackman_harris: {
       const double t = (x + radius) / (2 * radius);
-      return 0.35875 - 0.48829 * std::cos(2 * kPi * t) + 0.14128 * std::cos(4 * kPi * t) -
-             0.01168 * std::cos(6 * kPi * t);
+      return 0.35875 - 0.48829 * std::cos(2 * std::numbers::pi * t) +
+             0.14128 * std::cos(4 * std::numbers::pi * t) - 0.01168 * std::cos(6 * std::numbers::pi * t);
     }
   }
   return 0;

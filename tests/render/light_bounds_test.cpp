@@ -1,6 +1,7 @@
 #include "render/light/light_bounds.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ TEST(LightBounds, OfDisksAreTight) {
     make_basis(Vec3d(disk.normal), across, along);
     Vec3d lo{9, 9, 9}, hi{-9, -9, -9};
     for (int k = 0; k < 4000; ++k) {
-      const double angle = 2 * kPi * k / 4000;
+      const double angle = 2 * std::numbers::pi * k / 4000;
       const Vec3d rim =
           Vec3d(disk.center) + across * (0.7 * std::cos(angle)) + along * (0.7 * std::sin(angle));
       lo = min(lo, rim), hi = max(hi, rim);
@@ -42,8 +43,8 @@ TEST(LightBounds, JoinedConesHoldBoth) {
              : i % 5 == 1 ? -a.axis
              : i % 5 == 2 ? normalize(a.axis + random.direction() * 1e-4f)
                           : random.direction();
-    a.spread = static_cast<float>(random() < 0.3 ? 0 : random.between(0, kPi));
-    b.spread = static_cast<float>(random() < 0.3 ? 0 : random.between(0, kPi));
+    a.spread = static_cast<float>(random() < 0.3 ? 0 : random.between(0, std::numbers::pi));
+    b.spread = static_cast<float>(random() < 0.3 ? 0 : random.between(0, std::numbers::pi));
     a.both_sides = random() < 0.3, b.both_sides = random() < 0.3;
     a.box.grow(random.direction()), b.box.grow(random.direction());
     const LightBounds sum = join(a, b);
@@ -53,8 +54,8 @@ TEST(LightBounds, JoinedConesHoldBoth) {
       // The normal of the part that is farthest from the axis of the sum.
       const Vec3d p(part.axis), s(sum.axis);
       double between = std::atan2(length(cross(p, s)), dot(p, s));
-      if (sum.both_sides && part.both_sides) between = std::min(between, kPi - between);
-      ASSERT_LE(std::min(between + part.spread, kPi), sum.spread + 1e-6) << i;
+      if (sum.both_sides && part.both_sides) between = std::min(between, std::numbers::pi - between);
+      ASSERT_LE(std::min(between + part.spread, std::numbers::pi), sum.spread + 1e-6) << i;
     }
   }
 }

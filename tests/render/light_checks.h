@@ -16,8 +16,6 @@
 
 namespace oktett::light_checks {
 
-inline constexpr double kPi = std::numbers::pi;
-
 /// Independent random numbers.
 class Random {
  public:
@@ -29,7 +27,7 @@ class Random {
     return {x, (*this)()};
   }
   Vec3f direction() {
-    const double z = between(-1, 1), angle = between(0, 2 * kPi), r = std::sqrt(1 - z * z);
+    const double z = between(-1, 1), angle = between(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);
     return Vec3f(Vec3d{r * std::cos(angle), r * std::sin(angle), z});
   }
 

@@ -1,6 +1,7 @@
 #include "render/light/emitter.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <cmath>
 #include <limits>
@@ -39,7 +40,7 @@ Vec3d place_of(const LightSample& s, const Vec3f& p) {
 }
 
 double turn_of(double y, double x) {
-  const double turn = std::atan2(y, x) / (2 * kPi);
+  const double turn = std::atan2(y, x) / (2 * std::numbers::pi);
   return turn < 0 ? turn + 1 : turn;
 }
 
@@ -48,9 +49,10 @@ Surface surface_of(const DiskEmitter& e) {
   const Vec3d t = normalize(cross(n, std::abs(n.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})), b = cross(n, t);
   const double r = e.radius;
   return {[=](double x, double y) {
-            return c + (t * std::cos(2 * kPi * y) + b * std::sin(2 * kPi * y)) * (r * x);
+            return c + (t * std::cos(2 * std::numbers::pi * y) + b * std::sin(2 * std::numbers::pi * y)) *
+                           (r * x);
           },
-          [=](double x, double) { return n * (2 * kPi * r * r * x); },
+          [=](double x, double) { return n * (2 * std::numbers::pi * r * r * x); },
           [=](const LightSample& s, const Vec3f& p) {
             const Vec3d d = place_of(s, p) - c;
             return SquareSample{length(d) / r, turn_of(dot(d, b), dot(d, t))};
@@ -62,10 +64,10 @@ Surface surface_of(const SphereEmitter& e) {
   const double r = e.radius;
   const auto direction = [](double x, double y) {
     const double z = 1 - 2 * x, s = std::sqrt(1 - z * z);
-    return Vec3d{s * std::cos(2 * kPi * y), s * std::sin(2 * kPi * y), z};
+    return Vec3d{s * std::cos(2 * std::numbers::pi * y), s * std::sin(2 * std::numbers::pi * y), z};
   };
   return {[=](double x, double y) { return c + direction(x, y) * r; },
-          [=](double x, double y) { return direction(x, y) * (4 * kPi * r * r); },
+          [=](double x, double y) { return direction(x, y) * (4 * std::numbers::pi * r * r); },
           [=](const LightSample& s, const Vec3f& p) {
             const Vec3d d = (place_of(s, p) - c) / r;
             return SquareSample{(1 - d.z) / 2, turn_of(d.y, d.x)};

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <cmath>
 #include <limits>
@@ -33,11 +34,11 @@ double sphere_integral(int rows, F&& f) {
   double sum = 0;
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < 2 * rows; ++j) {
-      const double z = -1 + (i + random()) * 2 / rows, angle = (j + random()) * kPi / rows;
+      const double z = -1 + (i + random()) * 2 / rows, angle = (j + random()) * std::numbers::pi / rows;
       const double r = std::sqrt(1 - z * z);
       sum += f(Vec3f(Vec3d{r * std::cos(angle), z, r * std::sin(angle)}));
     }
-  return sum * 4 * kPi / (2.0 * rows * rows);
+  return sum * 4 * std::numbers::pi / (2.0 * rows * rows);
 }
 
 // The picture as a viewer sees it who looks along -z with +y up.
@@ -55,8 +56,8 @@ TEST(EnvironmentMap, LiesAroundTheViewerAsDocumented) {
   EXPECT_EQ(at({1, 0.1f, 0.1f}, 0), (Color{4, 0, 0}));
   EXPECT_EQ(at({-1, 0.1f, 0.1f}, 0), (Color{1, 0, 0}));
   // What was ahead at -z is, turned by a quarter counter-clockwise as seen from above, at -x.
-  EXPECT_EQ(at({-1, 0.5f, 0.1f}, kPi / 2), (Color{2, 0, 0}));
-  EXPECT_EQ(at({-1, 0.5f, -0.1f}, kPi / 2), (Color{3, 0, 0}));
+  EXPECT_EQ(at({-1, 0.5f, 0.1f}, std::numbers::pi / 2), (Color{2, 0, 0}));
+  EXPECT_EQ(at({-1, 0.5f, -0.1f}, std::numbers::pi / 2), (Color{3, 0, 0}));
 }
 
 // Frequencies of pixels against their radiance times their solid angle; without interpolation, the oracle
@@ -69,7 +70,8 @@ TEST(EnvironmentMap, ChoosesPixelsByRadianceTimesSolidAngle) {
   double total = 0;
   for (std::uint32_t i = 0; i < picture.pixels.size(); ++i) {
     const std::uint32_t row = i / 12;
-    expected[i] = mean(picture.pixels[i]) * (std::cos(kPi * row / 9) - std::cos(kPi * (row + 1) / 9));
+    expected[i] = mean(picture.pixels[i]) *
+                  (std::cos(std::numbers::pi * row / 9) - std::cos(std::numbers::pi * (row + 1) / 9));
     total += expected[i];
   }
   for (double& e : expected) e *= kSamples / total;
@@ -80,7 +82,7 @@ TEST(EnvironmentMap, ChoosesPixelsByRadianceTimesSolidAngle) {
     ++counted[row * 12 + column];
     ASSERT_EQ(s.radiance, picture.pixels[row * 12 + column]);
     // The density is proportional to the radiance.
-    ASSERT_NEAR(s.pdf * 4 * kPi * map.mean_radiance() / mean(s.radiance), 1, 1e-5);
+    ASSERT_NEAR(s.pdf * 4 * std::numbers::pi * map.mean_radiance() / mean(s.radiance), 1, 1e-5);
   }
   EXPECT_LT(chi_squared(expected, counted), 4);
 }
@@ -99,12 +101,13 @@ TEST(EnvironmentMap, SamplesHaveTheDensityThatPdfSays) {
         }
         EXPECT_NEAR(sphere_integral(300, [&](const Vec3f& d) { return map.pdf(d); }), 1, 0.02);
         EXPECT_NEAR(sphere_integral(300, [&](const Vec3f& d) { return mean(map.radiance(d)); }) /
-                        (4 * kPi * map.mean_radiance()),
+                        (4 * std::numbers::pi * map.mean_radiance()),
                     1, smooth ? 0.1 : 0.02);
         constexpr int kSamples = 20000;
         std::vector<double> expected(6 * 36), counted(6 * 36);
         sphere_integral(400, [&](const Vec3f& d) {
-          return expected[cube_cell(Vec3d(d), 6)] += map.pdf(d) * kSamples * 4 * kPi / (2.0 * 400 * 400);
+          return expected[cube_cell(Vec3d(d), 6)] +=
+                 map.pdf(d) * kSamples * 4 * std::numbers::pi / (2.0 * 400 * 400);
         });
         for (double& e : expected) e = std::max(e, 1e-9);
         Random random(4);
@@ -144,7 +147,9 @@ TEST(EnvironmentMap, FindsASingleBrightPixel) {
     EnvironmentPicture picture{1024, 512, std::vector<Color>(1024 * 512)};
     picture.pixels[row * 1024 + 300] = {1e6f, 1e6f, 1e6f};
     const EnvironmentMap map(picture, {.rotation = -2, .smooth = false});
-    const double angle = 2 * kPi / 1024 * (std::cos(kPi * row / 512) - std::cos(kPi * (row + 1) / 512));
+    const double angle =
+        2 * std::numbers::pi / 1024 *
+        (std::cos(std::numbers::pi * row / 512) - std::cos(std::numbers::pi * (row + 1) / 512));
     Random random(6);
     for (int i = 0; i < 1000; ++i) {
       const EnvironmentMap::Sample s = map.sample(random.square());
@@ -162,9 +167,9 @@ TEST(EnvironmentMap, OfOneColourIsUniformAndNeedsNoSamplesIfCompensated) {
   Random random(7);
   for (int i = 0; i < 1000; ++i) {
     const EnvironmentMap::Sample s = map.sample(random.square());
-    ASSERT_NEAR(s.pdf, 1 / (4 * kPi), 1e-7);
+    ASSERT_NEAR(s.pdf, 1 / (4 * std::numbers::pi), 1e-7);
     ASSERT_NEAR(s.radiance.x, 2, 1e-6f);
-    ASSERT_NEAR(map.pdf(random.direction()), 1 / (4 * kPi), 1e-7);
+    ASSERT_NEAR(map.pdf(random.direction()), 1 / (4 * std::numbers::pi), 1e-7);
   }
   const EnvironmentMap compensated(picture, {.compensate = true});
   EXPECT_FALSE(compensated.samples());

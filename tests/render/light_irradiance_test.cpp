@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <cmath>
 #include <vector>
@@ -51,7 +52,7 @@ TEST(LightIrradiance, PolygonsGiveTheIrradianceOfLambertsFormula) {
     expect_irradiance(t, point,
                       lambert({Vec3d(t.a), Vec3d(t.b), Vec3d(t.c)}, Vec3d(point.position), {0, 0, 1}), i);
     RectangleEmitter r{corner(), {}, {}, kWhite, true};
-    const double turn = random.between(0, 2 * kPi);
+    const double turn = random.between(0, 2 * std::numbers::pi);
     r.edge_u = Vec3f(Vec3d{std::cos(turn), std::sin(turn), 0} * random.between(0.01, 3));
     r.edge_v = Vec3f(Vec3d{-std::sin(turn), std::cos(turn), random.between(0, 1)} * random.between(0.01, 3));
     const Vec3d c(r.corner), u(r.edge_u), v(r.edge_v);
@@ -69,16 +70,18 @@ TEST(LightIrradiance, SpheresAndDisksGiveTheIrradianceOfTheirClosedForms) {
     const double x = random.between(-5, 5), square = x * x + height * height;
     const SphereEmitter sphere{Vec3f(Vec3d{x, 0, height}), static_cast<float>(radius), kWhite};
     const double r = sphere.radius;
-    expect_irradiance(sphere, {{}, {0, 0, 1}}, kPi * r * r / square * height / std::sqrt(square), i);
+    expect_irradiance(sphere, {{}, {0, 0, 1}}, std::numbers::pi * r * r / square * height / std::sqrt(square),
+                      i);
     // A disk above its centre: pi R^2 / (R^2 + h^2).
     const double disk_radius = random.between(0.01, 3);
     const DiskEmitter disk{
         {0, 0, static_cast<float>(height)}, {0, 0, -1}, static_cast<float>(disk_radius), kWhite};
-    expect_irradiance(disk, {{}, {0, 0, 1}},
-                      kPi * disk_radius * disk_radius / (disk_radius * disk_radius + height * height), i);
+    expect_irradiance(
+        disk, {{}, {0, 0, 1}},
+        std::numbers::pi * disk_radius * disk_radius / (disk_radius * disk_radius + height * height), i);
     // From inside a sphere: pi for any position and normal.
     const SphereEmitter around{{}, 2, kWhite, true};
-    expect_irradiance(around, {random.direction() * 1.9f, random.direction()}, kPi, i);
+    expect_irradiance(around, {random.direction() * 1.9f, random.direction()}, std::numbers::pi, i);
   }
 }
 
@@ -88,14 +91,14 @@ TEST(LightIrradiance, SurfacesCloseToALargeEmitterReceivePi) {
   for (const float height : {1.0f, 1e-2f, 1e-4f, 1e-6f}) {
     SCOPED_TRACE(height);
     const Estimate e = irradiance(floor, {{10, 20, height}, {0, 0, -1}}, 20000, 3);
-    EXPECT_NEAR(e.mean, kPi, 4 * e.error + 1e-5);
+    EXPECT_NEAR(e.mean, std::numbers::pi, 4 * e.error + 1e-5);
     const TriangleEmitter half{{-1000, -1000, 0}, {2000, -1000, 0}, {-1000, 2000, 0}, kWhite};
     const DiskEmitter disk{{0, 0, 0}, {0, 0, 1}, 1000, kWhite};
     const Estimate d = irradiance(disk, {{10, 20, height}, {0, 0, -1}}, 20000, 5);
-    EXPECT_NEAR(d.mean, kPi, 4 * d.error + 1e-5);
+    EXPECT_NEAR(d.mean, std::numbers::pi, 4 * d.error + 1e-5);
     EXPECT_LT(d.error, 0.05);
     const Estimate t = irradiance(half, {{10, 20, height}, {0, 0, -1}}, 20000, 4);
-    EXPECT_NEAR(t.mean, kPi, 4 * t.error + 1e-5);
+    EXPECT_NEAR(t.mean, std::numbers::pi, 4 * t.error + 1e-5);
   }
 }
 
@@ -138,7 +141,7 @@ TEST(LightIrradiance, TheSunHasItsIrradianceWhateverItsSize) {
   EXPECT_TRUE(std::isinf(delta->distance));
   for (const double degrees : {1e-3, 0.53, 5.0, 60.0, 180.0}) {
     SCOPED_TRACE(degrees);
-    const DirectionalEmitter sun{up, {3, 3, 3}, static_cast<float>(degrees * kPi / 180)};
+    const DirectionalEmitter sun{up, {3, 3, 3}, static_cast<float>(degrees * std::numbers::pi / 180)};
     // On a surface that faces it.
     expect_irradiance(sun, {{}, up}, 3, 1);
     if (degrees < 90) expect_irradiance(sun, {{}, n}, 3 * dot(up, n), 2);

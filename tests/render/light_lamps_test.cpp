@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include "core/isa.h"
@@ -21,7 +22,7 @@ using light_checks::chi_squared;
 using light_checks::lambert;
 using light_checks::Random;
 
-constexpr double kPi = std::numbers::pi, kHeight = 2.5, kEdge = 0.03, kRadius = 0.02;
+constexpr double kHeight = 2.5, kEdge = 0.03, kRadius = 0.02;
 constexpr int kSide = 32;
 
 /// The corners of lamps at one height, so that none hides another, each at random in its cell of a grid.
@@ -65,7 +66,7 @@ std::vector<double> floor_light(const std::function<double(const Vec3d&, const V
         for (const double gy : {-0.5 / std::sqrt(3), 0.5 / std::sqrt(3)}) {
           const Vec3d point{(x + 0.5 + gx) / kSize * 4 - 2, 0, (y + 0.5 + gy) / kSize * 4 - 2};
           for (std::size_t i = 0; i < places.size(); ++i)
-            sum += 0.5 / kPi * double{strength(i)} * lamp(places[i], point) / 4;
+            sum += 0.5 / std::numbers::pi * double{strength(i)} * lamp(places[i], point) / 4;
         }
       light.push_back(sum);
     }
@@ -119,7 +120,7 @@ TEST(ManyLamps, SpheresGiveTheLightOfTheirCaps) {
                }),
                floor_light([](const Vec3d& p, const Vec3d& point) {
                  const Vec3d to = p - point;
-                 return kPi * kRadius * kRadius * to.y / std::pow(dot(to, to), 1.5);
+                 return std::numbers::pi * kRadius * kRadius * to.y / std::pow(dot(to, to), 1.5);
                }));
 }
 

@@ -13,15 +13,13 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
-
 /// cos(vertical) below the horizon, every degree.
 std::shared_ptr<LightProfile> cosine_profile() {
   auto profile = std::make_shared<LightProfile>();
   profile->horizontal = {0};
   for (int i = 0; i <= 90; ++i) {
     profile->vertical.push_back(i);
-    profile->values.push_back(static_cast<float>(std::cos(i * kPi / 180)));
+    profile->values.push_back(static_cast<float>(std::cos(i * std::numbers::pi / 180)));
   }
   return profile;
 }
@@ -42,17 +40,18 @@ double flux_by_quadrature(const LightProfile& profile) {
   for (int i = 0; i < steps; ++i)
     for (int k = 0; k < 720; ++k) {
       const double v = 180 * (i + 0.5) / steps, h = 360 * (k + 0.5) / 720;
-      sum += profile_value(profile, v, h) * std::sin(v * kPi / 180) * (kPi / steps) * (2 * kPi / 720);
+      sum += profile_value(profile, v, h) * std::sin(v * std::numbers::pi / 180) *
+             (std::numbers::pi / steps) * (2 * std::numbers::pi / 720);
     }
   return sum;
 }
 
 TEST(LightProfile, FluxIsTheIntegralOfItsValues) {
-  EXPECT_NEAR(profile_flux(*cosine_profile()), kPi, 1e-3);
+  EXPECT_NEAR(profile_flux(*cosine_profile()), std::numbers::pi, 1e-3);
   const LightProfile even{{0, 180}, {0}, {1, 1}};
-  EXPECT_NEAR(profile_flux(even), 4 * kPi, 1e-12);
+  EXPECT_NEAR(profile_flux(even), 4 * std::numbers::pi, 1e-12);
   const LightProfile below{{0, 90}, {0, 180, 360}, {1, 1, 0, 0, 1, 1}};
-  EXPECT_NEAR(profile_flux(below), kPi, 1e-12);
+  EXPECT_NEAR(profile_flux(below), std::numbers::pi, 1e-12);
   for (std::uint32_t seed = 0; seed < 5; ++seed) {
     const auto profile = random_profile(seed);
     EXPECT_NEAR(profile_flux(*profile), flux_by_quadrature(*profile), 3e-3);
@@ -74,9 +73,10 @@ TEST(LightProfile, ValuesAreThoseOfTheTableAndLinearBetween) {
 TEST(LightProfile, IsAimedAlongItsAxis) {
   const auto down = aim(random_profile(2), {0, -2, 0}, 0);
   const auto at = [](double v, double h) {
-    const double s = std::sin(v * kPi / 180);
+    const double s = std::sin(v * std::numbers::pi / 180);
     // Horizontal angles from +x, counter-clockwise as seen from above.
-    return Vec3d{s * std::cos(h * kPi / 180), -std::cos(v * kPi / 180), -s * std::sin(h * kPi / 180)};
+    return Vec3d{s * std::cos(h * std::numbers::pi / 180), -std::cos(v * std::numbers::pi / 180),
+                 -s * std::sin(h * std::numbers::pi / 180)};
   };
   for (const double v : {10.5, 50.0, 120.0})
     for (const double h : {0.0, 45.0, 95.0, 200.0, 359.0}) {
@@ -142,7 +142,8 @@ TEST(LightProfile, PhotonsCarryItsFlux) {
     const auto start = photons.source.emit(d(0), {d(1), d(2)}, {d(3), d(4)});
     if (start) sum += double{start->power.y};
   }
-  EXPECT_NEAR(sum / count, kPi * profile_flux(*point.profile), 0.01 * kPi * profile_flux(*point.profile));
+  EXPECT_NEAR(sum / count, std::numbers::pi * profile_flux(*point.profile),
+              0.01 * std::numbers::pi * profile_flux(*point.profile));
 }
 
 }  // namespace

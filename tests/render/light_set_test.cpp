@@ -1,6 +1,7 @@
 #include "render/light/light_set.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <cmath>
 #include <limits>
@@ -156,8 +157,8 @@ TEST(LightSet, RaysThatLeaveTheSceneSeeWhatSamplesBring) {
     if (const auto s = set.sample(point, random(), random.square()); s && !s->delta)
       sampled += s->radiance.x / s->pdf / kSamples;
     const Vec3f d = random.direction();
-    seen += set.environment_radiance(d).x * 4 * kPi / kSamples;
-    mass += set.environment_pdf(point, d) * 4 * kPi / kSamples;
+    seen += set.environment_radiance(d).x * 4 * std::numbers::pi / kSamples;
+    mass += set.environment_pdf(point, d) * 4 * std::numbers::pi / kSamples;
   }
   EXPECT_NEAR(sampled, seen, 0.05 * seen);
   EXPECT_NEAR(mass, 1 - set.probability(point, 2), 0.05);

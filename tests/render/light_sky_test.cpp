@@ -1,6 +1,7 @@
 #include "render/light/sky.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <cmath>
 
@@ -14,13 +15,13 @@ using namespace light_checks;
 double luminance(const Color& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 Vec3f at_elevation(double degrees, double turn = 0) {
-  const double e = degrees * kPi / 180;
+  const double e = degrees * std::numbers::pi / 180;
   return Vec3f(Vec3d{std::cos(e) * std::sin(turn), std::sin(e), -std::cos(e) * std::cos(turn)});
 }
 
 /// The luminance of the paper at the zenith, in kcd / m^2.
 double zenith_luminance(double turbidity, double sun_zenith) {
-  const double chi = (4 / 9.0 - turbidity / 120) * (kPi - 2 * sun_zenith);
+  const double chi = (4 / 9.0 - turbidity / 120) * (std::numbers::pi - 2 * sun_zenith);
   return (4.0453 * turbidity - 4.9710) * std::tan(chi) - 0.2155 * turbidity + 2.4192;
 }
 
@@ -28,7 +29,7 @@ TEST(Sky, HasTheZenithOfThePaper) {
   for (const double turbidity : {2.0, 3.0, 6.0, 10.0})
     for (const double elevation : {10.0, 30.0, 60.0, 85.0}) {
       const Sky sky({.sun = at_elevation(elevation, 1), .turbidity = turbidity});
-      const double expected = zenith_luminance(turbidity, (90 - elevation) * kPi / 180);
+      const double expected = zenith_luminance(turbidity, (90 - elevation) * std::numbers::pi / 180);
       EXPECT_NEAR(luminance(sky.radiance({0, 1, 0})), expected, 2e-3 * expected);
     }
 }
@@ -60,10 +61,10 @@ TEST(Sky, HasTheGradientsOfThePaper) {
   };
   for (const double turbidity : {2.2, 4.0}) {
     const double sun_zenith = 0.7;
-    const Sky sky({.sun = at_elevation(90 - sun_zenith * 180 / kPi), .turbidity = turbidity});
+    const Sky sky({.sun = at_elevation(90 - sun_zenith * 180 / std::numbers::pi), .turbidity = turbidity});
     const Color zenith = sky.radiance({0, 1, 0});
     for (const double place : {-1.2, -0.6, 0.3, 0.65, 1.1, 1.4}) {
-      const Color c = sky.radiance(at_elevation(90 - place * 180 / kPi));
+      const Color c = sky.radiance(at_elevation(90 - place * 180 / std::numbers::pi));
       const double theta = std::abs(place), gamma = std::abs(place - sun_zenith);
       // A channel below 0 is cut off, which shifts what is left.
       if (c.x * c.y * c.z == 0) continue;
@@ -88,7 +89,7 @@ TEST(Sky, TheSunIsDimmedByAirHazeAndOzone) {
     };
     for (const double elevation : {5.0, 20.0, 60.0}) {
       const auto mass = [](double e) {
-        return 1 / (std::sin(e * kPi / 180) + 0.15 * std::pow(93.885 - (90 - e), -1.253));
+        return 1 / (std::sin(e * std::numbers::pi / 180) + 0.15 * std::pow(93.885 - (90 - e), -1.253));
       };
       for (int c = 0; c < 3; ++c) {
         const double haze = 0.04608 * turbidity - 0.04586;
@@ -109,21 +110,21 @@ TEST(Sky, HasTheBrightnessOfAClearDay) {
   for (int i = 0; i < kSamples; ++i) {
     Vec3f d = random.direction();
     d.y = std::abs(d.y);
-    sum += luminance(sky.radiance(d)) * d.y * 2 * kPi / kSamples;
+    sum += luminance(sky.radiance(d)) * d.y * 2 * std::numbers::pi / kSamples;
   }
   EXPECT_GT(sum, 8);
   EXPECT_LT(sum, 30);
   EXPECT_GT(luminance(sky.sun().irradiance), 70);
   EXPECT_LT(luminance(sky.sun().irradiance), 110);
-  EXPECT_NEAR(sky.sun().angle * 180 / kPi, 0.53, 1e-5);
+  EXPECT_NEAR(sky.sun().angle * 180 / std::numbers::pi, 0.53, 1e-5);
   // The ground gives back a fifth of both.
-  const double falling = sum + luminance(sky.sun().irradiance) * std::sin(kPi / 3);
-  EXPECT_NEAR(luminance(sky.radiance({0, -1, 0})), 0.2 * falling / kPi, 0.02 * falling);
+  const double falling = sum + luminance(sky.sun().irradiance) * std::sin(std::numbers::pi / 3);
+  EXPECT_NEAR(luminance(sky.radiance({0, -1, 0})), 0.2 * falling / std::numbers::pi, 0.02 * falling);
 }
 
 TEST(Sky, IsBlueAwayFromTheSunAndTheLowSunIsRed) {
   const Sky noon({.sun = at_elevation(50)});
-  const Color away = noon.radiance(at_elevation(40, kPi));
+  const Color away = noon.radiance(at_elevation(40, std::numbers::pi));
   EXPECT_GT(away.z, 1.3f * away.x);
   EXPECT_GT(luminance(noon.radiance(at_elevation(45))), 3 * luminance(away));
   const Color low = Sky({.sun = at_elevation(3)}).sun().irradiance, high = noon.sun().irradiance;

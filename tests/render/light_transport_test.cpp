@@ -15,8 +15,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A camera of one pixel that sees the origin, a point of a white diffuse floor at y = 0. It stands beside
 /// the floor's normal, so that lamps above are not in its way.
 Scene floor_scene(std::uint32_t samples, std::uint32_t depth = 0) {
@@ -50,7 +48,7 @@ double quadrature(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
       const double square = dot(p, p);
       sum += std::max(0.0, p.y) * std::abs(dot(n, p)) / (square * square) / (kSteps * kSteps);
     }
-  return sum / kPi;
+  return sum / std::numbers::pi;
 }
 
 // Light of less than 1/4096 is not lost: there is no cut.
@@ -248,10 +246,11 @@ TEST(LightTransport, EnvironmentsLightLikeTheirPixels) {
   double tent = 0;
   constexpr int kSteps = 10000;
   for (int i = 0; i < kSteps; ++i) {
-    const double row = kRow + 0.5 + 2 * ((i + 0.5) / kSteps - 0.5), polar = kPi * row / 32;
-    tent += (1 - std::abs(row - kRow - 0.5)) * std::cos(polar) * std::sin(polar) * (2 * kPi / 32 / kSteps);
+    const double row = kRow + 0.5 + 2 * ((i + 0.5) / kSteps - 0.5), polar = std::numbers::pi * row / 32;
+    tent += (1 - std::abs(row - kRow - 0.5)) * std::cos(polar) * std::sin(polar) *
+            (2 * std::numbers::pi / 32 / kSteps);
   }
-  const double want = 50 * tent * (2 * kPi / 64) / kPi;
+  const double want = 50 * tent * (2 * std::numbers::pi / 64) / std::numbers::pi;
   EXPECT_NEAR(seen(scene), want, 0.01 * want);
 
   // A constant one shows its colour times the albedo, by any weights.
@@ -269,8 +268,9 @@ TEST(LightTransport, SunsAreParallelLightWithAnArea) {
   EXPECT_NEAR(seen(scene), 3 * 2 / std::sqrt(5.0), 0.01);
   scene.materials[0] = mirror();
   scene.camera.from = {-1, 2, 0};
-  const double radius = 0.53 / 2 * kPi / 180, solid_angle = 2 * kPi * (1 - std::cos(radius));
-  EXPECT_NEAR(seen(scene), 3 * kPi / solid_angle, 0.01 * 3 * kPi / solid_angle);
+  const double radius = 0.53 / 2 * std::numbers::pi / 180,
+               solid_angle = 2 * std::numbers::pi * (1 - std::cos(radius));
+  EXPECT_NEAR(seen(scene), 3 * std::numbers::pi / solid_angle, 0.01 * 3 * std::numbers::pi / solid_angle);
 }
 
 TEST(LightTransport, TheSkyLightsTheGroundAndIsSeen) {

@@ -1,6 +1,7 @@
 #include "render/light/light_tree.h"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include <cmath>
 #include <vector>
@@ -303,7 +304,7 @@ std::vector<LightBounds> small_panels(std::size_t count) {
     const Vec3f p = Vec3f(Vec3d{random(), random(), random()} * 100.0);
     b = {.box = {p, p + Vec3f{0.01f, 0.01f, 0.01f}},
          .axis = random.direction(),
-         .reach = static_cast<float>(kPi / 2),
+         .reach = static_cast<float>(std::numbers::pi / 2),
          .power = 1};
   }
   return bounds;

@@ -15,12 +15,11 @@
 namespace oktett {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr float kAnisotropies[] = {0, 0.0005f, -0.3f, 0.5f, 0.9f, -0.95f, 0.99f, 0.999f};
 
 /// Henyey and Greenstein's formula as it is printed.
 double printed(double cosine, double g) {
-  return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+  return (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
 /// The direction at an angle from the unit vector `z`.
@@ -40,11 +39,12 @@ TEST(Phase, IsADensityWithTheAnisotropyAsItsMeanCosine) {
     constexpr int kSteps = 40000;
     double sum = 0, mean = 0;
     for (int i = 0; i < kSteps; ++i) {
-      const double s = (i + 0.5) / kSteps, angle = kPi * s * s * s;
-      const double polar = g < 0 ? kPi - angle : angle;
+      const double s = (i + 0.5) / kSteps, angle = std::numbers::pi * s * s * s;
+      const double polar = g < 0 ? std::numbers::pi - angle : angle;
       const Vec3f onward = turned(direction, std::cos(polar), 1 + 5 * s);
       const double value = static_cast<double>(phase_value(direction, onward, g));
-      const double share = value * 2 * kPi * std::sin(polar) * 3 * kPi * s * s / kSteps;
+      const double share =
+          value * 2 * std::numbers::pi * std::sin(polar) * 3 * std::numbers::pi * s * s / kSteps;
       sum += share, mean += share * std::cos(polar);
       if (std::abs(g) <= 0.9f) {
         EXPECT_NEAR(value, printed(std::cos(polar), static_cast<double>(g)), 2e-5 * value)
@@ -80,7 +80,7 @@ TEST(Phase, SamplesFollowTheDensity) {
       EXPECT_NEAR(length(d), 1, 1e-6);
       const double cosine = 1 - dot(d - z, d - z) / 2;
       const int zone = std::clamp(static_cast<int>(below(cosine) * kZones), 0, kZones - 1);
-      const double turn = std::atan2(dot(d, y), dot(d, x)) / (2 * kPi) + 0.5;
+      const double turn = std::atan2(dot(d, y), dot(d, x)) / (2 * std::numbers::pi) + 0.5;
       ++count[static_cast<std::size_t>(zone * kSectors + std::min(static_cast<int>(turn * kSectors), 7))];
     }
     const double expected = static_cast<double>(kSamples) / (kZones * kSectors);

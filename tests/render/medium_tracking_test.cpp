@@ -14,8 +14,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
-
 /// A grid in a place that is turned and stretched.
 Medium cloud() {
   Medium m;
@@ -192,12 +190,13 @@ TEST(GridTransport, SingleScatteringMatchesQuadrature) {
     double shadow = 0;
     for (const double d : densities(m, {Vec3f(p), Vec3f(to / r), r}, kShadowSteps))
       shadow += d * r / kShadowSteps;
-    const double phase = 0.75 / (4 * kPi * std::pow(1.25 - cosine, 1.5));
+    const double phase = 0.75 / (4 * std::numbers::pi * std::pow(1.25 - cosine, 1.5));
     depth += here * step / 2;
     for (int c = 0; c < 3; ++c) {
       const auto scattering = static_cast<double>(m.scattering[c]);
       const double sigma = scattering + static_cast<double>(m.absorption[c]);
-      want[c] += scattering * here * std::exp(-sigma * (depth + shadow)) * phase * kPi / (r * r) * step;
+      want[c] +=
+          scattering * here * std::exp(-sigma * (depth + shadow)) * phase * std::numbers::pi / (r * r) * step;
     }
     depth += here * step / 2;
   }

@@ -12,8 +12,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kPi = std::numbers::pi;
-
 Medium medium(const Color& absorption, const Color& scattering, float anisotropy = 0) {
   Medium m;
   m.absorption = absorption, m.scattering = scattering, m.anisotropy = anisotropy;
@@ -116,12 +114,12 @@ Vec3d single_scattering(const Medium& m) {
   for (int i = 0; i < kSteps; ++i) {
     const double s = 2 * (i + 0.5) / kSteps, z = 1 - s, r = std::sqrt(9 + z * z);
     const double g = static_cast<double>(m.anisotropy), cosine = z / r;  // of (0, 0, -1) and (0, 3, -z) / r
-    const double phase = (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+    const double phase = (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
     for (int c = 0; c < 3; ++c) {
       const double scattering = static_cast<double>(m.scattering[c]);
       const double sigma = scattering + static_cast<double>(m.absorption[c]);
       // A third of the way to the light lies in the box.
-      sum[c] += scattering * std::exp(-sigma * (s + r / 3)) * phase * kPi / (r * r) * 2 / kSteps;
+      sum[c] += scattering * std::exp(-sigma * (s + r / 3)) * phase * std::numbers::pi / (r * r) * 2 / kSteps;
     }
   }
   return sum;

@@ -1,6 +1,7 @@
 /// \file The power of photons: what lights send, and where it ends.
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "core/random.h"
 #include "tests/render/photon_support.h"
@@ -9,8 +10,6 @@ namespace oktett {
 namespace {
 
 using namespace test;
-
-constexpr double kPi = std::numbers::pi;
 
 /// A white room, of half edge 5, with a ball of radius 0.5 about the origin in it.
 Scene room_with_ball(const Material& ball) {
@@ -44,7 +43,7 @@ MeanAndError emitted(const PhotonSource& source, std::uint32_t photons = 200000)
 /// the integral of the cosine over the cone, pi sin^2(half angle) cos(angle to the normal).
 double flux_of_piece(const Vec3d& from, const Vec3d& normal, double r) {
   const double square = dot(from, from);
-  return kPi * r * r / square * dot(normal, -from) / std::sqrt(square);
+  return std::numbers::pi * r * r / square * dot(normal, -from) / std::sqrt(square);
 }
 
 void expect_power(const Scene& scene, double want, const char* what) {
@@ -56,7 +55,7 @@ void expect_power(const Scene& scene, double want, const char* what) {
 
 TEST(PhotonEnergy, LightsSendTheirPowerToTheTarget) {
   const double r = target_radius();
-  const double cap = 2 * kPi * (1 - std::sqrt(1 - r * r / 9));  // of a place at distance 3
+  const double cap = 2 * std::numbers::pi * (1 - std::sqrt(1 - r * r / 9));  // of a place at distance 3
   Scene scene = room_with_ball(glass(1.5f));
   const auto light = [&](Light l) {
     Scene s = scene;
@@ -70,22 +69,29 @@ TEST(PhotonEnergy, LightsSendTheirPowerToTheTarget) {
     add_object(s, std::move(shape), add_material(s, m));
     return s;
   };
-  expect_power(light(PointLight{{0, 3, 0}, {1, 2, 3}, true}), 2 * kPi * cap, "point");
-  expect_power(light(PointLight{{0, 0.1, 0}, {1, 2, 3}, true}), 2 * kPi * 4 * kPi, "point inside");
+  expect_power(light(PointLight{{0, 3, 0}, {1, 2, 3}, true}), 2 * std::numbers::pi * cap, "point");
+  expect_power(light(PointLight{{0, 0.1, 0}, {1, 2, 3}, true}), 2 * std::numbers::pi * 4 * std::numbers::pi,
+               "point inside");
   // A spot with a sharp edge whose cone is wider, and one whose cone is narrower than the target.
-  expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 60, 60}), 2 * kPi * cap, "wide spot");
+  expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 60, 60}), 2 * std::numbers::pi * cap,
+               "wide spot");
   expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 5, 5}),
-               2 * kPi * 2 * kPi * (1 - std::cos(5 * kPi / 180)), "narrow spot");
+               2 * std::numbers::pi * 2 * std::numbers::pi * (1 - std::cos(5 * std::numbers::pi / 180)),
+               "narrow spot");
   // The edge of a soft one counts half.
   expect_power(light(SpotLight{{0, 3, 0}, {0, -1, 0}, {1, 2, 3}, 2, 6}),
-               2 * kPi * 2 * kPi * (1 - (std::cos(2 * kPi / 180) + std::cos(6 * kPi / 180)) / 2),
+               2 * std::numbers::pi * 2 * std::numbers::pi *
+                   (1 - (std::cos(2 * std::numbers::pi / 180) + std::cos(6 * std::numbers::pi / 180)) / 2),
                "soft spot");
-  expect_power(light(DirectionalLight{{1, -2, 3}, {1, 2, 3}, 0}), 2 * kPi * kPi * r * r, "parallel");
-  expect_power(light(DirectionalLight{{1, -2, 3}, {1, 2, 3}, 0.5}), 2 * kPi * kPi * r * r, "sun disk");
+  expect_power(light(DirectionalLight{{1, -2, 3}, {1, 2, 3}, 0}),
+               2 * std::numbers::pi * std::numbers::pi * r * r, "parallel");
+  expect_power(light(DirectionalLight{{1, -2, 3}, {1, 2, 3}, 0.5}),
+               2 * std::numbers::pi * std::numbers::pi * r * r, "sun disk");
   auto picture = std::make_shared<EnvironmentPicture>();
   picture->width = 4, picture->height = 2;
   picture->pixels.assign(8, {1, 2, 3});
-  expect_power(light(EnvironmentLight{picture, 0, {1, 1, 1}}), 2 * 4 * kPi * kPi * r * r, "environment");
+  expect_power(light(EnvironmentLight{picture, 0, {1, 1, 1}}),
+               2 * 4 * std::numbers::pi * std::numbers::pi * r * r, "environment");
   picture->pixels[2] = {50, 200, 0};
   {
     const PhotonScene uneven(light(EnvironmentLight{picture, 30, {1, 1, 1}}));
@@ -94,27 +100,29 @@ TEST(PhotonEnergy, LightsSendTheirPowerToTheTarget) {
     const int steps = 200;
     for (int i = 0; i < steps; ++i)
       for (int k = 0; k < 2 * steps; ++k) {
-        const double theta = kPi * (i + 0.5) / steps, phi = kPi * (k + 0.5) / steps;
+        const double theta = std::numbers::pi * (i + 0.5) / steps, phi = std::numbers::pi * (k + 0.5) / steps;
         const Vec3f d(
             Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)});
-        sum += double{uneven.lights.set().environment_radiance(d).y} * std::sin(theta) * kPi * kPi /
-               (steps * steps);
+        sum += double{uneven.lights.set().environment_radiance(d).y} * std::sin(theta) * std::numbers::pi *
+               std::numbers::pi / (steps * steps);
       }
-    expect_power(uneven.scene, sum * kPi * r * r, "uneven environment");
+    expect_power(uneven.scene, sum * std::numbers::pi * r * r, "uneven environment");
   }
   // Small lamps, by the closed form for their middle, and the hidden halves of wide ones.
   const Vec3d far{0, 3, 0};
   const double piece = flux_of_piece(far, {0, -1, 0}, r);
   const auto corner = [](double x, double z) { return Vec3d{0.01 * x, 3, 0.01 * z}; };
-  expect_power(lamp(DiskShape{far, {0, -1, 0}, 0.01}), 2 * kPi * 1e-4 * piece, "disk");
-  expect_power(lamp(DiskShape{far, {0, 1, 0}, 0.01}, true), 2 * kPi * 1e-4 * piece, "both sides");
+  expect_power(lamp(DiskShape{far, {0, -1, 0}, 0.01}), 2 * std::numbers::pi * 1e-4 * piece, "disk");
+  expect_power(lamp(DiskShape{far, {0, 1, 0}, 0.01}, true), 2 * std::numbers::pi * 1e-4 * piece,
+               "both sides");
   expect_power(lamp(PolygonShape{{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)}}, true),
                2 * 1e-4 * piece, "rectangle");
   expect_power(lamp(TriangleShape{{corner(0, 0), corner(1, 0), corner(0, 1)}}, true), 1e-4 * piece,
                "triangle");
   // A ball far away is seen as a disk.
   expect_power(lamp(SphereShape{{0, 4.5, 0}, 0.02}),
-               2 * kPi * 4e-4 * 2 * kPi * (1 - std::sqrt(1 - r * r / (4.5 * 4.5))), "sphere");
+               2 * std::numbers::pi * 4e-4 * 2 * std::numbers::pi * (1 - std::sqrt(1 - r * r / (4.5 * 4.5))),
+               "sphere");
 }
 
 TEST(PhotonEnergy, WithoutBoundsLampsSendAllTheirPower) {
@@ -127,9 +135,12 @@ TEST(PhotonEnergy, WithoutBoundsLampsSendAllTheirPower) {
     add_object(s, std::move(shape), add_material(s, m));
     return s;
   };
-  expect_power(lamp(SphereShape{{0, 4, 0}, 0.3}, false), 2 * kPi * 4 * kPi * 0.09, "sphere");
-  expect_power(lamp(SphereShape{{0, 4, 0}, 0.3}, true), 2 * 2 * kPi * 4 * kPi * 0.09, "sphere, both sides");
-  expect_power(lamp(DiskShape{{0, 4, 0}, {0, -1, 0}, 0.3}, false), 2 * kPi * kPi * 0.09, "disk");
+  expect_power(lamp(SphereShape{{0, 4, 0}, 0.3}, false), 2 * std::numbers::pi * 4 * std::numbers::pi * 0.09,
+               "sphere");
+  expect_power(lamp(SphereShape{{0, 4, 0}, 0.3}, true),
+               2 * 2 * std::numbers::pi * 4 * std::numbers::pi * 0.09, "sphere, both sides");
+  expect_power(lamp(DiskShape{{0, 4, 0}, {0, -1, 0}, 0.3}, false),
+               2 * std::numbers::pi * std::numbers::pi * 0.09, "disk");
   Scene parallel = scene;
   parallel.lights = {DirectionalLight{}};
   const PhotonScene none(parallel);
@@ -191,14 +202,14 @@ TEST(PhotonEnergy, AMirrorBallStoresWhatFallsOnIt) {
   Scene scene = room_with_ball(mirror());
   scene.lights = {PointLight{{0, 3, 0}, {1, 1, 1}, true}};
   PhotonEnergy e = expect_conserved(scene);
-  const double cap = 2 * kPi * (1 - std::sqrt(1 - 0.25 / 9));
-  EXPECT_NEAR(e.stored, kPi * cap, 3 * kPi * cap / std::sqrt(0.3 * 100000));
+  const double cap = 2 * std::numbers::pi * (1 - std::sqrt(1 - 0.25 / 9));
+  EXPECT_NEAR(e.stored, std::numbers::pi * cap, 3 * std::numbers::pi * cap / std::sqrt(0.3 * 100000));
   EXPECT_EQ(e.escaped, 0);
   // All of the light that clear glass takes in it gives back.
   scene = room_with_ball(glass(1.5f));
   scene.lights = {PointLight{{0, 3, 0}, {1, 1, 1}, true}};
   e = expect_conserved(scene, 64);
-  EXPECT_NEAR(e.stored, kPi * cap, 3 * kPi * cap / std::sqrt(0.3 * 100000));
+  EXPECT_NEAR(e.stored, std::numbers::pi * cap, 3 * std::numbers::pi * cap / std::sqrt(0.3 * 100000));
 }
 
 // Light that leaves a lamp within a block of glass and the photons within are scaled as radiance is.
@@ -213,7 +224,7 @@ TEST(PhotonEnergy, PowerInGlassIsDividedByTheSquareOfItsIndex) {
   double sum = 0;
   for (const Photon& p : traced.photons) sum += double{p.power.y};
   // Irradiance pi passes with 1 - 1/9, on an area of pi / 4, from above alone.
-  const double want = kPi * (8.0 / 9) * (kPi / 4) / 4;
+  const double want = std::numbers::pi * (8.0 / 9) * (std::numbers::pi / 4) / 4;
   EXPECT_NEAR(sum, want, 0.02 * want);
 }
 

@@ -12,12 +12,10 @@
 namespace oktett {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 float dice(std::uint32_t number, std::uint32_t dimension) { return random_float(7, number, dimension); }
 
 Vec3f unit_vector(std::uint32_t number) {
-  const double z = 2.0 * dice(number, 10) - 1, turn = 2 * kPi * dice(number, 11);
+  const double z = 2.0 * dice(number, 10) - 1, turn = 2 * std::numbers::pi * dice(number, 11);
   const double r = std::sqrt(std::max(0.0, 1 - z * z));
   return Vec3f(Vec3d{r * std::cos(turn), r * std::sin(turn), z});
 }
@@ -120,7 +118,8 @@ TEST(PhotonPass, TheUsualRadiusHoldsThirtyTwoPhotons) {
   Column<Photon> photons;
   for (std::uint32_t i = 0; i < 20000; ++i)
     photons.push_back({{dice(i, 0), 0, dice(i, 1)}, {1, 1, 1}, 0, 1, 0});
-  EXPECT_NEAR(usual_radius(photons), std::sqrt(32 / (20000 * kPi)), 0.05 * std::sqrt(32 / (20000 * kPi)));
+  EXPECT_NEAR(usual_radius(photons), std::sqrt(32 / (20000 * std::numbers::pi)),
+              0.05 * std::sqrt(32 / (20000 * std::numbers::pi)));
   photons.resize_uninitialized(1);
   EXPECT_EQ(usual_radius(photons), 0);
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
@@ -16,8 +17,6 @@ namespace oktett {
 namespace {
 
 using namespace test;
-
-constexpr double kPi = std::numbers::pi;
 
 Medium medium(const Color& absorption, const Color& scattering) {
   Medium m;
@@ -56,7 +55,7 @@ Scene mirror_before_wall() {
 }
 
 /// What arrives at the wall when nothing takes any of it: irradiance pi / sqrt 2 on the disk's area.
-const double kMirrored = kPi * kPi / std::sqrt(2.0);
+const double kMirrored = std::numbers::pi * std::numbers::pi / std::sqrt(2.0);
 
 struct Traced {
   Vec3d stored;  ///< sum of the powers of all photons
@@ -142,7 +141,7 @@ TEST(PhotonMedia, PhotonsStartInTheSolidsAroundTheirLamp) {
   scene.lights = {PointLight{{0, 0, 0}, {1, 1, 1}, true}};
   // Intensity pi in all directions.
   const auto want = [](double way) {
-    return Vec3d{std::exp(-0.3 * way), std::exp(-0.1 * way), 1} * (4 * kPi * kPi);
+    return Vec3d{std::exp(-0.3 * way), std::exp(-0.1 * way), 1} * (4 * std::numbers::pi * std::numbers::pi);
   };
   expect_power(traced(scene).stored, want(2), 1e-3);
   const Material air = filled(scene, glass(1), medium({}, {}), 2);
@@ -202,7 +201,7 @@ TEST(PhotonMedia, NestedSolidsBendPhotonsAsSnellSays) {
   }
   const double liquid = std::sqrt(1 - 0.5 / (1.33 * 1.33));
   const double passed = (1 - fresnel(std::sqrt(0.5), 1.33)) * (1 - fresnel(liquid, 1.7 / 1.33));
-  const double want = kPi * std::sqrt(0.5) * kPi * 0.25 * passed / (1.7 * 1.7);
+  const double want = std::numbers::pi * std::sqrt(0.5) * std::numbers::pi * 0.25 * passed / (1.7 * 1.7);
   expect_power(sum, {want, want, want}, 0.02);
 }
 

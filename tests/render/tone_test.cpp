@@ -5,16 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/render/test_scenes.h"
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {
 
 using namespace test;
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 TEST(Tone, SrgbLeavesLightAsItIs) {
   for (const Color& c : {Color{0.1f, 1, 30}, Color{-1, 0, kInf}, Color{1e30f, 1e-30f, 0.5f}})

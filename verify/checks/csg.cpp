@@ -25,8 +25,8 @@ using Inside = std::function<bool(const Vec3l&)>;
 
 constexpr int kSamples = 256;
 constexpr int kMaxOperands = 64, kMaxDepth = 12;
-constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::interleaved, TraceMode::packet8,
-                                TraceMode::packet16, TraceMode::beam};
+constexpr TraceMode kCsgModes[] = {TraceMode::automatic, TraceMode::interleaved, TraceMode::packet8,
+                                   TraceMode::packet16, TraceMode::beam};
 
 /// A convex mesh is the intersection of the half-spaces of its triangles.
 Inside inside_convex(const TriangleMesh& mesh, const Affine& to_world) {
@@ -161,9 +161,9 @@ class TreeMaker {
   const TriangleMesh *ball_, *cube_;
 };
 
-class Checker {
+class CsgChecker {
  public:
-  Checker(std::uint64_t tree, const std::vector<Isa>& isas, CsgTally& tally)
+  CsgChecker(std::uint64_t tree, const std::vector<Isa>& isas, CsgTally& tally)
       : random_(mix_bits(tree + 77)), isas_(isas), tally_(tally) {
     auto expression = std::make_shared<CsgExpression>();
     const int operands = 1 + static_cast<int>(std::pow(kMaxOperands, random_.unit()));
@@ -206,7 +206,7 @@ class Checker {
 
   void compare_modes(const RayBatch& rays, const HitBatch& reference) {
     for (const Isa isa : isas_)
-      for (const TraceMode mode : kModes)
+      for (const TraceMode mode : kCsgModes)
         compare_mode(*accel_, rays, reference, isa, mode, [&](std::size_t i, bool, bool) {
           fail(tally_.differing, rays[i], fmt::format("{} differs", to_string(isa)));
         });
@@ -304,7 +304,7 @@ CsgTally verify_csg(std::uint64_t rays, const std::vector<Isa>& isas, std::uint6
   tbb::parallel_for(std::size_t{0}, trees, [&](std::size_t k) {
     CsgTally& tally = tallies[k];
     tally.tree = first + k;
-    Checker(tally.tree, isas, tally).run();
+    CsgChecker(tally.tree, isas, tally).run();
     if (!tally.failure.empty()) tally.failure = fmt::format("tree {}: {}", tally.tree, tally.failure);
   });
   CsgTally sum;

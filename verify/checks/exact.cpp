@@ -19,8 +19,8 @@ namespace oktett {
 
 namespace {
 
-constexpr TraceMode kModes[] = {TraceMode::automatic, TraceMode::single,   TraceMode::interleaved,
-                                TraceMode::packet8,   TraceMode::packet16, TraceMode::beam};
+constexpr TraceMode kExactModes[] = {TraceMode::automatic, TraceMode::single,   TraceMode::interleaved,
+                                     TraceMode::packet8,   TraceMode::packet16, TraceMode::beam};
 /// A shape in a random place, its rays, and what the tracer says.
 struct Trial {
   ExactOracle oracle;
@@ -64,10 +64,11 @@ void shoot(Trial& trial, CaseRandom& random) {
   }
 }
 
-class Checker {
+class ExactChecker {
  public:
   /// `turn` tells which instruction set is asked in all ways.
-  Checker(Trial& trial, CaseRandom& random, const std::vector<Isa>& isas, std::size_t turn, ExactTally& tally)
+  ExactChecker(Trial& trial, CaseRandom& random, const std::vector<Isa>& isas, std::size_t turn,
+               ExactTally& tally)
       : trial_(trial), random_(random), isas_(isas), turn_(turn % isas.size()), tally_(tally) {}
 
   void run() {
@@ -87,7 +88,7 @@ class Checker {
     closest_hit(*trial_.accel, rays.span(), reference.span(), isas_.front(), TraceMode::single);
     for (std::size_t k = 0; k < isas_.size(); ++k) {
       const Isa isa = isas_[k];
-      for (const TraceMode mode : kModes) {
+      for (const TraceMode mode : kExactModes) {
         if (k != turn_ && mode != TraceMode::automatic && mode != TraceMode::single) continue;
         compare_mode(*trial_.accel, rays, reference, isa, mode, [&](std::size_t i, bool, bool) {
           ++tally_.differing;
@@ -247,7 +248,7 @@ ExactTally verify_exact(std::size_t form, std::uint64_t rays, const std::vector<
     shoot(trial, random);
     ExactTally& tally = tallies[k];
     tally.trial = first + k;
-    Checker(trial, random, isas, k, tally).run();
+    ExactChecker(trial, random, isas, k, tally).run();
     if (!tally.failure.empty()) tally.failure = fmt::format("trial {}: {}", tally.trial, tally.failure);
   });
   ExactTally sum;

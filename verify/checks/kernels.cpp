@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "verify/checks/compare_mode.h"
 #include "verify/oracles/closed.h"
 
 namespace oktett {
@@ -43,14 +44,12 @@ std::optional<Ray> ray_in_text(const std::string& text) {
 
 namespace {
 
-constexpr std::size_t kChunk = 8192;
+constexpr std::size_t kPairsTogether = 8192;
 
 struct Results {
-  float t[kChunk], u[kChunk], v[kChunk];
-  std::uint8_t hit[kChunk];
+  float t[kPairsTogether], u[kPairsTogether], v[kPairsTogether];
+  std::uint8_t hit[kPairsTogether];
 };
-
-bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// Of the triangle tests in the order of KernelId.
 constexpr TriangleTolerance kTolerances[] = {
@@ -155,11 +154,12 @@ KernelTally verify_chunk(KernelId id, CaseClass c, std::uint64_t first, std::siz
 
 KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas,
                           std::uint64_t first_pair) {
-  const std::size_t chunks = static_cast<std::size_t>((rays + kChunk - 1) / kChunk);
+  const std::size_t chunks = static_cast<std::size_t>((rays + kPairsTogether - 1) / kPairsTogether);
   std::vector<KernelTally> parts(chunks);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
-    const std::uint64_t first = k * kChunk;
-    parts[k] = verify_chunk(id, c, first_pair + first, std::min<std::uint64_t>(kChunk, rays - first), isas);
+    const std::uint64_t first = k * kPairsTogether;
+    parts[k] =
+        verify_chunk(id, c, first_pair + first, std::min<std::uint64_t>(kPairsTogether, rays - first), isas);
   });
   KernelTally total;
   for (const KernelTally& part : parts) total.add(part);

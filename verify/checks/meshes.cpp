@@ -27,7 +27,7 @@ void MeshTally::add(const MeshTally& o) {
 
 namespace {
 
-constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kRaysTogether = 2048;
 
 /// A point that rays start at, and how often the mesh winds around it.
 struct Viewpoint {
@@ -122,7 +122,8 @@ class ChunkCheck {
         crossings_.empty() ? !closest.valid() : closest.valid() && same_bits(crossings_[0], closest);
     if (!agrees)
       complain(tally_.inconsistent, i, fmt::format("all_hits of {} against closest_hit", to_string(isa)));
-    if (!std::ranges::equal(crossings_, lists_.of_ray(i), same_bits))
+    if (!std::ranges::equal(crossings_, lists_.of_ray(i),
+                            [](const Hit& a, const Hit& b) { return same_bits(a, b); }))
       complain(tally_.inconsistent, i,
                fmt::format("all_hits of {}: a batch against one ray", to_string(isa)));
     if (!subject_.closed || max_component(abs(rays_[i].direction)) == 0) return;
@@ -182,12 +183,12 @@ MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, st
       subject.viewpoints.push_back(
           {Vec3f(Vec3d(bounds_box.center()) + Vec3d(bounds_box.extent()) * random.vector() * 1.2), 0});
   if (subject.viewpoints.empty()) return total;
-  const std::size_t chunks = static_cast<std::size_t>((rays + kChunk - 1) / kChunk);
+  const std::size_t chunks = static_cast<std::size_t>((rays + kRaysTogether - 1) / kRaysTogether);
   std::vector<MeshTally> parts(chunks);
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
-    const std::uint64_t first = k * kChunk;
-    parts[k] =
-        ChunkCheck(subject, first_ray + first).run(std::min<std::uint64_t>(kChunk, rays - first), isas, key);
+    const std::uint64_t first = k * kRaysTogether;
+    parts[k] = ChunkCheck(subject, first_ray + first)
+                   .run(std::min<std::uint64_t>(kRaysTogether, rays - first), isas, key);
   });
   for (const MeshTally& part : parts) total.add(part);
   return total;

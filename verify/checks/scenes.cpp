@@ -73,14 +73,9 @@ void add_kinds(const std::vector<Object>& objects, std::set<std::string>& kinds,
 /// What of a hit does not depend on what else is in the scene.
 std::tuple<float, float, float> place(const Hit& h) { return {h.t, h.u, h.v}; }
 
-bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-bool same_bits(const Vec3f& a, const Vec3f& b) {
-  return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
-}
-
-class Checker {
+class SceneChecker {
  public:
-  Checker(const Scene& scene, const RayBatch& rays, const std::vector<Isa>& isas, std::uint64_t turn)
+  SceneChecker(const Scene& scene, const RayBatch& rays, const std::vector<Isa>& isas, std::uint64_t turn)
       : scene_(scene), rays_(rays), isas_(isas), isa_(isas[turn % isas.size()]) {}
 
   SceneTally run() {
@@ -137,16 +132,16 @@ class Checker {
       const auto expect = [&](bool ok, const char* what) {
         if (!ok) fail(tally_.differing, i, fmt::format("{} ({})", what, to_string(isa_)));
       };
-      expect(oktett::same_bits(eight[i], first), "the closest hit differs in a batch of eight");
-      expect(oktett::same_bits(closest_hit(accel, rays_[i], isa_), first), "the closest hit differs alone");
+      expect(same_bits(eight[i], first), "the closest hit differs in a batch of eight");
+      expect(same_bits(closest_hit(accel, rays_[i], isa_), first), "the closest hit differs alone");
       expect(any_hit(accel, rays_[i], isa_) == first.valid(), "any_hit of one ray against closest_hit");
       const auto expected = lists_.of_ray(i);
       all_hits(accel, rays_[i], list, isa_);
-      const auto same = [](const Hit& a, const Hit& b) { return oktett::same_bits(a, b); };
+      const auto same = [](const Hit& a, const Hit& b) { return same_bits(a, b); };
       expect(std::ranges::equal(list, expected, same), "all_hits of one ray differ");
       expect(std::ranges::equal(lists.of_ray(i), expected, same), "all_hits of a batch differ");
       expect(counts[i] == expected.size(), "count_hits against all_hits");
-      expect(expected.empty() ? !first.valid() : oktett::same_bits(expected[0], first),
+      expect(expected.empty() ? !first.valid() : same_bits(expected[0], first),
              "the closest hit is not the first of all_hits");
     }
   }
@@ -302,7 +297,7 @@ void SceneTally::add(const SceneTally& o) {
 
 SceneTally check_scene(const Scene& scene, const RayBatch& rays, const std::vector<Isa>& isas,
                        std::uint64_t turn) {
-  return Checker(scene, rays, isas, turn).run();
+  return SceneChecker(scene, rays, isas, turn).run();
 }
 
 SceneTally verify_scenes(std::uint64_t count, const std::vector<Isa>& isas, std::uint64_t first) {

@@ -38,12 +38,12 @@ void note_polygons(std::size_t polygons, std::size_t triangles, MeshLosses& loss
                      std::to_string(triangles) + " triangles)");
 }
 
-struct ObjCounts {
+struct WrittenCounts {
   std::size_t faces = 0, names = 0, colours = 0;
   bool is_precise = false;
 };
 
-void count_line(const char* p, ObjCounts& counts) {
+void count_line(const char* p, WrittenCounts& counts) {
   const std::string_view keyword = word_at(p);
   if (keyword == "f") ++counts.faces;
   if (keyword == "o" || keyword == "g") ++counts.names;
@@ -60,7 +60,7 @@ void count_line(const char* p, ObjCounts& counts) {
 }
 
 void note_obj(std::string_view text, std::size_t triangles, MeshLosses& losses) {
-  ObjCounts counts;
+  WrittenCounts counts;
   const char* const end = text.data() + text.size();
   for (const char* p = text.data(); p < end; p = next_line(find_joined_line_end(p), end))
     count_line(skip_blanks(p), counts);

@@ -1,0 +1,13 @@
+#pragma once
+/// \file Infinity and NaN under short names, for inputs and expected values.
+
+#include <limits>
+
+namespace oktett {
+
+inline constexpr float kInf = std::numeric_limits<float>::infinity();
+inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+inline constexpr double kInfDouble = std::numeric_limits<double>::infinity();
+inline constexpr double kNanDouble = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace oktett
