@@ -41,7 +41,7 @@ void print_finding(const std::string& text, std::set<std::string>& told) {
 /// Prints what is wrong in a file. Returns the exit status for it.
 int check(const std::string& path, const CheckArguments& arguments) {
   const Findings findings = check_file(path, parse_definitions(arguments.definitions));
-  const std::vector<Finding>& list = findings.list;
+  const std::vector<SceneFinding>& list = findings.list;
   const std::size_t shown = std::min(list.size(), kMostShown);
   std::set<std::string> told;
   for (std::size_t i = 0; i < shown; ++i) print_finding(list[i].text, told);
@@ -49,14 +49,14 @@ int check(const std::string& path, const CheckArguments& arguments) {
     fmt::print("... and more\n");
   else if (list.size() > shown)
     fmt::print("... and {} more\n", list.size() - shown);
-  const auto count = [&](Finding::Kind kind) {
-    return static_cast<std::size_t>(std::ranges::count(list, kind, &Finding::kind));
+  const auto count = [&](SceneFinding::Kind kind) {
+    return static_cast<std::size_t>(std::ranges::count(list, kind, &SceneFinding::kind));
   };
-  const std::size_t warnings = count(Finding::Kind::warning), errors = list.size() - warnings;
+  const std::size_t warnings = count(SceneFinding::Kind::warning), errors = list.size() - warnings;
   if (!list.empty())
     say("oktett: {}: {}{}, {}\n", path, findings.has_more ? "more than " : "", counted(errors, "error"),
         counted(warnings, "warning"));
-  if (count(Finding::Kind::io) > 0) return kExitIo;
+  if (count(SceneFinding::Kind::io) > 0) return kExitIo;
   return errors > 0 || (arguments.strict && warnings > 0) ? kExitBadInput : 0;
 }
 

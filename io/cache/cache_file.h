@@ -30,7 +30,7 @@ CacheSection section_of(const Column<T>& column) {
   return {column.data(), column.size() * sizeof(T)};
 }
 
-/// Since 1970.
+/// Nanoseconds since 1970.
 std::int64_t nanoseconds(const timespec& time);
 
 /// The size of such a file.

@@ -37,12 +37,13 @@ class Checking {
 
  private:
   void add(const Error& error) {
-    found_.list.push_back({error.where(), error.what(),
-                           error.kind() == ErrorKind::io ? Finding::Kind::io : Finding::Kind::bad_input});
+    found_.list.push_back(
+        {error.where(), error.what(),
+         error.kind() == ErrorKind::io ? SceneFinding::Kind::io : SceneFinding::Kind::bad_input});
   }
   void add(const std::vector<Warning>& warnings) {
     for (const Warning& warning : warnings)
-      found_.list.push_back({warning.where, to_string(warning), Finding::Kind::warning});
+      found_.list.push_back({warning.where, to_string(warning), SceneFinding::Kind::warning});
   }
 
   template <class Read>
@@ -103,18 +104,19 @@ class Checking {
 
   void sort() {
     std::vector<std::string> files{path_};
-    const auto number = [&](const Finding& finding) {
+    const auto number = [&](const SceneFinding& finding) {
       const auto file = std::ranges::find(files, finding.where.file);
       const auto index = file - files.begin();
       if (file == files.end()) files.push_back(finding.where.file);
       return index;
     };
-    std::vector<std::pair<std::tuple<std::ptrdiff_t, int, int>, Finding>> keyed;
-    for (Finding& finding : found_.list) {
+    std::vector<std::pair<std::tuple<std::ptrdiff_t, int, int>, SceneFinding>> keyed;
+    for (SceneFinding& finding : found_.list) {
       const std::tuple key(number(finding), finding.where.line, finding.where.column);
       keyed.emplace_back(key, std::move(finding));
     }
-    std::ranges::stable_sort(keyed, {}, &std::pair<std::tuple<std::ptrdiff_t, int, int>, Finding>::first);
+    std::ranges::stable_sort(keyed, {},
+                             &std::pair<std::tuple<std::ptrdiff_t, int, int>, SceneFinding>::first);
     found_.list.clear();
     for (auto& [key, finding] : keyed) found_.list.push_back(std::move(finding));
   }

@@ -10,7 +10,7 @@
 
 namespace oktett {
 
-struct Finding {
+struct SceneFinding {
   enum class Kind : std::uint8_t { warning, bad_input, io };
   Location where;
   std::string text;  ///< as of Error::what and to_string(Warning)
@@ -19,7 +19,7 @@ struct Finding {
 
 struct Findings {
   /// By file, and by line and column in each: first the file that was checked, then those that it names.
-  std::vector<Finding> list;
+  std::vector<SceneFinding> list;
   /// So much is wrong that the rest of the file was not looked at.
   bool has_more = false;
 };

@@ -37,7 +37,7 @@ std::size_t ImplicitPool::bytes() const {
   for (const ImplicitElement& e : elements) {
     sum += e.function.steps.size() * sizeof(TapeStep);
     if (e.grid != nullptr && e.grid.get() != last_grid)
-      sum += sizeof(VariationGrid) + e.grid->cells.size() * sizeof(GridCell);
+      sum += sizeof(VariationGrid) + e.grid->cells.size() * sizeof(ImplicitGridCell);
     if (e.cells != nullptr && e.cells.get() != last_cells) sum += e.cells->bytes();
     last_grid = e.grid.get(), last_cells = e.cells.get();
   }

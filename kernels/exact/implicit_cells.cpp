@@ -243,7 +243,8 @@ std::shared_ptr<const FunctionCells> divide(const FunctionRule& rule, const Func
 std::size_t FunctionCells::bytes() const {
   std::size_t sum = sizeof(FunctionCells) + tree.bytes() + tapes.size() * sizeof(FunctionTape);
   for (const FunctionTape& t : tapes) sum += t.steps.size() * sizeof(TapeStep);
-  for (const VariationGrid& g : grids) sum += sizeof(VariationGrid) + g.cells.size() * sizeof(GridCell);
+  for (const VariationGrid& g : grids)
+    sum += sizeof(VariationGrid) + g.cells.size() * sizeof(ImplicitGridCell);
   return sum;
 }
 

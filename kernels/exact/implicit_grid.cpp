@@ -14,12 +14,12 @@ namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
 constexpr float kNoLimit = std::numeric_limits<float>::infinity();
-constexpr GridCell kUnknown{{kNoLimit, kNoLimit}, kNoLimit, 0};
+constexpr ImplicitGridCell kUnknown{{kNoLimit, kNoLimit}, kNoLimit, 0};
 
 /// Rounded up; bounds are computed with relative errors far below 2^-20.
 float upward(double x) { return static_cast<float>(x * (1 + 0x1p-20) + 0x1p-140); }
 
-GridCell cell_of(const Variation<D>& f) {
+ImplicitGridCell cell_of(const Variation<D>& f) {
   const auto number = [](const D& x) { return only_lane(x); };
   const double error = number(f.error), lo = number(f.v.lo), hi = number(f.v.hi);
   double h[6];
@@ -27,7 +27,8 @@ GridCell cell_of(const Variation<D>& f) {
   // By Gershgorin's theorem no eigenvalue is larger than the greatest sum of a row.
   const double bend = std::max({h[0] + h[3] + h[4], h[3] + h[1] + h[5], h[4] + h[5] + h[2]});
   const double slope = length(only_lane(f.g));
-  GridCell c{{upward(bend + number(f.falls)), upward(bend + number(f.rises))}, upward(slope), upward(error)};
+  ImplicitGridCell c{
+      {upward(bend + number(f.falls)), upward(bend + number(f.rises))}, upward(slope), upward(error)};
   const bool known = std::isfinite(lo) && std::isfinite(hi) && number(f.doubt) == 0 && std::isfinite(bend) &&
                      std::isfinite(c.slope) && std::isfinite(c.error) &&
                      number(f.slope_error) <= slope * (kSlopeError / 2);
@@ -37,8 +38,8 @@ GridCell cell_of(const Variation<D>& f) {
 }
 
 /// What is known of cell (x, y, z) of a grid.
-GridCell known_of(const FunctionTape& function, const VariationGrid& grid, const Vec3d& hi,
-                  const int (&at)[3]) {
+ImplicitGridCell known_of(const FunctionTape& function, const VariationGrid& grid, const Vec3d& hi,
+                          const int (&at)[3]) {
   Variation<D> axis[3];
   for (int k = 0; k < 3; ++k) {
     Variation<D>& x = axis[k] = variation::constant(D(0.0));
@@ -66,16 +67,17 @@ void each_cell(int side, bool all, const F& f) {
 struct Cells {
   int side;
   double edge;
-  std::vector<GridCell> list;
+  std::vector<ImplicitGridCell> list;
 
   double unknown() const {
-    const auto count = std::ranges::count_if(list, [](const GridCell& c) { return !std::isfinite(c.slope); });
+    const auto count =
+        std::ranges::count_if(list, [](const ImplicitGridCell& c) { return !std::isfinite(c.slope); });
     return static_cast<double>(count) / static_cast<double>(list.size());
   }
   /// The size of the function where its zeros may be, roughly; infinite if they are in no cell.
   double scale() const {
     double least = kInfinity;
-    for (const GridCell& c : list)
+    for (const ImplicitGridCell& c : list)
       if (c.slope > 0) least = std::min(least, c.slope * edge / 4);
     return least;
   }
@@ -83,7 +85,7 @@ struct Cells {
   double steps(double scale) const {
     constexpr double kQuiet = 0.3, kKinked = 9;
     double sum = 0;
-    for (const GridCell& c : list) {
+    for (const ImplicitGridCell& c : list) {
       const double bend = std::min(c.bend[0], c.bend[1]);
       if (c.slope == 0)
         sum += kQuiet;
@@ -122,7 +124,7 @@ VariationGrid make_variation_grid(const FunctionTape& function, const Vec3d& lo,
     VariationGrid next = empty_grid(side);
     if (!std::isfinite(max_component(next.per_unit))) break;
     const auto find = [&](bool all) {
-      std::vector<GridCell> cells;
+      std::vector<ImplicitGridCell> cells;
       each_cell(side, all, [&](const int(&at)[3]) { cells.push_back(known_of(function, next, hi, at)); });
       return cells;
     };

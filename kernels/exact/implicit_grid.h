@@ -10,13 +10,13 @@
 namespace oktett {
 
 /// What is known of one cell, which is taken to be larger by kGridMargin of its edges on all sides.
-struct GridCell {
+struct ImplicitGridCell {
   float bend[2];  ///< the second derivative along a unit direction is at least -bend[0] and at most bend[1]
   /// Bounds the derivative along a unit direction, whose rounding error is less than kSlopeError of this.
   float slope;
   float error;  ///< bounds rounding errors of values, and the width of the enclosure of a point's value
 };
-static_assert(sizeof(GridCell) == 4 * sizeof(float));
+static_assert(sizeof(ImplicitGridCell) == 4 * sizeof(float));
 
 inline constexpr double kGridMargin = 0x1p-9, kSlopeError = 0x1p-26;
 inline constexpr int kMostGridSide = 8;
@@ -26,7 +26,7 @@ inline constexpr int kMostGridSide = 8;
 struct VariationGrid {
   int side = 0;
   Vec3d lo, per_unit;  ///< of the box; cells per unit
-  std::vector<GridCell> cells;
+  std::vector<ImplicitGridCell> cells;
 };
 
 /// The grid of a function over a box with lo < hi: of 1, 4 or 8 cells a side, but at most `most_side`, as

@@ -18,7 +18,7 @@ inline constexpr int kMaxStrides = 96;
 template <class D>
 struct GridPlace {
   D end;      ///< as far as it holds
-  D bend[2];  ///< GridCell's bounds, for a step of the ray's parameter
+  D bend[2];  ///< ImplicitGridCell's bounds, for a step of the ray's parameter
   D slope, error;
 };
 
@@ -54,7 +54,7 @@ struct GridWay {
   OKTETT_INLINE GridPlace<D> at(const M& movable, D& s) const {
     const D zero(0.0), square = size * size;
     if (grid.side == 1) {
-      const GridCell& c = grid.cells[0];
+      const ImplicitGridCell& c = grid.cells[0];
       return {length, {D(c.bend[0]) * square, D(c.bend[1]) * square}, D(c.slope) * size, D(c.error)};
     }
     D end, index = cell(s, end);

@@ -6,7 +6,7 @@
 namespace oktett {
 
 /// Narrower facets count as being this wide. The delta lobes begin well above.
-static constexpr double kLeastTabled = 0.01;
+static constexpr double kLeastTabledRoughness = 0.01;
 
 static double mix(double a, double b, double t) { return a + (b - a) * t; }
 
@@ -18,7 +18,7 @@ static int interval(double& x, int last) {
 }
 
 double AlbedoTable::node_alpha(int j) const {
-  const double rho = std::max(kLeastTabled, static_cast<double>(j) / (nodes_ - 1));
+  const double rho = std::max(kLeastTabledRoughness, static_cast<double>(j) / (nodes_ - 1));
   return rho * rho;
 }
 
@@ -46,7 +46,7 @@ double AlbedoTable::at(double mu, double alpha) const {
 }
 
 double LossTable::node_roughness(int j) {
-  return std::max(kLeastTabled, static_cast<double>(j) / (kNodes - 1));
+  return std::max(kLeastTabledRoughness, static_cast<double>(j) / (kNodes - 1));
 }
 
 double LossTable::scale(double rho) const {
@@ -56,7 +56,7 @@ double LossTable::scale(double rho) const {
 }
 
 double LossTable::at(double alpha) const {
-  const double rho = std::max(kLeastTabled, std::sqrt(alpha));
+  const double rho = std::max(kLeastTabledRoughness, std::sqrt(alpha));
   double x = rho * (kNodes - 1);
   const int j = interval(x, kNodes - 1);
   return mix(value_[j], value_[j + 1], x) * scale(rho);

@@ -26,8 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   // Checking finds the same error among others, and none where there is none.
   bool has_errors = false, has_first = false;
-  for (const Finding& finding : check_file(path, definitions).list) {
-    has_errors |= finding.kind != Finding::Kind::warning;
+  for (const SceneFinding& finding : check_file(path, definitions).list) {
+    has_errors |= finding.kind != SceneFinding::Kind::warning;
     has_first |= finding.text == first;
   }
   test::require(has_errors == !first.empty(), "checking agrees with loading");

@@ -19,7 +19,7 @@ using Lines = std::vector<std::string>;
 /// The first line of each finding.
 Lines check(const SceneFiles& files, const std::string& name, const Definitions& definitions = {}) {
   Lines lines;
-  for (const Finding& finding : check_file(files.dir.file(name), definitions).list)
+  for (const SceneFinding& finding : check_file(files.dir.file(name), definitions).list)
     lines.push_back(files.without_directory(finding.text.substr(0, finding.text.find('\n'))));
   return lines;
 }
@@ -164,7 +164,7 @@ TEST(SceneCheck, AFileThatCannotBeRead) {
   SceneFiles files;
   const Findings findings = check_file(files.dir.file("none.yaml"));
   ASSERT_EQ(findings.list.size(), 1u);
-  EXPECT_EQ(findings.list[0].kind, Finding::Kind::io);
+  EXPECT_EQ(findings.list[0].kind, SceneFinding::Kind::io);
 }
 
 /// The examples are right.
@@ -173,8 +173,8 @@ TEST(SceneCheck, Examples) {
   for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
     if (entry.path().extension() != ".yaml") continue;
     const std::string tetrahedron = (scenes / "assets" / "tetrahedron.obj").string();
-    for (const Finding& finding : check_file(entry.path().string(), {{"bunny", tetrahedron}}).list)
-      EXPECT_EQ(finding.kind, Finding::Kind::warning) << finding.text;
+    for (const SceneFinding& finding : check_file(entry.path().string(), {{"bunny", tetrahedron}}).list)
+      EXPECT_EQ(finding.kind, SceneFinding::Kind::warning) << finding.text;
   }
 }
 

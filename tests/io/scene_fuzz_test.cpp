@@ -102,8 +102,8 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
     }
     // Checking finds the same error among others, and none where there is none.
     bool has_errors = false, has_first = false;
-    for (const Finding& finding : check_file(path, {{"bunny", "assets/tetrahedron.obj"}}).list) {
-      has_errors |= finding.kind != Finding::Kind::warning;
+    for (const SceneFinding& finding : check_file(path, {{"bunny", "assets/tetrahedron.obj"}}).list) {
+      has_errors |= finding.kind != SceneFinding::Kind::warning;
       has_first |= finding.text == first;
     }
     EXPECT_EQ(has_errors, !first.empty()) << first << "\n" << mutant;

@@ -240,7 +240,7 @@ TEST(ImplicitStrides, GridsAreShared) {
   const std::size_t one = pool.bytes();
   Implicit::add(pool, s, {});
   EXPECT_EQ(pool.elements[0].grid, pool.elements[1].grid);
-  EXPECT_GE(one, pool.elements[0].grid->cells.size() * sizeof(GridCell));
+  EXPECT_GE(one, pool.elements[0].grid->cells.size() * sizeof(ImplicitGridCell));
   EXPECT_LT(pool.bytes(), 2 * one);
   s.hi.x = 2;
   Implicit::add(pool, s, {});

@@ -221,7 +221,7 @@ TEST(Variation, Grids) {
   EXPECT_LE(steep.side, kMostGridSide);
   ASSERT_EQ(steep.cells.size(), static_cast<std::size_t>(steep.side * steep.side * steep.side));
   EXPECT_EQ(steep.cells.front().slope, 0);
-  EXPECT_TRUE(std::ranges::any_of(steep.cells, [](const GridCell& c) { return c.slope > 0; }));
+  EXPECT_TRUE(std::ranges::any_of(steep.cells, [](const ImplicitGridCell& c) { return c.slope > 0; }));
   EXPECT_TRUE(grid("z + 1/x + 1/y", 1).cells.empty());
   EXPECT_FALSE(grid("x + 0.01/(y + 1.2)", 1).cells.empty());
   std::string heavy = "sin(x)";
