@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/math.h"
 #include "render/bsdf/phong_power.h"
@@ -21,9 +20,7 @@ static LightSource light_source(const Light& light) {
     source.place = Vec3f(point->position), source.color = point->color, source.falloff = point->falloff;
     source.profile = profile_of(*point);
   } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
-    const auto cosine = [](double degrees) {
-      return static_cast<float>(portable::cos(degrees * (std::numbers::pi / 180)));
-    };
+    const auto cosine = [](double degrees) { return static_cast<float>(portable::cos(degrees * kDegree)); };
     source.place = Vec3f(spot->position), source.color = spot->color, source.falloff = true;
     source.spot = spot->profile == nullptr, source.profile = profile_of(*spot);
     source.axis = Vec3f(normalize(spot->direction));

@@ -15,7 +15,7 @@ target_include_directories(sanitized_readers SYSTEM PUBLIC ${OKTETT_GLTF_INCLUDE
 target_link_options(sanitized_readers PUBLIC ${sanitizers})
 target_link_libraries(sanitized_readers PUBLIC oktett_internal fmt::fmt ZLIB::ZLIB ${OKTETT_GLTF_LIBRARIES} GTest::gtest rapidcheck)
 oktett_unity(sanitized_readers)
-# Where it is included first, tinygltf gets its implementation.
+# This file adds the implementation of tinygltf by a macro, which has no effect after another file has included tinygltf.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/io/gltf/parse.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 add_executable(test_readers)

@@ -8,8 +8,8 @@
 
 namespace oktett {
 
-/// The cut depends on the number of elements alone, and so does what is made of the chunks in their order:
-/// it is the same for any number of threads.
+/// The cut depends on the number of elements alone, so what is computed chunk by chunk is the same for any
+/// number of threads. in_parts (core/parallel.h) leaves the cut to the scheduler.
 struct Chunks {
   std::size_t total, size, count;
 

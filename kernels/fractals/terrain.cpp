@@ -1,7 +1,6 @@
 #include "kernels/fractals/terrain.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/math.h"
 #include "core/random.h"

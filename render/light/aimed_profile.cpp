@@ -1,7 +1,6 @@
 #include "render/light/aimed_profile.h"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "core/math.h"

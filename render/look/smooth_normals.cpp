@@ -1,6 +1,5 @@
 #include "render/look/smooth_normals.h"
 
-#include <numbers>
 #include <vector>
 
 #include "core/math.h"
@@ -30,7 +29,7 @@ static Vec3d area_normal(const TriangleMesh& mesh, std::size_t triangle) {
 
 void add_smooth_normals(TriangleMesh& mesh, double crease) {
   const VertexTriangles around(mesh);
-  const double least = portable::cos(crease * (std::numbers::pi / 180));
+  const double least = portable::cos(crease * kDegree);
   std::vector<Vec3d> normals(mesh.triangle_count());
   for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = area_normal(mesh, i);
   mesh.normals.resize_uninitialized(mesh.indices.size());

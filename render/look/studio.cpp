@@ -24,7 +24,7 @@ struct SoftBox {
   Vec3d radiance;
 
   Vec3d towards(const Vec3d& d) const {
-    const double a = azimuth * (std::numbers::pi / 180), e = elevation * (std::numbers::pi / 180);
+    const double a = azimuth * kDegree, e = elevation * kDegree;
     const double ce = portable::cos(e), se = portable::sin(e), ca = portable::cos(a), sa = portable::sin(a);
     // In the studio's frame: x to the right, y up, z back.
     const Vec3d axis{ce * sa, se, ce * ca}, across{ca, 0, -sa}, along{-se * sa, ce, -se * ca};

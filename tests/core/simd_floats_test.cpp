@@ -1,11 +1,12 @@
 #include "core/simd_floats.h"
-#include "tests/support/limits.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {

@@ -1,11 +1,12 @@
 #include "core/simd.h"
-#include "tests/support/limits.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "tests/support/limits.h"
 
 namespace oktett {
 namespace {

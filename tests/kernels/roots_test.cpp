@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/math.h"
 #include "kernels/roots/methods.h"
 #include "kernels/roots/solve.h"
 #include "tests/support/exact_roots.h"
@@ -44,7 +45,7 @@ TEST(ExactRoots, CountsWhatIsKnown) {
   EXPECT_EQ(p.count(1.5, 2), 2);
   EXPECT_EQ(p.count(2, 2), 2);
   EXPECT_EQ(p.count(2.5, 4), 3);
-  EXPECT_EQ(p.count_distinct(-kInfDouble, kInfDouble), 3);
+  EXPECT_EQ(p.count_distinct(-kInfinity, kInfinity), 3);
   EXPECT_EQ(p.sign_at(2), 0);
   EXPECT_EQ(p.sign_at(std::nextafter(1, 2)), -1);
   const test::ExactPolynomial none(polynomial({0x1p-1000, 0, 1}));
@@ -123,7 +124,7 @@ TEST_P(AnyMethod, FindsWellSeparatedRoots) {
 }
 
 TEST_P(AnyMethod, BadInputIsNotCertified) {
-  for (const double bad : {kNanDouble, kInfDouble, -kInfDouble}) {
+  for (const double bad : {kNanDouble, kInfinity, -kInfinity}) {
     for (int i = 0; i < 4; ++i) {
       Polynomial p = polynomial({-1, 2, 3, 4});
       p.c[i] = bad;
@@ -218,10 +219,8 @@ TEST(Roots, EndsOfTheIntervalBelongToIt) {
 
 TEST(Roots, IntervalsMayBeInfinite) {
   const Polynomial p = with_roots({-1e6, -3, 0.001, 7e8});
-  for (const auto& [a, b, count] : {std::tuple{-kInfDouble, kInfDouble, 4},
-                                    {0.0, kInfDouble, 2},
-                                    {-kInfDouble, 0.0, 2},
-                                    {1.0, 1e300, 1}}) {
+  for (const auto& [a, b, count] :
+       {std::tuple{-kInfinity, kInfinity, 4}, {0.0, kInfinity, 2}, {-kInfinity, 0.0, 2}, {1.0, 1e300, 1}}) {
     const Roots answer = solve(p, a, b);
     EXPECT_TRUE(answer.certified);
     EXPECT_EQ(answer.count, count);
@@ -272,13 +271,13 @@ TEST(Roots, HugeAndTinyCoefficients) {
   }
   // Roots at 2^-100, 1 and 2^100.
   const Polynomial wide = polynomial({-1, 0x1p100, -0x1p100, 1});
-  for (const auto& [b, count] : {std::pair{0x1p600, 3}, {kInfDouble, 3}, {2.0, 2}}) {
+  for (const auto& [b, count] : {std::pair{0x1p600, 3}, {kInfinity, 3}, {2.0, 2}}) {
     const Roots answer = solve(wide, 0, b);
     EXPECT_EQ(answer.count, count);
     EXPECT_TRUE(answer.certified);
   }
   // Roots farther apart than doubles reach are not all found, and that is not hidden.
-  EXPECT_FALSE(solve(polynomial({-1, 0x1p500, -0x1p500, 1}), 0, kInfDouble).certified);
+  EXPECT_FALSE(solve(polynomial({-1, 0x1p500, -0x1p500, 1}), 0, kInfinity).certified);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "tests/support/exact_roots.h"
-#include "tests/support/limits.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "core/math.h"
 
 namespace oktett::test {
 namespace {
@@ -164,8 +165,8 @@ int ExactPolynomial::count_distinct(double l, double r) const {
   if (repeated_) {
     // Nudging the ends off common zeros: the count over (l', r'] with l' just below l, r' just above r.
     double left = l, right = r;
-    while (std::isfinite(left) && repeated_->sign_at(left) == 0) left = std::nextafter(left, -kInfDouble);
-    while (std::isfinite(right) && repeated_->sign_at(right) == 0) right = std::nextafter(right, kInfDouble);
+    while (std::isfinite(left) && repeated_->sign_at(left) == 0) left = std::nextafter(left, -kInfinity);
+    while (std::isfinite(right) && repeated_->sign_at(right) == 0) right = std::nextafter(right, kInfinity);
     return changes_at(left) - changes_at(right) + (std::isfinite(left) && sign_at(left) == 0);
   }
   return changes_at(l) - changes_at(r) + (std::isfinite(l) && sign_at(l) == 0);
@@ -198,8 +199,8 @@ std::vector<Group> group(const roots::Roots& answer, double floor) {
   for (int i = 0; i < answer.count; ++i) {
     const roots::Root& r = answer.root[i];
     const double e = std::max(r.error, floor);
-    const double lo = e == 0 ? r.x : std::nextafter(r.x - e, -kInfDouble);
-    const double hi = e == 0 ? r.x : std::nextafter(r.x + e, kInfDouble);
+    const double lo = e == 0 ? r.x : std::nextafter(r.x - e, -kInfinity);
+    const double hi = e == 0 ? r.x : std::nextafter(r.x + e, kInfinity);
     if (groups.empty() || lo > groups.back().hi) groups.push_back({lo, hi});
     Group& g = groups.back();
     g.lo = std::min(g.lo, lo), g.hi = std::max(g.hi, hi);
@@ -247,14 +248,14 @@ Judgement judge(const roots::Polynomial& p, double a, double b, const roots::Roo
   if (plain && exact.count_distinct(a, b) == inside) return out;
   double from = a;
   for (std::size_t i = 0; i <= groups.size(); ++i) {
-    const double to = i < groups.size() ? std::nextafter(groups[i].lo, -kInfDouble) : b;
+    const double to = i < groups.size() ? std::nextafter(groups[i].lo, -kInfinity) : b;
     const int n = exact.count(from, to);
     if (n > 0) {
       std::snprintf(line, sizeof line, "%d roots in [%.17g, %.17g] not reported; ", n, from, to);
       out.what += line;
       out.missed += n;
     }
-    if (i < groups.size()) from = std::max(from, std::nextafter(groups[i].hi, kInfDouble));
+    if (i < groups.size()) from = std::max(from, std::nextafter(groups[i].hi, kInfinity));
   }
   return out;
 }

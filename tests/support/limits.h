@@ -1,5 +1,6 @@
 #pragma once
-/// \file Infinity and NaN under short names, for inputs and expected values.
+/// \file Infinity and NaN under short names, for inputs and expected values; kInfinity of core/math.h is a
+/// double.
 
 #include <limits>
 
@@ -7,7 +8,6 @@ namespace oktett {
 
 inline constexpr float kInf = std::numeric_limits<float>::infinity();
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-inline constexpr double kInfDouble = std::numeric_limits<double>::infinity();
 inline constexpr double kNanDouble = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace oktett

@@ -15,11 +15,11 @@ inline constexpr std::initializer_list<TraceMode> kTraceModes = {
     TraceMode::automatic, TraceMode::single, TraceMode::packet8,
     TraceMode::packet16,  TraceMode::beam,   TraceMode::interleaved};
 
-static_assert(sizeof(Hit) == 20, "a hit has no padding");
 inline bool same_bits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 inline bool same_bits(const Vec3f& a, const Vec3f& b) {
   return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
+static_assert(sizeof(Hit) == 20, "a hit has no padding");
 inline bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// Traces `rays` on `isa` in `mode`. Calls differs(i, closest, any) for each ray whose closest hit has other

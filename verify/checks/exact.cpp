@@ -19,8 +19,6 @@ namespace oktett {
 
 namespace {
 
-constexpr TraceMode kExactModes[] = {TraceMode::automatic, TraceMode::single,   TraceMode::interleaved,
-                                     TraceMode::packet8,   TraceMode::packet16, TraceMode::beam};
 /// A shape in a random place, its rays, and what the tracer says.
 struct Trial {
   ExactOracle oracle;
@@ -88,7 +86,7 @@ class ExactChecker {
     closest_hit(*trial_.accel, rays.span(), reference.span(), isas_.front(), TraceMode::single);
     for (std::size_t k = 0; k < isas_.size(); ++k) {
       const Isa isa = isas_[k];
-      for (const TraceMode mode : kExactModes) {
+      for (const TraceMode mode : kTraceModes) {
         if (k != turn_ && mode != TraceMode::automatic && mode != TraceMode::single) continue;
         compare_mode(*trial_.accel, rays, reference, isa, mode, [&](std::size_t i, bool, bool) {
           ++tally_.differing;
