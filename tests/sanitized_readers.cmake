@@ -25,7 +25,7 @@ foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj
 endforeach()
 target_sources(test_readers PRIVATE core/bytes_test.cpp core/pages_test.cpp core/soa_test.cpp core/virtual_array_test.cpp)
 target_link_libraries(test_readers PRIVATE sanitized_readers GTest::gtest_main)
-oktett_precompile(test_readers <gtest/gtest.h>)
+oktett_unity(test_readers)
 add_dependencies(oktett_tests test_readers)
 # A sanitizer takes a quarter of a second to start, so several tests share a process.
 set(shards 8)

@@ -9,7 +9,7 @@
 
 #include "tests/accel/instance_cases.h"
 
-namespace oktett {
+namespace oktett::beam_instances_test {
 namespace {
 
 /// Rays from one point through n x n pixels in tiles of 16 x 16, which make beams. Some start late, some end
@@ -233,4 +233,4 @@ TEST(BeamInstances, PartsOfBeams) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::beam_instances_test

@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 
-namespace oktett {
+namespace oktett::beam_rays_test {
 namespace {
 
 using Beam = BeamRays<ScalarIsa>;
@@ -147,4 +147,4 @@ TEST(BeamRays, PartsOfBeamsAreNotSorted) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::beam_rays_test

@@ -9,7 +9,7 @@
 #include "tests/accel/same_hits.h"
 #include "tests/support/dice.h"
 
-namespace oktett {
+namespace oktett::beam_shapes_test {
 namespace {
 
 /// A shape of about the size 1 about the origin.
@@ -167,4 +167,4 @@ TEST_P(BeamShapes, FromSurfacesToAnEnd) {
 INSTANTIATE_TEST_SUITE_P(Kinds, BeamShapes, testing::Range(0, 7));
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::beam_shapes_test

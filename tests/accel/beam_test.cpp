@@ -10,7 +10,7 @@
 #include "tests/support/grid_triangles.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::beam_test {
 namespace {
 
 TriangleMesh grid_mesh(int n, bool flat, Dice<float>& dice) {
@@ -248,4 +248,4 @@ TEST_P(Beams, CommonEnd) {
 INSTANTIATE_TEST_SUITE_P(Subjects, Beams, testing::Range(0, kSubjects));
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::beam_test

@@ -7,7 +7,7 @@
 
 #include "accel/build/wide_tree.h"
 
-namespace oktett {
+namespace oktett::build_arrays_test {
 namespace {
 
 /// Writes `value` to all bytes of an array, or expects it there.
@@ -62,4 +62,4 @@ TEST(BuildArrays, ReferencesOfLargeBuildsAreGivenBack) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::build_arrays_test

@@ -12,7 +12,7 @@
 #include "verify/checks/compare_mode.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::build_test {
 namespace {
 
 std::shared_ptr<const Accel> build(const TriangleMesh& mesh, bool parallel = true) {
@@ -233,4 +233,4 @@ TEST(Build, ParallelAndSerialTreesGiveTheSameHits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::build_test

@@ -7,7 +7,7 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::closed_forms_test {
 namespace {
 
 std::shared_ptr<const Accel> accel_of(ExactForm form, const Affine& to_world = {}) {
@@ -320,4 +320,4 @@ TEST(ClosedForms, DegenerateShapesAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::closed_forms_test

@@ -14,7 +14,7 @@
 #include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 
-namespace oktett {
+namespace oktett::closest_point_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -263,4 +263,4 @@ TEST(ClosestPoint, BatchesOfEverySize) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::closest_point_test

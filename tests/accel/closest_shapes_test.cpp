@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::closest_shapes_test {
 namespace {
 
 template <class Shape>
@@ -367,4 +367,4 @@ TEST(ClosestShapes, WhatDoesNotTellIsAnError) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::closest_shapes_test

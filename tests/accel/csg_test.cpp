@@ -10,7 +10,7 @@
 #include "verify/checks/csg.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::csg_test {
 namespace {
 
 const float kInfinity = std::numeric_limits<float>::infinity();
@@ -387,4 +387,4 @@ TEST(Csg, ManyOperands) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::csg_test

@@ -8,7 +8,7 @@
 #include "tests/support/triangle_cases.h"
 #include "verify/checks/compare_mode.h"
 
-namespace oktett {
+namespace oktett::decide_pairs_test {
 namespace {
 
 template <int N>
@@ -147,4 +147,4 @@ TEST(DecidePairs, GathersNearAndFar) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::decide_pairs_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oktett {
+namespace oktett::exact_test {
 
 /// Every form against its oracle: no first hit missed or invented, positions within their bounds, all
 /// crossings entering and leaving in turn, the same bits in every mode, width and instruction set.
@@ -18,4 +18,4 @@ TEST(Exact, AgreesWithItsOracle) {
   }
 }
 
-}  // namespace oktett
+}  // namespace oktett::exact_test

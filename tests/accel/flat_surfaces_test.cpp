@@ -7,7 +7,7 @@
 #include "tests/support/flat_map.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::flat_surfaces_test {
 namespace {
 
 /// Shapes, and functions that are negative on one side of the surface and positive on the other.
@@ -63,4 +63,4 @@ TEST(SurfaceInteraction, IsWithinItsErrorOnFlattenedSurfaces) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::flat_surfaces_test

@@ -5,7 +5,7 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/fractal_cases.h"
 
-namespace oktett {
+namespace oktett::fractal_shapes_test {
 namespace {
 
 /// Every crossing is at its place, entering and leaving in turn, except for parts thinner than rounding.
@@ -350,4 +350,4 @@ TEST(Sphereflake, KnownCrossings) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::fractal_shapes_test

@@ -6,7 +6,7 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/fractal_cases.h"
 
-namespace oktett {
+namespace oktett::fractals_test {
 namespace {
 
 template <class S>
@@ -278,4 +278,4 @@ TEST(Fractals, SenselessOnesHaveNoSurface) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::fractals_test

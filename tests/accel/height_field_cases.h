@@ -10,7 +10,7 @@
 #include "kernels/heights/height_grid.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::height_field_cases {
 
 using Interpolation = HeightInterpolation;
 inline constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::triangles,
@@ -18,8 +18,8 @@ inline constexpr Interpolation kAll[] = {Interpolation::nearest, Interpolation::
 inline constexpr HeightWalk kWalks[] = {HeightWalk::pyramid, HeightWalk::cells, HeightWalk::spans};
 
 /// One column per unit of x and one row per unit of z, the first at -(samples - 1) / 2; heights as they are.
-inline HeightFieldShape field(std::uint32_t columns, std::uint32_t rows, const std::vector<float>& heights,
-                              Interpolation interpolation) {
+inline HeightFieldShape height_field(std::uint32_t columns, std::uint32_t rows,
+                                     const std::vector<float>& heights, Interpolation interpolation) {
   HeightFieldShape s;
   Column<float> column(heights.size());
   std::copy(heights.begin(), heights.end(), column.begin());
@@ -32,7 +32,7 @@ inline HeightFieldShape rough(std::uint32_t columns, std::uint32_t rows, Interpo
                               float height = 3) {
   std::vector<float> heights;
   for (std::uint32_t i = 0; i < columns * rows; ++i) heights.push_back(height * random_float(11, columns, i));
-  return field(columns, rows, heights, interpolation);
+  return height_field(columns, rows, heights, interpolation);
 }
 
 inline HeightFieldShape solid(HeightFieldShape s, double base) {
@@ -79,4 +79,4 @@ inline std::vector<Ray> hostile_rays(const HeightFieldShape& s) {
   return rays;
 }
 
-}  // namespace oktett
+}  // namespace oktett::height_field_cases

@@ -6,8 +6,10 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/height_field_cases.h"
 
-namespace oktett {
+namespace oktett::height_fields_test {
 namespace {
+
+using namespace height_field_cases;
 
 using Real = long double;
 
@@ -27,9 +29,9 @@ void expect_at(const HeightFieldShape& shape, const Vec3f& from, const Vec3f& di
 TEST(HeightFields, KnownCrossings) {
   // A hump of 1 in the middle of a 3 x 3 field that is level at 0.
   const std::vector<float> hump{0, 0, 0, 0, 1, 0, 0, 0, 0};
-  const auto patch = field(3, 3, hump, Interpolation::bilinear);
-  const auto faces = field(3, 3, hump, Interpolation::triangles);
-  const auto steps = field(3, 3, hump, Interpolation::nearest);
+  const auto patch = height_field(3, 3, hump, Interpolation::bilinear);
+  const auto faces = height_field(3, 3, hump, Interpolation::triangles);
+  const auto steps = height_field(3, 3, hump, Interpolation::nearest);
   // From above: (1 - |x|) (1 - |z|), two triangles per cell, a quarter of the hump.
   expect_at(patch, {0.5f, 3, 0.25f}, {0, -1, 0}, {3 - 0.5 * 0.75});
   expect_at(patch, {0, 3, 0}, {0, -2, 0}, {1});
@@ -51,7 +53,7 @@ TEST(HeightFields, KnownCrossings) {
 }
 
 TEST(HeightFields, StepsHaveWalls) {
-  const auto steps = field(4, 2, {0, 0, 8, 8, 0, 0, 8, 8}, Interpolation::nearest);
+  const auto steps = height_field(4, 2, {0, 0, 8, 8, 0, 0, 8, 8}, Interpolation::nearest);
   // Levels 0, 4 and 8.
   expect_at(steps, {-3, 1, 0}, {1, 0, 0}, {2.5});
   expect_at(steps, {-3, 5, 0}, {1, 0, 0}, {3.5});
@@ -73,7 +75,7 @@ TEST(HeightFields, StepsHaveWalls) {
 
 TEST(HeightFields, SolidsHaveSidesAndABottom) {
   for (const Interpolation interpolation : kAll) {
-    const auto s = solid(field(3, 2, {1, 1, 1, 1, 1, 1}, interpolation), -1);
+    const auto s = solid(height_field(3, 2, {1, 1, 1, 1, 1, 1}, interpolation), -1);
     expect_at(s, {0.25f, 3, 0.25f}, {0, -1, 0}, {2, 4});
     expect_at(s, {-3, 0, 0.25f}, {1, 0, 0}, {2, 4});
     expect_at(s, {0.5f, 0, -3}, {0, 0, 1}, {2.5, 3.5});
@@ -212,7 +214,7 @@ TEST(HeightFields, CornersOfStepsAreCrossedTwice) {
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i)
       heights.push_back(static_cast<float>(1 + 4 * i * j * ((i + j) % 2 == 0 ? 1 : -1)));
-  const HeightFieldShape steps = field(n, n, heights, Interpolation::nearest);
+  const HeightFieldShape steps = height_field(n, n, heights, Interpolation::nearest);
   for (const bool closed : {false, true})
     for (const HeightWalk walk : kWalks) {
       HeightFieldShape s = closed ? solid(steps, -1e4) : steps;
@@ -255,7 +257,7 @@ TEST(HeightFields, SurfacesHaveNormalsAndCoordinates) {
 /// Solids take part in combinations: a hill less a ball, and a hill within a slab.
 TEST(HeightFields, SolidsAreCombined) {
   for (const Interpolation interpolation : kAll) {
-    const auto level = solid(field(3, 3, std::vector<float>(9, 1.0f), interpolation), -1);
+    const auto level = solid(height_field(3, 3, std::vector<float>(9, 1.0f), interpolation), -1);
     const Geometry hill{ExactShape{level}, {}, 0};
     const auto combined = [&](CsgOp op, Geometry other) {
       auto e = std::make_shared<CsgExpression>();
@@ -290,13 +292,14 @@ TEST(HeightFields, WordsAreSixtyFiveThousandthsOfTheHeight) {
 }
 
 TEST(HeightFields, SenselessOnesHaveNoSurface) {
-  std::vector<HeightFieldShape> bad(7, field(3, 3, {0, 0, 0, 0, 1, 0, 0, 0, 0}, Interpolation::bilinear));
+  std::vector<HeightFieldShape> bad(7,
+                                    height_field(3, 3, {0, 0, 0, 0, 1, 0, 0, 0, 0}, Interpolation::bilinear));
   bad[0].grid = nullptr, bad[1].size.x = 0, bad[2].size.z = -1, bad[3].size.y = kNan, bad[4].size.y = 0;
   bad[5] = solid(bad[5], 0);
-  bad[6] = field(1, 3, {0, 1, 0}, Interpolation::bilinear), bad[6].size = {1, 1, 1};
+  bad[6] = height_field(1, 3, {0, 1, 0}, Interpolation::bilinear), bad[6].size = {1, 1, 1};
   for (std::size_t i = 0; i < bad.size(); ++i)
     EXPECT_TRUE(all_crossings(ExactForm{bad[i]}, {{0, 3, 0.1f}, 0, {0, -1, 0}, kInf}).empty()) << i;
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::height_fields_test

@@ -8,8 +8,10 @@
 #include "tests/accel/height_field_cases.h"
 #include "tests/support/sanitizers.h"
 
-namespace oktett {
+namespace oktett::height_walks_test {
 namespace {
+
+using namespace height_field_cases;
 
 /// Hills that rays pass closely, and sharp peaks that they may miss; as 16-bit words or as floats.
 HeightFieldShape hills(std::uint32_t columns, std::uint32_t rows, Interpolation interpolation, bool words) {
@@ -20,7 +22,7 @@ HeightFieldShape hills(std::uint32_t columns, std::uint32_t rows, Interpolation 
       const float roughness = random_float(11, i, j);
       heights.push_back(12 * hill + roughness + (roughness > 0.999f ? 20.0f : 0.0f));
     }
-  HeightFieldShape s = field(columns, rows, heights, interpolation);
+  HeightFieldShape s = height_field(columns, rows, heights, interpolation);
   if (!words) return s;
   Column<std::uint16_t> steps(heights.size());
   for (std::size_t i = 0; i < heights.size(); ++i)
@@ -119,7 +121,7 @@ TEST(HeightWalks, PyramidsBearHostileRays) {
       std::vector<float> heights;
       for (std::uint32_t j = 0; j < rows; ++j)
         for (std::uint32_t i = 0; i < columns; ++i) heights.push_back(sample(kind, i, j));
-      HeightFieldShape s = field(columns, rows, heights, interpolation);
+      HeightFieldShape s = height_field(columns, rows, heights, interpolation);
       const float unit = kind == 3 ? 1e37f : 1.0f;
       s.size = {(columns - 1.0) * unit, 1, (rows - 1.0) * unit};
       if (kind % 2 == 0) s = solid(s, -1);
@@ -371,4 +373,4 @@ TEST(HeightWalks, EndsOfRaysDoNotMoveTheStart) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::height_walks_test

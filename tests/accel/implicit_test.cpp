@@ -10,7 +10,7 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::implicit_test {
 namespace {
 
 ImplicitShape function(const std::string& text, double size, bool open = false) {
@@ -245,4 +245,4 @@ TEST(Implicit, NormalsOfWalls) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::implicit_test

@@ -15,7 +15,7 @@
 #include "tests/accel/instance_cases.h"
 #include "tests/support/triangle_cases.h"
 
-namespace oktett {
+namespace oktett::inflight_instances_test {
 namespace {
 
 /// Rays from and to points of a cube of half edge `far`. Some start or end where others do, some run along an
@@ -180,4 +180,4 @@ TEST(InflightInstances, LimitsAllowForBothSides) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::inflight_instances_test

@@ -11,7 +11,7 @@
 #include "tests/support/triangle_cases.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::inflight_test {
 namespace {
 
 int expect_same_hits(const TriangleMesh& mesh, const RayBatch& rays) {
@@ -301,4 +301,4 @@ TEST(Interleaved, ScatteredRaysPrefetchAndFindTheSameHits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::inflight_test

@@ -13,7 +13,7 @@
 #include "verify/oracles/known_shapes.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::inside_test {
 namespace {
 
 /// How much more is asked than in a usual run.
@@ -275,4 +275,4 @@ TEST(SignedDistance, OfClosedForms) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::inside_test

@@ -10,7 +10,7 @@
 #include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::leaf_group_test {
 namespace {
 
 /// Triangles of which every second one is level, at each of `heights` in turn.
@@ -135,4 +135,4 @@ TEST(Interleaved, RaysAtOneLeafOfClosedFormsAndCombinationsGoTogether) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::leaf_group_test

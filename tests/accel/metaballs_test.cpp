@@ -10,7 +10,7 @@
 #include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::metaballs_test {
 namespace {
 
 std::vector<Hit> crossings(const ExactForm& form, const Vec3f& from, const Vec3f& direction) {
@@ -269,4 +269,4 @@ TEST(BlobTrees, NestingIsBounded) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::metaballs_test

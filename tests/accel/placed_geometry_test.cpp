@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-namespace oktett {
+namespace oktett::placed_geometry_test {
 namespace {
 
 Geometry spheres(std::vector<SphereShape> list, std::uint32_t user, const Affine& transform = {}) {
@@ -80,4 +80,4 @@ TEST(PlacedGeometries, LeaveCombinationsOut) {
 TEST(PlacedGeometries, OfNothingAreNone) { expect_hits_confirm(*build_accel({}), 0); }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::placed_geometry_test

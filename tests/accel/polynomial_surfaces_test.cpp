@@ -7,7 +7,7 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::polynomial_surfaces_test {
 namespace {
 
 PolynomialShape polynomial(const std::string& equation, double size, bool open = false) {
@@ -189,4 +189,4 @@ TEST(Revolutions, Curves) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::polynomial_surfaces_test

@@ -13,7 +13,7 @@
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::quality_test {
 namespace {
 
 constexpr BuildQuality kQualities[] = {BuildQuality::fast, BuildQuality::balanced, BuildQuality::best};
@@ -346,4 +346,4 @@ TEST(Quality, MixedKindsShareATree) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::quality_test

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::query_test {
 namespace {
 
 /// A wavy sheet of triangles over the square [-3, 3]^2 of x and z.
@@ -212,4 +212,4 @@ TEST(Query, SizesThatDifferAreErrors) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::query_test

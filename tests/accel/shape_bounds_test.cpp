@@ -9,7 +9,7 @@
 #include "tests/support/flat_map.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::shape_bounds_test {
 namespace {
 
 /// Rays that start on the plane of a side of `box`, or up to two floats beside it, and hardly leave that
@@ -149,4 +149,4 @@ TEST(ShapeBounds, HoldExactSurfaces) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::shape_bounds_test

@@ -7,7 +7,7 @@
 #include "accel/build/spatial.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::spatial_test {
 namespace {
 
 /// Triangles by their corners.
@@ -195,4 +195,4 @@ TEST(Spatial, WhatCannotBeSplitIsLeft) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::spatial_test

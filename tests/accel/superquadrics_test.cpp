@@ -6,7 +6,7 @@
 #include "tests/accel/all_crossings.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::superquadrics_test {
 namespace {
 
 using Form = SuperquadricShape::Form;
@@ -220,4 +220,4 @@ TEST(Superquadrics, SenselessOnesHaveNoSurface) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::superquadrics_test

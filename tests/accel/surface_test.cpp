@@ -9,7 +9,7 @@
 #include "verify/oracles/closed.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::surface_test {
 namespace {
 
 Hit trace(const Accel& accel, const Ray& ray) {
@@ -356,4 +356,4 @@ TEST(Instance, NormalsPointOutwardsAndDistancesStay) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::surface_test

@@ -9,7 +9,7 @@
 #include "accel/accel.h"
 #include "core/random.h"
 
-namespace oktett {
+namespace oktett::surface_uv_test {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -156,4 +156,4 @@ TEST(SurfaceUv, OfRevolutionsRunsAroundYAndUp) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::surface_uv_test

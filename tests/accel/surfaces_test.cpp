@@ -8,7 +8,7 @@
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::surfaces_test {
 namespace {
 
 /// Equal bits, or both NaN.
@@ -214,4 +214,4 @@ TEST(Surfaces, OfDegenerateInput) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::surfaces_test

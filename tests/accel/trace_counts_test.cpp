@@ -7,7 +7,7 @@
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/mesh.h"
 
-namespace oktett {
+namespace oktett::trace_counts_test {
 namespace {
 
 RayBatch random_rays(int count) {
@@ -98,4 +98,4 @@ TEST(TraceCounts, OtherShapesAndInstancesAreCounted) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::trace_counts_test

@@ -12,7 +12,7 @@
 #include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::trace_modes_test {
 namespace {
 
 constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::best};
@@ -185,4 +185,4 @@ TEST(TraceModes, SameHitsOfFewTriangles) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::trace_modes_test

@@ -2,7 +2,7 @@
 
 #include "verify/checks/meshes.h"
 
-namespace oktett {
+namespace oktett::watertight_test {
 namespace {
 
 TEST(OracleMesh, GeneratedMeshesAreClosed) {
@@ -44,4 +44,4 @@ TEST(Watertight, OpenMeshesAreTracedTheSameEverywhere) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::watertight_test

@@ -12,7 +12,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::cache_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ TEST_F(CacheCommand, TheSizeIsAnOption) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::cache_command_test

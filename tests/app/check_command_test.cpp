@@ -6,7 +6,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::check_command_test {
 namespace {
 
 using test::CommandResult;
@@ -85,4 +85,4 @@ TEST(CheckCommand, DefinitionsAndTheRootFolder) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::check_command_test

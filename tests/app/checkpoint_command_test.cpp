@@ -15,7 +15,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::checkpoint_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ TEST_F(CheckpointCommand, DamagedFilmsAreRefused) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::checkpoint_command_test

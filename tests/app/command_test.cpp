@@ -7,7 +7,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::command_test {
 namespace {
 
 using test::CommandResult;
@@ -99,4 +99,4 @@ TEST(Command, ABadSceneNamesThePlace) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::command_test

@@ -8,7 +8,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::convert_command_test {
 namespace {
 
 using test::CommandResult;
@@ -55,4 +55,4 @@ TEST(ConvertCommand, WrongWordsAndFilesAreOneLine) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::convert_command_test

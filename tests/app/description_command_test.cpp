@@ -11,7 +11,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::description_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -215,4 +215,4 @@ TEST(Examples, MisspeltNames) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::description_command_test

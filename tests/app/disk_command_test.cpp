@@ -13,7 +13,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::disk_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,4 +130,4 @@ TEST_F(DiskCommand, PicturesWhoseFolderVanishesAreInTheFilm) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::disk_command_test

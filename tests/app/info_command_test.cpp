@@ -6,7 +6,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::info_command_test {
 namespace {
 
 using test::CommandResult;
@@ -75,4 +75,4 @@ TEST(InfoCommand, CountsThroughInstances) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::info_command_test

@@ -16,7 +16,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::kill_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,4 +112,4 @@ TEST(KilledRenders, GoOnToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::kill_command_test

@@ -7,7 +7,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::look_command_test {
 namespace {
 
 using test::CommandResult;
@@ -86,4 +86,4 @@ TEST(LookCommand, RefusesWhatHasNoLook) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::look_command_test

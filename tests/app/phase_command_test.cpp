@@ -8,7 +8,7 @@
 #include "tests/app/run_on_terminal.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::phase_command_test {
 namespace {
 
 using test::contains;
@@ -65,4 +65,4 @@ TEST(PhaseCommand, NamesAreShownWithoutControlCharacters) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::phase_command_test

@@ -14,7 +14,7 @@
 #include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::refusal_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -268,4 +268,4 @@ TEST(Refusal, TexturesOutsideOfTheRoot) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::refusal_command_test

@@ -7,7 +7,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::render_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,4 +128,4 @@ TEST(RenderCommand, AnAbsentDisplayServerIsAWarning) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::render_command_test

@@ -5,7 +5,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::verify_command_test {
 namespace {
 
 using test::CommandResult;
@@ -114,4 +114,4 @@ TEST(VerifyCommand, BadHoursAreErrors) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::verify_command_test

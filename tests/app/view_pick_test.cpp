@@ -20,7 +20,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::view_pick_test {
 namespace {
 
 using test::CommandProcess;
@@ -222,4 +222,4 @@ TEST(ViewPick, GivesTheBitsOfTheLibraryForExactSurfaces) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::view_pick_test

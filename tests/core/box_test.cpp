@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace oktett {
+namespace oktett::box_test {
 namespace {
 
 TEST(Box, IsEmptyUntilItGrows) {
@@ -74,4 +74,4 @@ TEST(Box, NeighboursAreThoseOfTheLibrary) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::box_test

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 
-namespace oktett {
+namespace oktett::bytes_test {
 namespace {
 
 TEST(Bytes, ReadersGiveBackWhatWasAppended) {
@@ -48,4 +48,4 @@ TEST(Bytes, ChecksumsTellLengthsAndAllBitsApart) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bytes_test

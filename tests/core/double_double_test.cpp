@@ -7,7 +7,7 @@
 
 #include "tests/support/random_polynomials.h"
 
-namespace oktett::roots {
+namespace oktett::roots::double_double_test {
 namespace {
 
 /// Relative distance of a result from the exact one, given as a rational number.
@@ -73,4 +73,4 @@ TEST(DoubleDouble, TransformationsAreFreeOfError) {
 }
 
 }  // namespace
-}  // namespace oktett::roots
+}  // namespace oktett::roots::double_double_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oktett {
+namespace oktett::error_test {
 namespace {
 
 TEST(Location, LeavesOutWhatIsUnknown) {
@@ -21,7 +21,8 @@ TEST(Error, MessageBeginsWithThePlace) {
 }
 
 TEST(Warning, SaysThatItIsOne) {
-  EXPECT_EQ(to_string(Warning{{"a.obj", 2, 0}, "no normals"}), "a.obj:2: warning: no normals");
+  const Location where{"a.obj", 2, 0};
+  EXPECT_EQ(to_string(Warning{where, "no normals"}), "a.obj:2: warning: no normals");
 }
 
 TEST(NearestName, FindsSlipsOnly) {
@@ -33,4 +34,4 @@ TEST(NearestName, FindsSlipsOnly) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::error_test

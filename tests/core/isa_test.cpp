@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 
-namespace oktett {
+namespace oktett::isa_test {
 namespace {
 
 TEST(Isa, NamesAreReadBack) {
@@ -52,4 +52,4 @@ TEST(Isa, UnknownNamesAreErrors) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::isa_test

@@ -7,7 +7,7 @@
 
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::math_test {
 namespace {
 
 /// |a - b| relative to |b|, or absolute where b is small.
@@ -102,4 +102,4 @@ TEST(PortableMath, WholePowersAreThoseOfTheLibrary) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::math_test

@@ -11,7 +11,7 @@
 #include "core/populate.h"
 #include "core/soa.h"
 
-namespace oktett {
+namespace oktett::pages_test {
 namespace {
 
 TEST(Pages, ReadAsZeroAndMayBeGivenBackInPieces) {
@@ -123,4 +123,4 @@ TEST(Pages, HoldLargeColumns) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::pages_test

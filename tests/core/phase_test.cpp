@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace oktett {
+namespace oktett::phase_test {
 namespace {
 
 class Phases : public testing::Test {
@@ -47,4 +47,4 @@ TEST_F(Phases, NobodyIsCalledAfterTheEndOfWatching) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::phase_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace oktett {
+namespace oktett::quotients_test {
 namespace {
 
 /// The quotient of doubles, rounded to float, is the same number in all lanes; also where it lies at or next
@@ -59,4 +59,4 @@ TEST(Quotients, AreThoseOfDoublesRoundedToFloat) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::quotients_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace oktett {
+namespace oktett::random_test {
 namespace {
 
 TEST(Random, DependsOnEveryPartOfItsPlace) {
@@ -62,4 +62,4 @@ TEST(Random, NeighboursAreUncorrelated) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::random_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::simd_floats_test {
 namespace {
 
 constexpr float kMax = std::numeric_limits<float>::max(), kMin = std::numeric_limits<float>::denorm_min();
@@ -66,4 +66,4 @@ TEST(SimdFloats, HasBitsComparesEachLane) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::simd_floats_test

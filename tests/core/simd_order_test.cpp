@@ -7,7 +7,7 @@
 #include "core/simd_lookup.h"
 #include "core/simd_words.h"
 
-namespace oktett {
+namespace oktett::simd_order_test {
 namespace {
 
 TEST(SimdOrder, SetBitsAreWrittenLowestFirst) {
@@ -103,4 +103,4 @@ TEST(SimdWords, AreNumbersWithoutSign) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::simd_order_test

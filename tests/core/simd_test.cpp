@@ -8,7 +8,7 @@
 
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::simd_test {
 namespace {
 
 template <int W>
@@ -135,4 +135,4 @@ TYPED_TEST(SimdTest, HorizontalExtremesSeeEveryLane) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::simd_test

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace oktett {
+namespace oktett::soa_test {
 namespace {
 
 // Every column starts on a cache line and may be read to the end of its last one.
@@ -53,4 +53,4 @@ TEST(Column, CopiesAndMoves) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::soa_test

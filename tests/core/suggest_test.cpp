@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace oktett {
+namespace oktett::suggest_test {
 namespace {
 
 const std::vector<std::string> kNames{"sphere", "plane", "torus"};
@@ -48,4 +48,4 @@ TEST(Suggest, EditDistanceCountsLetters) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::suggest_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/dice.h"
 
-namespace oktett {
+namespace oktett::transform_test {
 namespace {
 
 double distance(const Vec3d& a, const Vec3d& b) { return length(a - b); }
@@ -128,4 +128,4 @@ TEST(TransformBounds, ContainsTheImage) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::transform_test

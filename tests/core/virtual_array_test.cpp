@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oktett {
+namespace oktett::virtual_array_test {
 namespace {
 
 // Far more is reserved than is used, and only what is written costs memory.
@@ -26,4 +26,4 @@ TEST(VirtualArray, MovesAndEmpties) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::virtual_array_test

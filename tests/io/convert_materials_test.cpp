@@ -10,7 +10,7 @@
 #include "tests/io/convert_test_support.h"
 #include "tests/io/gltf_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::convert_materials_test {
 namespace {
 
 TEST_F(Convert, MaterialsOfMtlStayTheSame) {
@@ -170,4 +170,4 @@ TEST_F(Convert, PicturesAreTheSame) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::convert_materials_test

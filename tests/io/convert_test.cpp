@@ -7,7 +7,7 @@
 #include "tests/io/convert_test_support.h"
 #include "tests/io/gltf_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::convert_test {
 namespace {
 
 /// What a corner of a triangle looks like, in bits.
@@ -174,4 +174,4 @@ TEST_F(Convert, RefusesInOneLine) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::convert_test

@@ -15,7 +15,7 @@
 #include "core/elapsed.h"
 #include "core/error.h"
 
-namespace oktett {
+namespace oktett::display_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -211,4 +211,4 @@ TEST(Display, RefusesWhatIsNoAddress) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::display_test

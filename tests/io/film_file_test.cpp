@@ -14,7 +14,7 @@
 #include "io/text/mapped_file.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::film_file_test {
 namespace {
 
 FilmPlan small_plan() {
@@ -234,4 +234,4 @@ TEST(FilmFingerprints, FilesAreNamedFromTheScene) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::film_file_test

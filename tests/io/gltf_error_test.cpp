@@ -3,7 +3,7 @@
 #include "io/text/file_access.h"
 #include "tests/io/gltf_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::gltf_error_test {
 namespace {
 
 /// A good file with a texture, lights, sparse elements and everything else that can be damaged.
@@ -226,4 +226,4 @@ TEST(GltfError, FilesOutsideOfTheRootAreRefused) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::gltf_error_test

@@ -12,7 +12,7 @@
 
 #include "tests/io/gltf_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::gltf_packed_test {
 namespace {
 
 #ifdef OKTETT_HAVE_MESHOPTIMIZER
@@ -158,4 +158,4 @@ TEST(GltfPacked, Draco) {
 #endif
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::gltf_packed_test

@@ -4,7 +4,7 @@
 #include "io/scene/scene_file.h"
 #include "tests/io/gltf_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::gltf_scene_test {
 namespace {
 
 /// A triangle and what `rest` makes of it.
@@ -230,4 +230,4 @@ TEST(GltfScene, WhatIsLostIsSaid) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::gltf_scene_test

@@ -3,7 +3,7 @@
 
 #include "tests/io/gltf_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::gltf_test {
 namespace {
 
 /// A model of triangles, whose texture coordinates are exact when they are turned around.
@@ -206,4 +206,4 @@ TEST(Gltf, PrimitivesAreOneMeshWithSlots) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::gltf_test

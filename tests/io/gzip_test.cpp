@@ -6,7 +6,7 @@
 #include "tests/io/ply_test_support.h"
 #include "tests/support/gzip.h"
 
-namespace oktett::test {
+namespace oktett::test::gzip_test {
 namespace {
 
 std::string unpack(const std::string& packed) {
@@ -106,4 +106,4 @@ TEST(Gzip, MeshesOfAllFormats) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::gzip_test

@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::ies_test {
 namespace {
 
 using test::SceneFiles;
@@ -160,4 +160,4 @@ TEST(SceneLightProfile, IsReadForPointsAndSpots) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::ies_test

@@ -9,7 +9,7 @@
 #include "io/image/texture.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::image_library_test {
 namespace {
 
 using test::TempDir;
@@ -64,4 +64,4 @@ TEST(ImageLibrary, ErrorsComeThroughWithTheirKindAndPlace) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::image_library_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace oktett {
+namespace oktett::image_metadata_test {
 namespace {
 
 /// p' = [p 1] M, divided by w.
@@ -53,4 +53,4 @@ TEST(CameraMatrices, DegenerateCamerasGiveNoneOrAnyRoll) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::image_metadata_test

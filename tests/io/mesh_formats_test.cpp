@@ -7,7 +7,7 @@
 #include "tests/io/gltf_test_support.h"
 #include "tests/io/ply_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::mesh_formats_test {
 namespace {
 
 /// A bumpy ball of triangles.
@@ -83,4 +83,4 @@ TEST(MeshFormats, PicturesAreTheSame) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::mesh_formats_test

@@ -13,7 +13,7 @@
 
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::mesh_polygon_test {
 namespace {
 
 using Polygon = std::vector<Vec3f>;
@@ -293,4 +293,4 @@ TEST(Polygon, FacesKeepUvsAndNormalsWithTheirCorners) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::mesh_polygon_test

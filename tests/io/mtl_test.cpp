@@ -7,7 +7,7 @@
 #include "io/obj/obj.h"
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::mtl_test {
 namespace {
 
 /// What one MTL file holds.
@@ -274,4 +274,4 @@ TEST(Mtl, DamagedFilesLoad) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::mtl_test

@@ -9,7 +9,7 @@
 #include "io/obj/obj.h"
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::obj_error_test {
 namespace {
 
 void expect_starts(const std::string& message, const std::string& part) {
@@ -219,4 +219,4 @@ TEST(ObjError, BadInputIsToldFromInputOutput) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::obj_error_test

@@ -7,7 +7,7 @@
 
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::obj_material_test {
 namespace {
 
 using Slots = std::vector<std::uint16_t>;
@@ -150,4 +150,4 @@ TEST(ObjMaterials, MoreThanSlotsCanTellApart) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::obj_material_test

@@ -11,7 +11,7 @@
 #include "io/obj/obj.h"
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::obj_parallel_test {
 namespace {
 
 /// The contents of a file of triangles, as read by a simple reader.
@@ -280,4 +280,4 @@ TEST(ObjParallel, DamagedFilesLoadOrAreRefused) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::obj_parallel_test

@@ -14,7 +14,7 @@
 #include "io/obj/obj.h"
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::obj_peer_test {
 namespace {
 
 /// Polygons in the order of the file.
@@ -136,5 +136,5 @@ TEST(ObjPeer, MeshesOnThisMachineEqualTinyobjloader) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::obj_peer_test
 #endif

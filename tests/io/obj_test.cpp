@@ -8,7 +8,7 @@
 
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::obj_test {
 namespace {
 
 const std::string kAttributes = "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nvn 0 1 0\nvn 1 0 0\n";
@@ -211,4 +211,4 @@ TEST(Obj, FilesMayEndAtAPageBoundary) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::obj_test

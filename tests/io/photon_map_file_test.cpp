@@ -11,7 +11,7 @@
 #include "render/photon/photon_map.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::photon_map_file_test {
 namespace {
 
 PhotonMap small_map() {
@@ -126,4 +126,4 @@ TEST_F(PhotonMapFile, ErrorsSayWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::photon_map_file_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/ply_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::ply_error_test {
 namespace {
 
 const std::string kHeader =
@@ -203,4 +203,4 @@ TEST(PlyError, DoNotDependOnChunks) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::ply_error_test

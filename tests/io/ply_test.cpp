@@ -2,7 +2,7 @@
 
 #include "tests/io/ply_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::ply_test {
 namespace {
 
 // Every form has the columns of the OBJ file of the same mesh, bit for bit.
@@ -113,4 +113,4 @@ TEST(Ply, WhatIsNotReadIsSaid) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::ply_test

@@ -23,7 +23,7 @@
 #include "io/text/files_read.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::scene_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -304,4 +304,4 @@ TEST_F(SceneCacheTest, ProcessesWaitForEachOther) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_cache_test

@@ -10,7 +10,7 @@
 #include "io/scene/check.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_check_test {
 namespace {
 
 using test::SceneFiles;
@@ -179,4 +179,4 @@ TEST(SceneCheck, Examples) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_check_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_csg_test {
 namespace {
 
 using test::expect_starts;
@@ -141,4 +141,4 @@ TEST(SceneCsg, BadCombinationsAreExplained) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_csg_test

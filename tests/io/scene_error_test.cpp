@@ -6,7 +6,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_error_test {
 namespace {
 
 using test::expect_errors;
@@ -322,4 +322,4 @@ TEST(SceneError, Includes) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_error_test

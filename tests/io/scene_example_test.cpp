@@ -11,7 +11,7 @@
 #include "render/render.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_example_test {
 namespace {
 
 const std::filesystem::path kScenes = std::filesystem::path(OKTETT_SOURCE_DIR) / "scenes";
@@ -104,4 +104,4 @@ TEST(SceneExample, TheBunnyCanBeReplaced) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_example_test

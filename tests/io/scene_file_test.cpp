@@ -7,7 +7,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_file_test {
 namespace {
 
 using test::SceneFiles;
@@ -322,4 +322,4 @@ TEST(LoadScene, ChoosesByExtension) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_file_test

@@ -4,7 +4,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_film_test {
 namespace {
 
 using namespace test;
@@ -134,4 +134,4 @@ TEST(SceneFilm, BadMotionsAreErrors) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_film_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_fractals_test {
 namespace {
 
 using test::expect_errors;
@@ -89,4 +89,4 @@ TEST(SceneFractals, EmptyOnesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_fractals_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_functions_test {
 namespace {
 
 using test::expect_starts;
@@ -107,4 +107,4 @@ TEST(SceneFunctions, ConstantsAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_functions_test

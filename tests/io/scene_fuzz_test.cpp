@@ -13,7 +13,7 @@
 #include "tests/io/scene_test_support.h"
 #include "tests/support/sanitizers.h"
 
-namespace oktett {
+namespace oktett::scene_fuzz_test {
 namespace {
 
 /// Steele, Lea and Flood's SplitMix64: the same mutants on every machine.
@@ -114,4 +114,4 @@ TEST(SceneFuzz, MutantsLoadOrAreRefused) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_fuzz_test

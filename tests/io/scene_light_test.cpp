@@ -10,7 +10,7 @@
 #include "io/image/image.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_light_test {
 namespace {
 
 using namespace test;
@@ -267,4 +267,4 @@ TEST(SceneMaterial, ErrorsOfPrincipledOnes) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_light_test

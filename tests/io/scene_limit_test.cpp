@@ -7,7 +7,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_limit_test {
 namespace {
 
 using test::expect_starts;
@@ -130,4 +130,4 @@ TEST(SceneLimit, LongFilesLoadInTime) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_limit_test

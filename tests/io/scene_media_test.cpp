@@ -8,7 +8,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_media_test {
 namespace {
 
 using namespace test;
@@ -179,4 +179,4 @@ TEST(SceneMedia, ReportsBadPlacesAndNoise) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_media_test

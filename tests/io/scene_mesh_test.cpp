@@ -3,7 +3,7 @@
 #include "tests/io/ply_test_support.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::scene_mesh_test {
 namespace {
 
 /// A tetrahedron.
@@ -63,4 +63,4 @@ TEST(SceneMesh, ErrorsNameTheMeshFile) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::scene_mesh_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_metaballs_test {
 namespace {
 
 using test::expect_starts;
@@ -125,4 +125,4 @@ TEST(SceneMetaballs, DegenerateOnesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_metaballs_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_polynomial_test {
 namespace {
 
 using test::expect_starts;
@@ -126,4 +126,4 @@ TEST(ScenePolynomial, DegenerateOnesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_polynomial_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_quadrics_test {
 namespace {
 
 using test::expect_errors;
@@ -124,4 +124,4 @@ TEST(SceneQuadrics, DegenerateOnesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_quadrics_test

@@ -16,7 +16,7 @@
 #include "io/scene/yaml.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_schema_test {
 namespace {
 
 const YamlNode* member(const YamlNode& map, const std::string& key) {
@@ -240,4 +240,4 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_schema_test

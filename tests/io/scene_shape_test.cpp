@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_shape_test {
 namespace {
 
 using test::expect_skipped;
@@ -121,4 +121,4 @@ TEST(SceneShape, WarningsAreBounded) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_shape_test

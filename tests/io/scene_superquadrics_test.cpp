@@ -2,7 +2,7 @@
 
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_superquadrics_test {
 namespace {
 
 using test::expect_errors;
@@ -76,4 +76,4 @@ TEST(SceneSuperquadrics, DegenerateOnesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_superquadrics_test

@@ -13,7 +13,7 @@
 #include "io/scene/surface_table.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_surface_table_test {
 namespace {
 
 using test::SceneFiles;
@@ -231,4 +231,4 @@ TEST_F(SurfaceTable, DefaultsAreThoseOfTheData) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_surface_table_test

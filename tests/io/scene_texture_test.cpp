@@ -9,7 +9,7 @@
 #include "io/image/texture.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_texture_test {
 namespace {
 
 using test::expect_starts;
@@ -145,4 +145,4 @@ TEST_F(SceneTexture, PatternsAreNoImages) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_texture_test

@@ -8,7 +8,7 @@
 #include "io/text/file_access.h"
 #include "tests/io/obj_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::similar_file_test {
 namespace {
 
 struct Files {
@@ -88,4 +88,4 @@ TEST(SimilarFile, WarningsOfMaterialsNameThem) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::similar_file_test

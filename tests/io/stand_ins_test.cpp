@@ -12,7 +12,7 @@
 #include "io/text/files_read.h"
 #include "io/text/mapped_file.h"
 
-namespace oktett {
+namespace oktett::stand_ins_test {
 namespace {
 
 std::string written(const std::string& name, const std::string& content) {
@@ -53,4 +53,4 @@ TEST(StandIns, KeepTheNamesOfFiles) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::stand_ins_test

@@ -2,7 +2,7 @@
 
 #include "tests/io/mesh_test_support.h"
 
-namespace oktett::test {
+namespace oktett::test::stl_test {
 namespace {
 
 /// Faces of the model must be triangles.
@@ -238,4 +238,4 @@ TEST(Stl, HugeCountsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::stl_test

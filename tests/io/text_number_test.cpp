@@ -11,7 +11,7 @@
 
 #include "io/text/mapped_file.h"
 
-namespace oktett::test {
+namespace oktett::test::text_number_test {
 namespace {
 
 /// A text with the zero bytes behind it that scanners rely on.
@@ -141,4 +141,4 @@ TEST(ScanWhole, ReadsUpTo64BitsAndStaysThere) {
 }
 
 }  // namespace
-}  // namespace oktett::test
+}  // namespace oktett::test::text_number_test

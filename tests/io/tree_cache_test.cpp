@@ -19,7 +19,7 @@
 #include "tests/support/mixed_geometry.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::tree_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -304,4 +304,4 @@ TEST_F(TreeCache, DamagedTreesAreBuiltAgain) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::tree_cache_test

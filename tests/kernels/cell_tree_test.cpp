@@ -10,7 +10,7 @@
 #include "kernels/fields/metaballs.h"
 #include "tests/support/sanitizers.h"
 
-namespace oktett {
+namespace oktett::cell_tree_test {
 namespace {
 
 MetaballsShape many_balls() {
@@ -150,4 +150,4 @@ TEST(CellTree, LargerCellsAreTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::cell_tree_test

@@ -8,7 +8,7 @@
 #include "tests/support/quad_triangle.h"
 #include "tests/support/triangle_cases.h"
 
-namespace oktett {
+namespace oktett::closest_triangle_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -88,4 +88,4 @@ TEST(ClosestOnTriangle, NeighboursAgree) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::closest_triangle_test

@@ -10,7 +10,7 @@
 #include "kernels/exact/torus.h"
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::cyclide_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -156,4 +156,4 @@ TEST(Cyclide, DegenerateOnesAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::cyclide_test

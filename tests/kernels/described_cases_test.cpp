@@ -9,7 +9,7 @@
 
 #include "verify/oracles/exact.h"
 
-namespace oktett {
+namespace oktett::described_cases_test {
 namespace {
 
 /// Finds parameters that the description does not allow, and shapes that it says are empty.
@@ -57,4 +57,4 @@ TEST(DescribedCases, KeepToTheRangesOfParameters) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::described_cases_test

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-namespace oktett {
+namespace oktett::expression_test {
 namespace {
 
 double value_of(const std::string& text) { return evaluate(parse_expression(text)); }
@@ -165,4 +165,4 @@ TEST(Expression, SurvivesAnyText) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::expression_test

@@ -11,7 +11,7 @@
 #include "kernels/functions/expression.h"
 #include "tests/support/random_expression.h"
 
-namespace oktett {
+namespace oktett::function_tape_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -244,4 +244,4 @@ TEST(FunctionTape, SurvivesAnyText) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::function_tape_test

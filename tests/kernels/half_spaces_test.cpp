@@ -6,7 +6,7 @@
 
 #include "kernels/exact/quadratic.h"
 
-namespace oktett {
+namespace oktett::half_spaces_test {
 namespace {
 
 using Kind = ConvexSolid::Kind;
@@ -147,4 +147,4 @@ TEST(Quadratic, DiscriminantsHaveTheRightSign) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::half_spaces_test

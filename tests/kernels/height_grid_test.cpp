@@ -10,7 +10,7 @@
 #include "core/random.h"
 #include "kernels/heights/height_cell.h"
 
-namespace oktett {
+namespace oktett::height_grid_test {
 namespace {
 
 std::shared_ptr<const HeightGrid> random_grid(std::uint32_t columns, std::uint32_t rows, bool words,
@@ -127,4 +127,4 @@ TEST(HeightGrid, LevelFieldsHaveOneHeight) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::height_grid_test

@@ -10,7 +10,7 @@
 #include "kernels/functions/tape_values.h"
 #include "tests/support/random_expression.h"
 
-namespace oktett {
+namespace oktett::implicit_cells_test {
 namespace {
 
 double unit(std::mt19937& random) { return (random() + 0.5) / 4294967296.0; }
@@ -163,4 +163,4 @@ TEST(ImplicitCells, AreSharedByTheSameFunctionInTheSameBox) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::implicit_cells_test

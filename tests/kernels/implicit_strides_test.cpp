@@ -10,7 +10,7 @@
 #include "kernels/exact/implicit.h"
 #include "tests/support/random_expression.h"
 
-namespace oktett {
+namespace oktett::implicit_strides_test {
 namespace {
 
 constexpr int kWidth = 4;
@@ -264,4 +264,4 @@ TEST(ImplicitStrides, FindWhatIntervalsFindInRandomFunctions) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::implicit_strides_test

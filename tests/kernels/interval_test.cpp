@@ -9,7 +9,7 @@
 
 #include "kernels/interval/dual.h"
 
-namespace oktett {
+namespace oktett::interval_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -274,4 +274,4 @@ TEST(Interval, DerivativesHoldEverySlope) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::interval_test

@@ -6,7 +6,7 @@
 #include "tests/support/limits.h"
 #include "verify/checks/kernels.h"
 
-namespace oktett {
+namespace oktett::kernels_test {
 namespace {
 
 class Kernel : public testing::TestWithParam<int> {
@@ -157,4 +157,4 @@ TEST(SphereKernel, RayFromTheSurfaceMeetsTheFarSide) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::kernels_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace oktett {
+namespace oktett::march_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -262,4 +262,4 @@ TEST(March, GivesUpOnlyOnMonsters) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::march_test

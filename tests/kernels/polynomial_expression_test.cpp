@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "kernels/functions/expression.h"
 
-namespace oktett {
+namespace oktett::polynomial_expression_test {
 namespace {
 
 using Terms = std::map<std::tuple<int, int, int>, double>;
@@ -115,4 +115,4 @@ TEST(PolynomialExpression, HasTheValuesOfWhatWasWritten) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::polynomial_expression_test

@@ -10,7 +10,7 @@
 #include "tests/support/random_polynomials.h"
 #include "verify/probes/roots_probe.h"
 
-namespace oktett {
+namespace oktett::roots_lanes_test {
 namespace {
 
 using test::RootClass;
@@ -169,4 +169,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, RootsInLanes, testing::Range(0, 8));
 INSTANTIATE_TEST_SUITE_P(Kernels, CertifiedLanes, testing::Range(3, 8));
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::roots_lanes_test

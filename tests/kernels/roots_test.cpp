@@ -10,7 +10,7 @@
 #include "tests/support/limits.h"
 #include "tests/support/random_polynomials.h"
 
-namespace oktett::roots {
+namespace oktett::roots::roots_test {
 namespace {
 
 using test::judge;
@@ -281,4 +281,4 @@ TEST(Roots, HugeAndTinyCoefficients) {
 }
 
 }  // namespace
-}  // namespace oktett::roots
+}  // namespace oktett::roots::roots_test

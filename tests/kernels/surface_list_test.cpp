@@ -8,7 +8,7 @@
 #include "kernels/exact_ops.h"
 #include "verify/oracles/exact.h"
 
-namespace oktett {
+namespace oktett::surface_list_test {
 namespace {
 
 struct Listed {
@@ -71,4 +71,4 @@ TEST(SurfaceList, EverySurfaceIsVerifiedAndKeepsItsTraits) {
   for (const Listed& line : kLines) EXPECT_TRUE(verified.contains(line.name)) << line.name;
 }
 
-}  // namespace oktett
+}  // namespace oktett::surface_list_test

@@ -6,7 +6,7 @@
 #include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 
-namespace oktett {
+namespace oktett::triangle_classify_test {
 namespace {
 
 using F = Simd<float, 1, ScalarIsa>;
@@ -144,4 +144,4 @@ TEST(Classify, OrdinaryTrianglesAreClear) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::triangle_classify_test

@@ -8,7 +8,7 @@
 #include "tests/support/limits.h"
 #include "tests/support/triangle_cases.h"
 
-namespace oktett {
+namespace oktett::triangle_watertight_test {
 namespace {
 
 constexpr int kLanes = 4;
@@ -133,4 +133,4 @@ TEST(EdgeFunction, TieRuleChoosesExactlyOneSide) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::triangle_watertight_test

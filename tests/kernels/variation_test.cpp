@@ -13,7 +13,7 @@
 #include "kernels/functions/function_tape.h"
 #include "tests/support/random_expression.h"
 
-namespace oktett {
+namespace oktett::variation_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -231,4 +231,4 @@ TEST(Variation, Grids) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::variation_test

@@ -17,7 +17,7 @@
 #include "tests/support/limits.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::image_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -375,4 +375,4 @@ TEST(ReadImage, ClaimedSizesAreBounded) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::image_test

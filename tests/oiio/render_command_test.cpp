@@ -13,7 +13,7 @@
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::render_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -204,4 +204,4 @@ TEST(RenderCommandFiles, TheFirstSignalWritesWhatIsFinished) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::render_command_test

@@ -8,7 +8,7 @@
 #include "kernels/heights/height_grid.h"
 #include "tests/io/scene_test_support.h"
 
-namespace oktett {
+namespace oktett::scene_heights_test {
 namespace {
 
 using test::expect_starts;
@@ -172,4 +172,4 @@ TEST(SceneHeights, DegenerateOnesAreSkipped) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_heights_test

@@ -13,7 +13,7 @@
 #include "tests/support/temp_dir.h"
 #include "tests/support/terminal_pictures.h"
 
-namespace oktett {
+namespace oktett::show_command_test {
 namespace {
 
 using test::CommandProcess;
@@ -308,4 +308,4 @@ TEST(ShowWithoutChafa, NamesThePackage) {
 #endif
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::show_command_test

@@ -16,7 +16,7 @@
 #include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::texture_test {
 namespace {
 
 using test::TempDir;
@@ -302,4 +302,4 @@ TEST(ImageTextures, ResultsDependOnArgumentsAlone) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::texture_test

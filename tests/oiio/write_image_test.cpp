@@ -18,7 +18,7 @@
 #include "io/image/image.h"
 #include "tests/support/temp_dir.h"
 
-namespace oktett {
+namespace oktett::write_image_test {
 namespace {
 
 using test::TempDir;
@@ -222,4 +222,4 @@ TEST(WriteImage, AFullDiskLeavesTheOldFileAndNoTemporary) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::write_image_test

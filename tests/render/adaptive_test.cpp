@@ -9,7 +9,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::adaptive_test {
 namespace {
 
 using namespace test;
@@ -207,4 +207,4 @@ TEST(Adaptive, WorksWhileThingsMove) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::adaptive_test

@@ -14,7 +14,7 @@
 #include "render/solids.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::area_lights_test {
 namespace {
 
 using namespace test;
@@ -232,4 +232,4 @@ TEST(AreaLights, OddLampsAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::area_lights_test

@@ -9,7 +9,7 @@
 #include "render/bsdf/optics.h"
 #include "tests/render/bsdf_support.h"
 
-namespace oktett {
+namespace oktett::bsdf_again_test {
 namespace {
 
 constexpr float kRoughness = 0.9f;
@@ -107,4 +107,4 @@ TEST(BsdfAgain, MeanFresnelIsTheIntegral) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bsdf_again_test

@@ -3,7 +3,7 @@
 #include "render/bsdf/bsdf.h"
 #include "tests/render/bsdf_support.h"
 
-namespace oktett {
+namespace oktett::bsdf_furnace_test {
 namespace {
 
 /// What a surface sends to a viewer at the cosine `mu` in white light from all sides, by integration of its
@@ -83,4 +83,4 @@ TEST(BsdfFurnace, LayersTakeNoMoreThanTheyGive) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bsdf_furnace_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace oktett {
+namespace oktett::bsdf_optics_test {
 namespace {
 
 /// The unit vector that meets the surface z = 0 from above at `angle` to its normal.
@@ -97,4 +97,4 @@ TEST(Optics, MirroredRaysStayAboveTheTrueSurface) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bsdf_optics_test

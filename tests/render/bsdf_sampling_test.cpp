@@ -5,7 +5,7 @@
 #include "render/bsdf/bsdf.h"
 #include "tests/render/bsdf_support.h"
 
-namespace oktett {
+namespace oktett::bsdf_sampling_test {
 namespace {
 
 constexpr int kRings = 12, kSectors = 8, kBins = kRings * kSectors;
@@ -146,4 +146,4 @@ TEST(BsdfPhong, SamplesFollowTheDensity) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bsdf_sampling_test

@@ -8,7 +8,7 @@
 #include "render/bsdf/sheen.h"
 #include "tests/render/bsdf_support.h"
 
-namespace oktett {
+namespace oktett::bsdf_test {
 namespace {
 
 Vec3f random_above(std::uint64_t key) {
@@ -306,4 +306,4 @@ TEST(Bsdf, MixturesGainNoEnergy) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bsdf_test

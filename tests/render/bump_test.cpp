@@ -13,7 +13,7 @@
 #include "kernels/functions/function_tape.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::bump_test {
 namespace {
 
 using test::add_material;
@@ -249,4 +249,4 @@ TEST(ImageBump, SurfacesWithoutCoordinatesStayAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::bump_test

@@ -8,7 +8,7 @@
 
 #include "render/default_view.h"
 
-namespace oktett {
+namespace oktett::camera_test {
 namespace {
 
 Film film(std::uint32_t width, std::uint32_t height) {
@@ -147,4 +147,4 @@ TEST(DefaultView, LightsComeFromTheCamerasSide) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::camera_test

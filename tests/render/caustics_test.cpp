@@ -6,7 +6,7 @@
 
 #include "tests/render/photon_support.h"
 
-namespace oktett {
+namespace oktett::caustics_test {
 namespace {
 
 using namespace test;
@@ -215,4 +215,4 @@ TEST(Caustics, ScenesWithoutLightMirrorsOrPhotonsAreFine) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::caustics_test

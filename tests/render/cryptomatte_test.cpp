@@ -10,7 +10,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::cryptomatte_test {
 namespace {
 
 using namespace test;
@@ -114,4 +114,4 @@ TEST(Cryptomatte, ManyAndOddNames) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::cryptomatte_test

@@ -4,7 +4,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::csg_picture_test {
 namespace {
 
 using namespace test;
@@ -145,4 +145,4 @@ TEST(CsgPicture, IsTheSameEverywhere) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::csg_picture_test

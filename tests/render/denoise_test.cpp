@@ -12,7 +12,7 @@
 #include "core/random.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::denoise_test {
 namespace {
 
 using namespace test;
@@ -168,4 +168,4 @@ TEST(Denoise, NeedsItsLayers) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::denoise_test

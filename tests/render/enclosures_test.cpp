@@ -8,7 +8,7 @@
 
 #include "tests/render/medium_support.h"
 
-namespace oktett {
+namespace oktett::enclosures_test {
 namespace {
 
 using namespace test;
@@ -250,4 +250,4 @@ TEST(Interiors, WhittedAttenuatesLightInGlass) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::enclosures_test

@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::film_state_test {
 namespace {
 
 using namespace test;
@@ -257,4 +257,4 @@ TEST(TileSums, DamagedBytesAreSafe) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::film_state_test

@@ -8,7 +8,7 @@
 #include "tests/render/test_scenes.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::film_test {
 namespace {
 
 using namespace test;
@@ -137,4 +137,4 @@ TEST(Film, IdsAreThoseOfTheSampleNearestToTheCentre) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::film_test

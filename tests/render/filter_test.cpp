@@ -9,7 +9,7 @@
 #include "render/sampling/filter_sampler.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::filter_test {
 namespace {
 
 using namespace test;
@@ -114,4 +114,4 @@ TEST(Filter, PicturesHaveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::filter_test

@@ -10,7 +10,7 @@
 #include "render/geometry.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::flat_integrators_test {
 namespace {
 
 using namespace test;
@@ -132,4 +132,4 @@ TEST(FlatIntegrators, CornersAreFoundThroughInstances) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::flat_integrators_test

@@ -2,7 +2,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::fractals_test {
 namespace {
 
 using namespace test;
@@ -46,4 +46,4 @@ TEST(Fractals, DeepOnesRender) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::fractals_test

@@ -6,7 +6,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::geometry_test {
 namespace {
 
 using namespace test;
@@ -113,4 +113,4 @@ TEST(Geometry, TrianglesKeepTheirFront) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::geometry_test

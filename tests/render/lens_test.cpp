@@ -9,7 +9,7 @@
 #include "render/sampling/warp.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::lens_test {
 namespace {
 
 using namespace test;
@@ -182,4 +182,4 @@ TEST(Lens, PicturesHaveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::lens_test

@@ -7,7 +7,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::light_blocks_test {
 namespace {
 
 using namespace test;
@@ -109,4 +109,4 @@ TEST(LightBlocks, SampledAndUnsampledLampsAgreeInAThousandBlocks) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_blocks_test

@@ -9,7 +9,7 @@
 #include "render/light/emitter.h"
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_bounds_test {
 namespace {
 
 using namespace light_checks;
@@ -61,4 +61,4 @@ TEST(LightBounds, JoinedConesHoldBoth) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_bounds_test

@@ -37,7 +37,7 @@ class Random {
 };
 
 /// A surface over the unit square.
-struct Surface {
+struct ParametricSurface {
   std::function<Vec3d(double, double)> position;
   /// Unit normal times the area per area of the square.
   std::function<Vec3d(double, double)> area;
@@ -53,8 +53,8 @@ struct Patch {
 };
 
 /// Cuts the surface until each patch is small compared with its distance from the point.
-inline void cut(const Surface& surface, const Vec3d& point, double u0, double u1, double v0, double v1,
-                int depth, const std::function<void(const Patch&)>& take) {
+inline void cut(const ParametricSurface& surface, const Vec3d& point, double u0, double u1, double v0,
+                double v1, int depth, const std::function<void(const Patch&)>& take) {
   const double u = (u0 + u1) / 2, v = (v0 + v1) / 2;
   const Vec3d middle = surface.position(u, v);
   const double along_u = length(surface.position(u1, v) - middle) + length(surface.position(u0, v) - middle);

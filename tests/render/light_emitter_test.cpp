@@ -10,14 +10,14 @@
 
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_emitter_test {
 namespace {
 
 using namespace light_checks;
 
 constexpr Color kWhite{1, 1, 1};
 
-Surface surface_of(const TriangleEmitter& e) {
+ParametricSurface surface_of(const TriangleEmitter& e) {
   const Vec3d a(e.a), u = Vec3d(e.b) - a, v = Vec3d(e.c) - a;
   return {[=](double x, double y) { return a + (u * (1 - y) + v * y) * x; },
           [=](double x, double) { return cross(u, v) * x; },
@@ -27,7 +27,7 @@ Surface surface_of(const TriangleEmitter& e) {
           }};
 }
 
-Surface surface_of(const RectangleEmitter& e) {
+ParametricSurface surface_of(const RectangleEmitter& e) {
   const Vec3d a(e.corner), u(e.edge_u), v(e.edge_v);
   return {[=](double x, double y) { return a + u * x + v * y; }, [=](double, double) { return cross(u, v); },
           [](const LightSample& s, const Vec3f&) {
@@ -44,7 +44,7 @@ double turn_of(double y, double x) {
   return turn < 0 ? turn + 1 : turn;
 }
 
-Surface surface_of(const DiskEmitter& e) {
+ParametricSurface surface_of(const DiskEmitter& e) {
   const Vec3d c(e.center), n = normalize(Vec3d(e.normal));
   const Vec3d t = normalize(cross(n, std::abs(n.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0})), b = cross(n, t);
   const double r = e.radius;
@@ -59,7 +59,7 @@ Surface surface_of(const DiskEmitter& e) {
           }};
 }
 
-Surface surface_of(const SphereEmitter& e) {
+ParametricSurface surface_of(const SphereEmitter& e) {
   const Vec3d c(e.center);
   const double r = e.radius;
   const auto direction = [](double x, double y) {
@@ -89,7 +89,7 @@ struct Case {
   bool by_place = true;  ///< samples are exact enough to say where on the emitter they are
 };
 
-Surface surface_of(const Case& c) {
+ParametricSurface surface_of(const Case& c) {
   if (const auto* e = std::get_if<TriangleEmitter>(&c.emitter)) return surface_of(*e);
   if (const auto* e = std::get_if<RectangleEmitter>(&c.emitter)) return surface_of(*e);
   if (const auto* e = std::get_if<DiskEmitter>(&c.emitter)) return surface_of(*e);
@@ -161,7 +161,7 @@ TEST(LightEmitter, SamplesHaveTheDensityThatPdfSays) {
   for (const Case& c : cases()) {
     SCOPED_TRACE(with(c));
     const LightPoint point{c.point, {}};
-    const Surface surface = surface_of(c);
+    const ParametricSurface surface = surface_of(c);
     std::vector<double> place(kCells * kCells), direction(6 * kFaces * kFaces);
     double integral = 0;
     const auto cell_of = [](double u, double v) {
@@ -273,4 +273,4 @@ TEST(LightEmitter, ExtremeSizesGiveNoNan) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_emitter_test

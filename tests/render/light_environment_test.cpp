@@ -9,7 +9,7 @@
 #include "render/light/environment_map.h"
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_environment_test {
 namespace {
 
 using namespace light_checks;
@@ -209,4 +209,4 @@ TEST(EnvironmentMap, MapsEvenPatternsToEvenSamples) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_environment_test

@@ -13,7 +13,7 @@
 #include "render/photon/photon_map.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::light_groups_test {
 namespace {
 
 using namespace test;
@@ -272,4 +272,4 @@ TEST(LightGroups, AreNumberedByTheirFirstNameAndLimited) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_groups_test

@@ -7,7 +7,7 @@
 #include "render/light/emitter.h"
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_irradiance_test {
 namespace {
 
 using namespace light_checks;
@@ -160,4 +160,4 @@ TEST(LightIrradiance, TheSunHasItsIrradianceWhateverItsSize) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_irradiance_test

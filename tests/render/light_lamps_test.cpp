@@ -14,7 +14,7 @@
 #include "tests/render/light_checks.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::light_lamps_test {
 namespace {
 
 using namespace test;
@@ -170,4 +170,4 @@ TEST(ManyLamps, AreChosenWithTheirProbabilities) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_lamps_test

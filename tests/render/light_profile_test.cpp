@@ -8,7 +8,7 @@
 #include "render/light/aimed_profile.h"
 #include "tests/render/photon_support.h"
 
-namespace oktett {
+namespace oktett::light_profile_test {
 namespace {
 
 using namespace test;
@@ -147,4 +147,4 @@ TEST(LightProfile, PhotonsCarryItsFlux) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_profile_test

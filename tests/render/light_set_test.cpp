@@ -9,7 +9,7 @@
 
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_set_test {
 namespace {
 
 using namespace light_checks;
@@ -165,4 +165,4 @@ TEST(LightSet, RaysThatLeaveTheSceneSeeWhatSamplesBring) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_set_test

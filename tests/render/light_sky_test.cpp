@@ -7,7 +7,7 @@
 
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_sky_test {
 namespace {
 
 using namespace light_checks;
@@ -161,4 +161,4 @@ TEST(Sky, TurnsIntoAnEnvironmentThatLooksTheSame) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_sky_test

@@ -10,7 +10,7 @@
 #include "render/scene_lights.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::light_transport_test {
 namespace {
 
 using namespace test;
@@ -332,4 +332,4 @@ TEST(LightTransport, PicturesDependNeitherOnThreadsNorTilesNorSets) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_transport_test

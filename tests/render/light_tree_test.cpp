@@ -11,7 +11,7 @@
 #include "render/transport/render_code.h"
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::light_tree_test {
 namespace {
 
 using namespace light_checks;
@@ -367,4 +367,4 @@ TEST(LightTree, ChoosesNearAndFacingEmittersMoreOften) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::light_tree_test

@@ -17,7 +17,7 @@
 #include "tests/render/light_checks.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::look_test {
 namespace {
 
 using light_checks::Random;
@@ -211,4 +211,4 @@ TEST(DefaultLook, ClayCoversMaterialsAndStudioKeepsThem) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::look_test

@@ -9,7 +9,7 @@
 #include "render/medium/density_noise.h"
 #include "tests/render/medium_support.h"
 
-namespace oktett {
+namespace oktett::medium_grid_test {
 namespace {
 
 using namespace test;
@@ -131,4 +131,4 @@ TEST(DensityNoise, LooksTheSameAlwaysAndStaysInRange) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::medium_grid_test

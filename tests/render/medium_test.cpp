@@ -12,7 +12,7 @@
 #include "render/medium/phase.h"
 #include "render/sampling/owen_sobol.h"
 
-namespace oktett {
+namespace oktett::medium_test {
 namespace {
 
 constexpr float kAnisotropies[] = {0, 0.0005f, -0.3f, 0.5f, 0.9f, -0.95f, 0.99f, 0.999f};
@@ -191,4 +191,4 @@ TEST(MediumTracker, ExtremeMediaAreDefined) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::medium_test

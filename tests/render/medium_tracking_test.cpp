@@ -9,7 +9,7 @@
 #include "render/medium/medium_tracker.h"
 #include "tests/render/medium_support.h"
 
-namespace oktett {
+namespace oktett::medium_tracking_test {
 namespace {
 
 using namespace test;
@@ -237,4 +237,4 @@ TEST(GridTransport, PicturesDependNeitherOnThreadsNorSets) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::medium_tracking_test

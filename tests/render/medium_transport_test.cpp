@@ -7,7 +7,7 @@
 
 #include "tests/render/medium_support.h"
 
-namespace oktett {
+namespace oktett::medium_transport_test {
 namespace {
 
 using namespace test;
@@ -259,4 +259,4 @@ TEST(MediumTransport, PicturesDependNeitherOnThreadsNorTilesNorSets) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::medium_transport_test

@@ -15,7 +15,7 @@
 #include "render/sampling/owen_sobol.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::motion_test {
 namespace {
 
 using namespace test;
@@ -305,4 +305,4 @@ TEST(MotionBlur, PicturesHaveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::motion_test

@@ -4,7 +4,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::path_test {
 namespace {
 
 using namespace test;
@@ -192,4 +192,4 @@ TEST(Views, NormalAndDepthShowWhatTheySay) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::path_test

@@ -17,7 +17,7 @@
 #include "tests/render/light_checks.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::pattern_test {
 namespace {
 
 using light_checks::Random;
@@ -287,4 +287,4 @@ TEST(PatternColor, LiesInTheObjectsSpace) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::pattern_test

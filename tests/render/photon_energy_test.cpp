@@ -6,7 +6,7 @@
 #include "core/random.h"
 #include "tests/render/photon_support.h"
 
-namespace oktett {
+namespace oktett::photon_energy_test {
 namespace {
 
 using namespace test;
@@ -229,4 +229,4 @@ TEST(PhotonEnergy, PowerInGlassIsDividedByTheSquareOfItsIndex) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::photon_energy_test

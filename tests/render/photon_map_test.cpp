@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "render/photon/photon_map.h"
 
-namespace oktett {
+namespace oktett::photon_map_test {
 namespace {
 
 float dice(std::uint32_t number, std::uint32_t dimension) { return random_float(7, number, dimension); }
@@ -125,4 +125,4 @@ TEST(PhotonPass, TheUsualRadiusHoldsThirtyTwoPhotons) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::photon_map_test

@@ -13,7 +13,7 @@
 #include "render/photon/photon_media.h"
 #include "tests/render/photon_support.h"
 
-namespace oktett {
+namespace oktett::photon_media_test {
 namespace {
 
 using namespace test;
@@ -258,4 +258,4 @@ TEST(PhotonMedia, CausticsThroughSmoke) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::photon_media_test

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "tests/render/photon_support.h"
 
-namespace oktett {
+namespace oktett::photon_motion_test {
 namespace {
 
 using namespace test;
@@ -72,4 +72,4 @@ TEST(PhotonMotion, FilesBelongToTheMomentsOfTheirScene) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::photon_motion_test

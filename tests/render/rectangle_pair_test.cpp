@@ -8,7 +8,7 @@
 
 #include "tests/render/light_checks.h"
 
-namespace oktett {
+namespace oktett::rectangle_pair_test {
 namespace {
 
 using namespace light_checks;
@@ -107,4 +107,4 @@ TEST(RectanglePair, BringsTheLightOfBothTriangles) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::rectangle_pair_test

@@ -12,7 +12,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::render_test {
 namespace {
 
 using namespace test;
@@ -312,4 +312,4 @@ TEST(Render, APixelOfManyWavesCountsThoseThatMeetNothing) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::render_test

@@ -7,7 +7,7 @@
 #include "render/sampling/owen_sobol.h"
 #include "render/sampling/warp.h"
 
-namespace oktett {
+namespace oktett::sampling_test {
 namespace {
 
 /// The second dimension of Sobol's sequence by its recurrence of direction numbers (Bratley, Fox 1988, whose
@@ -143,4 +143,4 @@ TEST(CosineDirection, HasTheDensityOfLambertsLaw) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::sampling_test

@@ -6,7 +6,7 @@
 #include "render/geometry.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::scene_lights_test {
 namespace {
 
 using namespace test;
@@ -79,4 +79,4 @@ TEST(SceneLights, TrianglesOfAMeshAreJoinedOnlyToRectangles) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scene_lights_test

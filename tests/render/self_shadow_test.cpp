@@ -4,7 +4,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::self_shadow_test {
 namespace {
 
 using namespace test;
@@ -112,4 +112,4 @@ TEST(SelfShadow, GlassLosesNoLight) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::self_shadow_test

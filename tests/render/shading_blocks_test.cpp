@@ -8,7 +8,7 @@
 #include "render/transport/wavefront.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::shading_blocks_test {
 namespace {
 
 using namespace test;
@@ -120,4 +120,4 @@ TEST(ShadingBlocks, WhittedIsThatOfSingleHits) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::shading_blocks_test

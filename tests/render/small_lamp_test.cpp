@@ -8,7 +8,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::small_lamp_test {
 namespace {
 
 using namespace test;
@@ -70,4 +70,4 @@ TEST(SmallLamp, BlocksOfARoomAreKnownWithinTwoPercent) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::small_lamp_test

@@ -7,7 +7,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::texture_test {
 namespace {
 
 using namespace test;
@@ -174,4 +174,4 @@ TEST(Texture, TexturedSurfacesLookTheSameInLanes) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::texture_test

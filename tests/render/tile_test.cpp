@@ -10,7 +10,7 @@
 #include "render/geometry.h"
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::tile_test {
 namespace {
 
 using namespace test;
@@ -67,4 +67,4 @@ TEST(Tile, TilesNeedNoOrderAmongThreads) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::tile_test

@@ -9,7 +9,7 @@
 #include "tests/render/test_scenes.h"
 #include "tests/support/limits.h"
 
-namespace oktett {
+namespace oktett::tone_test {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ TEST(Clamp, DarkensBrightSamples) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::tone_test

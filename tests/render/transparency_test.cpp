@@ -4,7 +4,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::transparency_test {
 namespace {
 
 using namespace test;
@@ -119,4 +119,4 @@ TEST(Transparency, ShadowsTakeTheColourOfTheGlass) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::transparency_test

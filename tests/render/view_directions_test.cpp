@@ -9,7 +9,7 @@
 
 #include "verify/cases/kernel_cases.h"
 
-namespace oktett {
+namespace oktett::view_directions_test {
 namespace {
 
 bool same(float a, float b) {
@@ -42,4 +42,4 @@ TEST(ViewRays, AreUnitVectorsToThePointsForAnyNumberOfThem) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::view_directions_test

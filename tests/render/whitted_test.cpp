@@ -5,7 +5,7 @@
 
 #include "tests/render/test_scenes.h"
 
-namespace oktett {
+namespace oktett::whitted_test {
 namespace {
 
 using namespace test;
@@ -175,4 +175,4 @@ TEST(Whitted, TreesOfRaysThatGainEnergyStayBounded) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::whitted_test

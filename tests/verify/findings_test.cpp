@@ -14,7 +14,7 @@
 #include "verify/oracles/known_shapes.h"
 #include "verify/oracles/random_scene.h"
 
-namespace oktett {
+namespace oktett::findings_test {
 namespace {
 
 using test::TempDir;
@@ -168,4 +168,4 @@ TEST(Findings, KernelsGiveScenes) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::findings_test

@@ -10,7 +10,7 @@
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/known_shapes.h"
 
-namespace oktett {
+namespace oktett::root_finders_test {
 namespace {
 
 std::size_t kind_named(const std::string& name) {
@@ -65,4 +65,4 @@ TEST(RootFinders, AgreeOnRandomShapes) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::root_finders_test

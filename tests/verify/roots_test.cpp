@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace oktett {
+namespace oktett::roots_test {
 namespace {
 
 TEST(KnownRoots, AreFound) {
@@ -19,4 +19,4 @@ TEST(KnownRoots, AreFound) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::roots_test

@@ -8,7 +8,7 @@
 #include "verify/oracles/known_shapes.h"
 #include "verify/oracles/random_scene.h"
 
-namespace oktett {
+namespace oktett::scenes_test {
 namespace {
 
 TEST(Scenes, RandomScenesAreRight) {
@@ -139,4 +139,4 @@ TEST(Endless, CoversEverything) {
 }
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::scenes_test

@@ -13,7 +13,7 @@
 #include "render/geometry.h"
 #include "verify/oracles/known_shapes.h"
 
-namespace oktett {
+namespace oktett::uv_test {
 namespace {
 
 /// The distance of neighbouring rays.
@@ -102,4 +102,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, UvOfKind, testing::Range(std::size_t{0}, known_
                          [](const auto& shape) { return known_kinds()[shape.param]; });
 
 }  // namespace
-}  // namespace oktett
+}  // namespace oktett::uv_test
