@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kHorizontal = 40;  // degrees of view
 constexpr std::uint32_t kDepth = 5;
+constexpr std::uint32_t kLong = 1024;  ///< samples of a run that others are compared with
 
 std::string text_of(const Vec3d& p) { return fmt::format("<{}, {}, {}>", p.x, p.y, p.z); }
 
@@ -146,12 +147,16 @@ PictureScene lens(std::uint32_t width, std::uint32_t height) {
   Scene& scene = p.scene;
   const std::string things = "light_source { <-20, 40, -20> rgb 1 }\n" + add_field(scene, 11);
   p.pov = [head = scene, things](std::uint32_t samples) {
-    // Variance 0 takes all samples.
-    return pov_head(head, fmt::format("aperture 0.4 focal_point {} blur_samples {} variance 0",
-                                      text_of(head.camera.at), samples)) +
+    // Variance 0 takes all samples. Else POV-Ray ends a pixel early where its samples are alike, which takes
+    // a third of the time at the same noise; of the settings tried, this one is the fastest.
+    const std::string how = samples == kLong ? fmt::format("{} variance 0", samples)
+                                             : fmt::format("4, {} variance 1/4000 confidence 0.8", samples);
+    return pov_head(head, fmt::format("aperture 0.4 focal_point {} blur_samples {}", text_of(head.camera.at),
+                                      how)) +
            things;
   };
-  p.samples = 16, p.pov_samples = 16, p.long_samples = 1024, p.pov_long_samples = 1024;
+  // At about the same noise.
+  p.samples = 64, p.pov_samples = 128, p.long_samples = p.pov_long_samples = kLong;
   return p;
 }
 
@@ -182,7 +187,7 @@ PictureScene lamp(std::uint32_t width, std::uint32_t height) {
            things;
   };
   // At about the same noise.
-  p.samples = 16, p.pov_samples = 25, p.long_samples = 1024, p.pov_long_samples = 1024;
+  p.samples = 16, p.pov_samples = 25, p.long_samples = p.pov_long_samples = kLong;
   return p;
 }
 

@@ -8,12 +8,12 @@
 #include <bit>
 #include <cmath>
 
-#include "accel/build/chunks.h"
 #include "accel/build/collapse.h"
 #include "accel/build/morton.h"
 #include "accel/build/node_supply.h"
 #include "accel/build/spatial.h"
 #include "accel/build/wide_tree.h"
+#include "core/chunks.h"
 #include "core/phase.h"
 
 namespace oktett {

@@ -1,5 +1,5 @@
 #include "accel/build/mesh_source.h"
-#include "accel/build/chunks.h"
+#include "core/chunks.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,17 +1,15 @@
 #include "accel/traverse/trace_counts.h"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
 #include <vector>
 
 #include "accel/traverse/all_hits.h"
+#include "core/chunks.h"
 
 namespace oktett {
 namespace {
 
 /// Rays counted by one task.
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kRaysTogether = 1024;
 
 /// Counts the steps of trace_single().
 struct CountSteps {
@@ -45,10 +43,10 @@ void add(TraceCounts& sum, const TraceCounts& c) {
 }  // namespace
 
 TraceCounts trace_counts(const Accel& accel, const RaySpan& rays) {
-  std::vector<TraceCounts> parts((rays.size + kChunk - 1) / kChunk);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t c) {
-    const std::size_t end = std::min((c + 1) * kChunk, rays.size);
-    for (std::size_t i = c * kChunk; i < end; ++i) count_ray(accel, rays[i], parts[c]);
+  const Chunks chunks(rays.size, kRaysTogether);
+  std::vector<TraceCounts> parts(chunks.count);
+  chunks.each(true, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) count_ray(accel, rays[i], parts[c]);
   });
   TraceCounts sum;
   for (const TraceCounts& c : parts) add(sum, c);

@@ -1,11 +1,10 @@
 #include "io/gltf/accessor.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstring>
 
+#include "core/parallel.h"
 #include "io/mesh/numbers.h"
 
 namespace oktett {
@@ -17,14 +16,6 @@ constexpr std::uint64_t kPerTask = std::uint64_t{1} << 16;
 constexpr std::uint64_t kMostZeros = std::uint64_t{1} << 20;
 
 static_assert(sizeof(Vec3f) == 12 && sizeof(Vec2f) == 8);
-
-/// Calls f(first, last) for parts of [0, count) at the same time.
-template <class F>
-void for_each_part(std::uint64_t count, const F& f) {
-  const std::uint64_t tasks = (count + kPerTask - 1) / kPerTask;
-  oneapi::tbb::parallel_for(std::uint64_t{0}, tasks,
-                            [&](std::uint64_t i) { f(i * kPerTask, std::min(count, (i + 1) * kPerTask)); });
-}
 
 template <class T>
 T load(const char* p) {
@@ -117,7 +108,7 @@ void read_all(const GltfFile& file, const GltfElements& e, GltfCheck check, floa
   if (e.number == GltfNumber::uint32) fail(file, e, "expected numbers of another type than 32-bit integers");
   std::atomic<bool> good = true;
   const float most = check == GltfCheck::coordinate ? kMostCoordinate : std::numeric_limits<float>::max();
-  for_each_part(e.count, [&](std::uint64_t first, std::uint64_t last) {
+  in_parts(e.count, kPerTask, [&](std::uint64_t first, std::uint64_t last) {
     read_part<kSize>(e, first, last, out);
     bool all = true;
     for (std::uint64_t i = kSize * first; i < kSize * last; ++i) all &= std::abs(out[i]) <= most;
@@ -205,7 +196,7 @@ void read_gltf_vectors(const GltfFile& file, const GltfElements& e, GltfCheck ch
 
 void read_gltf_uvs(const GltfFile& file, const GltfElements& e, Vec2f* out) {
   read_all<2>(file, e, GltfCheck::finite, reinterpret_cast<float*>(out));
-  for_each_part(e.count, [&](std::uint64_t first, std::uint64_t last) {
+  in_parts(e.count, kPerTask, [&](std::uint64_t first, std::uint64_t last) {
     for (std::uint64_t i = first; i < last; ++i) out[i].y = 1 - out[i].y;
   });
 }
@@ -215,7 +206,7 @@ void read_gltf_indices(const GltfFile& file, const GltfElements& e, std::uint64_
       e.number == GltfNumber::uint8 || e.number == GltfNumber::uint16 || e.number == GltfNumber::uint32;
   if (!is_whole || e.components != 1) fail(file, e, "expected whole numbers, the indices of vertices");
   std::atomic<bool> good = true;
-  for_each_part(e.count, [&](std::uint64_t first, std::uint64_t last) {
+  in_parts(e.count, kPerTask, [&](std::uint64_t first, std::uint64_t last) {
     if (e.data == nullptr)
       std::fill(out + first, out + last, 0u);
     else if (e.number == GltfNumber::uint32 && e.stride == 4)

@@ -1,13 +1,12 @@
 #include "io/gltf/mesh.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 #include <deque>
 #include <map>
 #include <utility>
 
+#include "core/parallel.h"
 #include "io/gltf/draco.h"
 #include "io/mesh/failure.h"
 
@@ -44,14 +43,6 @@ GltfElements elements_of(const std::string& name, const void* data, std::uint64_
   e.name = name, e.data = static_cast<const char*>(data), e.count = count;
   e.components = components, e.number = number, e.stride = bytes_of(number) * components;
   return e;
-}
-
-/// Calls f(first, last) for parts of [0, count) at the same time.
-template <class F>
-void for_each_part(std::uint64_t count, const F& f) {
-  constexpr std::uint64_t kStep = std::uint64_t{1} << 17;
-  oneapi::tbb::parallel_for(std::uint64_t{0}, (count + kStep - 1) / kStep,
-                            [&](std::uint64_t i) { f(i * kStep, std::min(count, (i + 1) * kStep)); });
 }
 
 /// The building of one mesh.
@@ -308,7 +299,7 @@ class Build {
     const std::uint32_t* const in = from.data() + 3 * part.first_triangle;
     std::uint32_t* const out = to.data() + 3 * part.first_triangle;
     const bool has = part.has[role];
-    for_each_part(3 * part.triangles, [&](std::uint64_t first, std::uint64_t last) {
+    in_parts(3 * part.triangles, std::size_t{1} << 17, [&](std::uint64_t first, std::uint64_t last) {
       for (std::uint64_t i = first; i < last; ++i) out[i] = has ? in[i] + base : kNoId;
     });
   }

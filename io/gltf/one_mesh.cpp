@@ -1,10 +1,9 @@
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/gltf/gltf.h"
 #include "io/mesh/failure.h"
 #include "io/mesh/numbers.h"
@@ -41,8 +40,8 @@ Sizes placed(const GltfScene& scene) {
 /// Calls f(i) for all i below `count` at the same time.
 template <class F>
 void for_all(std::size_t count, const F& f) {
-  oneapi::tbb::parallel_for(std::size_t{0}, (count + 65535) / 65536, [&](std::size_t task) {
-    for (std::size_t i = task * 65536; i < std::min(count, (task + 1) * 65536); ++i) f(i);
+  in_parts(count, std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) f(i);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <string>
 
+#include "core/parallel.h"
 #include "io/mesh/numbers.h"
 #include "io/ply/body.h"
 #include "io/ply/values.h"
@@ -127,18 +128,15 @@ class BinaryBody final : public PlyBody {
   /// Whether all records, of `size` bytes, have the lengths of lists of the first one.
   bool have_equal_lengths(const PlyElement& element, std::size_t size,
                           const std::vector<const char*>& starts) const {
-    constexpr std::uint64_t kBlock = std::uint64_t{1} << 16;
     std::atomic<bool> equal{true};
-    oneapi::tbb::parallel_for(std::uint64_t{0}, (element.count + kBlock - 1) / kBlock, [&](std::uint64_t b) {
-      const std::uint64_t last = std::min(element.count, (b + 1) * kBlock);
+    in_parts(element.count, std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = 0; i < starts.size() && equal; ++i) {
         if (!element.properties[i].is_list) continue;
         const char* const first = starts[i];
         with_type(element.properties[i].length_type, swap_, [&]<class T, bool kSwap>() {
           const T wanted = load_value<T, kSwap>(first);
           bool same = true;
-          for (std::uint64_t r = b * kBlock; r < last; ++r)
-            same &= load_value<T, kSwap>(first + r * size) == wanted;
+          for (std::size_t r = begin; r < end; ++r) same &= load_value<T, kSwap>(first + r * size) == wanted;
           if (!same) equal = false;
         });
       }

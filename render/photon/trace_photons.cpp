@@ -1,12 +1,11 @@
 #include "render/photon/trace_photons.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "accel/accel.h"
+#include "core/chunks.h"
 #include "render/light/emitter.h"
 #include "render/photon/photon_choices.h"
 #include "render/photon/photon_media.h"
@@ -23,7 +22,7 @@ PhotonEnergy& PhotonEnergy::operator+=(const PhotonEnergy& other) {
 namespace {
 
 /// Photons that are traced together.
-constexpr std::uint32_t kChunk = 4096;
+constexpr std::uint32_t kPhotonsTogether = 4096;
 /// Holes that a photon may pass, in addition to its bounces.
 constexpr unsigned kMostHoles = 128;
 /// Bounces before Russian roulette begins.
@@ -250,10 +249,10 @@ TracedPhotons trace_photons(const RenderContext& context, const PhotonSource& so
                             std::uint32_t pass) {
   TracedPhotons all;
   if (source.empty()) return all;
-  const std::uint32_t chunks = (plan.photons + kChunk - 1) / kChunk;
-  std::vector<PhotonChunk> parts(chunks, PhotonChunk(context, source, plan, pass));
-  tbb::parallel_for(std::uint32_t{0}, chunks, [&](std::uint32_t c) {
-    parts[c].trace(c * kChunk, std::min(plan.photons, (c + 1) * kChunk));
+  const Chunks chunks(plan.photons, kPhotonsTogether);
+  std::vector<PhotonChunk> parts(chunks.count, PhotonChunk(context, source, plan, pass));
+  chunks.each(true, [&](std::size_t c, std::size_t begin, std::size_t end) {
+    parts[c].trace(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
   });
   for (const PhotonChunk& part : parts) part.append_to(all);
   return all;

@@ -1,13 +1,13 @@
 #include "verify/checks/kernels.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 
+#include "core/chunks.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/oracles/closed.h"
 
@@ -154,12 +154,10 @@ KernelTally verify_chunk(KernelId id, CaseClass c, std::uint64_t first, std::siz
 
 KernelTally verify_kernel(KernelId id, CaseClass c, std::uint64_t rays, const std::vector<Isa>& isas,
                           std::uint64_t first_pair) {
-  const std::size_t chunks = static_cast<std::size_t>((rays + kPairsTogether - 1) / kPairsTogether);
-  std::vector<KernelTally> parts(chunks);
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
-    const std::uint64_t first = k * kPairsTogether;
-    parts[k] =
-        verify_chunk(id, c, first_pair + first, std::min<std::uint64_t>(kPairsTogether, rays - first), isas);
+  const Chunks chunks(rays, kPairsTogether);
+  std::vector<KernelTally> parts(chunks.count);
+  chunks.each(true, [&](std::size_t k, std::size_t begin, std::size_t end) {
+    parts[k] = verify_chunk(id, c, first_pair + begin, end - begin, isas);
   });
   KernelTally total;
   for (const KernelTally& part : parts) total.add(part);

@@ -1,12 +1,12 @@
 #include "verify/checks/meshes.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "accel/accel.h"
+#include "core/chunks.h"
 #include "core/random.h"
 #include "verify/checks/compare_mode.h"
 
@@ -183,12 +183,10 @@ MeshTally verify_mesh(const OracleMesh& mesh, const MeshPlacement& placement, st
       subject.viewpoints.push_back(
           {Vec3f(Vec3d(bounds_box.center()) + Vec3d(bounds_box.extent()) * random.vector() * 1.2), 0});
   if (subject.viewpoints.empty()) return total;
-  const std::size_t chunks = static_cast<std::size_t>((rays + kRaysTogether - 1) / kRaysTogether);
-  std::vector<MeshTally> parts(chunks);
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t k) {
-    const std::uint64_t first = k * kRaysTogether;
-    parts[k] = ChunkCheck(subject, first_ray + first)
-                   .run(std::min<std::uint64_t>(kRaysTogether, rays - first), isas, key);
+  const Chunks chunks(rays, kRaysTogether);
+  std::vector<MeshTally> parts(chunks.count);
+  chunks.each(true, [&](std::size_t k, std::size_t begin, std::size_t end) {
+    parts[k] = ChunkCheck(subject, first_ray + begin).run(end - begin, isas, key);
   });
   for (const MeshTally& part : parts) total.add(part);
   return total;
