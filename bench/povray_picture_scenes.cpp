@@ -178,7 +178,7 @@ PictureScene lamp(std::uint32_t width, std::uint32_t height) {
     const auto side = static_cast<int>(std::lround(std::sqrt(samples)));
     // POV-Ray is several times as fast at the same noise if it takes the corners first. The long run is
     // exact.
-    const char* const adaptive = samples > 100 ? "" : "adaptive 0 ";
+    const char* const adaptive = samples == kLong ? "" : "adaptive 0 ";
     return pov_head(head) +
            fmt::format(
                "light_source {{ <0, {}, 0> rgb 1 area_light <{}, 0, 0>, <0, 0, {}>, {}, {} {}jitter "

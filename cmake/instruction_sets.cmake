@@ -77,7 +77,7 @@ function(oktett_compile_set target set sources tag)
   target_compile_options(${code} PRIVATE
     -ffp-contract=off ${OKTETT_PIC_OPTIONS} ${optimization} -falign-functions=64 -g0 ${warnings} ${ARGN})
   oktett_target_warnings(${code})
-  oktett_precompile(${code} <xsimd/xsimd.hpp>)
+  oktett_precompile(${code})
   target_link_libraries(${code} PRIVATE oktett_internal)
   set_target_properties(${code} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:${code}>)

@@ -1,8 +1,9 @@
 #include "accel/build/mesh_source.h"
-#include "core/chunks.h"
 
 #include <algorithm>
 #include <bit>
+
+#include "core/chunks.h"
 
 namespace oktett {
 namespace {

@@ -1,9 +1,10 @@
 #include "accel/build/morton.h"
-#include "core/chunks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "core/chunks.h"
 
 namespace oktett {
 namespace {

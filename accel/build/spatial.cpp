@@ -1,8 +1,9 @@
 #include "accel/build/spatial.h"
-#include "core/chunks.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "core/chunks.h"
 
 namespace oktett {
 namespace {
