@@ -197,9 +197,10 @@ class WorldBuilder {
   void add_materials() {
     world_.materials = scene_.materials;
     world_.materials.emplace_back();
-    for (const Material& m : scene_.materials)
-      if (m.transparency != 0 || m.opacity != 1 || m.opacity_texture != kNoId || !m.surface)
-        world_.see_through = true;
+    for (const Material& m : scene_.materials) {
+      world_.has_holes |= m.opacity != 1 || m.opacity_texture != kNoId || !m.surface;
+      world_.has_clear |= m.transparency != 0;
+    }
   }
 
   static bool needs_enclosures(const Scene& scene) {

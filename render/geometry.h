@@ -45,7 +45,8 @@ struct World {
   Box bounds;                         ///< of all that is bounded
   bool tracks_enclosures = false;     ///< paths must know which solids they are in
   bool has_enclosing_solids = false;  ///< there are any that they must know of
-  bool see_through = false;  ///< some material lets light pass, so shadow rays must look at what they hit
+  bool has_holes = false;             ///< some material is not opaque everywhere, or is no surface at all
+  bool has_clear = false;             ///< some material is transparent
 
   std::uint64_t triangles = 0, primitives = 0;  ///< unique, instances not counted
   std::uint64_t geometry_bytes = 0, bvh_bytes = 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "core/ray.h"
 #include "core/soa.h"
@@ -88,13 +89,23 @@ struct PathColumns {
   }
 };
 
+/// Working memory for shadow rays that may pass surfaces.
+struct PassingRays {
+  std::vector<Color> passed;        ///< the part of the light that has passed, of each ray of the queue
+  std::vector<std::uint32_t> left;  ///< rays of the queue that are still followed
+  std::vector<std::uint32_t> kept;  ///< entries of `left` that the surface they met lets through
+  RayBatch rays, behind;            ///< those of `left`, and their parts behind the surfaces they met
+  HitBatch hits;                    ///< of `left`
+};
+
 /// Shadow rays. Each adds `light` to the radiance of its owner, an entry of a RayQueue, if nothing blocks it.
 struct ShadowQueue {
   RayBatch rays;
   Column<std::uint32_t> owner;
   ColorColumn light;
-  Column<std::uint8_t> occluded;      ///< written by trace_shadows
+  Column<std::uint8_t> occluded;      ///< written by find_arriving if nothing lets light pass
   Column<EnclosureStack> enclosures;  ///< the solids at the origins; empty unless the scene tracks them
+  PassingRays passing;
 
   std::size_t size() const { return owner.size(); }
 

@@ -1,7 +1,8 @@
 #include "render/transport/shadow.h"
 
+#include <algorithm>
+#include <numeric>
 #include <span>
-#include <vector>
 
 #include "accel/accel.h"
 #include "render/shading_point.h"
@@ -21,43 +22,37 @@ Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
   return rest;
 }
 
-/// Follows the rays numbered in `left` through transparent surfaces; `passed` holds the fraction of light for
-/// each ray.
-static void follow_through(const RenderContext& context, const ShadowQueue& queue, ShadowRule rule,
-                           std::vector<std::uint32_t> left, std::vector<Color>& passed) {
-  const Accel& accel = *context.world->accel;
-  RayBatch rays, rest;
-  for (const std::uint32_t i : left) rays.push_back(queue.rays[i]);
-  HitBatch hits;
-  std::vector<std::uint32_t> kept;  // of `left`
-  InteractionBlock behind;
-  for (int layer = 0; layer < kMostShadowLayers && !left.empty(); ++layer) {
-    hits.resize_uninitialized(rays.size());
-    closest_hit(accel, rays.span(), hits.span(), context.isa);
-    kept.clear();
-    for (std::uint32_t k = 0; k < left.size(); ++k) {
-      const Hit hit = hits[k];
-      if (!hit.valid()) continue;
-      Color& light = passed[left[k]];
-      // Most materials are opaque, and the names are enough to find the material.
-      const SurfaceInteraction names = identify(accel, hit);
-      const bool opaque = is_opaque(material_at(*context.world, names), rule);
-      light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names, rule);
-      if (!is_black(light)) kept.push_back(k);
-    }
-    rest.resize_uninitialized(0);
-    for (std::size_t first = 0; first < kept.size(); first += InteractionBlock::kMost) {
-      const std::size_t count = std::min(InteractionBlock::kMost, kept.size() - first);
-      surface_interactions(accel, rays, hits, std::span(kept).subspan(first, count), behind, context.isa);
-      for (std::size_t k = 0; k < count; ++k) {
-        rest.push_back(continue_behind(rays[kept[first + k]], behind[k]));
-        left[first + k] = left[kept[first + k]];
-      }
-    }
-    left.resize(kept.size());
-    std::swap(rays, rest);
+/// Looks at what the rays of `p.left` have met: how much light passes there, and which rays go on behind it.
+static void look_at_surfaces(const RenderContext& context, const RaySpan& rays, ShadowRule rule,
+                             PassingRays& p) {
+  p.kept.clear();
+  for (std::uint32_t k = 0; k < p.left.size(); ++k) {
+    const Hit hit = p.hits[k];
+    if (!hit.valid()) continue;
+    Color& light = p.passed[p.left[k]];
+    // Most materials are opaque, and the names are enough to find the material.
+    const SurfaceInteraction names = identify(*context.world->accel, hit);
+    const bool opaque = is_opaque(material_at(*context.world, names), rule);
+    light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names, rule);
+    if (!is_black(light)) p.kept.push_back(k);
   }
-  for (const std::uint32_t i : left) passed[i] = {0, 0, 0};
+}
+
+/// Sets `p.behind` to the parts of the rays of `p.kept` behind what they have met, and `p.left` to their
+/// numbers.
+static void go_behind_surfaces(const RenderContext& context, const RaySpan& rays, PassingRays& p) {
+  InteractionBlock surfaces;
+  p.behind.resize_uninitialized(p.kept.size());
+  for (std::size_t first = 0; first < p.kept.size(); first += InteractionBlock::kMost) {
+    const std::size_t count = std::min(InteractionBlock::kMost, p.kept.size() - first);
+    surface_interactions(*context.world->accel, rays, p.hits, std::span(p.kept).subspan(first, count),
+                         surfaces, context.isa);
+    for (std::size_t k = first; k < first + count; ++k) {
+      p.behind.set(k, continue_behind(rays[p.kept[k]], surfaces[k - first]));
+      p.left[k] = p.left[p.kept[k]];
+    }
+  }
+  p.left.resize(p.kept.size());
 }
 
 void add_arriving(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue,
@@ -66,21 +61,33 @@ void add_arriving(const RenderContext& context, Wavefront& wavefront, const Shad
   if (context.light_groups != nullptr) add_shadow_to_layers(context, wavefront, queue, entry, light);
 }
 
-/// Multiplies the light of the blocked rays by what the surfaces in their way leave of it.
+/// Multiplies the light of each ray by what the surfaces in its way leave of it.
 static void pass_surfaces(const RenderContext& context, ShadowQueue& queue, ShadowRule rule) {
-  std::vector<Color> passed(queue.size(), {1, 1, 1});
-  std::vector<std::uint32_t> left;
-  for (std::uint32_t i = 0; i < queue.size(); ++i)
-    if (queue.occluded[i]) left.push_back(i);
-  follow_through(context, queue, rule, left, passed);
-  for (const std::uint32_t i : left)
-    queue.light.set(i, is_black(passed[i]) ? Color{0, 0, 0} : queue.light[i] * passed[i]);
+  PassingRays& p = queue.passing;
+  p.passed.assign(queue.size(), {1, 1, 1});
+  p.left.resize(queue.size());
+  std::iota(p.left.begin(), p.left.end(), 0u);
+  RaySpan rays = queue.rays;
+  for (int layer = 0; layer < kMostShadowLayers && !p.left.empty(); ++layer) {
+    p.hits.resize_uninitialized(p.left.size());
+    closest_hit(*context.world->accel, rays, p.hits.span(), context.isa);
+    look_at_surfaces(context, rays, rule, p);
+    go_behind_surfaces(context, rays, p);
+    std::swap(p.rays, p.behind);
+    rays = p.rays;
+  }
+  for (const std::uint32_t i : p.left) p.passed[i] = {0, 0, 0};
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    queue.light.set(i, is_black(p.passed[i]) ? Color{0, 0, 0} : queue.light[i] * p.passed[i]);
 }
 
 void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule rule) {
+  const World& world = *context.world;
+  // Where light may pass, the nearest surface is looked for at once: most blocked rays need to know it.
+  if (world.has_holes || (world.has_clear && rule == ShadowRule::transparent_passes))
+    return pass_surfaces(context, queue, rule);
   queue.occluded.resize_uninitialized(queue.size());
-  any_hit(*context.world->accel, queue.rays, queue.occluded, context.isa);
-  if (context.world->see_through) return pass_surfaces(context, queue, rule);
+  any_hit(*world.accel, queue.rays, queue.occluded, context.isa);
   for (std::size_t i = 0; i < queue.size(); ++i)
     if (queue.occluded[i]) queue.light.set(i, {0, 0, 0});
 }

@@ -83,7 +83,23 @@ TEST(Geometry, CountsWhatIsUnique) {
   EXPECT_EQ(world.meshes.size(), 1u);
   EXPECT_GT(world.geometry_bytes, 0u);
   EXPECT_GT(world.bvh_bytes, 0u);
-  EXPECT_FALSE(world.see_through);
+}
+
+TEST(Geometry, KnowsWhetherMaterialsLetLightPass) {
+  const auto world = [](auto&& change) {
+    Scene scene = bare_scene();
+    Material m;
+    change(m);
+    add_material(scene, m);
+    return build_world(scene);
+  };
+  const World opaque = world([](Material&) {}), clear = world([](Material&m) { m.transparency = 0.5f; });
+  EXPECT_FALSE(opaque.has_holes || opaque.has_clear);
+  EXPECT_TRUE(clear.has_clear);
+  EXPECT_FALSE(clear.has_holes);
+  EXPECT_TRUE(world([](Material& m) { m.opacity = 0.5f; }).has_holes);
+  EXPECT_TRUE(world([](Material& m) { m.opacity_texture = 0; }).has_holes);
+  EXPECT_TRUE(world([](Material& m) { m.surface = false; }).has_holes);
 }
 
 TEST(Geometry, ReferencesThatLeadNowhereAreLeftOut) {
