@@ -166,11 +166,15 @@ SurfaceInteraction identify(const Accel& accel, const Hit& hit);
 Affine object_transform(const Accel& accel, const Hit& hit);
 
 /// out[k] becomes the surface interaction of ray and hit number which[k], for at most InteractionBlock::kMost
-/// of them: the bits that surface_interaction gives, except that uv and tangents are left out. Throws Error
-/// if there are more.
+/// of them: the bits that surface_interaction gives, except that uv and tangents are left out. Throws
+/// Error if there are more.
 void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
                           std::span<const std::uint32_t> which, InteractionBlock& out,
                           Isa isa = default_isa());
+
+/// The same, with uv if `with_uv`.
+void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
+                          std::span<const std::uint32_t> which, InteractionBlock& out, Isa isa, bool with_uv);
 
 /// An origin for rays that leave `s` towards `direction`: moved off the surface by the error bound of the
 /// position, so that the ray neither meets the same surface again at its start nor begins behind it (Pharr,

@@ -45,7 +45,7 @@ struct ExactCode {
   unsigned (*outside)(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays, unsigned lanes);
   /// Interactions of hits of one element, as ExactOps::interaction_without_uv makes them. False if there is
   /// no code for that in lanes.
-  bool (*interactions)(const ExactPoolBase& pool, const ShapeHits& hits);
+  bool (*interactions)(const ExactPoolBase& pool, ShapeHits& hits);
 };
 
 /// The functions of ExactCode for the surface S, defined in accel/isa/exact_code.h.
@@ -65,7 +65,7 @@ struct ExactSurfaceCode {
                      BeamLanes& lanes);
   static unsigned outside(const ExactPoolBase& pool, std::uint32_t cell, const RayLanes<F>& rays,
                           unsigned lanes);
-  static bool interactions(const ExactPoolBase& pool, const ShapeHits& hits);
+  static bool interactions(const ExactPoolBase& pool, ShapeHits& hits);
 };
 
 /// The functions of each exact kind.

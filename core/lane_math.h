@@ -68,7 +68,14 @@ OKTETT_INLINE D atan_unit(D x) {
   return D(4.0) * x * polynomial_lanes(kSeries, x * x);
 }
 
-/// portable::atan2 in lanes, with the same bits, for finite numbers that are not both 0.
+/// Lanes whose sign bit is set.
+template <class D>
+OKTETT_INLINE typename D::M is_negative(const D& x) {
+  const D zero(0.0);
+  return (x < zero) | ((x == zero) & (D(1.0) / x < zero));
+}
+
+/// portable::atan2 in lanes, with the same bits, for finite numbers.
 template <int W, class A>
 OKTETT_INLINE Simd<double, W, A> atan2_lanes(const Simd<double, W, A>& y, const Simd<double, W, A>& x) {
   using D = Simd<double, W, A>;
@@ -77,8 +84,14 @@ OKTETT_INLINE Simd<double, W, A> atan2_lanes(const Simd<double, W, A>& y, const 
   const D unit = atan_unit(select(flat, ay, ax) / select(flat, ax, ay));
   D angle = select(flat, unit, half_pi - unit);
   angle = select(ax == ay, half_pi * D(0.5), angle);
-  angle = select(x < zero, D(std::numbers::pi) - angle, angle);
-  return select(y < zero, -angle, angle);
+  auto left = x < zero, below = y < zero;
+  const auto at_zero = (x == zero) | (y == zero);
+  if (any(at_zero)) {
+    angle = select((x == zero) & (y == zero), zero, angle);
+    left = is_negative(x), below = is_negative(y);
+  }
+  angle = select(left, D(std::numbers::pi) - angle, angle);
+  return select(below, -angle, angle);
 }
 
 /// make_basis in lanes. At n.z = -0 the sign is 1.

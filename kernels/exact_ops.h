@@ -32,6 +32,9 @@ struct ExactOps {
   /// The same; uv and tangents may be missing.
   void (*interaction_without_uv)(const ExactPoolBase& pool, std::size_t element, const Ray& ray,
                                  const Hit& hit, SurfaceInteraction& s);
+  /// Texture coordinates at `own`, a point on the surface in the element's own space, as `interaction` has
+  /// them; null if the surface has none. `part` is Hit::u.
+  Vec2f (*uv)(const ExactPoolBase& pool, std::size_t element, int part, const Vec3d& own);
   std::size_t (*bytes)(const ExactPoolBase& pool);
   /// The point of the surface nearest to p. `to_world` takes the element's own space to that of p; is_kept_by
   /// must be true for it. Null if the surface does not tell.

@@ -33,6 +33,10 @@ struct ExactOpsCode {
     else
       s = exact_interaction<S, kWithUv>(cast(pool), element, ray, hit);
   }
+  static Vec2f uv(const ExactPoolBase& pool, std::size_t element, int part, const Vec3d& own) {
+    const SurfaceUv at = S::uv(cast(pool), element, part, own);
+    return {static_cast<float>(at.u.value), static_cast<float>(at.v.value)};
+  }
   static std::size_t bytes(const ExactPoolBase& pool) { return cast(pool).bytes(); }
   static SurfaceNearest closest(const ExactPoolBase& pool, std::size_t element, const Affine& to_world,
                                 const Vec3d& p) {
@@ -53,9 +57,11 @@ constexpr ExactOps make_exact_ops(const char* name) {
                Code::inside,
                Code::template interaction<true>,
                Code::template interaction<false>,
+               nullptr,
                Code::bytes,
                nullptr,
                nullptr};
+  if constexpr (requires(const typename Code::Pool& pool) { S::uv(pool, 0, 0, Vec3d{}); }) ops.uv = Code::uv;
   if constexpr (requires { &S::closest; }) ops.closest = Code::closest, ops.is_kept_by = S::is_kept_by;
   return ops;
 }

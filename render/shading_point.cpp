@@ -175,9 +175,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   ShadingPoint p;
   p.material = &material_at(*context.world, found);
   const bool textured_here = has_textures(*p.material);
-  const bool uv_shown =
-      (context.data_layers && history.from_camera) || context.settings.kind == IntegratorKind::uv;
-  p.surface = textured_here || uv_shown ? surface_interaction(*context.world->accel, ray, hit) : found;
+  p.surface = textured_here ? surface_interaction(*context.world->accel, ray, hit) : found;
   p.direction = ray.direction;
   p.t = hit.t;
   const Material& m = *p.material;
@@ -211,9 +209,7 @@ ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const H
     const ShadingPoint p = shading_point(context, ray, hit, history, found);
     return {p.surface, p.color, p.opacity};
   }
-  const bool uv_shown = context.data_layers && history.from_camera;
-  return {uv_shown ? surface_interaction(*context.world->accel, ray, hit) : found, m.color,
-          opacity_at(context, m, {})};
+  return {found, m.color, opacity_at(context, m, {})};
 }
 
 bool is_opaque(const Material& m, ShadowRule rule) {

@@ -33,8 +33,8 @@ struct ShadingPoint {
   std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
 };
 
-/// `ray` has unit direction, and `hit` is its valid hit, with the surface interaction `s`. uv and tangent of
-/// `s` may be missing; they are computed if textures or the picture's data layers need them.
+/// `ray` has unit direction, and `hit` is its valid hit, with the surface interaction `s`. Its tangents
+/// may be missing, and its uv unless the picture shows it; both are computed if textures need them.
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);
 

@@ -224,7 +224,7 @@ unsigned ExactSurfaceCode<S, A>::outside(const ExactPoolBase& base, std::uint32_
 }
 
 template <class S, class A>
-bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, const ShapeHits& hits) {
+bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, ShapeHits& hits) {
   using D = SurfaceLanes<A>;
   if constexpr (HasSlope<S, D>) {
     using Floats = Simd<float, D::kWidth, A>;
@@ -238,6 +238,7 @@ bool ExactSurfaceCode<S, A>::interactions(const ExactPoolBase& base, const Shape
       const SurfacePoints<D> at =
           exact_surface_points<S>(pool, element, to_double(ray.load(hits.part)), hit, own);
       store_surface(hit, at, PickedLanes<Floats>(hits.entry + i), *hits.out);
+      if (hits.with_uv) store_points(own, i, hits);
     }
     return true;
   }

@@ -6,7 +6,7 @@
 namespace oktett {
 
 template <class A>
-bool exact_interactions_code(Kind kind, const ExactPoolBase& pool, const ShapeHits& hits) {
+bool exact_interactions_code(Kind kind, const ExactPoolBase& pool, ShapeHits& hits) {
   return exact_code<A>(kind).interactions(pool, hits);
 }
 

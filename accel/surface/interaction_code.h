@@ -12,9 +12,9 @@ struct InteractionCode {
   /// Hits of one mesh.
   void (*mesh)(const MeshHits&);
   /// Hits of one closed-form kind.
-  void (*closed_form)(const Accel&, Kind, const ShapeHits&);
+  void (*closed_form)(const Accel&, Kind, ShapeHits&);
   /// Hits of one element of an exact surface; false if the kind has no code for lanes.
-  bool (*exact)(Kind, const ExactPoolBase&, const ShapeHits&);
+  bool (*exact)(Kind, const ExactPoolBase&, ShapeHits&);
 };
 
 template <class A>

@@ -35,6 +35,12 @@ inline void corner_normals(const TriangleMesh& mesh, std::uint32_t triangle, Vec
   for (int k = 0; k < 3; ++k) normals[k] = known ? mesh.normals[index[k]] : Vec3f{};
 }
 
+/// Texture coordinates where a triangle is hit at (u, v), from those of its corners.
+inline Vec2f weighted_uv(const std::array<Vec2f, 3>& uv, float u, float v) {
+  const float w = 1 - u - v;
+  return {uv[0].x * w + uv[1].x * u + uv[2].x * v, uv[0].y * w + uv[1].y * u + uv[2].y * v};
+}
+
 /// Surfaces of mesh hits in lanes; the members are those of SurfaceInteraction.
 template <class F>
 struct MeshSurface {

@@ -12,8 +12,7 @@ namespace {
 void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, const Vec3f (&p)[3],
              SurfaceInteraction& s) {
   const std::array<Vec2f, 3> uv = corner_uvs(mesh, triangle);
-  const float w = 1 - u - v;
-  s.uv = {uv[0].x * w + uv[1].x * u + uv[2].x * v, uv[0].y * w + uv[1].y * u + uv[2].y * v};
+  s.uv = weighted_uv(uv, u, v);
   const float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y, du2 = uv[2].x - uv[0].x,
               dv2 = uv[2].y - uv[0].y;
   const float det = du1 * dv2 - du2 * dv1;

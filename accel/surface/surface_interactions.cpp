@@ -9,6 +9,7 @@
 #include "accel/surface/interaction_code.h"
 #include "accel/surface/mesh_hits.h"
 #include "core/error.h"
+#include "core/lanes.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {
@@ -29,8 +30,10 @@ void set_column(float (&column)[3][kMost], std::size_t i, const Vec3f& v) {
 class SurfaceFinder {
  public:
   SurfaceFinder(const Accel& accel, const RaySpan& rays, const HitSpan& hits, const std::uint32_t* which,
-                const InteractionCode& code, InteractionBlock& out)
-      : accel_(accel), rays_(rays), hits_(hits), which_(which), code_(code), out_(out) {}
+                const InteractionCode& code, bool with_uv, InteractionBlock& out)
+      : accel_(accel), rays_(rays), hits_(hits), which_(which), code_(code), with_uv_(with_uv), out_(out) {
+    out.has_uv = with_uv;
+  }
 
   void find(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) add(i);
@@ -98,6 +101,7 @@ class SurfaceFinder {
       for (int k = 0; k < 3; ++k) set_column(mesh_.corner[k], to, corner_position(mesh, triangle, k));
       mesh_.u[to] = hits_.u[hit], mesh_.v[to] = hits_.v[hit];
       mesh_.entry[to] = static_cast<std::uint32_t>(i);
+      if (with_uv_) out_.set_uv(i, weighted_uv(corner_uvs(mesh, triangle), hits_.u[hit], hits_.v[hit]));
       if (!mesh_.frame.smooth) return;
       Vec3f normals[3];
       corner_normals(mesh, triangle, normals);
@@ -115,25 +119,70 @@ class SurfaceFinder {
       s.direction[k] = moved ? inner_direction_[k] : rays_.direction[k];
     }
     s.t = moved ? inner_t_ : hits_.t, s.part = moved ? inner_part_ : hits_.u;
-    s.count = 0, s.out = &out_;
+    s.count = 0, s.out = &out_, s.with_uv = with_uv_;
     groups.for_each(group, [&](std::uint16_t i) {
       s.ray[s.count] = moved ? i : which_[i];
       s.element[s.count] = groups.element(i), s.entry[s.count++] = i;
     });
     repeat_last(s.ray, s.count), repeat_last(s.element, s.count), repeat_last(s.entry, s.count);
-    if (!is_exact(group.kind)) return code_.closed_form(*group.accel, group.kind, s);
-    const ExactPoolBase& pool = group.accel->exact_pool(group.kind);
-    if (code_.exact(group.kind, pool, s)) return;
-    const ExactOps& ops = exact_ops(group.kind);
-    for (std::size_t k = 0; k < s.count; ++k) {
-      const std::uint32_t i = s.ray[k];
-      const Ray ray{{s.origin[0][i], s.origin[1][i], s.origin[2][i]},
-                    0,
-                    {s.direction[0][i], s.direction[1][i], s.direction[2][i]}};
-      SurfaceInteraction surface;
-      ops.interaction_without_uv(pool, s.element[k], ray, hits_[which_[s.entry[k]]], surface);
-      out_.set_shape(s.entry[k], surface);
+    if (is_exact(group.kind)) return find_exact(group.kind, group.accel->exact_pool(group.kind));
+    code_.closed_form(*group.accel, group.kind, s);
+    if (with_uv_)
+      visit_pool(group.kind, group.accel->pools,
+                 [&](auto shape, const auto& pool) { closed_uvs<decltype(shape)>(pool); });
+  }
+
+  /// uv of `shapes_`, closed forms whose points on the surface are known.
+  template <class S>
+  void closed_uvs(const typename S::Pool& pool) {
+    if constexpr (!kHasUvLanes<S>) {
+      using D = Simd<double, 1, ScalarIsa>;
+      for (std::size_t k = 0; k < shapes_.count; ++k) {
+        const Vec3d hit = only_lane(HitPoints<D>(shape_ray(k), shapes_.t[shapes_.ray[k]]).point());
+        SurfaceInteraction s;
+        s.position = InteractionBlock::get(out_.position, shapes_.entry[k]);
+        S::uv(pool, shapes_.element[k], hit, shape_point(k), s);
+        out_.set_uv(shapes_.entry[k], s.uv);
+      }
     }
+  }
+
+  /// Hits of one element of an exact surface, `shapes_`.
+  void find_exact(Kind kind, const ExactPoolBase& pool) {
+    const ExactOps& ops = exact_ops(kind);
+    if (code_.exact(kind, pool, shapes_)) {
+      if (with_uv_) exact_uvs(ops, pool);
+      return;
+    }
+    for (std::size_t k = 0; k < shapes_.count; ++k) {
+      const std::uint32_t entry = shapes_.entry[k];
+      SurfaceInteraction surface;
+      (with_uv_ ? ops.interaction : ops.interaction_without_uv)(pool, shapes_.element[k], shape_ray(k),
+                                                                hits_[which_[entry]], surface);
+      out_.set_shape(entry, surface), out_.set_uv(entry, surface.uv);
+    }
+  }
+
+  /// uv of `shapes_`, whose points on an exact surface are known.
+  void exact_uvs(const ExactOps& ops, const ExactPoolBase& pool) {
+    for (std::size_t k = 0; k < shapes_.count; ++k) {
+      const std::uint32_t entry = shapes_.entry[k];
+      const auto part = static_cast<int>(hits_.u[which_[entry]]);
+      out_.set_uv(entry,
+                  ops.uv == nullptr ? Vec2f{} : ops.uv(pool, shapes_.element[k], part, shape_point(k)));
+    }
+  }
+
+  /// The ray of hit `k` of `shapes_`, and its point on the surface.
+  Ray shape_ray(std::size_t k) const {
+    const std::uint32_t i = shapes_.ray[k];
+    const auto at = [i](const float* const(&column)[3]) {
+      return Vec3f{column[0][i], column[1][i], column[2][i]};
+    };
+    return {at(shapes_.origin), 0, at(shapes_.direction)};
+  }
+  Vec3d shape_point(std::size_t k) const {
+    return {shapes_.point[0][k], shapes_.point[1][k], shapes_.point[2][k]};
   }
 
   /// Brings entry `i` from inside an instance to the world.
@@ -160,6 +209,7 @@ class SurfaceFinder {
   const HitSpan& hits_;
   const std::uint32_t* which_;
   const InteractionCode& code_;
+  const bool with_uv_;
   InteractionBlock& out_;
 
   HitPlace place_;  ///< of the latest hit
@@ -178,10 +228,16 @@ class SurfaceFinder {
 
 void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
                           std::span<const std::uint32_t> which, InteractionBlock& out, Isa isa) {
+  surface_interactions(accel, rays, hits, which, out, isa, false);
+}
+
+void surface_interactions(const Accel& accel, const RaySpan& rays, const HitSpan& hits,
+                          std::span<const std::uint32_t> which, InteractionBlock& out, Isa isa,
+                          bool with_uv) {
   if (which.size() > kMost)
     throw Error("surface_interactions: " + std::to_string(which.size()) + " hits, but room for " +
                 std::to_string(kMost));
-  SurfaceFinder(accel, rays, hits, which.data(), interaction_code(isa), out).find(which.size());
+  SurfaceFinder(accel, rays, hits, which.data(), interaction_code(isa), with_uv, out).find(which.size());
 }
 
 }  // namespace oktett

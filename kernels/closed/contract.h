@@ -15,6 +15,7 @@
 /// - `S::uv(pool, i, hit, point, s)`: uv and tangents of a single hit, from its place on the ray and its
 /// place
 ///   on the surface;
+/// - `S::uv_lanes(normal, u, v)`, if uv follows from the normal alone: uv in lanes;
 /// - `S::bounds(pool, i)`, except for unbounded shapes;
 /// - `S::kSolid`: whether it has an inside; if so, `S::inside(pool, i, point)`.
 
@@ -23,6 +24,13 @@
 #include "kernels/closed/surface_points.h"
 
 namespace oktett {
+
+/// Whether uv of S is computed in lanes.
+template <class S>
+inline constexpr bool kHasUvLanes = requires(Simd<double, 1, ScalarIsa>& u,
+                                             Vec3<Simd<double, 1, ScalarIsa>>& n) {
+  S::uv_lanes(n, u, u);
+};
 
 /// How many lanes past its last element a pool must be readable.
 inline constexpr int kPoolPadding = 16;

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "core/math.h"
+#include "core/lane_math.h"
 #include "kernels/closed/contract.h"
 #include "kernels/closed/shape_data.h"
 
@@ -107,12 +107,20 @@ struct Sphere {
     return {add_lanes(c, scale_lanes(n, radius)), D(0x1p-48) * (length_lanes(c) + radius), n};
   }
 
-  /// uv: longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1].
+  /// Longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1], where the normal
+  /// is `n`.
+  template <class D>
+  OKTETT_INLINE static void uv_lanes(const Vec3<D>& n, D& u, D& v) {
+    const D one(1.0), half(0.5), pi(std::numbers::pi), up = within(n.y, -one, one);
+    u = half + atan2_lanes(n.z, n.x) * half / pi;
+    v = half + atan2_lanes(up, sqrt((one - up) * (one + up))) / pi;
+  }
   static void uv(const Pool& p, std::size_t i, const Vec3d& hit, const Vec3d&, SurfaceInteraction& s) {
+    using D = Simd<double, 1, ScalarIsa>;
     const Vec3d n = normalize(hit - Vec3d{p.x[i], p.y[i], p.z[i]});
-    const double phi = portable::atan2(n.z, n.x), theta = portable::asin(n.y < -1 ? -1 : n.y > 1 ? 1 : n.y);
-    s.uv = {static_cast<float>(0.5 + phi * 0.5 / std::numbers::pi),
-            static_cast<float>(0.5 + theta / std::numbers::pi)};
+    D u, v;
+    uv_lanes(oktett::broadcast<D>(n), u, v);
+    s.uv = {static_cast<float>(only_lane(u)), static_cast<float>(only_lane(v))};
     s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * p.radius[i]));
     const double across = std::sqrt(n.x * n.x + n.z * n.z), turn = std::numbers::pi * p.radius[i];
     if (across > 0) s.bitangent = Vec3f(Vec3d{-n.y * n.x / across, across, -n.y * n.z / across} * turn);

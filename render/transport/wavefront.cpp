@@ -149,7 +149,7 @@ class HitShader {
  private:
   void shade_block(std::span<const std::uint32_t> which) {
     surface_interactions(*context_.world->accel, wavefront_.rays.rays, wavefront_.hits, which, found_,
-                         context_.isa);
+                         context_.isa, shows_uv(which));
     if (in_blocks_) {
       const bool path = context_.settings.kind == IntegratorKind::path;
       return (path ? shade_path_block : shade_whitted_block)(context_, wavefront_, which.data(), which.size(),
@@ -163,6 +163,13 @@ class HitShader {
       if (from_camera) record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
       integrator_(context_, wavefront_, i, p);
     }
+  }
+
+  /// Whether uv of these hits is part of the picture.
+  bool shows_uv(std::span<const std::uint32_t> which) const {
+    const auto from_camera = [&](std::uint32_t i) { return wavefront_.rays.from_camera[i] != 0; };
+    return context_.settings.kind == IntegratorKind::uv ||
+           (context_.data_layers && std::ranges::any_of(which, from_camera));
   }
 
   const RenderContext& context_;

@@ -17,12 +17,13 @@ bool same(float a, float b) {
 }
 bool same(const Vec3f& a, const Vec3f& b) { return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z); }
 
-/// All but uv and tangent.
+/// All but tangents.
 void expect_same(const SurfaceInteraction& s, const SurfaceInteraction& expected, std::size_t i) {
   ASSERT_TRUE(same(s.position, expected.position)) << i;
   ASSERT_TRUE(same(s.position_error, expected.position_error)) << i;
   ASSERT_TRUE(same(s.geometric_normal, expected.geometric_normal)) << i;
   ASSERT_TRUE(same(s.shading_normal, expected.shading_normal)) << i;
+  ASSERT_TRUE(same(s.uv.x, expected.uv.x) && same(s.uv.y, expected.uv.y)) << i;
   ASSERT_EQ(s.geometry, expected.geometry) << i;
   ASSERT_EQ(s.primitive, expected.primitive) << i;
   ASSERT_EQ(s.user, expected.user) << i;
@@ -37,7 +38,7 @@ void expect_like_surface(const Accel& accel, const RayBatch& rays, HitBatch& hit
     for (std::size_t first = 0; first < which.size(); first += InteractionBlock::kMost) {
       InteractionBlock block;
       const std::size_t count = std::min(InteractionBlock::kMost, which.size() - first);
-      surface_interactions(accel, rays, hits, {which.data() + first, count}, block, isa);
+      surface_interactions(accel, rays, hits, {which.data() + first, count}, block, isa, true);
       for (std::size_t i = 0; i < count; ++i) found.push_back(block[i]);
     }
     for (std::size_t i = 0; i < which.size(); ++i) {

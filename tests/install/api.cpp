@@ -52,6 +52,8 @@ static_assert(has<SurfaceInteraction(const Accel&, const Ray&, const Hit&)>(surf
 static_assert(has<SurfaceInteraction(const Accel&, const Hit&)>(identify));
 static_assert(has<void(const Accel&, const RaySpan&, const HitSpan&, std::span<const std::uint32_t>,
                        InteractionBlock&, Isa)>(surface_interactions));
+static_assert(has<void(const Accel&, const RaySpan&, const HitSpan&, std::span<const std::uint32_t>,
+                       InteractionBlock&, Isa, bool)>(surface_interactions));
 static_assert(has<Vec3f(const SurfaceInteraction&, const Vec3f&)>(offset_origin));
 
 // The instruction set need not be named, and batches are passed as they are.
