@@ -19,7 +19,7 @@ struct InteractionBlock {
   bool has_uv = false;
   std::uint32_t geometry[kMost], primitive[kMost], user[kMost], material_slot[kMost];
 
-  /// Entry i, with tangents zero, and uv if there is none.
+  /// Entry i. Tangents are zero, and so is uv unless `has_uv`.
   SurfaceInteraction operator[](std::size_t i) const {
     SurfaceInteraction s;
     s.position = get(position, i), s.position_error = get(position_error, i);

@@ -17,9 +17,10 @@ struct ShapeHits {
   std::uint32_t element[kMost];           ///< index in the pool of the kind
   std::uint32_t entry[kMost];             ///< index of each hit in `out`
   InteractionBlock* out;                  ///< receives positions, their errors and normals
-  bool with_uv = false;  ///< `out` also receives uv, or `point` what it follows from: see kHasUvLanes
-  double point[3]
-              [kMost];  ///< points on the surface: of closed forms in the world, of others in the own space
+  bool with_uv = false;  ///< `out` also receives uv, or `point` what uv follows from: see kHasUvLanes
+  /// The points on the surface: of closed forms in the space of the structure, of exact surfaces in their
+  /// own.
+  double point[3][kMost];
 };
 
 }  // namespace oktett
