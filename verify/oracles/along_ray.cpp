@@ -12,6 +12,17 @@ constexpr int kSamples = 768;
 /// Samples within the rounding of a hit at which three do not show a crossing.
 constexpr int kFineSamples = 1024;
 
+/// The greatest sum of magnitudes that a component of m p is made of.
+long double greatest_sum(const Affine& m, const Vec3l& p) {
+  long double most = 0;
+  for (const auto& row : m.m) {
+    long double sum = std::abs(row[3]);
+    for (int k = 0; k < 3; ++k) sum += std::abs(row[k] * p[k]);
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
 }  // namespace
 
 AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& ray, bool rounded)
@@ -19,7 +30,8 @@ AlongRay::AlongRay(const ExactOracle& oracle, const Affine& to_own, const Ray& r
       where_(oracle.where),
       o_(mapped(to_own, Vec3l(ray.origin))),
       d_(mapped(to_own, Vec3l(ray.direction), 0)),
-      rounding_(rounded ? 0x1p-24L : 0) {
+      rounding_(rounded ? 0x1p-24L : 0),
+      placing_(0x1p-50L * greatest_sum(to_own, Vec3l(ray.origin))) {
   // The sphere around the box, a little larger.
   const Vec3l c = (Vec3l(oracle.lo) + Vec3l(oracle.hi)) * 0.5L, m = o_ - c;
   const Vec3l half = (Vec3l(oracle.hi) - Vec3l(oracle.lo)) * 0.5L;
@@ -40,7 +52,8 @@ long double AlongRay::slack(long double t) const {
 /// Whether f has another sign where rounding the ray may move its point at t.
 bool AlongRay::may_turn(long double t) const {
   // A component is rounded by at most 2^-24 of the way; that is 1.8 times as much along the diagonal.
-  const long double reach = 2 * rounding_ * (std::sqrt(dot(o_, o_)) + std::abs(t) * std::sqrt(dot(d_, d_)));
+  const long double way = std::sqrt(dot(o_, o_)) + std::abs(t) * std::sqrt(dot(d_, d_));
+  const long double reach = 2 * rounding_ * way + placing_;
   const Vec3l p = o_ + d_ * t;
   const bool negative = f_(p) < 0;
   for (int k = 0; k < 6; ++k) {
@@ -53,7 +66,7 @@ bool AlongRay::may_turn(long double t) const {
 
 long double AlongRay::room(long double t) const {
   const long double s = slack(t);
-  if (rounding_ == 0) return s;
+  if (rounding_ == 0 && !may_turn(t - s) && !may_turn(t + s)) return s;
   for (long double r = s; r < size_; r *= 2) {
     const bool crosses = ((*this)(t - r) < 0) != ((*this)(t + r) < 0);
     if (crosses && !may_turn(t - r) && !may_turn(t + r)) return r;
@@ -87,7 +100,7 @@ AlongRay::Crossing AlongRay::crosses(long double t) const {
   const long double s = slack(t), before = (*this)(t - s), here = (*this)(t), after = (*this)(t + s);
   if (ends(t) > 0) return Crossing::no;
   if ((before < 0) != (after < 0) || (before < 0) != (here < 0)) return Crossing::yes;
-  if (rounding_ > 0 && may_turn(t)) return Crossing::nearly;
+  if (may_turn(t)) return Crossing::nearly;
   // Cusps may be thinner than what rounding to float moves t by.
   const long double step = 2 * s / kFineSamples;
   long double l = t - s, fl = before, steepest = 0, cliff = l, least = HUGE_VALL, tip = l;

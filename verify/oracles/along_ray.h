@@ -20,7 +20,8 @@ class AlongRay {
   /// Where t may be off: what rounding to float and the ray's way into the own space allow.
   long double slack(long double t) const;
   /// How far from a crossing at t the tracer's hit may be: the slack, or more where rounding displaces a ray
-  /// that meets the surface at a slant. Infinite if rounding may leave the crossing out.
+  /// that meets the surface at a slant, as it does in instances and far from the origin. Infinite if rounding
+  /// may leave the crossing out.
   long double room(long double t) const;
   /// Crossings, each by bisection.
   std::vector<long double> crossings() const;
@@ -41,6 +42,7 @@ class AlongRay {
   const SurfaceFunction &f_, &where_;
   Vec3l o_, d_;
   long double size_ = 0, rounding_ = 0;
+  long double placing_;  ///< by how much the map of an origin far from zero may round, in the own space
 };
 
 }  // namespace oktett
