@@ -126,6 +126,53 @@ TEST(Classify, LongAndShortDirections) {
   EXPECT_GT(tally.sure, 1000);
 }
 
+bool is_behind(const TriangleCase& c) {
+  const auto lane = [](const Vec3f& v) { return broadcast<F>(v); };
+  return any(surely_behind(lane(c.ray.origin), lane(c.ray.direction),
+                           TriangleLanes<F>{lane(c.corner[0]), lane(c.corner[1]), lane(c.corner[2])}));
+}
+
+TEST(Classify, WhatIsBehindIsNeverHit) {
+  TriangleRandom random(11);
+  int behind = 0;
+  for (int i = 0; i < 200000; ++i) {
+    TriangleCase c = adversarial_case(random, std::exp2(30 * random.sign()));
+    if (i % 2 == 0) {
+      // The triangle is flat along an axis, and the ray begins beside it, from 2^-10 to 2^-70 of its size
+      // away.
+      const std::uint32_t axis = random.below(3);
+      for (Vec3f& p : c.corner) p[axis] = 0;
+      const Vec3d a(c.corner[0]), e1 = Vec3d(c.corner[1]) - a, e2 = Vec3d(c.corner[2]) - a;
+      const double u = random.unit(), v = (1 - u) * random.unit();
+      c.ray.origin = Vec3f(a + e1 * u + e2 * v);
+      c.ray.origin[axis] =
+          static_cast<float>((length(e1) + length(e2)) * random.sign() * std::exp2(-10 - 60 * random.unit()));
+      c.ray.direction = random.vector();
+      if (i % 4 == 0) c.ray.direction[axis] *= std::exp2(-20 * random.unit());
+    }
+    c.ray.tmin = 0, c.ray.tmax = kInf;
+    if (!is_behind(c)) continue;
+    ++behind;
+    ASSERT_FALSE(decide(c).hit) << i;
+  }
+  EXPECT_GT(behind, 30000);
+}
+
+// A floor is flat along an axis: offset_origin moves rays that leave it by 2^-46 of its size.
+TEST(Classify, RaysThatLeaveFloorsAreClear) {
+  TriangleRandom random(12);
+  TriangleCase c;
+  c.corner[0] = {-20, 0, -20}, c.corner[1] = {20, 0, 20}, c.corner[2] = {-20, 0, 20};
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 20 * static_cast<float>(random.sign()), z = 20 * static_cast<float>(random.sign());
+    c.ray.origin = {x, 0x1p-46f * 120, z};
+    c.ray.direction = {static_cast<float>(random.sign()), static_cast<float>(random.unit()) + 1e-3f, 1};
+    ASSERT_TRUE(is_behind(c)) << i;
+    c.ray.direction.y = -c.ray.direction.y;
+    ASSERT_FALSE(is_behind(c)) << i;
+  }
+}
+
 // The classification is worth its name: ordinary triangles are clear nearly always.
 TEST(Classify, OrdinaryTrianglesAreClear) {
   TriangleRandom random(9);
