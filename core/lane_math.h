@@ -94,6 +94,13 @@ OKTETT_INLINE Simd<double, W, A> atan2_lanes(const Simd<double, W, A>& y, const 
   return select(below, -angle, angle);
 }
 
+/// portable::asin in lanes, with the same bits, for numbers from -1 to 1.
+template <class D>
+OKTETT_INLINE D asin_lanes(const D& x) {
+  const D one(1.0);
+  return atan2_lanes(x, sqrt((one - x) * (one + x)));
+}
+
 /// make_basis in lanes. At n.z = -0 the sign is 1.
 template <class D>
 OKTETT_INLINE void basis_lanes(const Vec3<D>& n, Vec3<D>& tangent, Vec3<D>& bitangent) {

@@ -34,8 +34,7 @@ struct ExactOpsCode {
       s = exact_interaction<S, kWithUv>(cast(pool), element, ray, hit);
   }
   static Vec2f uv(const ExactPoolBase& pool, std::size_t element, int part, const Vec3d& own) {
-    const SurfaceUv at = S::uv(cast(pool), element, part, own);
-    return {static_cast<float>(at.u.value), static_cast<float>(at.v.value)};
+    return rounded(S::uv(cast(pool), element, part, own));
   }
   static std::size_t bytes(const ExactPoolBase& pool) { return cast(pool).bytes(); }
   static SurfaceNearest closest(const ExactPoolBase& pool, std::size_t element, const Affine& to_world,

@@ -12,7 +12,7 @@ namespace oktett {
 template <class A>
 using SurfaceLanes = Simd<double, kDoubleLanes<A>, A>;
 
-/// Notes points of hits i, i + 1, ...
+/// Stores the points on the surface of hits i, i + 1, ...
 template <class D>
 OKTETT_INLINE void store_points(const Vec3<D>& points, std::size_t i, ShapeHits& hits) {
   points.x.store(hits.point[0] + i), points.y.store(hits.point[1] + i), points.z.store(hits.point[2] + i);

@@ -111,9 +111,9 @@ struct Sphere {
   /// is `n`.
   template <class D>
   OKTETT_INLINE static void uv_lanes(const Vec3<D>& n, D& u, D& v) {
-    const D one(1.0), half(0.5), pi(std::numbers::pi), up = within(n.y, -one, one);
+    const D one(1.0), half(0.5), pi(std::numbers::pi);
     u = half + atan2_lanes(n.z, n.x) * half / pi;
-    v = half + atan2_lanes(up, sqrt((one - up) * (one + up))) / pi;
+    v = half + asin_lanes(within(n.y, -one, one)) / pi;
   }
   static void uv(const Pool& p, std::size_t i, const Vec3d& hit, const Vec3d&, SurfaceInteraction& s) {
     using D = Simd<double, 1, ScalarIsa>;

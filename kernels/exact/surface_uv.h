@@ -76,11 +76,16 @@ inline SurfaceUv face_uv(int face, const Vec3d& lo, const Vec3d& hi, const Vec3d
   return {along((axis + 1) % 3), along((axis + 2) % 3)};
 }
 
+/// The coordinates as interactions hold them.
+inline Vec2f rounded(const SurfaceUv& uv) {
+  return {static_cast<float>(uv.u.value), static_cast<float>(uv.v.value)};
+}
+
 /// Sets uv, dp/du and dp/dv, in the space of the gradients, where the surface has the normal `n` of any
 /// length. Where only one coordinate changes along the surface, its steepest way; at poles the vectors are
 /// zero.
 inline void set_uv(SurfaceInteraction& s, const SurfaceUv& uv, const Vec3d& n) {
-  s.uv = {static_cast<float>(uv.u.value), static_cast<float>(uv.v.value)};
+  s.uv = rounded(uv);
   const Vec3d along_u = cross(uv.v.gradient, n), along_v = cross(n, uv.u.gradient);
   const double det = dot(uv.u.gradient, along_u);
   if (!std::isfinite(det)) return;

@@ -65,10 +65,9 @@ OKTETT_INLINE typename F::M maybe_hit(const TriangleGuess<F>& g, const F& tmax) 
   return F(0.0f) <= min(g.least + g.weight_error, min(g.t + g.t_error, beyond));
 }
 
-/// Lanes that the line of a ray meets at t < 0 only, if at all, found in double. A ray that leaves a triangle
-/// begins so near to it that the bounds of TriangleGuess leave it open. The decision displaces corners by at
-/// most 2^-50 of the reach, so a hit that it finds is as near to the plane; its t rounds another 2^-50 of the
-/// reach. Ray origins whose plane is 2^-48 of the reach away are beyond both.
+/// Triangles that are surely behind the ray's origin: its line meets them at t < 0 or not at all. A ray that
+/// leaves a triangle begins so near to it that the bounds of TriangleGuess leave it open; this is computed in
+/// double. The bounds are derived in docs/numerics.md.
 template <int W, class A>
 OKTETT_INLINE Mask<double, W, A> surely_behind(const Vec3<Simd<float, W, A>>& o,
                                                const Vec3<Simd<float, W, A>>& d,
@@ -79,9 +78,10 @@ OKTETT_INLINE Mask<double, W, A> surely_behind(const Vec3<Simd<float, W, A>>& o,
   const Vec3<D> n = fast_cross(e1, e2);
   const D det = fast_dot(n, along), t = fast_dot(n, c), zero(0.0);
   const D reach = norm1(c) + norm1(e1) + norm1(e2);
-  // The products that n is made of. All that is rounded here is below 2^-50 of their products with c and d.
   const auto magnitude = [](const Vec3<D>& v) { return Vec3<D>{abs(v.x), abs(v.y), abs(v.z)}; };
   const Vec3<D> p = magnitude(e1), q = magnitude(e2);
+  // The components of n with all signs positive. det and t are rounded by less than 2^-50 of what they would
+  // be with these, and with the magnitudes of d and c.
   const Vec3<D> m{p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x};
   const D det_error = D(0x1p-50) * fast_dot(m, magnitude(along));
   const D t_error = D(0x1p-48) * norm1(n) * reach + D(0x1p-50) * fast_dot(m, magnitude(c));

@@ -93,7 +93,8 @@ TEST(Geometry, KnowsWhetherMaterialsLetLightPass) {
     add_material(scene, m);
     return build_world(scene);
   };
-  const World opaque = world([](Material&) {}), clear = world([](Material&m) { m.transparency = 0.5f; });
+  const World opaque = world([](Material&) {});
+  const World clear = world([](Material& m) { m.transparency = 0.5f; });
   EXPECT_FALSE(opaque.has_holes || opaque.has_clear);
   EXPECT_TRUE(clear.has_clear);
   EXPECT_FALSE(clear.has_holes);

@@ -162,7 +162,7 @@ class SceneChecker {
       if (closest_[i].valid()) which.push_back(i);
     for (std::size_t at = 0; at < which.size(); at += InteractionBlock::kMost) {
       const auto part = std::span(which).subspan(at, std::min(InteractionBlock::kMost, which.size() - at));
-      surface_interactions(*world_.accel, rays_.span(), closest_.span(), part, block_, isa_);
+      surface_interactions(*world_.accel, rays_.span(), closest_.span(), part, block_, isa_, true);
       for (std::size_t k = 0; k < part.size(); ++k) compare_surface(part[k], block_[k]);
     }
   }
@@ -181,6 +181,7 @@ class SceneChecker {
     compare("the position", s.position, b.position), compare("the error", s.position_error, b.position_error);
     compare("the normal", s.geometric_normal, b.geometric_normal);
     compare("the shading normal", s.shading_normal, b.shading_normal);
+    compare("uv", {s.uv.x, s.uv.y, 0}, {b.uv.x, b.uv.y, 0});
     if (s.geometry != b.geometry || s.primitive != b.primitive || s.user != b.user)
       fail(tally_.differing, i, "a number of surface_interactions differs from surface_interaction");
     const SurfaceInteraction name = identify(*world_.accel, hit);

@@ -109,8 +109,8 @@ class TriangleSteps {
     maybe = maybe >> first & ((1u << kBlock) - 1);
     if (maybe != 0 && (kInstances ? *ray.in.accel : accel_).pieces)
       maybe &= ~repeated_lane<A>(repeated_item(ray), blocks(ray)[ray.current.block()]);
-    if (const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe; OKTETT_UNLIKELY(near != 0))
-      if (ray.tmin >= 0) maybe &= ~(near & behind_origin(ray));
+    const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe;
+    if (OKTETT_UNLIKELY(near != 0 && ray.tmin >= 0)) maybe &= ~(near & behind_origin(ray));
     if (maybe == 0) return;
     const unsigned sure = bits(h.sure) >> first & maybe;
     if (sure != 0) {
