@@ -20,26 +20,32 @@ class NodeRef {
   static NodeRef triangles(std::uint32_t block, int count) {
     return NodeRef(kLeaf | static_cast<std::uint32_t>(count - 1) << 27 | block);
   }
-  static NodeRef leaf(std::uint32_t table_index) { return NodeRef(kLeaf | kTable | table_index); }
-  static NodeRef none() { return NodeRef(kLeaf | kTable | (kTable - 1)); }
+  /// An entry of the leaf table. Whether it is one of spheres shows in the number, so that rays in flight
+  /// need not look it up to know.
+  static NodeRef leaf(std::uint32_t table_index, Kind kind) {
+    return NodeRef(kLeaf | kTable | (kind == Kind::sphere ? 0 : kNoSpheres) | table_index);
+  }
+  static NodeRef none() { return NodeRef(~0u); }
   /// Only on the stack of a ray in flight: here the ray leaves the instance that it is in.
-  static NodeRef way_out() { return NodeRef(kLeaf | kTable | (kTable - 2)); }
+  static NodeRef way_out() { return NodeRef(~1u); }
 
   bool is_leaf() const { return (bits_ & kLeaf) != 0; }
   bool is_triangles() const { return (bits_ & (kLeaf | kTable)) == kLeaf; }
+  bool is_spheres() const { return (bits_ & (kLeaf | kTable | kNoSpheres)) == (kLeaf | kTable); }
   bool is_none() const { return bits_ == none().bits_; }
   bool is_way_out() const { return bits_ == way_out().bits_; }
   std::uint32_t node_index() const { return bits_; }
   std::uint32_t block() const { return bits_ & (kMaxBlocks - 1); }
   int triangle_count() const { return static_cast<int>(bits_ >> 27 & 7) + 1; }
-  std::uint32_t table_index() const { return bits_ & (kTable - 1); }
-  /// The number as it is stored: nodes from 0 on, blocks from 2^31 on, table entries from 3 * 2^30 on.
+  std::uint32_t table_index() const { return bits_ & (kNoSpheres - 1); }
+  /// The number as it is stored: nodes from 0 on, blocks from 2^31 on, table entries of spheres from 3 * 2^30
+  /// on, those of other kinds from 7 * 2^29 on.
   std::uint32_t bits() const { return bits_; }
   static NodeRef from_bits(std::uint32_t bits) { return NodeRef(bits); }
 
  private:
   explicit NodeRef(std::uint32_t bits) : bits_(bits) {}
-  static constexpr std::uint32_t kLeaf = 1u << 31, kTable = 1u << 30;
+  static constexpr std::uint32_t kLeaf = 1u << 31, kTable = 1u << 30, kNoSpheres = 1u << 29;
   std::uint32_t bits_;
 };
 

@@ -85,6 +85,7 @@ void run_kernel(benchmark::State& state, KernelId id, Isa isa, int width) {
       {KernelId::triangle_segura_feito, "triangle/segura_feito"},
       {KernelId::sphere_geometric, "sphere/geometric"},
       {KernelId::sphere_algebraic, "sphere/algebraic"},
+      {KernelId::sphere_in_range, "sphere/in_range"},
       {KernelId::plane, "plane"},
       {KernelId::disk, "disk"},
       {KernelId::box, "box"},

@@ -40,6 +40,9 @@ struct RenderContext {
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
   const Caustics* caustics = nullptr;      ///< photons that path tracing asks for light; may be null
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
+  /// Per object, for Whitted's model: whether its surfaces have no light of their own and show none of lamps,
+  /// but only send rays on. Empty if there are none.
+  std::vector<bool> only_sends;
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
   bool tracks_enclosures = false;      ///< rays must know in which solids they are, see enclosures.h

@@ -59,7 +59,9 @@ class LinkCheck {
       return true;
     }
     if (ref.is_triangles()) return take(block_seen_, ref.block());
-    return take(leaf_seen_, ref.table_index()) && is_possible(accel_.leaves[ref.table_index()]);
+    if (!take(leaf_seen_, ref.table_index())) return false;
+    const LeafEntry& leaf = accel_.leaves[ref.table_index()];
+    return is_possible(leaf) && ref.is_spheres() == (leaf.kind == Kind::sphere);
   }
 
   bool is_possible(const LeafEntry& leaf) {

@@ -158,7 +158,7 @@ class WideBuilder {
       if (!in_table(n)) return NodeRef::triangles(begin, n.count());
     }
     accel_.leaves[next.leaves] = {begin, static_cast<std::uint16_t>(n.count()), n.kind(), n.test()};
-    return NodeRef::leaf(next.leaves++);
+    return NodeRef::leaf(next.leaves++, n.kind());
   }
 
   /// Boxes and references of `count` children.

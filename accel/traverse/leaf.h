@@ -5,6 +5,7 @@
 #include "accel/hit_sink.h"
 #include "accel/instance.h"
 #include "accel/ray_state.h"
+#include "accel/traverse/sphere_filter.h"
 
 namespace oktett {
 
@@ -219,18 +220,33 @@ OKTETT_NOINLINE void leaf_textbook_packet(TriangleTest test, const TriangleBlock
   }
 }
 
+/// The rays in `lanes` against primitive `k` of a pool of closed-form shape S.
+template <class S, int W, class A>
+OKTETT_INLINE void shape_packet(const typename S::Pool& pool, std::size_t k, RayState<W, A>& r,
+                                unsigned lanes) {
+  using D = Simd<double, W, A>;
+  const auto ray = load_rays(r);
+  HitLanes<Simd<float, W, A>> hit;
+  const unsigned hits =
+      bits(first_root<S>(ray, to_double(ray), S::template broadcast<D>(pool, k), hit)) & lanes;
+  if (hits != 0) accept_packet(r, hits, hit, pool.item[k]);
+}
+
 /// The rays in `lanes` against `count` primitives of closed-form shape S from `begin` on.
 template <class S, int W, class A>
 OKTETT_INLINE void leaf_shape_packet(const typename S::Pool& pool, std::uint32_t begin, int count,
                                      RayState<W, A>& r, unsigned lanes) {
-  using F = Simd<float, W, A>;
-  using D = Simd<double, W, A>;
-  for (int k = 0; k < count; ++k) {
-    const auto ray = load_rays(r);
-    HitLanes<F> hit;
-    const unsigned hits =
-        bits(first_root<S>(ray, to_double(ray), S::template broadcast<D>(pool, begin + k), hit)) & lanes;
-    if (hits != 0) accept_packet(r, hits, hit, pool.item[begin + k]);
+  if constexpr (std::is_same_v<S, Sphere>) {
+    using Filter = SphereFilter<Simd<float, W, A>>;
+    const Filter filter(load_rays(r));
+    typename Filter::Spheres spheres;
+    for (int k = 0; k < count; ++k) {
+      if (k % Filter::Spheres::kSize == 0) spheres.set(pool, begin + k);
+      const unsigned maybe = filter.may_meet(spheres, k % Filter::Spheres::kSize) & lanes;
+      if (maybe != 0) shape_packet<S>(pool, begin + k, r, maybe);
+    }
+  } else {
+    for (int k = 0; k < count; ++k) shape_packet<S>(pool, begin + k, r, lanes);
   }
 }
 

@@ -6,7 +6,7 @@ namespace oktett {
 namespace {
 
 /// The number changes with the tree that is built, and with the layout of nodes and blocks.
-constexpr std::string_view kTreeKind = "tree 2 " OKTETT_VERSION;
+constexpr std::string_view kTreeKind = "tree 3 " OKTETT_VERSION;
 
 enum Section : std::size_t { kNodes, kBlocks, kLeaves, kItems };
 

@@ -35,21 +35,18 @@ inline constexpr bool kHasUvLanes = requires(Simd<double, 1, ScalarIsa>& u,
 /// How many lanes past its last element a pool must be readable.
 inline constexpr int kPoolPadding = 16;
 
-/// Takes the first root of each lane inside (tmin, tmax] as the hit. Distances are rounded to float, as hits
-/// store them, before they are compared, so that every traversal makes the same choice.
-template <class S, int W, class A>
-OKTETT_INLINE Mask<float, W, A> first_root(const RayLanes<Simd<float, W, A>>& ray,
-                                           const RayLanes<Simd<double, W, A>>& ray_d,
-                                           const typename S::template Lanes<Simd<double, W, A>>& shape,
-                                           HitLanes<Simd<float, W, A>>& hit) {
+/// Takes the first root of each lane in `meets` inside (tmin, tmax] as the hit. Distances are rounded to
+/// float, as hits store them, before they are compared, so that every traversal makes the same choice.
+template <int K, int W, class A>
+OKTETT_INLINE Mask<float, W, A> first_in_range(const RayLanes<Simd<float, W, A>>& ray,
+                                               const Mask<float, W, A>& meets,
+                                               const Simd<double, W, A> (&t)[K],
+                                               HitLanes<Simd<float, W, A>>& hit) {
   using F = Simd<float, W, A>;
-  using D = Simd<double, W, A>;
-  D t[S::kRoots];
-  const auto meets = mask_cast<float>(S::roots(ray_d, shape, t));
   const F far_limit = min(ray.tmax, F(3.402823466e38f));
   auto found = meets & ~meets;
   hit.t = F(0.0f);
-  for (int k = S::kRoots - 1; k >= 0; --k) {
+  for (int k = K - 1; k >= 0; --k) {
     const F tk = to_float(t[k]);
     const auto valid = meets & (ray.tmin < tk) & (tk <= far_limit);
     hit.t = select(valid, tk, hit.t);
@@ -57,6 +54,16 @@ OKTETT_INLINE Mask<float, W, A> first_root(const RayLanes<Simd<float, W, A>>& ra
   }
   hit.u = hit.v = F(0.0f);
   return found;
+}
+
+/// The first root of shape S in each lane.
+template <class S, int W, class A>
+OKTETT_INLINE Mask<float, W, A> first_root(const RayLanes<Simd<float, W, A>>& ray,
+                                           const RayLanes<Simd<double, W, A>>& ray_d,
+                                           const typename S::template Lanes<Simd<double, W, A>>& shape,
+                                           HitLanes<Simd<float, W, A>>& hit) {
+  Simd<double, W, A> t[S::kRoots];
+  return first_in_range(ray, mask_cast<float>(S::roots(ray_d, shape, t)), t, hit);
 }
 
 /// A single hit of primitive i at distance t; without uv and tangents unless `with_uv`. Does not set the

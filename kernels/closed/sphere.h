@@ -46,25 +46,58 @@ struct Sphere {
     return {{D(p.x[i]), D(p.y[i]), D(p.z[i])}, D(p.radius[i])};
   }
 
-  /// The geometric method: the point of closest approach, then half the chord. The chord is taken from the
-  /// distance vector itself, not from a difference of squares, so that small far spheres stay sharp (Haines
-  /// et al., Ray Tracing Gems 7). Rays that start outside and point away leave early when all lanes do.
+  /// Where the line of a ray comes closest to the centre, in multiples of its direction, and the square of
+  /// half the chord, as a length; negative where the line passes by.
+  template <class D>
+  struct Chord {
+    D middle, square;
+  };
+
+  /// `inverse`: one over the square of the ray's direction. The square is taken from the distance vector
+  /// itself, not from a difference of squares, so that small far spheres stay sharp (Haines et al., Ray
+  /// Tracing Gems 7).
+  template <class D>
+  OKTETT_INLINE static Chord<D> chord(const RayLanes<D>& ray, const D& inverse, const Lanes<D>& s) {
+    const Vec3<D> m = sub_lanes(s.center, ray.o);
+    const D closest = dot_lanes(m, ray.d) * inverse;
+    const Vec3<D> miss{m.x - closest * ray.d.x, m.y - closest * ray.d.y, m.z - closest * ray.d.z};
+    return {closest, s.radius * s.radius - dot_lanes(miss, miss)};
+  }
+
+  /// The geometric method: the middle of the chord, then half of it.
   template <class D>
   OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
-    const Vec3<D> m = sub_lanes(s.center, ray.o);
     // A product instead of two quotients: compilers find the inverse once for all the spheres of a leaf.
     const D inverse = D(1.0) / dot_lanes(ray.d, ray.d);
-    const D b = dot_lanes(m, ray.d);
-    const D rr = s.radius * s.radius;
-    const D closest = b * inverse;
-    const Vec3<D> miss{m.x - closest * ray.d.x, m.y - closest * ray.d.y, m.z - closest * ray.d.z};
-    const D h = rr - dot_lanes(miss, miss);
-    const auto meets = D(0.0) <= h;
+    const Chord<D> c = chord(ray, inverse, s);
+    const auto meets = D(0.0) <= c.square;
     if (none(meets)) return meets;
-    const D half = sqrt(h * inverse);
-    t[0] = closest - half;
-    t[1] = closest + half;
+    set_roots(c, inverse, t);
     return meets;
+  }
+
+  /// The same roots, but lanes in which none is on the ray may be left out: most spheres that the line of a
+  /// ray in flight meets lie behind it or beyond its end, which shows before the square root.
+  template <class D>
+  OKTETT_INLINE static typename D::M roots_in_range(const RayLanes<D>& ray, const D& inverse,
+                                                    const Lanes<D>& s, D (&t)[2]) {
+    const Chord<D> c = chord(ray, inverse, s);
+    // Distances are rounded to float before they are compared with the end of the ray.
+    const D end = ray.tmax + (abs(ray.tmax) * D(0x1p-22) + D(0x1p-148));
+    // How far the middle of the chord lies outside of the ray; negative inside. Half the chord is compared
+    // with it by squares, with room for their rounding.
+    const D gap = max(ray.tmin - c.middle, c.middle - end);
+    const auto outside = (D(0.0) < gap) & (c.square * inverse < gap * gap * D(1 - 0x1p-40));
+    const auto maybe = (D(0.0) <= c.square) & ~outside;
+    if (none(maybe)) return maybe;
+    set_roots(c, inverse, t);
+    return maybe;
+  }
+
+  template <class D>
+  OKTETT_INLINE static void set_roots(const Chord<D>& c, const D& inverse, D (&t)[2]) {
+    const D half = sqrt(c.square * inverse);
+    t[0] = c.middle - half, t[1] = c.middle + half;
   }
 
   /// The algebraic method: |o + t d - c|^2 = r^2 solved as a quadratic, with the root of lesser magnitude

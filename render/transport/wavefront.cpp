@@ -181,6 +181,7 @@ class HitShader {
 
 /// Shades all hits; those that ask the same points of area lights together.
 void shade_hits(const RenderContext& context, Wavefront& wavefront) {
+  drop_dark_hits(context, wavefront);
   HitShader shader(context, wavefront);
   const std::span<std::uint32_t> hits(wavefront.hit_rays.data(), wavefront.hit_rays.size());
   if (context.area_lights.empty()) return shader.shade(hits);

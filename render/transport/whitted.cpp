@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "accel/accel_data.h"
 #include "core/math.h"
 #include "render/specular.h"
 #include "render/transport/direct_light.h"
@@ -252,6 +253,25 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   const LightSource* points = area.points.data() + area.samples * pattern_of(context, wavefront, which[0]);
   for (std::size_t n = 0; n < area.samples; ++n)
     push_shadow_rays(context, found, points[n], c, wavefront.shadows[context.lights.size() + n]);
+}
+
+void drop_dark_hits(const RenderContext& context, Wavefront& wavefront) {
+  if (context.only_sends.empty() || wavefront.level < context.settings.depth) return;
+  const Accel& accel = *context.world->accel;
+  const auto is_dark = [&](std::uint32_t ray) {
+    // Which object is seen in an instance takes longer to find.
+    if (wavefront.hits.instance[ray] != kNoId || wavefront.rays.from_camera[ray]) return false;
+    if (wavefront.rays.bounces[ray] < context.settings.depth) return false;
+    const std::uint32_t user = accel.users[accel.geometry_of(wavefront.hits.item[ray])];
+    return user < context.only_sends.size() && context.only_sends[user];
+  };
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < wavefront.hit_rays.size(); ++i) {
+    const std::uint32_t ray = wavefront.hit_rays[i];
+    wavefront.hit_rays[left] = ray;
+    left += is_dark(ray) ? 0 : 1;
+  }
+  wavefront.hit_rays.resize_uninitialized(left);
 }
 
 void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,

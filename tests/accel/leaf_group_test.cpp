@@ -43,7 +43,7 @@ TEST(Interleaved, RaysAtOneLeafOfExactSurfacesGoTogether) {
   constexpr std::size_t kRays = 6;
   const auto accel = build_accel({{ExactShape{TorusShape{}}, {}, kNoId}});
   ASSERT_TRUE(accel->root.is_leaf());
-  const NodeRef elsewhere = NodeRef::leaf(accel->root.table_index() + 1);
+  const NodeRef elsewhere = NodeRef::leaf(accel->root.table_index() + 1, Kind::plane);
   std::vector<InflightRay> inflight(kRays);
   const auto gather = [&](auto instances, std::uint32_t instance, int most) {
     InflightRay* rays[kRays];

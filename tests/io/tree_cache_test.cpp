@@ -227,6 +227,20 @@ TEST_F(TreeCache, ImpossibleTreesAreRefused) {
       edit(a.blocks[1], a);
     };
   };
+  /// The first entry of the leaf table that `mark` changes.
+  const auto in_table = [](auto mark) -> Change {
+    return [=](Accel& a, ItemOrder&) {
+      a.nodes = copy_nodes(a);
+      for (std::size_t n = 0; n < a.stats.nodes; ++n)
+        for (NodeRef& ref : a.nodes[n].child) {
+          if (!ref.is_leaf() || ref.is_none() || ref.is_triangles()) continue;
+          const NodeRef marked = mark(ref);
+          if (marked.bits() == ref.bits()) continue;
+          ref = marked;
+          return;
+        }
+    };
+  };
   const auto last_node = [](const Accel& a) { return static_cast<std::uint32_t>(a.stats.nodes); };
   const Change changes[] = {
       node(0, 0, [](const Accel&) { return NodeRef::node(0); }),
@@ -237,7 +251,15 @@ TEST_F(TreeCache, ImpossibleTreesAreRefused) {
       node(0, 0, [](const Accel&) { return NodeRef::way_out(); }),
       node(2, 0,
            [](const Accel& a) { return NodeRef::triangles(static_cast<std::uint32_t>(block_count(a)), 3); }),
-      node(2, 0, [](const Accel& a) { return NodeRef::leaf(static_cast<std::uint32_t>(a.leaves.size())); }),
+      node(2, 0,
+           [](const Accel& a) {
+             return NodeRef::leaf(static_cast<std::uint32_t>(a.leaves.size()), Kind::plane);
+           }),
+      in_table(
+          [](NodeRef ref) { return ref.is_spheres() ? NodeRef::leaf(ref.table_index(), Kind::plane) : ref; }),
+      in_table([](NodeRef ref) {
+        return ref.is_spheres() ? ref : NodeRef::leaf(ref.table_index(), Kind::sphere);
+      }),
       block([](TriangleBlock& b, const Accel& a) { b.item[0] = static_cast<std::uint32_t>(a.stats.items); }),
       block([](TriangleBlock& b, const Accel&) { b.item[0] = 0; }),
       block([](TriangleBlock& b, const Accel&) { b.item[0] = kNoId; }),

@@ -149,11 +149,65 @@ TEST(SphereKernel, RayFromTheSurfaceMeetsTheFarSide) {
   const double column[] = {0, 0, 0, 1};
   for (int k = 0; k < 4; ++k) cases.shape[k][0] = column[k];
   cases.rays.set(0, {{-1, 0, 0}, 0, {1, 0, 0}, kInf});
-  for (const KernelId id : {KernelId::sphere_geometric, KernelId::sphere_algebraic}) {
+  for (const KernelId id :
+       {KernelId::sphere_geometric, KernelId::sphere_algebraic, KernelId::sphere_in_range}) {
     const Outcome o = run(id, cases, 0, 1, Isa::scalar, 1)[0];
     EXPECT_TRUE(o.hit);
     EXPECT_EQ(o.t, 2.0f);
   }
+}
+
+float shifted_by_ulps(float t, int ulps) {
+  for (; ulps > 0; --ulps) t = std::nextafter(t, kInf);
+  for (; ulps < 0; ++ulps) t = std::nextafter(t, -kInf);
+  return t;
+}
+
+// Rays that begin or end at a root, a neighbouring number or 1 / 1000 of the distance away from it: leaving
+// out roots that are not on the ray changes no hit.
+TEST(SphereKernel, RootsThatAreLeftOutAreNotOnTheRay) {
+  constexpr std::size_t kCount = 4096;
+  std::size_t hits = 0, misses = 0;
+  for (int c = 0; c < kCaseClasses; ++c) {
+    KernelCases cases;
+    cases.fill(KernelId::sphere_geometric, static_cast<CaseClass>(c), 0, kCount);
+    const auto set_range = [&](std::size_t i, float tmin, float tmax) {
+      Ray ray = cases.rays[i];
+      ray.tmin = tmin, ray.tmax = tmax;
+      cases.rays.set(i, ray);
+    };
+    for (std::size_t i = 0; i < kCount; ++i) set_range(i, 0, kInf);
+    const std::vector<Outcome> near = run(KernelId::sphere_geometric, cases, 0, kCount, Isa::scalar, 1);
+    for (std::size_t i = 0; i < kCount; ++i)
+      if (near[i].hit) set_range(i, near[i].t, kInf);
+    const std::vector<Outcome> far = run(KernelId::sphere_geometric, cases, 0, kCount, Isa::scalar, 1);
+    for (int shift = -3; shift <= 3; ++shift)
+      for (const bool at_end : {false, true})
+        for (const std::vector<Outcome>* roots : {&near, &far}) {
+          for (std::size_t i = 0; i < kCount; ++i) {
+            const float t = (*roots)[i].t;
+            const float moved = shift == -3  ? t * 0.999f
+                                : shift == 3 ? t * 1.001f
+                                             : shifted_by_ulps(t, shift);
+            if (!(*roots)[i].hit || !(moved >= 0)) continue;
+            at_end ? set_range(i, 0, moved) : set_range(i, moved, kInf);
+          }
+          const std::vector<Outcome> all = run(KernelId::sphere_geometric, cases, 0, kCount, Isa::scalar, 1);
+          for (const Isa isa : available_isas()) {
+            const int width = probe_widths(isa).back();
+            const std::vector<Outcome> some = run(KernelId::sphere_in_range, cases, 0, kCount, isa, width);
+            for (std::size_t i = 0; i < kCount; ++i) {
+              ASSERT_EQ(some[i].hit, all[i].hit) << exact_text(cases.rays[i]);
+              if (all[i].hit) {
+                ASSERT_EQ(some[i].t, all[i].t) << exact_text(cases.rays[i]);
+              }
+              ++(all[i].hit ? hits : misses);
+            }
+          }
+        }
+  }
+  EXPECT_GT(hits, misses / 10);
+  EXPECT_GT(misses, hits / 10);
 }
 
 }  // namespace

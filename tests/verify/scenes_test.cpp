@@ -135,7 +135,7 @@ TEST(Endless, CoversEverything) {
   EXPECT_EQ(c.wrong(), 0u);
   EXPECT_GT(c.rays(), 0u);
   ASSERT_EQ(c.rows.size(), 6u);
-  EXPECT_EQ(c.rows[0].of, 80u);
+  EXPECT_EQ(c.rows[0].of, 88u);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ const char* to_string(KernelId id) {
                                             "triangle_segura_feito",
                                             "sphere_geometric",
                                             "sphere_algebraic",
+                                            "sphere_in_range",
                                             "plane",
                                             "disk",
                                             "box",
@@ -156,7 +157,7 @@ Targets make_slab(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t
 
 /// In the order of KernelId.
 constexpr Targets (*kMakers[kKernels])(CaseRandom&, const Frame&, KernelCases&, std::size_t) = {
-    make_triangle, make_triangle, make_triangle, make_triangle,     make_sphere,
+    make_triangle, make_triangle, make_triangle, make_triangle,     make_sphere, make_sphere,
     make_sphere,   make_plane,    make_disk,     make_oriented_box, make_slab};
 
 Ray make_ray(CaseClass c, CaseRandom& r, const Frame& f, const Targets& at) {

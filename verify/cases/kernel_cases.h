@@ -21,7 +21,7 @@ enum class CaseClass : std::uint8_t {
   tiny,     ///< coordinates of 1e-15 to 1e-25
 };
 inline constexpr int kCaseClasses = 8;
-inline constexpr int kKernels = 10;
+inline constexpr int kKernels = 11;
 const char* to_string(CaseClass c);
 const char* to_string(KernelId id);
 

@@ -44,6 +44,7 @@ void add_shape(KernelId id, const KernelCases& cases, std::vector<Object>& objec
   switch (id) {
     case KernelId::sphere_geometric:
     case KernelId::sphere_algebraic:
+    case KernelId::sphere_in_range:
       return objects.push_back(object_of(SphereShape{vec(0), s[3][0]}, {}));
     case KernelId::plane:
       return objects.push_back(object_of(PlaneShape{vec(0), s[3][0]}, {}));

@@ -65,6 +65,7 @@ OracleAnswer ask_oracle(KernelId id, const KernelCases& cases, std::size_t i) {
   switch (id) {
     case KernelId::sphere_geometric:
     case KernelId::sphere_algebraic:
+    case KernelId::sphere_in_range:
       return oracle_sphere(ray, {vec(0), s[3][i]});
     case KernelId::plane:
       return oracle_plane(ray, {vec(0), s[3][i]});

@@ -86,11 +86,19 @@ struct AlgebraicSphere : Sphere {
   }
 };
 
+/// A sphere whose roots are found only where they may be on the ray, as for rays in flight.
+struct SphereInRange : Sphere {
+  template <class D>
+  OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
+    return roots_in_range(ray, D(1.0) / dot_lanes(ray.d, ray.d), s, t);
+  }
+};
+
 template <class S, int W, class A>
 void run_shape(const KernelProbe& run) {
   using F = Simd<float, W, A>;
   using D = Simd<double, W, A>;
-  using Base = std::conditional_t<std::is_same_v<S, AlgebraicSphere>, Sphere, S>;
+  using Base = std::conditional_t<std::is_base_of_v<Sphere, S>, Sphere, S>;
   RayState<W, A> state;
   for (std::size_t b = 0; b < run.count; b += W) {
     const RayLanes<F> ray = load_span<F>(run.rays, b);
@@ -135,9 +143,13 @@ template <int W, class A>
 void run_kernel_width(KernelId id, const KernelProbe& run) {
   // The triangle tests come first, the other kernels follow in the order of KernelId.
   if (id <= KernelId::triangle_segura_feito) return run_triangle<W, A>(static_cast<TriangleTest>(id), run);
-  static constexpr void (*kShapes[])(const KernelProbe&) = {
-      run_shape<Sphere, W, A>, run_shape<AlgebraicSphere, W, A>, run_shape<Plane, W, A>,
-      run_shape<Disk, W, A>,   run_shape<BoxSolid, W, A>,        run_slab<W, A>};
+  static constexpr void (*kShapes[])(const KernelProbe&) = {run_shape<Sphere, W, A>,
+                                                            run_shape<AlgebraicSphere, W, A>,
+                                                            run_shape<SphereInRange, W, A>,
+                                                            run_shape<Plane, W, A>,
+                                                            run_shape<Disk, W, A>,
+                                                            run_shape<BoxSolid, W, A>,
+                                                            run_slab<W, A>};
   kShapes[static_cast<int>(id) - static_cast<int>(KernelId::sphere_geometric)](run);
 }
 

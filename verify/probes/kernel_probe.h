@@ -31,6 +31,7 @@ enum class KernelId : std::uint8_t {
   triangle_segura_feito,
   sphere_geometric,
   sphere_algebraic,
+  sphere_in_range,
   plane,
   disk,
   box,

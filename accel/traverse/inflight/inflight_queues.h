@@ -63,15 +63,18 @@ struct InflightQueues {
 
 /// Rays that wait for neither a node nor a block, sorted without branches by what they wait for.
 struct SortedOthers {
-  InflightRay *finished[kInflightRays + 1], *at_leaf[kInflightRays + 1], *leaving[kInflightRays + 1];
-  InflightRay **finished_end = finished, **at_leaf_end = at_leaf, **leaving_end = leaving;
+  using List = InflightRay * [kInflightRays + 1];
+  List finished, at_spheres, at_leaf, leaving;
+  InflightRay **finished_end = finished, **at_spheres_end = at_spheres, **at_leaf_end = at_leaf,
+              **leaving_end = leaving;
 
   OKTETT_INLINE SortedOthers(InflightRay* const* begin, InflightRay* const* end) {
     for (InflightRay* const* at = begin; at != end; ++at) {
       const NodeRef ref = (*at)->current;
-      const int none = ref.is_none(), out = ref.is_way_out();
-      *finished_end = *at_leaf_end = *leaving_end = *at;
-      finished_end += none, leaving_end += out, at_leaf_end += 1 - none - out;
+      const int none = ref.is_none(), out = ref.is_way_out(), spheres = ref.is_spheres();
+      *finished_end = *at_spheres_end = *at_leaf_end = *leaving_end = *at;
+      finished_end += none, leaving_end += out, at_spheres_end += spheres;
+      at_leaf_end += 1 - none - out - spheres;
     }
   }
 };

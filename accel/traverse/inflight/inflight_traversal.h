@@ -34,29 +34,36 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
       other_round();
   }
 
-  /// One ray against a leaf of closed-form shapes outside instances. Needs less than exact_state() sets.
-  template <class S>
-  OKTETT_INLINE void shape_leaf(const typename S::Pool& pool, const LeafEntry& leaf, InflightRay& ray) {
-    constexpr int N = kShapeLanes<S>;
+  /// One ray against a leaf of spheres outside of instances. Needs less than exact_state() sets.
+  OKTETT_INLINE void sphere_leaf(const LeafEntry& leaf, InflightRay& ray) {
+    constexpr int N = kShapeLanes<Sphere>;
     using F = Simd<float, N, A>;
     using D = Simd<double, N, A>;
+    const auto& pool = std::get<Sphere::Pool>(accel_.pools);
+    // One quotient for all lanes.
+    const double dx = ray.d[0], dy = ray.d[1], dz = ray.d[2];
+    const D inverse(1.0 / (dx * dx + dy * dy + dz * dz));
     for (int k = 0; k < leaf.count; k += N) {
       const RayLanes<F> lanes{{F(ray.o[0]), F(ray.o[1]), F(ray.o[2])},
                               {F(ray.d[0]), F(ray.d[1]), F(ray.d[2])},
                               F(ray.tmin),
                               F(ray.tmax)};
-      HitLanes<F> hit;
       const std::size_t first = leaf.begin + static_cast<std::size_t>(k);
-      const auto found_here = first_root<S>(lanes, to_double(lanes), S::template load<D>(pool, first), hit);
-      unsigned met = bits(found_here) & ((2u << (std::min(leaf.count - k, N) - 1)) - 1);
+      D roots[Sphere::kRoots];
+      const auto maybe =
+          Sphere::roots_in_range(to_double(lanes), inverse, Sphere::load<D>(pool, first), roots);
+      if (none(maybe)) continue;
+      HitLanes<F> hit;
+      unsigned met = bits(first_in_range(lanes, mask_cast<float>(maybe), roots, hit)) &
+                     ((2u << (std::min(leaf.count - k, N) - 1)) - 1);
       if (met == 0) continue;
+      if constexpr (Q == Query::any) return found(ray);
       alignas(64) float t[N];
       hit.t.store(t);
       for (; met != 0; met &= met - 1) {
         const int i = __builtin_ctz(met);
         if (t[i] <= ray.tmax)
           keep_hit(ray, {t[i], 0, 0, pool.item[first + static_cast<std::size_t>(i)], kNoId});
-        if (Q == Query::any) return;
       }
     }
   }
@@ -73,9 +80,10 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
     }
     if constexpr (kEnter)
       for (InflightRay** at = rays.leaving; at != rays.leaving_end; ++at) leave(**at, tail);
+    for (InflightRay** at = rays.at_spheres; at != rays.at_spheres_end; ++at) at_spheres(**at, tail);
     for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end;) {
       const int count = group_at_leaf(at, rays.at_leaf_end, tail);
-      if (count == 0) alone_at_leaf(**at, tail);
+      if (count == 0) table_leaf(**at, tail);
       at += std::max(count, 1);
     }
     if constexpr (kEnter) go_inside(tail);
@@ -138,20 +146,12 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
     }
   }
 
-  OKTETT_INLINE void alone_at_leaf(InflightRay& ray, Tails& tail) {
-    if (at_shapes(ray))
-      pop(ray, tail);
-    else
-      table_leaf(ray, tail);
-  }
-
-  /// Tests the ray if its leaf holds spheres and its hit so far is decided.
-  OKTETT_INLINE bool at_shapes(InflightRay& ray) {
-    if (ray.candidate < kDecidedHit || (kInstances && ray.in.instance != kNoInstance)) return false;
-    const LeafEntry& leaf = accel_.leaves[ray.current.table_index()];
-    if (leaf.kind != Kind::sphere) return false;
-    shape_leaf<Sphere>(std::get<Sphere::Pool>(accel_.pools), leaf, ray);
-    return true;
+  OKTETT_INLINE void at_spheres(InflightRay& ray, Tails& tail) {
+    // The exact tests also decide what the ray may have hit before, and know instances.
+    if (ray.candidate < kDecidedHit || (kInstances && ray.in.instance != kNoInstance))
+      return table_leaf(ray, tail);
+    sphere_leaf(accel_.leaves[ray.current.table_index()], ray);
+    pop(ray, tail);
   }
 
   OKTETT_INLINE void table_leaf(InflightRay& ray, Tails& tail) {
