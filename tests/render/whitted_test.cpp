@@ -63,6 +63,42 @@ TEST(Whitted, SphereFollowsPhong) {
   expect_phong(scene, {-1, -2, -0.5}, true, normal);
 }
 
+// A mirror before the camera shows a ball behind it at the last bounce. If the ball is a mirror only, it is
+// dark and not shaded. All other balls show what they are.
+TEST(Whitted, TheLastBounceShowsAllButMirrors) {
+  const auto mirrored = [](const Material& ball) {
+    Scene scene = bare_scene(16);
+    scene.camera.from = {0, 0, 4}, scene.camera.at = {0, 0, 0};
+    scene.integrator.depth = 1;
+    scene.ambient_light = {1, 1, 1};
+    scene.lights = {PointLight{{0, 0, 2}, {1, 1, 1}, false}};
+    Material mirror;
+    mirror.ambient = mirror.diffuse = mirror.specular = 0, mirror.reflection = 1;
+    add_object(scene, PlaneShape{{0, 0, 1}, 0}, add_material(scene, mirror));
+    add_object(scene, SphereShape{{0, 0, 20}, 12}, add_material(scene, ball));
+    return run(scene);
+  };
+  Material mirror;
+  mirror.color = {0.5f, 0.5f, 0.5f};
+  mirror.ambient = mirror.diffuse = mirror.specular = 0, mirror.reflection = 1;
+  const auto green = [&](const auto& change) {
+    Material ball = mirror;
+    change(ball);
+    const RenderResult result = mirrored(ball);
+    EXPECT_EQ(result.report.bounces[1].rays, 256u);
+    EXPECT_EQ(result.report.bounces[1].shaded, 256u);
+    return value(result.picture, "G", 8, 8);
+  };
+  const RenderResult dark = mirrored(mirror);
+  EXPECT_EQ(value(dark.picture, "G", 8, 8), 0);
+  EXPECT_EQ(dark.report.bounces[1].rays, 256u);
+  EXPECT_EQ(dark.report.bounces[1].shaded, 0u);
+  EXPECT_EQ(green([](Material& m) { m.emission = {0, 0.25f, 0}; }), 0.25f);
+  EXPECT_EQ(green([](Material& m) { m.ambient = 0.25f; }), 0.125f);
+  EXPECT_GT(green([](Material& m) { m.diffuse = 0.25f; }), 0.05f);
+  EXPECT_GT(green([](Material& m) { m.specular = 1, m.phong = 1, m.specular_color = {1, 1, 1}; }), 0.05f);
+}
+
 TEST(Whitted, PlaneAndTriangleFollowPhong) {
   Scene scene = bare_scene(32);
   scene.camera.from = {0, 2, 4};

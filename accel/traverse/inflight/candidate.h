@@ -32,6 +32,14 @@ OKTETT_INLINE unsigned repeated_lane(std::uint32_t item, const TriangleBlock& bl
   return item == kNoId ? 0 : bits(I::load(items) == I(static_cast<std::int32_t>(item)));
 }
 
+/// The triangles of `block` that are surely behind the origin `o` of a ray, as bits.
+template <class A>
+OKTETT_NOINLINE unsigned behind_origin(const float* o, const float* d, const TriangleBlock& block) {
+  using F = Simd<float, TriangleBlock::kSize, A>;
+  return bits(surely_behind(Vec3<F>{F(o[0]), F(o[1]), F(o[2])}, Vec3<F>{F(d[0]), F(d[1]), F(d[2])},
+                            load_triangles<F>(block)));
+}
+
 /// A triangle that is surely hit at lo <= t <= hi.
 struct SureHit {
   int lane;

@@ -135,6 +135,11 @@ class SoloTraversal {
     if (accel_.pieces)
       maybe &= ~repeated_lane<A>(candidate_item(accel_.blocks.data(), candidate_, state_, kNoId),
                                  accel_.blocks[ref.block()]);
+    const unsigned near = bits(guess.t <= guess.t_error) & maybe;
+    if (OKTETT_UNLIKELY(near != 0)) {
+      const float o[3] = {ray_.origin.x, ray_.origin.y, ray_.origin.z};
+      maybe &= ~(near & behind_origin<A>(o, d_, accel_.blocks[ref.block()]));
+    }
     if (maybe == 0) return false;
     const HitInterval<F> h = hit_interval(guess, F(ray_.tmin), F(tmax_));
     const unsigned sure = bits(h.sure) & maybe;

@@ -110,7 +110,8 @@ class TriangleSteps {
     if (maybe != 0 && (kInstances ? *ray.in.accel : accel_).pieces)
       maybe &= ~repeated_lane<A>(repeated_item(ray), blocks(ray)[ray.current.block()]);
     const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe;
-    if (OKTETT_UNLIKELY(near != 0 && ray.tmin >= 0)) maybe &= ~(near & behind_origin(ray));
+    if (OKTETT_UNLIKELY(near != 0 && ray.tmin >= 0))
+      maybe &= ~(near & behind_origin<A>(ray.o, ray.d, blocks(ray)[ray.current.block()]));
     if (maybe == 0) return;
     const unsigned sure = bits(h.sure) >> first & maybe;
     if (sure != 0) {
@@ -125,14 +126,6 @@ class TriangleSteps {
       }
     }
     decide_leaf(ray);
-  }
-
-  /// The triangles of the ray's block that are surely behind its origin.
-  OKTETT_NOINLINE unsigned behind_origin(const InflightRay& ray) const {
-    using F = Simd<float, kBlock, A>;
-    return bits(surely_behind(Vec3<F>{F(ray.o[0]), F(ray.o[1]), F(ray.o[2])},
-                              Vec3<F>{F(ray.d[0]), F(ray.d[1]), F(ray.d[2])},
-                              load_triangles<F>(blocks(ray)[ray.current.block()])));
   }
 
   /// The item of the ray's nearest hit so far, if it is a triangle of the tree that the ray is in, else
