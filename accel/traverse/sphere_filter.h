@@ -6,9 +6,9 @@
 
 namespace oktett {
 
-/// Rays that may meet a sphere: those that are left out pass by its middle at more than its radius. A lane
-/// takes a third of the steps of the exact test, and twice as many lanes fit in a register
-/// (docs/numerics.md).
+/// Tells which rays may meet a sphere. Those that are left out pass its centre at more than its radius; the
+/// bounds on the rounding errors are derived in docs/numerics.md. The exact test takes about three times as
+/// many steps, on half as many lanes.
 template <class F>
 class SphereFilter {
  public:
@@ -16,7 +16,7 @@ class SphereFilter {
   struct Spheres {
     static constexpr int kSize = 8;
     alignas(32) float x[kSize], y[kSize], z[kSize];
-    alignas(32) float reach[kSize];  ///< square of the radius, and slack for the place of the middle
+    alignas(32) float reach[kSize];  ///< square of the radius, and slack for the rounded centre
 
     /// Spheres `first` ... of the pool.
     OKTETT_INLINE void set(const Sphere::Pool& pool, std::size_t first) {
@@ -40,17 +40,17 @@ class SphereFilter {
   /// The rays that may meet sphere `k`, as bits.
   OKTETT_INLINE unsigned may_meet(const Spheres& s, int k) const {
     const Vec3<F> m{F(s.x[k]) - o_.x, F(s.y[k]) - o_.y, F(s.z[k]) - o_.z};
-    const F middle = fast_dot(m, d_) * inverse_;
-    const Vec3<F> miss{fast_fma(-middle, d_.x, m.x), fast_fma(-middle, d_.y, m.y),
-                       fast_fma(-middle, d_.z, m.z)};
+    const F closest = fast_dot(m, d_) * inverse_;
+    const Vec3<F> miss{fast_fma(-closest, d_.x, m.x), fast_fma(-closest, d_.y, m.y),
+                       fast_fma(-closest, d_.z, m.z)};
     // NaN is not left out.
     return ~bits(slack_ + F(s.reach[k]) < fast_dot(miss, miss));
   }
 
  private:
-  /// Of the squared distances of the origin and the middle from zero.
+  /// Bound on the error of the squared distance, relative to the squares of the origin and of the centre.
   static constexpr float kSlack = 0x1p-16f;
-  static constexpr float kLeastSlack = 0x1p-66f;
+  static constexpr float kLeastSlack = 0x1p-66f;  ///< for products that underflow
 
   Vec3<F> o_, d_;
   F inverse_, slack_;
