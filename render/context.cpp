@@ -98,21 +98,6 @@ static std::vector<Vec3d> interiors(const Scene& scene, const World& world) {
   return extinctions;
 }
 
-/// See RenderContext::only_sends.
-static std::vector<bool> objects_that_only_send(const RenderContext& context) {
-  std::vector<bool> only_send;
-  if (context.settings.kind != IntegratorKind::whitted) return only_send;
-  const std::vector<ObjectMaterials>& objects = context.world->objects;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].material >= context.materials.size()) continue;
-    const ShadingMaterial& m = context.materials[objects[i].material];
-    if (m.varies || m.diffuse != 0 || m.specular != 0 || !(m.unlit == Color{0, 0, 0})) continue;
-    only_send.resize(objects.size());
-    only_send[i] = true;
-  }
-  return only_send;
-}
-
 RenderContext make_context(const Scene& scene, const World& world, const SceneLights& lights,
                            const TextureSampler* textures, Isa isa) {
   RenderContext c;
@@ -139,7 +124,8 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   }
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
-  c.only_sends = objects_that_only_send(c);
+  c.some_only_send_rays = c.settings.kind == IntegratorKind::whitted &&
+                          std::ranges::any_of(c.materials, &ShadingMaterial::only_sends_rays);
   if (c.settings.kind == IntegratorKind::path)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();

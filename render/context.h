@@ -40,9 +40,7 @@ struct RenderContext {
   const SceneLights* sampled = nullptr;    ///< all lights, for path tracing
   const Caustics* caustics = nullptr;      ///< photons that path tracing asks for light; may be null
   std::vector<ShadingMaterial> materials;  ///< numbered as in World::materials
-  /// Per object, for Whitted's model: whether its surfaces have no light of their own and show none of lamps,
-  /// but only send rays on. Empty if there are none.
-  std::vector<bool> only_sends;
+  bool some_only_send_rays = false;  ///< some of `materials`, see only_sends_rays(); for Whitted's model
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
   bool tracks_enclosures = false;      ///< rays must know in which solids they are, see enclosures.h

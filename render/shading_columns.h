@@ -22,6 +22,8 @@ struct alignas(64) ShadingMaterial {
 
   /// Whether it sends rays on.
   bool sends_rays() const { return reflection != 0 || transparency != 0; }
+  /// Whether its surfaces show no light but that of the rays that they send on.
+  bool only_sends_rays() const { return !varies && diffuse == 0 && specular == 0 && unlit == Color{0, 0, 0}; }
 };
 static_assert(sizeof(ShadingMaterial) == 64);
 

@@ -30,8 +30,8 @@ void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found);
 
-/// Takes out of wavefront.hit_rays those that can add no light: rays that send no others on, as they are at
-/// the depth of the picture, and meet surfaces that do nothing else. For Whitted's model.
+/// Removes from wavefront.hit_rays the hits that add no light: at the last bounce, those on surfaces that
+/// only send rays on. For Whitted's model.
 void drop_dark_hits(const RenderContext& context, Wavefront& wavefront);
 
 /// Queues the shadow rays of hits in a penumbra to the points of area lights that their own pattern lacks: of

@@ -256,14 +256,17 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
 }
 
 void drop_dark_hits(const RenderContext& context, Wavefront& wavefront) {
-  if (context.only_sends.empty() || wavefront.level < context.settings.depth) return;
-  const Accel& accel = *context.world->accel;
+  if (!context.some_only_send_rays || wavefront.level < context.settings.depth) return;
+  const World& world = *context.world;
   const auto is_dark = [&](std::uint32_t ray) {
-    // Which object is seen in an instance takes longer to find.
+    // The object of a hit in an instance takes longer to find, so such hits are shaded.
     if (wavefront.hits.instance[ray] != kNoId || wavefront.rays.from_camera[ray]) return false;
     if (wavefront.rays.bounces[ray] < context.settings.depth) return false;
-    const std::uint32_t user = accel.users[accel.geometry_of(wavefront.hits.item[ray])];
-    return user < context.only_sends.size() && context.only_sends[user];
+    const std::uint32_t user = world.accel->users[world.accel->geometry_of(wavefront.hits.item[ray])];
+    if (user >= world.objects.size()) return false;
+    // An object without a material of its own has one for each slot of its mesh.
+    const std::uint32_t material = world.objects[user].material;
+    return material < context.materials.size() && context.materials[material].only_sends_rays();
   };
   std::size_t left = 0;
   for (std::size_t i = 0; i < wavefront.hit_rays.size(); ++i) {

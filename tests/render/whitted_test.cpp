@@ -72,24 +72,20 @@ TEST(Whitted, TheLastBounceShowsAllButMirrors) {
     scene.integrator.depth = 1;
     scene.ambient_light = {1, 1, 1};
     scene.lights = {PointLight{{0, 0, 2}, {1, 1, 1}, false}};
-    Material mirror;
-    mirror.ambient = mirror.diffuse = mirror.specular = 0, mirror.reflection = 1;
-    add_object(scene, PlaneShape{{0, 0, 1}, 0}, add_material(scene, mirror));
+    add_object(scene, PlaneShape{{0, 0, 1}, 0}, add_material(scene, mirror()));
     add_object(scene, SphereShape{{0, 0, 20}, 12}, add_material(scene, ball));
     return run(scene);
   };
-  Material mirror;
-  mirror.color = {0.5f, 0.5f, 0.5f};
-  mirror.ambient = mirror.diffuse = mirror.specular = 0, mirror.reflection = 1;
   const auto green = [&](const auto& change) {
-    Material ball = mirror;
+    Material ball = mirror();
+    ball.color = {0.5f, 0.5f, 0.5f};
     change(ball);
     const RenderResult result = mirrored(ball);
     EXPECT_EQ(result.report.bounces[1].rays, 256u);
     EXPECT_EQ(result.report.bounces[1].shaded, 256u);
     return value(result.picture, "G", 8, 8);
   };
-  const RenderResult dark = mirrored(mirror);
+  const RenderResult dark = mirrored(mirror());
   EXPECT_EQ(value(dark.picture, "G", 8, 8), 0);
   EXPECT_EQ(dark.report.bounces[1].rays, 256u);
   EXPECT_EQ(dark.report.bounces[1].shaded, 0u);
