@@ -218,8 +218,23 @@ bool is_opaque(const Material& m, ShadowRule rule) {
          m.opacity_texture == kNoId;
 }
 
+/// Whether path tracing scatters the light that the material lets through. Then light samples at the surface
+/// itself find the lamp behind it, and light that passed straight would count twice.
+static bool scatters_passing_light(const RenderContext& context, const Material& m, const TexturePlace& place,
+                                   std::optional<float> ior) {
+  if (!m.principled || context.settings.kind != IntegratorKind::path) return false;
+  PrincipledParameters p = principled_at(context, *m.principled, m.color, place);
+  if (ior) p.ior = *ior;
+  return !is_smooth_glass(p);
+}
+
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
                     ShadowRule rule) {
+  return transmittance(context, ray, hit, s, rule, std::nullopt);
+}
+
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
+                    ShadowRule rule, std::optional<float> ior) {
   const Material& m = material_at(*context.world, s);
   TexturePlace place;
   if (has_textures(m)) {
@@ -229,6 +244,7 @@ Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit
   const float opacity = opacity_at(context, m, place);
   const float hole = 1 - opacity;
   if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
+  if (scatters_passing_light(context, m, place, ior)) return {hole, hole, hole};
   const Color color = textured(context, m.color, m.color_texture, place);
   return color * (phong_values(context, m, place).transparency * opacity) + Color{hole, hole, hole};
 }

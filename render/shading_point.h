@@ -51,7 +51,8 @@ ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const H
 
 /// What stops light on its way from a lamp.
 enum class ShadowRule {
-  /// Opaque materials. Transparent ones attenuate light by colour * transparency and do not bend it.
+  /// Opaque materials, and in path tracing glass that scatters light. Other transparent ones attenuate light
+  /// by colour * transparency and do not bend it.
   transparent_passes,
   /// All materials; light passes only through holes. For light that other rays find behind glass.
   holes_pass,
@@ -61,6 +62,10 @@ enum class ShadowRule {
 /// unchanged, and where the rule lets it pass, material colour * transparency. Uses only the names of `s`.
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
                     ShadowRule rule);
+/// `ior`: the index of refraction there, if it is not that of the material because solids touch
+/// (Boundary::ior).
+Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
+                    ShadowRule rule, std::optional<float> ior);
 
 /// True if `transmittance` is black at every hit.
 bool is_opaque(const Material& material, ShadowRule rule);

@@ -32,6 +32,11 @@ static double facet_width(double roughness) {
   return rho < kLeastRoughness ? 0 : rho * rho;
 }
 
+bool is_smooth_glass(const PrincipledParameters& p) {
+  const double ior = limited(p.ior, 1 / kMostIor, kMostIor);
+  return facet_width(p.roughness) == 0 || (!p.thin && std::max(ior, 1 / ior) - 1 < kLeastIorDifference);
+}
+
 PrincipledSurface::PrincipledSurface(const PrincipledParameters& p, bool front)
     : base_color(limited(p.base_color, 0, 1)),
       tint(max_component(base_color)),
@@ -87,7 +92,7 @@ void PrincipledSurface::set_metal(const PrincipledParameters& p) {
 void PrincipledSurface::set_glass(const PrincipledParameters& p, bool front) {
   const double ior = limited(p.ior, 1 / kMostIor, kMostIor);
   eta = front || thin ? ior : 1 / ior;
-  glass_smooth = alpha == 0 || (!thin && std::abs(eta - 1) < kLeastIorDifference);
+  glass_smooth = is_smooth_glass(p);
   if (glass_smooth) return;
   const double high = std::max(eta, 1 / eta), transmittance = 1 - mean_fresnel(high);
   if (thin) {

@@ -11,6 +11,10 @@ inline constexpr double kLeastRoughness = 0.0316;
 /// Interfaces whose index of refraction is closer to 1 do not bend light.
 inline constexpr double kLeastIorDifference = 1e-3;
 
+/// Whether glass of these parameters passes light without scattering it: smooth glass, and glass that does
+/// not bend light.
+bool is_smooth_glass(const PrincipledParameters& parameters);
+
 struct PrincipledSurface {
   PrincipledSurface() = default;
   /// `front`: the viewer is outside, where the geometric normal points to.

@@ -77,7 +77,7 @@ class ShadowWalker {
     const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
     const Boundary boundary = boundary_at(*context_.world, state.enclosures, s, front);
     Color light = state.light;
-    if (!boundary.hidden) light = light * transmittance(context_, ray, hit, s, rule_);
+    if (!boundary.hidden) light = light * transmittance(context_, ray, hit, s, rule_, boundary.ior);
     if (is_black(light)) return;
     rest_.push_back(continue_behind(ray, s), {state.entry, light, boundary.behind, state.numbers});
   }

@@ -117,6 +117,81 @@ TEST(Path, DirectLightAgreesWithWhitted) {
   expect_same(65536, 0.01);
 }
 
+/// The mean over the picture, and its standard deviation.
+struct Mean {
+  double value = 0, deviation = 0;
+};
+
+Mean mean_of(const Picture& p) {
+  Mean m;
+  const auto &green = p.find("G")->values, &variance = p.find("Variance.G")->values;
+  for (std::size_t i = 0; i < green.size(); ++i)
+    m.value += static_cast<double>(green[i]), m.deviation += static_cast<double>(variance[i]);
+  const auto count = static_cast<double>(green.size());
+  m.value /= count, m.deviation = std::sqrt(m.deviation) / count;
+  return m;
+}
+
+// Light samples at rough glass find the lamp behind it, so no other light may pass it straight. A point and
+// parallel light must therefore light a room below a pane as a ball and a small sun do, which pass no glass
+// straight.
+TEST(Path, LightsWithoutSizePassRoughGlassOnce) {
+  Scene scene = path_scene(8, 2048, 6);
+  scene.camera.from = {0, 1.5, 4}, scene.camera.at = {0, -1, 0}, scene.camera.fov = 20;
+  const std::uint32_t wall = add_material(scene, diffuse({0.5f, 0.5f, 0.5f}));
+  add_object(scene, BoxShape{{-5, -2, -5}, {5, -1, 5}}, wall);
+  add_object(scene, BoxShape{{-5, 1.9, -5}, {5, 2, 5}}, add_material(scene, {}));
+  Material& pane = scene.materials.back();
+  for (const bool thin : {false, true})
+    for (const float roughness : {0.5f, 1.0f})
+      for (const bool distant : {false, true}) {
+        pane = Material{};
+        pane.principled = PrincipledMaterial{};
+        PrincipledParameters& p = pane.principled->parameters;
+        p.base_color = {1, 1, 1}, p.transmission = 1, p.roughness = roughness, p.thin = thin;
+        resemble_principled(pane);
+        const auto direction = Vec3d{0.2, -1, 0.1};
+        if (distant)
+          scene.lights = {DirectionalLight{direction, {1, 1, 1}}};
+        else
+          scene.lights = {PointLight{{0.5, 4, 0}, {4, 4, 4}, true}};
+        const Mean sharp = mean_of(run(scene).picture);
+        Scene soft = scene;
+        soft.lights.clear();
+        if (distant)
+          soft.lights = {DirectionalLight{direction, {1, 1, 1}, 3}};
+        else
+          add_object(soft, SphereShape{{0.5, 4, 0}, 0.2}, add_material(soft, glowing({100, 100, 100})));
+        const Mean wide = mean_of(run(soft).picture);
+        const double noise = std::hypot(sharp.deviation, wide.deviation);
+        EXPECT_LT(noise, 0.05 * wide.value);
+        EXPECT_NEAR(sharp.value, wide.value, 4 * noise) << thin << ' ' << roughness << ' ' << distant;
+      }
+}
+
+// Where rough glass touches solids of its own index it neither bends nor scatters light. Direct light alone.
+TEST(Path, LightsWithoutSizePassRoughGlassAmongItsLike) {
+  Scene scene = path_scene(8, 64, 0);
+  scene.camera.from = {0, 1.5, 4}, scene.camera.at = {0, -1, 0}, scene.camera.fov = 20;
+  scene.lights = {PointLight{{0.5, 4, 0}, {4, 4, 4}, true}};
+  add_object(scene, BoxShape{{-5, -2, -5}, {5, -1, 5}}, add_material(scene, diffuse({0.5f, 0.5f, 0.5f})));
+  Material dense;
+  dense.principled = PrincipledMaterial{};
+  dense.principled->parameters.base_color = {1, 1, 1}, dense.principled->parameters.transmission = 1;
+  dense.principled->parameters.roughness = 0;
+  resemble_principled(dense);
+  dense.priority = 0;
+  add_object(scene, SphereShape{{0, 0, 0}, 50}, add_material(scene, dense));
+  const Mean without = mean_of(run(scene).picture);
+  dense.principled->parameters.roughness = 0.5f;
+  dense.priority = 1;
+  add_object(scene, BoxShape{{-5, 1.9, -5}, {5, 2, 5}}, add_material(scene, dense));
+  const Mean with = mean_of(run(scene).picture);
+  EXPECT_GT(without.value, 0.01);
+  EXPECT_NEAR(with.value, without.value,
+              4 * std::hypot(with.deviation, without.deviation) + 1e-3 * with.value);
+}
+
 // Light that reaches a floor only by way of a wall: one bounce, computed by quadrature over the wall.
 TEST(Path, IndirectLightMatchesQuadrature) {
   Scene scene = path_scene(1, 16384, 1);
