@@ -155,12 +155,14 @@ class HitShader {
       return (path ? shade_path_block : shade_whitted_block)(context_, wavefront_, which.data(), which.size(),
                                                              found_);
     }
+    const bool draws_holes = context_.settings.kind == IntegratorKind::path;
     for (std::size_t k = 0; k < which.size(); ++k) {
       const std::uint32_t i = which[k];
       const bool from_camera = wavefront_.rays.from_camera[i] != 0;
       const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
                                            {wavefront_.rays.distance[i], from_camera}, found_[k]);
       if (from_camera) record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
+      if (from_camera && !draws_holes) cover(wavefront_, i, p.opacity);
       integrator_(context_, wavefront_, i, p);
     }
   }
@@ -282,12 +284,14 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
   return true;
 }
 
+void cover(Wavefront& wavefront, std::size_t ray, float opacity) {
+  wavefront.samples.alpha[wavefront.rays.sample[ray]] += wavefront.rays.throughput[ray].x * opacity;
+}
+
 void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
                       const ShownSurface& shown) {
-  const std::uint32_t sample = wavefront.rays.sample[ray];
-  wavefront.samples.alpha[sample] += wavefront.rays.throughput[ray].x * shown.opacity;
   if (!context.data_layers) return;
-  FirstHit& first = wavefront.samples.first[sample];
+  FirstHit& first = wavefront.samples.first[wavefront.rays.sample[ray]];
   if (first.found || shown.opacity == 0) return;
   const SurfaceInteraction& s = shown.surface;
   first = {true,

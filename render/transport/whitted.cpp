@@ -103,6 +103,7 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                                        {wavefront.rays.distance[i], from_camera}, found);
   if (from_camera) record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
+  if (from_camera) cover(wavefront, i, p.opacity);
   const Color left = passing_interior(context, p);
   if (context.materials[c.material[k]].varies) {
     const Color throughput = wavefront.rays.throughput[i] * p.opacity;
@@ -119,10 +120,8 @@ void record_camera_hit(const RenderContext& context, Wavefront& wavefront, const
                        std::size_t k, const ShadingColumns& c) {
   const std::uint32_t i = c.ray[k];
   if (!wavefront.rays.from_camera[i]) return;
-  if (!context.data_layers) {
-    wavefront.samples.alpha[wavefront.rays.sample[i]] += c.throughput[0][k];
-    return;
-  }
+  cover(wavefront, i, 1);
+  if (!context.data_layers) return;
   record_first_hit(context, wavefront, i,
                    shown_surface(context, wavefront.rays.rays[i], wavefront.hits[i],
                                  {wavefront.rays.distance[i], true}, found[k]));

@@ -247,6 +247,28 @@ TEST(Opacity, LetsTheRestPass) {
   }
 }
 
+// Before a background that covers each pixel is covered wholly, however many holes its samples drew; before
+// nothing a pixel is covered as often as a sample meets no hole.
+TEST(Opacity, CoversWhatIsSeen) {
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted})
+    for (const bool priorities : {false, true}) {
+      Scene scene = bare_scene(8);
+      scene.integrator.kind = kind, scene.integrator.samples = 16;
+      Material m = test::diffuse({1, 1, 1});
+      m.opacity = 0.25f;
+      add_object(scene, DiskShape{{0, 0, 0}, {0, 0, 1}, 50}, add_material(scene, m));
+      // Solids of a priority are traced one by one.
+      Material solid = test::glass(1.5f);
+      if (priorities) solid.priority = 1;
+      add_object(scene, SphereShape{{0, 0, 900}, 1}, add_material(scene, solid));
+      double mean = 0;
+      for (const float v : test::run(scene).picture.find("A")->values) mean += v / 64.0;
+      EXPECT_NEAR(mean, 0.25, kind == IntegratorKind::path ? 0.05 : 1e-6) << priorities;
+      scene.background = {1, 1, 1};
+      for (const float v : test::run(scene).picture.find("A")->values) EXPECT_EQ(v, 1) << priorities;
+    }
+}
+
 TEST(PatternColor, LiesInTheObjectsSpace) {
   // What is seen through an instance inside an instance depends on the place before all transforms.
   Scene scene = bare_scene(32);
