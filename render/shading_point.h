@@ -49,6 +49,10 @@ struct ShownSurface {
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);
 
+/// Surfaces that a ray or photon may pass straight, in addition to its bounces, before it counts as lost.
+/// This is to end only rays that make no way: a line can meet hundreds of surfaces of a Menger sponge.
+inline constexpr unsigned kMostPassages = 1u << 14;
+
 /// What stops light on its way from a lamp.
 enum class ShadowRule {
   /// Opaque materials, and in path tracing glass that scatters light. Other transparent ones attenuate light

@@ -46,15 +46,12 @@ Color passing_media(const RenderContext& context, const EnclosureStack& around, 
 
 namespace {
 
-/// Surfaces without bounds that light may pass on its way to where its photon starts.
-constexpr int kMostLayers = 128;
-
 /// Follows the light of one photon back to where it comes from.
 Color reaching(const RenderContext& context, const PhotonStart& start, EnclosureStack around,
                const TrackingNumbers& numbers) {
   Color light{1, 1, 1};
   Ray ray{start.ray.origin, 0, -start.ray.direction, std::numeric_limits<float>::infinity()};
-  for (int layer = 0; layer < kMostLayers; ++layer) {
+  for (unsigned layer = 0; layer < kMostPassages; ++layer) {
     const Hit hit = closest_hit(*context.world->accel, ray, context.isa);
     if (context.tracks_enclosures) {
       const double end = hit.valid() ? static_cast<double>(hit.t) : std::numeric_limits<double>::infinity();

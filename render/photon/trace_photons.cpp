@@ -23,8 +23,6 @@ namespace {
 
 /// Photons that are traced together.
 constexpr std::uint32_t kPhotonsTogether = 4096;
-/// Holes that a photon may pass, in addition to its bounces.
-constexpr unsigned kMostHoles = 128;
 /// Bounces before Russian roulette begins.
 constexpr unsigned kSureBounces = 3;
 
@@ -78,7 +76,7 @@ class PhotonChunk {
   void trace(std::uint32_t first, std::uint32_t last) {
     first_ = first;
     emit(first, last);
-    const unsigned most_levels = plan_.depth + 1 + kMostHoles;
+    const unsigned most_levels = plan_.depth + 1 + kMostPassages;
     for (level_ = 0; level_ < most_levels && queue_.size() > 0; ++level_) {
       next_.clear();
       follow();

@@ -101,7 +101,7 @@ void trace_shadows_in_media(const RenderContext& context, Wavefront& wavefront, 
                                     tracking_numbers(wavefront, queue.owner[i], MediumDecision::shadow)});
   std::vector<Color> arriving(queue.size(), Color{0, 0, 0});
   ShadowWalker walker(context, rule);
-  for (int layer = 0; layer < kMostShadowLayers && !walks.states.empty(); ++layer)
+  for (unsigned layer = 0; layer < kMostPassages && !walks.states.empty(); ++layer)
     walker.step(walks, arriving);
   for (std::size_t i = 0; i < queue.size(); ++i)
     if (!is_black(arriving[i])) add_arriving(context, wavefront, queue, i, arriving[i]);

@@ -68,7 +68,7 @@ static void pass_surfaces(const RenderContext& context, ShadowQueue& queue, Shad
   p.left.resize(queue.size());
   std::iota(p.left.begin(), p.left.end(), 0u);
   RaySpan rays = queue.rays;
-  for (int layer = 0; layer < kMostShadowLayers && !p.left.empty(); ++layer) {
+  for (unsigned layer = 0; layer < kMostPassages && !p.left.empty(); ++layer) {
     p.hits.resize_uninitialized(p.left.size());
     closest_hit(*context.world->accel, rays, p.hits.span(), context.isa);
     look_at_surfaces(context, rays, rule, p);

@@ -21,9 +21,6 @@ void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQue
 /// something is in the way.
 void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule rule);
 
-/// Surfaces that a shadow ray may pass before it counts as blocked.
-inline constexpr int kMostShadowLayers = 128;
-
 /// The part of a shadow ray behind the surface `s`. It ends where `ray` ends.
 Ray continue_behind(const Ray& ray, const SurfaceInteraction& s);
 

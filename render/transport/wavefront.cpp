@@ -17,8 +17,6 @@
 namespace oktett {
 namespace {
 
-/// Holes that a camera path may lead through, in addition to its bounces.
-constexpr unsigned kMostHoles = 128;
 /// Shadow rays are traced when this many have gathered.
 constexpr std::size_t kShadowBatch = 4096;
 /// Number of hits that are shaded together.
@@ -258,7 +256,7 @@ void count_lanes(Wavefront& wavefront, std::size_t hits, std::size_t width) {
 
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
   // The light that leaves the last surface may come from one more, which path tracing looks up.
-  const unsigned most_levels = context.settings.depth + 1 + kMostHoles;
+  const unsigned most_levels = context.settings.depth + 1 + kMostPassages;
   for (wavefront.level = 0; wavefront.level <= most_levels && !wavefront.rays.empty(); ++wavefront.level) {
     begin_bounce(wavefront);
     find_hits(context, wavefront);

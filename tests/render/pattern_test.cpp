@@ -261,12 +261,34 @@ TEST(Opacity, CoversWhatIsSeen) {
       Material solid = test::glass(1.5f);
       if (priorities) solid.priority = 1;
       add_object(scene, SphereShape{{0, 0, 900}, 1}, add_material(scene, solid));
+      const Picture before_nothing = test::run(scene).picture;
       double mean = 0;
-      for (const float v : test::run(scene).picture.find("A")->values) mean += v / 64.0;
+      for (const float v : before_nothing.find("A")->values) mean += v / 64.0;
       EXPECT_NEAR(mean, 0.25, kind == IntegratorKind::path ? 0.05 : 1e-6) << priorities;
       scene.background = {1, 1, 1};
-      for (const float v : test::run(scene).picture.find("A")->values) EXPECT_EQ(v, 1) << priorities;
+      const Picture before_light = test::run(scene).picture;
+      for (const float v : before_light.find("A")->values) EXPECT_EQ(v, 1) << priorities;
     }
+}
+
+// However many holes a path or a shadow ray leads through, no light is lost.
+TEST(Opacity, ManyHolesInARowLoseNothing) {
+  for (const bool priorities : {false, true}) {
+    Scene scene = bare_scene(2);
+    scene.integrator.kind = IntegratorKind::path, scene.integrator.depth = 1;
+    Material hole;
+    hole.opacity = 0;
+    const std::uint32_t holes = add_material(scene, hole);
+    for (int i = 0; i < 150; ++i) add_object(scene, DiskShape{{0, 0, -1.0 * i}, {0, 0, 1}, 50}, holes);
+    Material solid = test::glass(1.5f);
+    if (priorities) solid.priority = 1;
+    add_object(scene, SphereShape{{0, 0, 900}, 1}, add_material(scene, solid));
+    add_object(scene, PlaneShape{{0, 0, 1}, -200}, add_material(scene, test::diffuse({1, 1, 1})));
+    scene.lights = {DirectionalLight{{0, 0, -1}, {0.75f, 0.75f, 0.75f}}};
+    const Picture picture = test::run(scene).picture;
+    for (const float v : picture.find("R")->values)
+      EXPECT_NEAR(static_cast<double>(v), 0.75, 1e-5) << priorities;
+  }
 }
 
 TEST(PatternColor, LiesInTheObjectsSpace) {
