@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "accel/accel.h"
+#include "render/bsdf/principled_surface.h"
 #include "render/surface_textures.h"
 #include "render/transport/shading_lanes.h"
 

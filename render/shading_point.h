@@ -1,6 +1,8 @@
 #pragma once
 /// \file Shading points: a hit's surface interaction with its material looked up, as the integrators need it.
 
+#include <optional>
+
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 #include "render/context.h"

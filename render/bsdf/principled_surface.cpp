@@ -1,6 +1,9 @@
 #include "render/bsdf/principled_surface.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+
 #include "render/bsdf/lobes.h"
 #include "render/bsdf/optics.h"
 

@@ -3,7 +3,8 @@
 /// up to 64 long; entries up to the end of the last group of lanes are read and written.
 
 #include "core/double_lanes.h"
-#include "render/light/emitter_lanes.h"
+#include "render/light/flat_lanes.h"
+#include "render/light/round_lanes.h"
 #include "render/transport/path_lights.h"
 
 namespace oktett {
@@ -72,39 +73,108 @@ OKTETT_INLINE void store_samples(const LightSamples<D>& s, LightGroup& group, st
   s.u.store(group.x + i), s.v.store(group.y + i);
 }
 
+/// A column of lanes from a number of each emitter.
+template <class D, class Get>
+OKTETT_INLINE D emitter_numbers(const Get& get) {
+  double x[D::kWidth];
+  for (int k = 0; k < D::kWidth; ++k) x[k] = static_cast<double>(get(k));
+  return D::load(x);
+}
+
+template <class D, class Get>
+OKTETT_INLINE typename D::M emitter_flags(const Get& get) {
+  unsigned flags = 0;
+  for (int k = 0; k < D::kWidth; ++k) flags |= (get(k) ? 1u : 0u) << k;
+  return D::M::from_bits(flags);
+}
+
+/// Calls `sample(emitter, i)` for each group of lanes, where `emitter(k)` is that of lane k of the entries
+/// from `i` on.
+template <class D, class Kind, class Sample>
+OKTETT_INLINE void for_groups(const LightGroup& group, const Sample& sample) {
+  for (std::size_t i = 0; i < group.count; i += D::kWidth)
+    sample([&, i](int k) -> const Kind& { return *static_cast<const Kind*>(group.emitter[i + k]); }, i);
+}
+
+template <class A>
+void triangle_samples_code(LightGroup& group) {
+  using D = LightLanes<A>;
+  for_groups<D, TriangleEmitter>(group, [&](const auto& emitter, std::size_t i) {
+    const Vec3<D> a = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).a; });
+    const Vec3<D> b = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).b; });
+    const Vec3<D> c = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).c; });
+    const TriangleViews<D> views(sub_lanes(a, group_positions<D>(group, i)), sub_lanes(b, a), sub_lanes(c, a),
+                                 emitter_flags<D>([&](int k) { return emitter(k).both_sides; }));
+    store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
+  });
+}
+
 template <class A>
 void rectangle_samples_code(LightGroup& group) {
   using D = LightLanes<A>;
-  for (std::size_t i = 0; i < group.count; i += D::kWidth) {
-    const auto emitter = [&](int k) -> const RectangleEmitter& {
-      return *static_cast<const RectangleEmitter*>(group.emitter[i + k]);
-    };
-    unsigned both_sides = 0;
-    for (int k = 0; k < D::kWidth; ++k) both_sides |= (emitter(k).both_sides ? 1u : 0u) << k;
+  for_groups<D, RectangleEmitter>(group, [&](const auto& emitter, std::size_t i) {
     const Vec3<D> corner = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).corner; });
-    const RectangleViews<D> views{
+    const RectangleViews<D> views(
         sub_lanes(corner, group_positions<D>(group, i)),
         emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).edge_u; }),
         emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).edge_v; }),
-        D::M::from_bits(both_sides)};
+        emitter_flags<D>([&](int k) { return emitter(k).both_sides; }));
     store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
-  }
+  });
+}
+
+template <class A>
+void disk_samples_code(LightGroup& group) {
+  using D = LightLanes<A>;
+  for_groups<D, DiskEmitter>(group, [&](const auto& emitter, std::size_t i) {
+    const Vec3<D> center = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).center; });
+    const DiskViews<D> views(sub_lanes(center, group_positions<D>(group, i)),
+                             emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).normal; }),
+                             emitter_numbers<D>([&](int k) { return emitter(k).radius; }),
+                             emitter_flags<D>([&](int k) { return emitter(k).both_sides; }));
+    store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
+  });
 }
 
 template <class A>
 void sphere_samples_code(LightGroup& group) {
   using D = LightLanes<A>;
-  for (std::size_t i = 0; i < group.count; i += D::kWidth) {
-    const auto emitter = [&](int k) -> const SphereEmitter& {
-      return *static_cast<const SphereEmitter*>(group.emitter[i + k]);
-    };
-    double radius[D::kWidth];
-    for (int k = 0; k < D::kWidth; ++k) radius[k] = emitter(k).radius;
+  for_groups<D, SphereEmitter>(group, [&](const auto& emitter, std::size_t i) {
     const Vec3<D> center = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).center; });
-    store_samples(sample_spheres(sub_lanes(center, group_positions<D>(group, i)), D::load(radius),
+    store_samples(sample_spheres(sub_lanes(center, group_positions<D>(group, i)),
+                                 emitter_numbers<D>([&](int k) { return emitter(k).radius; }),
                                  D::load(group.x + i), D::load(group.y + i)),
                   group, i);
-  }
+  });
+}
+
+template <class A>
+void point_samples_code(LightGroup& group) {
+  using D = LightLanes<A>;
+  for_groups<D, LightCone>(group, [&](const auto& cone, std::size_t i) {
+    const Vec3<D> position = emitter_vectors<D>([&](int k) -> const Vec3f& { return cone(k).position; });
+    const PointSamples<D> points =
+        sample_points(sub_lanes(position, group_positions<D>(group, i)),
+                      emitter_vectors<D>([&](int k) -> const Vec3f& { return cone(k).axis; }),
+                      emitter_numbers<D>([&](int k) { return cone(k).cos_inner; }),
+                      emitter_numbers<D>([&](int k) { return cone(k).cos_outer; }),
+                      emitter_flags<D>([&](int k) { return cone(k).falls_off; }));
+    store_samples(points.at, group, i);
+    points.scale.store(group.scale + i);
+  });
+}
+
+template <class A>
+void sun_directions_code(LightGroup& group) {
+  using D = LightLanes<A>;
+  for_groups<D, DirectionalEmitter>(group, [&](const auto& emitter, std::size_t i) {
+    const auto towards = to_float(
+        around_lanes(emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).direction; }),
+                     D::load(group.x + i) * emitter_numbers<D>([&](int k) { return emitter(k).height; }),
+                     D::load(group.y + i)));
+    towards.x.store(group.direction[0] + i), towards.y.store(group.direction[1] + i);
+    towards.z.store(group.direction[2] + i);
+  });
 }
 
 /// The functions above for the set.

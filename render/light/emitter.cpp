@@ -17,12 +17,10 @@ float color_weight(const Color& c) {
 }
 
 Vec3d around(const Vec3d& axis, double one_minus_cos, double turn) {
-  using Lane = Simd<double, 1, ScalarIsa>;
   return only_lane(around_lanes(broadcast<Lane>(axis), Lane(one_minus_cos), Lane(turn)));
 }
 
-std::optional<LightSample> only_sample(const LightSamples<Simd<double, 1, ScalarIsa>>& s,
-                                       const Color& radiance) {
+std::optional<LightSample> only_sample(const LightSamples<Lane>& s, const Color& radiance) {
   if (none(s.found) || !is_finite(radiance)) return std::nullopt;
   return LightSample{.direction = only_lane(s.direction),
                      .distance = only_lane(s.distance),

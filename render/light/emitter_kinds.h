@@ -31,6 +31,20 @@ float pdf_kind(const SpotEmitter& e, const LightPoint& p, const Vec3f& direction
 float pdf_kind(const DirectionalEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
 float pdf_kind(const EnvironmentEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
 
+/// What points and spots have in common: the light of a point goes everywhere.
+struct LightCone {
+  Vec3f position, axis;
+  float cos_inner, cos_outer;
+  bool falls_off;  ///< with the square of the distance
+};
+inline LightCone light_cone(const SpotEmitter& e) {
+  return {e.position, e.axis, e.cos_inner, e.cos_outer, true};
+}
+inline LightCone light_cone(const PointEmitter& e) { return {e.position, {0, 0, 0}, -2, -3, e.falloff}; }
+
+/// The density of directions to the disk of a sun of some size.
+float sun_pdf(const DirectionalEmitter& e);
+
 /// The unit vector at an angle from the unit vector `axis` whose cosine is 1 - `one_minus_cos`. `turn` in [0,
 /// 1) goes once around.
 Vec3d around(const Vec3d& axis, double one_minus_cos, double turn);

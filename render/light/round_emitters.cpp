@@ -6,13 +6,11 @@
 #include <numbers>
 
 #include "core/math.h"
-#include "render/light/emitter_lanes.h"
+#include "render/light/round_lanes.h"
 
 namespace oktett {
 
 // Spheres.
-
-using Lane = Simd<double, 1, ScalarIsa>;
 
 static double cap_height(double sine_square) { return only_lane(cap_height_lanes(Lane(sine_square))); }
 
@@ -50,19 +48,24 @@ std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
 
 // Points and spots.
 
+/// The sample of a point or a spot; `part` is what its profile leaves of the intensity.
+static std::optional<LightSample> sample_cone(const LightCone& cone, const Color& intensity, float part,
+                                              const LightPoint& p) {
+  const Vec3d to = Vec3d(cone.position) - Vec3d(p.position);
+  const PointSamples<Lane> s =
+      sample_points(broadcast<Lane>(to), broadcast<Lane>(Vec3d(cone.axis)), Lane(cone.cos_inner),
+                    Lane(cone.cos_outer), Lane::M::from_bits(cone.falls_off ? 1 : 0));
+  std::optional<LightSample> sample = only_sample(s.at, intensity * only_lane(s.scale) * part);
+  if (sample) sample->delta = true;
+  return sample;
+}
+
 std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p, const SquareSample&) {
-  const Vec3d to = Vec3d(e.position) - Vec3d(p.position);
-  const Color light = e.falloff ? e.intensity * static_cast<float>(1 / dot(to, to)) : e.intensity;
-  return sample_at(to, light * e.profile(-to), 1, true);
+  return sample_cone(light_cone(e), e.intensity, e.profile(Vec3d(p.position) - Vec3d(e.position)), p);
 }
 
 std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p, const SquareSample&) {
-  const Vec3d to = Vec3d(e.position) - Vec3d(p.position);
-  const double square = dot(to, to), cosine = -dot(Vec3d(e.axis), to) / std::sqrt(square);
-  const double width = double{e.cos_inner} - e.cos_outer;
-  if (!(cosine > e.cos_outer)) return std::nullopt;
-  const double t = cosine >= e.cos_inner ? 1 : (cosine - e.cos_outer) / width;
-  return sample_at(to, e.intensity * static_cast<float>(t * t * (3 - 2 * t) / square), 1, true);
+  return sample_cone(light_cone(e), e.intensity, 1, p);
 }
 
 float pdf_kind(const PointEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
@@ -97,8 +100,7 @@ DirectionalEmitter::DirectionalEmitter(const Vec3f& towards, const Color& facing
   radiance = irradiance * static_cast<float>(1 / (std::numbers::pi * half * half));
 }
 
-/// The density of directions to the disk.
-static float disk_pdf(const DirectionalEmitter& e) {
+float sun_pdf(const DirectionalEmitter& e) {
   return static_cast<float>(1 / (2 * std::numbers::pi * e.height));
 }
 
@@ -119,15 +121,16 @@ std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightP
                      .u = 0,
                      .v = 0};
   if (!(e.angle > 0)) return sample;
-  sample.direction = Vec3f(around(Vec3d(e.direction), s.x * e.height, s.y));
+  sample.direction =
+      only_lane(to_float(around_lanes(broadcast<Lane>(Vec3d(e.direction)), Lane(s.x * e.height), Lane(s.y))));
   sample.radiance = e.radiance;
-  sample.pdf = disk_pdf(e);
+  sample.pdf = sun_pdf(e);
   sample.delta = false;
   return sample;
 }
 
 float pdf_kind(const DirectionalEmitter& e, const LightPoint&, const Vec3f& direction, float) {
-  return e.angle > 0 && in_disk(e, direction) ? disk_pdf(e) : 0;
+  return e.angle > 0 && in_disk(e, direction) ? sun_pdf(e) : 0;
 }
 
 std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint&,

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "render/light/emitter_kinds.h"
 #include "render/transport/render_code.h"
 
 namespace oktett {
@@ -32,10 +33,11 @@ class LightSampler {
 
   void finish() {
     const LightCode& code = render_code(context_.isa).lights;
-    finish_placed(rectangles_, code.rectangle_samples,
-                  [](const void* e) { return static_cast<const RectangleEmitter*>(e)->radiance; });
-    finish_placed(spheres_, code.sphere_samples,
-                  [](const void* e) { return static_cast<const SphereEmitter*>(e)->radiance; });
+    finish_placed<TriangleEmitter>(triangles_, code.triangle_samples);
+    finish_placed<RectangleEmitter>(rectangles_, code.rectangle_samples);
+    finish_placed<DiskEmitter>(disks_, code.disk_samples);
+    finish_placed<SphereEmitter>(spheres_, code.sphere_samples);
+    finish_points(code);
     finish_environment(code);
     finish_suns(code);
   }
@@ -43,17 +45,22 @@ class LightSampler {
  private:
   void add(std::uint32_t k, const LightPoint& from, const LightSet::Choice& chosen) {
     const Emitter& emitter = set_.emitters()[chosen.emitter];
+    if (const auto* e = std::get_if<TriangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
+      return put(triangles_, k, chosen, e, from.front_only);
     if (const auto* e = std::get_if<RectangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
       return put(rectangles_, k, chosen, e, from.front_only);
+    if (const auto* e = std::get_if<DiskEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
+      return put(disks_, k, chosen, e, from.front_only);
     if (const auto* e = std::get_if<SphereEmitter>(&emitter); e != nullptr && is_outside(*e, from.position))
       return put(spheres_, k, chosen, e, from.front_only);
+    if (const auto* e = std::get_if<PointEmitter>(&emitter)) return put_cone(k, chosen, light_cone(*e));
+    if (const auto* e = std::get_if<SpotEmitter>(&emitter)) return put_cone(k, chosen, light_cone(*e));
     if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter)) {
       if (map_ == nullptr) map_ = e;
       if (map_ == e) return put(environment_, k, chosen, e, from.front_only);
     }
-    if (const auto* e = std::get_if<DirectionalEmitter>(&emitter);
-        e != nullptr && e->angle > 0 && set_.environment_overlaps())
-      return put(suns_, k, chosen, &emitter, from.front_only);
+    if (const auto* e = std::get_if<DirectionalEmitter>(&emitter); e != nullptr && e->angle > 0)
+      return put(suns_, k, chosen, e, from.front_only);
     if (const auto sample = set_.sample(from, chosen, {c_.light_x[k], c_.light_y[k]})) set(k, *sample);
   }
 
@@ -72,6 +79,11 @@ class LightSampler {
     group.x[i] = c_.light_x[k], group.y[i] = c_.light_y[k];
   }
 
+  void put_cone(std::uint32_t k, const LightSet::Choice& chosen, const LightCone& cone) {
+    cones_[points_.count] = cone;
+    put(points_, k, chosen, &cones_[points_.count], false);
+  }
+
   static void repeat_last(LightGroup& group) {
     const std::size_t last = group.count - 1;
     for (std::size_t i = group.count; i % PathBlock::kGroup != 0; ++i) {
@@ -88,26 +100,55 @@ class LightSampler {
     c_.light_distance[k] = s.distance, c_.light_pdf[k] = s.pdf;
   }
 
-  void set(const LightGroup& group, std::size_t i, float distance, const Color& radiance, float pdf) {
+  void set(const LightGroup& group, std::size_t i, float distance, const Color& radiance, float pdf,
+           bool delta = false) {
     if (!(pdf > 0)) return;
     set(group.entry[i], LightSample{.direction = InteractionBlock::get(group.direction, i),
                                     .distance = distance,
                                     .radiance = radiance,
                                     .pdf = pdf,
-                                    .delta = false,
+                                    .delta = delta,
                                     .emitter = group.number[i],
                                     .u = static_cast<float>(group.x[i]),
                                     .v = static_cast<float>(group.y[i])});
   }
 
-  template <class Radiance>
-  void finish_placed(LightGroup& group, void (*samples)(LightGroup&), const Radiance& radiance) {
+  static float pdf_of(const LightGroup& group, std::size_t i) {
+    return static_cast<float>(group.pdf[i] * group.probability[i]);
+  }
+
+  template <class Kind>
+  void finish_placed(LightGroup& group, void (*samples)(LightGroup&)) {
     if (group.count == 0) return;
     repeat_last(group);
     samples(group);
     for (std::size_t i = 0; i < group.count; ++i)
-      set(group, i, group.distance[i], radiance(group.emitter[i]),
-          static_cast<float>(group.pdf[i] * group.probability[i]));
+      set(group, i, group.distance[i], static_cast<const Kind*>(group.emitter[i])->radiance,
+          pdf_of(group, i));
+  }
+
+  void finish_points(const LightCode& code) {
+    LightGroup& group = points_;
+    if (group.count == 0) return;
+    repeat_last(group);
+    code.point_samples(group);
+    for (std::size_t i = 0; i < group.count; ++i) {
+      const Color light = intensity(group, i) * group.scale[i] * profile(group, i);
+      if (is_finite(light)) set(group, i, group.distance[i], light, pdf_of(group, i), true);
+    }
+  }
+
+  Color intensity(const LightGroup& group, std::size_t i) const {
+    const Emitter& emitter = set_.emitters()[group.number[i]];
+    if (const auto* e = std::get_if<PointEmitter>(&emitter)) return e->intensity;
+    return std::get<SpotEmitter>(emitter).intensity;
+  }
+
+  /// What the profile of the light leaves of its intensity.
+  float profile(const LightGroup& group, std::size_t i) const {
+    const auto* e = std::get_if<PointEmitter>(&set_.emitters()[group.number[i]]);
+    if (e == nullptr || e->profile.profile == nullptr) return 1;
+    return e->profile(Vec3d(InteractionBlock::get(group.position, i)) - Vec3d(e->position));
   }
 
   void finish_environment(const LightCode& code) {
@@ -117,21 +158,20 @@ class LightSampler {
     code.map_samples(map_->map->tables(), group);
     if (set_.environment_overlaps()) return set_by_direction(code, group);
     for (std::size_t i = 0; i < group.count; ++i)
-      set(group, i, kFar, InteractionBlock::get(group.radiance, i),
-          static_cast<float>(group.pdf[i] * group.probability[i]));
+      set(group, i, kFar, InteractionBlock::get(group.radiance, i), pdf_of(group, i));
   }
 
-  /// Samples of suns where rays meet other infinite light too.
   void finish_suns(const LightCode& code) {
     LightGroup& group = suns_;
     if (group.count == 0) return;
     repeat_last(group);
-    for (std::size_t i = 0; i < group.count || i % PathBlock::kGroup != 0; ++i) {
-      const auto& emitter = *static_cast<const Emitter*>(group.emitter[i]);
-      InteractionBlock::put(group.direction, i,
-                            sample_emitter(emitter, {}, {group.x[i], group.y[i]})->direction);
+    code.sun_directions(group);
+    if (set_.environment_overlaps()) return set_by_direction(code, group);
+    for (std::size_t i = 0; i < group.count; ++i) {
+      const auto& sun = *static_cast<const DirectionalEmitter*>(group.emitter[i]);
+      group.x[i] = group.y[i] = 0;
+      set(group, i, kFar, sun.radiance, static_cast<float>(sun_pdf(sun) * group.probability[i]));
     }
-    set_by_direction(code, group);
   }
 
   /// Sets samples with the sums of radiance and density over all infinite lights in their directions.
@@ -156,7 +196,8 @@ class LightSampler {
   const InteractionBlock& found_;
   PathBlock& c_;
   const EnvironmentEmitter* map_ = nullptr;
-  LightGroup rectangles_, spheres_, environment_, suns_;
+  LightGroup triangles_, rectangles_, disks_, spheres_, points_, environment_, suns_;
+  LightCone cones_[LightGroup::kMost];  ///< of points_
 };
 
 }  // namespace

@@ -24,6 +24,7 @@ struct LightGroup {
 
   float direction[3][kMost], distance[kMost], pdf[kMost];  ///< density 0: nothing is found
   float radiance[3][kMost];                                ///< of environments
+  float scale[kMost];                                      ///< of points: irradiance over intensity
 };
 
 /// Code that samples the lights of groups.
@@ -31,8 +32,12 @@ struct LightCode {
   ChooseLights choose;
   MapCode map;
   void (*map_samples)(const EnvironmentTables&, LightGroup&);
+  void (*triangle_samples)(LightGroup&);
   void (*rectangle_samples)(LightGroup&);
+  void (*disk_samples)(LightGroup&);
   void (*sphere_samples)(LightGroup&);  ///< points outside of the spheres
+  void (*point_samples)(LightGroup&);   ///< the emitters are LightCone
+  void (*sun_directions)(LightGroup&);  ///< of suns of some size
 };
 
 /// Chooses lights for the entries listed in `entry` and fills their light columns, with the bits of

@@ -44,6 +44,34 @@ Scene crowded_room() {
   return scene;
 }
 
+/// The same room with lamps of all kinds but the sky: triangles, disks, rectangles, points and spots, one
+/// with a profile; with a sun alone, or with two, which overlap.
+Scene room_of_lamps(bool two_suns) {
+  Scene scene = crowded_room();
+  Material lamp = glowing({30, 20, 10});
+  const std::uint32_t glows = add_material(scene, lamp);
+  lamp.emits_behind = false;
+  const std::uint32_t front = add_material(scene, lamp);
+  auto mesh = std::make_shared<TriangleMesh>();
+  for (const Vec3f& p : {Vec3f{-2, 2, 1}, {-1.8f, 2.1f, 1}, {-2, 2.1f, 1.3f}, {-2.3f, 1.8f, 1.1f}})
+    mesh->positions.push_back(p);
+  for (const std::uint32_t k : {0, 1, 2, 0, 2, 3}) mesh->indices.push_back(k);
+  add_object(scene, MeshShape{mesh, {}, false, TriangleTest::watertight}, glows);
+  add_object(scene, DiskShape{{1, 2, 1}, {-0.3, -1, 0}, 0.2}, front);
+  // So close to a disk that directions are chosen within a circle.
+  add_object(scene, DiskShape{{0, -1.09, 0.5}, {0, -1, 0}, 0.5}, glows);
+  add_object(scene, PolygonShape{{{0, 2, 1}, {0.3, 2, 1}, {0.3, 2, 1.2}, {0, 2, 1.2}}}, glows);
+  LightProfile profile;
+  profile.vertical = {0, 60, 180}, profile.horizontal = {0}, profile.values = {1, 0.5f, 0.1f};
+  scene.lights = {PointLight{{1, 2, 2}, {1, 1, 1}, true}, PointLight{{-1, 2, 2}, {0.5f, 0.5f, 0.5f}, false},
+                  SpotLight{{0, 2, 2}, {0, -1, -0.5}, {9, 8, 7}, 20, 50},
+                  DirectionalLight{{1, -2, -1}, {0.5f, 0.5f, 0.4f}, 4}};
+  scene.lights.push_back(
+      PointLight{{0.5, 2, 2}, {2, 1, 1}, true, std::make_shared<const LightProfile>(profile), 30});
+  if (two_suns) scene.lights.push_back(DirectionalLight{{1.02, -2, -1}, {0.5f, 0.3f, 0.4f}, 6});
+  return scene;
+}
+
 /// The same for Whitted's model. With `varied`, glass and a pattern make some hits of most blocks wait for
 /// code that shades them alone.
 Scene crowded_whitted(bool varied) {
@@ -113,6 +141,11 @@ void expect_same_in_blocks(const Scene& scene) {
 }
 
 TEST(ShadingBlocks, PathsAreThoseOfSingleHits) { expect_same_in_blocks(crowded_room()); }
+
+TEST(ShadingBlocks, LightOfAllLampsIsThatOfSingleHits) {
+  expect_same_in_blocks(room_of_lamps(false));
+  expect_same_in_blocks(room_of_lamps(true));
+}
 
 TEST(ShadingBlocks, WhittedIsThatOfSingleHits) {
   expect_same_in_blocks(crowded_whitted(false));
