@@ -65,6 +65,20 @@ HitPlace follow_path(const Accel& accel, std::uint32_t path) {
   return place;
 }
 
+ChainLink outermost_link(const Accel& accel, std::uint32_t chain) {
+  const PathStep& step = step_of(accel, chain);
+  const std::uint32_t inner = chain - step.first_path;
+  ChainLink link{accel.geometry_of(step.item), 0, step.is_combination, step.child, inner - 1};
+  if (step.stride != 0) {
+    link.primitive = top_item(accel, chain) - accel.first_item[link.geometry];
+    link.child = accel.listed_children[listed_instance(accel, step, chain).child];
+    link.rest = inner % step.stride - 1;
+  } else if (step.is_combination) {
+    link.rest = inner / 2 - 1;
+  }
+  return link;
+}
+
 CrossedSolid crossed_solid(const Accel& accel, const Hit& hit) {
   CrossedSolid solid{&accel, kNoId, hit.item, 0};
   std::uint32_t path = hit.instance;

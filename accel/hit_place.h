@@ -25,6 +25,16 @@ struct HitPlace {
 /// Follows an instance path to the structure that contains the item.
 HitPlace follow_path(const Accel& accel, std::uint32_t path);
 
+/// The outermost link of a chain of instances and combinations, and what follows it.
+struct ChainLink {
+  std::uint32_t geometry, primitive;  ///< the instance or combination: its geometry, and its place in a list
+  bool is_combination;
+  const Accel* child;  ///< what the instance shows, or the solids of the combination
+  std::uint32_t rest;  ///< the number of the rest of the chain, inside `child`; kNoId if there is none
+};
+/// `chain` is the number of a chain of `accel`, as Hit::instance is; not kNoId.
+ChainLink outermost_link(const Accel& accel, std::uint32_t chain);
+
 /// The solid whose boundary a hit is on, where one chain of instances shows it: a primitive, or a whole mesh
 /// or combination.
 struct CrossedSolid {

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "accel/hit_place.h"
 #include "render/enclosures.h"
 #include "render/solids.h"
 
@@ -25,6 +26,7 @@ class WorldBuilder {
       pose(world_, 0, options_);
     }
     world_.sah_cost = stats(*world_.accel).sah_cost;
+    world_.structure_objects = std::make_shared<const StructureObjects>(std::move(structure_objects_));
     add_materials();
     return std::move(world_);
   }
@@ -32,6 +34,7 @@ class WorldBuilder {
  private:
   std::shared_ptr<const Accel> build_list(const std::vector<Object>& objects) {
     std::vector<Geometry> geometries;
+    std::vector<std::uint32_t> shown;  // as in StructureObjects
     std::uint64_t instances = 0;
     for (std::size_t k = 0; k < objects.size(); ++k) {
       const Object& object = objects[k];
@@ -41,22 +44,31 @@ class WorldBuilder {
       }
       Geometry geometry;
       if (const std::size_t run = instances_from(objects, k); run >= kLeastInstanceList) {
+        shown.push_back(next_object());
         geometries.push_back({instance_list(objects, k, run), {}, kNoId});
         instances += run;
         k += run - 1;
         continue;
       }
+      const std::uint32_t id = next_object();
       if (!make_geometry(object, geometry)) continue;
+      shown.push_back(id);
       const bool instance = std::holds_alternative<InstanceGeometry>(geometry.shape);
       if (instance && object.transform.is_invertible()) ++instances;
       geometries.push_back(std::move(geometry));
     }
-    return build_counted(std::move(geometries), instances);
+    return build_counted(std::move(geometries), std::move(shown), instances);
   }
 
-  /// A structure whose triangles, primitives and bytes are counted. So many of its items are `instances`.
-  std::shared_ptr<const Accel> build_counted(std::vector<Geometry> geometries, std::uint64_t instances) {
+  /// The number of the object that is added next.
+  std::uint32_t next_object() const { return static_cast<std::uint32_t>(world_.objects.size()); }
+
+  /// A structure whose triangles, primitives and bytes are counted. Its geometries show the objects `shown`;
+  /// so many of its items are `instances`.
+  std::shared_ptr<const Accel> build_counted(std::vector<Geometry> geometries,
+                                             std::vector<std::uint32_t> shown, std::uint64_t instances) {
     std::shared_ptr<const Accel> accel = build_accel(std::move(geometries), options_);
+    structure_objects_.emplace(accel.get(), std::move(shown));
     const AccelStats s = stats(*accel);
     world_.triangles += s.triangles;
     world_.primitives += s.items - std::min<std::uint64_t>(s.items, instances);
@@ -68,11 +80,12 @@ class WorldBuilder {
     Object unmoved = object;
     unmoved.transform = {};
     Geometry geometry;
+    const std::uint32_t id = next_object();
     if (!make_geometry(unmoved, geometry)) return;
     if (const auto* instance = std::get_if<InstanceGeometry>(&geometry.shape))
-      world_.moving.push_back({instance->child, object.motion, geometry.user});
+      world_.moving.push_back({instance->child, object.motion, geometry.user, id});
     else
-      world_.moving.push_back({build_counted({std::move(geometry)}, 0), object.motion, kNoId});
+      world_.moving.push_back({build_counted({std::move(geometry)}, {id}, 0), object.motion, kNoId, kNoId});
   }
 
   /// Number of instances in a row from object `first` on.
@@ -92,7 +105,7 @@ class WorldBuilder {
     list.places.reserve(count);
     for (std::size_t k = first; k < first + count; ++k) {
       const Object& object = objects[k];
-      const auto id = static_cast<std::uint32_t>(world_.objects.size());
+      const std::uint32_t id = next_object();
       world_.objects.push_back({object.material, {}, solid(object, id), object.name});
       // Without a material of its own, an instance shows those of the objects inside.
       InstancePlace place{
@@ -104,7 +117,7 @@ class WorldBuilder {
   }
 
   bool make_geometry(const Object& object, Geometry& geometry) {
-    const auto id = static_cast<std::uint32_t>(world_.objects.size());
+    const std::uint32_t id = next_object();
     world_.objects.push_back({object.material, {}, solid(object, id), object.name});
     geometry.transform = object.transform;
     geometry.user = id;
@@ -154,25 +167,35 @@ class WorldBuilder {
 
   bool convert(const CsgShape& shape, Geometry& geometry) {
     combination_ = static_cast<std::uint32_t>(world_.objects.size() - 1);
-    auto expression = std::make_shared<CsgExpression>(csg_expression(shape));
+    // A copy: operands are added to the list that holds it.
+    const std::string name = world_.objects.back().name;
+    auto expression = std::make_shared<CsgExpression>(csg_expression(shape, name));
     combination_ = kNoId;
     geometry.shape = CsgGeometry{std::move(expression)};
     return true;
   }
 
-  /// Operands are numbered as objects of their own, so that each shows its material.
-  CsgExpression csg_expression(const CsgShape& shape) {
+  /// Operands are numbered as objects of their own, so that each shows its material. Those without a name get
+  /// that of the combination around them, `name`.
+  CsgExpression csg_expression(const CsgShape& shape, const std::string& name) {
     CsgExpression expression;
     expression.op = shape.op;
     for (const Object& object : *shape.operands) {
       CsgExpression& child = expression.children.emplace_back();
+      const std::string& own_name = object.name.empty() ? name : object.name;
       if (const auto* csg = std::get_if<CsgShape>(&object.shape)) {
-        child = csg_expression(*csg);
+        child = csg_expression(*csg, own_name);
         move(child, object.transform);
         continue;
       }
       Geometry solid;
-      if (make_geometry(object, solid)) child.solids.push_back(std::move(solid));
+      if (make_geometry(object, solid)) {
+        world_.objects.back().name = own_name;
+        child.solids.push_back(std::move(solid));
+      } else {
+        // Operands have consecutive numbers, see StructureObjects.
+        world_.objects.pop_back();
+      }
     }
     return expression;
   }
@@ -231,6 +254,7 @@ class WorldBuilder {
   const BuildOptions& options_;
   World world_;
   std::vector<std::shared_ptr<const Accel>> prototypes_;
+  StructureObjects structure_objects_;
   std::set<const TriangleMesh*> seen_;
   std::uint32_t combination_ = kNoId;  ///< the object whose operands are being made
 };
@@ -249,6 +273,33 @@ void pose(World& world, double time, const BuildOptions& options) {
     geometries.push_back({InstanceGeometry{object.shape}, object.motion->at(time), object.user});
   world.accel = build_accel(std::move(geometries), options);
   world.bounds = bounds(*world.accel);
+}
+
+/// The object that geometry `geometry` of a structure shows, the first of several; kNoId if it only holds
+/// objects together.
+static std::uint32_t object_of_geometry(const World& world, const Accel& accel, std::uint32_t geometry) {
+  const auto found = world.structure_objects->find(&accel);
+  if (found != world.structure_objects->end()) return found->second[geometry];
+  // Else it is the structure of `pose`.
+  const std::uint32_t first = world.still != nullptr && stats(*world.still).items > 0 ? 1 : 0;
+  return geometry < first ? kNoId : world.moving[geometry - first].instance;
+}
+
+std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t user) {
+  const Accel* accel = world.accel.get();
+  std::uint32_t combination = kNoId;  // the object whose solids `accel` holds
+  for (std::uint32_t chain = hit.instance; chain != kNoId;) {
+    const ChainLink link = outermost_link(*accel, chain);
+    const std::uint32_t first = combination != kNoId ? combination + 1 + link.geometry
+                                                     : object_of_geometry(world, *accel, link.geometry);
+    if (!link.is_combination && first != kNoId) {
+      const ObjectMaterials& object = world.objects[first + link.primitive];
+      if (!object.name.empty() || object.material != kNoId) return first + link.primitive;
+    }
+    combination = link.is_combination ? first : kNoId;
+    accel = link.child, chain = link.rest;
+  }
+  return user;
 }
 
 const Material& material_at(const World& world, const SurfaceInteraction& surface) {

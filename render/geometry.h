@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "accel/accel.h"
@@ -23,14 +24,19 @@ struct ObjectMaterials {
   /// The object whose inside its surfaces bound: itself, or the combination that it is an operand of. kNoId
   /// if it has no inside, or if paths need not know.
   std::uint32_t solid = kNoId;
-  std::string name;  ///< of the object; may be empty
+  std::string name;  ///< of the object; that of the combination for an operand without one; may be empty
 };
+
+/// The object that each geometry of a structure shows; of a list of instances the first, which the others
+/// follow. The operands of a combination, numbered as its solids are, follow the combination.
+using StructureObjects = std::unordered_map<const Accel*, std::vector<std::uint32_t>>;
 
 /// An object that moves: a structure of its own, an instance of which stands in the world at each moment.
 struct MovingObject {
   std::shared_ptr<const Accel> shape;
   MotionPointer motion;
-  std::uint32_t user = kNoId;  ///< of the instance, as in Geometry
+  std::uint32_t user = kNoId;      ///< of the instance, as in Geometry
+  std::uint32_t instance = kNoId;  ///< the object, if it is an instance
 };
 
 /// A scene ready for rays. Objects are numbered through the prototypes in order, then through the scene's
@@ -42,6 +48,8 @@ struct World {
   std::vector<std::shared_ptr<const TriangleMesh>> meshes;  ///< kept alive for `accel`
   std::shared_ptr<const Accel> still;  ///< what does not move, if anything moves; may be null then
   std::vector<MovingObject> moving;
+  /// Of all structures but that of `pose`. Not null.
+  std::shared_ptr<const StructureObjects> structure_objects;
   Box bounds;                         ///< of all that is bounded
   bool tracks_enclosures = false;     ///< paths must know which solids they are in
   bool has_enclosing_solids = false;  ///< there are any that they must know of
@@ -59,6 +67,10 @@ World build_world(const Scene& scene, const BuildOptions& options = {});
 
 /// Places what moves where it is at `time`: changes `accel` and `bounds`. build_world does it for time 0.
 void pose(World& world, double time, const BuildOptions& options = {});
+
+/// The object that counts as a whole at a hit: the outermost instance that has a name or a material of its
+/// own, else the object whose surface was met. `user` is that of the hit's surface interaction.
+std::uint32_t whole_object(const World& world, const Hit& hit, std::uint32_t user);
 
 /// The material at a hit: that of the object, else of the mesh's slot, else the default material.
 const Material& material_at(const World& world, const SurfaceInteraction& surface);

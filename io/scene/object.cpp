@@ -14,6 +14,7 @@ namespace {
 struct Surroundings {
   Affine transform;
   std::uint32_t material = kNoId;
+  std::string name;         ///< of members without one
   bool is_dropped = false;  ///< the members are checked but not kept
   Motion motion;            ///< its value at time 0 is `transform`
 };
@@ -87,7 +88,8 @@ class ObjectReader {
         load_.objects.add(object.name, 0, name->where(), "object");
       });
     // A prototype keeps its own materials inside a group, since it is meant to look the same everywhere.
-    Surroundings inner{outer.transform, is_instance ? kNoId : outer.material, outer.is_dropped, outer.motion};
+    Surroundings inner{outer.transform, is_instance ? kNoId : outer.material,
+                       object.name.empty() ? outer.name : object.name, outer.is_dropped, outer.motion};
     if (const YamlNode* material = fields["material"])
       attempt(*material, [&] { inner.material = read_material(load_, *material); });
     if (const YamlNode* transform = fields["transform"])
@@ -108,6 +110,7 @@ class ObjectReader {
     if (!attempt(*value, [&, k = key, v = value] { shape = read_any_shape(*k, *v, inner); })) return;
     if (!shape || inner.is_dropped) return;
     object.shape = std::move(*shape);
+    object.name = inner.name;
     object.material = inner.material;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
@@ -157,7 +160,7 @@ class ObjectReader {
     const auto nodes = list_items(operands, key.text);
     if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
     // Operands stand in the space of the combination, whose transform applies to all.
-    const Surroundings inner{{}, outer.material, outer.is_dropped, {}};
+    const Surroundings inner{{}, outer.material, {}, outer.is_dropped, {}};
     std::vector<Object> solids;
     bool is_nothing = false;
     for (const YamlNode* node : nodes) {

@@ -58,8 +58,8 @@ struct Mattes {
   std::vector<std::pair<std::string, std::string>> attributes;  ///< see Picture::attributes
 };
 
-/// Those of a world. Instances show the objects of their prototype. An object without a name is called object
-/// and its number, as in geomID.I, a material without one material and its number.
+/// Those of a world. An object without a name is called object and its number, as in geomID.I, a material
+/// without one material and its number.
 Mattes mattes_of(const World& world);
 
 }  // namespace oktett

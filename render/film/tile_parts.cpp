@@ -110,7 +110,7 @@ class TileParts {
   void add_to_mattes(std::uint32_t pixel, const FirstHit& first) {
     const Mattes& mattes = *context_.mattes;
     if (!first.found) return;
-    if (first.object < mattes.objects.size()) objects_[pixel].add(mattes.objects[first.object]);
+    if (first.whole < mattes.objects.size()) objects_[pixel].add(mattes.objects[first.whole]);
     materials_[pixel].add(mattes.materials[first.material]);
   }
 

@@ -300,7 +300,8 @@ void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::s
            s.uv,
            s.primitive,
            s.user,
-           material_index(*context.world, s.user, s.material_slot)};
+           material_index(*context.world, s.user, s.material_slot),
+           context.mattes != nullptr ? whole_object(*context.world, wavefront.hits[ray], s.user) : kNoId};
 }
 
 void push_bounce(Wavefront& wavefront, RayQueue& queue, std::size_t ray, const ShadingPoint& p,

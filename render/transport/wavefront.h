@@ -22,6 +22,7 @@ struct FirstHit {
   Vec2f uv;
   std::uint32_t primitive = kNoId, object = kNoId;
   std::uint32_t material = kNoId;  ///< index into World::materials
+  std::uint32_t whole = kNoId;     ///< the object that mattes name, see whole_object(); only for mattes
 };
 
 /// Camera samples in columns: their places and their results.

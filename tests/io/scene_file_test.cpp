@@ -153,7 +153,7 @@ TEST(SceneFile, AppliesTransformsInOrder) {
   EXPECT_EQ(scene.objects[3].transform, scene.objects[4].transform);
 }
 
-TEST(SceneFile, GroupsHandDownTransformAndMaterial) {
+TEST(SceneFile, GroupsHandDownTransformMaterialAndName) {
   const Scene scene = SceneFiles().load_v1(
       "materials: {a: {}, b: {}}\n"
       "objects:\n"
@@ -172,7 +172,9 @@ TEST(SceneFile, GroupsHandDownTransformAndMaterial) {
   EXPECT_EQ(scene.objects[0].where.line, 5);
   EXPECT_EQ(scene.objects[0].where.column, 9);
   EXPECT_EQ(scene.objects[1].material, 1u);
+  EXPECT_EQ(scene.objects[1].name, "outer");
   EXPECT_EQ(scene.objects[2].material, 0u);
+  EXPECT_EQ(scene.objects[2].name, "outer");
   EXPECT_EQ(scene.objects[2].transform.point({0, 0, 0}), (Vec3d{0, 2, 0}));
 }
 
@@ -184,7 +186,7 @@ TEST(SceneFile, InstancesReferToPrototypes) {
       "  branch: {group: [{instance: leaf}, {instance: leaf, transform: {translate: [1, 0, 0]}}]}\n"
       "objects:\n"
       "  - {instance: branch, material: m}\n"
-      "  - {group: [{instance: leaf}], material: m}\n");
+      "  - {group: [{instance: leaf}], material: m, name: tree}\n");
   ASSERT_EQ(scene.prototypes.size(), 2u);
   EXPECT_EQ(scene.prototypes[1].name, "branch");
   ASSERT_EQ(scene.prototypes[1].objects.size(), 2u);
@@ -192,6 +194,7 @@ TEST(SceneFile, InstancesReferToPrototypes) {
   EXPECT_EQ(shape_of<InstanceShape>(scene).prototype, 1u);
   EXPECT_EQ(scene.objects[0].material, 0u);
   EXPECT_EQ(scene.objects[1].material, kNoId) << "a prototype keeps its materials inside a group";
+  EXPECT_EQ(scene.objects[1].name, "tree");
 }
 
 TEST(SceneFile, NumbersMayBeExpressions) {
