@@ -9,6 +9,7 @@
 #include "app/command_line.h"
 #include "app/film_options.h"
 #include "app/text.h"
+#include "app/unused_options.h"
 #include "core/error.h"
 #include "io/film/film_file.h"
 #include "io/image/image.h"
@@ -111,6 +112,7 @@ int run_merge(const MergeArguments& arguments) {
   if (arguments.outfile.empty()) throw Error("expected -o FILE, the picture to write");
   check_output(arguments.outfile);
   tone_of(arguments, {});
+  warn_of_unused_tone(arguments.film, arguments.outfile);
   // Films are read twice: all are checked before the picture takes memory, and one at a time is in memory.
   Shares shares(arguments.allow_missing);
   for (const std::string& path : arguments.films) shares.add(path, read_film(path));

@@ -20,6 +20,7 @@
 #include "app/scene_loading.h"
 #include "app/terminal/preview.h"
 #include "app/text.h"
+#include "app/unused_options.h"
 #include "core/error.h"
 #include "core/isa.h"
 #include "io/display/display.h"
@@ -129,10 +130,9 @@ class PhotonFile {
  public:
   PhotonFile(const RenderArguments& arguments, const Scene& scene, RenderOptions& options)
       : path_(arguments.photon_map) {
-    const bool path = scene.integrator.kind == IntegratorKind::path;
-    if (!path && arguments.caustics) throw Error("--caustics needs the integrator 'path'");
     if (path_.empty()) return;
-    if (!path) throw Error("--photon-map needs the integrator 'path'");
+    if (scene.integrator.kind != IntegratorKind::path)
+      throw Error("--photon-map needs the integrator 'path'");
     if (std::filesystem::exists(path_)) {
       options.photons = read_photon_map(path_);
       path_.clear();
@@ -211,6 +211,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   const bool writes_film = !checkpoint.film_output().empty();
   const std::string output = writes_film ? checkpoint.film_output() : output_path(arguments);
   const bool writes_picture = !writes_film && !output.empty();
+  check_target_options(arguments, {writes_picture ? output : "", writes_film});
   if (writes_picture) check_output(output);
   RenderOptions options = options_of(arguments, writes_film || (writes_picture && keeps_all_planes(output)));
 

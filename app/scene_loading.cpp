@@ -5,13 +5,15 @@
 #include <optional>
 
 #include "app/command_line.h"
+#include "app/unused_options.h"
 #include "core/error.h"
 #include "io/scene/scene_file.h"
 #include "render/look/default_look.h"
 
 namespace oktett {
 
-Scene load_as_asked(const RenderArguments& arguments) {
+/// The scene with what was asked for, where options may still contradict each other.
+static Scene load_overridden(const RenderArguments& arguments) {
   // A mistyped option should not cost the time to read a large scene.
   Scene none;
   override_scene(arguments, none);
@@ -29,6 +31,12 @@ Scene load_as_asked(const RenderArguments& arguments) {
   apply_look(scene, *look);
   // The look chooses the number of samples.
   override_scene(arguments, scene);
+  return scene;
+}
+
+Scene load_as_asked(const RenderArguments& arguments) {
+  Scene scene = load_overridden(arguments);
+  check_light_options(arguments, scene);
   return scene;
 }
 

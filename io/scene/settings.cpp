@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <memory>
@@ -121,6 +122,30 @@ static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings
   }
 }
 
+/// Warns of settings that change nothing, given the others. The command line may choose another integrator.
+static void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
+  const IntegratorSettings& s = load.scene.integrator;
+  const auto warn = [&](const char* key, bool is_unused, const std::string& why) {
+    const YamlNode* const node = fields[key];
+    if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);
+  };
+  const bool path = s.kind == IntegratorKind::path, whitted = s.kind == IntegratorKind::whitted;
+  const auto only = [&](const char* kinds) {
+    const auto* const kind = std::ranges::find(kIntegratorKinds, s.kind, &Choice<IntegratorKind>::value);
+    return fmt::format("it is for {}, but the integrator is {}", kinds, quote(kind->name));
+  };
+  warn("depth", !path && !whitted, only("'whitted' and 'path'"));
+  warn("ao_radius", s.kind != IntegratorKind::ao && s.ao_radius > 0, only("'ao'"));
+  warn("caustics", !path && s.caustics.photons > 0, only("'path'"));
+  warn("light_samples", !whitted && s.light_samples > 0, only("'whitted'"));
+  warn("penumbra_factor", !whitted, only("'whitted'"));
+  warn("penumbra_factor", whitted && s.light_samples == 0, "there are no 'light_samples'");
+  warn("max_samples", s.error == 0, "there is no 'error'");
+  warn("error", s.error > 0 && s.max_samples / s.samples < 2,
+       fmt::format("pixels get {} samples or at least twice as many, but 'max_samples' is {}", s.samples,
+                   s.max_samples));
+}
+
 void read_integrator(SceneLoad& load, const YamlNode& node) {
   const Fields fields(node, "integrator",
                       {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples",
@@ -146,6 +171,7 @@ void read_integrator(SceneLoad& load, const YamlNode& node) {
                   fmt::format("expected 1, 2, 4, 8 or 16, found {}", integrator.penumbra_factor));
   }
   if (const YamlNode* caustics = fields["caustics"]) read_caustics(load, *caustics, integrator.caustics);
+  warn_of_unused_settings(load, fields);
 }
 
 }  // namespace oktett

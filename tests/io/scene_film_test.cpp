@@ -52,6 +52,43 @@ TEST(SceneFilm, BadLensesAndFiltersAreErrors) {
   expect_starts(error("integrator: {clamp: -1}\n"), "scene.yaml:2:21: expected a number of at least 0");
 }
 
+// Each is named with what it lacks; settings that are switched off are none.
+TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
+  const auto warnings = [](const std::string& integrator) {
+    SceneFiles files;
+    std::string all;
+    for (const Warning& w : files.load_v1("integrator: {" + integrator + "}\n").warnings)
+      all += files.without_directory(to_string(w)) + "\n";
+    return all;
+  };
+  const std::string no_effect = " has no effect: ";
+  EXPECT_EQ(warnings("kind: ao, depth: 3"),
+            "scene.yaml:2:31: warning: 'depth'" + no_effect +
+                "it is for 'whitted' and 'path', but the integrator is 'ao'\n");
+  EXPECT_EQ(warnings("ao_radius: 1"), "scene.yaml:2:25: warning: 'ao_radius'" + no_effect +
+                                          "it is for 'ao', but the integrator is 'whitted'\n");
+  EXPECT_EQ(warnings("caustics: true"), "scene.yaml:2:24: warning: 'caustics'" + no_effect +
+                                            "it is for 'path', but the integrator is 'whitted'\n");
+  EXPECT_EQ(warnings("kind: path, light_samples: 9"),
+            "scene.yaml:2:41: warning: 'light_samples'" + no_effect +
+                "it is for 'whitted', but the integrator is 'path'\n");
+  EXPECT_EQ(warnings("kind: path, penumbra_factor: 4"),
+            "scene.yaml:2:43: warning: 'penumbra_factor'" + no_effect +
+                "it is for 'whitted', but the integrator is 'path'\n");
+  EXPECT_EQ(warnings("penumbra_factor: 4"),
+            "scene.yaml:2:31: warning: 'penumbra_factor'" + no_effect + "there are no 'light_samples'\n");
+  EXPECT_EQ(warnings("max_samples: 64"),
+            "scene.yaml:2:27: warning: 'max_samples'" + no_effect + "there is no 'error'\n");
+  EXPECT_EQ(warnings("samples: 9, error: 0.1, max_samples: 17"),
+            "scene.yaml:2:33: warning: 'error'" + no_effect +
+                "pixels get 9 samples or at least twice as many, but 'max_samples' is 17\n");
+  for (const char* used :
+       {"kind: path, depth: 3, caustics: {photons: 9}", "depth: 3, light_samples: 9, penumbra_factor: 2",
+        "kind: ao, ao_radius: 1", "samples: 9, error: 0.1, max_samples: 18",
+        "kind: wire, ao_radius: 0, caustics: false, light_samples: 0, error: 0"})
+    EXPECT_EQ(warnings(used), "") << used;
+}
+
 TEST(SceneFilm, ReadsAdaptiveSampling) {
   const Scene scene = SceneFiles().load_v1("integrator: {error: 0.02, max_samples: 500}\n");
   EXPECT_EQ(scene.integrator.error, 0.02);
