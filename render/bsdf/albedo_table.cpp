@@ -25,7 +25,8 @@ double AlbedoTable::node_alpha(int j) const {
 double AlbedoTable::width(double alpha) const {
   if (width_ == NodeWidth::alpha) return alpha;
   const double rho = std::sqrt(alpha);
-  return width_ == NodeWidth::root ? rho : rho * std::sqrt(rho);
+  if (width_ == NodeWidth::three_quarters) return rho * std::sqrt(rho);
+  return width_ == NodeWidth::root ? rho : 6 * rho;
 }
 
 double AlbedoTable::node_mu(int i, double alpha) const {

@@ -30,8 +30,8 @@ struct AlbedoRow {
   }
 };
 
-/// Up to which mu nodes of an AlbedoTable lie close together: a power of alpha.
-enum class NodeWidth { alpha, three_quarters, root };
+/// Up to which mu nodes of an AlbedoTable lie close together: a power of alpha, or six times its root.
+enum class NodeWidth { alpha, three_quarters, root, six_roots };
 
 /// A quantity in [0, 1] by the cosine `mu` of a direction with the normal and by the width `alpha` of the
 /// facets, both in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That

@@ -10,12 +10,13 @@
 #include "core/math.h"
 #include "render/bsdf/ggx.h"
 #include "render/bsdf/optics.h"
+#include "render/bsdf/principled_surface.h"
 #include "render/sampling/square_sample.h"
 
 namespace oktett {
 namespace {
 
-constexpr int kMirrorNodes = 32, kNodes = 24, kInsideNodes = 40;
+constexpr int kMirrorNodes = 32, kNodes = 24, kInsideNodes = 40, kNearOneNodes = 48;
 using Lane = Simd<double, 1, ScalarIsa>;
 
 Vec3d visible_normal(const Vec3d& w, double alpha, double x, double y) {
@@ -109,24 +110,49 @@ const MirrorTables& mirror_tables() {
   return tables;
 }
 
-/// Tables are kept for whole multiples of this step of the amplitude that is reflected head-on,
-/// (eta - 1) / (eta + 1). It is 16 steps for eta = 1.5.
+/// Tables are kept for some values of the amplitude that is reflected head-on, |eta - 1| / (eta + 1), counted
+/// in steps of this size. It is 16 steps for eta = 1.5.
 constexpr double kStep = 1 / 80.0;
 constexpr int kSteps = 48;
 
-double ior_of_step(int step) {
-  const double r = step == 0 ? 1e-3 : step * kStep;
+/// The numbers of steps for which there are tables, in increasing order.
+using Grid = std::vector<double>;
+constexpr int kFewSteps = 3;
+
+/// Each step from kFewSteps on. For a small amplitude r, a dielectric begins to mirror at angles of about
+/// 2 sqrt(r) from grazing. Where facets are as wide as that, their albedo changes with the logarithm of r. So
+/// below kFewSteps there are four tables for each octave, down to `least` steps.
+Grid grid_from(double least) {
+  constexpr double kFourths[] = {1, 0.8408964152537145, 0.7071067811865476, 0.5946035575013605};
+  Grid steps;
+  for (double octave = 2; octave > least; octave /= 2)
+    for (const double part : kFourths) steps.insert(steps.begin(), octave * part);
+  steps.push_back(2.5);
+  for (int i = kFewSteps; i <= kSteps; ++i) steps.push_back(i);
+  return steps;
+}
+
+double ior_of_steps(double steps) {
+  const double r = steps * kStep;
   return (1 + r) / (1 - r);
 }
 
-/// The tables of all steps, made when first used.
+/// Whether the grid is closer at this index.
+bool near_one(double eta) { return std::abs(eta - 1) / (eta + 1) < (kFewSteps - 0.01) * kStep; }
+
+/// The tables at place `i` of their grid, for an index above 1 or, if `inside`, for one below. Made when
+/// first used.
 template <class Tables>
-const Tables& tables_of_step(int step) {
-  static std::array<std::once_flag, 2 * kSteps + 1> once;
-  static std::array<std::unique_ptr<const Tables>, 2 * kSteps + 1> made;
-  const int i = step + kSteps;
-  std::call_once(once[i], [&] { made[i] = std::make_unique<const Tables>(ior_of_step(step)); });
-  return *made[i];
+const Tables& tables_at(int i, bool inside) {
+  static const std::size_t size = Tables::grid().size();
+  static std::vector<std::once_flag> once(2 * size);
+  static std::vector<std::unique_ptr<const Tables>> made(2 * size);
+  const std::size_t k = inside ? size + i : i;
+  std::call_once(once[k], [&] {
+    const double steps = Tables::grid()[i];
+    made[k] = std::make_unique<const Tables>(ior_of_steps(inside ? -steps : steps));
+  });
+  return *made[k];
 }
 
 /// Two tables between which an albedo is interpolated, for indices of refraction.
@@ -149,12 +175,18 @@ struct TablePair {
 
 template <class Tables>
 TablePair<Tables> tables_for(double eta) {
-  double x = std::clamp((eta - 1) / (eta + 1) / kStep, -double{kSteps}, double{kSteps});
-  // Close to a step, as indices given in float are, one table is enough.
-  if (std::abs(x - std::floor(x + 0.5)) < 1e-4) x = std::floor(x + 0.5);
-  const int i = static_cast<int>(std::floor(x));
-  const Tables& first = tables_of_step<Tables>(i);
-  return {&first, x == i ? &first : &tables_of_step<Tables>(i + 1), x - i};
+  const Grid& grid = Tables::grid();
+  const bool inside = eta < 1;
+  const double x = std::clamp(std::abs(eta - 1) / (eta + 1) / kStep, grid.front(), grid.back());
+  const auto next = std::upper_bound(grid.begin() + 1, grid.end() - 1, x);
+  const int above = static_cast<int>(next - grid.begin());
+  const auto table = [&](int i) { return &tables_at<Tables>(i, inside); };
+  const double gap = grid[above] - grid[above - 1];
+  // Close to the index of a table, as indices given in float are, that table is enough.
+  for (const int i : {above - 1, above})
+    if (std::abs(x - grid[i]) < 1e-4 * std::min(gap, 1.0)) return {table(i), table(i), 0};
+  if (inside) return {table(above), table(above - 1), (grid[above] - x) / gap};
+  return {table(above - 1), table(above), (x - grid[above - 1]) / gap};
 }
 
 }  // namespace
@@ -172,7 +204,8 @@ struct ReflectedAlbedo::Tables {
 
   explicit Tables(double ior)
       : eta(ior),
-        difference(kNodes, NodeWidth::alpha,
+        difference(near_one(ior) ? kNearOneNodes : kNodes,
+                   near_one(ior) ? NodeWidth::three_quarters : NodeWidth::alpha,
                    [&](double mu, double alpha) {
                      return reflected(mu, alpha, [&](double c) { return fresnel(c, eta); }) -
                             like_smooth(mu, alpha, eta);
@@ -184,6 +217,15 @@ struct ReflectedAlbedo::Tables {
       const double mu = (i + 0.5) / kPoints;
       smooth_loss += (1 - fresnel(mu, eta)) * 2 * mu / kPoints;
     }
+  }
+  /// Also for the index 1, which reflects nothing. The next one reflects only at angles below 0.1 degrees.
+  static const Grid& grid() {
+    static const Grid grid = [] {
+      Grid steps = grid_from(1e-4);
+      steps.insert(steps.begin(), 0);
+      return steps;
+    }();
+    return grid;
   }
   static double like_smooth(double mu, double alpha, double eta) {
     return mirror_tables().albedo.at(mu, alpha) * fresnel(mu, eta);
@@ -208,10 +250,20 @@ struct GlassAlbedo::Tables {
   LossTable loss;
 
   explicit Tables(double eta)
-      // From inside, the albedo has a bend near the critical angle, far from grazing.
-      : albedo(eta < 1 ? kInsideNodes : kNodes, eta < 1 ? NodeWidth::root : NodeWidth::three_quarters,
+      : albedo(nodes(eta), width(eta),
                [=](double mu, double alpha) { return reflected_and_transmitted(mu, alpha, eta); }),
         loss(4, [this](double mu, double alpha) { return at(mu, alpha); }) {}
+  // From inside, the albedo has a bend near the critical angle, far from grazing. For an index near 1 and the
+  // widest facets, another one is near the normal.
+  static int nodes(double eta) { return eta > 1 ? kNodes : near_one(eta) ? kNearOneNodes : kInsideNodes; }
+  static NodeWidth width(double eta) {
+    return eta > 1 ? NodeWidth::three_quarters : near_one(eta) ? NodeWidth::six_roots : NodeWidth::root;
+  }
+  /// Down to what counts as smooth glass.
+  static const Grid& grid() {
+    static const Grid grid = grid_from(kLeastIorDifference / (2 + kLeastIorDifference) / kStep);
+    return grid;
+  }
   double at(double mu, double alpha) const { return 1 - lowered(1 - albedo.at(mu, alpha), kGlassError); }
 };
 

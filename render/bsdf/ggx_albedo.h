@@ -3,7 +3,7 @@
 /// facets send to other facets; the lobes of render/bsdf/principled_lobes.h give it back.
 ///
 /// The albedos come from tables that are computed when they are first needed, by numerical integration in a
-/// fixed order: 10 to 20 ms for each table. They are raised by a bound of their error, 0.1 to 0.5 %, so that
+/// fixed order: 10 to 60 ms for each table. They are raised by a bound of their error, 0.1 to 0.5 %, so that
 /// what is given back is never too much. Cosines are given in lanes, and are in (0, 1].
 
 #include "render/bsdf/albedo_table.h"

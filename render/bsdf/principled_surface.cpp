@@ -37,6 +37,7 @@ static double facet_width(double roughness) {
 
 bool is_smooth_glass(const PrincipledParameters& p) {
   const double ior = limited(p.ior, 1 / kMostIor, kMostIor);
+  // By the greater of the two indices, so that both sides agree.
   return facet_width(p.roughness) == 0 || (!p.thin && std::max(ior, 1 / ior) - 1 < kLeastIorDifference);
 }
 

@@ -84,6 +84,7 @@ T any_of(const T (&list)[N], std::uint64_t key, std::uint32_t dimension) {
 constexpr float kRoughness[] = {0.032f, 0.06f, 0.12f, 0.25f, 0.35f, 0.6f, 0.8f, 1};
 constexpr double kCosine[] = {0.01, 0.05, 0.2, 0.5, 0.7, 0.9, 0.999, 1};
 constexpr float kIor[] = {0.4f, 0.7f, 0.9f, 1.05f, 1.33f, 1.5f, 2.4f};
+constexpr float kIorNearOne[] = {0.99f, 0.995f, 0.999f, 1, 1.001f, 1.005f, 1.01f, 1.02f, 1.03f};
 constexpr float kWeight[] = {0, 0, 0.5f, 1};
 constexpr Color kColor[] = {{1, 1, 1}, {0.8f, 0.3f, 0.1f}, {0, 0, 0}, {0.1f, 0.9f, 0.5f}};
 
@@ -103,6 +104,7 @@ TEST_P(PrincipledSets, SamplesFollowTheDensity) {
     if (kind == 0) p.metallic = 1;
     if (kind == 1) p.specular = any_of(kWeight, key, 5);
     if (kind == 2 || kind == 3) p.transmission = 1, p.thin = kind == 3;
+    if (kind == 7) p.transmission = 1, p.ior = any_of(kIorNearOne, key, 1);
     if (kind == 4) p.metallic = 1, p.conductor.emplace();
     if (kind == 5)
       p.coat = 1, p.coat_roughness = any_of(kRoughness, key, 6), p.sheen = any_of(kWeight, key, 7);
@@ -117,16 +119,19 @@ TEST_P(PrincipledSets, SamplesFollowTheDensity) {
                                     << " cosine " << mu << " front " << front);
     const Vec3f wo = direction_at(mu, 1 + n);
     const double eta = p.thin ? 1 : front ? p.ior : 1 / p.ior;
-    expect_samples_follow_density(setting(principled_bsdf(p, wo, front), wo, eta), key);
+    Setting s = setting(principled_bsdf(p, wo, front), wo, eta);
+    if (kind == 7) s.refracted = refracted_by_facets(Vec3d(wo), p.roughness, eta);
+    expect_samples_follow_density(s, key);
   }
 }
 
 std::string kind_name(const testing::TestParamInfo<int>& info) {
-  static const char* const names[] = {"Metal", "Opaque", "Glass", "Thin", "Conductor", "Layers", "Mixtures"};
+  static const char* const names[] = {"Metal",     "Opaque", "Glass",    "Thin",
+                                      "Conductor", "Layers", "Mixtures", "GlassNearOne"};
   return names[info.param];
 }
 
-INSTANTIATE_TEST_SUITE_P(Bsdf, PrincipledSets, testing::Range(0, 7), kind_name);
+INSTANTIATE_TEST_SUITE_P(Bsdf, PrincipledSets, testing::Range(0, 8), kind_name);
 
 TEST(BsdfPhong, SamplesFollowTheDensity) {
   constexpr float kExponent[] = {0, 0.5f, 1, 10, 32.5f, 1000, 30000};

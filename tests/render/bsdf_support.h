@@ -29,6 +29,15 @@ inline double lambda(double cosine, double alpha) {
   return (std::sqrt(1 + t * t) - 1) / 2;
 }
 
+/// Where light goes through a facet that is seen well from `wo`: nearly all of them if they are narrow.
+inline Vec3d refracted_by_facets(const Vec3d& wo, double roughness, double eta) {
+  const double alpha2 = std::pow(roughness, 4);
+  const Vec3d m = normalize(Vec3d{alpha2 * wo.x, alpha2 * wo.y, wo.z});
+  const double c = dot(wo, m), behind = std::sqrt(std::max(0.0, 1 - (1 - c * c) / (eta * eta)));
+  const Vec3d wi = m * (c / eta - behind) - wo * (1 / eta);
+  return {wi.x, wi.y, std::min(wi.z, -1e-3)};
+}
+
 /// Polar coordinates about an axis: the unit square maps to the half of the sphere, above or below z = 0,
 /// that the axis points to. A direction is (angle to the axis, azimuth) = (A s^4, 2 pi t), where A is the
 /// angle at which that azimuth meets z = 0. So the square is dense at the axis and ends at the horizon.

@@ -68,7 +68,7 @@ TEST(Bsdf, GlassTransmitsAsTheMicrofacetFormula) {
 }
 
 TEST(Bsdf, BaseIsReciprocal) {
-  constexpr float kIor[] = {0.7f, 1.33f, 1.5f, 2.4f};
+  constexpr float kIor[] = {0.7f, 0.99f, 0.999f, 1.001f, 1.005f, 1.03f, 1.33f, 1.5f, 2.4f};
   for (std::uint64_t n = 0; n < 2000; ++n) {
     const std::uint64_t key = mix_bits(n + 5000);
     const Vec3f a = random_above(key), b = random_above(key + 1);
@@ -76,7 +76,7 @@ TEST(Bsdf, BaseIsReciprocal) {
     p.roughness = 0.04f + 0.96f * random_float(key, 2, 0);
     p.metallic = random_float(key, 2, 1) < 0.3f ? 0.4f : 0;
     p.transmission = random_float(key, 2, 2);
-    p.ior = kIor[n % 4];
+    p.ior = kIor[n % std::size(kIor)];
     p.thin = n % 5 == 0;
     if (n % 7 == 0) p.conductor.emplace();
     const bool front = n % 2 == 0;
