@@ -81,7 +81,7 @@ std::vector<LightSource> light_sources(const Scene& scene) {
 void enclose_camera(const Camera& camera, RenderContext& context) {
   if (!context.tracks_enclosures) return;
   context.camera_place = Vec3f(camera.from);
-  context.camera_enclosures = enclosures_at(*context.world, context.camera_place);
+  context.camera_enclosures = enclosures_at(context, context.camera_place);
 }
 
 /// See RenderContext::interiors.

@@ -4,6 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "render/shading_point.h"
+
 namespace oktett {
 
 void EnclosureStack::enter(const Enclosure& enclosure) {
@@ -31,18 +33,16 @@ bool encloses(const Material& m) {
   return m.transparency > 0;
 }
 
-static float ior_of(const Material& m) {
-  if (!m.surface) return 1;
-  return m.principled ? m.principled->parameters.ior : m.ior;
+static const Material& material_of(const World& world, const Enclosure& e) {
+  return world.materials[e.material];
 }
 
 /// The entry that fills the space; null if there is none.
-static const Material* filling(const World& world, const EnclosureStack& stack) {
-  const Material* best = nullptr;
-  for (std::uint32_t i = 0; i < stack.size(); ++i) {
-    const Material& m = world.materials[stack[i].material];
-    if (best == nullptr || m.priority >= best->priority) best = &m;
-  }
+static const Enclosure* filling(const World& world, const EnclosureStack& stack) {
+  const Enclosure* best = nullptr;
+  for (std::uint32_t i = 0; i < stack.size(); ++i)
+    if (best == nullptr || material_of(world, stack[i]).priority >= material_of(world, *best).priority)
+      best = &stack[i];
   return best;
 }
 
@@ -56,45 +56,57 @@ static Enclosure enclosure_of(const World& world, const SurfaceInteraction& surf
 }
 
 Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
-                     bool front) {
+                     bool front, float ior) {
   Boundary b;
   b.behind = before;
-  const Enclosure e = enclosure_of(world, surface);
+  Enclosure e = enclosure_of(world, surface);
   if (e.solid == kNoId) return b;
+  e.ior = ior;
   front ? b.behind.enter(e) : b.behind.leave(e);
-  const Material& m = world.materials[e.material];
-  if (m.priority == kNoPriority) return b;
-  const Material* around = filling(world, front ? before : b.behind);
-  if (around == nullptr || around->priority == kNoPriority) return b;
-  b.hidden = around->priority > m.priority;
-  b.ior = ior_of(m) / ior_of(*around);
+  const std::int32_t priority = material_of(world, e).priority;
+  if (priority == kNoPriority) return b;
+  const Enclosure* around = filling(world, front ? before : b.behind);
+  if (around == nullptr || material_of(world, *around).priority == kNoPriority) return b;
+  b.hidden = material_of(world, *around).priority > priority;
+  b.ior = ior / around->ior;
+  return b;
+}
+
+Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+                     bool front) {
+  Boundary b = boundary_at(world, before, surface, front, 1);
+  b.ior.reset();
   return b;
 }
 
 std::uint32_t medium_in(const World& world, const EnclosureStack& enclosures, std::uint32_t outside) {
-  const Material* m = filling(world, enclosures);
-  return m != nullptr ? m->interior : outside;
+  const Enclosure* e = filling(world, enclosures);
+  return e != nullptr ? material_of(world, *e).interior : outside;
 }
 
-EnclosureStack enclosures_behind(const World& world, const EnclosureStack& before, const Ray& ray,
+EnclosureStack enclosures_behind(const RenderContext& context, const EnclosureStack& before, const Ray& ray,
                                  std::span<const Hit> hits) {
+  const World& world = *context.world;
   EnclosureStack stack = before;
   for (const Hit& hit : hits) {
     const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
-    stack = boundary_at(world, stack, s, !(dot(ray.direction, s.geometric_normal) > 0)).behind;
+    const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
+    stack = boundary_at(world, stack, s, front, index_of_refraction(context, ray, hit, s)).behind;
   }
   return stack;
 }
 
 /// The solids that the ray leaves without having entered them, in order.
-static std::vector<Enclosure> left_by(const World& world, const Ray& ray) {
+static std::vector<Enclosure> left_by(const RenderContext& context, const Ray& ray) {
+  const World& world = *context.world;
   std::vector<Hit> hits;
   all_hits(*world.accel, ray, hits);
   std::vector<Enclosure> entered, left;
   for (const Hit& hit : hits) {
     const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
-    const Enclosure e = enclosure_of(world, s);
+    Enclosure e = enclosure_of(world, s);
     if (e.solid == kNoId) continue;
+    e.ior = index_of_refraction(context, ray, hit, s);
     if (!(dot(ray.direction, s.geometric_normal) > 0)) {
       entered.push_back(e);
       continue;
@@ -109,14 +121,14 @@ static std::vector<Enclosure> left_by(const World& world, const Ray& ray) {
   return left;
 }
 
-EnclosureStack enclosures_at(const World& world, const Vec3f& point) {
+EnclosureStack enclosures_at(const RenderContext& context, const Vec3f& point) {
   EnclosureStack stack;
-  if (!world.has_enclosing_solids) return stack;
+  if (!context.world->has_enclosing_solids) return stack;
   // A direction along no axis or diagonal, where rays might run along edges. A solid without bounds, such as
   // a half-space, may be left in one of two opposite directions only.
   const Vec3f direction = normalize(Vec3f{0.5377f, 0.7221f, -0.4349f});
-  std::vector<Enclosure> left = left_by(world, {point, 0, direction});
-  std::vector<Enclosure> behind = left_by(world, {point, 0, -direction});
+  std::vector<Enclosure> left = left_by(context, {point, 0, direction});
+  std::vector<Enclosure> behind = left_by(context, {point, 0, -direction});
   if (behind.size() > left.size()) std::swap(left, behind);
   for (std::size_t i = left.size(); i-- > 0;) stack.enter(left[i]);
   return stack;

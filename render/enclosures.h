@@ -13,10 +13,13 @@
 
 namespace oktett {
 
+struct RenderContext;
+
 /// A solid that a path has entered, by the material that it met there. Both are indices into World.
 struct Enclosure {
   std::uint32_t solid = kNoId, material = kNoId;
-  bool operator==(const Enclosure&) const = default;
+  float ior = 1;  ///< index of refraction of the material where it was entered
+  bool operator==(const Enclosure& other) const { return solid == other.solid && material == other.material; }
 };
 
 /// Solids in the order in which they were entered. Of more than kMost the first one is forgotten.
@@ -50,7 +53,10 @@ struct Boundary {
 bool encloses(const Material& material);
 
 /// `before`: the solids around a path that meets a surface named by `surface`; `front`: it comes from where
-/// the surface's normal points to.
+/// the surface's normal points to; `ior`: that of the material there.
+Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+                     bool front, float ior);
+/// The same for rays that are not bent: indices of refraction are left out.
 Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
                      bool front);
 
@@ -59,11 +65,11 @@ std::uint32_t medium_in(const World& world, const EnclosureStack& enclosures, st
 
 /// The solids that a point lies in, by the crossings of a ray from there with all surfaces. Those that it
 /// leaves first come last.
-EnclosureStack enclosures_at(const World& world, const Vec3f& point);
+EnclosureStack enclosures_at(const RenderContext& context, const Vec3f& point);
 
 /// The solids around a ray that starts with those of `before` and goes straight through the surfaces that
 /// `hits` lists in order.
-EnclosureStack enclosures_behind(const World& world, const EnclosureStack& before, const Ray& ray,
+EnclosureStack enclosures_behind(const RenderContext& context, const EnclosureStack& before, const Ray& ray,
                                  std::span<const Hit> hits);
 
 }  // namespace oktett

@@ -28,23 +28,39 @@ PrincipledMaterial principled_like(const Material& m) {
   return principled;
 }
 
-void resemble_principled(Material& m) {
-  const PrincipledParameters& p = m.principled->parameters;
-  const float metal = std::clamp(p.metallic, 0.0f, 1.0f);
-  const float glass = (1 - metal) * std::clamp(p.transmission, 0.0f, 1.0f);
+static float unit(float x) { return std::clamp(x, 0.0f, 1.0f); }
+
+PhongValues resembling_values(const PrincipledParameters& p) {
+  const float metal = unit(p.metallic), glass = glass_weight(metal, unit(p.transmission));
   const float opaque = 1 - metal - glass;
   const bool mirror = p.roughness < kMirrorRoughness;
-  m.color = p.base_color;
-  m.ambient = 0.1f * opaque, m.diffuse = opaque;
-  m.specular_color = metal > 0.5f ? p.base_color : Color{1, 1, 1};
-  m.reflection = mirror ? metal : 0;
-  m.transparency = glass;
-  m.ior = p.ior;
+  PhongValues v{};
+  v.ambient = 0.1f * opaque, v.diffuse = opaque;
+  v.reflection = mirror ? metal : 0;
+  v.transparency = glass;
   // The exponent whose highlight is as wide as facets of that roughness.
   const float alpha = std::max(p.roughness * p.roughness, 0.01f);
-  m.phong = std::max(2 / (alpha * alpha) - 2, 0.0f);
-  const float dielectric = 0.08f * std::clamp(p.specular, 0.0f, 1.0f) * opaque;
-  m.specular = (mirror ? dielectric : metal + dielectric) * std::min(1.0f, (m.phong + 2) / 16);
+  v.phong = std::max(2 / (alpha * alpha) - 2, 0.0f);
+  const float dielectric = 0.08f * unit(p.specular) * opaque;
+  v.specular = (mirror ? dielectric : metal + dielectric) * std::min(1.0f, (v.phong + 2) / 16);
+  return v;
+}
+
+Color resembling_specular_color(const PrincipledParameters& p) {
+  return unit(p.metallic) > 0.5f ? p.base_color : Color{1, 1, 1};
+}
+
+void resemble_principled(Material& m) {
+  PrincipledMaterial& principled = *m.principled;
+  const PrincipledParameters& p = principled.parameters;
+  const PhongValues v = resembling_values(p);
+  m.color = p.base_color, m.specular_color = resembling_specular_color(p);
+  m.ambient = v.ambient, m.diffuse = v.diffuse, m.specular = v.specular, m.phong = v.phong;
+  m.reflection = v.reflection;
+  const float least_metallic = principled.metallic_texture == kNoId ? unit(p.metallic) : 0;
+  m.transparency = glass_weight(least_metallic, unit(p.transmission));
+  m.ior = p.ior;
+  principled.resembled = true;
 }
 
 }  // namespace oktett

@@ -40,6 +40,9 @@ struct PrincipledMaterial {
   std::uint32_t transmission_texture = kNoId, coat_texture = kNoId, coat_roughness_texture = kNoId;
   std::uint32_t sheen_texture = kNoId, sheen_color_texture = kNoId, sheen_roughness_texture = kNoId;
   std::uint32_t ior_texture = kNoId, coat_ior_texture = kNoId;
+  /// Whitted's model shows at each hit what comes near to the parameters there, see resemble_principled;
+  /// false: it shows the numbers of Material.
+  bool resembled = false;
   bool operator==(const PrincipledMaterial&) const = default;
 };
 
@@ -51,6 +54,7 @@ struct PrincipledNumber {
   std::uint32_t PrincipledMaterial::*texture;
   Range range = kUnitInterval;
 };
+inline constexpr Range kPrincipledIors{0.25, 4};
 inline constexpr PrincipledNumber kPrincipledNumbers[] = {
     {"metallic", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture},
     {"roughness", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture},
@@ -60,7 +64,7 @@ inline constexpr PrincipledNumber kPrincipledNumbers[] = {
     {"coat_roughness", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture},
     {"sheen", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
     {"sheen_roughness", &PrincipledParameters::sheen_roughness, &PrincipledMaterial::sheen_roughness_texture},
-    {"ior", &PrincipledParameters::ior, &PrincipledMaterial::ior_texture, {0.25, 4}},
+    {"ior", &PrincipledParameters::ior, &PrincipledMaterial::ior_texture, kPrincipledIors},
     {"coat_ior", &PrincipledParameters::coat_ior, &PrincipledMaterial::coat_ior_texture, {1, 4}}};
 
 /// The priority of materials that have none: lower than all others.
@@ -88,7 +92,8 @@ struct Material {
   float ior = 1.5f;               ///< index of refraction inside relative to outside, > 0
   float opacity = 1;              ///< part of the surface that is there, [0, 1]; the rest is holes
   /// If given, path tracing scatters light by it. Emission, opacity, bumps and normals are those of the other
-  /// members, and so is all that Whitted's model shows: see resemble_principled.
+  /// members, and so is all that Whitted's model shows of a material without textures: see
+  /// resemble_principled.
   std::optional<PrincipledMaterial> principled;
   std::uint32_t color_texture = kNoId;     ///< index into Scene::textures; multiplies `color` (map_Kd)
   std::uint32_t specular_texture = kNoId;  ///< multiplies `specular_color` (map_Ks)
@@ -133,8 +138,22 @@ float greatest_albedo(const Material& m);
 /// material.
 PrincipledMaterial principled_like(const Material& m);
 
-/// Sets the parameters of the Whitted model to what comes near to `m.principled`, which must be given: smooth
-/// metal is a mirror, smooth glass is glass, and rougher surfaces have a highlight of about their width.
+/// The numbers of kPhongNumbers at a place, in that order.
+struct PhongValues {
+  float ambient, diffuse, specular, phong, reflection, transparency;
+};
+
+/// What comes near to principled parameters in Whitted's model: smooth metal is a mirror, smooth glass is
+/// glass, and rougher surfaces have a highlight of about their width.
+PhongValues resembling_values(const PrincipledParameters& p);
+/// The colour of its highlights and mirrors.
+Color resembling_specular_color(const PrincipledParameters& p);
+
+/// The part of light that a surface of these weights, within [0, 1], lets pass as glass does.
+inline float glass_weight(float metallic, float transmission) { return (1 - metallic) * transmission; }
+
+/// Sets the parameters of the Whitted model to what comes near to `m.principled`, which must be given, where
+/// its textures are white; but the transparency is that where most light passes.
 void resemble_principled(Material& m);
 
 }  // namespace oktett

@@ -52,16 +52,20 @@ Color textured(const RenderContext& c, const Color& color, std::uint32_t texture
   return texture == kNoId ? color : color * texture_color(c, texture, place);
 }
 
-float opacity_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
-  if (!m.surface) return 0;
-  if (m.opacity_texture == kNoId) return m.opacity;
-  return std::clamp(m.opacity * texture_value(c, m.opacity_texture, place), 0.0f, 1.0f);
-}
-
 /// The value of a number where its texture has that value. A NaN becomes the least value.
 float in_range(float value, const Range& range) {
   const auto lo = static_cast<float>(range.lo);
   return value > lo ? std::min(value, static_cast<float>(range.hi)) : lo;
+}
+
+/// A number times its texture, within its range.
+float textured(const RenderContext& c, float value, std::uint32_t texture, const Range& range,
+               const TexturePlace& place) {
+  return texture == kNoId ? value : in_range(value * texture_value(c, texture, place), range);
+}
+
+float opacity_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
+  return m.surface ? textured(c, m.opacity, m.opacity_texture, kUnitInterval, place) : 0;
 }
 
 PrincipledParameters principled_at(const RenderContext& c, const PrincipledMaterial& m, const Color& color,
@@ -69,8 +73,7 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
   PrincipledParameters at = m.parameters;
   at.base_color = color;
   for (const PrincipledNumber& number : kPrincipledNumbers)
-    if (const std::uint32_t texture = m.*number.texture; texture != kNoId)
-      at.*number.value = in_range(at.*number.value * texture_value(c, texture, place), number.range);
+    at.*number.value = textured(c, at.*number.value, m.*number.texture, number.range, place);
   at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, place);
   return at;
 }
@@ -80,9 +83,35 @@ PhongValues phong_values(const RenderContext& c, const Material& m, const Textur
   float* const at[] = {&values.ambient, &values.diffuse,    &values.specular,
                        &values.phong,   &values.reflection, &values.transparency};
   for (std::size_t i = 0; i < std::size(kPhongNumbers); ++i)
-    if (const std::uint32_t texture = m.*kPhongNumbers[i].texture; texture != kNoId)
-      *at[i] = in_range(*at[i] * texture_value(c, texture, place), kPhongNumbers[i].range);
+    *at[i] = textured(c, *at[i], m.*kPhongNumbers[i].texture, kPhongNumbers[i].range, place);
   return values;
+}
+
+/// Whether the picture shows the principled parameters of a material, or what resembles them.
+bool shows_principled(const RenderContext& c, const Material& m) {
+  return m.principled && (c.settings.kind == IntegratorKind::path || m.principled->resembled);
+}
+
+/// Sets what the picture shows of the principled parameters.
+void set_principled(const RenderContext& c, const TexturePlace& place, ShadingPoint& p) {
+  const Material& m = *p.material;
+  const PrincipledParameters at = principled_at(c, *m.principled, p.color, place);
+  p.ior = at.ior;
+  if (c.settings.kind == IntegratorKind::path) {
+    p.principled = at;
+    return;
+  }
+  p.values = resembling_values(at);
+  p.specular_color = resembling_specular_color(at);
+}
+
+/// The weight of light that passes at a place.
+float transparency_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
+  if (!shows_principled(c, m))
+    return textured(c, m.transparency, m.transparency_texture, kUnitInterval, place);
+  const PrincipledMaterial& p = *m.principled;
+  return glass_weight(textured(c, p.parameters.metallic, p.metallic_texture, kUnitInterval, place),
+                      textured(c, p.parameters.transmission, p.transmission_texture, kUnitInterval, place));
 }
 
 /// `bent`, of any length, as a unit normal, or `n` if it is none.
@@ -160,6 +189,12 @@ class TexturedHit {
   Affine to_world_, to_object_;
 };
 
+/// Where the textures of a material are looked up at a hit whose footprint is not known.
+TexturePlace texture_place(const RenderContext& context, const Material& m, const Ray& ray, const Hit& hit) {
+  if (!has_textures(m)) return {};
+  return TexturedHit(context, m, surface_interaction(*context.world->accel, ray, hit), hit).place;
+}
+
 /// Sets `front`, `ng` and `ns`.
 void face_ray(ShadingPoint& p, const Vec3f& shading_normal) {
   using F = Simd<float, 1, ScalarIsa>;
@@ -196,11 +231,27 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.values = phong_values(context, m, place);
   p.opacity = opacity_at(context, m, place);
   p.ior = m.ior;
-  if (m.principled && context.settings.kind == IntegratorKind::path)
-    p.principled = principled_at(context, *m.principled, p.color, place);
+  const bool resembles = textured_here || context.settings.kind == IntegratorKind::path;
+  if (resembles && shows_principled(context, m)) set_principled(context, place, p);
   face_ray(p, ns);
   if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
   return p;
+}
+
+float index_of_refraction(const ShadingPoint& p) {
+  if (!p.material->surface) return 1;
+  return p.principled ? p.principled->ior : p.ior;
+}
+
+float index_of_refraction(const RenderContext& context, const Ray& ray, const Hit& hit,
+                          const SurfaceInteraction& s) {
+  const Material& m = material_at(*context.world, s);
+  if (!m.surface) return 1;
+  if (!m.principled) return m.ior;
+  const PrincipledMaterial& p = *m.principled;
+  if (p.ior_texture == kNoId) return p.parameters.ior;
+  return textured(context, p.parameters.ior, p.ior_texture, kPrincipledIors,
+                  texture_place(context, m, ray, hit));
 }
 
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
@@ -237,17 +288,13 @@ Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit
 Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
                     ShadowRule rule, std::optional<float> ior) {
   const Material& m = material_at(*context.world, s);
-  TexturePlace place;
-  if (has_textures(m)) {
-    const SurfaceInteraction all = surface_interaction(*context.world->accel, ray, hit);
-    place = TexturedHit(context, m, all, hit).place;
-  }
+  const TexturePlace place = texture_place(context, m, ray, hit);
   const float opacity = opacity_at(context, m, place);
   const float hole = 1 - opacity;
   if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
   if (scatters_passing_light(context, m, place, ior)) return {hole, hole, hole};
   const Color color = textured(context, m.color, m.color_texture, place);
-  return color * (phong_values(context, m, place).transparency * opacity) + Color{hole, hole, hole};
+  return color * (transparency_at(context, m, place) * opacity) + Color{hole, hole, hole};
 }
 
 }  // namespace oktett

@@ -16,11 +16,6 @@ struct RayHistory {
   bool from_camera = false;  ///< a camera ray, or its straight continuation
 };
 
-/// The numbers of kPhongNumbers at a place, in that order.
-struct PhongValues {
-  float ambient, diffuse, specular, phong, reflection, transparency;
-};
-
 struct ShadingPoint {
   SurfaceInteraction surface;
   const Material* material = nullptr;
@@ -29,7 +24,7 @@ struct ShadingPoint {
   Vec3f ng, ns;     ///< geometric and shading normal, turned towards the ray's origin; dot(direction, ns) < 0
   bool front = true;  ///< the ray comes from the side that the surface's own normal points to
   Color color, specular_color, emission;           ///< textures included
-  float ior = 1.5f;                                ///< of Phong's model: inside relative to outside
+  float ior = 1.5f;                                ///< inside relative to outside; textures included
   PhongValues values{};                            ///< textures included
   float opacity = 1;                               ///< fraction that is surface; the rest is a hole
   std::optional<PrincipledParameters> principled;  ///< textures included; path tracing only
@@ -39,6 +34,12 @@ struct ShadingPoint {
 /// may be missing, and its uv unless the picture shows it; both are computed if textures need them.
 ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);
+
+/// The index of refraction of the material at a point; 1 without a surface.
+float index_of_refraction(const ShadingPoint& p);
+/// The same at a hit with the surface interaction `s`, of which only the names are used.
+float index_of_refraction(const RenderContext& context, const Ray& ray, const Hit& hit,
+                          const SurfaceInteraction& s);
 
 /// What alpha and the data layers show of a hit.
 struct ShownSurface {

@@ -13,14 +13,13 @@ static std::optional<Vec3f> refract_below(const ShadingPoint& p, float eta) {
 }
 
 SpecularRays specular_rays(const ShadingPoint& p) {
-  const Material& m = *p.material;
   SpecularRays rays;
   const PhongValues& v = p.values;
   if (v.reflection == 0 && v.transparency == 0) return rays;
   rays.mirror_direction = reflect_above(p.direction, p.ns, p.ng);
   rays.mirror = p.specular_color * v.reflection;
   if (v.transparency == 0) return rays;
-  const float eta = p.front ? m.ior : 1 / m.ior;
+  const float eta = p.front ? p.ior : 1 / p.ior;
   const std::optional<Vec3f> refracted = refract_below(p, eta);
   const float reflectance = refracted ? fresnel(-dot(p.direction, p.ns), eta) : 1;
   const float mirrored = v.transparency * reflectance;

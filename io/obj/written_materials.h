@@ -15,6 +15,7 @@ inline bool is_same_material(Material a, Material b) {
     m->name.clear();
     for_each_texture(*m, [](std::uint32_t& index) { index = kNoId; });
     if (!m->principled) continue;
+    m->principled->resembled = false;
     PrincipledParameters& p = m->principled->parameters;
     p.base_color = m->color;
     // How thick it is shows only through glass.

@@ -22,8 +22,8 @@ bool may_cast(const Material& m) {
       may_be_below(p.parameters.coat_roughness, p.coat_roughness_texture, kLeastRoughness))
     return true;
   // Glass that hardly bends light is smooth whatever its roughness. What lies around it may be as dense.
-  return p.parameters.transmission != 0 &&
-         (m.priority != kNoPriority || std::abs(p.parameters.ior - 1) < 2 * kLeastIorDifference);
+  return p.parameters.transmission != 0 && (m.priority != kNoPriority || p.ior_texture != kNoId ||
+                                            std::abs(p.parameters.ior - 1) < 2 * kLeastIorDifference);
 }
 
 namespace {

@@ -22,7 +22,7 @@ std::vector<EnclosureStack> start_enclosures(const RenderContext& context,
     const Vec3f& place = starts[i].ray.origin;
     const auto [found, is_new] = firsts.try_emplace(starts[i].emitter, i);
     const std::size_t first = found->second;
-    if (is_new) enclosures[i] = enclosures_at(*context.world, place);
+    if (is_new) enclosures[i] = enclosures_at(context, place);
     const Ray way{starts[first].ray.origin, 0, place - starts[first].ray.origin, 1};
     if (way.direction == Vec3f{0, 0, 0})
       enclosures[i] = enclosures[first];
@@ -34,7 +34,7 @@ std::vector<EnclosureStack> start_enclosures(const RenderContext& context,
   all_hits(*context.world->accel, between.span(), lists, context.isa);
   for (std::uint32_t k = 0; k < others.size(); ++k)
     enclosures[others[k].first] =
-        enclosures_behind(*context.world, enclosures[others[k].second], between[k], lists.of_ray(k));
+        enclosures_behind(context, enclosures[others[k].second], between[k], lists.of_ray(k));
   return enclosures;
 }
 

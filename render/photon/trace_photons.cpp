@@ -53,7 +53,7 @@ struct PhotonQueue {
 /// The square of the index of refraction behind the surface over that before it, as a photon meets it.
 float index_change(const ShadingPoint& p) {
   if (p.principled && p.principled->thin) return 1;
-  const float ior = p.principled ? p.principled->ior : p.ior;
+  const float ior = index_of_refraction(p);
   const float eta = p.front ? ior : 1 / ior;
   return eta * eta;
 }
@@ -170,7 +170,8 @@ class PhotonChunk {
   void arrive(std::size_t i, const ShadingPoint& p) {
     if (!context_.tracks_enclosures) return meet(i, p, nullptr, nullptr);
     const EnclosureStack& before = queue_.enclosures[i];
-    const Boundary boundary = boundary_at(*context_.world, before, p.surface, p.front);
+    const Boundary boundary =
+        boundary_at(*context_.world, before, p.surface, p.front, index_of_refraction(p));
     if (boundary.hidden)
       return push(i, p, p.direction, queue_.power[i], queue_.index_square[i], queue_.bounces[i],
                   &boundary.behind);

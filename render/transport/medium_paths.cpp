@@ -30,8 +30,7 @@ void enclose_camera_rays(const RenderContext& context, Wavefront& wavefront) {
   HitLists lists;
   all_hits(*context.world->accel, between.span(), lists, context.isa);
   for (std::uint32_t k = 0; k < away.size(); ++k)
-    enclosures[away[k]] =
-        enclosures_behind(*context.world, context.camera_enclosures, between[k], lists.of_ray(k));
+    enclosures[away[k]] = enclosures_behind(context, context.camera_enclosures, between[k], lists.of_ray(k));
 }
 
 TrackingNumbers tracking_numbers(const Wavefront& wavefront, std::uint32_t ray, MediumDecision decision) {

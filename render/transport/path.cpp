@@ -100,7 +100,8 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
 
 void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   if (!context.tracks_enclosures) return shade_surface(context, wavefront, ray, p, nullptr);
-  const Boundary boundary = boundary_at(*context.world, wavefront.paths.enclosures[ray], p.surface, p.front);
+  const Boundary boundary = boundary_at(*context.world, wavefront.paths.enclosures[ray], p.surface, p.front,
+                                        index_of_refraction(p));
   if (boundary.hidden) return pass_straight(wavefront, ray, p, &boundary);
   if (!boundary.ior) return shade_surface(context, wavefront, ray, p, &boundary);
   ShadingPoint between = p;

@@ -140,6 +140,20 @@ TEST(SceneMedia, ReadsGridsAndNoise) {
   EXPECT_GT(scene.media[2].grid->at({3, 4, 5}), 0);
 }
 
+// Light may enter wherever a texture leaves less than all of the surface to metal.
+TEST(SceneMedia, TexturedMetalMayHaveAnInterior) {
+  const std::string attenuation = "attenuation_color: [0.5, 0.9, 0.9], attenuation_distance: 1";
+  SceneFiles files;
+  const Scene scene = files.load_v1(
+      "materials:\n  m: {principled: {transmission: 1, metallic: {noise: {}, "
+      "gain: 0.5}}, " +
+      attenuation + "}\n");
+  EXPECT_EQ(scene.materials[0].interior, 0u);
+  EXPECT_EQ(scene.materials[0].transparency, 1);
+  expect_error("materials:\n  m: {principled: {transmission: 1, metallic: 1}, " + attenuation + "}\n",
+               "no light enters this material");
+}
+
 TEST(SceneMedia, ReportsBadGrids) {
   const auto expect = [](const std::string& content, const std::string& error) {
     expect_starts(grid_error(content), error);

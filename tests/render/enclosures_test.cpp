@@ -76,8 +76,10 @@ World nested_world(Scene& scene) {
 TEST(Enclosures, AreFoundAtAnyPoint) {
   Scene scene;
   const World world = nested_world(scene);
+  RenderContext context;
+  context.world = &world;
   const auto solids_at = [&](const Vec3f& point) {
-    const EnclosureStack stack = enclosures_at(world, point);
+    const EnclosureStack stack = enclosures_at(context, point);
     std::vector<std::uint32_t> solids;
     for (std::uint32_t i = 0; i < stack.size(); ++i) solids.push_back(stack[i].solid);
     return solids;
@@ -103,7 +105,9 @@ TEST(Enclosures, OpenSurfacesAndOpaqueMaterialsHaveNoInside) {
   add_object(scene, SphereShape{{0, 0, 0}, 4}, opaque);
   const World world = build_world(scene);
   EXPECT_FALSE(world.has_enclosing_solids);
-  EXPECT_EQ(enclosures_at(world, {0, 0, 0}).size(), 0u);
+  RenderContext context;
+  context.world = &world;
+  EXPECT_EQ(enclosures_at(context, {0, 0, 0}).size(), 0u);
 }
 
 // The camera in a ball of glass, in smoke in glass, and below a water level that no upward ray leaves twice.
@@ -203,6 +207,46 @@ TEST(NestedDielectrics, OverlappingSolidsMatchExactInterfaces) {
   for (std::uint32_t i = 0; i < 12; ++i)
     difference += std::abs(static_cast<double>(value(wrong, "R", i, 6) - value(want, "R", i, 6)));
   EXPECT_GT(difference, 0.1);
+}
+
+/// Answers all questions for numbers with a half.
+class HalfTextures final : public TextureSampler {
+ public:
+  Color color(std::uint32_t, Vec2f, Vec2f, Vec2f) const override { return {0.5f, 0.5f, 0.5f}; }
+  float value(std::uint32_t, Vec2f, Vec2f, Vec2f) const override { return 0.5f; }
+};
+
+// Glass in water by priorities. An index of refraction that is a texture of half of 3 bends light as 1.5
+// does, bit for bit, for solids that light enters, for those around them, and for those that the camera is
+// in.
+TEST(NestedDielectrics, TexturedIndicesCountAsTheirValues) {
+  const HalfTextures half;
+  for (const bool inside : {false, true})
+    for (const std::size_t textured : {0u, 1u}) {
+      Picture pictures[3];
+      for (int variant = 0; variant < 3; ++variant) {
+        Scene scene = block_scene();
+        scene.integrator.samples = 4, scene.integrator.depth = 6;
+        if (inside) scene.camera.from = {0.1, 0.2, 0.3};
+        scene.textures.emplace_back();
+        for (const std::size_t n : {0u, 1u}) {
+          Material m;
+          PrincipledParameters& p = m.principled.emplace().parameters;
+          p.base_color = {1, 1, 1}, p.transmission = 1, p.roughness = 0;
+          p.ior = n == 0 ? 1.5f : 1.25f;
+          if (n == textured && variant > 0) p.ior *= 2, m.principled->ior_texture = 0;
+          // To show that the test can tell: as if the texture were white.
+          if (n == textured && variant == 2) m.principled->ior_texture = kNoId;
+          resemble_principled(m);
+          m.priority = n == 0 ? 2 : 1;
+          const double size = n == 0 ? 0.6 : 1;
+          add_object(scene, BoxShape{{-size, -size, -size}, {size, size, size}}, add_material(scene, m));
+        }
+        pictures[variant] = run(scene, [&](RenderOptions& o) { o.textures = &half; }).picture;
+      }
+      EXPECT_TRUE(same_bytes(pictures[0], pictures[1])) << textured << inside;
+      EXPECT_FALSE(same_bytes(pictures[0], pictures[2])) << textured << inside;
+    }
 }
 
 // A lamp inside of glass is found by light samples through hidden boundaries as by chance.

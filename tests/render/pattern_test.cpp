@@ -164,16 +164,19 @@ class Constant final : public TextureSampler {
   float value_;
 };
 
-/// The picture of a ball before a white sky whose material is changed by `with`, with that sampler.
+/// The picture of a ball before a white sky and a floor that is lit through it, whose material is changed by
+/// `with`, with that sampler.
 Picture ball_with(const TextureSampler& sampler, const std::function<void(Material&)>& with,
                   IntegratorKind kind = IntegratorKind::path) {
   Scene scene = bare_scene(8);
   scene.integrator.kind = kind;
   scene.background = {1, 1, 1};
   scene.textures.emplace_back();
-  Material m = test::diffuse({0.5f, 0.5f, 0.5f});
+  Material m = test::diffuse({0.5f, 0.4f, 0.3f});
   with(m);
-  add_object(scene, SphereShape{{0, 0, 0}, 3}, add_material(scene, m));
+  add_object(scene, SphereShape{{0, 0, 0}, 1.5}, add_material(scene, m));
+  add_object(scene, PlaneShape{{0, 1, 0}, -1.5}, add_material(scene, test::diffuse({1, 1, 1})));
+  scene.lights = {DirectionalLight{{0.2, -1, 0.5}, {1, 1, 1}}};
   RenderResult result = test::run(scene, [&](RenderOptions& options) { options.textures = &sampler; });
   EXPECT_EQ(result.report.bad_samples, 0u);
   return std::move(result.picture);
@@ -188,13 +191,26 @@ TEST(BadTexels, CountAsBlackOrAsTheLeastNumber) {
           sampler, [](Material& m) { m.color_texture = 0; }, kind);
       EXPECT_EQ(test::value(black, "R", 4, 4), 0) << bad;
     }
-    for (const PhongNumber& number : kPhongNumbers)
-      ball_with(sampler, [&](Material& m) { m.*number.texture = 0, m.*number.value = 1; });
-    for (const PrincipledNumber& number : kPrincipledNumbers)
-      ball_with(sampler, [&](Material& m) {
-        m.principled.emplace();
-        (*m.principled).*number.texture = 0, m.principled->parameters.*number.value = 1;
-      });
+    for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted}) {
+      for (const PhongNumber& number : kPhongNumbers)
+        ball_with(
+            sampler, [&](Material& m) { m.*number.texture = 0, m.*number.value = 1; }, kind);
+      for (const PrincipledNumber& number : kPrincipledNumbers)
+        ball_with(
+            sampler,
+            [&](Material& m) {
+              m.principled.emplace();
+              (*m.principled).*number.texture = 0, m.principled->parameters.*number.value = 1;
+              resemble_principled(m);
+            },
+            kind);
+      // NaN and negative opacities are holes, as 0 is.
+      const Picture picture = ball_with(
+          sampler, [](Material& m) { m.opacity_texture = 0; }, kind);
+      const Picture expected = ball_with(
+          sampler, [&](Material& m) { m.opacity = bad == inf ? 1 : 0; }, kind);
+      EXPECT_TRUE(test::same_bytes(picture, expected)) << bad;
+    }
   }
 }
 
@@ -213,19 +229,26 @@ TEST(TexturedNumbers, OfOneValueAreThatValue) {
           half, [&](Material& m) { all(m), m.*number.value *= 0.5f; }, kind);
       EXPECT_TRUE(test::same_bytes(textured, plain)) << number.name;
     }
-    if (kind == IntegratorKind::whitted) continue;  // it does not know the principled model
-    for (const PrincipledNumber& number : kPrincipledNumbers) {
-      const auto all = [](Material& m) {
-        PrincipledParameters& p = m.principled.emplace().parameters;
-        p.metallic = 0.2f, p.transmission = 0.3f, p.coat = 0.4f, p.coat_roughness = 0.3f, p.sheen = 0.5f;
-        p.ior = 2.5f, p.coat_ior = 2.2f;
-      };
-      const Picture textured = ball_with(
-          half, [&](Material& m) { all(m), (*m.principled).*number.texture = 0; }, kind);
-      const Picture plain = ball_with(
-          half, [&](Material& m) { all(m), m.principled->parameters.*number.value *= 0.5f; }, kind);
-      EXPECT_TRUE(test::same_bytes(textured, plain)) << number.name;
-    }
+    for (const float metallic : {0.2f, 1.0f})
+      for (const PrincipledNumber& number : kPrincipledNumbers) {
+        const auto all = [&](Material& m) {
+          PrincipledParameters& p = m.principled.emplace().parameters;
+          p.base_color = m.color;
+          p.metallic = metallic, p.roughness = 0.3f, p.transmission = 0.6f;
+          p.coat = 0.4f, p.coat_roughness = 0.3f, p.sheen = 0.5f;
+          p.ior = 2.5f, p.coat_ior = 2.2f;
+        };
+        const Picture textured = ball_with(
+            half, [&](Material& m) { all(m), (*m.principled).*number.texture = 0, resemble_principled(m); },
+            kind);
+        const Picture plain = ball_with(
+            half,
+            [&](Material& m) {
+              all(m), m.principled->parameters.*number.value *= 0.5f, resemble_principled(m);
+            },
+            kind);
+        EXPECT_TRUE(test::same_bytes(textured, plain)) << number.name << " of metal " << metallic;
+      }
   }
 }
 
