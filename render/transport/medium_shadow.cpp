@@ -75,7 +75,8 @@ class ShadowWalker {
   void pass_surface(const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
                     const ShadowWalks::State& state) {
     const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
-    const Boundary boundary = boundary_at(*context_.world, state.enclosures, s, front);
+    const Boundary boundary =
+        boundary_at(*context_.world, state.enclosures, s, front, index_of_refraction(context_, ray, hit, s));
     Color light = state.light;
     if (!boundary.hidden) light = light * transmittance(context_, ray, hit, s, rule_, boundary.ior);
     if (is_black(light)) return;
