@@ -28,7 +28,7 @@ OKTETT_INLINE LightSamples<D> sample_spheres(const Vec3<D>& to_center, const D& 
 /// Points and spots in lanes.
 template <class D>
 struct PointSamples {
-  LightSamples<D> at;  ///< of density 1
+  LightSamples<D> at;                 ///< of density 1
   typename LightSamples<D>::F scale;  ///< the irradiance on what faces the light, over the intensity
 };
 
