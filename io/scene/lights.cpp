@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -179,8 +180,34 @@ void read_sky(SceneLoad& load, const YamlNode& node) {
   add_light(load, fields, light);
 }
 
-/// Adds an object that glows, of `area`. It is given `radiance`, or `power` in all, which a diffuse emitter
-/// sends out as pi * area * radiance.
+/// The radiance of a diffuse lamp of `area` that gives off the power at `node`: power / (pi * area). Throws
+/// Error if single precision has no such number, or if the lamp is so small that the solid angle in which it
+/// is seen from 10 000 away has none.
+Color radiance_of_power(SceneLoad& load, const YamlNode& node, double area) {
+  constexpr double kLeastArea = 1e-28;
+  Color color;
+  load.values.read_color(&node, color);
+  for (int k = 0; k < 3; ++k) {
+    if (!(color[k] > 0)) continue;
+    if (area < kLeastArea)
+      throw Error(
+          node.where(),
+          fmt::format("the lamp is too small: its area is {:.2g}, and at least {:.0g} is expected with "
+                      "a power; a 'point' light may have a power, too",
+                      area, kLeastArea));
+    const float radiance = color[k] * static_cast<float>(1 / (std::numbers::pi * area));
+    if (!(radiance >= std::numeric_limits<float>::min() && radiance <= std::numeric_limits<float>::max()))
+      throw Error(node.where(),
+                  fmt::format("a power of {:.3g} over an area of {:.3g} is a radiance of {:.4g}; "
+                              "expected one from {:.4g} to {:.4g}",
+                              color[k], area, double(color[k]) / (std::numbers::pi * area),
+                              std::numeric_limits<float>::min(), std::numeric_limits<float>::max()));
+    color[k] = radiance;
+  }
+  return color;
+}
+
+/// Adds an object that glows, of `area`. It is given `radiance`, or `power` in all.
 void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Shape shape, double area) {
   const YamlNode *radiance = fields["radiance"], *power = fields["power"];
   if (radiance && power) throw Error(node.where(), "expected 'radiance' or 'power', not both");
@@ -190,10 +217,7 @@ void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Sh
   m.emits_behind = false;
   if (const YamlNode* group = fields["light_group"]) m.light_group = read_light_group(load, *group);
   load.values.read_color(radiance, m.emission);
-  if (power) {
-    load.values.read_color(power, m.emission);
-    m.emission *= static_cast<float>(1 / (std::numbers::pi * area));
-  }
+  if (power) m.emission = radiance_of_power(load, *power, area);
   load.scene.materials.push_back(std::move(m));
   Object object;
   object.shape = std::move(shape);
