@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/isa.h"
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
@@ -36,6 +39,28 @@ TEST(RenderCommand, StatsAreTextOrOneJsonObject) {
   EXPECT_TRUE(contains(json.out, "\"bounces\": {\"rays\": ["));
   EXPECT_TRUE(contains(json.out, "\"lanes_filled\": ["));
   EXPECT_TRUE(contains(json.err, "wrote ball.png"));
+}
+
+// 70 hits in a tile are shaded as 64 and 6, and 6 fill a part of one vector.
+TEST(RenderCommand, StatsTellWhichPartOfTheLanesIsFilled) {
+  const TempDir dir;
+  dir.write("wall.yaml", "oktett: 1\nobjects: [{plane: {normal: [0, 0, 1], offset: 0}}]\n");
+  for (const Isa isa : available_isas()) {
+    const double lanes = 64 + (isa == Isa::scalar ? 6 : isa == Isa::avx512 ? 16 : 8);
+    const auto stats = [&](const char* format) {
+      const CommandResult result = run_command(
+          dir, {"render", "wall.yaml", "--size", "10x7", "--spp", "1", "--isa", to_string(isa), format});
+      EXPECT_EQ(result.status, 0) << result.err;
+      return result.out;
+    };
+    const std::string json = stats("--stats=json"), name = "\"lanes_filled\": [";
+    const std::size_t at = json.find(name);
+    ASSERT_NE(at, std::string::npos) << json;
+    EXPECT_NEAR(std::strtod(json.c_str() + at + name.size(), nullptr), 70 / lanes, 1e-6) << to_string(isa);
+    const std::string percent =
+        std::to_string(std::lround(100 * 70 / lanes)) + " % of shading lanes filled\n";
+    EXPECT_TRUE(contains(stats("--stats"), percent)) << percent;
+  }
 }
 
 TEST(RenderCommand, ProgressIsShownOnlyOnDemandWithoutATerminal) {

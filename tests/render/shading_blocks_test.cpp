@@ -104,7 +104,6 @@ SampleBatch traced(const Scene& scene, Isa isa, bool layers, bool one_by_one) {
   Wavefront wavefront;
   start_wavefront(context, pixels, 0, scene.integrator.samples, wavefront);
   EXPECT_TRUE(trace_wavefront(context, wavefront));
-  // Lanes are counted by bounce.
   EXPECT_EQ(wavefront.counts.bounces[0].rays, pixels.size() * scene.integrator.samples);
   EXPECT_EQ(wavefront.counts.bounces[0].shaded > 0, !one_by_one);
   for (const BounceReport& b : wavefront.counts.bounces) EXPECT_LE(b.shaded, b.lanes);
@@ -150,6 +149,71 @@ TEST(ShadingBlocks, LightOfAllLampsIsThatOfSingleHits) {
 TEST(ShadingBlocks, WhittedIsThatOfSingleHits) {
   expect_same_in_blocks(crowded_whitted(false));
   expect_same_in_blocks(crowded_whitted(true));
+}
+
+/// How many hits are shaded at once. Paths compute in double, of which fewer fit into registers.
+std::size_t width_of(IntegratorKind kind, Isa isa) {
+  if (isa == Isa::scalar) return 1;
+  if (kind == IntegratorKind::path) return isa == Isa::sse42 ? 4 : 8;
+  return isa == Isa::avx512 ? 16 : 8;
+}
+
+/// Lanes that hits take which are shaded together.
+std::size_t lanes_for(std::size_t hits, IntegratorKind kind, Isa isa) {
+  std::size_t lanes = 0;
+  while (lanes < hits) lanes += width_of(kind, isa);
+  return lanes;
+}
+
+/// `columns` x 7 pixels of one sample: an even mirror fills the picture, and reflects a white wall behind
+/// the camera.
+Scene mirrored_wall(std::uint32_t columns, IntegratorKind kind) {
+  Scene scene = bare_scene();
+  scene.film.width = columns, scene.film.height = 7;
+  scene.integrator.kind = kind, scene.integrator.depth = 1;
+  add_object(scene, PlaneShape{{0, 0, 1}, 0}, add_material(scene, mirror()));
+  add_object(scene, PlaneShape{{0, 0, -1}, -9}, add_material(scene, diffuse({1, 1, 1})));
+  PointLight light;
+  light.position = {0, 0, 3};
+  scene.lights.push_back(light);
+  return scene;
+}
+
+// Every ray of a bounce hits the same surface. Hits are shaded in blocks of 64, whose last lanes are empty
+// where 64 does not divide the number of hits.
+TEST(ShadingBlocks, LanesOfEachBounceAreCounted) {
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted})
+    for (const Isa isa : available_isas())
+      for (const std::uint32_t columns : {1u, 9u, 15u, 32u, 64u}) {
+        const std::size_t hits = 7 * columns, lanes = hits / 64 * 64 + lanes_for(hits % 64, kind, isa);
+        const RenderReport report = run(mirrored_wall(columns, kind), [&](RenderOptions& o) {
+                                      o.isa = isa, o.tile_size = 64;
+                                    }).report;
+        ASSERT_GE(report.bounces.size(), 2u);
+        for (std::size_t bounce = 0; bounce < 2; ++bounce) {
+          EXPECT_EQ(report.bounces[bounce].rays, hits);
+          EXPECT_EQ(report.bounces[bounce].shaded, hits) << to_string(isa) << ", " << columns;
+          EXPECT_EQ(report.bounces[bounce].lanes, lanes) << to_string(isa) << ", " << columns;
+        }
+      }
+}
+
+// Of two surfaces in one picture, paths shade the hits of each together.
+TEST(ShadingBlocks, LanesOfPathsAreThoseOfEachSurface) {
+  for (const Isa isa : available_isas())
+    for (std::uint32_t left = 1; left < 8; ++left) {
+      Scene scene = mirrored_wall(8, IntegratorKind::path);
+      scene.camera.projection = Projection::orthographic, scene.camera.height = 7;
+      // The box covers so many columns.
+      add_object(scene, BoxShape{{-9, -9, -1}, {-4 + double(left), 9, 1}},
+                 add_material(scene, diffuse({0, 0, 0})));
+      const RenderReport report = run(scene, [&](RenderOptions& o) { o.isa = isa; }).report;
+      const std::size_t boxed = 7 * left, others = 7 * (8 - left);
+      EXPECT_EQ(report.bounces[0].shaded, boxed + others);
+      EXPECT_EQ(report.bounces[0].lanes,
+                lanes_for(boxed, scene.integrator.kind, isa) + lanes_for(others, scene.integrator.kind, isa))
+          << to_string(isa) << ", " << left;
+    }
 }
 
 }  // namespace
