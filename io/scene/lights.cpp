@@ -280,7 +280,7 @@ constexpr LightKind kLightKinds[] = {{"point", read_point},
 }  // namespace
 
 std::string read_light_group(SceneLoad& load, const YamlNode& node) {
-  std::string name = load.values.text(node);
+  std::string name = load.values.text(node, "^[A-Za-z0-9_-]+$");
   if (!is_light_group_name(name))
     throw Error(node.where(),
                 "a light group's name has letters, digits, '_' and '-' only, because layers of "
@@ -301,6 +301,7 @@ void read_lights(SceneLoad& load, const YamlNode& node) {
   for (const YamlNode* item : list_items(node, "lights"))
     attempt(*item, [&] {
       const Fields fields(*item, "a light", keys);
+      declare_one_of(*item, {keys.begin(), keys.end()});
       const std::vector<MapEntry> entries = map_entries(*item, "a light");
       if (entries.size() != 1)
         throw Error(item->where(),

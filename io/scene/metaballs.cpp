@@ -29,6 +29,7 @@ PolygonSkeleton read_polygon(SceneLoad& load, const YamlNode& node) {
   const YamlNode& list =
       node.kind == YamlKind::sequence ? node : Fields(node, "polygon", {"vertices"}).require("vertices");
   PolygonShape polygon;
+  declare_count(list, {3, kMaxCoordinate});
   for (const YamlNode* vertex : list_items(list, "vertices"))
     polygon.vertices.push_back(load.values.vector(*vertex));
   if (polygon.vertices.size() < 3)
@@ -61,6 +62,12 @@ constexpr struct {
                   {"segment", read_skeleton<SegmentSkeleton>},
                   {"polygon", read_skeleton<PolygonSkeleton>},
                   {"ellipsoid", read_skeleton<EllipsoidSkeleton>}};
+
+std::vector<std::string> skeleton_keys() {
+  std::vector<std::string> keys;
+  for (const auto& skeleton : kSkeletons) keys.emplace_back(skeleton.key);
+  return keys;
+}
 
 Potential read_potential(SceneLoad& load, const Fields& fields) {
   Potential p;
@@ -130,10 +137,14 @@ MaybeForm read_elements(const ShapeNode& at, const YamlNode& list, double iso) {
   BlobTreeShape tree;
   tree.iso = iso;
   const auto items = list_items(list, "elements");
+  declare_count(list, kNotEmpty);
   if (items.empty()) throw Error(list.where(), "the list of elements is empty");
   check_count(items.size(), list.where());
   for (const YamlNode* item : items)
-    attempt(*item, [&] { tree.elements.push_back(read_element(at.load, *item)); });
+    attempt(*item, [&] {
+      tree.elements.push_back(read_element(at.load, *item));
+      declare_one_of(*item, skeleton_keys());
+    });
   if (none_positive(tree)) return at.skip("no element has a positive weight");
   if (all_metaballs(tree.elements)) {
     MetaballsShape shape{iso, {}};
@@ -159,6 +170,11 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
   std::vector<std::string> known(std::begin(kElementKeys), std::end(kElementKeys));
   for (const Choice<Blend::Op>& blend : kBlends) known.emplace_back(blend.name);
   declare_keys(node, "a blend or an element", known);
+  if (level > 1) {
+    std::vector<std::string> kinds = skeleton_keys();
+    for (const Choice<Blend::Op>& blend : kBlends) kinds.emplace_back(blend.name);
+    declare_one_of(node, kinds);
+  }
   const std::vector<MapEntry> entries = map_entries(node, "blend");
   for (const Choice<Blend::Op>& blend : kBlends) {
     const auto found =
@@ -173,6 +189,7 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
       throw Error(list->where(),
                   "blends are nested deeper than " + std::to_string(kMaxBlendLevels) + " levels");
     const auto items = list_items(*list, blend.name);
+    declare_count(*list, kNotEmpty);
     if (items.empty()) throw Error(list->where(), std::string("the list of '") + blend.name + "' is empty");
     for (const YamlNode* item : items) attempt(*item, [&] { read_blend(load, *item, level + 1, tree); });
     tree.blends.push_back({blend.value, 0, static_cast<std::uint32_t>(items.size())});
@@ -186,6 +203,7 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
 }  // namespace
 
 MaybeForm finish(const ShapeNode& at, MetaballsShape& shape) {
+  declare_one_of(at.node, {"balls", "file", "elements"});
   const YamlNode* source = nullptr;
   for (const char* name : {"balls", "file", "elements"}) {
     if (const YamlNode* value = at.fields[name]) {
@@ -209,7 +227,12 @@ MaybeForm finish(const ShapeNode& at, MetaballsShape& shape) {
 
 MaybeForm finish(const ShapeNode& at, BlobTreeShape& tree) {
   bool found = false;
-  for (const Choice<Blend::Op>& blend : kBlends) found |= at.fields[blend.name] != nullptr;
+  std::vector<std::string> names;
+  for (const Choice<Blend::Op>& blend : kBlends) {
+    names.emplace_back(blend.name);
+    found |= at.fields[blend.name] != nullptr;
+  }
+  declare_one_of(at.node, names);
   if (!found) throw Error(at.node.where(), "a blobtree needs one of 'sum', 'max', 'min' and 'difference'");
   read_blend(at.load, at.node, 1, tree);
   if (none_positive(tree)) return at.skip("no element has a positive weight");

@@ -29,6 +29,7 @@ std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node) {
     if (keys.size() > kMostKeys)
       throw Error(item->where(), fmt::format("a motion has more than {} keys", kMostKeys));
   };
+  declare_count(node, kNotEmpty);
   for (const YamlNode* item : list_items(node, "motion")) attempt(*item, [&] { read_key(item); });
   if (keys.empty()) throw Error(node.where(), "a motion needs at least one key {time, transform}");
   return keys;

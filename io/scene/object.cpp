@@ -36,6 +36,7 @@ MapEntry find_shape(const YamlNode& node) {
   std::vector<std::string> known = shapes;
   known.insert(known.end(), {"material", "transform", "motion", "name"});
   declare_keys(node, "an object", known);
+  declare_one_of(node, shapes);
   MapEntry shape{nullptr, nullptr};
   for (const MapEntry& entry : map_entries(node, "an object")) {
     const std::string& key = entry.key->text;
@@ -158,6 +159,7 @@ class ObjectReader {
   std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
                                 const Surroundings& outer) {
     const auto nodes = list_items(operands, key.text);
+    declare_count(operands, kNotEmpty);
     if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
     // Operands stand in the space of the combination, whose transform applies to all.
     const Surroundings inner{{}, outer.material, {}, outer.is_dropped, {}};

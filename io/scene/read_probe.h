@@ -20,10 +20,11 @@ struct ReadType {
   Range range{};                     ///< of each number
   std::size_t count = 0;             ///< of the numbers in a list
   std::vector<std::string> words{};  ///< of a choice
+  std::string pattern{};             ///< of a text: a regular expression; empty: any text
   bool operator==(const ReadType& other) const {
     return kind == other.kind && range.lo == other.range.lo && range.hi == other.range.hi &&
            range.lo_open == other.range.lo_open && range.hi_open == other.range.hi_open &&
-           count == other.count && words == other.words;
+           count == other.count && words == other.words && pattern == other.pattern;
   }
 };
 
@@ -41,6 +42,10 @@ class ReadProbe {
   virtual void keys(const YamlNode& map, const std::string& what, const std::vector<std::string>& known) = 0;
   /// A map or a list is read whose entries are all alike. It may turn out to be a map with known keys.
   virtual void entries(const YamlNode& node, const std::string& what) = 0;
+  /// A list that was read has so many entries.
+  virtual void count(const YamlNode& list, const Range& counts) = 0;
+  /// A map that was read has exactly one of these keys.
+  virtual void one_of(const YamlNode& map, const std::vector<std::string>& keys) = 0;
   /// A value that the map must have, but does not: one is made up.
   virtual const YamlNode& required(const YamlNode& map, const char* key) = 0;
   /// Makes up the numbers of a list.

@@ -39,6 +39,9 @@ class Explorer final : public ReadProbe {
         if (is_reached(slot) && types_.slots[slot].found.empty() && tried_with_others.insert(slot).second)
           try_with_others(slot), found = true;
     }
+    for (std::size_t slot = 1; slot < types_.slots.size(); ++slot)
+      if (const SchemaType* type = list_type(slot, false); type != nullptr && type->counts)
+        try_counts_with_choices(slot);
     return std::move(types_);
   }
 
@@ -55,7 +58,7 @@ class Explorer final : public ReadProbe {
     while (type < types_.maps.size() && (types_.maps[type].what != what || types_.maps[type].keys != known))
       ++type;
     if (type == types_.maps.size()) {
-      SchemaMap& added = types_.maps.emplace_back(SchemaMap{what, known, {}, {}});
+      SchemaMap& added = types_.maps.emplace_back(SchemaMap{what, known, {}, {}, {}});
       for (const std::string& key : known) {
         added.slots.push_back(types_.slots.size());
         types_.slots.push_back({slot, key, {}});
@@ -70,7 +73,21 @@ class Explorer final : public ReadProbe {
     read_.insert(&node);
     const std::size_t slot = slot_of(node);
     if (map_of_.contains(&node) || slot == SchemaType::kNone) return;
-    add(slot, SchemaType{std::nullopt, SchemaType::kNone, entry_slot(slot), {}, node.kind == YamlKind::map});
+    const SchemaType type{std::nullopt, SchemaType::kNone, entry_slot(slot), {}, node.kind == YamlKind::map};
+    if (list_type(slot, type.names) == nullptr) add(slot, type);
+  }
+
+  void count(const YamlNode& list, const Range& counts) override {
+    const std::size_t slot = slot_of(list);
+    if (slot == SchemaType::kNone) return;
+    auto [found, is_new] = counts_.try_emplace(slot, counts.lo, counts.hi);
+    // All rules of one reading hold.
+    found->second = {std::max(found->second.first, counts.lo), std::min(found->second.second, counts.hi)};
+  }
+
+  void one_of(const YamlNode& map, const std::vector<std::string>& keys) override {
+    if (const auto found = map_of_.find(&map); found != map_of_.end())
+      types_.maps[found->second].one_of = keys;
   }
 
   const YamlNode& required(const YamlNode& map, const char* key) override {
@@ -101,6 +118,26 @@ class Explorer final : public ReadProbe {
   void add(std::size_t slot, const SchemaType& type) {
     std::vector<SchemaType>& found = types_.slots[slot].found;
     if (std::ranges::find(found, type) == found.end()) found.push_back(type);
+  }
+
+  /// What is known of the list, or the map with any keys, at `slot`; null if nothing is.
+  SchemaType* list_type(std::size_t slot, bool names) {
+    for (SchemaType& type : types_.slots[slot].found)
+      if (type.entry != SchemaType::kNone && type.names == names && type.lengths.empty()) return &type;
+    return nullptr;
+  }
+
+  /// Notes the counts of lists of the tree that was read. In other trees other keys may allow others.
+  void note_counts() {
+    for (const auto& [slot, counts] : counts_) {
+      SchemaType* const type = list_type(slot, false);
+      if (type == nullptr) continue;
+      auto& known = type->counts;
+      if (!known)
+        known = counts;
+      else
+        known = {std::min(known->first, counts.first), std::max(known->second, counts.second)};
+    }
   }
 
   /// The place of the entries of the list or map at `slot`.
@@ -150,7 +187,7 @@ class Explorer final : public ReadProbe {
                             std::size_t other = SchemaType::kNone) {
     file_.emplace();
     file_->probe = this;
-    slots_.clear(), map_of_.clear(), read_.clear(), missing_.clear();
+    slots_.clear(), map_of_.clear(), read_.clear(), missing_.clear(), counts_.clear();
     lists_ = 0;
     YamlNode& target = node(slot, kind);
     if (kind == YamlKind::sequence)
@@ -178,6 +215,7 @@ class Explorer final : public ReadProbe {
     } catch (const Error&) {
       // What was noted up to here counts.
     }
+    note_counts();
     return target;
   }
 
@@ -256,6 +294,20 @@ class Explorer final : public ReadProbe {
     }
   }
 
+  /// Reads the list at `slot` beside each word of each choice in its map.
+  void try_counts_with_choices(std::size_t slot) {
+    for (std::size_t other = 1; other < types_.slots.size(); ++other) {
+      const SchemaSlot& place = types_.slots[other];
+      if (place.parent != types_.slots[slot].parent || place.key.empty() || types_.slots[slot].key.empty())
+        continue;
+      for (const SchemaType& type : place.found)
+        if (type.value && type.value->kind == ReadType::Kind::choice)
+          for (word_ = 0; word_ < type.value->words.size(); ++word_)
+            read_tree(slot, YamlKind::sequence, 1, other);
+    }
+    word_ = 0;
+  }
+
   /// A key that is not asked for beside another one, whose `value` was read, is not required.
   void note_missing(std::size_t slot, const YamlNode& value) {
     if (!read_.contains(&value)) return;
@@ -284,6 +336,7 @@ class Explorer final : public ReadProbe {
   std::map<const YamlNode*, std::size_t> slots_, map_of_;
   std::set<const YamlNode*> read_;
   std::set<std::pair<std::size_t, std::string>> missing_;
+  std::map<std::size_t, std::pair<double, double>> counts_;  ///< of lists, by place
 };
 
 }  // namespace

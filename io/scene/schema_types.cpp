@@ -78,6 +78,10 @@ std::string value_text(const ReadType& t) {
     case Kind::boolean:
       return any_of({"{\"type\": \"boolean\"}", kParameter});
     case Kind::text:
+      if (!t.pattern.empty())
+        return any_of({fmt::format("{{\"type\": [\"string\", \"integer\", \"boolean\"], \"pattern\": {}}}",
+                                   quoted(t.pattern)),
+                       kParameter});
       return "{\"type\": [\"string\", \"number\", \"boolean\"]}";
     case Kind::file:
       return "{\"type\": [\"string\", \"number\"]}";
@@ -139,9 +143,11 @@ class Writer {
     for (const std::string& key : map.required) required.push_back(quoted(key));
     if (map.what == "a scene") required.emplace_back("\"oktett\"");
     // An empty node is a map without keys.
+    const bool may_be_empty = required.empty() && map.one_of.empty();
     std::string text =
         fmt::format("{}: {{\n\"type\": {},\n\"additionalProperties\": false", quoted(names_[index]),
-                    required.empty() ? "[\"object\", \"null\"]" : "\"object\"");
+                    may_be_empty ? "[\"object\", \"null\"]" : "\"object\"");
+    if (!map.one_of.empty()) text += ",\n" + one_of_text(map);
     if (!required.empty()) text += fmt::format(",\n\"required\": [{}]", fmt::join(required, ", "));
     text += ",\n\"properties\": {";
     for (std::size_t i = 0; i < map.keys.size(); ++i) {
@@ -152,6 +158,14 @@ class Writer {
       text += fmt::format("{}\n  {}: {}", i == 0 ? "" : ",", quoted(map.keys[i]), schema);
     }
     return text + "}}";
+  }
+
+  static std::string one_of_text(const SchemaMap& map) {
+    if (map.one_of.size() == map.keys.size()) return "\"minProperties\": 1,\n\"maxProperties\": 1";
+    std::vector<std::string> alternatives;
+    for (const std::string& key : map.one_of)
+      alternatives.push_back(fmt::format("{{\"required\": [{}]}}", quoted(key)));
+    return fmt::format("\"oneOf\": [{}]", fmt::join(alternatives, ", "));
   }
 
   std::string slot_text(std::size_t slot) const {
@@ -173,8 +187,14 @@ class Writer {
     for (const std::size_t n : type.lengths)
       lists.push_back(fmt::format(
           "{{\"type\": \"array\", \"items\": {}, \"minItems\": {}, \"maxItems\": {}}}", entry, n, n));
-    if (lists.empty())
-      lists.push_back(fmt::format("{{\"type\": [\"array\", \"null\"], \"items\": {}}}", entry));
+    if (lists.empty()) {
+      const auto [least, most] = type.counts.value_or(std::pair{0.0, kMaxCoordinate});
+      std::string text = fmt::format("{{\"type\": {}, \"items\": {}",
+                                     least > 0 ? "\"array\"" : "[\"array\", \"null\"]", entry);
+      if (least > 0) text += fmt::format(", \"minItems\": {}", least);
+      if (most < kMaxCoordinate) text += fmt::format(", \"maxItems\": {}", most);
+      lists.push_back(text + "}");
+    }
     return any_of(lists);
   }
 

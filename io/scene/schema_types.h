@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/scene/read_probe.h"
@@ -19,6 +20,8 @@ struct SchemaType {
   std::size_t entry;              ///< the place of the entries, or kNone
   std::set<std::size_t> lengths;  ///< that a list may have; empty: any
   bool names = false;             ///< the entries have names
+  /// Least and greatest number of entries of a list, if the reader tells.
+  std::optional<std::pair<double, double>> counts = {};
   bool operator==(const SchemaType&) const = default;
 };
 
@@ -36,6 +39,7 @@ struct SchemaMap {
   std::vector<std::string> keys;
   std::vector<std::size_t> slots;  ///< per key
   std::set<std::string> required;
+  std::vector<std::string> one_of;  ///< exactly one of these keys is given; empty: no such rule
 };
 
 struct SchemaTypes {

@@ -82,6 +82,7 @@ void ParameterReader::read(const YamlNode& node, const Parameter&, std::vector<M
 std::span<const YamlNode* const> ParameterReader::items_of(const YamlNode& node, const Parameter& parameter) {
   const auto items = list_items(node, parameter.key);
   const Range& counts = parameter.range;
+  declare_count(node, counts);
   if (node.file->probe) return items;
   if (counts.contains(static_cast<double>(items.size()))) return items;
   const std::string expected = counts.lo == counts.hi ? fmt::format("{}", counts.lo)
@@ -123,6 +124,7 @@ bool read_item(SceneLoad& load, const YamlNode& node, Affine& map) {
 
 bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source) {
   const Fields fields(node, "a source", {"point", "line", "plane", "weight"});
+  declare_one_of(node, {"point", "line", "plane"});
   load.values.read(fields["weight"], source.weight);
   const YamlNode *point = fields["point"], *line = fields["line"], *plane = fields["plane"];
   if ((point != nullptr) + (line != nullptr) + (plane != nullptr) != 1)

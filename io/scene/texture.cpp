@@ -30,6 +30,7 @@ void read_layout(SceneValues& values, const YamlNode* node, Vec3f& out, bool sin
 
 std::vector<Color> read_colors(SceneLoad& load, const YamlNode& node) {
   std::vector<Color> colors;
+  declare_count(node, {1, kMostColors});
   for (const YamlNode* item : list_items(node, "colors")) colors.push_back(load.values.color(*item));
   if (colors.empty() || colors.size() > kMostColors)
     throw Error(node.where(), fmt::format("expected 1 to {} colors, found {}", kMostColors, colors.size()));
@@ -87,9 +88,14 @@ static std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
     return load.textures.add(texture);
   }
   std::vector<const char*> keys(std::begin(kImageKeys), std::end(kImageKeys));
-  visit_patterns([&](const auto& pattern) { keys.push_back(std::decay_t<decltype(pattern)>::kSurface.key); });
+  std::vector<std::string> sources{"file"};
+  visit_patterns([&](const auto& pattern) {
+    keys.push_back(std::decay_t<decltype(pattern)>::kSurface.key);
+    sources.emplace_back(keys.back());
+  });
   keys.insert(keys.end(), {"gain", "base"});
   const Fields fields(node, "a texture", keys);
+  declare_one_of(node, sources);
   // A pattern stands alone but for gain and base.
   const std::vector<MapEntry> entries = map_entries(node, "a texture");
   for (const MapEntry& entry : entries) {

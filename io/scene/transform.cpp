@@ -44,6 +44,7 @@ Affine read_matrix(SceneValues& values, const YamlNode& node) {
 
 Affine read_operation(SceneValues& values, const YamlNode& node) {
   const Fields fields(node, "a transform", {"translate", "scale", "rotate", "matrix"});
+  declare_one_of(node, {"translate", "scale", "rotate", "matrix"});
   if (node.kind != YamlKind::map || node.items.size() != 2)
     throw Error(node.where(), "expected one of translate, scale, rotate and matrix; several make a list");
   if (const YamlNode* translate = fields["translate"]) return Affine::translation(values.vector(*translate));

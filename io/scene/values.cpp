@@ -50,6 +50,14 @@ std::span<const YamlNode* const> list_items(const YamlNode& node, const std::str
   return node.items;
 }
 
+void declare_count(const YamlNode& list, const Range& counts) {
+  if (list.file->probe && list.kind == YamlKind::sequence) list.file->probe->count(list, counts);
+}
+
+void declare_one_of(const YamlNode& map, const std::vector<std::string>& keys) {
+  if (map.file->probe && map.kind == YamlKind::map) map.file->probe->one_of(map, keys);
+}
+
 std::string suggest(const std::string& name, std::span<const std::string> known) {
   return did_you_mean(name, known);
 }
@@ -103,9 +111,11 @@ std::size_t SceneValues::probe_words(const YamlNode& node, std::vector<std::stri
   return node.file->probe->chosen(count);
 }
 
-std::string SceneValues::text(const YamlNode& node) {
+std::string SceneValues::text(const YamlNode& node) { return text(node, ""); }
+
+std::string SceneValues::text(const YamlNode& node, const char* pattern) {
   if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected text, found " + node.describe());
-  if (probed(node, {ReadType::Kind::text})) return node.text;
+  if (probed(node, {ReadType::Kind::text, {}, 0, {}, pattern})) return node.text;
   return parameters_.expand(node);
 }
 

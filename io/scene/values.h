@@ -37,6 +37,14 @@ std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what)
 /// The items of a list; none for an empty node. Throws Error if `node` is anything else; `what` names it.
 std::span<const YamlNode* const> list_items(const YamlNode& node, const std::string& what);
 
+/// Says how many entries a list may have, to who watches.
+void declare_count(const YamlNode& list, const Range& counts);
+/// Counts of lists that must not be empty.
+inline constexpr Range kNotEmpty{1, kMaxCoordinate};
+
+/// Says that a map must have exactly one of these keys, to who watches. Its keys have been declared.
+void declare_one_of(const YamlNode& map, const std::vector<std::string>& keys);
+
 /// "; did you mean 'x'?" for the nearest of `known`, or nothing.
 std::string suggest(const std::string& name, std::span<const std::string> known);
 
@@ -67,6 +75,8 @@ class SceneValues {
   explicit SceneValues(SceneParameters& parameters) : parameters_(parameters) {}
 
   std::string text(const YamlNode& node);
+  /// The same. Who watches is told that it has to match a regular expression.
+  std::string text(const YamlNode& node, const char* pattern);
   bool boolean(const YamlNode& node);
   /// A number or an expression.
   double number(const YamlNode& node, const Range& range = kAnyNumber);

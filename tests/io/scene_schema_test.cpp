@@ -72,6 +72,8 @@ class Validator {
       if (target == nullptr) throw Error("no definition of " + name);
       return accepts(node, *target);
     }
+    if (rule == "oneOf")
+      return std::ranges::count_if(value.items, [&](const YamlNode* s) { return accepts(node, *s); }) == 1;
     if (rule == "anyOf")
       return std::ranges::any_of(value.items, [&](const YamlNode* s) { return accepts(node, *s); });
     if (rule == "type") {
@@ -96,6 +98,9 @@ class Validator {
         return std::ranges::all_of(node.items, [&](const YamlNode* n) { return accepts(*n, value); });
     }
     if (node.kind == YamlKind::map) {
+      const auto size = static_cast<double>(node.items.size()) / 2;
+      if (rule == "minProperties") return size >= *number_of(value);
+      if (rule == "maxProperties") return size <= *number_of(value);
       if (rule == "required")
         return std::ranges::all_of(value.items,
                                    [&](const YamlNode* k) { return member(node, k->text) != nullptr; });
@@ -103,8 +108,8 @@ class Validator {
         return keeps_members(node, rule == "properties", value, schema);
     }
     static const std::string kOthers[] = {
-        "$schema",  "title", "description", "$defs",      "minItems",
-        "maxItems", "items", "required",    "properties", "additionalProperties"};
+        "$schema", "title",    "description",   "$defs",         "minItems",   "maxItems",
+        "items",   "required", "minProperties", "maxProperties", "properties", "additionalProperties"};
     EXPECT_NE(std::ranges::find(kOthers, rule), std::end(kOthers)) << "this validator does not know " << rule;
     return true;
   }
@@ -169,7 +174,9 @@ TEST_F(SceneSchema, AcceptsWhatTheReaderAccepts) {
   files.dir.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   files.dir.write("a.png", "");
   for (const char* text :
-       {"objects:\n", "camera: {from: [0, 0, '2*pi'], fov: 30.5}", "background: '#102030'",
+       {"objects:\n",
+        "camera: {from: [0, 0, '2*pi'], fov: 30.5}",
+        "background: '#102030'",
         "params: {n: 3, s: x}\nobjects: [{sphere: {radius: '${n}'}}]",
         "materials: {a: {color: [1, 0, 0], roughness: 0.5}}\nobjects: [{sphere: , material: a}]",
         "materials: {a: {color: {file: a.png, scale: [1, 2]}, diffuse: {noise: {size: 2}, gain: 0.5}}}",
@@ -184,6 +191,19 @@ TEST_F(SceneSchema, AcceptsWhatTheReaderAccepts) {
         "3]}}]}]}}]",
         "objects: [{metaballs: {elements: [{point: {center: [0, 0, 0]}, potential: gaussian, b: 2}]}}]",
         "objects: [{height_field: {function: x*z, samples: [4, 5]}}]",
+        "objects: [{revolution: {profile: linear, points: [[1, 0], [1, 1]]}}]",
+        "objects: [{revolution: {points: [[1, 0], [1, 1], [2, 2], [1, 3]]}}]",
+        "objects: [{polygon: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}}]",
+        "objects: [{union: [{sphere: }]}, {group: }, {group: []}, {spheres: []}]",
+        "objects: [{sphere: , transform: }, {sphere: , transform: []}, {sphere: , name: a, material: {}}]",
+        "objects: [{sphere: , motion: [{time: 0, transform: []}]}]",
+        "objects: [{blob: {sources: [{point: [0, 0, 0], weight: 2}, {point: [1, 0, 0]}]}}]",
+        "objects: [{blobtree: {difference: [{polygon: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}], iso: 0.5}}]",
+        "objects: [{metaballs: {balls: [{radius: 2}], iso: 0.5}}]",
+        "objects: [{ifs: {maps: [{scale: 0.5}, [{scale: 0.5}, {translate: [1, 0, 0]}]]}}]",
+        "materials: {a: {color: {checker: {colors: [[1, 1, 1]]}, gain: 2}, light_group: A-z_09}}",
+        "lights: [{sky: {light_group: 3}}, {sky: {light_group: true}}]",
+        "params: {g: key}\nlights: [{sky: {light_group: '${g}-1'}}]",
         "objects: [{implicit: {function: 'x^2+y^2+z^2-1', bounds: {min: [-1, -1, -1], max: [1, 1, 1]}}}]"}) {
     EXPECT_EQ(files.error_v1(text), "no error") << text;
     EXPECT_TRUE(accepts("oktett: 1\n" + std::string(text))) << text;
@@ -232,7 +252,55 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
                            "objects: [{union: {sphere: }}]",
                            "objects: {sphere: }",
                            "objects: [{metaballs: {balls: [{size: 1}]}}]",
-                           "objects: [{polygon: {vertices: 3}}]"}) {
+                           "objects: [{polygon: {vertices: 3}}]",
+                           "objects: [{polygon: {vertices: [[0, 0, 0], [1, 0, 0]]}}]",
+                           "objects: [{polygon: {vertices: }}]",
+                           "objects: [{}]",
+                           "objects: [null]",
+                           "objects: [{name: a}]",
+                           "objects: [{sphere: , torus: }]",
+                           "objects: [{union: [{sphere: , box: }]}]",
+                           "define: {a: }",
+                           "define: {a: {material: {}}}",
+                           "objects: [{union: []}]",
+                           "objects: [{union: }]",
+                           "objects: [{intersection: []}]",
+                           "objects: [{difference: []}]",
+                           "objects: [{sphere: , transform: {}}]",
+                           "objects: [{sphere: , transform: [{}]}]",
+                           "objects: [{sphere: , transform: {scale: 2, translate: [1, 0, 0]}}]",
+                           "objects: [{sphere: , motion: []}]",
+                           "camera: {motion: []}",
+                           "objects: [{revolution: {points: [[1, 0]]}}]",
+                           "objects: [{revolution: {profile: linear, points: [[1, 0]]}}]",
+                           "objects: [{blob: {sources: []}}]",
+                           "objects: [{blob: {sources: [{}]}}]",
+                           "objects: [{blob: {sources: [{point: [0, 0, 0], plane: {normal: [1, 0, 0]}}]}}]",
+                           "objects: [{blob: {sources: [{weight: 1}]}}]",
+                           "objects: [{metaballs: {}}]",
+                           "objects: [{metaballs: {balls: [{radius: 1}], elements: [{point: [0, 0, 0]}]}}]",
+                           "objects: [{metaballs: {elements: []}}]",
+                           "objects: [{metaballs: {elements: [{weight: 1}]}}]",
+                           "objects: [{metaballs: {elements: [{point: [0, 0, 0], segment: }]}}]",
+                           "objects: [{blobtree: {}}]",
+                           "objects: [{blobtree: {sum: []}}]",
+                           "objects: [{blobtree: {sum: [{}]}}]",
+                           "objects: [{blobtree: {sum: [{max: []}]}}]",
+                           "objects: [{blobtree: {sum: [{point: [0, 0, 0]}], max: [{point: [0, 0, 0]}]}}]",
+                           "objects: [{blobtree: {sum: [{polygon: [[0, 0, 0], [1, 0, 0]]}]}}]",
+                           "objects: [{ifs: {maps: []}}]",
+                           "materials: {a: {color: {}}}",
+                           "materials: {a: {color: {gain: 2}}}",
+                           "materials: {a: {color: {marble: , checker: }}}",
+                           "materials: {a: {color: {file: a.png, checker: }}}",
+                           "materials: {a: {color: {checker: {colors: []}}}}",
+                           "materials: {a: {light_group: 'a b'}}",
+                           "lights: [{}]",
+                           "lights: [null]",
+                           "lights: [{sphere: {center: [0, 0, 0]}, sky: }]",
+                           "lights: [{sky: {light_group: a b}}]",
+                           "lights: [{sky: {light_group: ''}}]",
+                           "lights: [{sky: {light_group: 3.5}}]"}) {
     EXPECT_NE(files.error_v1(text), "no error") << text;
     EXPECT_FALSE(accepts("oktett: 1\n" + std::string(text))) << text;
   }
