@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/isa.h"
+#include "io/image/image.h"
+#include "io/scene/scene_file.h"
+#include "render/render.h"
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 
@@ -61,6 +66,55 @@ TEST(RenderCommand, StatsTellWhichPartOfTheLanesIsFilled) {
         std::to_string(std::lround(100 * 70 / lanes)) + " % of shading lanes filled\n";
     EXPECT_TRUE(contains(stats("--stats"), percent)) << percent;
   }
+}
+
+/// The plane of this name has the same bits in both pictures.
+bool same_plane(const Picture& a, const std::string& in_a, const Picture& b, const std::string& in_b) {
+  const PicturePlane *p = a.find(in_a), *q = b.find(in_b);
+  if (p == nullptr || q == nullptr || p->values.size() != q->values.size()) return false;
+  const bool same_ids = std::equal(p->ids.begin(), p->ids.end(), q->ids.begin(), q->ids.end());
+  return same_ids && std::memcmp(p->values.data(), q->values.data(), p->values.size() * sizeof(float)) == 0;
+}
+
+// Without --denoise the noise stays: EXR files have no layer for it, and their colours are those that
+// --denoise keeps beside the smoothed ones.
+TEST(RenderCommand, OnlyDenoiseSmooths) {
+  const TempDir dir;
+  dir.write(
+      "noisy.yaml",
+      "oktett: 1\nfilm: {width: 24, height: 24}\nintegrator: {kind: path, samples: 4}\nlights: [{sky: }]\n"
+      "objects: [{sphere: {}}, {plane: {normal: [0, 1, 0], offset: -1}}]\n");
+  ASSERT_EQ(run_command(dir, {"render", "noisy.yaml", "-o", "plain.exr"}).status, 0);
+  ASSERT_EQ(run_command(dir, {"render", "noisy.yaml", "-o", "smooth.exr", "--denoise"}).status, 0);
+  const Picture plain = read_image(dir.file("plain.exr")), smooth = read_image(dir.file("smooth.exr"));
+  EXPECT_EQ(smooth.planes.size(), plain.planes.size() + 3);
+  for (const PicturePlane& plane : plain.planes) {
+    EXPECT_FALSE(plane.name.starts_with("Noisy.")) << plane.name;
+    const bool is_color = plane.name == "R" || plane.name == "G" || plane.name == "B";
+    EXPECT_TRUE(same_plane(plain, plane.name, smooth, (is_color ? "Noisy." : "") + plane.name)) << plane.name;
+    EXPECT_EQ(same_plane(plain, plane.name, smooth, plane.name), !is_color) << plane.name;
+  }
+  // The same holds for files without layers: the second picture is another one.
+  ASSERT_EQ(run_command(dir, {"render", "noisy.yaml", "-o", "plain.hdr"}).status, 0);
+  ASSERT_EQ(run_command(dir, {"render", "noisy.yaml", "-o", "smooth.hdr", "--denoise"}).status, 0);
+  EXPECT_NE(file_content(dir.file("plain.hdr")), file_content(dir.file("smooth.hdr")));
+}
+
+// Planes of the library are those of the command without --denoise.
+TEST(RenderCommand, TheLibraryDoesNotDenoise) {
+  const TempDir dir;
+  const std::string path = dir.write("noisy.yaml",
+                                     "oktett: 1\nfilm: {width: 24, height: 24}\n"
+                                     "integrator: {kind: path, samples: 4}\nlights: [{sky: }]\n"
+                                     "objects: [{sphere: {}}]\n");
+  const Picture rendered = render(load_scene_file(path), {}).picture;
+  for (const PicturePlane& plane : rendered.planes) EXPECT_FALSE(plane.name.starts_with("Noisy."));
+  write_image(dir.file("library.exr"), rendered);
+  ASSERT_EQ(run_command(dir, {"render", "noisy.yaml", "-o", "command.exr"}).status, 0);
+  const Picture library = read_image(dir.file("library.exr")), command = read_image(dir.file("command.exr"));
+  EXPECT_EQ(library.planes.size(), command.planes.size());
+  for (const PicturePlane& plane : library.planes)
+    EXPECT_TRUE(same_plane(library, plane.name, command, plane.name)) << plane.name;
 }
 
 TEST(RenderCommand, ProgressIsShownOnlyOnDemandWithoutATerminal) {
