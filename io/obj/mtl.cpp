@@ -50,16 +50,17 @@ constexpr std::pair<const char*, std::uint32_t Material::*> kTextures[] = {
 // The statements of the extension for physically based rendering. One of them makes a material principled.
 // "map_" before a statement gives the texture.
 struct PrincipledStatement {
-  std::string_view key;
+  std::string_view key;   ///< in lower case, as MtlLine::keyword
+  std::string_view name;  ///< as it is written
   float PrincipledParameters::*value;
   std::uint32_t PrincipledMaterial::*texture;
 };
 constexpr PrincipledStatement kPrincipled[] = {
-    {"pr", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture},
-    {"pm", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture},
-    {"ps", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
-    {"pc", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
-    {"pcr", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture}};
+    {"pr", "Pr", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture},
+    {"pm", "Pm", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture},
+    {"ps", "Ps", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
+    {"pc", "Pc", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
+    {"pcr", "Pcr", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture}};
 
 class MtlReader {
  public:
@@ -114,9 +115,9 @@ class MtlReader {
     if (key == "d") {
       // The halo, which depends on the angle of view, is not reproduced.
       if (line.peek() == "-halo") line.take();
-      read(line.take_number(), said_.d);
+      read(take_part(line, "d"), said_.d);
     } else if (key == "tr") {
-      read(line.take_number(), said_.tr);
+      read(take_part(line, "Tr"), said_.tr);
     } else if (key == "ns") {
       read(take(
                line, [](float x) { return x >= 0; }, "Ns must not be negative"),
@@ -130,7 +131,7 @@ class MtlReader {
       read(take(line, is_model, "illum must be a whole number from 0 to 10"), said_.illum);
     }
     for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
-      if (key == kPrincipled[i].key) read(line.take_number(), said_.principled[i].value);
+      if (key == kPrincipled[i].key) read(take_part(line, kPrincipled[i].name), said_.principled[i].value);
       if (key == std::string("map_").append(kPrincipled[i].key))
         if (const auto texture = read_mtl_texture(line, directory_))
           said_.principled[i].texture = add_texture(*texture, line);
@@ -149,6 +150,14 @@ class MtlReader {
     if (!value || allowed(*value)) return value;
     line.warn(rule + "; the default is kept");
     return std::nullopt;
+  }
+
+  /// The number that follows, limited to 0 and 1 with a warning. `name` is that of the statement.
+  static std::optional<float> take_part(MtlLine& line, std::string_view name) {
+    const std::optional<float> value = line.take_number();
+    if (!value || (*value >= 0 && *value <= 1)) return value;
+    line.warn(std::string(name) + " must be from 0 to 1; it counts as " + (*value > 1 ? "1" : "0"));
+    return clamp_unit(*value);
   }
 
   std::uint32_t add_texture(const MtlTexture& texture, const MtlLine& line) {
@@ -185,16 +194,16 @@ class MtlReader {
     for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
       const auto& [value, texture] = said_.principled[i];
       // A texture without a number to multiply shows as it is.
-      if (value || texture) principled.parameters.*kPrincipled[i].value = value ? clamp_unit(*value) : 1;
+      if (value || texture) principled.parameters.*kPrincipled[i].value = value.value_or(1);
       if (texture) principled.*kPrincipled[i].texture = *texture;
     }
   }
 
   void set_opacity(Material& m) const {
     if (said_.d)
-      m.transparency = 1 - clamp_unit(*said_.d);
+      m.transparency = 1 - *said_.d;
     else if (said_.tr)
-      m.transparency = clamp_unit(*said_.tr);
+      m.transparency = *said_.tr;
   }
 
   void set_diffuse(Material& m) const {

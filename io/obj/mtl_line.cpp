@@ -65,9 +65,9 @@ std::optional<Color> MtlLine::take_color() {
   }
   const std::optional<float> r = take_number();
   if (!r) return std::nullopt;
-  if (peek().empty()) return Color{*r, *r, *r};
-  const std::optional<float> g = take_number();
-  const std::optional<float> b = g ? take_number() : std::nullopt;
+  const bool grey = peek().empty();
+  const std::optional<float> g = grey ? r : take_number();
+  const std::optional<float> b = grey ? r : g ? take_number() : std::nullopt;
   if (!b) return std::nullopt;
   if (*r >= 0 && *g >= 0 && *b >= 0) return Color{*r, *g, *b};
   warn("a colour has a negative part; it counts as 0");

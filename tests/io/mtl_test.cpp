@@ -58,7 +58,7 @@ TEST(Mtl, ColorsAndWeights) {
 
 TEST(Mtl, StatementsOfPhysicallyBasedRenderingMakeItPrincipled) {
   const Mtl mtl = load(
-      "newmtl a\nKd 0.1 0.2 0.3\nNi 1.33\nd 0.25\nPr 0.25\nPm 7\nPs 0.5\nPc 0.125\nPcr 0.75\n"
+      "newmtl a\nKd 0.1 0.2 0.3\nNi 1.33\nd 0.25\nPr 0.25\nPm 1\nPs 0.5\nPc 0.125\nPcr 0.75\n"
       "newmtl b\nNs 30\nmap_Pr r.png\nmap_Pm m.png\nPm 0.5\n");
   EXPECT_EQ(mtl.warnings, std::vector<std::string>{});
   ASSERT_TRUE(mtl.materials.at(0).principled);
@@ -93,8 +93,8 @@ TEST(Mtl, TransparencyFromEitherKeyword) {
   EXPECT_EQ(material("Tr 0.75\n").transparency, 0.75f);
   EXPECT_EQ(material("d 1\nTr 1\n").transparency, 0);
   EXPECT_EQ(material("d -halo 0.5\n").transparency, 0.5f);
-  EXPECT_EQ(material("d 7\n").transparency, 0);
-  EXPECT_EQ(material("d -1\n").transparency, 1);
+  EXPECT_EQ(material("d 1\n").transparency, 0);
+  EXPECT_EQ(material("d 0\n").transparency, 1);
   // What passes is not scattered.
   EXPECT_EQ(material("Kd 1 1 1\nd 0.25\n").diffuse, 0.25f);
 }
@@ -202,6 +202,33 @@ TEST(Mtl, MalformedStatementsWarnAndKeepTheDefault) {
   expected.emission = {1, 1, 1};
   expected.emission_texture = 0;
   EXPECT_EQ(m, expected);
+}
+
+TEST(Mtl, PartsOutsideOfZeroToOneWarnAndAreLimited) {
+  const Mtl mtl = load(
+      "newmtl a\nPr 7\nPm -1\nPs 1.5\n Pc -0.5\nPcr 1e30\nd -3\nnewmtl b\nTr 2\nKd -0.5\nnewmtl c\nd 7\n");
+  EXPECT_EQ(mtl.warnings, (std::vector<std::string>{
+                              "m.mtl:2:5: warning: Pr must be from 0 to 1; it counts as 1",
+                              "m.mtl:3:6: warning: Pm must be from 0 to 1; it counts as 0",
+                              "m.mtl:4:7: warning: Ps must be from 0 to 1; it counts as 1",
+                              "m.mtl:5:9: warning: Pc must be from 0 to 1; it counts as 0",
+                              "m.mtl:6:9: warning: Pcr must be from 0 to 1; it counts as 1",
+                              "m.mtl:7:5: warning: d must be from 0 to 1; it counts as 0",
+                              "m.mtl:9:5: warning: Tr must be from 0 to 1; it counts as 1",
+                              "m.mtl:10:8: warning: a colour has a negative part; it counts as 0",
+                              "m.mtl:12:4: warning: d must be from 0 to 1; it counts as 1",
+                          }));
+  ASSERT_TRUE(mtl.materials.at(0).principled);
+  const PrincipledParameters& p = mtl.materials[0].principled->parameters;
+  EXPECT_EQ(p.roughness, 1);
+  EXPECT_EQ(p.metallic, 0);
+  EXPECT_EQ(p.sheen, 1);
+  EXPECT_EQ(p.coat, 0);
+  EXPECT_EQ(p.coat_roughness, 1);
+  EXPECT_EQ(p.transmission, 1);
+  EXPECT_EQ(mtl.materials.at(1).color, (Color{0, 0, 0}));
+  EXPECT_EQ(mtl.materials.at(1).transparency, 1);
+  EXPECT_EQ(mtl.materials.at(2).transparency, 0);
 }
 
 TEST(Mtl, UnknownKeywordsAndStrayStatementsAreIgnored) {
