@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "render/bsdf/optics.h"
 #include "tests/render/medium_support.h"
 
 namespace oktett::enclosures_test {
@@ -127,6 +128,84 @@ TEST(Enclosures, TheCameraMayBeginInside) {
   add_object(scene, PlaneShape{{0, 1, 0}, 1}, add_material(scene, filled(scene, 1, {0.1f, 0.1f, 0.1f}, 0)));
   scene.materials[1].priority = 1, scene.materials[2].priority = 2;
   expect_mean(mean_of(run(scene).picture), exp_of({-2.55, -1.175, -1.3}), 1e-3);
+}
+
+/// A camera in a ball of radius 1 around the origin that absorbs and gives off light as `medium` does.
+Scene inside_ball(Material ball, const Medium& medium, const Vec3d& from, const Vec3d& at) {
+  Scene scene = medium_scene(256, 16);
+  scene.camera.from = from, scene.camera.at = at;
+  scene.media.push_back(medium);
+  ball.interior = 0;
+  add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, ball));
+  return scene;
+}
+
+/// Glass by Phong's model and the principled one.
+std::vector<Material> clear_glasses(float ior) {
+  Material principled = diffuse({1, 1, 1});
+  principled.principled.emplace();
+  PrincipledParameters& p = principled.principled->parameters;
+  p.base_color = {1, 1, 1}, p.transmission = 1, p.roughness = 0, p.ior = ior;
+  return {glass(ior), principled};
+}
+
+// Seen from the centre, light comes along the normal, from before the camera and from behind it. Radiance
+// keeps its value across the surface but for Fresnel's reflectance F: before, behind, before, ... count (1 -
+// F) F^k after the lengths 1, 3, 5, ... within the glass.
+TEST(Enclosures, GlassAroundTheCameraReflectsInside) {
+  constexpr double kIor = 1.5, f = 0.04;
+  for (const Material& ball : clear_glasses(kIor)) {
+    Medium medium;
+    medium.absorption = {0, 0.25f, 1};
+    Scene scene = inside_ball(ball, medium, {0, 0, 0}, {0, 0, -1});
+    const Vec3d before{1, 0.5, 2}, behind{8, 16, 32};
+    add_object(scene, PlaneShape{{0, 0, 1}, -10}, add_material(scene, glowing(Color(before))));
+    add_object(scene, PlaneShape{{0, 0, -1}, -10}, add_material(scene, glowing(Color(behind))));
+    Vec3d want;
+    for (int c = 0; c < 3; ++c) {
+      const double through = std::exp(-static_cast<double>(medium.absorption[c])),
+                   back = f * through * through;
+      want[c] = (1 - f) * through * (before[c] + behind[c] * back) / (1 - back * back);
+    }
+    expect_mean(mean_of(run(scene).picture), want, 5e-3);
+  }
+}
+
+// Away from the centre rays meet the surface again and again at the same angle, here with the sines 0.6 and
+// 0.8. The critical one is 2/3: beyond it nothing from outside is seen, only what the glass itself gives off.
+TEST(Enclosures, GlassAroundTheCameraReflectsAllBeyondTheCriticalAngle) {
+  for (const Material& ball : clear_glasses(1.5f)) {
+    Medium medium;
+    medium.absorption = {1, 0.75f, 2}, medium.emission = {0.25f, 0, 1};
+    const Vec3d glow{0.25, 0, 0.5};
+    for (const double sine : {0.6, 0.8}) {
+      Scene scene = inside_ball(ball, medium, {sine, 0, 0}, {sine, 1, 0});
+      scene.background = {1, 2, 3};
+      const double cosine = std::sqrt(1 - sine * sine), f = fresnel(cosine, 1 / 1.5);
+      EXPECT_EQ(f == 1, sine > 2 / 3.0);
+      Vec3d want;
+      for (int c = 0; c < 3; ++c) {
+        const double half = std::exp(-cosine * static_cast<double>(medium.absorption[c])),
+                     chord = half * half;
+        const double outside = (1 - f) * half / (1 - f * chord);
+        const double own = (1 - half) + half * f * (1 - chord) / (1 - f * chord);
+        want[c] = static_cast<double>(scene.background[c]) * outside + glow[c] * own;
+      }
+      expect_mean(mean_of(run(scene).picture), want, 5e-3);
+    }
+  }
+}
+
+// Rough glass around the camera keeps the light of a white sky, but for the errors of its tables.
+TEST(Enclosures, RoughGlassAroundTheCameraIsWhite) {
+  Material rough = clear_glasses(1.5f)[1];
+  rough.principled->parameters.roughness = 0.5f;
+  Scene scene = inside_ball(rough, {}, {0, 0, 0}, {0, 0, -1});
+  scene.integrator.depth = 64;
+  scene.background = {1, 1, 1};
+  const Mean mean = mean_of(run(scene).picture);
+  EXPECT_NEAR(mean.value.x, 1, 0.02 + 3 * mean.error.x);
+  EXPECT_LE(mean.value.x, 1 + 3 * mean.error.x);
 }
 
 // An orthographic camera whose view is partly inside: each ray begins where its place is.
