@@ -67,30 +67,6 @@ TEST(Bsdf, GlassTransmitsAsTheMicrofacetFormula) {
     }
 }
 
-TEST(Bsdf, BaseIsReciprocal) {
-  constexpr float kIor[] = {0.7f, 0.99f, 0.999f, 1.001f, 1.005f, 1.03f, 1.33f, 1.5f, 2.4f};
-  for (std::uint64_t n = 0; n < 2000; ++n) {
-    const std::uint64_t key = mix_bits(n + 5000);
-    const Vec3f a = random_above(key), b = random_above(key + 1);
-    PrincipledParameters p;
-    p.roughness = 0.04f + 0.96f * random_float(key, 2, 0);
-    p.metallic = random_float(key, 2, 1) < 0.3f ? 0.4f : 0;
-    p.transmission = random_float(key, 2, 2);
-    p.ior = kIor[n % std::size(kIor)];
-    p.thin = n % 5 == 0;
-    if (n % 7 == 0) p.conductor.emplace();
-    const bool front = n % 2 == 0;
-    const Color there = principled_bsdf(p, a, front).evaluate(b).value / b.z;
-    const Color back = principled_bsdf(p, b, front).evaluate(a).value / a.z;
-    expect_close(there, back, 2e-3, 1e-6);
-    // Through the surface. f' n^2 is symmetric, n the index on the viewer's side: radiance leaves eta^2 out.
-    const double eta = p.thin ? 1 : front ? p.ior : 1 / p.ior;
-    const Color down = principled_bsdf(p, a, front).evaluate(flipped(b)).value / b.z;
-    const Color up = principled_bsdf(p, b, p.thin ? front : !front).evaluate(flipped(a)).value / a.z;
-    expect_close(down, up * static_cast<float>(eta * eta), 1e-2, 1e-5);
-  }
-}
-
 TEST(Bsdf, SmoothGlassIsDeltaAndKeepsAllLight) {
   PrincipledParameters p;
   p.base_color = {1, 1, 1}, p.transmission = 1, p.roughness = 0;
