@@ -173,5 +173,103 @@ TEST(Texture, TexturedSurfacesLookTheSameInLanes) {
   }
 }
 
+/// Columns of values that no parameter can have, and those at the ends of ranges.
+class ExtremeTextures : public TextureSampler {
+ public:
+  Color color(std::uint32_t, Vec2f uv, Vec2f, Vec2f) const override {
+    return {texel(uv), texel(uv, 0.7f), texel(uv, 0.3f)};
+  }
+  float value(std::uint32_t, Vec2f uv, Vec2f, Vec2f) const override { return texel(uv); }
+  Vec3f normal(std::uint32_t, Vec2f uv, Vec2f, Vec2f) const override {
+    return {texel(uv), texel(uv, 0.6f), texel(uv, 0.8f)};
+  }
+
+ private:
+  static float texel(Vec2f uv, float scale = 1) {
+    constexpr float kHuge = std::numeric_limits<float>::max(),
+                    kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kTexels[] = {
+        0, std::numeric_limits<float>::quiet_NaN(), 0.5f, kInfinity, -kInfinity, -1, 1, 1e-30f, -kHuge};
+    return kTexels[static_cast<std::size_t>(scale * (std::abs(uv.x) * 16 + std::abs(uv.y) * 5)) %
+                   std::size(kTexels)];
+  }
+};
+
+void expect_finite(const Scene& scene) {
+  const ExtremeTextures textures;
+  const RenderResult result = run(scene, [&](RenderOptions& o) { o.textures = &textures; });
+  EXPECT_EQ(result.report.bad_samples, 0u);
+  for (const char* plane : {"R", "G", "B", "A"})
+    for (const float v : result.picture.find(plane)->values)
+      ASSERT_TRUE(std::isfinite(v) && v >= 0) << plane << ' ' << v;
+}
+
+Scene lit_square(const Material& material) {
+  Scene scene = textured_square(material, 32);
+  scene.background = {1, 1, 1};
+  scene.lights = {DirectionalLight{{-0.6, 0.1, -0.8}, {1, 0.5f, 1}}, PointLight{{1, 2, 3}, {9, 9, 9}, true}};
+  scene.integrator.samples = 16, scene.integrator.depth = 4;
+  add_object(scene, SphereShape{{0, 0, -1}, 0.8}, add_material(scene, mirror()));
+  return scene;
+}
+
+// Texels that are NaN, infinite or out of range, for one parameter at a time and for all together.
+TEST(Texture, ExtremeTexelsOfPrincipledParametersGiveFinitePictures) {
+  for (const float transmission : {0.0f, 0.5f, 1.0f}) {
+    Material plain = diffuse({1, 1, 1});
+    plain.principled.emplace();
+    PrincipledParameters& p = plain.principled->parameters;
+    p.transmission = transmission, p.roughness = 0.4f, p.metallic = 0.25f, p.coat = 0.5f, p.sheen = 0.5f;
+    const auto render_with = [](const Material& m) {
+      Scene scene = lit_square(m);
+      scene.integrator.kind = IntegratorKind::path;
+      expect_finite(scene);
+    };
+    Material all = plain;
+    all.color_texture = all.emission_texture = all.opacity_texture = all.bump_texture = 0;
+    all.principled->sheen_color_texture = 0;
+    for (const PrincipledNumber& number : kPrincipledNumbers) {
+      SCOPED_TRACE(number.name);
+      Material one = plain;
+      (*one.principled).*number.texture = (*all.principled).*number.texture = 0;
+      render_with(one);
+    }
+    SCOPED_TRACE("all");
+    render_with(all);
+    all.bump_texture = kNoId, all.normal_texture = 0;
+    render_with(all);
+  }
+}
+
+TEST(Texture, ExtremeTexelsOfPhongsParametersGiveFinitePictures) {
+  Material plain = diffuse({0.5f, 0.5f, 0.5f});
+  plain.specular = 0.3f, plain.phong = 20, plain.transparency = 0.25f, plain.reflection = 0.25f;
+  plain.emission = {1, 1, 1};
+  const auto render_with = [](const Material& m) {
+    Scene scene = lit_square(m);
+    scene.ambient_light = {1, 1, 1};
+    for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted}) {
+      scene.integrator.kind = kind;
+      expect_finite(scene);
+    }
+  };
+  Material all = plain;
+  for (const auto texture :
+       {&Material::color_texture, &Material::specular_texture, &Material::emission_texture,
+        &Material::opacity_texture, &Material::bump_texture, &Material::normal_texture}) {
+    Material one = plain;
+    one.*texture = all.*texture = 0;
+    render_with(one);
+  }
+  for (const PhongNumber& number : kPhongNumbers) {
+    SCOPED_TRACE(number.name);
+    Material one = plain;
+    one.*number.texture = all.*number.texture = 0;
+    render_with(one);
+  }
+  SCOPED_TRACE("all");
+  render_with(all);
+}
+
 }  // namespace
 }  // namespace oktett::texture_test
