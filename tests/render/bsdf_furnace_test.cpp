@@ -97,6 +97,13 @@ TEST(BsdfFurnace, LayersTakeNoMoreThanTheyGive) {
   p = {};
   p.coat = 0.7f, p.coat_roughness = 0.1f, p.sheen = 0.5f, p.sheen_roughness = 0.8f;
   expect_white(p);
+  p = {};
+  p.coat = 1, p.coat_roughness = 0.6f;
+  for (const float ior : {1.003f, 1.015f, 1.04f}) {
+    SCOPED_TRACE(ior);
+    p.coat_ior = ior;
+    expect_white(p);
+  }
 }
 
 }  // namespace

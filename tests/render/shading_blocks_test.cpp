@@ -22,12 +22,13 @@ Scene crowded_room() {
   shiny.specular = 0.4f, shiny.phong = 20.5f, shiny.reflection = 0.2f;
   Material lamp = diffuse({0.2f, 0.2f, 0.2f});
   lamp.emission = {3, 4, 5}, lamp.emits_behind = false;
-  Material metal, frosted, layered;
-  metal.principled.emplace(), frosted.principled.emplace(), layered.principled.emplace();
+  Material metal, frosted, faint, layered;
+  for (Material* m : {&metal, &frosted, &faint, &layered}) m->principled.emplace();
   metal.principled->parameters.metallic = 1, metal.principled->parameters.roughness = 0.3f;
   frosted.principled->parameters.transmission = 1, frosted.principled->parameters.roughness = 0.25f;
+  faint.principled->parameters.transmission = 0.5f, faint.principled->parameters.ior = 1.005f;
   layered.principled->parameters.coat = 0.7f, layered.principled->parameters.sheen = 0.5f;
-  const Material materials[] = {shiny, glass(1.5f), mirror(), lamp, metal, frosted, layered};
+  const Material materials[] = {shiny, glass(1.5f), mirror(), lamp, metal, frosted, faint, layered};
   for (std::size_t i = 0; i < std::size(materials); ++i) {
     const std::uint32_t m = add_material(scene, materials[i]);
     for (int k = 0; k < 3; ++k) {
