@@ -33,6 +33,7 @@ struct Statements {
     std::optional<std::uint32_t> texture;
   };
   std::array<Principled, 5> principled;  ///< in the order of kPrincipled
+  Location ior_place;                    ///< of the last Ni
 };
 
 constexpr std::pair<const char*, std::optional<Color> Statements::*> kColors[] = {{"ka", &Statements::ka},
@@ -126,6 +127,7 @@ class MtlReader {
       read(take(
                line, [](float x) { return x > 0; }, "Ni must be greater than 0"),
            material.ior);
+      said_.ior_place = line.where();
     } else if (key == "illum") {
       const auto is_model = [](float x) { return x >= 0 && x <= 10 && x == std::floor(x); };
       read(take(line, is_model, "illum must be a whole number from 0 to 10"), said_.illum);
@@ -187,16 +189,26 @@ class MtlReader {
     set_principled(m);
   }
 
-  void set_principled(Material& m) const {
+  void set_principled(Material& m) {
     const auto said = [](const Statements::Principled& p) { return p.value || p.texture; };
     if (std::ranges::none_of(said_.principled, said)) return;
     PrincipledMaterial& principled = m.principled.emplace(principled_like(m));
+    limit_ior(principled.parameters.ior);
     for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
       const auto& [value, texture] = said_.principled[i];
       // A texture without a number to multiply shows as it is.
       if (value || texture) principled.parameters.*kPrincipled[i].value = value.value_or(1);
       if (texture) principled.*kPrincipled[i].texture = *texture;
     }
+  }
+
+  void limit_ior(float& ior) {
+    constexpr float kMost = kMostIor, kLeast = 1 / kMost;
+    if (ior >= kLeast && ior <= kMost) return;
+    const std::string nearest = ior > kMost ? "4" : "0.25";
+    warnings_.push_back(
+        {said_.ior_place, "Ni must be from 0.25 to 4 beside Pr, Pm, Ps, Pc or Pcr; it counts as " + nearest});
+    ior = std::clamp(ior, kLeast, kMost);
   }
 
   void set_opacity(Material& m) const {

@@ -231,6 +231,22 @@ TEST(Mtl, PartsOutsideOfZeroToOneWarnAndAreLimited) {
   EXPECT_EQ(mtl.materials.at(2).transparency, 0);
 }
 
+// Phong's glass has any index; the principled material those that its tables cover.
+TEST(Mtl, IndicesOfPrincipledMaterialsWarnAndAreLimited) {
+  const Mtl mtl =
+      load("newmtl a\nNi 7\nPr 0.5\nnewmtl b\nPm 1\n Ni 0.1\nnewmtl c\nNi 4\nPr 1\nnewmtl d\nNi 7\n");
+  EXPECT_EQ(
+      mtl.warnings,
+      (std::vector<std::string>{
+          "m.mtl:2:1: warning: Ni must be from 0.25 to 4 beside Pr, Pm, Ps, Pc or Pcr; it counts as 4",
+          "m.mtl:6:2: warning: Ni must be from 0.25 to 4 beside Pr, Pm, Ps, Pc or Pcr; it counts as 0.25",
+      }));
+  EXPECT_EQ(mtl.materials.at(0).principled->parameters.ior, 4);
+  EXPECT_EQ(mtl.materials.at(1).principled->parameters.ior, 0.25f);
+  EXPECT_EQ(mtl.materials.at(2).principled->parameters.ior, 4);
+  EXPECT_EQ(mtl.materials.at(3).ior, 7);
+}
+
 TEST(Mtl, UnknownKeywordsAndStrayStatementsAreIgnored) {
   const Mtl mtl = load("Kd 1 1 1\nnewmtl a\nsharpness 60\nrefl -type sphere x\nfoo bar\n\x01\x02\n");
   EXPECT_EQ(mtl.warnings, std::vector<std::string>{});

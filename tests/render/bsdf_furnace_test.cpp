@@ -87,7 +87,11 @@ TEST(BsdfFurnace, ThinGlassIsWhiteAtEveryRoughness) {
   PrincipledParameters p;
   p.transmission = 1;
   p.thin = true;
-  expect_white(p);
+  for (const float ior : {0.9f, 1.0f, 1.005f, 1.5f}) {
+    SCOPED_TRACE(ior);
+    p.ior = ior;
+    expect_white(p);
+  }
 }
 
 TEST(BsdfFurnace, LayersTakeNoMoreThanTheyGive) {
