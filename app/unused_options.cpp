@@ -22,9 +22,9 @@ void check_target_options(const RenderArguments& arguments, const PictureTarget&
 }
 
 void warn_of_unused_tone(const FilmArguments& film, const std::string& picture) {
-  if (picture.empty() || !keeps_all_planes(picture)) return;
+  if (picture.empty() || !keeps_light(picture)) return;
   for (const auto& [name, value] : {std::pair{"--tone", film.tone}, {"--exposure", film.exposure}})
-    if (!value.empty()) say("warning: {} has no effect on an EXR file, which keeps the light\n", name);
+    if (!value.empty()) say("warning: {} has no effect on EXR and HDR files, which keep the light\n", name);
 }
 
 void check_light_options(const RenderArguments& arguments, Scene& scene) {

@@ -16,7 +16,7 @@ struct PictureTarget {
 /// Refuses options that the target has no place for, and warns of others.
 void check_target_options(const RenderArguments& arguments, const PictureTarget& target);
 
-/// Warns of options for pictures of 8 bits if `picture` is an EXR file.
+/// Warns of options for pictures of 8 bits if `picture` is an EXR or HDR file.
 void warn_of_unused_tone(const FilmArguments& film, const std::string& picture);
 
 /// Refuses caustics where the integrator has none, and numbers of samples that would silently be others;

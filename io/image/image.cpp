@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -89,6 +90,11 @@ void check_output(const std::string& path) {
 bool keeps_all_planes(const std::string& path) {
   const Format* format = common_format(path);
   return format != nullptr && format->write == write_exr;
+}
+
+bool keeps_light(const std::string& path) {
+  const Format* format = common_format(path);
+  return format != nullptr && (format->write == write_exr || std::string_view(format->extension) == ".hdr");
 }
 
 void write_image(const std::string& path, const Picture& picture, const ImageMetadata& metadata) {

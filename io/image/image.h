@@ -19,6 +19,10 @@ void check_output(const std::string& path);
 /// True if the format that the extension of `path` names stores planes other than R, G, B and A.
 bool keeps_all_planes(const std::string& path);
 
+/// Whether the extension of `path` names EXR or HDR, whose files hold the light as it is, without a tone
+/// curve.
+bool keeps_light(const std::string& path);
+
 /// Writes `picture` in the format that the extension of `path` names. It is written under another name in the
 /// same directory, flushed to the disk and renamed, so `path` never holds a part of a picture. Throws Error
 /// of kind io if that fails; then a file that was at `path` is still there, and no other is left behind.

@@ -43,6 +43,17 @@ void read_lens(SceneValues& values, const Fields& fields, const YamlNode& node, 
     throw Error(focus ? focus->where() : node.where(), "the point in focus does not lie before the camera");
 }
 
+/// Warns of settings that change nothing, given the others.
+void warn_of_unused_settings(SceneLoad& load, const Fields& fields, const Camera& camera) {
+  const auto warn = [&](const char* key, bool is_unused, const char* why) {
+    const YamlNode* const node = fields[key];
+    if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);
+  };
+  const bool perspective = camera.projection == Projection::perspective;
+  warn("fov", !perspective, "an orthographic view has a 'height'");
+  warn("height", perspective, "a perspective view has a 'fov'");
+}
+
 }  // namespace
 
 void read_camera(SceneLoad& load, const YamlNode& node) {
@@ -62,6 +73,7 @@ void read_camera(SceneLoad& load, const YamlNode& node) {
         *projection, {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}});
   check_view(camera, node);
   read_lens(values, fields, node, camera);
+  warn_of_unused_settings(load, fields, camera);
   if (const YamlNode* shutter = fields["shutter"]) {
     values.numbers(*shutter, camera.shutter);
     if (camera.shutter[0] > camera.shutter[1])

@@ -40,7 +40,7 @@ class UnusedOptions : public testing::Test {
     const CommandResult result = render(words, scene);
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, warning);
-    for (const char* file : {"a.png", "a.exr", "a.film"}) std::filesystem::remove(dir_.file(file));
+    for (const char* file : {"a.png", "a.exr", "a.HDR", "a.film"}) std::filesystem::remove(dir_.file(file));
   }
 
   TempDir dir_;
@@ -114,9 +114,11 @@ TEST_F(UnusedOptions, DenoisingNeedsAPicture) {
 }
 
 TEST_F(UnusedOptions, ToneIsForEightBits) {
-  const std::string tone = "warning: --tone has no effect on an EXR file, which keeps the light\n",
-                    exposure = "warning: --exposure has no effect on an EXR file, which keeps the light\n";
+  const std::string tone = "warning: --tone has no effect on EXR and HDR files, which keep the light\n",
+                    exposure =
+                        "warning: --exposure has no effect on EXR and HDR files, which keep the light\n";
   expect_said({"--tone", "aces", "--exposure", "1", "-o", "a.exr"}, tone + exposure);
+  expect_said({"--tone", "aces", "-o", "a.HDR"}, tone);
   expect_said({"--tone", "aces", "--exposure", "1", "-o", "a.png"}, "");
   expect_said({"--exposure", "1", "-o", "a.exr", "--show=blocks"}, "");
   // A film keeps both for the picture that is made of it.

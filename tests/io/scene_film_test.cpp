@@ -89,6 +89,24 @@ TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
     EXPECT_EQ(warnings(used), "") << used;
 }
 
+TEST(SceneFilm, WarnsOfCameraSettingsWithoutEffect) {
+  const auto warnings = [](const std::string& camera) {
+    SceneFiles files;
+    std::string all;
+    for (const Warning& w : files.load_v1("camera: {" + camera + "}\n").warnings)
+      all += files.without_directory(to_string(w)) + "\n";
+    return all;
+  };
+  const std::string no_effect = " has no effect: ";
+  EXPECT_EQ(warnings("projection: orthographic, fov: 30"),
+            "scene.yaml:2:41: warning: 'fov'" + no_effect + "an orthographic view has a 'height'\n");
+  EXPECT_EQ(warnings("height: 3"),
+            "scene.yaml:2:18: warning: 'height'" + no_effect + "a perspective view has a 'fov'\n");
+  for (const char* used : {"fov: 30", "projection: orthographic, height: 3", "aperture: 0, focus: 3",
+                           "f_number: 2, focus: [0, 0, 0]"})
+    EXPECT_EQ(warnings(used), "") << used;
+}
+
 TEST(SceneFilm, ReadsAdaptiveSampling) {
   const Scene scene = SceneFiles().load_v1("integrator: {error: 0.02, max_samples: 500}\n");
   EXPECT_EQ(scene.integrator.error, 0.02);
