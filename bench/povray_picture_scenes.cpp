@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+
+#include "bench/bench_mesh.h"
 
 namespace oktett::bench {
 namespace {
@@ -115,6 +118,16 @@ std::string add_field(Scene& scene, int side) {
   return text;
 }
 
+Material clear_glass() {
+  Material clear = dull({1, 1, 1});
+  clear.diffuse = 0, clear.transparency = 1, clear.ior = 1.5f;
+  return clear;
+}
+
+constexpr const char* kPovGlass =
+    " texture { pigment { rgbt <1, 1, 1, 1> } finish { ambient 0 diffuse 0 reflection { 0, 1 fresnel on } "
+    "conserve_energy } } interior { ior 1.5 }";
+
 PictureScene glass(std::uint32_t width, std::uint32_t height) {
   PictureScene p;
   p.name = "glass";
@@ -122,17 +135,39 @@ PictureScene glass(std::uint32_t width, std::uint32_t height) {
   p.scene.background = {0.1f, 0.2f, 0.3f};
   p.scene.lights = {PointLight{{-20, 40, -20}}};
   std::string text = pov_head(p.scene) + "light_source { <-20, 40, -20> rgb 1 }\n" + add_field(p.scene, 11);
-  Material clear = dull({1, 1, 1});
-  clear.diffuse = 0, clear.transparency = 1, clear.ior = 1.5f;
-  text +=
-      "#declare G = texture { pigment { rgbt <1, 1, 1, 1> } finish { ambient 0 diffuse 0 reflection { 0, 1 "
-      "fresnel on } conserve_energy } }\n";
   for (int i = 0; i < 6; ++i)
     for (int k = 0; k < 6; ++k) {
       const Vec3d center{i - 2.5, 1.1, k - 2.5};
-      add(p.scene, SphereShape{center, 0.45}, clear);
-      text += fmt::format("sphere {{ {}, 0.45 texture {{ G }} interior {{ ior 1.5 }} }}\n", text_of(center));
+      add(p.scene, SphereShape{center, 0.45}, clear_glass());
+      text += fmt::format("sphere {{ {}, 0.45{} }}\n", text_of(center), kPovGlass);
     }
+  p.pov = [text](std::uint32_t) { return text; };
+  return p;
+}
+
+/// POV-Ray's text of the mesh. The vector tells it which side is inside.
+std::string pov_mesh(const TriangleMesh& mesh) {
+  std::string text = fmt::format("mesh2 {{ vertex_vectors {{ {}", mesh.positions.size());
+  for (const Vec3f& p : mesh.positions) text += fmt::format(", <{:.9g}, {:.9g}, {:.9g}>", p.x, p.y, p.z);
+  text += fmt::format(" }} face_indices {{ {}", mesh.indices.size() / 3);
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+    text += fmt::format(", <{}, {}, {}>", mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]);
+  return text + " } inside_vector <0, 1, 0>";
+}
+
+/// The mesh of the benchmarks, of glass, over the field.
+PictureScene glass_mesh(std::uint32_t width, std::uint32_t height) {
+  PictureScene p;
+  p.name = "glass_mesh";
+  p.scene = empty_scene(width, height, {1, 4, -9}, {0, 1.2, 0});
+  p.scene.background = {0.1f, 0.2f, 0.3f};
+  p.scene.lights = {PointLight{{-20, 40, -20}}};
+  std::string text = pov_head(p.scene) + "light_source { <-20, 40, -20> rgb 1 }\n" + add_field(p.scene, 11);
+  auto mesh = std::make_shared<TriangleMesh>(bench_mesh());
+  for (std::size_t i = 0; i < mesh->positions.size(); ++i)
+    mesh->positions[i] = mesh->positions[i] * 1.8f + Vec3f{0, 2.8f, 0};
+  text += pov_mesh(*mesh) + kPovGlass + " }\n";
+  add(p.scene, MeshShape{std::move(mesh), {}, false}, clear_glass());
   p.pov = [text](std::uint32_t) { return text; };
   return p;
 }
@@ -194,8 +229,8 @@ PictureScene lamp(std::uint32_t width, std::uint32_t height) {
 }  // namespace
 
 std::vector<PictureScene> picture_scenes(std::uint32_t width, std::uint32_t height) {
-  return {balls(width, height, 4), balls(width, height, 5), glass(width, height), lens(width, height),
-          lamp(width, height)};
+  return {balls(width, height, 4),   balls(width, height, 5), glass(width, height),
+          glass_mesh(width, height), lens(width, height),     lamp(width, height)};
 }
 
 }  // namespace oktett::bench
