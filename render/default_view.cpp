@@ -19,7 +19,9 @@ Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film) {
   camera.at = center;
   // From the right of the front and slightly above. Until the distance is known, `from` is only a direction.
   const Vec3d front = std::abs(camera.up.z) > std::abs(camera.up.y) ? Vec3d{0, -1, 0} : Vec3d{0, 0, 1};
-  camera.from = center + Vec3d{0.55, 0, 0} + camera.up * (0.45 / length(camera.up)) + front;
+  const bool lies = std::abs(camera.up.x) > std::max(std::abs(camera.up.y), std::abs(camera.up.z));
+  const Vec3d right = lies ? normalize(cross(camera.up, front)) : Vec3d{1, 0, 0};
+  camera.from = center + right * 0.55 + camera.up * (0.45 / length(camera.up)) + front;
 
   const CameraFrame frame = camera_frame(camera, film);
   const double half_height = frame.pixel_size * std::max(film.height, 1u) / 2 * (1 - kMargin);
@@ -44,31 +46,6 @@ Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film) {
   if (!(camera.height > 0)) camera.height = 2 * size;
   camera.from = center - frame.forward * distance;
   return camera;
-}
-
-/// Share of the surface that faces down `axis` within the lowest 2 % of it.
-static double base_share(const TriangleMesh& mesh, int axis, double low, double extent) {
-  double base = 0, total = 0;
-  // A sample of a hundred thousand triangles is enough.
-  const std::size_t stride = 1 + mesh.triangle_count() / 100000;
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3 * stride) {
-    const Vec3d a(mesh.positions[mesh.indices[i]]), b(mesh.positions[mesh.indices[i + 1]]),
-        c(mesh.positions[mesh.indices[i + 2]]);
-    const Vec3d n = cross(b - a, c - a);
-    const double area = length(n);
-    total += area;
-    const double top = std::max({a[axis], b[axis], c[axis]});
-    if (top < low + 0.02 * extent && std::abs(n[axis]) > 0.95 * area) base += area;
-  }
-  return total > 0 ? base / total : 0;
-}
-
-Vec3d guess_up(const TriangleMesh& mesh) {
-  Box box;
-  for (const Vec3f& p : mesh.positions) box.grow(p);
-  const Vec3f e = box.extent();
-  const double y = base_share(mesh, 1, box.lo.y, e.y), z = base_share(mesh, 2, box.lo.z, e.z);
-  return z > 0.02 && z > 4 * y ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
 }
 
 std::vector<Light> default_lights(const Camera& camera, const Film& film) {

@@ -13,10 +13,6 @@ namespace oktett {
 /// bounds count as the box from -1 to 1.
 Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film);
 
-/// The up direction of a mesh whose file does not state one: +y, as is usual, unless the mesh has a flat base
-/// at the low end of z and none at the low end of y; then +z.
-Vec3d guess_up(const TriangleMesh& mesh);
-
 /// A key light from above left of the camera and a weaker fill light from its right.
 std::vector<Light> default_lights(const Camera& camera, const Film& film);
 

@@ -15,7 +15,7 @@
 #include "io/scene/yaml.h"
 #include "io/text/extension.h"
 #include "io/text/file_access.h"
-#include "render/default_view.h"
+#include "render/look/up_direction.h"
 
 namespace oktett {
 namespace {
