@@ -135,6 +135,8 @@ class Slots {
       std::vector<std::uint16_t>& own = own_.emplace_back();
       for (const std::uint32_t material : shared.slots) own.push_back(slot(material));
     }
+    // A mesh without materials is one without materials in every format.
+    if (materials.size() == 1 && slot_of_.back() == 0) materials.clear();
   }
 
   std::vector<Material> materials;

@@ -178,6 +178,15 @@ Scene load_scene_file(const std::string& path, const Definitions& definitions) {
   return std::move(load.scene);
 }
 
+/// Whether a ray could hit one of the triangles.
+static bool has_area(const TriangleMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const auto corner = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.indices[i + k]]); };
+    if (length(cross(corner(1) - corner(0), corner(2) - corner(0))) > 0) return true;
+  }
+  return false;
+}
+
 Scene scene_from_mesh(const std::string& path) {
   expect_readable(path);
   Scene scene;
@@ -195,15 +204,13 @@ Scene scene_from_mesh(const std::string& path) {
   MeshShape shape;
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
-  if (shape.slot_materials.empty()) {
-    scene.materials.push_back({});
-    scene.materials.back().name = "neutral";
-    shape.slot_materials.push_back(static_cast<std::uint32_t>(scene.materials.size() - 1));
-  }
   if (shape.mesh->triangle_count() == 0) {
     scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
     return scene;
   }
+  if (!has_area(*shape.mesh))
+    scene.warnings.push_back(
+        Warning{Location{path, 0, 0}, "no triangle of the mesh has an area: there is nothing to be seen"});
   // In glTF, +y points up.
   if (!is_gltf_file(path)) scene.camera.up = guess_up(*shape.mesh);
   scene.background = kPlainBackground;

@@ -149,11 +149,6 @@ Material satin() {
   return m;
 }
 
-/// Whether the materials of the mesh are only what stands in for missing ones.
-bool is_neutral(const Scene& scene) {
-  return scene.materials.size() == 1 && scene.materials[0].name == "neutral";
-}
-
 }  // namespace
 
 bool is_mesh_alone(const Scene& scene) {
@@ -186,7 +181,7 @@ void apply_look(Scene& scene, Look look) {
     light_by(scene, studio_picture(studio_frame(scene.camera, up), kGroundAlbedo, kHorizon));
   if (look == Look::clay)
     cover(scene, scene.objects[0], matt("clay", {0.58f, 0.42f, 0.33f}));
-  else if (is_neutral(scene))
+  else if (shape.slot_materials.empty() && scene.objects[0].material == kNoId)
     cover(scene, scene.objects[0], satin());
   if (!inside) add_ground(scene, stance, up);
 }

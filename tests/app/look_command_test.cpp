@@ -73,6 +73,29 @@ TEST(LookCommand, TheFormatOfTheMeshChangesNothing) {
   EXPECT_EQ(picture(dir, {}, 0, "mesh.stl"), usual);
 }
 
+// The name of a material is the user's: none stands for "there is none".
+TEST(LookCommand, MaterialsOfAnyNameAreKept) {
+  const TempDir dir;
+  const auto with_material = [&](const std::string& name) {
+    dir.write("mesh.mtl", "newmtl " + name + "\nKd 1 0 0\n");
+    dir.write("mesh.obj", "mtllib mesh.mtl\nusemtl " + name + "\n" + kTetrahedron);
+    return picture(dir, {});
+  };
+  EXPECT_EQ(with_material("neutral"), with_material("red"));
+}
+
+TEST(LookCommand, WarnsOfMeshesThatCannotBeSeen) {
+  const TempDir dir;
+  dir.write("mesh.obj", "v 0 0 0\nv 1 2 3\nv 2 4 6\nf 1 2 3\nf 1 1 2\n");
+  const std::vector<std::string> words{"render", "mesh.obj", "--size", "8x8", "--quiet", "--no-output"};
+  const CommandResult result = run_command(dir, words);
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("mesh.obj: warning: no triangle of the mesh has an area"), std::string::npos)
+      << result.err;
+  dir.write("mesh.obj", std::string(kTetrahedron) + "f 1 1 2\n");
+  EXPECT_EQ(run_command(dir, words).err, "");
+}
+
 TEST(LookCommand, RefusesWhatHasNoLook) {
   const TempDir dir;
   dir.write("mesh.obj", kTetrahedron);

@@ -298,15 +298,30 @@ TEST(SceneFile, MeshMaterialsAreAppended) {
   EXPECT_EQ(scene.objects[1].material, 0u);
 }
 
-TEST(SceneFromMesh, HasOneObjectAndANeutralMaterial) {
+TEST(SceneFromMesh, HasOneObjectAndTheMaterialsOfItsFile) {
   SceneFiles files;
   const Scene scene = load_scene(files.dir.write("tetra.OBJ", kTetrahedron));
   EXPECT_FALSE(scene.camera_given);
   EXPECT_FALSE(scene.lights_given);
   ASSERT_EQ(scene.objects.size(), 1u);
   EXPECT_EQ(scene.objects[0].name, "tetra");
-  ASSERT_EQ(scene.materials.size(), 1u);
-  EXPECT_EQ(shape_of<MeshShape>(scene).slot_materials, std::vector<std::uint32_t>{0});
+  EXPECT_TRUE(scene.materials.empty());
+  EXPECT_TRUE(shape_of<MeshShape>(scene).slot_materials.empty());
+  files.dir.write("red.mtl", "newmtl red\nKd 1 0 0\n");
+  const Scene red =
+      load_scene(files.dir.write("red.obj", std::string("mtllib red.mtl\nusemtl red\n") + kTetrahedron));
+  ASSERT_EQ(red.materials.size(), 1u);
+  EXPECT_EQ(shape_of<MeshShape>(red).slot_materials, std::vector<std::uint32_t>{0});
+}
+
+TEST(SceneFromMesh, WithoutAnAreaThereIsAWarning) {
+  SceneFiles files;
+  const Scene line = load_scene(files.dir.write("line.obj", "v 0 0 0\nv 1 2 3\nv 2 4 6\nf 1 2 3\n"));
+  ASSERT_EQ(line.warnings.size(), 1u);
+  EXPECT_NE(line.warnings[0].message.find("no triangle of the mesh has an area"), std::string::npos);
+  // One triangle with an area is enough.
+  const Scene tetra = load_scene(files.dir.write("tetra.obj", std::string(kTetrahedron) + "f 1 1 2\n"));
+  EXPECT_TRUE(tetra.warnings.empty());
 }
 
 TEST(LoadScene, ChoosesByExtension) {

@@ -38,7 +38,6 @@ Scene scene_of(TriangleMesh mesh) {
   MeshShape shape;
   shape.mesh = std::make_shared<TriangleMesh>(std::move(mesh));
   scene.objects.emplace_back().shape = shape;
-  scene.materials.emplace_back().name = "neutral";
   return scene;
 }
 
@@ -159,10 +158,26 @@ TEST(DefaultLook, StandsOnAGroundThatFades) {
   EXPECT_LT(darkest, 0.8f * red(2, 30));
 }
 
+// A material is never taken for a missing one, whatever its name is.
+TEST(DefaultLook, OnlyWhatHasNoMaterialGetsOne) {
+  for (const char* name : {"", "neutral", "satin"}) {
+    Scene scene = scene_of(ball(8));
+    scene.materials.emplace_back().name = name;
+    std::get<MeshShape>(scene.objects[0].shape).slot_materials = {0};
+    apply_look(scene, Look::studio);
+    EXPECT_EQ(scene.objects[0].material, kNoId) << name;
+  }
+  Scene scene = scene_of(ball(8));
+  apply_look(scene, Look::studio);
+  ASSERT_NE(scene.objects[0].material, kNoId);
+  EXPECT_EQ(scene.materials[scene.objects[0].material].name, "satin");
+}
+
 TEST(DefaultLook, ClayCoversMaterialsAndStudioKeepsThem) {
   for (const Look look : {Look::studio, Look::clay, Look::normals}) {
     Scene scene = scene_of(ball(8));
-    scene.materials[0].name = "own";
+    scene.materials.emplace_back().name = "own";
+    std::get<MeshShape>(scene.objects[0].shape).slot_materials = {0};
     apply_look(scene, look);
     const std::uint32_t material = scene.objects[0].material;
     EXPECT_EQ(material == kNoId, look != Look::clay);
