@@ -37,6 +37,8 @@ FilmFingerprint fingerprint_of(const Scene& scene, const std::vector<std::string
   add("the number of photons", integrator.caustics.photons);
   add("the number of photon passes", integrator.caustics.passes);
   add("--look", arguments.look.empty() ? "default" : arguments.look);
+  add("--up", arguments.up.empty() ? "default" : arguments.up);
+  add("--view", arguments.viewpoint.empty() ? "default" : arguments.viewpoint);
   for (const auto& [name, value] : parse_definitions(arguments.definitions))
     fingerprint.settings.emplace_back("-D " + name, value);
   fingerprint.files = hash_files(files, std::filesystem::path(arguments.scene).parent_path().string());

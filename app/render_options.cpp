@@ -19,6 +19,9 @@ namespace {
 
 /// In the order of Look.
 constexpr const char* kLooks[] = {"studio", "clay", "normals", "wire"};
+/// In the order of Viewpoint.
+constexpr const char* kViewpoints[] = {"auto", "outside", "inside"};
+constexpr const char* kUps[] = {"x", "y", "z", "-x", "-y", "-z"};
 /// In the order of BuildQuality.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
 // The same bounds as in a scene file.
@@ -85,6 +88,10 @@ void add_picture_options(Verb& verb, RenderArguments& a) {
   add_cache_options(verb, a.cache);
   verb.choice("--look", a.look, "LOOK", "How a mesh given alone is shown",
               {std::begin(kLooks), std::end(kLooks)});
+  verb.choice("--up", a.up, "AXIS", "What points up in a mesh given alone; default: a guess",
+              {std::begin(kUps), std::end(kUps)});
+  verb.choice("--view", a.viewpoint, "PLACE", "Where a mesh given alone is seen from",
+              {std::begin(kViewpoints), std::end(kViewpoints)});
   verb.choice("--isa", a.isa, "NAME", "Instruction set", {"auto", "sse4.2", "avx2", "avx512", "scalar"});
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
@@ -158,6 +165,27 @@ std::optional<Look> look_of(const RenderArguments& arguments) {
   if (!alone) throw Error("--look is for meshes given alone; a scene file says itself how it looks");
   if (!arguments.integrator.empty()) throw Error("--look chooses the integrator; expected no --integrator");
   return look;
+}
+
+std::optional<Vec3d> up_of(const RenderArguments& arguments) {
+  if (arguments.up.empty()) return std::nullopt;
+  const std::size_t i = index_of("--up: unknown direction", arguments.up, kUps, "x, y, z, -x, -y or -z");
+  if (!is_mesh_file(arguments.scene))
+    throw Error("--up is for meshes given alone; the camera of a scene file says what is up");
+  Vec3d up{0, 0, 0};
+  up[static_cast<int>(i % 3)] = i < 3 ? 1 : -1;
+  return up;
+}
+
+Viewpoint viewpoint_of(const RenderArguments& arguments) {
+  if (arguments.viewpoint.empty()) return Viewpoint::automatic;
+  const auto viewpoint = static_cast<Viewpoint>(
+      index_of("--view: unknown place", arguments.viewpoint, kViewpoints, "auto, outside or inside"));
+  if (!is_mesh_file(arguments.scene))
+    throw Error("--view is for meshes given alone; the camera of a scene file says where it stands");
+  if (!arguments.integrator.empty())
+    throw Error("--view belongs to the looks of a mesh; expected no --integrator");
+  return viewpoint;
 }
 
 Definitions parse_definitions(const std::vector<std::string>& words) {

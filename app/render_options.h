@@ -31,7 +31,8 @@ struct RenderArguments {
   std::string crop;
   std::string integrator;
   FilmArguments film;
-  std::string look;  ///< of a mesh given alone; empty: the default
+  /// Of a mesh given alone; empty: the default.
+  std::string look, up, viewpoint;
   std::string isa;
   std::string bvh;  ///< quality of the trees; empty: the default
   std::vector<std::string> definitions;
@@ -60,6 +61,11 @@ void override_scene(const RenderArguments& arguments, Scene& scene);
 /// stands before the background, lit from the camera. Throws Error for an unknown word or a look that does
 /// not belong here.
 std::optional<Look> look_of(const RenderArguments& arguments);
+/// The up direction that --up names; nothing if it is not given. Throws Error for an unknown word, or if it
+/// does not belong here.
+std::optional<Vec3d> up_of(const RenderArguments& arguments);
+/// Where a mesh given alone is seen from. Throws Error for an unknown word, or if it does not belong here.
+Viewpoint viewpoint_of(const RenderArguments& arguments);
 /// Splits `name=value` words; of several with one name the last counts.
 Definitions parse_definitions(const std::vector<std::string>& words);
 void add_bvh_option(Verb& verb, std::string& quality);

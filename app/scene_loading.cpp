@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "app/command_line.h"
 #include "app/unused_options.h"
@@ -18,17 +19,23 @@ static Scene load_overridden(const RenderArguments& arguments) {
   Scene none;
   override_scene(arguments, none);
   const std::optional<Look> look = look_of(arguments);
+  const std::optional<Vec3d> up = up_of(arguments);
+  const Viewpoint viewpoint = viewpoint_of(arguments);
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
   override_scene(arguments, scene);
-  if (!look) return scene;
+  if (!look && !up) return scene;
   if (!is_mesh_alone(scene)) {
-    if (!arguments.look.empty())
-      throw Error(
-          fmt::format("--look is for meshes given alone; {} has a camera, lights or instances of its own",
-                      arguments.scene));
+    for (const auto& [option, value] :
+         {std::pair{"--look", &arguments.look}, {"--up", &arguments.up}, {"--view", &arguments.viewpoint}})
+      if (!value->empty())
+        throw Error(
+            fmt::format("{} is for meshes given alone; {} has a camera, lights or instances of its own",
+                        option, arguments.scene));
     return scene;
   }
-  apply_look(scene, *look);
+  if (up) scene.camera.up = *up;
+  if (!look) return scene;
+  apply_look(scene, *look, viewpoint);
   // The look chooses the number of samples.
   override_scene(arguments, scene);
   return scene;

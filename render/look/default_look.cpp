@@ -156,13 +156,17 @@ bool is_mesh_alone(const Scene& scene) {
   return scene.objects.empty() || std::holds_alternative<MeshShape>(scene.objects[0].shape);
 }
 
-void apply_look(Scene& scene, Look look) {
+void apply_look(Scene& scene, Look look) { apply_look(scene, look, Viewpoint::automatic); }
+
+void apply_look(Scene& scene, Look look, Viewpoint viewpoint) {
   if (scene.objects.empty()) return;
   auto& shape = std::get<MeshShape>(scene.objects[0].shape);
   smooth(shape);
   const TriangleMesh& mesh = *shape.mesh;
   const Vec3d up = normalize(scene.camera.up);
-  const std::optional<InteriorView> inside = interior_view(mesh, up, scene.film);
+  std::optional<InteriorView> inside;
+  if (viewpoint == Viewpoint::automatic) inside = interior_view(mesh, up, scene.film);
+  if (viewpoint == Viewpoint::inside) inside = inside_view(mesh, up, scene.film);
   const Stance stance = stance_of(mesh, up);
   scene.camera =
       inside ? inside->camera : fit_mesh(mesh, -towards_camera(stance, up), up, kFov, kMargin, scene.film);

@@ -12,12 +12,21 @@ enum class Look {
   wire,     ///< the edges of triangles, without a ground
 };
 
+/// Where a mesh is seen from.
+enum class Viewpoint {
+  automatic,  ///< inside if interior_view says so
+  outside,
+  inside,
+};
+
 /// Whether the scene holds at most one object, a mesh, and neither a camera nor lights.
 bool is_mesh_alone(const Scene& scene);
 
 /// Completes a scene that holds nothing but one mesh: camera, ground, light, integrator, and a material for
-/// what has none. A room is shown from inside. Film, seed and what else it says stay. A scene without objects
+/// what has none. Up is that of its camera. Film, seed and what else it says stay. A scene without objects
 /// stays as it is.
+void apply_look(Scene& scene, Look look, Viewpoint viewpoint);
+/// From where it is best seen.
 void apply_look(Scene& scene, Look look);
 
 }  // namespace oktett

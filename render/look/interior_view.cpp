@@ -2,123 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <vector>
 
-#include "accel/accel.h"
 #include "core/math.h"
-#include "core/random.h"
 #include "render/camera.h"
+#include "render/look/exposure.h"
+#include "render/look/mesh_explorer.h"
 #include "render/look/mesh_view.h"
-#include "render/sampling/owen_sobol.h"
-#include "render/sampling/warp.h"
 
 namespace oktett {
 namespace {
 
-/// Shares of the surface, from 0 to 1.
-struct Exposure {
-  double front = 0, back = 0;  ///< that who stands outside sees from the front, from the back
-  double hidden = 0;           ///< that he sees from neither side
-};
-
-/// A triangle mesh as rays see it.
-class Explorer {
- public:
-  explicit Explorer(const TriangleMesh& mesh) : mesh_(mesh) {
-    std::vector<Geometry> geometries(1);
-    geometries[0].shape = MeshGeometry{&mesh, false, TriangleTest::watertight};
-    BuildOptions options;
-    options.quality = BuildQuality::fast;
-    accel_ = build_accel(std::move(geometries), options);
-    box_ = bounds(*accel_);
-    size_ = length(Vec3d(box_.extent()));
-  }
-
-  const Box& box() const { return box_; }
-  double size() const { return size_; }
-
-  Exposure exposure() const {
-    constexpr std::uint32_t kPoints = 1024, kRays = 4;
-    const std::vector<std::uint32_t> triangles = triangles_by_area(kPoints);
-    std::vector<Ray> rays;
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) add_rays(triangles[i], i, kRays, rays);
-    std::vector<std::uint8_t> occluded(rays.size());
-    any_hit(*accel_, rays, occluded);
-    Exposure e;
-    for (std::size_t i = 0; i < rays.size(); i += 2 * kRays) {
-      const auto free = [&](std::size_t first) {
-        return std::count(&occluded[first], &occluded[first] + kRays, 0) > 0;
-      };
-      const bool front = free(i), back = free(i + kRays);
-      e.front += front, e.back += back, e.hidden += !front && !back;
-    }
-    const double count = std::max(1.0, static_cast<double>(triangles.size()));
-    return {e.front / count, e.back / count, e.hidden / count};
-  }
-
-  /// Distances along unit directions, infinite where nothing is hit.
-  std::vector<float> distances(const std::vector<Ray>& rays) const {
-    std::vector<Hit> hits(rays.size());
-    closest_hit(*accel_, rays, hits);
-    std::vector<float> t;
-    for (const Hit& hit : hits) t.push_back(hit.t);
-    return t;
-  }
-
- private:
-  Vec3d corner(std::uint32_t triangle, std::uint32_t k) const {
-    return Vec3d(mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + k]]);
-  }
-  Vec3d area_vector(std::uint32_t triangle) const {
-    const Vec3d a = corner(triangle, 0);
-    return cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
-  }
-
-  /// `count` triangles in equal steps of area.
-  std::vector<std::uint32_t> triangles_by_area(std::uint32_t count) const {
-    const auto triangles = static_cast<std::uint32_t>(mesh_.triangle_count());
-    double total = 0;
-    for (std::uint32_t i = 0; i < triangles; ++i) total += length(area_vector(i));
-    std::vector<std::uint32_t> chosen;
-    double sum = 0;
-    for (std::uint32_t i = 0; i < triangles && chosen.size() < count; ++i) {
-      sum += length(area_vector(i));
-      while (chosen.size() < count && sum > (static_cast<double>(chosen.size()) + 0.5) * total / count)
-        chosen.push_back(i);
-    }
-    return chosen;
-  }
-
-  /// Rays from a random point of the triangle, first to the front, then to the back.
-  void add_rays(std::uint32_t triangle, std::uint32_t number, std::uint32_t count,
-                std::vector<Ray>& rays) const {
-    const SquareSample place = sobol_point(number, mix_bits(1));
-    const double root = std::sqrt(place.x), u = root * place.y, v = 1 - root;
-    const Vec3d a = corner(triangle, 0);
-    const Vec3d p = a + (corner(triangle, 1) - a) * u + (corner(triangle, 2) - a) * v;
-    const Vec3d n = normalize(area_vector(triangle));
-    for (int side = 0; side < 2; ++side)
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const Vec3f out(side == 0 ? n : -n);
-        Ray ray;
-        ray.direction = cosine_direction(out, sobol_point(number * count + i, mix_bits(2 + side)));
-        ray.origin = Vec3f(p + Vec3d(out) * (1e-5 * size_));
-        rays.push_back(ray);
-      }
-  }
-
-  const TriangleMesh& mesh_;
-  std::shared_ptr<const Accel> accel_;
-  Box box_;
-  double size_;
-};
-
 /// Looks for a good view from inside.
 class ViewSearch {
  public:
-  ViewSearch(const Explorer& room, const Vec3d& up, const Film& film) : room_(room), film_(film) {
+  ViewSearch(const MeshExplorer& room, const Vec3d& up, const Film& film) : room_(room), film_(film) {
     up_ = normalize(up);
     make_basis(up_, across_, along_);
   }
@@ -168,7 +67,7 @@ class ViewSearch {
   static constexpr int kTurns = 16, kColumns = 12, kRows = 8;
   static constexpr double kFov = 58;
 
-  /// Free places in the lower half of the room that have walls around them.
+  /// Free places in the lower half of the room that have walls around them; its middle if there are none.
   std::vector<Vec3d> places() const {
     constexpr int kGrid = 9;
     const Vec3d lo(room_.box().lo), hi(room_.box().hi);
@@ -196,6 +95,7 @@ class ViewSearch {
       const bool inside = std::count_if(begin, end, [](float x) { return std::isfinite(x); }) > kTurns / 2;
       if (free && inside) places.push_back(candidates[i]);
     }
+    if (places.empty()) places.push_back((lo + hi) * 0.5);
     return places;
   }
 
@@ -242,22 +142,42 @@ class ViewSearch {
     return sum;
   }
 
-  const Explorer& room_;
+  const MeshExplorer& room_;
   const Film& film_;
   Vec3d up_, across_, along_;
 };
 
+/// See interior_view.
+bool is_interior(const MeshExplorer& mesh, const Vec3d& up) {
+  const Exposure e = exposure_of(mesh, up);
+  if (!(e.back > 2 * e.front)) return false;
+  // Less than five samples may be an accident. What is round has folds, which hide something, too.
+  const double something = e.square > 0.9 ? 0.005 : 0.03;
+  // Closed things that touch hide about as much of one side as of the other.
+  if (e.hidden > 0.005) return e.facing > std::max(1.5 * e.averted, something);
+  const Vec3f size = mesh.box().extent();
+  const float narrowest = std::min({size.x, size.y, size.z});
+  return e.square > 0.98 && narrowest > max_component(size) / 20;
+}
+
+InteriorView view_from_inside(const MeshExplorer& mesh, const Vec3d& up, const Film& film) {
+  const ViewSearch search(mesh, up, film);
+  const Camera camera = search.best();
+  return InteriorView{camera, search.sun(camera)};
+}
+
 }  // namespace
 
 std::optional<InteriorView> interior_view(const TriangleMesh& mesh, const Vec3d& up, const Film& film) {
-  const Explorer room(mesh);
-  if (!(room.size() > 0)) return std::nullopt;
-  const Exposure e = room.exposure();
-  const bool building = e.hidden > 0.3 && e.front<0.3, closed_room = e.hidden> 0.1 && e.front < 0.05;
-  if (!building && !closed_room) return std::nullopt;
-  const ViewSearch search(room, up, film);
-  const Camera camera = search.best();
-  return InteriorView{camera, search.sun(camera)};
+  const MeshExplorer explorer(mesh);
+  if (!(explorer.size() > 0) || !is_interior(explorer, up)) return std::nullopt;
+  return view_from_inside(explorer, up, film);
+}
+
+std::optional<InteriorView> inside_view(const TriangleMesh& mesh, const Vec3d& up, const Film& film) {
+  const MeshExplorer explorer(mesh);
+  if (!(explorer.size() > 0)) return std::nullopt;
+  return view_from_inside(explorer, up, film);
 }
 
 }  // namespace oktett

@@ -21,9 +21,19 @@ struct InteriorView {
   std::optional<Vec3d> sun;
 };
 
-/// A camera inside the mesh, if it is a room or a building that hides much of itself from who stands outside:
-/// less than 30 % of its surface can be seen from there from the front, and more than 30 % from neither side
-/// (of a closed room 5 % and 10 %: what stands in it). The camera stands where it sees far and much.
+/// A camera inside the mesh, where it sees far and much, if the mesh is an interior:
+///
+/// - Its walls face inwards: who stands outside sees backs, on more than two thirds of what he sees.
+/// - Something stands in it whose front faces these walls. Without this test all meshes that are turned
+/// inside
+///   out would be interiors. An empty one must be a room by its shape: a level floor and ceiling, upright
+///   walls, and no side shorter than a twentieth of the longest.
+///
+/// What shows its front to the outside is none, whatever it hides: a car, a box with something in it, a house
+/// with thick walls.
 std::optional<InteriorView> interior_view(const TriangleMesh& mesh, const Vec3d& up, const Film& film);
+
+/// Such a camera whatever the mesh is; nothing if rays cannot hit it.
+std::optional<InteriorView> inside_view(const TriangleMesh& mesh, const Vec3d& up, const Film& film);
 
 }  // namespace oktett

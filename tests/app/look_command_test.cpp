@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/app/run_command.h"
@@ -73,6 +74,38 @@ TEST(LookCommand, TheFormatOfTheMeshChangesNothing) {
   EXPECT_EQ(picture(dir, {}, 0, "mesh.stl"), usual);
 }
 
+/// A box, lower than wide, whose faces are seen from inside.
+constexpr const char* kRoom =
+    "v 0 0 0\nv 9 0 0\nv 9 0 7\nv 0 0 7\nv 0 3 0\nv 9 3 0\nv 9 3 7\nv 0 3 7\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST(LookCommand, UpIsAsAskedFor) {
+  const TempDir dir;
+  dir.write("mesh.obj", kTetrahedron);
+  const std::string usual = picture(dir, {});
+  EXPECT_EQ(picture(dir, {"--up", "y"}), usual);
+  EXPECT_NE(picture(dir, {"--up", "z"}), usual);
+  EXPECT_NE(picture(dir, {"--up=-y"}), usual);
+  // Also without a look, and in a format that defines what is up.
+  const std::vector<std::string> normals{"--integrator", "normal"};
+  EXPECT_NE(picture(dir, {"--integrator", "normal", "--up", "x"}), picture(dir, normals));
+  EXPECT_EQ(run_command(dir, {"convert", "mesh.obj", "mesh.glb", "--quiet"}).status, 0);
+  EXPECT_EQ(picture(dir, {}, 0, "mesh.glb"), usual);
+  EXPECT_EQ(picture(dir, {"--up", "z"}, 0, "mesh.glb"), picture(dir, {"--up", "z"}));
+}
+
+TEST(LookCommand, TheViewIsAsAskedFor) {
+  const TempDir dir;
+  dir.write("mesh.obj", kRoom);
+  const std::string usual = picture(dir, {}), outside = picture(dir, {"--view", "outside"});
+  EXPECT_EQ(picture(dir, {"--view", "auto"}), usual);
+  EXPECT_EQ(picture(dir, {"--view", "inside"}), usual);
+  EXPECT_NE(outside, usual);
+  dir.write("mesh.obj", kTetrahedron);
+  EXPECT_EQ(picture(dir, {"--view", "outside"}), picture(dir, {}));
+  EXPECT_NE(picture(dir, {"--view", "inside"}), picture(dir, {}));
+}
+
 // The name of a material is the user's: none stands for "there is none".
 TEST(LookCommand, MaterialsOfAnyNameAreKept) {
   const TempDir dir;
@@ -102,10 +135,16 @@ TEST(LookCommand, RefusesWhatHasNoLook) {
   EXPECT_NE(picture(dir, {"--look", "clai"}, 2).find("did you mean 'clay'?"), std::string::npos);
   EXPECT_NE(picture(dir, {"--look", "clay", "--integrator", "ao"}, 2).find("--integrator"),
             std::string::npos);
+  EXPECT_NE(picture(dir, {"--up", "w"}, 2).find("expected x, y, z, -x, -y or -z"), std::string::npos);
+  EXPECT_NE(picture(dir, {"--view", "insde"}, 2).find("did you mean 'inside'?"), std::string::npos);
+  EXPECT_NE(picture(dir, {"--view", "inside", "--integrator", "ao"}, 2).find("--integrator"),
+            std::string::npos);
   dir.write("scene.yaml", "oktett: 1\nobjects: [{sphere: }]\n");
-  const CommandResult result = run_command(dir, {"render", "scene.yaml", "--look", "clay"});
-  EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.err.find("--look is for meshes"), std::string::npos) << result.err;
+  for (const auto& [option, value] : {std::pair{"--look", "clay"}, {"--up", "z"}, {"--view", "inside"}}) {
+    const CommandResult result = run_command(dir, {"render", "scene.yaml", option, value});
+    EXPECT_EQ(result.status, 2);
+    EXPECT_NE(result.err.find(std::string(option) + " is for meshes"), std::string::npos) << result.err;
+  }
 }
 
 }  // namespace

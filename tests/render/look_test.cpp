@@ -72,24 +72,6 @@ TEST(FitMesh, FillsTheFrameAndCutsNothingOff) {
   }
 }
 
-TEST(InteriorView, ShowsRoomsFromInsideAndThingsFromOutside) {
-  TriangleMesh room;
-  add_box(room, {-5, 0, -3}, {5, 3, 3}, true);
-  for (int i = 0; i < 12; ++i) {  // furniture
-    const auto x = static_cast<float>(i % 4) * 2 - 3.5f, z = static_cast<float>(i / 4) * 1.8f - 2.2f;
-    add_box(room, {x, 0.02f, z}, {x + 0.8f, 1.2f, z + 0.5f});
-  }
-  const std::optional<InteriorView> view = interior_view(room, {0, 1, 0}, film(160, 90));
-  ASSERT_TRUE(view);
-  const Vec3d& p = view->camera.from;
-  EXPECT_TRUE(std::abs(p.x) < 5 && p.y > 0 && p.y < 3 && std::abs(p.z) < 3);
-  EXPECT_FALSE(view->sun) << "the room is closed";
-  EXPECT_FALSE(interior_view(ball(12), {0, 1, 0}, film(160, 90)));
-  TriangleMesh box;
-  add_box(box, {0, 0, 0}, {1, 2, 3});
-  EXPECT_FALSE(interior_view(box, {0, 1, 0}, film(160, 90)));
-}
-
 // The ground far from everything must look like the backdrop: radiance = albedo * irradiance / pi.
 TEST(StudioPicture, GroundAndBackdropMerge) {
   StudioFrame frame;
@@ -171,6 +153,34 @@ TEST(DefaultLook, OnlyWhatHasNoMaterialGetsOne) {
   apply_look(scene, Look::studio);
   ASSERT_NE(scene.objects[0].material, kNoId);
   EXPECT_EQ(scene.materials[scene.objects[0].material].name, "satin");
+}
+
+TEST(DefaultLook, StandsWhereItIsTold) {
+  for (const Viewpoint viewpoint : {Viewpoint::automatic, Viewpoint::outside, Viewpoint::inside}) {
+    Scene scene = scene_of(ball(8));
+    apply_look(scene, Look::studio, viewpoint);
+    const bool inside = viewpoint == Viewpoint::inside;
+    EXPECT_EQ(length(scene.camera.from) < 1, inside);
+    EXPECT_EQ(scene.objects.size(), inside ? 1u : 3u);
+  }
+  // Without an area there is no inside.
+  TriangleMesh point;
+  add_triangle(point, {1, 1, 1}, {1, 1, 1}, {1, 1, 1});
+  Scene scene = scene_of(point);
+  apply_look(scene, Look::studio, Viewpoint::inside);
+  EXPECT_NE(scene.camera.from, scene.camera.at);
+}
+
+TEST(DefaultLook, AnyAxisMayPointUp) {
+  for (const Vec3d& up : {Vec3d{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}) {
+    Scene scene = scene_of(ball(8));
+    scene.camera.up = up;
+    apply_look(scene, Look::studio);
+    EXPECT_GT(dot(scene.camera.from, up), 0);
+    const auto& ground = std::get<DiskShape>(scene.objects[1].shape);
+    EXPECT_NEAR(dot(Vec3d(ground.center), up), -1, 1e-2);
+    EXPECT_EQ(Vec3d(ground.normal), up);
+  }
 }
 
 TEST(DefaultLook, ClayCoversMaterialsAndStudioKeepsThem) {
