@@ -133,6 +133,18 @@ TEST(DefaultView, AnythingGivesACamera) {
   }
 }
 
+// The camera looks down at the same angle, from the right of the front, whichever axis points up.
+TEST(DefaultView, AnyAxisMayPointUp) {
+  const double usual = normalize(Vec3d{0.55, 0.45, 1}).y;
+  for (const Vec3d& up : {Vec3d{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}) {
+    Camera given;
+    given.up = up;
+    const Camera camera = frame_bounds({{-1, -1, -1}, {1, 1, 1}}, given, film(16, 9));
+    EXPECT_NEAR(dot(normalize(camera.from - camera.at), up), usual, 1e-6)
+        << up.x << ' ' << up.y << ' ' << up.z;
+  }
+}
+
 TEST(DefaultView, LightsComeFromTheCamerasSide) {
   Camera camera;
   camera.from = {3, 1, -2};
