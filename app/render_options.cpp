@@ -88,7 +88,7 @@ void add_picture_options(Verb& verb, RenderArguments& a) {
   add_cache_options(verb, a.cache);
   verb.choice("--look", a.look, "LOOK", "How a mesh given alone is shown",
               {std::begin(kLooks), std::end(kLooks)});
-  verb.choice("--up", a.up, "AXIS", "What points up in a mesh given alone; default: a guess",
+  verb.choice("--up", a.up, "AXIS", "What points up in a mesh given alone, instead of a guess",
               {std::begin(kUps), std::end(kUps)});
   verb.choice("--view", a.viewpoint, "PLACE", "Where a mesh given alone is seen from",
               {std::begin(kViewpoints), std::end(kViewpoints)});

@@ -157,7 +157,8 @@ class Soak {
         dir_.write("m.obj", wavy_mesh(r));
         Scene scene = load_scene(dir_.file("m.obj"));
         scene.film.width = 16, scene.film.height = 12;
-        if (i % 2 == 0) apply_look(scene, static_cast<Look>(r.bits() % 4));
+        if (i % 2 == 0)
+          apply_look(scene, static_cast<Look>(r.bits() % 4), static_cast<Viewpoint>(r.bits() % 3));
         scene.integrator.samples = 1;
         return scene;
       }
