@@ -20,6 +20,10 @@ class ViewSearch {
   ViewSearch(const MeshExplorer& room, const Vec3d& up, const Film& film) : room_(room), film_(film) {
     up_ = normalize(up);
     make_basis(up_, across_, along_);
+    const Vec3f e = room.box().extent();
+    const int vertical = dominant_axis(up_);
+    const double width = std::min(e[(vertical + 1) % 3], e[(vertical + 2) % 3]);
+    near_ = std::min(0.06 * room.size(), 0.25 * width);
   }
 
   Camera best() const {
@@ -137,7 +141,7 @@ class ViewSearch {
     for (const float t : room_.distances(sight(camera))) {
       if (!std::isfinite(t)) continue;
       const double part = t / room_.size();
-      sum += portable::log2(1 + 40 * part) - (part < 0.06 ? 3 : 0);
+      sum += portable::log2(1 + 40 * part) - (t < near_ ? 3 : 0);
     }
     return sum;
   }
@@ -145,6 +149,7 @@ class ViewSearch {
   const MeshExplorer& room_;
   const Film& film_;
   Vec3d up_, across_, along_;
+  double near_;  ///< what is nearer than this blocks the view; the walls of a corridor are not
 };
 
 /// See interior_view.

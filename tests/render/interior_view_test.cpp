@@ -135,6 +135,14 @@ TEST(InteriorView, StandsInTheRoom) {
   EXPECT_FALSE(view->sun) << "the room is closed";
 }
 
+TEST(InteriorView, LooksAlongACorridor) {
+  const std::optional<InteriorView> view = interior_view(corridor(), {0, 1, 0}, small_film());
+  ASSERT_TRUE(view);
+  const Vec3d forward = normalize(view->camera.at - view->camera.from);
+  EXPECT_GT(std::abs(forward.z), 0.9);
+  EXPECT_GT(forward.z > 0 ? 30 - view->camera.from.z : view->camera.from.z, 15);
+}
+
 TEST(InsideView, StandsInWhateverHasAnInside) {
   const std::optional<InteriorView> view = inside_view(ball(12), {0, 1, 0}, small_film());
   ASSERT_TRUE(view);
