@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "io/mesh/failure.h"
 
@@ -23,6 +25,22 @@ void read_option_number(MtlLine& line, float& value) {
   if (const std::optional<float> x = line.take_number()) value = *x;
 }
 
+/// `-imfchan`: the channel that a number is taken from.
+void read_channel(MtlLine& line, ImageChannel& channel) {
+  constexpr std::pair<std::string_view, ImageChannel> kChannels[] = {{"r", ImageChannel::red},
+                                                                     {"g", ImageChannel::green},
+                                                                     {"b", ImageChannel::blue},
+                                                                     {"m", ImageChannel::alpha}};
+  const std::string_view word = line.peek();
+  for (const auto& [name, value] : kChannels)
+    if (word == name) channel = value;
+  if (word == "l" || word == "z")
+    line.warn("the channel '" + std::string(word) + "' is not supported; expected r, g, b or m");
+  else if (std::ranges::none_of(kChannels, [&](const auto& known) { return known.first == word; }))
+    line.warn("unknown channel " + quote_name(std::string(word)) + "; expected r, g, b or m");
+  line.take();
+}
+
 /// Reads the option that was taken from the line. False if its name is unknown.
 bool read_option(const std::string& name, MtlLine& line, MtlTexture& result) {
   Texture& texture = result.texture;
@@ -38,10 +56,12 @@ bool read_option(const std::string& name, MtlLine& line, MtlTexture& result) {
     read_option_number(line, texture.gain);
   } else if (name == "-bm") {
     read_option_number(line, result.bump_scale);
+  } else if (name == "-imfchan") {
+    read_channel(line, texture.channel);
   } else if (name == "-clamp") {
     texture.clamp = line.take() == "on";
   } else if (name == "-blendu" || name == "-blendv" || name == "-cc" || name == "-boost" ||
-             name == "-texres" || name == "-imfchan" || name == "-type") {
+             name == "-texres" || name == "-type") {
     line.take();
   } else {
     return false;

@@ -131,25 +131,24 @@ class MtlWriting {
   }
 
   void write_textures(const Material& m) {
-    texture("map_Kd", m.color_texture, {});
-    texture("map_Ks", m.specular_texture, {});
-    texture("map_Ke", m.emission_texture, {});
-    texture("map_d", m.opacity_texture, ImageChannel::red);
-    texture("map_Bump", m.bump_texture, ImageChannel::red, m.bump_scale);
-    texture("norm", m.normal_texture, {});
+    texture("map_Kd", m.color_texture);
+    texture("map_Ks", m.specular_texture);
+    texture("map_Ke", m.emission_texture);
+    texture("map_d", m.opacity_texture);
+    texture("map_Bump", m.bump_texture, m.bump_scale);
+    texture("norm", m.normal_texture);
     if (!m.principled) return;
-    texture("map_Pr", m.principled->roughness_texture, ImageChannel::red);
-    texture("map_Pm", m.principled->metallic_texture, ImageChannel::red);
-    texture("map_Ps", m.principled->sheen_texture, ImageChannel::red);
-    texture("map_Pc", m.principled->coat_texture, ImageChannel::red);
-    texture("map_Pcr", m.principled->coat_roughness_texture, ImageChannel::red);
+    texture("map_Pr", m.principled->roughness_texture);
+    texture("map_Pm", m.principled->metallic_texture);
+    texture("map_Ps", m.principled->sheen_texture);
+    texture("map_Pc", m.principled->coat_texture);
+    texture("map_Pcr", m.principled->coat_roughness_texture);
   }
 
-  /// `channel`: the only one that a number can be taken from here; nothing for colours.
-  void texture(const char* key, std::uint32_t index, std::optional<ImageChannel> channel, float bump = 1) {
+  void texture(const char* key, std::uint32_t index, float bump = 1) {
     if (index == kNoId) return;
     const Texture& t = file_.textures[index];
-    if (t.pattern || (channel && t.channel != *channel)) return;
+    if (t.pattern) return;
     const std::string name = t.content ? embedded_name(t) : relative_name(t.path);
     if (name.empty()) return;
     written_.insert(index);
@@ -162,6 +161,9 @@ class MtlWriting {
     if (t.base != 0 || t.gain != 1) out_.text(" -mm ").number(t.base).text(" ").number(t.gain);
     if (bump != 1) out_.text(" -bm ").number(bump);
     if (t.clamp) out_.text(" -clamp on");
+    constexpr const char* kChannels[] = {"r", "g", "b", "m"};  // in the order of ImageChannel
+    if (t.channel != ImageChannel::red)
+      out_.text(" -imfchan ").text(kChannels[static_cast<std::size_t>(t.channel)]);
     out_.text(" ").text(name).text("\n");
   }
 

@@ -149,7 +149,7 @@ TEST(Mtl, TextureOptions) {
   const Mtl mtl = load(
       "newmtl a\nmap_Kd -blendu off -blendv on -cc on -clamp on -o 0.5 0.25 -s 2 3 4 -t 1 -mm 0.1 0.9 "
       "-texres 256 "
-      "-imfchan r -type sphere -boost 1.5 my picture 1.png\n"
+      "-imfchan g -type sphere -boost 1.5 my picture 1.png\n"
       "map_Ks -s 2 7\nmap_Ke -o 1 2 3 file\nmap_d -clamp off -front.png\nmap_Bump dir\\sub\\b.png\n");
   EXPECT_EQ(mtl.warnings, std::vector<std::string>{});
   ASSERT_EQ(mtl.textures.size(), 5u);
@@ -160,6 +160,7 @@ TEST(Mtl, TextureOptions) {
   expected.scale = {2, 3, 4};
   expected.base = 0.1f;
   expected.gain = 0.9f;
+  expected.channel = ImageChannel::green;
   EXPECT_EQ(mtl.textures[0], expected);
   EXPECT_EQ(mtl.textures[1].path, "7");
   EXPECT_EQ(mtl.textures[1].scale, (Vec3f{2, 1, 1}));
@@ -167,6 +168,23 @@ TEST(Mtl, TextureOptions) {
   EXPECT_EQ(mtl.textures[2].offset, (Vec3f{1, 2, 3}));
   EXPECT_EQ(mtl.textures[3].path, "-front.png");
   EXPECT_EQ(mtl.textures[4].path, "dir/sub/b.png");
+}
+
+TEST(Mtl, NumbersTakeTheChannelThatIsNamed) {
+  const Mtl mtl = load(
+      "newmtl a\nmap_Pr -imfchan g t.png\nmap_Pm -imfchan b t.png\nmap_d -imfchan m t.png\nmap_Pc -imfchan r "
+      "t.png\nmap_Ps -imfchan l t.png\nmap_Pcr -imfchan q t.png\n");
+  EXPECT_EQ(mtl.warnings, (std::vector<std::string>{
+                              "m.mtl:6:17: warning: the channel 'l' is not supported; expected r, g, b or m",
+                              "m.mtl:7:18: warning: unknown channel 'q'; expected r, g, b or m"}));
+  const Material& m = mtl.materials.at(0);
+  const auto channel = [&](std::uint32_t texture) { return mtl.textures.at(texture).channel; };
+  EXPECT_EQ(channel(m.principled->roughness_texture), ImageChannel::green);
+  EXPECT_EQ(channel(m.principled->metallic_texture), ImageChannel::blue);
+  EXPECT_EQ(channel(m.opacity_texture), ImageChannel::alpha);
+  for (const std::uint32_t texture :
+       {m.principled->coat_texture, m.principled->sheen_texture, m.principled->coat_roughness_texture})
+    EXPECT_EQ(channel(texture), ImageChannel::red);
 }
 
 TEST(Mtl, TexturesWithDifferentOptionsDiffer) {
