@@ -133,9 +133,10 @@ struct PointLight {
   Vec3d position;
   Color color{1, 1, 1};
   bool falloff = false;
-  /// Multiplies the intensity by direction; points down. Null: the same in all directions.
+  /// Multiplies the intensity by direction, its axis along `down`. Null: the same in all directions.
   std::shared_ptr<const LightProfile> profile = nullptr;
-  double rotation = 0;  ///< of the profile: degrees about its axis
+  double rotation = 0;   ///< of the profile: degrees about its axis
+  Vec3d down{0, -1, 0};  ///< of any length but zero
 };
 
 /// A point that emits light into a cone, which falls off as 1/r^2. From the inner to the outer angle it fades
@@ -281,6 +282,8 @@ struct Scene {
   bool lights_given = false;              ///< false: render() adds a key and a fill light beside the camera
   std::vector<Prototype> prototypes;
   std::vector<Object> objects;
+  // Where a file defines the material or texture of the same number, if it has lines; may be shorter.
+  std::vector<Location> material_places, texture_places;
   std::vector<Warning> warnings;  ///< what was skipped or given a default while a file was read
   std::string source;             ///< path of the file that the scene was read from; else empty
 

@@ -28,7 +28,7 @@ DirectionalLight sun_of(const SkyLight& light) {
           static_cast<double>(sun.angle) / kDegree};
 }
 
-AimedProfile profile_of(const PointLight& light) { return aim(light.profile, {0, -1, 0}, light.rotation); }
+AimedProfile profile_of(const PointLight& light) { return aim(light.profile, light.down, light.rotation); }
 
 AimedProfile profile_of(const SpotLight& light) {
   return aim(light.profile, light.direction, light.rotation);

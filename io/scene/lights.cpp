@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/math.h"
 #include "io/image/image.h"
 #include "io/photometry/ies_file.h"
 #include "io/scene/readers.h"
@@ -66,9 +67,32 @@ void read_light_motion(SceneLoad& load, const Fields& fields) {
   traits_of_last(load).motion = std::make_shared<const Motion>(std::move(motion));
 }
 
+/// The power of a lamp of greatest intensity 1.
+double flux(const PointLight& light) {
+  return light.profile ? profile_flux(*light.profile) : 4 * std::numbers::pi;
+}
+/// Between the angles of a spot the intensity is t^2 (3 - 2 t), t linear in the cosine: a half in the mean.
+double flux(const SpotLight& light) {
+  if (light.profile) return profile_flux(*light.profile);
+  const double inner = portable::cos(light.inner_angle * kDegree);
+  const double outer = portable::cos(light.outer_angle * kDegree);
+  return 2 * std::numbers::pi * (1 - (inner + outer) / 2);
+}
+
+/// `power` instead of a colour, for a light whose profile and angles have been read.
+template <class PointOrSpot>
+void read_power(SceneLoad& load, const Fields& fields, const YamlNode& node, PointOrSpot& light) {
+  const YamlNode* power = fields["power"];
+  if (!power) return;
+  if (fields["color"] || fields["intensity"])
+    throw Error(node.where(), "expected 'color', 'intensity' or 'power', not two of them");
+  load.values.read_color(power, light.color);
+  light.color *= static_cast<float>(1 / (std::numbers::pi * flux(light)));
+}
+
 /// The file of `profile`, if it is given, and what goes with it.
 template <class PointOrSpot>
-void read_profile(SceneLoad& load, const Fields& fields, const YamlNode& node, PointOrSpot& light) {
+void read_profile(SceneLoad& load, const Fields& fields, PointOrSpot& light) {
   if (const YamlNode* file = fields["profile"]) {
     attempt(*file, [&] {
       light.profile =
@@ -78,13 +102,6 @@ void read_profile(SceneLoad& load, const Fields& fields, const YamlNode& node, P
   } else if (fields["rotate"] != nullptr) {
     throw Error(fields["rotate"]->where(), "'rotate' turns a 'profile', which is missing");
   }
-  const YamlNode* power = fields["power"];
-  if (!power) return;
-  if (fields["color"] || fields["intensity"])
-    throw Error(node.where(), "expected 'color', 'intensity' or 'power', not two of them");
-  load.values.read_color(power, light.color);
-  const double flux = light.profile ? profile_flux(*light.profile) : 4 * std::numbers::pi;
-  light.color *= static_cast<float>(1 / (std::numbers::pi * flux));
 }
 
 void read_point(SceneLoad& load, const YamlNode& node) {
@@ -94,7 +111,8 @@ void read_point(SceneLoad& load, const YamlNode& node) {
   PointLight light;
   light.position = load.values.vector(fields.require("position"));
   read_light_color(load, fields, node, "intensity", light.color);
-  read_profile(load, fields, node, light);
+  read_profile(load, fields, light);
+  read_power(load, fields, node, light);
   // An intensity means light that falls off.
   light.falloff = fields["intensity"] || fields["power"] || fields["profile"];
   load.values.read(fields["falloff"], light.falloff);
@@ -116,9 +134,7 @@ void read_spot(SceneLoad& load, const YamlNode& node) {
     if (light.direction == Vec3d{0, 0, 0}) throw Error(at->where(), "the light stands where it points to");
   }
   read_light_color(load, fields, node, "intensity", light.color);
-  read_profile(load, fields, node, light);
-  if (fields["power"] && !light.profile)
-    throw Error(fields["power"]->where(), "the 'power' of a spot needs a 'profile'");
+  read_profile(load, fields, light);
   if (light.profile && (fields["inner_angle"] || fields["outer_angle"]))
     throw Error(node.where(), "expected 'profile' or angles, not both");
   load.values.read(fields["outer_angle"], light.outer_angle, {0, 180, true, false});
@@ -126,6 +142,7 @@ void read_spot(SceneLoad& load, const YamlNode& node) {
   load.values.read(fields["inner_angle"], light.inner_angle, {0, 180});
   if (light.inner_angle > light.outer_angle)
     throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
+  read_power(load, fields, node, light);
   add_light(load, fields, light);
   read_light_motion(load, fields);
 }

@@ -152,7 +152,6 @@ TEST(SceneLightProfile, IsReadForPointsAndSpots) {
       {"lights: [{point: {position: [0, 1, 0], rotate: 3}}]", "scene.yaml:2:48: 'rotate' turns a 'profile'"},
       {"lights: [{point: {position: [0, 1, 0], power: [1, 1, 1], color: [1, 1, 1]}}]",
        "scene.yaml:2:18: expected 'color', 'intensity' or 'power', not two"},
-      {"lights: [{spot: {position: [0, 1, 0], power: [1, 1, 1]}}]", "scene.yaml:2:46: the 'power' of a spot"},
       {"lights: [{spot: {position: [0, 1, 0], profile: a.ies, outer_angle: 3}}]",
        "scene.yaml:2:17: expected 'profile' or angles, not both"},
       {"lights: [{point: {position: [0, 1, 0], profile: b.ies}}]", "scene.yaml:2:49: "}};

@@ -6,6 +6,8 @@
 
 #include "core/random.h"
 #include "render/light/aimed_profile.h"
+#include "render/moved.h"
+#include "render/scene_lights.h"
 #include "tests/render/photon_support.h"
 
 namespace oktett::light_profile_test {
@@ -144,6 +146,28 @@ TEST(LightProfile, PhotonsCarryItsFlux) {
   }
   EXPECT_NEAR(sum / count, std::numbers::pi * profile_flux(*point.profile),
               0.01 * std::numbers::pi * profile_flux(*point.profile));
+}
+
+// A lamp that is turned shows its profile turned: what it gave along d it gives along the turned d.
+TEST(AimedProfile, TurnsWithItsLamp) {
+  const std::shared_ptr<const LightProfile> profile = random_profile(3);
+  PointLight point;
+  point.profile = profile, point.rotation = 25;
+  SpotLight spot;
+  spot.profile = profile, spot.rotation = -70, spot.direction = {1, -2, 0.5};
+  const auto number = [](std::uint32_t i, std::uint32_t k) { return double{random_float(8, i, k)}; };
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    Affine motion = Affine::rotation({360 * number(i, 0), 360 * number(i, 1), 360 * number(i, 2)});
+    if (i == 0) motion = Affine::rotation({180, 0, 0});
+    if (i == 1) motion = Affine::rotation({0, 90, 0});
+    const AimedProfile turned_point = profile_of(std::get<PointLight>(moved_light(motion, point)));
+    const AimedProfile turned_spot = profile_of(std::get<SpotLight>(moved_light(motion, spot)));
+    for (std::uint32_t k = 3; k < 40; k += 3) {
+      const Vec3d d = normalize(Vec3d{number(i, k) - 0.5, number(i, k + 1) - 0.5, number(i, k + 2) - 0.5});
+      EXPECT_NEAR(turned_point(motion.vector(d)), profile_of(point)(d), 1e-5f) << i;
+      EXPECT_NEAR(turned_spot(motion.vector(d)), profile_of(spot)(d), 1e-5f) << i;
+    }
+  }
 }
 
 }  // namespace
