@@ -224,7 +224,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   loading.reset();
   const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
   print_warnings(scene.warnings, most_warnings);
-  const ImageTextures textures(scene.textures);
+  const ImageTextures textures(scene.textures, scene.texture_places);
   print_warnings(textures.warnings(), most_warnings);
   options.textures = &textures;
   if (arguments.verbose && !arguments.quiet) print_plan(scene, options, output);

@@ -22,7 +22,9 @@ static Scene load_overridden(const RenderArguments& arguments) {
   const std::optional<Vec3d> up = up_of(arguments);
   const Viewpoint viewpoint = viewpoint_of(arguments);
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
+  const bool was_path = scene.integrator.kind == IntegratorKind::path;
   override_scene(arguments, scene);
+  if (!was_path) warn_of_energy(scene);
   if (!look && !up) return scene;
   if (!is_mesh_alone(scene)) {
     for (const auto& [option, value] :

@@ -2,17 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace oktett {
 
 /// Below this roughness Whitted's model shows a mirror, above it a highlight.
 static constexpr float kMirrorRoughness = 0.2f;
 
-float greatest_albedo(const Material& m) {
+namespace {
+
+/// Bounds on what a texture answers.
+struct TextureBounds {
+  Color least{1, 1, 1}, greatest{1, 1, 1};
+};
+
+TextureBounds texture_bounds(std::span<const Texture> textures, std::uint32_t index) {
+  TextureBounds bounds;
+  if (index >= textures.size()) return bounds;
+  const Texture& t = textures[index];
+  std::vector<Color> ends{{0, 0, 0}, {1, 1, 1}};
+  // Between its colours a pattern is interpolated.
+  if (t.pattern && !t.pattern->colors.empty()) ends = t.pattern->colors;
+  for (int k = 0; k < 3; ++k) {
+    const auto value = [&](const Color& c) { return std::max(c[k] * t.gain + t.base, 0.0f); };
+    bounds.least[k] = bounds.greatest[k] = value(ends[0]);
+    for (const Color& c : ends) {
+      bounds.least[k] = std::min(bounds.least[k], value(c));
+      bounds.greatest[k] = std::max(bounds.greatest[k], value(c));
+    }
+  }
+  return bounds;
+}
+
+}  // namespace
+
+float greatest_albedo(const Material& m, std::span<const Texture> textures) {
+  const auto bounds = [&](std::uint32_t texture) { return texture_bounds(textures, texture); };
+  const auto most = [&](float value, std::uint32_t texture, float limit) {
+    return std::min(value * bounds(texture).greatest.x, limit);
+  };
+  constexpr float kAny = std::numeric_limits<float>::infinity();
+  const Color color = m.color * bounds(m.color_texture).greatest;
+  const float least_exponent = m.phong * bounds(m.phong_texture).least.x;
   // The highlight's cosine to the power n, over pi, has the integral 2 / (n + 1) over its hemisphere.
-  const float mirror = m.specular * 2 / (m.phong + 1) + m.reflection;
-  Color sum = m.color * m.diffuse + m.specular_color * mirror;
-  for (int k = 0; k < 3; ++k) sum[k] += m.transparency * std::max(1.0f, m.color[k]);
+  const float mirror = most(m.specular, m.specular_weight_texture, kAny) * 2 / (least_exponent + 1) +
+                       most(m.reflection, m.reflection_texture, 1);
+  const float transparency = most(m.transparency, m.transparency_texture, 1);
+  Color sum = color * most(m.diffuse, m.diffuse_texture, kAny) +
+              m.specular_color * bounds(m.specular_texture).greatest * mirror;
+  for (int k = 0; k < 3; ++k) sum[k] += transparency * std::max(1.0f, color[k]);
   return max_component(sum);
 }
 
@@ -20,7 +59,7 @@ PrincipledMaterial principled_like(const Material& m) {
   PrincipledMaterial principled;
   PrincipledParameters& p = principled.parameters;
   p.base_color = m.color;
-  p.ior = m.ior;
+  p.ior = m.ior, principled.ior_texture = m.ior_texture;
   p.transmission = m.transparency;
   principled.transmission_texture = m.transparency_texture;
   // Facets whose highlight is as wide as that of the exponent: alpha^2 = 2 / (exponent + 2).

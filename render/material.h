@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/mesh.h"
@@ -40,6 +41,8 @@ struct PrincipledMaterial {
   std::uint32_t transmission_texture = kNoId, coat_texture = kNoId, coat_roughness_texture = kNoId;
   std::uint32_t sheen_texture = kNoId, sheen_color_texture = kNoId, sheen_roughness_texture = kNoId;
   std::uint32_t ior_texture = kNoId, coat_ior_texture = kNoId;
+  std::uint32_t eta_texture = kNoId,
+                k_texture = kNoId;  ///< colours, of `parameters.conductor` if that is given
   /// Whitted's model shows at each hit what comes near to the parameters there, see resemble_principled;
   /// false: it shows the numbers of Material.
   bool resembled = false;
@@ -106,6 +109,7 @@ struct Material {
   // Each multiplies the number of its name.
   std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
+  std::uint32_t ior_texture = kNoId;
   /// False: the boundary of the interior has no surface, and light passes it as if it were not there.
   bool surface = true;
   std::uint32_t interior = kNoId;  ///< index into Scene::media: what fills solids of this material
@@ -130,9 +134,12 @@ inline constexpr PhongNumber kPhongNumbers[] = {
     {"reflection", &Material::reflection, &Material::reflection_texture, kUnitInterval},
     {"transparency", &Material::transparency, &Material::transparency_texture, kUnitInterval}};
 
-/// A bound on the part of light that a material of Phong's model gives back in all, where it gives back most:
-/// textures count as white. Above 1 it makes energy.
-float greatest_albedo(const Material& m);
+/// The range of a textured Material::ior.
+inline constexpr Range kPhongIors{1e-3, 1e3};
+
+/// A bound on the part of light that a material of Phong's model gives back in all, where it gives back most.
+/// `textures` are Scene::textures, of whose images all texels count as [0, 1]. Above 1 it makes energy.
+float greatest_albedo(const Material& m, std::span<const Texture> textures);
 
 /// The principled material of the colour, roughness, index of refraction and transparency of a Phong
 /// material.

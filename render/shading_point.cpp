@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "accel/accel.h"
+#include "render/bsdf/metals.h"
 #include "render/bsdf/principled_surface.h"
 #include "render/surface_textures.h"
 #include "render/transport/shading_lanes.h"
@@ -75,6 +76,10 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
   for (const PrincipledNumber& number : kPrincipledNumbers)
     at.*number.value = textured(c, at.*number.value, m.*number.texture, number.range, place);
   at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, place);
+  if (at.conductor) {
+    at.conductor->eta = textured(c, at.conductor->eta, m.eta_texture, place);
+    at.conductor->k = textured(c, at.conductor->k, m.k_texture, place);
+  }
   return at;
 }
 
@@ -95,12 +100,15 @@ bool shows_principled(const RenderContext& c, const Material& m) {
 /// Sets what the picture shows of the principled parameters.
 void set_principled(const RenderContext& c, const TexturePlace& place, ShadingPoint& p) {
   const Material& m = *p.material;
-  const PrincipledParameters at = principled_at(c, *m.principled, p.color, place);
+  PrincipledParameters at = principled_at(c, *m.principled, p.color, place);
   p.ior = at.ior;
   if (c.settings.kind == IntegratorKind::path) {
     p.principled = at;
     return;
   }
+  // What shows no indices of refraction shows the colour that they give head-on.
+  if (at.conductor && (m.principled->eta_texture != kNoId || m.principled->k_texture != kNoId))
+    at.base_color = head_on_color(*at.conductor);
   p.values = resembling_values(at);
   p.specular_color = resembling_specular_color(at);
 }
@@ -230,7 +238,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.emission = textured(context, m.emission, m.emission_texture, place);
   p.values = phong_values(context, m, place);
   p.opacity = opacity_at(context, m, place);
-  p.ior = m.ior;
+  p.ior = textured(context, m.ior, m.ior_texture, kPhongIors, place);
   const bool resembles = textured_here || context.settings.kind == IntegratorKind::path;
   if (resembles && shows_principled(context, m)) set_principled(context, place, p);
   face_ray(p, ns);
@@ -247,10 +255,11 @@ float index_of_refraction(const RenderContext& context, const Ray& ray, const Hi
                           const SurfaceInteraction& s) {
   const Material& m = material_at(*context.world, s);
   if (!m.surface) return 1;
-  if (!m.principled) return m.ior;
-  const PrincipledMaterial& p = *m.principled;
-  if (p.ior_texture == kNoId) return p.parameters.ior;
-  return textured(context, p.parameters.ior, p.ior_texture, kPrincipledIors,
+  const bool phong = !m.principled;
+  const std::uint32_t texture = phong ? m.ior_texture : m.principled->ior_texture;
+  const float ior = phong ? m.ior : m.principled->parameters.ior;
+  if (texture == kNoId) return ior;
+  return textured(context, ior, texture, phong ? kPhongIors : kPrincipledIors,
                   texture_place(context, m, ray, hit));
 }
 

@@ -39,14 +39,15 @@ float texture_value(const RenderContext& context, std::uint32_t texture, const T
 template <class Is>
 static bool any_texture(const Material& m, const Is& is) {
   for (const std::uint32_t texture : {m.color_texture, m.specular_texture, m.emission_texture,
-                                      m.opacity_texture, m.bump_texture, m.normal_texture})
+                                      m.opacity_texture, m.bump_texture, m.normal_texture, m.ior_texture})
     if (is(texture)) return true;
   for (const PhongNumber& number : kPhongNumbers)
     if (is(m.*number.texture)) return true;
   if (!m.principled) return false;
   for (const PrincipledNumber& number : kPrincipledNumbers)
     if (is((*m.principled).*number.texture)) return true;
-  return is(m.principled->sheen_color_texture);
+  return is(m.principled->sheen_color_texture) || is(m.principled->eta_texture) ||
+         is(m.principled->k_texture);
 }
 
 bool has_textures(const Material& m) {

@@ -72,7 +72,7 @@ Session::Loaded Session::load(std::vector<std::string>& files) const {
   } const note{read, files};
   Loaded loaded;
   Scene scene = load_as_asked(arguments_);
-  loaded.textures = std::make_unique<ImageTextures>(scene.textures);
+  loaded.textures = std::make_unique<ImageTextures>(scene.textures, scene.texture_places);
   loaded.prepared = std::make_shared<PreparedScene>(std::move(scene), parse_bvh_option(arguments_.bvh));
   loaded.prepared->complete();
   return loaded;

@@ -31,6 +31,17 @@ ImageTextures::ImageTextures(std::vector<Texture> textures) {
     sampler_ = image_library().load_textures(std::move(textures), warnings_);
 }
 
+ImageTextures::ImageTextures(std::vector<Texture> textures, std::span<const Location> places)
+    : ImageTextures(textures) {
+  for (Warning& warning : warnings_)
+    for (std::size_t i = 0; i < std::min(textures.size(), places.size()); ++i) {
+      if (path_to_open(textures[i].path) != path_to_open(warning.where.file) || places[i].line == 0) continue;
+      warning.message = "texture " + textures[i].path + warning.message.substr(std::string("texture").size());
+      warning.where = places[i];
+      break;
+    }
+}
+
 Color ImageTextures::color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const {
   return sampler_ ? sampler_->color(index, uv, dx, dy) : Color{1, 1, 1};
 }

@@ -2,6 +2,7 @@
 /// \file The textures of a scene, read from image files.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/error.h"
@@ -24,6 +25,9 @@ class ImageTextures : public TextureSampler {
   /// Reads all images, in parallel. One that is missing or damaged gives a warning and is white (value 1)
   /// everywhere. So is a texture without a path, without a warning: its reader has given one.
   explicit ImageTextures(std::vector<Texture> textures);
+  /// The same; warnings have the place in `places` of the first texture of that file, and name the file, if
+  /// there is such a place.
+  ImageTextures(std::vector<Texture> textures, std::span<const Location> places);
 
   /// One per file that could not be used.
   const std::vector<Warning>& warnings() const { return warnings_; }

@@ -16,7 +16,9 @@ struct MeshFile {
   std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
   std::vector<Texture> textures;    ///< what the materials' texture indices refer to
   std::vector<Location> texture_places;  ///< where each texture is named first
-  std::vector<Warning> warnings;         ///< what was skipped
+  std::vector<Location>
+      material_places;            ///< where a file defines each material, if it has lines; may be shorter
+  std::vector<Warning> warnings;  ///< what was skipped
 };
 
 }  // namespace oktett

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 struct Library {
   std::vector<Material> materials;
   std::vector<Texture> textures;
-  std::vector<Location> texture_places;
+  MtlPlaces places;
   std::unordered_map<std::string, std::size_t> by_name;
   bool complete = true;  ///< every file could be read
 };
@@ -54,7 +54,7 @@ Library load_libraries(const std::vector<MeshStatement>& statements, const std::
     for (const std::string& path : split_library_names(statement.words, directory)) {
       if (!seen.emplace(path, true).second) continue;
       try {
-        load_mtl(path, library.materials, library.textures, obj.warnings, &library.texture_places);
+        load_mtl(path, library.materials, library.textures, obj.warnings, &library.places);
       } catch (const Error& error) {
         library.complete = false;
         notices.push_back(
@@ -79,6 +79,8 @@ class SlotMaterials {
     if (found != library_.by_name.end()) {
       Material material = library_.materials[found->second];
       for_each_texture(material, [this](std::uint32_t& texture) { texture = take_texture(texture); });
+      obj_.material_places.resize(obj_.materials.size());
+      obj_.material_places.push_back(library_.places.materials[found->second]);
       obj_.materials.push_back(std::move(material));
       return;
     }
@@ -109,7 +111,7 @@ class SlotMaterials {
     if (textures_[texture] == kNoId) {
       textures_[texture] = static_cast<std::uint32_t>(obj_.textures.size());
       obj_.textures.push_back(library_.textures[texture]);
-      obj_.texture_places.push_back(library_.texture_places[texture]);
+      obj_.texture_places.push_back(library_.places.textures[texture]);
     }
     return textures_[texture];
   }

@@ -66,14 +66,14 @@ constexpr PrincipledStatement kPrincipled[] = {
 class MtlReader {
  public:
   MtlReader(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
-            std::vector<Warning>& warnings, std::vector<Location>* texture_places)
+            std::vector<Warning>& warnings, MtlPlaces* places)
       : path_(path),
         directory_(std::filesystem::path(path).parent_path().string()),
         materials_(materials),
         first_(materials.size()),
         textures_(textures),
         warnings_(warnings),
-        texture_places_(texture_places) {}
+        places_(places) {}
 
   void run() {
     const MappedFile file(path_);
@@ -102,6 +102,7 @@ class MtlReader {
     if (!names_.insert(material.name).second)
       line.warn("material " + quote_name(material.name) + " is defined again; the first definition counts");
     materials_.push_back(std::move(material));
+    if (places_ != nullptr) places_->materials.push_back(line.where());
     said_ = Statements{};
     in_material_ = true;
   }
@@ -164,8 +165,7 @@ class MtlReader {
 
   std::uint32_t add_texture(const MtlTexture& texture, const MtlLine& line) {
     const std::uint32_t index = textures_.add(texture.texture);
-    if (texture_places_ != nullptr && index >= texture_places_->size())
-      texture_places_->push_back(line.where());
+    if (places_ != nullptr && index >= places_->textures.size()) places_->textures.push_back(line.where());
     return index;
   }
 
@@ -258,7 +258,7 @@ class MtlReader {
   const std::size_t first_;
   TextureList textures_;
   std::vector<Warning>& warnings_;
-  std::vector<Location>* texture_places_;
+  MtlPlaces* places_;
   std::unordered_set<std::string> names_;
   Statements said_;
   bool in_material_ = false;
@@ -267,8 +267,8 @@ class MtlReader {
 }  // namespace
 
 void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
-              std::vector<Warning>& warnings, std::vector<Location>* texture_places) {
-  MtlReader(path, materials, textures, warnings, texture_places).run();
+              std::vector<Warning>& warnings, MtlPlaces* places) {
+  MtlReader(path, materials, textures, warnings, places).run();
 }
 
 }  // namespace oktett

@@ -20,10 +20,15 @@ ObjFile load_obj(const std::string& path);
 /// after about a thousand the rest is not looked at. Throws Error for what is wrong with the file as a whole.
 std::vector<Error> find_obj_errors(const std::string& path);
 
+/// Where MTL files define what is read from them.
+struct MtlPlaces {
+  std::vector<Location> materials, textures;
+};
+
 /// Reads the MTL file `path` and appends what is in it. Texture paths, which the file states relative to
-/// itself, are joined to its directory. `texture_places`, if given, gets the place of each texture's
-/// statement. Throws Error as load_obj does.
+/// itself, are joined to its directory. `places`, if given, gets the place of each material and of each
+/// texture's statement. Throws Error as load_obj does.
 void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
-              std::vector<Warning>& warnings, std::vector<Location>* texture_places = nullptr);
+              std::vector<Warning>& warnings, MtlPlaces* places = nullptr);
 
 }  // namespace oktett

@@ -67,7 +67,7 @@ class Checking {
     for (const Error& error : errors.errors()) add(error);
     add(load.scene.warnings);
     if (errors.failures() == 0) warn_of_unused(load);
-    add(ImageTextures(load.scene.textures).warnings());
+    add(ImageTextures(load.scene.textures, load.scene.texture_places).warnings());
   }
 
   /// Of names in the file itself: files that others include define names for some of them.
@@ -84,7 +84,9 @@ class Checking {
 
   void check_materials() {
     MeshFile file;
-    load_mtl(path_, file.materials, file.textures, file.warnings, &file.texture_places);
+    MtlPlaces places;
+    load_mtl(path_, file.materials, file.textures, file.warnings, &places);
+    file.texture_places = std::move(places.textures);
     check_textures(file);
     add(file.warnings);
   }
@@ -93,7 +95,7 @@ class Checking {
     try {
       const Scene scene = load_scene(path_, definitions_);
       add(scene.warnings);
-      add(ImageTextures(scene.textures).warnings());
+      add(ImageTextures(scene.textures, scene.texture_places).warnings());
     } catch (const Error& error) {
       attempt([&] {
         for (const Error& each : find_mesh_errors(path_)) add(each);

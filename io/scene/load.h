@@ -54,7 +54,6 @@ struct SceneLoad {
   MeshLibrary meshes;
   NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
-  std::vector<std::pair<std::uint32_t, Location>> phong_places;  ///< of the materials of Phong's model
   std::set<std::string> light_groups;  ///< names that lights and materials have given
   std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;

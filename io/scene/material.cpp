@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "io/scene/readers.h"
+#include "io/scene/scene_file.h"
 #include "io/scene/utf8.h"
+#include "io/text/extension.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
 
@@ -40,15 +43,16 @@ void read_map(SceneLoad& load, const YamlNode* node, std::uint32_t& texture) {
 }
 
 /// The complex index of refraction of a metal.
-std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, const YamlNode& node) {
+std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, const YamlNode& node,
+                                        PrincipledMaterial& principled) {
   const YamlNode *metal_name = fields["metal"], *eta = fields["eta"], *k = fields["k"];
   if (metal_name && (eta || k)) throw Error(node.where(), "expected 'metal' or 'eta' and 'k', not both");
   if (metal_name) return load.values.choice<Conductor>(*metal_name, kMetals);
   if (!eta && !k) return std::nullopt;
   if (!eta || !k) throw Error(node.where(), "a metal's index of refraction needs both 'eta' and 'k'");
   Conductor metal;
-  load.values.read_color(eta, metal.eta);
-  load.values.read_color(k, metal.k);
+  read_textured(load, eta, metal.eta, principled.eta_texture);
+  read_textured(load, k, metal.k, principled.k_texture);
   if (!(std::min({metal.eta.x, metal.eta.y, metal.eta.z}) > 0))
     throw Error(eta->where(), "expected numbers greater than 0");
   return metal;
@@ -66,9 +70,11 @@ void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
     read_textured(load, fields[number.name], p.*number.value, principled.*number.texture, number.range);
   read_textured(load, fields["sheen_color"], p.sheen_color, principled.sheen_color_texture);
   load.values.read(fields["thin"], p.thin);
-  p.conductor = read_conductor(load, fields, node);
-  if (fields["metal"]) {
+  p.conductor = read_conductor(load, fields, node, principled);
+  if (p.conductor) {
     if (!fields["metallic"]) p.metallic = 1;
+    if (p.metallic == 0)
+      load.warn(fields["metallic"]->where(), "without metal, its index of refraction has no effect");
     // What shows no indices of refraction shows this.
     if (!fields["base_color"]) p.base_color = m.color = head_on_color(*p.conductor);
   }
@@ -101,6 +107,14 @@ void read_roughness(SceneLoad& load, const YamlNode* roughness, const YamlNode* 
   read_textured(load, metallic, principled.parameters.metallic, principled.metallic_texture, kUnitInterval);
 }
 
+/// Throws Error if the normals are those of a pattern.
+void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, const Material& m) {
+  if (m.normal_texture != kNoId && load.scene.textures[m.normal_texture].pattern)
+    throw Error(
+        node->where(),
+        "a pattern holds no normals; expected an image, or 'map_bump', which takes a pattern as heights");
+}
+
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {
   std::vector<const char*> keys(std::begin(kPhongKeys), std::end(kPhongKeys));
   keys.insert(keys.end(), std::begin(kCommonKeys), std::end(kCommonKeys));
@@ -113,7 +127,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   read_textured(load, fields["emission"], m.emission, m.emission_texture);
   for (const PhongNumber& number : kPhongNumbers)
     read_textured(load, fields[number.name], m.*number.value, m.*number.texture, number.range);
-  values.read(fields["ior"], m.ior, kPositive);
+  read_textured(load, fields["ior"], m.ior, m.ior_texture, kPositive);
   read_textured(load, fields["opacity"], m.opacity, m.opacity_texture, kUnitInterval);
   read_roughness(load, fields["roughness"], fields["metallic"], m);
   if (const YamlNode* emits = fields["emits"])
@@ -125,14 +139,15 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   read_map(load, fields["map_opacity"], m.opacity_texture);
   read_texture(load, fields["map_bump"], m.bump_texture);
   read_texture(load, fields["map_normal"], m.normal_texture);
+  refuse_normal_pattern(load, fields["map_normal"], m);
   values.read(fields["bump_scale"], m.bump_scale, kAnyNumber);
   if (const YamlNode* principled = fields["principled"]) {
     refuse_phong_keys(node);
     read_principled(load, *principled, m);
   }
   read_interior(load, fields, node, m);
-  if (!m.principled)
-    load.phong_places.emplace_back(static_cast<std::uint32_t>(load.scene.materials.size()), node.where());
+  load.scene.material_places.resize(load.scene.materials.size());
+  load.scene.material_places.push_back(node.where());
   load.scene.materials.push_back(std::move(m));
   return static_cast<std::uint32_t>(load.scene.materials.size() - 1);
 }
@@ -146,19 +161,43 @@ void define_materials(SceneLoad& load, const YamlNode& materials) {
     attempt(*value, [&, k = key, v = value] { append_material(load, *v, k->text); });
     // The names of those that are wrong are known.
     load.scene.materials.resize(std::size_t{index} + 1);
+    load.scene.material_places.resize(std::size_t{index} + 1);
   }
 }
 
-void warn_of_energy(SceneLoad& load) {
-  if (load.scene.integrator.kind != IntegratorKind::path) return;
+/// Whether a file defines one material after the other for other programs, and is often made by one: of such
+/// a file one warning is enough.
+static bool is_library(const std::string& file) {
+  const std::string extension = lower_case_extension(file);
+  return extension != ".yaml" && extension != ".yml";
+}
+
+void warn_of_energy(Scene& scene) {
+  if (scene.integrator.kind != IntegratorKind::path) return;
   // What exceeds 1 by rounding is not meant.
   constexpr float kMost = 1.001f;
-  for (const auto& [index, place] : load.phong_places)
-    if (const float albedo = greatest_albedo(load.scene.materials[index]); albedo > kMost)
-      load.warn(place,
-                fmt::format("this material may give back {:.3g} times the light that it receives, so paths "
-                            "grow brighter with each bounce",
-                            albedo));
+  std::map<std::string, std::pair<Warning, int>> of_libraries;  // with the number of other materials
+  const std::size_t count = std::min(scene.materials.size(), scene.material_places.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Material& m = scene.materials[i];
+    const Location& place = scene.material_places[i];
+    if (m.principled || place.file.empty()) continue;
+    const float albedo = greatest_albedo(m, scene.textures);
+    if (!(albedo > kMost)) continue;
+    const Warning warning{place,
+                          fmt::format("this material may give back {:.3g} times the light that it receives, "
+                                      "so paths grow brighter with each bounce",
+                                      albedo)};
+    if (!is_library(place.file))
+      scene.warnings.push_back(warning);
+    else if (const auto [found, is_new] = of_libraries.try_emplace(place.file, warning, 0); !is_new)
+      ++found->second.second;
+  }
+  for (auto& [file, found] : of_libraries) {
+    auto& [warning, others] = found;
+    if (others > 0) warning.message += fmt::format("; so may {} more of this file", others);
+    scene.warnings.push_back(std::move(warning));
+  }
 }
 
 std::uint32_t read_material(SceneLoad& load, const YamlNode& node) {

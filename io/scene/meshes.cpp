@@ -28,6 +28,10 @@ void check_textures(MeshFile& file) {
 
 std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene) {
   const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
+  scene.texture_places.resize(scene.textures.size());
+  scene.material_places.resize(scene.materials.size());
+  std::ranges::move(file.texture_places, std::back_inserter(scene.texture_places));
+  std::ranges::move(file.material_places, std::back_inserter(scene.material_places));
   std::move(file.textures.begin(), file.textures.end(), std::back_inserter(scene.textures));
   std::vector<std::uint32_t> indices;
   for (Material& material : file.materials) {

@@ -21,9 +21,6 @@ void read_integrator(SceneLoad& load, const YamlNode& node);
 /// The keys of a motion: at least one, of ascending times and regular transforms.
 std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node);
 
-/// Warns of materials that make energy if the scene is path traced. Called when all else is read.
-void warn_of_energy(SceneLoad& load);
-
 /// Reads a scene file with all that it includes. Throws Error; where errors are gathered, keeps them in
 /// `load.errors`.
 void read_scene_file(const std::string& path, SceneLoad& load);

@@ -168,7 +168,7 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   load.scene.source = path;
   FileReader(load).read(path);
   if (load.errors != nullptr && load.errors->failures() > 0) return;
-  warn_of_energy(load);
+  warn_of_energy(load.scene);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
 }
 

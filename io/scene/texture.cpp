@@ -80,12 +80,23 @@ void read_image(SceneLoad& load, const Fields& fields, Texture& texture) {
 
 }  // namespace
 
+/// The index of the texture, which is added if it is new; `place`: where it is named.
+static std::uint32_t add_texture(SceneLoad& load, const Texture& texture, const Location& place) {
+  const std::uint32_t index = load.textures.add(texture);
+  std::vector<Location>& places = load.scene.texture_places;
+  if (index >= places.size()) {
+    places.resize(index);
+    places.push_back(place);
+  }
+  return index;
+}
+
 static std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   SceneValues& values = load.values;
   Texture texture;
   if (node.kind != YamlKind::map) {
     texture.path = values.existing_file(node);
-    return load.textures.add(texture);
+    return add_texture(load, texture, node.where());
   }
   std::vector<const char*> keys(std::begin(kImageKeys), std::end(kImageKeys));
   std::vector<std::string> sources{"file"};
@@ -110,7 +121,7 @@ static std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   if (!texture.pattern) read_image(load, fields, texture);
   values.read(fields["gain"], texture.gain, kAnyNumber);
   values.read(fields["base"], texture.base, kAnyNumber);
-  return load.textures.add(texture);
+  return add_texture(load, texture, texture.pattern ? node.where() : fields.require("file").where());
 }
 
 void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {

@@ -128,6 +128,23 @@ TEST(RenderCommand, ProgressIsShownOnlyOnDemandWithoutATerminal) {
   EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "--progress", "--quiet"}).err, "");
 }
 
+TEST(RenderCommand, WarnsOnceOfMaterialsThatMakeEnergyInPaths) {
+  const TempDir dir;
+  const std::string rest = "materials: {m: {diffuse: 3}}\nobjects: [{sphere: {}, material: m}]\n";
+  dir.write("whitted.yaml", "oktett: 1\n" + rest);
+  dir.write("path.yaml", "oktett: 1\nintegrator: {kind: path}\n" + rest);
+  const auto warnings = [&](const std::string& scene, const std::string& kind) {
+    const std::string text =
+        run_command(dir, {"render", scene, "--size", "4x4", "--quiet", "--integrator", kind}).err;
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("times the light", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_EQ(warnings("whitted.yaml", "whitted"), 0u);
+  EXPECT_EQ(warnings("whitted.yaml", "path"), 1u);
+  EXPECT_EQ(warnings("path.yaml", "path"), 1u);
+}
+
 // Outputs that cannot be written are refused before any work: the scene file here does not even exist.
 TEST(RenderCommand, RefusesBadOutputsFirst) {
   const TempDir dir;

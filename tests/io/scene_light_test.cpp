@@ -1,11 +1,14 @@
 /// \file Lights and principled materials in scene files.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "io/image/image.h"
 #include "tests/io/scene_test_support.h"
@@ -65,6 +68,29 @@ TEST(SceneLight, LampsWithAnAreaAreObjects) {
   EXPECT_EQ(std::get<DiskShape>(scene.objects[1].shape).normal, (Vec3d{0, -1, 0}));
   EXPECT_EQ(std::get<PolygonShape>(scene.objects[2].shape).vertices[2], (Vec3d{2, 0, 3}));
   EXPECT_FALSE(scene.materials[scene.objects[1].material].emits_behind);
+}
+
+// The power of a spot is the integral of its intensity over its cone, which fades by t^2 (3 - 2 t).
+TEST(SceneLight, PowerOfSpots) {
+  for (const auto& [inner, outer] : {std::pair{20.0, 50.0}, {0.0, 180.0}, {30.0, 30.0}}) {
+    const Scene scene = SceneFiles().load_v1(fmt::format(
+        "lights: [{{spot: {{position: [0, 0, 0], power: [1, 2, 3], inner_angle: {}, outer_angle: {}}}}}]\n",
+        inner, outer));
+    const auto& light = std::get<SpotLight>(scene.lights.at(0));
+    const double degree = std::numbers::pi / 180, from = std::cos(outer * degree),
+                 to = std::cos(inner * degree);
+    double flux = 0;
+    const int steps = 100000;
+    for (int i = 0; i < steps; ++i) {
+      const double cosine = -1 + (i + 0.5) * 2 / steps;
+      const double t = cosine >= to ? 1 : cosine <= from ? 0 : (cosine - from) / (to - from);
+      flux += t * t * (3 - 2 * t) * 2 * std::numbers::pi * 2 / steps;
+    }
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(static_cast<double>(light.color[k]) * std::numbers::pi * flux, k + 1, 1e-3) << inner;
+  }
+  expect_error("lights: [{spot: {position: [0, 0, 0], power: [1, 1, 1], color: [1, 1, 1]}}]\n",
+               "not two of them");
 }
 
 TEST(SceneLight, ReadsEnvironments) {
@@ -250,6 +276,22 @@ TEST(SceneMaterial, RoughnessAndMetallicMakeItPrincipled) {
   EXPECT_EQ(p.ior, 1.25f);
   EXPECT_EQ(p.transmission, 0.5f);
   EXPECT_FALSE(scene.materials[1].principled);
+}
+
+// An index of refraction makes a metal, by name or by numbers.
+TEST(SceneMaterial, EtaAndKMakeItMetal) {
+  const auto read = [](const std::string& keys) {
+    return SceneFiles().load_v1("materials: {a: {principled: {" + keys + "}}}\n");
+  };
+  const std::string copper = "eta: [0.275, 1.116, 1.248], k: [3.373, 2.596, 2.465]";
+  EXPECT_EQ(read(copper).materials[0], read("metal: copper").materials[0]);
+  EXPECT_EQ(read(copper).materials[0].principled->parameters.metallic, 1);
+  EXPECT_EQ(read(copper + ", metallic: 0.5").materials[0].principled->parameters.metallic, 0.5f);
+  EXPECT_TRUE(read(copper + ", metallic: 0.5").warnings.empty());
+  const Scene none = read(copper + ", metallic: 0");
+  ASSERT_EQ(none.warnings.size(), 1u);
+  EXPECT_NE(to_string(none.warnings[0]).find(":2:"), std::string::npos);
+  EXPECT_NE(none.warnings[0].message.find("without metal"), std::string::npos);
 }
 
 TEST(SceneMaterial, ErrorsOfPrincipledOnes) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
@@ -57,6 +59,12 @@ TEST_F(SceneTexture, StandInThePlaceOfEveryValue) {
     EXPECT_EQ(texture((*m.principled).*number.texture).gain, 3) << number.name;
   }
   EXPECT_NE(material("opacity: {checker: }").opacity_texture, kNoId);
+  EXPECT_NE(material("ior: {noise: }").ior_texture, kNoId);
+  EXPECT_NE(material("ior: {noise: }, roughness: 0.5").principled->ior_texture, kNoId);
+  const Material metal = material("principled: {eta: {noise: }, k: {file: a.png, gain: 3}}");
+  EXPECT_TRUE(texture(metal.principled->eta_texture).pattern);
+  EXPECT_EQ(texture(metal.principled->k_texture).gain, 3);
+  EXPECT_EQ(metal.principled->parameters.conductor->k, (Color{1, 1, 1}));
   EXPECT_NE(material("emission: {file: a.png}").emission_texture, kNoId);
   EXPECT_NE(material("specular_color: {gradient: }").specular_texture, kNoId);
   EXPECT_NE(material("roughness: {radial: }").principled->roughness_texture, kNoId);
@@ -94,6 +102,8 @@ TEST_F(SceneTexture, ErrorsSayWhatIsWrong) {
   expect("opacity: {file: a.png}, map_opacity: a.png", "expected one of them");
   expect("opacity: 1.5", "from 0 to 1");
   expect("principled: {ior: 5}", "from 0.25 to 4");
+  expect_starts(error("map_normal: {noise: }"), "scene.yaml:2:29: a pattern holds no normals");
+  expect("map_normal: {noise: }", "'map_bump'");
   // A texture cannot hold itself: an alias inside its own anchor is no YAML.
   expect("color: &a {marble: {colors: *a}}", "");
   EXPECT_NE(error("color: &a {marble: {colors: *a}}"), "no error");
@@ -114,7 +124,64 @@ TEST_F(SceneTexture, WarnsOfMaterialsThatMakeEnergy) {
   EXPECT_NE(warnings("path", "color: [0, 0, 0], specular: 3, phong: 1").find("3 times"), std::string::npos);
   EXPECT_EQ(warnings("path", "color: [0, 0, 0], specular: 3, phong: 5"), "");
   EXPECT_EQ(warnings("whitted", "diffuse: 5"), "");
+  // Patterns reach their brightest colour; images count as white.
+  const auto expect = [&](const std::string& keys, const std::string& part) {
+    EXPECT_NE(warnings("path", keys).find(part), std::string::npos) << keys << warnings("path", keys);
+  };
+  expect("color: {checker: {colors: [[3, 3, 3], [2, 2, 2]]}}, diffuse: 1", "3 times");
+  expect("color: {file: a.png, gain: 2, base: 0.5}, diffuse: 1", "2.5 times");
+  expect("color: [0, 0, 0], specular: 1, phong: {gradient: , gain: 9}", "2 times");
+  expect("color: [1, 1, 1], diffuse: {noise: , gain: 1.5}", "1.5 times");
+  expect("color: [1, 1, 1], map_color: {noise: {colors: [[1, 4, 1]]}}, diffuse: 0.5", "2 times");
+  EXPECT_EQ(warnings("path", "color: {file: a.png}, diffuse: {noise: }"), "");
+  EXPECT_EQ(warnings("path", "color: {checker: , gain: -3, base: 1}, diffuse: 1"), "");
+  EXPECT_EQ(warnings("path", "color: [0, 0, 0], reflection: {noise: , gain: 5}"), "");
   EXPECT_EQ(warnings("path", "principled: {base_color: [1, 1, 1], sheen: 1, coat: 1}"), "");
+}
+
+// One warning for each MTL file, at its first such material, and one for each such material of a scene file.
+TEST_F(SceneTexture, WarnsOncePerMaterialFileThatMakesEnergy) {
+  files.dir.write("m.mtl",
+                  "newmtl a\nKd 0.5 0.5 0.5\nnewmtl b\nKd 1 1 1\nKs 1 1 1\nNs 10\nnewmtl c\nKd 1 1 1\nKs 1 1 "
+                  "1\nNs 3\nnewmtl d\nKd 1 1 1\nKs 1 1 1\nNs 3\nPr 0.5\n");
+  std::string obj = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const char* name : {"a", "b", "c", "d"}) obj += std::string("usemtl ") + name + "\nf 1 2 3\n";
+  files.dir.write("m.obj", obj);
+  const std::string objects =
+      "materials:\n  x: {diffuse: 2}\n  y: {diffuse: 3}\nobjects: [{mesh: {file: m.obj}}]\n";
+  Scene read = files.load_v1(objects);
+  EXPECT_TRUE(read.warnings.empty());
+  // What --integrator path makes of it.
+  read.integrator.kind = IntegratorKind::path;
+  warn_of_energy(read);
+  std::vector<std::string> found, at_once;
+  for (const Warning& w : read.warnings) found.push_back(files.without_directory(to_string(w)));
+  ASSERT_EQ(found.size(), 3u);
+  const std::string text = " warning: this material may give back ";
+  expect_starts(found[0], "scene.yaml:3:6:" + text + "1.6 times");
+  expect_starts(found[1], "scene.yaml:4:6:" + text + "2.4 times");
+  expect_starts(found[2], "m.mtl:3:1:" + text + "1.18 times");
+  EXPECT_NE(found[2].find("; so may 1 more of this file"), std::string::npos) << found[2];
+  for (const Warning& w : files.load_v1("integrator: {kind: path}\n" + objects).warnings)
+    at_once.push_back(w.message);
+  EXPECT_EQ(at_once.size(), 3u);
+}
+
+// Warnings of images that cannot be used say where the scene names them first.
+TEST_F(SceneTexture, UnusableImagesAreToldOfWhereTheyAreNamed) {
+  const std::string b = files.dir.write("b.png", "");
+  scene = files.load_v1(
+      "materials:\n  m: {color: {noise: }, map_opacity: b.png}\n  n: {color: {gain: 2, file: a.png}, "
+      "map_bump: b.png}\n");
+  ASSERT_EQ(scene.texture_places.size(), scene.textures.size());
+  for (const std::string& gone : {files.dir.file("a.png"), b}) std::filesystem::remove(gone);
+  const ImageTextures textures(scene.textures, scene.texture_places);
+  std::vector<std::string> found;
+  for (const Warning& w : textures.warnings()) found.push_back(files.without_directory(to_string(w)));
+  std::ranges::sort(found);
+  ASSERT_EQ(found.size(), 2u);
+  expect_starts(found[0], "scene.yaml:3:38: warning: texture b.png not used: ");
+  expect_starts(found[1], "scene.yaml:4:30: warning: texture a.png not used: ");
 }
 
 // Lamps without size, light of less than nothing, and impossible optics are errors; a mirror is a roughness.

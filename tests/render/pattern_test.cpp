@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "render/bsdf/metals.h"
 #include "render/surface_textures.h"
 #include "tests/render/light_checks.h"
 #include "tests/render/test_scenes.h"
@@ -249,6 +250,40 @@ TEST(TexturedNumbers, OfOneValueAreThatValue) {
             kind);
         EXPECT_TRUE(test::same_bytes(textured, plain)) << number.name << " of metal " << metallic;
       }
+  }
+}
+
+// The same for indices of refraction: that of Phong's model and the complex one of metals.
+TEST(TexturedNumbers, IndicesOfRefraction) {
+  const Constant half(0.5f);
+  for (const IntegratorKind kind : {IntegratorKind::path, IntegratorKind::whitted}) {
+    const auto glass = [&](float ior, std::uint32_t texture) {
+      return ball_with(
+          half,
+          [&](Material& m) { m.diffuse = 0.2f, m.transparency = 0.8f, m.ior = ior, m.ior_texture = texture; },
+          kind);
+    };
+    EXPECT_TRUE(test::same_bytes(glass(3, 0), glass(1.5f, kNoId)));
+    EXPECT_FALSE(test::same_bytes(glass(3, 0), glass(3, kNoId)));
+    const auto metal = [&](float times, std::uint32_t texture) {
+      return ball_with(
+          half,
+          [&](Material& m) {
+            PrincipledMaterial& p = m.principled.emplace();
+            Conductor& gold = p.parameters.conductor.emplace();
+            gold.eta *= times, gold.k *= times;
+            p.eta_texture = p.k_texture = texture;
+            p.parameters.metallic = 1, p.parameters.roughness = 0.1f;
+            if (texture == kNoId) m.color = p.parameters.base_color = head_on_color(gold);
+            resemble_principled(m);
+          },
+          kind);
+    };
+    const Picture textured = metal(2, 0), plain = metal(1, kNoId), other = metal(2, kNoId);
+    for (const char* plane : {"R", "G", "B"})
+      for (std::uint32_t x = 0; x < 8; ++x)
+        EXPECT_EQ(test::value(textured, plane, x, 4), test::value(plain, plane, x, 4)) << plane << x;
+    EXPECT_NE(test::value(textured, "R", 4, 4), test::value(other, "R", 4, 4));
   }
 }
 
