@@ -21,10 +21,10 @@ static Scene load_overridden(const RenderArguments& arguments) {
   const std::optional<Look> look = look_of(arguments);
   const std::optional<Vec3d> up = up_of(arguments);
   const Viewpoint viewpoint = viewpoint_of(arguments);
-  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions));
-  const bool was_path = scene.integrator.kind == IntegratorKind::path;
+  std::optional<IntegratorKind> integrator;
+  if (!arguments.integrator.empty()) integrator = none.integrator.kind;
+  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions), integrator);
   override_scene(arguments, scene);
-  if (!was_path) warn_of_energy(scene);
   if (!look && !up) return scene;
   if (!is_mesh_alone(scene)) {
     for (const auto& [option, value] :

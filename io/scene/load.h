@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -54,6 +55,7 @@ struct SceneLoad {
   MeshLibrary meshes;
   NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
+  std::optional<IntegratorKind> integrator;  ///< instead of that of the file
   std::set<std::string> light_groups;  ///< names that lights and materials have given
   std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "io/scene/readers.h"
-#include "io/scene/scene_file.h"
 #include "io/scene/utf8.h"
 #include "io/text/extension.h"
 #include "render/bsdf/metals.h"

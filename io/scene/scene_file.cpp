@@ -168,14 +168,21 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   load.scene.source = path;
   FileReader(load).read(path);
   if (load.errors != nullptr && load.errors->failures() > 0) return;
+  if (load.integrator) load.scene.integrator.kind = *load.integrator;
   warn_of_energy(load.scene);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
 }
 
-Scene load_scene_file(const std::string& path, const Definitions& definitions) {
+static Scene load_scene_file(const std::string& path, const Definitions& definitions,
+                             std::optional<IntegratorKind> integrator) {
   SceneLoad load(definitions);
+  load.integrator = integrator;
   read_scene_file(path, load);
   return std::move(load.scene);
+}
+
+Scene load_scene_file(const std::string& path, const Definitions& definitions) {
+  return load_scene_file(path, definitions, std::nullopt);
 }
 
 /// Whether a ray could hit one of the triangles.
@@ -223,14 +230,21 @@ Scene scene_from_mesh(const std::string& path) {
 }
 
 Scene load_scene(const std::string& path, const Definitions& definitions) {
+  return load_scene(path, definitions, std::nullopt);
+}
+
+Scene load_scene(const std::string& path, const Definitions& definitions,
+                 std::optional<IntegratorKind> integrator) {
   expect_readable(path);
   const std::string extension = lower_case_extension(path);
-  if (extension == ".yaml" || extension == ".yml") return load_scene_file(path, definitions);
+  if (extension == ".yaml" || extension == ".yml") return load_scene_file(path, definitions, integrator);
   if (!is_mesh_file(path))
     throw Error(Location{path, 0, 0},
                 std::string("unknown kind of file; expected a scene (.yaml, .yml) or a mesh (") +
                     mesh_extensions() + ")");
   Scene scene = scene_from_mesh(path);
+  if (integrator) scene.integrator.kind = *integrator;
+  warn_of_energy(scene);
   for (const Warning& warning : SceneParameters(definitions).unused()) scene.warnings.push_back(warning);
   return scene;
 }

@@ -2,6 +2,7 @@
 /// \file Reading scenes: scene files in YAML, and meshes alone.
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "render/scene.h"
@@ -15,11 +16,6 @@ using Definitions = std::map<std::string, std::string>;
 /// read, see ImageTextures. Throws Error with file, line and column.
 Scene load_scene_file(const std::string& path, const Definitions& definitions = {});
 
-/// Adds warnings of materials of Phong's model that may give back more light than they receive, if the scene
-/// is path traced: of each one in a scene file, and once of each MTL file. load_scene has done so; to be
-/// called again only if the integrator has become path tracing since.
-void warn_of_energy(Scene& scene);
-
 /// A scene of one mesh file. Camera and lights are left to render(): camera_given and lights_given are false.
 /// A glTF file that has a camera or lights, or shows too many instances for one mesh, is a scene of its own
 /// instead.
@@ -29,5 +25,8 @@ Scene scene_from_mesh(const std::string& path);
 /// Calls load_scene_file for .yaml and .yml, scene_from_mesh for mesh files; throws Error for any other
 /// extension.
 Scene load_scene(const std::string& path, const Definitions& definitions = {});
+/// The same with another integrator, if it is given, which is also what is warned of.
+Scene load_scene(const std::string& path, const Definitions& definitions,
+                 std::optional<IntegratorKind> integrator);
 
 }  // namespace oktett

@@ -134,9 +134,10 @@ static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings
   }
 }
 
-/// Warns of settings that change nothing, given the others. The command line may choose another integrator.
+/// Warns of settings that change nothing, given the others.
 static void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
-  const IntegratorSettings& s = load.scene.integrator;
+  IntegratorSettings s = load.scene.integrator;
+  if (load.integrator) s.kind = *load.integrator;
   const auto warn = [&](const char* key, bool is_unused, const std::string& why) {
     const YamlNode* const node = fields[key];
     if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);

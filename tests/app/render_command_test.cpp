@@ -143,6 +143,7 @@ TEST(RenderCommand, WarnsOnceOfMaterialsThatMakeEnergyInPaths) {
   EXPECT_EQ(warnings("whitted.yaml", "whitted"), 0u);
   EXPECT_EQ(warnings("whitted.yaml", "path"), 1u);
   EXPECT_EQ(warnings("path.yaml", "path"), 1u);
+  EXPECT_EQ(warnings("path.yaml", "whitted"), 0u);
 }
 
 // Outputs that cannot be written are refused before any work: the scene file here does not even exist.

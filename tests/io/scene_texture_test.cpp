@@ -149,11 +149,9 @@ TEST_F(SceneTexture, WarnsOncePerMaterialFileThatMakesEnergy) {
   files.dir.write("m.obj", obj);
   const std::string objects =
       "materials:\n  x: {diffuse: 2}\n  y: {diffuse: 3}\nobjects: [{mesh: {file: m.obj}}]\n";
-  Scene read = files.load_v1(objects);
-  EXPECT_TRUE(read.warnings.empty());
-  // What --integrator path makes of it.
-  read.integrator.kind = IntegratorKind::path;
-  warn_of_energy(read);
+  EXPECT_TRUE(files.load_v1(objects).warnings.empty());
+  const Scene read = load_scene(files.dir.file("scene.yaml"), {}, IntegratorKind::path);
+  EXPECT_EQ(read.integrator.kind, IntegratorKind::path);
   std::vector<std::string> found, at_once;
   for (const Warning& w : read.warnings) found.push_back(files.without_directory(to_string(w)));
   ASSERT_EQ(found.size(), 3u);
@@ -165,6 +163,9 @@ TEST_F(SceneTexture, WarnsOncePerMaterialFileThatMakesEnergy) {
   for (const Warning& w : files.load_v1("integrator: {kind: path}\n" + objects).warnings)
     at_once.push_back(w.message);
   EXPECT_EQ(at_once.size(), 3u);
+  EXPECT_TRUE(load_scene(files.dir.file("scene.yaml"), {}, IntegratorKind::whitted).warnings.empty());
+  EXPECT_TRUE(load_scene(files.dir.file("m.obj")).warnings.empty());
+  EXPECT_EQ(load_scene(files.dir.file("m.obj"), {}, IntegratorKind::path).warnings.size(), 1u);
 }
 
 // Warnings of images that cannot be used say where the scene names them first.
