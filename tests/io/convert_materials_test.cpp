@@ -100,7 +100,13 @@ TEST_F(Convert, MaterialsOfGltfStayTheSame) {
   const Losses losses = convert("in.glb", "a.obj");
   EXPECT_EQ(std::ranges::count(losses, "changed: an image of a texture is written to 'a-1.png'"), 1);
   EXPECT_EQ(file_content(files.dir.file("a-1.png")), "\x89PNG\r\n\x1a\nno more");
-  EXPECT_EQ(load("a.obj").textures[0].path, files.dir.file("a-1.png"));
+  const MeshFile obj = load("a.obj");
+  EXPECT_EQ(obj.textures[0].path, files.dir.file("a-1.png"));
+  // Numbers keep their channels.
+  const PrincipledMaterial& first = *obj.materials[0].principled;
+  EXPECT_EQ(obj.textures.at(first.metallic_texture).channel, ImageChannel::blue);
+  EXPECT_EQ(obj.textures.at(first.roughness_texture).channel, ImageChannel::green);
+  EXPECT_EQ(obj.textures.at(obj.materials[0].opacity_texture).channel, ImageChannel::alpha);
   // A file that is there is not written over.
   files.write("a-1.png", "other");
   convert("in.glb", "a.obj");

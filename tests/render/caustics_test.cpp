@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "render/photon/casters.h"
 #include "tests/render/photon_support.h"
 
 namespace oktett::caustics_test {
@@ -25,6 +26,18 @@ Scene ball_in_beam(std::uint32_t photons, std::uint32_t passes, double radius) {
   add_object(scene, SphereShape{{0, 0, 0}, 0.02}, add_material(scene, mirror()));
   add_object(scene, PlaneShape{{0, 1, 0}, -1}, add_material(scene, diffuse({1, 1, 1})));
   return scene;
+}
+
+// Rough glass sends photons on where it hardly bends light, which a texture of its index may say.
+TEST(Casters, RoughGlassIsOneWhereItsIndexMayBeThatOfAir) {
+  Material m;
+  PrincipledMaterial& p = m.principled.emplace();
+  p.parameters.transmission = 1, p.parameters.ior = 2;
+  EXPECT_FALSE(may_cast(m));
+  p.ior_texture = 0;
+  EXPECT_TRUE(may_cast(m));
+  p.parameters.transmission = 0;
+  EXPECT_FALSE(may_cast(m));
 }
 
 /// What the floor shows at the distance rho from its middle: irradiance pi on the ball of cross section
