@@ -56,8 +56,8 @@ struct SceneLoad {
   NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
   std::optional<IntegratorKind> integrator;  ///< instead of that of the file
-  std::set<std::string> light_groups;  ///< names that lights and materials have given
-  std::vector<int> prototype_levels;   ///< of instances, its own included, per prototype
+  std::set<std::string> light_groups;        ///< names that lights and materials have given
+  std::vector<int> prototype_levels;         ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;
   ErrorList* errors = nullptr;  ///< where errors are gathered; null: the first one is thrown
 
