@@ -245,7 +245,8 @@ void bind_scene(SceneClass& scene) {
   scene.def_property_readonly(
       "objects", object_names,
       "The names of all objects by their numbers: through the prototypes in order, then "
-      "the scene's own. Operands of combinations are objects, too.");
+      "the scene's own. Operands of combinations are objects, too; those without a name have that of the "
+      "combination.");
   scene.def_property_readonly("warnings", warnings,
                               "What was skipped or given a default while files were read.");
   scene.def_property_readonly(

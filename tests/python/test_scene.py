@@ -79,7 +79,7 @@ def test_the_closest_sphere_is_that_of_a_formula():
 
 def test_objects_are_numbered_as_their_names_stand():
     scene = oktett.Scene.from_dict(mixed())
-    assert scene.objects == ["", "sphere", "torus", "dented", "", "", "left", "low", "cube"]
+    assert scene.objects == ["", "sphere", "torus", "dented", "dented", "dented", "left", "low", "cube"]
     # A mesh that is added has the next number.
     assert scene.add_mesh(CUBE_VERTICES + np.float32([0, 0, 9]), CUBE_FACES, name="late") == 9
     assert scene.objects[9] == "late" and scene.closest_hit([0.1, 0.2, 20, 0, 0, -1]).object == 9
