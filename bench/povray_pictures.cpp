@@ -156,7 +156,7 @@ int run(int argc, char** argv) {
   Options o;
   const std::string head =
       "usage: povray_pictures [option]... [SCENE]...\n  SCENE                    balls_7381, balls_66430, "
-      "glass, glass_mesh, lens or lamp; all";
+      "glass, glass_mesh, lens, lens_mesh or lamp; all";
   using Text = const std::string&;
   const std::vector<Option> options = {
       {"--size", "WxH", "1024x768", [&](Text v) { parse_size(v, o); }},
