@@ -284,8 +284,10 @@ bool is_opaque(const Material& m, ShadowRule rule) {
 static bool scatters_passing_light(const RenderContext& context, const Material& m, const TexturePlace& place,
                                    std::optional<float> ior) {
   if (!m.principled || context.settings.kind != IntegratorKind::path) return false;
-  PrincipledParameters p = principled_at(context, *m.principled, m.color, place);
-  if (ior) p.ior = *ior;
+  const PrincipledMaterial& material = *m.principled;
+  PrincipledParameters p = material.parameters;
+  p.roughness = textured(context, p.roughness, material.roughness_texture, kUnitInterval, place);
+  p.ior = ior ? *ior : textured(context, p.ior, material.ior_texture, kPrincipledIors, place);
   return !is_smooth_glass(p);
 }
 

@@ -23,14 +23,13 @@ struct InteriorView {
 
 /// A camera inside the mesh, where it sees far and much, if the mesh is an interior:
 ///
-/// - Its walls face inwards: who stands outside sees backs, on more than two thirds of what he sees.
-/// - Something stands in it whose front faces these walls. Without this test all meshes that are turned
-/// inside
-///   out would be interiors. An empty one must be a room by its shape: a level floor and ceiling, upright
-///   walls, and no side shorter than a twentieth of the longest.
+/// - Its walls face inwards: of what is visible from outside more than two thirds are backs of triangles.
+/// - Something stands in it whose front faces these walls. Without this test a mesh that is turned inside out
+///   would count as an interior. An empty mesh must have the shape of a room: a level floor and ceiling,
+///   upright walls, and no side shorter than a twentieth of the longest.
 ///
-/// What shows its front to the outside is none, whatever it hides: a car, a box with something in it, a house
-/// with thick walls.
+/// A mesh that shows its front to the outside is no interior, whatever it hides: a car, a box with something
+/// in it, a house with thick walls.
 std::optional<InteriorView> interior_view(const TriangleMesh& mesh, const Vec3d& up, const Film& film);
 
 /// Such a camera whatever the mesh is; nothing if rays cannot hit it.

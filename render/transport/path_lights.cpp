@@ -133,22 +133,15 @@ class LightSampler {
     repeat_last(group);
     code.point_samples(group);
     for (std::size_t i = 0; i < group.count; ++i) {
-      const Color light = intensity(group, i) * group.scale[i] * profile(group, i);
+      const Emitter& emitter = set_.emitters()[group.number[i]];
+      const auto* point = std::get_if<PointEmitter>(&emitter);
+      const Color intensity = point != nullptr ? point->intensity : std::get<SpotEmitter>(emitter).intensity;
+      Color light = intensity * group.scale[i];
+      if (point != nullptr)
+        light =
+            light * point->profile(Vec3d(InteractionBlock::get(group.position, i)) - Vec3d(point->position));
       if (is_finite(light)) set(group, i, group.distance[i], light, pdf_of(group, i), true);
     }
-  }
-
-  Color intensity(const LightGroup& group, std::size_t i) const {
-    const Emitter& emitter = set_.emitters()[group.number[i]];
-    if (const auto* e = std::get_if<PointEmitter>(&emitter)) return e->intensity;
-    return std::get<SpotEmitter>(emitter).intensity;
-  }
-
-  /// What the profile of the light leaves of its intensity.
-  float profile(const LightGroup& group, std::size_t i) const {
-    const auto* e = std::get_if<PointEmitter>(&set_.emitters()[group.number[i]]);
-    if (e == nullptr || e->profile.profile == nullptr) return 1;
-    return e->profile(Vec3d(InteractionBlock::get(group.position, i)) - Vec3d(e->position));
   }
 
   void finish_environment(const LightCode& code) {
@@ -169,7 +162,6 @@ class LightSampler {
     if (set_.environment_overlaps()) return set_by_direction(code, group);
     for (std::size_t i = 0; i < group.count; ++i) {
       const auto& sun = *static_cast<const DirectionalEmitter*>(group.emitter[i]);
-      group.x[i] = group.y[i] = 0;
       set(group, i, kFar, sun.radiance, static_cast<float>(sun_pdf(sun) * group.probability[i]));
     }
   }

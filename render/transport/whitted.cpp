@@ -102,8 +102,10 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
   const bool from_camera = wavefront.rays.from_camera[i] != 0;
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                                        {wavefront.rays.distance[i], from_camera}, found);
-  if (from_camera) record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
-  if (from_camera) cover(wavefront, i, p.opacity);
+  if (from_camera) {
+    record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
+    cover(wavefront, i, p.opacity);
+  }
   const Color left = passing_interior(context, p);
   if (context.materials[c.material[k]].varies) {
     const Color throughput = wavefront.rays.throughput[i] * p.opacity;
