@@ -17,29 +17,31 @@ static int interval(double& x, int last) {
   return i;
 }
 
+double AlbedoNodes::mu(int node) const {
+  if (node == count - 1) return 1;
+  const double y = static_cast<double>(node) / (count - 1);
+  return y * y * width / (1 + width - y * y);
+}
+
 double AlbedoTable::node_alpha(int j) const {
   const double rho = std::max(kLeastTabledRoughness, static_cast<double>(j) / (nodes_ - 1));
   return rho * rho;
 }
 
-double AlbedoTable::width(double alpha) const {
-  if (width_ == NodeWidth::alpha) return alpha;
+static double width_of(NodeWidth width, double alpha) {
+  if (width == NodeWidth::alpha) return alpha;
   const double rho = std::sqrt(alpha);
-  if (width_ == NodeWidth::three_quarters) return rho * std::sqrt(rho);
-  return width_ == NodeWidth::root ? rho : 6 * rho;
+  if (width == NodeWidth::three_quarters) return rho * std::sqrt(rho);
+  return width == NodeWidth::root ? rho : 6 * rho;
 }
 
-double AlbedoTable::node_mu(int i, double alpha) const {
-  if (i == nodes_ - 1) return 1;
-  const double y = static_cast<double>(i) / (nodes_ - 1), w = width(alpha);
-  return y * y * w / (1 + w - y * y);
-}
+AlbedoNodes AlbedoTable::nodes_for(double alpha) const { return {nodes_, width_of(width_, alpha)}; }
 
 AlbedoRow AlbedoTable::row(double alpha) const {
   const double rho = std::sqrt(alpha);
   double y = rho * (nodes_ - 1);
   const int j = interval(y, nodes_ - 1);
-  return {&value_[j], nodes_, width(alpha), y};
+  return {&value_[j], nodes_for(alpha), y};
 }
 
 double AlbedoTable::at(double mu, double alpha) const {

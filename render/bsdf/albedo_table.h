@@ -8,33 +8,50 @@
 
 namespace oktett {
 
+/// Cosines mu in [0, 1] at which a table has values.
+struct AlbedoNodes {
+  int count = 1;
+  double width = 0;  ///< of the range of mu where nodes lie close together
+
+  double mu(int node) const;
+  /// The place of `mu` among the nodes, [0, count - 1], in lanes.
+  template <class D>
+  OKTETT_INLINE D place(const D& mu) const {
+    const D w(width);
+    return sqrt(mu * (D(1.0) + w) / (mu + w)) * D(count - 1);
+  }
+  /// The node before a place, but not the last one.
+  template <class D>
+  OKTETT_INLINE D node_before(const D& place) const {
+    return within(whole_part(place), D(0.0), D(count - 2));
+  }
+};
+
 /// An AlbedoTable at one width of the facets.
 struct AlbedoRow {
   const float* values = nullptr;  ///< of the first node for mu, at the node for alpha before the width
-  int nodes = 1;
-  double width = 0;  ///< of the range of mu where the quantity changes fast
-  double part = 0;   ///< place between the node for alpha and the next, [0, 1]
+  AlbedoNodes nodes;
+  double part = 0;  ///< place between the node for alpha and the next, [0, 1]
 
   /// The quantity at `mu` in [0, 1], in lanes.
   template <class D>
   OKTETT_INLINE D at(const D& mu) const {
-    const D w(width), last(nodes - 1), mix(part);
-    const D x = sqrt(mu * (D(1.0) + w) / (mu + w)) * last;
-    const D node = within(whole_part(x), D(0.0), last - D(1.0)), place = node * D(nodes);
-    const auto value = [&](int offset) {
-      const D before = gather(values + offset, place), after = gather(values + offset + 1, place);
+    const D place = nodes.place(mu), node = nodes.node_before(place), offset = node * D(nodes.count),
+            mix(part);
+    const auto value = [&](int more) {
+      const D before = gather(values + more, offset), after = gather(values + more + 1, offset);
       return before + (after - before) * mix;
     };
-    const D near = value(0), far = value(nodes);
-    return near + (far - near) * (x - node);
+    const D near = value(0), far = value(nodes.count);
+    return near + (far - near) * (place - node);
   }
 };
 
 /// Up to which mu nodes of an AlbedoTable lie close together: a power of alpha, or six times its root.
 enum class NodeWidth { alpha, three_quarters, root, six_roots };
 
-/// A quantity in [0, 1] by the cosine `mu` of a direction with the normal and by the width `alpha` of the
-/// facets, both in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That
+/// A quantity by the cosine `mu` of a direction with the normal and by the width `alpha` of the facets, both
+/// in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That
 /// is where mu is at most of the order of the table's power of alpha; with a lower power the other nodes are
 /// closer.
 class AlbedoTable {
@@ -43,12 +60,22 @@ class AlbedoTable {
   /// `entry(mu, alpha)` gives the values at the nodes.
   template <class Entry>
   AlbedoTable(int nodes, NodeWidth width, Entry&& entry)
-      : nodes_(nodes), width_(width), value_(nodes * nodes) {
-    for (int i = 0; i < nodes; ++i)
-      for (int j = 0; j < nodes; ++j) {
-        const double alpha = node_alpha(j);
-        value_[i * nodes + j] = static_cast<float>(entry(node_mu(i, alpha), alpha));
-      }
+      : AlbedoTable(by_width(nodes, width, [&](const AlbedoNodes& at, double alpha) {
+          std::vector<double> values(nodes);
+          for (int i = 0; i < nodes; ++i) values[i] = entry(at.mu(i), alpha);
+          return values;
+        })) {}
+  /// `entries(nodes, alpha)` gives the values at all nodes for mu at once.
+  template <class Entries>
+  static AlbedoTable by_width(int nodes, NodeWidth width, Entries&& entries) {
+    AlbedoTable table;
+    table.nodes_ = nodes, table.width_ = width, table.value_.resize(nodes * nodes);
+    for (int j = 0; j < nodes; ++j) {
+      const double alpha = table.node_alpha(j);
+      const std::vector<double> values = entries(table.nodes_for(alpha), alpha);
+      for (int i = 0; i < nodes; ++i) table.value_[i * nodes + j] = static_cast<float>(values[i]);
+    }
+    return table;
   }
 
   AlbedoRow row(double alpha) const;
@@ -56,8 +83,7 @@ class AlbedoTable {
 
  private:
   double node_alpha(int j) const;
-  double node_mu(int i, double alpha) const;
-  double width(double alpha) const;
+  AlbedoNodes nodes_for(double alpha) const;
 
   int nodes_ = 0;
   NodeWidth width_ = NodeWidth::alpha;

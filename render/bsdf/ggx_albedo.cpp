@@ -54,19 +54,27 @@ const Lattice& fine_lattice() {
   return lattice;
 }
 
-/// The mean of `value(w, m, c)` over the facet normals `m` visible from a direction `w` of cosine `mu`, with
-/// c = w.m.
-template <class Value>
-double facet_mean(const Lattice& lattice, double mu, double alpha, Value&& value) {
+/// Calls visit(weight, w, m, c) for points of the facet normals `m` visible from a direction `w` of cosine
+/// `mu`, with c = w.m. The weights add to 1.
+template <class Visit>
+void for_each_facet(const Lattice& lattice, double mu, double alpha, Visit&& visit) {
   mu = std::max(mu, 1e-5);
   const Vec3d w{std::sqrt(1 - mu * mu), 0, mu};
-  double sum = 0;
   for (std::size_t i = 0; i < lattice.point.size(); ++i) {
     const SquareSample& p = lattice.point[i];
     // The other half of the circle mirrors this one.
     const Vec3d m = visible_normal(w, alpha, p.y / 2, p.x);
-    sum += lattice.weight[i] * value(w, m, dot(w, m));
+    visit(lattice.weight[i], w, m, dot(w, m));
   }
+}
+
+/// The mean of `value(w, m, c)`.
+template <class Value>
+double facet_mean(const Lattice& lattice, double mu, double alpha, Value&& value) {
+  double sum = 0;
+  for_each_facet(lattice, mu, alpha, [&](double weight, const Vec3d& w, const Vec3d& m, double c) {
+    sum += weight * value(w, m, c);
+  });
   return sum;
 }
 
@@ -108,6 +116,51 @@ struct MirrorTables {
 const MirrorTables& mirror_tables() {
   static const MirrorTables tables;
   return tables;
+}
+
+/// The width of the facets whose lobe resembles that of the light which facets of width `alpha` send to each
+/// other: the one that comes closest to random walks between facets (docs/light.md).
+double again_width(double alpha) { return std::min(1.0, 1.2 * std::sqrt(alpha)); }
+
+/// MirrorAgain::scale at the nodes times the roughness, which changes less than the scale. By Sinkhorn's
+/// iteration (1964): each scale is set so that the lobe has the wanted albedo, until none changes.
+std::vector<double> again_scales(const AlbedoNodes& nodes, double alpha) {
+  const double width = again_width(alpha);
+  const std::size_t n = nodes.count;
+  // [viewer][light]: what the scale of that light adds to the albedo of the wider facets.
+  std::vector<double> share(n * n);
+  for (std::size_t viewer = 0; viewer < n; ++viewer)
+    for_each_facet(coarse_lattice(), nodes.mu(viewer), width,
+                   [&](double weight, const Vec3d& w, const Vec3d& m, double c) {
+                     const Vec3d light = m * (2 * c) - w;
+                     if (light.z <= 0) return;
+                     const double seen = weight * unshadowed(lambda_of(w, width), light, width);
+                     const Lane place = nodes.place(Lane(light.z)), node = nodes.node_before(place);
+                     const double part = only_lane(place - node);
+                     double* shares = &share[viewer * n + static_cast<std::size_t>(only_lane(node))];
+                     shares[0] += seen * (1 - part), shares[1] += seen * part;
+                   });
+  std::vector<double> scale(n, 1), loss(n);
+  for (std::size_t i = 0; i < n; ++i) loss[i] = 1 - mirror_tables().at(nodes.mu(i), alpha);
+  constexpr int kMostRounds = 100;
+  double change = 1;
+  for (int round = 0; change > 1e-6 && round < kMostRounds; ++round) {
+    change = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      double albedo = 0;
+      for (std::size_t k = 0; k < n; ++k) albedo += share[i * n + k] * scale[k];
+      const double next = std::sqrt(scale[i] * loss[i] / albedo);
+      change = std::max(change, std::abs(next - scale[i]));
+      scale[i] = next;
+    }
+  }
+  for (double& s : scale) s *= std::sqrt(alpha);
+  return scale;
+}
+
+const AlbedoTable& again_table() {
+  static const AlbedoTable table = AlbedoTable::by_width(kMirrorNodes, NodeWidth::alpha, again_scales);
+  return table;
 }
 
 /// Tables are kept for some values of the amplitude that is reflected head-on, |eta - 1| / (eta + 1), counted
@@ -193,6 +246,9 @@ TablePair<Tables> tables_for(double eta) {
 
 MirrorAlbedo::MirrorAlbedo(double alpha)
     : row_(mirror_tables().albedo.row(alpha)), mean_loss_(alpha > 0 ? mirror_tables().loss.at(alpha) : 0) {}
+
+MirrorAgain::MirrorAgain(double alpha)
+    : row_(again_table().row(alpha)), alpha_(again_width(alpha)), factor_(1 / std::sqrt(alpha)) {}
 
 /// The table holds how the albedo differs from that of the smooth interface times that of mirrors, which it
 /// tends to for small alpha.

@@ -38,6 +38,25 @@ class MirrorAlbedo {
   double mean_loss_ = 0;
 };
 
+/// The light that mirroring facets send to each other before it leaves the surface. Its lobe is that of wider
+/// facets, times scale(mu) of either direction: so it is reciprocal, and its albedo is 1 - MirrorAlbedo.
+class MirrorAgain {
+ public:
+  MirrorAgain() = default;
+  /// `alpha` > 0: the width of the mirroring facets.
+  explicit MirrorAgain(double alpha);
+  /// Of the wider facets.
+  double alpha() const { return alpha_; }
+  template <class D>
+  OKTETT_INLINE D scale(const D& mu) const {
+    return row_.at(mu) * D(factor_);
+  }
+
+ private:
+  AlbedoRow row_;
+  double alpha_ = 0, factor_ = 0;
+};
+
 /// One or two tables between which an albedo is interpolated, for indices of refraction.
 struct AlbedoRows {
   AlbedoRow first, second;

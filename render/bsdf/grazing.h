@@ -1,6 +1,6 @@
 #pragma once
-/// \file Directions for the light that facets send to each other, in lanes. It leaves them at grazing angles
-/// if they are narrow.
+/// \file Directions for the light that facets of glass send to each other, in lanes. It leaves them at
+/// grazing angles if they are narrow.
 
 #include "render/bsdf/lobe_lanes.h"
 

@@ -2,11 +2,12 @@
 /// \file The principled material (in the vocabulary of Burley 2012 and OpenPBR): sheen over a coat over
 /// metal, an opaque dielectric or glass.
 ///
-/// Rough interfaces are GGX facets (render/bsdf/ggx.h). What single scattering loses is given back by
-/// lobes that are diffuse in shape (Kulla 2017), so no roughness darkens. A layer takes its albedo from what
-/// lies below. Reciprocal: the base (metal, dielectric over diffuse, glass up to the factor eta^2 that
-/// radiance leaves out). Not reciprocal: what lies below a coat or sheen, as that is weakened by the albedo
-/// for the viewer's direction alone, and sheen itself.
+/// Rough interfaces are GGX facets (render/bsdf/ggx.h). What single scattering loses is given back, so no
+/// roughness darkens: by metal in the lobe of wider facets (MirrorAgain), by glass in lobes that are diffuse
+/// in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the base (metal,
+/// dielectric over diffuse, glass up to the factor eta^2 that radiance leaves out). Not reciprocal: what lies
+/// below a coat or sheen, as that is weakened by the albedo for the viewer's direction alone, and sheen
+/// itself.
 
 #include "render/bsdf/ggx.h"
 #include "render/bsdf/grazing.h"
@@ -93,7 +94,7 @@ class PrincipledLobes {
   typename F::M only_delta() const {
     const D zero(0.0);
     M none = (choice_[kSheen] == zero) & (choice_[kDiffuse] == zero) & (choice_[kAgainAbove] == zero) &
-             (choice_[kAgainBelow] == zero);
+             (choice_[kAgainBelow] == zero) & (choice_[kMetalAgain] == zero);
     if (s_->coat_alpha > 0) none = none & (choice_[kCoat] == zero);
     if (s_->alpha > 0) none = none & (choice_[kMirror] == zero);
     if (!s_->glass_smooth) none = none & (choice_[kGlass] == zero);
@@ -105,8 +106,9 @@ class PrincipledLobes {
 
  private:
   /// kMirror: metal and opaque dielectric. kGlass: reflected or transmitted, as Fresnel's equations say.
-  /// kAgainAbove, kAgainBelow: what single scattering loses, on the viewer's side and on the other.
-  enum Lobe { kSheen, kCoat, kMirror, kGlass, kDiffuse, kAgainAbove, kAgainBelow, kLobes };
+  /// kMetalAgain: what single scattering by metal loses.
+  /// kAgainAbove, kAgainBelow: what single scattering by glass loses, on the viewer's side and on the other.
+  enum Lobe { kSheen, kCoat, kMirror, kGlass, kDiffuse, kMetalAgain, kAgainAbove, kAgainBelow, kLobes };
 
   /// Of the viewer's direction; nothing for smooth interfaces.
   struct Facets {
@@ -150,11 +152,12 @@ class PrincipledLobes {
 
   const PrincipledSurface* s_;
   Vec3<D> wo_;
-  Facets base_, coat_facets_;
+  Facets base_, coat_facets_, again_facets_;
   D sheen_{0.0}, coat_{0.0}, metal_{0.0}, opaque_{0.0}, glass_{0.0};  ///< weights, without what lies above
   SheenLobe fibres_[D::kWidth];
+  D metal_again_{0.0};  ///< weight of metal times the scale of MirrorAgain
   // Lobes of diffuse shape: coefficient * loss(wi) * |cos(wi)|.
-  D metal_lost_{0.0}, diffuse_{0.0}, glass_again_above_{0.0}, glass_again_below_{0.0};
+  D diffuse_{0.0}, glass_again_above_{0.0}, glass_again_below_{0.0};
   LobeChances<D, kLobes> choice_;
 };
 

@@ -15,15 +15,17 @@ void PrincipledLobes<D>::sample_facets(const D& chosen, const D& place, const D&
   const M coat = s_->coat_alpha > 0 ? chosen == D(kCoat) : never;
   const M mirror = s_->alpha > 0 ? chosen == D(kMirror) : never;
   const M glass = s_->glass_smooth ? never : chosen == D(kGlass);
-  const M lanes = coat | mirror | glass;
+  const M again = s_->metal_again_most > 0 ? chosen == D(kMetalAgain) : never;
+  const M lanes = coat | mirror | glass | again;
   if (none(lanes)) return;
-  const D alpha = select(coat, D(s_->coat_alpha), D(s_->alpha)), reflecting = reflecting_bound(wo_, alpha);
+  const D alpha = select(again, D(s_->again.alpha()), select(coat, D(s_->coat_alpha), D(s_->alpha)));
+  const D reflecting = reflecting_bound(wo_, alpha);
   const D bound = s_->thin ? reflecting : select(glass, D(1.0), reflecting);
   const Vec3<D> m = ggx_normal(wo_, alpha, bound, x, y);
   const D c = dot_lanes(wo_, m);
   const Vec3<D> reflected = m * (D(2.0) * c) - wo_;
   const M up = reflected.z > zero;
-  M mirrored = coat | mirror;
+  M mirrored = coat | mirror | again;
   if (any(glass)) {
     const M reflects = glass & (place < chance_of_reflection(glass_fresnel(c))), passes = glass & ~reflects;
     mirrored = mirrored | reflects;

@@ -35,9 +35,10 @@ void PrincipledLobes<D>::set_metal() {
   // At least a little, since black metal is black head-on and white at grazing angles.
   choice_[kMirror] =
       choice_[kMirror] + metal_ * max(D(0.02), max(max(reflected.x, reflected.y), reflected.z));
-  if (!(s_->mirror_loss > 0)) return;
-  metal_lost_ = metal_ * (D(1.0) - s_->mirror(wo_.z));
-  choice_[kAgainAbove] = choice_[kAgainAbove] + metal_lost_ * D(s_->metal_again_most);
+  if (!(s_->metal_again_most > 0)) return;
+  again_facets_ = facets(s_->again.alpha());
+  metal_again_ = metal_ * s_->again.scale(wo_.z);
+  choice_[kMetalAgain] = metal_ * (D(1.0) - s_->mirror(wo_.z)) * D(s_->metal_again_most);
 }
 
 /// An interface over Lambert's law. The diffuse part takes what the interface does not reflect, for the

@@ -79,16 +79,16 @@ void PrincipledSurface::set_metal(const PrincipledParameters& p) {
   if (has_conductor)
     conductor_eta = limited(p.conductor->eta, 1e-3, 1e3), conductor_k = limited(p.conductor->k, 0, 1e3);
   if (!(mirror_loss > 0)) return;
+  again = MirrorAgain(alpha);
   const auto of_conductor = [&](double c) {
     return Vec3d{conductor_fresnel(c, conductor_eta.x, conductor_k.x),
                  conductor_fresnel(c, conductor_eta.y, conductor_k.y),
                  conductor_fresnel(c, conductor_eta.z, conductor_k.z)};
   };
   const Vec3d mean = has_conductor ? mean_of(of_conductor) : base_color + (kWhite - base_color) * (1 / 21.0);
-  const Vec3d again{reflected_again(mean.x, mirror_loss), reflected_again(mean.y, mirror_loss),
-                    reflected_again(mean.z, mirror_loss)};
-  metal_again = again / (std::numbers::pi * mirror_loss);
-  metal_again_most = max_component(again);
+  metal_again = {reflected_again(mean.x, mirror_loss), reflected_again(mean.y, mirror_loss),
+                 reflected_again(mean.z, mirror_loss)};
+  metal_again_most = max_component(metal_again);
 }
 
 /// The light that single scattering loses is split between both sides such that the split is the same

@@ -38,8 +38,9 @@ struct PrincipledSurface {
 
   bool has_conductor = false;
   Vec3d conductor_eta, conductor_k;
-  Vec3d metal_again;  ///< what facets reflect of the light that single scattering loses, over pi and the loss
-  double metal_again_most = 0;  ///< the greatest component of what they reflect
+  Vec3d metal_again;            ///< what facets reflect of the light that they send to each other
+  double metal_again_most = 0;  ///< its greatest component; 0: there is no such light
+  MirrorAgain again;
 
   double opaque_eta = 1, opaque_head_on = 0;  ///< index of refraction; reflectance head-on
   ReflectedAlbedo opaque_albedo;

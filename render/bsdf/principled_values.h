@@ -32,18 +32,21 @@ typename PrincipledLobes<D>::Value PrincipledLobes<D>::above(const Vec3<D>& wi) 
     sum.value = sum.value + grey(weight * normals / (D(4.0) * wo_.z * (one + coat_facets_.lambda + lambda)));
     sum.pdf = sum.pdf + choice_[kCoat] * normals * coat_facets_.reflected;
   }
+  if (s_->metal_again_most > 0) {
+    const D alpha(s_->again.alpha()), normals = ggx_density(h, alpha), lambda = ggx_lambda(wi, alpha);
+    const D scale = metal_again_ * s_->again.scale(wi.z);
+    sum.value = sum.value + broadcast<D>(s_->metal_again) *
+                                (scale * normals / (D(4.0) * wo_.z * (one + again_facets_.lambda + lambda)));
+    sum.pdf = sum.pdf + choice_[kMetalAgain] * normals * again_facets_.reflected;
+  }
   if (s_->opaque > 0) {
     sum.value =
         sum.value + broadcast<D>(s_->base_color) * (diffuse_ * (one - s_->opaque_albedo(wi.z)) * wi.z);
     sum.pdf = sum.pdf + choice_[kDiffuse] * wi.z * D(1 / std::numbers::pi);
   }
   if (any(choice_[kAgainAbove] > D(0.0))) {
-    Vec3<D> again{D(0.0), D(0.0), D(0.0)};
-    if (s_->metal > 0) again = broadcast<D>(s_->metal_again) * (metal_lost_ * (one - s_->mirror(wi.z)));
-    if (!s_->glass_smooth)
-      again =
-          again + grey(glass_again_above_ * (one - (s_->thin ? s_->mirror(wi.z) : s_->glass_albedo(wi.z))));
-    sum.value = sum.value + again * wi.z;
+    const D loss = one - (s_->thin ? s_->mirror(wi.z) : s_->glass_albedo(wi.z));
+    sum.value = sum.value + grey(glass_again_above_ * loss * wi.z);
     const auto some = choice_[kAgainAbove] > D(0.0);
     sum.pdf = sum.pdf + select(some, choice_[kAgainAbove] * grazing_density(wi.z, s_->alpha), D(0.0));
   }
