@@ -1,6 +1,6 @@
 """Renders a directory that path_peers has written with Blender's Cycles: blender -b -P blender_scene.py -- DIR SEED SPP...
 
-One picture, DIR/cycles_SPP.exr, for each number of samples. Prints "cycles SPP SECONDS" for each, where the seconds
+OKTETT_PEER_THREADS: threads, 2. OKTETT_PEER_PART="X0 Y0 X1 Y1": render only these pixels; Y0 is the top row. One picture, DIR/cycles_SPP.exr, for each number of samples. Prints "cycles SPP SECONDS" for each, where the seconds
 are those of the whole render call, the building of the scene included.
 """
 import json
@@ -95,6 +95,12 @@ def configure(scene, description, seed):
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = description["size"]
     scene.render.resolution_percentage = 100
+    part = os.environ.get("OKTETT_PEER_PART")
+    if part:
+        (width, height), (x0, y0, x1, y1) = description["size"], map(int, part.split())
+        scene.render.use_border = True
+        scene.render.border_min_x, scene.render.border_max_x = x0 / width, x1 / width
+        scene.render.border_min_y, scene.render.border_max_y = 1 - y1 / height, 1 - y0 / height
     scene.render.threads_mode = "FIXED"
     scene.render.threads = int(os.environ.get("OKTETT_PEER_THREADS", "2"))
     scene.render.image_settings.file_format = "OPEN_EXR"

@@ -21,6 +21,7 @@ struct PictureScene {
   std::uint32_t long_samples = 0, pov_long_samples = 0;
 };
 
-std::vector<PictureScene> picture_scenes(std::uint32_t width, std::uint32_t height);
+/// `lens_times`: how many times the usual samples are taken through lenses, by both programs.
+std::vector<PictureScene> picture_scenes(std::uint32_t width, std::uint32_t height, std::uint32_t lens_times);
 
 }  // namespace oktett::bench

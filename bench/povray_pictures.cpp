@@ -25,6 +25,7 @@ namespace {
 struct Options {
   std::uint32_t width = 1024, height = 768;
   int threads = 2, runs = 3;
+  std::uint32_t lens_times = 1;
   std::string keep;
   std::vector<std::string> scenes;
 };
@@ -162,9 +163,11 @@ int run(int argc, char** argv) {
       {"--size", "WxH", "1024x768", [&](Text v) { parse_size(v, o); }},
       {"--threads", "N", "2", [&](Text v) { o.threads = number(v, 1, 1000); }},
       {"--runs", "N", "rounds in which both trace in turn; 3", [&](Text v) { o.runs = number(v, 1, 1000); }},
+      {"--lens-times", "N", "N times the samples through lenses; 1",
+       [&](Text v) { o.lens_times = number(v, 1u, 64u); }},
       {"--keep", "DIR", "leave the last scene and picture there", [&](Text v) { o.keep = v; }}};
   o.scenes = parse_options(argc, argv, head, options);
-  const std::vector<PictureScene> scenes = picture_scenes(o.width, o.height);
+  const std::vector<PictureScene> scenes = picture_scenes(o.width, o.height, o.lens_times);
   for (const std::string& name : o.scenes)
     if (std::ranges::find(scenes, name, &PictureScene::name) == scenes.end())
       throw Error("unknown scene '" + name + "'\n" + usage_text(head, options));

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -205,10 +207,10 @@ class MtlReader {
   void limit_ior(float& ior) {
     constexpr float kMost = kMostIor, kLeast = 1 / kMost;
     if (ior >= kLeast && ior <= kMost) return;
-    const std::string nearest = ior > kMost ? "4" : "0.25";
-    warnings_.push_back(
-        {said_.ior_place, "Ni must be from 0.25 to 4 beside Pr, Pm, Ps, Pc or Pcr; it counts as " + nearest});
     ior = std::clamp(ior, kLeast, kMost);
+    warnings_.push_back({said_.ior_place,
+                         fmt::format("Ni must be from {} to {} beside Pr, Pm, Ps, Pc or Pcr; it counts as {}",
+                                     kLeast, kMost, ior)});
   }
 
   void set_opacity(Material& m) const {

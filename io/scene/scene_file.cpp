@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/mesh_triangle.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/scene/gltf.h"
 #include "io/scene/readers.h"
@@ -187,10 +188,8 @@ Scene load_scene_file(const std::string& path, const Definitions& definitions) {
 
 /// Whether a ray could hit one of the triangles.
 static bool has_area(const TriangleMesh& mesh) {
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.indices[i + k]]); };
-    if (length(cross(corner(1) - corner(0), corner(2) - corner(0))) > 0) return true;
-  }
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
+    if (length(area_normal(mesh, i)) > 0) return true;
   return false;
 }
 

@@ -94,6 +94,7 @@ struct Sphere {
     return maybe;
   }
 
+  /// Both ends of a chord, in order.
   template <class D>
   OKTETT_INLINE static void set_roots(const Chord<D>& c, const D& inverse, D (&t)[2]) {
     const D half = sqrt(c.square * inverse);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/mesh_triangle.h"
+
 namespace oktett {
 
 MeshExplorer::MeshExplorer(const TriangleMesh& mesh) : mesh_(mesh) {
@@ -33,13 +35,10 @@ std::vector<std::uint8_t> MeshExplorer::occluded(const std::vector<Ray>& rays) c
 }
 
 Vec3d MeshExplorer::corner(std::uint32_t triangle, std::uint32_t k) const {
-  return Vec3d(mesh_.positions[mesh_.indices[3 * std::size_t{triangle} + k]]);
+  return oktett::corner(mesh_, triangle, k);
 }
 
-Vec3d MeshExplorer::area_normal(std::uint32_t triangle) const {
-  const Vec3d a = corner(triangle, 0);
-  return cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
-}
+Vec3d MeshExplorer::area_normal(std::uint32_t triangle) const { return oktett::area_normal(mesh_, triangle); }
 
 std::vector<std::uint32_t> MeshExplorer::triangles_by_area(std::uint32_t count) const {
   const auto triangles = static_cast<std::uint32_t>(mesh_.triangle_count());

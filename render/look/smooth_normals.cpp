@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/mesh_triangle.h"
 
 namespace oktett {
 
@@ -19,13 +20,6 @@ struct VertexTriangles {
   }
   std::vector<std::uint32_t> first, triangles;
 };
-
-/// The normal of a triangle, twice as long as its area.
-static Vec3d area_normal(const TriangleMesh& mesh, std::size_t triangle) {
-  const auto corner = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.indices[3 * triangle + k]]); };
-  const Vec3d a = corner(0);
-  return cross(corner(1) - a, corner(2) - a);
-}
 
 void add_smooth_normals(TriangleMesh& mesh, double crease) {
   const VertexTriangles around(mesh);

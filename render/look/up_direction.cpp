@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/box.h"
+#include "core/mesh_triangle.h"
 
 namespace oktett {
 namespace {
@@ -92,9 +93,8 @@ MeshFacing facing_of(const TriangleMesh& mesh) {
   MeshFacing facing;
   // A sample of a hundred thousand triangles is enough.
   const std::size_t stride = 1 + mesh.triangle_count() / 100000;
-  for (std::size_t i = 0; i < mesh.indices.size(); i += 3 * stride) {
-    const auto corner = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.indices[i + k]]); };
-    const Vec3d a = corner(0), n = cross(corner(1) - a, corner(2) - a);
+  for (std::size_t i = 0; i < mesh.triangle_count(); i += stride) {
+    const Vec3d n = area_normal(mesh, i);
     facing.all += length(n);
     facing.sum += n;
     facing.absolute += abs(n);
