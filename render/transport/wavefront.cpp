@@ -200,9 +200,8 @@ void add_to_samples(Wavefront& wavefront) {
   for (int k = 0; k < 3; ++k) {
     float* color = wavefront.samples.color.part[k].data();
     const float* radiance = wavefront.radiance.part[k].data();
-    // Camera rays are those of samples 0, 1, ..., whose colour is still black.
     if (wavefront.level == 0) {
-      for (std::size_t i = 0; i < count; ++i) color[i] = 0.0f + radiance[i];
+      for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] = 0.0f + radiance[i];
     } else {
       for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] += radiance[i];
     }
@@ -220,7 +219,6 @@ void fill_camera_rays(Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
   const RayQueue::Entry like;
   RayQueue& rays = wavefront.rays;
-  for (std::size_t i = 0; i < count; ++i) rays.sample[i] = static_cast<std::uint32_t>(i);
   rays.throughput.fill(count, like.throughput);
   std::fill_n(rays.distance.data(), count, like.distance);
   std::fill_n(rays.bounces.data(), count, like.bounces);

@@ -7,6 +7,7 @@
 
 #include "render/camera.h"
 #include "render/sampling/warp.h"
+#include "render/transport/wavefront.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::lens_test {
@@ -136,6 +137,38 @@ TEST(Lens, RaysInLanesHaveTheBitsOfOne) {
           EXPECT_EQ(ray.tmax, one.tmax);
         }
       }
+  }
+}
+
+// Each camera ray of a wavefront is that of its sample, whatever the order of the rays. If a pixel has 16
+// samples or more, rays of one of 16 parts of the lens stand together.
+TEST(Lens, RaysAreSortedByPartsOfTheLens) {
+  Scene scene = bare_scene(24);
+  scene.camera.aperture = 0.3;
+  const World world = build_world(scene);
+  const SceneLights lights(scene, world);
+  for (const std::uint32_t samples : {1u, 15u, 16u, 64u}) {
+    scene.integrator.samples = samples;
+    const RenderContext context = make_context(scene, world, lights, nullptr, default_isa());
+    const std::vector<WavefrontPixel> pixels{{0, 3, 4}, {1, 4, 4}, {2, 20, 11}};
+    Wavefront w;
+    start_wavefront(context, pixels, 0, samples, w);
+    ASSERT_EQ(w.rays.size(), pixels.size() * samples);
+    std::vector<int> seen(w.rays.size());
+    int last = 0;
+    for (std::size_t i = 0; i < w.rays.size(); ++i) {
+      const std::uint32_t s = w.rays.sample[i];
+      ++seen.at(s);
+      const Ray ray = camera_ray(context.camera, w.film_x[s], w.film_y[s], w.lens_x[s], w.lens_y[s]);
+      EXPECT_EQ(w.rays.rays[i].origin, ray.origin);
+      EXPECT_EQ(w.rays.rays[i].direction, ray.direction);
+      const int part = static_cast<int>(w.lens_y[s] * 4) * 4 + static_cast<int>(w.lens_x[s] * 4);
+      if (samples >= 16) {
+        EXPECT_GE(part, last);
+      }
+      last = part;
+    }
+    for (const int times : seen) EXPECT_EQ(times, 1);
   }
 }
 
