@@ -84,7 +84,7 @@ Column<std::uint8_t> parts_of_lens(const Wavefront& wavefront) {
 }
 
 /// Sorts the camera rays by the part of the lens that they leave. Neighbouring pixels' rays from one part
-/// keep closer together than a pixel's rays from the whole lens, so packets meet fewer nodes.
+/// keep closer together than a pixel's rays from the whole lens, so fewer rays leave their packets.
 void sort_by_lens(Wavefront& wavefront) {
   const Column<std::uint8_t> part = parts_of_lens(wavefront);
   std::array<std::uint32_t, kLensEdge * kLensEdge + 1> first{};
