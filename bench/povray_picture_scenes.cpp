@@ -82,6 +82,7 @@ PictureScene balls(std::uint32_t width, std::uint32_t height, int levels) {
   add_balls({0, 0, 0}, 0.5, {0, 1, 0}, levels, shape);
   PictureScene p;
   p.name = fmt::format("balls_{}", shape.spheres.size());
+  p.mirrors = true;
   p.scene = empty_scene(width, height, {2.1, 1.3, -1.7}, {0, 0, 0});
   p.scene.background = {0.08f, 0.2f, 0.3f};
   p.scene.lights = {PointLight{{4, 6, -3}}};

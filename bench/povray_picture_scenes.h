@@ -19,6 +19,7 @@ struct PictureScene {
   std::uint32_t pov_samples = 1;
   /// For the pictures against which noise is measured; 0: there is no noise.
   std::uint32_t long_samples = 0, pov_long_samples = 0;
+  bool mirrors = false;  ///< rays are reflected often enough to compare the speed of later bounces
 };
 
 /// `lens_times`: how many times the usual samples are taken through lenses, by both programs.

@@ -30,10 +30,10 @@ struct Options {
   std::vector<std::string> scenes;
 };
 
-/// Green of a picture, row by row, and how long tracing took.
+/// Green of a picture, row by row, how long tracing took and, of Oktett, how many rays were traced.
 struct Shot {
   std::vector<float> green;
-  double seconds = 0;
+  double seconds = 0, rays = 0;
 };
 
 Shot by_oktett(Scene scene, std::uint32_t samples, const Options& o) {
@@ -45,7 +45,9 @@ Shot by_oktett(Scene scene, std::uint32_t samples, const Options& o) {
   options.tile_size = 64;
   const RenderResult result = render(std::move(scene), options);
   const auto& values = result.picture.find("G")->values;
-  return {{values.begin(), values.end()}, result.report.render_seconds};
+  const RenderReport& r = result.report;
+  const auto rays = static_cast<double>(r.camera_rays + r.shadow_rays + r.reflected_rays + r.refracted_rays);
+  return {{values.begin(), values.end()}, r.render_seconds, rays};
 }
 
 /// POV-Ray's picture, mirrored as its space is. 16 bits a channel, linear.
@@ -121,6 +123,22 @@ Times race(const PictureScene& scene, const Options& o, const fs::path& dir, int
   return {quartiles(ours), quartiles(theirs), quartiles(ratio)};
 }
 
+/// Rays per second at six bounces relative to those at one.
+Quartiles speed_of_deep_rays(const PictureScene& scene, const Options& o) {
+  const auto speed = [&](int depth) {
+    Scene at = scene.scene;
+    at.integrator.depth = depth;
+    const Shot shot = by_oktett(std::move(at), scene.samples, o);
+    return shot.rays / shot.seconds;
+  };
+  std::vector<double> ratio;
+  for (int run = 0; run < o.runs; ++run) {
+    const double shallow = speed(1);
+    ratio.push_back(speed(6) / shallow);
+  }
+  return quartiles(ratio);
+}
+
 void compare(const PictureScene& scene, const Options& o, const fs::path& dir) {
   // POV-Ray with the faster of its two structures.
   const Shot boxes = by_povray(scene.pov(scene.pov_samples), o, dir, 1);
@@ -143,6 +161,11 @@ void compare(const PictureScene& scene, const Options& o, const fs::path& dir) {
              times.theirs.median, times.ratio.median,
              fmt::format("{:.2f} to {:.2f}", times.ratio.low, times.ratio.high), noise,
              100 * (mean(ours.green) / mean(theirs) - 1), 100 * block_difference(theirs, ours.green, o));
+  if (scene.mirrors) {
+    const Quartiles deep = speed_of_deep_rays(scene, o);
+    fmt::print("  rays per second at depth 6 over those at depth 1: {:.3f} ({:.3f} to {:.3f})\n", deep.median,
+               deep.low, deep.high);
+  }
   std::fflush(stdout);
 }
 
