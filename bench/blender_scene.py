@@ -1,7 +1,10 @@
 """Renders a directory that path_peers has written with Blender's Cycles: blender -b -P blender_scene.py -- DIR SEED SPP...
 
-OKTETT_PEER_THREADS: threads, 2. OKTETT_PEER_PART="X0 Y0 X1 Y1": render only these pixels; Y0 is the top row. One picture, DIR/cycles_SPP.exr, for each number of samples. Prints "cycles SPP SECONDS" for each, where the seconds
-are those of the whole render call, the building of the scene included.
+Writes one picture, DIR/cycles_SPP.exr, for each number of samples. Prints "cycles SPP SECONDS" for each, where the
+seconds are those of the whole render call, the building of the scene included.
+
+Environment: OKTETT_PEER_THREADS is the number of threads (2). OKTETT_PEER_PART="X0 Y0 X1 Y1" renders only the pixels
+from column X0 to before X1 and from row Y0 to before Y1; row 0 is the top.
 """
 import json
 import os

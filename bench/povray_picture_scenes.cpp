@@ -174,8 +174,8 @@ PictureScene glass_mesh(std::uint32_t width, std::uint32_t height) {
   return p;
 }
 
-/// How POV-Ray samples a lens: at least `fewest` rays, then up to 128 until it is 80 % sure that the pixel's
-/// variance is below 1 / `precision`. Of the settings tried these have the least noise for their time.
+/// When POV-Ray ends a pixel behind a lens: after `fewest` rays, once it is 80 % sure that the variance is
+/// below 1 / `precision`. Of the settings tried, those used here have the least noise for their time.
 struct PovBlur {
   std::uint32_t fewest, precision;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "core/random.h"
@@ -83,8 +84,9 @@ Column<std::uint8_t> parts_of_lens(const Wavefront& wavefront) {
   return part;
 }
 
-/// Sorts the camera rays by the part of the lens that they leave. Neighbouring pixels' rays from one part
-/// keep closer together than a pixel's rays from the whole lens, so fewer rays leave their packets.
+/// Sorts the camera rays by the part of the lens that they leave, and numbers their samples. Neighbouring
+/// pixels' rays from one part keep closer together than a pixel's rays from the whole lens, so fewer rays
+/// leave their packets.
 void sort_by_lens(Wavefront& wavefront) {
   const Column<std::uint8_t> part = parts_of_lens(wavefront);
   std::array<std::uint32_t, kLensEdge * kLensEdge + 1> first{};
@@ -133,10 +135,11 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
   if (context.camera.lens_radius > 0) spread_over_lens(context, pixels, first, last, wavefront);
   camera_rays(context.camera, {wavefront.film_x, wavefront.film_y, &wavefront.lens_x, &wavefront.lens_y},
               wavefront.rays.rays, context.isa);
-  for (std::size_t i = 0; i < count; ++i) wavefront.rays.sample[i] = static_cast<std::uint32_t>(i);
   // With fewer samples, those of one part of the lens lie too far apart on the film.
-  const bool sorted = context.camera.lens_radius > 0 && last - first >= kLensEdge * kLensEdge;
-  if (sorted) sort_by_lens(wavefront);
+  if (context.camera.lens_radius > 0 && last - first >= kLensEdge * kLensEdge)
+    sort_by_lens(wavefront);
+  else
+    std::iota(wavefront.rays.sample.begin(), wavefront.rays.sample.end(), 0u);
   wavefront.counts.camera += count;
 }
 

@@ -8,6 +8,7 @@
 
 #include "accel/placed_geometry.h"
 #include "core/math.h"
+#include "core/mesh_triangle.h"
 #include "render/light/rectangle_pair.h"
 #include "render/light/sky.h"
 #include "render/light_groups.h"
@@ -139,10 +140,8 @@ class EmitterCollector {
     for (std::uint32_t k = 0; k < mesh.triangle_count(); ++k) {
       const Material* m = material(p, mesh.material_slots.empty() ? 0u : mesh.material_slots[k]);
       if (m == nullptr) continue;
-      const auto corner = [&](std::uint32_t i) {
-        return Vec3f(p.to_world.point(Vec3d(mesh.positions[mesh.indices[3 * k + i]])));
-      };
-      TriangleEmitter e{corner(0), corner(1), corner(2), m->emission, m->emits_behind};
+      const auto placed = [&](std::size_t i) { return Vec3f(p.to_world.point(corner(mesh, k, i))); };
+      TriangleEmitter e{placed(0), placed(1), placed(2), m->emission, m->emits_behind};
       // Where the texture lies is found by the weights of the corners, so their order must stay.
       if (mirrored && !m->emits_behind) {
         if (m->emission_texture != kNoId) continue;
@@ -269,8 +268,7 @@ Color SceneLights::texture_at(const LightSample& sample, const TextureSampler* t
   TexturePlace at;
   for (std::size_t k = 0; k < 3; ++k) {
     at.uv.x += uv[k].x * weight[k], at.uv.y += uv[k].y * weight[k];
-    at.position +=
-        Vec3d(mesh.positions[mesh.indices[3 * std::size_t{found->triangle} + k]]) * double{weight[k]};
+    at.position += corner(mesh, found->triangle, k) * double{weight[k]};
   }
   return texture_color({texture_list_, textures}, found->texture, at);
 }

@@ -51,9 +51,8 @@ struct AlbedoRow {
 enum class NodeWidth { alpha, three_quarters, root, six_roots };
 
 /// A quantity by the cosine `mu` of a direction with the normal and by the width `alpha` of the facets, both
-/// in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That
-/// is where mu is at most of the order of the table's power of alpha; with a lower power the other nodes are
-/// closer.
+/// in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That is where mu
+/// is at most of the order of the table's power of alpha; with a lower power the other nodes are closer.
 class AlbedoTable {
  public:
   AlbedoTable() = default;

@@ -122,12 +122,10 @@ const MirrorTables& mirror_tables() {
 /// other: the one that comes closest to random walks between facets (docs/light.md).
 double again_width(double alpha) { return std::min(1.0, 1.2 * std::sqrt(alpha)); }
 
-/// MirrorAgain::scale at the nodes times the roughness, which changes less than the scale. By Sinkhorn's
-/// iteration (1964): each scale is set so that the lobe has the wanted albedo, until none changes.
-std::vector<double> again_scales(const AlbedoNodes& nodes, double alpha) {
-  const double width = again_width(alpha);
+/// The albedo of mirroring facets of width `width`, split by the light that they show: [viewer][light], both
+/// at the nodes. Light between two nodes counts for both, by its place.
+std::vector<double> albedo_by_light(const AlbedoNodes& nodes, double width) {
   const std::size_t n = nodes.count;
-  // [viewer][light]: what the scale of that light adds to the albedo of the wider facets.
   std::vector<double> share(n * n);
   for (std::size_t viewer = 0; viewer < n; ++viewer)
     for_each_facet(coarse_lattice(), nodes.mu(viewer), width,
@@ -140,6 +138,14 @@ std::vector<double> again_scales(const AlbedoNodes& nodes, double alpha) {
                      double* shares = &share[viewer * n + static_cast<std::size_t>(only_lane(node))];
                      shares[0] += seen * (1 - part), shares[1] += seen * part;
                    });
+  return share;
+}
+
+/// MirrorAgain::scale at the nodes, times the roughness, so that interpolation between roughnesses errs less.
+/// Sinkhorn's iteration (1964): sets each scale so that the lobe has the wanted albedo, until none changes.
+std::vector<double> again_scales(const AlbedoNodes& nodes, double alpha) {
+  const std::size_t n = nodes.count;
+  const std::vector<double> share = albedo_by_light(nodes, again_width(alpha));
   std::vector<double> scale(n, 1), loss(n);
   for (std::size_t i = 0; i < n; ++i) loss[i] = 1 - mirror_tables().at(nodes.mu(i), alpha);
   constexpr int kMostRounds = 100;

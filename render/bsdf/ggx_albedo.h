@@ -39,7 +39,8 @@ class MirrorAlbedo {
 };
 
 /// The light that mirroring facets send to each other before it leaves the surface. Its lobe is that of wider
-/// facets, times scale(mu) of either direction: so it is reciprocal, and its albedo is 1 - MirrorAlbedo.
+/// facets, times scale(mu) for the viewer and for the light. So it is reciprocal. Its albedo is
+/// 1 - MirrorAlbedo.
 class MirrorAgain {
  public:
   MirrorAgain() = default;

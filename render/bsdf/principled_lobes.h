@@ -118,6 +118,10 @@ class PrincipledLobes {
     Vec3<D> value{D(0.0), D(0.0), D(0.0)};
     D pdf{0.0};
   };
+  /// Of a lobe without colour.
+  struct GreyValue {
+    D value, pdf;
+  };
 
   static Vec3<D> flipped(const Vec3<D>& w) { return {w.x, w.y, -w.z}; }
   static Vec3<D> grey(const D& x) { return {x, x, x}; }
@@ -138,6 +142,8 @@ class PrincipledLobes {
   D chance_of_reflection(const D& reflectance) const;
 
   // Defined in render/bsdf/principled_values.h.
+  GreyValue facet_lobe(const Facets& f, double alpha, const Vec3<D>& h, const Vec3<D>& wi, const D& weight,
+                       const D& chance) const;
   Value above(const Vec3<D>& wi) const;
   Value below(const Vec3<D>& wi) const;
   Value transmitted(const Vec3<D>& wi) const;

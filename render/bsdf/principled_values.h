@@ -5,7 +5,17 @@
 
 namespace oktett {
 
-/// Facets: f cos of a reflecting lobe is F D G / (4 wo.z) with G = 1 / (1 + Lambda(wo) + Lambda(wi)).
+/// A reflecting lobe of facets, `h` being halfway between both directions: f cos = weight D G / (4 wo.z),
+/// with G = 1 / (1 + Lambda(wo) + Lambda(wi)). `chance` is that with which the lobe is chosen.
+template <class D>
+typename PrincipledLobes<D>::GreyValue PrincipledLobes<D>::facet_lobe(const Facets& f, double alpha,
+                                                                      const Vec3<D>& h, const Vec3<D>& wi,
+                                                                      const D& weight,
+                                                                      const D& chance) const {
+  const D normals = ggx_density(h, D(alpha)), lambda = ggx_lambda(wi, D(alpha));
+  return {weight * normals / (D(4.0) * wo_.z * (D(1.0) + f.lambda + lambda)), chance * normals * f.reflected};
+}
+
 template <class D>
 typename PrincipledLobes<D>::Value PrincipledLobes<D>::above(const Vec3<D>& wi) const {
   Value sum;
@@ -13,6 +23,7 @@ typename PrincipledLobes<D>::Value PrincipledLobes<D>::above(const Vec3<D>& wi) 
   const Vec3<D> h = unit_lanes(wo_ + wi);
   const D c = min(one, dot_lanes(wo_, h));
   if (s_->alpha > 0) {
+    // As facet_lobe, for the interfaces that share these facets.
     const D alpha(s_->alpha), normals = ggx_density(h, alpha), density = normals * base_.reflected;
     const D per_area = normals / (D(4.0) * wo_.z);
     Vec3<D> reflectance{D(0.0), D(0.0), D(0.0)};
@@ -27,17 +38,14 @@ typename PrincipledLobes<D>::Value PrincipledLobes<D>::above(const Vec3<D>& wi) 
     sum.value = reflectance * (per_area / (one + base_.lambda + ggx_lambda(wi, alpha)));
   }
   if (s_->coat_alpha > 0) {
-    const D alpha(s_->coat_alpha), normals = ggx_density(h, alpha), lambda = ggx_lambda(wi, alpha);
     const D weight = coat_ * fresnel_lanes(c, D(s_->coat_eta));
-    sum.value = sum.value + grey(weight * normals / (D(4.0) * wo_.z * (one + coat_facets_.lambda + lambda)));
-    sum.pdf = sum.pdf + choice_[kCoat] * normals * coat_facets_.reflected;
+    const GreyValue lobe = facet_lobe(coat_facets_, s_->coat_alpha, h, wi, weight, choice_[kCoat]);
+    sum.value = sum.value + grey(lobe.value), sum.pdf = sum.pdf + lobe.pdf;
   }
   if (s_->metal_again_most > 0) {
-    const D alpha(s_->again.alpha()), normals = ggx_density(h, alpha), lambda = ggx_lambda(wi, alpha);
-    const D scale = metal_again_ * s_->again.scale(wi.z);
-    sum.value = sum.value + broadcast<D>(s_->metal_again) *
-                                (scale * normals / (D(4.0) * wo_.z * (one + again_facets_.lambda + lambda)));
-    sum.pdf = sum.pdf + choice_[kMetalAgain] * normals * again_facets_.reflected;
+    const D weight = metal_again_ * s_->again.scale(wi.z);
+    const GreyValue lobe = facet_lobe(again_facets_, s_->again.alpha(), h, wi, weight, choice_[kMetalAgain]);
+    sum.value = sum.value + broadcast<D>(s_->metal_again) * lobe.value, sum.pdf = sum.pdf + lobe.pdf;
   }
   if (s_->opaque > 0) {
     sum.value =

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/math.h"
+#include "core/mesh_triangle.h"
 #include "core/random.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/sampling/warp.h"
@@ -21,9 +22,9 @@ void add_rays(const MeshExplorer& mesh, std::uint32_t triangle, std::uint32_t nu
               std::vector<Ray>& rays) {
   const SquareSample place = sobol_point(number, mix_bits(1));
   const double root = std::sqrt(place.x), u = root * place.y, v = 1 - root;
-  const Vec3d a = mesh.corner(triangle, 0);
-  const Vec3d p = a + (mesh.corner(triangle, 1) - a) * u + (mesh.corner(triangle, 2) - a) * v;
-  const Vec3d n = normalize(mesh.area_normal(triangle));
+  const auto at = [&](std::size_t k) { return corner(mesh.mesh(), triangle, k); };
+  const Vec3d a = at(0), p = a + (at(1) - a) * u + (at(2) - a) * v;
+  const Vec3d n = normalize(area_normal(mesh.mesh(), triangle));
   for (int side = 0; side < 2; ++side)
     for (std::uint32_t i = 0, count = side == 0 ? kFrontRays : kBackRays; i < count; ++i) {
       const Vec3f out(side == 0 ? n : -n);
@@ -46,7 +47,8 @@ std::vector<std::uint8_t> reach_walls(const MeshExplorer& mesh, const std::vecto
   }
   std::vector<std::uint8_t> reached = mesh.occluded(onwards);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const bool front = hits[i].valid() && dot(mesh.area_normal(hits[i].item), Vec3d(rays[i].direction)) < 0;
+    const bool front =
+        hits[i].valid() && dot(area_normal(mesh.mesh(), hits[i].item), Vec3d(rays[i].direction)) < 0;
     reached[i] = front && reached[i] == 0;
   }
   return reached;
@@ -68,7 +70,7 @@ Exposure exposure_of(const MeshExplorer& mesh, const Vec3d& up) {
     const bool back = std::count(to_front + kFrontRays, to_front + kRays, 0) > 0;
     e.front += front, e.back += back && !front, e.hidden += !front && !back;
     if (!front && !back) inner.insert(inner.end(), first, first + 2 * kFrontRays);
-    const double rise = std::abs(dot(normalize(mesh.area_normal(triangles[i])), up));
+    const double rise = std::abs(dot(normalize(area_normal(mesh.mesh(), triangles[i])), up));
     e.square += rise < 0.05 || rise > 0.995;
   }
   const std::vector<std::uint8_t> walls = reach_walls(mesh, inner);

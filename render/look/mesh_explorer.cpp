@@ -34,20 +34,14 @@ std::vector<std::uint8_t> MeshExplorer::occluded(const std::vector<Ray>& rays) c
   return occluded;
 }
 
-Vec3d MeshExplorer::corner(std::uint32_t triangle, std::uint32_t k) const {
-  return oktett::corner(mesh_, triangle, k);
-}
-
-Vec3d MeshExplorer::area_normal(std::uint32_t triangle) const { return oktett::area_normal(mesh_, triangle); }
-
 std::vector<std::uint32_t> MeshExplorer::triangles_by_area(std::uint32_t count) const {
   const auto triangles = static_cast<std::uint32_t>(mesh_.triangle_count());
   double total = 0;
-  for (std::uint32_t i = 0; i < triangles; ++i) total += length(area_normal(i));
+  for (std::uint32_t i = 0; i < triangles; ++i) total += length(area_normal(mesh_, i));
   std::vector<std::uint32_t> chosen;
   double sum = 0;
   for (std::uint32_t i = 0; i < triangles && chosen.size() < count; ++i) {
-    sum += length(area_normal(i));
+    sum += length(area_normal(mesh_, i));
     while (chosen.size() < count && sum > (static_cast<double>(chosen.size()) + 0.5) * total / count)
       chosen.push_back(i);
   }

@@ -16,6 +16,7 @@ class MeshExplorer {
   /// The mesh must outlive it.
   explicit MeshExplorer(const TriangleMesh& mesh);
 
+  const TriangleMesh& mesh() const { return mesh_; }
   const Box& box() const { return box_; }
   /// The diagonal of the box; zero if there is nothing that a ray could hit.
   double size() const { return size_; }
@@ -26,10 +27,6 @@ class MeshExplorer {
   /// For each ray 1 if it hits something, else 0.
   std::vector<std::uint8_t> occluded(const std::vector<Ray>& rays) const;
 
-  /// Corner 0, 1 or 2 of a triangle.
-  Vec3d corner(std::uint32_t triangle, std::uint32_t k) const;
-  /// The normal of a triangle, twice as long as its area.
-  Vec3d area_normal(std::uint32_t triangle) const;
   /// `count` triangles in equal steps of area; none if no triangle has an area.
   std::vector<std::uint32_t> triangles_by_area(std::uint32_t count) const;
 

@@ -200,6 +200,7 @@ void add_to_samples(Wavefront& wavefront) {
   for (int k = 0; k < 3; ++k) {
     float* color = wavefront.samples.color.part[k].data();
     const float* radiance = wavefront.radiance.part[k].data();
+    // Each sample has one camera ray, and its colour is not set before.
     if (wavefront.level == 0) {
       for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] = 0.0f + radiance[i];
     } else {
