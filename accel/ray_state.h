@@ -109,9 +109,11 @@ struct alignas(64) RayState {
     one.tmax[0] = tmax[i], one.u[0] = u[i], one.v[0] = v[i], one.item[0] = item[i], one.path[0] = path[i];
     return one;
   }
-  /// Takes over the hit of ray i, which has gone on by itself.
-  OKTETT_INLINE void take(int i, const RayState<1, A>& one) {
-    tmax[i] = one.tmax[0], u[i] = one.u[0], v[i] = one.v[0], item[i] = one.item[0], path[i] = one.path[0];
+  /// Ray i ends where ray k of another state does, and takes over its hit.
+  template <int V>
+  OKTETT_INLINE void take(int i, const RayState<V, A>& other, int k) {
+    tmax[i] = other.tmax[k], u[i] = other.u[k], v[i] = other.v[k];
+    item[i] = other.item[k], path[i] = other.path[k];
   }
 
   /// Ray i's nearest hit becomes `h`, if that is valid.

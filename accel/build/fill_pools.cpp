@@ -12,10 +12,11 @@ namespace {
 /// Fills the pools in the order in which the leaves refer to them.
 class PoolFiller {
  public:
-  PoolFiller(Accel& accel, const ItemOrder& order) : accel_(accel), order_(order) {}
+  PoolFiller(Accel& accel, ItemOrder& order) : accel_(accel), order_(order) {}
 
   void run() {
     number_primitives();
+    align_spheres();
     each<Sphere>(Kind::sphere, [](auto& pool, const Geometry& g, std::uint32_t local, std::uint32_t item) {
       Sphere::add(pool, moved_sphere(std::get<SpheresShape>(g.shape).spheres[local], g.transform), item);
     });
@@ -58,6 +59,21 @@ class PoolFiller {
     if (count == 0) return;
     accel_.first_pool_index = std::move(first);
     accel_.pool_index.resize(count, kNoId);
+  }
+
+  /// Moves the spheres of each leaf to a multiple of eight, so that they share one cache line of each column
+  /// of doubles. The gaps are filled by spheres that no leaf refers to there.
+  void align_spheres() {
+    std::vector<std::uint32_t>& order = order_[static_cast<int>(Kind::sphere)];
+    std::vector<std::uint32_t> aligned;
+    for (LeafEntry& leaf : accel_.leaves) {
+      if (leaf.kind != Kind::sphere) continue;
+      const std::uint32_t* items = order.data() + leaf.begin;
+      while (aligned.size() % TriangleBlock::kSize != 0) aligned.push_back(items[0]);
+      leaf.begin = static_cast<std::uint32_t>(aligned.size());
+      aligned.insert(aligned.end(), items, items + leaf.count);
+    }
+    order = std::move(aligned);
   }
 
   /// Calls add(pool, geometry, number within the geometry, item) for the items of a closed-form shape.
@@ -168,11 +184,11 @@ class PoolFiller {
   const Geometry& geometry(std::uint32_t item) const { return accel_.geometries[accel_.geometry_of(item)]; }
 
   Accel& accel_;
-  const ItemOrder& order_;
+  ItemOrder& order_;
 };
 
 }  // namespace
 
-void fill_pools(Accel& accel, const ItemOrder& order) { PoolFiller(accel, order).run(); }
+void fill_pools(Accel& accel, ItemOrder& order) { PoolFiller(accel, order).run(); }
 
 }  // namespace oktett

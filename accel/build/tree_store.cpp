@@ -65,11 +65,11 @@ class LinkCheck {
   }
 
   bool is_possible(const LeafEntry& leaf) {
-    if (static_cast<int>(leaf.kind) >= kKinds || leaf.count == 0) return false;
+    if (static_cast<int>(leaf.kind) >= kKinds || leaf.count == 0 || leaf.count > TriangleBlock::kSize)
+      return false;
     if (leaf.kind != Kind::triangle)
       return std::uint64_t{leaf.begin} + leaf.count <= order_[static_cast<int>(leaf.kind)].size();
-    return leaf.test <= TriangleTest::segura_feito && leaf.count <= TriangleBlock::kSize &&
-           take(block_seen_, leaf.begin);
+    return leaf.test <= TriangleTest::segura_feito && take(block_seen_, leaf.begin);
   }
 
   static bool take(std::vector<bool>& seen, std::uint32_t index) {

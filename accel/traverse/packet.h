@@ -122,7 +122,7 @@ OKTETT_INLINE void traverse_each(const Accel& accel, RayState<W, A>& r, unsigned
     const int i = __builtin_ctz(lanes);
     RayState<1, A> one = r.lane(i);
     traverse_single<Q>(accel, one, start);
-    r.take(i, one);
+    r.take(i, one, 0);
   }
 }
 

@@ -232,5 +232,24 @@ TEST(Build, ParallelAndSerialTreesGiveTheSameHits) {
   EXPECT_GT(hits, 300);
 }
 
+TEST(Build, LeavesOfSpheresAreAligned) {
+  CaseRandom r(7);
+  SpheresShape spheres;
+  for (int i = 0; i < 1000; ++i) spheres.spheres.push_back({r.vector() * 10.0, 0.1});
+  const auto accel = build_accel({{spheres, {}, kNoId}});
+  const auto& pool = std::get<Sphere::Pool>(accel->pools);
+  std::vector<int> seen(spheres.spheres.size(), 0);
+  for (const LeafEntry& leaf : accel->leaves) {
+    EXPECT_EQ(leaf.begin % 8, 0u);
+    for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
+      const SphereShape& s = spheres.spheres[pool.item[k]];
+      EXPECT_EQ(pool.x[k], s.center.x);
+      EXPECT_EQ(pool.radius[k], s.radius);
+      ++seen[pool.item[k]];
+    }
+  }
+  EXPECT_TRUE(std::ranges::all_of(seen, [](int n) { return n == 1; }));
+}
+
 }  // namespace
 }  // namespace oktett::build_test

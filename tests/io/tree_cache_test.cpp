@@ -273,6 +273,11 @@ TEST_F(TreeCache, ImpossibleTreesAreRefused) {
         for (LeafEntry& leaf : a.leaves)
           if (leaf.kind == Kind::triangle) leaf.count = 9;
       },
+      [](Accel& a, ItemOrder& order) {
+        ASSERT_GE(order[static_cast<int>(Kind::instance_list)].size(), 9u);
+        for (LeafEntry& leaf : a.leaves)
+          if (leaf.kind == Kind::instance_list) leaf.begin = 0, leaf.count = 9;
+      },
       [](Accel& a, ItemOrder&) {
         for (LeafEntry& leaf : a.leaves)
           if (leaf.kind == Kind::triangle) leaf.test = static_cast<TriangleTest>(9);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "accel/traverse/inflight/leaf_group.h"
+#include "accel/traverse/inflight/sphere_leaves.h"
 #include "accel/traverse/inflight/triangle_steps.h"
 
 namespace oktett {
@@ -24,7 +25,7 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
   using Base::pop, Base::found, Base::exact_state, Base::exact_in, Base::adopt, Base::keep_hit;
   using typename Base::Tails;
 
-  explicit InflightTraversal(const Accel& accel) : Base(accel) {}
+  explicit InflightTraversal(const Accel& accel) : Base(accel), spheres_(accel) {}
 
   /// Some steps of the rays in the queues, at least one of which is not empty.
   OKTETT_INLINE void advance() {
@@ -32,40 +33,6 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
     if (queues_.leaves.size() >= kLeafThreshold || queues_.nodes.size() == 0) this->leaf_round();
     if (queues_.others.size() >= kLeafThreshold || queues_.nodes.size() + queues_.leaves.size() == 0)
       other_round();
-  }
-
-  /// One ray against a leaf of spheres outside of instances. Needs less than exact_state() sets.
-  OKTETT_INLINE void sphere_leaf(const LeafEntry& leaf, InflightRay& ray) {
-    constexpr int N = kShapeLanes<Sphere>;
-    using F = Simd<float, N, A>;
-    using D = Simd<double, N, A>;
-    const auto& pool = std::get<Sphere::Pool>(accel_.pools);
-    // One quotient for all lanes.
-    const double dx = ray.d[0], dy = ray.d[1], dz = ray.d[2];
-    const D inverse(1.0 / (dx * dx + dy * dy + dz * dz));
-    for (int k = 0; k < leaf.count; k += N) {
-      const RayLanes<F> lanes{{F(ray.o[0]), F(ray.o[1]), F(ray.o[2])},
-                              {F(ray.d[0]), F(ray.d[1]), F(ray.d[2])},
-                              F(ray.tmin),
-                              F(ray.tmax)};
-      const std::size_t first = leaf.begin + static_cast<std::size_t>(k);
-      D roots[Sphere::kRoots];
-      const auto maybe =
-          Sphere::roots_in_range(to_double(lanes), inverse, Sphere::load<D>(pool, first), roots);
-      if (none(maybe)) continue;
-      HitLanes<F> hit;
-      unsigned met = bits(first_in_range(lanes, mask_cast<float>(maybe), roots, hit)) &
-                     ((2u << (std::min(leaf.count - k, N) - 1)) - 1);
-      if (met == 0) continue;
-      if constexpr (Q == Query::any) return found(ray);
-      alignas(64) float t[N];
-      hit.t.store(t);
-      for (; met != 0; met &= met - 1) {
-        const int i = __builtin_ctz(met);
-        if (t[i] <= ray.tmax)
-          keep_hit(ray, {t[i], 0, 0, pool.item[first + static_cast<std::size_t>(i)], kNoId});
-      }
-    }
   }
 
   /// Rays that are finished, at a leaf of the table, or on their way out of an instance.
@@ -150,7 +117,14 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
     // The exact tests also decide what the ray may have hit before, and know instances.
     if (ray.candidate < kDecidedHit || (kInstances && ray.in.instance != kNoInstance))
       return table_leaf(ray, tail);
-    sphere_leaf(accel_.leaves[ray.current.table_index()], ray);
+    const LeafEntry& leaf = accel_.leaves[ray.current.table_index()];
+    alignas(64) float t[TriangleBlock::kSize];
+    const auto& items = std::get<Sphere::Pool>(accel_.pools).item;
+    for (unsigned met = spheres_.meet(&ray - inflight_, ray, leaf, t); met != 0; met &= met - 1) {
+      const auto k = static_cast<std::uint32_t>(__builtin_ctz(met));
+      if (t[k] <= ray.tmax) keep_hit(ray, {t[k], 0, 0, items[leaf.begin + k], kNoId});
+      if constexpr (Q == Query::any) break;
+    }
     pop(ray, tail);
   }
 
@@ -209,6 +183,7 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
 
   InflightHead outer_[kEnter ? kInflightRays : 1];
   EnteringRays<kEnter ? kChunk : 1, A> entering_;
+  SphereLeaves<kInflightRays, kChunk, A> spheres_;
 };
 
 }  // namespace oktett

@@ -29,7 +29,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
  private:
   friend Base;
   using Base::accel_, Base::rays_, Base::queues_, Base::pending_, Base::chunk_, Base::inflight_,
-      Base::states_;
+      Base::states_, Base::spheres_;
   using typename Base::Tails;
 
   OKTETT_INLINE void finish(InflightRay& ray, Tails& tail) {
@@ -55,7 +55,8 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
         if (next_ % kBundleRays == 0) set_entry();
       if (i == 0) {
         chunk_.set(rays_, next_, extent_);
-        if (OKTETT_UNLIKELY(!accel_.unbounded.empty()) && only_planes_) meet_planes();
+        spheres_.prepare(chunk_);
+        if (OKTETT_UNLIKELY(only_planes_)) meet_planes();
       }
       if ((chunk_.tame >> i & 1) != 0) {
         start(ray, i, tail);
@@ -67,7 +68,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     }
   }
 
-  /// Tests the rays of the chunk against planes, all at once.
+  /// Tests the rays of the chunk against planes, all at once, and ends them there.
   OKTETT_NOINLINE void meet_planes() {
     using F = Simd<float, Base::kChunk, A>;
     const auto vec = [](const float(&v)[3][Base::kChunk]) {
@@ -77,6 +78,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     for (const LeafEntry& leaf : accel_.unbounded)
       leaf_shape_packet<Plane>(std::get<Plane::Pool>(accel_.pools), leaf.begin, leaf.count, planes_,
                                chunk_.tame);
+    std::copy(planes_.tmax, planes_.tmax + Base::kChunk, chunk_.tmax);
   }
 
   /// Prepares the entry of the next bundle.
@@ -92,6 +94,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
 
   OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
     start_ray(ray, chunk_, i, accel_.root);
+    spheres_.start(&ray - inflight_, chunk_, i);
     if constexpr (Base::kInstances) ray.in.set(accel_);
     if constexpr (Q == Query::any) {
       if (has_entry_) {
@@ -102,8 +105,11 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     }
     ray.index = static_cast<std::uint32_t>(next_);
     if (OKTETT_UNLIKELY(only_planes_)) {
-      const Hit hit = planes_.hit(i);
-      if (hit.valid()) this->keep_hit(ray, hit);
+      ray.candidate = planes_.item[i] == kNoId ? kNoCandidate : kDecidedHit;
+      if constexpr (Q == Query::closest)
+        states_[&ray - inflight_].take(0, planes_, i);
+      else if (ray.candidate == kDecidedHit)
+        this->found(ray);
     } else if (OKTETT_UNLIKELY(!accel_.unbounded.empty())) {
       RayState<1, A>& r = this->exact_state(ray);
       for (const LeafEntry& leaf : accel_.unbounded) table_leaf_single<Q>(accel_, leaf, r);

@@ -1,0 +1,70 @@
+#pragma once
+/// \file Rays in flight against leaves of spheres. What the test takes of a ray is kept in double, so that it
+/// need not be converted at each leaf.
+
+#include "accel/traverse/inflight/inflight_ray.h"
+
+namespace oktett {
+
+/// The rays in flight through `accel`, at kPlaces places. They come in chunks of W.
+template <int kPlaces, int W, class A>
+class SphereLeaves {
+ public:
+  static constexpr int kSpheres = kShapeLanes<Sphere>;
+  static_assert(kSpheres == TriangleBlock::kSize, "a leaf is tested at once");
+
+  explicit SphereLeaves(const Accel& accel) : pool_(std::get<Sphere::Pool>(accel.pools)) {}
+
+  /// Prepares the rays of a chunk for start().
+  OKTETT_INLINE void prepare(const RayChunk<W, A>& c) {
+    using F = Simd<float, W, A>;
+    using D = Simd<double, W, A>;
+    if (!has_spheres_) return;
+    const Vec3<D> d{to_double(F::load(c.d[0])), to_double(F::load(c.d[1])), to_double(F::load(c.d[2]))};
+    (D(1.0) / dot_lanes(d, d)).store(inverse_);
+  }
+
+  /// Ray `i` of the chunk takes a place.
+  OKTETT_INLINE void start(std::ptrdiff_t place, const RayChunk<W, A>& c, int i) {
+    if (!has_spheres_) return;
+    Line& line = lines_[place];
+    for (int k = 0; k < 3; ++k) line.o[k] = c.o[k][i], line.d[k] = c.d[k][i];
+    line.tmin = c.tmin[i], line.inverse = inverse_[i];
+  }
+
+  /// The spheres of a leaf outside of instances that the ray at a place hits, as bits, and where.
+  OKTETT_INLINE unsigned meet(std::ptrdiff_t place, const InflightRay& ray, const LeafEntry& leaf,
+                              float (&t)[kSpheres]) const {
+    using F = Simd<float, kSpheres, A>;
+    using D = Simd<double, kSpheres, A>;
+    const Line& line = lines_[place];
+    const RayLanes<D> wide{{D(line.o[0]), D(line.o[1]), D(line.o[2])},
+                           {D(line.d[0]), D(line.d[1]), D(line.d[2])},
+                           D(line.tmin),
+                           D(0.0)};
+    const D end(only_lane(Sphere::range_end(Simd<double, 1, A>(ray.tmax))));
+    D roots[Sphere::kRoots];
+    const auto maybe =
+        Sphere::roots_in_range(wide, end, D(line.inverse), Sphere::load<D>(pool_, leaf.begin), roots);
+    if (none(maybe)) return 0;
+    const Vec3<F> unused{F(0.0f), F(0.0f), F(0.0f)};
+    HitLanes<F> hit;
+    const auto met = first_in_range(RayLanes<F>{unused, unused, F(ray.tmin), F(ray.tmax)},
+                                    mask_cast<float>(maybe), roots, hit);
+    hit.t.store(t);
+    return bits(met) & ((2u << (leaf.count - 1)) - 1);
+  }
+
+ private:
+  struct alignas(64) Line {
+    double o[3], d[3], tmin;
+    double inverse;  ///< one over the square of the direction
+  };
+
+  const Sphere::Pool& pool_;
+  const bool has_spheres_ = pool_.size() > 0;
+  alignas(64) double inverse_[W];  ///< of the chunk
+  Line lines_[kPlaces];
+};
+
+}  // namespace oktett
