@@ -52,7 +52,7 @@ SphereShape sphere_of(NumberLine& line) {
 
 std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const YamlNode& node) {
   SphereList list(load);
-  if (node.kind == YamlKind::sequence) {
+  if (node.kind == YamlKind::sequence || node.kind == YamlKind::null) {
     for (const YamlNode* item : list_items(node, "spheres"))
       attempt(*item, [&] {
         list.count(item->where());
@@ -63,6 +63,7 @@ std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const Ya
     return list.finish(key);
   }
   const Fields fields(node, "spheres", {"centers", "radius", "file"});
+  declare_one_of(node, {"centers", "file"});
   if (const YamlNode* file = fields["file"]) {
     for (const char* other : {"centers", "radius"})
       if (const YamlNode* value = fields[other])

@@ -37,7 +37,7 @@ struct MetaballsShape {
       "metaballs", "where the sum of the potentials of one of `balls`, `file` and `elements` exceeds `iso`"};
   void describe(auto& p) {
     p.field("iso", iso, kIso, "the value on the surface");
-    p.optional("balls", balls, whole(0, kMaxBalls), "the balls");
+    p.optional("balls", balls, whole(1, kMaxBalls), "the balls");
     p.optional("file", ByHand{"file"},
                "a text file of the balls, `x y z radius [strength]` per line, `#` begins a comment");
     p.optional("elements", ByHand{"list of [elements](#skeletons-and-potentials)"},

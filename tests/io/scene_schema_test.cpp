@@ -194,7 +194,7 @@ TEST_F(SceneSchema, AcceptsWhatTheReaderAccepts) {
         "objects: [{revolution: {profile: linear, points: [[1, 0], [1, 1]]}}]",
         "objects: [{revolution: {points: [[1, 0], [1, 1], [2, 2], [1, 3]]}}]",
         "objects: [{polygon: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}}]",
-        "objects: [{union: [{sphere: }]}, {group: }, {group: []}, {spheres: []}]",
+        "objects: [{union: [{sphere: }]}, {group: }, {group: []}, {spheres: []}, {spheres: }]",
         "objects: [{sphere: , transform: }, {sphere: , transform: []}, {sphere: , name: a, material: {}}]",
         "objects: [{sphere: , motion: [{time: 0, transform: []}]}]",
         "objects: [{blob: {sources: [{point: [0, 0, 0], weight: 2}, {point: [1, 0, 0]}]}}]",
@@ -280,6 +280,11 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
                            "objects: [{metaballs: {}}]",
                            "objects: [{metaballs: {balls: [{radius: 1}], elements: [{point: [0, 0, 0]}]}}]",
                            "objects: [{metaballs: {elements: []}}]",
+                           "objects: [{metaballs: {balls: []}}]",
+                           "objects: [{metaballs: {balls: }}]",
+                           "objects: [{spheres: {}}]",
+                           "objects: [{spheres: {radius: 1}}]",
+                           "objects: [{spheres: {centers: [[0, 0, 0]], file: a.txt}}]",
                            "objects: [{metaballs: {elements: [{weight: 1}]}}]",
                            "objects: [{metaballs: {elements: [{point: [0, 0, 0], segment: }]}}]",
                            "objects: [{blobtree: {}}]",
@@ -304,7 +309,10 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
     EXPECT_NE(files.error_v1(text), "no error") << text;
     EXPECT_FALSE(accepts("oktett: 1\n" + std::string(text))) << text;
   }
-  EXPECT_FALSE(accepts("objects: [{sphere: }]\n"));
+  for (const char* text : {"objects: [{sphere: }]\n", "oktett: 2\n", "oktett: \n", "oktett: [1]\n"}) {
+    EXPECT_NE(files.error(text), "no error") << text;
+    EXPECT_FALSE(accepts(text)) << text;
+  }
 }
 
 }  // namespace
