@@ -74,7 +74,7 @@ TEST(SceneMetaballs, ErrorsHaveTheirPlace) {
     std::string object, error;
   } kCases[] = {
       {"metaballs: {}", "scene.yaml:2:23: metaballs need 'balls', 'file' or 'elements'"},
-      {"metaballs: {balls: []}", "scene.yaml:2:31: there are no balls"},
+      {"metaballs: {balls: []}", "scene.yaml:2:31: expected 1 to 1048576 balls, found 0"},
       {"metaballs: {elements: []}", "scene.yaml:2:34: the list of elements is empty"},
       {"metaballs: {balls: [{radius: 0}]}", "scene.yaml:2:41: expected a number greater than 0"},
       {"metaballs: {balls: [{radius: -1}]}", "scene.yaml:2:41: expected a number greater than 0"},
