@@ -6,8 +6,8 @@
 namespace oktett {
 
 /// Fills the pools of `accel`, its instances and combinations, and numbers the paths through them. Cells of
-/// exact surfaces, listed instances and combinations are there already and are brought into order. Spheres
-/// may be moved in the pool; their leaves and `order` follow.
+/// exact surfaces, listed instances and combinations are there already and are brought into order.
+/// Moves the leaves of spheres to multiples of eight, in `order` too.
 void fill_pools(Accel& accel, ItemOrder& order);
 
 }  // namespace oktett

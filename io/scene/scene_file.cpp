@@ -94,14 +94,10 @@ class FileReader {
   void check_version(const Fields& fields, const YamlNode& root) {
     const YamlNode* version = fields["oktett"];
     if (!version) throw Error(root.where(), "the format version is missing: expected 'oktett: 1'");
-    if (version->kind != YamlKind::scalar || version_text(*version) != "1")
-      throw Error(version->where(), "expected format version 1, found " + version->describe());
-  }
-
-  std::string version_text(const YamlNode& version) {
-    if (version.file->probe == nullptr) return load_.values.text(version);
-    version.file->probe->value(version, {ReadType::Kind::integer, {1, 1}});
-    return version.text;
+    const bool known =
+        version->kind == YamlKind::scalar &&
+        (probed(*version, {ReadType::Kind::integer, {1, 1}}) || load_.values.text(*version) == "1");
+    if (!known) throw Error(version->where(), "expected format version 1, found " + version->describe());
   }
 
   void read_includes(const YamlNode& node) {

@@ -9,7 +9,6 @@
 #include <system_error>
 
 #include "core/suggest.h"
-#include "io/scene/read_probe.h"
 #include "io/scene/utf8.h"
 #include "io/text/file_access.h"
 #include "kernels/functions/expression.h"
@@ -91,8 +90,7 @@ const YamlNode& Fields::require(const char* key) const {
   return errors->missing_value(node_);
 }
 
-/// Tells who watches what the value is read as. Returns whether someone does; then any value is allowed.
-static bool probed(const YamlNode& node, const ReadType& type) {
+bool probed(const YamlNode& node, const ReadType& type) {
   if (!node.file->probe) return false;
   node.file->probe->value(node, type);
   return true;

@@ -15,6 +15,7 @@
 #include "core/vec3.h"
 #include "io/scene/error_list.h"
 #include "io/scene/parameters.h"
+#include "io/scene/read_probe.h"
 #include "io/scene/yaml.h"
 
 namespace oktett {
@@ -36,6 +37,9 @@ std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what)
 
 /// The items of a list; none for an empty node. Throws Error if `node` is anything else; `what` names it.
 std::span<const YamlNode* const> list_items(const YamlNode& node, const std::string& what);
+
+/// Tells who watches what the value is read as. Returns whether someone does; then any value is allowed.
+bool probed(const YamlNode& node, const ReadType& type);
 
 /// Says how many entries a list may have, to who watches.
 void declare_count(const YamlNode& list, const Range& counts);

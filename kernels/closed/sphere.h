@@ -76,20 +76,14 @@ struct Sphere {
     return meets;
   }
 
-  /// Roots up to here may lie on a ray that ends at `tmax`: distances are rounded to float before they are
-  /// compared with the end of the ray.
-  template <class D>
-  OKTETT_INLINE static D range_end(const D& tmax) {
-    return tmax + (abs(tmax) * D(0x1p-22) + D(0x1p-148));
-  }
-
   /// The same roots, but lanes in which none is on the ray may be left out: most spheres that the line of a
-  /// ray in flight meets lie behind it or beyond its end, which shows before the square root. `end`:
-  /// range_end() of the ray, whose own end is not looked at.
+  /// ray in flight meets lie behind it or beyond its end, which shows before the square root.
   template <class D>
-  OKTETT_INLINE static typename D::M roots_in_range(const RayLanes<D>& ray, const D& end, const D& inverse,
+  OKTETT_INLINE static typename D::M roots_in_range(const RayLanes<D>& ray, const D& inverse,
                                                     const Lanes<D>& s, D (&t)[2]) {
     const Chord<D> c = chord(ray, inverse, s);
+    // Distances are rounded to float before they are compared with the end of the ray.
+    const D end = ray.tmax + (abs(ray.tmax) * D(0x1p-22) + D(0x1p-148));
     // How far the middle of the chord lies outside of the ray; negative inside. Half the chord is compared
     // with it by squares, with room for their rounding.
     const D gap = max(ray.tmin - c.middle, c.middle - end);

@@ -123,7 +123,6 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
     for (unsigned met = spheres_.meet(&ray - inflight_, ray, leaf, t); met != 0; met &= met - 1) {
       const auto k = static_cast<std::uint32_t>(__builtin_ctz(met));
       if (t[k] <= ray.tmax) keep_hit(ray, {t[k], 0, 0, items[leaf.begin + k], kNoId});
-      if constexpr (Q == Query::any) break;
     }
     pop(ray, tail);
   }
@@ -183,7 +182,7 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
 
   InflightHead outer_[kEnter ? kInflightRays : 1];
   EnteringRays<kEnter ? kChunk : 1, A> entering_;
-  SphereLeaves<kInflightRays, kChunk, A> spheres_;
+  SphereLeaves<kChunk, A> spheres_;
 };
 
 }  // namespace oktett

@@ -68,7 +68,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     }
   }
 
-  /// Tests the rays of the chunk against planes, all at once, and ends them there.
+  /// Tests the rays of the chunk against planes, all at once. A ray ends at its nearest plane.
   OKTETT_NOINLINE void meet_planes() {
     using F = Simd<float, Base::kChunk, A>;
     const auto vec = [](const float(&v)[3][Base::kChunk]) {

@@ -2,12 +2,13 @@
 /// \file Rays in flight against leaves of spheres. What the test takes of a ray is kept in double, so that it
 /// need not be converted at each leaf.
 
-#include "accel/traverse/inflight/inflight_ray.h"
+#include "accel/traverse/inflight/inflight_queues.h"
 
 namespace oktett {
 
-/// The rays in flight through `accel`, at kPlaces places. They come in chunks of W.
-template <int kPlaces, int W, class A>
+/// Tests rays in flight against the spheres of a tree. Each ray has one of kInflightRays places, and comes
+/// there from a chunk of W rays.
+template <int W, class A>
 class SphereLeaves {
  public:
   static constexpr int kSpheres = kShapeLanes<Sphere>;
@@ -19,20 +20,21 @@ class SphereLeaves {
   OKTETT_INLINE void prepare(const RayChunk<W, A>& c) {
     using F = Simd<float, W, A>;
     using D = Simd<double, W, A>;
-    if (!has_spheres_) return;
+    if (pool_.size() == 0) return;
     const Vec3<D> d{to_double(F::load(c.d[0])), to_double(F::load(c.d[1])), to_double(F::load(c.d[2]))};
     (D(1.0) / dot_lanes(d, d)).store(inverse_);
   }
 
-  /// Ray `i` of the chunk takes a place.
+  /// Puts ray `i` of the chunk at `place`.
   OKTETT_INLINE void start(std::ptrdiff_t place, const RayChunk<W, A>& c, int i) {
-    if (!has_spheres_) return;
+    if (pool_.size() == 0) return;
     Line& line = lines_[place];
     for (int k = 0; k < 3; ++k) line.o[k] = c.o[k][i], line.d[k] = c.d[k][i];
     line.tmin = c.tmin[i], line.inverse = inverse_[i];
   }
 
-  /// The spheres of a leaf outside of instances that the ray at a place hits, as bits, and where.
+  /// Returns which spheres of `leaf` the ray at `place` hits, as bits; t[k] is the distance of sphere k. The
+  /// ray is in no instance.
   OKTETT_INLINE unsigned meet(std::ptrdiff_t place, const InflightRay& ray, const LeafEntry& leaf,
                               float (&t)[kSpheres]) const {
     using F = Simd<float, kSpheres, A>;
@@ -41,11 +43,10 @@ class SphereLeaves {
     const RayLanes<D> wide{{D(line.o[0]), D(line.o[1]), D(line.o[2])},
                            {D(line.d[0]), D(line.d[1]), D(line.d[2])},
                            D(line.tmin),
-                           D(0.0)};
-    const D end(only_lane(Sphere::range_end(Simd<double, 1, A>(ray.tmax))));
+                           D(ray.tmax)};
     D roots[Sphere::kRoots];
     const auto maybe =
-        Sphere::roots_in_range(wide, end, D(line.inverse), Sphere::load<D>(pool_, leaf.begin), roots);
+        Sphere::roots_in_range(wide, D(line.inverse), Sphere::load<D>(pool_, leaf.begin), roots);
     if (none(maybe)) return 0;
     const Vec3<F> unused{F(0.0f), F(0.0f), F(0.0f)};
     HitLanes<F> hit;
@@ -62,9 +63,8 @@ class SphereLeaves {
   };
 
   const Sphere::Pool& pool_;
-  const bool has_spheres_ = pool_.size() > 0;
   alignas(64) double inverse_[W];  ///< of the chunk
-  Line lines_[kPlaces];
+  Line lines_[kInflightRays];
 };
 
 }  // namespace oktett
