@@ -28,10 +28,13 @@ class PickedLanes {
     x.store(lanes);
     for (int k = 0; k < F::kWidth; ++k) column[index_[k]] = lanes[k];
   }
-  /// Adds to the entries of the lanes in `where`, which must differ.
+  /// Adds to the entries of the lanes in `where`, one after the other if they are the same. All lanes must
+  /// have an entry.
   OKTETT_INLINE void add(const F& x, float* column, unsigned where) const {
-    if (neighbours_ && where == (1u << F::kWidth) - 1)
-      return (F::load(column + index_[0]) + x).store(column + index_[0]);
+    if (neighbours_) {
+      const F old = F::load(column + index_[0]);
+      return select(F::M::from_bits(where), old + x, old).store(column + index_[0]);
+    }
     float lanes[F::kWidth];
     x.store(lanes);
     for (; where != 0; where &= where - 1) {

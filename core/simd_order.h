@@ -1,9 +1,11 @@
 #pragma once
 /// \file Sorting and compacting lanes: how a traversal pushes the children of a node in order.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "core/simd.h"
+#include "core/vec3.h"
 
 namespace oktett {
 
@@ -150,6 +152,31 @@ OKTETT_INLINE int store_compact(unsigned lanes, const T* values, T* out) {
   int size = 0;
   for (; lanes != 0; lanes &= lanes - 1) out[size++] = values[__builtin_ctz(lanes)];
   return size;
+}
+
+/// The same with the lanes of a register. W elements of `out` may be overwritten, and no fewer than eight.
+template <int W, class A>
+OKTETT_INLINE int store_compact(unsigned lanes, const Simd<float, W, A>& values, float* out) {
+#if defined(OKTETT_COMPILED_AVX512)
+  if constexpr (std::is_same_v<A, Avx512Isa> && W == 16) {
+    _mm512_storeu_ps(out, _mm512_maskz_compress_ps(static_cast<__mmask16>(lanes), values.part[0]));
+    return __builtin_popcount(lanes);
+  }
+#endif
+  constexpr int kGroup = W < 8 ? W : 8;
+  float stored[W < 8 ? 8 : W];
+  values.store(stored);
+  int size = 0;
+  for (int k = 0; k < W; k += kGroup)
+    size += store_compact<A>(lanes >> k & ((1u << kGroup) - 1), stored + k, out + size);
+  return size;
+}
+/// Vectors in three columns, from element `at` on.
+template <int W, class A>
+OKTETT_INLINE int store_compact(unsigned lanes, const Vec3<Simd<float, W, A>>& values, float* const (&out)[3],
+                                std::size_t at) {
+  store_compact(lanes, values.x, out[0] + at), store_compact(lanes, values.y, out[1] + at);
+  return store_compact(lanes, values.z, out[2] + at);
 }
 
 /// Writes base + i for each of the 16 bits i that are set, lowest first; returns their number. Sixteen

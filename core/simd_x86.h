@@ -101,8 +101,12 @@ OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Avx> m) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(m)));
 }
 OKTETT_INLINE __m256i expand_bits8(unsigned b) {
+#if defined(OKTETT_COMPILED_AVX512)
+  return _mm256_movm_epi32(static_cast<__mmask8>(b));
+#else
   const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
   return _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(static_cast<int>(b)), lane), lane);
+#endif
 }
 OKTETT_INLINE void from_bits(batch_bool<float, Avx>& m, unsigned b) {
   m = _mm256_castsi256_ps(expand_bits8(b));

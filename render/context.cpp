@@ -129,6 +129,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   if (c.settings.kind == IntegratorKind::path)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
+  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_enclosures;
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;
   c.ao_radius = radius > 0 ? static_cast<float>(radius) : 1;

@@ -55,6 +55,7 @@ struct RenderContext {
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
   /// transparent.
   bool opaque_background = false;
+  bool all_opaque = false;  ///< alpha is 1 everywhere: the background counts, and no surface has holes
   bool data_layers = true;
   bool one_by_one = false;  ///< shades each hit alone, for tests: hits in lanes must have the same bits
   float ao_radius = 1;      ///< reach of ambient-occlusion rays

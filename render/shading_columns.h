@@ -44,6 +44,8 @@ struct ShadingColumns {
   float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost], transparency[kMost];
   float eta[kMost];  ///< index of refraction behind the surface, as the ray sees it, relative to before it
   std::int32_t exponent[kMost];
+  /// Bit k: the material of hit k `varies`, or `sends_rays`. Lanes after the last hit repeat its bits.
+  std::uint64_t varying, sending;
 };
 
 /// The columns of a wavefront that `begin_shading` reads, and those to which it adds light.
@@ -63,9 +65,18 @@ struct BounceColumns {
   std::uint64_t sent = 0;  ///< bit k: hit k sends such a ray
 };
 
-/// The columns of a queue of rays from its end on. Seven entries more than are added may be overwritten.
+/// What the rays of a wavefront hand on to those that leave their hits.
+struct ArrivingRays {
+  const std::uint32_t* sample;
+  const float *distance, *t;  ///< lengths of the paths to the rays' origins, and from there to the hits
+  const std::uint8_t* bounces;
+};
+
+/// The columns of a queue of rays from its end on. `kGroup` entries more than are added may be overwritten.
 struct QueuedRays {
-  float *origin[3], *direction[3], *throughput[3];
+  float *origin[3], *direction[3], *throughput[3], *tmin, *tmax, *distance;
+  std::uint32_t* sample;
+  std::uint8_t *bounces, *from_camera;
 };
 
 /// The columns of a queue of shadow rays from its end on. `kGroup` entries more than there are hits may

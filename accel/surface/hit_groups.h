@@ -1,27 +1,32 @@
 #pragma once
 /// \file Sorts the hits of a block into groups whose surfaces are found together.
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
-#include "accel/hit_place.h"
+#include "accel/accel_data.h"
 #include "accel/interaction_block.h"
 
 namespace oktett {
+
+/// Calls what(k) for each bit k of `entries`, lowest first.
+template <class What>
+OKTETT_INLINE void for_each_entry(std::uint64_t entries, const What& what) {
+  for (; entries != 0; entries &= entries - 1) what(static_cast<std::size_t>(std::countr_zero(entries)));
+}
 
 /// Hits of one closed-form kind, of one element of an exact kind, or of one mesh.
 struct HitGroup {
   const Accel* accel;
   Kind kind;
-  std::uint32_t part;  ///< element of an exact kind, geometry of a mesh, else 0
-  std::uint16_t first, last;
+  std::uint32_t part;     ///< element of an exact kind, geometry of a mesh, else 0
+  std::uint64_t entries;  ///< bit k: entry k of the block
 };
 
-/// The groups in the order of their first hits. Within a group, hits keep the order in which they came.
+/// The groups in the order in which their first hits came.
 class HitGroups {
  public:
-  static constexpr std::size_t kMost = InteractionBlock::kMost;
-
   HitGroups() { clear(); }
   void clear() {
     count_ = 0;
@@ -29,36 +34,14 @@ class HitGroups {
   }
   const HitGroup* begin() const { return groups_; }
   const HitGroup* end() const { return groups_ + count_; }
-  /// Index in its pool of the shape at an entry of the block; the triangle of a mesh.
-  std::uint32_t element(std::size_t entry) const { return element_[entry]; }
-  /// Calls what(entry) for each of the group's entries.
-  template <class What>
-  void for_each(const HitGroup& group, const What& what) const {
-    for (std::uint16_t entry = group.first;; entry = next_[entry]) {
-      what(entry);
-      if (entry == group.last) return;
-    }
-  }
 
-  void add(const Accel& accel, const HitNames& names, std::size_t at) {
-    const auto entry = static_cast<std::uint16_t>(at);
-    std::uint32_t part = 0;
-    if (names.kind == Kind::triangle) {
-      element_[entry] = names.primitive;
-      part = names.geometry;
-    } else {
-      element_[entry] = accel.pool_index[accel.first_pool_index[names.geometry] + names.primitive];
-      if (is_exact(names.kind)) part = element_[entry];
-    }
-    HitGroup& group = find(accel, names.kind, part);
-    if (group.first == kNone)
-      group.first = entry;
-    else
-      next_[group.last] = entry;
-    group.last = entry;
+  void add(const Accel& accel, Kind kind, std::uint32_t part, std::uint64_t entries) {
+    find(accel, kind, part).entries |= entries;
   }
 
  private:
+  static constexpr std::size_t kMost = InteractionBlock::kMost;
+  static_assert(kMost == 64, "an entry is a bit of HitGroup::entries");
   static constexpr std::uint16_t kNone = 0xffff;
   static constexpr std::size_t kSlots = 2 * kMost;
 
@@ -72,7 +55,7 @@ class HitGroups {
       std::uint16_t& group = slots_[slot % kSlots];
       if (group == kNone) {
         group = static_cast<std::uint16_t>(count_);
-        groups_[count_++] = {&accel, kind, part, kNone, kNone};
+        groups_[count_++] = {&accel, kind, part, 0};
       } else if (!is(groups_[group])) {
         continue;
       }
@@ -83,8 +66,7 @@ class HitGroups {
 
   std::size_t count_ = 0, latest_ = 0;
   HitGroup groups_[kMost];
-  std::uint16_t slots_[kSlots], next_[kMost];
-  std::uint32_t element_[kMost];
+  std::uint16_t slots_[kSlots];
 };
 
 }  // namespace oktett

@@ -8,7 +8,20 @@
 
 namespace oktett {
 
+/// A geometry of a structure, and its items: `count` from number `first` on.
+struct GeometryItems {
+  std::uint32_t geometry, user;
+  std::uint32_t first, count;
+};
+
+/// Items are read in groups of this many.
+inline constexpr std::size_t kItemGroup = 16;
+
 struct InteractionCode {
+  /// Sets the names of those of `count` hits that are of the geometry, with the material slot 0, and returns
+  /// their bits. `items` are those that were hit, filled up to a group with kNoId.
+  std::uint64_t (*name_hits)(const std::uint32_t* items, std::size_t count, const GeometryItems& geometry,
+                             InteractionBlock& out);
   /// Hits of one mesh.
   void (*mesh)(const MeshHits&);
   /// Hits of one closed-form kind.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <string>
 
@@ -36,7 +37,10 @@ class SurfaceFinder {
   }
 
   void find(std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) add(i);
+    if (count > 0 && all_outside(count))
+      add_outside(count);
+    else
+      for (std::size_t i = 0; i < count; ++i) add(i);
     find_surfaces(standing_, false);
     find_surfaces(moved_, true);
     for (std::size_t k = 0; k < combinations_; ++k) widen(combined_[k]);
@@ -49,6 +53,50 @@ class SurfaceFinder {
     std::uint16_t entry;
     bool flipped;
   };
+
+  /// Whether all hits are outside instances and combinations.
+  bool all_outside(std::size_t count) const {
+    std::uint32_t path = kNoId;
+    for (std::size_t i = 0; i < count; ++i) path &= hits_.instance[which_[i]];
+    return path == kNoId;
+  }
+
+  /// Names hits outside instances and combinations, geometry by geometry.
+  void add_outside(std::size_t count) {
+    std::uint32_t items[kMost];
+    for (std::size_t i = 0; i < count; ++i) items[i] = hits_.item[which_[i]];
+    for (std::size_t i = count; i % kItemGroup != 0; ++i) items[i] = kNoId;
+    for (std::uint64_t left = ~std::uint64_t{0} >> (kMost - count); left != 0;) {
+      const std::uint32_t geometry = accel_.geometry_of(items[std::countr_zero(left)]);
+      const std::uint32_t first = accel_.first_item[geometry];
+      const std::uint64_t entries = code_.name_hits(
+          items, count, {geometry, accel_.users[geometry], first, accel_.first_item[geometry + 1] - first},
+          out_);
+      add_named(accel_, static_cast<Kind>(accel_.kinds[geometry]), geometry, entries, standing_);
+      left &= ~entries;
+    }
+  }
+
+  /// Adds hits of one geometry of `accel`, whose names are known but for the slots of their materials.
+  void add_named(const Accel& accel, Kind kind, std::uint32_t geometry, std::uint64_t entries,
+                 HitGroups& groups) {
+    if (kind == Kind::triangle) {
+      const auto& slots = std::get<MeshGeometry>(accel.geometries[geometry].shape).mesh->material_slots;
+      if (!slots.empty())
+        for_each_entry(entries, [&](std::size_t i) { out_.material_slot[i] = slots[out_.primitive[i]]; });
+      groups.add(accel, kind, geometry, entries);
+    } else if (is_exact(kind)) {
+      for_each_entry(
+          entries, [&](std::size_t i) { groups.add(accel, kind, element(accel, i), std::uint64_t{1} << i); });
+    } else {
+      groups.add(accel, kind, 0, entries);
+    }
+  }
+
+  /// Index in its pool of the shape at an entry, which is not a triangle.
+  std::uint32_t element(const Accel& accel, std::size_t entry) const {
+    return accel.pool_index[accel.first_pool_index[out_.geometry[entry]] + out_.primitive[entry]];
+  }
 
   void add(std::size_t i) {
     const std::uint32_t ray = which_[i];
@@ -66,13 +114,13 @@ class SurfaceFinder {
     const HitNames names = identify_in(place_, hit);
     out_.geometry[i] = names.geometry, out_.primitive[i] = names.primitive;
     out_.user[i] = names.user, out_.material_slot[i] = names.material_slot;
+    add_named(*place_.accel, names.kind, names.geometry, std::uint64_t{1} << i,
+              place_.moved ? moved_ : standing_);
     if (!place_.moved) {
-      standing_.add(*place_.accel, names, i);
       if (place_.combined != nullptr)
         combined_[combinations_++] = {place_.combined, static_cast<std::uint16_t>(i), place_.flipped};
       return;
     }
-    moved_.add(*place_.accel, names, i);
     if (names.kind == Kind::triangle) return;
     const Ray inner = ray_inside(place_, rays_[ray]);
     set_column(inner_origin_, i, inner.origin), set_column(inner_direction_, i, inner.direction);
@@ -82,22 +130,22 @@ class SurfaceFinder {
   void find_surfaces(HitGroups& groups, bool moved) {
     for (const HitGroup& group : groups) {
       if (group.kind == Kind::triangle)
-        find_mesh(groups, group);
+        find_mesh(group);
       else
-        find_shape(groups, group, moved);
-      if (moved) groups.for_each(group, [&](std::uint16_t i) { move(i); });
+        find_shape(group, moved);
+      if (moved) for_each_entry(group.entries, [&](std::size_t i) { move(i); });
     }
     groups.clear();
   }
 
-  void find_mesh(const HitGroups& groups, const HitGroup& group) {
+  void find_mesh(const HitGroup& group) {
     const Geometry& geometry = group.accel->geometries[group.part];
     const TriangleMesh& mesh = *std::get<MeshGeometry>(geometry.shape).mesh;
     mesh_.frame = mesh_frame(geometry, group.accel->frames[group.part]);
     mesh_.count = 0, mesh_.out = &out_;
     std::size_t last = 0;
     const auto gather = [&](std::size_t i, std::size_t to) {
-      const std::uint32_t triangle = groups.element(i), hit = which_[i];
+      const std::uint32_t triangle = out_.primitive[i], hit = which_[i];
       for (int k = 0; k < 3; ++k) set_column(mesh_.corner[k], to, corner_position(mesh, triangle, k));
       mesh_.u[to] = hits_.u[hit], mesh_.v[to] = hits_.v[hit];
       mesh_.entry[to] = static_cast<std::uint32_t>(i);
@@ -107,12 +155,12 @@ class SurfaceFinder {
       corner_normals(mesh, triangle, normals);
       for (int k = 0; k < 3; ++k) set_column(mesh_.normal[k], to, normals[k]);
     };
-    groups.for_each(group, [&](std::uint16_t i) { gather(last = i, mesh_.count++); });
+    for_each_entry(group.entries, [&](std::size_t i) { gather(last = i, mesh_.count++); });
     for (std::size_t to = mesh_.count; to % 8 != 0; ++to) gather(last, to);
     code_.mesh(mesh_);
   }
 
-  void find_shape(const HitGroups& groups, const HitGroup& group, bool moved) {
+  void find_shape(const HitGroup& group, bool moved) {
     ShapeHits& s = shapes_;
     for (int k = 0; k < 3; ++k) {
       s.origin[k] = moved ? inner_origin_[k] : rays_.origin[k];
@@ -120,9 +168,10 @@ class SurfaceFinder {
     }
     s.t = moved ? inner_t_ : hits_.t, s.part = moved ? inner_part_ : hits_.u;
     s.count = 0, s.out = &out_, s.with_uv = with_uv_;
-    groups.for_each(group, [&](std::uint16_t i) {
-      s.ray[s.count] = moved ? i : which_[i];
-      s.element[s.count] = groups.element(i), s.entry[s.count++] = i;
+    for_each_entry(group.entries, [&](std::size_t i) {
+      const auto entry = static_cast<std::uint32_t>(i);
+      s.ray[s.count] = moved ? entry : which_[i];
+      s.element[s.count] = element(*group.accel, i), s.entry[s.count++] = entry;
     });
     repeat_last(s.ray, s.count), repeat_last(s.element, s.count), repeat_last(s.entry, s.count);
     if (is_exact(group.kind)) return find_exact(group.kind, group.accel->exact_pool(group.kind));

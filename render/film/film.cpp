@@ -9,6 +9,7 @@
 #include "render/film/cryptomatte.h"
 #include "render/film/light_layers.h"
 #include "render/light_groups.h"
+#include "render/transport/render_code.h"
 
 namespace oktett {
 namespace {
@@ -147,36 +148,33 @@ Picture make_picture(const FilmFormat& format) {
 }
 
 void TileColors::begin(std::size_t count) {
-  for (Column<float>& plane : plane_) {
-    plane.resize_uninitialized(count);
-    std::fill_n(plane.data(), count, 0.0f);
-  }
+  for (Column<float>& plane : plane_) plane.resize_uninitialized(count);
 }
 
-std::size_t TileColors::set(std::size_t first, const SampleBatch& samples) {
-  const float* from[] = {samples.color.part[0].data(), samples.color.part[1].data(),
-                         samples.color.part[2].data(), samples.alpha.data()};
+void TileColors::clear(std::size_t first, std::size_t count) {
+  for (Column<float>& plane : plane_) std::fill_n(plane.data() + first, count, 0.0f);
+}
+
+std::size_t TileColors::set(std::size_t first, const SampleBatch& samples, Isa isa) {
   const std::size_t count = samples.size();
-  std::size_t bad = 0;
-  // x * 0 is 0 for finite x and NaN for all others.
-  const auto is_bad = [&](std::size_t i) {
-    return !(from[0][i] * 0 + from[1][i] * 0 + from[2][i] * 0 + from[3][i] * 0 == 0);
-  };
-  for (std::size_t i = 0; i < count; ++i) bad += is_bad(i) ? 1 : 0;
+  const Column<float>* const from[] = {&samples.color.part[0], &samples.color.part[1], &samples.color.part[2],
+                                       &samples.alpha};
+  bool good = true;
   for (int k = 0; k < 4; ++k) {
-    float* to = plane_[k].data() + first;
-    if (bad == 0) {
-      std::copy_n(from[k], count, to);
-    } else {
-      for (std::size_t i = 0; i < count; ++i)
-        if (!is_bad(i)) to[i] = from[k][i];
-    }
+    std::copy_n(from[k]->data(), count, plane_[k].data() + first);
+    good = good && render_code(isa).all_finite(from[k]->data(), count);
+  }
+  if (good) return 0;
+  std::size_t bad = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto is_good = [&](const Column<float>* column) { return std::isfinite((*column)[i]); };
+    if (!std::ranges::all_of(from, is_good)) clear(first + i, 1), ++bad;
   }
   return bad;
 }
 
 void TileColors::set(std::size_t number, const PixelSum& sum) {
-  if (sum.good == 0) return;
+  if (sum.good == 0) return clear(number, 1);
   for (int k = 0; k < 3; ++k) plane_[k][number] = static_cast<float>(sum.color[k] / sum.good);
   plane_[3][number] = static_cast<float>(sum.alpha / sum.good);
 }

@@ -64,12 +64,14 @@ Picture make_picture(const FilmFormat& format);
 /// gathered here and then copied to the picture row by row.
 class TileColors {
  public:
-  /// `count` pixels, black and transparent.
+  /// `count` pixels, which are set before the tile is copied.
   void begin(std::size_t count);
+  /// Makes pixels black and transparent.
+  void clear(std::size_t first, std::size_t count);
   /// Sets pixels `first`, `first` + 1, ... to the samples, one for each. Pixels whose sample holds NaN or
-  /// infinity are left as they are; returns their number.
-  std::size_t set(std::size_t first, const SampleBatch& samples);
-  /// Sets a pixel to the mean of its samples.
+  /// infinity become black and transparent; returns their number.
+  std::size_t set(std::size_t first, const SampleBatch& samples, Isa isa);
+  /// Sets a pixel to the mean of its samples; black and transparent if all of them are bad.
   void set(std::size_t number, const PixelSum& sum);
   /// Copies the tile to the picture. `numbers` holds those of its pixels, row by row.
   void copy_to(Picture& picture, const FinishedTile& tile, const std::vector<std::uint32_t>& numbers) const;

@@ -80,10 +80,13 @@ TileCounts render_tile(const RenderContext& context, const FinishedTile& tile, P
     PixelSum sum;
     for (std::uint32_t s = 0; s < samples; s += samples_per_wavefront) {
       start_wavefront(context, pixels, s, std::min(samples, s + samples_per_wavefront), wavefront);
-      if (!trace_wavefront(context, wavefront)) continue;
+      if (!trace_wavefront(context, wavefront)) {
+        if (!context.data_layers) work.colors.clear(pixels.front().number, pixels.size());
+        continue;
+      }
       if (context.settings.clamp > 0) clamp_samples(context.settings.clamp, wavefront.samples);
       if (samples == 1 && !context.data_layers) {
-        counts.bad_samples += work.colors.set(number, wavefront.samples);
+        counts.bad_samples += work.colors.set(number, wavefront.samples, context.isa);
         continue;
       }
       for (std::size_t i = 0; i < wavefront.samples.size(); ++i) {

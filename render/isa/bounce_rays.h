@@ -90,18 +90,26 @@ void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, Bounce
 }
 
 template <class A>
-void queue_rays_code(const BounceColumns& rays, const QueuedRays& to) {
+void queue_rays_code(const BounceColumns& leaving, const std::uint32_t* rays, const ArrivingRays& from,
+                     const QueuedRays& to) {
+  using F = ShadingLanes<A>;
+  constexpr std::size_t W = F::kWidth;
   std::size_t end = 0;
-  for (std::size_t i = 0; rays.sent >> i != 0; i += 8) {
-    const auto lanes = static_cast<unsigned>(rays.sent >> i & 0xff);
-    for (int k = 0; k < 3; ++k) {
-      store_compact<A>(lanes, rays.origin[k] + i, to.origin[k] + end);
-      store_compact<A>(lanes, rays.direction[k] + i, to.direction[k] + end);
-      store_compact<A>(lanes, rays.throughput[k] + i, to.throughput[k] + end);
+  for (std::size_t i = 0; i < ShadingColumns::kMost; i += W) {
+    const auto lanes = static_cast<unsigned>(leaving.sent >> i) & ((1u << W) - 1);
+    if (lanes == 0) continue;
+    store_compact(lanes, load_lanes<F>(leaving.origin, i), to.origin, end);
+    store_compact(lanes, load_lanes<F>(leaving.direction, i), to.direction, end);
+    store_compact(lanes, load_lanes<F>(leaving.throughput, i), to.throughput, end);
+    for (unsigned left = lanes; left != 0; left &= left - 1, ++end) {
+      const std::uint32_t ray = rays[i + static_cast<unsigned>(__builtin_ctz(left))];
+      to.sample[end] = from.sample[ray];
+      to.distance[end] = from.distance[ray] + from.t[ray];
+      to.bounces[end] = static_cast<std::uint8_t>(from.bounces[ray] + 1);
     }
-    end += static_cast<std::size_t>(__builtin_popcount(lanes));
-    if (i == 56) return;
   }
+  const Ray like;
+  for (std::size_t i = 0; i < end; ++i) to.tmin[i] = like.tmin, to.tmax[i] = like.tmax, to.from_camera[i] = 0;
 }
 
 }  // namespace oktett

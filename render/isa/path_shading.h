@@ -14,29 +14,6 @@
 
 namespace oktett {
 
-/// Writes the lanes in `which` one after the other to the end of a column.
-template <class A, int W, class T>
-OKTETT_INLINE void append_lanes(unsigned which, const T* lanes, T* to) {
-  if constexpr (W >= 8) {
-    store_compact<A>(which, lanes, to);
-  } else {
-    for (; which != 0; which &= which - 1) *to++ = lanes[__builtin_ctz(which)];
-  }
-}
-template <int W, class A>
-OKTETT_INLINE void append_lanes(unsigned which, const Simd<float, W, A>& x, float* to) {
-  if (which == (1u << W) - 1) return x.store(to);
-  float lanes[W];
-  x.store(lanes);
-  append_lanes<A, W>(which, lanes, to);
-}
-template <int W, class A>
-OKTETT_INLINE void append_lanes(unsigned which, const Vec3<Simd<float, W, A>>& v, float* const (&to)[3],
-                                std::size_t at) {
-  append_lanes(which, v.x, to[0] + at), append_lanes(which, v.y, to[1] + at);
-  append_lanes(which, v.z, to[2] + at);
-}
-
 /// Hits of one surface, W at a time.
 template <class A, class Lobes>
 class PathShading {
@@ -116,11 +93,12 @@ class PathShading {
       const unsigned which = lit & (points ? deltas : areas);
       if (which == 0) continue;
       PathShadows& to = points ? out_.delta : out_.area;
-      append_lanes(which, origin, to.origin, to.size), append_lanes(which, direction, to.direction, to.size);
-      append_lanes(which, arriving, to.light, to.size), append_lanes(which, tmax, to.tmax + to.size);
+      store_compact(which, origin, to.origin, to.size),
+          store_compact(which, direction, to.direction, to.size);
+      store_compact(which, arriving, to.light, to.size), store_compact(which, tmax, to.tmax + to.size);
       std::uint32_t owner[W];
       for (int k = 0; k < W; ++k) owner[k] = c_.ray[entry_[k]];
-      append_lanes<A, W>(which, owner, to.owner + to.size);
+      store_compact<A>(which, owner, to.owner + to.size);
       to.size += static_cast<std::size_t>(__builtin_popcount(which));
     }
   }
@@ -148,9 +126,10 @@ class PathShading {
     }
     if (sent == 0) return;
     PathOnward& to = out_.next;
-    append_lanes(sent, offset_lanes(position_, error_, n_, direction), to.origin, to.size);
-    append_lanes(sent, direction, to.direction, to.size), append_lanes(sent, onward, to.throughput, to.size);
-    append_lanes(sent, s.pdf, to.pdf + to.size);
+    store_compact(sent, offset_lanes(position_, error_, n_, direction), to.origin, to.size);
+    store_compact(sent, direction, to.direction, to.size),
+        store_compact(sent, onward, to.throughput, to.size);
+    store_compact(sent, s.pdf, to.pdf + to.size);
     for (unsigned left = sent; left != 0; left &= left - 1, ++to.size) {
       const std::uint32_t k = entry_[__builtin_ctz(left)], ray = c_.ray[k];
       to.sample[to.size] = rays_.sample[ray];

@@ -8,6 +8,7 @@
 #include "render/isa/sample_points.h"
 #include "render/isa/shading.h"
 #include "render/isa/view_directions.h"
+#include "render/isa/wavefront_lanes.h"
 
 namespace oktett {
 
@@ -17,7 +18,8 @@ const RenderCode& render_code() {
                                   lens_rays_code<A>,       sobol_points_code<A>, begin_shading_code<A>,
                                   shadow_rays_code<A>,     bounce_rays_code<A>,  queue_rays_code<A>,
                                   begin_path_code<A>,      shade_phong_code<A>,  shade_principled_code<A>,
-                                  light_code<A>()};
+                                  light_code<A>(),         split_rays_code<A>,   block_light_code<A>,
+                                  add_colors_code<A>,      all_finite_code<A>};
   return code;
 }
 

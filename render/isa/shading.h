@@ -30,49 +30,62 @@ OKTETT_INLINE void store_lanes(const Vec3<F>& v, float (&column)[3][ShadingColum
   v.x.store(column[0] + i), v.y.store(column[1] + i), v.z.store(column[2] + i);
 }
 
-/// Bit k: entry k of the group is a hit, not what fills the group up.
+/// The lanes of the group of entries i, i + 1, ... that lie before `end`, as bits.
 template <class F>
-OKTETT_INLINE unsigned real_lanes(const ShadingColumns& c, std::size_t i) {
-  const std::size_t left = c.count - i;
+OKTETT_INLINE unsigned lanes_before(std::size_t end, std::size_t i) {
+  const std::size_t left = end - i;
   return (left < F::kWidth ? 1u << left : 1u << F::kWidth) - 1u;
 }
 
-/// Fills the columns of materials in entries i ... of a group, `eta` as for rays from the front. Returns
-/// their unlit light.
+/// Bit k: entry k of the group is a hit, not what fills the group up.
+template <class F>
+OKTETT_INLINE unsigned real_lanes(const ShadingColumns& c, std::size_t i) {
+  return lanes_before<F>(c.count, i);
+}
+
+/// Fills the columns of materials in entries i ... of a group, `eta` as for rays from the front, and sets
+/// their bits in `c.varying` and `c.sending`. Returns their unlit light.
 template <class F>
 OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColumns& c, std::size_t i) {
-  constexpr int W = F::kWidth;
-  const std::uint32_t* index = c.material + i;
-  bool same = true;
-  for (int k = 1; k < W; ++k) same &= index[k] == index[0];
-  if (same) {
-    const ShadingMaterial& m = table[index[0]];
-    store_lanes(broadcast<F>(m.color), c.color, i);
-    store_lanes(broadcast<F>(m.specular_color), c.specular_color, i);
-    F(m.diffuse).store(c.diffuse + i), F(m.specular).store(c.specular + i), F(m.phong).store(c.phong + i);
-    F(m.reflection).store(c.reflection + i), F(m.transparency).store(c.transparency + i);
-    F(m.ior).store(c.eta + i);
-    for (int k = 0; k < W; ++k) c.exponent[i + k] = m.exponent;
-    return broadcast<F>(m.unlit);
-  }
-  float unlit[3][W];
-  for (int k = 0; k < W; ++k) {
-    const ShadingMaterial& m = table[index[k]];
-    for (int axis = 0; axis < 3; ++axis) {
-      c.color[axis][i + k] = m.color[axis], c.specular_color[axis][i + k] = m.specular_color[axis];
-      unlit[axis][k] = m.unlit[axis];
-    }
-    c.diffuse[i + k] = m.diffuse, c.specular[i + k] = m.specular, c.phong[i + k] = m.phong;
-    c.reflection[i + k] = m.reflection, c.transparency[i + k] = m.transparency, c.eta[i + k] = m.ior;
-    c.exponent[i + k] = m.exponent;
-  }
-  return {F::load(unlit[0]), F::load(unlit[1]), F::load(unlit[2])};
+  using I = Simd<std::int32_t, F::kWidth, typename F::Isa>;
+  const std::uint32_t* material = c.material + i;
+  const I index = I::load(reinterpret_cast<const std::int32_t*>(material));
+  const F zero(0.0f);
+  Vec3<F> color{zero, zero, zero}, specular_color = color, unlit = color;
+  F diffuse = zero, specular = zero, phong = zero, reflection = zero, transparency = zero, ior = zero;
+  I exponent(0);
+  // Most groups have few materials, so each is set in all its lanes at once.
+  unsigned left = (1u << F::kWidth) - 1;
+  do {
+    const std::uint32_t number = material[__builtin_ctz(left)];
+    const ShadingMaterial& m = table[number];
+    const auto has = index == I(static_cast<std::int32_t>(number));
+    const auto here = mask_cast<float>(has);
+    const unsigned lanes = bits(has);
+    const auto set = [&](float value, F& to) { to = select(here, F(value), to); };
+    const auto set_color = [&](const Color& value, Vec3<F>& to) {
+      set(value.x, to.x), set(value.y, to.y), set(value.z, to.z);
+    };
+    set_color(m.color, color), set_color(m.specular_color, specular_color), set_color(m.unlit, unlit);
+    set(m.diffuse, diffuse), set(m.specular, specular), set(m.phong, phong);
+    set(m.reflection, reflection), set(m.transparency, transparency), set(m.ior, ior);
+    exponent = select(has, I(m.exponent), exponent);
+    if (m.varies) c.varying |= std::uint64_t{lanes} << i;
+    if (m.sends_rays()) c.sending |= std::uint64_t{lanes} << i;
+    left &= ~lanes;
+  } while (left != 0);
+  store_lanes(color, c.color, i), store_lanes(specular_color, c.specular_color, i);
+  diffuse.store(c.diffuse + i), specular.store(c.specular + i), phong.store(c.phong + i);
+  reflection.store(c.reflection + i), transparency.store(c.transparency + i), ior.store(c.eta + i);
+  exponent.store(c.exponent + i);
+  return unlit;
 }
 
 template <class A>
 void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table, const ShadedRays& rays,
                         ShadingColumns& c) {
   using F = ShadingLanes<A>;
+  c.varying = c.sending = 0;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     const PickedLanes<F> ray(c.ray + i);
     const Vec3<F> direction{ray.load(rays.direction[0]), ray.load(rays.direction[1]),
@@ -88,13 +101,7 @@ void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table,
     const F ior = F::load(c.eta + i);
     select(behind, F(1.0f) / ior, ior).store(c.eta + i);
     // Light that varies over the surface is added when it is known.
-    unsigned known = 0;
-    for (int k = 0; k < F::kWidth; ++k) {
-      // Not inside the shift: GCC 12's sanitizers of bounds and shifts together would read a wrong entry.
-      const bool varies = table[c.material[i + k]].varies;
-      known |= (varies ? 0u : 1u) << k;
-    }
-    known &= real_lanes<F>(c, i);
+    const unsigned known = static_cast<unsigned>(~(c.varying >> i)) & real_lanes<F>(c, i);
     ray.add(throughput.x * unlit.x, rays.radiance[0], known);
     ray.add(throughput.y * unlit.y, rays.radiance[1], known);
     ray.add(throughput.z * unlit.z, rays.radiance[2], known);
@@ -185,20 +192,10 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     const Vec3<F> origin =
         offset_lanes(position, load_lanes<F>(s.position_error, i), load_lanes<F>(s.geometric_normal, i), l);
     const Vec3<F> direction = light.directional ? place : sub_lanes(target, origin);
-    const auto store_lit = [&](const auto* values, auto* to) {
-      for (int k = 0; k < F::kWidth; k += 8) to += store_compact<A>(lit >> k & 0xff, values + k, to);
-    };
-    const auto store = [&](const F& x, float* column) {
-      if (lit == (1u << F::kWidth) - 1) return x.store(column + end);
-      float lanes[F::kWidth];
-      x.store(lanes);
-      store_lit(lanes, column + end);
-    };
-    store(origin.x, out.origin[0]), store(origin.y, out.origin[1]), store(origin.z, out.origin[2]);
-    store(direction.x, out.direction[0]), store(direction.y, out.direction[1]);
-    store(direction.z, out.direction[2]);
-    store(arriving.x, out.light[0]), store(arriving.y, out.light[1]), store(arriving.z, out.light[2]);
-    store_lit(c.ray + i, out.owner + end);
+    store_compact(lit, origin, out.origin, end), store_compact(lit, direction, out.direction, end);
+    store_compact(lit, arriving, out.light, end);
+    std::uint32_t* owner = out.owner + end;
+    for (int k = 0; k < F::kWidth; k += 8) owner += store_compact<A>(lit >> k & 0xff, c.ray + i + k, owner);
     end += static_cast<std::size_t>(__builtin_popcount(lit));
   }
   return end;

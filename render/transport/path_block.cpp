@@ -153,7 +153,7 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     if (from_camera && context.data_layers)
       record_first_hit(context, wavefront, i,
                        shown_surface(context, wavefront.rays.rays[i], wavefront.hits[i], history, found[k]));
-    if (from_camera) cover(wavefront, i, 1);
+    if (from_camera) cover(context, wavefront, i, 1);
     if (!(surface.emission == Color{0, 0, 0})) {
       const Color emitted = wavefront.rays.throughput[i] * surface.emission *
                             emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k));

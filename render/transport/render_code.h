@@ -4,6 +4,7 @@
 #include "core/isa.h"
 #include "render/context.h"
 #include "render/shading_columns.h"
+#include "render/transport/color_column.h"
 #include "render/transport/path_block.h"
 #include "render/transport/path_lights.h"
 #include "render/transport/view_directions.h"
@@ -28,8 +29,10 @@ struct RenderCode {
   /// Adds the rays that mirrors and glass send out. Those that would bring next to no light are left out.
   void (*bounce_rays)(const InteractionBlock&, const ShadingColumns&, BounceColumns& mirrored,
                       BounceColumns& refracted);
-  /// Writes the rays that are sent, in the order of their hits.
-  void (*queue_rays)(const BounceColumns&, const QueuedRays& to);
+  /// Writes the rays that are sent, in the order of their hits. `rays`: entries of the rays that arrive at
+  /// these.
+  void (*queue_rays)(const BounceColumns&, const std::uint32_t* rays, const ArrivingRays&,
+                     const QueuedRays& to);
 
   /// Fills the columns of a PathBlock up to the random numbers, but those for `ray`, `key`, `number` and
   /// `bounces`, which are given.
@@ -41,6 +44,17 @@ struct RenderCode {
   void (*shade_principled)(const InteractionBlock&, const PathRays&, const PathBlock&,
                            const PrincipledSurface&, bool transmits, const PathRun&, PathQueues&);
   LightCode lights;
+
+  /// Sets the radiance of each ray, to `throughput` times `background` if it hit nothing and to 0 if it did,
+  /// and lists the rays that hit. `item`: Hit::item of each ray.
+  void (*split_rays)(const Column<std::uint32_t>& item, const ColorColumn& throughput,
+                     const Color& background, ColorColumn& radiance, Column<std::uint32_t>& hit_rays);
+  /// Makes the light of shadow rays black where their byte of `blocked` is not 0.
+  void (*block_light)(const Column<std::uint8_t>& blocked, ColorColumn& light);
+  /// Adds each colour of `from` that is not black to its entry of `to`, in the order of `from`.
+  void (*add_colors)(const ColorColumn& from, const Column<std::uint32_t>& entry, ColorColumn& to);
+  /// Whether no number is infinite or NaN.
+  bool (*all_finite)(const float* column, std::size_t count);
 };
 
 template <class A>

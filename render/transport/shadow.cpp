@@ -7,6 +7,7 @@
 #include "accel/accel.h"
 #include "render/shading_point.h"
 #include "render/transport/grouped_light.h"
+#include "render/transport/render_code.h"
 
 namespace oktett {
 
@@ -88,17 +89,16 @@ void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule 
     return pass_surfaces(context, queue, rule);
   queue.occluded.resize_uninitialized(queue.size());
   any_hit(*world.accel, queue.rays, queue.occluded, context.isa);
-  for (std::size_t i = 0; i < queue.size(); ++i)
-    if (queue.occluded[i]) queue.light.set(i, {0, 0, 0});
+  render_code(context.isa).block_light(queue.occluded, queue.light);
 }
 
 void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue, ShadowRule rule) {
   if (queue.size() == 0) return;
   find_arriving(context, queue, rule);
-  for (std::size_t i = 0; i < queue.size(); ++i) {
-    const Color light = queue.light[i];
-    if (!is_black(light)) add_arriving(context, wavefront, queue, i, light);
-  }
+  render_code(context.isa).add_colors(queue.light, queue.owner, wavefront.radiance);
+  if (context.light_groups == nullptr) return;
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    if (!is_black(queue.light[i])) add_shadow_to_layers(context, wavefront, queue, i, queue.light[i]);
 }
 
 }  // namespace oktett

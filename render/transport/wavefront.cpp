@@ -52,16 +52,14 @@ void add_environment(const RenderContext& context, Wavefront& wavefront, const s
   }
 }
 
-/// Sets the radiance of all rays that meet nothing.
+/// Sets the radiance of the rays that meet nothing where there is an environment or light groups.
 void add_background(const RenderContext& context, Wavefront& wavefront) {
   std::uint32_t misses[EnvironmentValues::kMost];
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
     if (wavefront.hits.item[i] != kNoId) continue;
     if (!context.sampled->has_environment()) {
-      const Color light = wavefront.rays.throughput[i] * context.background;
-      wavefront.radiance.set(i, light);
-      add_to_layer(wavefront, i, 0, light);
+      add_to_layer(wavefront, i, 0, wavefront.radiance[i]);
       continue;
     }
     misses[count++] = i;
@@ -76,19 +74,13 @@ void add_background(const RenderContext& context, Wavefront& wavefront) {
 /// hit.
 void start_level(const RenderContext& context, Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
-  wavefront.radiance.resize_uninitialized(count);
-  wavefront.hit_rays.resize_uninitialized(count);
-  wavefront.radiance.fill(count, {0, 0, 0});
+  render_code(context.isa)
+      .split_rays(wavefront.hits.item, wavefront.rays.throughput, context.background, wavefront.radiance,
+                  wavefront.hit_rays);
   if (context.light_groups != nullptr) wavefront.sampled_emitter.resize_uninitialized(count);
-  std::size_t hits = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    wavefront.hit_rays[hits] = static_cast<std::uint32_t>(i);
-    hits += wavefront.hits.item[i] != kNoId ? 1 : 0;
-  }
-  wavefront.hit_rays.resize_uninitialized(hits);
-  const bool black =
-      wavefront.level == 0 && context.background == Color{0, 0, 0} && !context.sampled->has_environment();
-  if (hits < count && !black) add_background(context, wavefront);
+  if (wavefront.hit_rays.size() < count &&
+      (context.sampled->has_environment() || context.light_groups != nullptr))
+    add_background(context, wavefront);
   std::fill_n(wavefront.samples.spawned.data(), wavefront.samples.size(), std::uint16_t{0});
   start_penumbras(context, wavefront);
   wavefront.next.clear(), wavefront.next_paths.clear(), wavefront.refracted.clear();
@@ -96,7 +88,7 @@ void start_level(const RenderContext& context, Wavefront& wavefront) {
 
 /// A background that is part of the picture counts as covering.
 void cover_background(const RenderContext& context, Wavefront& wavefront) {
-  if (!context.opaque_background) return;
+  if (!context.opaque_background || context.all_opaque) return;
   for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
     if (wavefront.rays.from_camera[i] && wavefront.hits.item[i] == kNoId)
       wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
@@ -160,7 +152,7 @@ class HitShader {
       const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
                                            {wavefront_.rays.distance[i], from_camera}, found_[k]);
       if (from_camera) record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
-      if (from_camera && !draws_holes) cover(wavefront_, i, p.opacity);
+      if (from_camera && !draws_holes) cover(context_, wavefront_, i, p.opacity);
       integrator_(context_, wavefront_, i, p);
     }
   }
@@ -195,18 +187,10 @@ void shade_hits(const RenderContext& context, Wavefront& wavefront) {
   shade_penumbras(context, wavefront);
 }
 
-void add_to_samples(Wavefront& wavefront) {
-  const std::size_t count = wavefront.rays.size();
-  for (int k = 0; k < 3; ++k) {
-    float* color = wavefront.samples.color.part[k].data();
-    const float* radiance = wavefront.radiance.part[k].data();
-    // Each sample has one camera ray, and its colour is not set before.
-    if (wavefront.level == 0) {
-      for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] = 0.0f + radiance[i];
-    } else {
-      for (std::size_t i = 0; i < count; ++i) color[wavefront.rays.sample[i]] += radiance[i];
-    }
-  }
+void add_to_samples(const RenderContext& context, Wavefront& wavefront) {
+  SampleBatch& samples = wavefront.samples;
+  if (wavefront.level == 0) samples.color.fill(samples.size(), {0, 0, 0});
+  render_code(context.isa).add_colors(wavefront.radiance, wavefront.rays.sample, samples.color);
 }
 
 bool meets_anything(const Wavefront& wavefront) {
@@ -227,8 +211,8 @@ void fill_camera_rays(Wavefront& wavefront) {
 }
 
 /// Resets the results of samples, except for their colour.
-void fill_samples(SampleBatch& samples) {
-  std::fill_n(samples.alpha.data(), samples.size(), 0.0f);
+void fill_samples(const RenderContext& context, SampleBatch& samples) {
+  std::fill_n(samples.alpha.data(), samples.size(), context.all_opaque ? 1.0f : 0.0f);
   for (FirstHit& first : samples.first) {
     // The other members are written when a hit is found.
     first.found = false, first.primitive = first.object = kNoId;
@@ -263,7 +247,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       // If several wavefronts share a pixel, all of them are needed for its mean.
       const bool may_be_empty = !context.opaque_background && !context.tracks_enclosures;
       if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
-      fill_samples(wavefront.samples);
+      fill_samples(context, wavefront.samples);
       fill_camera_rays(wavefront);
       start_layers(context, wavefront);
       if (context.tracks_enclosures) enclose_camera_rays(context, wavefront);
@@ -273,7 +257,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     cover_background(context, wavefront);
     if (context.tracks_enclosures) shade_media(context, wavefront);
     shade_hits(context, wavefront);
-    add_to_samples(wavefront);
+    add_to_samples(context, wavefront);
     if (!wavefront.refracted.empty()) wavefront.next.append(wavefront.refracted);
     std::swap(wavefront.rays, wavefront.next);
     std::swap(wavefront.paths, wavefront.next_paths);
@@ -281,7 +265,8 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
   return true;
 }
 
-void cover(Wavefront& wavefront, std::size_t ray, float opacity) {
+void cover(const RenderContext& context, Wavefront& wavefront, std::size_t ray, float opacity) {
+  if (context.all_opaque) return;
   wavefront.samples.alpha[wavefront.rays.sample[ray]] += wavefront.rays.throughput[ray].x * opacity;
 }
 

@@ -121,7 +121,7 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront);
 
 /// Adds the hit of entry `ray`, a camera ray, to the alpha of its sample. `opacity`: the part of what lies
 /// behind that the surface hides.
-void cover(Wavefront& wavefront, std::size_t ray, float opacity);
+void cover(const RenderContext& context, Wavefront& wavefront, std::size_t ray, float opacity);
 
 /// Sets the data layers of the sample of entry `ray`, a camera ray, to this hit, unless an earlier one has.
 void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,

@@ -104,7 +104,7 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
                                        {wavefront.rays.distance[i], from_camera}, found);
   if (from_camera) {
     record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
-    cover(wavefront, i, p.opacity);
+    cover(context, wavefront, i, p.opacity);
   }
   const Color left = passing_interior(context, p);
   if (context.materials[c.material[k]].varies) {
@@ -122,7 +122,7 @@ void record_camera_hit(const RenderContext& context, Wavefront& wavefront, const
                        std::size_t k, const ShadingColumns& c) {
   const std::uint32_t i = c.ray[k];
   if (!wavefront.rays.from_camera[i]) return;
-  cover(wavefront, i, 1);
+  cover(context, wavefront, i, 1);
   if (!context.data_layers) return;
   record_first_hit(context, wavefront, i,
                    shown_surface(context, wavefront.rays.rays[i], wavefront.hits[i],
@@ -150,26 +150,22 @@ void queue_bounces(const RenderContext& context, const Wavefront& wavefront, con
                    const BounceColumns& sent, RayQueue& queue) {
   if (sent.sent == 0) return;
   const std::size_t first = queue.size(), end = first + static_cast<std::size_t>(std::popcount(sent.sent));
-  queue.resize_uninitialized(end + 8);
+  queue.resize_uninitialized(end + ShadingColumns::kGroup);
   QueuedRays to;
   for (int k = 0; k < 3; ++k) {
     to.origin[k] = queue.rays.origin[k].data() + first;
     to.direction[k] = queue.rays.direction[k].data() + first;
     to.throughput[k] = queue.throughput.part[k].data() + first;
   }
-  render_code(context.isa).queue_rays(sent, to);
+  to.tmin = queue.rays.tmin.data() + first, to.tmax = queue.rays.tmax.data() + first;
+  to.distance = queue.distance.data() + first, to.sample = queue.sample.data() + first;
+  to.bounces = queue.bounces.data() + first, to.from_camera = queue.from_camera.data() + first;
+  const RayQueue& rays = wavefront.rays;
+  render_code(context.isa)
+      .queue_rays(sent, c.ray,
+                  {rays.sample.data(), rays.distance.data(), wavefront.hits.t.data(), rays.bounces.data()},
+                  to);
   queue.resize_uninitialized(end);
-  const Ray like;
-  std::fill_n(queue.rays.tmin.data() + first, end - first, like.tmin);
-  std::fill_n(queue.rays.tmax.data() + first, end - first, like.tmax);
-  std::fill_n(queue.from_camera.data() + first, end - first, std::uint8_t{0});
-  std::size_t at = first;
-  for (std::uint64_t rest = sent.sent; rest != 0; rest &= rest - 1, ++at) {
-    const std::uint32_t i = c.ray[std::countr_zero(rest)];
-    queue.sample[at] = wavefront.rays.sample[i];
-    queue.distance[at] = wavefront.rays.distance[i] + wavefront.hits.t[i];
-    queue.bounces[at] = static_cast<std::uint8_t>(wavefront.rays.bounces[i] + 1);
-  }
 }
 
 /// Queues the mirrored and refracted rays of hits on materials that do not vary, of which the columns know
@@ -231,16 +227,12 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   name_hits(context, which, found, c);
   count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
   render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
-  bool alone = false, sends = false;
-  for (std::size_t k = 0; k < count; ++k) {
-    const ShadingMaterial& m = context.materials[c.material[k]];
-    alone |= m.varies, sends |= m.sends_rays();
-  }
+  const bool alone = c.varying != 0, sends = c.sending != 0;
   // The rays of a sample must be queued in the order of its hits: one by one if any of them is.
   if (!alone && sends) push_bounces(context, wavefront, found, c);
-  for (std::size_t k = 0; k < count; ++k) {
-    const ShadingMaterial& m = context.materials[c.material[k]];
-    if (!alone || !(m.varies || m.sends_rays())) {
+  const bool records = context.data_layers || !context.all_opaque;
+  for (std::size_t k = 0; k < count && (alone || records); ++k) {
+    if (!alone || ((c.varying | c.sending) >> k & 1) == 0) {
       record_camera_hit(context, wavefront, found, k, c);
       continue;
     }
