@@ -23,6 +23,20 @@ TEST(SimdOrder, SetBitsAreWrittenLowestFirst) {
   }
 }
 
+TEST(SimdOrder, LanesAreWrittenLowestFirst) {
+  float values[16], out[16];
+  for (int i = 0; i < 16; ++i) values[i] = static_cast<float>(100 + i);
+  for (unsigned set = 0; set < 0x10000; set += 7) {
+    const int size = store_compact(set, Simd<float, 16, ScalarIsa>::load(values), out);
+    int at = 0;
+    for (int i = 0; i < 16; ++i) {
+      if ((set >> i & 1) == 0) continue;
+      ASSERT_EQ(out[at++], values[i]) << set;
+    }
+    ASSERT_EQ(size, at);
+  }
+}
+
 TEST(SimdGather, TakesWhatTheIndexNames) {
   float base[100];
   for (int i = 0; i < 100; ++i) base[i] = static_cast<float>(i * i);

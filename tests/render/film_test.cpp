@@ -104,6 +104,44 @@ TEST(Film, BadSamplesAreLeftOutAndReported) {
   EXPECT_EQ(pixel.color[0], 4);
 }
 
+TEST(Film, TilesOfOneSampleEachLeaveBadSamplesBlack) {
+  const SampleBatch s = samples_of({1, std::nanf(""), 3, kInf, -kInf, 2});
+  FilmFormat format;
+  format.window = {0, 0, 8, 1}, format.full_width = 8, format.full_height = 1, format.data_layers = false;
+  for (const Isa isa : available_isas()) {
+    TileColors tile;
+    tile.begin(8);
+    EXPECT_EQ(tile.set(1, s, isa), 3u);
+    tile.clear(0, 1), tile.set(7, PixelSum{});
+    Picture picture = make_picture(format);
+    tile.copy_to(picture, {0, 0, 8, 1}, {0, 1, 2, 3, 4, 5, 6, 7});
+    const float red[] = {0, 1, 0, 3, 0, 0, 2, 0}, alpha[] = {0, 1, 0, 1, 0, 0, 1, 0};
+    for (std::uint32_t x = 0; x < 8; ++x) {
+      EXPECT_EQ(value(picture, "R", x, 0), red[x]) << x;
+      EXPECT_EQ(value(picture, "A", x, 0), alpha[x]) << x;
+    }
+  }
+}
+
+// Alpha is the same whether it is summed for each sample or known before.
+TEST(Film, AlphaIsOneOverABackgroundThatGivesLight) {
+  for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::albedo})
+    for (const bool layers : {false, true})
+      for (const float opacity : {1.0f, 0.25f}) {
+        // Flat integrators send no ray through holes.
+        if (kind == IntegratorKind::albedo && opacity < 1) continue;
+        Scene scene = bare_scene(5);
+        scene.integrator.kind = kind, scene.integrator.samples = 4;
+        Material material = diffuse({0.5f, 0.5f, 0.5f});
+        material.opacity = opacity;
+        add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, material));
+        scene.background = {0.5f, 0, 0};
+        const Picture p = run(scene, [&](RenderOptions& o) { o.data_layers = layers; }).picture;
+        for (std::uint32_t y = 0; y < 5; ++y)
+          for (std::uint32_t x = 0; x < 5; ++x) EXPECT_EQ(value(p, "A", x, y), 1);
+      }
+}
+
 // The variance of the mean: sum of (x - mean)^2 over n (n - 1).
 TEST(Film, VarianceIsThatOfTheMean) {
   const auto variance = [](const std::vector<float>& values) {
