@@ -1,5 +1,6 @@
 #pragma once
-/// \file Sorting and compacting lanes: how a traversal pushes the children of a node in order.
+/// \file Sorting and compacting lanes: how a traversal pushes the children of a node in order, and how
+/// rays that leave some of the lanes are written.
 
 #include <cstddef>
 #include <cstdint>

@@ -15,8 +15,7 @@ std::uint64_t name_hits_code(const std::uint32_t* items, std::size_t count, cons
                              InteractionBlock& out) {
   using I = Simd<std::int32_t, kItemGroup, A>;
   const auto same = [](std::uint32_t x) { return I(static_cast<std::int32_t>(x)); };
-  const auto at = [](auto* column) { return reinterpret_cast<std::int32_t*>(column); };
-  // Adding the lowest number turns the order of signed numbers into that of unsigned ones.
+  // Lanes compare signed numbers. With the lowest number added, these have the order of unsigned ones.
   const I lowest(INT32_MIN), first = same(geometry.first), end = same(geometry.count) + lowest;
   const I number = same(geometry.geometry), user = same(geometry.user), slot(0);
   std::uint64_t found = 0;
@@ -24,7 +23,7 @@ std::uint64_t name_hits_code(const std::uint32_t* items, std::size_t count, cons
     const I primitive = I::load(reinterpret_cast<const std::int32_t*>(items) + i) - first;
     const auto here = primitive + lowest < end;
     const auto set = [&](const I& value, std::uint32_t* column) {
-      std::int32_t* to = at(column + i);
+      auto* to = reinterpret_cast<std::int32_t*>(column + i);
       select(here, value, I::load(to)).store(to);
     };
     set(number, out.geometry), set(primitive, out.primitive), set(user, out.user),

@@ -45,13 +45,14 @@ void block_light_code(const Column<std::uint8_t>& blocked, ColorColumn& light) {
 template <class A>
 void add_colors_code(const ColorColumn& from, const Column<std::uint32_t>& entry, ColorColumn& to) {
   using F = ShadingLanes<A>;
+  constexpr unsigned kAll = (1u << F::kWidth) - 1;
   const F zero(0.0f);
   const std::size_t count = entry.size();
   std::size_t i = 0;
   for (; i + F::kWidth <= count; i += F::kWidth) {
     const auto part = [&](int k) { return F::load(from.part[k].data() + i); };
     const F r = part(0), g = part(1), b = part(2);
-    const unsigned bright = ~bits((r == zero) & (g == zero) & (b == zero)) & lanes_before<F>(count, i);
+    const unsigned bright = ~bits((r == zero) & (g == zero) & (b == zero)) & kAll;
     if (bright == 0) continue;
     const PickedLanes<F> at(entry.data() + i);
     at.add(r, to.part[0].data(), bright), at.add(g, to.part[1].data(), bright);

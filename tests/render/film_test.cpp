@@ -128,8 +128,6 @@ TEST(Film, AlphaIsOneOverABackgroundThatGivesLight) {
   for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::albedo})
     for (const bool layers : {false, true})
       for (const float opacity : {1.0f, 0.25f}) {
-        // Flat integrators send no ray through holes.
-        if (kind == IntegratorKind::albedo && opacity < 1) continue;
         Scene scene = bare_scene(5);
         scene.integrator.kind = kind, scene.integrator.samples = 4;
         Material material = diffuse({0.5f, 0.5f, 0.5f});
@@ -137,8 +135,9 @@ TEST(Film, AlphaIsOneOverABackgroundThatGivesLight) {
         add_object(scene, SphereShape{{0, 0, 0}, 1}, add_material(scene, material));
         scene.background = {0.5f, 0, 0};
         const Picture p = run(scene, [&](RenderOptions& o) { o.data_layers = layers; }).picture;
-        for (std::uint32_t y = 0; y < 5; ++y)
-          for (std::uint32_t x = 0; x < 5; ++x) EXPECT_EQ(value(p, "A", x, y), 1);
+        EXPECT_EQ(value(p, "A", 0, 0), 1);
+        // Flat integrators send no ray through holes.
+        EXPECT_EQ(value(p, "A", 2, 2), kind == IntegratorKind::albedo ? opacity : 1);
       }
 }
 
