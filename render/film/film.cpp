@@ -76,11 +76,16 @@ double variance_of_mean(double sum, double square, std::uint32_t n) {
   return std::max(0.0, square - sum * sum / count) / (count - 1) / count;
 }
 
+/// Whether sample `i` holds no NaN and no infinity.
+bool is_good(const SampleBatch& samples, std::size_t i) {
+  return is_finite(samples.color[i]) && std::isfinite(samples.alpha[i]);
+}
+
 }  // namespace
 
 bool add_to_pixel(PixelSum& pixel, const SampleBatch& samples, std::size_t i) {
+  if (!is_good(samples, i)) return false;
   const Color color = samples.color[i];
-  if (!is_finite(color) || !std::isfinite(samples.alpha[i])) return false;
   ++pixel.good;
   if (samples.first.empty()) {
     add3(pixel.color, color);
@@ -157,19 +162,17 @@ void TileColors::clear(std::size_t first, std::size_t count) {
 
 std::size_t TileColors::set(std::size_t first, const SampleBatch& samples, Isa isa) {
   const std::size_t count = samples.size();
-  const Column<float>* const from[] = {&samples.color.part[0], &samples.color.part[1], &samples.color.part[2],
-                                       &samples.alpha};
+  const float* const from[] = {samples.color.part[0].data(), samples.color.part[1].data(),
+                               samples.color.part[2].data(), samples.alpha.data()};
   bool good = true;
   for (int k = 0; k < 4; ++k) {
-    std::copy_n(from[k]->data(), count, plane_[k].data() + first);
-    good = good && render_code(isa).all_finite(from[k]->data(), count);
+    std::copy_n(from[k], count, plane_[k].data() + first);
+    good = good && render_code(isa).all_finite(from[k], count);
   }
   if (good) return 0;
   std::size_t bad = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto is_good = [&](const Column<float>* column) { return std::isfinite((*column)[i]); };
-    if (!std::ranges::all_of(from, is_good)) clear(first + i, 1), ++bad;
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    if (!is_good(samples, i)) clear(first + i, 1), ++bad;
   return bad;
 }
 

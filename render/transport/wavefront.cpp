@@ -52,7 +52,8 @@ void add_environment(const RenderContext& context, Wavefront& wavefront, const s
   }
 }
 
-/// Sets the radiance of the rays that meet nothing where there is an environment or light groups.
+/// For rays that meet nothing: sets the light of the environment if there is one, else adds the background to
+/// the layer of its light group.
 void add_background(const RenderContext& context, Wavefront& wavefront) {
   std::uint32_t misses[EnvironmentValues::kMost];
   std::size_t count = 0;

@@ -123,8 +123,8 @@ TEST(Film, TilesOfOneSampleEachLeaveBadSamplesBlack) {
   }
 }
 
-// Alpha is the same whether it is summed for each sample or known before.
-TEST(Film, AlphaIsOneOverABackgroundThatGivesLight) {
+// Without holes alpha is set before the rays are traced, with holes it is summed. Both give the same.
+TEST(Film, AlphaOverABackgroundThatGivesLight) {
   for (const IntegratorKind kind : {IntegratorKind::whitted, IntegratorKind::path, IntegratorKind::albedo})
     for (const bool layers : {false, true})
       for (const float opacity : {1.0f, 0.25f}) {
