@@ -86,9 +86,9 @@ struct Lathe {
   /// A ray that rises by less than this times its way is taken as level: within the surface it goes astray by
   /// no more than that. Above, double-double tells the two roots at one height apart.
   static constexpr double kLevel = 0x1p-40;
-  /// One that rises by less than this is solved where the piece is at its heights only. Elsewhere the terms
-  /// that do not depend on how it rises would drown those that do.
-  static constexpr double kShallow = 0x1p-10;
+  /// One that rises by less than this times its way is solved only where the piece is at its heights: over
+  /// all heights its way is long, and the rounding of the polynomial grows with the square of that.
+  static constexpr double kShallow = 0x1p-3;
 
   struct OneRay {
     double line[6];     ///< origin and direction

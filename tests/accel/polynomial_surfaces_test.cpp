@@ -6,6 +6,8 @@
 #include "kernels/exact/polynomial_expression.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/support/limits.h"
+#include "verify/cases/kernel_cases.h"
+#include "verify/oracles/exact.h"
 
 namespace oktett::polynomial_surfaces_test {
 namespace {
@@ -186,6 +188,38 @@ TEST(Revolutions, Curves) {
   expect_at(crossings(ring, {-5, 0.5f, 0}, {1, 0, 0}), {3, 4, 6, 7});
   expect_at(crossings(ring, {1.5f, -1, 0}, {0, 1, 0}), {1, 2});
   EXPECT_EQ(crossings(ring, {0.5f, -1, 0}, {0, 1, 0}).size(), 0u);
+}
+
+/// A cone given as a Bezier curve has the crossings of a cone, to a float, also where a ray that hardly rises
+/// meets it at a slant.
+TEST(Revolutions, CurvesMetAtASlant) {
+  LatheShape cone;
+  cone.open = true;
+  for (int i = 0; i < 4; ++i) cone.points.push_back({1.5 - i / 3.0, -1 + 2 * i / 3.0});
+  CaseRandom random(7);
+  int count = 0;
+  for (int power = -14; power <= 0; ++power)
+    for (int i = 0; i < 200; ++i) {
+      const double y = 0.9 * random.sign(), angle = 180 * random.sign(),
+                   rise = std::ldexp(random.sign(), power);
+      const double slant = random.magnitude(-3, 0), back = random.magnitude(-3, -1.5);
+      const Affine turn = Affine::rotation({0, angle, 0});
+      const Vec3d d{slant, rise, 1}, at{1 - 0.5 * y, y, 0};
+      const Ray ray{Vec3f(turn.point(at - d * back)), 0, Vec3f(turn.vector(d)), kInf};
+      // |(x, z)| = 1 - y / 2.
+      const Vec3l o(ray.origin), v(ray.direction);
+      const long double r = 1 - 0.5L * o.y, dr = -0.5L * v.y;
+      const long double a = v.x * v.x + v.z * v.z - dr * dr, b = o.x * v.x + o.z * v.z - r * dr,
+                        c = o.x * o.x + o.z * o.z - r * r, q = b * b - a * c;
+      const long double w = b > 0 ? -b - std::sqrt(q) : -b + std::sqrt(q);
+      const long double t = std::min(w / a, c / w) > 0 ? std::min(w / a, c / w) : std::max(w / a, c / w);
+      const std::vector<Hit> hits = all_crossings(cone, ray);
+      if (!(q > 1e-8) || std::abs(o.y + t * v.y) > 0.99) continue;
+      ++count;
+      ASSERT_FALSE(hits.empty());
+      EXPECT_NEAR(hits[0].t, t, 0x1p-24 * t + 0x1p-38) << "rise " << rise << ", slant " << slant;
+    }
+  EXPECT_GT(count, 2000);
 }
 
 }  // namespace
