@@ -82,8 +82,8 @@ class Accel {
   std::vector<GeometryFrame> frames;  ///< per geometry
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
   std::vector<std::uint32_t> users;   ///< Geometry::user of each
-  /// Index in its pool of primitive k of geometry g, a closed-form or exact shape or an instance of a list:
-  /// pool_index[first_pool_index[g] + k]. Both are empty if there are no such shapes.
+  /// What index_in_pool() looks up: one number per shape of a pool, and where those of each geometry begin.
+  /// Both are empty if there are no such shapes.
   std::vector<std::uint32_t> pool_index, first_pool_index;
   std::vector<CsgItem> combinations;
   std::vector<PathStep> path_steps;  ///< ordered by first_path
@@ -93,6 +93,12 @@ class Accel {
   std::string no_closest_point[2];
 
   OKTETT_INLINE const ExactPoolBase& exact_pool(Kind kind) const { return *exact[static_cast<int>(kind)]; }
+
+  /// Index in its pool of a primitive of geometry g, which is a closed-form or exact shape or a list of
+  /// instances.
+  OKTETT_INLINE std::uint32_t index_in_pool(std::uint32_t g, std::uint32_t primitive) const {
+    return pool_index[first_pool_index[g] + primitive];
+  }
 
   /// Index of the geometry that item belongs to.
   std::uint32_t geometry_of(std::uint32_t item) const {

@@ -245,7 +245,7 @@ ClosestPoint closest_surface(const Accel& accel, const Vec3f& point, const Neare
   }
   const Accel& a = *place.accel;
   const ShapeAt at(a, place.moved ? &place.to_world : nullptr, p);
-  const SurfaceNearest s = at(names.kind, a.pool_index[a.first_pool_index[names.geometry] + names.primitive]);
+  const SurfaceNearest s = at(names.kind, a.index_in_pool(names.geometry, names.primitive));
   out.point = Vec3f(s.point), out.normal = Vec3f(s.normal);
   return out;
 }

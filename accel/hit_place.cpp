@@ -25,7 +25,7 @@ std::uint32_t top_item(const Accel& accel, std::uint32_t path) {
 static const ListedInstance& listed_instance(const Accel& accel, const PathStep& step, std::uint32_t path) {
   const std::uint32_t g = accel.geometry_of(step.item);
   const std::uint32_t local = (path - step.first_path) / step.stride;
-  return accel.listed_instances[accel.pool_index[accel.first_pool_index[g] + local]];
+  return accel.listed_instances[accel.index_in_pool(g, local)];
 }
 
 HitPlace follow_path(const Accel& accel, std::uint32_t path) {

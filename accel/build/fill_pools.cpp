@@ -76,6 +76,11 @@ class PoolFiller {
     order = std::move(aligned);
   }
 
+  void set_pool_index(std::uint32_t item, std::uint32_t index) {
+    const std::uint32_t g = accel_.geometry_of(item);
+    accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = index;
+  }
+
   /// Calls add(pool, geometry, number within the geometry, item) for the items of a closed-form shape.
   template <class S, class Add>
   void each(Kind kind, Add&& add) {
@@ -84,10 +89,7 @@ class PoolFiller {
       const std::uint32_t g = accel_.geometry_of(item);
       add(pool, accel_.geometries[g], item - accel_.first_item[g], item);
     }
-    for (std::uint32_t i = 0; i < pool.item.size(); ++i) {
-      const std::uint32_t item = pool.item[i], g = accel_.geometry_of(item);
-      accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = i;
-    }
+    for (std::uint32_t i = 0; i < pool.item.size(); ++i) set_pool_index(pool.item[i], i);
     S::finish(pool);
     accel_.stats.other_bytes += pool.bytes();
   }
@@ -97,8 +99,7 @@ class PoolFiller {
     std::vector<ExactCell> cells;
     for (std::uint32_t cell : order_[static_cast<int>(kind)]) cells.push_back(pool.cells[cell]);
     pool.cells = std::move(cells);
-    for (std::uint32_t i = 0; i < pool.frames.size(); ++i)
-      accel_.pool_index[accel_.first_pool_index[accel_.geometry_of(pool.frames[i].item)]] = i;
+    for (std::uint32_t i = 0; i < pool.frames.size(); ++i) set_pool_index(pool.frames[i].item, i);
     accel_.stats.other_bytes += exact_ops(kind).bytes(pool);
   }
 
@@ -163,7 +164,7 @@ class PoolFiller {
       const std::uint32_t g = accel_.geometry_of(listed.item), local = listed.item - accel_.first_item[g];
       const PathStep& step = step_of(accel_.first_item[g]);
       listed.first_path = step.first_path + local * step.stride;
-      accel_.pool_index[accel_.first_pool_index[g] + local] = static_cast<std::uint32_t>(ordered.size() - 1);
+      set_pool_index(listed.item, static_cast<std::uint32_t>(ordered.size() - 1));
     }
     accel_.listed_instances = std::move(ordered);
     accel_.stats.other_bytes += accel_.listed_instances.size() * sizeof(ListedInstance);

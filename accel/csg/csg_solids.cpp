@@ -75,7 +75,7 @@ bool is_inside(const Accel& accel, std::uint32_t geometry, const HalfLine& line)
   }
   const Kind kind = static_cast<Kind>(accel.kinds[geometry]);
   if (!is_shape(kind)) return false;
-  const std::uint32_t i = accel.pool_index[accel.first_pool_index[geometry]];
+  const std::uint32_t i = accel.index_in_pool(geometry, 0);
   if (i == kNoId) return false;
   if (is_exact(kind)) {
     const ExactPoolBase& pool = accel.exact_pool(kind);

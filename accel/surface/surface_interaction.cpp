@@ -67,10 +67,10 @@ static void interaction_inside(const HitNames& names, const Accel& a, const Ray&
     mesh_interaction(g, a.frames[names.geometry], names.primitive, hit, s);
   } else if (is_exact(names.kind)) {
     const ExactOps& ops = exact_ops(names.kind);
-    const std::size_t i = a.pool_index[a.first_pool_index[names.geometry]];
+    const std::size_t i = a.index_in_pool(names.geometry, 0);
     (uv ? ops.interaction : ops.interaction_without_uv)(a.exact_pool(names.kind), i, inner, hit, s);
   } else {
-    const std::size_t i = a.pool_index[a.first_pool_index[names.geometry] + names.primitive];
+    const std::size_t i = a.index_in_pool(names.geometry, names.primitive);
     visit_pool(names.kind, a.pools, [&](auto shape, const auto& pool) {
       closed_interaction<decltype(shape)>(pool, i, inner, hit.t, uv, s);
     });

@@ -95,7 +95,7 @@ class SurfaceFinder {
 
   /// Index in its pool of the shape at an entry, which is not a triangle.
   std::uint32_t element(const Accel& accel, std::size_t entry) const {
-    return accel.pool_index[accel.first_pool_index[out_.geometry[entry]] + out_.primitive[entry]];
+    return accel.index_in_pool(out_.geometry[entry], out_.primitive[entry]);
   }
 
   void add(std::size_t i) {
