@@ -12,10 +12,6 @@
 
 namespace oktett {
 
-/// Rays of a packet where the mode does not say.
-template <class A>
-inline constexpr int kPacketRays = std::is_same_v<A, Avx512Isa> ? 16 : 8;
-
 /// How far apart the rays of a packet may start along each axis: a part of the scene's longest edge. Beyond
 /// that, rays of one direction meet different nodes, and interleaved ones are faster.
 OKTETT_INLINE float packet_reach(const Accel& accel) {
@@ -57,30 +53,22 @@ void trace_each(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) 
   for (std::size_t i = 0; i < rays.size; ++i) out.set(i, trace_one<Q, A>(accel, rays[i]));
 }
 
-/// All rays in packets of W. With `coherent_only`, packets whose rays are not coherent go interleaved
-/// instead, together with their neighbours of this kind.
+/// The rays from position `b` on, `r`, in one packet.
 template <Query Q, int W, class A>
-void trace_packets(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool coherent_only) {
-  using F = Simd<float, W, A>;
-  std::size_t begin = 0;  // of the rays that are to go interleaved
-  const auto interleave_until = [&](std::size_t end) {
-    if (begin < end)
-      trace_interleaved<Q, A>(accel, rays.part(begin, end - begin), out.part(begin, end - begin));
-  };
+OKTETT_INLINE void trace_packet_at(const Accel& accel, const RayLanes<Simd<float, W, A>>& r, std::size_t b,
+                                   std::size_t count, RayState<W, A>& state, const HitSink<Q>& out) {
+  const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & ((1u << count) - 1);
+  if (lanes != 0) trace_packet<Q>(accel, state, lanes);
+  for (std::size_t i = 0; i < count; ++i) out.set(b + i, state.hit(static_cast<int>(i)));
+}
+
+/// All rays in packets of W.
+template <Query Q, int W, class A>
+void trace_packets(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
   RayState<W, A> state;
-  const float reach = packet_reach(accel);
-  for (std::size_t b = 0; b < rays.size; b += W) {
-    const RayLanes<F> r = load_span<F>(rays, b);
-    const std::size_t count = std::min<std::size_t>(rays.size - b, W);
-    const unsigned present = (1u << count) - 1;
-    if (coherent_only && !is_coherent(r, reach, present)) continue;
-    interleave_until(b);
-    begin = b + count;
-    const unsigned lanes = state.set(r.o, r.d, r.tmin, r.tmax, accel.bounds) & present;
-    if (lanes != 0) trace_packet<Q>(accel, state, lanes);
-    for (std::size_t i = 0; i < count; ++i) out.set(b + i, state.hit(static_cast<int>(i)));
-  }
-  interleave_until(rays.size);
+  for (std::size_t b = 0; b < rays.size; b += W)
+    trace_packet_at<Q, W, A>(accel, load_span<Simd<float, W, A>>(rays, b), b,
+                             std::min<std::size_t>(rays.size - b, W), state, out);
 }
 
 /// The point that the rays seem to share: where all start, or, for shadow rays, where all end.
@@ -144,76 +132,110 @@ void trace_exact_leaf(const Accel& accel, const LeafEntry& leaf, const RaySpan& 
   }
 }
 
-/// Rays that make no beam: together against the leaf if there is only one, of exact surfaces; else in
-/// packets if they are coherent, and interleaved if not. Shadow rays among instances are always interleaved:
-/// in an instance, packets of them have few rays at a time.
+/// Traces a batch: each part of it in the way that suits its rays. Rays that are to go interleaved wait until
+/// finish(), so that all of them go together: interleaved rays are slow while few of them are left.
 template <Query Q, class A>
-void trace_without_beams(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  if (const LeafEntry* leaf = only_exact_leaf(accel))
-    trace_exact_leaf<Q, A>(accel, *leaf, rays, out);
-  else if (Q == Query::any && has_instances(accel))
-    trace_interleaved<Q, A>(accel, rays, out);
-  else
-    trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, true);
-}
+class MixedBatch {
+ public:
+  MixedBatch(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out)
+      : accel_(accel), rays_(rays), out_(out), reach_(packet_reach(accel)) {}
 
-/// Rays that share a point in beams, all others by trace_without_beams(). When a beam is given up, its rays
-/// are traced interleaved. When several in a row are, the next rays go interleaved without a trial: those of
-/// one beam after the second, of three after the third, then of seven. With `insist` no beam is given up.
-template <Query Q, class A>
-OKTETT_NOINLINE void trace_beams(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist,
-                                 BeamInstances<Q, A>* instances) {
-  const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel);
-  // Rays from `begin` on wait to be traced the same way, so that long runs go interleaved together.
-  std::size_t begin = 0;
-  BeamOutcome waiting = BeamOutcome::no_beam;
-  const auto catch_up = [&](std::size_t end) {
-    if (end <= begin) return;
-    const RaySpan part = rays.part(begin, end - begin);
-    const HitSink<Q> sink = out.part(begin, end - begin);
-    if (waiting == BeamOutcome::given_up)
-      trace_interleaved<Q, A>(accel, part, sink);
-    else
-      trace_without_beams<Q, A>(accel, part, sink);
-  };
-  int skip = 0, failures = 0;
-  for (std::size_t b = 0; b < rays.size; b += kBeamRays) {
-    if (skip > 0) {
-      --skip;
-      continue;
+  /// All rays: those that share a point in beams, all others by without_beams(). When a beam is given up, its
+  /// rays go interleaved. When several in a row are, the next rays go interleaved without a trial: those of
+  /// one beam after the second, of three after the third, then of seven. With `insist` no beam is given up.
+  OKTETT_NOINLINE void beams(bool insist, BeamInstances<Q, A>* instances) {
+    const int max_steps = insist ? kAnySteps : max_beam_steps<Q>(accel_);
+    int skip = 0, failures = 0;
+    for (std::size_t b = 0; b < rays_.size; b += kBeamRays) {
+      const std::size_t count = std::min<std::size_t>(kBeamRays, rays_.size - b);
+      if (skip > 0) {
+        --skip;
+        interleave(b, count);
+        continue;
+      }
+      const RaySpan part = rays_.part(b, count);
+      const RaySpan next = rays_.part(b + count, std::min<std::size_t>(kBeamRays, rays_.size - b - count));
+      Apex apex;
+      const BeamOutcome outcome =
+          common_point<Q>(part, apex)
+              ? trace_beam<Q, A>(accel_, part, apex, out_.part(b, count), max_steps, next, instances)
+              : BeamOutcome::no_beam;
+      failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
+      if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;
+      if (outcome == BeamOutcome::given_up)
+        interleave(b, count);
+      else if (outcome == BeamOutcome::no_beam)
+        without_beams(b, count);
     }
-    const std::size_t count = std::min<std::size_t>(kBeamRays, rays.size - b);
-    const RaySpan part = rays.part(b, count);
-    const RaySpan next = rays.part(b + count, std::min<std::size_t>(kBeamRays, rays.size - b - count));
-    Apex apex;
-    const BeamOutcome outcome =
-        common_point<Q>(part, apex)
-            ? trace_beam<Q, A>(accel, part, apex, out.part(b, count), max_steps, next, instances)
-            : BeamOutcome::no_beam;
-    failures = outcome == BeamOutcome::given_up ? failures + 1 : 0;
-    if (failures > 0) skip = (1 << std::min(failures - 1, 3)) - 1;
-    if (outcome == waiting) continue;
-    catch_up(b);
-    begin = outcome == BeamOutcome::traced ? b + count : b;
-    if (outcome != BeamOutcome::traced) waiting = outcome;
   }
-  catch_up(rays.size);
-}
 
-template <Query Q, class A>
-OKTETT_NOINLINE void trace_beams_inside(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out,
-                                        bool insist) {
-  BeamInstances<Q, A> instances(accel);
-  trace_beams<Q, A>(accel, rays, out, insist, &instances);
-}
+  /// `count` rays from position `begin` on that make no beam: together against the leaf if there is only one,
+  /// of exact surfaces; else in packets if they are coherent, and interleaved if not. Shadow rays among
+  /// instances are always interleaved: in an instance, packets of them have few rays at a time.
+  void without_beams(std::size_t begin, std::size_t count) {
+    if (const LeafEntry* leaf = only_exact_leaf(accel_))
+      trace_exact_leaf<Q, A>(accel_, *leaf, rays_.part(begin, count), out_.part(begin, count));
+    else if (Q == Query::any && has_instances(accel_))
+      interleave(begin, count);
+    else
+      packets(begin, count);
+  }
 
-/// Beams where rays share a point, in structures with instances or without.
+  /// Traces the rays that wait.
+  void finish() {
+    if (waiting_count_ > 0) trace_interleaved<Q, A>(accel_, rays_, {waiting_, waiting_count_}, out_);
+    waiting_count_ = 0;
+  }
+
+ private:
+  static constexpr int kWidth = kChunkRays<A>;
+  static_assert(kBeamRays % kWidth == 0, "parts of a batch begin where chunks begin");
+
+  /// Coherent rays in packets; all others wait.
+  OKTETT_NOINLINE void packets(std::size_t begin, std::size_t count) {
+    for (std::size_t b = begin; b < begin + count; b += kWidth) {
+      const auto r = load_span<Simd<float, kWidth, A>>(rays_, b);
+      const std::size_t present = std::min<std::size_t>(begin + count - b, kWidth);
+      if (is_coherent(r, reach_, (1u << present) - 1))
+        trace_packet_at<Q, kWidth, A>(accel_, r, b, present, packet_, out_);
+      else
+        wait(b);
+    }
+  }
+
+  void interleave(std::size_t begin, std::size_t count) {
+    for (std::size_t b = begin; b < begin + count; b += kWidth) wait(b);
+  }
+
+  void wait(std::size_t begin) {
+    waiting_[waiting_count_++] = static_cast<std::uint32_t>(begin);
+    if (waiting_count_ == kMostWaiting) finish();
+  }
+
+  static constexpr std::size_t kMostWaiting = 512;
+
+  const Accel& accel_;
+  const RaySpan rays_;
+  const HitSink<Q> out_;
+  const float reach_;
+  RayState<kWidth, A> packet_;
+  std::uint32_t waiting_[kMostWaiting];  ///< positions at which chunks begin
+  std::size_t waiting_count_ = 0;
+};
+
+/// All rays, with beams where they share a point, in structures with instances or without.
 template <Query Q, class A>
-void trace_automatic(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
-  if (has_instances(accel))
-    trace_beams_inside<Q, A>(accel, rays, out, insist);
-  else
-    trace_beams<Q, A>(accel, rays, out, insist, nullptr);
+void trace_mixed(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, bool insist) {
+  MixedBatch<Q, A> batch(accel, rays, out);
+  if (rays.size < kLeastBeamRays && !insist) {
+    batch.without_beams(0, rays.size);
+  } else if (has_instances(accel)) {
+    BeamInstances<Q, A> instances(accel);
+    batch.beams(insist, &instances);
+  } else {
+    batch.beams(insist, nullptr);
+  }
+  batch.finish();
 }
 
 template <Query Q, class A>
@@ -224,18 +246,17 @@ void trace(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out, Trace
     switch (mode) {
       case TraceMode::automatic:
         if (rays.size <= kAloneRays) return trace_each<Q, A>(accel, rays, out);
-        if (rays.size < kLeastBeamRays) return trace_without_beams<Q, A>(accel, rays, out);
-        return trace_automatic<Q, A>(accel, rays, out, false);
+        return trace_mixed<Q, A>(accel, rays, out, false);
       case TraceMode::beam:
-        return trace_automatic<Q, A>(accel, rays, out, true);
+        return trace_mixed<Q, A>(accel, rays, out, true);
       case TraceMode::single:
         return trace_each<Q, A>(accel, rays, out);
       case TraceMode::interleaved:
         return trace_interleaved<Q, A>(accel, rays, out);
       case TraceMode::packet8:
-        return trace_packets<Q, 8, A>(accel, rays, out, false);
+        return trace_packets<Q, 8, A>(accel, rays, out);
       case TraceMode::packet16:
-        return trace_packets<Q, kPacketRays<A>, A>(accel, rays, out, false);
+        return trace_packets<Q, kChunkRays<A>, A>(accel, rays, out);
     }
   }
 }

@@ -33,7 +33,7 @@ class AllHitsTraversal {
 
  private:
   static constexpr int kBlock = TriangleBlock::kSize;
-  static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
+  static constexpr int kChunk = kChunkRays<A>;
   static constexpr int kLeafRays = kBlockRays<A>;
   /// Rays that are in the lists at the same time.
   static constexpr int kGroup = 256;

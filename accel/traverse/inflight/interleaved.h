@@ -7,14 +7,27 @@
 
 namespace oktett {
 
-/// Traces a batch of rays; see the top of the file.
+/// Which rays of a batch are traced: all, or only some chunks of kChunkRays<A> neighbours. The last chunk of
+/// a batch may be shorter.
+struct BatchChunks {
+  const std::uint32_t* first;  ///< of each chunk, the position of its first ray; null: all rays
+  std::size_t count;           ///< of chunks
+
+  template <class A>
+  static BatchChunks all(const RaySpan& rays) {
+    return {nullptr, (rays.size + kChunkRays<A> - 1) / kChunkRays<A>};
+  }
+};
+
+/// Traces rays of a batch; see the top of the file.
 template <Query Q, class A, InflightTrees kTrees>
 class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees>, Q, A, kTrees> {
   using Base = InflightTraversal<InterleavedTraversal, Q, A, kTrees>;
 
  public:
-  InterleavedTraversal(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out)
-      : Base(accel), out_(out), extent_(box_extent(accel.bounds)) {
+  InterleavedTraversal(const Accel& accel, const RaySpan& rays, const BatchChunks& chunks,
+                       const HitSink<Q>& out)
+      : Base(accel), chunks_(chunks), out_(out), extent_(box_extent(accel.bounds)) {
     rays_ = rays;
   }
 
@@ -47,25 +60,34 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     pending_.decide(accel_, rays_, [&](std::uint32_t ray, const Hit& h) { out_.set(ray, h); });
   }
 
-  /// Starts the next ray of the batch in the place of a finished one.
+  /// Starts the next ray in the place of a finished one.
   void refill(InflightRay& ray, Tails& tail) {
-    for (; next_ < rays_.size; ++next_) {
-      const int i = static_cast<int>(next_ % Base::kChunk);
-      if constexpr (Q == Query::any)
-        if (next_ % kBundleRays == 0) set_entry();
-      if (i == 0) {
-        chunk_.set(rays_, next_, extent_);
-        spheres_.prepare(chunk_);
-        if (OKTETT_UNLIKELY(only_planes_)) meet_planes();
-      }
-      if ((chunk_.tame >> i & 1) != 0) {
-        start(ray, i, tail);
-        ++next_;
-        return;
-      }
+    for (;;) {
+      if (lane_ == lanes_ && !next_chunk()) return;
+      const int i = lane_++;
+      if ((chunk_.tame >> i & 1) != 0) return start(ray, i, tail);
       // The ray is not valid, or its numbers are too large or too small for the fast arithmetic.
-      out_.set(next_, trace_exact<Q, A>(accel_, rays_[next_]));
+      const std::size_t position = begin_ + static_cast<std::size_t>(i);
+      out_.set(position, trace_exact<Q, A>(accel_, rays_[position]));
     }
+  }
+
+  /// Where chunk `k` begins in the batch.
+  OKTETT_INLINE std::size_t begin_of(std::size_t k) const {
+    return chunks_.first == nullptr ? k * Base::kChunk : chunks_.first[k];
+  }
+
+  /// Prepares the next chunk; false if there is none.
+  OKTETT_INLINE bool next_chunk() {
+    if (next_ == chunks_.count) return false;
+    if constexpr (Q == Query::any)
+      if (next_ % kBundleChunks == 0) set_entry();
+    begin_ = begin_of(next_++);
+    lane_ = 0, lanes_ = static_cast<int>(std::min<std::size_t>(Base::kChunk, rays_.size - begin_));
+    chunk_.set(rays_, begin_, extent_);
+    spheres_.prepare(chunk_);
+    if (OKTETT_UNLIKELY(only_planes_)) meet_planes();
+    return true;
   }
 
   /// Tests the rays of the chunk against planes, all at once. A ray ends at its nearest plane.
@@ -84,9 +106,12 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
   /// Prepares the entry of the next bundle.
   OKTETT_NOINLINE void set_entry() {
     has_entry_ = false;
-    const std::size_t count = std::min<std::size_t>(kBundleRays, rays_.size - next_);
-    if (count < kBundleRays / 4 || accel_.root.is_leaf()) return;
-    const Box reach = reach_of<A>(rays_.part(next_, count), extent_);
+    const std::size_t count = std::min(kBundleChunks, chunks_.count - next_);
+    if (count < kBundleChunks / 4 || accel_.root.is_leaf()) return;
+    // With the rays between these chunks that are not traced here.
+    const std::size_t begin = begin_of(next_), last = begin_of(next_ + count - 1);
+    const std::size_t end = std::min(last + Base::kChunk, rays_.size);
+    const Box reach = reach_of<A>(rays_.part(begin, end - begin), extent_);
     if (reach.empty()) return;
     entry_.set(accel_, reach);
     has_entry_ = true;
@@ -103,7 +128,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
         ++ray.size;  // what the step has popped is popped below
       }
     }
-    ray.index = static_cast<std::uint32_t>(next_);
+    ray.index = static_cast<std::uint32_t>(begin_ + static_cast<std::size_t>(i));
     if (OKTETT_UNLIKELY(only_planes_)) {
       ray.candidate = planes_.item[i] == kNoId ? kNoCandidate : kDecidedHit;
       if constexpr (Q == Query::closest)
@@ -118,9 +143,13 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     this->pop(ray, tail);
   }
 
+  static constexpr std::size_t kBundleChunks = kBundleRays / Base::kChunk;
+
+  const BatchChunks chunks_;
   const HitSink<Q> out_;
   const float extent_;
-  std::size_t next_ = 0;
+  std::size_t next_ = 0, begin_ = 0;  ///< number of the next chunk, and where the present one begins
+  int lane_ = 0, lanes_ = 0;          ///< the next ray of the present chunk, and how many rays that has
   bool has_entry_ = false;
   /// All unbounded shapes are planes, and there are some.
   const bool only_planes_ =
@@ -131,19 +160,25 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
 };
 
 template <Query Q, class A, InflightTrees kTrees>
-OKTETT_NOINLINE void run_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  InterleavedTraversal<Q, A, kTrees>(accel, rays, out).run();
+OKTETT_NOINLINE void run_interleaved(const Accel& accel, const RaySpan& rays, const BatchChunks& chunks,
+                                     const HitSink<Q>& out) {
+  InterleavedTraversal<Q, A, kTrees>(accel, rays, chunks, out).run();
 }
 
-/// All rays of a span against everything; results in the order of the rays.
+/// The rays in `chunks` against everything; each hit is at the position of its ray.
+template <Query Q, class A>
+void trace_interleaved(const Accel& accel, const RaySpan& rays, const BatchChunks& chunks,
+                       const HitSink<Q>& out) {
+  if (has_instances(accel))
+    run_interleaved<Q, A, InflightTrees::instances>(accel, rays, chunks, out);
+  else if (pays_to_prefetch(accel, rays))
+    run_interleaved<Q, A, InflightTrees::large>(accel, rays, chunks, out);
+  else
+    run_interleaved<Q, A, InflightTrees::small>(accel, rays, chunks, out);
+}
 template <Query Q, class A>
 void trace_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  if (has_instances(accel))
-    run_interleaved<Q, A, InflightTrees::instances>(accel, rays, out);
-  else if (pays_to_prefetch(accel, rays))
-    run_interleaved<Q, A, InflightTrees::large>(accel, rays, out);
-  else
-    run_interleaved<Q, A, InflightTrees::small>(accel, rays, out);
+  trace_interleaved<Q, A>(accel, rays, BatchChunks::all<A>(rays), out);
 }
 
 }  // namespace oktett

@@ -35,7 +35,7 @@ class TriangleSteps {
   static constexpr bool kEnter = kTrees == InflightTrees::instances;
   static constexpr bool kPrefetch = kTrees != InflightTrees::small;
   static constexpr int kBlock = TriangleBlock::kSize;
-  static constexpr int kChunk = std::is_same_v<A, Avx512Isa> ? 16 : 8;
+  static constexpr int kChunk = kChunkRays<A>;
   static constexpr int kLeafRays = kBlockRays<A>;
 
   using Tails = InflightQueues::Tails;
