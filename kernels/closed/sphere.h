@@ -1,6 +1,7 @@
 #pragma once
 /// \file Spheres: the geometric method (the default) and the algebraic one.
 
+#include <cmath>
 #include <numbers>
 
 #include "core/lane_math.h"
@@ -76,14 +77,21 @@ struct Sphere {
     return meets;
   }
 
+  /// A bound on the roots that are on a ray which ends at `tmax`: they are rounded to float before they are
+  /// compared with it. `T` is double or lanes of it.
+  template <class T>
+  OKTETT_INLINE static T last_root(const T& tmax) {
+    using std::abs;
+    return tmax + (abs(tmax) * T(0x1p-22) + T(0x1p-148));
+  }
+
   /// The same roots, but lanes in which none is on the ray may be left out: most spheres that the line of a
-  /// ray in flight meets lie behind it or beyond its end, which shows before the square root.
+  /// ray in flight meets lie behind it or beyond its end, which shows before the square root. `end` is
+  /// last_root() of the ray's end.
   template <class D>
-  OKTETT_INLINE static typename D::M roots_in_range(const RayLanes<D>& ray, const D& inverse,
+  OKTETT_INLINE static typename D::M roots_in_range(const RayLanes<D>& ray, const D& inverse, const D& end,
                                                     const Lanes<D>& s, D (&t)[2]) {
     const Chord<D> c = chord(ray, inverse, s);
-    // Distances are rounded to float before they are compared with the end of the ray.
-    const D end = ray.tmax + (abs(ray.tmax) * D(0x1p-22) + D(0x1p-148));
     // How far the middle of the chord lies outside of the ray; negative inside. Half the chord is compared
     // with it by squares, with room for their rounding.
     const D gap = max(ray.tmin - c.middle, c.middle - end);

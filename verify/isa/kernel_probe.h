@@ -90,7 +90,7 @@ struct AlgebraicSphere : Sphere {
 struct SphereInRange : Sphere {
   template <class D>
   OKTETT_INLINE static typename D::M roots(const RayLanes<D>& ray, const Lanes<D>& s, D (&t)[2]) {
-    return roots_in_range(ray, D(1.0) / dot_lanes(ray.d, ray.d), s, t);
+    return roots_in_range(ray, D(1.0) / dot_lanes(ray.d, ray.d), last_root(ray.tmax), s, t);
   }
 };
 

@@ -61,7 +61,9 @@ struct InflightQueues {
   }
 };
 
-/// Rays that wait for neither a node nor a block, sorted without branches by what they wait for.
+/// Rays that wait for neither a node nor a block, sorted without branches by what they wait for. `kLeaving`
+/// tells whether there may be rays on their way out of an instance.
+template <bool kLeaving>
 struct SortedOthers {
   using List = InflightRay * [kInflightRays + 1];
   List finished, at_spheres, at_leaf, leaving;
@@ -71,10 +73,10 @@ struct SortedOthers {
   OKTETT_INLINE SortedOthers(InflightRay* const* begin, InflightRay* const* end) {
     for (InflightRay* const* at = begin; at != end; ++at) {
       const NodeRef ref = (*at)->current;
-      const int none = ref.is_none(), out = ref.is_way_out(), spheres = ref.is_spheres();
-      *finished_end = *at_spheres_end = *at_leaf_end = *leaving_end = *at;
-      finished_end += none, leaving_end += out, at_spheres_end += spheres;
-      at_leaf_end += 1 - none - out - spheres;
+      const int none = ref.is_none(), out = kLeaving && ref.is_way_out(), spheres = ref.is_spheres();
+      *finished_end = *at_spheres_end = *at_leaf_end = *at;
+      if constexpr (kLeaving) *leaving_end = *at, leaving_end += out;
+      finished_end += none, at_spheres_end += spheres, at_leaf_end += 1 - none - out - spheres;
     }
   }
 };

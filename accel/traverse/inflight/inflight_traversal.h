@@ -38,7 +38,7 @@ class InflightTraversal : protected TriangleSteps<Q, A, kTrees> {
   /// Rays that are finished, at a leaf of the table, or on their way out of an instance.
   OKTETT_NOINLINE void other_round() {
     Tails tail = queues_.tails();
-    SortedOthers rays(queues_.others.head, tail.other);
+    SortedOthers<kEnter> rays(queues_.others.head, tail.other);
     queues_.others.head = tail.other;
     if constexpr (kEnter)
       for (InflightRay** at = rays.at_leaf; at != rays.at_leaf_end; ++at) prefetch_instance(accel_, **at);

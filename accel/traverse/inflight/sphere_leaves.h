@@ -40,13 +40,14 @@ class SphereLeaves {
     using F = Simd<float, kSpheres, A>;
     using D = Simd<double, kSpheres, A>;
     const Line& line = lines_[place];
+    const auto tmax = static_cast<double>(ray.tmax);
     const RayLanes<D> wide{{D(line.o[0]), D(line.o[1]), D(line.o[2])},
                            {D(line.d[0]), D(line.d[1]), D(line.d[2])},
                            D(line.tmin),
-                           D(ray.tmax)};
+                           D(tmax)};
     D roots[Sphere::kRoots];
-    const auto maybe =
-        Sphere::roots_in_range(wide, D(line.inverse), Sphere::load<D>(pool_, leaf.begin), roots);
+    const auto maybe = Sphere::roots_in_range(wide, D(line.inverse), D(Sphere::last_root(tmax)),
+                                              Sphere::load<D>(pool_, leaf.begin), roots);
     if (none(maybe)) return 0;
     const Vec3<F> unused{F(0.0f), F(0.0f), F(0.0f)};
     HitLanes<F> hit;
