@@ -36,9 +36,7 @@ Box shape_bounds(const Geometry& g, std::size_t local) {
   if (const auto* s = std::get_if<SpheresShape>(&g.shape)) {
     const SphereShape moved = moved_sphere(s->spheres[local], m);
     if (!(moved.radius > 0) || !is_finite(moved.center)) return {};
-    Sphere::Pool p;
-    Sphere::add(p, moved, 0);
-    return Sphere::bounds(p, 0);
+    return Sphere::bounds(moved);
   }
   if (const auto* s = std::get_if<DiskShape>(&g.shape)) {
     if (!(s->radius > 0) || !(length(s->normal) > 0)) return {};

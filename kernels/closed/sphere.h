@@ -128,12 +128,12 @@ struct Sphere {
     return meets;
   }
 
-  static Box bounds(const Pool& p, std::size_t i) {
-    const Vec3d c{p.x[i], p.y[i], p.z[i]};
+  static Box bounds(const SphereShape& s) {
     // `roots` finds hits a few roundings outside of the sphere, too.
-    const double r = p.radius[i] + 0x1p-45 * (p.radius[i] + max_component(abs(c)));
-    return {round_down(c - Vec3d{r, r, r}), round_up(c + Vec3d{r, r, r})};
+    const double r = s.radius + 0x1p-45 * (s.radius + max_component(abs(s.center)));
+    return {round_down(s.center - Vec3d{r, r, r}), round_up(s.center + Vec3d{r, r, r})};
   }
+  static Box bounds(const Pool& p, std::size_t i) { return bounds({{p.x[i], p.y[i], p.z[i]}, p.radius[i]}); }
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
     const Vec3d m = q - Vec3d{p.x[i], p.y[i], p.z[i]};
