@@ -157,7 +157,7 @@ TEST(InflightInstances, LimitsAllowForBothSides) {
     const auto chunk = std::make_unique<RayChunk<W, A>>();
     chunk->set(rays.span(), 0, box_extent(accel->bounds));
     const auto ray = std::make_unique<InflightRay>();
-    start_ray(*ray, *chunk, 0, accel->root);
+    start_ray(*ray, *chunk, 0, accel->root, true);
     ray->in.set(*accel);
     const InflightHead outer = *ray;
     const auto entering = std::make_unique<EnteringRays<W, A>>();

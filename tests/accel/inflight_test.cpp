@@ -252,7 +252,7 @@ TEST(Interleaved, NodesMissNoBox) {
     chunk->set(rays.span(), 0, extent);
     for (int i = 0; i < kRays; ++i) {
       if ((chunk->tame >> i & 1) == 0) continue;
-      start_ray(*inflight, *chunk, i, NodeRef::none());
+      start_ray(*inflight, *chunk, i, NodeRef::none(), true);
       Simd<float, BvhNode::kWidth, A> near;
       const unsigned found = node_inflight<A>(*inflight, node, near);
       for (int c = 0; c < 8; ++c) {

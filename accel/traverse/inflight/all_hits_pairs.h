@@ -63,7 +63,8 @@ class AllHitsTraversal {
         if ((chunk_.tame >> i & 1) == 0 || !accel_.unbounded.empty()) {
           trace_alone(ray);
         } else {
-          set_ray(group_[ray], chunk_, static_cast<int>(i));
+          set_lines(group_[ray], chunk_, static_cast<int>(i));
+          set_range(group_[ray], chunk_, static_cast<int>(i));
           if (accel_.root.is_triangles())
             push(leaves_, ray, accel_.root.bits());
           else if (!accel_.root.is_leaf())

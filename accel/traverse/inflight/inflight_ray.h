@@ -68,30 +68,42 @@ struct InflightRay : InflightHead {
 };
 static_assert(sizeof(InflightRay) / 64 % 2 == 1);
 
-/// Takes origin, direction and what nodes and triangles need of them from ray `i` of a chunk.
+/// Takes what nodes need of origin and direction from ray `i` of a chunk.
 template <int W, class A>
-OKTETT_INLINE void set_lines(InflightHead& ray, const RayChunk<W, A>& c, int i) {
+OKTETT_INLINE void set_node_lines(InflightHead& ray, const RayChunk<W, A>& c, int i) {
   for (int k = 0; k < 3; ++k) {
     ray.inv[k] = c.inv[k][i], ray.near_shift[k] = c.near_shift[k][i], ray.far_shift[k] = c.far_shift[k][i];
     ray.near_row[k] = near_offset(static_cast<std::uint32_t>(k), c.negative[k] >> i & 1);
-    ray.o[k] = c.o[k][i], ray.d[k] = c.d[k][i];
   }
   ray.slack = c.slack[i];
+}
+
+/// Takes origin and direction, and what triangles need of them.
+template <int W, class A>
+OKTETT_INLINE void set_triangle_lines(InflightHead& ray, const RayChunk<W, A>& c, int i) {
+  for (int k = 0; k < 3; ++k) ray.o[k] = c.o[k][i], ray.d[k] = c.d[k][i];
   ray.weight_scale = c.d_max[i] * kWeightError, ray.det_scale = c.d_max[i] * kVolumeError;
 }
 
-/// The same, and the range of the ray.
 template <int W, class A>
-OKTETT_INLINE void set_ray(InflightHead& ray, const RayChunk<W, A>& c, int i) {
-  set_lines(ray, c, i);
+OKTETT_INLINE void set_lines(InflightHead& ray, const RayChunk<W, A>& c, int i) {
+  set_node_lines(ray, c, i);
+  set_triangle_lines(ray, c, i);
+}
+
+/// Takes where ray `i` of a chunk begins and ends.
+template <int W, class A>
+OKTETT_INLINE void set_range(InflightHead& ray, const RayChunk<W, A>& c, int i) {
   ray.tmin = c.tmin[i];
   ray.set_end(c.tmax[i]);
 }
 
-/// Starts ray `i` of a chunk at `root`.
+/// Starts ray `i` of a chunk at `root`. `triangles`: whether the ray may meet triangles or go into instances.
 template <int W, class A>
-OKTETT_INLINE void start_ray(InflightRay& ray, const RayChunk<W, A>& c, int i, NodeRef root) {
-  set_ray(ray, c, i);
+OKTETT_INLINE void start_ray(InflightRay& ray, const RayChunk<W, A>& c, int i, NodeRef root, bool triangles) {
+  set_node_lines(ray, c, i);
+  if (triangles) set_triangle_lines(ray, c, i);
+  set_range(ray, c, i);
   ray.hit_lo = c.tmax[i], ray.candidate = kNoCandidate, ray.has_state = 0, ray.size = 0;
   ray.push(NodeRef::none(), -1), ray.push(root, 0);
 }

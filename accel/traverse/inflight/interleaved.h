@@ -118,7 +118,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
   }
 
   OKTETT_INLINE void start(InflightRay& ray, int i, Tails& tail) {
-    start_ray(ray, chunk_, i, accel_.root);
+    start_ray(ray, chunk_, i, accel_.root, triangles_);
     spheres_.start(&ray - inflight_, chunk_, i);
     if constexpr (Base::kInstances) ray.in.set(accel_);
     if constexpr (Q == Query::any) {
@@ -151,6 +151,8 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
   std::size_t next_ = 0, begin_ = 0;  ///< number of the next chunk, and where the present one begins
   int lane_ = 0, lanes_ = 0;          ///< the next ray of the present chunk, and how many rays that has
   bool has_entry_ = false;
+  /// Rays may meet triangles or go into instances.
+  const bool triangles_ = Base::kInstances || accel_.blocks.data() != nullptr;
   /// All unbounded shapes are planes, and there are some.
   const bool only_planes_ =
       !accel_.unbounded.empty() &&
