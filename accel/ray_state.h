@@ -52,11 +52,11 @@ struct alignas(64) RayState {
 
   /// Sets all lanes. Returns those that can hit anything: finite, with a direction and a range that is not
   /// empty (see Ray). `box`: bounds of what will be traced.
-  OKTETT_INLINE unsigned set(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1,
+  OKTETT_INLINE unsigned set(const Vec3<F>& origin, const Vec3<F>& ray_direction, const F& t0, const F& t1,
                              const Box& box) {
-    const unsigned lanes = set_rays(origin, direction, t0, t1);
+    const unsigned lanes = set_rays(origin, ray_direction, t0, t1);
     const F zero(0.0f);
-    direction = flush_direction(direction);
+    const Vec3<F> direction = flush_direction(ray_direction);
     const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
     const auto zx = (ax >= ay) & (ax >= az), zy = ~zx & (ay >= az);
     const F dm = max(az, max(ay, ax));
@@ -84,9 +84,10 @@ struct alignas(64) RayState {
   }
 
   /// Like `set`, but only origin, direction, range and hit: all that closed-form shapes need.
-  OKTETT_INLINE unsigned set_rays(const Vec3<F>& origin, Vec3<F> direction, const F& t0, const F& t1) {
+  OKTETT_INLINE unsigned set_rays(const Vec3<F>& origin, const Vec3<F>& ray_direction, const F& t0,
+                                  const F& t1) {
     const F zero(0.0f), big(std::numeric_limits<float>::max());
-    direction = flush_direction(direction);
+    const Vec3<F> direction = flush_direction(ray_direction);
     const F ax = abs(direction.x), ay = abs(direction.y), az = abs(direction.z);
     store(origin, o), store(direction, d);
     t0.store(tmin), t1.store(tmax);
