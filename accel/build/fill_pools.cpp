@@ -76,6 +76,7 @@ class PoolFiller {
     order = std::move(aligned);
   }
 
+  /// Sets what Accel::index_in_pool() returns for `item`.
   void set_pool_index(std::uint32_t item, std::uint32_t index) {
     const std::uint32_t g = accel_.geometry_of(item);
     accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = index;

@@ -273,8 +273,8 @@ class CsgChecker {
   void check_normal(const Ray& ray, const Hit& hit) {
     const SurfaceInteraction s = surface_interaction(*accel_, ray, hit);
     const Vec3f n = s.geometric_normal;
-    // The solid may lie above the surface and not below it: only on one scale, where there is an edge or a
-    // sliver near the hit, and on both if the normal is wrong.
+    // A wrong normal has the solid above the surface and not below it, on both scales. Near an edge or a
+    // sliver this happens with a right normal, but on one scale only.
     const Vec3l p(s.position), m(n);
     const auto points_inside = [&](long double step) {
       return inside_(p + m * step) && !inside_(p - m * step);

@@ -85,6 +85,7 @@ OKTETT_INLINE void set_triangle_lines(InflightHead& ray, const RayChunk<W, A>& c
   ray.weight_scale = c.d_max[i] * kWeightError, ray.det_scale = c.d_max[i] * kVolumeError;
 }
 
+/// Takes what nodes and triangles need of ray `i` of a chunk, but for its range.
 template <int W, class A>
 OKTETT_INLINE void set_lines(InflightHead& ray, const RayChunk<W, A>& c, int i) {
   set_node_lines(ray, c, i);

@@ -108,7 +108,7 @@ class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees
     has_entry_ = false;
     const std::size_t count = std::min(kBundleChunks, chunks_.count - next_);
     if (count < kBundleChunks / 4 || accel_.root.is_leaf()) return;
-    // With the rays between these chunks that are not traced here.
+    // The box also covers the rays between these chunks, which are not traced here.
     const std::size_t begin = begin_of(next_), last = begin_of(next_ + count - 1);
     const std::size_t end = std::min(last + Base::kChunk, rays_.size);
     const Box reach = reach_of<A>(rays_.part(begin, end - begin), extent_);
