@@ -135,8 +135,7 @@ class PathShading {
       to.sample[to.size] = rays_.sample[ray];
       to.distance[to.size] = rays_.distance[ray] + rays_.t[ray];
       to.bounces[to.size] = static_cast<std::uint8_t>(c_.bounces[k] + 1);
-      to.from[to.size] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k),
-                          !transmits_};
+      to.from[to.size] = c_.from[k];
     }
     to.transmitted += static_cast<std::uint64_t>(__builtin_popcount(bits(s.transmitted) & sent));
   }

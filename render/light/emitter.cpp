@@ -43,6 +43,23 @@ float emitter_pdf(const Emitter& emitter, const LightPoint& point, const Vec3f& 
   return pdf > 0 && std::isfinite(pdf) ? pdf : 0;
 }
 
+/// Directions from a point of a sphere into it.
+static constexpr double kInwardPdf = 1 / (2 * std::numbers::pi);
+
+std::optional<LightSample> sample_own_emitter(const Emitter& emitter, const LightPoint& point,
+                                              const SquareSample& s) {
+  const auto* sphere = std::get_if<SphereEmitter>(&emitter);
+  if (sphere == nullptr || !sphere->both_sides) return std::nullopt;
+  const Vec3d inward = normalize(Vec3d(sphere->center) - Vec3d(point.position));
+  const Vec3d chord = around(inward, s.x, s.y) * (2 * (1 - s.x) * double{sphere->radius});
+  return sample_at(chord, sphere->radiance, kInwardPdf, false);
+}
+
+float own_emitter_pdf(const Emitter& emitter) {
+  const auto* sphere = std::get_if<SphereEmitter>(&emitter);
+  return sphere != nullptr && sphere->both_sides ? static_cast<float>(kInwardPdf) : 0;
+}
+
 std::optional<LightBounds> light_bounds(const Emitter& emitter) {
   const auto bounds = std::visit(
       [](const auto& e) -> std::optional<LightBounds> {

@@ -102,6 +102,12 @@ std::optional<LightSample> sample_emitter(const Emitter& emitter, const LightPoi
 /// the direction may miss.
 float emitter_pdf(const Emitter& emitter, const LightPoint& point, const Vec3f& direction, float distance);
 
+/// sample_emitter and emitter_pdf for a point on the emitter's own surface, wherever rounding has moved it:
+/// flat emitters do not light themselves, and spheres only from within.
+std::optional<LightSample> sample_own_emitter(const Emitter& emitter, const LightPoint& point,
+                                              const SquareSample& s);
+float own_emitter_pdf(const Emitter& emitter);
+
 /// Radiance of an infinite emitter in the unit vector `direction` away from the point; black for emitters
 /// that have a place or are seen as points.
 Color infinite_radiance(const Emitter& emitter, const Vec3f& direction);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "core/mesh.h"
 #include "core/vec3.h"
 
 namespace oktett {
@@ -16,6 +17,9 @@ struct LightPoint {
   Vec3f normal;
   /// Light from behind the normal does not matter: the surface is opaque. Such light may still be sampled.
   bool front_only = false;
+  /// The emitter of the LightSet whose surface the point is on; kNoId: none. The position is rounded, so it
+  /// does not tell on which side of that surface the point is.
+  std::uint32_t on = kNoId;
 };
 
 /// Light that may reach a point from one direction, if nothing is in between.

@@ -83,7 +83,9 @@ std::optional<LightSet::Choice> LightSet::choose(const LightPoint& point, double
 
 std::optional<LightSample> LightSet::sample(const LightPoint& point, const Choice& chosen,
                                             const SquareSample& s) const {
-  auto sample = sample_emitter(emitters_[chosen.emitter], point, s);
+  const Emitter& emitter = emitters_[chosen.emitter];
+  auto sample =
+      chosen.emitter == point.on ? sample_own_emitter(emitter, point, s) : sample_emitter(emitter, point, s);
   if (!sample) return std::nullopt;
   sample->emitter = chosen.emitter;
   if (chosen.distant && !sample->delta && visible_.size() > 1) {
@@ -116,7 +118,8 @@ double LightSet::probability(const LightPoint& point, std::uint32_t emitter) con
 
 float LightSet::pdf(const LightPoint& point, std::uint32_t emitter, const Vec3f& direction,
                     float distance) const {
-  const float pdf = emitter_pdf(emitters_[emitter], point, direction, distance);
+  const float pdf = emitter == point.on ? own_emitter_pdf(emitters_[emitter])
+                                        : emitter_pdf(emitters_[emitter], point, direction, distance);
   return pdf > 0 ? static_cast<float>(pdf * probability(point, emitter)) : 0;
 }
 

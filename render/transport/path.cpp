@@ -20,6 +20,15 @@ const EnclosureStack* enclosures(const Wavefront& wavefront, std::size_t ray, co
   return behind ? &boundary->behind : &wavefront.paths.enclosures[ray];
 }
 
+/// See LightPoint::on.
+std::uint32_t own_emitter(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
+                          const ShadingPoint& p) {
+  const std::uint32_t material = material_index(*context.world, p.surface.user, p.surface.material_slot);
+  // A texture may be black here but not everywhere on the emitter.
+  const bool glows = !(context.world->materials[material].emission == Color{0, 0, 0});
+  return glows ? context.sampled->emitter_at(wavefront.hits[ray]) : kNoId;
+}
+
 /// Sends a ray to a light chosen at random.
 void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                   const SurfaceBsdf& bsdf, const LightPoint& from, const Choices& choices,
@@ -78,7 +87,7 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
   if (wavefront.rays.bounces[ray] > context.settings.depth) return;
 
   const SurfaceBsdf bsdf(p);
-  const LightPoint from{p.surface.position, p.ng, !bsdf.transmits()};
+  const LightPoint from{p.surface.position, p.ng, !bsdf.transmits(), own_emitter(context, wavefront, ray, p)};
   if (!bsdf.only_delta()) {
     sample_light(context, wavefront, ray, p, bsdf, from, choices, boundary);
     if (context.caustics != nullptr) add_caustics(context, wavefront, ray, p, bsdf);

@@ -133,7 +133,6 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   begin_block(context, wavefront, which, found, c);
   Shown shown[kMost];
   std::uint32_t asks[kMost];
-  bool front_only[kMost];
   std::size_t in_lanes = 0, asking = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = c.ray[k];
@@ -162,11 +161,12 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     }
     if (wavefront.rays.bounces[i] > context.settings.depth) continue;
     c.light_kind[k] = LightKind::none;
-    if (!surface.only_delta)
-      asks[asking] = static_cast<std::uint32_t>(k), front_only[asking++] = !surface.transmits;
+    c.from[k] = {InteractionBlock::get(found.position, k), InteractionBlock::get(c.ng, k), !surface.transmits,
+                 surface.glows ? context.sampled->emitter_at(wavefront.hits[i]) : kNoId};
+    if (!surface.only_delta) asks[asking++] = static_cast<std::uint32_t>(k);
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
   }
-  if (c.asks_lights) sample_lights(context, found, asks, front_only, asking, c);
+  if (c.asks_lights) sample_lights(context, asks, asking, c);
   if (context.light_groups != nullptr)
     for (std::size_t i = 0; i < asking; ++i)
       if (c.light_kind[asks[i]] != LightKind::none)

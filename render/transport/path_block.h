@@ -17,6 +17,7 @@ struct PathSurface {
   bool principled = false;  ///< which of the following holds
   bool transmits = false;   ///< light may pass to the other side
   bool only_delta = false;  ///< no light can be sampled
+  bool glows = false;       ///< the material emits light on one side at least
   Color emission{0, 0, 0};
   PhongSurface phong;
   PrincipledSurface layers;
@@ -51,6 +52,8 @@ struct PathBlock {
   std::uint32_t light_emitter[kMost];  ///< of the LightSet, where there is a sample
   float light_direction[3][kMost], light_distance[kMost], light_pdf[kMost];
   float light_color[3][kMost];  ///< radiance or irradiance that arrives, textures included
+
+  LightPoint from[kMost];  ///< for which lights are sampled, of the hits that are shaded in lanes
 };
 
 /// The columns of a wavefront's rays that a PathBlock is filled from.

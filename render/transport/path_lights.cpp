@@ -11,18 +11,17 @@ namespace {
 /// Samples lights for some hits of a block.
 class LightSampler {
  public:
-  LightSampler(const RenderContext& context, const InteractionBlock& found, PathBlock& block)
-      : context_(context), set_(context.sampled->set()), found_(found), c_(block) {}
+  LightSampler(const RenderContext& context, PathBlock& block)
+      : context_(context), set_(context.sampled->set()), c_(block) {}
 
-  void add(const std::uint32_t* entry, const bool* front_only, std::size_t count) {
+  void add(const std::uint32_t* entry, std::size_t count) {
     LightPoint from[LightGroup::kMost];
     double choices[LightGroup::kMost] = {};
     SquareSample places[LightGroup::kMost];
     LightSet::Choice chosen[LightGroup::kMost];
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t k = entry[i];
-      from[i] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k), front_only[i]};
-      choices[i] = c_.light[k], places[i] = {c_.light_x[k], c_.light_y[k]};
+      from[i] = c_.from[k], choices[i] = c_.light[k], places[i] = {c_.light_x[k], c_.light_y[k]};
     }
     set_.choose(render_code(context_.isa).lights.choose, {from, count}, choices, places, chosen);
     for (std::size_t i = 0; i < count; ++i) {
@@ -45,22 +44,27 @@ class LightSampler {
  private:
   void add(std::uint32_t k, const LightPoint& from, const LightSet::Choice& chosen) {
     const Emitter& emitter = set_.emitters()[chosen.emitter];
+    if (chosen.emitter == from.on) return add_alone(k, from, chosen);
     if (const auto* e = std::get_if<TriangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
-      return put(triangles_, k, chosen, e, from.front_only);
+      return put(triangles_, k, chosen, e);
     if (const auto* e = std::get_if<RectangleEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
-      return put(rectangles_, k, chosen, e, from.front_only);
+      return put(rectangles_, k, chosen, e);
     if (const auto* e = std::get_if<DiskEmitter>(&emitter); e != nullptr && is_finite(e->radiance))
-      return put(disks_, k, chosen, e, from.front_only);
+      return put(disks_, k, chosen, e);
     if (const auto* e = std::get_if<SphereEmitter>(&emitter); e != nullptr && is_outside(*e, from.position))
-      return put(spheres_, k, chosen, e, from.front_only);
+      return put(spheres_, k, chosen, e);
     if (const auto* e = std::get_if<PointEmitter>(&emitter)) return put_cone(k, chosen, light_cone(*e));
     if (const auto* e = std::get_if<SpotEmitter>(&emitter)) return put_cone(k, chosen, light_cone(*e));
     if (const auto* e = std::get_if<EnvironmentEmitter>(&emitter)) {
       if (map_ == nullptr) map_ = e;
-      if (map_ == e) return put(environment_, k, chosen, e, from.front_only);
+      if (map_ == e) return put(environment_, k, chosen, e);
     }
     if (const auto* e = std::get_if<DirectionalEmitter>(&emitter); e != nullptr && e->angle > 0)
-      return put(suns_, k, chosen, e, from.front_only);
+      return put(suns_, k, chosen, e);
+    add_alone(k, from, chosen);
+  }
+
+  void add_alone(std::uint32_t k, const LightPoint& from, const LightSet::Choice& chosen) {
     if (const auto sample = set_.sample(from, chosen, {c_.light_x[k], c_.light_y[k]})) set(k, *sample);
   }
 
@@ -70,18 +74,17 @@ class LightSampler {
     return square >= radius * radius && square > 0 && is_finite(e.radiance);
   }
 
-  void put(LightGroup& group, std::uint32_t k, const LightSet::Choice& chosen, const void* emitter,
-           bool front_only) {
+  void put(LightGroup& group, std::uint32_t k, const LightSet::Choice& chosen, const void* emitter) {
     const std::size_t i = group.count++;
     group.entry[i] = k, group.number[i] = chosen.emitter, group.emitter[i] = emitter;
-    group.probability[i] = chosen.probability, group.front_only[i] = front_only;
-    InteractionBlock::put(group.position, i, InteractionBlock::get(found_.position, k));
+    group.probability[i] = chosen.probability;
+    InteractionBlock::put(group.position, i, c_.from[k].position);
     group.x[i] = c_.light_x[k], group.y[i] = c_.light_y[k];
   }
 
   void put_cone(std::uint32_t k, const LightSet::Choice& chosen, const LightCone& cone) {
     cones_[points_.count] = cone;
-    put(points_, k, chosen, &cones_[points_.count], false);
+    put(points_, k, chosen, &cones_[points_.count]);
   }
 
   static void repeat_last(LightGroup& group) {
@@ -170,11 +173,7 @@ class LightSampler {
   void set_by_direction(const LightCode& code, const LightGroup& group) {
     EnvironmentValues values;
     LightPoint points[LightGroup::kMost];
-    for (std::size_t i = 0; i < group.count; ++i) {
-      const std::uint32_t k = group.entry[i];
-      points[i] = {InteractionBlock::get(found_.position, k), InteractionBlock::get(c_.ng, k),
-                   group.front_only[i]};
-    }
+    for (std::size_t i = 0; i < group.count; ++i) points[i] = c_.from[group.entry[i]];
     set_.environment_values(code.map, group.count, points,
                             {group.direction[0], group.direction[1], group.direction[2]}, values);
     for (std::size_t i = 0; i < group.count; ++i)
@@ -185,7 +184,6 @@ class LightSampler {
 
   const RenderContext& context_;
   const LightSet& set_;
-  const InteractionBlock& found_;
   PathBlock& c_;
   const EnvironmentEmitter* map_ = nullptr;
   LightGroup triangles_, rectangles_, disks_, spheres_, points_, environment_, suns_;
@@ -194,10 +192,10 @@ class LightSampler {
 
 }  // namespace
 
-void sample_lights(const RenderContext& context, const InteractionBlock& found, const std::uint32_t* entry,
-                   const bool* front_only, std::size_t count, PathBlock& c) {
-  LightSampler sampler(context, found, c);
-  sampler.add(entry, front_only, count);
+void sample_lights(const RenderContext& context, const std::uint32_t* entry, std::size_t count,
+                   PathBlock& c) {
+  LightSampler sampler(context, c);
+  sampler.add(entry, count);
   sampler.finish();
 }
 

@@ -18,7 +18,6 @@ struct LightGroup {
   std::uint32_t number[kMost];  ///< of the emitter
   const void* emitter[kMost];   ///< of the kind that the function expects
   double probability[kMost];    ///< of the emitter
-  bool front_only[kMost];       ///< as in LightPoint
   float position[3][kMost];
   double x[kMost], y[kMost];  ///< of the unit square; afterwards the place on the emitter
 
@@ -40,9 +39,8 @@ struct LightCode {
   void (*sun_directions)(LightGroup&);  ///< of suns of some size
 };
 
-/// Chooses lights for the entries listed in `entry` and fills their light columns, with the bits of
-/// LightSet::sample. `front_only` says for each of these what LightPoint needs.
-void sample_lights(const RenderContext& context, const InteractionBlock& found, const std::uint32_t* entry,
-                   const bool* front_only, std::size_t count, PathBlock& c);
+/// Chooses lights for the entries listed in `entry`, whose `from` is set, and fills their light columns, with
+/// the bits of LightSet::sample.
+void sample_lights(const RenderContext& context, const std::uint32_t* entry, std::size_t count, PathBlock& c);
 
 }  // namespace oktett
