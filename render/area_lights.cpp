@@ -120,6 +120,10 @@ LightSource light_at(const SceneLights& lights, const TextureSampler* textures,
 }  // namespace
 
 std::uint32_t AreaLights::pattern(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
+  if (at_random) {
+    const std::uint64_t pixel = std::uint64_t{y} << 32 | x;
+    return static_cast<std::uint32_t>((mix_bits(key + pixel * kGoldenBits) + sample) % patterns);
+  }
   // Bits of the place in its block such that next neighbours differ in the highest one.
   const std::uint32_t place = (x ^ y) % 2 << 3 | y % 2 << 2 | (x / 2 ^ y / 2) % 2 << 1 | y / 2 % 2;
   return ((place + sample) % kPlaces + sample / kPlaces * kPlaces) % patterns;
@@ -138,6 +142,7 @@ AreaLights area_lights(const SceneLights& lights, const TextureSampler* textures
   const std::uint32_t samples = std::max(settings.samples, settings.error > 0 ? settings.max_samples : 1);
   area.patterns = kPlaces * std::min((samples - 1) / kPlaces + 1, most);
   const std::uint64_t key = sequence_key(mix_bits(settings.seed), kDimension);
+  area.at_random = settings.error > 0, area.key = mix_bits(key);
   for (std::uint32_t i = 0; i < area.patterns * area.samples; ++i)
     area.points.push_back(light_at(lights, textures, lamps, sobol_point(i, key), area.samples));
   return area;

@@ -124,7 +124,8 @@ void render_tiles(const RenderContext& context, const std::vector<FinishedTile>&
 /// Gives the context, or those of all moments, the photons that the settings ask for; none if they want none.
 std::vector<Caustics> share_photons(Moments& moments, RenderContext& context, const RenderOptions& options) {
   if (!wants_photons(context.settings)) return {};
-  const PhotonOptions wanted{options.photons, options.keep_photons};
+  const std::uint32_t added = options.film != nullptr ? options.film->added() : 0;
+  const PhotonOptions wanted{options.photons, options.keep_photons, added};
   const std::span<RenderContext> all = moments.contexts();
   std::vector<Caustics> caustics =
       moments.things_move() ? make_caustics(all, wanted) : make_caustics({&context, 1}, wanted);

@@ -7,13 +7,17 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/random.h"
+#include "render/moments.h"
 #include "render/photon/fingerprint.h"
 #include "render/photon/trace_photons.h"
 
 namespace oktett {
 
 /// Below this cosine between light and surface the surface counts as lit at this cosine.
-static constexpr float kLeastCosine = 1e-3f;
+static constexpr float kLeastPhotonCosine = 1e-3f;
+/// The number of the random bits that choose a pixel's first pass.
+static constexpr std::uint32_t kPassDimension = 0xfffffffcu;
 
 Caustics::Caustics(std::shared_ptr<const PhotonMap> map, const PassRange& passes, const PhotonSource& source)
     : map_(std::move(map)),
@@ -23,15 +27,21 @@ Caustics::Caustics(std::shared_ptr<const PhotonMap> map, const PassRange& passes
   for (std::uint32_t i = 0; i < source.emitter_count(); ++i) brings_.push_back(source.brings(i) ? 1 : 0);
 }
 
-Color Caustics::light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p, const SurfaceBsdf& bsdf,
-                      Color* of_group) const {
-  const PhotonPass& pass = map_->passes[passes_.first + passes_.step * (sample % passes_.count)];
+std::uint32_t PassRange::pass(std::uint64_t key, std::uint32_t sample) const {
+  const std::uint32_t number = sample / cycle * asking + (sample % cycle - begin);
+  const std::uint64_t offset = at_random ? random_bits(key, 0, kPassDimension) % count : 0;
+  return first + step * static_cast<std::uint32_t>((number + offset) % count);
+}
+
+Color Caustics::light(std::uint64_t key, std::uint32_t sample, unsigned bounces, const ShadingPoint& p,
+                      const SurfaceBsdf& bsdf, Color* of_group) const {
+  const PhotonPass& pass = map_->passes[passes_.pass(key, sample)];
   Color sum;
   pass.visit_near(p.surface.position, p.ng, [&](const Photon& photon, float weight) {
     if (photon.bounces + bounces > depth_) return;
     const Vec3f to_light = -unpack_direction(photon.direction);
     // Photons arrive in proportion to the cosine at the true surface.
-    const float cosine = std::max(kLeastCosine, std::abs(dot(to_light, p.ng)));
+    const float cosine = std::max(kLeastPhotonCosine, std::abs(dot(to_light, p.ng)));
     const Color found = bsdf.evaluate(to_light).value * photon.power * (weight / cosine);
     sum += found;
     if (of_group != nullptr) of_group[photon.light_group] += found;
@@ -78,8 +88,10 @@ std::vector<Caustics> make_caustics(std::span<const RenderContext> moments, cons
   const IntegratorSettings& s = moments.front().settings;
   const auto count = static_cast<std::uint32_t>(moments.size());
   const PhotonPlan plan = photon_plan(s, count);
-  const std::uint32_t samples = s.error > 0 ? std::max(s.samples, s.max_samples) : s.samples;
-  const std::uint32_t asked = std::min(plan.passes, samples);
+  // Passes that no sample asks are left out where that changes no other sample's pass.
+  const bool one_each = s.error == 0 && count == 1;
+  const std::uint32_t samples = std::min(s.samples, ~options.added_samples) + options.added_samples;
+  const std::uint32_t asked = one_each ? std::min(plan.passes, samples) : plan.passes;
   std::shared_ptr<const PhotonMap> map = options.given;
   if (map != nullptr) {
     const std::string differs = difference(*map, plan, fingerprint(unseen, sources, plan));
@@ -91,8 +103,15 @@ std::vector<Caustics> make_caustics(std::span<const RenderContext> moments, cons
     map = traced;
   }
   std::vector<Caustics> caustics;
-  for (std::uint32_t m = 0; m < count; ++m)
-    caustics.push_back({map, {m, count, (asked - m + count - 1) / count}, sources[m]});
+  for (std::uint32_t m = 0; m < count; ++m) {
+    PassRange passes{.first = m, .step = count, .count = (asked - m + count - 1) / count};
+    if (count > 1) {
+      passes.cycle = s.samples, passes.begin = first_sample_of_moment(m, count, s.samples);
+      passes.asking = first_sample_of_moment(m + 1, count, s.samples) - passes.begin;
+    }
+    passes.at_random = s.error > 0;
+    caustics.push_back({map, passes, sources[m]});
+  }
   return caustics;
 }
 

@@ -16,9 +16,19 @@
 
 namespace oktett {
 
-/// Passes number `first`, first + step, ..., `count` of them.
+/// Which passes the samples of a pixel ask, each the next one.
 struct PassRange {
+  /// Passes number `first`, first + step, ..., `count` of them.
   std::uint32_t first = 0, step = 1, count = 1;
+  /// The samples that ask: of each `cycle`, `asking` from number `begin` on.
+  std::uint32_t cycle = 1, begin = 0, asking = 1;
+  /// Each pixel begins with a pass chosen at random, else with the first. In adaptive sampling the number of
+  /// a pixel's samples follows from its neighbours' samples. If these asked the same passes as its own, that
+  /// number would depend on its own light, and its mean would be biased.
+  bool at_random = false;
+
+  /// The pass for sample number `sample` of the pixel whose random numbers have `key`.
+  std::uint32_t pass(std::uint64_t key, std::uint32_t sample) const;
 };
 
 /// The photons of a scene, or of one moment of it, and which lights they stand for.
@@ -29,10 +39,10 @@ class Caustics {
   const std::shared_ptr<const PhotonMap>& map() const { return map_; }
 
   /// Light from photons that leaves `p` towards the camera, for a path that reached `p` after `bounces`
-  /// bounces and belongs to sample number `sample` of its pixel. Adds the light of each light group to
-  /// `of_group`, if that is not null.
-  Color light(std::uint32_t sample, unsigned bounces, const ShadingPoint& p, const SurfaceBsdf& bsdf,
-              Color* of_group = nullptr) const;
+  /// bounces and belongs to sample number `sample` of the pixel whose random numbers have `key`. Adds the
+  /// light of each light group to `of_group`, if that is not null.
+  Color light(std::uint64_t key, std::uint32_t sample, unsigned bounces, const ShadingPoint& p,
+              const SurfaceBsdf& bsdf, Color* of_group = nullptr) const;
 
   /// Whether the light of this emitter that passes mirrors or glass on its way to a surface is left to
   /// photons.
@@ -60,6 +70,7 @@ PhotonPlan photon_plan(const IntegratorSettings& settings, std::uint32_t moments
 struct PhotonOptions {
   std::shared_ptr<const PhotonMap> given;  ///< used if it is for this scene; null: photons are traced
   bool all_passes = false;                 ///< trace also those that no sample of a pixel asks for
+  std::uint32_t added_samples = 0;         ///< more samples of each pixel than the settings say
 };
 
 /// Traces the photons that the settings ask for, or takes those given. Throws Error if these are for another

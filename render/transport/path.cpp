@@ -51,8 +51,9 @@ void add_caustics(const RenderContext& context, Wavefront& wavefront, std::size_
   const Color throughput = wavefront.rays.throughput[ray];
   Color of_group[kMostLightGroups];
   const bool grouped = context.light_groups != nullptr;
+  const std::uint32_t sample = wavefront.rays.sample[ray];
   const Color light =
-      context.caustics->light(wavefront.samples.number[wavefront.rays.sample[ray]],
+      context.caustics->light(wavefront.samples.key[sample], wavefront.samples.number[sample],
                               wavefront.rays.bounces[ray], p, bsdf, grouped ? of_group : nullptr);
   wavefront.radiance.add(ray, throughput * light);
   for (std::size_t group = 0; group < wavefront.samples.grouped.size(); ++group)

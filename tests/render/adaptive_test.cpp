@@ -126,6 +126,65 @@ TEST(Adaptive, TheMeanIsUnbiased) {
   EXPECT_LT(squares / blocks, 1.3);
 }
 
+/// The mean light of a picture over some seeds, and its standard deviation.
+struct MeanLight {
+  double mean = 0, deviation = 0;
+};
+
+MeanLight mean_light(Scene scene, std::uint32_t seeds) {
+  double sum = 0, square = 0;
+  for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+    scene.integrator.seed = seed;
+    const Picture p = run(scene, [](RenderOptions& o) { o.data_layers = false; }).picture;
+    double light = 0;
+    for (const float x : p.find("G")->values) light += static_cast<double>(x) / (p.width * p.height);
+    sum += light, square += light * light;
+  }
+  const double mean = sum / seeds, variance = std::max(0.0, square / seeds - mean * mean);
+  return {mean, std::sqrt(variance / (seeds - 1))};
+}
+
+void expect_same_mean(Scene scene, std::uint32_t seeds, double error, std::uint32_t most) {
+  const std::uint32_t first = scene.integrator.samples;
+  scene.integrator.samples = most;
+  const MeanLight want = mean_light(scene, seeds);
+  scene.integrator.samples = first, scene.integrator.error = error, scene.integrator.max_samples = most;
+  const MeanLight got = mean_light(scene, seeds);
+  const double deviation = std::hypot(want.deviation, got.deviation);
+  EXPECT_LT(deviation, 0.05 * want.mean) << "the test sees a bias of 20 %";
+  EXPECT_LT(std::abs(got.mean - want.mean), 4 * deviation) << got.mean << " instead of " << want.mean;
+}
+
+// All pixels ask the same passes of photons, of which the first samples see few. Four first samples of all
+// pixels that ask the same four passes would say where these happen to be bright.
+TEST(Adaptive, CausticsAreUnbiased) {
+  Scene scene = bare_scene(32);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.samples = 4, scene.integrator.depth = 6;
+  scene.integrator.caustics.photons = 60, scene.integrator.caustics.radius = 0.12;
+  scene.camera.from = {0, 6, 0.01}, scene.camera.at = {0, 0, 0}, scene.camera.fov = 40;
+  scene.lights = {PointLight{{0, 1.5, 0}, {10, 10, 10}, true}};
+  add_object(scene, PlaneShape{{0, 1, 0}, 0}, add_material(scene, diffuse({0.7f, 0.7f, 0.7f})));
+  add_object(scene, SphereShape{{0, 1.5, 0}, 0.5}, add_material(scene, glass(1.5f)));
+  expect_same_mean(scene, 40, 0.1, 64);
+}
+
+// The points of area lights are shared by pixels, too: here few of them shine through a slit.
+TEST(Adaptive, PointsOfAreaLightsAreUnbiased) {
+  Scene scene = bare_scene(32);
+  scene.integrator.kind = IntegratorKind::whitted;
+  scene.integrator.samples = 4, scene.integrator.depth = 1;
+  scene.integrator.light_samples = 1, scene.integrator.penumbra_factor = 1;
+  scene.camera.from = {0, 3, 0.01}, scene.camera.at = {0, 0, 0}, scene.camera.fov = 40;
+  const std::uint32_t white = add_material(scene, diffuse({1, 1, 1}));
+  add_object(scene, PlaneShape{{0, 1, 0}, 0}, white);
+  add_object(scene, BoxShape{{-9, 3.2, -9}, {2, 3.3, 9}}, white);
+  add_object(scene, BoxShape{{2.1, 3.2, -9}, {9, 3.3, 9}}, white);
+  add_object(scene, MeshShape{parallelogram({-3, 4, -3}, {6, 0, 0}, {0, 0, 6}), {}, false},
+             add_material(scene, glowing({1, 1, 1})));
+  expect_same_mean(scene, 60, 0.2, 256);
+}
+
 // The mean relative error over the picture is near the one that was asked for where the limit is not reached.
 TEST(Adaptive, TheErrorIsAboutTheStatedOne) {
   Scene scene = hard_scene(4096);

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
+#include "core/random.h"
+#include "render/moments.h"
 #include "render/photon/casters.h"
+#include "render/photon/caustics.h"
 #include "tests/render/photon_support.h"
 
 namespace oktett::caustics_test {
@@ -160,6 +164,38 @@ TEST(Caustics, SurfacesWithinGlassAndSkies) {
   CausticSettings caustics;
   caustics.photons = 20000, caustics.passes = 64;
   expect_same_light(scene, caustics, 0.01);
+}
+
+// At each moment, and in every cycle of samples, the samples of a pixel ask one pass of the moment after the
+// other.
+TEST(Caustics, SamplesOfAMomentAskItsPassesInTurn) {
+  constexpr std::uint32_t kPasses = 16;
+  for (const auto& [moments, cycle] : {std::pair{4u, 4u}, std::pair{3u, 8u}, std::pair{1u, 5u}})
+    for (std::uint32_t m = 0; m < moments; ++m) {
+      PassRange range{.first = m, .step = moments, .count = (kPasses - m + moments - 1) / moments};
+      range.cycle = cycle, range.begin = first_sample_of_moment(m, moments, cycle);
+      const std::uint32_t end = first_sample_of_moment(m + 1, moments, cycle);
+      range.asking = end - range.begin;
+      std::uint32_t asked = 0;
+      for (std::uint32_t sample = 0; sample < 20 * cycle; ++sample) {
+        if (sample % cycle < range.begin || sample % cycle >= end) continue;
+        EXPECT_EQ(range.pass(1, sample), m + moments * (asked++ % range.count)) << sample;
+      }
+      EXPECT_GE(asked, 20u);
+    }
+}
+
+// From a random place on, all passes are asked equally often.
+TEST(Caustics, RandomFirstPassesAreSpreadEvenly) {
+  PassRange range{.first = 1, .step = 2, .count = 8};
+  range.at_random = true;
+  int counts[17] = {};
+  for (std::uint64_t key = 0; key < 8000; ++key) {
+    const std::uint32_t first = range.pass(mix_bits(key), 0);
+    ++counts[first];
+    EXPECT_EQ(range.pass(mix_bits(key), 3), 1 + (first - 1 + 6) % 16);
+  }
+  for (int pass = 1; pass < 17; pass += 2) EXPECT_NEAR(counts[pass], 1000, 130) << pass;
 }
 
 TEST(Caustics, TheSameBitsForAllThreadsAndInstructionSets) {

@@ -154,6 +154,20 @@ TEST(FilmState, AddedSamplesAreThoseOfALongerRender) {
   }
 }
 
+/// Added samples ask the passes of photons that they would ask in a longer render.
+TEST(FilmState, AddedSamplesAskFurtherPhotons) {
+  Case few{"few", balls(IntegratorKind::path, 3)};
+  add_object(few.scene, SphereShape{{0, 0, 2}, 0.5}, add_material(few.scene, glass(1.5f)));
+  few.scene.integrator.caustics.photons = 300, few.scene.integrator.caustics.radius = 0.2;
+  Case many = few;
+  many.scene.integrator.samples = 8;
+  FilmState film(FilmShare{}, 5);
+  const Picture longer = rendered(many);
+  EXPECT_EQ(difference(rendered(few, &film), longer), "");
+  many.scene.integrator.caustics.passes = 1;
+  EXPECT_NE(difference(rendered(many), longer), "") << "there are caustics";
+}
+
 TEST(FilmState, WhatMovesGetsWholeRoundsOfSamples) {
   const Case moving = cases().back();
   FilmState film(FilmShare{}, 3);
