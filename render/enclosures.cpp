@@ -67,7 +67,11 @@ Boundary boundary_at(const World& world, const EnclosureStack& before, const Sur
   if (priority == kNoPriority) return b;
   const Enclosure* around = filling(world, front ? before : b.behind);
   if (around == nullptr || material_of(world, *around).priority == kNoPriority) return b;
-  b.hidden = material_of(world, *around).priority > priority;
+  const std::int32_t other = material_of(world, *around).priority;
+  // On the way out a solid of the same priority hides the boundary, too, if it was entered later: it fills
+  // both sides.
+  const bool left = !front && b.behind.size() < before.size();
+  b.hidden = other > priority || (left && other == priority && filling(world, before)->solid != e.solid);
   b.ior = ior / around->ior;
   return b;
 }

@@ -9,6 +9,7 @@
 #include "accel/placed_geometry.h"
 #include "core/math.h"
 #include "core/mesh_triangle.h"
+#include "render/enclosures.h"
 #include "render/light/rectangle_pair.h"
 #include "render/light/sky.h"
 #include "render/light_groups.h"
@@ -99,7 +100,9 @@ class EmitterCollector {
 
  private:
   static bool can_sample(const Material& m) {
-    return !(m.emission == Color{0, 0, 0}) && m.opacity == 1 && m.opacity_texture == kNoId;
+    // Where another solid hides the surface it gives no light, which only rays that come there find out.
+    const bool may_be_hidden = encloses(m) && m.priority != kNoPriority;
+    return !(m.emission == Color{0, 0, 0}) && m.opacity == 1 && m.opacity_texture == kNoId && !may_be_hidden;
   }
 
   bool may_glow(const PlacedGeometry& p) const {

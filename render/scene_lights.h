@@ -28,9 +28,9 @@ AimedProfile profile_of(const SpotLight& light);
 ///
 /// Surfaces that glow are sampled if they are triangles (of which two that follow each other and cover a
 /// rectangle count as one emitter, unless they have a texture), spheres, disks or rectangles (polygons of
-/// four corners) which no combination cuts, with a material without holes; spheres and disks only without a
-/// texture of emission and if their transform keeps angles. All other glowing surfaces give light to the
-/// paths that happen to meet them.
+/// four corners) which no combination cuts, with a material without holes that no other solid can hide;
+/// spheres and disks only without a texture of emission and if their transform keeps angles. All other
+/// glowing surfaces give light to the paths that happen to meet them.
 class SceneLights {
  public:
   /// The lights of `scene`, whose lights are filled in, and if the integrator samples them, of the glowing

@@ -105,9 +105,12 @@ float sun_pdf(const DirectionalEmitter& e) {
 }
 
 static bool in_disk(const DirectionalEmitter& e, const Vec3f& direction) {
-  // The square of the chord between the directions keeps its accuracy for small angles.
+  // The square of the chord between the directions keeps its accuracy for small angles. Directions are
+  // rounded, and those that were chosen in a very small disk must be found in it.
+  constexpr double kRounding = 0x1p-23;
+  const double longest = std::sqrt(2 * e.height) + kRounding;
   const Vec3d chord = Vec3d(direction) - Vec3d(e.direction);
-  return dot(chord, chord) <= 2 * e.height;
+  return dot(chord, chord) <= longest * longest;
 }
 
 std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint&,

@@ -63,7 +63,7 @@ void pass_media(const RenderContext& context, Wavefront& wavefront) {
     wavefront.rays.throughput.set(i, after);
     // In the mean this covers 1 - transmittance of the pixel.
     if (wavefront.rays.from_camera[i])
-      wavefront.samples.alpha[wavefront.rays.sample[i]] += before.x - after.x;
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += channel_mean(before) - channel_mean(after);
     if (!passage.scattered) continue;
     wavefront.hits.item[i] = kNoId;
     wavefront.hits.t[i] = static_cast<float>(passage.t);

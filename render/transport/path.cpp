@@ -75,7 +75,10 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
   const Choices choices(wavefront, ray);
   if (p.opacity < 1 && choices.number(Decision::hole) >= p.opacity)
     return pass_straight(wavefront, ray, p, boundary);
-  if (wavefront.rays.from_camera[ray]) cover(context, wavefront, ray, 1);
+  if (wavefront.rays.from_camera[ray]) {
+    record_first_hit(context, wavefront, ray, {p.surface, p.color, p.opacity});
+    cover(context, wavefront, ray, 1);
+  }
 
   const Color throughput = wavefront.rays.throughput[ray];
   if (!(p.emission == Color{0, 0, 0})) {

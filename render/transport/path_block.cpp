@@ -145,7 +145,6 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     if (surface.alone) {
       const ShadingPoint p =
           shading_point(context, wavefront.rays.rays[i], wavefront.hits[i], history, found[k]);
-      if (from_camera) record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
       shade_path(context, wavefront, i, p);
       continue;
     }

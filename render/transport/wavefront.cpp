@@ -92,7 +92,7 @@ void cover_background(const RenderContext& context, Wavefront& wavefront) {
   if (!context.opaque_background || context.all_opaque) return;
   for (std::size_t i = 0; i < wavefront.rays.size(); ++i)
     if (wavefront.rays.from_camera[i] && wavefront.hits.item[i] == kNoId)
-      wavefront.samples.alpha[wavefront.rays.sample[i]] += wavefront.rays.throughput[i].x;
+      wavefront.samples.alpha[wavefront.rays.sample[i]] += channel_mean(wavefront.rays.throughput[i]);
 }
 
 /// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
@@ -152,8 +152,10 @@ class HitShader {
       const bool from_camera = wavefront_.rays.from_camera[i] != 0;
       const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
                                            {wavefront_.rays.distance[i], from_camera}, found_[k]);
-      if (from_camera) record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
-      if (from_camera && !draws_holes) cover(context_, wavefront_, i, p.opacity);
+      if (from_camera && !draws_holes) {
+        record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
+        cover(context_, wavefront_, i, p.opacity);
+      }
       integrator_(context_, wavefront_, i, p);
     }
   }
@@ -268,7 +270,8 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
 
 void cover(const RenderContext& context, Wavefront& wavefront, std::size_t ray, float opacity) {
   if (context.all_opaque) return;
-  wavefront.samples.alpha[wavefront.rays.sample[ray]] += wavefront.rays.throughput[ray].x * opacity;
+  wavefront.samples.alpha[wavefront.rays.sample[ray]] +=
+      channel_mean(wavefront.rays.throughput[ray]) * opacity;
 }
 
 void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::size_t ray,

@@ -119,6 +119,9 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
 /// because no sample of the pixels met anything and the background is black.
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront);
 
+/// What alpha takes of light that is tinted.
+inline float channel_mean(const Color& c) { return (c.x + c.y + c.z) / 3; }
+
 /// Adds the hit of entry `ray`, a camera ray, to the alpha of its sample. `opacity`: the part of what lies
 /// behind that the surface hides.
 void cover(const RenderContext& context, Wavefront& wavefront, std::size_t ray, float opacity);

@@ -78,6 +78,26 @@ TEST(Cryptomatte, CoverageIsThatOfThePixel) {
   }
 }
 
+// Path tracing passes a surface that is partly a hole as often as it is one: then what lies behind covers.
+TEST(Cryptomatte, HolesShowWhatLiesBehind) {
+  Scene scene = bare_scene(4);
+  scene.integrator.kind = IntegratorKind::path;
+  scene.integrator.samples = 1024;
+  scene.film.cryptomatte = true;
+  Material veil = diffuse({1, 0, 0});
+  veil.name = "veil", veil.opacity = 0.25f;
+  add_object(scene, BoxShape{{-9, -9, -0.1}, {9, 9, 0}}, add_material(scene, veil));
+  scene.objects.back().name = "front";
+  add_object(scene, PlaneShape{{0, 0, 1}, -1}, add_material(scene, diffuse({1, 1, 1})));
+  scene.objects.back().name = "wall";
+  const Picture p = run(scene).picture;
+  // The box has two sides.
+  const float passed = 0.75f * 0.75f;
+  EXPECT_NEAR(coverage(p, "CryptoObject", "front", 1, 1), 1 - passed, 0.02f);
+  EXPECT_NEAR(coverage(p, "CryptoMaterial", "veil", 1, 1), 1 - passed, 0.02f);
+  EXPECT_NEAR(coverage(p, "CryptoObject", "wall", 1, 1), passed, 0.02f);
+}
+
 TEST(Cryptomatte, IsWrittenOnlyOnDemand) {
   Scene scene = two_boxes();
   EXPECT_EQ(run(scene).picture.attributes.size(), 8u);

@@ -345,6 +345,38 @@ TEST(NestedDielectrics, HiddenBoundariesDoNotShadow) {
   EXPECT_LT(hidden.error.x, 3 * clear.error.x) << "the lamp is sampled through the box";
 }
 
+// Of solids of the same priority the one that was entered last fills the space. So the boundary where the
+// path leaves the other one, within it, does nothing: a slab of glass shows (1 - R) / (1 + R) of the light
+// behind it, R = 1/25, also if another solid of index 1 reaches into it.
+TEST(NestedDielectrics, OfEqualPrioritiesTheLaterSolidHidesTheEarlier) {
+  for (const bool reaches_in : {false, true}) {
+    Scene scene = medium_scene(256, 12);
+    Material air = glass(1), slab = glass(1.5f);
+    air.priority = slab.priority = 1;
+    if (reaches_in) add_object(scene, BoxShape{{-9, -9, -0.5}, {9, 9, 1}}, add_material(scene, air));
+    add_object(scene, BoxShape{{-9, -9, -2}, {9, 9, 0}}, add_material(scene, slab));
+    add_object(scene, PlaneShape{{0, 0, 1}, -3}, add_material(scene, glowing({1, 1, 1})));
+    EXPECT_NEAR(mean_of(run(scene).picture).value.x, 0.96 / 1.04, 0.005) << reaches_in;
+  }
+}
+
+// A lamp of glass in a solid of higher priority is not there.
+TEST(NestedDielectrics, HiddenLampsGiveNoLight) {
+  for (const int around : {0, 2}) {
+    Scene scene = medium_scene(16, 4);
+    Material air = glass(1), lamp = glass(1);
+    air.priority = around, lamp.priority = 1, lamp.emission = {5, 5, 5};
+    add_object(scene, BoxShape{{-9, -9, -0.5}, {9, 9, 4}}, add_material(scene, air));
+    add_object(scene, SphereShape{{1, 0, 0.5}, 0.4}, add_material(scene, lamp));
+    add_object(scene, DiskShape{{0, 0, -0.4}, {0, 0, 1}, 9}, add_material(scene, diffuse({1, 1, 1})));
+    const double light = mean_of(run(scene).picture).value.x;
+    if (around > 1)
+      EXPECT_EQ(light, 0);
+    else
+      EXPECT_GT(light, 0.1);
+  }
+}
+
 // Whitted's glass attenuates by Beer's law, with and without data layers, which take another way; boundaries
 // without a surface are invisible to it.
 TEST(Interiors, WhittedAttenuatesLightInGlass) {

@@ -216,6 +216,11 @@ TEST(MediumTransport, AlphaIsWhatTheMediumTakes) {
   EXPECT_NEAR(alpha(), 1 - std::exp(-1.0), 1e-5);
   scene.media[0] = medium({0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f});
   EXPECT_NEAR(alpha(), 1 - std::exp(-1.0), 0.01);
+  // All channels count alike.
+  for (const auto& absorption : {Color{0, 0, 1.5f}, Color{0, 1.5f, 0}, Color{1.5f, 0, 0}}) {
+    scene.media[0] = medium(absorption, {0, 0, 0});
+    EXPECT_NEAR(alpha(), (1 - std::exp(-1.5)) / 3, 1e-5);
+  }
   add_wall(scene);
   EXPECT_NEAR(alpha(), 1, 1e-5);
 }
