@@ -361,6 +361,32 @@ TEST(ReadImage, DamagedFilesAreErrorsOrPictures) {
 
 // A header of a few bytes must not make the reader reserve memory for what it claims.
 TEST(ReadImage, ClaimedSizesAreBounded) {
+TEST(ReadImage, TruncatedTiffsAreErrors) {
+  const TempDir dir;
+  for (const char* compression : {"none", "zip", "lzw"})
+    for (const int tile : {0, 64}) {
+      const std::string path = dir.file("a.tif");
+      OIIO::ImageSpec spec(256, 128, 3, OIIO::TypeFloat);
+      spec.attribute("compression", compression);
+      spec.tile_width = spec.tile_height = tile;
+      std::vector<float> numbers(256 * 128 * 3);
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = 1 + std::sin(static_cast<float>(i * i % 9973));
+      const auto output = OIIO::ImageOutput::create(path);
+      ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeFloat, numbers.data()) &&
+                  output->close());
+      EXPECT_EQ(read_image(path).find("R")->values[1], numbers[3]);
+      fs::resize_file(path, fs::file_size(path) / 2);
+      std::string message;
+      try {
+        read_image(path);
+      } catch (const Error& error) {
+        message = error.what();
+      }
+      EXPECT_EQ(message.find(path + ": cannot read the image: "), 0u) << compression << ": " << message;
+    }
+}
+
   const TempDir dir;
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n";
   EXPECT_EQ(kind_of([&] { read_image(dir.write("a.hdr", header)); }), ErrorKind::io);

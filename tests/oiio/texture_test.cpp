@@ -185,19 +185,22 @@ TEST(ImageTextures, MissingAndDamagedFilesWarnOnceAndAreWhite) {
   for (int i = 0; i < 64 * 64 * 3; ++i) noise.push_back(static_cast<std::uint8_t>(random()));
   const std::string cut = write_pixels(dir.file("cut.bmp"), 64, 64, 3, noise);
   std::filesystem::resize_file(cut, std::filesystem::file_size(cut) / 2);
+  // Its reader goes on behind the rows that are missing.
+  const std::string rows = write_pixels(dir.file("rows.tif"), 64, 64, 3, noise);
+  std::filesystem::resize_file(rows, std::filesystem::file_size(rows) / 2);
   Texture missing = texture_of(dir.file("missing.png"));
   missing.gain = 0.5f;
   const ImageTextures textures({missing, texture_of(dir.write("garbage.jpg", "no image")), texture_of(cut),
                                 texture_of(checkers(dir)), missing, texture_of(dir.path().string()),
-                                texture_of(dir.write("empty.png", "")), texture_of("")});
-  for (const std::uint32_t i : {0u, 1u, 2u, 4u, 5u, 6u, 7u, 99u, kNoId}) {
+                                texture_of(dir.write("empty.png", "")), texture_of(""), texture_of(rows)});
+  for (const std::uint32_t i : {0u, 1u, 2u, 4u, 5u, 6u, 7u, 8u, 99u, kNoId}) {
     EXPECT_EQ(textures.color(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Color{1, 1, 1})) << i;
     EXPECT_EQ(textures.value(i, {0.2f, 0.2f}, kNoChange, kNoChange), 1) << i;
     EXPECT_EQ(textures.normal(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Vec3f{0.5f, 0.5f, 1})) << i;
   }
   EXPECT_EQ(textures.color(3, {0.25f, 0.25f}, kNoChange, kNoChange), (Color{0, 0, 1}));
   // Readers clear the path of a texture that they have warned of.
-  ASSERT_EQ(textures.warnings().size(), 5u);
+  ASSERT_EQ(textures.warnings().size(), 6u);
   EXPECT_EQ(textures.warnings()[0].where.file, dir.file("missing.png"));
   EXPECT_NE(textures.warnings()[0].message.find("no such file"), std::string::npos);
   for (const Warning& warning : textures.warnings()) EXPECT_EQ(warning.message.find('\n'), std::string::npos);

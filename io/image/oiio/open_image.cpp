@@ -110,11 +110,20 @@ OIIO::ImageInput::unique_ptr open_image(const std::string& path, OIIO::Filesyste
   return input;
 }
 
+bool has_silent_error(const OIIO::ImageInput& input) {
+  return std::string_view(input.format_name()) == "tiff" && input.has_error();
+}
+
+bool read_pixels(OIIO::ImageInput& input, int begin, int end, OIIO::TypeDesc type, void* pixels) {
+  (void)input.geterror();  // of the header
+  return input.read_image(0, 0, begin, end, type, pixels) && !has_silent_error(input);
+}
+
 void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
                    void* pixels) {
   std::string why;
   try {
-    if (input.read_image(0, 0, begin, end, type, pixels)) return;
+    if (read_pixels(input, begin, end, type, pixels)) return;
     why = input.geterror();
   } catch (const std::bad_alloc&) {
     throw;

@@ -52,5 +52,13 @@ OIIO::ImageInput::unique_ptr open_image(const std::string& path,
 /// kind io, which names `path`, if the file is damaged.
 void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
                    void* pixels);
+/// Whether the last reading of pixels failed although it returned true: the reader of TIFF goes on behind
+/// strips that the file lacks, and only leaves a message. Messages of other readers may be mere warnings.
+bool has_silent_error(const OIIO::ImageInput& input);
+
+/// Reads channels [begin, end) of all pixels like OIIO::ImageInput::read_image; false also if
+/// has_silent_error.
+bool read_pixels(OIIO::ImageInput& input, int begin, int end, OIIO::TypeDesc type, void* pixels);
+
 
 }  // namespace oktett::oiio

@@ -146,7 +146,8 @@ class TextureInput final : public OIIO::ImageInput {
     try {
       pixels_.resize(count);
       OIIO::ImageInput& input = *opened_->input;
-      if (input.read_image(0, 0, 0, static_cast<int>(stored_), TypeDesc::FLOAT, pixels_.data())) return true;
+      if (oiio::read_pixels(input, 0, static_cast<int>(stored_), TypeDesc::FLOAT, pixels_.data()))
+        return true;
       why = input.geterror();
     } catch (const std::bad_alloc&) {
       memory_refused = true;
