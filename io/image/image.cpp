@@ -58,11 +58,24 @@ std::string unknown_format(const std::string& extension) {
          (near.empty() ? ": known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp" : near);
 }
 
-Picture one_pixel() {
+/// Writes `image` with OpenImageIO. Its writers get no file where that can be avoided: many do not report
+/// that the disk is full, and the one of JPEG ends the process.
+void write_by_library(OutputFile& file, const std::string& path, const FlatImage& image,
+                      const std::vector<Attribute>& attributes) {
+  const ImageLibrary& library = image_library();
+  if (const auto bytes = library.encode(path, image, attributes))
+    file.write({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+  else
+    library.write(path, file.temporary(), image, attributes);
+}
+
+/// Not smaller, because some writers (those of JPEG 2000 and FITS) fail with few pixels.
+Picture small_picture() {
+  constexpr std::uint32_t kSide = 64;
   Picture picture;
-  picture.width = picture.height = picture.full_width = picture.full_height = 1;
+  picture.width = picture.height = picture.full_width = picture.full_height = kSide;
   for (const char* name : {"R", "G", "B", "A"})
-    picture.planes.push_back({name, PlaneType::half_float, Column<float>(1, 0.5f), {}});
+    picture.planes.push_back({name, PlaneType::half_float, Column<float>(kSide * kSide, 0.5f), {}});
   return picture;
 }
 
@@ -84,7 +97,7 @@ void check_output(const std::string& path) {
   const std::optional<PixelLayout> layout = library.layout(path);
   if (!layout) throw Error(Location{path}, unknown_format(extension_of(path)));
   OutputFile file(path);
-  library.write(path, file.temporary(), flatten(one_pixel(), *layout), {});
+  write_by_library(file, path, flatten(small_picture(), *layout), {});
 }
 
 bool keeps_all_planes(const std::string& path) {
@@ -109,7 +122,7 @@ void write_image(const std::string& path, const Picture& picture, const ImageMet
   const std::optional<PixelLayout> layout = library.layout(path);
   if (!layout) throw Error(Location{path}, "unknown image format");
   OutputFile file(path);
-  library.write(path, file.temporary(), flatten(picture, *layout), attributes(metadata));
+  write_by_library(file, path, flatten(picture, *layout), attributes(metadata));
   file.commit();
 }
 

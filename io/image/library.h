@@ -26,7 +26,12 @@ class ImageLibrary {
   /// Of files with `path`'s extension; nothing if no such file can be written. The formats of
   /// io/image/writers.h are not asked for.
   virtual std::optional<PixelLayout> layout(const std::string& path) const = 0;
-  /// Writes to the file `temporary`, which has `path`'s extension; errors are reported as those of `path`.
+  /// The bytes of a file with `path`'s extension that holds `image`. Nothing if OpenImageIO writes files of
+  /// this format only by their names; then call `write`.
+  virtual std::optional<std::vector<unsigned char>> encode(
+      const std::string& path, const FlatImage& image, const std::vector<Attribute>& attributes) const = 0;
+  /// Writes to the file `temporary`, which has `path`'s extension, and reads it back; errors are reported as
+  /// those of `path`.
   virtual void write(const std::string& path, const std::string& temporary, const FlatImage& image,
                      const std::vector<Attribute>& attributes) const = 0;
   /// See read_image.

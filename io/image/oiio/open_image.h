@@ -6,7 +6,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "io/image/color.h"
 #include "io/image/library.h"
@@ -17,6 +19,8 @@ namespace oktett::oiio {
 class OpenImageIoLibrary final : public ImageLibrary {
  public:
   std::optional<PixelLayout> layout(const std::string& path) const override;
+  std::optional<std::vector<unsigned char>> encode(const std::string& path, const FlatImage& image,
+                                                   const std::vector<Attribute>& attributes) const override;
   void write(const std::string& path, const std::string& temporary, const FlatImage& image,
              const std::vector<Attribute>& attributes) const override;
   Picture read(const std::string& path) const override;
@@ -48,10 +52,6 @@ ColorEncoding color_encoding(const OIIO::ImageSpec& spec);
 OIIO::ImageInput::unique_ptr open_image(const std::string& path,
                                         OIIO::Filesystem::IOMemReader* memory = nullptr);
 
-/// Reads channels [begin, end) of all pixels, row by row from the top, converted to `type`. Throws Error of
-/// kind io, which names `path`, if the file is damaged.
-void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
-                   void* pixels);
 /// Whether the last reading of pixels failed although it returned true: the reader of TIFF goes on behind
 /// strips that the file lacks, and only leaves a message. Messages of other readers may be mere warnings.
 bool has_silent_error(const OIIO::ImageInput& input);
@@ -60,5 +60,9 @@ bool has_silent_error(const OIIO::ImageInput& input);
 /// has_silent_error.
 bool read_pixels(OIIO::ImageInput& input, int begin, int end, OIIO::TypeDesc type, void* pixels);
 
+/// Reads channels [begin, end) of all pixels, row by row from the top, converted to `type`. Throws Error of
+/// kind io, which names `path`, if the file is damaged.
+void read_channels(OIIO::ImageInput& input, const std::string& path, int begin, int end, OIIO::TypeDesc type,
+                   void* pixels);
 
 }  // namespace oktett::oiio
