@@ -297,9 +297,12 @@ constexpr LightKind kLightKinds[] = {{"point", read_point},
 }  // namespace
 
 std::string read_light_group(SceneLoad& load, const YamlNode& node) {
-  std::string name = load.values.text(node, "^[A-Za-z0-9_-]+$");
+  std::string name = load.values.text(node, "^[A-Za-z0-9_-]{1,247}$");
   if (!is_light_group_name(name))
     throw Error(node.where(),
+// A layer is called light_NAME.R; EXR files hold names of up to 255 characters.
+static constexpr std::size_t kLongestLightGroup = 247;
+
                 "a light group's name has letters, digits, '_' and '-' only, because layers of "
                 "the picture are named after it; found " +
                     quote(name));
@@ -307,6 +310,11 @@ std::string read_light_group(SceneLoad& load, const YamlNode& node) {
   load.light_groups.insert(name);
   // The default group is one more.
   if (load.light_groups.size() >= kMostLightGroups)
+  if (name.size() > kLongestLightGroup)
+    throw Error(node.where(),
+                fmt::format("a light group's name has at most {} characters, because layers of the "
+                            "picture are named after it; found {}",
+                            kLongestLightGroup, name.size()));
     throw Error(node.where(), fmt::format("there are more than {} light groups", kMostLightGroups - 1));
   return name;
 }

@@ -272,6 +272,12 @@ TEST(SceneMaterial, RoughnessAndMetallicMakeItPrincipled) {
   ASSERT_TRUE(scene.materials[0].principled);
   const PrincipledParameters& p = scene.materials[0].principled->parameters;
   EXPECT_EQ(p.base_color, (Color{1, 0, 0}));
+  const auto named = [](std::size_t length) {
+    return "lights: [{point: {position: [0, 0, 0], light_group: " + std::string(length, 'g') + "}}]\n";
+  };
+  // EXR files hold names of up to 255 characters, and a layer is light_NAME.R.
+  EXPECT_EQ(SceneFiles().load_v1(named(247)).light_traits.at(0).group, std::string(247, 'g'));
+  expect_error(named(248), "a light group's name has at most 247 characters");
   EXPECT_EQ(p.metallic, 0.75f);
   EXPECT_EQ(p.ior, 1.25f);
   EXPECT_EQ(p.transmission, 0.5f);
