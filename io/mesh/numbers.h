@@ -2,6 +2,7 @@
 /// \file Numbers of meshes in text. Within io/ only.
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "io/mesh/failure.h"
@@ -20,6 +21,9 @@ inline bool is_coordinate(float x) { return std::abs(x) <= kMostCoordinate; }
 /// Throws the failure of the coordinate `x` at `p`.
 [[noreturn]] void stop_at_coordinate(const char* p, float x);
 
+/// The greatest magnitude of a texture coordinate: any finite number will do.
+inline constexpr float kMostUv = std::numeric_limits<float>::max();
+
 /// What is wrong with the coordinate `x`, which stands in no text.
 std::string bad_coordinate(float x);
 
@@ -35,6 +39,13 @@ inline const char* read_number(const char* p, float& x) {
 inline const char* read_coordinate(const char* p, float& x) {
   const char* end = read_number(p, x);
   if (!is_coordinate(x)) stop_at_coordinate(p, x);
+  return end;
+}
+
+/// Like read_number; throws also if the number is not finite.
+inline const char* read_uv_coordinate(const char* p, float& x) {
+  const char* end = read_number(p, x);
+  if (!std::isfinite(x)) stop_at_coordinate(p, x);
   return end;
 }
 

@@ -17,8 +17,8 @@ const char* read_vector(const char* p, Vec3f& out) {
 
 const char* read_uv(const char* p, Vec2f& out) {
   Vec2f uv;
-  p = skip_blanks(read_number(skip_blanks(p), uv.x));
-  if (!is_line_end(*p) && *p != '#') p = skip_blanks(read_number(p, uv.y));
+  p = skip_blanks(read_uv_coordinate(skip_blanks(p), uv.x));
+  if (!is_line_end(*p) && *p != '#') p = skip_blanks(read_uv_coordinate(p, uv.y));
   out = uv;
   return p;
 }

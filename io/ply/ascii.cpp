@@ -122,7 +122,10 @@ class AsciiBody final : public PlyBody {
         }
         p = next_value(p, *value.property);
         float* const x = columns.at(value.role, vertex);
-        p = value.role < 3 ? read_coordinate(p, *x) : read_number(p, *x);
+        const bool is_normal = value.role >= kPlyNormals && value.role < kPlyUvs;
+        p = is_normal                  ? read_number(p, *x)
+            : value.role < kPlyNormals ? read_coordinate(p, *x)
+                                       : read_uv_coordinate(p, *x);
       }
       expect_end(p);
       ++vertex;
@@ -159,7 +162,7 @@ class AsciiBody final : public PlyBody {
       return end;
     }
     float x = 0;
-    p = read_number(next_value(p, property), x);
+    p = read_uv_coordinate(next_value(p, property), x);
     writer.add_uv(x);
     return p;
   }

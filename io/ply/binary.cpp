@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <string>
 
 #include "core/parallel.h"
@@ -62,7 +63,7 @@ class BinaryBody final : public PlyBody {
         if (columns.base[role] == nullptr) continue;
         const auto i = static_cast<std::size_t>(vertices.roles[role]);
         const float x = load_float(properties[i].type, swap_, starts[i]);
-        if (role < 3 && !is_coordinate(x)) stop_at(starts[i], bad_coordinate(x));
+        if (!(std::abs(x) <= most_of(role)) && must_hold(role)) stop_at(starts[i], bad_coordinate(x));
         *columns.at(role, vertex) = x;
       }
     });
@@ -226,10 +227,18 @@ class BinaryBody final : public PlyBody {
     const PlyProperty& property = faces.element->properties[list];
     const char* p = starts[list] + size_of(property.length_type);
     for (std::int64_t n = load_whole(property.length_type, swap_, starts[list]); n > 0; --n) {
-      writer.add_uv(load_float(property.type, swap_, p));
+      const float x = load_float(property.type, swap_, p);
+      if (!std::isfinite(x)) stop_at(p, bad_coordinate(x));
+      writer.add_uv(x);
       p += size_of(property.type);
     }
   }
+
+  /// The greatest magnitude that a number of a vertex may have.
+  static float most_of(std::size_t role) { return role < kPlyNormals ? kMostCoordinate : kMostUv; }
+
+  /// A normal that is not finite counts as none.
+  static bool must_hold(std::size_t role) { return role < kPlyNormals || role >= kPlyUvs; }
 
   /// Reads `count` vertices, the first at `p`, column by column.
   void read_block(const PlyVertices& vertices, const char* p, std::uint64_t vertex, std::uint64_t count,
@@ -240,19 +249,20 @@ class BinaryBody final : public PlyBody {
       const auto i = static_cast<std::size_t>(vertices.roles[role]);
       const char* const first = p + vertices.offsets[i];
       const std::size_t step = columns.step[role], stride = vertices.stride;
+      const float most = most_of(role);
       const bool good =
           with_type(vertices.element->properties[i].type, swap_, [&]<class T, bool kSwap>() -> bool {
             bool all = true;
             for (std::uint64_t k = 0; k < count; ++k) {
               const float x = static_cast<float>(load_value<T, kSwap>(first + k * stride));
-              all &= is_coordinate(x);
+              all &= std::abs(x) <= most;
               out[k * step] = x;
             }
             return all;
           });
-      if (role >= 3 || good) continue;
+      if (good || !must_hold(role)) continue;
       for (std::uint64_t k = 0; k < count; ++k)
-        if (!is_coordinate(out[k * step])) stop_at(first + k * stride, bad_coordinate(out[k * step]));
+        if (!(std::abs(out[k * step]) <= most)) stop_at(first + k * stride, bad_coordinate(out[k * step]));
     }
   }
 

@@ -27,8 +27,8 @@ struct PlyChunk {
   std::optional<MeshFailure> failure{};  ///< the first one
 };
 
-/// What a mesh takes of vertices, in this order: x y z, nx ny nz, u v.
-inline constexpr std::size_t kPlyRoles = 8;
+/// What a mesh takes of vertices, in this order: x y z, nx ny nz, u v. Where these begin.
+inline constexpr std::size_t kPlyRoles = 8, kPlyNormals = 3, kPlyUvs = 6;
 
 /// An element and where it stands.
 struct PlyPart {

@@ -16,6 +16,8 @@ inline void require_sound(const TriangleMesh& m) {
   require(m.material_slots.empty() || m.material_slots.size() == m.triangle_count(), "slots");
   for (const Vec3f& p : m.positions)
     require(p.x - p.x == 0 && p.y - p.y == 0 && p.z - p.z == 0, "positions are finite");
+  for (const Vec2f& uv : m.uvs)
+    require(uv.x - uv.x == 0 && uv.y - uv.y == 0, "texture coordinates are finite");
 }
 
 }  // namespace oktett::test

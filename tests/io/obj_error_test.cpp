@@ -103,6 +103,15 @@ TEST(ObjError, PositionsMustBeFinite) {
   });
 }
 
+// What is not finite would spoil every data layer of the samples that see it.
+TEST(ObjError, TextureCoordinatesMustBeFinite) {
+  expect_errors({
+      {"vt nan 0", "5:4: expected a finite number, found 'nan'"},
+      {"vt 0 -inf", "5:6: expected a finite number, found '-inf'"},
+      {"vt 0 1e39", "5:6: expected a finite number, but '1e39' is out of range"},
+  });
+}
+
 TEST(ObjError, BracesMustPair) {
   expect_errors({
       {"triangles {\nf 1 2 3\n", "5:1: a block is not closed; expected '}' before the end of the file"},

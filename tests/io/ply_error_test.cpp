@@ -184,6 +184,34 @@ TEST(PlyError, CountsWithNothingBehindThemAllocateNothing) {
             "a.ply: 4 vertices, but indices reach only 3");
 }
 
+TEST(PlyError, TextureCoordinatesMustBeFinite) {
+  const PlyFiles files;
+  for (const PlyFormat format : {PlyFormat::ascii, PlyFormat::little_endian, PlyFormat::big_endian})
+    for (const float bad : {NAN, INFINITY, -INFINITY})
+      for (const bool lists : {false, true})  // of vertices: in records of one size, and of several
+        for (const bool of_faces : {false, true}) {
+          PlyWriter out(format);
+          out.element("vertex", 3);
+          for (const char* name : {"x", "y", "z", "v", "u"}) out.property(PlyType::float32, name);
+          if (lists) out.list(PlyType::uint8, PlyType::uint8, "more");
+          out.element("face", 1);
+          out.list(PlyType::uint8, PlyType::int32, "vertex_indices");
+          if (of_faces) out.list(PlyType::uint8, PlyType::float32, "texcoord");
+          for (int i = 0; i < 3; ++i) {
+            for (const int x : {i == 1 ? 1 : 0, i == 2 ? 1 : 0, 0, 0}) out.value(PlyType::float32, x);
+            out.value(PlyType::float32, !of_faces && i == 1 ? bad : 0);
+            for (int k = 0; lists && k <= i; ++k) out.value(PlyType::uint8, k == 0 ? i : 0);
+            out.end_record();
+          }
+          for (const int x : {3, 0, 1, 2}) out.value(x == 3 ? PlyType::uint8 : PlyType::int32, x);
+          if (of_faces) out.value(PlyType::uint8, 6);
+          for (int i = 0; of_faces && i < 6; ++i) out.value(PlyType::float32, i == 4 ? bad : 0);
+          out.end_record();
+          const std::string error = files.error(out.bytes());
+          EXPECT_NE(error.find("expected a finite number, found "), std::string::npos) << error;
+        }
+}
+
 // Messages are the same wherever the file is cut into chunks.
 TEST(PlyError, DoNotDependOnChunks) {
   const PlyFiles files;
