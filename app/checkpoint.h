@@ -44,6 +44,8 @@ class Checkpoint {
 
   /// Where the film goes in the place of a picture; empty: a picture is written.
   const std::string& film_output() const { return film_output_; }
+  /// Where the film will be written to; empty: nowhere.
+  const std::string& target() const { return path_; }
   /// Sets options.film and, of a film that was begun before, options.data_layers, and lets the film be
   /// written from now on. Throws Error if the film that was begun is of another scene. `files` were read for
   /// the scene.

@@ -14,6 +14,7 @@
 #include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/interrupt.h"
+#include "app/output_files.h"
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/render_stats.h"
@@ -213,6 +214,10 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   const bool writes_picture = !writes_film && !output.empty();
   check_target_options(arguments, {writes_picture ? output : "", writes_film});
   if (writes_picture) check_output(output);
+  check_files_differ({{"the scene", arguments.scene},
+                      {"--outfile", writes_picture ? output : ""},
+                      {writes_film ? "--outfile" : "--checkpoint", checkpoint.target()},
+                      {"--photon-map", arguments.photon_map}});
   RenderOptions options = options_of(arguments, writes_film || (writes_picture && keeps_all_planes(output)));
 
   Stopwatch watch;

@@ -116,6 +116,16 @@ void remove_unfinished_files() {
     if (u.complete) unlink(u.text);
 }
 
+bool is_same_output(const std::string& a, const std::string& b) {
+  const auto place = [](const std::string& path) {
+    const fs::path target = fs::absolute(resolve(path)).lexically_normal();
+    std::error_code error;
+    const fs::path directory = fs::weakly_canonical(target.parent_path(), error);
+    return (error ? target.parent_path() : directory) / target.filename();
+  };
+  return place(a) == place(b);
+}
+
 OutputFile::OutputFile(const std::string& path) : path_(path) {
   const fs::path target = resolve(path);
   check_target(path, target);

@@ -42,6 +42,10 @@ class OutputFile {
   std::uint64_t place_ = 0;
 };
 
+/// Whether an OutputFile of `a` would replace that of `b`: they name the same file, perhaps through symbolic
+/// links. Neither needs to exist.
+bool is_same_output(const std::string& a, const std::string& b);
+
 /// Removes the temporaries of all OutputFiles that exist. For the end of a process in which destructors do
 /// not run; may be called in a signal handler.
 void remove_unfinished_files();

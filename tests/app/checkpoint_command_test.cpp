@@ -237,6 +237,33 @@ TEST_F(CheckpointCommand, WrongWordsAreRefused) {
   EXPECT_EQ(file_count(dir_), 1u);
 }
 
+/// What would be written last would replace what was written before. Also where the path leads through links.
+TEST_F(CheckpointCommand, FilesMustNotReplaceEachOther) {
+  fs::create_symlink("a.exr", dir_.path() / "link.exr");
+  fs::create_directory(dir_.path() / "sub");
+  fs::create_directory_symlink("sub", dir_.path() / "other");
+  const std::string full = dir_.file("a.exr");
+  const std::pair<Words, std::string> cases[] = {
+      {{"-o", "a.exr", "--checkpoint", "a.exr"}, "--outfile and --checkpoint name the same file 'a.exr'"},
+      {{"-o", "a.exr", "--checkpoint", "link.exr"}, "--outfile and --checkpoint name"},
+      {{"-o", "./a.exr", "--checkpoint", full}, "--outfile and --checkpoint name"},
+      {{"-o", "sub/a.exr", "--checkpoint", "other/a.exr"}, "--outfile and --checkpoint name"},
+      {{"--checkpoint", "a.png"}, "--outfile and --checkpoint name the same file"},
+      {{"-o", "a.exr", "--integrator", "path", "--photon-map", "a.exr"}, "--outfile and --photon-map name"},
+      {{"-o", "a.exr", "--integrator", "path", "--checkpoint", "s.film", "--photon-map", "s.film"},
+       "--checkpoint and --photon-map name"},
+      {{"-o", "s.film", "--integrator", "path", "--photon-map", "s.film"}, "--outfile and --photon-map name"},
+      {{"-o", "a.exr", "--checkpoint", "a.yaml"}, "the scene and --checkpoint name"},
+  };
+  for (const auto& [words, message] : cases) {
+    Words all{"render", "a.yaml"};
+    all.insert(all.end(), words.begin(), words.end());
+    expect_failure(all, 2, message);
+  }
+  EXPECT_EQ(file_count(dir_), 4u);
+  expect_success({"render", "a.yaml", "-o", "sub/a.exr", "--checkpoint", "a.film"});
+}
+
 /// A folder that vanishes while the picture is rendered costs the checkpoint, not the picture.
 TEST_F(CheckpointCommand, RendersOutliveTheirCheckpoints) {
   fs::create_directory(dir_.path() / "sub");
