@@ -116,6 +116,10 @@ void read_point(SceneLoad& load, const YamlNode& node) {
   // An intensity means light that falls off.
   light.falloff = fields["intensity"] || fields["power"] || fields["profile"];
   load.values.read(fields["falloff"], light.falloff);
+  if (!light.falloff && (fields["intensity"] || fields["power"]))
+    throw Error(fields["falloff"]->where(),
+                fmt::format("'{}' is that of a light that falls off; expected 'falloff: true', or 'color'",
+                            fields["power"] ? "power" : "intensity"));
   add_light(load, fields, light);
   read_light_motion(load, fields);
 }
@@ -296,25 +300,25 @@ constexpr LightKind kLightKinds[] = {{"point", read_point},
 
 }  // namespace
 
+// A layer is called light_NAME.R; EXR files hold names of up to 255 characters.
+static constexpr std::size_t kLongestLightGroup = 247;
+
 std::string read_light_group(SceneLoad& load, const YamlNode& node) {
   std::string name = load.values.text(node, "^[A-Za-z0-9_-]{1,247}$");
   if (!is_light_group_name(name))
     throw Error(node.where(),
-// A layer is called light_NAME.R; EXR files hold names of up to 255 characters.
-static constexpr std::size_t kLongestLightGroup = 247;
-
                 "a light group's name has letters, digits, '_' and '-' only, because layers of "
                 "the picture are named after it; found " +
                     quote(name));
-  if (name == kDefaultLightGroup) return {};
-  load.light_groups.insert(name);
-  // The default group is one more.
-  if (load.light_groups.size() >= kMostLightGroups)
   if (name.size() > kLongestLightGroup)
     throw Error(node.where(),
                 fmt::format("a light group's name has at most {} characters, because layers of the "
                             "picture are named after it; found {}",
                             kLongestLightGroup, name.size()));
+  if (name == kDefaultLightGroup) return {};
+  load.light_groups.insert(name);
+  // The default group is one more.
+  if (load.light_groups.size() >= kMostLightGroups)
     throw Error(node.where(), fmt::format("there are more than {} light groups", kMostLightGroups - 1));
   return name;
 }

@@ -253,6 +253,17 @@ TEST(SceneLight, HasAGroup) {
   EXPECT_EQ(groups, (std::set<std::string>{"", "key", "a-1_B"}));
 }
 
+TEST(SceneLight, IntensityAndPowerAreThoseOfFalloff) {
+  expect_error("lights: [{point: {position: [0, 0, 0], power: [1, 1, 1], falloff: false}}]\n",
+               "'power' is that of a light that falls off; expected 'falloff: true', or 'color'");
+  expect_error("lights: [{point: {position: [0, 0, 0], intensity: [1, 1, 1], falloff: false}}]\n",
+               "'intensity' is that of a light that falls off");
+  EXPECT_EQ(SceneFiles()
+                .load_v1("lights: [{point: {position: [0, 0, 0], power: [1, 1, 1], falloff: true}}]\n")
+                .lights.size(),
+            1u);
+}
+
 TEST(SceneLight, RefusesOddGroups) {
   for (const char* name : {"a.b", "'a b'", "''", "\u00e4", "a/b"})
     expect_error(std::string("lights: [{point: {position: [0, 0, 0], light_group: ") + name + "}}]\n",
@@ -261,6 +272,12 @@ TEST(SceneLight, RefusesOddGroups) {
   for (int i = 1; i <= 64; ++i)
     many += "  - point: {position: [0, 0, 0], light_group: g" + std::to_string(i) + "}\n";
   expect_error(many, "more than 63 light groups");
+  const auto named = [](std::size_t length) {
+    return "lights: [{point: {position: [0, 0, 0], light_group: " + std::string(length, 'g') + "}}]\n";
+  };
+  // EXR files hold names of up to 255 characters, and a layer is light_NAME.R.
+  EXPECT_EQ(SceneFiles().load_v1(named(247)).light_traits.at(0).group, std::string(247, 'g'));
+  expect_error(named(248), "a light group's name has at most 247 characters");
   expect_error("lights: [{point: {position: [0, 0, 0], group: a}}]\n", "unknown key 'group'");
   expect_error("materials: {a: {light_group: [a]}}\n", "expected text");
 }
@@ -272,12 +289,6 @@ TEST(SceneMaterial, RoughnessAndMetallicMakeItPrincipled) {
   ASSERT_TRUE(scene.materials[0].principled);
   const PrincipledParameters& p = scene.materials[0].principled->parameters;
   EXPECT_EQ(p.base_color, (Color{1, 0, 0}));
-  const auto named = [](std::size_t length) {
-    return "lights: [{point: {position: [0, 0, 0], light_group: " + std::string(length, 'g') + "}}]\n";
-  };
-  // EXR files hold names of up to 255 characters, and a layer is light_NAME.R.
-  EXPECT_EQ(SceneFiles().load_v1(named(247)).light_traits.at(0).group, std::string(247, 'g'));
-  expect_error(named(248), "a light group's name has at most 247 characters");
   EXPECT_EQ(p.metallic, 0.75f);
   EXPECT_EQ(p.ior, 1.25f);
   EXPECT_EQ(p.transmission, 0.5f);
