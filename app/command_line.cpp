@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <utility>
 
 #include "app/text.h"
@@ -65,6 +66,15 @@ std::string is_not_empty(const std::string& value) {
   return value.empty() ? "expected a value, found nothing" : "";
 }
 
+/// For options that take a whole number: the library's own complaint does not say what it expected.
+template <class T>
+std::string is_whole_number(const std::string& value) {
+  T number{};
+  if (CLI::detail::lexical_cast(value, number)) return "";
+  return fmt::format("expected a whole number from 0 to {}, found '{}'", std::numeric_limits<T>::max(),
+                     value);
+}
+
 /// Where the choices of an option are kept.
 std::string choices_key(const CLI::App& verb, const CLI::Option& option) {
   return verb.get_name() + " " + option.get_name(false, true);
@@ -104,6 +114,11 @@ void Verb::option(const char* names, OptionTarget target, const char* value, con
       [&](auto* variable) {
         CLI::Option* option = app_->add_option(names, *variable, help)->type_name(value);
         if constexpr (std::is_same_v<decltype(variable), std::string*>) option->check(is_not_empty);
+        if constexpr (std::is_same_v<decltype(variable), unsigned*>) option->check(is_whole_number<unsigned>);
+        if constexpr (std::is_same_v<decltype(variable), std::uint64_t*>)
+          option->check(is_whole_number<std::uint64_t>);
+        if constexpr (std::is_same_v<decltype(variable), std::optional<std::uint32_t>*>)
+          option->check(is_whole_number<std::uint32_t>);
         if constexpr (std::is_same_v<decltype(variable), std::vector<std::string>*>)
           option->allow_extra_args(false);
       },

@@ -52,10 +52,11 @@ void check_planes(const Picture& picture) {
 
 /// That nothing is known about files with that extension.
 std::string unknown_format(const std::string& extension) {
-  const std::vector<std::string> known{".exr", ".png", ".jpg", ".tif", ".hdr", ".bmp", ".tga", ".webp"};
+  const std::vector<std::string> known{".exr", ".png", ".jpg", ".tif", ".hdr",
+                                       ".bmp", ".tga", ".ppm", ".webp"};
   const std::string near = extension.size() < 3 ? "" : did_you_mean(extension, known);
-  return "unknown image format '" + extension + "'" +
-         (near.empty() ? ": known ones are .exr, .png, .jpg, .tif, .hdr, .bmp, .tga, .webp" : near);
+  return fmt::format("unknown image format '{}'{}", extension,
+                     near.empty() ? fmt::format(": known ones are {}", fmt::join(known, ", ")) : near);
 }
 
 /// Writes `image` with OpenImageIO. Its writers get no file where that can be avoided: many do not report

@@ -149,7 +149,7 @@ LightProfile read_light_profile(const std::string& path) {
   skip_header(words);
   words.number("the number of lamps");
   words.number("the lumens of a lamp");
-  words.number("the factor on candela, greater than 0", 1e-30, 1e30);
+  words.number("the factor on candela, from 1e-30 to 1e30", 1e-30, 1e30);
   const std::size_t rows = words.count("the number of vertical angles, a whole number of at least 1");
   const std::size_t columns = words.count("the number of horizontal angles, a whole number of at least 1");
   if (words.number("the photometric type") != 1) words.fail("expected the photometric type 1 (C)");
@@ -172,7 +172,7 @@ LightProfile read_light_profile(const std::string& path) {
   double greatest = 0;
   std::vector<double> read;
   for (std::size_t k = 0; k < rows * columns; ++k) {
-    read.push_back(words.number("an intensity of at least 0", 0, 1e30));
+    read.push_back(words.number("an intensity from 0 to 1e30", 0, 1e30));
     greatest = std::max(greatest, read.back());
   }
   if (!(greatest > 0)) words.fail("all intensities are 0");

@@ -79,7 +79,8 @@ Medium read_medium(SceneLoad& load, const YamlNode& node, const std::string& nam
   read_coefficient(load, fields["absorption"], density, medium.absorption);
   read_coefficient(load, fields["scattering"], density, medium.scattering);
   read_coefficient(load, fields["emission"], density, medium.emission);
-  const double most = kMostAnisotropy;
+  constexpr double most = 0.999;  // a float turned into a double would be shown with all its digits
+  static_assert(static_cast<float>(most) == kMostAnisotropy);
   load.values.read(fields["anisotropy"], medium.anisotropy, {-most, most});
   read_grid(load, fields, medium);
   return medium;

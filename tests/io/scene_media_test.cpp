@@ -56,7 +56,7 @@ TEST(SceneMedia, ReportsBadMedia) {
   expect_error("media: {a: {scattering: [.nan, 0, 0]}}\n", "2:26");
   expect_error("media: {a: {scattering: [1, 1]}}\n", "2:25");
   expect_error("media: {a: {density: -2}}\n", "at least 0");
-  expect_error("media: {a: {anisotropy: 1}}\n", "-0.999");
+  expect_error("media: {a: {anisotropy: 1}}\n", "from -0.999 to 0.999, found");
   expect_error("media: {a: {scattering: [1e6, 0, 0], density: 1e6}}\n", "at most 1e+09");
   expect_error("media: {a: {absorbtion: [1, 1, 1]}}\n", "absorption");
   expect_error("media: {a: {}}\nmedium: b\n", "3:9: unknown medium 'b'");

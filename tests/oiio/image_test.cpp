@@ -268,6 +268,7 @@ TEST(CheckOutput, NamesKnownFormats) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find(".exr"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find(".png"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find(".ppm"), std::string::npos);
   }
 }
 
@@ -360,7 +361,6 @@ TEST(ReadImage, DamagedFilesAreErrorsOrPictures) {
 }
 
 // A header of a few bytes must not make the reader reserve memory for what it claims.
-TEST(ReadImage, ClaimedSizesAreBounded) {
 TEST(ReadImage, TruncatedTiffsAreErrors) {
   const TempDir dir;
   for (const char* compression : {"none", "zip", "lzw"})
@@ -387,6 +387,7 @@ TEST(ReadImage, TruncatedTiffsAreErrors) {
     }
 }
 
+TEST(ReadImage, ClaimedSizesAreBounded) {
   const TempDir dir;
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n";
   EXPECT_EQ(kind_of([&] { read_image(dir.write("a.hdr", header)); }), ErrorKind::io);
