@@ -206,6 +206,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   if (arguments.scene.empty()) return line.missing("scene");
   const std::optional<TerminalPreview> preview = preview_of(arguments);
   apply_limits(arguments.limits);
+  check_threads(arguments.threads);
   // Loading shares its work among threads, too, and one thread asked for is none that can be refused.
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, arguments.threads);
@@ -213,11 +214,11 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   const std::string output = writes_film ? checkpoint.film_output() : output_path(arguments);
   const bool writes_picture = !writes_film && !output.empty();
   check_target_options(arguments, {writes_picture ? output : "", writes_film});
-  if (writes_picture) check_output(output);
   check_files_differ({{"the scene", arguments.scene},
                       {"--outfile", writes_picture ? output : ""},
                       {writes_film ? "--outfile" : "--checkpoint", checkpoint.target()},
                       {"--photon-map", arguments.photon_map}});
+  if (writes_picture) check_output(output);
   RenderOptions options = options_of(arguments, writes_film || (writes_picture && keeps_all_planes(output)));
 
   Stopwatch watch;

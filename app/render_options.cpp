@@ -123,6 +123,11 @@ void read_render_words(const std::vector<std::string>& words, RenderArguments& a
   if (!line.read()) throw Error("the command line that began the picture is not one of this version");
 }
 
+void check_threads(unsigned threads) {
+  if (threads > kMostThreads)
+    throw Error(fmt::format("--nthreads: {} is out of range; expected 0 to {}", threads, kMostThreads));
+}
+
 void add_bvh_option(Verb& verb, std::string& quality) {
   verb.choice("--bvh", quality, "QUALITY", "How hard to build the tree",
               {std::begin(kQualities), std::end(kQualities)});

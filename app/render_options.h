@@ -55,6 +55,9 @@ void add_render_options(Verb& verb, RenderArguments& arguments);
 /// Throws Error.
 void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments);
 
+/// Throws Error if --nthreads is out of range.
+void check_threads(unsigned threads);
+
 /// Overrides settings of the scene by the arguments. Throws Error for unknown words.
 void override_scene(const RenderArguments& arguments, Scene& scene);
 /// The look of a mesh given alone; nothing for a scene file, or if an integrator is asked for: then the mesh

@@ -33,11 +33,14 @@ struct PhotonMap;
 /// A picture in progress: sums of finished tiles, in files of their own, see `oktett render --checkpoint`.
 class FilmState;
 
+/// The greatest RenderOptions::threads.
+inline constexpr unsigned kMostThreads = 4096;
+
 /// How a scene is rendered. The picture depends on `textures` and `data_layers` and, if it is not null, on
 /// `film`.
 struct RenderOptions {
   Isa isa = default_isa();
-  unsigned threads = 0;  ///< 0: as many as the process may use
+  unsigned threads = 0;  ///< at most kMostThreads; 0: as many as the process may use
   const TextureSampler* textures =
       nullptr;  ///< of the scene, e.g. ImageTextures; null: all textures are white
   /// May be null. When it becomes true, tiles not yet begun are left black with alpha 0.

@@ -49,6 +49,7 @@ std::unique_ptr<PrivateFolder> open_page(const std::string& address) {
 int run_view(const CommandLine& line, const ViewArguments& arguments) {
   apply_limits(arguments.picture.limits);
   const int wanted = port_of(arguments.port);
+  check_threads(arguments.picture.threads);
   std::optional<tbb::global_control> threads;
   if (arguments.picture.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, arguments.picture.threads);

@@ -71,7 +71,10 @@ TEST(Command, UsageErrorsExitWith2AndNameWhatIsNear) {
       {{"manual", "rendr"}, "there is no command 'rendr'; did you mean 'render'?"},
       {{"render", "a.yaml", "--stats=xml"}, "--stats"},
       {{"render", "a.yaml", "-D", "novalue"}, "-D"},
-      {{"render", "a.yaml", "-t", "-1"}, "--nthreads"},
+      {{"render", "a.yaml", "-t", "-1"}, "--nthreads: expected a whole number"},
+      {{"render", "a.yaml", "-t", "x"}, "--nthreads: expected a whole number"},
+      {{"render", "a.yaml", "-t", "4097"}, "--nthreads: 4097 is out of range; expected 0 to 4096"},
+      {{"view", "a.yaml", "-t", "66000", "--no-open"}, "--nthreads: 66000 is out of range"},
   };
   for (const Case& c : cases) {
     const CommandResult result = run_command(dir, c.words);

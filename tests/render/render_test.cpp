@@ -10,6 +10,7 @@
 #include <mutex>
 #include <vector>
 
+#include "core/error.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::render_test {
@@ -101,6 +102,11 @@ TEST(Render, GlassIsTheSameWithoutDataLayers) {
     add_object(scene, BoxShape{{-1, 1, -1}, {1, 1.5, 1}}, add_material(scene, glass(1.5f)));
     expect_same_colours_without_layers(scene);
   }
+}
+
+// More threads than an arena of TBB can hold would end the process.
+TEST(Render, ThreadsHaveALimit) {
+  EXPECT_THROW(run(busy_scene(kAllKinds[0]), [](RenderOptions& o) { o.threads = kMostThreads + 1; }), Error);
 }
 
 TEST(Render, PictureDependsNeitherOnThreadsNorTilesNorInstructionSet) {
