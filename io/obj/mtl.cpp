@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/suggest.h"
 #include "io/mesh/failure.h"
 #include "io/obj/mtl_line.h"
 #include "io/obj/mtl_texture.h"
@@ -65,6 +66,42 @@ constexpr PrincipledStatement kPrincipled[] = {
     {"pc", "Pc", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
     {"pcr", "Pcr", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture}};
 
+// What is read of a material beside the above, and what is not, though other programs know it.
+constexpr const char* kNumbers[] = {"d", "Tr", "Ns", "Ni", "illum"};
+constexpr const char* kOtherStatements[] = {
+    "map_Ka", "map_Ns",   "map_Ni", "map_Tr", "map_Tf",    "map_aat", "disp",   "map_disp",  "decal",
+    "refl",   "map_refl", "Km",     "map_Km", "sharpness", "aniso",   "anisor", "map_aniso", "map_anisor"};
+
+std::string in_lower_case(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// All keywords of materials that mean something here, in lower case.
+const std::vector<std::string>& used_statements() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> names;
+    for (const auto& [name, color] : kColors) names.emplace_back(name);
+    for (const auto& [name, slot] : kTextures) names.emplace_back(name);
+    for (const char* name : kNumbers) names.push_back(in_lower_case(name));
+    for (const PrincipledStatement& statement : kPrincipled) {
+      names.emplace_back(statement.key);
+      names.push_back(std::string("map_").append(statement.key));
+    }
+    return names;
+  }();
+  return all;
+}
+
+/// What there is to say of the statement `written`, whose keyword in lower case is `key`; empty: nothing.
+std::string why_unused(const std::string& key, const std::string& written) {
+  const std::vector<std::string>& used = used_statements();
+  if (std::ranges::find(used, key) != used.end()) return "";
+  const auto is_key = [&](const char* name) { return in_lower_case(name) == key; };
+  if (std::ranges::any_of(kOtherStatements, is_key)) return written + " is not used";
+  return "unknown statement " + written + did_you_mean(key, used);
+}
+
 class MtlReader {
  public:
   MtlReader(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
@@ -89,6 +126,7 @@ class MtlReader {
         start_material(line);
       else if (in_material_)
         read_statement(line);
+      if (in_material_) note_unused(line, p);
       p = next_line(find_joined_line_end(p), end);
     }
     finish_material();
@@ -141,6 +179,14 @@ class MtlReader {
         if (const auto texture = read_mtl_texture(line, directory_))
           said_.principled[i].texture = add_texture(*texture, line);
     }
+  }
+
+  /// The statement stands at `p`.
+  void note_unused(const MtlLine& line, const char* p) {
+    const std::string& key = line.keyword();
+    if (places_ == nullptr || key.empty() || key == "newmtl" || !noted_.insert(key).second) return;
+    if (const std::string why = why_unused(key, quote_word(p)); !why.empty())
+      places_->unused.push_back({line.where(), why});
   }
 
   /// A malformed value leaves what was there.
@@ -261,7 +307,7 @@ class MtlReader {
   TextureList textures_;
   std::vector<Warning>& warnings_;
   MtlPlaces* places_;
-  std::unordered_set<std::string> names_;
+  std::unordered_set<std::string> names_, noted_;
   Statements said_;
   bool in_material_ = false;
 };

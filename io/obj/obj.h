@@ -23,11 +23,14 @@ std::vector<Error> find_obj_errors(const std::string& path);
 /// Where MTL files define what is read from them.
 struct MtlPlaces {
   std::vector<Location> materials, textures;
+  /// Statements of materials that mean nothing here, the first of each keyword. They are no warnings of the
+  /// reader, since exporters write many.
+  std::vector<Warning> unused;
 };
 
 /// Reads the MTL file `path` and appends what is in it. Texture paths, which the file states relative to
 /// itself, are joined to its directory. `places`, if given, gets the place of each material and of each
-/// texture's statement. Throws Error as load_obj does.
+/// texture's statement, and what is not used. Throws Error as load_obj does.
 void load_mtl(const std::string& path, std::vector<Material>& materials, std::vector<Texture>& textures,
               std::vector<Warning>& warnings, MtlPlaces* places = nullptr);
 

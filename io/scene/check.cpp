@@ -12,6 +12,7 @@
 #include "io/scene/utf8.h"
 #include "io/text/extension.h"
 #include "io/text/file_access.h"
+#include "io/text/files_read.h"
 
 namespace oktett {
 namespace {
@@ -59,6 +60,7 @@ class Checking {
     SceneLoad load(definitions_);
     ErrorList errors;
     load.errors = &errors;
+    const FilesRead files;
     try {
       read_scene_file(path_, load);
     } catch (const TooManyErrors&) {
@@ -66,6 +68,7 @@ class Checking {
     }
     for (const Error& error : errors.errors()) add(error);
     add(load.scene.warnings);
+    warn_of_unused_statements(files);
     if (errors.failures() == 0) warn_of_unused(load);
     add(ImageTextures(load.scene.textures, load.scene.texture_places).warnings());
   }
@@ -89,12 +92,31 @@ class Checking {
     file.texture_places = std::move(places.textures);
     check_textures(file);
     add(file.warnings);
+    add(places.unused);
+  }
+
+  /// Of the MTL files that meshes name.
+  void warn_of_unused_statements(const FilesRead& files) {
+    for (const std::string& path : files.paths()) {
+      if (lower_case_extension(path) != ".mtl") continue;
+      MeshFile file;
+      MtlPlaces places;
+      // What else is wrong in it has been told.
+      try {
+        load_mtl(path, file.materials, file.textures, file.warnings, &places);
+      } catch (const Error&) {
+        continue;
+      }
+      add(places.unused);
+    }
   }
 
   void check_mesh() {
     try {
+      const FilesRead files;
       const Scene scene = load_scene(path_, definitions_);
       add(scene.warnings);
+      warn_of_unused_statements(files);
       add(ImageTextures(scene.textures, scene.texture_places).warnings());
     } catch (const Error& error) {
       attempt([&] {

@@ -137,6 +137,19 @@ TEST(SceneCheck, AllLinesOfAnObjFile) {
 
 TEST(SceneCheck, MaterialFiles) {
   SceneFiles files;
+  files.dir.write(
+      "odd.mtl",
+      "# none of these is read\nKdd 1\nnewmtl a\nKdd 1 0 0\nmap_Ns a.png\nnewmtl b\nKD 1 0 0\nKdd 1\n"
+      "map_Foo x\n  # Bar\n");
+  files.dir.write("odd.obj", "mtllib odd.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+  files.dir.write("odd.yaml", "oktett: 1\nobjects: [{mesh: {file: odd.obj}}]\n");
+  for (const char* name : {"odd.mtl", "odd.obj", "odd.yaml"}) {
+    const Lines odd = check(files, name);
+    ASSERT_EQ(odd.size(), 3u) << name;
+    test::expect_starts(odd[0], "odd.mtl:4:1: warning: unknown statement 'Kdd'; did you mean 'kd'?");
+    test::expect_starts(odd[1], "odd.mtl:5:1: warning: 'map_Ns' is not used");
+    test::expect_starts(odd[2], "odd.mtl:9:1: warning: unknown statement 'map_Foo'");
+  }
   files.dir.write("bad.mtl", "newmtl a\nKd 1 x\nNi -1\nmap_Kd none.png\n");
   const Lines found = check(files, "bad.mtl");
   ASSERT_EQ(found.size(), 3u);
