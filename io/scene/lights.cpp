@@ -228,10 +228,20 @@ Color radiance_of_power(SceneLoad& load, const YamlNode& node, double area) {
   return color;
 }
 
+/// Warns of a lamp that is seen, but lights nothing.
+void warn_of_idle_lamp(SceneLoad& load, const YamlNode& node) {
+  const IntegratorSettings& s = load.scene.integrator;
+  const IntegratorKind kind = load.integrator.value_or(s.kind);
+  if (kind == IntegratorKind::whitted && s.light_samples == 0)
+    load.warn(node.where(),
+              "the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size");
+}
+
 /// Adds an object that glows, of `area`. It is given `radiance`, or `power` in all.
 void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Shape shape, double area) {
   const YamlNode *radiance = fields["radiance"], *power = fields["power"];
   if (radiance && power) throw Error(node.where(), "expected 'radiance' or 'power', not both");
+  warn_of_idle_lamp(load, node);
   Material m;
   m.color = {0, 0, 0}, m.ambient = m.diffuse = 0;
   m.emission = {1, 1, 1};

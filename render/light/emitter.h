@@ -77,7 +77,7 @@ struct DirectionalEmitter {
 
   Vec3f direction;   ///< unit vector towards the light
   Color irradiance;  ///< on a surface that faces the light
-  float angle;       ///< angular diameter in radians, [0, pi]
+  float angle;       ///< angular diameter in radians, [0, pi]; 0 if the radiance would be no finite float
   // Of the disk, if the angle is not 0:
   double height = 0;  ///< 1 - cosine of the angular radius
   Color radiance;

@@ -98,6 +98,8 @@ DirectionalEmitter::DirectionalEmitter(const Vec3f& towards, const Color& facing
   const double quarter = portable::sin(angle / 4.0), half = portable::sin(angle / 2.0);
   height = 2 * quarter * quarter;
   radiance = irradiance * static_cast<float>(1 / (std::numbers::pi * half * half));
+  // A disk so small that its radiance is no float is seen as a point.
+  if (!is_finite(radiance) || !std::isfinite(sun_pdf(*this))) angle = 0, height = 0, radiance = {};
 }
 
 float sun_pdf(const DirectionalEmitter& e) {

@@ -89,6 +89,27 @@ TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
     EXPECT_EQ(warnings(used), "") << used;
 }
 
+// Whitted's model shows lamps of some size, but they light something only with points on them.
+TEST(SceneFilm, WarnsOfLampsThatLightNothing) {
+  const auto warnings = [](const std::string& integrator, const std::string& lamp) {
+    SceneFiles files;
+    std::string all;
+    const std::string text =
+        "integrator: {" + integrator + "}\nlights: [{" + lamp + "}]\nobjects: [{plane: {}}]\n";
+    for (const Warning& w : files.load_v1(text).warnings) all += files.without_directory(to_string(w)) + "\n";
+    return all;
+  };
+  const std::string idle =
+      "warning: the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size\n";
+  const std::string sphere = "sphere: {center: [0, 4, 0]}", point = "point: {position: [0, 4, 0]}";
+  EXPECT_EQ(warnings("", sphere), "scene.yaml:3:19: " + idle);
+  EXPECT_EQ(warnings("", "disk: {center: [0, 4, 0], radius: 1}"), "scene.yaml:3:17: " + idle);
+  EXPECT_EQ(warnings("light_samples: 4", sphere), "");
+  EXPECT_EQ(warnings("kind: path", sphere), "");
+  EXPECT_EQ(warnings("kind: normal", sphere), "");
+  EXPECT_EQ(warnings("", point), "");
+}
+
 TEST(SceneFilm, WarnsOfCameraSettingsWithoutEffect) {
   const auto warnings = [](const std::string& camera) {
     SceneFiles files;

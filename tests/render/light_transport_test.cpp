@@ -281,7 +281,7 @@ TEST(LightTransport, TinySunsKeepTheirLight) {
   auto dim = std::make_shared<EnvironmentPicture>();
   dim->width = 4, dim->height = 2;
   dim->pixels.assign(8, {1e-3f, 1e-3f, 1e-3f});
-  for (const double angle : {0.1, 1e-3, 1e-4, 1e-5, 1e-6}) {
+  for (const double angle : {0.1, 1e-3, 1e-4, 1e-5, 1e-6, 1e-17, 1e-18, 1e-30}) {
     Scene scene = floor_scene(1024);
     scene.lights = {DirectionalLight{{-1, -2, 0}, {1, 3, 1}, angle}, EnvironmentLight{dim}};
     EXPECT_NEAR(seen(scene), 3 * 2 / std::sqrt(5.0) + 1e-3, 0.02) << angle;
