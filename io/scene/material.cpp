@@ -114,6 +114,21 @@ void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, const Ma
         "a pattern holds no normals; expected an image, or 'map_bump', which takes a pattern as heights");
 }
 
+/// Warns of the keys that change nothing, given the others.
+void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& m) {
+  const auto warn = [&](const char* key, bool is_unused, const char* why) {
+    const YamlNode* const node = fields[key];
+    if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);
+  };
+  const bool dark = m.emission == Color{0, 0, 0};
+  warn("map_emission", dark, "'emission', which it multiplies, is black");
+  warn("emits", dark, "'emission' is black");
+  warn("light_group", dark, "'emission' is black");
+  const bool shines = m.principled || m.specular > 0 || m.reflection > 0 || m.transparency > 0;
+  warn("map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
+  warn("bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");
+}
+
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {
   std::vector<const char*> keys(std::begin(kPhongKeys), std::end(kPhongKeys));
   keys.insert(keys.end(), std::begin(kCommonKeys), std::end(kCommonKeys));
@@ -145,6 +160,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
     read_principled(load, *principled, m);
   }
   read_interior(load, fields, node, m);
+  warn_of_unused_keys(load, fields, m);
   load.scene.material_places.resize(load.scene.materials.size());
   load.scene.material_places.push_back(node.where());
   load.scene.materials.push_back(std::move(m));

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -73,7 +73,8 @@ bool same_plane(const Picture& a, const std::string& in_a, const Picture& b, con
   const PicturePlane *p = a.find(in_a), *q = b.find(in_b);
   if (p == nullptr || q == nullptr || p->values.size() != q->values.size()) return false;
   const bool same_ids = std::equal(p->ids.begin(), p->ids.end(), q->ids.begin(), q->ids.end());
-  return same_ids && std::memcmp(p->values.data(), q->values.data(), p->values.size() * sizeof(float)) == 0;
+  const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+  return same_ids && std::ranges::equal(p->values, q->values, {}, bits, bits);
 }
 
 // Without --denoise the noise stays: EXR files have no layer for it, and their colours are those that

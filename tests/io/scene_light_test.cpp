@@ -311,6 +311,34 @@ TEST(SceneMaterial, EtaAndKMakeItMetal) {
   EXPECT_NE(none.warnings[0].message.find("without metal"), std::string::npos);
 }
 
+TEST(SceneMaterial, WarnsOfKeysOfMaterialsWithoutEffect) {
+  const auto warnings = [](const std::string& material) {
+    SceneFiles files;
+    files.dir.write("x.png", "");
+    std::string all;
+    for (const Warning& w :
+         files.load_v1("materials: {m: {" + material + "}}\nobjects: [{sphere: {}, material: m}]\n").warnings)
+      all += files.without_directory(to_string(w)) + "\n";
+    return all;
+  };
+  const std::string no_effect = " has no effect: ";
+  EXPECT_EQ(warnings("map_emission: x.png"), "scene.yaml:2:31: warning: 'map_emission'" + no_effect +
+                                                 "'emission', which it multiplies, is black\n");
+  EXPECT_EQ(warnings("emits: front"),
+            "scene.yaml:2:24: warning: 'emits'" + no_effect + "'emission' is black\n");
+  EXPECT_EQ(warnings("light_group: a"),
+            "scene.yaml:2:30: warning: 'light_group'" + no_effect + "'emission' is black\n");
+  EXPECT_EQ(warnings("map_specular: x.png"), "scene.yaml:2:31: warning: 'map_specular'" + no_effect +
+                                                 "'specular', 'reflection' and 'transparency' are 0\n");
+  EXPECT_EQ(warnings("bump_scale: 2"),
+            "scene.yaml:2:29: warning: 'bump_scale'" + no_effect + "there is no 'map_bump'\n");
+  for (const char* used :
+       {"emission: [1, 1, 1], map_emission: x.png, emits: front, light_group: a",
+        "specular: 0.5, map_specular: x.png", "reflection: {file: x.png}, map_specular: x.png",
+        "map_bump: x.png, bump_scale: 2"})
+    EXPECT_EQ(warnings(used), "") << used;
+}
+
 TEST(SceneMaterial, ErrorsOfPrincipledOnes) {
   expect_error("materials: {a: {principled: {rough: 1}}}\n", "unknown key 'rough'");
   expect_error("materials: {a: {principled: {ior: 0}}}\n", "0.25");
