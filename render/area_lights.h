@@ -18,8 +18,8 @@ struct AreaLights {
   std::uint32_t samples = 0;        ///< points of a pattern; 0: nothing glows
   std::uint32_t patterns = 0;       ///< a multiple of 16
   std::uint32_t penumbra = 1;       ///< patterns that a hit in a penumbra asks, its own included; divides 16
-  bool at_random = false;           ///< each pixel begins with a pattern chosen by chance, see adaptive.h
-  std::uint64_t key = 0;            ///< of that chance
+  bool at_random = false;           ///< each pixel begins with a random pattern, see adaptive.h
+  std::uint64_t key = 0;            ///< of the random numbers that choose it
   std::vector<LightSource> points;  ///< those of pattern p are points[p * samples] and on
 
   bool empty() const { return points.empty(); }

@@ -5,10 +5,9 @@
 /// neighbours alone. If its own were asked, pixels that happen to miss what is bright and rare would end
 /// early, and the picture would be too dark: the mean of samples whose number depends on them is biased (Kirk
 /// and Arvo 1991). The samples of neighbours are independent of those of the pixel, so its mean stays
-/// unbiased, and none of its samples is thrown away. This needs that pixels share nothing random: photons
-/// (caustics.h) and points of lamps (area_lights.h), which they do share, each pixel takes from a place on
-/// that is chosen at random. For the same reason nothing is decided a second time when more samples are
-/// there.
+/// unbiased, and none of its samples is thrown away. For this, pixels must share nothing random. They do
+/// share photons (caustics.h) and points of lamps (area_lights.h), so each pixel begins with a random one of
+/// these. For the same reason nothing is decided a second time when more samples are there.
 
 #include <cstdint>
 

@@ -43,7 +43,7 @@ float emitter_pdf(const Emitter& emitter, const LightPoint& point, const Vec3f& 
   return pdf > 0 && std::isfinite(pdf) ? pdf : 0;
 }
 
-/// Directions from a point of a sphere into it.
+/// The density, per solid angle, of directions from a point of a sphere into it.
 static constexpr double kInwardPdf = 1 / (2 * std::numbers::pi);
 
 std::optional<LightSample> sample_own_emitter(const Emitter& emitter, const LightPoint& point,

@@ -119,7 +119,7 @@ void start_wavefront(const RenderContext& context, std::span<const WavefrontPixe
 /// because no sample of the pixels met anything and the background is black.
 bool trace_wavefront(const RenderContext& context, Wavefront& wavefront);
 
-/// What alpha takes of light that is tinted.
+/// The mean of the channels: the part of tinted light that counts for alpha.
 inline float channel_mean(const Color& c) { return (c.x + c.y + c.z) / 3; }
 
 /// Adds the hit of entry `ray`, a camera ray, to the alpha of its sample. `opacity`: the part of what lies

@@ -78,7 +78,7 @@ TEST(Cryptomatte, CoverageIsThatOfThePixel) {
   }
 }
 
-// Path tracing passes a surface that is partly a hole as often as it is one: then what lies behind covers.
+// Of the samples that meet a surface of opacity 1/4, path tracing sends 3/4 on to what lies behind it.
 TEST(Cryptomatte, HolesShowWhatLiesBehind) {
   Scene scene = bare_scene(4);
   scene.integrator.kind = IntegratorKind::path;
