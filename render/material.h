@@ -119,6 +119,9 @@ struct Material {
   bool operator==(const Material&) const = default;
 };
 
+/// Whether surfaces of the material give off light of their own, on one side at least.
+inline bool glows(const Material& m) { return !(m.emission == Color{0, 0, 0}); }
+
 /// A number of Phong's model, likewise.
 struct PhongNumber {
   const char* name;

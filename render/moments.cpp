@@ -17,9 +17,8 @@ bool any_light_moves(const Scene& scene) {
 /// Whether light samples are different at each moment.
 bool lights_differ(const Scene& scene, const World& world) {
   if (any_light_moves(scene)) return true;
-  const auto glows = [](const Material& m) { return !(m.emission == Color{0, 0, 0}); };
   return scene.integrator.kind == IntegratorKind::path && !world.moving.empty() &&
-         std::any_of(world.materials.begin(), world.materials.end(), glows);
+         std::ranges::any_of(world.materials, glows);
 }
 
 std::vector<Light> lights_at(const Scene& scene, double time) {

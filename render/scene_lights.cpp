@@ -84,8 +84,7 @@ class EmitterCollector {
       : world_(world), groups_(groups), lights_(lights), emitters_(emitters) {}
 
   void collect() {
-    const auto glows = [](const Material& m) { return can_sample(m); };
-    if (std::none_of(world_.materials.begin(), world_.materials.end(), glows)) return;
+    if (std::ranges::none_of(world_.materials, can_sample)) return;
     std::vector<PlacedGeometry> placed;
     visit_placed_geometries(*world_.accel, [&](const PlacedGeometry& p) {
       if (may_glow(p)) placed.push_back(p);
@@ -100,20 +99,20 @@ class EmitterCollector {
 
  private:
   static bool can_sample(const Material& m) {
-    // Where another solid hides the surface it gives no light, which only rays that come there find out.
+    // Where another solid hides the surface it gives no light. Only a ray that meets the surface can tell.
     const bool may_be_hidden = encloses(m) && m.priority != kNoPriority;
-    return !(m.emission == Color{0, 0, 0}) && m.opacity == 1 && m.opacity_texture == kNoId && !may_be_hidden;
+    return glows(m) && m.opacity == 1 && m.opacity_texture == kNoId && !may_be_hidden;
   }
 
   bool may_glow(const PlacedGeometry& p) const {
-    const auto glows = [&](std::uint32_t slot) {
+    const auto sampled = [&](std::uint32_t slot) {
       return can_sample(world_.materials[material_index(world_, p.user, slot)]);
     };
-    if (glows(0)) return true;
+    if (sampled(0)) return true;
     if (!std::holds_alternative<MeshGeometry>(p.geometry->shape) || p.user >= world_.objects.size())
       return false;
     for (std::uint32_t slot = 1; slot < world_.objects[p.user].slots.size(); ++slot)
-      if (glows(slot)) return true;
+      if (sampled(slot)) return true;
     return false;
   }
 

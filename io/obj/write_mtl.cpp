@@ -77,7 +77,7 @@ class MtlWriting {
   void write(const Material& m) {
     write_diffuse(m);
     write_specular(m);
-    if (!(m.emission == Color{0, 0, 0})) color("Ke", m.emission);
+    if (glows(m)) color("Ke", m.emission);
     number("Ns", m.phong);
     number("Ni", m.ior);
     if (m.transparency > 0) {

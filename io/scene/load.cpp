@@ -33,6 +33,12 @@ std::string NameTable::suggestion(const std::string& name) const {
   return suggest(name, names);
 }
 
+void SceneLoad::warn_if_unused(const Fields& fields, const char* key, bool is_unused,
+                               const std::string& why) {
+  const YamlNode* const node = fields[key];
+  if (node != nullptr && is_unused) warn(node->where(), quote(key) + " has no effect: " + why);
+}
+
 void SceneLoad::warn(const Location& place, const std::string& message) {
   if (!is_clean()) return;
   constexpr std::size_t kMostWarnings = 1000;

@@ -64,6 +64,8 @@ struct SceneLoad {
   /// Adds a warning; after the first thousand only says that there are more. Where errors are gathered, says
   /// nothing of what is known to be wrong.
   void warn(const Location& place, const std::string& message);
+  /// Warns that `key` changes nothing, if it is one of the fields and `is_unused`.
+  void warn_if_unused(const Fields& fields, const char* key, bool is_unused, const std::string& why);
   /// Whether nothing is known to be wrong in what is being read.
   bool is_clean() const { return errors == nullptr || errors->is_clean(); }
   /// Where errors are gathered: definitions may be missing, so that nothing is said of unknown names.

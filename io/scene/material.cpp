@@ -116,17 +116,13 @@ void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, const Ma
 
 /// Warns of the keys that change nothing, given the others.
 void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& m) {
-  const auto warn = [&](const char* key, bool is_unused, const char* why) {
-    const YamlNode* const node = fields[key];
-    if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);
-  };
-  const bool dark = m.emission == Color{0, 0, 0};
-  warn("map_emission", dark, "'emission', which it multiplies, is black");
-  warn("emits", dark, "'emission' is black");
-  warn("light_group", dark, "'emission' is black");
+  const bool dark = !glows(m);
+  load.warn_if_unused(fields, "map_emission", dark, "'emission', which it multiplies, is black");
+  load.warn_if_unused(fields, "emits", dark, "'emission' is black");
+  load.warn_if_unused(fields, "light_group", dark, "'emission' is black");
   const bool shines = m.principled || m.specular > 0 || m.reflection > 0 || m.transparency > 0;
-  warn("map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
-  warn("bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");
+  load.warn_if_unused(fields, "map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
+  load.warn_if_unused(fields, "bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");
 }
 
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {

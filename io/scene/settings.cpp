@@ -45,13 +45,9 @@ void read_lens(SceneValues& values, const Fields& fields, const YamlNode& node, 
 
 /// Warns of settings that change nothing, given the others.
 void warn_of_unused_settings(SceneLoad& load, const Fields& fields, const Camera& camera) {
-  const auto warn = [&](const char* key, bool is_unused, const char* why) {
-    const YamlNode* const node = fields[key];
-    if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);
-  };
   const bool perspective = camera.projection == Projection::perspective;
-  warn("fov", !perspective, "an orthographic view has a 'height'");
-  warn("height", perspective, "a perspective view has a 'fov'");
+  load.warn_if_unused(fields, "fov", !perspective, "an orthographic view has a 'height'");
+  load.warn_if_unused(fields, "height", perspective, "a perspective view has a 'fov'");
 }
 
 }  // namespace
@@ -139,8 +135,7 @@ static void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
   IntegratorSettings s = load.scene.integrator;
   if (load.integrator) s.kind = *load.integrator;
   const auto warn = [&](const char* key, bool is_unused, const std::string& why) {
-    const YamlNode* const node = fields[key];
-    if (node != nullptr && is_unused) load.warn(node->where(), quote(key) + " has no effect: " + why);
+    load.warn_if_unused(fields, key, is_unused, why);
   };
   const bool path = s.kind == IntegratorKind::path, whitted = s.kind == IntegratorKind::whitted;
   const auto only = [&](const char* kinds) {

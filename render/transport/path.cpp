@@ -20,15 +20,6 @@ const EnclosureStack* enclosures(const Wavefront& wavefront, std::size_t ray, co
   return behind ? &boundary->behind : &wavefront.paths.enclosures[ray];
 }
 
-/// See LightPoint::on.
-std::uint32_t own_emitter(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
-                          const ShadingPoint& p) {
-  const std::uint32_t material = material_index(*context.world, p.surface.user, p.surface.material_slot);
-  // A texture may be black here but not everywhere on the emitter.
-  const bool glows = !(context.world->materials[material].emission == Color{0, 0, 0});
-  return glows ? context.sampled->emitter_at(wavefront.hits[ray]) : kNoId;
-}
-
 /// Sends a ray to a light chosen at random.
 void sample_light(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                   const SurfaceBsdf& bsdf, const LightPoint& from, const Choices& choices,
@@ -81,17 +72,20 @@ void shade_surface(const RenderContext& context, Wavefront& wavefront, std::size
   }
 
   const Color throughput = wavefront.rays.throughput[ray];
+  const std::uint32_t material = material_index(*context.world, p.surface.user, p.surface.material_slot);
+  // Also where a texture is black, since it may not be so everywhere on the emitter.
+  const bool is_lamp = glows(context.world->materials[material]);
+  const std::uint32_t emitter = is_lamp ? context.sampled->emitter_at(wavefront.hits[ray]) : kNoId;
   if (!(p.emission == Color{0, 0, 0})) {
     const Color emitted =
-        throughput * p.emission * emission_weight(context, wavefront, ray, p.surface.position);
+        throughput * p.emission * emission_weight(context, wavefront, ray, p.surface.position, emitter);
     wavefront.radiance.add(ray, emitted);
-    add_emission_to_layer(context, wavefront, ray,
-                          material_index(*context.world, p.surface.user, p.surface.material_slot), emitted);
+    add_emission_to_layer(context, wavefront, ray, material, emitted);
   }
   if (wavefront.rays.bounces[ray] > context.settings.depth) return;
 
   const SurfaceBsdf bsdf(p);
-  const LightPoint from{p.surface.position, p.ng, !bsdf.transmits(), own_emitter(context, wavefront, ray, p)};
+  const LightPoint from{p.surface.position, p.ng, !bsdf.transmits(), emitter};
   if (!bsdf.only_delta()) {
     sample_light(context, wavefront, ray, p, bsdf, from, choices, boundary);
     if (context.caustics != nullptr) add_caustics(context, wavefront, ray, p, bsdf);

@@ -152,16 +152,17 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
       record_first_hit(context, wavefront, i,
                        shown_surface(context, wavefront.rays.rays[i], wavefront.hits[i], history, found[k]));
     if (from_camera) cover(context, wavefront, i, 1);
+    const Vec3f position = InteractionBlock::get(found.position, k);
+    const std::uint32_t emitter = surface.glows ? context.sampled->emitter_at(wavefront.hits[i]) : kNoId;
     if (!(surface.emission == Color{0, 0, 0})) {
       const Color emitted = wavefront.rays.throughput[i] * surface.emission *
-                            emission_weight(context, wavefront, i, InteractionBlock::get(found.position, k));
+                            emission_weight(context, wavefront, i, position, emitter);
       wavefront.radiance.add(i, emitted);
       add_emission_to_layer(context, wavefront, i, number / 2, emitted);
     }
     if (wavefront.rays.bounces[i] > context.settings.depth) continue;
     c.light_kind[k] = LightKind::none;
-    c.from[k] = {InteractionBlock::get(found.position, k), InteractionBlock::get(c.ng, k), !surface.transmits,
-                 surface.glows ? context.sampled->emitter_at(wavefront.hits[i]) : kNoId};
+    c.from[k] = {position, InteractionBlock::get(c.ng, k), !surface.transmits, emitter};
     if (!surface.only_delta) asks[asking++] = static_cast<std::uint32_t>(k);
     shown[in_lanes++] = {number, static_cast<std::uint32_t>(k)};
   }

@@ -11,12 +11,11 @@ float power_weight(float pdf, float other) {
 }
 
 float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
-                      const Vec3f& position) {
+                      const Vec3f& position, std::uint32_t emitter) {
   if (wavefront.level == 0) return 1;
   const float pdf = wavefront.paths.pdf[ray];
   if (pdf == 0 && !is_caustic(context, wavefront, ray)) return 1;
   const LightPoint& from = wavefront.paths.from[ray];
-  const std::uint32_t emitter = context.sampled->emitter_at(wavefront.hits[ray]);
   if (pdf == 0) return emitter != kNoId && context.caustics->brings(emitter) ? 0.0f : 1.0f;
   if (emitter == kNoId) return power_weight(pdf, 0);
   return power_weight(pdf, context.sampled->set().pdf(from, emitter, wavefront.rays.rays[ray].direction,

@@ -10,9 +10,10 @@ namespace oktett {
 /// the first.
 float power_weight(float pdf, float other);
 
-/// The weight of the light that the surface at `position`, the hit of entry `ray`, emits.
+/// The weight of the light that the surface at `position`, the hit of entry `ray`, emits. `emitter`: its
+/// number, see SceneLights::emitter_at.
 float emission_weight(const RenderContext& context, const Wavefront& wavefront, std::size_t ray,
-                      const Vec3f& position);
+                      const Vec3f& position, std::uint32_t emitter);
 
 /// Whether entry `ray` came from mirrors or glass that were met after a surface that scatters otherwise: the
 /// lights that it meets are those that photons bring.

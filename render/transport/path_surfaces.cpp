@@ -9,7 +9,7 @@ static PathSurface path_surface(const Material& m, bool front) {
   PathSurface s;
   s.alone = has_textures(m) || m.opacity != 1 || !m.surface;
   s.principled = m.principled.has_value();
-  s.glows = !(m.emission == Color{0, 0, 0});
+  s.glows = glows(m);
   if (front || m.emits_behind) s.emission = m.emission;
   if (s.alone) return s;
   if (!s.principled) {
