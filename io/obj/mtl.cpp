@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -67,15 +68,10 @@ constexpr PrincipledStatement kPrincipled[] = {
     {"pcr", "Pcr", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture}};
 
 // What is read of a material beside the above, and what is not, though other programs know it.
-constexpr const char* kNumbers[] = {"d", "Tr", "Ns", "Ni", "illum"};
+constexpr const char* kNumbers[] = {"d", "tr", "ns", "ni", "illum"};
 constexpr const char* kOtherStatements[] = {
-    "map_Ka", "map_Ns",   "map_Ni", "map_Tr", "map_Tf",    "map_aat", "disp",   "map_disp",  "decal",
-    "refl",   "map_refl", "Km",     "map_Km", "sharpness", "aniso",   "anisor", "map_aniso", "map_anisor"};
-
-std::string in_lower_case(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
+    "map_ka", "map_ns",   "map_ni", "map_tr", "map_tf",    "map_aat", "disp",   "map_disp",  "decal",
+    "refl",   "map_refl", "km",     "map_km", "sharpness", "aniso",   "anisor", "map_aniso", "map_anisor"};
 
 /// All keywords of materials that mean something here, in lower case.
 const std::vector<std::string>& used_statements() {
@@ -83,7 +79,7 @@ const std::vector<std::string>& used_statements() {
     std::vector<std::string> names;
     for (const auto& [name, color] : kColors) names.emplace_back(name);
     for (const auto& [name, slot] : kTextures) names.emplace_back(name);
-    for (const char* name : kNumbers) names.push_back(in_lower_case(name));
+    names.insert(names.end(), std::begin(kNumbers), std::end(kNumbers));
     for (const PrincipledStatement& statement : kPrincipled) {
       names.emplace_back(statement.key);
       names.push_back(std::string("map_").append(statement.key));
@@ -97,8 +93,7 @@ const std::vector<std::string>& used_statements() {
 std::string why_unused(const std::string& key, const std::string& written) {
   const std::vector<std::string>& used = used_statements();
   if (std::ranges::find(used, key) != used.end()) return "";
-  const auto is_key = [&](const char* name) { return in_lower_case(name) == key; };
-  if (std::ranges::any_of(kOtherStatements, is_key)) return written + " is not used";
+  if (std::ranges::find(kOtherStatements, key) != std::end(kOtherStatements)) return written + " is not used";
   return "unknown statement " + written + did_you_mean(key, used);
 }
 
