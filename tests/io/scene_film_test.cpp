@@ -55,11 +55,7 @@ TEST(SceneFilm, BadLensesAndFiltersAreErrors) {
 // Each is named with what it lacks; settings that are switched off are none.
 TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
   const auto warnings = [](const std::string& integrator) {
-    SceneFiles files;
-    std::string all;
-    for (const Warning& w : files.load_v1("integrator: {" + integrator + "}\n").warnings)
-      all += files.without_directory(to_string(w)) + "\n";
-    return all;
+    return SceneFiles().warnings_v1("integrator: {" + integrator + "}\n");
   };
   const std::string no_effect = " has no effect: ";
   EXPECT_EQ(warnings("kind: ao, depth: 3"),
@@ -92,12 +88,8 @@ TEST(SceneFilm, WarnsOfSettingsWithoutEffect) {
 // Whitted's model shows lamps of some size, but they light something only with points on them.
 TEST(SceneFilm, WarnsOfLampsThatLightNothing) {
   const auto warnings = [](const std::string& integrator, const std::string& lamp) {
-    SceneFiles files;
-    std::string all;
-    const std::string text =
-        "integrator: {" + integrator + "}\nlights: [{" + lamp + "}]\nobjects: [{plane: {}}]\n";
-    for (const Warning& w : files.load_v1(text).warnings) all += files.without_directory(to_string(w)) + "\n";
-    return all;
+    return SceneFiles().warnings_v1("integrator: {" + integrator + "}\nlights: [{" + lamp +
+                                    "}]\nobjects: [{plane: {}}]\n");
   };
   const std::string idle =
       "warning: the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size\n";
@@ -112,11 +104,7 @@ TEST(SceneFilm, WarnsOfLampsThatLightNothing) {
 
 TEST(SceneFilm, WarnsOfCameraSettingsWithoutEffect) {
   const auto warnings = [](const std::string& camera) {
-    SceneFiles files;
-    std::string all;
-    for (const Warning& w : files.load_v1("camera: {" + camera + "}\n").warnings)
-      all += files.without_directory(to_string(w)) + "\n";
-    return all;
+    return SceneFiles().warnings_v1("camera: {" + camera + "}\n");
   };
   const std::string no_effect = " has no effect: ";
   EXPECT_EQ(warnings("projection: orthographic, fov: 30"),

@@ -38,6 +38,13 @@ class SceneFiles {
     return error("oktett: 1\n" + text, definitions);
   }
 
+  /// The warnings of a scene, a line each. `text` begins in line 2.
+  std::string warnings_v1(const std::string& text) const {
+    std::string all;
+    for (const Warning& w : load_v1(text).warnings) all += without_directory(to_string(w)) + "\n";
+    return all;
+  }
+
   std::string without_directory(std::string message) const {
     const std::string prefix = dir.path().string() + "/";
     for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());

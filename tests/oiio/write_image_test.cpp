@@ -200,36 +200,31 @@ TEST(WriteImage, AFullDiskLeavesTheOldFileAndNoTemporary) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  // The error where a file may have so many bytes. The old file must stay.
+  const auto error_at = [&](const std::string& name, rlim_t bytes) {
+    const std::string path = dir.write(name, "old");
+    const rlimit full{bytes, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &full);
+    std::string message;
+    try {
+      write_image(path, picture);
+    } catch (const Error& e) {
+      if (e.kind() == ErrorKind::io) message = e.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_EQ(test::file_content(path), "old");
+    return message;
+  };
   for (const char* name : {"a.png", "a.exr", "a.hdr", "a.bmp", "a.tga", "a.jpg", "a.webp", "a.ppm", "a.gif"})
     for (const rlim_t bytes : {0, 10, 500, 3000}) {
-      const std::string path = dir.write(name, "old");
-      const rlimit full{bytes, before.rlim_max};
-      setrlimit(RLIMIT_FSIZE, &full);
-      std::string message;
-      try {
-        write_image(path, picture);
-      } catch (const Error& error) {
-        if (error.kind() == ErrorKind::io) message = error.what();
-      }
-      setrlimit(RLIMIT_FSIZE, &before);
-      EXPECT_EQ(message, path + ": cannot write: File too large") << bytes;
-      EXPECT_EQ(test::file_content(path), "old");
+      const std::string path = dir.file(name);
+      EXPECT_EQ(error_at(name, bytes), path + ": cannot write: File too large") << bytes;
     }
   // Writers of these formats write by name. Whether they notice it themselves depends on them.
   for (const char* name : {"a.tif", "a.sgi", "a.rla", "a.fits", "a.ico"})
     for (const rlim_t bytes : {0, 10, 500, 3000, 4096}) {
-      const std::string path = dir.write(name, "old");
-      const rlimit full{bytes, before.rlim_max};
-      setrlimit(RLIMIT_FSIZE, &full);
-      std::string message;
-      try {
-        write_image(path, picture);
-      } catch (const Error& error) {
-        if (error.kind() == ErrorKind::io) message = error.what();
-      }
-      setrlimit(RLIMIT_FSIZE, &before);
+      const std::string path = dir.file(name), message = error_at(name, bytes);
       EXPECT_EQ(message.find(path + ": cannot write: "), 0u) << message << " " << bytes;
-      EXPECT_EQ(test::file_content(path), "old");
     }
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(test::file_count(dir), 14u);

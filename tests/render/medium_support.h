@@ -27,6 +27,18 @@ inline std::uint32_t add_interior(Scene& scene, const Medium& medium) {
   return add_material(scene, m);
 }
 
+/// Clear glass that attenuates like a medium.
+inline Material filled(Scene& scene, float ior, const Color& absorption,
+                       std::int32_t priority = kNoPriority) {
+  Material m = glass(ior);
+  Medium medium;
+  medium.absorption = absorption;
+  scene.media.push_back(medium);
+  m.interior = static_cast<std::uint32_t>(scene.media.size() - 1);
+  m.priority = priority;
+  return m;
+}
+
 /// The mean of all pixels and its standard error, by the scatter of the pixels.
 struct Mean {
   Vec3d value, error;
