@@ -1,5 +1,9 @@
 """The adapter for users of Open3D: names, shapes, types and values of answers."""
 
+import subprocess
+import sys
+import types
+
 import numpy as np
 import pytest
 
@@ -42,7 +46,8 @@ def test_rays_have_the_answers_of_the_oracle(scene):
     lists = scene.list_intersections(rays)
     assert list(lists) == ["ray_splits", "ray_ids", "t_hit", "geometry_ids", "primitive_ids", "primitive_uvs"]
     splits = lists["ray_splits"]
-    assert splits.shape == (2001,) and splits.dtype == np.int64 and splits[-1] == len(lists["t_hit"])
+    assert splits.shape == (2001,) and splits.dtype == lists["ray_ids"].dtype == np.uint32
+    assert splits[-1] == len(lists["t_hit"])
     assert np.array_equal(np.bincount(lists["ray_ids"], minlength=2000), counts.ravel())
     expected, uncertain = crossings(vertices, faces, rays.reshape(-1, 6))
     struck = 0
@@ -89,10 +94,106 @@ def test_meshes_of_other_packages_are_added():
     ray = np.float32([[0.1, 0.2, 5, 0, 0, -1]])
     for mesh in (Legacy, New, Trimesh):
         made = RaycastingScene()
-        assert made.add_triangles(mesh()) == 0
+        assert made.add_triangles(mesh()) == 0 and made.add_triangles(mesh=mesh()) == 1
         assert made.cast_rays(ray)["t_hit"] == [4]
+    by_names = RaycastingScene()
+    assert by_names.add_triangles(triangle_indices=CUBE_FACES, vertex_positions=CUBE_VERTICES) == 0
+    assert by_names.cast_rays(rays=ray, nthreads=0)["t_hit"] == [4]
     with pytest.raises(ValueError, match="expected positions and triangles, or a mesh, found int"):
         RaycastingScene().add_triangles(3)
+    with pytest.raises(ValueError, match="expected positions and triangles, or a mesh, found NoneType"):
+        RaycastingScene().add_triangles()
+    with pytest.raises(TypeError, match="found both"):
+        RaycastingScene().add_triangles(CUBE_VERTICES, CUBE_FACES, mesh=Legacy())
+
+
+def test_a_tnear_below_zero_counts_as_zero(scene):
+    behind, ahead = np.float32([[0.1, 0.2, -5, 0, 0, -1]]), np.float32([[0.1, 0.2, 5, 0, 0, -1]])
+    assert not scene.test_occlusions(behind, tnear=-100)[0] and scene.test_occlusions(ahead, tnear=-1e30)[0]
+    assert not scene.test_occlusions(ahead, tnear=-9, tfar=-1)[0]
+    assert not scene.test_occlusions(ahead, tnear=float("nan"))[0]
+
+
+def test_answers_to_arrays_are_arrays_that_have_a_tensors_methods(scene):
+    points = np.zeros((4, 3), np.float32)
+    rays = RaycastingScene.create_rays_pinhole(60, [0, 0, 0], [0, 0, 5], [0, 1, 0], 4, 3)
+    answers = [rays, scene.test_occlusions(rays), scene.count_intersections(rays), scene.compute_distance(points)]
+    answers += [scene.compute_occupancy(points), scene.compute_signed_distance(points)]
+    for made in (scene.cast_rays(rays), scene.list_intersections(rays), scene.compute_closest_points(points)):
+        answers += made.values()
+    for answer in answers:
+        assert isinstance(answer, np.ndarray) and type(answer.cpu().numpy()) is np.ndarray
+        assert np.array_equal(answer.numpy(), answer) and np.shares_memory(answer.numpy(), answer)
+
+
+def test_even_numbers_of_samples_are_refused(scene):
+    points = np.zeros((1, 3), np.float32)
+    for query in (scene.compute_occupancy, scene.compute_signed_distance):
+        assert query(points, nsamples=3) == query(points, 0, 1)
+        for nsamples in (2, 0, -1):
+            with pytest.raises(ValueError, match=f"nsamples: expected an odd number, found {nsamples}"):
+                query(points, nsamples=nsamples)
+
+
+def test_only_the_cpu_is_a_device():
+    for device in (None, "CPU:0", "cpu"):
+        RaycastingScene(0, device)
+    with pytest.raises(ValueError, match="device: expected the CPU, found CUDA:0"):
+        RaycastingScene(device="CUDA:0")
+
+
+def test_open3d_is_not_imported():
+    code = """
+import sys, numpy as np, oktett.open3d as o
+s = o.RaycastingScene()
+s.add_triangles(np.eye(3, dtype=np.float32), np.uint32([[0, 1, 2]]))
+s.cast_rays(s.create_rays_pinhole(60, [0, 0, 0], [2, 2, 2], [0, 0, 1], 4, 4))
+assert "open3d" not in sys.modules
+"""
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_what_is_given_decides_what_answers_are(monkeypatch):
+    """With a module that stands for Open3D: a tensor in the scene or in the query gives tensors."""
+
+    class Tensor:
+        def __init__(self, array):
+            self.array = array
+
+        from_numpy = classmethod(lambda cls, array: cls(array))
+
+        def cpu(self):
+            return Tensor(self.array)
+
+        def numpy(self):
+            return self.array
+
+    class Device:
+        def __str__(self):
+            return "CPU:0"
+
+    for kind in (Tensor, Device):
+        kind.__module__ = "open3d.cpu.pybind.core"
+    monkeypatch.setitem(sys.modules, "open3d", types.SimpleNamespace(core=types.SimpleNamespace(Tensor=Tensor)))
+    rays, points = np.ones((2, 6), np.float32), np.ones((2, 3), np.float32)
+
+    def kinds(scene, given):
+        answers = [scene.test_occlusions(given(rays)), scene.count_intersections(given(rays))]
+        answers += [scene.compute_distance(given(points)), scene.compute_signed_distance(given(points))]
+        answers.append(scene.compute_occupancy(given(points)))
+        for made in (scene.cast_rays(given(rays)), scene.list_intersections(given(rays)), scene.compute_closest_points(given(points))):
+            answers += made.values()
+        return {isinstance(answer, Tensor) for answer in answers}
+
+    plain, filled, placed = RaycastingScene(), RaycastingScene(), RaycastingScene(device=Device())
+    plain.add_triangles(CUBE_VERTICES, CUBE_FACES)
+    filled.add_triangles(CUBE_VERTICES, Tensor(CUBE_FACES))
+    assert kinds(plain, Tensor) == kinds(filled, np.asarray) == kinds(placed, np.asarray) == {True}
+    assert kinds(plain, np.asarray) == {False}
+    view = ([0, 0, 0], [0, 0, 5], [0, 1, 0])
+    assert isinstance(RaycastingScene.create_rays_pinhole(60, Tensor(np.zeros(3)), *view[1:], 2, 2), Tensor)
+    assert isinstance(RaycastingScene.create_rays_pinhole(60, *view, 2, 2), np.ndarray)
+    assert isinstance(RaycastingScene.create_rays_pinhole(intrinsic_matrix=Tensor(np.eye(3)), extrinsic_matrix=np.eye(4), width_px=2, height_px=2), Tensor)
 
 
 def test_an_empty_scene_has_no_hits():
@@ -142,10 +243,61 @@ def test_pinhole_rays_of_a_view_span_its_angle():
         RaycastingScene.create_rays_pinhole(np.eye(4), np.eye(4), 4, 2)
 
 
-def test_scenes_are_those_of_open3d_where_it_is_installed():
-    open3d = pytest.importorskip("open3d")
-    theirs = open3d.t.geometry.RaycastingScene
-    for arguments in ((60, [1, 0, 0.5], [1, 2, 3], [0.1, 5, 0], 31, 21), (np.diag([9.0, 8, 1]), np.eye(4), 5, 4)):
-        tensors = [open3d.core.Tensor(np.asarray(a, float)) if np.ndim(a) else a for a in arguments]
-        wanted = theirs.create_rays_pinhole(*tensors).numpy()
-        assert RaycastingScene.create_rays_pinhole(*arguments) == pytest.approx(wanted, abs=1e-6)
+class TestBesideOpen3d:
+    """Where Open3D is installed its tensors and meshes are given, and its own answers compared."""
+
+    @pytest.fixture(autouse=True)
+    def has_open3d(self):
+        self.open3d = pytest.importorskip("open3d", reason="Open3D is not installed")
+        self.theirs = self.open3d.t.geometry.RaycastingScene
+        self.tensor = self.open3d.core.Tensor
+
+    def test_cameras_are_the_same(self):
+        for arguments in ((60, [1, 0, 0.5], [1, 2, 3], [0.1, 5, 0], 31, 21), (np.diag([9.0, 8, 1]), np.eye(4), 5, 4)):
+            tensors = [self.tensor(np.asarray(a, float)) if np.ndim(a) else a for a in arguments]
+            wanted = self.theirs.create_rays_pinhole(*tensors).numpy()
+            assert RaycastingScene.create_rays_pinhole(*arguments) == pytest.approx(wanted, abs=1e-6)
+            made = RaycastingScene.create_rays_pinhole(*tensors)
+            assert isinstance(made, self.tensor) and made.numpy() == pytest.approx(wanted, abs=1e-6)
+
+    def test_answers_to_tensors_are_tensors_of_the_same_types_and_shapes(self):
+        vertices, faces = ball(2)
+        rays, points = random_rays(400, 1.0, seed=3).reshape(2, 200, 6), random_rays(300, 1.0, seed=4)[:, :3].copy()
+        mine, theirs = RaycastingScene(), self.theirs()
+        for scene in (mine, theirs):
+            assert scene.add_triangles(self.tensor(vertices), self.tensor(faces)) == 0
+        for name in ("cast_rays", "test_occlusions", "count_intersections", "list_intersections"):
+            self.compare(getattr(mine, name), getattr(theirs, name, None), rays)
+        for name in ("compute_closest_points", "compute_distance", "compute_signed_distance", "compute_occupancy"):
+            self.compare(getattr(mine, name), getattr(theirs, name), points)
+
+    def compare(self, mine, theirs, given):
+        answers = [mine(self.tensor(given)), mine(given)]
+        if theirs is not None:
+            answers.append(theirs(self.tensor(given)))
+        described = []
+        for answer in answers:
+            parts = answer if isinstance(answer, dict) else {"": answer}
+            assert all(isinstance(part, self.tensor) for part in parts.values())
+            # Which hits a ray has is compared elsewhere: here their number would hide the types.
+            described.append({key: (str(part.dtype), len(part.shape)) for key, part in parts.items()})
+        assert all(other == described[0] for other in described)
+
+    def test_tensors_share_the_memory_of_answers_that_are_gone(self):
+        scene = RaycastingScene()
+        scene.add_triangles(self.tensor(CUBE_VERTICES), self.tensor(CUBE_FACES))
+        hits = [scene.cast_rays(np.float32([[0.1, 0.2, 5 + k, 0, 0, -1]] * 1000))["t_hit"] for k in range(20)]
+        assert [hit.numpy().tolist() for hit in hits] == [[4.0 + k] * 1000 for k in range(20)]
+        assert scene.cast_rays(np.zeros((0, 6)))["primitive_uvs"].numpy().shape == (0, 2)
+
+    def test_its_meshes_are_added(self):
+        legacy = self.open3d.geometry.TriangleMesh.create_box()
+        new = self.open3d.t.geometry.TriangleMesh.from_legacy(legacy)
+        for mesh in (legacy, new):
+            scene = RaycastingScene()
+            assert scene.add_triangles(mesh) == 0 and scene.add_triangles(mesh=mesh) == 1
+            found = scene.count_intersections(np.float32([[0.4, 0.3, -1, 0, 0, 1]]))
+            assert isinstance(found, self.tensor) and found.numpy().tolist() == [4]
+        empty = RaycastingScene()
+        assert empty.add_triangles(self.open3d.t.geometry.TriangleMesh()) == 0
+        assert np.isinf(empty.compute_distance(np.float32([[0, 0, 0]])).numpy()).all()

@@ -5,39 +5,10 @@ import pytest
 
 import oktett
 from oktett.open3d import RaycastingScene
-from oracle import CUBE_FACES, CUBE_VERTICES, ball
+from oracle import CUBE_FACES, CUBE_VERTICES, ball, nearest_on_triangles
 
 MISS = 0xFFFFFFFF
 FIELDS = ["distance", "point", "object", "primitive", "instance", "uv", "normal"]
-
-
-def nearest_on_triangles(vertices, faces, points):
-    """Distance and nearest point of each point to all triangles, in float64: the best of the plane's foot where it is
-    inside, of the three edges and of the corners."""
-    corners = np.asarray(vertices, float)[faces]
-    best, place = np.full(len(points), np.inf), np.zeros((len(points), 3))
-
-    def consider(candidates, valid):
-        distances = np.where(valid, np.linalg.norm(candidates - points[:, None], axis=2), np.inf)
-        k = distances.argmin(axis=1)
-        nearer = distances[np.arange(len(points)), k] < best
-        best[nearer] = distances[nearer, k[nearer]]
-        place[nearer] = candidates[nearer, k[nearer]]
-
-    for k in range(3):
-        a, b = corners[:, k], corners[:, (k + 1) % 3]
-        along = ((points[:, None] - a) * (b - a)).sum(-1) / ((b - a) ** 2).sum(-1)
-        consider(a + np.clip(along, 0, 1)[..., None] * (b - a), np.full(along.shape, True))
-    a, u, v = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    normal = np.cross(u, v)
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    foot = points[:, None] - ((points[:, None] - a) * normal).sum(-1)[..., None] * normal
-    inside = np.full(foot.shape[:2], True)
-    for k in range(3):
-        p, q = corners[:, k], corners[:, (k + 1) % 3]
-        inside &= (np.cross(q - p, foot - p) * normal).sum(-1) >= 0
-    consider(foot, inside)
-    return best, place
 
 
 @pytest.fixture
