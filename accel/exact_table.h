@@ -80,6 +80,7 @@ extern template struct ExactTable<ScalarIsa>;
 extern template struct ExactTable<Sse42Isa>;
 extern template struct ExactTable<Avx2Isa>;
 extern template struct ExactTable<Avx512Isa>;
+extern template struct ExactTable<NeonIsa>;
 
 template <class A>
 OKTETT_INLINE const ExactCode<A>& exact_code(Kind kind) {

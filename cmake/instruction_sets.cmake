@@ -23,17 +23,24 @@ function(oktett_native_set result)
 endfunction()
 
 # OKTETT_SETS: what OKTETT_INSTRUCTION_SETS asks for, as a list.
-if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  set(OKTETT_SETS "")
-elseif(OKTETT_INSTRUCTION_SETS STREQUAL "native")
+set(known_sets "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(known_sets sse42 avx2 avx512)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  set(known_sets neon)
+endif()
+if(OKTETT_INSTRUCTION_SETS STREQUAL "native" AND "avx2" IN_LIST known_sets)
   oktett_native_set(OKTETT_SETS)
+elseif(OKTETT_INSTRUCTION_SETS MATCHES "^(all|native)$")
+  set(OKTETT_SETS ${known_sets})
 else()
   set(OKTETT_SETS ${OKTETT_INSTRUCTION_SETS})
 endif()
 set(oktett_with "")
 foreach(set IN LISTS OKTETT_SETS)
-  if(NOT set MATCHES "^(sse42|avx2|avx512)$")
-    message(FATAL_ERROR "OKTETT_INSTRUCTION_SETS: unknown set '${set}'; known are sse42, avx2, avx512, and native alone")
+  if(NOT set IN_LIST known_sets)
+    list(JOIN known_sets ", " names)
+    message(FATAL_ERROR "OKTETT_INSTRUCTION_SETS: unknown set '${set}'; this architecture has: ${names}; or all, or native, alone")
   endif()
   string(TOUPPER OKTETT_WITH_${set} definition)
   list(APPEND oktett_with ${definition})
@@ -48,6 +55,7 @@ set_source_files_properties(
 # set is chosen at run time by core/isa_select.h.
 function(oktett_compile_per_set target)
   oktett_compile_set(${target} scalar "${ARGN}" ScalarIsa -O2 -fno-tree-vectorize)
+  set(flags_neon NeonIsa)
   set(flags_sse42 Sse42Isa -msse4.2)
   set(flags_avx2 Avx2Isa -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt -mf16c)
   set(flags_avx512 Avx512Isa -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mavx2 -mfma -mbmi -mbmi2
@@ -57,7 +65,7 @@ function(oktett_compile_per_set target)
   endforeach()
 endfunction()
 
-# One object library per set. Fused multiply-adds happen only where the code asks for them.
+# One object library per set.
 function(oktett_compile_set target set sources tag)
   # -O3 in every build type, so that no small function of the standard library survives as a call and is shared across
   # sets; instrumented builds, which run on the machine that made them, need not care.
@@ -75,7 +83,7 @@ function(oktett_compile_set target set sources tag)
   target_compile_definitions(${code} PRIVATE OKTETT_ISA=${tag})
   # Hot functions begin with a cache line: their speed does not depend on what the linker puts before them.
   target_compile_options(${code} PRIVATE
-    -ffp-contract=off ${OKTETT_PIC_OPTIONS} ${optimization} -falign-functions=64 -g0 ${warnings} ${ARGN})
+    ${OKTETT_PIC_OPTIONS} ${optimization} -falign-functions=64 -g0 ${warnings} ${ARGN})
   oktett_target_warnings(${code})
   oktett_precompile(${code})
   target_link_libraries(${code} PRIVATE oktett_internal)

@@ -17,7 +17,7 @@ set(OKTETT_PIC_OPTIONS -fno-semantic-interposition)
 add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES})
 add_library(oktett::oktett ALIAS oktett)
 target_compile_features(oktett PUBLIC cxx_std_20)
-target_compile_options(oktett PRIVATE -ffp-contract=off ${OKTETT_PIC_OPTIONS})
+target_compile_options(oktett PRIVATE ${OKTETT_PIC_OPTIONS})
 oktett_target_warnings(oktett)
 oktett_unity(oktett)
 set_target_properties(oktett PROPERTIES
@@ -32,7 +32,7 @@ target_link_libraries(oktett
 
 file(GLOB OKTETT_GLTF_SOURCES CONFIGURE_DEPENDS io/gltf/*.cpp)
 set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_DEFINITIONS ${OKTETT_GLTF_DEFINITIONS})
-set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY INCLUDE_DIRECTORIES ${OKTETT_GLTF_INCLUDES})
+set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_OPTIONS ${OKTETT_GLTF_INCLUDES})
 
 # Holds a copy of the scalar traversal: compiled as that is. GCC 12 warns of lanes that a mask leaves out.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/accel/traverse/trace_counts.cpp
@@ -44,9 +44,8 @@ oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES
 # What uses OpenImageIO, see io/image/library.h: a shared library that oktett loads when it is needed, and finds from where
 # the program or itself lies. It shows one symbol and has its own copy of the little that both need.
 file(GLOB OKTETT_IMAGE_SOURCES CONFIGURE_DEPENDS io/image/oiio/*.cpp)
-add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp core/pages.cpp core/soa.cpp io/image/color.cpp)
+add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp core/math.cpp core/pages.cpp core/soa.cpp io/image/color.cpp)
 target_compile_features(oktett_images PRIVATE cxx_std_20)
-target_compile_options(oktett_images PRIVATE -ffp-contract=off)
 oktett_target_warnings(oktett_images)
 oktett_unity(oktett_images)
 target_link_libraries(oktett_images PRIVATE oktett_internal OpenImageIO::OpenImageIO fmt::fmt)
@@ -75,7 +74,6 @@ if(OKTETT_BUILD_APP OR OKTETT_BUILD_TESTS OR OKTETT_BUILD_BENCH)
   list(FILTER OKTETT_VERIFY_SOURCES EXCLUDE REGEX "/isa/")
   file(GLOB OKTETT_VERIFY_ISA_SOURCES CONFIGURE_DEPENDS verify/isa/*.cpp)
   add_library(oktett_verify STATIC ${OKTETT_VERIFY_SOURCES})
-  target_compile_options(oktett_verify PRIVATE -ffp-contract=off)
   target_link_libraries(oktett_verify PUBLIC oktett::oktett oktett_internal fmt::fmt)
   oktett_target_warnings(oktett_verify)
   oktett_unity(oktett_verify)

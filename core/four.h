@@ -10,6 +10,9 @@
 #include <cstring>
 
 #include "core/platform.h"
+#if defined(OKTETT_COMPILED_NEON)
+#include <arm_neon.h>
+#endif
 
 namespace oktett {
 
@@ -34,6 +37,8 @@ OKTETT_INLINE unsigned bits(const FourMask& m) {
   float __attribute__((vector_size(16))) signs;
   std::memcpy(&signs, &m.lanes, sizeof(signs));
   return static_cast<unsigned>(__builtin_ia32_movmskps(signs));
+#elif defined(OKTETT_COMPILED_NEON)
+  return vaddvq_u32(vandq_u32(vreinterpretq_u32_s32(m.lanes), uint32x4_t{1, 2, 4, 8}));
 #else
   return (m.lanes[0] & 1) | (m.lanes[1] & 2) | (m.lanes[2] & 4) | (m.lanes[3] & 8);
 #endif
@@ -85,6 +90,8 @@ OKTETT_INLINE Four abs(const Four& a) {
 OKTETT_INLINE Four sqrt(const Four& a) {
 #if defined(__SSE__)
   return __builtin_ia32_sqrtps(a.lanes);
+#elif defined(OKTETT_COMPILED_NEON)
+  return Four(vsqrtq_f32(a.lanes));
 #else
   return Four::Lanes{std::sqrt(a.lanes[0]), std::sqrt(a.lanes[1]), std::sqrt(a.lanes[2]),
                      std::sqrt(a.lanes[3])};

@@ -7,7 +7,7 @@
 
 namespace oktett {
 
-static constexpr Isa kAll[] = {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512};
+static constexpr Isa kAll[] = {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512, Isa::neon};
 
 const char* to_string(Isa isa) {
   switch (isa) {
@@ -19,6 +19,8 @@ const char* to_string(Isa isa) {
       return "avx2";
     case Isa::avx512:
       return "avx512";
+    case Isa::neon:
+      return "neon";
   }
   return "?";
 }
@@ -51,6 +53,10 @@ static bool is_available(Isa isa) {
              __builtin_cpu_supports("popcnt") && __builtin_cpu_supports("avx512f") &&
              __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
              __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+#endif
+#if defined(OKTETT_WITH_NEON)
+    case Isa::neon:
+      return true;  // Every 64-bit ARM processor that runs Linux has it.
 #endif
     default:
       return false;

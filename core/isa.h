@@ -8,16 +8,17 @@
 
 namespace oktett {
 
-/// Instruction sets that hot code is compiled for, from the narrowest to the widest. Every query gives the
-/// same bits with each of them; only the speed differs.
+/// Instruction sets that hot code is compiled for, those of one processor from the narrowest to the widest.
+/// Every query gives the same bits with each of them; only the speed differs.
 enum class Isa {
   scalar,  ///< no vector instructions
   sse42,   ///< SSE4.2, 4 floats at a time
   avx2,    ///< AVX2 with FMA, 8 floats at a time
   avx512,  ///< AVX-512 F, CD, DQ, BW and VL, 16 floats at a time
+  neon,    ///< NEON of 64-bit ARM, 4 floats at a time, with fused multiply-add
 };
 
-/// "scalar", "sse4.2", "avx2", "avx512".
+/// "scalar", "sse4.2", "avx2", "avx512", "neon".
 const char* to_string(Isa isa);
 /// The instruction set called `name` (as printed by to_string), or nothing.
 std::optional<Isa> parse_isa(std::string_view name);

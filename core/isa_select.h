@@ -16,6 +16,7 @@ struct ScalarIsa;
 struct Sse42Isa;
 struct Avx2Isa;
 struct Avx512Isa;
+struct NeonIsa;
 
 /// Calls f.operator()<A>() for the set `isa`. Throws Error if this build holds no code for it.
 template <class Function>
@@ -32,6 +33,10 @@ decltype(auto) with_isa(Isa isa, Function&& f) {
 #if defined(OKTETT_WITH_AVX512)
     case Isa::avx512:
       return f.template operator()<Avx512Isa>();
+#endif
+#if defined(OKTETT_WITH_NEON)
+    case Isa::neon:
+      return f.template operator()<NeonIsa>();
 #endif
     case Isa::scalar:
       return f.template operator()<ScalarIsa>();

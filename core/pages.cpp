@@ -1,14 +1,14 @@
 #include "core/pages.h"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
-#include <cstdint>
 #include <new>
 
 namespace oktett {
 namespace {
 
-constexpr std::size_t kPage = 4096;
+std::size_t round_up(std::size_t x, std::size_t unit) { return (x + unit - 1) / unit * unit; }
 
 /// Null if the system refuses.
 char* map_pages(std::size_t bytes) {
@@ -19,7 +19,7 @@ char* map_pages(std::size_t bytes) {
 
 /// Address space that begins at a multiple of kHugePage, or null. What was reserved around it is given back.
 char* map_huge_pages(std::size_t bytes) {
-  const std::size_t all = (bytes + kPage - 1) / kPage * kPage + kHugePage;
+  const std::size_t all = round_up(bytes, page_size()) + kHugePage;
   char* const reserved = all > bytes ? map_pages(all) : nullptr;
   if (reserved == nullptr) return nullptr;
   const std::size_t before = -reinterpret_cast<std::uintptr_t>(reserved) % kHugePage;
@@ -31,11 +31,28 @@ char* map_huge_pages(std::size_t bytes) {
 
 }  // namespace
 
-std::size_t whole_pages(std::size_t bytes) {
+std::size_t page_size() {
+  static const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return size;
+}
+
+PageRange pages_within(std::uintptr_t begin, std::size_t bytes, std::size_t page) {
+  const std::uintptr_t first = round_up(begin, page), end = (begin + bytes) / page * page;
+  return {first, first < end ? end - first : 0};
+}
+
+PageRange pages_around(std::uintptr_t begin, std::size_t bytes, std::size_t page) {
+  const std::uintptr_t first = begin / page * page;
+  return {first, bytes > 0 ? round_up(begin + bytes - first, page) : 0};
+}
+
+std::size_t whole_pages(std::size_t bytes) { return whole_pages(bytes, page_size()); }
+
+std::size_t whole_pages(std::size_t bytes, std::size_t page) {
   if (bytes > ~kHugePage) return bytes;
   const std::size_t huge = bytes / kHugePage * kHugePage, rest = bytes - huge;
   if (rest >= kHugePage / 2) return huge + kHugePage;
-  return huge + (rest + kPage - 1) / kPage * kPage;
+  return huge + round_up(rest, page);
 }
 
 void* reserve_pages(std::size_t bytes) {
@@ -50,9 +67,18 @@ void* reserve_pages(std::size_t bytes) {
 void release_pages(void* begin, std::size_t bytes) { munmap(begin, bytes); }
 
 void discard_pages(void* begin, std::size_t bytes) {
-  const auto address = reinterpret_cast<std::uintptr_t>(begin);
-  const std::uintptr_t first = (address + kPage - 1) / kPage * kPage, end = (address + bytes) / kPage * kPage;
-  if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
+  const PageRange range = pages_within(reinterpret_cast<std::uintptr_t>(begin), bytes, page_size());
+  if (range.bytes > 0) madvise(reinterpret_cast<void*>(range.first), range.bytes, MADV_DONTNEED);
+}
+
+void populate_pages(void* begin, std::size_t bytes) {
+#ifdef MADV_POPULATE_WRITE
+  const PageRange range = pages_around(reinterpret_cast<std::uintptr_t>(begin), bytes, page_size());
+  if (range.bytes > 0) madvise(reinterpret_cast<void*>(range.first), range.bytes, MADV_POPULATE_WRITE);
+#else
+  static_cast<void>(begin);
+  static_cast<void>(bytes);
+#endif
 }
 
 bool can_reserve(std::size_t bytes) {

@@ -2,6 +2,7 @@
 /// \file Memory in pages, which large arrays take from the system themselves.
 
 #include <cstddef>
+#include <cstdint>
 
 namespace oktett {
 
@@ -9,9 +10,25 @@ namespace oktett {
 inline constexpr std::size_t kLargePiece = std::size_t{4} << 20;
 inline constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
-/// Rounds up to whole pages: to a huge page where the rest fills at least half of one, else to pages of 4 kB.
-/// Sizes near the greatest number, for which there is no memory, are returned unchanged.
+/// The size of the system's pages: 4 KiB on x86-64, and 4, 16 or 64 KiB on 64-bit ARM, by the kernel. The
+/// kernel takes only addresses that begin with a page, and rounds lengths up to whole pages.
+std::size_t page_size();
+
+/// Whole pages: `bytes` bytes from address `first` on.
+struct PageRange {
+  std::uintptr_t first = 0;
+  std::size_t bytes = 0;
+};
+/// The whole pages among the `bytes` bytes from `begin` on, and those that hold any of these bytes; `page` is
+/// a power of two.
+PageRange pages_within(std::uintptr_t begin, std::size_t bytes, std::size_t page);
+PageRange pages_around(std::uintptr_t begin, std::size_t bytes, std::size_t page);
+
+/// Rounds up to whole pages: to a huge page where the rest fills at least half of one, else to pages of
+/// page_size(), or of `page` bytes. Sizes near the greatest number, for which there is no memory, are
+/// returned unchanged.
 std::size_t whole_pages(std::size_t bytes);
+std::size_t whole_pages(std::size_t bytes, std::size_t page);
 
 /// Address space for so many bytes, which read as zero. Pages are allocated when they are first written.
 /// Whole huge pages are asked for: rays read nodes and triangles in random order, and with small pages, most
@@ -25,6 +42,11 @@ void release_pages(void* begin, std::size_t bytes);
 /// Gives back the memory of the whole pages among these bytes. Their contents are lost; the address space
 /// remains and may be written again.
 void discard_pages(void* begin, std::size_t bytes);
+
+/// Has the system allocate all pages of these `bytes` bytes, which the caller is going to write. One call for
+/// many pages costs a fraction of the page faults that writing them causes. Their contents are kept.
+/// Does nothing where the system cannot do so (Linux can since version 5.14).
+void populate_pages(void* begin, std::size_t bytes);
 
 /// Whether the system would give so many more bytes of address space now.
 bool can_reserve(std::size_t bytes);

@@ -1,10 +1,12 @@
 #pragma once
 /// \file Vectors of W lanes for any instruction set, over xsimd: one source for widths 1, 4, 8 and 16.
 ///
-/// All operations are exactly the IEEE operation on each lane, in every width and instruction set; only
-/// `fast_fma` may or may not fuse, and serves where any conservative result will do. Comparisons are false on
-/// NaN. `min(a, b)` is a < b ? a : b and `max(a, b)` is a > b ? a : b, hence b if either is NaN: write the
-/// accumulator second and NaN never enters it.
+/// All operations are exactly the IEEE operation on each lane, in every width and instruction set, whatever
+/// xsimd's of the same name does there; only `fast_fma` may or may not fuse, and serves where any
+/// conservative result will do. Unary minus turns the sign bit, of zeros and NaN, too. Comparisons are false
+/// on NaN. `min(a, b)` is a < b ? a : b and `max(a, b)` is a > b ? a : b, hence b if either is NaN or both
+/// are zeros: write the accumulator second and NaN never enters it. Whole numbers wrap around.
+/// tests/core/simd_test.cpp checks each of these on awkward numbers.
 
 #include <type_traits>
 #include <utility>
@@ -92,33 +94,43 @@ struct Simd {
       native::load_front(r.part[i], p + i * kLanesPerPart, count - i * kLanesPerPart, p[count - 1]);
     return r;
   }
+  /// Four numbers, in this order; for W = 4.
+  OKTETT_INLINE static Simd of(T x, T y, T z, T w) {
+    static_assert(W == 4);
+    Simd r;
+    if constexpr (kParts == 1)
+      native::set_four(r.part[0], x, y, z, w);
+    else
+      r.part[0] = x, r.part[1] = y, r.part[2] = z, r.part[3] = w;
+    return r;
+  }
   OKTETT_INLINE void store(T* p) const {
     for (int i = 0; i < kParts; ++i) native::store(p + i * kLanesPerPart, part[i]);
   }
 
   OKTETT_INLINE friend Simd operator+(const Simd& a, const Simd& b) {
     Simd r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] + b.part[i];
+    for (int i = 0; i < kParts; ++i) r.part[i] = native::add(a.part[i], b.part[i]);
     return r;
   }
   OKTETT_INLINE friend Simd operator-(const Simd& a, const Simd& b) {
     Simd r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] - b.part[i];
+    for (int i = 0; i < kParts; ++i) r.part[i] = native::subtract(a.part[i], b.part[i]);
     return r;
   }
   OKTETT_INLINE friend Simd operator*(const Simd& a, const Simd& b) {
     Simd r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] * b.part[i];
+    for (int i = 0; i < kParts; ++i) r.part[i] = native::multiply(a.part[i], b.part[i]);
     return r;
   }
   OKTETT_INLINE friend Simd operator/(const Simd& a, const Simd& b) {
     Simd r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = a.part[i] / b.part[i];
+    for (int i = 0; i < kParts; ++i) r.part[i] = native::divide(a.part[i], b.part[i]);
     return r;
   }
   OKTETT_INLINE friend Simd operator-(const Simd& a) {
     Simd r;
-    for (int i = 0; i < kParts; ++i) r.part[i] = -a.part[i];
+    for (int i = 0; i < kParts; ++i) r.part[i] = native::negate(a.part[i]);
     return r;
   }
   OKTETT_INLINE friend M operator<(const Simd& a, const Simd& b) {
@@ -181,7 +193,8 @@ OKTETT_INLINE Simd<float, W, A> flip_sign(const Simd<float, W, A>& a, const Simd
 
 /// True where the instruction set has a fused multiply-add, in every width.
 template <class A>
-inline constexpr bool kHasFma = std::is_same_v<A, Avx2Isa> || std::is_same_v<A, Avx512Isa>;
+inline constexpr bool kHasFma =
+    std::is_same_v<A, Avx2Isa> || std::is_same_v<A, Avx512Isa> || std::is_same_v<A, NeonIsa>;
 
 /// a * b + c, fused where that is fast: the last bit may differ between instruction sets.
 template <class T, int W, class A>

@@ -66,6 +66,18 @@ OKTETT_INLINE batch<double, Avx5> significand(batch<double, Avx5> a) {
   return _mm512_castsi512_pd(_mm512_or_si512(low, _mm512_castpd_si512(_mm512_set1_pd(1.0))));
 }
 #endif
+#if defined(OKTETT_COMPILED_NEON)
+OKTETT_INLINE NeonDouble low_bits_to_exponent(NeonDouble a) {
+  return vreinterpretq_f64_u64(vshlq_n_u64(vreinterpretq_u64_f64(a), 52));
+}
+OKTETT_INLINE NeonDouble biased_exponent(NeonDouble a) {
+  return vcvtq_f64_u64(vshrq_n_u64(vreinterpretq_u64_f64(a), 52));
+}
+OKTETT_INLINE NeonDouble significand(NeonDouble a) {
+  const uint64x2_t low = vandq_u64(vreinterpretq_u64_f64(a), vdupq_n_u64(0x000fffffffffffff));
+  return vreinterpretq_f64_u64(vorrq_u64(low, vdupq_n_u64(0x3ff0000000000000)));
+}
+#endif
 
 }  // namespace native
 

@@ -54,6 +54,32 @@ class PackedIndices<8, A> {
 };
 #endif
 
+#if defined(OKTETT_COMPILED_NEON)
+template <>
+class PackedIndices<8, NeonIsa> {
+ public:
+  OKTETT_INLINE explicit PackedIndices(const std::uint16_t* words) : words_(vld1q_u16(words)) {}
+
+  OKTETT_INLINE Simd<float, 8, NeonIsa> look_up(int k, const float* row) const {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(row);
+    const uint8x16x4_t table{
+        {vld1q_u8(bytes), vld1q_u8(bytes + 16), vld1q_u8(bytes + 32), vld1q_u8(bytes + 48)}};
+    const uint16x8_t index =
+        vandq_u16(vshlq_u16(words_, vdupq_n_s16(static_cast<short>(-4 * k))), vdupq_n_u16(15));
+    const auto floats = [&](uint32x4_t lanes) {
+      return vreinterpretq_f32_u8(vqtbl4q_u8(table, native::byte_places(lanes)));
+    };
+    Simd<float, 8, NeonIsa> r;
+    r.part[0] = floats(vmovl_u16(vget_low_u16(index)));
+    r.part[1] = floats(vmovl_high_u16(index));
+    return r;
+  }
+
+ private:
+  uint16x8_t words_;
+};
+#endif
+
 /// Two times eight words, each eight with rows of their own.
 template <class A>
 class PackedIndexPair {

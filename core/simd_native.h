@@ -11,6 +11,8 @@
 #include "core/platform.h"
 #if defined(OKTETT_COMPILED_SSE42)
 #include <immintrin.h>
+#elif defined(OKTETT_COMPILED_NEON)
+#include <arm_neon.h>
 #endif
 
 namespace oktett {
@@ -21,6 +23,7 @@ struct ScalarIsa {};
 struct Sse42Isa {};
 struct Avx2Isa {};
 struct Avx512Isa {};
+struct NeonIsa {};
 
 namespace native {
 
@@ -88,6 +91,18 @@ OKTETT_CHOOSE(std::int32_t, 4, Avx512Isa, xsimd::sse4_2)
 OKTETT_CHOOSE(std::int32_t, 8, Avx512Isa, XsimdAvx2)
 OKTETT_CHOOSE(std::int32_t, 16, Avx512Isa, xsimd::avx512bw)
 #endif
+#if defined(OKTETT_COMPILED_NEON)
+OKTETT_CHOOSE(float, 4, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(float, 8, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(float, 16, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(double, 2, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(double, 4, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(double, 8, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(double, 16, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(std::int32_t, 4, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(std::int32_t, 8, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE(std::int32_t, 16, NeonIsa, xsimd::neon64)
+#endif
 #undef OKTETT_CHOOSE
 
 // Operations on one lane, by plain arithmetic. Each gives the same bits as the operation of the same name on
@@ -115,8 +130,8 @@ OKTETT_INLINE Lane<T, A> operator/(Lane<T, A> a, Lane<T, A> b) {
   return a.v / b.v;
 }
 template <class T, class A>
-OKTETT_INLINE Lane<T, A> operator-(Lane<T, A> a) {
-  return -a.v;
+OKTETT_INLINE Lane<T, A> negate(Lane<T, A> a) {
+  return static_cast<T>(-static_cast<Wrapping<T>>(a.v));
 }
 template <class T, class A>
 OKTETT_INLINE LaneBool<T, A> operator<(Lane<T, A> a, Lane<T, A> b) {
@@ -192,8 +207,40 @@ OKTETT_INLINE void from_bits(LaneBool<T, A>& m, unsigned b) {
   m.v = b & 1;
 }
 
-// Operations on xsimd batches of any instruction set. Those that differ between sets are in
-// core/simd_x86.h.
+// Operations on xsimd batches of any instruction set. Those that differ between sets are in core/simd_x86.h
+// and core/simd_neon.h.
+
+// The IEEE operation, or addition and so on of whole numbers that wraps around. What xsimd does otherwise on
+// a set has an overload for it.
+template <class B>
+OKTETT_INLINE B add(B a, B b) {
+  return a + b;
+}
+template <class B>
+OKTETT_INLINE B subtract(B a, B b) {
+  return a - b;
+}
+template <class B>
+OKTETT_INLINE B multiply(B a, B b) {
+  return a * b;
+}
+template <class B>
+OKTETT_INLINE B divide(B a, B b) {
+  return a / b;
+}
+/// With the sign bit turned, zeros and NaN included: xsimd subtracts from 0 with AVX-512, which keeps +0.
+template <class T, class X>
+OKTETT_INLINE xsimd::batch<T, X> negate(xsimd::batch<T, X> a) {
+  if constexpr (std::is_integral_v<T>)
+    return subtract(xsimd::batch<T, X>(T(0)), a);
+  else
+    return a ^ xsimd::batch<T, X>(T(-0.0));
+}
+/// An estimate of 1 / a, at most 1.5 * 2^-12 off, for numbers in the middle of the range.
+template <class X>
+OKTETT_INLINE xsimd::batch<float, X> estimate_reciprocal(xsimd::batch<float, X> a) {
+  return xsimd::reciprocal(a);
+}
 
 template <class T, class X>
 OKTETT_INLINE void load(xsimd::batch<T, X>& r, const T* p) {
@@ -237,6 +284,8 @@ B fms(B, B, B) = delete;
 template <class B>
 B concat(B, B) = delete;
 template <class B>
+void set_four(B&, float, float, float, float) = delete;
+template <class B>
 void transpose3(B&, B&, B&) = delete;
 template <class... B>
 void widen(B&&...) = delete;
@@ -252,4 +301,6 @@ OKTETT_INLINE float reduce_min(Lane<float, A> a) {
 
 #if defined(OKTETT_COMPILED_SSE42)
 #include "core/simd_x86.h"
+#elif defined(OKTETT_COMPILED_NEON)
+#include "core/simd_neon.h"
 #endif

@@ -12,7 +12,7 @@ namespace oktett {
 
 namespace native {
 
-#if defined(OKTETT_COMPILED_AVX2)
+#if defined(OKTETT_COMPILED_AVX2) || defined(OKTETT_COMPILED_NEON)
 /// Entry m lists the lanes that are set in m, lowest first, one byte each.
 struct CompactTable {
   std::uint64_t lanes[256] = {};
@@ -24,7 +24,9 @@ struct CompactTable {
 };
 // Not inline: each instruction set has its own copy, so that no code is shared between sets.
 constexpr CompactTable kCompact;
+#endif
 
+#if defined(OKTETT_COMPILED_AVX2)
 /// The index vector that brings the lanes of `m` to the front.
 OKTETT_INLINE __m256i compact_index(unsigned m) {
   return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(static_cast<long long>(kCompact.lanes[m])));
@@ -75,6 +77,59 @@ OKTETT_INLINE __m128i front(__m256i a, unsigned m) {
   const __m256i moved = _mm256_permutevar8x32_epi32(a, compact_index(m));
   return _mm_and_si128(_mm256_castsi256_si128(moved), first_lanes(__builtin_popcount(m)));
 }
+#elif defined(OKTETT_COMPILED_NEON)
+/// Eight lanes of 32 bits.
+using NeonEight = uint8x16x2_t;
+
+OKTETT_INLINE NeonEight load_eight(const void* p) {
+  const auto* bytes = static_cast<const std::uint8_t*>(p);
+  return {{vld1q_u8(bytes), vld1q_u8(bytes + 16)}};
+}
+OKTETT_INLINE void store_eight(void* p, const NeonEight& a) {
+  auto* bytes = static_cast<std::uint8_t*>(p);
+  vst1q_u8(bytes, a.val[0]);
+  vst1q_u8(bytes + 16, a.val[1]);
+}
+
+/// The lanes of `m` at the front.
+OKTETT_INLINE NeonEight compact(const NeonEight& a, unsigned m) {
+  const uint16x8_t index = vmovl_u8(vcreate_u8(kCompact.lanes[m]));
+  return {{vqtbl2q_u8(a, byte_places(vmovl_u16(vget_low_u16(index)))),
+           vqtbl2q_u8(a, byte_places(vmovl_high_u16(index)))}};
+}
+
+/// One layer of a sorting network: lanes meet their partners, the greater goes to the lanes that are not in
+/// `upper`.
+OKTETT_INLINE int32x4_t exchange(uint32x4_t upper, int32x4_t a, int32x4_t partner) {
+  return vbslq_s32(upper, vminq_s32(a, partner), vmaxq_s32(a, partner));
+}
+OKTETT_INLINE int32x4_t swap_neighbours(int32x4_t a) { return vrev64q_s32(a); }
+OKTETT_INLINE int32x4_t swap_pairs(int32x4_t a) { return vextq_s32(a, a, 2); }
+OKTETT_INLINE int32x4_t reverse(int32x4_t a) { return swap_pairs(swap_neighbours(a)); }
+
+/// The layers of the sort below that stay within four lanes: greatest lane first.
+OKTETT_INLINE int32x4_t sort_descending(int32x4_t a) {
+  constexpr std::uint32_t kAll = ~0u;
+  const uint32x4_t odd{0, kAll, 0, kAll}, second_half{0, 0, kAll, kAll};
+  a = exchange(odd, a, swap_neighbours(a));
+  a = exchange(second_half, a, reverse(a));
+  return exchange(odd, a, swap_neighbours(a));
+}
+
+/// Batcher's bitonic sort (1968) with all exchanges in one direction: greatest of eight lanes first.
+OKTETT_INLINE void sort_descending(int32x4_t& lo, int32x4_t& hi) {
+  constexpr std::uint32_t kAll = ~0u;
+  const uint32x4_t odd{0, kAll, 0, kAll}, second_half{0, 0, kAll, kAll};
+  lo = sort_descending(lo);
+  hi = reverse(sort_descending(hi));
+  const int32x4_t greater = vmaxq_s32(lo, hi), lesser = vminq_s32(lo, hi);
+  const auto merge = [&](int32x4_t a) {
+    a = exchange(second_half, a, swap_pairs(a));
+    return exchange(odd, a, swap_neighbours(a));
+  };
+  lo = merge(greater);
+  hi = merge(lesser);
+}
 #endif
 
 }  // namespace native
@@ -118,6 +173,44 @@ OKTETT_INLINE int store_descending(const Simd<float, 8, A>& keys, unsigned lanes
     _mm256_storeu_ps(out_keys, _mm256_castsi256_ps(_mm256_andnot_si256(low, sorted)));
     return count;
   }
+#elif defined(OKTETT_COMPILED_NEON)
+  if constexpr (std::is_same_v<A, NeonIsa>) {
+    // As with AVX2: the sorted keys contain the permutation.
+    const int32x4_t low = vdupq_n_s32(7);
+    const auto numbered = [&](int k, int32x4_t numbers) {
+      return vorrq_s32(vbicq_s32(vreinterpretq_s32_f32(keys.part[k]), low), numbers);
+    };
+    const auto key_of = [&](int32x4_t sorted) { return vreinterpretq_f32_s32(vbicq_s32(sorted, low)); };
+    const auto places = [&](int32x4_t sorted) {
+      return native::byte_places(vreinterpretq_u32_s32(vandq_s32(sorted, low)));
+    };
+    const native::NeonEight v = native::load_eight(values);
+    int32x4_t first = numbered(0, int32x4_t{0, 1, 2, 3}), second = numbered(1, int32x4_t{4, 5, 6, 7});
+    const int count = __builtin_popcount(lanes);
+    auto* const out_bytes = reinterpret_cast<std::uint8_t*>(out_values);
+    if (OKTETT_LIKELY(count <= 4)) {
+      const native::NeonEight given{{vreinterpretq_u8_s32(first), vreinterpretq_u8_s32(second)}};
+      const uint32x4_t present = vcgtq_s32(vdupq_n_s32(count), int32x4_t{0, 1, 2, 3});
+      const int32x4_t front = vreinterpretq_s32_u8(native::compact(given, lanes).val[0]);
+      const int32x4_t sorted = native::sort_descending(vandq_s32(front, vreinterpretq_s32_u32(present)));
+      vst1q_u8(out_bytes, vqtbl2q_u8(v, places(sorted)));
+      vst1q_f32(out_keys, key_of(sorted));
+      return count;
+    }
+    const auto met = Mask<std::int32_t, 8, A>::from_bits(lanes);
+    const uint32x4_t idle = vdupq_n_u32(0x80000000u);
+    const auto with_idle = [&](int32x4_t a, int k) {
+      return vorrq_s32(a, vreinterpretq_s32_u32(vbicq_u32(idle, met.part[k])));
+    };
+    first = with_idle(first, 0);
+    second = with_idle(second, 1);
+    native::sort_descending(first, second);
+    vst1q_u8(out_bytes, vqtbl2q_u8(v, places(first)));
+    vst1q_u8(out_bytes + 16, vqtbl2q_u8(v, places(second)));
+    vst1q_f32(out_keys, key_of(first));
+    vst1q_f32(out_keys + 4, key_of(second));
+    return count;
+  }
 #endif
   alignas(64) float key[8];
   keys.store(key);
@@ -147,6 +240,11 @@ OKTETT_INLINE int store_compact(unsigned lanes, const T* values, T* out) {
 #endif
       front = _mm256_permutevar8x32_epi32(v, native::compact_index(lanes));
     _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), front);
+    return __builtin_popcount(lanes);
+  }
+#elif defined(OKTETT_COMPILED_NEON)
+  if constexpr (std::is_same_v<A, NeonIsa>) {
+    native::store_eight(out, native::compact(native::load_eight(values), lanes));
     return __builtin_popcount(lanes);
   }
 #endif

@@ -29,6 +29,11 @@ OKTETT_INLINE Simd<float, W, A> load_pieces(const Piece& piece) {
     return r;
   }
 #endif
+  if constexpr (Simd<float, W, A>::kLanesPerPart == 4) {
+    Simd<float, W, A> r;
+    for (int k = 0; k < r.kParts; ++k) native::load(r.part[k], piece(k));
+    return r;
+  }
   alignas(64) float lanes[W];
   for (int k = 0; k < W / 4; ++k) Simd<float, 4, A>::load(piece(k)).store(lanes + 4 * k);
   return Simd<float, W, A>::load(lanes);

@@ -46,6 +46,20 @@ OKTETT_INLINE Simd<float, 16, A> load_words(const std::uint16_t* p, unsigned fli
       return r;
     }
   }
+#elif defined(OKTETT_COMPILED_NEON)
+  if constexpr (std::is_same_v<A, NeonIsa>) {
+    // Bit 3 of `flip` exchanges the halves; the other bits exchange words, pairs of bytes, within each half.
+    const uint8x16_t order = veorq_u8(uint8x16_t{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
+                                      vdupq_n_u8(static_cast<std::uint8_t>(2 * (flip & 7))));
+    Simd<float, 16, A> r;
+    for (unsigned half = 0; half < 2; ++half) {
+      const uint8x16_t bytes = vreinterpretq_u8_u16(vld1q_u16(p + 8 * (half ^ flip >> 3)));
+      const uint16x8_t words = vreinterpretq_u16_u8(vqtbl1q_u8(bytes, order));
+      r.part[2 * half] = vcvtq_f32_u32(vmovl_u16(vget_low_u16(words)));
+      r.part[2 * half + 1] = vcvtq_f32_u32(vmovl_high_u16(words));
+    }
+    return r;
+  }
 #endif
   alignas(64) float lanes[16];
   for (unsigned i = 0; i < 16; ++i) lanes[i] = static_cast<float>(p[i ^ flip]);

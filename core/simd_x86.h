@@ -17,6 +17,10 @@ OKTETT_INLINE batch<float, Sse> max(batch<float, Sse> a, batch<float, Sse> b) { 
 OKTETT_INLINE batch<double, Sse> min(batch<double, Sse> a, batch<double, Sse> b) { return _mm_min_pd(a, b); }
 OKTETT_INLINE batch<double, Sse> max(batch<double, Sse> a, batch<double, Sse> b) { return _mm_max_pd(a, b); }
 
+OKTETT_INLINE void set_four(batch<float, Sse>& r, float x, float y, float z, float w) {
+  r = _mm_setr_ps(x, y, z, w);
+}
+
 OKTETT_INLINE unsigned bits(batch_bool<float, Sse> m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
 OKTETT_INLINE unsigned bits(batch_bool<double, Sse> m) { return static_cast<unsigned>(_mm_movemask_pd(m)); }
 OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Sse> m) {
@@ -53,7 +57,6 @@ OKTETT_INLINE float reduce_min(batch<float, Sse> a) {
   const __m128 pairs = _mm_min_ps(a, _mm_movehl_ps(a, a));
   return _mm_cvtss_f32(_mm_min_ss(pairs, _mm_shuffle_ps(pairs, pairs, 1)));
 }
-OKTETT_INLINE batch<std::int32_t, Sse> truncate(batch<float, Sse> a) { return _mm_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Sse> bit_cast_float(batch<std::int32_t, Sse> a) { return _mm_castsi128_ps(a); }
 OKTETT_INLINE batch<std::int32_t, Sse> bit_cast_int(batch<float, Sse> a) { return _mm_castps_si128(a); }
 
@@ -133,7 +136,6 @@ OKTETT_INLINE batch<float, Avx> narrow(batch<double, Avx> lo, batch<double, Avx>
 OKTETT_INLINE float reduce_min(batch<float, Avx> a) {
   return reduce_min(batch<float, Sse>(_mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1))));
 }
-OKTETT_INLINE batch<std::int32_t, Avx> truncate(batch<float, Avx> a) { return _mm256_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Avx> bit_cast_float(batch<std::int32_t, Avx> a) { return _mm256_castsi256_ps(a); }
 OKTETT_INLINE batch<std::int32_t, Avx> bit_cast_int(batch<float, Avx> a) { return _mm256_castps_si256(a); }
 #endif
@@ -189,7 +191,6 @@ OKTETT_INLINE float reduce_min(batch<float, Avx5> a) {
 OKTETT_INLINE batch<float, Avx5> concat(batch<float, Avx> lo, batch<float, Avx> hi) {
   return _mm512_insertf32x8(_mm512_castps256_ps512(lo), hi, 1);
 }
-OKTETT_INLINE batch<std::int32_t, Avx5> truncate(batch<float, Avx5> a) { return _mm512_cvttps_epi32(a); }
 OKTETT_INLINE batch<float, Avx5> bit_cast_float(batch<std::int32_t, Avx5> a) {
   return _mm512_castsi512_ps(a);
 }

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/inline.h"
+
 namespace oktett {
 
 /// Three components, zero unless given.
@@ -16,22 +18,28 @@ struct Vec3 {
 
   /// Converts component by component, e.g. `Vec3d(v)` from a Vec3f.
   template <class U>
-  explicit constexpr operator Vec3<U>() const {
+  OKTETT_INLINE explicit constexpr operator Vec3<U>() const {
     return {static_cast<U>(x), static_cast<U>(y), static_cast<U>(z)};
   }
 
-  constexpr Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
-  constexpr Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
-  constexpr Vec3& operator*=(T s) { return *this = *this * s; }
+  OKTETT_INLINE constexpr Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
+  OKTETT_INLINE constexpr Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
+  OKTETT_INLINE constexpr Vec3& operator*=(T s) { return *this = *this * s; }
 
-  friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
-  friend constexpr Vec3 operator*(const Vec3& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
-  friend constexpr Vec3 operator*(T s, const Vec3& a) { return a * s; }
+  friend OKTETT_INLINE constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend OKTETT_INLINE constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend OKTETT_INLINE constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+  friend OKTETT_INLINE constexpr Vec3 operator*(const Vec3& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend OKTETT_INLINE constexpr Vec3 operator*(T s, const Vec3& a) { return a * s; }
   /// Component-wise product, for colours.
-  friend constexpr Vec3 operator*(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-  friend constexpr Vec3 operator/(const Vec3& a, T s) { return {a.x / s, a.y / s, a.z / s}; }
+  friend OKTETT_INLINE constexpr Vec3 operator*(const Vec3& a, const Vec3& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+  }
+  friend OKTETT_INLINE constexpr Vec3 operator/(const Vec3& a, T s) { return {a.x / s, a.y / s, a.z / s}; }
 };
 
 using Vec3f = Vec3<float>;
@@ -47,67 +55,68 @@ struct Vec2f {
 
 /// The scalar product.
 template <class T>
-constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
+OKTETT_INLINE constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// The vector product, right-handed.
 template <class T>
-constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+OKTETT_INLINE constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 /// The Euclidean length.
 template <class T>
-T length(const Vec3<T>& a) {
+OKTETT_INLINE T length(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
 /// Unit vector along `a`; NaN for the zero vector.
 template <class T>
-Vec3<T> normalize(const Vec3<T>& a) {
+OKTETT_INLINE Vec3<T> normalize(const Vec3<T>& a) {
   return a / length(a);
 }
 
 /// The lesser of each component; where either is NaN, that of `b`.
 template <class T>
-constexpr Vec3<T> min(const Vec3<T>& a, const Vec3<T>& b) {
+OKTETT_INLINE constexpr Vec3<T> min(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
 }
 
 /// The greater of each component; where either is NaN, that of `b`.
 template <class T>
-constexpr Vec3<T> max(const Vec3<T>& a, const Vec3<T>& b) {
+OKTETT_INLINE constexpr Vec3<T> max(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
 
 /// The magnitude of each component.
 template <class T>
-Vec3<T> abs(const Vec3<T>& a) {
+OKTETT_INLINE Vec3<T> abs(const Vec3<T>& a) {
   return {std::abs(a.x), std::abs(a.y), std::abs(a.z)};
 }
 
-/// The greatest of the components.
 /// Whether every component is 0: for colours, no light.
 template <class T>
-constexpr bool is_black(const Vec3<T>& a) {
+OKTETT_INLINE constexpr bool is_black(const Vec3<T>& a) {
   return a == Vec3<T>{0, 0, 0};
 }
+
+/// The greatest of the components.
 template <class T>
-constexpr T max_component(const Vec3<T>& a) {
+OKTETT_INLINE constexpr T max_component(const Vec3<T>& a) {
   const T xy = a.x > a.y ? a.x : a.y;
   return xy > a.z ? xy : a.z;
 }
 
 /// Whether no component is infinite or NaN.
 template <class T>
-bool is_finite(const Vec3<T>& a) {
+OKTETT_INLINE bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
 /// Index of the component of greatest magnitude; the lowest index wins ties.
 template <class T>
-int dominant_axis(const Vec3<T>& a) {
+OKTETT_INLINE int dominant_axis(const Vec3<T>& a) {
   const Vec3<T> m = abs(a);
   if (m.x >= m.y && m.x >= m.z) return 0;
   return m.y >= m.z ? 1 : 2;
@@ -115,7 +124,7 @@ int dominant_axis(const Vec3<T>& a) {
 
 /// Two unit vectors that with the unit vector `n` form a right-handed basis (Duff et al. 2017, JCGT 6(1)).
 template <class T>
-void make_basis(const Vec3<T>& n, Vec3<T>& tangent, Vec3<T>& bitangent) {
+OKTETT_INLINE void make_basis(const Vec3<T>& n, Vec3<T>& tangent, Vec3<T>& bitangent) {
   const T sign = std::copysign(T(1), n.z);
   const T a = T(-1) / (sign + n.z);
   const T b = n.x * n.y * a;

@@ -160,7 +160,7 @@ PhongValues resembling_values(const PrincipledParameters& p);
 Color resembling_specular_color(const PrincipledParameters& p);
 
 /// The part of light that a surface of these weights, within [0, 1], lets pass as glass does.
-inline float glass_weight(float metallic, float transmission) { return (1 - metallic) * transmission; }
+OKTETT_INLINE float glass_weight(float metallic, float transmission) { return (1 - metallic) * transmission; }
 
 /// Sets the parameters of the Whitted model to what comes near to `m.principled`, which must be given, where
 /// its textures are white; but the transparency is that where most light passes.

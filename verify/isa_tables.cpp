@@ -3,6 +3,7 @@
 #include "core/isa_select.h"
 #include "verify/probes/kernel_probe.h"
 #include "verify/probes/roots_probe.h"
+#include "verify/probes/simd_probe.h"
 
 namespace oktett {
 
@@ -14,6 +15,10 @@ std::span<const int> probe_widths(Isa isa) { return kernel_probe_code(isa).width
 
 void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe) {
   kernel_probe_code(isa).run(id, width, probe);
+}
+
+const SimdProbeCode& simd_probe_code(Isa isa) {
+  return with_isa(isa, []<class A>() -> const SimdProbeCode& { return simd_probe_code<A>(); });
 }
 
 void probe_roots(Isa isa, RootsKernel id, const RootsProbe& probe) {

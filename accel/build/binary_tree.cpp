@@ -346,7 +346,7 @@ float scene_unit(const Box& bounds) {
   float size = 0;
   for (int k = 0; k < 3; ++k) size = std::max(size, bounds.hi[k] * 0.5f - bounds.lo[k] * 0.5f);
   if (!(size > 0 && std::isfinite(size))) return 1;
-  return std::exp2(static_cast<float>(-std::clamp(std::ilogb(size), -126, 126)));
+  return std::ldexp(1.0f, -std::clamp(std::ilogb(size), -126, 126));
 }
 
 BinaryTree build_binary(const BuildArrays& arrays, const TriangleSource& triangles, const Box& bounds,

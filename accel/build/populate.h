@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "core/pages.h"
-#include "core/populate.h"
 
 namespace oktett {
 

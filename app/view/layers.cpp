@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math.h"
 #include "core/random.h"
 #include "io/image/color.h"
 #include "io/image/encode.h"
@@ -107,7 +108,7 @@ std::string layer_pixels(const Picture& picture, const FinishedTile& tile, const
       return color_of(std::uint64_t{plane("geomID.I")->ids[at]} << 32 | plane("primID.I")->ids[at]);
     if (n == "samples") {
       const PicturePlane* counts = plane("sampleCount.I");
-      const float grey = counts ? std::log2(1.0f + static_cast<float>(counts->ids[at])) / 12 : 0;
+      const float grey = counts ? static_cast<float>(portable::log2(1.0 + counts->ids[at])) / 12 : 0;
       return {grey, grey, grey};
     }
     const Vec3f v = values(at, "Variance.R", "Variance.G", "Variance.B");

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/precise_math.h"
+
 namespace oktett {
 namespace {
 
@@ -37,7 +39,7 @@ Matrix4d world_to_camera(const Camera& camera) {
 Matrix4d camera_to_ndc(const Camera& camera, double aspect) {
   const bool perspective = camera.projection == Projection::perspective;
   const double half_height =
-      perspective ? std::tan(camera.fov * std::numbers::pi / 360) : 0.5 * camera.height;
+      perspective ? precise::tan(camera.fov * std::numbers::pi / 360) : 0.5 * camera.height;
   const double half_width = half_height * aspect;
   Matrix4d m{};
   m[0][0] = 0.5 / half_width;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/precise_math.h"
 #include "core/suggest.h"
 #include "io/scene/utf8.h"
 #include "io/text/file_access.h"
@@ -220,7 +221,7 @@ Vec3d SceneValues::vector(const YamlNode& node) {
 
 static float linear_from_srgb(int byte) {
   const double s = byte / 255.0;
-  return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+  return static_cast<float>(s <= 0.04045 ? s / 12.92 : precise::pow((s + 0.055) / 1.055, 2.4));
 }
 
 Color SceneValues::color(const YamlNode& node) {

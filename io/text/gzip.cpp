@@ -8,15 +8,17 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/pages.h"
 
 namespace oktett {
 namespace {
 
-constexpr std::size_t kPage = 4096;
+/// The least room for what a file unpacks to.
+constexpr std::size_t kLeastRoom = 4096;
 /// zlib counts in 32 bits.
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
 
-std::size_t in_pages(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
+std::size_t in_pages(std::size_t bytes) { return pages_around(0, bytes, page_size()).bytes; }
 
 /// The state of zlib.
 class Inflate {
@@ -38,7 +40,7 @@ class Unpacking {
       : path_(path),
         packed_(packed),
         padding_(padding),
-        bytes_(std::max(4 * packed.size(), kPage) + padding) {}
+        bytes_(std::max(4 * packed.size(), kLeastRoom) + padding) {}
 
   UnpackedBytes run() {
     if (packed_.empty()) fail("the file is empty");

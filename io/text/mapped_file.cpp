@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/pages.h"
 #include "io/text/file_access.h"
 #include "io/text/files_read.h"
 #include "io/text/similar_file.h"
@@ -41,11 +42,6 @@ class Descriptor {
  private:
   int fd_;
 };
-
-std::size_t page_size() {
-  static const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  return size;
-}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/double_double.h"
+#include "core/precise_math.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett {
@@ -148,7 +149,7 @@ class Expansion {
     const double n = constant_of(exponent).hi;
     const bool whole = n == std::floor(n) && constant_of(exponent).lo == 0;
     if (is_constant(base) && !(whole && n >= 0 && n <= 1024))
-      return number(std::pow(constant_of(base).hi, n));
+      return number(precise::pow(constant_of(base).hi, n));
     if (!whole) fail("not a polynomial: the exponent is not a whole number");
     if (n < 0) fail("not a polynomial: the exponent is negative");
     if (!is_constant(base) && n * degree_of(base) > roots::kMaxDegree)

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <system_error>
 
+#include "core/precise_math.h"
 #include "core/suggest.h"
 
 namespace oktett {
@@ -31,25 +32,25 @@ struct Function {
 constexpr Function kFunctions[] = {
     {"sqrt", ExpressionOp::sqrt, [](double a, double) { return std::sqrt(a); }},
     {"abs", ExpressionOp::abs, [](double a, double) { return std::abs(a); }},
-    {"sin", ExpressionOp::sin, [](double a, double) { return std::sin(a); }},
-    {"cos", ExpressionOp::cos, [](double a, double) { return std::cos(a); }},
-    {"tan", ExpressionOp::tan, [](double a, double) { return std::tan(a); }},
-    {"asin", ExpressionOp::asin, [](double a, double) { return std::asin(a); }},
-    {"acos", ExpressionOp::acos, [](double a, double) { return std::acos(a); }},
-    {"atan", ExpressionOp::atan, [](double a, double) { return std::atan(a); }},
-    {"atan2", ExpressionOp::atan2, [](double a, double b) { return std::atan2(a, b); }},
-    {"exp", ExpressionOp::exp, [](double a, double) { return std::exp(a); }},
-    {"log", ExpressionOp::log, [](double a, double) { return std::log(a); }},
-    {"log2", ExpressionOp::log2, [](double a, double) { return std::log2(a); }},
-    {"log10", ExpressionOp::log10, [](double a, double) { return std::log10(a); }},
-    {"pow", ExpressionOp::power, [](double a, double b) { return std::pow(a, b); }},
+    {"sin", ExpressionOp::sin, [](double a, double) { return precise::sin(a); }},
+    {"cos", ExpressionOp::cos, [](double a, double) { return precise::cos(a); }},
+    {"tan", ExpressionOp::tan, [](double a, double) { return precise::tan(a); }},
+    {"asin", ExpressionOp::asin, [](double a, double) { return precise::asin(a); }},
+    {"acos", ExpressionOp::acos, [](double a, double) { return precise::acos(a); }},
+    {"atan", ExpressionOp::atan, [](double a, double) { return precise::atan(a); }},
+    {"atan2", ExpressionOp::atan2, precise::atan2},
+    {"exp", ExpressionOp::exp, [](double a, double) { return precise::exp(a); }},
+    {"log", ExpressionOp::log, [](double a, double) { return precise::log(a); }},
+    {"log2", ExpressionOp::log2, [](double a, double) { return precise::log2(a); }},
+    {"log10", ExpressionOp::log10, [](double a, double) { return precise::log10(a); }},
+    {"pow", ExpressionOp::power, precise::pow},
     {"min", ExpressionOp::min, min_of},
     {"max", ExpressionOp::max, max_of},
     {"floor", ExpressionOp::floor, [](double a, double) { return std::floor(a); }},
     {"ceil", ExpressionOp::ceil, [](double a, double) { return std::ceil(a); }},
     {"round", ExpressionOp::round, [](double a, double) { return std::round(a); }},
     {"sign", ExpressionOp::sign, sign_of},
-    {"hypot", ExpressionOp::hypot, [](double a, double b) { return std::hypot(a, b); }},
+    {"hypot", ExpressionOp::hypot, precise::hypot},
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

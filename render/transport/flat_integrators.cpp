@@ -38,7 +38,8 @@ float pixels_to_edge(const RenderContext& context, const Wavefront& wavefront, s
     const Vec3f a = (*corners)[k], edge = (*corners)[(k + 1) % 3] - a;
     const Vec3f across = normalize(cross(n, edge));
     const float height = std::abs(dot(p.surface.position - a, across));
-    const float per_pixel = std::hypot(dot(right, across), dot(down, across));
+    const double along = dot(right, across), down_along = dot(down, across);
+    const float per_pixel = static_cast<float>(std::sqrt(along * along + down_along * down_along));
     if (per_pixel > 0) nearest = std::min(nearest, height / per_pixel);
   }
   return nearest;

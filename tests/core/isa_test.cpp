@@ -11,7 +11,8 @@ namespace oktett::isa_test {
 namespace {
 
 TEST(Isa, NamesAreReadBack) {
-  for (Isa isa : {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512}) EXPECT_EQ(parse_isa(to_string(isa)), isa);
+  for (Isa isa : {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512, Isa::neon})
+    EXPECT_EQ(parse_isa(to_string(isa)), isa);
   EXPECT_FALSE(parse_isa("avx3"));
   EXPECT_FALSE(parse_isa(""));
 }
@@ -48,7 +49,16 @@ TEST(Isa, EnvironmentChooses) {
 
 TEST(Isa, UnknownNamesAreErrors) {
   EXPECT_EQ(choose_isa("scalar"), Isa::scalar);
-  EXPECT_THROW(choose_isa("neon"), Error);
+  EXPECT_THROW(choose_isa("altivec"), Error);
+  // Known, but no machine has all of them.
+  for (const char* name : {"neon", "sse4.2"}) {
+    const std::vector<Isa> isas = available_isas();
+    if (std::find(isas.begin(), isas.end(), *parse_isa(name)) == isas.end()) {
+      EXPECT_THROW(choose_isa(name), Error);
+    } else {
+      EXPECT_EQ(choose_isa(name), *parse_isa(name));
+    }
+  }
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cstdint>
 #include <new>
 #include <utility>
 #include <vector>
 
-#include "core/populate.h"
 #include "core/soa.h"
 
 namespace oktett::pages_test {
@@ -32,7 +32,7 @@ TEST(Pages, ReadAsZeroAndMayBeGivenBackInPieces) {
 
 TEST(Pages, HugePagesBeginAtMultiplesOfTheirSize) {
   for (int i = 0; i < 8; ++i) {
-    const std::size_t bytes = kLargePiece + static_cast<std::size_t>(i) * 4096;
+    const std::size_t bytes = kLargePiece + static_cast<std::size_t>(i) * page_size();
     void* const p = reserve_pages(bytes);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(p) % kHugePage, 0u);
     release_pages(p, bytes);
@@ -53,11 +53,43 @@ TEST(Pages, HugeOnesAreAtLeastHalfFull) {
                                                         {3 * kHugePage + kHalf, 4 * kHugePage},
                                                         {kAll - 1, kAll - 1},
                                                         {kAll, kAll}})
-    EXPECT_EQ(whole_pages(bytes), whole) << bytes;
+    EXPECT_EQ(whole_pages(bytes, 4096), whole) << bytes;
+  EXPECT_EQ(whole_pages(1, 65536), 65536u);
+  EXPECT_EQ(whole_pages(kHugePage + 65537, 65536), kHugePage + 131072);
+  EXPECT_EQ(whole_pages(1), page_size());
+}
+
+TEST(Pages, AreThoseOfTheSystem) { EXPECT_EQ(page_size(), static_cast<std::size_t>(sysconf(_SC_PAGESIZE))); }
+
+// What is given back must not reach beyond the range, whatever the size of pages: the kernel rounds lengths
+// up, and would zero what lies behind. With pages of 64 KiB taken for 4 KiB, the last assertion fails.
+TEST(Pages, OfARangeDoNotReachBeyondIt) {
+  for (const std::size_t page : {std::size_t{4096}, std::size_t{16384}, std::size_t{65536}})
+    for (std::uintptr_t begin = 10 * page - 8192; begin <= 11 * page; begin += 1024)
+      for (const std::size_t bytes :
+           {std::size_t{0}, std::size_t{1}, page - 1, page, page + 4096, 3 * page + 4096}) {
+        const PageRange within = pages_within(begin, bytes, page), around = pages_around(begin, bytes, page);
+        for (const PageRange& range : {within, around}) {
+          ASSERT_EQ(range.first % page, 0u);
+          ASSERT_EQ(range.bytes % page, 0u);
+        }
+        if (within.bytes > 0) {
+          ASSERT_GE(within.first, begin);
+          ASSERT_LE(within.first + within.bytes, begin + bytes);
+        }
+        // No whole page is left out: on each side less than one remains.
+        ASSERT_GT(within.bytes + 2 * page, bytes);
+        if (bytes > 0) {
+          ASSERT_LE(around.first, begin);
+          ASSERT_GE(around.first + around.bytes, begin + bytes);
+          ASSERT_LT(around.bytes, bytes + 2 * page);
+        }
+      }
 }
 
 TEST(Pages, LoseWhatIsDiscarded) {
-  constexpr std::size_t kPage = 4096, kCount = 8;
+  const std::size_t kPage = page_size();
+  constexpr std::size_t kCount = 8;
   char* const p = static_cast<char*>(reserve_pages(kCount * kPage));
   for (std::size_t i = 0; i < kCount * kPage; ++i) p[i] = 1;
   discard_pages(p, 0);
@@ -82,14 +114,15 @@ TEST(Pages, RefuseWhatIsNotThere) {
 /// Which of `count` pages from `begin` on are in memory.
 std::vector<bool> resident(char* begin, std::size_t count) {
   std::vector<unsigned char> pages(count);
-  EXPECT_EQ(mincore(begin, count * 4096, pages.data()), 0);
+  EXPECT_EQ(mincore(begin, count * page_size(), pages.data()), 0);
   std::vector<bool> in;
   for (const unsigned char page : pages) in.push_back((page & 1) != 0);
   return in;
 }
 
 TEST(Pages, ArePopulatedWhereAskedFor) {
-  constexpr std::size_t kPage = 4096, kCount = 12;
+  const std::size_t kPage = page_size();
+  constexpr std::size_t kCount = 12;
   char* const p = static_cast<char*>(reserve_pages(kCount * kPage));
   p[0] = 3;
   p[5 * kPage + 7] = 4;
@@ -103,7 +136,9 @@ TEST(Pages, ArePopulatedWhereAskedFor) {
   for (std::size_t k = 0; k < kCount; ++k)
     EXPECT_EQ(in[k], k == 0 || k == 5 || (can && 4 <= k && k <= 8)) << "page " << k;
 #ifdef MADV_POPULATE_WRITE
-  EXPECT_EQ(can, madvise(p + kPage, kPage, MADV_POPULATE_WRITE) == 0);
+  // An emulator may say that it does so and do nothing.
+  const bool says = madvise(p + kPage, kPage, MADV_POPULATE_WRITE) == 0;
+  EXPECT_EQ(can, says && resident(p + kPage, 1)[0]);
 #endif
   release_pages(p, kCount * kPage);
 }

@@ -13,7 +13,7 @@ function(add_install_test name)
     -D WORK=${CMAKE_CURRENT_BINARY_DIR}/install -D LIBDIR=${CMAKE_INSTALL_LIBDIR}
     -D INCLUDEDIR=${CMAKE_INSTALL_INCLUDEDIR}
     -D GENERATOR=${CMAKE_GENERATOR} -D CXX=${CMAKE_CXX_COMPILER} -D CXX_FLAGS=${CMAKE_CXX_FLAGS}
-    -D PKG_CONFIG=${OKTETT_PKG_CONFIG} -P ${CMAKE_CURRENT_LIST_DIR}/run_install_test.cmake)
+    -D PKG_CONFIG=${OKTETT_PKG_CONFIG} -D OBJDUMP=${CMAKE_OBJDUMP} -D PROCESSOR=${CMAKE_SYSTEM_PROCESSOR} -P ${CMAKE_CURRENT_LIST_DIR}/run_install_test.cmake)
   # What is installed knows no folder of the build, but oneTBB may be in one (scripts/test --tsan).
   set_tests_properties(install.${name} PROPERTIES TIMEOUT 600
     ENVIRONMENT_MODIFICATION LD_LIBRARY_PATH=path_list_append:$<TARGET_FILE_DIR:TBB::tbb>)
@@ -32,6 +32,11 @@ endif()
 if(OKTETT_PKG_CONFIG)
   add_install_test(pkg_config)
   set_tests_properties(install.pkg_config PROPERTIES FIXTURES_REQUIRED installed)
+endif()
+# Instrumented code is not inlined, so it has such functions, and is linked with nothing else.
+if(CMAKE_OBJDUMP AND NOT sanitized)
+  add_install_test(fused_client)
+  set_tests_properties(install.fused_client PROPERTIES FIXTURES_REQUIRED installed)
 endif()
 add_install_test(subdirectory)
 add_install_test(readme)

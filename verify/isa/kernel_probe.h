@@ -168,7 +168,8 @@ struct KernelProbeWidths {
 template <class A>
 const KernelProbeCode& kernel_probe_code() {
   if constexpr (std::is_same_v<A, ScalarIsa>) return KernelProbeWidths<A, 1>::code;
-  if constexpr (std::is_same_v<A, Sse42Isa>) return KernelProbeWidths<A, 4, 8>::code;
+  if constexpr (std::is_same_v<A, Sse42Isa> || std::is_same_v<A, NeonIsa>)
+    return KernelProbeWidths<A, 4, 8>::code;
   if constexpr (std::is_same_v<A, Avx2Isa>) return KernelProbeWidths<A, 8>::code;
   if constexpr (std::is_same_v<A, Avx512Isa>) return KernelProbeWidths<A, 8, 16>::code;
 }

@@ -18,11 +18,7 @@ template <Query Q, class A>
 class SoloTraversal {
  public:
   OKTETT_INLINE SoloTraversal(const Accel& accel, const Ray& ray) : accel_(accel), ray_(ray) {
-    const auto lanes = [](const Vec3f& p) {
-      V v;
-      v.part[0] = typename V::B({p.x, p.y, p.z, 0.0f});
-      return v;
-    };
+    const auto lanes = [](const Vec3f& p) { return V::of(p.x, p.y, p.z, 0.0f); };
     const V o = lanes(ray.origin), unflushed = lanes(ray.direction), big(std::numeric_limits<float>::max());
     const V d = select(abs(unflushed) < V(std::numeric_limits<float>::min()), V(0.0f), unflushed);
     const float extent = box_extent(accel.bounds);

@@ -118,7 +118,9 @@ class WaitingConnections {
 class BoundedPool : public httplib::TaskQueue {
  public:
   explicit BoundedPool(WaitingConnections& waiting) : waiting_(waiting), pool_(HttpLimits::kConnections) {}
-  void enqueue(std::function<void()> task) override {
+  /// Nothing in older versions of cpp-httplib, in newer ones whether the task was accepted.
+  using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr));
+  Enqueued enqueue(std::function<void()> task) override {
     std::unique_lock lock(mutex_);
     const auto has_room = [&] { return busy_ < HttpLimits::kConnections; };
     while (!has_room()) {
@@ -132,6 +134,7 @@ class BoundedPool : public httplib::TaskQueue {
       --busy_;
       free_.notify_one();
     });
+    return Enqueued(true);
   }
   void shutdown() override { pool_.shutdown(); }
 
@@ -252,6 +255,16 @@ class OwnServer : public HttpServer, private httplib::Server {
                             });
   }
 
+  /// Newer versions of cpp-httplib are told the addresses of both ends, for logs, which this server does not
+  /// write.
+  template <class Self>
+  static bool process(Self& self, BoundedStream& stream, bool& closed) {
+    if constexpr (requires { self.process_request(stream, false, closed, nullptr); })
+      return self.process_request(stream, false, closed, nullptr);
+    else
+      return self.process_request(stream, "", 0, "", 0, false, closed, nullptr);
+  }
+
   bool process_and_close_socket(socket_t socket) override {
     const int yes = 1;
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
@@ -263,7 +276,7 @@ class OwnServer : public HttpServer, private httplib::Server {
       if (!stream.has_begun(100)) continue;
       idle = 0;
       stream.begin_request();
-      good = process_request(stream, false, closed, nullptr);
+      good = process(*this, stream, closed);
       if (good) waiting_.add(socket);
     }
     if (!good) stream.answer_rest();
