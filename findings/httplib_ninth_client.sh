@@ -33,7 +33,8 @@ int main() {
     const auto start = std::chrono::steady_clock::now();
     const auto answer = clients.back()->Get("/tile");
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (i >= 8) std::printf("%s, %s\n", answer && answer->status == 200 ? "answered" : "failed", seconds < 2 ? "at once" : "after more than 2 seconds");
+    const bool answered = answer && answer->status == 200;
+    if (i >= 8) std::printf("%s, %s\n", answered ? "answered" : "failed", seconds < 2 ? "at once" : "after more than 2 seconds");
   }
   clients.clear();
   server.stop();

@@ -28,11 +28,14 @@ for name, value in (("one", 1), ("two", 2), ("nan", np.nan), ("plus", np.inf), (
 PYTHON
 python write.py
 
-idiff() { run "$root/usr/bin/idiff" -fail 0 -failpercent 0 -warn 0 "$@" >out 2>&1 && echo "exit 0, $(tail -1 out)" || echo "exit $?, $(tail -1 out)"; }
-oiiotool() {
-  run "$root/usr/bin/oiiotool" "$@" --fail 0 --failpercent 0 --warn 0 --diff >out 2>&1 && echo "exit 0, $(tail -1 out)" ||
-    echo "exit $?, $(tail -1 out)"
+# result COMMAND...: its exit status and the last line that it prints.
+result() {
+  local status=0
+  run "$@" >out 2>&1 || status=$?
+  echo "exit $status, $(tail -1 out)"
 }
+idiff() { result "$root/usr/bin/idiff" -fail 0 -failpercent 0 -warn 0 "$@"; }
+oiiotool() { result "$root/usr/bin/oiiotool" "$@" --fail 0 --failpercent 0 --warn 0 --diff; }
 guess "idiff fails for all of these pairs, as oiiotool --diff does"
 seen "idiff, 2 against 1" "exit 2, FAILURE" "$(idiff two.exr one.exr)"
 seen "idiff, NaN against 1" "exit 0, PASS" "$(idiff nan.exr one.exr)"

@@ -33,7 +33,8 @@ int main() {
   int same = 0, turned = 0, other = 0;
   for (std::size_t t = 0; t < indices.size(); t += 3) {
     int turn = 0;
-    while (turn < 3 && !(indices[t] == back[t + turn] && indices[t + 1] == back[t + (turn + 1) % 3] && indices[t + 2] == back[t + (turn + 2) % 3])) ++turn;
+    const auto matches = [&](int corner) { return indices[t + corner] == back[t + (corner + turn) % 3]; };
+    while (turn < 3 && !(matches(0) && matches(1) && matches(2))) ++turn;
     ++(turn == 0 ? same : turn < 3 ? turned : other);
   }
   std::printf("%d same, %d turned, %d other\n", same, turned, other);
