@@ -62,7 +62,7 @@ class CenteredMesh:
         # Halves first: the sum of two large numbers may overflow.
         self._center = low / 2 + high / 2
         extent = float(np.max(high / 2 - low / 2))
-        # A power of two rounds nothing. The largest is that for the smallest mesh whose size has all digits.
+        # A power of two rounds nothing; the limit keeps points that are far from a tiny mesh finite.
         self._scale = float(np.ldexp(1.0, min(-int(np.frexp(extent)[1]), 1000))) if extent > 0 else 1.0
         local = self._local(self.vertices)
         self._radius = float(np.linalg.norm(self._local(high)))
@@ -177,8 +177,8 @@ class CenteredMesh:
     def is_behind(self, nearest: Nearest) -> Array:
         """Whether the points of `nearest` are behind the surface, bool (n,): inside of a closed mesh.
 
-        Normals of edges and vertices are sums of those of their triangles, weighted by angles (Bærentzen and Aanæs
-        2005), so the sign is right for every closed mesh, and defined for an open one.
+        Normals of edges and vertices are sums of those of their triangles, weighted by angles (Baerentzen 2005), so
+        the sign is right for every closed mesh, and defined for an open one.
         """
         of_faces, of_edges, of_vertices = self._normals_of_features()
         there = np.nonzero(nearest.triangle >= 0)[0]

@@ -57,7 +57,8 @@ def select_enclosed_points(
 ) -> Any:
     """Which points of a dataset are inside of a closed surface, a pyvista.PolyData.
 
-    tolerance, progress_bar: accepted and ignored; rays are counted without a tolerance.
+    tolerance, progress_bar: accepted and ignored; rays are counted without a tolerance. Points nearer to the
+        surface than float32 rounds, about 1e-7 of its size, may count as either.
     inside_out: selects the points outside instead.
     check_surface: raises RuntimeError if the surface has open edges. If it has and this is False, most of
         several rays decide.

@@ -208,7 +208,7 @@ def max_tangent_sphere(
         bounds, at most so many times.
 
     Returns centers (n, 3) and radii (n,) float64; NaN and inf where no sphere is too large.
-    The spheres shrink as in Inui, Umezu and Shimane 2016.
+    The spheres shrink as in Inui 2016.
     """
     built = _built(mesh)
     start = points_of(points, "points")

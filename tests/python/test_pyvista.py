@@ -156,5 +156,7 @@ def test_they_work_as_methods(monkeypatch):
     monkeypatch.setattr(pyvista.DataSet, "compute_implicit_distance", compute_implicit_distance)
     assert cube().multi_ray_trace([[0.1, 0.2, 3]], [[0, 0, -1]], first_point=True)[0].tolist() == [[0.1, 0.2, 1]]
     asked = pyvista.PolyData(np.zeros((1, 3)))
+    assert asked.select_enclosed_points.__func__ is select_enclosed_points
+    assert asked.compute_implicit_distance.__func__ is compute_implicit_distance
     assert asked.select_enclosed_points(cube())["SelectedPoints"].tolist() == [1]
     assert asked.compute_implicit_distance(cube())["implicit_distance"].tolist() == [-1]
