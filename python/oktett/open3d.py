@@ -202,6 +202,8 @@ def _is_open3d(value: Any) -> bool:
 
 
 def _answer(array: Numbers, as_tensor: bool) -> Answer:
+    # Operations with arrays of no dimensions give scalars.
+    array = np.asarray(array)
     if not as_tensor:
         return array.view(Array)
     # Who gave something of Open3D's has imported it. The tensor shares the memory.

@@ -126,6 +126,14 @@ def test_answers_to_arrays_are_arrays_that_have_a_tensors_methods(scene):
         assert np.array_equal(answer.numpy(), answer) and np.shares_memory(answer.numpy(), answer)
 
 
+def test_a_single_ray_or_point_has_a_single_answer(scene):
+    ray, point = np.float32([0.1, 0.2, 5, 0, 0, -1]), np.float32([0, 0, 0.5])
+    assert scene.cast_rays(ray)["t_hit"].numpy() == 4 and scene.count_intersections(ray).numpy() == 2
+    assert scene.test_occlusions(ray).cpu().shape == scene.compute_occupancy(point).cpu().shape == ()
+    assert scene.compute_signed_distance(point).numpy() == -0.5 and scene.compute_distance(point).numpy() == 0.5
+    assert scene.list_intersections(ray)["ray_splits"].tolist() == [0, 2]
+
+
 def test_even_numbers_of_samples_are_refused(scene):
     points = np.zeros((1, 3), np.float32)
     for query in (scene.compute_occupancy, scene.compute_signed_distance):
@@ -289,6 +297,7 @@ class TestBesideOpen3d:
         hits = [scene.cast_rays(np.float32([[0.1, 0.2, 5 + k, 0, 0, -1]] * 1000))["t_hit"] for k in range(20)]
         assert [hit.numpy().tolist() for hit in hits] == [[4.0 + k] * 1000 for k in range(20)]
         assert scene.cast_rays(np.zeros((0, 6)))["primitive_uvs"].numpy().shape == (0, 2)
+        assert scene.compute_signed_distance(self.tensor(np.float32([0, 0, 0.5]))).item() == -0.5
 
     def test_its_meshes_are_added(self):
         legacy = self.open3d.geometry.TriangleMesh.create_box()
