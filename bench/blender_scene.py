@@ -52,7 +52,7 @@ def make_material(description):
         shader.inputs["Roughness"].default_value = description["roughness"]
     elif kind == "glass":
         shader = nodes.new("ShaderNodeBsdfGlass")
-        shader.distribution = "SHARP"
+        shader.inputs["Roughness"].default_value = 0  # smooth; the distribution SHARP is gone in Blender 4
         shader.inputs["IOR"].default_value = description["ior"]
     else:
         shader = nodes.new("ShaderNodeBsdfDiffuse")

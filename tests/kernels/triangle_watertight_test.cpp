@@ -88,6 +88,9 @@ TEST(Filter, KeepsTinyTrianglesFarAway) {
 
 #if defined(__SIZEOF_FLOAT128__)
 __extension__ typedef __float128 Quad;
+#else
+using Quad = long double;
+#endif
 
 // The sign of an edge function is exact: products of doubles fit into 113 bits.
 TEST(EdgeFunction, SignIsExact) {
@@ -119,7 +122,6 @@ TEST(EdgeFunction, SignIsExact) {
     ASSERT_EQ(value[0], -opposite[0]) << i;
   }
 }
-#endif
 
 // Only an edge from a point to itself owns neither side.
 TEST(EdgeFunction, TieRuleChoosesExactlyOneSide) {
