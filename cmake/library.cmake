@@ -8,27 +8,33 @@ target_include_directories(oktett_internal INTERFACE ${PROJECT_SOURCE_DIR} ${OKT
 target_include_directories(oktett_internal SYSTEM INTERFACE ${xsimd_INCLUDE_DIRS})
 target_link_libraries(oktett_internal INTERFACE TBB::tbb Threads::Threads)
 
-file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp accel/*.cpp render/*.cpp io/*.cpp)
-list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/|/io/image/oiio/")
+file(GLOB_RECURSE OKTETT_SOURCES CONFIGURE_DEPENDS core/*.cpp kernels/*.cpp accel/*.cpp render/*.cpp)
+list(FILTER OKTETT_SOURCES EXCLUDE REGEX "/isa/")
+file(GLOB_RECURSE OKTETT_IO_SOURCES CONFIGURE_DEPENDS io/*.cpp)
+list(FILTER OKTETT_IO_SOURCES EXCLUDE REGEX "/io/image/oiio/")
 
 # The static library, too, may become part of a shared one, such as the Python module. Its functions are never replaced by
 # others of the same name, so they may be inlined as in a program.
 set(OKTETT_PIC_OPTIONS -fno-semantic-interposition)
-add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES})
+# The objects of io/ are compiled apart from the others, so that who uses nothing of io/ links nothing that it needs.
+add_library(oktett_io OBJECT ${OKTETT_IO_SOURCES})
+add_library(oktett ${OKTETT_SOURCES} ${OKTETT_SURFACE_SOURCES} $<TARGET_OBJECTS:oktett_io>)
 add_library(oktett::oktett ALIAS oktett)
-target_compile_features(oktett PUBLIC cxx_std_20)
-target_compile_options(oktett PRIVATE ${OKTETT_PIC_OPTIONS})
-oktett_target_warnings(oktett)
-oktett_unity(oktett)
+foreach(target oktett oktett_io)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE ${OKTETT_PIC_OPTIONS})
+  target_compile_definitions(${target} PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
+  target_link_libraries(${target}
+    PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt PNG::PNG ZLIB::ZLIB OpenEXR::OpenEXR
+    ${OKTETT_GLTF_LIBRARIES} ${CMAKE_DL_LIBS})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  oktett_target_warnings(${target})
+  oktett_unity(${target})
+endforeach()
 set_target_properties(oktett PROPERTIES
-  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
-  POSITION_INDEPENDENT_CODE ON)
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
 include(cmake/public_headers.cmake)
 target_include_directories(oktett PUBLIC $<BUILD_INTERFACE:${OKTETT_PUBLIC_INCLUDE_DIR}>)
-target_compile_definitions(oktett PRIVATE OKTETT_VERSION="${PROJECT_VERSION}")
-target_link_libraries(oktett
-  PRIVATE $<BUILD_INTERFACE:oktett_internal> TBB::tbb Threads::Threads yaml-cpp fmt::fmt PNG::PNG ZLIB::ZLIB OpenEXR::OpenEXR
-  ${OKTETT_GLTF_LIBRARIES} ${CMAKE_DL_LIBS})
 
 file(GLOB OKTETT_GLTF_SOURCES CONFIGURE_DEPENDS io/gltf/*.cpp)
 set_property(SOURCE ${OKTETT_GLTF_SOURCES} APPEND PROPERTY COMPILE_DEFINITIONS ${OKTETT_GLTF_DEFINITIONS})

@@ -15,7 +15,7 @@ namespace oktett {
 namespace {
 
 /// Begins every file; the number is the version of the format.
-constexpr std::string_view kMagic = "oktett film 1\n";
+constexpr std::string_view kFilmMagic = "oktett film 1\n";
 /// The number of a tile, its added samples, the length of its sums.
 constexpr std::size_t kRecordHeader = 4 + 4 + 8;
 
@@ -103,7 +103,7 @@ void write_film(const std::string& path, const FilmFile& file) {
   OutputFile output(path);
   const auto records = file.film->records();
   const std::string header = film_header(file, static_cast<std::uint32_t>(records.size()));
-  std::string start(kMagic);
+  std::string start(kFilmMagic);
   append_number(start, std::uint64_t{header.size()});
   start += header;
   append_number(start, checksum(header));
@@ -121,8 +121,8 @@ void write_film(const std::string& path, const FilmFile& file) {
 }
 
 FilmFile parse_film(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) throw Error("is not a film of version 1");
-  ByteReader reader(bytes.substr(kMagic.size()));
+  if (!bytes.starts_with(kFilmMagic)) throw Error("is not a film of version 1");
+  ByteReader reader(bytes.substr(kFilmMagic.size()));
   const std::string_view header = reader.take(reader.number<std::uint64_t>());
   if (reader.number<std::uint64_t>() != checksum(header))
     throw Error("the checksum of the header is wrong: the file is damaged");

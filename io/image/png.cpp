@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "io/image/writers.h"
@@ -18,7 +19,7 @@ constexpr int kStrategy = 0;
 /// callback keeps the error here and jumps back to try_to_write().
 class PngWriter {
  public:
-  explicit PngWriter(OutputFile& file) : file_(file) {
+  PngWriter() {
     png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, keep_error, [](png_structp, const char*) {});
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ == nullptr) {
@@ -31,8 +32,9 @@ class PngWriter {
   PngWriter(const PngWriter&) = delete;
   PngWriter& operator=(const PngWriter&) = delete;
 
-  void write(const FlatImage& image, const std::vector<png_text>& texts) {
+  std::string encode(const FlatImage& image, const std::vector<png_text>& texts) {
     if (!try_to_write(image, texts)) std::rethrow_exception(failure_);
+    return std::move(bytes_);
   }
 
  private:
@@ -57,7 +59,7 @@ class PngWriter {
   static void write_bytes(png_structp png, png_bytep bytes, std::size_t count) {
     auto& self = *static_cast<PngWriter*>(png_get_io_ptr(png));
     try {
-      self.file_.write({reinterpret_cast<const char*>(bytes), count});
+      self.bytes_.append(reinterpret_cast<const char*>(bytes), count);
       return;
     } catch (...) {
       self.failure_ = std::current_exception();
@@ -71,7 +73,7 @@ class PngWriter {
     png_longjmp(png, 1);
   }
 
-  OutputFile& file_;
+  std::string bytes_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   std::exception_ptr failure_;
@@ -79,7 +81,7 @@ class PngWriter {
 
 }  // namespace
 
-void write_png(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes) {
+std::string encode_png(const Picture& picture, const std::vector<Attribute>& attributes) {
   std::vector<png_text> texts;
   for (const Attribute& attribute : attributes)
     if (const auto* text = std::get_if<std::string>(&attribute.value)) {
@@ -89,7 +91,11 @@ void write_png(OutputFile& file, const Picture& picture, const std::vector<Attri
       entry.key = const_cast<char*>(attribute.name.c_str());
       entry.text = const_cast<char*>(text->c_str());
     }
-  PngWriter(file).write(flatten(picture, PixelLayout::srgb8_alpha), texts);
+  return PngWriter().encode(flatten(picture, PixelLayout::srgb8_alpha), texts);
+}
+
+void write_png(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes) {
+  file.write(encode_png(picture, attributes));
 }
 
 }  // namespace oktett

@@ -11,7 +11,7 @@ namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
 
-Vec3d column(const Affine& a, int k) { return {a.m[0][k], a.m[1][k], a.m[2][k]}; }
+Vec3d matrix_column(const Affine& a, int k) { return {a.m[0][k], a.m[1][k], a.m[2][k]}; }
 
 /// Takes `other` if it is nearer to p. Where two faces meet, that which faces p more counts, so that the side
 /// on which p lies follows from the normal.
@@ -124,8 +124,8 @@ SurfaceNearest closest_on(const PolygonShape& polygon, const Affine& to_world, c
 
 SurfaceNearest closest_on(const BoxShape& box, const Affine& to_world, const Vec3d& p) {
   const Vec3d size = (box.max - box.min) * 0.5;
-  const Vec3d half[3] = {column(to_world, 0) * size.x, column(to_world, 1) * size.y,
-                         column(to_world, 2) * size.z};
+  const Vec3d half[3] = {matrix_column(to_world, 0) * size.x, matrix_column(to_world, 1) * size.y,
+                         matrix_column(to_world, 2) * size.z};
   for (int k = 0; k < 3; ++k) {
     const Vec3d &a = half[k], &b = half[(k + 1) % 3];
     if (!(std::abs(dot(a, b)) <= 1e-14 * length(a) * length(b)))

@@ -14,7 +14,7 @@ using IfsBall = IfsElement::Ball;
 /// Pieces that rounding displaces a line by more than this part of are not divided.
 constexpr double kMostMargin = 0x1p-8;
 /// Parts looked at for bounds; those that are left count with their balls.
-constexpr int kMostBoundSteps = 20000;
+constexpr int kMostIfsSteps = 20000;
 
 double base_radius(IfsShape::Base base) { return base == IfsShape::Base::ball ? 1 : std::sqrt(3.0); }
 
@@ -136,7 +136,7 @@ struct IfsTree {
   }
 };
 
-using Walk = UnionWalk<IfsTree, kMaxIfsDepth>;
+using IfsWalk = UnionWalk<IfsTree, kMaxIfsDepth>;
 
 /// How far pieces reach along w, a unit vector, in the space of a node `level` levels down.
 struct Support {
@@ -168,7 +168,7 @@ struct Support {
     for (int i = 0; i < n; ++i) {
       const auto& [down, k] = order[i];
       if (-down <= best + slack) return;
-      if (++steps > kMostBoundSteps)
+      if (++steps > kMostIfsSteps)
         best = std::max(best, -down);
       else
         grow(start(k), turned(k), depth.below(e, e.maps[k]));
@@ -204,7 +204,7 @@ bool holds(const IfsElement& e, const Vec3d& p, const Depth& depth, int& steps) 
 }
 
 /// `face` is 0 on a ball.
-void tell_surface(const IfsElement& e, const FractalQuery& query, const Walk::Place& place, int face,
+void tell_surface(const IfsElement& e, const FractalQuery& query, const IfsWalk::Place& place, int face,
                   FractalCrossing& c) {
   const IfsNode& node = place.node;
   const Vec3d p = node.o + node.d * (c.t - node.at);
@@ -290,8 +290,8 @@ int Ifs::find(const Element& e, const FractalQuery& query, FractalCrossing* out,
   const IfsNode root = tree.make(query.o, query.d, 0, Depth::root(e));
   UnionSpan bounds;
   if (!tree.bounds(root, bounds)) return 0;
-  Walk walk(tree, root, bounds, e.depth());
-  return find_in_union(walk, query, out, room, [&](const Walk::Place& place, FractalCrossing& c) {
+  IfsWalk walk(tree, root, bounds, e.depth());
+  return find_in_union(walk, query, out, room, [&](const IfsWalk::Place& place, FractalCrossing& c) {
     UnionSpan span{};
     tree.solid(place.node, span);
     tell_surface(e, query, place, c.turn < 0 ? span.child % 8 : span.child / 8, c);

@@ -6,7 +6,7 @@
 namespace oktett::roots {
 namespace {
 
-constexpr double kRoundUp = 1 + 0x1p-45;
+constexpr double kSturmRoundUp = 1 + 0x1p-45;
 
 /// A number with a bound on its error.
 struct Ball {
@@ -15,14 +15,14 @@ struct Ball {
 };
 Ball operator+(const Ball& a, const Ball& b) {
   const DoubleDouble d = a.x + b.x;
-  return {d, (a.error + b.error + kUnit<DoubleDouble> * std::abs(d.hi)) * kRoundUp + kUnderflow};
+  return {d, (a.error + b.error + kUnit<DoubleDouble> * std::abs(d.hi)) * kSturmRoundUp + kUnderflow};
 }
 Ball operator-(const Ball& a, const Ball& b) { return a + Ball{-b.x, b.error}; }
 Ball operator*(const Ball& a, const Ball& b) {
   const DoubleDouble p = a.x * b.x;
   return {p, (std::abs(a.x.hi) * b.error + a.error * (std::abs(b.x.hi) + b.error) +
               kUnit<DoubleDouble> * std::abs(p.hi)) *
-                     kRoundUp +
+                     kSturmRoundUp +
                  kUnderflow};
 }
 /// b must surely differ from 0.
@@ -30,7 +30,7 @@ Ball operator/(const Ball& a, const Ball& b) {
   const DoubleDouble q = a.x / b.x;
   const double least = std::abs(b.x.hi) * (1 - 0x1p-50) - b.error;
   return {q, ((a.error + std::abs(q.hi) * b.error) / least + 8 * kUnit<DoubleDouble> * std::abs(q.hi)) *
-                     kRoundUp +
+                     kSturmRoundUp +
                  kUnderflow};
 }
 int sign_of(const Ball& a) { return std::abs(a.x.hi) * (1 - 0x1p-50) > a.error ? (a.x.hi > 0 ? 1 : -1) : 0; }

@@ -1,9 +1,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <atomic>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -101,6 +105,28 @@ py::dict planes_of(const std::shared_ptr<const Picture>& picture,
   return planes;
 }
 
+/// Renders `scene`, which was made of that of `store`. `progress` as in render_scene.
+std::shared_ptr<Picture> render_picture(SceneStore& store, Scene scene, bool data_layers,
+                                        const py::object& progress) {
+  RenderOptions options;
+  std::atomic<bool> stop = false;
+  std::atomic<double> done = 0;
+  options.stop = &stop;
+  options.data_layers = data_layers;
+  options.progress = [&done](const RenderProgress& p) {
+    if (p.pixels_total > 0) done = static_cast<double>(p.pixels_done) / static_cast<double>(p.pixels_total);
+  };
+  std::shared_ptr<Picture> picture;
+  run_watched(
+      [&] {
+        const std::shared_ptr<const TextureSampler> textures = store.textures();
+        options.textures = textures.get();
+        picture = std::make_shared<Picture>(render(std::move(scene), options).picture);
+      },
+      [&] { stop = true; }, progress.is_none() ? std::function<void()>() : [&] { progress(done.load()); });
+  return picture;
+}
+
 bool is_colour(const std::string& name) { return name == "R" || name == "G" || name == "B" || name == "A"; }
 
 py::dict render_scene(SceneStore& store, const Whole& width, const Whole& height, const Whole& samples,
@@ -116,23 +142,26 @@ py::dict render_scene(SceneStore& store, const Whole& width, const Whole& height
   if (integrator) scene.integrator.kind = parse_integrator(*integrator);
   if (camera) override_camera(*camera, scene);
 
-  RenderOptions options;
-  std::atomic<bool> stop = false;
-  std::atomic<double> done = 0;
-  options.stop = &stop;
-  options.progress = [&done](const RenderProgress& p) {
-    if (p.pixels_total > 0) done = static_cast<double>(p.pixels_done) / static_cast<double>(p.pixels_total);
+  const bool data_layers = !wanted || !std::all_of(wanted->begin(), wanted->end(), is_colour);
+  return planes_of(render_picture(store, std::move(scene), data_layers, progress), wanted);
+}
+
+/// What a notebook shows of a scene: its picture, with few pixels and samples. None if it cannot be rendered.
+py::object preview(SceneStore& store) {
+  constexpr std::uint32_t kLongSide = 480, kSamples = 4;
+  Scene scene = store.scene();
+  Film& film = scene.film;
+  const std::uint32_t longest = std::max(film.width, film.height);
+  const auto shrink = [&](std::uint32_t& side) {
+    side = std::max<std::uint32_t>(1, static_cast<std::uint32_t>(std::uint64_t{side} * kLongSide / longest));
   };
-  if (wanted) options.data_layers = !std::all_of(wanted->begin(), wanted->end(), is_colour);
-  std::shared_ptr<Picture> picture;
-  run_watched(
-      [&] {
-        const std::shared_ptr<const ImageTextures> textures = store.textures();
-        options.textures = textures.get();
-        picture = std::make_shared<Picture>(render(std::move(scene), options).picture);
-      },
-      [&] { stop = true; }, progress.is_none() ? std::function<void()>() : [&] { progress(done.load()); });
-  return planes_of(picture, wanted);
+  if (longest > kLongSide) shrink(film.width), shrink(film.height);
+  scene.integrator.samples = std::min(scene.integrator.samples, kSamples);
+  try {
+    return py::bytes(files().png(*render_picture(store, std::move(scene), false, py::none())));
+  } catch (const Error&) {
+    return py::none();
+  }
 }
 
 constexpr const char* kRenderDoc = R"(Renders the scene.
@@ -159,6 +188,10 @@ void bind_render(SceneClass& scene) {
   scene.def("render", render_scene, "width"_a = none, "height"_a = none, py::kw_only(), "samples"_a = none,
             "depth"_a = none, "seed"_a = none, "integrator"_a = none, "camera"_a = none, "planes"_a = none,
             "progress"_a = none, kRenderDoc);
+  scene.def(
+      "_repr_png_", preview,
+      "The bytes of a PNG file that Jupyter shows for a scene: at most 480 pixels wide and high, 4 samples a "
+      "pixel. None if the scene cannot be rendered.");
 }
 
 }  // namespace oktett::python

@@ -16,7 +16,7 @@ namespace oktett::python {
 namespace {
 
 using StorePointer = std::shared_ptr<SceneStore>;
-using Files = std::map<std::string, py::bytes>;
+using FileBytes = std::map<std::string, py::bytes>;
 
 /// Grows with what pickles hold.
 constexpr int kPickleVersion = 1;
@@ -88,7 +88,8 @@ StorePointer make_scene(const py::object& vertices, const py::object& faces, con
 StorePointer load(const std::string& path, const Definitions& definitions, FileContents files,
                   BuildQuality quality) {
   StorePointer store;
-  run_watched([&] { store = SceneStore::load(path, definitions, std::move(files)); });
+  const Files& reader = oktett::python::files();
+  run_watched([&] { store = SceneStore::load(reader, path, definitions, std::move(files)); });
   store->set_quality(quality);
   return store;
 }
@@ -98,7 +99,7 @@ StorePointer from_file(const py::object& path, const Definitions& definitions, c
   return load(text, definitions, {}, parse_quality(quality));
 }
 
-StorePointer from_text(const std::string& text, const std::string& name, const Files& files,
+StorePointer from_text(const std::string& text, const std::string& name, const FileBytes& files,
                        const Definitions& definitions, const std::string& quality) {
   FileContents contents;
   // As the reader of scene files joins them.
@@ -108,12 +109,12 @@ StorePointer from_text(const std::string& text, const std::string& name, const F
   return load(name, definitions, std::move(contents), parse_quality(quality));
 }
 
-StorePointer from_dict(const py::object& description, const std::string& name, const Files& files,
+StorePointer from_dict(const py::object& description, const std::string& name, const FileBytes& files,
                        const Definitions& definitions, const std::string& quality) {
   const auto [text, meshes] = py::module_::import("oktett._description")
                                   .attr("to_text")(description)
-                                  .cast<std::pair<std::string, Files>>();
-  Files all = files;
+                                  .cast<std::pair<std::string, FileBytes>>();
+  FileBytes all = files;
   all.insert(meshes.begin(), meshes.end());
   return from_text(text, name, all, definitions, quality);
 }
@@ -150,7 +151,7 @@ StorePointer unpickled(const py::tuple& state) {
     store->set_quality(quality);
   } else {
     FileContents files;
-    for (const auto& [file, content] : state[3].cast<Files>()) files.emplace(file, content);
+    for (const auto& [file, content] : state[3].cast<FileBytes>()) files.emplace(file, content);
     store = load(path, state[2].cast<Definitions>(), std::move(files), quality);
   }
   for (const py::handle entry : state[4].cast<py::list>()) {
@@ -209,9 +210,9 @@ void bind_making(SceneClass& scene) {
       "from_file", from_file, "path"_a, py::kw_only(), "definitions"_a = none, "quality"_a = "balanced",
       "A scene of a scene file (.yaml) or a mesh file. Arguments and errors are those of from_text.");
   scene.def_static("from_text", from_text, "text"_a, py::kw_only(), "name"_a = "<text>.yaml",
-                   "files"_a = Files{}, "definitions"_a = none, "quality"_a = "balanced", kFromTextDoc);
+                   "files"_a = FileBytes{}, "definitions"_a = none, "quality"_a = "balanced", kFromTextDoc);
   scene.def_static("from_dict", from_dict, "description"_a, py::kw_only(), "name"_a = "<dict>.yaml",
-                   "files"_a = Files{}, "definitions"_a = none, "quality"_a = "balanced", kFromDictDoc);
+                   "files"_a = FileBytes{}, "definitions"_a = none, "quality"_a = "balanced", kFromDictDoc);
   scene.def("add_mesh", add_mesh, "vertices"_a, "faces"_a, py::kw_only(), "transform"_a = py::none(),
             "name"_a = "",
             R"(Adds a triangle mesh and returns the number of the new object.
@@ -226,6 +227,11 @@ ValueError for other shapes and for indices out of range.)");
 }
 
 }  // namespace
+
+const Files& files() {
+  const py::capsule entry = py::module_::import("oktett._files").attr(kFilesEntry);
+  return *entry.get_pointer<const Files>();
+}
 
 std::shared_ptr<const World> world_of(SceneStore& scene) {
   std::shared_ptr<const World> world = scene.built_world();

@@ -1,61 +1,25 @@
 #include "python/src/scene_store.h"
 
-#include <stdlib.h>
 #include <sys/stat.h>
 
-#include <cerrno>
-#include <filesystem>
 #include <fstream>
-#include <optional>
-#include <set>
-#include <system_error>
+#include <sstream>
 #include <utility>
+#include <variant>
 
 #include "core/error.h"
-#include "io/text/files_read.h"
-#include "io/text/mapped_file.h"
-#include "io/text/stand_ins.h"
 
 namespace oktett::python {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Files are noted, and stood in for, for one scene at a time.
-std::mutex loading;
-
-/// Writes files to a folder of their own, which goes with the object.
-class TemporaryFiles {
- public:
-  explicit TemporaryFiles(const FileContents& files) {
-    if (files.empty()) return;
-    std::string pattern = (fs::temp_directory_path() / "oktett-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw Error("cannot make a folder for files: " + std::generic_category().message(errno), ErrorKind::io);
-    folder_ = pattern;
-    for (const auto& [name, content] : files) {
-      // OpenImageIO asks for the end of the name.
-      const fs::path path = folder_ / (std::to_string(paths_.size()) + fs::path(name).extension().string());
-      std::ofstream file(path, std::ios::binary);
-      file.write(content.data(), static_cast<std::streamsize>(content.size()));
-      file.close();
-      if (!file) throw Error(Location{path.string()}, "cannot write", ErrorKind::io);
-      paths_.emplace(name, path.string());
-    }
-  }
-  ~TemporaryFiles() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
-  TemporaryFiles(const TemporaryFiles&) = delete;
-  TemporaryFiles& operator=(const TemporaryFiles&) = delete;
-
-  const std::map<std::string, std::string>& paths() const { return paths_; }
-
- private:
-  fs::path folder_;
-  std::map<std::string, std::string> paths_;
-};
+/// The bytes of the file `path`.
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  if (!file || (file.peek() != std::ifstream::traits_type::eof() && !(content << file.rdbuf())))
+    throw Error(Location{path}, "cannot read", ErrorKind::io);
+  return std::move(content).str();
+}
 
 /// Numbers that the operands of a combination take.
 std::uint32_t operand_count(const CsgShape& shape) {
@@ -91,25 +55,17 @@ SceneStore::FileState SceneStore::state_of(const std::string& path) {
           static_cast<std::uint64_t>(status.st_size)};
 }
 
-std::shared_ptr<SceneStore> SceneStore::load(const std::string& path, const Definitions& definitions,
-                                             FileContents files) {
+std::shared_ptr<SceneStore> SceneStore::load(const Files& reader, const std::string& path,
+                                             const Definitions& definitions, FileContents files) {
   auto store = std::make_shared<SceneStore>();
-  const std::lock_guard lock(loading);
-  const FilesRead noted;
-  const TemporaryFiles temporary(files);
-  const StandIns stand_ins(temporary.paths());
-  store->scene_ = load_scene(path, definitions);
+  SceneRead read = reader.read(path, definitions, files);
+  store->scene_ = std::move(read.scene);
+  store->reader_ = &reader;
   store->path_ = path;
   store->definitions_ = definitions;
   store->files_ = std::move(files);
-  // What stands in for images is gone later.
-  if (!store->files_.empty()) store->textures();
-  std::set<std::string> read;
-  for (const std::string& name : noted.paths()) read.insert(name);
-  for (const Texture& texture : store->scene_.textures)
-    if (!texture.path.empty()) read.insert(texture.path);
-  for (const std::string& name : read)
-    if (!store->files_.contains(name)) store->read_.emplace(name, state_of(name));
+  store->textures_ = std::move(read.textures);
+  for (const std::string& name : read.paths) store->read_.emplace(name, state_of(name));
   return store;
 }
 
@@ -149,15 +105,15 @@ std::shared_ptr<const World> SceneStore::world() {
   return world;
 }
 
-std::shared_ptr<const ImageTextures> SceneStore::textures() {
+std::shared_ptr<const TextureSampler> SceneStore::textures() {
   const std::lock_guard build(building_);
   std::vector<Texture> textures;
   {
     const std::lock_guard lock(mutex_);
-    if (textures_ != nullptr) return textures_;
+    if (textures_ != nullptr || reader_ == nullptr) return textures_;
     textures = scene_.textures;
   }
-  auto read = std::make_shared<const ImageTextures>(std::move(textures));
+  auto read = reader_->textures(std::move(textures));
   const std::lock_guard lock(mutex_);
   return textures_ = std::move(read);
 }
@@ -196,7 +152,7 @@ FileContents SceneStore::contents() const {
     if (state_of(path) != state)
       throw Error(Location{path}, "has changed since the scene was read; read it again before pickling",
                   ErrorKind::io);
-    all.emplace(path, std::string(MappedFile(path).text()));
+    all.emplace(path, content_of(path));
   }
   return all;
 }

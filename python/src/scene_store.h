@@ -11,16 +11,12 @@
 
 #include "core/mesh.h"
 #include "core/transform.h"
-#include "io/image/texture.h"
-#include "io/scene/scene_file.h"
+#include "python/src/files.h"
 #include "render/geometry.h"
 #include "render/render.h"
 #include "render/scene.h"
 
 namespace oktett::python {
-
-/// Contents of files by name.
-using FileContents = std::map<std::string, std::string>;
 
 /// A mesh that was added from arrays.
 struct AddedMesh {
@@ -35,9 +31,9 @@ class SceneStore {
  public:
   SceneStore() = default;
 
-  /// Reads the scene file or mesh `path`, with `files` in place of the files of their names.
-  static std::shared_ptr<SceneStore> load(const std::string& path, const Definitions& definitions,
-                                          FileContents files);
+  /// Reads the scene file or mesh `path` by `reader`, with `files` in place of the files of their names.
+  static std::shared_ptr<SceneStore> load(const Files& reader, const std::string& path,
+                                          const Definitions& definitions, FileContents files);
 
   /// Adds an object and returns its number. The structure is built anew by the next query.
   std::uint32_t add(AddedMesh added);
@@ -46,8 +42,8 @@ class SceneStore {
   std::shared_ptr<const World> world();
   /// Null if it has to be built. Never waits.
   std::shared_ptr<const World> built_world() const;
-  /// The images of the scene's textures, read by the first call.
-  std::shared_ptr<const ImageTextures> textures();
+  /// The images of the scene's textures, read by the first call; null if the scene was not read from files.
+  std::shared_ptr<const TextureSampler> textures();
   Scene scene() const;
   std::uint32_t object_count() const;
 
@@ -73,14 +69,15 @@ class SceneStore {
   mutable std::mutex mutex_;   ///< of all members below, held for moments only
   std::uint64_t changes_ = 0;  ///< of what the structure depends on
   Scene scene_;
-  std::string path_;  ///< empty: the scene was not read
+  const Files* reader_ = nullptr;  ///< null: the scene was not read
+  std::string path_;               ///< empty likewise
   Definitions definitions_;
   FileContents files_;                     ///< those that were given, by path
   std::map<std::string, FileState> read_;  ///< those that were read from the disk
   std::vector<AddedMesh> added_;
   BuildQuality quality_ = BuildQuality::balanced;
   std::shared_ptr<const World> world_;  ///< null: to be built
-  std::shared_ptr<const ImageTextures> textures_;
+  std::shared_ptr<const TextureSampler> textures_;
 };
 
 /// How many numbers build_world gives to the objects of `scene`.

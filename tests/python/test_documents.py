@@ -23,7 +23,7 @@ def test_stubs_and_module_name_the_same():
     assert functions == {name for name in dir(_oktett) if not name.startswith("_") and name != "Scene"}
     (scene,) = (node for node in stub.body if isinstance(node, ast.ClassDef))
     methods = {node.name: node for node in scene.body if isinstance(node, ast.FunctionDef)}
-    public = {name for name in dir(oktett.Scene) if not name.startswith("_")}
+    public = {name for name in dir(oktett.Scene) if not name.startswith("_")} | {"_repr_png_"}
     assert set(methods) - {"__init__"} == public
     for name, method in methods.items():
         documentation = getattr(oktett.Scene, name).__doc__

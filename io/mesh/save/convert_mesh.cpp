@@ -22,25 +22,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Format {
+struct WrittenFormat {
   std::string_view extension;
   bool has_text;       ///< there are files of text and of bytes
   bool has_materials;  ///< it can say them
   MeshLosses (*write)(const std::string& path, const MeshFile& file, bool ascii);
 };
 
-constexpr std::array kFormats{
-    Format{".obj", false, true,
-           [](const std::string& path, const MeshFile& file, bool) { return write_obj(path, file); }},
-    Format{".ply", true, false, write_ply},
-    Format{".stl", true, false, write_stl},
-    Format{".glb", false, true,
-           [](const std::string& path, const MeshFile& file, bool) { return write_glb(path, file); }},
+constexpr std::array kWrittenFormats{
+    WrittenFormat{".obj", false, true,
+                  [](const std::string& path, const MeshFile& file, bool) { return write_obj(path, file); }},
+    WrittenFormat{".ply", true, false, write_ply},
+    WrittenFormat{".stl", true, false, write_stl},
+    WrittenFormat{".glb", false, true,
+                  [](const std::string& path, const MeshFile& file, bool) { return write_glb(path, file); }},
 };
 
-const Format& format_of(const std::string& path, const ConvertOptions& options) {
-  const auto found = std::ranges::find(kFormats, lower_case_extension(path), &Format::extension);
-  if (found == kFormats.end())
+const WrittenFormat& written_format(const std::string& path, const ConvertOptions& options) {
+  const auto found =
+      std::ranges::find(kWrittenFormats, lower_case_extension(path), &WrittenFormat::extension);
+  if (found == kWrittenFormats.end())
     throw Error(Location{path}, "unknown kind of mesh file to write; expected .obj, .ply, .stl or .glb");
   if (options.ascii && !found->has_text)
     throw Error(Location{path}, "--ascii is for .ply and .stl, which are bytes without it");
@@ -77,12 +78,12 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
 }  // namespace
 
 void check_mesh_output(const std::string& path, const ConvertOptions& options) {
-  format_of(path, options);
+  written_format(path, options);
   const OutputFile probe(path);
 }
 
 Conversion convert_mesh(const std::string& input, const std::string& output, const ConvertOptions& options) {
-  const Format& format = format_of(output, options);
+  const WrittenFormat& format = written_format(output, options);
   std::error_code error;
   if (fs::equivalent(input, output, error)) throw Error(Location{output}, "is the input, too");
   Conversion result;
