@@ -15,6 +15,9 @@ if(OKTETT_BUILD_PYTHON)
 endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+endif()
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package/compress_pages.cmake)
 # Each description has its own first line.
@@ -46,7 +49,13 @@ pkg-config.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-oktett)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "oktett (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
+if(OKTETT_BUILD_PYTHON)
+  # The modules are for one version of Python, that of the release. One of them uses the other.
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "oktett (= ${PROJECT_VERSION}), python3-numpy, \
+python3 (>= ${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}), python3 (<< ${Python3_VERSION_MAJOR}.${next_minor})")
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/python/oktett)
+endif()
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "ray tracing of arrays of rays - Python 3
 Oktett traces arrays of numpy through triangle meshes and exact surfaces, and
 renders pictures to arrays. Adapters have the interfaces of Open3D's

@@ -14,12 +14,17 @@ if(NOT Python3_EXECUTABLE)
 endif()
 if(Python3_EXECUTABLE)
   set(Python3_FIND_STRATEGY LOCATION)
-  find_package(Python3 QUIET COMPONENTS Interpreter Development.Module NumPy)
+  find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
 endif()
 if(Python3_FOUND)
   # pybind11 uses what was found here.
   set(PYBIND11_FINDPYTHON ON)
   set(Python_EXECUTABLE ${Python3_EXECUTABLE})
+  if(CMAKE_CROSSCOMPILING AND NOT DEFINED PYTHON_MODULE_EXTENSION)
+    # The interpreter that runs tells its own ending.
+    set(PYTHON_MODULE_EXTENSION
+      .cpython-${Python3_VERSION_MAJOR}${Python3_VERSION_MINOR}-${CMAKE_SYSTEM_PROCESSOR}-linux-gnu.so)
+  endif()
   find_package(pybind11 2.10 CONFIG QUIET)
   set(OKTETT_PYTHON_FOUND ${pybind11_FOUND})
 endif()
