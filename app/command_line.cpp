@@ -4,8 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <limits>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "app/text.h"
@@ -66,13 +69,21 @@ std::string is_not_empty(const std::string& value) {
   return value.empty() ? "expected a value, found nothing" : "";
 }
 
-/// For options that take a whole number: the library's own complaint does not say what it expected.
+/// For options that take a whole number. The library takes a leading 0 for the sign of octal, so that frame
+/// 0010 would be frame 8, and its complaint does not say what it expected.
 template <class T>
-std::string is_whole_number(const std::string& value) {
-  T number{};
-  if (CLI::detail::lexical_cast(value, number)) return "";
-  return fmt::format("expected a whole number from 0 to {}, found '{}'", std::numeric_limits<T>::max(),
-                     value);
+CLI::Validator whole_number() {
+  return {[](std::string& value) -> std::string {
+            T number{};
+            const char* const end = value.data() + value.size();
+            const auto [stop, error] = std::from_chars(value.data(), end, number);
+            if (error != std::errc() || stop != end)
+              return fmt::format("expected a whole number from 0 to {}, found '{}'",
+                                 std::numeric_limits<T>::max(), value);
+            value = std::to_string(number);
+            return {};
+          },
+          ""};
 }
 
 /// Where the choices of an option are kept.
@@ -114,11 +125,12 @@ void Verb::option(const char* names, OptionTarget target, const char* value, con
       [&](auto* variable) {
         CLI::Option* option = app_->add_option(names, *variable, help)->type_name(value);
         if constexpr (std::is_same_v<decltype(variable), std::string*>) option->check(is_not_empty);
-        if constexpr (std::is_same_v<decltype(variable), unsigned*>) option->check(is_whole_number<unsigned>);
+        if constexpr (std::is_same_v<decltype(variable), unsigned*>)
+          option->transform(whole_number<unsigned>());
         if constexpr (std::is_same_v<decltype(variable), std::uint64_t*>)
-          option->check(is_whole_number<std::uint64_t>);
+          option->transform(whole_number<std::uint64_t>());
         if constexpr (std::is_same_v<decltype(variable), std::optional<std::uint32_t>*>)
-          option->check(is_whole_number<std::uint32_t>);
+          option->transform(whole_number<std::uint32_t>());
         if constexpr (std::is_same_v<decltype(variable), std::vector<std::string>*>)
           option->allow_extra_args(false);
       },

@@ -17,6 +17,9 @@ ArrayShape shape_of(const py::array& array) { return {array.shape(), array.shape
 
 /// Throws ValueError unless `value` is, or can become, an array of real numbers.
 py::array number_array(py::handle value, const char* name, const std::string& expected) {
+  // What lies under the mask of a masked array is no number of the caller's, and conversion would take it for
+  // one.
+  if (py::hasattr(value, "mask") && py::hasattr(value, "filled")) fail(name, expected, "a masked array");
   py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();

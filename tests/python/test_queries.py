@@ -156,6 +156,7 @@ def test_no_rays_and_empty_scenes_are_answered():
         (np.zeros((2, 6), bool), "elements of type bool"),
         ([[1, 2, 3, 4, 5, 6], [1]], "elements of type object|an object of type list"),
         (None, "elements of type object|an object of type NoneType"),
+        (np.ma.masked_array(np.ones((2, 6)), mask=np.eye(2, 6)), "a masked array"),
     ],
 )
 def test_other_arrays_of_rays_are_refused(rays, found):
