@@ -216,8 +216,15 @@ def closure(users):
 
 def patch(file, names, rpath, soname=None):
     """Makes `file` look for libraries in the folders of `rpath`, under their new `names`."""
-    words = [word for old in needed(file) if old in names for word in ("--replace-needed", old, names[old])]
-    run("patchelf", *words, *(["--set-soname", soname] if soname else []), "--set-rpath", rpath, file)
+    # One change at a time: patchelf 0.14 mixes up the texts of several.
+    run("patchelf", "--set-rpath", rpath, file)
+    if soname:
+        run("patchelf", "--set-soname", soname, file)
+    if words := [word for old in needed(file) if old in names for word in ("--replace-needed", old, names[old])]:
+        run("patchelf", *words, file)
+    wrong = [name for name in needed(file) if name in names]
+    if wrong or output_of("patchelf", "--print-rpath", file).strip() != rpath:
+        sys.exit(f"oktett: patchelf has damaged {file}")
 
 
 @functools.cache
