@@ -1,7 +1,7 @@
 #pragma once
-/// \file Forced inlining. Public headers use it for functions that compute: an ordinary inline function becomes a weak symbol,
-/// and a program that is compiled for another processor, where multiplications and additions fuse, would bring copies that
-/// the linker takes in place of the library's. The library's hits would then depend on who links it.
+/// \file Forced inlining, for public functions that compute. An ordinary inline function is a weak symbol: a
+/// program whose multiplications and additions fuse would bring copies that replace the library's own, and
+/// hits would depend on who links it.
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define OKTETT_SANITIZED 1

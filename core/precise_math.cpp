@@ -78,7 +78,8 @@ struct Turn {
   Wide rest;  ///< radians, at most pi / 4 in magnitude
 };
 
-/// For |x| >= 2^20: M. H. Payne, R. N. Hanek: Radian reduction for trigonometric functions, SIGNUM Newsletter 18(1), 1983.
+/// For |x| >= 2^20: M. H. Payne, R. N. Hanek: Radian reduction for trigonometric functions, SIGNUM Newsletter
+/// 18(1), 1983.
 Turn reduce_large(double x) {
   // 2 / pi to 1280 bits.
   static constexpr std::uint64_t kTwoOverPi[] = {
@@ -202,7 +203,8 @@ double pow(double x, double y) {
   if (size == 0 || std::isinf(size)) return sign * ((size > 0) == (y > 0) ? kInfinity : 0);
   if (x < 0 && !whole) return kNan;
   if (size == 1) return sign;
-  const Wide exponent = std::abs(y) > 0x1p66 ? Wide((y > 0) == (size > 1) ? 1e4 : -1e4) : log_of(size) * Wide(y);
+  const Wide exponent =
+      std::abs(y) > 0x1p66 ? Wide((y > 0) == (size > 1) ? 1e4 : -1e4) : log_of(size) * Wide(y);
   return sign * exp_of(exponent);
 }
 

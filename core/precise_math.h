@@ -1,12 +1,13 @@
 #pragma once
-/// \file Elementary functions that are rounded to the nearest double: the same bits on every machine, and the best that a
-/// double can hold.
+/// \file Elementary functions that are rounded to the nearest double: the same bits on every machine, and the
+/// best that a double can hold.
 ///
-/// For numbers that users write, such as constants in scenes. The C library's depend on its version, on the architecture
-/// and on whether the processor fuses multiplications and additions. These compute in numbers of 106 bits, in a fixed
-/// order, so all but about one result in 10^12 is the nearest double, and no result is further than the next. They take
-/// about a microsecond; code that runs per sample takes those of core/math.h. NaN in gives NaN out; poles, zeros,
-/// infinities and signs are those of the C standard, annex F.
+/// For numbers that users write, such as constants in scenes. The C library's depend on its version, on the
+/// architecture and on whether the processor fuses multiplications and additions. These compute in numbers of
+/// 106 bits, in a fixed order, so all but about one result in 10^12 is the nearest double, and no result is
+/// further than the next. They take about a microsecond; code that runs per sample takes those of
+/// core/math.h. NaN in gives NaN out; poles, zeros, infinities and signs are those of the C standard, annex
+/// F.
 
 namespace oktett::precise {
 

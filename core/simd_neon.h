@@ -1,6 +1,6 @@
 #pragma once
-/// \file Operations on single registers of 64-bit ARM for core/simd_native.h, which includes it: what core/simd_x86.h is
-/// for x86, and whatever xsimd does otherwise than IEEE there.
+/// \file Operations on single registers of 64-bit ARM for core/simd_native.h, which includes it: what
+/// core/simd_x86.h is for x86, and whatever xsimd does otherwise than IEEE there.
 
 namespace oktett::native {
 
@@ -15,8 +15,8 @@ using NeonInt = batch<std::int32_t, Neon>;
 OKTETT_INLINE NeonFloat divide(NeonFloat a, NeonFloat b) { return vdivq_f32(a, b); }
 OKTETT_INLINE NeonFloat sqrt(NeonFloat a) { return vsqrtq_f32(a); }
 
-// Sums of signed vectors are undefined where they overflow in GCC's arm_neon.h, and comparisons behind them are
-// simplified accordingly; those of unsigned vectors wrap around.
+// Sums of signed vectors are undefined where they overflow in GCC's arm_neon.h, and comparisons behind them
+// are simplified accordingly; those of unsigned vectors wrap around.
 OKTETT_INLINE uint32x4_t as_unsigned(NeonInt a) { return vreinterpretq_u32_s32(a); }
 OKTETT_INLINE NeonInt add(NeonInt a, NeonInt b) {
   return vreinterpretq_s32_u32(vaddq_u32(as_unsigned(a), as_unsigned(b)));
@@ -29,7 +29,8 @@ OKTETT_INLINE NeonInt multiply(NeonInt a, NeonInt b) {
 }
 OKTETT_INLINE NeonInt negate(NeonInt a) { return subtract(NeonInt(0), a); }
 
-// As on x86 the second operand if either is NaN or both are zeros. FMIN and FMAX would return NaN and the lesser zero.
+// As on x86 the second operand if either is NaN or both are zeros. FMIN and FMAX would return NaN and the
+// lesser zero.
 OKTETT_INLINE NeonFloat min(NeonFloat a, NeonFloat b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
 OKTETT_INLINE NeonFloat max(NeonFloat a, NeonFloat b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 OKTETT_INLINE NeonDouble min(NeonDouble a, NeonDouble b) { return vbslq_f64(vcltq_f64(a, b), a, b); }
@@ -38,14 +39,18 @@ OKTETT_INLINE NeonDouble max(NeonDouble a, NeonDouble b) { return vbslq_f64(vcgt
 OKTETT_INLINE NeonFloat fma(NeonFloat a, NeonFloat b, NeonFloat c) { return vfmaq_f32(c, a, b); }
 OKTETT_INLINE NeonFloat fms(NeonFloat a, NeonFloat b, NeonFloat c) { return vfmaq_f32(vnegq_f32(c), a, b); }
 OKTETT_INLINE NeonDouble fma(NeonDouble a, NeonDouble b, NeonDouble c) { return vfmaq_f64(c, a, b); }
-OKTETT_INLINE NeonDouble fms(NeonDouble a, NeonDouble b, NeonDouble c) { return vfmaq_f64(vnegq_f64(c), a, b); }
+OKTETT_INLINE NeonDouble fms(NeonDouble a, NeonDouble b, NeonDouble c) {
+  return vfmaq_f64(vnegq_f64(c), a, b);
+}
 
 OKTETT_INLINE void set_four(NeonFloat& r, float x, float y, float z, float w) { r = float32x4_t{x, y, z, w}; }
 
 /// 1, 2, 4, 8: lane i of a mask is bit i of a number.
 OKTETT_INLINE uint32x4_t lane_weights() { return uint32x4_t{1, 2, 4, 8}; }
 OKTETT_INLINE unsigned bits(batch_bool<float, Neon> m) { return vaddvq_u32(vandq_u32(m, lane_weights())); }
-OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Neon> m) { return vaddvq_u32(vandq_u32(m, lane_weights())); }
+OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Neon> m) {
+  return vaddvq_u32(vandq_u32(m, lane_weights()));
+}
 OKTETT_INLINE unsigned bits(batch_bool<double, Neon> m) {
   return static_cast<unsigned>(vaddvq_u64(vandq_u64(m, uint64x2_t{1, 2})));
 }

@@ -1,5 +1,5 @@
-// The functions of core/precise_math.h against those of the C library for long double, which has 64 bits on x86-64 and 113 on
-// 64-bit ARM, and on arguments whose results are known exactly.
+// The functions of core/precise_math.h against those of the C library for long double, which has 64 bits on
+// x86-64 and 113 on 64-bit ARM, and on arguments whose results are known exactly.
 
 #include "core/precise_math.h"
 
@@ -23,8 +23,9 @@ using Wide = long double;
 double off_by(double got, Wide exact) {
   const auto nearest = static_cast<double>(exact);
   if (got == nearest || (std::isnan(got) && std::isnan(nearest))) return 0.5;
-  const Wide unit = std::abs(static_cast<Wide>(std::nextafter(nearest, std::numeric_limits<double>::infinity())) -
-                             static_cast<Wide>(nearest));
+  const Wide unit =
+      std::abs(static_cast<Wide>(std::nextafter(nearest, std::numeric_limits<double>::infinity())) -
+               static_cast<Wide>(nearest));
   return static_cast<double>(std::abs(static_cast<Wide>(got) - exact) / unit);
 }
 
@@ -76,7 +77,8 @@ TEST(PreciseMath, ResultsAreTheNearestDoubles) {
 TEST(PreciseMath, ResultsOfTwoArgumentsAreTheNearestDoubles) {
   Arguments arguments(12);
   for (int i = 0; i < 4000; ++i) {
-    const double x = arguments.between(0, 10), y = arguments.between(-300, 300), z = arguments.between(-10, 10);
+    const double x = arguments.between(0, 10), y = arguments.between(-300, 300),
+                 z = arguments.between(-10, 10);
     const Wide power = powl(static_cast<Wide>(x), static_cast<Wide>(y));
     if (power > 1e-300L && power < 1e300L) {
       ASSERT_LE(off_by(precise::pow(x, y), power), kNearest) << x << " ^ " << y;
@@ -115,9 +117,11 @@ TEST(PreciseMath, DenormalResultsAreRoundedOnce) {
 }
 
 TEST(PreciseMath, SpecialArgumentsAreThoseOfTheStandard) {
-  const double special[] = {0.0, -0.0, 1, -1, 0.5, -0.5, 2, -2, 3, -3, 1e300, -1e300, 5e-324, kInf, -kInf, kNan};
+  const double special[] = {0.0, -0.0, 1,     -1,     0.5,    -0.5, 2,     -2,
+                            3,   -3,   1e300, -1e300, 5e-324, kInf, -kInf, kNan};
   const auto same = [](double a, double b) {
-    return std::isnan(b) ? std::isnan(a) : off_by(a, static_cast<Wide>(b)) <= 1 && std::signbit(a) == std::signbit(b);
+    return std::isnan(b) ? std::isnan(a)
+                         : off_by(a, static_cast<Wide>(b)) <= 1 && std::signbit(a) == std::signbit(b);
   };
   for (const double x : special) {
     EXPECT_TRUE(same(precise::exp(x), std::exp(x))) << x;

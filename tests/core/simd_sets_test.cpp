@@ -1,6 +1,6 @@
-// The operations of core/simd.h in each instruction set of this machine, bit by bit against the same arithmetic on single
-// numbers. xsimd's own differ: minus of +0 is +0 with AVX-512, quotients and roots of floats are estimates on NEON, min and
-// max treat NaN and zeros by set.
+// The operations of core/simd.h in each instruction set of this machine, bit by bit against the same
+// arithmetic on single numbers. xsimd's own differ: minus of +0 is +0 with AVX-512, quotients and roots of
+// floats are estimates on NEON, min and max treat NaN and zeros by set.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,9 @@
 namespace oktett::simd_sets_test {
 namespace {
 
-constexpr SimdOp kOps[] = {SimdOp::add, SimdOp::subtract, SimdOp::multiply, SimdOp::divide,     SimdOp::negate, SimdOp::min,
-                           SimdOp::max, SimdOp::abs,      SimdOp::sqrt,     SimdOp::less, SimdOp::less_equal, SimdOp::equal};
+constexpr SimdOp kOps[] = {SimdOp::add,    SimdOp::subtract, SimdOp::multiply,   SimdOp::divide,
+                           SimdOp::negate, SimdOp::min,      SimdOp::max,        SimdOp::abs,
+                           SimdOp::sqrt,   SimdOp::less,     SimdOp::less_equal, SimdOp::equal};
 
 template <class T>
 T on_one(SimdOp op, T a, T b) {
@@ -55,13 +56,14 @@ std::vector<T> awkward() {
     for (int i = 0; i < 118; ++i) x.push_back(static_cast<T>(random()));
   } else {
     using L = std::numeric_limits<T>;
-    for (const T v : {T(0), T(1), T(1.5), T(3), L::min(), L::denorm_min(), L::min() / 2, L::max(), L::infinity(),
-                      L::quiet_NaN(), T(1) + L::epsilon(), T(1) - L::epsilon() / 2})
+    for (const T v : {T(0), T(1), T(1.5), T(3), L::min(), L::denorm_min(), L::min() / 2, L::max(),
+                      L::infinity(), L::quiet_NaN(), T(1) + L::epsilon(), T(1) - L::epsilon() / 2})
       x.push_back(v), x.push_back(-v);
     for (int i = 0; i < 104; ++i) {
       const T m = static_cast<T>(1 + static_cast<double>(random() >> 11) * 0x1p-53);
       const int spread = i % 2 == 0 ? 3 : 2 * L::max_exponent;
-      x.push_back(std::ldexp(i % 3 ? m : -m, static_cast<int>(random() % static_cast<unsigned>(spread)) - spread / 2));
+      x.push_back(std::ldexp(i % 3 ? m : -m,
+                             static_cast<int>(random() % static_cast<unsigned>(spread)) - spread / 2));
     }
   }
   return x;
@@ -72,8 +74,8 @@ void expect_same(T got, T wanted, Isa isa, int width, SimdOp op, T a, T b) {
   bool same = got == wanted;
   if constexpr (std::is_floating_point_v<T>)
     same = std::isnan(wanted) ? std::isnan(got) : same && std::signbit(got) == std::signbit(wanted);
-  ASSERT_TRUE(same) << to_string(isa) << ", " << width << " lanes, operation " << static_cast<int>(op) << " of " << a
-                    << " and " << b << ": " << got << " for " << wanted;
+  ASSERT_TRUE(same) << to_string(isa) << ", " << width << " lanes, operation " << static_cast<int>(op)
+                    << " of " << a << " and " << b << ": " << got << " for " << wanted;
 }
 
 template <class T, class Run>
@@ -87,7 +89,8 @@ void expect_all_pairs(Run&& run) {
     for (const int width : {4, 8, 16})
       for (const SimdOp op : kOps) {
         run(isa, op, width, SimdColumns<T>{a.size(), a.data(), b.data(), out.data()});
-        for (std::size_t i = 0; i < a.size(); ++i) expect_same(out[i], on_one(op, a[i], b[i]), isa, width, op, a[i], b[i]);
+        for (std::size_t i = 0; i < a.size(); ++i)
+          expect_same(out[i], on_one(op, a[i], b[i]), isa, width, op, a[i], b[i]);
       }
 }
 
@@ -127,7 +130,9 @@ TEST(SimdSets, SortsTheChosenLanesByDescendingKey) {
       std::uint32_t values[8], out_values[8];
       for (int i = 0; i < 8; ++i) {
         // A quarter of the keys are far apart, the others often equal.
-        keys[i] = run % 4 ? static_cast<float>(random() % 5) : std::bit_cast<float>(static_cast<std::uint32_t>(0x10000000u + random() % 0x60000000u));
+        keys[i] =
+            run % 4 ? static_cast<float>(random() % 5)
+                    : std::bit_cast<float>(static_cast<std::uint32_t>(0x10000000u + random() % 0x60000000u));
         values[i] = static_cast<std::uint32_t>(random());
       }
       const unsigned lanes = static_cast<unsigned>(run) % 256;
@@ -137,11 +142,13 @@ TEST(SimdSets, SortsTheChosenLanesByDescendingKey) {
       for (int i = 0; i < size; ++i) {
         ASSERT_GE(out_keys[i > 0 ? i - 1 : 0], out_keys[i]) << to_string(isa);
         unsigned lane = 0;
-        while (lane < 8 && (!(lanes >> lane & 1) || seen >> lane & 1 || values[lane] != out_values[i])) ++lane;
+        while (lane < 8 && (!(lanes >> lane & 1) || seen >> lane & 1 || values[lane] != out_values[i]))
+          ++lane;
         ASSERT_LT(lane, 8u) << to_string(isa) << ": a value that no chosen lane has";
         seen |= 1u << lane;
         ASSERT_LE(out_keys[i], keys[lane]) << to_string(isa);
-        ASSERT_LE(std::bit_cast<std::int32_t>(keys[lane]) - std::bit_cast<std::int32_t>(out_keys[i]), 8) << to_string(isa);
+        ASSERT_LE(std::bit_cast<std::int32_t>(keys[lane]) - std::bit_cast<std::int32_t>(out_keys[i]), 8)
+            << to_string(isa);
       }
       ASSERT_EQ(seen, lanes);
     }
@@ -170,7 +177,8 @@ TEST(SimdSets, CompactsLooksUpAndLoadsWordsAsSingleNumbers) {
         for (int i = 0; i < 8; ++i) ASSERT_EQ(found[i], row[words[i] >> 4 * k & 15]) << to_string(isa);
       }
       code.load_words(words, flip, loaded);
-      for (unsigned i = 0; i < 16; ++i) ASSERT_EQ(loaded[i], static_cast<float>(words[i ^ flip])) << to_string(isa);
+      for (unsigned i = 0; i < 16; ++i)
+        ASSERT_EQ(loaded[i], static_cast<float>(words[i ^ flip])) << to_string(isa);
     }
   }
 }

@@ -1,6 +1,6 @@
-// A program that is compiled for a processor with fused multiply-add and uses the functions of public headers that compute.
-// tests/install/run_install_test.cmake looks at its object file: a weak function with a fused operation would take the place
-// of the library's own.
+// A program that is compiled for a processor with fused multiply-add and uses the functions of public headers
+// that compute. tests/install/run_install_test.cmake looks at its object file: a weak function with a fused
+// operation would take the place of the library's own.
 #include <oktett/oktett.h>
 #include <cstdio>
 
@@ -22,7 +22,8 @@ int main(int count, char**) {
   oktett::Box box;
   box.grow(f);
   box.grow(oktett::Box{g, g});
-  const float area = box.half_area() + box.center().x * box.extent().y + (box.contains(f) && !box.empty() ? 1 : 0);
+  const float area =
+      box.half_area() + box.center().x * box.extent().y + (box.contains(f) && !box.empty() ? 1 : 0);
   const oktett::Vec3f up = oktett::round_up(a), down = oktett::round_down(b);
   std::printf("%g %g %g\n", computed(a, b), static_cast<double>(computed(f, g)),
               static_cast<double>(area + up.x * down.y + oktett::glass_weight(f.x, g.x)));

@@ -51,7 +51,8 @@ static void run(SimdOp op, const SimdColumns<typename V::Element>& columns) {
   constexpr std::size_t W = V::kWidth;
   for (std::size_t at = 0; at < columns.count; at += W) {
     T lanes[W];
-    apply(op, load_column<V>(columns.a, at, columns.count), load_column<V>(columns.b, at, columns.count)).store(lanes);
+    apply(op, load_column<V>(columns.a, at, columns.count), load_column<V>(columns.b, at, columns.count))
+        .store(lanes);
     for (std::size_t i = 0; i < W && at + i < columns.count; ++i) columns.out[at + i] = lanes[i];
   }
 }
@@ -69,7 +70,8 @@ const SimdProbeCode& simd_probe_code() {
       run_width<float, A>,
       run_width<double, A>,
       run_width<std::int32_t, A>,
-      [](const float* keys, unsigned lanes, const std::uint32_t* values, std::uint32_t* out_values, float* out_keys) {
+      [](const float* keys, unsigned lanes, const std::uint32_t* values, std::uint32_t* out_values,
+         float* out_keys) {
         return store_descending(Simd<float, 8, A>::load(keys), lanes, values, out_values, out_keys);
       },
       [](unsigned lanes, const std::uint32_t* values, std::uint32_t* out) {
