@@ -78,8 +78,7 @@ struct Turn {
   Wide rest;  ///< radians, at most pi / 4 in magnitude
 };
 
-/// For |x| >= 2^20: M. H. Payne, R. N. Hanek: Radian reduction for trigonometric functions, SIGNUM Newsletter
-/// 18(1), 1983.
+/// For |x| >= 2^20, with as many digits of 2 / pi as the exponent asks for (Payne 1983).
 Turn reduce_large(double x) {
   // 2 / pi to 1280 bits.
   static constexpr std::uint64_t kTwoOverPi[] = {
