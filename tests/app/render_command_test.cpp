@@ -75,9 +75,9 @@ TEST(RenderCommand, WholeNumbersAreDecimal) {
   std::string pictures[2];
   for (const int k : {0, 1}) {
     const CommandResult result = run_command(dir, {"render", "ball.yaml", "--spp", k == 0 ? "10" : "0010",
-                                                   "--seed", k == 0 ? "8" : "08", "-o", "a.png"});
+                                                   "--seed", k == 0 ? "8" : "08", "-o", "a.ppm"});
     ASSERT_EQ(result.status, 0) << result.err;
-    pictures[k] = file_content(dir.file("a.png"));
+    pictures[k] = file_content(dir.file("a.ppm"));
   }
   EXPECT_TRUE(pictures[0] == pictures[1]);
   EXPECT_EQ(run_command(dir, {"render", "ball.yaml", "--spp", "0x10"}).status, 2);
@@ -88,10 +88,10 @@ TEST(RenderCommand, WholeNumbersAreDecimal) {
 // bit as a whole unit.
 TEST(RenderCommand, NumbersOfScenesDoNotDependOnTheCLibrary) {
   const TempDir dir;
-  dir.write(
-      "ball.yaml",
-      "oktett: 1\nobjects:\n  - sphere: {radius: \"1 + 1e16*abs(sin(0.259) - 0.25611403353482032)\"}\n"
-      "  - implicit: {function: \"x^2 + y^2 + z^2 - 1 - 1e16*abs(sin(0.259) - 0.25611403353482032)\"}\n");
+  dir.write("ball.yaml",
+            "oktett: 1\nobjects:\n  - sphere: {radius: \"1 + 1e16*abs(sin(0.259) - 0.25611403353482032)\"}\n"
+            "  - implicit: {function: \"x^2 + y^2 + z^2 - 1 - 1e16*abs(sin(0.259) - 0.25611403353482032)\", "
+            "bounds: {min: [-2, -2, -2], max: [2, 2, 2]}}\n");
   std::string pictures[2];
   for (const int fused : {0, 1}) {
     const std::string tunables =
