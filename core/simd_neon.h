@@ -1,6 +1,6 @@
 #pragma once
-/// \file Operations on single registers of 64-bit ARM for core/simd_native.h, which includes it: what
-/// core/simd_x86.h is for x86, and whatever xsimd does otherwise than IEEE there.
+/// \file Operations on single registers of 64-bit ARM: what core/simd_x86.h is for x86, and whatever xsimd
+/// does otherwise than IEEE there. Included by core/simd_native.h alone.
 
 namespace oktett::native {
 
