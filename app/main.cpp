@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
 
 int run_or_report(int argc, char** argv) {
   try {
+    start_tasks();
     return run(argc, argv);
   } catch (...) {
     return report_current_exception();

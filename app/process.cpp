@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/resource.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -140,6 +142,16 @@ void prepare_process() {
   std::signal(SIGPIPE, SIG_IGN);
   std::set_terminate(on_terminate);
   watch_access();
+}
+
+void start_tasks() {
+  constexpr std::size_t kEnough = std::size_t{1} << 20;
+  // Volatile, as the compiler may leave out memory that nobody uses.
+  void* volatile room = std::malloc(kEnough);
+  if (room == nullptr) throw std::bad_alloc();
+  std::free(room);
+  static tbb::task_arena first(1);
+  first.initialize();
 }
 
 int report_current_exception() {

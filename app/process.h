@@ -8,6 +8,10 @@ namespace oktett {
 /// end the process with one line and a documented status, and without temporary files.
 void prepare_process();
 
+/// Starts oneTBB while there is memory for it, or throws std::bad_alloc: where the memory for its first arena
+/// is refused, oneTBB 2022.1 throws while it holds a lock that throwing takes, and waits for ever.
+void start_tasks();
+
 /// Prints one line about the exception that is being handled. Returns the exit status for it.
 int report_current_exception();
 

@@ -73,10 +73,12 @@ TEST(Refusal, MemoryIsOneLine) {
   for (const char* rest : {"-t 1 -o a.exr", "-t 8 -o a.exr", "-t 2 -o a.jpg"}) {
     for (int kilobytes = 20000; kilobytes <= 900000; kilobytes += kilobytes / 4) {
       const std::string limit = "ulimit -c 0; ulimit -v " + std::to_string(kilobytes) + ";";
+      // With less the loader of programs gives up, or oneTBB 2022.1 reads through a null pointer while it is
+      // loaded.
+      const int start = kilobytes < 100000 ? run_in_shell(dir, limit, "--version").status : 0;
+      if (start == 127 || start < 0) continue;
       const CommandResult result =
           run_in_shell(dir, limit, std::string("render mesh.obj --size 32x32 --spp 1 --quiet ") + rest);
-      // With less the loader of programs gives up, before the command begins.
-      if (result.status == 127) continue;
       expect_refused_in_one_line(result, limit + rest);
       ++(result.status == 0 ? done : refused);
       fs::remove(dir.file("a.exr"));

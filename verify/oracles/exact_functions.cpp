@@ -211,7 +211,7 @@ Named draw(CaseRandom& random, int depth) {
                   {"abs(", ")", [](Real v) { return std::abs(v); }},
                   {"(", ")^3", [](Real v) { return v * v * v; }}};
     const auto& [before, after, f] = kUnary[pick(6)];
-    return {before + a.text + after, [f = f, g = a.f](const Vec3l& p) { return f(g(p)); }, 1};
+    return {before + a.text + after, [of = f, g = a.f](const Vec3l& p) { return of(g(p)); }, 1};
   }
   const Named b = draw(random, depth - 1);
   static constexpr struct {
@@ -225,7 +225,7 @@ Named draw(CaseRandom& random, int depth) {
                  {"(", "+", [](Real v, Real w) { return v + w; }}};
   const auto& [before, between, f] = kBinary[pick(6)];
   return {before + a.text + between + b.text + ")",
-          [f = f, g = a.f, h = b.f](const Vec3l& p) { return f(g(p), h(p)); }, 1};
+          [of = f, g = a.f, h = b.f](const Vec3l& p) { return of(g(p), h(p)); }, 1};
 }
 
 template <std::vector<Named> (*kAll)(CaseRandom&)>
