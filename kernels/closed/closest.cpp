@@ -9,7 +9,7 @@
 namespace oktett {
 namespace {
 
-using D = Simd<double, 1, ScalarIsa>;
+using Lane = Simd<double, 1, ScalarIsa>;
 
 Vec3d matrix_column(const Affine& a, int k) { return {a.m[0][k], a.m[1][k], a.m[2][k]}; }
 
@@ -66,7 +66,7 @@ SurfaceNearest closest_on_sheared_box(const BoxShape& box, const Affine& m, cons
     if (dot(n, a - center) < 0) n = -n;
     for (const Vec3d& b : {corner(true, false), corner(false, true)}) {
       const auto near =
-          closest_on_triangle(broadcast<D>(p), broadcast<D>(a), broadcast<D>(b), broadcast<D>(c));
+          closest_on_triangle(broadcast<Lane>(p), broadcast<Lane>(a), broadcast<Lane>(b), broadcast<Lane>(c));
       const double u = only_lane(near.u), v = only_lane(near.v);
       keep_nearer(p, best, {only_lane(near.d2), a + (b - a) * u + (c - a) * v, n});
     }
@@ -112,7 +112,7 @@ SurfaceNearest closest_on(const PolygonShape& polygon, const Affine& to_world, c
   Vec3d a = to_world.point(polygon.vertices[count - 1]);
   for (const Vec3d& vertex : polygon.vertices) {
     const Vec3d b = to_world.point(vertex);
-    const auto edge = closest_on_edge(broadcast<D>(p), broadcast<D>(a), broadcast<D>(b));
+    const auto edge = closest_on_edge(broadcast<Lane>(p), broadcast<Lane>(a), broadcast<Lane>(b));
     keep_nearer(p, best, {only_lane(edge.d2), a + (b - a) * only_lane(edge.t), n});
     if ((a[j] > foot.point[j]) != (b[j] > foot.point[j]) &&
         foot.point[i] < a[i] + (foot.point[j] - a[j]) / (b[j] - a[j]) * (b[i] - a[i]))

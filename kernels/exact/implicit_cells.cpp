@@ -11,8 +11,8 @@ namespace oktett {
 
 namespace {
 
-using D = Simd<double, 1, ScalarIsa>;
-using I = Interval<D>;
+using Lane = Simd<double, 1, ScalarIsa>;
+using Bounds = Interval<Lane>;
 
 /// x, y, z, two values for each step, and -1, 0 and 1.
 constexpr std::size_t kMostValues = 3 + 2 * kMaxTapeSteps + 3;
@@ -33,8 +33,8 @@ constexpr std::uint32_t unpack(std::uint32_t packed) {
 }
 
 bool is_branch(TapeOp op) { return op == TapeOp::min || op == TapeOp::max; }
-bool is_bounded(const I& x) { return any(x.is_bounded()); }
-bool is_below(const I& a, const I& b) { return is_bounded(a) && is_bounded(b) && any(a.hi < b.lo); }
+bool is_bounded(const Bounds& x) { return any(x.is_bounded()); }
+bool is_below(const Bounds& a, const Bounds& b) { return is_bounded(a) && is_bounded(b) && any(a.hi < b.lo); }
 
 /// Encloses the function in boxes, and leaves out the branches that are never taken there.
 class FunctionRule : public CellRule {
@@ -59,18 +59,18 @@ class FunctionRule : public CellRule {
   }
 
   CellRange narrow(const CellBox& box, PartView part, Part& out) const override {
-    I value[kMostValues];
+    Bounds value[kMostValues];
     std::uint32_t same[kMostValues];  // the value that each is equal to here
-    for (std::uint32_t v = kUnits; v < kFirst; ++v) value[v] = I(D(list_[v].c)), same[v] = v;
+    for (std::uint32_t v = kUnits; v < kFirst; ++v) value[v] = Bounds(Lane(list_[v].c)), same[v] = v;
     for (std::uint32_t k = 0; k < 3; ++k) {
       // Exact, as the size is a power of two.
-      value[k] = I(D(box.lo[k] * box_.size), D(box.hi[k] * box_.size));
+      value[k] = Bounds(Lane(box.lo[k] * box_.size), Lane(box.hi[k] * box_.size));
       same[k] = k;
     }
     for (std::size_t k = 1; k < part.size(); k += 2) {
       const std::uint32_t v = part[k], a = unpack(part[k + 1]), b = unpack(part[k + 1] >> 16);
       const TapeValue& step = list_[v];
-      I r[3];
+      Bounds r[3];
       if (a != kNoId) r[0] = value[same[a]];
       if (b != kNoId) r[1] = value[same[b]];
       same[v] = equal_value(step, a == kNoId ? a : same[a], b == kNoId ? b : same[b], r);
@@ -111,7 +111,8 @@ class FunctionRule : public CellRule {
  private:
   /// The value that a step is sure to equal, or kNoId: a branch of `min` and `max`, a factor of 1, or what is
   /// left of a term that is 0. `a` and `b` are its operands, in r[0] and r[1].
-  static std::uint32_t equal_value(const TapeValue& step, std::uint32_t a, std::uint32_t b, const I (&r)[3]) {
+  static std::uint32_t equal_value(const TapeValue& step, std::uint32_t a, std::uint32_t b,
+                                   const Bounds (&r)[3]) {
     const int first = unit_of(a), second = unit_of(b);
     switch (step.op) {
       case TapeOp::min:
@@ -159,7 +160,7 @@ class FunctionRule : public CellRule {
     return c == -1 || c == 0 || c == 1 ? kUnits + static_cast<std::uint32_t>(c + 1) : kNoId;
   }
 
-  static CellRange range_of(const I& f) {
+  static CellRange range_of(const Bounds& f) {
     // Where it is not defined is outside.
     if (any(f.is_void())) return {1, 1};
     return {only_lane(f.lo), only_lane(f.hi)};

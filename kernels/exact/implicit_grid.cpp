@@ -12,15 +12,15 @@ namespace oktett {
 
 namespace {
 
-using D = Simd<double, 1, ScalarIsa>;
+using Lane = Simd<double, 1, ScalarIsa>;
 constexpr float kNoLimit = std::numeric_limits<float>::infinity();
 constexpr ImplicitGridCell kUnknown{{kNoLimit, kNoLimit}, kNoLimit, 0};
 
 /// Rounded up; bounds are computed with relative errors far below 2^-20.
 float upward(double x) { return static_cast<float>(x * (1 + 0x1p-20) + 0x1p-140); }
 
-ImplicitGridCell cell_of(const Variation<D>& f) {
-  const auto number = [](const D& x) { return only_lane(x); };
+ImplicitGridCell cell_of(const Variation<Lane>& f) {
+  const auto number = [](const Lane& x) { return only_lane(x); };
   const double error = number(f.error), lo = number(f.v.lo), hi = number(f.v.hi);
   double h[6];
   for (int k = 0; k < 6; ++k) h[k] = number(f.h[k]);
@@ -40,13 +40,13 @@ ImplicitGridCell cell_of(const Variation<D>& f) {
 /// What is known of cell (x, y, z) of a grid.
 ImplicitGridCell known_of(const FunctionTape& function, const VariationGrid& grid, const Vec3d& hi,
                           const int (&at)[3]) {
-  Variation<D> axis[3];
+  Variation<Lane> axis[3];
   for (int k = 0; k < 3; ++k) {
-    Variation<D>& x = axis[k] = variation::constant(D(0.0));
-    x.v = {D(grid.lo[k] + (at[k] - kGridMargin) / grid.per_unit[k]),
-           D(grid.lo[k] + (at[k] + 1 + kGridMargin) / grid.per_unit[k])};
-    x.error = D(std::max(max_component(abs(grid.lo)), max_component(abs(hi))) * 0x1p-47);
-    (k == 0 ? x.g.x : k == 1 ? x.g.y : x.g.z) = D(1.0);
+    Variation<Lane>& x = axis[k] = variation::constant(Lane(0.0));
+    x.v = {Lane(grid.lo[k] + (at[k] - kGridMargin) / grid.per_unit[k]),
+           Lane(grid.lo[k] + (at[k] + 1 + kGridMargin) / grid.per_unit[k])};
+    x.error = Lane(std::max(max_component(abs(grid.lo)), max_component(abs(hi))) * 0x1p-47);
+    (k == 0 ? x.g.x : k == 1 ? x.g.y : x.g.z) = Lane(1.0);
   }
   return cell_of(run_tape(function, axis[0], axis[1], axis[2]));
 }
