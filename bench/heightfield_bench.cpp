@@ -135,7 +135,7 @@ void trace(benchmark::State& state, std::uint32_t n, Method walk, Work work) {
       for (const auto& [work, work_name] : works)
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", work_name, n, method_name).c_str(),
-            [n, method = method, work = work](benchmark::State& s) { trace(s, n, method, work); })
+            [n, walk = method, rays = work](benchmark::State& s) { trace(s, n, walk, rays); })
             ->Unit(benchmark::kMillisecond);
   return true;
 }();

@@ -96,7 +96,7 @@ void run_kernel(benchmark::State& state, KernelId id, Isa isa, int width) {
       for (int width : probe_widths(isa))
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", name, to_string(isa), width).c_str(),
-            [id = id, isa, width](benchmark::State& s) { run_kernel(s, id, isa, width); });
+            [kernel = id, isa, width](benchmark::State& s) { run_kernel(s, kernel, isa, width); });
   return true;
 }();
 

@@ -95,21 +95,21 @@ void ask(benchmark::State& state, int number, Place place, const Ask& query) {
       for (const auto& [place, name] : places) {
         if (number > 0 && place == Place::near) continue;
         add(fmt::format("closest_point/{}/{}/{}", scenes[number], name, to_string(isa)),
-            [number, place = place, isa](benchmark::State& state) {
-              ask<ClosestPoint>(state, number, place,
+            [number, where = place, isa](benchmark::State& state) {
+              ask<ClosestPoint>(state, number, where,
                                 [&](const Accel& accel, const std::vector<Vec3f>& p,
                                     std::vector<ClosestPoint>& a) { closest_point(accel, p, a, isa); });
             });
         add(fmt::format("signed_distance/{}/{}/{}", scenes[number], name, to_string(isa)),
-            [number, place = place, isa](benchmark::State& state) {
-              ask<float>(state, number, place,
+            [number, where = place, isa](benchmark::State& state) {
+              ask<float>(state, number, where,
                          [&](const Accel& accel, const std::vector<Vec3f>& p, std::vector<float>& a) {
                            signed_distance(accel, p, a, isa);
                          });
             });
         add(fmt::format("inside/{}/{}/{}", scenes[number], name, to_string(isa)),
-            [number, place = place, isa](benchmark::State& state) {
-              ask<std::uint8_t>(state, number, place,
+            [number, where = place, isa](benchmark::State& state) {
+              ask<std::uint8_t>(state, number, where,
                                 [&](const Accel& accel, const std::vector<Vec3f>& p,
                                     std::vector<std::uint8_t>& a) { inside(accel, p, a, isa); });
             });

@@ -149,8 +149,8 @@ void register_solve(const std::string& name, Method method, int degree, bool ray
         if (rays && degree != 4) continue;
         benchmark::RegisterBenchmark(
             fmt::format("lanes/{}/{}/{}{}", to_string(isa), name, degree, rays ? "/torus" : "").c_str(),
-            [id = id, degree = degree, rays, isa](benchmark::State& s) {
-              run_lanes(s, id, degree, rays, isa);
+            [kernel = id, n = degree, rays, isa](benchmark::State& s) {
+              run_lanes(s, kernel, n, rays, isa);
             });
       }
     }

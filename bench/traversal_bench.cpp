@@ -72,7 +72,7 @@ void trace(benchmark::State& state, Work work, Isa isa, TraceMode mode) {
         if (isa != Isa::avx512 && mode == TraceMode::packet16) continue;
         benchmark::RegisterBenchmark(
             fmt::format("{}/{}/{}", name, to_string(isa), mode_name).c_str(),
-            [work = work, isa, mode = mode](benchmark::State& s) { trace(s, work, isa, mode); })
+            [rays = work, isa, by = mode](benchmark::State& s) { trace(s, rays, isa, by); })
             ->Unit(benchmark::kMillisecond);
       }
   return true;

@@ -87,8 +87,8 @@ TEST(PlyError, Text) {
        "16:1: expected 9999999999999 lines of element 'vertex', found 6"},
   };
   for (const auto& [change, message] : cases)
-    with_little_memory([&, &change = change, &message = message] {
-      EXPECT_EQ(error_with(change.first, change.second), std::string("a.ply:") + message);
+    with_little_memory([&, &edit = change, &wanted = message] {
+      EXPECT_EQ(error_with(edit.first, edit.second), std::string("a.ply:") + wanted);
     });
 }
 

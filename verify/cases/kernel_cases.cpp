@@ -72,7 +72,10 @@ Targets make_triangle(CaseRandom& r, const Frame& f, KernelCases& cases, std::si
   for (Vec3d& q : p) q = r.vector();
   // One triangle in four is a needle or a sliver.
   if (r.bits() % 4 == 0) p[1] = p[0] + (p[1] - p[0]) * r.magnitude(-6, -1);
-  if (r.bits() % 4 == 0) p[2] = p[0] + (p[1] - p[0]) * r.sign() + (p[2] - p[0]) * r.magnitude(-6, -1);
+  if (r.bits() % 4 == 0) {
+    const double along = r.sign(), aside = r.magnitude(-6, -1);
+    p[2] = p[0] + (p[1] - p[0]) * along + (p[2] - p[0]) * aside;
+  }
   for (int k = 0; k < 3; ++k) {
     const Vec3f v(p[k] * f.scale + f.offset);
     p[k] = Vec3d(v);
@@ -83,8 +86,9 @@ Targets make_triangle(CaseRandom& r, const Frame& f, KernelCases& cases, std::si
   const int k = static_cast<int>(r.bits() % 3);
   const Vec3d e1 = p[1] - p[0], e2 = p[2] - p[0], n = cross(e1, e2);
   const double l = length(n);
-  return {p[0] + e1 * u + e2 * v, p[k], p[k] + (p[(k + 1) % 3] - p[k]) * r.unit(),
-          l > 0 ? n / l : Vec3d{0, 0, 1}, e1 * r.sign() + e2 * r.sign()};
+  const double on_edge = r.unit(), along = r.sign(), aside = r.sign();
+  return {p[0] + e1 * u + e2 * v, p[k], p[k] + (p[(k + 1) % 3] - p[k]) * on_edge,
+          l > 0 ? n / l : Vec3d{0, 0, 1}, e1 * along + e2 * aside};
 }
 
 Targets make_sphere(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
@@ -134,7 +138,8 @@ Targets make_oriented_box(CaseRandom& r, const Frame& f, KernelCases& cases, std
 
 Targets make_slab(CaseRandom& r, const Frame& f, KernelCases& cases, std::size_t i) {
   const Vec3f a(r.vector() * f.scale + f.offset);
-  Vec3f b = a + Vec3f(r.vector() * f.scale * (r.bits() % 4 == 0 ? r.magnitude(-6, 0) : 1));
+  const Vec3d size = r.vector() * f.scale;
+  Vec3f b = a + Vec3f(size * (r.bits() % 4 == 0 ? r.magnitude(-6, 0) : 1));
   // Some boxes are flat, as those of axis-aligned triangles are.
   if (r.bits() % 8 == 0) b.y = a.y;
   const Vec3f lo = min(a, b), hi = max(a, b);
@@ -178,7 +183,8 @@ Ray make_ray(CaseClass c, CaseRandom& r, const Frame& f, const Targets& at) {
     ray.direction[k] = side;
   } else {
     if (c == CaseClass::grazing) {
-      target = at.edge + at.normal * (f.scale * r.sign() * r.magnitude(-9, -2));
+      const double side = r.sign();
+      target = at.edge + at.normal * (f.scale * side * r.magnitude(-9, -2));
       ray.origin = Vec3f(target - at.tangent * (1 + 2 * r.unit()));
       if (r.bits() & 1) target = at.about;
     }

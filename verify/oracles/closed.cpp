@@ -9,32 +9,32 @@ namespace oktett {
 namespace {
 
 #if LDBL_MANT_DIG >= 64
-using Real = long double;
+using Extended = long double;
 #else
-__extension__ typedef __float128 Real;
+__extension__ typedef __float128 Extended;
 #endif
 
-using Vec = Vec3<Real>;
+using Vec = Vec3<Extended>;
 
 constexpr double kTolerance = 0x1p-48;
 
-Real magnitude(Real x) { return x < 0 ? -x : x; }
-Real norm1(const Vec& v) { return magnitude(v.x) + magnitude(v.y) + magnitude(v.z); }
-Real square_root(Real x) {
-  const Real r = static_cast<Real>(std::sqrt(static_cast<long double>(x)));
-  // One Newton step, for a Real that is wider than the library's.
+Extended magnitude(Extended x) { return x < 0 ? -x : x; }
+Extended norm1(const Vec& v) { return magnitude(v.x) + magnitude(v.y) + magnitude(v.z); }
+Extended square_root(Extended x) {
+  const Extended r = static_cast<Extended>(std::sqrt(static_cast<long double>(x)));
+  // One Newton step, for a Extended that is wider than the library's.
   return r > 0 ? (r + x / r) / 2 : r;
 }
 
 /// A possible hit and the uncertainty of its place.
 struct Root {
-  Real t, error;
+  Extended t, error;
 };
 
 /// The first root that surely lies in the ray's range; undecided if an earlier one may.
 OracleAnswer first_root(const Ray& ray, const Root* roots, int count) {
   for (int i = 0; i < count; ++i) {
-    const Real t = roots[i].t, e = roots[i].error + magnitude(t) * 0x1p-23 + 0x1p-148;
+    const Extended t = roots[i].t, e = roots[i].error + magnitude(t) * 0x1p-23 + 0x1p-148;
     if (!(t + e > ray.tmin && t - e <= ray.tmax && t - e <= FLT_MAX)) continue;
     const bool sure = t - e > ray.tmin && t + e <= ray.tmax && t + e <= FLT_MAX;
     return {.verdict = sure ? OracleVerdict::hit : OracleVerdict::undecided,
@@ -58,18 +58,18 @@ OracleAnswer oracle_triangle(const Ray& ray, const Vec3f (&corner)[3], const Tri
   if (!is_usable(ray)) return {};
   const Vec d(ray.direction), o(ray.origin);
   Vec p[3];
-  Real far = 0, edge = 0;
+  Extended far = 0, edge = 0;
   for (int k = 0; k < 3; ++k) {
     p[k] = Vec(corner[k]) - o;
     far = std::max(far, norm1(p[k]));
     edge = std::max(edge, norm1(Vec(corner[(k + 1) % 3]) - Vec(corner[k])));
   }
-  Real volume[3], slack[3], sum = 0, slack_sum = 0;
+  Extended volume[3], slack[3], sum = 0, slack_sum = 0;
   for (int k = 0; k < 3; ++k) {
     volume[k] = dot(d, cross(p[(k + 1) % 3], p[(k + 2) % 3]));
     sum += volume[k];
   }
-  const Real spread = edge * far * norm1(d);
+  const Extended spread = edge * far * norm1(d);
   for (int k = 0; k < 3; ++k) {
     slack[k] =
         tolerance.vertex * norm1(d) * norm1(p[(k + 1) % 3]) * norm1(p[(k + 2) % 3]) + tolerance.edge * spread;
@@ -83,9 +83,9 @@ OracleAnswer oracle_triangle(const Ray& ray, const Vec3f (&corner)[3], const Tri
   if (positive > 0 && negative > 0) return {};
   const bool sure = positive == 3 || negative == 3;
   if (sum == 0 || magnitude(sum) <= slack_sum) return undecided();
-  const Real t = dot(p[0], cross(p[1], p[2])) / sum;
+  const Extended t = dot(p[0], cross(p[1], p[2])) / sum;
   // Displacing the corners moves the hit along the triangle, and each corner's own depth is uncertain too.
-  const Real reach = far / norm1(d);
+  const Extended reach = far / norm1(d);
   const Root root{
       t, slack_sum / magnitude(sum) * (magnitude(t) + reach) + (tolerance.vertex + tolerance.edge) * reach};
   OracleAnswer answer = first_root(ray, &root, 1);
@@ -98,14 +98,15 @@ OracleAnswer oracle_triangle(const Ray& ray, const Vec3f (&corner)[3], const Tri
 OracleAnswer oracle_sphere(const Ray& ray, const SphereShape& sphere) {
   if (!is_usable(ray)) return {};
   const Vec d(ray.direction), m = Vec(sphere.center) - Vec(ray.origin);
-  const Real dd = dot(d, d), r = sphere.radius, distance = square_root(dot(m, m)), speed = square_root(dd);
+  const Extended dd = dot(d, d), r = sphere.radius, distance = square_root(dot(m, m)),
+                 speed = square_root(dd);
   const Vec moment = cross(m, d);
-  const Real h = r * r - dot(moment, moment) / dd;
-  const Real slack = kTolerance * (r * r + distance * (distance + r));
+  const Extended h = r * r - dot(moment, moment) / dd;
+  const Extended slack = kTolerance * (r * r + distance * (distance + r));
   if (h < -slack) return {};
   if (h <= slack) return undecided();
-  const Real half = square_root(h) / speed, closest = dot(m, d) / dd;
-  const Real error = kTolerance * (distance + r) / speed + slack / (square_root(h) * speed);
+  const Extended half = square_root(h) / speed, closest = dot(m, d) / dd;
+  const Extended error = kTolerance * (distance + r) / speed + slack / (square_root(h) * speed);
   const Root roots[] = {{closest - half, error}, {closest + half, error}};
   return first_root(ray, roots, 2);
 }
@@ -113,11 +114,11 @@ OracleAnswer oracle_sphere(const Ray& ray, const SphereShape& sphere) {
 OracleAnswer oracle_plane(const Ray& ray, const PlaneShape& plane) {
   if (!is_usable(ray)) return {};
   const Vec d(ray.direction), o(ray.origin), n(plane.normal);
-  const Real speed = dot(n, d), height = plane.offset - dot(n, o);
+  const Extended speed = dot(n, d), height = plane.offset - dot(n, o);
   if (speed == 0) return {};
-  const Real slack = kTolerance * (magnitude(plane.offset) + norm1(o));
+  const Extended slack = kTolerance * (magnitude(plane.offset) + norm1(o));
   if (magnitude(speed) <= kTolerance * norm1(d)) return undecided();
-  const Real t = height / speed;
+  const Extended t = height / speed;
   const Root root{t, (slack + kTolerance * norm1(d) * magnitude(t)) / magnitude(speed)};
   return first_root(ray, &root, 1);
 }
@@ -125,14 +126,15 @@ OracleAnswer oracle_plane(const Ray& ray, const PlaneShape& plane) {
 OracleAnswer oracle_disk(const Ray& ray, const DiskShape& disk) {
   const Vec n(disk.normal), c(disk.center), o(ray.origin), d(ray.direction);
   if (!is_usable(ray)) return {};
-  const Real speed = dot(n, d), height = dot(n, c - o);
+  const Extended speed = dot(n, d), height = dot(n, c - o);
   if (speed == 0) return {};
   if (magnitude(speed) <= kTolerance * norm1(d)) return undecided();
-  const Real t = height / speed;
-  const Real error =
+  const Extended t = height / speed;
+  const Extended error =
       (kTolerance * (norm1(c) + norm1(o)) + kTolerance * norm1(d) * magnitude(t)) / magnitude(speed);
   const Vec q = o + d * t - c;
-  const Real distance = square_root(dot(q, q)), slack = error * norm1(d) + kTolerance * (norm1(c) + norm1(o));
+  const Extended distance = square_root(dot(q, q)),
+                 slack = error * norm1(d) + kTolerance * (norm1(c) + norm1(o));
   if (distance > disk.radius + slack) return {};
   const Root root{t, error};
   OracleAnswer answer = first_root(ray, &root, 1);
@@ -147,25 +149,27 @@ OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube) {
   near.t *= FLT_MAX, far.t *= FLT_MAX;
   bool doubtful = false;
   for (const auto& row : to_cube.m) {
-    Real o = row[3], d = 0, o_size = 1 + magnitude(row[3]), d_size = 0;
+    Extended o = row[3], d = 0, o_size = 1 + magnitude(row[3]), d_size = 0;
     for (int j = 0; j < 3; ++j) {
-      o += Real(row[j]) * ray.origin[j], d += Real(row[j]) * ray.direction[j];
-      o_size += magnitude(Real(row[j]) * ray.origin[j]), d_size += magnitude(Real(row[j]) * ray.direction[j]);
+      o += Extended(row[j]) * ray.origin[j], d += Extended(row[j]) * ray.direction[j];
+      o_size += magnitude(Extended(row[j]) * ray.origin[j]),
+          d_size += magnitude(Extended(row[j]) * ray.direction[j]);
     }
-    const Real slack = kTolerance * o_size;
+    const Extended slack = kTolerance * o_size;
     if (magnitude(d) <= kTolerance * d_size) {
       if (d_size == 0 && magnitude(o) > 1 + slack) return {};
       doubtful |= d_size > 0 || magnitude(o) >= 1 - slack;
       continue;
     }
-    const Real speed = magnitude(d), entry = ((d > 0 ? -1 : 1) - o) / d, exit = ((d > 0 ? 1 : -1) - o) / d;
-    const auto error = [&](Real t) { return (slack + kTolerance * d_size * magnitude(t)) / speed; };
+    const Extended speed = magnitude(d), entry = ((d > 0 ? -1 : 1) - o) / d,
+                   exit = ((d > 0 ? 1 : -1) - o) / d;
+    const auto error = [&](Extended t) { return (slack + kTolerance * d_size * magnitude(t)) / speed; };
     // Of two planes that may come first either may decide, so the errors add up.
-    const Real ne = error(entry), fe = error(exit);
+    const Extended ne = error(entry), fe = error(exit);
     near = {std::max(near.t, entry), std::max(near.error, near.t > entry + ne ? near.error : ne)};
     far = {std::min(far.t, exit), std::max(far.error, far.t < exit - fe ? far.error : fe)};
   }
-  const Real gap = far.t - near.t;
+  const Extended gap = far.t - near.t;
   if (gap < -(near.error + far.error)) return {};
   const Root roots[] = {near, far};
   OracleAnswer answer = first_root(ray, roots, 2);
@@ -176,10 +180,10 @@ OracleAnswer oracle_box(const Ray& ray, const Affine& to_cube) {
 
 OracleAnswer oracle_slab(const Ray& ray, const Box& box) {
   if (!is_usable(ray)) return {};
-  Real near = ray.tmin, far = ray.tmax;
+  Extended near = ray.tmin, far = ray.tmax;
   for (int k = 0; k < 3; ++k) {
-    const Real lo = Real(box.lo[k]) - ray.origin[k], hi = Real(box.hi[k]) - ray.origin[k];
-    const Real d = ray.direction[k];
+    const Extended lo = Extended(box.lo[k]) - ray.origin[k], hi = Extended(box.hi[k]) - ray.origin[k];
+    const Extended d = ray.direction[k];
     if (d == 0) {
       if (lo > 0 || hi < 0) return {};
       continue;
@@ -192,27 +196,28 @@ OracleAnswer oracle_slab(const Ray& ray, const Box& box) {
 OracleAnswer oracle_polygon(const Ray& ray, const PolygonShape& polygon) {
   const std::vector<Vec3d>& p = polygon.vertices;
   Vec n{}, center{};
-  Real size = 0;
+  Extended size = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     n += cross(Vec(p[i]) - Vec(p[0]), Vec(p[(i + 1) % p.size()]) - Vec(p[0]));
-    center += Vec(p[i]) / static_cast<Real>(p.size());
+    center += Vec(p[i]) / static_cast<Extended>(p.size());
     size = std::max(size, norm1(Vec(p[i]) - Vec(p[0])));
   }
   n = n / square_root(dot(n, n));
   const Vec o(ray.origin), d(ray.direction);
-  const Real speed = dot(n, d);
+  const Extended speed = dot(n, d);
   if (!is_usable(ray) || speed == 0) return {};
   if (magnitude(speed) <= kTolerance * norm1(d)) return undecided();
-  const Real t = dot(n, center - o) / speed;
-  const Real error = (kTolerance * (norm1(center) + norm1(o) + size) + kTolerance * norm1(d) * magnitude(t)) /
-                     magnitude(speed);
+  const Extended t = dot(n, center - o) / speed;
+  const Extended error =
+      (kTolerance * (norm1(center) + norm1(o) + size) + kTolerance * norm1(d) * magnitude(t)) /
+      magnitude(speed);
   const Vec hit = o + d * t;
-  const Real slack = 4 * (error * norm1(d) + kTolerance * (norm1(center) + size));
+  const Extended slack = 4 * (error * norm1(d) + kTolerance * (norm1(center) + size));
   double winding = 0;
   bool close = false;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec a = Vec(p[i]) - hit, b = Vec(p[(i + 1) % p.size()]) - hit, e = b - a;
-    const Real along = std::clamp<Real>(-dot(a, e) / dot(e, e), 0, 1);
+    const Extended along = std::clamp<Extended>(-dot(a, e) / dot(e, e), 0, 1);
     const Vec nearest = a + e * along;
     close |= dot(nearest, nearest) <= slack * slack;
     winding += std::atan2(static_cast<double>(dot(n, cross(a, b))), static_cast<double>(dot(a, b)));

@@ -90,8 +90,8 @@ ExactOracle ifs(CaseRandom& random) {
   for (int k = 0; k < maps; ++k) {
     Vec3d size{0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit(), 0.3 + 0.3 * random.unit()};
     if (random.unit() < 0.1) size.x = 0.02;
-    s.maps.push_back(Affine::translation(random.vector()) * Affine::rotation(random.vector() * 180.0) *
-                     Affine::scaling(size));
+    const Affine shift = Affine::translation(random.vector());
+    s.maps.push_back(shift * Affine::rotation(random.vector() * 180.0) * Affine::scaling(size));
   }
   s.depth = static_cast<std::uint32_t>(random.unit() * 4);
   s.base = random.unit() < 0.5 ? IfsShape::Base::ball : IfsShape::Base::box;

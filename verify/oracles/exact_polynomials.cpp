@@ -36,7 +36,8 @@ ExactOracle random_polynomial(CaseRandom& random) {
         if (random.unit() < share || i == degree)
           s.terms.push_back({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j),
                              static_cast<std::uint8_t>(k), random.vector().x});
-  const Vec3d middle = random.vector() * (random.unit() < 0.3 ? 3.0 : 0.3);
+  const Vec3d towards = random.vector();
+  const Vec3d middle = towards * (random.unit() < 0.3 ? 3.0 : 0.3);
   const Vec3d half{0.4 + random.unit(), 0.4 + random.unit(), 0.4 + random.unit()};
   s.lo = middle - half, s.hi = middle + half;
   s.open = random.unit() < 0.5;

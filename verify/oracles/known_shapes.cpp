@@ -49,7 +49,8 @@ KnownShape spheres(CaseRandom& random) {
 }
 
 KnownShape plane(CaseRandom& random) {
-  const PlaneShape s{random.vector() * random.magnitude(-3, 3), random.sign()};
+  const Vec3d normal = random.vector();
+  const PlaneShape s{normal * random.magnitude(-3, 3), random.sign()};
   KnownShape known{s, {}};
   known.truth.f = [s](const Vec3l& p) {
     const Vec3l n(s.normal);
@@ -100,7 +101,8 @@ Real outside_polygon(const std::vector<Vec3d>& vertices, const Vec3l& normal, co
 /// A star of points at random distances in a plane.
 KnownShape polygon(CaseRandom& random) {
   PolygonShape s;
-  const Affine turn = Affine::translation(random.vector() * 0.5) * Affine::rotation(random.vector() * 180.0);
+  const Affine shift = Affine::translation(random.vector() * 0.5);
+  const Affine turn = shift * Affine::rotation(random.vector() * 180.0);
   const int count = 3 + static_cast<int>(random.magnitude(0, 1.6)) - 1;
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * (i + 0.8 * random.unit()) / count;
