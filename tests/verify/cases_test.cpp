@@ -6,8 +6,9 @@
 
 namespace oktett::cases_test {
 
-// Findings are told by the numbers of their cases, so every compiler must draw the same: the order in which the arguments of a
-// call are computed is the compiler's choice (GCC begins with the last, clang with the first).
+// Findings are told by the numbers of their cases, so every compiler must draw the same: the order in which
+// the arguments of a call are computed is the compiler's choice (GCC begins with the last, clang with the
+// first).
 TEST(Cases, OfKernelsAreTheSameForEveryCompiler) {
   Hasher hash;
   for (int id = 0; id <= static_cast<int>(KernelId::slab); ++id)
