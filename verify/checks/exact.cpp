@@ -42,8 +42,8 @@ void shoot(Trial& trial, CaseRandom& random) {
   const bool camera = random.unit() < 0.5;
   const double size = length(trial.to_world.vector(half));
   const auto outside = [&] {
-    const Vec3d towards = normalize(random.vector());
-    return trial.to_world.point(middle) + towards * (size * (1.2 + 3 * random.unit()));
+    const double away = size * (1.2 + 3 * random.unit());
+    return trial.to_world.point(middle) + normalize(random.vector()) * away;
   };
   const Vec3d eye = outside();
   while (trial.rays.size() < kRaysPerShape / 2) {

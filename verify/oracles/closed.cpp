@@ -22,7 +22,7 @@ Extended magnitude(Extended x) { return x < 0 ? -x : x; }
 Extended norm1(const Vec& v) { return magnitude(v.x) + magnitude(v.y) + magnitude(v.z); }
 Extended square_root(Extended x) {
   const Extended r = static_cast<Extended>(std::sqrt(static_cast<long double>(x)));
-  // One Newton step, for a Extended that is wider than the library's.
+  // One Newton step, for an Extended that is wider than the library's.
   return r > 0 ? (r + x / r) / 2 : r;
 }
 
