@@ -14,11 +14,17 @@
 #include "core/error.h"
 #include "io/image/encode.h"
 #include "io/image/heights.h"
-#include "render/material.h"
+#include "io/image/mip_map.h"
 #include "render/picture.h"
-#include "render/texture_sampler.h"
 
 namespace oktett {
+
+/// An image file, as the textures that show it need it.
+struct TextureSource {
+  std::string path;
+  std::shared_ptr<const std::string> content{};  ///< if not null, the bytes of the file
+  bool alpha = false;                            ///< some texture shows the alpha channel
+};
 
 /// All members may be called by many threads at once; they throw Error of kind io for what files are not.
 class ImageLibrary {
@@ -39,9 +45,8 @@ class ImageLibrary {
   /// See read_heights.
   virtual HeightImage read_heights(const std::string& path, std::uint32_t most_side,
                                    std::size_t most_pixels) const = 0;
-  /// See ImageTextures. Appends one warning per file that cannot be used. A texture without a path is white.
-  virtual std::unique_ptr<TextureSampler> load_textures(std::vector<Texture> textures,
-                                                        std::vector<Warning>& warnings) const = 0;
+  /// The image of a texture.
+  virtual TexelImage read_texels(const TextureSource& source) const = 0;
 
  protected:
   ~ImageLibrary() = default;

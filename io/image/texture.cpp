@@ -1,16 +1,126 @@
 #include "io/image/texture.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "io/image/image_access.h"
 #include "io/image/library.h"
+#include "io/image/mip_map.h"
 #include "io/text/files_read.h"
 #include "io/text/stand_ins.h"
 
 namespace oktett {
+namespace {
+
+/// An image file, shared by all textures that show it.
+struct TextureFile {
+  TextureSource source;
+  std::optional<MipMap> image{};  ///< nothing: white
+  std::string problem{};
+};
+
+/// So large that float and integers hold every place that follows from them.
+float bounded(float v, bool clamp) {
+  if (!std::isfinite(v)) return 0;
+  return clamp ? std::clamp(v, -1.0f, 2.0f) : v - std::floor(v);
+}
+
+float bounded_change(float v) { return std::isfinite(v) ? std::clamp(v, -16.0f, 16.0f) : 0; }
+
+TexturePatch patch_of(const Texture& texture, Vec2f uv, Vec2f dx, Vec2f dy) {
+  const float s = bounded(uv.x * texture.scale.x + texture.offset.x, texture.clamp);
+  const float t = bounded(uv.y * texture.scale.y + texture.offset.y, texture.clamp);
+  return {s,
+          1 - t,
+          bounded_change(dx.x * texture.scale.x),
+          bounded_change(-dx.y * texture.scale.y),
+          bounded_change(dy.x * texture.scale.x),
+          bounded_change(-dy.y * texture.scale.y)};
+}
+
+void load(TextureFile& file) {
+  try {
+    file.image.emplace(image_library().read_texels(file.source));
+  } catch (const Error& error) {
+    const std::string message = error.what(), place = file.source.path + ": ";
+    file.problem = message.starts_with(place) ? message.substr(place.size()) : message;
+  }
+}
+
+class FileTextures final : public TextureSampler {
+ public:
+  FileTextures(std::vector<Texture> textures, std::vector<Warning>& warnings)
+      : textures_(std::move(textures)) {
+    list_files();
+    tbb::parallel_for(std::size_t{0}, files_.size(), [this](std::size_t i) { load(files_[i]); });
+    for (const TextureFile& file : files_)
+      if (!file.image)
+        warnings.push_back(
+            {Location{file.source.path}, "texture not used: " + file.problem + "; white instead"});
+  }
+
+  Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const MipMap* const image = image_of(index);
+    if (image == nullptr) return {1, 1, 1};
+    const Texture& texture = textures_[index];
+    return image->color(patch_of(texture, uv, dx, dy), texture.clamp) * texture.gain +
+           Color{texture.base, texture.base, texture.base};
+  }
+
+  float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const MipMap* const image = image_of(index);
+    if (image == nullptr) return 1;
+    const Texture& texture = textures_[index];
+    return image->channel(texture.channel, patch_of(texture, uv, dx, dy), texture.clamp) * texture.gain +
+           texture.base;
+  }
+
+  Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const MipMap* const image = image_of(index);
+    if (image == nullptr) return {0.5f, 0.5f, 1};
+    const Texture& texture = textures_[index];
+    return image->stored(patch_of(texture, uv, dx, dy), texture.clamp);
+  }
+
+ private:
+  static constexpr std::size_t kNoFile = ~std::size_t{0};  ///< of a pattern, or white
+
+  void list_files() {
+    std::map<std::pair<std::string, const std::string*>, std::size_t> known;
+    for (const Texture& texture : textures_) {
+      if (texture.path.empty()) {
+        file_of_.push_back(kNoFile);
+        continue;
+      }
+      const auto [place, is_new] = known.try_emplace({texture.path, texture.content.get()}, files_.size());
+      if (is_new) files_.push_back({{texture.path, texture.content}});
+      TextureSource& source = files_[place->second].source;
+      source.alpha = source.alpha || texture.channel == ImageChannel::alpha;
+      file_of_.push_back(place->second);
+    }
+  }
+
+  /// Null if the texture is white.
+  const MipMap* image_of(std::uint32_t index) const {
+    if (index >= textures_.size() || file_of_[index] == kNoFile) return nullptr;
+    const std::optional<MipMap>& image = files_[file_of_[index]].image;
+    return image ? &*image : nullptr;
+  }
+
+  std::vector<Texture> textures_;
+  std::vector<TextureFile> files_;
+  std::vector<std::size_t> file_of_;  ///< per texture
+};
+
+}  // namespace
 
 ImageTextures::ImageTextures(std::vector<Texture> textures) {
   std::set<std::string> refused;
@@ -28,7 +138,7 @@ ImageTextures::ImageTextures(std::vector<Texture> textures) {
   }
   const auto is_image = [](const Texture& texture) { return !texture.path.empty(); };
   if (std::ranges::any_of(textures, is_image))
-    sampler_ = image_library().load_textures(std::move(textures), warnings_);
+    sampler_ = std::make_unique<FileTextures>(std::move(textures), warnings_);
 }
 
 ImageTextures::ImageTextures(std::vector<Texture> textures, std::span<const Location> places)

@@ -9,7 +9,6 @@
 namespace oktett {
 namespace {
 
-using Piece = RevolutionElement::Piece;
 using Profile = RevolutionShape::Profile;
 
 /// Whether the points from the first to the last are on the surface.
@@ -89,7 +88,7 @@ void Revolution::add(Pool& pool, const RevolutionShape& described, const ExactPl
   for (std::size_t i = span.begin; i + 1 < span.end; ++i) {
     const ProfilePoint &p = s.points[i], &q = s.points[i + 1];
     if (!(p.height < q.height)) continue;
-    Piece piece{};
+    RevolutionElement::Piece piece{};
     piece_powers(s, i, piece.c);
     piece.middle = 0.5 * (p.height + q.height);
     piece.per_half = 2 / (q.height - p.height);
@@ -117,7 +116,7 @@ void Revolution::add(Pool& pool, const RevolutionShape& described, const ExactPl
   const Affine own = Affine::translation({0, middle, 0}) * Affine::scaling({size, size, size});
   for (std::size_t k = 0; k < e.pieces.size(); ++k) {
     if (k == 0) add_element(pool, e, place.to_world * own, place);
-    const Piece& piece = e.pieces[k];
+    const RevolutionElement::Piece& piece = e.pieces[k];
     const double r = std::sqrt(piece.greatest2);
     add_cell(pool, {-r, piece.ends[0].height, -r}, {r, piece.ends[1].height, r}).begin =
         static_cast<std::uint32_t>(k);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/scene/scene_file.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "tests/io/convert_test_support.h"
 #include "tests/io/gltf_test_support.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "io/scene/scene_file.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "tests/io/gltf_test_support.h"
 #include "tests/io/ply_test_support.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/image/texture.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "tests/io/scene_test_support.h"
 #include "tests/render/test_scenes.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "tests/io/scene_test_support.h"
 
 namespace oktett::scene_lamp_power_test {

@@ -26,8 +26,7 @@ class OpenImageIoLibrary final : public ImageLibrary {
   Picture read(const std::string& path) const override;
   HeightImage read_heights(const std::string& path, std::uint32_t most_side,
                            std::size_t most_pixels) const override;
-  std::unique_ptr<TextureSampler> load_textures(std::vector<Texture> textures,
-                                                std::vector<Warning>& warnings) const override;
+  TexelImage read_texels(const TextureSource& source) const override;
 };
 
 /// The first line of an error text, without a full stop at its end; `fallback` if there is none.

@@ -1,0 +1,230 @@
+#include "io/image/mip_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace oktett::mip_map_test {
+namespace {
+
+TexelImage noise(std::uint32_t width, std::uint32_t height, std::uint32_t colors, unsigned seed) {
+  TexelImage image;
+  image.width = width;
+  image.height = height;
+  image.colors = colors;
+  image.floats.resize_uninitialized(std::size_t{width} * height * colors);
+  std::mt19937 random(seed);
+  for (float& v : image.floats) v = static_cast<float>(random() >> 8) * 0x1p-24f;
+  return image;
+}
+
+/// The first channel of pixel (x, y) of `image`, which repeats or is clamped.
+double pixel(const TexelImage& image, long x, long y, bool clamp) {
+  const auto in = [&](long i, long n) { return clamp ? std::clamp(i, 0l, n - 1) : ((i % n) + n) % n; };
+  const auto at = static_cast<std::size_t>(in(y, image.height) * image.width + in(x, image.width));
+  return static_cast<double>(image.floats[at * image.channels()]);
+}
+
+/// Bilinear at (s, t), written down as the sum of all four corners.
+double bilinear(const TexelImage& image, double s, double t, bool clamp) {
+  const double x = s * image.width - 0.5, y = t * image.height - 0.5;
+  double sum = 0;
+  for (const long i : {0l, 1l})
+    for (const long j : {0l, 1l}) {
+      const long column = std::lround(std::floor(x)) + i, row = std::lround(std::floor(y)) + j;
+      sum += (1 - std::abs(x - static_cast<double>(column))) * (1 - std::abs(y - static_cast<double>(row))) *
+             pixel(image, column, row, clamp);
+    }
+  return sum;
+}
+
+TEST(MipMap, WithoutChangesBilinear) {
+  const TexelImage image = noise(13, 7, 1, 1);
+  const MipMap map(image);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> repeated(0, 1), beyond(-1, 2);
+  for (int i = 0; i < 2000; ++i)
+    for (const bool clamp : {false, true}) {
+      const float s = clamp ? beyond(random) : repeated(random),
+                  t = clamp ? beyond(random) : repeated(random);
+      // Patches smaller than a pixel are no wider.
+      const float change = i % 2 == 0 ? 0 : 0.05f;
+      ASSERT_NEAR(map.color({s, t, change, 0, 0, change}, clamp).x, bilinear(image, s, t, clamp), 3e-6)
+          << s << " " << t;
+    }
+}
+
+/// A patch whose pixels are those of a level.
+TexturePatch patch_of_level(const TexelImage& image, std::size_t level, float s, float t) {
+  const float size = std::exp2(static_cast<float>(level));
+  return {s, t, size / static_cast<float>(image.width), 0, 0, size / static_cast<float>(image.height)};
+}
+
+TEST(MipMap, LevelsAreAveragesOfBlocks) {
+  const TexelImage image = noise(32, 8, 1, 3);
+  const MipMap map(image);
+  ASSERT_EQ(map.levels(), 6u);
+  for (std::uint32_t level = 1; level < 6; ++level) {
+    const std::uint32_t width = 32u >> level, height = std::max(8u >> level, 1u);
+    ASSERT_EQ(map.size(level), (std::array<std::uint32_t, 2>{width, height}));
+    for (std::uint32_t y = 0; y < height; ++y)
+      for (std::uint32_t x = 0; x < width; ++x) {
+        double sum = 0;
+        for (std::uint32_t j = y * 8 / height; j < (y + 1) * 8 / height; ++j)
+          for (std::uint32_t i = x * 32 / width; i < (x + 1) * 32 / width; ++i)
+            sum += pixel(image, i, j, true);
+        const double mean = sum * width * height / (32 * 8);
+        const float s = (static_cast<float>(x) + 0.5f) / static_cast<float>(width);
+        const float t = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
+        ASSERT_NEAR(map.color(patch_of_level(image, level, s, t), true).x, mean, 1e-6)
+            << level << " " << x << " " << y;
+      }
+  }
+}
+
+// Sides that are no powers of two lose no row or column: the last level is the mean of all pixels, and a
+// wedge whose pixels are all different moves it if one counts more than another.
+TEST(MipMap, OddSidesKeepTheMean) {
+  for (const auto& [width, height] : {std::array{3u, 1u}, {1u, 5u}, {7u, 11u}, {100u, 37u}, {255u, 3u}}) {
+    TexelImage image = noise(width, height, 1, 4);
+    double sum = 0;
+    for (std::size_t i = 0; i < image.floats.size(); ++i) {
+      image.floats[i] += static_cast<float>(i % 17) + static_cast<float>(i / width);
+      sum += static_cast<double>(image.floats[i]);
+    }
+    const double mean = sum / static_cast<double>(image.floats.size());
+    const MipMap map(std::move(image));
+    EXPECT_NEAR(map.color({0.3f, 0.6f, 16, 0, 0, 16}, false).x, mean, 2e-6 * mean) << width << " " << height;
+  }
+}
+
+TEST(MipMap, AnEvenImageStaysEvenWhateverThePatch) {
+  TexelImage image = noise(21, 10, 3, 5);
+  for (std::size_t i = 0; i < image.floats.size(); ++i) image.floats[i] = i % 3 == 0 ? 0.1f : 7.3f;
+  const MipMap map(std::move(image));
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> change(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const float size = std::exp2(static_cast<float>(i % 12) - 7);
+    const TexturePatch patch{change(random),        change(random),        size * change(random),
+                             size * change(random), size * change(random), size * change(random)};
+    const Color c = map.color(patch, i % 2 == 0);
+    ASSERT_NEAR(c.x, 0.1f, 1e-7);
+    ASSERT_NEAR(c.y, 7.3f, 5e-6);
+  }
+}
+
+/// The mean of the image over the patch, from 32 x 32 points of a pixel of the picture.
+double mean_over(const TexelImage& image, const TexturePatch& p) {
+  double sum = 0;
+  for (int i = 0; i < 32; ++i)
+    for (int j = 0; j < 32; ++j) {
+      const double x = (i + 0.5) / 32 - 0.5, y = (j + 0.5) / 32 - 0.5;
+      sum += bilinear(
+          image, static_cast<double>(p.s) + x * static_cast<double>(p.dsdx) + y * static_cast<double>(p.dsdy),
+          static_cast<double>(p.t) + x * static_cast<double>(p.dtdx) + y * static_cast<double>(p.dtdy),
+          false);
+    }
+  return sum / 1024;
+}
+
+// Against the mean over the parallelogram, on noise and on an image whose width is not its height. Of the
+// variance of such means no more than a part is error, and a patch turned by a quarter has several times
+// that.
+TEST(MipMap, LongPatchesAverageAlongTheirLongerAxis) {
+  for (const auto& [width, height] : {std::array{64u, 64u}, {128u, 32u}}) {
+    const TexelImage image = noise(width, height, 1, 7);
+    const MipMap map(image);
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> unit(0, 1);
+    double error = 0, turned = 0, variance = 0;
+    const int count = 600;
+    for (int i = 0; i < count; ++i) {
+      // In pixels of the image: twelve long and two wide, in any direction, and slanted.
+      const float angle = 6.2831853f * unit(random), slant = unit(random) - 0.5f;
+      const float along_x = 12 * std::cos(angle), along_y = 12 * std::sin(angle);
+      const float across_x = -along_y / 6 + slant * along_x, across_y = along_x / 6 + slant * along_y;
+      const auto w = static_cast<float>(width), h = static_cast<float>(height);
+      const TexturePatch patch{unit(random), unit(random), along_x / w,
+                               along_y / h,  across_x / w, across_y / h};
+      const TexturePatch quarter{patch.s, patch.t, -along_y / w, along_x / h, -across_y / w, across_x / h};
+      const double truth = mean_over(image, patch);
+      const auto squared = [](double v) { return v * v; };
+      error += squared(static_cast<double>(map.color(patch, false).x) - truth);
+      turned += squared(static_cast<double>(map.color(quarter, false).x) - truth);
+      variance += squared(truth - 0.5);
+    }
+    EXPECT_LT(error, 0.45 * variance) << width;
+    EXPECT_GT(turned, 3 * error) << width;
+  }
+}
+
+// The width of what is averaged: on stripes of one pixel, the contrast that is left across and along them.
+TEST(MipMap, StripesVanishAcrossAndStayAlong) {
+  TexelImage image = noise(64, 64, 1, 9);
+  for (std::size_t i = 0; i < image.floats.size(); ++i) image.floats[i] = i % 64 % 2 == 0 ? 1.0f : 0.0f;
+  const MipMap map(std::move(image));
+  const float white = 32.5f / 64;
+  for (const float size : {4.0f, 9.0f, 15.0f}) {
+    EXPECT_NEAR(map.color({white, 0.5f, size / 64, 0, 0, 1.0f / 64}, false).x, 0.5f, 0.13f) << size;
+    EXPECT_EQ(map.color({white, 0.5f, 1.0f / 64, 0, 0, size / 64}, false).x, 1) << size;
+  }
+}
+
+// Coloured, grey, 8-bit and float images of the same numbers give the same.
+TEST(MipMap, KindsOfImagesAgree) {
+  std::mt19937 random(10);
+  TexelImage bytes;
+  bytes.width = 19;
+  bytes.height = 12;
+  bytes.alpha = true;
+  bytes.encoding = {TransferCurve::srgb, 1};
+  bytes.bytes.resize_uninitialized(19 * 12 * 2);
+  for (std::uint8_t& v : bytes.bytes) v = static_cast<std::uint8_t>(random());
+  TexelImage floats = bytes;
+  floats.bytes.clear();
+  floats.colors = 3;
+  for (std::size_t i = 0; i < 19 * 12; ++i) {
+    for (int c = 0; c < 3; ++c) floats.floats.push_back(static_cast<float>(bytes.bytes[2 * i]) / 255.0f);
+    floats.floats.push_back(static_cast<float>(bytes.bytes[2 * i + 1]) / 255.0f);
+  }
+  const MipMap a(bytes), b(floats);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const float size = std::exp2(6 * unit(random) - 5);
+    const TexturePatch patch{unit(random), unit(random), size, size * unit(random), 0, size * unit(random)};
+    ASSERT_EQ(a.color(patch, false), b.color(patch, false));
+    ASSERT_EQ(a.stored(patch, false), b.stored(patch, false));
+    ASSERT_NE(a.stored(patch, false), a.color(patch, false));
+    for (const ImageChannel channel :
+         {ImageChannel::red, ImageChannel::green, ImageChannel::blue, ImageChannel::alpha})
+      ASSERT_EQ(a.channel(channel, patch, false), b.channel(channel, patch, false));
+    ASSERT_EQ(a.channel(ImageChannel::blue, patch, false), a.stored(patch, false).z);
+  }
+}
+
+// Pictures are compared between processors and compilers, and these are part of them.
+TEST(MipMap, BitsAreTheSameOnEveryMachine) {
+  const MipMap map(noise(45, 28, 3, 11));
+  std::mt19937 random(12);
+  const auto unit = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+  std::uint64_t hash = 0;
+  for (int i = 0; i < 5000; ++i) {
+    TexturePatch patch{unit(), unit()};
+    const float size = std::bit_cast<float>((117u + static_cast<std::uint32_t>(i) % 12) << 23);
+    patch.dsdx = size * unit();
+    patch.dtdx = size * unit();
+    patch.dsdy = size * unit();
+    patch.dtdy = size * unit();
+    const Color c = map.color(patch, i % 2 == 0);
+    for (const float v : {c.x, c.y, c.z}) hash = (hash ^ std::bit_cast<std::uint32_t>(v)) * 0x100000001b3u;
+  }
+  EXPECT_EQ(hash, 5509113479268296741u);
+}
+
+}  // namespace
+}  // namespace oktett::mip_map_test
