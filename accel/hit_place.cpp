@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accel/csg/csg.h"
-#include "accel/csg/csg_solids.h"
 #include "accel/geometry_bounds.h"
 
 namespace oktett {
@@ -106,42 +104,9 @@ CrossedSolid crossed_solid(const Accel& accel, const Hit& hit) {
   return solid;
 }
 
-/// From the space of the structure that holds the item to the world.
-static void move_by_instances(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
-  const Affine& m = place.to_world;
-  const Affine& inverse = place.inverse;
-  const Vec3d p = m.point(Vec3d(s.position));
-  Vec3f error;
-  for (int k = 0; k < 3; ++k) {
-    double e = 0x1p-22 * std::abs(p[k]) + 0x1p-22 * std::abs(double(t) * ray.direction[k]);
-    for (int j = 0; j < 3; ++j) {
-      e += std::abs(m.m[k][j]) * s.position_error[j];
-      // The ray's origin and direction were rounded to float inside the instance.
-      e += std::abs(m.m[k][j]) * 0x1p-22 * std::abs(s.position[j]);
-    }
-    error[k] = round_up(e);
-  }
-  s.position = Vec3f(p);
-  s.position_error = error;
-  s.geometric_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.geometric_normal))));
-  s.shading_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.shading_normal))));
-  s.tangent = Vec3f(m.vector(Vec3d(s.tangent)));
-  s.bitangent = Vec3f(m.vector(Vec3d(s.bitangent)));
-}
-
-static Ray moved_ray(const Affine& m, const Ray& ray) {
+Ray ray_inside(const HitPlace& place, const Ray& ray) {
+  const Affine& m = place.inverse;
   return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
 }
-
-void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
-  if (place.moved) move_by_instances(place, ray, t, s);
-  if (place.combined == nullptr) return;
-  const float reach = coincidence(t, coincidence_slack(*place.combined, moved_ray(place.to_combined, ray)));
-  for (int k = 0; k < 3; ++k)
-    s.position_error[k] = widened_error(s.position_error[k], reach, ray.direction[k]);
-  if (place.flipped) s.geometric_normal = -s.geometric_normal, s.shading_normal = -s.shading_normal;
-}
-
-Ray ray_inside(const HitPlace& place, const Ray& ray) { return moved_ray(place.inverse, ray); }
 
 }  // namespace oktett

@@ -48,9 +48,6 @@ CrossedSolid crossed_solid(const Accel& accel, const Hit& hit);
 /// The ray in the space of the structure at `place`.
 Ray ray_inside(const HitPlace& place, const Ray& ray);
 
-/// Brings a surface interaction found inside instances and combinations to the world.
-void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s);
-
 /// The error bound of a position on a combination, where faces within `reach` along the ray count as
 /// coincident: it must contain them all, so that rays that leave do. Rounded up.
 OKTETT_INLINE float widened_error(float error, float reach, float direction) {

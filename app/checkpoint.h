@@ -10,7 +10,7 @@
 #include "app/command_line.h"
 #include "app/film_saver.h"
 #include "io/film/film_file.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett {
 

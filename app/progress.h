@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/phase.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett {
 

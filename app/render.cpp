@@ -33,7 +33,7 @@
 #include "io/text/files_read.h"
 #include "kernels/exact/march.h"
 #include "render/film/denoise.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett {
 namespace {
@@ -132,8 +132,7 @@ class PhotonFile {
   PhotonFile(const RenderArguments& arguments, const Scene& scene, RenderOptions& options)
       : path_(arguments.photon_map) {
     if (path_.empty()) return;
-    if (scene.integrator.kind != IntegratorKind::path)
-      throw Error("--photon-map needs the integrator 'path'");
+    if (!traits(scene.integrator.kind).traces_paths) throw Error("--photon-map needs the integrator 'path'");
     if (std::filesystem::exists(path_)) {
       options.photons = read_photon_map(path_);
       path_.clear();

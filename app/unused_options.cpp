@@ -30,7 +30,7 @@ void warn_of_unused_tone(const FilmArguments& film, const std::string& picture) 
 void check_light_options(const RenderArguments& arguments, Scene& scene) {
   const IntegratorSettings& settings = scene.integrator;
   const FilmArguments& film = arguments.film;
-  if (arguments.caustics && settings.kind != IntegratorKind::path)
+  if (arguments.caustics && !traits(settings.kind).traces_paths)
     throw Error("--caustics needs the integrator 'path'");
   if (film.max_samples && settings.error == 0)
     throw Error("--max-spp is for adaptive sampling; expected --error, too, or 'error' in the scene");

@@ -8,7 +8,7 @@
 
 #include "bench/bench_object.h"
 #include "core/random.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett::bench {
 namespace {

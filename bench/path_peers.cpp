@@ -18,7 +18,7 @@
 #include "io/image/image.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/text/mapped_file.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace fs = std::filesystem;
 

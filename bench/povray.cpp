@@ -17,7 +17,7 @@
 #include "io/text/mapped_file.h"
 #include "render/camera.h"
 #include "render/geometry.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace fs = std::filesystem;
 

@@ -15,7 +15,7 @@
 #include "bench/povray_picture_scenes.h"
 #include "bench/program.h"
 #include "io/text/mapped_file.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace fs = std::filesystem;
 

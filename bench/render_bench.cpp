@@ -6,7 +6,7 @@
 
 #include "bench/bench_mesh.h"
 #include "bench/bench_object.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett::bench {
 namespace {

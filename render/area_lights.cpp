@@ -132,7 +132,7 @@ std::uint32_t AreaLights::pattern(std::uint32_t x, std::uint32_t y, std::uint32_
 AreaLights area_lights(const SceneLights& lights, const TextureSampler* textures,
                        const IntegratorSettings& settings) {
   AreaLights area;
-  if (settings.kind != IntegratorKind::whitted || settings.light_samples == 0) return area;
+  if (!traits(settings.kind).light_from_points || settings.light_samples == 0) return area;
   const std::vector<Lamp> lamps = lamps_of(lights.set().emitters());
   if (lamps.empty()) return area;
   area.samples = settings.light_samples,

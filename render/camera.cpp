@@ -6,8 +6,6 @@
 
 #include "core/math.h"
 #include "render/sampling/warp.h"
-#include "render/transport/render_code.h"
-#include "render/transport/view_directions.h"
 
 namespace oktett {
 
@@ -98,26 +96,6 @@ Ray camera_ray(const CameraFrame& camera, double x, double y, double u, double v
   ray.origin = Vec3f(camera.origin + from);
   ray.direction = Vec3f(normalize(to - from));
   return ray;
-}
-
-void camera_rays(const CameraFrame& camera, const FilmPoints& points, RayBatch& rays, Isa isa) {
-  const std::size_t count = rays.size();
-  const Ray like;
-  std::fill_n(rays.tmin.data(), count, like.tmin);
-  std::fill_n(rays.tmax.data(), count, like.tmax);
-  if (camera.lens_radius > 0) return render_code(isa).lens_rays(camera, points, rays);
-  if (camera.projection != Projection::perspective) {
-    for (std::size_t i = 0; i < count; ++i) rays.set(i, camera_ray(camera, points.x[i], points.y[i]));
-    return;
-  }
-  const Vec3f origin(camera.origin);
-  for (int k = 0; k < 3; ++k) std::fill_n(rays.origin[k].data(), count, origin[k]);
-  view_directions({camera.corner, camera.per_pixel_x, camera.per_pixel_y},
-                  {points.x.data(),
-                   points.y.data(),
-                   count,
-                   {rays.direction[0].data(), rays.direction[1].data(), rays.direction[2].data()}},
-                  isa);
 }
 
 double camera_depth(const CameraFrame& camera, const Vec3f& p) {

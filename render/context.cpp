@@ -5,9 +5,8 @@
 
 #include "core/math.h"
 #include "render/bsdf/phong_power.h"
-#include "render/film/adaptive.h"
+#include "render/path_surface.h"
 #include "render/surface_textures.h"
-#include "render/transport/path_surfaces.h"
 
 namespace oktett {
 
@@ -87,7 +86,7 @@ void enclose_camera(const Camera& camera, RenderContext& context) {
 /// See RenderContext::interiors.
 static std::vector<Vec3d> interiors(const Scene& scene, const World& world) {
   std::vector<Vec3d> extinctions;
-  if (scene.integrator.kind != IntegratorKind::whitted) return extinctions;
+  if (!traits(scene.integrator.kind).light_from_points) return extinctions;
   for (std::size_t i = 0; i < world.materials.size(); ++i) {
     const Material& m = world.materials[i];
     if (m.interior == kNoId || scene.media[m.interior].grid) continue;
@@ -124,9 +123,9 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   }
   c.background = scene.background, c.ambient_light = scene.ambient_light;
   for (const Material& material : world.materials) c.materials.push_back(shading_material(material, c));
-  c.some_only_send_rays = c.settings.kind == IntegratorKind::whitted &&
+  c.some_only_send_rays = traits(c.settings.kind).light_from_points &&
                           std::ranges::any_of(c.materials, &ShadingMaterial::only_sends_rays);
-  if (c.settings.kind == IntegratorKind::path)
+  if (traits(c.settings.kind).traces_paths)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
   c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_enclosures;

@@ -227,7 +227,7 @@ class WorldBuilder {
   }
 
   static bool needs_enclosures(const Scene& scene) {
-    if (scene.integrator.kind != IntegratorKind::path) return false;
+    if (!traits(scene.integrator.kind).traces_paths) return false;
     return scene.medium != kNoId || std::ranges::any_of(scene.materials, [](const Material& m) {
              return m.interior != kNoId || m.priority != kNoPriority;
            });

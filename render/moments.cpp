@@ -4,7 +4,6 @@
 
 #include "core/random.h"
 #include "render/moved.h"
-#include "render/photon/caustics.h"
 
 namespace oktett {
 namespace {
@@ -17,7 +16,7 @@ bool any_light_moves(const Scene& scene) {
 /// Whether light samples are different at each moment.
 bool lights_differ(const Scene& scene, const World& world) {
   if (any_light_moves(scene)) return true;
-  return scene.integrator.kind == IntegratorKind::path && !world.moving.empty() &&
+  return traits(scene.integrator.kind).traces_paths && !world.moving.empty() &&
          std::ranges::any_of(world.materials, glows);
 }
 

@@ -89,8 +89,39 @@ inline constexpr Choice<IntegratorKind> kIntegratorKinds[] = {
     {"object", IntegratorKind::object},   {"primitive", IntegratorKind::primitive},
     {"facing", IntegratorKind::facing},   {"wire", IntegratorKind::wire}};
 
+/// What a kind of picture needs; all code but that of the integrator itself asks these, not for its name.
+struct IntegratorTraits {
+  bool random_numbers = false;  ///< draws random numbers for each sample
+  /// Light comes from points and directions, and from points on glowing surfaces, as in Whitted's model.
+  bool light_from_points = false;
+  /// All light of a scene is sampled along random paths: by the principled material, media, photons, light
+  /// groups, motion of lights.
+  bool traces_paths = false;
+  bool uv = false;         ///< shows the surface parameters of every hit
+  bool ao_radius = false;  ///< is limited by IntegratorSettings::ao_radius
+  /// Rays go on after the first hit, up to IntegratorSettings::depth.
+  bool bounces() const { return light_from_points || traces_paths; }
+};
+
+constexpr IntegratorTraits traits(IntegratorKind kind) {
+  switch (kind) {
+    case IntegratorKind::whitted:
+      return {.light_from_points = true};
+    case IntegratorKind::path:
+      return {.random_numbers = true, .traces_paths = true};
+    case IntegratorKind::ao:
+      return {.random_numbers = true, .ao_radius = true};
+    case IntegratorKind::uv:
+      return {.uv = true};
+    default:
+      return {};
+  }
+}
+
 /// Relative errors that adaptive sampling can be asked for; 0: it is off.
 inline constexpr Range kErrors{0, 1};
+/// The least number of samples that adaptive sampling begins with: fewer do not tell how much they vary.
+inline constexpr std::uint32_t kLeastPilot = 4;
 
 /// Caustics by photons, in path tracing.
 struct CausticSettings {
@@ -124,6 +155,11 @@ struct IntegratorSettings {
   std::uint32_t penumbra_factor = 4;
   bool operator==(const IntegratorSettings&) const = default;
 };
+
+/// Whether the settings ask for photons.
+inline bool wants_photons(const IntegratorSettings& settings) {
+  return traits(settings.kind).traces_paths && settings.caustics.photons > 0;
+}
 
 // The colour of a light is what a white diffuse surface shows that faces it: an irradiance divided by pi, or
 // for lights with falloff an intensity divided by pi. Radiance stands as it is.

@@ -235,9 +235,8 @@ SceneLights::SceneLights(const Scene& scene, const World& world, const SceneLigh
   }
   // There may be millions of surfaces, so they are listed only for those who ask.
   const IntegratorSettings& asking = scene.integrator;
-  const bool whitted = asking.kind == IntegratorKind::whitted && asking.light_samples > 0;
-  if (whitted || asking.kind == IntegratorKind::path)
-    EmitterCollector(world, groups, *this, emitters).collect();
+  const bool whitted = traits(asking.kind).light_from_points && asking.light_samples > 0;
+  if (whitted || traits(asking.kind).traces_paths) EmitterCollector(world, groups, *this, emitters).collect();
   set_ = LightSet(std::move(emitters));
 }
 

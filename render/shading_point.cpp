@@ -7,8 +7,8 @@
 #include "accel/accel.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_surface.h"
+#include "render/shading_lanes.h"
 #include "render/surface_textures.h"
-#include "render/transport/shading_lanes.h"
 
 namespace oktett {
 namespace {
@@ -94,7 +94,7 @@ PhongValues phong_values(const RenderContext& c, const Material& m, const Textur
 
 /// Whether the picture shows the principled parameters of a material, or what resembles them.
 bool shows_principled(const RenderContext& c, const Material& m) {
-  return m.principled && (c.settings.kind == IntegratorKind::path || m.principled->resembled);
+  return m.principled && (traits(c.settings.kind).traces_paths || m.principled->resembled);
 }
 
 /// Sets what the picture shows of the principled parameters.
@@ -102,7 +102,7 @@ void set_principled(const RenderContext& c, const TexturePlace& place, ShadingPo
   const Material& m = *p.material;
   PrincipledParameters at = principled_at(c, *m.principled, p.color, place);
   p.ior = at.ior;
-  if (c.settings.kind == IntegratorKind::path) {
+  if (traits(c.settings.kind).traces_paths) {
     p.principled = at;
     return;
   }
@@ -239,7 +239,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.values = phong_values(context, m, place);
   p.opacity = opacity_at(context, m, place);
   p.ior = textured(context, m.ior, m.ior_texture, kPhongIors, place);
-  const bool resembles = textured_here || context.settings.kind == IntegratorKind::path;
+  const bool resembles = textured_here || traits(context.settings.kind).traces_paths;
   if (resembles && shows_principled(context, m)) set_principled(context, place, p);
   face_ray(p, ns);
   if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
@@ -283,7 +283,7 @@ bool is_opaque(const Material& m, ShadowRule rule) {
 /// itself find the lamp behind it, and light that passed straight would count twice.
 static bool scatters_passing_light(const RenderContext& context, const Material& m, const TexturePlace& place,
                                    std::optional<float> ior) {
-  if (!m.principled || context.settings.kind != IntegratorKind::path) return false;
+  if (!m.principled || !traits(context.settings.kind).traces_paths) return false;
   const PrincipledMaterial& material = *m.principled;
   PrincipledParameters p = material.parameters;
   p.roughness = textured(context, p.roughness, material.roughness_texture, kUnitInterval, place);

@@ -26,7 +26,7 @@
 #include "io/scene/write_scene.h"
 #include "render/film/denoise.h"
 #include "render/look/default_look.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 #include "verify/oracles/random_scene.h"

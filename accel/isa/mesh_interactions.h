@@ -1,7 +1,7 @@
 #pragma once
 /// \file Surfaces of groups of mesh hits, for one instruction set.
 
-#include "accel/surface/mesh_hits.h"
+#include "accel/surface/interaction_code.h"
 #include "core/picked_lanes.h"
 
 namespace oktett {

@@ -1,20 +1,231 @@
 #include <algorithm>
 #include <bit>
+#include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 
+#include "accel/accel_data.h"
 #include "accel/csg/csg.h"
+#include "accel/csg/csg_solids.h"
 #include "accel/hit_place.h"
 #include "accel/shape_hits.h"
-#include "accel/surface/hit_groups.h"
 #include "accel/surface/interaction_code.h"
-#include "accel/surface/mesh_hits.h"
+#include "accel/surface/mesh_surface.h"
+#include "accel/surface/offset_origin.h"
+#include "accel/triangle_corners.h"
 #include "core/error.h"
 #include "core/lanes.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {
+
+// ---- Single hits
+
 namespace {
+
+/// uv, dp/du and dp/dv of a mesh hit.
+void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, const Vec3f (&p)[3],
+             SurfaceInteraction& s) {
+  const std::array<Vec2f, 3> uv = corner_uvs(mesh, triangle);
+  s.uv = weighted_uv(uv, u, v);
+  const float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y, du2 = uv[2].x - uv[0].x,
+              dv2 = uv[2].y - uv[0].y;
+  const float det = du1 * dv2 - du2 * dv1;
+  if (det == 0) return;
+  s.tangent = ((p[1] - p[0]) * dv2 - (p[2] - p[0]) * dv1) / det;
+  s.bitangent = ((p[2] - p[0]) * du1 - (p[1] - p[0]) * du2) / det;
+}
+
+void mesh_interaction(const Geometry& g, const GeometryFrame& g_frame, std::uint32_t triangle, const Hit& hit,
+                      SurfaceInteraction& s) {
+  using F = Simd<float, 1, ScalarIsa>;
+  const TriangleMesh& mesh = *std::get<MeshGeometry>(g.shape).mesh;
+  const MeshFrame frame = mesh_frame(g, g_frame);
+  Vec3f corners[3], normals[3];
+  if (frame.smooth) corner_normals(mesh, triangle, normals);
+  Vec3<F> p[3], n[3];
+  for (int k = 0; k < 3; ++k) {
+    p[k] = place_corner(frame, broadcast<F>(corner_position(mesh, triangle, k)));
+    corners[k] = only_lane(p[k]), n[k] = broadcast<F>(normals[k]);
+  }
+  const MeshSurface<F> surface = mesh_surface(frame, p, n, F(hit.u), F(hit.v));
+  s.position = only_lane(surface.position);
+  s.position_error = only_lane(surface.position_error);
+  s.geometric_normal = only_lane(surface.geometric_normal);
+  s.shading_normal = only_lane(surface.shading_normal);
+  mesh_uv(mesh, triangle, hit.u, hit.v, corners, s);
+}
+
+}  // namespace
+
+SurfaceInteraction identify(const Accel& accel, const Hit& hit) {
+  const HitNames names = identify_in(follow_path(accel, hit.instance), hit);
+  SurfaceInteraction s;
+  s.geometry = names.geometry, s.primitive = names.primitive;
+  s.user = names.user, s.material_slot = names.material_slot;
+  return s;
+}
+
+Affine object_transform(const Accel& accel, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  const std::uint32_t geometry = identify_in(place, hit).geometry;
+  const Affine& transform = place.accel->geometries[geometry].transform;
+  return place.moved ? place.to_world * transform : transform;
+}
+
+/// The surface in the space of the structure that holds the item; `uv` says whether uv and tangents are
+/// wanted.
+static void interaction_inside(const HitNames& names, const Accel& a, const Ray& inner, const Hit& hit,
+                               bool uv, SurfaceInteraction& s) {
+  const Geometry& g = a.geometries[names.geometry];
+  if (names.kind == Kind::triangle) {
+    mesh_interaction(g, a.frames[names.geometry], names.primitive, hit, s);
+  } else if (is_exact(names.kind)) {
+    const ExactOps& ops = exact_ops(names.kind);
+    const std::size_t i = a.index_in_pool(names.geometry, 0);
+    (uv ? ops.interaction : ops.interaction_without_uv)(a.exact_pool(names.kind), i, inner, hit, s);
+  } else {
+    const std::size_t i = a.index_in_pool(names.geometry, names.primitive);
+    visit_pool(names.kind, a.pools, [&](auto shape, const auto& pool) {
+      closed_interaction<decltype(shape)>(pool, i, inner, hit.t, uv, s);
+    });
+  }
+  s.geometry = names.geometry, s.primitive = names.primitive, s.user = names.user;
+  s.material_slot = names.material_slot;
+}
+
+/// Brings a surface interaction from the space of the structure that holds the item to the world.
+static void move_by_instances(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
+  const Affine& m = place.to_world;
+  const Affine& inverse = place.inverse;
+  const Vec3d p = m.point(Vec3d(s.position));
+  Vec3f error;
+  for (int k = 0; k < 3; ++k) {
+    double e = 0x1p-22 * std::abs(p[k]) + 0x1p-22 * std::abs(double(t) * ray.direction[k]);
+    for (int j = 0; j < 3; ++j) {
+      e += std::abs(m.m[k][j]) * s.position_error[j];
+      // The ray's origin and direction were rounded to float inside the instance.
+      e += std::abs(m.m[k][j]) * 0x1p-22 * std::abs(s.position[j]);
+    }
+    error[k] = round_up(e);
+  }
+  s.position = Vec3f(p);
+  s.position_error = error;
+  s.geometric_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.geometric_normal))));
+  s.shading_normal = Vec3f(normalize(inverse.normal_by_inverse(Vec3d(s.shading_normal))));
+  s.tangent = Vec3f(m.vector(Vec3d(s.tangent)));
+  s.bitangent = Vec3f(m.vector(Vec3d(s.bitangent)));
+}
+
+static Ray moved_ray(const Affine& m, const Ray& ray) {
+  return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
+}
+
+/// Brings a surface interaction found inside instances and combinations to the world.
+static void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
+  if (place.moved) move_by_instances(place, ray, t, s);
+  if (place.combined == nullptr) return;
+  const float reach = coincidence(t, coincidence_slack(*place.combined, moved_ray(place.to_combined, ray)));
+  for (int k = 0; k < 3; ++k)
+    s.position_error[k] = widened_error(s.position_error[k], reach, ray.direction[k]);
+  if (place.flipped) s.geometric_normal = -s.geometric_normal, s.shading_normal = -s.shading_normal;
+}
+
+void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
+                    SurfaceInteraction& s) {
+  if (!place.changes()) return interaction_inside(names, *place.accel, ray, hit, uv, s);
+  interaction_inside(names, *place.accel, place.moved ? ray_inside(place, ray) : ray, hit, uv, s);
+  move_interaction(place, ray, hit.t, s);
+}
+
+SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  SurfaceInteraction s;
+  interaction_at(place, identify_in(place, hit), ray, hit, true, s);
+  return s;
+}
+
+std::optional<std::array<Vec3f, 3>> triangle_corners(const Accel& accel, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  const HitNames names = identify_in(place, hit);
+  if (names.kind != Kind::triangle) return std::nullopt;
+  const Geometry& g = place.accel->geometries[names.geometry];
+  std::array<Vec3f, 3> corners;
+  for (int k = 0; k < 3; ++k)
+    corners[k] = Vec3f(place.to_world.point(g.transform.point(
+        Vec3d(corner_position(*std::get<MeshGeometry>(g.shape).mesh, names.primitive, k)))));
+  return corners;
+}
+
+Vec3f offset_origin(const SurfaceInteraction& s, const Vec3f& direction) {
+  Vec3f origin;
+  offset_origin(s, direction, origin);
+  return origin;
+}
+
+// ---- Blocks of hits
+
+namespace {
+
+/// Calls what(k) for each bit k of `entries`, lowest first.
+template <class What>
+OKTETT_INLINE void for_each_entry(std::uint64_t entries, const What& what) {
+  for (; entries != 0; entries &= entries - 1) what(static_cast<std::size_t>(std::countr_zero(entries)));
+}
+
+/// Hits of one closed-form kind, of one element of an exact kind, or of one mesh.
+struct HitGroup {
+  const Accel* accel;
+  Kind kind;
+  std::uint32_t part;     ///< element of an exact kind, geometry of a mesh, else 0
+  std::uint64_t entries;  ///< bit k: entry k of the block
+};
+
+/// The groups in the order in which their first hits came.
+class HitGroups {
+ public:
+  HitGroups() { clear(); }
+  void clear() {
+    count_ = 0;
+    std::memset(slots_, 0xff, sizeof(slots_));
+  }
+  const HitGroup* begin() const { return groups_; }
+  const HitGroup* end() const { return groups_ + count_; }
+
+  void add(const Accel& accel, Kind kind, std::uint32_t part, std::uint64_t entries) {
+    find(accel, kind, part).entries |= entries;
+  }
+
+ private:
+  static constexpr std::size_t kMost = InteractionBlock::kMost;
+  static_assert(kMost == 64, "an entry is a bit of HitGroup::entries");
+  static constexpr std::uint16_t kNone = 0xffff;
+  static constexpr std::size_t kSlots = 2 * kMost;
+
+  /// The group of these hits. If it is new, it has no entries.
+  HitGroup& find(const Accel& accel, Kind kind, std::uint32_t part) {
+    const auto is = [&](const HitGroup& g) { return g.accel == &accel && g.kind == kind && g.part == part; };
+    if (count_ > 0 && is(groups_[latest_])) return groups_[latest_];
+    const auto name = reinterpret_cast<std::uintptr_t>(&accel) / alignof(Accel) +
+                      31 * static_cast<std::uintptr_t>(kind) + std::uintptr_t{part};
+    for (std::size_t slot = (name * 0x9e3779b97f4a7c15u) >> 32;; ++slot) {
+      std::uint16_t& group = slots_[slot % kSlots];
+      if (group == kNone) {
+        group = static_cast<std::uint16_t>(count_);
+        groups_[count_++] = {&accel, kind, part, 0};
+      } else if (!is(groups_[group])) {
+        continue;
+      }
+      latest_ = group;
+      return groups_[group];
+    }
+  }
+
+  std::size_t count_ = 0, latest_ = 0;
+  HitGroup groups_[kMost];
+  std::uint16_t slots_[kSlots];
+};
 
 constexpr std::size_t kMost = InteractionBlock::kMost;
 

@@ -10,7 +10,7 @@
 
 #include "app/view/layers.h"
 #include "render/picture.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett {
 

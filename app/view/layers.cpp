@@ -68,7 +68,7 @@ std::vector<std::string> layer_names(const Scene& scene) {
                                  "position", "object", "primitive", "noise"};
   if (scene.integrator.error > 0) names.emplace_back("samples");
   const LightGroups groups = light_groups(scene);
-  if (groups.any() && scene.integrator.kind == IntegratorKind::path)
+  if (groups.any() && traits(scene.integrator.kind).traces_paths)
     for (const std::string& group : groups.names) names.push_back("light_" + group);
   return names;
 }

@@ -7,7 +7,7 @@
 
 #include "core/box.h"
 #include "render/picture.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "render/scene.h"
 
 namespace oktett {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/isa.h"
-#include "render/prepared_scene.h"
+#include "render/picture/prepared_scene.h"
 
 namespace oktett {
 

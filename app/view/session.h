@@ -22,7 +22,7 @@
 #include "core/error.h"
 #include "io/image/metadata.h"
 #include "io/image/texture.h"
-#include "render/prepared_scene.h"
+#include "render/picture/prepared_scene.h"
 
 namespace oktett {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "render/prepared_scene.h"
+#include "render/picture/prepared_scene.h"
 
 namespace oktett {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "render/picture.h"
-#include "render/render.h"
+#include "render/render_options.h"
 
 namespace oktett {
 

@@ -232,7 +232,7 @@ Color radiance_of_power(SceneLoad& load, const YamlNode& node, double area) {
 void warn_of_idle_lamp(SceneLoad& load, const YamlNode& node) {
   const IntegratorSettings& s = load.scene.integrator;
   const IntegratorKind kind = load.integrator.value_or(s.kind);
-  if (kind == IntegratorKind::whitted && s.light_samples == 0)
+  if (traits(kind).light_from_points && s.light_samples == 0)
     load.warn(node.where(),
               "the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size");
 }

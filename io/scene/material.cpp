@@ -184,7 +184,7 @@ static bool is_library(const std::string& file) {
 }
 
 void warn_of_energy(Scene& scene) {
-  if (scene.integrator.kind != IntegratorKind::path) return;
+  if (!traits(scene.integrator.kind).traces_paths) return;
   // What exceeds 1 by rounding is not meant.
   constexpr float kMost = 1.001f;
   std::map<std::string, std::pair<Warning, int>> of_libraries;  // with the number of other materials

@@ -137,13 +137,13 @@ static void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
   const auto warn = [&](const char* key, bool is_unused, const std::string& why) {
     load.warn_if_unused(fields, key, is_unused, why);
   };
-  const bool path = s.kind == IntegratorKind::path, whitted = s.kind == IntegratorKind::whitted;
+  const bool path = traits(s.kind).traces_paths, whitted = traits(s.kind).light_from_points;
   const auto only = [&](const char* kinds) {
     const auto* const kind = std::ranges::find(kIntegratorKinds, s.kind, &Choice<IntegratorKind>::value);
     return fmt::format("it is for {}, but the integrator is {}", kinds, quote(kind->name));
   };
-  warn("depth", !path && !whitted, only("'whitted' and 'path'"));
-  warn("ao_radius", s.kind != IntegratorKind::ao && s.ao_radius > 0, only("'ao'"));
+  warn("depth", !traits(s.kind).bounces(), only("'whitted' and 'path'"));
+  warn("ao_radius", !traits(s.kind).ao_radius && s.ao_radius > 0, only("'ao'"));
   warn("caustics", !path && s.caustics.photons > 0, only("'path'"));
   warn("light_samples", !whitted && s.light_samples > 0, only("'whitted'"));
   warn("penumbra_factor", !whitted, only("'whitted'"));

@@ -13,7 +13,7 @@
 #include "core/transform.h"
 #include "python/src/files.h"
 #include "render/geometry.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "render/scene.h"
 
 namespace oktett::python {

@@ -15,9 +15,11 @@ BsdfValue Bsdf::evaluate(const Vec3f& wi) const {
   return {only_lane(at.value), only_lane(at.pdf)};
 }
 
-std::optional<BsdfSample> Bsdf::sample(float lobe, const SquareSample& u) const {
-  const BsdfSamples<D> s =
-      std::visit([&](const auto& kept) { return kept.lobes.sample(D(lobe), D(u.x), D(u.y)); }, lobes_);
+BsdfSamples<Bsdf::D> Bsdf::samples(float lobe, const SquareSample& u) const {
+  return std::visit([&](const auto& kept) { return kept.lobes.sample(D(lobe), D(u.x), D(u.y)); }, lobes_);
+}
+
+std::optional<BsdfSample> only_sample(const BsdfSamples<Bsdf::D>& s) {
   if (none(s.found)) return std::nullopt;
   return BsdfSample{only_lane(s.direction), only_lane(s.weight), only_lane(s.pdf), only_lane(s.pdf) == 0,
                     any(s.transmitted)};

@@ -20,9 +20,14 @@
 
 namespace oktett {
 
+/// The sample of a single lane, if there is one.
+std::optional<BsdfSample> only_sample(const BsdfSamples<Simd<double, 1, ScalarIsa>>& s);
+
 /// One surface seen from one direction: the lobes of the materials with a single lane.
 class Bsdf {
  public:
+  using D = Simd<double, 1, ScalarIsa>;
+
   Bsdf(const PhongSurface& surface, const Vec3f& wo) : lobes_(Phong(surface, wo)) {}
   Bsdf(const PrincipledSurface& surface, const Vec3f& wo) : lobes_(Principled(surface, wo)) {}
 
@@ -30,13 +35,15 @@ class Bsdf {
   BsdfValue evaluate(const Vec3f& wi) const;
   /// A direction from which light may come. `lobe` in [0, 1) chooses the lobe, `u` the direction. Nothing if
   /// the light of that sample is absorbed.
-  std::optional<BsdfSample> sample(float lobe, const SquareSample& u) const;
+  std::optional<BsdfSample> sample(float lobe, const SquareSample& u) const {
+    return only_sample(samples(lobe, u));
+  }
+  /// The same as a lane.
+  BsdfSamples<D> samples(float lobe, const SquareSample& u) const;
   /// Whether `evaluate` is black everywhere.
   bool only_delta() const;
 
  private:
-  using D = Simd<double, 1, ScalarIsa>;
-
   /// Lobes with the surface that they refer to.
   template <class Lobes>
   struct Kept {

@@ -1,15 +1,12 @@
 #pragma once
-/// \file What the lobes of all materials share: results, choice of a lobe, Fresnel's equations, in lanes of
+/// \file What the lobes of all materials share: results and the choice of a lobe, in lanes of
 /// doubles D. Single surfaces use them with one lane, so a surface gets the same bits alone and in a group.
 
 #include "core/affine_lanes.h"
 #include "core/lane_math.h"
+#include "render/bsdf/optics.h"
 
 namespace oktett {
-
-/// The lanes of floats that go with lanes of doubles.
-template <class D>
-using FloatsOf = Simd<float, D::kWidth, typename D::Isa>;
 
 /// BsdfValue in lanes.
 template <class D>
@@ -42,29 +39,6 @@ OKTETT_INLINE Vec3<D> cosine_above(const D& x, const D& y) {
   D sine, cosine;
   sin_cos_of_turn(y, sine, cosine);
   return {radius * cosine, radius * sine, sqrt(D(1.0) - x)};
-}
-
-/// fresnel of render/bsdf/optics.h in lanes.
-template <class D>
-OKTETT_INLINE D fresnel_lanes(const D& cosine, const D& eta) {
-  const D sin2_out = (D(1.0) - cosine * cosine) / (eta * eta);
-  const D cos_out = sqrt(max(D(0.0), D(1.0) - sin2_out));
-  const D parallel = (eta * cosine - cos_out) / (eta * cosine + cos_out);
-  const D perpendicular = (cosine - eta * cos_out) / (cosine + eta * cos_out);
-  return select(sin2_out >= D(1.0), D(1.0), (parallel * parallel + perpendicular * perpendicular) * D(0.5));
-}
-
-/// conductor_fresnel in lanes.
-template <class D>
-OKTETT_INLINE D conductor_fresnel_lanes(const D& cosine, double eta, double k) {
-  const D c2 = cosine * cosine, s2 = D(1.0) - c2;
-  const D t = D(eta * eta - k * k) - s2;
-  const D sum = sqrt(t * t + D(4 * eta * eta * k * k));
-  const D twice = D(2.0) * cosine * sqrt(max(D(0.0), (sum + t) * D(0.5)));
-  const D perpendicular = (sum + c2 - twice) / (sum + c2 + twice);
-  const D far = c2 * sum + s2 * s2, near = twice * s2;
-  const D parallel = (far - near) / (far + near);
-  return within(perpendicular * (D(1.0) + parallel) * D(0.5), D(0.0), D(1.0));
 }
 
 /// Probabilities of N lobes.

@@ -21,8 +21,6 @@ inline constexpr std::uint32_t kNeighbourhood = 2;
 /// The error of pixels darker than this counts as if they were as bright: what is nearly black need not be
 /// known to a part of itself.
 inline constexpr double kDarkestLight = 0.02;
-/// Fewer samples do not tell how much they vary.
-inline constexpr std::uint32_t kLeastPilot = 4;
 
 /// Luminance of the samples of a pixel.
 struct LuminanceSums {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/picture.h"
-#include "render/render.h"
+#include "render/render_options.h"
 #include "render/transport/wavefront.h"
 
 namespace oktett {

@@ -7,7 +7,7 @@
 #include "render/context.h"
 #include "render/film/film.h"
 #include "render/picture.h"
-#include "render/render.h"
+#include "render/render_options.h"
 #include "render/transport/wavefront.h"
 
 namespace oktett {

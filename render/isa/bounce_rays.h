@@ -1,39 +1,10 @@
 #pragma once
-/// \file The rays that mirrors and glass send out, for hits in columns: specular_rays of render/specular.h in
-/// lanes.
+/// \file The rays that mirrors and glass send out, for hits in columns.
 
-#include "render/bsdf/lobe_lanes.h"
+#include "render/bsdf/optics.h"
 #include "render/isa/shading.h"
 
 namespace oktett {
-
-/// reflect_above of render/bsdf/optics.h in lanes.
-template <class F>
-OKTETT_INLINE Vec3<F> reflect_above_lanes(const Vec3<F>& d, const Vec3<F>& n, const Vec3<F>& ng) {
-  const F two(2.0f);
-  const Vec3<F> r = unit_lanes(sub_lanes(d, scale_lanes(n, two * dot_lanes(d, n))));
-  const F height = dot_lanes(r, ng);
-  const auto below = height < F(0.0f);
-  if (none(below)) return r;
-  return select_lanes(below, unit_lanes(sub_lanes(r, scale_lanes(ng, two * height))), r);
-}
-
-/// refract in lanes. Returns the lanes in which there is a refracted direction.
-template <int W, class A>
-OKTETT_INLINE Mask<float, W, A> refract_lanes(const Vec3<Simd<float, W, A>>& d,
-                                              const Vec3<Simd<float, W, A>>& n, const Simd<float, W, A>& eta,
-                                              Vec3<Simd<float, W, A>>& out) {
-  using D = Simd<double, W, A>;
-  const Vec3<D> dd = to_double(d), nd = to_double(n);
-  const D one(1.0), ratio = one / to_double(eta);
-  const D cos_in = -dot_lanes(dd, nd);
-  const D sin2_out = ratio * ratio * (one - cos_in * cos_in);
-  const D cos_out = sqrt(max(one - sin2_out, D(0.0)));
-  const Vec3<D> bent = add_lanes(scale_lanes(dd, ratio), scale_lanes(nd, ratio * cos_in - cos_out));
-  const auto straight = eta == Simd<float, W, A>(1.0f);
-  out = select_lanes(straight, d, float_quotients(bent, length_lanes(bent)));
-  return straight | ~mask_cast<float>(one <= sin2_out);
-}
 
 /// Writes rays that leave hits i, i + 1, ... in `lanes` with these directions and weights, except those that
 /// are not worth tracing.

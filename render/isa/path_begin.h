@@ -5,10 +5,9 @@
 #include "core/double_lanes.h"
 #include "core/picked_lanes.h"
 #include "render/sampling/owen_sobol.h"
+#include "render/shading_lanes.h"
 #include "render/transport/path_block.h"
-#include "render/transport/path_numbers.h"
 #include "render/transport/sample_dimensions.h"
-#include "render/transport/shading_lanes.h"
 
 namespace oktett {
 

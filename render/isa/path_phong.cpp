@@ -1,14 +1,14 @@
 #include "render/bsdf/phong_lobes.h"
 
-#include "render/isa/path_shading.h"
+#include "render/transport/path_shading.h"
 
 namespace oktett {
 
 template <class A>
 void shade_phong_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
                       const PhongSurface& surface, bool transmits, const PathRun& run, PathQueues& out) {
-  shade_path_run<A, PhongLobes<Simd<double, kDoubleLanes<A>, A>>>(found, rays, block, surface, transmits, run,
-                                                                  out);
+  using Scattering = SurfaceScattering<PhongLobes, Simd<double, kDoubleLanes<A>, A>>;
+  shade_path_run<Scattering>(found, rays, block, surface, transmits, run, out);
 }
 
 template void shade_phong_code<OKTETT_ISA>(const InteractionBlock&, const PathRays&, const PathBlock&,

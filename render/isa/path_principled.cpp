@@ -1,6 +1,6 @@
 #include "render/bsdf/principled_lobes.h"
 
-#include "render/isa/path_shading.h"
+#include "render/transport/path_shading.h"
 
 namespace oktett {
 
@@ -8,8 +8,8 @@ template <class A>
 void shade_principled_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
                            const PrincipledSurface& surface, bool transmits, const PathRun& run,
                            PathQueues& out) {
-  shade_path_run<A, PrincipledLobes<Simd<double, kDoubleLanes<A>, A>>>(found, rays, block, surface, transmits,
-                                                                       run, out);
+  using Scattering = SurfaceScattering<PrincipledLobes, Simd<double, kDoubleLanes<A>, A>>;
+  shade_path_run<Scattering>(found, rays, block, surface, transmits, run, out);
 }
 
 template void shade_principled_code<OKTETT_ISA>(const InteractionBlock&, const PathRays&, const PathBlock&,

@@ -4,10 +4,10 @@
 #include "accel/surface/offset_origin.h"
 #include "core/picked_lanes.h"
 #include "core/simd_order.h"
+#include "render/bsdf/phong_power.h"
 #include "render/context.h"
 #include "render/shading_columns.h"
-#include "render/transport/direct_light.h"
-#include "render/transport/shading_lanes.h"
+#include "render/shading_lanes.h"
 
 namespace oktett {
 
@@ -127,7 +127,7 @@ OKTETT_INLINE Simd<double, W, A> whole_powers(Simd<double, W, A> x, const Simd<s
   return product;
 }
 
-/// highlight_power in lanes, for hits i ... of the columns.
+/// phong_power of min(highlight, 1), rounded to float, for hits i ... of the columns.
 template <int W, class A>
 OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highlight, const ShadingColumns& c,
                                                  std::size_t i) {
@@ -145,11 +145,12 @@ OKTETT_INLINE Simd<float, W, A> highlight_powers(const Simd<float, W, A>& highli
   x.store(cosine), power.store(lanes);
   for (int k = 0; k < W; ++k)
     if (c.exponent[i + k] == ShadingMaterial::kAnyPower)
-      lanes[k] = highlight_power(cosine[k], c.phong[i + k]);
+      lanes[k] = static_cast<float>(phong_power(cosine[k], c.phong[i + k]));
   return F::load(lanes);
 }
 
-/// phong_sum in lanes, for hits i ... of the columns.
+/// Colour * diffuse * cos(n, l) + specular colour * specular * max(0, r . v)^phong (Phong 1975) for hits
+/// i ... of the columns, where the light is in front of the surface; both sides of a surface are lit alike.
 template <class F>
 OKTETT_INLINE Vec3<F> phong_sums(const PhongCosines<F>& at, const ShadingColumns& c, std::size_t i) {
   const F zero(0.0f), specular = F::load(c.specular + i);
@@ -159,6 +160,17 @@ OKTETT_INLINE Vec3<F> phong_sums(const PhongCosines<F>& at, const ShadingColumns
   if (none(shines)) return sum;
   const F shine = specular * highlight_powers(at.highlight, c, i);
   return select_lanes(shines, add_lanes(sum, scale_lanes(load_lanes<F>(c.specular_color, i), shine)), sum);
+}
+
+/// What the profile of a light gives in the directions away from it, -l.
+template <class F>
+OKTETT_INLINE F profile_values(const AimedProfile& profile, const Vec3<F>& l) {
+  float x[F::kWidth], y[F::kWidth], z[F::kWidth], value[F::kWidth];
+  l.x.store(x);
+  l.y.store(y);
+  l.z.store(z);
+  for (int k = 0; k < F::kWidth; ++k) value[k] = profile(-Vec3d(Vec3f{x[k], y[k], z[k]}));
+  return F::load(value);
 }
 
 template <class A>
@@ -179,6 +191,7 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
         const F cosine = -dot_lanes(l, broadcast<F>(light.axis));
         color = scale_lanes(color, spot_share(cosine, light.cos_inner, light.cos_outer));
       }
+      if (light.profile.profile != nullptr) color = scale_lanes(color, profile_values(light.profile, l));
       if (light.glows) color = scale_lanes(color, glow(l, light, target));
     }
     const PhongCosines<F> at =

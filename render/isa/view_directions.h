@@ -6,7 +6,7 @@
 #include "core/double_lanes.h"
 #include "core/lanes.h"
 #include "core/quotients.h"
-#include "render/transport/view_directions.h"
+#include "render/transport/render_code.h"
 
 namespace oktett {
 

@@ -58,11 +58,6 @@ class Caustics {
   std::uint32_t depth_;
 };
 
-/// Whether the settings ask for photons.
-inline bool wants_photons(const IntegratorSettings& settings) {
-  return settings.kind == IntegratorKind::path && settings.caustics.photons > 0;
-}
-
 /// What photons the settings ask for, in a scene of so many moments.
 PhotonPlan photon_plan(const IntegratorSettings& settings, std::uint32_t moments = 1);
 

@@ -6,27 +6,22 @@
 
 namespace oktett {
 
-/// Shades the hit `p` of entry `ray` of `wavefront.rays`. Light that needs no further ray is added to
-/// entry `ray` of `wavefront.radiance`. Shadow rays are queued for light that depends on visibility, and rays
-/// of the next bounce are queued.
-using Integrator = void (*)(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                            const ShadingPoint& p);
+/// What an integrator is: how it shades, and what it needs to be ready. Exactly one of the first two
+/// functions is set. They add light that needs no further ray to `wavefront.radiance`, and queue shadow rays
+/// for light that depends on visibility, and the rays of the next bounce.
+struct Integrator {
+  /// Shades the hit `p` of entry `ray` of `wavefront.rays`.
+  void (*shade)(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
+  /// Shades the hits of rays `which[0]` ... `which[count - 1]`, whose surface interactions are `found`, and
+  /// records first hits. The bits of a hit do not depend on the others.
+  void (*shade_block)(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
+                      std::size_t count, const InteractionBlock& found);
+};
 
-Integrator integrator_for(IntegratorKind kind);
-
-/// Whether the integrator asks for random numbers of a sample.
-inline bool draws_random_numbers(IntegratorKind kind) {
-  return kind == IntegratorKind::path || kind == IntegratorKind::ao;
-}
+const Integrator& integrator(IntegratorKind kind);
 
 /// Recursive ray tracing after Whitted (1980) with Phong's illumination model, mirrors, and dielectrics by
 /// Snell's and Fresnel's laws; see Material for the sum.
-void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                   const ShadingPoint& p);
-
-/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
-/// `found`, with the same bits as shade_whitted, in lanes. Records no first hits, so it serves pictures
-/// without data layers.
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found);
 
@@ -47,16 +42,8 @@ void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
 /// expected value of a pixel is its light, but for two conventions. Light from points passes glass straight,
 /// as no ray could find it otherwise. Ambient light is left out, since it stands for the indirect light that
 /// path tracing computes.
-void shade_path(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// Shades the hits of rays `which[0]` ... `which[count - 1]` of the wavefront, whose surface interactions are
-/// `found`, with the same bits as shade_path, in lanes, and records first hits.
 void shade_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                       std::size_t count, const InteractionBlock& found);
-
-/// Whether hits are shaded in blocks: by shade_whitted_block or shade_path_block. Paths that ask photons are
-/// not.
-bool shades_in_blocks(const RenderContext& context);
 
 /// Which queue of a Wavefront holds the shadow rays of path tracing to lights that other rays can meet.
 inline constexpr std::size_t kAreaQueue = 1;

@@ -1,14 +1,15 @@
 #include "render/transport/medium_paths.h"
 
 #include <algorithm>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "render/medium/phase.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
-#include "render/transport/path_choices.h"
+#include "render/transport/path.h"
+#include "render/transport/path_shading.h"
 
 namespace oktett {
 
@@ -70,34 +71,91 @@ void pass_media(const RenderContext& context, Wavefront& wavefront) {
   }
 }
 
-/// Shades the place where entry `ray` is scattered.
-static void shade_scattering(const RenderContext& context, Wavefront& wavefront, const MediumEvent& event) {
-  const Choices choices(wavefront, event.ray);
-  const Ray ray = wavefront.rays.rays[event.ray];
-  const float anisotropy = context.media[event.medium].anisotropy();
-  LightPoint from;
-  from.position = ray.origin + ray.direction * static_cast<float>(event.passage.t);
-  const EnclosureStack around = wavefront.paths.enclosures[event.ray];
-  const Color throughput = event.passage.throughput;
-  if (const std::optional<LightSample> light = choose_light(context, from, choices)) {
-    const float value = phase_value(ray.direction, light->direction, anisotropy);
-    const Color arriving = light_found(context, throughput, *light, {Color{value, value, value}, value});
-    queue_light(wavefront, event.ray, from.position, from, *light, arriving, light->delta, &around);
+namespace {
+
+/// How a medium scatters light, in world space: what PathShading needs, for one place.
+class MediumScattering {
+ public:
+  using D = Simd<double, 1, ScalarIsa>;
+  using F = FloatsOf<D>;
+  using Surface = float;  ///< the anisotropy
+  static constexpr bool kAtSurface = false;
+
+  MediumScattering(float anisotropy, bool, const Vec3<F>& direction, const Vec3<F>&, const Vec3<F>&)
+      : direction_(only_lane(direction)), anisotropy_(anisotropy) {}
+
+  Vec3<F> to_local(const Vec3<F>& l) const { return l; }
+  F::M may_scatter(const Vec3<F>&, const Vec3<F>&) const { return F::M::all_true(); }
+  BsdfValues<D> evaluate(const Vec3<F>& l) const {
+    const F value(phase_value(direction_, only_lane(l), anisotropy_));
+    return {{value, value, value}, value};
   }
-  const Vec3f direction = phase_direction(ray.direction, anisotropy, choices.point(Decision::direction));
-  Color onward = throughput;
-  if (!survives(wavefront, event.ray, choices, onward, onward)) return;
-  push_bounce(wavefront, wavefront.next, event.ray, from.position, direction, onward, Bounce::reflected);
-  wavefront.next_paths.push_back(phase_value(ray.direction, direction, anisotropy), from, false, &around);
+  BsdfSamples<D> sample(const D&, const D& x, const D& y) const {
+    const Vec3f onward = phase_direction(direction_, anisotropy_, {only_lane(x), only_lane(y)});
+    BsdfSamples<D> s;
+    s.direction = broadcast<F>(onward);
+    s.weight = {F(1.0f), F(1.0f), F(1.0f)};
+    s.pdf = F(phase_value(direction_, onward, anisotropy_));
+    s.found = F::M::all_true();
+    s.transmitted = ~s.found;
+    return s;
+  }
+
+ private:
+  Vec3f direction_;
+  float anisotropy_;
+};
+
+/// Shades the places where light is scattered.
+void shade_scattering(const RenderContext& context, Wavefront& wavefront,
+                      std::span<const MediumEvent* const> events) {
+  InteractionBlock found;
+  PathBlock c;
+  c.count = events.size();
+  std::uint32_t which[PathBlock::kMost], all[PathBlock::kMost];
+  for (std::size_t k = 0; k < PathBlock::kMost; ++k) {
+    const MediumEvent& event = *events[std::min(k, events.size() - 1)];
+    const Ray ray = wavefront.rays.rays[event.ray];
+    SurfaceInteraction place;
+    place.position = ray.origin + ray.direction * static_cast<float>(event.passage.t);
+    place.geometric_normal = place.shading_normal = -ray.direction;
+    found.set_shape(k, place);
+    which[k] = event.ray;
+    all[k] = static_cast<std::uint32_t>(k);
+  }
+  begin_path_block(context, wavefront, which, found, c);
+  for (std::size_t k = 0; k < c.count; ++k) {
+    InteractionBlock::put(c.throughput, k, events[k]->passage.throughput);
+    c.light_kind[k] = LightKind::none;
+    c.from[k] = {};
+    c.from[k].position = InteractionBlock::get(found.position, k);
+  }
+  choose_lights(context, wavefront, all, c.count, c);
+  PathOutput output(wavefront, c.count);
+  for (std::uint32_t k = 0; k < c.count; ++k) {
+    const EnclosureStack* const around = &wavefront.paths.enclosures[c.ray[k]];
+    const float anisotropy = context.media[events[k]->medium].anisotropy();
+    output.shade_alone(c, k, around, around, false, [&](PathQueues& out) {
+      shade_path_run<MediumScattering>(found, path_rays(wavefront), c, anisotropy, true, {&k, 1}, out);
+    });
+  }
+  output.finish();
 }
 
+}  // namespace
+
 void shade_media(const RenderContext& context, Wavefront& wavefront) {
+  std::vector<const MediumEvent*> scattering;
   for (const MediumEvent& event : wavefront.medium_events) {
     wavefront.radiance.add(event.ray, event.passage.emitted);
     add_to_layer(wavefront, event.ray, 0, event.passage.emitted);
     if (event.passage.scattered && wavefront.rays.bounces[event.ray] <= context.settings.depth)
-      shade_scattering(context, wavefront, event);
+      scattering.push_back(&event);
   }
+  for (std::size_t first = 0; first < scattering.size(); first += PathBlock::kMost)
+    shade_scattering(
+        context, wavefront,
+        std::span(scattering).subspan(first, std::min(PathBlock::kMost, scattering.size() - first)));
 }
 
 }  // namespace oktett

@@ -4,27 +4,31 @@
 #include <cstdint>
 
 #include "accel/interaction_block.h"
-#include "render/bsdf/phong_lobes.h"
-#include "render/bsdf/principled_surface.h"
 #include "render/light/light_sample.h"
+#include "render/path_surface.h"
 
 namespace oktett {
 
-/// One side of a material, prepared for path tracing. Entry 2 m is the front of World::materials[m], entry
-/// 2 m + 1 its back.
-struct PathSurface {
-  bool alone = false;       ///< textures: its hits are shaded one by one
-  bool principled = false;  ///< which of the following holds
-  bool transmits = false;   ///< light may pass to the other side
-  bool only_delta = false;  ///< no light can be sampled
-  bool glows = false;       ///< the material emits light on one side at least
-  Color emission{0, 0, 0};
-  PhongSurface phong;
-  PrincipledSurface layers;
-};
+/// Bounces before Russian roulette begins. From then on a path goes on with the square root of its throughput
+/// as probability: the noise of bounces grows less than the time falls. The root, as short paths bring most
+/// of the noise, and long ones most of the time. At mirrors and clear glass what they alone leave of the
+/// light takes the place of the throughput: a path through clear glass to an emitter brings much light, and
+/// no light sample replaces it.
+inline constexpr unsigned kSureBounces = 2;
+
+/// tmax of a shadow ray over the vector to a point on a light: it ends before the light's surface, whose
+/// place is known to a few units in the last place of its coordinates only. It is 1 less the larger of
+/// kLeastGap and of kPlaceError times the greatest coordinate over the distance, but no more than half.
+inline constexpr float kPlaceError = 0x1p-20f, kLeastGap = 0x1p-13f;
 
 /// What a light sample is for its hit.
-enum class LightKind : std::uint8_t { none, delta, area };
+enum class LightKind : std::uint8_t {
+  none,
+  delta,            ///< a light that no other ray can meet
+  left_to_photons,  ///< the same, but photons bring its light through glass, so that it must not pass
+                    ///< straight
+  area
+};
 
 /// The hits of an InteractionBlock, with their rays, random numbers and light samples. Lanes read whole
 /// groups, so entries behind the last hit, up to the end of its group, hold copies of it.

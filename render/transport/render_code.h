@@ -7,12 +7,26 @@
 #include "render/transport/color_column.h"
 #include "render/transport/path_block.h"
 #include "render/transport/path_lights.h"
-#include "render/transport/view_directions.h"
 
 namespace oktett {
 
+/// The image plane in front of a pinhole camera.
+struct ViewPlane {
+  Vec3d corner;                    ///< from the pinhole to the point (0, 0)
+  Vec3d per_pixel_x, per_pixel_y;  ///< from a point to its neighbours
+};
+
+/// Points (x[i], y[i]) of a plane, and the columns that receive the unit vectors from the pinhole to them.
+struct ViewPoints {
+  const double* x = nullptr;
+  const double* y = nullptr;
+  std::size_t count = 0;
+  float* direction[3] = {};
+};
+
 struct RenderCode {
   std::size_t whitted_lanes, path_lanes;  ///< hits that are shaded at once
+  /// direction = normalize(corner + x * per_pixel_x + y * per_pixel_y), computed in double and rounded once.
   void (*view_directions)(const ViewPlane&, const ViewPoints&);
   /// Sets origins and directions of the rays to those that camera_ray gives for a camera with a lens.
   void (*lens_rays)(const CameraFrame&, const FilmPoints&, RayBatch&);

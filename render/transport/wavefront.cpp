@@ -9,7 +9,7 @@
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/medium_paths.h"
-#include "render/transport/path_emission.h"
+#include "render/transport/path.h"
 #include "render/transport/penumbra.h"
 #include "render/transport/render_code.h"
 #include "render/transport/shadow.h"
@@ -31,7 +31,7 @@ void find_hits(const RenderContext& context, Wavefront& wavefront) {
 void add_environment(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* misses,
                      std::size_t count) {
   constexpr std::size_t kMost = EnvironmentValues::kMost;
-  const bool path = context.settings.kind == IntegratorKind::path && wavefront.level > 0;
+  const bool path = traits(context.settings.kind).traces_paths && wavefront.level > 0;
   float direction[3][kMost] = {};
   LightPoint from[kMost];
   for (std::size_t k = 0; k < count; ++k) {
@@ -98,7 +98,7 @@ void cover_background(const RenderContext& context, Wavefront& wavefront) {
 /// Traces the queued shadow rays. Each ray receives its light in a fixed order: by light, then by queue
 /// entry.
 void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
-  const bool path = context.settings.kind == IntegratorKind::path;
+  const bool path = traits(context.settings.kind).traces_paths;
   const std::size_t lights = context.area_lights.empty() ? wavefront.shadows.size() : context.lights.size();
   for (std::size_t n = 0; n < lights; ++n) {
     ShadowQueue& queue = wavefront.shadows[n];
@@ -126,12 +126,12 @@ class HitShader {
   HitShader(const RenderContext& context, Wavefront& wavefront)
       : context_(context),
         wavefront_(wavefront),
-        integrator_(integrator_for(context.settings.kind)),
-        in_blocks_(shades_in_blocks(context)) {}
+        integrator_(integrator(context.settings.kind)),
+        block_(context.one_by_one ? 1 : kShadeBlock) {}
 
   void shade(std::span<const std::uint32_t> hits) {
-    for (std::size_t first = 0; first < hits.size(); first += kShadeBlock) {
-      shade_block(hits.subspan(first, std::min(kShadeBlock, hits.size() - first)));
+    for (std::size_t first = 0; first < hits.size(); first += block_) {
+      shade_block(hits.subspan(first, std::min(block_, hits.size() - first)));
       if (shadows_are_full(wavefront_)) flush_shadows(context_, wavefront_);
     }
     flush_shadows(context_, wavefront_);
@@ -141,36 +141,32 @@ class HitShader {
   void shade_block(std::span<const std::uint32_t> which) {
     surface_interactions(*context_.world->accel, wavefront_.rays.rays, wavefront_.hits, which, found_,
                          context_.isa, shows_uv(which));
-    if (in_blocks_) {
-      const bool path = context_.settings.kind == IntegratorKind::path;
-      return (path ? shade_path_block : shade_whitted_block)(context_, wavefront_, which.data(), which.size(),
-                                                             found_);
-    }
-    const bool draws_holes = context_.settings.kind == IntegratorKind::path;
+    if (integrator_.shade_block != nullptr)
+      return integrator_.shade_block(context_, wavefront_, which.data(), which.size(), found_);
     for (std::size_t k = 0; k < which.size(); ++k) {
       const std::uint32_t i = which[k];
       const bool from_camera = wavefront_.rays.from_camera[i] != 0;
       const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
                                            {wavefront_.rays.distance[i], from_camera}, found_[k]);
-      if (from_camera && !draws_holes) {
+      if (from_camera) {
         record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
         cover(context_, wavefront_, i, p.opacity);
       }
-      integrator_(context_, wavefront_, i, p);
+      integrator_.shade(context_, wavefront_, i, p);
     }
   }
 
   /// Whether uv of these hits is part of the picture.
   bool shows_uv(std::span<const std::uint32_t> which) const {
     const auto from_camera = [&](std::uint32_t i) { return wavefront_.rays.from_camera[i] != 0; };
-    return context_.settings.kind == IntegratorKind::uv ||
+    return traits(context_.settings.kind).uv ||
            (context_.data_layers && std::ranges::any_of(which, from_camera));
   }
 
   const RenderContext& context_;
   Wavefront& wavefront_;
-  Integrator integrator_;
-  bool in_blocks_;
+  const Integrator& integrator_;
+  std::size_t block_;  ///< hits that are shaded together
   InteractionBlock found_;
 };
 

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "render/context.h"
-#include "render/render.h"
+#include "render/render_options.h"
 #include "render/shading_point.h"
+#include "render/transport/path_block.h"
 #include "render/transport/ray_queue.h"
 
 namespace oktett {
@@ -66,6 +67,14 @@ struct MediumEvent {
   MediumPassage passage;
 };
 
+/// A hit of a PathBlock that has a surface of its own.
+struct LoneHit {
+  std::uint32_t entry = 0;  ///< of the block
+  PathSurface surface;
+  ShadingPoint point;
+  Boundary boundary;  ///< if the scene tracks enclosures
+};
+
 /// The rays of one bounce of some samples, and what is kept for the next bounce. The result of a sample does
 /// not depend on the other samples of its wavefront: each ray sums its light in a fixed order, and a sample
 /// sums its rays in the order of the queue, which other samples do not change.
@@ -91,6 +100,7 @@ struct Wavefront {
   std::vector<std::uint32_t> penumbra;
   ShadowQueue penumbra_shadows;
   std::vector<MediumEvent> medium_events;  ///< of rays that are scattered or find light in media
+  std::vector<LoneHit> lone_hits;          ///< of the present block
   Column<std::uint32_t> hit_rays;          ///< entries of `rays` that hit something
   Column<double> film_x, film_y;           ///< where the camera rays pass the film
   Column<double> lens_x, lens_y;           ///< and the lens, as in FilmPoints

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <bit>
 
+#include "accel/accel.h"
 #include "accel/accel_data.h"
 #include "core/math.h"
-#include "render/specular.h"
-#include "render/transport/direct_light.h"
+#include "render/shading_lanes.h"
 #include "render/transport/integrators.h"
 #include "render/transport/render_code.h"
 
@@ -15,23 +15,6 @@ namespace {
 constexpr std::uint16_t kMostRaysPerLevel = 256;
 /// The limit cannot be met below this bounce: a hit sends at most three rays, and 3^5 = 243.
 constexpr unsigned kFirstLimitedLevel = 5;
-
-/// Whether a ray of this throughput may be queued for the sample of entry `ray`. Counts it.
-bool admit(Wavefront& wavefront, std::size_t ray, const Color& throughput) {
-  if (max_component(throughput) < kLeastThroughput) return false;
-  std::uint16_t& spawned = wavefront.samples.spawned[wavefront.rays.sample[ray]];
-  if (spawned >= kMostRaysPerLevel) return false;
-  ++spawned;
-  return true;
-}
-
-/// Queues the ray that leaves `p` if it is worth it.
-void push_admitted(Wavefront& wavefront, std::size_t ray, const ShadingPoint& p, const Vec3f& direction,
-                   const Color& throughput, Bounce bounce) {
-  if (!admit(wavefront, ray, throughput)) return;
-  RayQueue& queue = bounce == Bounce::refracted ? wavefront.refracted : wavefront.next;
-  push_bounce(wavefront, queue, ray, p, direction, throughput, bounce);
-}
 
 /// The part of the light that passes the interior of the solid that a ray leaves at `p` (Beer's law).
 Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
@@ -45,22 +28,6 @@ Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
 void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                const Color& throughput) {
   wavefront.radiance.add(ray, throughput * (p.emission + p.color * p.values.ambient * context.ambient_light));
-}
-
-/// Queues the rays that leave a hit: straight through holes, mirrored and refracted.
-void push_bounces(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                  const ShadingPoint& p) {
-  const Color arriving = wavefront.rays.throughput[ray], throughput = arriving * p.opacity;
-  if (p.opacity < 1)
-    push_admitted(wavefront, ray, p, p.direction, arriving * (1 - p.opacity), Bounce::straight);
-  if (wavefront.rays.bounces[ray] >= context.settings.depth) return;
-  const SpecularRays specular = specular_rays(p);
-  if (!is_black(specular.mirror))
-    push_admitted(wavefront, ray, p, specular.mirror_direction, throughput * specular.mirror,
-                  Bounce::reflected);
-  if (!is_black(specular.refracted))
-    push_admitted(wavefront, ray, p, specular.refracted_direction, throughput * specular.refracted,
-                  Bounce::refracted);
 }
 
 /// Names the rays and materials of the hits. The last is repeated to the end of its group of lanes.
@@ -87,17 +54,25 @@ ShadedRays shaded_rays(Wavefront& wavefront) {
 /// Sets what varies over a surface, for hit `k`.
 void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, ShadingColumns& c) {
   InteractionBlock::put(c.throughput, k, throughput);
-  InteractionBlock::put(c.color, k, p.color), InteractionBlock::put(c.specular_color, k, p.specular_color);
-  InteractionBlock::put(c.ng, k, p.ng), InteractionBlock::put(c.ns, k, p.ns);
-  c.diffuse[k] = p.values.diffuse, c.specular[k] = p.values.specular, c.phong[k] = p.values.phong;
-  c.reflection[k] = p.values.reflection;
+  InteractionBlock::put(c.color, k, p.color);
+  InteractionBlock::put(c.specular_color, k, p.specular_color);
+  InteractionBlock::put(c.ng, k, p.ng);
+  InteractionBlock::put(c.ns, k, p.ns);
+  c.diffuse[k] = p.values.diffuse;
+  c.specular[k] = p.values.specular;
+  c.phong[k] = p.values.phong;
   c.exponent[k] = highlight_exponent(p.values.specular, p.values.phong);
+  c.reflection[k] = p.values.reflection;
+  c.transparency[k] = p.values.transparency;
+  c.eta[k] = p.front ? p.ior : 1 / p.ior;
+  // A texture may make a mirror of what is none elsewhere.
+  if (p.values.reflection != 0 || p.values.transparency != 0) c.sending |= std::uint64_t{1} << k;
 }
 
-/// What hit `k` needs beyond lanes: its textures, and the rays that leave it. Returns what the interior that
-/// the ray comes through leaves of its light.
-OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wavefront,
-                                   const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
+/// Finishes the columns of hit `k`, whose material varies, and adds its light that needs no lamp. Returns the
+/// light that passes straight through holes.
+OKTETT_NOINLINE Color finish_varying(const RenderContext& context, Wavefront& wavefront,
+                                     const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
   const std::uint32_t i = c.ray[k];
   const bool from_camera = wavefront.rays.from_camera[i] != 0;
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
@@ -107,14 +82,11 @@ OKTETT_NOINLINE Color finish_alone(const RenderContext& context, Wavefront& wave
     cover(context, wavefront, i, p.opacity);
   }
   const Color left = passing_interior(context, p);
-  if (context.materials[c.material[k]].varies) {
-    const Color throughput = wavefront.rays.throughput[i] * p.opacity;
-    add_unlit(context, wavefront, i, p, throughput * left);
-    put_varying(p, throughput, k, c);
-  }
   if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(i, wavefront.rays.throughput[i] * left);
-  push_bounces(context, wavefront, i, p);
-  return left;
+  const Color arriving = wavefront.rays.throughput[i], throughput = arriving * p.opacity;
+  add_unlit(context, wavefront, i, p, throughput);
+  put_varying(p, throughput, k, c);
+  return p.opacity < 1 ? arriving * (1 - p.opacity) : Color{0, 0, 0};
 }
 
 /// Adds hit `k`, on a material that does not vary, to alpha and the data layers if its ray is a camera ray.
@@ -129,20 +101,23 @@ void record_camera_hit(const RenderContext& context, Wavefront& wavefront, const
                                  {wavefront.rays.distance[i], true}, found[k]));
 }
 
+/// Whether one more ray may be queued for the sample of entry `ray`. Counts it.
+bool admit(Wavefront& wavefront, std::size_t ray) {
+  std::uint16_t& spawned = wavefront.samples.spawned[wavefront.rays.sample[ray]];
+  if (spawned >= kMostRaysPerLevel) return false;
+  ++spawned;
+  return true;
+}
+
 /// Takes out rays beyond the depth of the picture or the limit of rays per sample.
 void limit_bounces(const RenderContext& context, Wavefront& wavefront, const ShadingColumns& c,
                    BounceColumns& mirrored, BounceColumns& refracted) {
   if (wavefront.level < std::min(context.settings.depth, kFirstLimitedLevel)) return;
   for (std::size_t k = 0; k < c.count; ++k) {
     const bool deep = wavefront.rays.bounces[c.ray[k]] >= context.settings.depth;
-    std::uint16_t& spawned = wavefront.samples.spawned[wavefront.rays.sample[c.ray[k]]];
-    for (BounceColumns* b : {&mirrored, &refracted}) {
-      if ((b->sent >> k & 1) == 0) continue;
-      if (deep || spawned >= kMostRaysPerLevel)
+    for (BounceColumns* b : {&mirrored, &refracted})
+      if ((b->sent >> k & 1) != 0 && (deep || !admit(wavefront, c.ray[k])))
         b->sent &= ~(std::uint64_t{1} << k);
-      else
-        ++spawned;
-    }
   }
 }
 
@@ -168,14 +143,39 @@ void queue_bounces(const RenderContext& context, const Wavefront& wavefront, con
   queue.resize_uninitialized(end);
 }
 
-/// Queues the mirrored and refracted rays of hits on materials that do not vary, of which the columns know
-/// all.
+/// Queues the rays that leave holes, mirrors and glass one by one, as those of a sample follow the order of
+/// its hits. `straight`: the light that passes holes.
+void queue_in_order(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
+                    const ShadingColumns& c, const Color* straight, const BounceColumns& mirrored,
+                    const BounceColumns& refracted) {
+  for (std::size_t k = 0; k < c.count; ++k) {
+    const std::uint32_t i = c.ray[k];
+    if (max_component(straight[k]) >= kLeastThroughput && admit(wavefront, i)) {
+      const Vec3f direction = InteractionBlock::get(c.direction, k);
+      push_bounce(wavefront, wavefront.next, i, offset_origin(found[k], direction), direction, straight[k],
+                  Bounce::straight);
+    }
+    if (wavefront.rays.bounces[i] >= context.settings.depth) continue;
+    const auto push = [&](const BounceColumns& sent, RayQueue& queue, Bounce bounce) {
+      if ((sent.sent >> k & 1) == 0 || !admit(wavefront, i)) return;
+      push_bounce(wavefront, queue, i, InteractionBlock::get(sent.origin, k),
+                  InteractionBlock::get(sent.direction, k), InteractionBlock::get(sent.throughput, k),
+                  bounce);
+    };
+    push(mirrored, wavefront.next, Bounce::reflected);
+    push(refracted, wavefront.refracted, Bounce::refracted);
+  }
+}
+
+/// Queues the rays that leave the hits of a block. `straight` is null if there are no holes.
 void push_bounces(const RenderContext& context, Wavefront& wavefront, const InteractionBlock& found,
-                  const ShadingColumns& c) {
+                  const ShadingColumns& c, const Color* straight) {
   const auto deep = [&](std::uint32_t ray) { return wavefront.rays.bounces[ray] >= context.settings.depth; };
-  if (std::all_of(c.ray, c.ray + c.count, deep)) return;
+  const bool sends = c.sending != 0 && !std::all_of(c.ray, c.ray + c.count, deep);
   BounceColumns mirrored, refracted;
-  render_code(context.isa).bounce_rays(found, c, mirrored, refracted);
+  if (sends) render_code(context.isa).bounce_rays(found, c, mirrored, refracted);
+  if (straight != nullptr) return queue_in_order(context, wavefront, found, c, straight, mirrored, refracted);
+  if (!sends) return;
   limit_bounces(context, wavefront, c, mirrored, refracted);
   queue_bounces(context, wavefront, c, mirrored, wavefront.next);
   queue_bounces(context, wavefront, c, refracted, wavefront.refracted);
@@ -209,17 +209,6 @@ std::uint32_t pattern_of(const RenderContext& context, const Wavefront& wavefron
 
 }  // namespace
 
-void shade_whitted(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                   const ShadingPoint& p) {
-  const Color left = passing_interior(context, p);
-  if (!(left == Color{1, 1, 1})) wavefront.rays.throughput.set(ray, wavefront.rays.throughput[ray] * left);
-  const Color throughput = wavefront.rays.throughput[ray] * p.opacity;
-  add_unlit(context, wavefront, ray, p, throughput);
-  add_direct_light(context, p, throughput, pattern_of(context, wavefront, ray),
-                   static_cast<std::uint32_t>(ray), wavefront.shadows);
-  push_bounces(context, wavefront, ray, p);
-}
-
 void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                          std::size_t count, const InteractionBlock& found) {
   ShadingColumns c;
@@ -227,19 +216,16 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   name_hits(context, which, found, c);
   count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
   render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
-  const bool alone = c.varying != 0, sends = c.sending != 0;
-  // The rays of a sample must be queued in the order of its hits: one by one if any of them is.
-  if (!alone && sends) push_bounces(context, wavefront, found, c);
   const bool records = context.data_layers || !context.all_opaque;
-  for (std::size_t k = 0; k < count && (alone || records); ++k) {
-    if (!alone || ((c.varying | c.sending) >> k & 1) == 0) {
-      record_camera_hit(context, wavefront, found, k, c);
-      continue;
-    }
-    const Color left = finish_alone(context, wavefront, found[k], k, c);
-    if (!(left == Color{1, 1, 1}))
-      InteractionBlock::put(c.throughput, k, InteractionBlock::get(c.throughput, k) * left);
+  Color straight[ShadingColumns::kMost];
+  bool has_holes = false;
+  for (std::size_t k = 0; k < count && (c.varying != 0 || records); ++k) {
+    const bool varies = c.varying >> k & 1;
+    straight[k] = varies ? finish_varying(context, wavefront, found[k], k, c) : Color{0, 0, 0};
+    if (!varies) record_camera_hit(context, wavefront, found, k, c);
+    has_holes = has_holes || !is_black(straight[k]);
   }
+  push_bounces(context, wavefront, found, c, has_holes ? straight : nullptr);
   for (std::size_t n = 0; n < context.lights.size(); ++n)
     push_shadow_rays(context, found, context.lights[n], c, wavefront.shadows[n]);
   const AreaLights& area = context.area_lights;
@@ -285,14 +271,6 @@ void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
     return shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                          {wavefront.rays.distance[i], from_camera}, found[k]);
   };
-  if (!shades_in_blocks(context)) {
-    for (std::size_t k = 0; k < which.size(); ++k) {
-      const ShadingPoint p = point_at(k);
-      const Color throughput = wavefront.rays.throughput[which[k]] * p.opacity;
-      for_other_points([&](const LightSource& point) { add_light(p, throughput, point, which[k], queue); });
-    }
-    return;
-  }
   ShadingColumns c;
   c.count = which.size();
   name_hits(context, which.data(), found, c);

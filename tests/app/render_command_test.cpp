@@ -11,7 +11,7 @@
 #include "core/isa.h"
 #include "io/image/image.h"
 #include "io/scene/scene_file.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "tests/app/run_command.h"
 #include "tests/support/temp_dir.h"
 

@@ -18,7 +18,7 @@ constexpr Vec3f kUp{0, 0, 1};
 
 TEST(Optics, MirrorKeepsTheAngle) {
   for (double angle = 0; angle < 1.57; angle += 0.01) {
-    const Vec3f d = incoming(angle), r = reflect(d, kUp);
+    const Vec3f d = incoming(angle), r = reflect_above(d, kUp, kUp);
     EXPECT_NEAR(r.x, d.x, 1e-6f);
     EXPECT_NEAR(r.z, -d.z, 1e-6f);
   }

@@ -1,4 +1,4 @@
-#include "render/render.h"
+#include "render/picture/render.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/isa.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 
 namespace oktett::test {
 

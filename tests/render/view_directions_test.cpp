@@ -1,4 +1,4 @@
-#include "render/transport/view_directions.h"
+#include "render/transport/render_code.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ TEST(ViewRays, AreUnitVectorsToThePointsForAnyNumberOfThem) {
       }
       std::vector<float> d[3];
       for (auto& column : d) column.assign(count + 1, 77);
-      view_directions(plane, {x.data(), y.data(), count, {d[0].data(), d[1].data(), d[2].data()}}, isa);
+      render_code(isa).view_directions(plane,
+                                       {x.data(), y.data(), count, {d[0].data(), d[1].data(), d[2].data()}});
       for (std::size_t i = 0; i < count; ++i) {
         const Vec3f expected(normalize(plane.corner + plane.per_pixel_x * x[i] + plane.per_pixel_y * y[i]));
         for (int k = 0; k < 3; ++k) ASSERT_TRUE(same(d[k][i], expected[k])) << i << " of " << count;

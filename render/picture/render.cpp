@@ -1,4 +1,4 @@
-#include "render/render.h"
+#include "render/picture/render.h"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "render/prepared_scene.h"
+#include "render/picture/prepared_scene.h"
 
 namespace oktett {
 

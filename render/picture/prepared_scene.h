@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "render/geometry.h"
-#include "render/render.h"
+#include "render/picture/render.h"
 #include "render/scene.h"
 #include "render/scene_lights.h"
 

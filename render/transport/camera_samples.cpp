@@ -30,7 +30,7 @@ void centre_samples(const RenderContext& context, std::span<const WavefrontPixel
   }
   std::fill_n(s.number.data(), count, 0u);
   std::fill_n(s.offset.data(), count, Vec2f{0, 0});
-  if (draws_random_numbers(context.settings.kind))
+  if (traits(context.settings.kind).random_numbers)
     for (std::size_t i = 0; i < count; ++i) s.key[i] = key_of(context, pixels[i]);
 }
 
@@ -115,13 +115,31 @@ void choose_patterns(const RenderContext& context, std::span<const WavefrontPixe
 
 }  // namespace
 
+void camera_rays(const CameraFrame& camera, const FilmPoints& points, RayBatch& rays, Isa isa) {
+  const std::size_t count = rays.size();
+  const Ray like;
+  std::fill_n(rays.tmin.data(), count, like.tmin);
+  std::fill_n(rays.tmax.data(), count, like.tmax);
+  if (camera.lens_radius > 0) return render_code(isa).lens_rays(camera, points, rays);
+  if (camera.projection != Projection::perspective) {
+    for (std::size_t i = 0; i < count; ++i) rays.set(i, camera_ray(camera, points.x[i], points.y[i]));
+    return;
+  }
+  const Vec3f origin(camera.origin);
+  for (int k = 0; k < 3; ++k) std::fill_n(rays.origin[k].data(), count, origin[k]);
+  float* const directions[3] = {rays.direction[0].data(), rays.direction[1].data(), rays.direction[2].data()};
+  render_code(isa).view_directions(
+      {camera.corner, camera.per_pixel_x, camera.per_pixel_y},
+      {points.x.data(), points.y.data(), count, {directions[0], directions[1], directions[2]}});
+}
+
 void start_wavefront(const RenderContext& context, std::span<const WavefrontPixel> pixels,
                      std::uint32_t first, std::uint32_t last, Wavefront& wavefront) {
   const std::size_t count = pixels.size() * (last - first);
   wavefront.level = 0;
   wavefront.whole_pixels = last - first == context.settings.samples;
   wavefront.next.clear();
-  const bool path = context.settings.kind == IntegratorKind::path;
+  const bool path = traits(context.settings.kind).traces_paths;
   const std::size_t lights = context.lights.size() + context.area_lights.samples;
   wavefront.shadows.resize(path ? kAreaQueue + 1 : std::max<std::size_t>(1, lights));
   wavefront.film_x.resize_uninitialized(count), wavefront.film_y.resize_uninitialized(count);

@@ -1,4 +1,4 @@
-#include "render/prepared_scene.h"
+#include "render/picture/prepared_scene.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -185,7 +185,7 @@ RenderResult PreparedScene::render(const RenderOptions& options) {
   const Mattes mattes = wants_mattes ? mattes_of(world_) : Mattes{};
   if (wants_mattes) context.mattes = &mattes;
   const LightGroups groups = light_groups(scene_);
-  if (groups.any() && context.settings.kind == IntegratorKind::path && options.data_layers)
+  if (groups.any() && traits(context.settings.kind).traces_paths && options.data_layers)
     context.light_groups = &groups;
   result.picture = make_picture(format_of(context));
   result.picture.attributes = mattes.attributes;

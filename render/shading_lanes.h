@@ -1,12 +1,15 @@
 #pragma once
 /// \file The formulas of local shading, in lanes: which way normals face, the way to a light, Phong's
-/// cosines. Single hits use them with one lane, so a hit gets the same bits alone and in a group.
+/// cosines.
 
 #include "core/affine_lanes.h"
 #include "core/quotients.h"
 #include "render/light_source.h"
 
 namespace oktett {
+
+/// tmax of shadow rays whose direction is the vector to the light: they end just before it.
+inline constexpr float kBeforeLight = 1 - 0x1p-24f;
 
 /// Turns the normals of surfaces towards the origins of rays along `direction`: `n` to `ng`, `shading` to
 /// `ns`. Returns the lanes in which `n` pointed away from the origin.

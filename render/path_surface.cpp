@@ -1,0 +1,85 @@
+#include "render/path_surface.h"
+
+#include "render/surface_textures.h"
+
+namespace oktett {
+
+PhongParameters phong_parameters(const Material& m) {
+  PhongParameters parameters;
+  parameters.color = m.color;
+  parameters.specular_color = m.specular_color;
+  parameters.diffuse = m.diffuse;
+  parameters.specular = m.specular;
+  parameters.phong = m.phong;
+  parameters.reflection = m.reflection;
+  parameters.transparency = m.transparency;
+  parameters.ior = m.ior;
+  return parameters;
+}
+
+PhongParameters phong_parameters(const ShadingPoint& p) {
+  PhongParameters parameters;
+  parameters.color = p.color;
+  parameters.specular_color = p.specular_color;
+  parameters.diffuse = p.values.diffuse;
+  parameters.specular = p.values.specular;
+  parameters.phong = p.values.phong;
+  parameters.reflection = p.values.reflection;
+  parameters.transparency = p.values.transparency;
+  parameters.ior = p.ior;
+  return parameters;
+}
+
+namespace {
+
+void set_lobes(PathSurface& s, const PhongParameters& parameters, bool front) {
+  s.phong = PhongSurface(parameters, front);
+  s.transmits = parameters.transparency > 0;
+  s.only_delta = s.phong.diffuse == Vec3d{} && s.phong.highlight == Vec3d{};
+}
+
+void set_lobes(PathSurface& s, const PrincipledParameters& parameters, bool front) {
+  s.principled = true;
+  s.layers = PrincipledSurface(parameters, front);
+  s.transmits = parameters.transmission > 0;
+  s.only_delta = s.layers.alpha == 0 && s.layers.opaque == 0 && s.layers.sheen == 0 &&
+                 (s.layers.coat == 0 || s.layers.coat_alpha == 0);
+}
+
+PathSurface path_surface(const Material& m, bool front) {
+  PathSurface s;
+  s.alone = has_textures(m) || m.opacity != 1 || !m.surface;
+  s.glows = glows(m);
+  if (front || m.emits_behind) s.emission = m.emission;
+  if (s.alone) return s;
+  if (m.principled) {
+    PrincipledParameters parameters = m.principled->parameters;
+    parameters.base_color = m.color;
+    set_lobes(s, parameters, front);
+  } else {
+    set_lobes(s, phong_parameters(m), front);
+  }
+  return s;
+}
+
+}  // namespace
+
+PathSurface path_surface(const ShadingPoint& p) {
+  PathSurface s;
+  s.glows = glows(*p.material);
+  s.emission = p.emission;
+  if (p.principled)
+    set_lobes(s, *p.principled, p.front);
+  else
+    set_lobes(s, phong_parameters(p), p.front);
+  return s;
+}
+
+std::vector<PathSurface> path_surfaces(const World& world) {
+  std::vector<PathSurface> surfaces;
+  for (const Material& m : world.materials)
+    for (const bool front : {true, false}) surfaces.push_back(path_surface(m, front));
+  return surfaces;
+}
+
+}  // namespace oktett

@@ -1,0 +1,202 @@
+#pragma once
+/// \file Path tracing where light is scattered, in lanes: the light of light samples, and the rays of the
+/// next bounce. A hit that is shaded alone, and a place in a medium, are single lanes.
+
+#include <limits>
+
+#include "accel/surface/offset_origin.h"
+#include "core/double_lanes.h"
+#include "core/picked_lanes.h"
+#include "core/simd_order.h"
+#include "render/bsdf/shading_frame.h"
+#include "render/shading_lanes.h"
+#include "render/transport/path_block.h"
+
+namespace oktett {
+
+/// How surfaces of these lobes scatter light, in world space.
+template <template <class> class Lobes, class Doubles>
+class SurfaceScattering {
+ public:
+  using D = Doubles;
+  using F = FloatsOf<D>;
+  using M = typename F::M;
+  using Surface = typename Lobes<D>::Surface;
+  static constexpr bool kAtSurface = true;
+
+  /// Of rays along `direction`, with the normals of ShadingPoint.
+  OKTETT_INLINE SurfaceScattering(const Surface& surface, bool transmits, const Vec3<F>& direction,
+                                  const Vec3<F>& ng, const Vec3<F>& ns)
+      : frame_(ns, ng), transmits_(transmits), lobes_(surface, frame_.to_local(-direction)) {}
+
+  OKTETT_INLINE Vec3<F> to_local(const Vec3<F>& l) const { return frame_.to_local(l); }
+  /// The lanes in which light from the unit vectors `l` may be scattered.
+  OKTETT_INLINE M may_scatter(const Vec3<F>& l, const Vec3<F>& local) const {
+    return frame_.agrees(l, local, transmits_);
+  }
+  OKTETT_INLINE BsdfValues<D> evaluate(const Vec3<F>& local) const { return lobes_.evaluate(local); }
+  /// Directions are in world space.
+  OKTETT_INLINE BsdfSamples<D> sample(const D& lobe, const D& x, const D& y) const {
+    BsdfSamples<D> s = lobes_.sample(lobe, x, y);
+    frame_.to_world(s);
+    return s;
+  }
+
+ private:
+  ShadingFrame<D> frame_;
+  bool transmits_;
+  Lobes<D> lobes_;
+};
+
+/// Places of one kind of scattering, W at a time.
+template <class Scattering>
+class PathShading {
+ public:
+  using D = typename Scattering::D;
+  using F = FloatsOf<D>;
+  using A = typename D::Isa;
+  using M = typename F::M;
+  static constexpr int W = D::kWidth;
+
+  PathShading(const InteractionBlock& found, const PathRays& rays, const PathBlock& block, bool transmits,
+              PathQueues& out)
+      : found_(found), rays_(rays), c_(block), transmits_(transmits), out_(out) {}
+
+  OKTETT_INLINE void shade(const typename Scattering::Surface& surface, const std::uint32_t* entry,
+                           unsigned real) {
+    entry_ = entry;
+    const PickedLanes<F> at(entry);
+    position_ = load(at, found_.position), error_ = load(at, found_.position_error);
+    n_ = load(at, found_.geometric_normal), throughput_ = load(at, c_.throughput);
+    const Scattering scattering(surface, transmits_, load(at, c_.direction), load(at, c_.ng),
+                                load(at, c_.ns));
+    send_shadow_rays(scattering, at, real);
+    send_onward(scattering, at, real);
+  }
+
+ private:
+  using Column3 = float[3][PathBlock::kMost];
+
+  static OKTETT_INLINE Vec3<F> load(const PickedLanes<F>& at, const Column3& column) {
+    return {at.load(column[0]), at.load(column[1]), at.load(column[2])};
+  }
+  OKTETT_INLINE D load(const double* column) const {
+    double lanes[W];
+    for (int k = 0; k < W; ++k) lanes[k] = column[entry_[k]];
+    return D::load(lanes);
+  }
+  /// Where rays start that leave in these directions.
+  OKTETT_INLINE Vec3<F> origin(const Vec3<F>& direction) const {
+    if constexpr (Scattering::kAtSurface) return offset_lanes(position_, error_, n_, direction);
+    return position_;
+  }
+
+  OKTETT_INLINE void send_shadow_rays(const Scattering& scattering, const PickedLanes<F>& at, unsigned real) {
+    unsigned points = 0, deltas = 0, areas = 0;
+    for (int k = 0; k < W; ++k) {
+      const LightKind kind = c_.light_kind[entry_[k]];
+      points |= (kind == LightKind::delta ? 1u : 0u) << k;
+      deltas |= (kind == LightKind::delta || kind == LightKind::left_to_photons ? 1u : 0u) << k;
+      areas |= (kind == LightKind::area || kind == LightKind::left_to_photons ? 1u : 0u) << k;
+    }
+    const unsigned asked = (points | areas) & real;
+    if (asked == 0) return;
+    const F zero(0.0f), one(1.0f);
+    const Vec3<F> l = load(at, c_.light_direction), local = scattering.to_local(l);
+    const F density = at.load(c_.light_pdf);
+    unsigned lit = bits(scattering.may_scatter(l, local)) & asked;
+    if (lit == 0) return;
+    const BsdfValues<D> value = scattering.evaluate(local);
+    // Veach's power heuristic. Divided first: squares of densities may be too large for a float.
+    const M delta = M::from_bits(deltas);
+    const F ratio = value.pdf / density, weight = select(delta, one, one / (one + ratio * ratio));
+    const Vec3<F> arriving = throughput_ * value.value * load(at, c_.light_color) * (weight / density);
+    lit &= ~bits((arriving.x == zero) & (arriving.y == zero) & (arriving.z == zero));
+    if (lit == 0) return;
+    const Vec3<F> start = origin(l);
+    const F distance = at.load(c_.light_distance);
+    const M near = distance < F(std::numeric_limits<float>::infinity());
+    const Vec3<F> place = position_ + l * distance;
+    const Vec3<F> direction = select_lanes(near, place - start, l);
+    const F farthest = max(max(abs(place.x), abs(place.y)), abs(place.z));
+    const F blur = F(kPlaceError) * farthest / distance;
+    const F before = one - max(min(blur, F(0.5f)), F(kLeastGap));
+    const F tmax =
+        select(near, select(delta, F(kBeforeLight), before), F(std::numeric_limits<float>::infinity()));
+    for (const bool straight : {true, false}) {
+      const unsigned which = lit & (straight ? points : areas);
+      if (which == 0) continue;
+      PathShadows& to = straight ? out_.delta : out_.area;
+      store_compact(which, start, to.origin, to.size);
+      store_compact(which, direction, to.direction, to.size);
+      store_compact(which, arriving, to.light, to.size);
+      store_compact(which, tmax, to.tmax + to.size);
+      std::uint32_t owner[W];
+      for (int k = 0; k < W; ++k) owner[k] = c_.ray[entry_[k]];
+      store_compact<A>(which, owner, to.owner + to.size);
+      to.size += static_cast<std::size_t>(__builtin_popcount(which));
+    }
+  }
+
+  OKTETT_INLINE void send_onward(const Scattering& scattering, const PickedLanes<F>& at, unsigned real) {
+    const F one(1.0f);
+    const BsdfSamples<D> s =
+        scattering.sample(to_double(at.load(c_.lobe)), load(c_.direction_x), load(c_.direction_y));
+    const M delta = s.pdf == F(0.0f);
+    unsigned sent = bits(s.found) & real;
+    Vec3<F> onward = throughput_ * s.weight;
+    unsigned may_end = 0;
+    for (int k = 0; k < W; ++k) may_end |= (c_.bounces[entry_[k]] + 1u > kSureBounces ? 1u : 0u) << k;
+    if (may_end != 0) {
+      const auto greatest = [](const Vec3<F>& v) { return max(max(v.x, v.y), v.z); };
+      const F chance = min(sqrt(select(delta, greatest(s.weight), greatest(onward))), one);
+      sent &= ~(may_end & bits(at.load(c_.roulette) >= chance));
+      onward = onward * select(M::from_bits(may_end), one / chance, one);
+    }
+    if (sent == 0) return;
+    PathOnward& to = out_.next;
+    store_compact(sent, origin(s.direction), to.origin, to.size);
+    store_compact(sent, s.direction, to.direction, to.size);
+    store_compact(sent, onward, to.throughput, to.size);
+    store_compact(sent, s.pdf, to.pdf + to.size);
+    for (unsigned left = sent; left != 0; left &= left - 1, ++to.size) {
+      const std::uint32_t k = entry_[__builtin_ctz(left)], ray = c_.ray[k];
+      to.sample[to.size] = rays_.sample[ray];
+      to.distance[to.size] = rays_.distance[ray] + rays_.t[ray];
+      to.bounces[to.size] = static_cast<std::uint8_t>(c_.bounces[k] + 1);
+      to.from[to.size] = c_.from[k];
+    }
+    to.transmitted += static_cast<std::uint64_t>(__builtin_popcount(bits(s.transmitted) & sent));
+  }
+
+  const InteractionBlock& found_;
+  const PathRays& rays_;
+  const PathBlock& c_;
+  bool transmits_;
+  PathQueues& out_;
+
+  const std::uint32_t* entry_ = nullptr;
+  Vec3<F> position_, error_, n_, throughput_;
+};
+
+template <class Scattering>
+void shade_path_run(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+                    const typename Scattering::Surface& surface, bool transmits, const PathRun& run,
+                    PathQueues& out) {
+  PathShading<Scattering> shading(found, rays, block, transmits, out);
+  constexpr std::size_t kWidth = PathShading<Scattering>::W;
+  for (std::size_t i = 0; i < run.count; i += kWidth) {
+    const std::size_t left = run.count - i;
+    shading.shade(surface, run.entry + i, (left < kWidth ? 1u << left : 1u << kWidth) - 1u);
+  }
+}
+
+template <class A>
+void shade_phong_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+                      const PhongSurface& surface, bool transmits, const PathRun& run, PathQueues& out);
+template <class A>
+void shade_principled_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+                           const PrincipledSurface& surface, bool transmits, const PathRun& run,
+                           PathQueues& out);
+
+}  // namespace oktett
