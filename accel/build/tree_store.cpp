@@ -104,10 +104,10 @@ bool are_possible(const TriangleBlock& block, const Accel& accel) {
 }
 
 bool blocks_are_possible(const Accel& accel) {
-  using Range = tbb::blocked_range<std::size_t>;
+  using Blocks = tbb::blocked_range<std::size_t>;
   return tbb::parallel_reduce(
-      Range(0, block_count(accel), 4096), true,
-      [&](const Range& range, bool good) {
+      Blocks(0, block_count(accel), 4096), true,
+      [&](const Blocks& range, bool good) {
         for (std::size_t i = range.begin(); good && i < range.end(); ++i)
           good = are_possible(accel.blocks[i], accel);
         return good;

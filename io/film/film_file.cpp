@@ -2,16 +2,176 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/bytes.h"
 #include "core/error.h"
-#include "io/film/film_header.h"
 #include "io/image/output.h"
 #include "io/text/files_read.h"
 #include "io/text/mapped_file.h"
+#include "render/light_groups.h"
 
 namespace oktett {
+
+// ---- The header of a film file: all but the sums.
+
+namespace {
+
+// The bounds of scene files.
+constexpr std::uint32_t kMostPixelsAlong = 65536, kMostSamples = 65536;
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30;
+
+constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16;
+
+void append_pairs(std::string& bytes, const FilmFingerprint::Entries& pairs) {
+  append_number(bytes, static_cast<std::uint32_t>(pairs.size()));
+  for (const auto& [name, value] : pairs) append_text(bytes, name), append_text(bytes, value);
+}
+
+FilmFingerprint::Entries take_pairs(ByteReader& reader) {
+  FilmFingerprint::Entries pairs;
+  for (std::uint32_t left = reader.count(8); left > 0; --left) {
+    std::string name = reader.text();
+    pairs.emplace_back(std::move(name), reader.text());
+  }
+  return pairs;
+}
+
+void append_texts(std::string& bytes, const std::vector<std::string>& texts) {
+  append_number(bytes, static_cast<std::uint32_t>(texts.size()));
+  for (const std::string& text : texts) append_text(bytes, text);
+}
+
+std::vector<std::string> take_texts(ByteReader& reader) {
+  std::vector<std::string> texts;
+  for (std::uint32_t left = reader.count(4); left > 0; --left) texts.push_back(reader.text());
+  return texts;
+}
+
+/// Planes are named after light groups, and found by the name of the first.
+void check_light_groups(const FilmFormat& format) {
+  const std::vector<std::string>& names = format.light_groups;
+  if (names.empty()) return;
+  const std::set<std::string> different(names.begin(), names.end());
+  if (!format.data_layers || names.size() > kMostLightGroups || names.front() != kDefaultLightGroup ||
+      different.size() != names.size() || !std::ranges::all_of(names, is_light_group_name))
+    throw Error("its light groups cannot be");
+}
+
+void append_metadata(std::string& bytes, const ImageMetadata& metadata) {
+  for (const std::string* text : {&metadata.software, &metadata.command_line, &metadata.scene})
+    append_text(bytes, *text);
+  append_number(bytes, metadata.samples);
+  append_number(bytes, metadata.render_seconds);
+  if (!metadata.camera) return;
+  for (const Matrix4* matrix : {&metadata.camera->world_to_camera, &metadata.camera->world_to_ndc})
+    for (const float x : *matrix) append_number(bytes, x);
+}
+
+ImageMetadata take_metadata(ByteReader& reader, bool camera) {
+  ImageMetadata metadata;
+  for (std::string* text : {&metadata.software, &metadata.command_line, &metadata.scene})
+    *text = reader.text();
+  metadata.samples = reader.number<std::uint32_t>();
+  metadata.render_seconds = reader.number<double>();
+  if (!camera) return metadata;
+  metadata.camera.emplace();
+  for (Matrix4* matrix : {&metadata.camera->world_to_camera, &metadata.camera->world_to_ndc})
+    for (float& x : *matrix) x = reader.number<float>();
+  return metadata;
+}
+
+void append_window(std::string& bytes, const FilmFormat& format) {
+  for (const std::uint32_t x : {format.window.x0, format.window.y0, format.window.x1, format.window.y1,
+                                format.full_width, format.full_height})
+    append_number(bytes, x);
+}
+
+void take_window(ByteReader& reader, FilmFormat& format) {
+  for (std::uint32_t* x : {&format.window.x0, &format.window.y0, &format.window.x1, &format.window.y1,
+                           &format.full_width, &format.full_height})
+    *x = reader.number<std::uint32_t>();
+  const PixelWindow& w = format.window;
+  const bool good = w.x0 < w.x1 && w.x1 <= format.full_width && format.full_width <= kMostPixelsAlong &&
+                    w.y0 < w.y1 && w.y1 <= format.full_height && format.full_height <= kMostPixelsAlong;
+  if (!good || std::uint64_t{format.full_width} * format.full_height > kMostPixels)
+    throw Error("its picture has a size that cannot be");
+}
+
+Tone take_tone(ByteReader& reader) {
+  const auto kind = reader.number<std::uint8_t>();
+  const auto exposure = reader.number<double>();
+  if (kind >= std::size(kToneKinds) || !std::isfinite(exposure) || !kExposures.contains(exposure))
+    throw Error("its tone curve is unknown");
+  return {static_cast<ToneKind>(kind), exposure};
+}
+
+}  // namespace
+
+/// The header of a file with the sums of `tiles` tiles.
+static std::string film_header(const FilmFile& file, std::uint32_t tiles) {
+  const FilmState& film = *file.film;
+  const FilmPlan& plan = film.plan();
+  std::string bytes;
+  const unsigned flags = (plan.format.data_layers ? kDataLayers : 0u) |
+                         (plan.format.sample_counts ? kSampleCounts : 0u) |
+                         (plan.format.mattes ? kMattes : 0u) | (plan.moves ? kMoves : 0u) |
+                         (file.metadata.camera ? kCamera : 0u);
+  append_number(bytes, static_cast<std::uint8_t>(flags));
+  append_window(bytes, plan.format);
+  const Tone tone = film.tone();
+  append_number(bytes, static_cast<std::uint8_t>(tone.kind));
+  append_number(bytes, tone.exposure);
+  for (const std::uint32_t x : {plan.samples, film.added(), film.share().number, film.share().count, tiles})
+    append_number(bytes, x);
+  append_texts(bytes, plan.format.light_groups);
+  append_pairs(bytes, plan.attributes);
+  append_metadata(bytes, file.metadata);
+  append_pairs(bytes, file.fingerprint.settings);
+  append_pairs(bytes, file.fingerprint.files);
+  append_texts(bytes, file.words);
+  return bytes;
+}
+
+/// Fills in what film_header wrote and begins the film; the number of tiles. Throws Error for a header that
+/// cannot be.
+static std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
+  ByteReader reader(bytes);
+  FilmPlan plan;
+  const unsigned flags = reader.number<std::uint8_t>();
+  plan.format.data_layers = (flags & kDataLayers) != 0;
+  plan.format.sample_counts = (flags & kSampleCounts) != 0, plan.format.mattes = (flags & kMattes) != 0;
+  plan.moves = (flags & kMoves) != 0;
+  if (!plan.format.data_layers && (plan.format.sample_counts || plan.format.mattes))
+    throw Error("its layers cannot be");
+  take_window(reader, plan.format);
+  const Tone tone = take_tone(reader);
+  plan.samples = reader.number<std::uint32_t>();
+  const auto added = reader.number<std::uint32_t>(), number = reader.number<std::uint32_t>(),
+             count = reader.number<std::uint32_t>(), tiles = reader.number<std::uint32_t>();
+  if (plan.samples < 1 || plan.samples > kMostSamples || added > kMostAddedSamples)
+    throw Error("its number of samples cannot be");
+  if (number < 1 || number > count || count > FilmShare::kMost) throw Error("its share cannot be");
+  plan.format.light_groups = take_texts(reader);
+  check_light_groups(plan.format);
+  plan.attributes = take_pairs(reader);
+  file.metadata = take_metadata(reader, (flags & kCamera) != 0);
+  file.fingerprint.settings = take_pairs(reader);
+  file.fingerprint.files = take_pairs(reader);
+  file.words = take_texts(reader);
+  if (reader.left() != 0) throw Error("the header has not the length that it says");
+  file.film = std::make_shared<FilmState>(FilmShare{number, count}, added);
+  file.film->begin(plan, tone);
+  return tiles;
+}
+
 namespace {
 
 /// Begins every file; the number is the version of the format.

@@ -16,26 +16,26 @@ namespace oktett {
 namespace {
 
 using MaybeForm = std::optional<ExactForm>;
-using Kind = TurnedProfile::Kind;
+using ProfileKind = TurnedProfile::Kind;
 
 /// Whether point `i` of a profile lies on the surface; the others only shape it.
 bool is_on_surface(const TurnedProfile& profile, std::size_t i) {
-  if (profile.kind == Kind::linear) return true;
-  if (profile.kind == Kind::bezier) return i % 3 == 0;
+  if (profile.kind == ProfileKind::linear) return true;
+  if (profile.kind == ProfileKind::bezier) return i % 3 == 0;
   return i > 0 && i + 1 < profile.points.size();
 }
 
 /// Throws Error at `places`, those of the points, for a radius below 0 and for heights that do not ascend
 /// where they must.
 void check_points(const TurnedProfile& profile, std::span<const YamlNode* const> places) {
-  const bool ascends = profile.kind != Kind::curve && profile.kind != Kind::bezier;
+  const bool ascends = profile.kind != ProfileKind::curve && profile.kind != ProfileKind::bezier;
   for (std::size_t i = 0; i < profile.points.size(); ++i) {
     const ProfilePoint& p = profile.points[i];
     if (is_on_surface(profile, i) && p.radius < 0)
       throw Error(places[i]->where(), "the profile crosses the axis: the radius is negative");
     if (!ascends || i == 0) continue;
     const double before = profile.points[i - 1].height;
-    if (profile.kind == Kind::linear ? p.height < before : p.height <= before)
+    if (profile.kind == ProfileKind::linear ? p.height < before : p.height <= before)
       throw Error(places[i]->where(),
                   fmt::format("heights must ascend: {} comes after {}; for other profiles "
                               "there is 'profile: curve'",
@@ -68,15 +68,15 @@ MaybeForm finish(const ShapeNode& at, SuperquadricShape& shape) {
 MaybeForm finish(const ShapeNode& at, TurnedProfile& profile) {
   const YamlNode& node = at.fields.require("points");
   const std::size_t n = profile.points.size();
-  if (profile.kind == Kind::bezier && n % 3 != 1)
+  if (profile.kind == ProfileKind::bezier && n % 3 != 1)
     throw Error(node.where(), fmt::format("expected 4, 7, 10, … points, 3 more for each piece; found {}", n));
   check_points(profile, list_items(node, "points"));
   bool has_radius = false;
   for (std::size_t i = 0; i < n; ++i) has_radius |= is_on_surface(profile, i) && profile.points[i].radius > 0;
   if (!has_radius) return at.skip("all radii are zero");
-  if (profile.kind == Kind::curve || profile.kind == Kind::bezier) {
-    const LatheShape lathe{profile.kind == Kind::curve ? curve_through(profile.points) : profile.points,
-                           profile.open};
+  if (profile.kind == ProfileKind::curve || profile.kind == ProfileKind::bezier) {
+    const LatheShape lathe{
+        profile.kind == ProfileKind::curve ? curve_through(profile.points) : profile.points, profile.open};
     if (const std::string wrong = why_bad_profile(lathe); !wrong.empty()) throw Error(node.where(), wrong);
     return lathe;
   }
@@ -84,9 +84,9 @@ MaybeForm finish(const ShapeNode& at, TurnedProfile& profile) {
     return at.skip("all heights are the same");
   using Profile = RevolutionShape::Profile;
   const RevolutionShape shape{profile.points,
-                              profile.kind == Kind::linear ? Profile::linear
-                              : profile.kind == Kind::sor  ? Profile::sor
-                                                           : Profile::spline,
+                              profile.kind == ProfileKind::linear ? Profile::linear
+                              : profile.kind == ProfileKind::sor  ? Profile::sor
+                                                                  : Profile::spline,
                               profile.open};
   if (const auto height = profile_crosses_axis(shape))
     throw Error(

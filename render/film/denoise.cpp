@@ -29,11 +29,11 @@ constexpr float kFeatureFloor = 2e-3f, kFeatureScale = 0.36f;
 constexpr float kLeastVariance = 1e-12f;
 
 /// A picture in planes without gaps, read beyond its border as if the border went on.
-struct Plane {
+struct SamplePlane {
   int width = 0, height = 0;
   std::vector<float> values;
 
-  Plane(int w, int h) : width(w), height(h), values(static_cast<std::size_t>(w) * h) {}
+  SamplePlane(int w, int h) : width(w), height(h), values(static_cast<std::size_t>(w) * h) {}
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1);
   }
@@ -43,10 +43,10 @@ struct Plane {
 /// All that the filter looks at.
 struct Input {
   int width, height;
-  std::vector<Plane> color, variance;  ///< of three channels, divided by the albedo
-  std::vector<Plane> features;         ///< those, and the factor that makes their differences comparable:
-  std::vector<Plane> feature_scales;   ///< 1 / (k^2 max(floor, squared gradient))
-  std::vector<float> albedo[3];        ///< what colours were divided by
+  std::vector<SamplePlane> color, variance;  ///< of three channels, divided by the albedo
+  std::vector<SamplePlane> features;  ///< those, and the factor that makes their differences comparable:
+  std::vector<SamplePlane> feature_scales;  ///< 1 / (k^2 max(floor, squared gradient))
+  std::vector<float> albedo[3];             ///< what colours were divided by
 };
 
 const Column<float>& plane_of(const Picture& picture, const std::string& name) {
@@ -58,10 +58,10 @@ const Column<float>& plane_of(const Picture& picture, const std::string& name) {
 float finite(float v) { return std::isfinite(v) ? v : 0; }
 
 /// Means over squares, rows first, in a fixed order.
-void smooth(Plane& plane, int reach) {
+void smooth(SamplePlane& plane, int reach) {
   const float share = 1 / static_cast<float>(2 * reach + 1);
   for (const bool rows : {true, false}) {
-    Plane from = plane;
+    SamplePlane from = plane;
     tbb::parallel_for(0, plane.height, [&](int y) {
       for (int x = 0; x < plane.width; ++x) {
         float sum = 0;
@@ -72,8 +72,8 @@ void smooth(Plane& plane, int reach) {
   }
 }
 
-void add_feature(Plane feature, Input& input) {
-  Plane scale(input.width, input.height);
+void add_feature(SamplePlane feature, Input& input) {
+  SamplePlane scale(input.width, input.height);
   for (int y = 0; y < input.height; ++y)
     for (int x = 0; x < input.width; ++x) {
       // Of the two one-sided differences the smaller: the other may lead over an edge.
@@ -98,7 +98,7 @@ Input read_input(const Picture& picture) {
     const Column<float>&color = plane_of(picture, channel),
           &variance = plane_of(picture, "Variance." + channel),
           &albedo = plane_of(picture, "Albedo." + channel), &normal = plane_of(picture, "N." + axis);
-    Plane c(w, h), v(w, h), a(w, h), n(w, h);
+    SamplePlane c(w, h), v(w, h), a(w, h), n(w, h);
     input.albedo[k].resize(size);
     for (std::size_t i = 0; i < size; ++i) {
       const float divisor = input.albedo[k][i] = std::max(0.0f, finite(albedo[i])) + kLeastAlbedo;
@@ -112,7 +112,7 @@ Input read_input(const Picture& picture) {
   }
   // Depth counts in parts of itself; what is infinitely far has 0.
   const Column<float>& depth = plane_of(picture, "Z");
-  Plane nearness(w, h);
+  SamplePlane nearness(w, h);
   float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < size; ++i)
     if (depth[i] > 0) nearest = std::min(nearest, depth[i]);
@@ -157,7 +157,7 @@ class TileFilter {
         const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
         const std::size_t to = in_.color[0].index(x0_ + x, y0_ + y);
         float noise = 0;
-        for (const Plane& v : in_.variance) noise += v.values[to];
+        for (const SamplePlane& v : in_.variance) noise += v.values[to];
         if (noise == 0) continue;
         for (int k = 0; k < 3; ++k)
           picture.find(std::string(1, "RGB"[k]))->values[to] = sum_[k][at] / weight_[at] * in_.albedo[k][to];

@@ -16,7 +16,7 @@
 namespace oktett {
 namespace {
 
-constexpr std::size_t kMost = PathBlock::kMost, kGroup = PathBlock::kGroup;
+constexpr std::size_t kMostHits = PathBlock::kMost, kGroup = PathBlock::kGroup;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ PathRays path_rays(const Wavefront& wavefront) {
 
 void begin_path_block(const RenderContext& context, const Wavefront& wavefront, const std::uint32_t* which,
                       const InteractionBlock& found, PathBlock& c) {
-  for (std::size_t k = 0; k < kMost; ++k) {
+  for (std::size_t k = 0; k < kMostHits; ++k) {
     const std::uint32_t i = which[std::min(k, c.count - 1)], sample = wavefront.rays.sample[i];
     c.ray[k] = i;
     c.key[k] = wavefront.samples.key[sample];
@@ -216,7 +216,7 @@ void shade_runs(const RenderContext& context, Wavefront& wavefront, const Intera
                 const PathBlock& c, Shown* shown, std::size_t count, PathOutput& output) {
   const RenderCode& code = render_code(context.isa);
   while (count > 0) {
-    std::uint32_t entry[kMost + kGroup];
+    std::uint32_t entry[kMostHits + kGroup];
     const std::uint32_t number = shown[0].surface;
     const PathRun run{entry, take_first_surface(shown, count, entry)};
     count -= run.count;
@@ -283,8 +283,8 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   c.count = count;
   begin_path_block(context, wavefront, which, found, c);
   const bool all_alone = context.one_by_one || context.tracks_enclosures || context.caustics != nullptr;
-  Shown shown[kMost];
-  std::uint32_t asks[kMost];
+  Shown shown[kMostHits];
+  std::uint32_t asks[kMostHits];
   std::size_t in_lanes = 0, asking = 0;
   LoneHit lone;
   wavefront.lone_hits.clear();
