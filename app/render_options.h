@@ -2,21 +2,35 @@
 /// \file What the user asks of `oktett render`, and how it changes a scene.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "accel/accel.h"
-#include "app/cache_options.h"
 #include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/film_options.h"
 #include "app/limits.h"
+#include "io/cache/scene_cache.h"
 #include "io/scene/scene_file.h"
 #include "render/look/default_look.h"
 #include "render/scene.h"
 
 namespace oktett {
+
+// ---- Options of `oktett render` for a folder that keeps meshes and trees.
+
+/// The words of the command line, not checked yet. Empty: not given.
+struct CacheArguments {
+  std::string folder, size;
+};
+
+void add_cache_options(Verb& verb, CacheArguments& arguments);
+
+/// Null if no cache is asked for. If the folder cannot be used, says so and returns null. Throws Error for a
+/// size that cannot be read.
+std::unique_ptr<SceneCache> open_cache(const CacheArguments& arguments);
 
 /// The words of the command line. Numbers are read, words are not checked yet.
 struct RenderArguments {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,13 +19,25 @@
 #include "app/render_options.h"
 #include "app/view/canvas.h"
 #include "app/view/view_state.h"
-#include "app/view/watched_files.h"
 #include "core/error.h"
 #include "io/image/metadata.h"
 #include "io/image/texture.h"
 #include "render/picture/prepared_scene.h"
 
 namespace oktett {
+
+// ---- Whether files have changed, by asking for their times and sizes.
+
+class WatchedFiles {
+ public:
+  /// Watches these from now on.
+  void watch(const std::vector<std::string>& paths);
+  /// Whether any has changed since `watch` or the last call that said so.
+  bool have_changed();
+
+ private:
+  std::map<std::string, std::string> seen_;  ///< what was found, by path
+};
 
 /// What a page is told, apart from pixels.
 struct SessionStatus {

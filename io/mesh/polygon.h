@@ -1,14 +1,104 @@
 #pragma once
 /// \file Triangulation of polygons that may be concave, not quite plane, or degenerate.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/vec3.h"
-#include "io/mesh/blocker_tree.h"
 
 namespace oktett {
+
+// ---- Corners of a polygon in the plane, to find those within a triangle that keep it from being cut off.
+
+struct PlanePoint {
+  double x, y;
+  bool operator==(const PlanePoint&) const = default;
+};
+
+/// Twice the area of the triangle, positive if it turns to the left.
+inline double cross(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// All corners in a balanced kd-tree (Bentley 1975) whose nodes count the corners that block.
+class BlockerTree {
+ public:
+  /// For these points, none of which blocks.
+  void build(const std::vector<PlanePoint>& points);
+
+  /// Corner `i`, which did not block so far, does from now on (1), or the other way round (-1).
+  void change(std::uint32_t i, int by) {
+    for (std::uint32_t node = leaf_of_[i]; node > 0; node /= 2)
+      blocking_[node] += static_cast<std::uint32_t>(by);
+  }
+
+  std::uint32_t blocking() const { return blocking_[1]; }
+
+  /// Whether visit(corner) is true for some corner that may block in the triangle a, b, c, which turns to the
+  /// left. Corners outside of it, and those that do not block, may be visited, too. Those with the place of
+  /// a, b or c are visited.
+  template <class Visit>
+  bool any_in(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c, Visit&& visit) const {
+    const Triangle triangle(a, b, c);
+    std::uint32_t waiting[2 * 32];
+    int count = 0;
+    waiting[count++] = 1;
+    while (count > 0) {
+      const std::uint32_t node = waiting[--count];
+      if (blocking_[node] == 0 || triangle.misses(boxes_[node])) continue;
+      if (node < first_leaf_) {
+        waiting[count++] = 2 * node, waiting[count++] = 2 * node + 1;
+        continue;
+      }
+      const std::size_t leaf = node - first_leaf_;
+      for (std::size_t k = begin_of(leaf); k < begin_of(leaf + 1); ++k)
+        if (visit(order_[k])) return true;
+    }
+    return false;
+  }
+
+ private:
+  struct Box {
+    PlanePoint lo, hi;
+  };
+  /// A line that a triangle lies to the left of.
+  struct Edge {
+    PlanePoint from, to;
+    bool sure;  ///< rounding leaves the third corner on that side
+
+    /// Rounding is monotonic, so no point of the box computes to a greater area than this corner of it.
+    bool misses(const Box& box) const {
+      const PlanePoint most{to.y - from.y >= 0 ? box.lo.x : box.hi.x,
+                            to.x - from.x >= 0 ? box.hi.y : box.lo.y};
+      return sure && cross(from, to, most) < 0;
+    }
+  };
+  struct Triangle {
+    Box box;
+    Edge edges[3];
+
+    Triangle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c)
+        : box{{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
+              {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}},
+          edges{{a, b, cross(a, b, c) >= 0}, {b, c, cross(b, c, a) >= 0}, {c, a, cross(c, a, b) >= 0}} {}
+    bool misses(const Box& b) const {
+      return b.hi.x < box.lo.x || b.lo.x > box.hi.x || b.hi.y < box.lo.y || b.lo.y > box.hi.y ||
+             edges[0].misses(b) || edges[1].misses(b) || edges[2].misses(b);
+    }
+  };
+
+  std::size_t begin_of(std::size_t leaf) const { return order_.size() * leaf / first_leaf_; }
+  void split(const std::vector<PlanePoint>& points, std::uint32_t node, std::size_t leaf, std::size_t leaves);
+
+  std::uint32_t first_leaf_ =
+      1;  ///< number of leaves; nodes are numbered from 1, the children of k are 2k and 2k + 1
+  std::vector<std::uint32_t> order_, leaf_of_;
+  std::vector<Box> boxes_;
+  std::vector<std::uint32_t> blocking_;
+};
 
 /// Cuts polygons into triangles, always two fewer than corners. Keeps its buffers from one polygon to the
 /// next.

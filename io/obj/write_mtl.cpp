@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Rec.709, as load_mtl takes it.
-float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+float luminance_of(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
@@ -108,7 +108,7 @@ class MtlWriting {
     } else {
       color("Kd", m.color * m.diffuse);
     }
-    if (m.ambient != standard.ambient) write_ambient(m.ambient, luminance(m.color));
+    if (m.ambient != standard.ambient) write_ambient(m.ambient, luminance_of(m.color));
   }
 
   /// A grey, but for the last bits of its blue, that is by this part as bright.
@@ -117,7 +117,7 @@ class MtlWriting {
     if (brightness > 0) {
       const auto ratio = [brightness](float x) { return std::clamp(x / brightness, 0.0f, 1.0f); };
       grey = find_number(part * brightness, part, ratio);
-      blue = find_number(grey, grey, [grey](float b) { return luminance({grey, grey, b}); });
+      blue = find_number(grey, grey, [grey](float b) { return luminance_of({grey, grey, b}); });
     }
     color("Ka", {grey, grey, blue});
   }

@@ -6,11 +6,129 @@
 /// fixed order: 10 to 60 ms for each table. They are raised by a bound of their error, 0.1 to 0.5 %, so that
 /// what is given back is never too much. Cosines are given in lanes, and are in (0, 1].
 
-#include "render/bsdf/albedo_table.h"
+#include <vector>
+
+#include "core/lane_math.h"
+#include "core/simd_gather.h"
 #include "render/bsdf/lobe_lanes.h"
 #include "render/bsdf/principled_parameters.h"
 
 namespace oktett {
+
+// ---- Tables of directional albedos: the fraction of light from a direction that a rough surface sends on.
+
+/// Cosines mu in [0, 1] at which a table has values.
+struct AlbedoNodes {
+  int count = 1;
+  double width = 0;  ///< of the range of mu where nodes lie close together
+
+  double mu(int node) const;
+  /// The place of `mu` among the nodes, [0, count - 1], in lanes.
+  template <class D>
+  OKTETT_INLINE D place(const D& mu) const {
+    const D w(width);
+    return sqrt(mu * (D(1.0) + w) / (mu + w)) * D(count - 1);
+  }
+  /// The node before a place, but not the last one.
+  template <class D>
+  OKTETT_INLINE D node_before(const D& place) const {
+    return within(whole_part(place), D(0.0), D(count - 2));
+  }
+};
+
+/// An AlbedoTable at one width of the facets.
+struct AlbedoRow {
+  const float* values = nullptr;  ///< of the first node for mu, at the node for alpha before the width
+  AlbedoNodes nodes;
+  double part = 0;  ///< place between the node for alpha and the next, [0, 1]
+
+  /// The quantity at `mu` in [0, 1], in lanes.
+  template <class D>
+  OKTETT_INLINE D at(const D& mu) const {
+    const D place = nodes.place(mu), node = nodes.node_before(place), offset = node * D(nodes.count),
+            mix(part);
+    const auto value = [&](int more) {
+      const D before = gather(values + more, offset), after = gather(values + more + 1, offset);
+      return before + (after - before) * mix;
+    };
+    const D near = value(0), far = value(nodes.count);
+    return near + (far - near) * (place - node);
+  }
+};
+
+/// Up to which mu nodes of an AlbedoTable lie close together: a power of alpha, or six times its root.
+enum class NodeWidth { alpha, three_quarters, root, six_roots };
+
+/// A quantity by the cosine `mu` of a direction with the normal and by the width `alpha` of the facets, both
+/// in [0, 1]. Linear between nodes that lie close together where the quantity changes fast. That is where mu
+/// is at most of the order of the table's power of alpha; with a lower power the other nodes are closer.
+class AlbedoTable {
+ public:
+  AlbedoTable() = default;
+  /// `entry(mu, alpha)` gives the values at the nodes.
+  template <class Entry>
+  AlbedoTable(int nodes, NodeWidth width, Entry&& entry)
+      : AlbedoTable(by_width(nodes, width, [&](const AlbedoNodes& at, double alpha) {
+          std::vector<double> values(nodes);
+          for (int i = 0; i < nodes; ++i) values[i] = entry(at.mu(i), alpha);
+          return values;
+        })) {}
+  /// `entries(nodes, alpha)` gives the values at all nodes for mu at once.
+  template <class Entries>
+  static AlbedoTable by_width(int nodes, NodeWidth width, Entries&& entries) {
+    AlbedoTable table;
+    table.nodes_ = nodes, table.width_ = width, table.value_.resize(nodes * nodes);
+    for (int j = 0; j < nodes; ++j) {
+      const double alpha = table.node_alpha(j);
+      const std::vector<double> values = entries(table.nodes_for(alpha), alpha);
+      for (int i = 0; i < nodes; ++i) table.value_[i * nodes + j] = static_cast<float>(values[i]);
+    }
+    return table;
+  }
+
+  AlbedoRow row(double alpha) const;
+  double at(double mu, double alpha) const;
+
+ private:
+  double node_alpha(int j) const;
+  AlbedoNodes nodes_for(double alpha) const;
+
+  int nodes_ = 0;
+  NodeWidth width_ = NodeWidth::alpha;
+  std::vector<float> value_;  ///< [mu][alpha]
+};
+
+/// What a rough surface loses of diffuse light, the mean of 1 - albedo weighted by 2 mu, by the width of the
+/// facets.
+class LossTable {
+ public:
+  LossTable() = default;
+  /// `albedo(mu, alpha)` is integrated at each node. `power`: the loss behaves like this power of the
+  /// roughness, the root of alpha, near 0.
+  template <class Albedo>
+  LossTable(int power, Albedo&& albedo) : power_(power), value_(kNodes) {
+    for (int j = 0; j < kNodes; ++j) {
+      const double rho = node_roughness(j);
+      double sum = 0;
+      // mu = y^4 puts as many points where mu is as small as alpha as elsewhere.
+      for (int i = 0; i < kPoints; ++i) {
+        const double y = (i + 0.5) / kPoints, mu = y * y * y * y;
+        sum += (1 - albedo(mu, rho * rho)) * 8 * mu * mu / y;
+      }
+      value_[j] = sum / kPoints / scale(rho);
+    }
+  }
+
+  double at(double alpha) const;
+
+ private:
+  static constexpr int kNodes = 64, kPoints = 64;
+  static double node_roughness(int j);
+  double scale(double rho) const;
+
+  int power_ = 0;
+  std::vector<double> value_;
+};
 
 /// Bounds of the errors of the tables.
 inline constexpr double kMirrorError = 0.001, kReflectedError = 0.0035, kGlassError = 0.0045;
