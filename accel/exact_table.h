@@ -8,9 +8,9 @@
 #include "accel/crossing_lanes.h"
 #include "accel/hit_list.h"
 #include "accel/shape_hits.h"
-#include "core/double_lanes.h"
 #include "core/isa_select.h"
 #include "core/lanes.h"
+#include "core/simd_native.h"
 #include "kernels/kinds.h"
 
 namespace oktett {

@@ -8,7 +8,6 @@
 #include "app/command_line.h"
 #include "core/description.h"
 #include "core/error.h"
-#include "core/suggest.h"
 
 namespace oktett {
 

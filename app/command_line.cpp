@@ -13,7 +13,6 @@
 
 #include "app/text.h"
 #include "core/error.h"
-#include "core/suggest.h"
 
 namespace oktett {
 

@@ -9,7 +9,6 @@
 
 #include "app/command_line.h"
 #include "core/error.h"
-#include "core/suggest.h"
 
 namespace oktett {
 

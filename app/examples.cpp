@@ -12,7 +12,6 @@
 #include "app/command_line.h"
 #include "core/description.h"
 #include "core/error.h"
-#include "core/suggest.h"
 #include "io/scene/scene_file.h"
 #include "io/text/files_read.h"
 

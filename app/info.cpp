@@ -20,7 +20,7 @@
 #include "app/render_options.h"
 #include "app/text.h"
 #include "core/box.h"
-#include "core/open_edges.h"
+#include "core/mesh_geometry.h"
 #include "io/scene/scene_file.h"
 #include "io/scene/schema.h"
 #include "io/scene/surface_table.h"

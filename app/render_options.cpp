@@ -12,7 +12,6 @@
 #include "app/terminal/preview.h"
 #include "app/text.h"
 #include "core/error.h"
-#include "core/suggest.h"
 #include "io/mesh/load/load_mesh.h"
 
 namespace oktett {

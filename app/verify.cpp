@@ -17,7 +17,6 @@
 #include "app/text.h"
 #include "core/error.h"
 #include "core/isa.h"
-#include "core/suggest.h"
 #include "io/mesh/load/load_mesh.h"
 #include "verify/checks/csg.h"
 #include "verify/checks/endless.h"

@@ -50,7 +50,7 @@ oktett_compile_per_set(oktett ${OKTETT_ISA_SOURCES} ${OKTETT_SURFACE_ISA_SOURCES
 # What uses OpenImageIO, see io/image/library.h: a shared library that oktett loads when it is needed, and finds from where
 # the program or itself lies. It shows one symbol and has its own copy of the little that both need.
 file(GLOB OKTETT_IMAGE_SOURCES CONFIGURE_DEPENDS io/image/oiio/*.cpp)
-add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp core/math.cpp core/pages.cpp core/soa.cpp io/image/color.cpp)
+add_library(oktett_images SHARED ${OKTETT_IMAGE_SOURCES} core/error.cpp core/math.cpp core/pages.cpp io/image/color.cpp)
 target_compile_features(oktett_images PRIVATE cxx_std_20)
 oktett_target_warnings(oktett_images)
 oktett_unity(oktett_images)

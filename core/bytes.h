@@ -1,5 +1,5 @@
 #pragma once
-/// \file Numbers and texts as bytes, for binary files.
+/// \file Numbers and texts as bytes, for binary files, and hashes and checksums of them: the same on every machine.
 
 #include <bit>
 #include <cstddef>
@@ -8,6 +8,9 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+
+#include "core/random.h"
+#include "core/vec3.h"
 
 namespace oktett {
 
@@ -47,5 +50,33 @@ class ByteReader {
  private:
   std::string_view bytes_;
 };
+
+/// Takes numbers in and gives 64 bits that depend on all of them and on their order.
+class Hasher {
+ public:
+  void add(std::uint64_t bits) { state_ = mix_bits((state_ ^ bits) + kGoldenBits); }
+  void add(float x) { add(std::uint64_t{std::bit_cast<std::uint32_t>(x)}); }
+  void add(double x) { add(std::bit_cast<std::uint64_t>(x)); }
+  void add(const Vec3f& v) { add(v.x), add(v.y), add(v.z); }
+
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0;
+};
+
+/// Bytes that are summed up as one piece. The checksum depends on this number.
+inline constexpr std::size_t kChecksumPiece = std::size_t{1} << 20;
+
+/// The checksum of one piece, at most kChecksumPiece bytes. Any change within eight bytes at a multiple of
+/// eight changes it.
+std::uint64_t piece_checksum(const void* data, std::size_t bytes);
+
+/// The checksum of `bytes` bytes, the same on every machine and for any number of threads: a hash of the
+/// checksums of all pieces and of the size.
+std::uint64_t block_checksum(const void* data, std::size_t bytes);
+
+/// Copies `bytes` bytes and returns the checksum of the copy.
+std::uint64_t copy_with_checksum(const void* from, void* to, std::size_t bytes);
 
 }  // namespace oktett

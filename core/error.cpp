@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/suggest.h"
-
 namespace oktett {
 
 std::string to_string(const Location& where) {
@@ -54,6 +52,21 @@ std::string nearest_name(const std::string& name, const char* const* known, std:
     if (d < best) best = d, nearest = known[i];
   }
   return nearest;
+}
+
+std::string did_you_mean(const std::string& name, std::span<const std::string> known,
+                         const std::string& otherwise) {
+  // Enough for names that people write; a machine's million names would take too long to compare.
+  constexpr std::size_t kMostNames = 10000;
+  std::vector<const char*> names;
+  for (const std::string& k : known.first(std::min(known.size(), kMostNames))) names.push_back(k.c_str());
+  std::string nearest = nearest_name(name, names.data(), names.size());
+  // A name that shares no letter with it was not meant.
+  if (edit_distance(name, nearest) >= name.size()) nearest.clear();
+  if (nearest.empty()) return otherwise.empty() ? "" : "; " + otherwise;
+  for (char& c : nearest)
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';
+  return "; did you mean '" + nearest + "'?";
 }
 
 }  // namespace oktett

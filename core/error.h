@@ -1,6 +1,8 @@
 #pragma once
-/// \file Errors and warnings: what is wrong, where, and what was expected.
+/// \file Errors and warnings: what is wrong, where, what was expected, and what may have been meant.
 
+#include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -50,5 +52,14 @@ std::string to_string(const Warning& warning);
 
 /// The name in `known` nearest to `name` by edit distance, for "did you mean"; empty if none is near.
 std::string nearest_name(const std::string& name, const char* const* known, std::size_t known_count);
+
+/// The least number of characters to insert, leave out or replace that makes `b` of `a`.
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
+/// "; did you mean 'x'?" for the name in `known` that nearest_name finds for `name`, if they share a
+/// letter. If there is none: "; " and `otherwise`, or nothing. Control characters of names are shown as `?`.
+/// Looks at no more than 10,000 names.
+std::string did_you_mean(const std::string& name, std::span<const std::string> known,
+                         const std::string& otherwise = "");
 
 }  // namespace oktett

@@ -5,7 +5,10 @@
 
 #include <new>
 
+#include "core/soa.h"
+
 namespace oktett {
+
 namespace {
 
 std::size_t round_up(std::size_t x, std::size_t unit) { return (x + unit - 1) / unit * unit; }
@@ -85,6 +88,17 @@ bool can_reserve(std::size_t bytes) {
   char* const p = map_pages(bytes);
   if (p != nullptr) release_pages(p, bytes);
   return p != nullptr;
+}
+
+void* allocate_column(std::size_t bytes) {
+  if (bytes >= kLargePiece) return reserve_pages(whole_pages(bytes));
+  return ::operator new (bytes, std::align_val_t{kAlignment});
+}
+
+void free_column(void* storage, std::size_t bytes) {
+  if (storage == nullptr) return;
+  if (bytes >= kLargePiece) return release_pages(storage, whole_pages(bytes));
+  ::operator delete (storage, std::align_val_t{kAlignment});
 }
 
 }  // namespace oktett

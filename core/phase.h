@@ -1,5 +1,5 @@
 #pragma once
-/// \file What takes long, while it is done: for whoever shows how far the program is.
+/// \file What takes long, while it is done, for whoever shows how far the program is; and how much time has passed.
 
 #include <atomic>
 #include <chrono>
@@ -43,5 +43,10 @@ class Phase {
   const bool is_watched_;
   std::atomic<std::uint64_t> done_{0};
 };
+
+/// Seconds from `start` to now, by a clock that nobody sets.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 }  // namespace oktett

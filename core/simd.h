@@ -8,6 +8,7 @@
 /// are zeros: write the accumulator second and NaN never enters it. Whole numbers wrap around.
 /// tests/core/simd_test.cpp checks each of these on awkward numbers.
 
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -220,6 +221,20 @@ OKTETT_INLINE Simd<T, W, A> fast_fms(const Simd<T, W, A>& a, const Simd<T, W, A>
   }
 }
 
+/// 1 / x with a relative error of at most 2^-21: an estimate of the processor (at most 1.5 * 2^-12 off) and a
+/// step of Newton's method. Where x or 1 / x is zero, infinite or denormal the result may be any
+/// number. The bits differ between instruction sets.
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> fast_reciprocal(const Simd<float, W, A>& x) {
+  if constexpr (W == 1 || std::is_same_v<A, ScalarIsa>) {
+    return Simd<float, W, A>(1.0f) / x;
+  } else {
+    Simd<float, W, A> r;
+    for (int i = 0; i < r.kParts; ++i) r.part[i] = native::estimate_reciprocal(x.part[i]);
+    return r * (Simd<float, W, A>(2.0f) - x * r);
+  }
+}
+
 /// The rounding error of p = a * b, so that a * b = p + error exactly: by a fused multiply-add, or by
 /// Dekker's splitting (1971) with the same result as long as nothing overflows or underflows.
 template <int W, class A>
@@ -308,6 +323,65 @@ OKTETT_INLINE float horizontal_min(const Simd<float, W, A>& a) {
 template <int W, class A>
 OKTETT_INLINE float horizontal_max(const Simd<float, W, A>& a) {
   return -horizontal_min(-a);
+}
+
+template <int W, class A>
+OKTETT_INLINE Simd<std::int32_t, W, A> bit_cast_int(const Simd<float, W, A>& a) {
+  Simd<std::int32_t, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::bit_cast_int(a.part[i]);
+  return r;
+}
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> bit_cast_float(const Simd<std::int32_t, W, A>& a) {
+  Simd<float, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::bit_cast_float(a.part[i]);
+  return r;
+}
+
+/// The lanes in which `a` and `bits` have a bit in common.
+template <int W, class A>
+OKTETT_INLINE Mask<std::int32_t, W, A> has_bits(const Simd<std::int32_t, W, A>& a, std::int32_t bits) {
+  using I = Simd<std::int32_t, W, A>;
+  const I wanted(bits);
+  I common;
+  for (int i = 0; i < a.kParts; ++i) common.part[i] = native::common_bits(a.part[i], wanted.part[i]);
+  return ~(common == I(0));
+}
+
+/// The next float above `a` where `direction` > 0, the next below where it is < 0, and `a` where it is 0.
+/// Beyond an infinity it stays; NaN stays NaN.
+template <int W, class A>
+OKTETT_INLINE Simd<float, W, A> next_float(const Simd<float, W, A>& a, const Simd<float, W, A>& direction) {
+  using I = Simd<std::int32_t, W, A>;
+  const I zero(0), one(1), lowest(INT32_MIN), infinite(0x7f800000);
+  // Numbers floats by their order, both zeros as 0; the same function leads back.
+  const auto number = [&](const I& bits) { return select(bits < zero, lowest - bits, bits); };
+  const I bits = bit_cast_int(a), place = number(bits), d = bit_cast_int(direction);
+  const auto rises = (zero < d) & (place < infinite);
+  const auto falls = (d < zero) & (lowest < d) & (-infinite < place);
+  const I next = select(rises, place + one, place - one);
+  return bit_cast_float(select(rises | falls, number(next), bits));
+}
+
+/// 2^n for whole n, -1022 <= n <= 1023.
+template <int W, class A>
+OKTETT_INLINE Simd<double, W, A> power_of_two(const Simd<double, W, A>& n) {
+  const auto shifted = n + Simd<double, W, A>(0x1p52 + 1023);
+  Simd<double, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) r.part[i] = native::low_bits_to_exponent(shifted.part[i]);
+  return r;
+}
+
+/// For finite x >= 2^-1022: x = significand 2^exponent with 1 <= significand < 2; returns the significand.
+template <int W, class A>
+OKTETT_INLINE Simd<double, W, A> split_exponent(const Simd<double, W, A>& x, Simd<double, W, A>& exponent) {
+  Simd<double, W, A> r;
+  for (int i = 0; i < r.kParts; ++i) {
+    exponent.part[i] = native::biased_exponent(x.part[i]);
+    r.part[i] = native::significand(x.part[i]);
+  }
+  exponent = exponent - Simd<double, W, A>(1023.0);
+  return r;
 }
 
 }  // namespace oktett

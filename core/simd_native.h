@@ -3,6 +3,7 @@
 /// whose treatment of NaN differs between its versions. A single lane has the same operations, so that width
 /// 1 is the same source.
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
@@ -24,6 +25,17 @@ struct Sse42Isa {};
 struct Avx2Isa {};
 struct Avx512Isa {};
 struct NeonIsa {};
+
+/// Lanes of double for set A. SSE4.2 and NEON have registers of two: with eight lanes most
+/// values would live in memory.
+template <class A>
+inline constexpr int kDoubleLanes = 8;
+template <>
+inline constexpr int kDoubleLanes<Sse42Isa> = 4;
+template <>
+inline constexpr int kDoubleLanes<NeonIsa> = 4;
+template <>
+inline constexpr int kDoubleLanes<ScalarIsa> = 1;
 
 namespace native {
 
@@ -207,6 +219,33 @@ OKTETT_INLINE void from_bits(LaneBool<T, A>& m, unsigned b) {
   m.v = b & 1;
 }
 
+template <class A>
+OKTETT_INLINE Lane<std::int32_t, A> bit_cast_int(Lane<float, A> a) {
+  return std::bit_cast<std::int32_t>(a.v);
+}
+template <class A>
+OKTETT_INLINE Lane<float, A> bit_cast_float(Lane<std::int32_t, A> a) {
+  return std::bit_cast<float>(a.v);
+}
+template <class A>
+OKTETT_INLINE Lane<std::int32_t, A> common_bits(Lane<std::int32_t, A> a, Lane<std::int32_t, A> b) {
+  return a.v & b.v;
+}
+
+template <class A>
+OKTETT_INLINE Lane<double, A> low_bits_to_exponent(Lane<double, A> a) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a.v) << 52);
+}
+template <class A>
+OKTETT_INLINE Lane<double, A> biased_exponent(Lane<double, A> a) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a.v) >> 52 | 0x4330000000000000u) - 0x1p52;
+}
+template <class A>
+OKTETT_INLINE Lane<double, A> significand(Lane<double, A> a) {
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(a.v) & 0x000fffffffffffffu) |
+                               0x3ff0000000000000u);
+}
+
 // Operations on xsimd batches of any instruction set. Those that differ between sets are in core/simd_x86.h
 // and core/simd_neon.h.
 
@@ -274,6 +313,12 @@ OKTETT_INLINE xsimd::batch<T, X> sqrt(xsimd::batch<T, X> a) {
 template <class X>
 OKTETT_INLINE xsimd::batch<float, X> flip_sign(xsimd::batch<float, X> a, xsimd::batch<float, X> s) {
   return a ^ (s & xsimd::batch<float, X>(-0.0f));
+}
+
+template <class X>
+OKTETT_INLINE xsimd::batch<std::int32_t, X> common_bits(xsimd::batch<std::int32_t, X> a,
+                                                        xsimd::batch<std::int32_t, X> b) {
+  return a & b;
 }
 
 // Declared here so that templates can name them; instruction sets that have them provide overloads.

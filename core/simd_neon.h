@@ -96,4 +96,15 @@ OKTETT_INLINE uint8x16_t byte_places(uint32x4_t index) {
   return vreinterpretq_u8_u32(vmlaq_u32(vdupq_n_u32(0x03020100), index, vdupq_n_u32(0x04040404)));
 }
 
+OKTETT_INLINE NeonDouble low_bits_to_exponent(NeonDouble a) {
+  return vreinterpretq_f64_u64(vshlq_n_u64(vreinterpretq_u64_f64(a), 52));
+}
+OKTETT_INLINE NeonDouble biased_exponent(NeonDouble a) {
+  return vcvtq_f64_u64(vshrq_n_u64(vreinterpretq_u64_f64(a), 52));
+}
+OKTETT_INLINE NeonDouble significand(NeonDouble a) {
+  const uint64x2_t low = vandq_u64(vreinterpretq_u64_f64(a), vdupq_n_u64(0x000fffffffffffff));
+  return vreinterpretq_f64_u64(vorrq_u64(low, vdupq_n_u64(0x3ff0000000000000)));
+}
+
 }  // namespace oktett::native

@@ -60,6 +60,19 @@ OKTETT_INLINE float reduce_min(batch<float, Sse> a) {
 OKTETT_INLINE batch<float, Sse> bit_cast_float(batch<std::int32_t, Sse> a) { return _mm_castsi128_ps(a); }
 OKTETT_INLINE batch<std::int32_t, Sse> bit_cast_int(batch<float, Sse> a) { return _mm_castps_si128(a); }
 
+OKTETT_INLINE batch<double, Sse> low_bits_to_exponent(batch<double, Sse> a) {
+  return _mm_castsi128_pd(_mm_slli_epi64(_mm_castpd_si128(a), 52));
+}
+OKTETT_INLINE batch<double, Sse> biased_exponent(batch<double, Sse> a) {
+  const __m128i whole =
+      _mm_or_si128(_mm_srli_epi64(_mm_castpd_si128(a), 52), _mm_castpd_si128(_mm_set1_pd(0x1p52)));
+  return _mm_sub_pd(_mm_castsi128_pd(whole), _mm_set1_pd(0x1p52));
+}
+OKTETT_INLINE batch<double, Sse> significand(batch<double, Sse> a) {
+  const __m128i low = _mm_and_si128(_mm_castpd_si128(a), _mm_set1_epi64x(0x000fffffffffffff));
+  return _mm_castsi128_pd(_mm_or_si128(low, _mm_castpd_si128(_mm_set1_pd(1.0))));
+}
+
 #if defined(OKTETT_COMPILED_AVX2)
 using Avx = XsimdAvx2;
 OKTETT_INLINE batch<float, Avx> min(batch<float, Avx> a, batch<float, Avx> b) { return _mm256_min_ps(a, b); }
@@ -138,6 +151,18 @@ OKTETT_INLINE float reduce_min(batch<float, Avx> a) {
 }
 OKTETT_INLINE batch<float, Avx> bit_cast_float(batch<std::int32_t, Avx> a) { return _mm256_castsi256_ps(a); }
 OKTETT_INLINE batch<std::int32_t, Avx> bit_cast_int(batch<float, Avx> a) { return _mm256_castps_si256(a); }
+OKTETT_INLINE batch<double, Avx> low_bits_to_exponent(batch<double, Avx> a) {
+  return _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(a), 52));
+}
+OKTETT_INLINE batch<double, Avx> biased_exponent(batch<double, Avx> a) {
+  const __m256i whole = _mm256_or_si256(_mm256_srli_epi64(_mm256_castpd_si256(a), 52),
+                                        _mm256_castpd_si256(_mm256_set1_pd(0x1p52)));
+  return _mm256_sub_pd(_mm256_castsi256_pd(whole), _mm256_set1_pd(0x1p52));
+}
+OKTETT_INLINE batch<double, Avx> significand(batch<double, Avx> a) {
+  const __m256i low = _mm256_and_si256(_mm256_castpd_si256(a), _mm256_set1_epi64x(0x000fffffffffffff));
+  return _mm256_castsi256_pd(_mm256_or_si256(low, _mm256_castpd_si256(_mm256_set1_pd(1.0))));
+}
 #endif
 
 #if defined(OKTETT_COMPILED_AVX512)
@@ -195,6 +220,18 @@ OKTETT_INLINE batch<float, Avx5> bit_cast_float(batch<std::int32_t, Avx5> a) {
   return _mm512_castsi512_ps(a);
 }
 OKTETT_INLINE batch<std::int32_t, Avx5> bit_cast_int(batch<float, Avx5> a) { return _mm512_castps_si512(a); }
+OKTETT_INLINE batch<double, Avx5> low_bits_to_exponent(batch<double, Avx5> a) {
+  return _mm512_castsi512_pd(_mm512_slli_epi64(_mm512_castpd_si512(a), 52));
+}
+OKTETT_INLINE batch<double, Avx5> biased_exponent(batch<double, Avx5> a) {
+  const __m512i whole = _mm512_or_si512(_mm512_srli_epi64(_mm512_castpd_si512(a), 52),
+                                        _mm512_castpd_si512(_mm512_set1_pd(0x1p52)));
+  return _mm512_sub_pd(_mm512_castsi512_pd(whole), _mm512_set1_pd(0x1p52));
+}
+OKTETT_INLINE batch<double, Avx5> significand(batch<double, Avx5> a) {
+  const __m512i low = _mm512_and_si512(_mm512_castpd_si512(a), _mm512_set1_epi64(0x000fffffffffffff));
+  return _mm512_castsi512_pd(_mm512_or_si512(low, _mm512_castpd_si512(_mm512_set1_pd(1.0))));
+}
 #endif
 
 }  // namespace oktett::native

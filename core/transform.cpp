@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/affine_lanes.h"
 #include "core/double_double.h"
+#include "core/lanes.h"
 #include "core/math.h"
 
 namespace oktett {

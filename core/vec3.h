@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/inline.h"
+#include "core/platform.h"
 
 namespace oktett {
 

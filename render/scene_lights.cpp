@@ -8,7 +8,7 @@
 
 #include "accel/placed_geometry.h"
 #include "core/math.h"
-#include "core/mesh_triangle.h"
+#include "core/mesh_geometry.h"
 #include "render/enclosures.h"
 #include "render/light/rectangle_pair.h"
 #include "render/light/sky.h"

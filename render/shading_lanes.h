@@ -2,8 +2,7 @@
 /// \file The formulas of local shading, in lanes: which way normals face, the way to a light, Phong's
 /// cosines.
 
-#include "core/affine_lanes.h"
-#include "core/quotients.h"
+#include "core/lanes.h"
 #include "render/light_source.h"
 
 namespace oktett {

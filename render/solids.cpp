@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/open_edges.h"
+#include "core/mesh_geometry.h"
 
 namespace oktett {
 

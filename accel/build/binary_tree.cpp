@@ -13,7 +13,7 @@
 #include "accel/build/collapse.h"
 #include "accel/build/spatial.h"
 #include "accel/build/wide_tree.h"
-#include "core/chunks.h"
+#include "core/parallel.h"
 #include "core/phase.h"
 
 namespace oktett {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/chunks.h"
+#include "core/parallel.h"
 
 namespace oktett {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/chunks.h"
+#include "core/parallel.h"
 
 namespace oktett {
 namespace {

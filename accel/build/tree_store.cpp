@@ -8,8 +8,7 @@
 #include <bit>
 #include <span>
 
-#include "core/block_checksum.h"
-#include "core/hash.h"
+#include "core/bytes.h"
 
 namespace oktett {
 namespace {

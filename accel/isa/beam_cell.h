@@ -6,7 +6,7 @@
 
 #include "accel/beam_view.h"
 #include "core/lanes.h"
-#include "core/simd_reciprocal.h"
+#include "core/simd.h"
 #include "kernels/exact/exact_pool.h"
 #include "kernels/exact/segment.h"
 

@@ -2,7 +2,7 @@
 /// \file Surfaces of groups of mesh hits, for one instruction set.
 
 #include "accel/surface/interaction_code.h"
-#include "core/picked_lanes.h"
+#include "core/simd_memory.h"
 
 namespace oktett {
 

@@ -3,7 +3,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/shape_hits.h"
-#include "core/double_lanes.h"
+#include "core/simd_native.h"
 #include "kernels/closed/surface_points.h"
 
 namespace oktett {

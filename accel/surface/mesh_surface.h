@@ -3,8 +3,7 @@
 /// gets the same bits alone and in a group.
 
 #include "accel/accel_data.h"
-#include "core/affine_lanes.h"
-#include "core/quotients.h"
+#include "core/lanes.h"
 
 namespace oktett {
 

@@ -2,7 +2,7 @@
 /// \file offset_origin in lanes, and inline for single rays.
 
 #include "core/lanes.h"
-#include "core/simd_floats.h"
+#include "core/simd.h"
 #include "core/surface_interaction.h"
 
 namespace oktett {

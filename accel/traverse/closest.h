@@ -6,7 +6,7 @@
 
 #include "accel/closest.h"
 #include "accel/instance.h"
-#include "core/double_lanes.h"
+#include "core/simd_native.h"
 #include "core/simd_order.h"
 #include "kernels/closed/closest_triangle.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "accel/traverse/all_hits.h"
-#include "core/chunks.h"
+#include "core/parallel.h"
 
 namespace oktett {
 namespace {

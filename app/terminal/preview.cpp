@@ -12,7 +12,6 @@
 
 #include "app/text.h"
 #include "core/error.h"
-#include "core/suggest.h"
 
 namespace oktett {
 

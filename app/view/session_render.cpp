@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "app/scene_loading.h"
-#include "core/elapsed.h"
+#include "core/phase.h"
 #include "render/film/denoise.h"
 
 namespace oktett {

@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <system_error>
 
-#include "core/block_checksum.h"
 #include "core/bytes.h"
 #include "core/error.h"
 #include "io/image/output.h"

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/pages.h"
 #include "core/soa.h"
-#include "core/virtual_array.h"
 
 namespace oktett {
 

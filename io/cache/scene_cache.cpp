@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/block_checksum.h"
 #include "core/bytes.h"
 #include "core/error.h"
 #include "io/cache/entries.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/suggest.h"
 #include "io/image/image_access.h"
 #include "io/image/library.h"
 #include "io/image/output.h"

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/suggest.h"
+#include "core/error.h"
 #include "io/obj/material_textures.h"
 #include "io/obj/parsed_obj.h"
 

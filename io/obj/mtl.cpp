@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/suggest.h"
+#include "core/error.h"
 #include "io/mesh/failure.h"
 #include "io/obj/mtl_line.h"
 #include "io/obj/mtl_texture.h"

@@ -7,7 +7,6 @@
 
 #include "core/bytes.h"
 #include "core/error.h"
-#include "core/hash.h"
 #include "io/image/output.h"
 #include "io/text/mapped_file.h"
 #include "render/photon/photon_map.h"

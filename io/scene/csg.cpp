@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/open_edges.h"
+#include "core/mesh_geometry.h"
 #include "io/scene/readers.h"
 #include "render/solids.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/mesh_triangle.h"
+#include "core/mesh_geometry.h"
 #include "io/gltf/gltf.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/scene/meshes.h"

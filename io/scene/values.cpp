@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/error.h"
 #include "core/precise_math.h"
-#include "core/suggest.h"
 #include "io/scene/utf8.h"
 #include "io/text/file_access.h"
 #include "kernels/functions/expression.h"

@@ -6,7 +6,7 @@
 #include <system_error>
 #include <vector>
 
-#include "core/suggest.h"
+#include "core/error.h"
 #include "io/text/extension.h"
 #include "io/text/file_access.h"
 

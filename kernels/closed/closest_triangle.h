@@ -7,7 +7,7 @@
 /// point of its own at the right distance (the usual choice of one region by signs, e.g. Ericson: Real-Time
 /// Collision Detection, section 5.1.5, does not).
 
-#include "core/affine_lanes.h"
+#include "core/lanes.h"
 
 namespace oktett {
 

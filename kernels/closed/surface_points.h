@@ -2,9 +2,9 @@
 /// \file Surface points at hits, in lanes: what the formulas of all shapes share. Single hits use them with
 /// one lane, so a hit gets the same bits alone and in a group.
 
-#include "core/affine_lanes.h"
-#include "core/picked_lanes.h"
+#include "core/lanes.h"
 #include "core/ray.h"
+#include "core/simd_memory.h"
 #include "core/surface_interaction.h"
 
 namespace oktett {

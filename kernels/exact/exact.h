@@ -36,7 +36,7 @@
 
 #include <limits>
 
-#include "core/affine_lanes.h"
+#include "core/lanes.h"
 #include "core/ray.h"
 #include "core/surface_interaction.h"
 #include "kernels/exact/exact_pool.h"

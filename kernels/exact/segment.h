@@ -14,7 +14,7 @@
 /// The bounds are derived in docs/numerics.md.
 
 #include "core/lanes.h"
-#include "core/simd_reciprocal.h"
+#include "core/simd.h"
 
 namespace oktett {
 

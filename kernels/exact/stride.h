@@ -3,7 +3,7 @@
 /// proves that it is the one that march.h finds (after D. Kalra, A. H. Barr: Guaranteed ray intersections
 /// with implicit surfaces, 1989). What it cannot prove is left to march.h; docs/interval.md has the proof.
 
-#include "core/simd_gather.h"
+#include "core/simd_memory.h"
 #include "kernels/exact/exact.h"
 #include "kernels/exact/implicit_grid.h"
 #include "kernels/interval/interval.h"

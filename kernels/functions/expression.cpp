@@ -7,8 +7,8 @@
 #include <numbers>
 #include <system_error>
 
+#include "core/error.h"
 #include "core/precise_math.h"
-#include "core/suggest.h"
 
 namespace oktett {
 namespace {

@@ -3,7 +3,7 @@
 /// differentiation). They are NaN where a function is not defined, also at the poles of quotients and for the
 /// logarithm of 0. At kinks the derivative is that of one side, at steps it is 0.
 
-#include "core/affine_lanes.h"
+#include "core/lanes.h"
 #include "kernels/interval/dual.h"
 
 namespace oktett {

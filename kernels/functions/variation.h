@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "core/affine_lanes.h"
+#include "core/lanes.h"
 #include "kernels/interval/dual.h"
 
 namespace oktett {

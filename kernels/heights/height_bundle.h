@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "core/simd_words.h"
+#include "core/simd_memory.h"
 #include "kernels/heights/height_cell.h"
 
 namespace oktett {

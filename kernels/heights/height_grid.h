@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/pages.h"
 #include "core/platform.h"
-#include "core/simd_gather_pairs.h"
+#include "core/simd_memory.h"
 #include "core/soa.h"
-#include "core/virtual_array.h"
 #include "kernels/heights/height_field_data.h"
 
 namespace oktett {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/eighth_turn.h"
-#include "core/simd_bits.h"
+#include "core/simd.h"
 
 namespace oktett::lane {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/lanes.h"
-#include "core/simd_lookup.h"
+#include "core/simd_memory.h"
 #include "kernels/triangle/triangle_tests.h"
 #include "kernels/triangle/triangle_watertight.h"
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/suggest.h"
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
 #include "python/src/unlocked.h"

@@ -1,6 +1,6 @@
 #include "python/src/fields.h"
 
-#include "core/suggest.h"
+#include "core/error.h"
 
 namespace oktett::python {
 

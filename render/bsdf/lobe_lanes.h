@@ -2,8 +2,8 @@
 /// \file What the lobes of all materials share: results and the choice of a lobe, in lanes of
 /// doubles D. Single surfaces use them with one lane, so a surface gets the same bits alone and in a group.
 
-#include "core/affine_lanes.h"
 #include "core/lane_math.h"
+#include "core/lanes.h"
 #include "render/bsdf/optics.h"
 
 namespace oktett {

@@ -4,9 +4,8 @@
 
 #include <optional>
 
-#include "core/affine_lanes.h"
 #include "core/lane_math.h"
-#include "core/quotients.h"
+#include "core/lanes.h"
 
 namespace oktett {
 

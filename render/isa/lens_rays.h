@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/double_lanes.h"
 #include "core/eighth_turn.h"
-#include "core/quotients.h"
+#include "core/lanes.h"
+#include "core/simd_native.h"
 #include "render/camera.h"
 
 namespace oktett {

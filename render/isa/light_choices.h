@@ -7,10 +7,10 @@
 #include <span>
 #include <type_traits>
 
-#include "core/double_lanes.h"
 #include "core/four.h"
 #include "core/simd.h"
-#include "core/simd_pieces.h"
+#include "core/simd_memory.h"
+#include "core/simd_native.h"
 #include "render/light/light_tree.h"
 #include "render/light/light_tree_lanes.h"
 

@@ -2,7 +2,7 @@
 /// \file Light samples and look-ups in environment maps for many points, for one instruction set. Columns are
 /// up to 64 long; entries up to the end of the last group of lanes are read and written.
 
-#include "core/double_lanes.h"
+#include "core/simd_native.h"
 #include "render/light/flat_lanes.h"
 #include "render/light/round_lanes.h"
 #include "render/transport/path_lights.h"

@@ -2,8 +2,8 @@
 /// \file What path tracing needs of hits before it looks at their materials: directions, normals and random
 /// numbers.
 
-#include "core/double_lanes.h"
-#include "core/picked_lanes.h"
+#include "core/simd_memory.h"
+#include "core/simd_native.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/shading_lanes.h"
 #include "render/transport/path_block.h"

@@ -2,7 +2,7 @@
 /// \file Shading of hits in columns, for one instruction set.
 
 #include "accel/surface/offset_origin.h"
-#include "core/picked_lanes.h"
+#include "core/simd_memory.h"
 #include "core/simd_order.h"
 #include "render/bsdf/phong_power.h"
 #include "render/context.h"

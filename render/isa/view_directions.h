@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include "core/double_lanes.h"
 #include "core/lanes.h"
-#include "core/quotients.h"
+#include "core/simd_native.h"
 #include "render/transport/render_code.h"
 
 namespace oktett {

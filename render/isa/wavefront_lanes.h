@@ -1,7 +1,7 @@
 #pragma once
 /// \file Passes over the columns of a wavefront, for one instruction set.
 
-#include "core/picked_lanes.h"
+#include "core/simd_memory.h"
 #include "core/simd_order.h"
 #include "render/isa/shading.h"
 #include "render/transport/color_column.h"

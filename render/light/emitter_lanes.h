@@ -1,8 +1,8 @@
 #pragma once
 /// \file Samples of emitters in lanes, see emitter.h: what all kinds share. Single points use one lane.
 
-#include "core/affine_lanes.h"
 #include "core/lane_math.h"
+#include "core/lanes.h"
 #include "render/light/emitter.h"
 #include "render/light/emitter_kinds.h"
 

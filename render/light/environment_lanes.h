@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "core/affine_lanes.h"
 #include "core/lane_math.h"
+#include "core/lanes.h"
 #include "core/math.h"
 #include "core/vec3.h"
 

@@ -5,8 +5,8 @@
 /// Departs from the paper in its formulas: solid angle and sub-triangles are computed from half angles, which
 /// keep their relative accuracy when the triangle is small.
 
-#include "core/affine_lanes.h"
 #include "core/lane_math.h"
+#include "core/lanes.h"
 
 namespace oktett {
 

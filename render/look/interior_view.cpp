@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/math.h"
-#include "core/mesh_triangle.h"
+#include "core/mesh_geometry.h"
 #include "core/random.h"
 #include "render/camera.h"
 #include "render/look/mesh_explorer.h"

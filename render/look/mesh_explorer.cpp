@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/mesh_triangle.h"
+#include "core/mesh_geometry.h"
 
 namespace oktett {
 

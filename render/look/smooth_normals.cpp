@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/math.h"
-#include "core/mesh_triangle.h"
+#include "core/mesh_geometry.h"
 
 namespace oktett {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/box.h"
-#include "core/mesh_triangle.h"
+#include "core/mesh_geometry.h"
 
 namespace oktett {
 namespace {

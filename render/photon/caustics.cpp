@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "accel/accel.h"
+#include "core/bytes.h"
 #include "core/error.h"
-#include "core/hash.h"
 #include "core/random.h"
 #include "render/context.h"
 #include "render/light/emitter_kinds.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "accel/accel.h"
-#include "core/chunks.h"
+#include "core/parallel.h"
 #include "render/light/emitter.h"
 #include "render/photon/photon_choices.h"
 #include "render/photon/photon_media.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <mutex>
 
-#include "core/elapsed.h"
+#include "core/phase.h"
 #include "render/context.h"
 #include "render/default_view.h"
 #include "render/film/cryptomatte.h"

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "accel/surface/offset_origin.h"
-#include "core/double_lanes.h"
-#include "core/picked_lanes.h"
+#include "core/simd_memory.h"
+#include "core/simd_native.h"
 #include "core/simd_order.h"
 #include "render/bsdf/shading_frame.h"
 #include "render/shading_lanes.h"

@@ -1,4 +1,4 @@
-#include "core/quotients.h"
+#include "core/lanes.h"
 
 #include <gtest/gtest.h>
 

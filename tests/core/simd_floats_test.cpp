@@ -1,4 +1,4 @@
-#include "core/simd_floats.h"
+#include "core/simd.h"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/simd_gather.h"
-#include "core/simd_gather_pairs.h"
-#include "core/simd_lookup.h"
-#include "core/simd_words.h"
+#include "core/simd_memory.h"
 
 namespace oktett::simd_order_test {
 namespace {

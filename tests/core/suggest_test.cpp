@@ -1,4 +1,4 @@
-#include "core/suggest.h"
+#include "core/error.h"
 
 #include <gtest/gtest.h>
 

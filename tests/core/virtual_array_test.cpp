@@ -1,4 +1,4 @@
-#include "core/virtual_array.h"
+#include "core/pages.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/elapsed.h"
 #include "core/error.h"
+#include "core/phase.h"
 
 namespace oktett::display_test {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/hash.h"
+#include "core/bytes.h"
 #include "verify/cases/kernel_cases.h"
 #include "verify/oracles/exact.h"
 

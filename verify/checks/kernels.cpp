@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "core/chunks.h"
+#include "core/parallel.h"
 #include "verify/checks/compare_mode.h"
 #include "verify/oracles/closed.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "accel/accel.h"
-#include "core/chunks.h"
+#include "core/parallel.h"
 #include "core/random.h"
 #include "verify/checks/compare_mode.h"
 

@@ -1,8 +1,7 @@
 #include "verify/probes/simd_probe.h"
 
-#include "core/simd_lookup.h"
+#include "core/simd_memory.h"
 #include "core/simd_order.h"
-#include "core/simd_words.h"
 #include "verify/isa/load_column.h"
 
 namespace oktett {

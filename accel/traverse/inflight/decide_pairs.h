@@ -3,7 +3,7 @@
 /// one candidate hit per ray decide the candidates of many rays here at once.
 
 #include "accel/traverse/leaf.h"
-#include "core/simd_gather.h"
+#include "core/simd_memory.h"
 
 namespace oktett {
 

@@ -1,5 +1,7 @@
 #pragma once
-/// \file Single triangles of a mesh, in double.
+/// \file Corners, normals and open edges of the triangles of a mesh.
+
+#include <cstdint>
 
 #include "core/mesh.h"
 
@@ -15,5 +17,15 @@ inline Vec3d area_normal(const TriangleMesh& mesh, std::size_t triangle) {
   const Vec3d a = corner(mesh, triangle, 0);
   return cross(corner(mesh, triangle, 1) - a, corner(mesh, triangle, 2) - a);
 }
+
+/// Edges that the triangles do not traverse equally often in both directions.
+struct OpenEdges {
+  std::uint64_t count = 0;
+  Vec3f from, to;  ///< the first such edge, in the order of the triangles
+};
+
+/// Vertices at the same position count as one, since files often repeat them. 0 for a closed mesh whose
+/// triangles have consistent winding.
+OpenEdges find_open_edges(const TriangleMesh& mesh);
 
 }  // namespace oktett

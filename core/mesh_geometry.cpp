@@ -1,4 +1,4 @@
-#include "core/open_edges.h"
+#include "core/mesh_geometry.h"
 
 #include <tbb/parallel_sort.h>
 
