@@ -112,13 +112,6 @@ OptionText describe(const CLI::App& verb, const CLI::Option& option, const Optio
 
 }  // namespace
 
-std::string or_list(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-  return text;
-}
-
 void Verb::option(const char* names, OptionTarget target, const char* value, const char* help) {
   std::visit(
       [&](auto* variable) {

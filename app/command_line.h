@@ -39,9 +39,6 @@ struct VerbText {
 /// The choices of options, by verb and names.
 using OptionChoices = std::map<std::string, std::vector<std::string>>;
 
-/// "fast, balanced or best".
-std::string or_list(const std::vector<std::string>& words);
-
 /// The variable that an option's value goes to. An option for a vector may be repeated.
 using OptionTarget = std::variant<std::string*, unsigned*, std::uint64_t*, std::optional<std::uint32_t>*,
                                   std::vector<std::string>*>;

@@ -9,6 +9,8 @@
 #include "app/limits.h"
 #include "app/progress.h"
 #include "app/text.h"
+#include "core/error.h"
+#include "io/mesh/load/load_mesh.h"
 #include "io/mesh/save/convert_mesh.h"
 
 namespace oktett {
@@ -44,9 +46,11 @@ void add_convert_command(CommandLine& line) {
   const auto a = std::make_shared<ConvertArguments>();
   Verb verb =
       line.add_verb("convert", "Write a mesh file in another format", [a] { return run_convert(*a); });
-  verb.positional("input", a->input, "INPUT", "Mesh to read: .obj, .ply, .stl, .gltf or .glb, also .gz");
-  verb.positional("output", a->output, "OUTPUT", "File to write: .obj, .ply, .stl or .glb");
-  verb.flag("--ascii", a->options.ascii, "Write text instead of bytes (.ply, .stl)");
+  verb.positional("input", a->input, "INPUT", ("Mesh to read: " + mesh_extensions()).c_str());
+  verb.positional("output", a->output, "OUTPUT",
+                  ("File to write: " + or_list(written_mesh_extensions())).c_str());
+  verb.flag("--ascii", a->options.ascii,
+            ("Write text instead of bytes (" + and_list(text_mesh_extensions()) + ")").c_str());
   verb.flag("--weld", a->options.weld, "Make one of all vertices at the same place");
   verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");
   add_limit_options(verb, a->limits);

@@ -13,7 +13,7 @@
 #include "core/description.h"
 #include "core/error.h"
 #include "io/scene/scene_file.h"
-#include "io/text/files_read.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {

@@ -15,7 +15,7 @@
 #include "app/text.h"
 #include "core/error.h"
 #include "io/image/output.h"
-#include "io/text/file_access.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {

@@ -32,7 +32,7 @@
 #include "io/image/texture.h"
 #include "io/photon/photon_map_file.h"
 #include "io/scene/scene_file.h"
-#include "io/text/files_read.h"
+#include "io/text/files.h"
 #include "kernels/exact/march.h"
 #include "render/film/denoise.h"
 #include "render/picture/render.h"

@@ -17,7 +17,7 @@
 #include "bench/program.h"
 #include "io/image/image.h"
 #include "io/mesh/load/load_mesh.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 #include "render/picture/render.h"
 
 namespace fs = std::filesystem;

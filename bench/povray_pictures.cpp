@@ -14,7 +14,7 @@
 #include "bench/peer_timing.h"
 #include "bench/povray_picture_scenes.h"
 #include "bench/program.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 #include "render/picture/render.h"
 
 namespace fs = std::filesystem;

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Numbers and texts as bytes, for binary files, and hashes and checksums of them: the same on every machine.
+/// \file Numbers and texts as bytes, for binary files, and hashes and checksums of them: the same on every
+/// machine.
 
 #include <bit>
 #include <cstddef>

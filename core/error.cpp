@@ -69,4 +69,14 @@ std::string did_you_mean(const std::string& name, std::span<const std::string> k
   return "; did you mean '" + nearest + "'?";
 }
 
+static std::string list_of(std::span<const std::string> words, const char* last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? last : ", ") + words[i];
+  return text;
+}
+
+std::string or_list(std::span<const std::string> words) { return list_of(words, " or "); }
+std::string and_list(std::span<const std::string> words) { return list_of(words, " and "); }
+
 }  // namespace oktett

@@ -62,4 +62,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b);
 std::string did_you_mean(const std::string& name, std::span<const std::string> known,
                          const std::string& otherwise = "");
 
+/// "fast, balanced or best", and "fast, balanced and best".
+std::string or_list(std::span<const std::string> words);
+std::string and_list(std::span<const std::string> words);
+
 }  // namespace oktett

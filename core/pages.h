@@ -1,6 +1,6 @@
 #pragma once
-/// \file Memory in pages, which large arrays take from the system themselves, and an array in such pages that many
-/// threads fill.
+/// \file Memory in pages, which large arrays take from the system themselves, and an array in such pages that
+/// many threads fill.
 
 #include <cstddef>
 #include <cstdint>
@@ -54,8 +54,8 @@ void populate_pages(void* begin, std::size_t bytes);
 /// Whether the system would give so many more bytes of address space now.
 bool can_reserve(std::size_t bytes);
 
-/// An array for many threads. Reserves address space for `size` elements; pages are allocated when first written. New elements read as
-/// zero bytes.
+/// An array for many threads. Reserves address space for `size` elements; pages are allocated when first
+/// written. New elements read as zero bytes.
 template <class T>
 class VirtualArray {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -1,5 +1,6 @@
 #pragma once
-/// \file What takes long, while it is done, for whoever shows how far the program is; and how much time has passed.
+/// \file What takes long, while it is done, for whoever shows how far the program is; and how much time has
+/// passed.
 
 #include <atomic>
 #include <chrono>

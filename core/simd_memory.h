@@ -1,6 +1,6 @@
 #pragma once
-/// \file Lanes from other places than consecutive memory: gathers, pieces, words of 16 bits, look-ups in rows of
-/// sixteen, and entries of columns that an index names.
+/// \file Lanes from other places than consecutive memory: gathers, pieces, words of 16 bits, look-ups in rows
+/// of sixteen, and entries of columns that an index names.
 
 #include <cstdint>
 #include <type_traits>

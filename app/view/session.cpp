@@ -20,7 +20,7 @@
 #include "core/error.h"
 #include "core/isa.h"
 #include "io/image/image.h"
-#include "io/text/files_read.h"
+#include "io/text/files.h"
 #include "render/camera.h"
 #include "render/picture/prepared_scene.h"
 

@@ -6,7 +6,7 @@
 
 #include "accel/build/tree_store.h"
 #include "io/cache/cache_file.h"
-#include "io/mesh/parsed_mesh.h"
+#include "io/mesh/reading.h"
 
 namespace oktett {
 

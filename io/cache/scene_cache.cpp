@@ -19,10 +19,9 @@
 #include "core/error.h"
 #include "io/cache/entries.h"
 #include "io/mesh/load/parse_mesh.h"
-#include "io/mesh/weld.h"
-#include "io/text/file_access.h"
-#include "io/text/files_read.h"
-#include "io/text/mapped_file.h"
+#include "io/mesh/vertices.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 
 namespace oktett {
 

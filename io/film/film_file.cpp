@@ -14,8 +14,8 @@
 #include "core/bytes.h"
 #include "core/error.h"
 #include "io/image/output.h"
-#include "io/text/files_read.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 #include "render/light_groups.h"
 
 namespace oktett {

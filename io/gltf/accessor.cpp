@@ -5,7 +5,8 @@
 #include <cstring>
 
 #include "core/parallel.h"
-#include "io/mesh/numbers.h"
+#include "io/gltf/packed.h"
+#include "io/mesh/reading.h"
 
 namespace oktett {
 namespace {

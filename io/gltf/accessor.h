@@ -61,7 +61,4 @@ void read_gltf_uvs(const GltfFile& file, const GltfElements& elements, Vec2f* ou
 void read_gltf_indices(const GltfFile& file, const GltfElements& elements, std::uint64_t limit,
                        std::uint32_t* out);
 
-/// Unpacks a view. Throws Error if its bytes are damaged, or if the program is built without meshoptimizer.
-std::string unpack_meshopt(const GltfFile& file, const GltfPacking& packing, const std::string& where);
-
 }  // namespace oktett

@@ -16,11 +16,10 @@
 #include "core/parallel.h"
 #include "core/phase.h"
 #include "io/gltf/accessor.h"
-#include "io/gltf/draco.h"
 #include "io/gltf/gltf_file.h"
-#include "io/gltf/materials.h"
-#include "io/mesh/failure.h"
-#include "io/text/extension.h"
+#include "io/gltf/packed.h"
+#include "io/mesh/reading.h"
+#include "io/text/files.h"
 
 namespace oktett {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Scenes in glTF 2.0 files. Within io/ only.
+/// \file Scenes in glTF 2.0 files, read and written. Within io/ only.
 
 #include <cstdint>
 #include <memory>
@@ -9,6 +9,7 @@
 
 #include "core/transform.h"
 #include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_output.h"
 #include "render/scene.h"
 
 namespace oktett {
@@ -54,5 +55,9 @@ MeshFile one_mesh(const std::string& path, GltfScene scene);
 
 /// Whether the name of a file is that of a glTF file.
 bool is_gltf_file(const std::string& path);
+
+/// Writes the mesh as one node of a glTF 2.0 file of bytes, with its materials and their images. Returns what
+/// glTF cannot say. Throws Error of kind io if that fails.
+MeshLosses write_glb(const std::string& path, const MeshFile& file);
 
 }  // namespace oktett

@@ -1,4 +1,4 @@
-#include "io/gltf/materials.h"
+#include "io/gltf/gltf_file.h"
 
 #include <algorithm>
 #include <map>

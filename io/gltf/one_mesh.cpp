@@ -5,8 +5,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/gltf/gltf.h"
-#include "io/mesh/failure.h"
-#include "io/mesh/numbers.h"
+#include "io/mesh/reading.h"
 
 namespace oktett {
 namespace {

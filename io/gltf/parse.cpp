@@ -10,9 +10,9 @@
 #include <string_view>
 #include <utility>
 
-#include "io/gltf/json_text.h"
+#include "io/gltf/gltf_file.h"
 #include "io/gltf/tiny_model.h"
-#include "io/mesh/failure.h"
+#include "io/mesh/reading.h"
 
 namespace oktett {
 namespace {

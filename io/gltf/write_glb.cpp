@@ -1,4 +1,4 @@
-#include "io/gltf/write_glb.h"
+#include "io/gltf/gltf.h"
 
 #include <algorithm>
 #include <cstring>
@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "io/gltf/materials.h"
+#include "io/gltf/gltf_file.h"
 #include "io/gltf/tiny_model.h"
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
-#include "io/mesh/unify.h"
+#include "io/mesh/vertices.h"
 #include "io/obj/material_textures.h"
-#include "io/obj/written_materials.h"
-#include "io/text/file_access.h"
-#include "io/text/mapped_file.h"
+#include "io/obj/write_obj.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 
 namespace oktett {
 

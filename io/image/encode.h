@@ -1,5 +1,6 @@
 #pragma once
-/// \file What image files hold of a picture, the same whichever library writes them. Not for other folders.
+/// \file What image files hold of a picture, the same whichever library writes them; and the formats that are
+/// written without OpenImageIO. Not for other folders.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "io/image/metadata.h"
+#include "io/image/output.h"
 #include "render/picture.h"
 
 namespace oktett {
@@ -35,5 +37,17 @@ struct Attribute {
 
 /// Those members of `metadata` that are not empty or zero.
 std::vector<Attribute> attributes(const ImageMetadata& metadata);
+
+/// The bytes of a PNG of 8-bit sRGB, with straight alpha if `picture` has A; attributes that are texts become
+/// tEXt chunks. Throws Error if a colour is missing.
+std::string encode_png(const Picture& picture, const std::vector<Attribute>& attributes);
+/// Writes them. Throws Error of kind io if the file cannot be written.
+void write_png(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes);
+
+/// Writes an OpenEXR file: one part of scan lines, ZIP compression, each plane a channel of its type, all
+/// attributes. Values are stored as they are; finite ones too large for half become the largest half.
+/// Throws Error if two planes share a name or a name is empty or longer than 255 bytes, or of kind io if the
+/// file cannot be written.
+void write_exr(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes);
 
 }  // namespace oktett

@@ -23,7 +23,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "io/image/writers.h"
+#include "io/image/encode.h"
 
 namespace oktett {
 namespace {

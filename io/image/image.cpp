@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/image/image_access.h"
+#include "io/image/encode.h"
 #include "io/image/library.h"
 #include "io/image/output.h"
-#include "io/image/writers.h"
-#include "io/text/files_read.h"
-#include "io/text/stand_ins.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {

@@ -1,9 +1,10 @@
 #pragma once
-/// \file The part of io/ that knows OpenImageIO, behind an interface. Not for other folders.
+/// \file The part of io/ that knows OpenImageIO, behind an interface; and which files may be read as images.
+/// Not for other folders.
 ///
 /// OpenImageIO brings hundreds of shared libraries: to start with them takes a third of a second and 120 MB.
 /// So its users, io/image/oiio/, are a shared library of their own, which is loaded when the first image is
-/// read, or written in another format than those of io/image/writers.h. Most runs never need it.
+/// read, or written in another format than those of io/image/encode.h. Most runs never need it.
 
 #include <cstdint>
 #include <memory>
@@ -30,7 +31,7 @@ struct TextureSource {
 class ImageLibrary {
  public:
   /// Of files with `path`'s extension; nothing if no such file can be written. The formats of
-  /// io/image/writers.h are not asked for.
+  /// io/image/encode.h are not asked for.
   virtual std::optional<PixelLayout> layout(const std::string& path) const = 0;
   /// The bytes of a file with `path`'s extension that holds `image`. Nothing if OpenImageIO writes files of
   /// this format only by their names; then call `write`.
@@ -63,5 +64,10 @@ bool image_library_is_installed();
 /// What the shared library of io/image/oiio/ exports, by its name for dlsym.
 inline constexpr const char* kImageLibraryEntry = "oktett_image_library";
 using ImageLibraryEntry = const ImageLibrary* (*)();
+
+/// Why `path` may not be read as an image; empty if it may be tried. While files are confined
+/// (io/text/files.h), only files that begin like one of the usual formats are tried: others may name
+/// further files, like the play lists of films.
+std::string why_not_an_image(const std::string& path);
 
 }  // namespace oktett

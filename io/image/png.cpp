@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/image/writers.h"
+#include "io/image/encode.h"
 
 namespace oktett {
 namespace {

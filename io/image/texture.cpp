@@ -11,11 +11,9 @@
 #include <string>
 #include <utility>
 
-#include "io/image/image_access.h"
 #include "io/image/library.h"
 #include "io/image/mip_map.h"
-#include "io/text/files_read.h"
-#include "io/text/stand_ins.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {

@@ -13,11 +13,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/mesh/failure.h"
-#include "io/obj/mtl_line.h"
+#include "io/mesh/reading.h"
 #include "io/obj/mtl_texture.h"
 #include "io/obj/obj.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett {
 namespace {

@@ -183,7 +183,7 @@ ObjFile load_obj(const std::string& path, const ObjOptions& options) {
   ObjLoad load(path, options);
   ParsedMesh parsed = load.run();
   LineCounter lines = load.lines();
-  return finish_obj(path, std::move(parsed), [&](std::uint64_t at) { return lines.at(load.text() + at); });
+  return finish_mesh(path, std::move(parsed), [&](std::uint64_t at) { return lines.at(load.text() + at); });
 }
 
 ObjFile load_obj(const std::string& path) { return load_obj(path, ObjOptions{}); }
@@ -207,9 +207,9 @@ ParsedMesh parse_obj(const std::string& path) {
   return parsed;
 }
 
-ObjFile finish_obj(const std::string& path, ParsedMesh parsed,
-                   const std::function<TextPosition(std::uint64_t)>& position) {
-  ObjFile obj;
+MeshFile finish_mesh(const std::string& path, ParsedMesh parsed,
+                     const std::function<TextPosition(std::uint64_t)>& position) {
+  MeshFile obj;
   obj.mesh = std::move(parsed.mesh);
   // Those about materials stand before others of the same place.
   std::vector<MeshStatement> notices;
@@ -226,11 +226,11 @@ ObjFile finish_obj(const std::string& path, ParsedMesh parsed,
   return obj;
 }
 
-ObjFile finish_obj(const std::string& path, ParsedMesh parsed) {
+MeshFile finish_mesh(const std::string& path, ParsedMesh parsed) {
   std::unordered_map<std::uint64_t, TextPosition> positions;
   for (const auto* list : {&parsed.libraries, &parsed.materials, &parsed.notices})
     for (const MeshStatement& statement : *list) positions.emplace(statement.at, statement.position);
-  return finish_obj(path, std::move(parsed), [&](std::uint64_t at) { return positions[at]; });
+  return finish_mesh(path, std::move(parsed), [&](std::uint64_t at) { return positions[at]; });
 }
 
 }  // namespace oktett

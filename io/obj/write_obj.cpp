@@ -1,9 +1,275 @@
 #include "io/obj/write_obj.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "io/obj/obj.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 
 namespace oktett {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rec.709, as load_mtl takes it.
+float luminance_of(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
+
+/// The end of the name of an image's file, by its first bytes.
+const char* image_extension(std::string_view bytes) {
+  if (bytes.starts_with("\x89PNG")) return ".png";
+  return bytes.starts_with("RIFF") ? ".webp" : ".jpg";
+}
+
+/// Whether there is a file, and not with these bytes.
+bool is_another(const fs::path& path, std::string_view bytes) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return false;
+  try {
+    return MappedFile(path.string()).text() != bytes;
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+/// Numbers near `guess`, the nearest first, until reads(number) is `target`; `guess` if none is.
+template <class F>
+float find_number(float guess, float target, const F& reads) {
+  float above = guess, below = guess;
+  for (int i = 0; i < 64; ++i) {
+    if (reads(above) == target) return above;
+    if (reads(below) == target) return below;
+    above = std::nextafter(above, INFINITY), below = std::nextafter(below, -INFINITY);
+  }
+  return guess;
+}
+
+class MtlWriting {
+ public:
+  MtlWriting(MeshOutput& out, const std::string& path, const MeshFile& file, MeshLosses& losses)
+      : out_(out), path_(path), file_(file), losses_(losses) {}
+
+  void run(const std::vector<std::string>& names) {
+    out_.text("# Written by Oktett\n");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      out_.text("\nnewmtl ").text(names[i]).text("\n");
+      write(file_.materials[i]);
+    }
+    out_.flush();
+    note_losses(names);
+  }
+
+ private:
+  void color(const char* key, const Color& c) {
+    out_.text(key).text(" ").number(c.x).text(" ").number(c.y).text(" ").number(c.z).text("\n");
+  }
+  void number(const char* key, float x) { out_.text(key).text(" ").number(x).text("\n"); }
+
+  void write(const Material& m) {
+    write_diffuse(m);
+    write_specular(m);
+    if (glows(m)) color("Ke", m.emission);
+    number("Ns", m.phong);
+    number("Ni", m.ior);
+    if (m.transparency > 0) {
+      const float d = 1 - m.transparency;
+      // d is what other programs know best.
+      number(1 - d == m.transparency ? "d" : "Tr", 1 - d == m.transparency ? d : m.transparency);
+    }
+    if (m.principled) {
+      const PrincipledParameters& p = m.principled->parameters;
+      number("Pr", p.roughness), number("Pm", p.metallic), number("Ps", p.sheen);
+      number("Pc", p.coat), number("Pcr", p.coat_roughness);
+    }
+    write_textures(m);
+  }
+
+  /// The inverse of what load_mtl makes of Kd, Tf and Ka.
+  void write_diffuse(const Material& m) {
+    const Material standard;
+    const float part = m.transparency > 0 ? 1 - m.transparency : 1;
+    const bool is_standard = m.color == standard.color && m.diffuse == standard.diffuse * part;
+    if (is_standard && m.color_texture == kNoId) {
+      // What load_mtl takes if there is no Kd.
+    } else if (m.principled || m.diffuse == part) {
+      color("Kd", m.color);
+    } else if (m.transparency > 0) {
+      color("Kd", m.color * (part > 0 ? m.diffuse / part : 1.0f));
+      color("Tf", m.color);
+    } else {
+      color("Kd", m.color * m.diffuse);
+    }
+    if (m.ambient != standard.ambient) write_ambient(m.ambient, luminance_of(m.color));
+  }
+
+  /// A grey, but for the last bits of its blue, that is by this part as bright.
+  void write_ambient(float part, float brightness) {
+    float grey = 0, blue = 0;
+    if (brightness > 0) {
+      const auto ratio = [brightness](float x) { return std::clamp(x / brightness, 0.0f, 1.0f); };
+      grey = find_number(part * brightness, part, ratio);
+      blue = find_number(grey, grey, [grey](float b) { return luminance_of({grey, grey, b}); });
+    }
+    color("Ka", {grey, grey, blue});
+  }
+
+  void write_specular(const Material& m) {
+    if (m.specular > 0)
+      color("Ks", m.specular == 1 ? m.specular_color : m.specular_color * m.specular);
+    else if (m.specular_texture != kNoId)
+      color("Ks", {0, 0, 0});
+    if (m.reflection > 0) number("illum", 3);
+  }
+
+  void write_textures(const Material& m) {
+    texture("map_Kd", m.color_texture);
+    texture("map_Ks", m.specular_texture);
+    texture("map_Ke", m.emission_texture);
+    texture("map_d", m.opacity_texture);
+    texture("map_Bump", m.bump_texture, m.bump_scale);
+    texture("norm", m.normal_texture);
+    if (!m.principled) return;
+    texture("map_Pr", m.principled->roughness_texture);
+    texture("map_Pm", m.principled->metallic_texture);
+    texture("map_Ps", m.principled->sheen_texture);
+    texture("map_Pc", m.principled->coat_texture);
+    texture("map_Pcr", m.principled->coat_roughness_texture);
+  }
+
+  void texture(const char* key, std::uint32_t index, float bump = 1) {
+    if (index == kNoId) return;
+    const Texture& t = file_.textures[index];
+    if (t.pattern) return;
+    const std::string name = t.content ? embedded_name(t) : relative_name(t.path);
+    if (name.empty()) return;
+    written_.insert(index);
+    const auto vector = [this](const char* option, const Vec3f& v) {
+      out_.text(option).number(v.x).text(" ").number(v.y).text(" ").number(v.z);
+    };
+    out_.text(key);
+    if (!(t.scale == Vec3f{1, 1, 1})) vector(" -s ", t.scale);
+    if (!(t.offset == Vec3f{0, 0, 0})) vector(" -o ", t.offset);
+    if (t.base != 0 || t.gain != 1) out_.text(" -mm ").number(t.base).text(" ").number(t.gain);
+    if (bump != 1) out_.text(" -bm ").number(bump);
+    if (t.clamp) out_.text(" -clamp on");
+    constexpr const char* kChannels[] = {"r", "g", "b", "m"};  // in the order of ImageChannel
+    if (t.channel != ImageChannel::red)
+      out_.text(" -imfchan ").text(kChannels[static_cast<std::size_t>(t.channel)]);
+    out_.text(" ").text(name).text("\n");
+  }
+
+  /// As seen from the folder of the MTL file; empty if MTL cannot say it.
+  std::string relative_name(const std::string& path) const {
+    std::error_code error;
+    const fs::path folder = fs::absolute(fs::path(path_), error).parent_path();
+    const fs::path from_here =
+        fs::absolute(path, error).lexically_normal().lexically_relative(folder.lexically_normal());
+    std::string name = from_here.empty() ? path : from_here.string();
+    if (name.empty() || name.back() == '\\' || name.back() == ' ' || std::ranges::any_of(name, is_control))
+      return "";
+    return name.front() == '-' || name.front() == ' ' ? "./" + name : name;
+  }
+
+  /// The name of the file to which the image of a texture goes, which is written at its first use.
+  std::string embedded_name(const Texture& t) {
+    std::string& name = images_[t.content.get()];
+    if (!name.empty()) return name;
+    const fs::path folder = fs::path(path_).parent_path();
+    fs::path file;
+    // Files that are there may be other textures.
+    do {
+      name = fs::path(path_).stem().string() + "-" + std::to_string(++image_number_) +
+             image_extension(*t.content);
+      file = folder / name;
+    } while (is_another(file, *t.content));
+    OutputFile image(file.string());
+    image.write(*t.content);
+    image.commit();
+    losses_.push_back("changed: an image of a texture is written to '" + name + "'");
+    return name;
+  }
+
+  void note_losses(const std::vector<std::string>& names) {
+    std::set<std::uint32_t> lost;
+    for (Material m : file_.materials)
+      for_each_texture(m, [&](std::uint32_t index) {
+        if (index != kNoId && !written_.contains(index)) lost.insert(index);
+      });
+    if (!lost.empty())
+      losses_.push_back("lost: " + count_of(lost.size(), "texture") + ", which MTL cannot show as they are");
+    note_changed_materials(names);
+  }
+
+  /// Reads the file again, because that shows best what is another material now.
+  void note_changed_materials(const std::vector<std::string>& names) {
+    std::vector<Material> read;
+    std::vector<Texture> textures;
+    std::vector<Warning> warnings;
+    if (files_are_confined()) {
+      losses_.push_back(kNotCompared);
+      return;
+    }
+    load_mtl(out_.temporary(), read, textures, warnings);
+    std::vector<std::string> changed;
+    std::size_t renamed = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] != file_.materials[i].name) ++renamed;
+      if (i >= read.size() || !is_same_material(read[i], file_.materials[i])) changed.push_back(names[i]);
+    }
+    note_changed(changed, "MTL", losses_);
+    if (renamed > 0)
+      losses_.push_back("changed: the " + std::string(renamed == 1 ? "name of " : "names of ") +
+                        count_of(renamed, "material"));
+  }
+
+  MeshOutput& out_;
+  const std::string& path_;
+  const MeshFile& file_;
+  MeshLosses& losses_;
+  std::set<std::uint32_t> written_;                   ///< textures
+  std::map<const std::string*, std::string> images_;  ///< names of files by their content
+  int image_number_ = 0;
+};
+
+}  // namespace
+
+/// Names for `newmtl` and `usemtl`: those of the materials without what would end them, none empty, none
+/// twice.
+static std::vector<std::string> mtl_names(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  std::set<std::string> taken;
+  for (const Material& m : materials) {
+    std::string name = m.name;
+    for (char& c : name)
+      if (is_control(c) || c == '\\' || c == '#') c = '_';
+    while (name.starts_with(' ')) name.erase(0, 1);
+    while (name.ends_with(' ')) name.pop_back();
+    if (name.empty()) name = "material";
+    const std::string stem = name;
+    for (int i = 2; !taken.insert(name).second; ++i) name = stem + "_" + std::to_string(i);
+    names.push_back(name);
+  }
+  return names;
+}
+
+/// Writes the materials of `file` under `names` to `out`, whose path is `path`. Adds what MTL cannot say to
+/// `losses`.
+static void write_mtl(MeshOutput& out, const std::string& path, const MeshFile& file,
+                      const std::vector<std::string>& names, MeshLosses& losses) {
+  MtlWriting(out, path, file, losses).run(names);
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -1,11 +1,13 @@
 #pragma once
-/// \file Writing OBJ meshes and the MTL files beside them. Within io/ only.
+/// \file Writing OBJ meshes and the MTL files beside them; and whether a file that was written says the
+/// materials that it should. Within io/ only.
 
 #include <string>
 #include <vector>
 
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
+#include "io/obj/material_textures.h"
 
 namespace oktett {
 
@@ -14,13 +16,31 @@ namespace oktett {
 /// Throws Error of kind io if that fails.
 MeshLosses write_obj(const std::string& path, const MeshFile& file);
 
-/// Names for `newmtl` and `usemtl`: those of the materials without what would end them, none empty, none
-/// twice.
-std::vector<std::string> mtl_names(const std::vector<Material>& materials);
+/// Whether two materials scatter light alike, their names and textures aside.
+inline bool is_same_material(Material a, Material b) {
+  for (Material* m : {&a, &b}) {
+    m->name.clear();
+    for_each_texture(*m, [](std::uint32_t& index) { index = kNoId; });
+    if (!m->principled) continue;
+    m->principled->resembled = false;
+    PrincipledParameters& p = m->principled->parameters;
+    p.base_color = m->color;
+    // How thick it is shows only through glass.
+    if (p.transmission == 0) p.thin = false;
+  }
+  return a == b;
+}
 
-/// Writes the materials of `file` under `names` to `out`, whose path is `path`. Adds what MTL cannot say to
-/// `losses`.
-void write_mtl(MeshOutput& out, const std::string& path, const MeshFile& file,
-               const std::vector<std::string>& names, MeshLosses& losses);
+/// Instead, where files that were written may not be read.
+inline constexpr const char* kNotCompared =
+    "changed: perhaps materials, which are not compared because --root keeps what was written from being "
+    "read";
+
+/// Adds the loss that `format` cannot say the materials of these names as they are, if there are any.
+inline void note_changed(const std::vector<std::string>& names, const char* format, MeshLosses& losses) {
+  if (names.empty()) return;
+  losses.push_back("changed: " + count_of(names.size(), "material") + ", which " + format +
+                   " says only nearly ('" + names.front() + (names.size() > 1 ? "' and others)" : "')"));
+}
 
 }  // namespace oktett

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/bytes.h"
 #include "core/error.h"
 #include "io/image/output.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 #include "render/photon/photon_map.h"
 #include "render/scene.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "io/mesh/numbers.h"
+#include "io/mesh/reading.h"
 #include "io/ply/body.h"
 
 namespace oktett {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "core/parallel.h"
-#include "io/mesh/numbers.h"
+#include "io/mesh/reading.h"
 #include "io/ply/body.h"
-#include "io/ply/values.h"
+#include "io/ply/header.h"
 
 namespace oktett {
 namespace {

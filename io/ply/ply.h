@@ -3,7 +3,9 @@
 
 #include <string>
 
-#include "io/mesh/parsed_mesh.h"
+#include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_output.h"
+#include "io/mesh/reading.h"
 
 namespace oktett {
 
@@ -11,5 +13,9 @@ namespace oktett {
 /// strips of `tristrips`. Throws Error with the line, or the byte, for what the format does not allow, with
 /// ErrorKind::io if the file cannot be read.
 ParsedMesh parse_ply(const std::string& path, const MeshReadOptions& options = {});
+
+/// Writes positions, normals, texture coordinates and triangles: bytes in little-endian order, or text if
+/// `ascii`. Returns what PLY cannot say. Throws Error of kind io if that fails.
+MeshLosses write_ply(const std::string& path, const MeshFile& file, bool ascii);
 
 }  // namespace oktett

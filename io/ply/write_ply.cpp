@@ -1,8 +1,8 @@
-#include "io/ply/write_ply.h"
+#include "io/ply/ply.h"
 
 #include <limits>
 
-#include "io/mesh/unify.h"
+#include "io/mesh/vertices.h"
 
 namespace oktett {
 namespace {

@@ -10,9 +10,7 @@
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
-#include "io/text/extension.h"
-#include "io/text/file_access.h"
-#include "io/text/files_read.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
-#include "io/text/extension.h"
+#include "io/text/files.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
 

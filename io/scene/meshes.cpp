@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "io/cache/scene_cache.h"
-#include "io/image/image_access.h"
+#include "io/image/library.h"
 #include "io/obj/material_textures.h"
-#include "io/text/files_read.h"
+#include "io/text/files.h"
 
 namespace oktett {
 

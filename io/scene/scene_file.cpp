@@ -16,8 +16,7 @@
 #include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
 #include "io/scene/yaml.h"
-#include "io/text/extension.h"
-#include "io/text/file_access.h"
+#include "io/text/files.h"
 #include "render/look/up_direction.h"
 #include "render/scene.h"
 

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/precise_math.h"
 #include "io/scene/utf8.h"
-#include "io/text/file_access.h"
+#include "io/text/files.h"
 #include "kernels/functions/expression.h"
 
 namespace oktett {

@@ -15,9 +15,8 @@
 #include "io/scene/error_list.h"
 #include "io/scene/scene_limits.h"
 #include "io/scene/utf8.h"
-#include "io/text/file_access.h"
-#include "io/text/files_read.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {

@@ -3,7 +3,9 @@
 
 #include <string>
 
-#include "io/mesh/parsed_mesh.h"
+#include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_output.h"
+#include "io/mesh/reading.h"
 
 namespace oktett {
 
@@ -11,5 +13,9 @@ namespace oktett {
 /// Throws Error with the line, or the byte, for what the format does not allow, with ErrorKind::io if the
 /// file cannot be read.
 ParsedMesh parse_stl(const std::string& path, const MeshReadOptions& options = {});
+
+/// Writes the triangles with their geometric normals: bytes, or text if `ascii`. Returns what STL cannot say.
+/// Throws Error of kind io if that fails.
+MeshLosses write_stl(const std::string& path, const MeshFile& file, bool ascii);
 
 }  // namespace oktett

@@ -1,10 +1,10 @@
-#include "io/stl/write_stl.h"
+#include "io/stl/stl.h"
 
 #include <array>
 #include <limits>
 
 #include "core/error.h"
-#include "io/mesh/unify.h"
+#include "io/mesh/vertices.h"
 
 namespace oktett {
 namespace {

@@ -1,6 +1,6 @@
 // Files that gzip has packed.
 
-#include "io/text/gzip.h"
+#include "io/text/file_content.h"
 #include "tests/fuzz/input.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -10,8 +10,8 @@
 
 #include "core/bytes.h"
 #include "core/error.h"
-#include "io/text/files_read.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::film_file_test {

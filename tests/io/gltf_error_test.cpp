@@ -1,6 +1,6 @@
 #include <sys/resource.h>
 
-#include "io/text/file_access.h"
+#include "io/text/files.h"
 #include "tests/io/gltf_test_support.h"
 
 namespace oktett::test::gltf_error_test {

@@ -1,7 +1,6 @@
 #include <zlib.h>
 
 #include "io/text/file_content.h"
-#include "io/text/gzip.h"
 #include "tests/io/gltf_test_support.h"
 #include "tests/io/ply_test_support.h"
 #include "tests/support/gzip.h"

@@ -17,7 +17,7 @@
 
 #include "core/error.h"
 #include "io/mesh/load/load_mesh.h"
-#include "io/mesh/parsed_mesh.h"
+#include "io/mesh/reading.h"
 #include "tests/io/obj_test_support.h"
 #include "tests/support/sanitizers.h"
 

@@ -1,4 +1,4 @@
-#include "io/obj/chunk.h"
+#include "io/obj/parsed_obj.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/obj/chunk.h"
 #include "io/obj/obj.h"
+#include "io/obj/parsed_obj.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::test {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "io/ply/header.h"
 #include "io/ply/ply.h"
-#include "io/ply/values.h"
 #include "tests/io/mesh_test_support.h"
 
 namespace oktett::test {

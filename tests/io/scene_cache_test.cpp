@@ -20,7 +20,7 @@
 #include "io/cache/entries.h"
 #include "io/cache/scene_cache.h"
 #include "io/obj/obj.h"
-#include "io/text/files_read.h"
+#include "io/text/files.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::scene_cache_test {

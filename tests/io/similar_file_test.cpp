@@ -1,11 +1,9 @@
 // Files that may have been meant instead of one that does not exist.
 
-#include "io/text/similar_file.h"
-
 #include <filesystem>
 
 #include "io/mesh/load/load_mesh.h"
-#include "io/text/file_access.h"
+#include "io/text/files.h"
 #include "tests/io/obj_test_support.h"
 
 namespace oktett::test::similar_file_test {

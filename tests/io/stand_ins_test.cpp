@@ -1,4 +1,3 @@
-#include "io/text/stand_ins.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +7,8 @@
 
 #include "core/error.h"
 #include "io/scene/scene_file.h"
-#include "io/text/file_access.h"
-#include "io/text/files_read.h"
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
+#include "io/text/files.h"
 
 namespace oktett::stand_ins_test {
 namespace {

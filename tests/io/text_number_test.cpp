@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "io/text/mapped_file.h"
+#include "io/text/file_content.h"
 
 namespace oktett::test::text_number_test {
 namespace {

@@ -29,6 +29,6 @@ bool repeats_vertices(const std::string& path);
 bool is_mesh_file(const std::string& path);
 
 /// The ends of the names of all formats, for messages.
-const char* mesh_extensions();
+std::string mesh_extensions();
 
 }  // namespace oktett

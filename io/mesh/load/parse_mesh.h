@@ -1,10 +1,10 @@
 #pragma once
-/// \file Reading mesh files in two steps. Within io/ only.
+/// \file Reading mesh files in two steps: parse_mesh, then finish_mesh. Within io/ only.
 
 #include <string>
 
-#include "io/mesh/mesh_file.h"
-#include "io/mesh/parsed_mesh.h"
+#include "io/mesh/reading.h"
+#include "io/obj/parsed_obj.h"
 
 namespace oktett {
 
@@ -14,8 +14,5 @@ bool can_parse_mesh(const std::string& path);
 
 /// What the mesh file `path` says by itself. Throws Error as load_mesh does.
 ParsedMesh parse_mesh(const std::string& path);
-
-/// Reads the files that `parsed` names, which comes from `path`.
-MeshFile finish_mesh(const std::string& path, ParsedMesh parsed);
 
 }  // namespace oktett

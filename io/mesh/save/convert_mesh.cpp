@@ -11,16 +11,15 @@
 #include <utility>
 
 #include "io/gltf/gltf.h"
-#include "io/gltf/write_glb.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/mesh/mesh_output.h"
-#include "io/mesh/weld.h"
+#include "io/mesh/vertices.h"
 #include "io/obj/write_obj.h"
 #include "io/ply/header.h"
-#include "io/ply/write_ply.h"
-#include "io/stl/write_stl.h"
-#include "io/text/extension.h"
+#include "io/ply/ply.h"
+#include "io/stl/stl.h"
 #include "io/text/file_content.h"
+#include "io/text/files.h"
 #include "io/text/scan.h"
 
 namespace oktett {
@@ -118,47 +117,50 @@ void note_stl(std::string_view text, std::size_t triangles, MeshLosses& losses) 
   }
 }
 
-}  // namespace
-
-/// Adds to `losses` what the OBJ, PLY or STL file `path`, whose reader made so many triangles, says beside
-/// them: names of objects and groups, colours, polygons, digits beyond those of a float. Of colours in PLY
-/// files the reader itself warns.
-static void note_unread(const std::string& path, std::size_t triangles, MeshLosses& losses) {
-  const FileContent file(path);
-  const std::string extension = lower_case_extension(without_packing(path));
-  if (extension == ".obj") note_obj(file.text(), triangles, losses);
-  if (extension == ".ply") note_ply(file.text(), triangles, losses);
-  if (extension == ".stl") note_stl(file.text(), triangles, losses);
-}
-
-namespace {
+// ---- Formats.
 
 namespace fs = std::filesystem;
 
-struct WrittenFormat {
+/// All that converting knows of a format.
+struct ConvertedFormat {
   std::string_view extension;
+  /// Adds to `losses` what the text of a file, whose reader made so many triangles, says beside them: names
+  /// of objects and groups, colours, polygons, digits beyond those of a float. Of colours in PLY files the
+  /// reader itself warns. Null: files of this format are read as scenes.
+  void (*note_unread)(std::string_view text, std::size_t triangles, MeshLosses& losses);
+  MeshLosses (*write)(const std::string& path, const MeshFile& file, bool ascii);
   bool has_text;       ///< there are files of text and of bytes
   bool has_materials;  ///< it can say them
-  MeshLosses (*write)(const std::string& path, const MeshFile& file, bool ascii);
 };
 
-constexpr std::array kWrittenFormats{
-    WrittenFormat{".obj", false, true,
-                  [](const std::string& path, const MeshFile& file, bool) { return write_obj(path, file); }},
-    WrittenFormat{".ply", true, false, write_ply},
-    WrittenFormat{".stl", true, false, write_stl},
-    WrittenFormat{".glb", false, true,
-                  [](const std::string& path, const MeshFile& file, bool) { return write_glb(path, file); }},
+/// For formats that are always text, or never.
+template <MeshLosses (*write)(const std::string& path, const MeshFile& file)>
+MeshLosses write_either(const std::string& path, const MeshFile& file, bool) {
+  return write(path, file);
+}
+
+constexpr std::array kConvertedFormats{
+    ConvertedFormat{".obj", note_obj, write_either<write_obj>, false, true},
+    ConvertedFormat{".ply", note_ply, write_ply, true, false},
+    ConvertedFormat{".stl", note_stl, write_stl, true, false},
+    ConvertedFormat{".glb", nullptr, write_either<write_glb>, false, true},
 };
 
-const WrittenFormat& written_format(const std::string& path, const ConvertOptions& options) {
-  const auto found =
-      std::ranges::find(kWrittenFormats, lower_case_extension(path), &WrittenFormat::extension);
-  if (found == kWrittenFormats.end())
-    throw Error(Location{path}, "unknown kind of mesh file to write; expected .obj, .ply, .stl or .glb");
-  if (options.ascii && !found->has_text)
-    throw Error(Location{path}, "--ascii is for .ply and .stl, which are bytes without it");
-  return *found;
+/// The format with this end, or null.
+const ConvertedFormat* find_converted(const std::string& extension) {
+  const auto found = std::ranges::find(kConvertedFormats, extension, &ConvertedFormat::extension);
+  return found == kConvertedFormats.end() ? nullptr : found;
+}
+
+const ConvertedFormat& written_format(const std::string& path, const ConvertOptions& options) {
+  const ConvertedFormat* const format = find_converted(lower_case_extension(path));
+  if (format == nullptr)
+    throw Error(Location{path},
+                "unknown kind of mesh file to write; expected " + or_list(written_mesh_extensions()));
+  if (options.ascii && !format->has_text)
+    throw Error(Location{path},
+                "--ascii is for " + and_list(text_mesh_extensions()) + ", which are bytes without it");
+  return *format;
 }
 
 /// What glTF says beside meshes.
@@ -177,7 +179,8 @@ void note_scene(const GltfScene& scene, MeshLosses& losses) {
 MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses& losses) {
   if (!is_gltf_file(path)) {
     MeshFile file = load_mesh(path);
-    note_unread(path, file.mesh.triangle_count(), losses);
+    const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
+    format->note_unread(FileContent(path).text(), file.mesh.triangle_count(), losses);
     if (options.weld) weld_positions(file.mesh);
     return file;
   }
@@ -190,13 +193,26 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
 
 }  // namespace
 
+std::vector<std::string> written_mesh_extensions() {
+  std::vector<std::string> extensions;
+  for (const ConvertedFormat& format : kConvertedFormats) extensions.emplace_back(format.extension);
+  return extensions;
+}
+
+std::vector<std::string> text_mesh_extensions() {
+  std::vector<std::string> extensions;
+  for (const ConvertedFormat& format : kConvertedFormats)
+    if (format.has_text) extensions.emplace_back(format.extension);
+  return extensions;
+}
+
 void check_mesh_output(const std::string& path, const ConvertOptions& options) {
   written_format(path, options);
   const OutputFile probe(path);
 }
 
 Conversion convert_mesh(const std::string& input, const std::string& output, const ConvertOptions& options) {
-  const WrittenFormat& format = written_format(output, options);
+  const ConvertedFormat& format = written_format(output, options);
   std::error_code error;
   if (fs::equivalent(input, output, error)) throw Error(Location{output}, "is the input, too");
   Conversion result;

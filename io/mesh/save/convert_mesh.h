@@ -21,6 +21,11 @@ struct Conversion {
   std::vector<std::string> losses;
 };
 
+/// The ends of the names of all formats that can be written, and of those that have files of text and of
+/// bytes.
+std::vector<std::string> written_mesh_extensions();
+std::vector<std::string> text_mesh_extensions();
+
 /// Throws Error unless `path` names a format that can be written, and, of kind io, unless there can be a
 /// file.
 void check_mesh_output(const std::string& path, const ConvertOptions& options);

@@ -10,10 +10,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/image/encode.h"
 #include "io/image/texture.h"
-#include "io/image/writers.h"
-#include "io/text/files_read.h"
-#include "io/text/stand_ins.h"
+#include "io/text/files.h"
 #include "python/src/files.h"
 
 namespace oktett::python {

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Meshes for formats in which a vertex has one position, one normal and one texture coordinate. Within
-/// io/ only.
+/// \file Vertices at the same place; and meshes for formats in which a vertex has one position, one normal
+/// and one texture coordinate. Within io/ only.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +10,10 @@
 #include "io/mesh/mesh_output.h"
 
 namespace oktett {
+
+/// Makes one of all positions that are equal, -0 as 0. The first of each place is kept, in the order of the
+/// mesh.
+void weld_positions(TriangleMesh& mesh);
 
 struct UnifiedMesh {
   std::vector<Vec3f> positions;

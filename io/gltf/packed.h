@@ -1,5 +1,6 @@
 #pragma once
-/// \file Meshes that Draco has packed (KHR_draco_mesh_compression). Within io/ only.
+/// \file What libraries have packed: meshes by Draco (KHR_draco_mesh_compression), views by meshoptimizer
+/// (EXT_meshopt_compression). Within io/ only.
 
 #include <cstdint>
 #include <string>
@@ -25,5 +26,8 @@ struct DracoMesh {
 /// coordinates. Throws Error, which begins with `where`, for damaged data.
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes, const GltfAttributes& wanted,
                        std::size_t uv_set, const std::string& where);
+
+/// Unpacks a view. Throws Error if its bytes are damaged, or if the program is built without meshoptimizer.
+std::string unpack_meshopt(const GltfFile& file, const GltfPacking& packing, const std::string& where);
 
 }  // namespace oktett
