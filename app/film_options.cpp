@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "app/choice.h"
+#include "app/command_line.h"
 #include "app/text.h"
 #include "core/error.h"
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "app/number_text.h"
-
 namespace oktett {
 
 static std::string quoted(const std::string& text) {

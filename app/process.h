@@ -1,5 +1,8 @@
 #pragma once
-/// \file How the command meets what the system refuses: memory, threads, large files, closed streams.
+/// \file How the command meets what the system refuses (memory, threads, large files, closed streams), and
+/// signals.
+
+#include <atomic>
 
 namespace oktett {
 
@@ -18,5 +21,19 @@ int report_current_exception();
 /// Flushes standard output. If some of the output was lost, prints one line and
 /// returns kExitIo instead of a `status` of 0.
 int finish_output(int status);
+
+/// While an object of this class exists, the first SIGINT, SIGTERM, SIGHUP or SIGALRM (of --timeout) sets a
+/// flag. A second one that is not SIGALRM ends the process at once. Only one object may exist at a time.
+class StopOnSignal {
+ public:
+  StopOnSignal();
+  ~StopOnSignal();
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+  const std::atomic<bool>* flag() const;
+  /// The signal that came, or 0.
+  int signal() const;
+};
 
 }  // namespace oktett

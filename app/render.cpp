@@ -16,8 +16,8 @@
 
 #include "app/checkpoint.h"
 #include "app/command_line.h"
-#include "app/interrupt.h"
 #include "app/json.h"
+#include "app/process.h"
 #include "app/progress.h"
 #include "app/render_options.h"
 #include "app/scene_loading.h"

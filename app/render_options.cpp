@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "app/choice.h"
+#include "app/command_line.h"
 #include "app/limits.h"
 #include "app/terminal/preview.h"
 #include "app/text.h"

@@ -1,4 +1,4 @@
-# Shared libraries that the command loads when it needs them, see app/own_library.h, because they bring others along. The
+# Shared libraries that the command loads when it needs them, see app/own_library.cpp, because they bring others along. The
 # file `user` gets the name of the library as the macro `definition`.
 function(oktett_loaded_library target user definition)
   oktett_target_warnings(${target})

@@ -1,30 +1,71 @@
 #pragma once
-/// \file A scene that is being looked at: it is read, rendered in finer and finer passes as the view changes,
-/// and read again when one of its files changes.
+/// \file What `oktett view` holds: a private folder, the view that a page asks for, and the session.
+///
+/// A session is a scene that is being looked at: it is read, rendered in finer and finer passes as the view
+/// changes, and read again when one of its files changes.
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "app/render_options.h"
 #include "app/view/canvas.h"
-#include "app/view/view_state.h"
 #include "core/error.h"
 #include "io/image/metadata.h"
 #include "io/image/texture.h"
 #include "render/picture/prepared_scene.h"
 
 namespace oktett {
+
+// ---- Temporary files that other users of the machine cannot read.
+
+/// A new folder for temporary files that only this user can enter. It is removed with all it holds at the
+/// end of its life.
+class PrivateFolder {
+ public:
+  /// Throws Error.
+  PrivateFolder();
+  ~PrivateFolder();
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Makes a file that only this user can read, and returns its path. Throws Error.
+  std::filesystem::path write(std::string_view name, std::string_view content) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+// ---- What a page may change about the picture: as text from the page, and back.
+
+/// The view that a page asks for.
+struct ViewState {
+  Camera camera;
+  Tone tone;
+  std::string layer = "beauty";
+};
+
+/// Changes `state` by lines of the form key=value, e.g. "from=1 2 3". Keys: from, at, up, fov, height, focus,
+/// tone, exposure, layer. Throws Error for anything else, for numbers that are not finite, and for cameras
+/// that no scene file could have.
+ViewState parse_view(std::string_view text, ViewState state);
+
+/// The camera as the part of a scene file that gives the same camera, number by number. What moves it is left
+/// out.
+std::string camera_yaml(const Camera& camera);
 
 // ---- Whether files have changed, by asking for their times and sizes.
 
@@ -38,6 +79,8 @@ class WatchedFiles {
  private:
   std::map<std::string, std::string> seen_;  ///< what was found, by path
 };
+
+// ---- The session.
 
 /// What a page is told, apart from pixels.
 struct SessionStatus {

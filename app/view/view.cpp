@@ -14,15 +14,12 @@ extern char** environ;
 #include <string>
 #include <string_view>
 
-#include "app/choice.h"
 #include "app/command_line.h"
-#include "app/interrupt.h"
 #include "app/json.h"
-#include "app/number_text.h"
+#include "app/process.h"
 #include "app/text.h"
 #include "app/view/http.h"
 #include "app/view/page_files.h"
-#include "app/view/private_folder.h"
 #include "app/view/session.h"
 
 namespace oktett {
