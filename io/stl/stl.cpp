@@ -44,6 +44,11 @@ const char* match_word(const char* p, std::string_view word) {
   return is_blank(*p) || is_line_end(*p) ? p : nullptr;
 }
 
+/// Whether the line at `p` begins with `word`, in upper or lower case.
+bool begins_with_word(const char* p, std::string_view word) {
+  return match_word(skip_plain_blanks(p), word) != nullptr;
+}
+
 /// What may stand in the next line.
 enum class State { outside, solid, loop, vertex0, vertex1, vertex2, endloop, endfacet };
 
@@ -167,11 +172,6 @@ void count_facets(StlChunk& chunk) {
 }
 
 }  // namespace
-
-/// Whether the line at `p` begins with `word`, in upper or lower case.
-static bool begins_with_word(const char* p, std::string_view word) {
-  return match_word(skip_plain_blanks(p), word) != nullptr;
-}
 
 /// Cuts `text` into chunks of about `chunk_bytes` each and counts their triangles.
 static std::vector<StlChunk> cut_into_facets(std::string_view text, std::size_t chunk_bytes) {

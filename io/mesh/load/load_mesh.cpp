@@ -22,33 +22,67 @@ struct Format {
   ParsedMesh (*parse)(const std::string& path);  ///< null: the file is read in one step
   MeshFile (*load)(const std::string& path);
   std::vector<Error> (*find_errors)(const std::string& path) = nullptr;  ///< null: the first one is all
-  bool repeats_vertices(const std::string& path) {
-    const Format* const format = find_format(path);
-    return format != nullptr && format->repeats_vertices;
-  }
+  bool repeats_vertices = false;                                         ///< see load_mesh.h
+};
 
-  std::vector<Error> find_mesh_errors(const std::string& path) {
-    const Format* const format = find_format(path);
-    return format != nullptr && format->find_errors != nullptr ? format->find_errors(path)
-                                                               : std::vector<Error>{};
-  }
+template <ParsedMesh (*parse)(const std::string&, const MeshReadOptions&)>
+ParsedMesh parse_by_default(const std::string& path) {
+  return parse(path, {});
+}
 
-  bool is_mesh_file(const std::string& path) { return find_format(path) != nullptr; }
+MeshFile load_in_two_steps(const std::string& path) { return finish_mesh(path, parse_mesh(path)); }
 
-  std::string mesh_extensions() {
-    std::vector<std::string> extensions;
-    for (const Format& format : kFormats) extensions.emplace_back(format.extension);
-    return or_list(extensions) + ", also packed as .gz";
-  }
+MeshFile load_gltf(const std::string& path) { return one_mesh(path, load_gltf_scene(path)); }
 
-  bool can_parse_mesh(const std::string& path) { return format_of(path).parse != nullptr; }
+constexpr std::array kFormats{
+    Format{".obj", parse_obj, load_obj, find_obj_errors},
+    Format{".ply", parse_by_default<parse_ply>, load_in_two_steps},
+    Format{".stl", parse_by_default<parse_stl>, load_in_two_steps, nullptr, true},
+    Format{".gltf", nullptr, load_gltf},
+    Format{".glb", nullptr, load_gltf},
+};
 
-  ParsedMesh parse_mesh(const std::string& path) { return format_of(path).parse(path); }
+/// The format of a file of that name, or null.
+const Format* find_format(const std::string& path) {
+  const std::string extension = lower_case_extension(without_packing(path));
+  const auto found = std::ranges::find(kFormats, extension, &Format::extension);
+  return found == kFormats.end() ? nullptr : found;
+}
 
-  MeshFile load_mesh(const std::string& path, const MeshOptions& options) {
-    MeshFile file = format_of(path).load(path);
-    if (options.weld) weld_positions(file.mesh);
-    return file;
-  }
+const Format& format_of(const std::string& path) {
+  if (const Format* const format = find_format(path)) return *format;
+  throw Error(Location{path}, "unknown kind of mesh file; expected " + mesh_extensions());
+}
+
+}  // namespace
+
+bool repeats_vertices(const std::string& path) {
+  const Format* const format = find_format(path);
+  return format != nullptr && format->repeats_vertices;
+}
+
+std::vector<Error> find_mesh_errors(const std::string& path) {
+  const Format* const format = find_format(path);
+  if (format == nullptr || format->find_errors == nullptr) return {};
+  return format->find_errors(path);
+}
+
+bool is_mesh_file(const std::string& path) { return find_format(path) != nullptr; }
+
+std::string mesh_extensions() {
+  std::vector<std::string> extensions;
+  for (const Format& format : kFormats) extensions.emplace_back(format.extension);
+  return or_list(extensions) + ", also packed as .gz";
+}
+
+bool can_parse_mesh(const std::string& path) { return format_of(path).parse != nullptr; }
+
+ParsedMesh parse_mesh(const std::string& path) { return format_of(path).parse(path); }
+
+MeshFile load_mesh(const std::string& path, const MeshOptions& options) {
+  MeshFile file = format_of(path).load(path);
+  if (options.weld) weld_positions(file.mesh);
+  return file;
+}
 
 }  // namespace oktett

@@ -126,7 +126,7 @@ struct ConvertedFormat {
   std::string_view extension;
   /// Adds to `losses` what the text of a file, whose reader made so many triangles, says beside them: names
   /// of objects and groups, colours, polygons, digits beyond those of a float. Of colours in PLY files the
-  /// reader itself warns. Null: files of this format are read as scenes.
+  /// reader itself warns. Null: nothing more to say.
   void (*note_unread)(std::string_view text, std::size_t triangles, MeshLosses& losses);
   MeshLosses (*write)(const std::string& path, const MeshFile& file, bool ascii);
   bool has_text;       ///< there are files of text and of bytes
@@ -180,7 +180,8 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
   if (!is_gltf_file(path)) {
     MeshFile file = load_mesh(path);
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
-    format->note_unread(FileContent(path).text(), file.mesh.triangle_count(), losses);
+    if (format != nullptr && format->note_unread != nullptr)
+      format->note_unread(FileContent(path).text(), file.mesh.triangle_count(), losses);
     if (options.weld) weld_positions(file.mesh);
     return file;
   }
