@@ -97,6 +97,12 @@ OKTETT_INLINE F norm1(const Vec3<F>& a) {
   return abs(a.x) + abs(a.y) + abs(a.z);
 }
 
+/// `x` within [least, most]; `least` for NaN.
+template <class D>
+OKTETT_INLINE D within(const D& x, const D& least, const D& most) {
+  return min(max(x, least), most);
+}
+
 template <class D>
 OKTETT_INLINE D length_lanes(const Vec3<D>& v) {
   return sqrt(dot_lanes(v, v));
@@ -107,6 +113,15 @@ template <class D>
 OKTETT_INLINE Vec3<D> unit_lanes(const Vec3<D>& v) {
   const D size = length_lanes(v);
   return {v.x / size, v.y / size, v.z / size};
+}
+
+/// make_basis in lanes. At n.z = -0 the sign is 1.
+template <class D>
+OKTETT_INLINE void basis_lanes(const Vec3<D>& n, Vec3<D>& tangent, Vec3<D>& bitangent) {
+  const D one(1), sign = select(n.z < D(0), -one, one);
+  const D a = -one / (sign + n.z), b = n.x * n.y * a;
+  tangent = {one + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
 /// a where m is set, else b.

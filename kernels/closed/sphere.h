@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "kernels/closed/contract.h"
 #include "kernels/closed/shape_data.h"
 

@@ -5,7 +5,7 @@
 /// All directions have unit length; z is the normal of the surface. `alpha` > 0 is the width of the
 /// distribution: the root mean square of the facets' slopes has that order.
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 
 namespace oktett {

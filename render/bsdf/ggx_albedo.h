@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/simd_memory.h"
 #include "render/bsdf/lobe_lanes.h"
 #include "render/bsdf/principled_parameters.h"

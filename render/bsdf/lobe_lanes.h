@@ -2,7 +2,7 @@
 /// \file What the lobes of all materials share: results and the choice of a lobe, in lanes of
 /// doubles D. Single surfaces use them with one lane, so a surface gets the same bits alone and in a group.
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "render/bsdf/optics.h"
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 
 namespace oktett {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "core/eighth_turn.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "core/simd_native.h"
 #include "render/camera.h"

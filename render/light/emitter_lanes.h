@@ -1,7 +1,7 @@
 #pragma once
 /// \file Samples of emitters in lanes, see emitter.h: what all kinds share. Single points use one lane.
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "render/light/emitter.h"
 #include "render/light/emitter_kinds.h"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 #include "core/math.h"
 #include "core/vec3.h"

@@ -5,7 +5,7 @@
 /// Departs from the paper in its formulas: angles between edges are differences of elevations, whose sines
 /// and cosines need no elementary functions.
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 
 namespace oktett {
 

@@ -5,7 +5,7 @@
 /// Departs from the paper in its formulas: solid angle and sub-triangles are computed from half angles, which
 /// keep their relative accuracy when the triangle is small.
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/lanes.h"
 
 namespace oktett {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/lane_math.h"
+#include "core/elementary.h"
 #include "core/math.h"
 
 namespace oktett {

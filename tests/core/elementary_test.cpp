@@ -1,4 +1,4 @@
-#include "core/lane_math.h"
+#include "core/elementary.h"
 
 #include <gtest/gtest.h>
 
