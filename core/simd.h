@@ -325,6 +325,7 @@ OKTETT_INLINE float horizontal_max(const Simd<float, W, A>& a) {
   return -horizontal_min(-a);
 }
 
+/// Floats as the whole numbers of their bits, and back.
 template <int W, class A>
 OKTETT_INLINE Simd<std::int32_t, W, A> bit_cast_int(const Simd<float, W, A>& a) {
   Simd<std::int32_t, W, A> r;

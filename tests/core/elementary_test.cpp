@@ -9,7 +9,7 @@
 #include "core/math.h"
 #include "core/random.h"
 
-namespace oktett::lane_math_test {
+namespace oktett::elementary_test {
 namespace {
 
 using D = Simd<double, 1, ScalarIsa>;
@@ -49,4 +49,4 @@ TEST(LaneMath, AnglesOfZerosKeepTheirSigns) {
 }
 
 }  // namespace
-}  // namespace oktett::lane_math_test
+}  // namespace oktett::elementary_test
