@@ -100,6 +100,14 @@ class Accel {
     return pool_index[first_pool_index[g] + primitive];
   }
 
+  /// The item of element k of the pool of a closed-form or exact kind.
+  OKTETT_INLINE std::uint32_t item_in_pool(Kind kind, std::uint32_t k) const {
+    if (is_exact(kind)) return exact_pool(kind).frames[k].item;
+    std::uint32_t item = kNoId;
+    visit_pool(kind, pools, [&](auto, const auto& pool) { item = pool.item[k]; });
+    return item;
+  }
+
   /// Index of the geometry that item belongs to.
   std::uint32_t geometry_of(std::uint32_t item) const {
     if (one_item_each) return item;

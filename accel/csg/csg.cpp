@@ -58,10 +58,11 @@ void find_inverted(const Accel& accel, std::set<const Accel*>& seen,
 bool fits_lanes(const CsgItem& csg) {
   const Accel& solids = *csg.solids;
   if (solids.first_item.back() > 0x7fffffff) return false;
-  return std::all_of(solids.kinds.begin(), solids.kinds.end(), [](std::uint8_t k) {
+  return std::all_of(solids.kinds.begin(), solids.kinds.end(), [&](std::uint8_t k) {
     const auto kind = static_cast<Kind>(k);
-    return kind == Kind::sphere || kind == Kind::box || kind == Kind::plane ||
-           (is_exact(kind) && exact_ops(kind).lists_at_once());
+    bool solid = is_exact(kind) && exact_ops(kind).lists_at_once();
+    visit_pool(kind, solids.pools, [&]<class S>(S, const auto&) { solid = kSolid<S>; });
+    return solid;
   });
 }
 

@@ -84,7 +84,7 @@ bool is_inside(const Accel& accel, std::uint32_t geometry, const HalfLine& line)
   bool inside = false;
   visit_pool(kind, accel.pools, [&](auto shape, const auto& pool) {
     using S = decltype(shape);
-    if constexpr (S::kSolid) inside = S::inside(pool, i, line.origin);
+    if constexpr (kSolid<S>) inside = S::inside(pool, i, line.origin);
   });
   return inside;
 }

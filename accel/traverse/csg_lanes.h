@@ -148,14 +148,15 @@ class CsgLanes {
   }
 
   OKTETT_INLINE std::uint32_t gather_shape(Kind kind, std::uint32_t k, unsigned lanes) {
-    if (kind == Kind::sphere) return shape_rows<Sphere>(k, lanes);
-    if (kind == Kind::box) return shape_rows<BoxSolid>(k, lanes);
-    return shape_rows<Plane>(k, lanes);
+    std::uint32_t item = kNoId;
+    visit_pool(kind, csg_.solids->pools, [&]<class S>(S, const typename S::Pool& pool) {
+      if constexpr (kSolid<S>) item = shape_rows<S>(pool, k, lanes);
+    });
+    return item;
   }
 
   template <class S>
-  OKTETT_INLINE std::uint32_t shape_rows(std::uint32_t k, unsigned lanes) {
-    const auto& pool = std::get<typename S::Pool>(csg_.solids->pools);
+  OKTETT_INLINE std::uint32_t shape_rows(const typename S::Pool& pool, std::uint32_t k, unsigned lanes) {
     const auto shape = S::template broadcast<D>(pool, k);
     D t[S::kRoots];
     const auto meets = mask_cast<float>(S::roots(doubles_, shape, t)) & F::M::from_bits(lanes);
@@ -164,7 +165,7 @@ class CsgLanes {
       const F tf = to_float(t[j]);
       const auto valid = meets & (rays_.tmin < tf) & (tf <= F(std::numeric_limits<float>::max()));
       F turn(j == 0 ? -1.0f : 1.0f);
-      if constexpr (std::is_same_v<S, Plane>)
+      if constexpr (kSolid<S> && S::kRoots == 1)
         turn = select(mask_cast<float>(dot_lanes(shape.n, doubles_.d) < D(0.0)), F(-1.0f), F(1.0f));
       push_row(rows_, valid, tf, turn, F(0.0f), pool.item[k], false);
     }
