@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "accel/batch_pieces.h"
-#include "accel/csg/csg_solids.h"
+#include "accel/code.h"
+#include "accel/csg/csg.h"
 #include "accel/hit_place.h"
 #include "accel/instance.h"
-#include "accel/point_code.h"
+#include "kernels/exact_form.h"
 #include "kernels/exact_ops.h"
-#include "kernels/open_surface.h"
 
 namespace oktett {
 

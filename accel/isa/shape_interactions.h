@@ -2,7 +2,7 @@
 /// \file Surfaces of groups of hits of closed-form shapes, for one instruction set.
 
 #include "accel/accel_data.h"
-#include "accel/shape_hits.h"
+#include "accel/code.h"
 #include "core/double_lanes.h"
 #include "kernels/closed/surface_points.h"
 

@@ -3,18 +3,11 @@
 /// gets the same bits alone and in a group.
 
 #include "accel/accel_data.h"
+#include "accel/code.h"
 #include "core/affine_lanes.h"
 #include "core/quotients.h"
 
 namespace oktett {
-
-/// What the surface of a mesh depends on, beyond the triangle hit.
-struct MeshFrame {
-  const Affine* to_world = nullptr;  ///< null if the mesh stands as it is
-  const Affine* inverse = nullptr;   ///< of `to_world`
-  bool mirrored = false;             ///< `to_world` is a mirror
-  bool smooth = false;               ///< shading normals are interpolated from normals at the corners
-};
 
 inline MeshFrame mesh_frame(const Geometry& geometry, const GeometryFrame& frame) {
   const auto& shape = std::get<MeshGeometry>(geometry.shape);

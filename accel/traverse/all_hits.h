@@ -1,7 +1,7 @@
 #pragma once
 /// \file Every crossing of one ray, in no particular order.
 
-#include "accel/hit_list.h"
+#include "accel/hit_sink.h"
 #include "accel/traverse/single.h"
 
 namespace oktett {

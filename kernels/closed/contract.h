@@ -32,7 +32,6 @@
 #include "core/soa.h"
 #include "core/transform.h"
 #include "kernels/closed/shape_data.h"
-#include "kernels/closed/surface_nearest.h"
 #include "kernels/closed/surface_points.h"
 
 namespace oktett {

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "accel/beam_view.h"
+#include "accel/exact_table.h"
 #include "accel/traverse/leaf.h"
 #include "accel/traverse/load_span.h"
 

@@ -5,8 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "accel/traverse/inflight/candidate.h"
-#include "accel/traverse/inflight/ray_chunk.h"
+#include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/prefetch.h"
 #include "accel/traverse/single.h"
 #include "core/simd_order.h"
