@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstring>
 
-#include "accel/build/collapse.h"
 #include "accel/build/sah.h"
 #include "core/simd.h"
 

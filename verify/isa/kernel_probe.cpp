@@ -1,6 +1,6 @@
 #include "verify/probes/kernel_probe.h"
+#include "accel/ray_state.h"
 #include "accel/traverse/leaf.h"
-#include "accel/traverse/load_span.h"
 #include "verify/isa/load_column.h"
 
 namespace oktett {

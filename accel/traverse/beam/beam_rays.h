@@ -15,8 +15,8 @@
 #include <cstring>
 
 #include "accel/exact_table.h"
+#include "accel/ray_state.h"
 #include "accel/traverse/leaf.h"
-#include "accel/traverse/load_span.h"
 
 namespace oktett {
 

@@ -3,17 +3,72 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
+#include "accel/accel_data.h"
 #include "accel/ray_state.h"
 #include "accel/traverse/leaf.h"
-#include "accel/traverse/load_span.h"
-#include "accel/traverse/prefetch.h"
 #include "core/lanes.h"
+#include "core/ray.h"
 #include "core/simd_order.h"
 #include "kernels/closed/slab.h"
 #include "kernels/triangle/triangle_classify.h"
 
 namespace oktett {
+
+// ---- Prefetching what a ray visits next.
+
+/// Trees above this size are prefetched; smaller ones are in the caches, where a prefetch costs more than it
+/// saves. For rays that begin far from each other the limit is about the size of a core's own cache.
+inline constexpr std::size_t kPrefetchBytes = std::size_t{32} << 20,
+                             kPrefetchScatteredBytes = std::size_t{2} << 20;
+
+inline std::size_t tree_bytes(const Accel& accel) { return accel.stats.node_bytes + accel.stats.leaf_bytes; }
+
+/// Whether most rays begin farther from the ray before them than a 16th of the scene's longest edge. Looks at
+/// 16 pairs of rays at most.
+inline bool are_scattered(const RaySpan& rays, const Box& bounds) {
+  constexpr std::size_t kPairs = 16;
+  if (rays.size < 2 || bounds.empty()) return false;
+  const float far = max_component(bounds.hi - bounds.lo) / 16;
+  const std::size_t pairs = std::min(kPairs, rays.size - 1);
+  std::size_t scattered = 0;
+  for (std::size_t n = 0; n < pairs; ++n) {
+    const std::size_t i = n * (rays.size - 1) / pairs;
+    float most = 0;
+    for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(rays.origin[k][i + 1] - rays.origin[k][i]));
+    scattered += most > far;
+  }
+  return 2 * scattered > pairs;
+}
+
+/// Whether rays in flight through a tree without instances prefetch it.
+inline bool pays_to_prefetch(const Accel& accel, const RaySpan& rays) {
+  const std::size_t bytes = tree_bytes(accel);
+  return bytes > kPrefetchBytes || (bytes > kPrefetchScatteredBytes && are_scattered(rays, accel.bounds));
+}
+
+/// Where the nodes and the blocks of triangles of a structure begin, as bytes.
+struct TreeBytes {
+  const char* of[2];
+  TreeBytes() = default;
+  explicit TreeBytes(const Accel& accel)
+      : of{reinterpret_cast<const char*>(accel.nodes.data()),
+           reinterpret_cast<const char*>(accel.blocks.data())} {}
+
+  OKTETT_INLINE const BvhNode* nodes() const { return reinterpret_cast<const BvhNode*>(of[0]); }
+  OKTETT_INLINE const TriangleBlock* blocks() const { return reinterpret_cast<const TriangleBlock*>(of[1]); }
+
+  /// Prefetches a node or a block. For any other leaf the address means nothing, so it is a number here: a
+  /// pointer may not leave its array.
+  OKTETT_INLINE void prefetch(NodeRef ref) const {
+    static_assert(sizeof(TriangleBlock) == sizeof(BvhNode));
+    const std::uintptr_t at =
+        reinterpret_cast<std::uintptr_t>(of[ref.bits() >> 31]) + ref.block() * sizeof(BvhNode);
+    for (std::size_t line = 0; line < sizeof(BvhNode); line += 64)
+      __builtin_prefetch(reinterpret_cast<const void*>(at + line));
+  }
+};
 
 // ---- Rays prepared for the slab test in fused form, plane * (1/d) - o * (1/d). The bounds on its rounding
 // errors are part of the ray.
@@ -341,5 +396,81 @@ OKTETT_INLINE NodeRef step_node(InflightRay& ray, const BvhNode& node) {
   ray.current = next;
   return next;
 }
+
+// ---- The queues of an interleaved traversal: which rays in flight wait for which kind of step.
+
+/// Rays that are traced at the same time.
+inline constexpr int kInflightRays = 48;
+/// A round over the nodes takes at least this many steps. With fewer rays than that, a ray takes several
+/// steps. The end of each round costs a mispredicted branch, so rounds must not be short.
+inline constexpr int kRoundSteps = 16;
+
+/// Rays that wait for one kind of step, first come, first served.
+struct InflightQueue {
+  static constexpr int kPlaces = 256;
+  InflightRay **head = ray, **tail = ray;
+  InflightRay* ray[kPlaces];
+
+  int size() const { return static_cast<int>(tail - head); }
+};
+
+/// The queues of rays at nodes, at blocks of triangles, and of all others.
+struct InflightQueues {
+  InflightQueue nodes, leaves, others;
+
+  /// The ends of the three queues while a round fills them, kept in registers.
+  struct Tails {
+    InflightRay **node, **leaf, **other;
+  };
+
+  void clear() {
+    for (InflightQueue* q : {&nodes, &leaves, &others}) q->head = q->tail = q->ray;
+  }
+
+  bool empty() const { return nodes.size() + leaves.size() + others.size() == 0; }
+
+  /// The ends of the queues, with room for a round and for one more, because enqueue() writes past the end.
+  OKTETT_INLINE Tails tails() {
+    constexpr int kMost = InflightQueue::kPlaces - std::max(kInflightRays, kRoundSteps) - 1;
+    for (InflightQueue* q : {&nodes, &leaves, &others})
+      if (OKTETT_UNLIKELY(q->tail > q->ray + kMost))
+        q->tail = std::copy(q->head, q->tail, q->ray), q->head = q->ray;
+    return {nodes.tail, leaves.tail, others.tail};
+  }
+  OKTETT_INLINE void keep(const Tails& t) {
+    nodes.tail = t.node, leaves.tail = t.leaf, others.tail = t.other;
+  }
+
+  /// Queues `ray` for the kind of step that `ref` needs. Has no branches: the pointer is written to the ends
+  /// of all three queues, and one of the ends moves on.
+  static OKTETT_INLINE void enqueue(InflightRay& ray, NodeRef ref, Tails& t) {
+    const std::uint32_t bits = ref.bits(), is_leaf = bits >> 31;
+    // Arithmetic on the two top bits of NodeRef::bits: compilers turn comparisons into jumps.
+    const std::uint32_t is_other = is_leaf & (bits >> 30);
+    *t.node = &ray, t.node += 1 - is_leaf;
+    *t.leaf = &ray, t.leaf += is_leaf - is_other;
+    *t.other = &ray, t.other += is_other;
+  }
+};
+
+/// Rays that wait for neither a node nor a block, sorted without branches by what they wait for. `kLeaving`
+/// tells whether there may be rays on their way out of an instance.
+template <bool kLeaving>
+struct SortedOthers {
+  using List = InflightRay * [kInflightRays + 1];
+  List finished, at_spheres, at_leaf, leaving;
+  InflightRay **finished_end = finished, **at_spheres_end = at_spheres, **at_leaf_end = at_leaf,
+              **leaving_end = leaving;
+
+  OKTETT_INLINE SortedOthers(InflightRay* const* begin, InflightRay* const* end) {
+    for (InflightRay* const* at = begin; at != end; ++at) {
+      const NodeRef ref = (*at)->current;
+      const int none = ref.is_none(), out = kLeaving && ref.is_way_out(), spheres = ref.is_spheres();
+      *finished_end = *at_spheres_end = *at_leaf_end = *at;
+      if constexpr (kLeaving) *leaving_end = *at, leaving_end += out;
+      finished_end += none, at_spheres_end += spheres, at_leaf_end += 1 - none - out - spheres;
+    }
+  }
+};
 
 }  // namespace oktett

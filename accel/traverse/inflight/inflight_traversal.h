@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "accel/traverse/inflight/inflight_queues.h"
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/inflight/triangle_steps.h"
 #include "accel/traverse/packet.h"

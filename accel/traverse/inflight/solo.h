@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "accel/traverse/inflight/inflight_ray.h"
-#include "accel/traverse/prefetch.h"
 #include "accel/traverse/single.h"
 #include "core/simd_order.h"
 

@@ -9,9 +9,7 @@
 
 #include <algorithm>
 
-#include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/decide_pairs.h"
-#include "accel/traverse/inflight/inflight_queues.h"
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/single.h"
 
