@@ -255,6 +255,37 @@ OKTETT_INLINE SureHit nearest_sure(const HitInterval<F>& h, unsigned sure, int f
   return {nearest, lo[first + nearest], hi[first + nearest]};
 }
 
+/// What is known of a ray and the triangles of a block by their classification in float.
+enum class BlockVerdict {
+  missed,   ///< none of them is the nearest hit
+  hit,      ///< of Query::any: one of them surely is hit
+  nearest,  ///< one of them surely is the nearest hit so far
+  open,     ///< the exact test decides
+};
+
+/// The verdict on the triangles of `block` that the filter did not reject: the bits of `maybe`, not empty.
+/// The block is in lanes `first`, `first` + 1, ... of `guess` and of interval(), its HitInterval. `o` and `d`
+/// are the ray's, `hit_lo` is the least distance of its nearest hit so far. repeated() returns the lanes that
+/// need not be tested again. With `forward`, what is behind the origin is no hit. Sets `nearest` if that is
+/// the verdict.
+template <Query Q, class A, class F, class Repeated, class Interval>
+OKTETT_INLINE BlockVerdict judge_block(const TriangleGuess<F>& guess, unsigned maybe, int first,
+                                       const TriangleBlock& block, const float* o, const float* d,
+                                       bool forward, float hit_lo, Repeated&& repeated, Interval&& interval,
+                                       SureHit& nearest) {
+  maybe &= ~repeated();
+  const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe;
+  if (OKTETT_UNLIKELY(near != 0 && forward)) maybe &= ~(near & behind_origin<A>(o, d, block));
+  if (maybe == 0) return BlockVerdict::missed;
+  const HitInterval<F>& h = interval();
+  const unsigned sure = bits(h.sure) >> first & maybe;
+  if (sure == 0) return BlockVerdict::open;
+  if constexpr (Q == Query::any) return BlockVerdict::hit;
+  nearest = nearest_sure(h, sure, first);
+  if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(nearest.hi))) >> first;
+  return maybe == 1u << nearest.lane && nearest.hi < hit_lo ? BlockVerdict::nearest : BlockVerdict::open;
+}
+
 // ---- One of the rays in flight of an interleaved traversal, and its step through a node.
 
 /// The tree that a ray is in, where there are instances.

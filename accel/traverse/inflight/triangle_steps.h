@@ -303,25 +303,27 @@ class TriangleSteps {
   OKTETT_INLINE void take(InflightRay& ray, const TriangleGuess<F>& guess, const HitInterval<F>& h,
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
-    if (maybe != 0 && (kInstances ? *ray.in.accel : accel_).pieces)
-      maybe &= ~repeated_lane<A>(repeated_item(ray), blocks(ray)[ray.current.block()]);
-    const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe;
-    if (OKTETT_UNLIKELY(near != 0 && ray.tmin >= 0))
-      maybe &= ~(near & behind_origin<A>(ray.o, ray.d, blocks(ray)[ray.current.block()]));
     if (maybe == 0) return;
-    const unsigned sure = bits(h.sure) >> first & maybe;
-    if (sure != 0) {
-      if constexpr (Q == Query::any) return found(ray);
-      const SureHit hit = nearest_sure(h, sure, first);
-      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi))) >> first;
-      if (maybe == 1u << hit.lane && hit.hi < ray.hit_lo) {
+    const TriangleBlock& block = blocks(ray)[ray.current.block()];
+    const auto repeated = [&] {
+      return (kInstances ? *ray.in.accel : accel_).pieces ? repeated_lane<A>(repeated_item(ray), block) : 0;
+    };
+    SureHit hit;
+    switch (judge_block<Q, A>(
+        guess, maybe, first, block, ray.o, ray.d, ray.tmin >= 0, ray.hit_lo, repeated,
+        [&]() -> const HitInterval<F>& { return h; }, hit)) {
+      case BlockVerdict::missed:
+        return;
+      case BlockVerdict::hit:
+        return found(ray);
+      case BlockVerdict::nearest:
         ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
         if constexpr (kInstances) ray.in.candidate_instance = ray.in.instance;
         ray.hit_lo = hit.lo;
         return shorten<A>(ray, hit.hi);
-      }
+      case BlockVerdict::open:
+        return decide_leaf(ray);
     }
-    decide_leaf(ray);
   }
 
   /// The item of the ray's nearest hit so far, if it is a triangle of the tree that the ray is in, else
