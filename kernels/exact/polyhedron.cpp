@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/exact/stretch.h"
+#include "kernels/exact/exact_pool.h"
 
 namespace oktett {
 
