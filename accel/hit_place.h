@@ -1,6 +1,6 @@
 #pragma once
 /// \file Follows a hit through instances and combinations to the structure that holds its item, and brings
-/// its surface interaction back to the world.
+/// its surface interaction back to the world. Also finds all places of geometries.
 
 #include <array>
 #include <cmath>

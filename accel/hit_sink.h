@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a traversal looks for, and where its results go.
+/// \file What a traversal looks for, and where its results go: a sink for one hit a ray, lists for all.
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Binning and partitioning of references, compiled per instruction set.
+/// \file Binning, partitioning and sweeping of references, compiled per instruction set.
 
 #include <algorithm>
 #include <bit>
@@ -288,7 +288,7 @@ class Sweep {
   std::uint16_t packed_end_[N] = {};  ///< where the range from here ends whose corners job_.corners holds
 };
 
-// ---- Binning and partitioning of references, compiled per instruction set.
+// ---- Binning and partitioning.
 
 template <class A>
 struct BuildCode {

@@ -172,7 +172,7 @@ OKTETT_NOINLINE typename D::M first_by_strides(const VariationGrid& grid, const 
   return unsure | live;
 }
 
-// ---- Functions of x, y and z inside of a box, solved by intervals along the ray (kernels/exact/march.h; D.
+// ---- Functions of x, y and z inside of a box.
 
 struct ImplicitElement {
   FunctionTape function;

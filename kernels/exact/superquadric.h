@@ -206,7 +206,7 @@ OKTETT_INLINE void sample_power(const D& x, const SuperExponent& e, D& value, D&
   }
 }
 
-// ---- Superquadrics and ratioquadrics (slides; A.
+// ---- Superquadrics and ratioquadrics.
 
 struct SuperquadricElement {
   double inverse[3];          ///< 1 / a, 1 / b, 1 / c

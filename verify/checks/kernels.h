@@ -1,5 +1,6 @@
 #pragma once
-/// \file Single kernels against the oracle, and against themselves in every width and instruction set.
+/// \file Single kernels and root finders against the oracle, and kernels against themselves in every width
+/// and instruction set.
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Single kernels by themselves, for verification and benchmarks.
+/// \file Single kernels and root finders by themselves, for verification and benchmarks.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace oktett {
 
-// ---- Single kernels by themselves, for verification and benchmarks.
+// ---- Kernels.
 
 /// A kernel to be run by itself on `count` pairs of a ray and a shape, for verification and benchmarks. All
 /// columns hold `count` elements; hit[i] becomes 1 or 0, and t, u, v are defined where it is 1.
@@ -54,7 +54,7 @@ std::span<const int> probe_widths(Isa isa);
 /// Runs a kernel on the code of `isa`, `width` pairs at a time, which must be one of probe_widths(isa).
 void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe);
 
-// ---- Root finders in lanes by themselves, for verification and benchmarks.
+// ---- Root finders in lanes.
 
 /// The root finders in lanes: closed forms, and all or the first of the certified roots.
 enum class RootsKernel : std::uint8_t { closed2, closed3, closed4, all2, all3, all4, all6, first4 };

@@ -1,5 +1,6 @@
 #pragma once
-/// \file One of the rays in flight of an interleaved traversal, and its step through a node.
+/// \file The rays in flight of an interleaved traversal: how they are prepared, what they have hit, their
+/// step through a node, and the queues in which they wait.
 
 #include <algorithm>
 #include <array>

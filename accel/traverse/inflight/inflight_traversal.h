@@ -1,7 +1,7 @@
 #pragma once
 /// \file Many single rays in flight through a tree: its nodes and blocks of triangles
 /// (accel/traverse/inflight/triangle_steps.h), leaves of all other shapes, and instances. A ray that reaches
-/// an instance goes inside and stays in flight (accel/traverse/inflight/triangle_steps.h).
+/// an instance goes inside and stays in flight.
 
 #include <algorithm>
 #include <limits>
