@@ -60,8 +60,8 @@ struct CsgGeometry {
 
 /// One thing to trace: a shape, in its own space.
 struct Geometry {
-  std::variant<MeshGeometry, SpheresShape, PlaneShape, DiskShape, BoxShape, PolygonShape, ExactShape,
-               CsgGeometry, InstanceGeometry, InstanceList>
+  /// The closed forms are SpheresShape, PlaneShape, DiskShape, BoxShape and PolygonShape.
+  std::variant<MeshGeometry OKTETT_AND_CLOSED_FORMS, ExactShape, CsgGeometry, InstanceGeometry, InstanceList>
       shape;
   Affine transform;  ///< maps the shape's space to that of the structure; invertible
   /// A number of the caller's own, found again in SurfaceInteraction::user. That of an instance, if not

@@ -5,7 +5,6 @@
 
 #include "accel/hit_place.h"
 #include "accel/instance.h"
-#include "kernels/closed/closest.h"
 #include "kernels/closed/closest_triangle.h"
 #include "kernels/exact_ops.h"
 
@@ -79,47 +78,31 @@ class ShapeAt {
       const ExactPoolBase& pool = accel_.exact_pool(kind);
       return exact_ops(kind).closest(pool, k, moved(pool.frames[k].to_world), p_);
     }
-    const Affine here = to_world_ != nullptr ? *to_world_ : Affine{};
-    if (kind == Kind::sphere) {
-      const auto& pool = std::get<Sphere::Pool>(accel_.pools);
-      return closest_on(SphereShape{{pool.x[k], pool.y[k], pool.z[k]}, pool.radius[k]}, here, p_);
-    }
-    if (kind == Kind::disk) {
-      const auto& pool = std::get<Disk::Pool>(accel_.pools);
-      return closest_on(
-          DiskShape{
-              {pool.cx[k], pool.cy[k], pool.cz[k]}, {pool.nx[k], pool.ny[k], pool.nz[k]}, pool.radius[k]},
-          here, p_);
-    }
-    if (kind == Kind::plane) {
-      const auto& pool = std::get<Plane::Pool>(accel_.pools);
-      return closest_on(PlaneShape{{pool.nx[k], pool.ny[k], pool.nz[k]}, pool.offset[k]}, here, p_);
-    }
-    if (kind == Kind::box) return of_geometry<BoxShape>(std::get<BoxSolid::Pool>(accel_.pools).item[k]);
-    return of_geometry<PolygonShape>(std::get<Polygon::Pool>(accel_.pools).item[k]);
+    SurfaceNearest nearest;
+    visit_pool(kind, accel_.pools, [&]<class S>(S, const typename S::Pool& pool) {
+      if constexpr (requires { S::shape(pool, k); })
+        nearest = S::closest(S::shape(pool, k), to_world_ != nullptr ? *to_world_ : Affine{}, p_);
+      else
+        nearest = of_geometry<S>(pool.item[k]);
+    });
+    return nearest;
   }
 
  private:
   Affine moved(const Affine& m) const { return to_world_ != nullptr ? *to_world_ * m : m; }
 
-  template <class Shape>
+  template <class S>
   SurfaceNearest of_geometry(std::uint32_t item) const {
-    const Geometry& g = accel_.geometries[accel_.geometry_of(item)];
-    return closest_on(std::get<Shape>(g.shape), moved(g.transform), p_);
+    const std::uint32_t number = accel_.geometry_of(item);
+    const Geometry& g = accel_.geometries[number];
+    const auto& data = std::get<typename S::Data>(g.shape);
+    return S::closest(nth_shape<S>(data, item - accel_.first_item[number]), moved(g.transform), p_);
   }
 
   const Accel& accel_;
   const Affine* to_world_;
   const Vec3d& p_;
 };
-
-/// Number of element `k` of the pool of a kind.
-std::uint32_t item_of(const Accel& accel, Kind kind, std::uint32_t k) {
-  if (is_exact(kind)) return accel.exact_pool(kind).frames[k].item;
-  std::uint32_t item = kNoId;
-  visit_pool(kind, accel.pools, [&](auto, const auto& pool) { item = pool.item[k]; });
-  return item;
-}
 
 void set_triangle(const HitPlace& place, const HitNames& names, const Vec3d& p, ClosestPoint& out) {
   using D = Simd<double, 1, ScalarIsa>;
@@ -151,8 +134,13 @@ void set_triangle(const HitPlace& place, const HitNames& names, const Vec3d& p, 
 std::string missing_here(const Accel& accel, bool distorted) {
   if (!accel.combinations.empty()) return "a Boolean combination";
   const auto distorts = [](const std::string& name) { return "a " + name + " that its transform distorts"; };
-  if (distorted && std::get<Sphere::Pool>(accel.pools).size() > 0) return distorts("sphere");
-  if (distorted && std::get<Disk::Pool>(accel.pools).size() > 0) return distorts("disk");
+  std::string missing;
+  each_closed_form([&]<class S>(S, Kind kind) {
+    if (distorted && S::kNeedsSimilarity && std::get<typename S::Pool>(accel.pools).size() > 0 &&
+        missing.empty())
+      missing = distorts(name_of(kind));
+  });
+  if (!missing.empty()) return missing;
   for (int k = 0; k < kKinds; ++k) {
     if (accel.exact[k] == nullptr || accel.exact[k]->frames.empty()) continue;
     const ExactOps& ops = exact_ops(static_cast<Kind>(k));
@@ -227,7 +215,7 @@ void closest_in_leaf(const Accel& accel, const LeafEntry& leaf, const PointPlace
   const ShapeAt nearest(accel, place.moved ? &place.to_world : nullptr, place.world);
   for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
     const std::uint32_t element = is_exact(leaf.kind) ? accel.exact_pool(leaf.kind).cells[k].element : k;
-    best.keep(nearest(leaf.kind, element).d2, item_of(accel, leaf.kind, element), place.instance);
+    best.keep(nearest(leaf.kind, element).d2, accel.item_in_pool(leaf.kind, element), place.instance);
   }
 }
 

@@ -1,9 +1,13 @@
 #pragma once
 /// \file Follows a hit through instances and combinations to the structure that holds its item, and brings
-/// its surface interaction back to the world.
+/// its surface interaction back to the world. Also finds all places of geometries.
 
+#include <array>
 #include <cmath>
+#include <functional>
+#include <optional>
 
+#include "accel/accel.h"
 #include "accel/accel_data.h"
 
 namespace oktett {
@@ -24,6 +28,9 @@ struct HitPlace {
 
 /// Follows an instance path to the structure that contains the item.
 HitPlace follow_path(const Accel& accel, std::uint32_t path);
+
+/// Item of the outermost instance or combination on `path`.
+std::uint32_t top_item(const Accel& accel, std::uint32_t path);
 
 /// The outermost link of a chain of instances and combinations, and what follows it.
 struct ChainLink {
@@ -77,5 +84,26 @@ inline HitNames identify_in(const HitPlace& place, const Hit& hit) {
 /// The surface interaction of a hit whose place is known. uv and tangents may be missing unless `uv`.
 void interaction_at(const HitPlace& place, const HitNames& names, const Ray& ray, const Hit& hit, bool uv,
                     SurfaceInteraction& s);
+
+/// The corners of the triangle at a hit, which is valid, in the space of `accel` and in the order of the
+/// mesh; nothing if what was hit is no triangle.
+std::optional<std::array<Vec3f, 3>> triangle_corners(const Accel& accel, const Hit& hit);
+
+// ---- Walks over everything that a structure shows, through all chains of instances.
+
+/// A geometry where one chain of instances shows it. Primitive k of it is met by hits with this `instance`
+/// and the item `first_item` + k.
+struct PlacedGeometry {
+  const Geometry* geometry;  ///< belongs to the structure
+  Affine to_world;           ///< from the space of the geometry's shape to that of the structure asked
+  std::uint32_t user;        ///< as in SurfaceInteraction
+  std::uint32_t instance;    ///< as in Hit
+  std::uint32_t first_item;  ///< as in Hit
+};
+
+/// Calls `visit` for the geometries of `accel` and of all its instances, once for each chain of instances
+/// that shows them, in no particular order. Left out are instances themselves, combinations and the solids in
+/// them, and geometries of singular transforms.
+void visit_placed_geometries(const Accel& accel, const std::function<void(const PlacedGeometry&)>& visit);
 
 }  // namespace oktett

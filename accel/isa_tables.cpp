@@ -1,9 +1,7 @@
 /// \file The tables of this layer's code by instruction set.
 
 #include "accel/build/sah.h"
-#include "accel/point_code.h"
-#include "accel/surface/interaction_code.h"
-#include "accel/trace_code.h"
+#include "accel/code.h"
 #include "core/isa_select.h"
 
 namespace oktett {

@@ -1,9 +1,19 @@
+/// \file The queries of accel/accel.h with rays.
+
 #include "accel/query.h"
 
+#include <algorithm>
+#include <span>
+
+#include "accel/accel_data.h"
 #include "accel/batch_pieces.h"
-#include "accel/trace_code.h"
+#include "accel/code.h"
+#include "accel/hit_sink.h"
+#include "kernels/exact_ops.h"
 
 namespace oktett {
+
+// ---- The nearest hit, and whether there is any.
 
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode) {
   const TraceCode& code = trace_code(isa);
@@ -57,5 +67,233 @@ Hit closest_hit(const Accel& accel, const Ray& ray, Isa isa) {
 }
 
 bool any_hit(const Accel& accel, const Ray& ray, Isa isa) { return trace_code(isa).any_hit_one(accel, ray); }
+
+// ---- All hits.
+
+void HitList::push(const Hit& hit, float turn) { hits_.push_back({hit, turn}); }
+std::size_t HitList::size() const { return hits_.size(); }
+Crossing& HitList::operator[](std::size_t i) { return hits_[i]; }
+void HitList::shrink(std::size_t size) { hits_.resize(size); }
+
+void RayHitList::append(const RayHit* hits, int count) { hits_.insert(hits_.end(), hits, hits + count); }
+void RayHitList::take_scratch(std::size_t ray) {
+  for (const Crossing& c : scratch_hits_) hits_.push_back({c, static_cast<std::uint32_t>(ray)});
+  scratch_hits_.clear();
+}
+
+bool is_triangle(const Accel& accel, std::uint32_t item) {
+  return static_cast<Kind>(accel.kinds[accel.geometry_of(item)]) == Kind::triangle;
+}
+
+bool is_mirrored(const Accel& accel, std::uint32_t item) {
+  return accel.frames[accel.geometry_of(item)].mirrored;
+}
+
+/// Orders the crossings of one surface, which are sorted by t, so that they alternate where several have the
+/// same t: a ray that is inside leaves first, one that is outside enters first. Through a gap thinner than
+/// the spacing of floats a ray leaves and enters again at one t.
+static void order_equal_crossings(std::span<Crossing> crossings) {
+  const auto end_of_group = [&](std::size_t i) {
+    const float t = crossings[i].hit.t;
+    while (i < crossings.size() && crossings[i].hit.t == t) ++i;
+    return i;
+  };
+  const auto leaves = [](const Crossing& c) { return c.turn > 0; };
+  const auto is_mixed = [&](std::size_t begin, std::size_t end) {
+    return leaves(crossings[begin]) != leaves(crossings[end - 1]);
+  };
+  // A group with crossings both ways ends on the side where it began, so the first other group tells where
+  // the ray begins.
+  bool inside = false;
+  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
+    end = end_of_group(begin);
+    if (is_mixed(begin, end)) continue;
+    inside = leaves(crossings[begin]);
+    break;
+  }
+  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
+    end = end_of_group(begin);
+    if (!is_mixed(begin, end))
+      inside = !leaves(crossings[begin]);
+    else if (inside)
+      std::reverse(&crossings[begin], &crossings[end - 1] + 1);
+  }
+}
+
+void merge_crossings(const Accel& accel, HitList& list, std::size_t first) {
+  // Surfaces of one cell list their crossings correctly by themselves.
+  const auto own_exact = [&](const Hit& h) {
+    if (h.instance != kNoId) return false;
+    const auto kind = static_cast<Kind>(accel.kinds[accel.geometry_of(h.item)]);
+    return is_exact(kind) && !exact_ops(kind).one_cell;
+  };
+  std::vector<Crossing> crossings;
+  std::size_t kept = first;
+  for (std::size_t i = first; i < list.size(); ++i) {
+    if (own_exact(list[i].hit))
+      crossings.push_back(list[i]);
+    else
+      list[kept++] = list[i];
+  }
+  list.shrink(kept);
+  std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
+    if (a.hit.item != b.hit.item) return a.hit.item < b.hit.item;
+    return a.hit.t != b.hit.t ? a.hit.t < b.hit.t : a.turn < b.turn;
+  });
+  for (std::size_t begin = 0, end; begin < crossings.size(); begin = end) {
+    end = begin + 1;
+    while (end < crossings.size() && crossings[end].hit.item == crossings[begin].hit.item) ++end;
+    order_equal_crossings({&crossings[begin], end - begin});
+  }
+  // Of several crossings inwards in a row the first counts, of several outwards the last.
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const auto same = [&](std::size_t k) {
+      return k < crossings.size() && crossings[k].hit.item == crossings[i].hit.item &&
+             crossings[k].turn == crossings[i].turn;
+    };
+    if (crossings[i].turn < 0 ? !(i > 0 && same(i - 1)) : !same(i + 1))
+      list.push(crossings[i].hit, crossings[i].turn);
+  }
+}
+
+/// The order in which hits are listed: by t, then by (instance, item).
+static bool listed_before(const Hit& a, const Hit& b) {
+  if (a.t != b.t) return a.t < b.t;
+  // Adding one puts "no instance" first.
+  if (a.instance != b.instance) return a.instance + 1 < b.instance + 1;
+  return a.item < b.item;
+}
+
+static void sort_hits(Hit* begin, Hit* end) {
+  if (end - begin > 32) return std::stable_sort(begin, end, listed_before);
+  for (Hit* at = begin; at < end; ++at) {
+    const Hit hit = *at;
+    Hit* to = at;
+    for (; to > begin && listed_before(hit, to[-1]); --to) *to = to[-1];
+    *to = hit;
+  }
+}
+
+void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa isa) {
+  static thread_local std::vector<Crossing> crossings;
+  crossings.clear();
+  hits.clear();
+  HitList list(crossings);
+  trace_code(isa).all_hits_one(accel, ray, list);
+  for (const Crossing& c : crossings) hits.push_back(c.hit);
+  sort_hits(hits.data(), hits.data() + hits.size());
+}
+
+/// Groups the crossings of a batch by ray. The hits of each ray are not sorted.
+static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, HitLists& out) {
+  out.begin.assign(rays + 1, 0);
+  for (const RayHit& h : found) ++out.begin[h.ray + 1];
+  for (std::size_t i = 0; i < rays; ++i) out.begin[i + 1] += out.begin[i];
+  out.hits.resize(found.size());
+  static thread_local std::vector<std::size_t> next;
+  next.assign(out.begin.begin(), out.begin.end() - 1);
+  for (const RayHit& h : found) out.hits[next[h.ray]++] = h.crossing.hit;
+}
+
+/// The same, and merges the crossings of exact surfaces.
+static void merge_by_ray(const Accel& accel, const std::vector<RayHit>& found, std::size_t rays,
+                         HitLists& out) {
+  std::vector<std::vector<Crossing>> of_ray(rays);
+  for (const RayHit& h : found) of_ray[h.ray].push_back(h.crossing);
+  out.hits.clear();
+  out.begin.assign(1, 0);
+  for (std::vector<Crossing>& crossings : of_ray) {
+    HitList list(crossings);
+    merge_crossings(accel, list, 0);
+    for (const Crossing& c : crossings) out.hits.push_back(c.hit);
+    out.begin.push_back(out.hits.size());
+  }
+}
+
+/// Removes the repeated hits of triangles that stand in several leaves. The hits of each ray must be sorted.
+static void drop_repeated(const Accel& accel, HitLists& out) {
+  std::size_t kept = 0, at = 0;
+  for (std::size_t i = 0; i + 1 < out.begin.size(); ++i) {
+    const std::size_t end = out.begin[i + 1], first = kept;
+    for (; at < end; ++at) {
+      const Hit& h = out.hits[at];
+      if (kept > first && h == out.hits[kept - 1] && h.instance == kNoId && is_triangle(accel, h.item))
+        continue;
+      out.hits[kept++] = h;
+    }
+    out.begin[i + 1] = kept;
+  }
+  out.hits.resize(kept);
+}
+
+/// The hits of a batch, not sorted. Those of triangles that stand in several leaves may be repeated.
+static void find_hits(const Accel& accel, const RaySpan& rays, const TraceCode& code, HitLists& out) {
+  static thread_local RayHitList found;
+  found.clear();
+  code.all_hits(accel, rays, found);
+  if (accel.has_exact)
+    merge_by_ray(accel, found.hits(), rays.size, out);
+  else
+    group_by_ray(found.hits(), rays.size, out);
+}
+
+/// Sorts the hits of each ray and removes repeated ones.
+static void sort_lists(const Accel& accel, HitLists& lists) {
+  for (std::size_t i = 0; i + 1 < lists.begin.size(); ++i)
+    sort_hits(lists.hits.data() + lists.begin[i], lists.hits.data() + lists.begin[i + 1]);
+  if (accel.pieces) drop_repeated(accel, lists);
+}
+
+template <class Rays>
+static void list_hits(const Accel& accel, const Rays& rays, HitLists& lists, Isa isa) {
+  const TraceCode& code = trace_code(isa);
+  const auto list_piece = [&](const RaySpan& piece, HitLists& out) {
+    find_hits(accel, piece, code, out);
+    sort_lists(accel, out);
+  };
+  const std::size_t size = ray_count(rays);
+  if (size <= kPieceRays) return list_piece(piece_columns(rays, 0, size), lists);
+  std::vector<HitLists> pieces(piece_count(size));
+  for_each_piece(
+      rays, [&](std::size_t begin, const RaySpan& piece) { list_piece(piece, pieces[begin / kPieceRays]); });
+  lists.hits.clear();
+  lists.begin.assign(1, 0);
+  for (HitLists& piece : pieces) {
+    const std::size_t before = lists.hits.size();
+    lists.hits.insert(lists.hits.end(), piece.hits.begin(), piece.hits.end());
+    for (std::size_t i = 1; i < piece.begin.size(); ++i) lists.begin.push_back(before + piece.begin[i]);
+    piece = {};
+  }
+}
+
+void all_hits(const Accel& accel, const RaySpan& rays, HitLists& lists, Isa isa) {
+  list_hits(accel, rays, lists, isa);
+}
+
+void all_hits(const Accel& accel, std::span<const Ray> rays, HitLists& lists, Isa isa) {
+  list_hits(accel, rays, lists, isa);
+}
+
+template <class Rays>
+static void count_lists(const Accel& accel, const Rays& rays, std::span<std::uint32_t> counts, Isa isa) {
+  require_same_size(ray_count(rays), counts.size(), "count_hits");
+  const TraceCode& code = trace_code(isa);
+  for_each_piece(rays, [&](std::size_t begin, const RaySpan& piece) {
+    static thread_local HitLists lists;
+    find_hits(accel, piece, code, lists);
+    // Sorting is only needed to find repeated hits.
+    if (accel.pieces) sort_lists(accel, lists);
+    for (std::size_t i = 0; i < piece.size; ++i)
+      counts[begin + i] = static_cast<std::uint32_t>(lists.of_ray(i).size());
+  });
+}
+
+void count_hits(const Accel& accel, const RaySpan& rays, std::span<std::uint32_t> counts, Isa isa) {
+  count_lists(accel, rays, counts, isa);
+}
+
+void count_hits(const Accel& accel, std::span<const Ray> rays, std::span<std::uint32_t> counts, Isa isa) {
+  count_lists(accel, rays, counts, isa);
+}
 
 }  // namespace oktett

@@ -53,17 +53,6 @@ namespace {
 
 void grow(Box& box, const Vec3d& p) { box.grow(Box{round_down(p), round_up(p)}); }
 
-Box points_bounds(const auto& points) {
-  Box box;
-  for (const Vec3d& p : points) grow(box, p);
-  return box;
-}
-
-Box sphere_bounds(const SphereShape& sphere) {
-  const Vec3d r{sphere.radius, sphere.radius, sphere.radius};
-  return {round_down(sphere.center - r), round_up(sphere.center + r)};
-}
-
 /// Bounds of one shape in its own space; empty if it is unbounded.
 struct ShapeBounds {
   const std::vector<Box>& prototypes;
@@ -74,22 +63,13 @@ struct ShapeBounds {
       for (const Vec3f& p : shape.mesh->positions) box.grow(p);
     return box;
   }
-  Box operator()(const SphereShape& shape) const { return sphere_bounds(shape); }
-  Box operator()(const SpheresShape& shape) const {
-    Box box;
-    for (const SphereShape& sphere : shape.spheres) box.grow(sphere_bounds(sphere));
-    return box;
+  template <class T>
+  Box operator()(const T& shape) const {
+    if constexpr (requires { shape.bounds(); })
+      return shape.bounds();
+    else
+      return {};
   }
-  Box operator()(const PlaneShape&) const { return {}; }
-  Box operator()(const DiskShape& shape) const {
-    const Vec3d n = normalize(shape.normal);
-    const auto reach = [&](double c) { return shape.radius * std::sqrt(std::max(0.0, 1 - c * c)); };
-    const Vec3d extent{reach(n.x), reach(n.y), reach(n.z)};
-    return {round_down(shape.center - extent), round_up(shape.center + extent)};
-  }
-  Box operator()(const BoxShape& shape) const { return {round_down(shape.min), round_up(shape.max)}; }
-  Box operator()(const PolygonShape& shape) const { return points_bounds(shape.vertices); }
-  Box operator()(const TriangleShape& shape) const { return points_bounds(shape.v); }
   Box operator()(const ExactShape& shape) const { return exact_bounds(shape, {}); }
   Box operator()(const CsgShape& shape) const;
   Box operator()(const InstanceShape& shape) const {

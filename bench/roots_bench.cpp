@@ -14,8 +14,8 @@
 
 #include "core/random.h"
 #include "core/vec3.h"
-#include "kernels/roots/solve.h"
-#include "verify/probes/roots_probe.h"
+#include "kernels/roots/roots.h"
+#include "verify/probes/kernel_probe.h"
 
 namespace oktett::bench {
 namespace {

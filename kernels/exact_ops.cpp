@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "kernels/exact/march.h"
+#include "kernels/exact_form.h"
 
 namespace oktett {
 
@@ -82,6 +83,31 @@ bool is_unbounded(const ExactShape& shape, const Affine& to_world) {
   bool unbounded = false;
   each_cell_bounds(shape, to_world, [&](const Box& b) { unbounded |= b.empty(); });
   return unbounded;
+}
+
+// ---- The data of exact surfaces.
+
+ExactForm::ExactForm() = default;
+ExactForm::ExactForm(const ExactForm&) = default;
+ExactForm::ExactForm(ExactForm&&) noexcept = default;
+ExactForm& ExactForm::operator=(const ExactForm&) = default;
+ExactForm& ExactForm::operator=(ExactForm&&) noexcept = default;
+ExactForm::~ExactForm() = default;
+
+bool is_open(const ExactShape& shape) {
+  return std::visit(
+      [](const auto& form) {
+        // Without a box a quadric or a blob has no faces that could be missing.
+        if constexpr (requires { form.clipped; })
+          return form.open && form.clipped;
+        else if constexpr (requires { form.bounded; })
+          return form.open && form.bounded;
+        else if constexpr (requires { form.open; })
+          return form.open;
+        else
+          return false;
+      },
+      shape.form);
 }
 
 }  // namespace oktett

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/box.h"
-#include "kernels/closed/surface_nearest.h"
+#include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
 #include "kernels/exact_form.h"
 #include "kernels/kinds.h"

@@ -1,26 +1,25 @@
 #pragma once
 /// \file The kinds: everything that a leaf of the tree can hold. What is asked of a kind is asked by name
-/// here, or in the table of its surface (kernels/exact_ops.h); nothing follows from the order of the
-/// enumeration.
+/// here, in the table of an exact surface (kernels/exact_ops.h) or of the kernel of a closed form
+/// (kernels/closed_forms.h); nothing follows from the order of the enumeration.
 
 #include <cstdint>
 
 #include "core/platform.h"
+#include "kernels/closed/shape_data.h"
 
 namespace oktett {
 
 enum class Kind : std::uint8_t {
-  // Closed-form shapes (kernels/closed_forms.h).
-  sphere,
-  disk,
-  box,
-  polygon,
-  plane,
+// Closed forms.
+#define FORM(Kernel, Data, name) name,
+  OKTETT_CLOSED_FORMS(FORM)
+#undef FORM
 // Exact surfaces.
 #define SURFACE(Type, name) name,
 #include "kernels/exact/surfaces.def"
 #undef SURFACE
-  triangle,
+      triangle,
   csg,
   instance,
   instance_list
@@ -28,8 +27,14 @@ enum class Kind : std::uint8_t {
 inline constexpr int kKinds = static_cast<int>(Kind::instance_list) + 1;
 
 OKTETT_INLINE constexpr bool is_closed_form(Kind kind) {
-  return kind == Kind::sphere || kind == Kind::disk || kind == Kind::box || kind == Kind::polygon ||
-         kind == Kind::plane;
+  switch (kind) {
+#define FORM(Kernel, Data, name) case Kind::name:
+    OKTETT_CLOSED_FORMS(FORM)
+#undef FORM
+    return true;
+    default:
+      return false;
+  }
 }
 OKTETT_INLINE constexpr bool is_exact(Kind kind) {
   switch (kind) {
@@ -39,6 +44,23 @@ OKTETT_INLINE constexpr bool is_exact(Kind kind) {
     return true;
     default:
       return false;
+  }
+}
+/// The name of a mathematical shape, as in the list of its sort.
+constexpr const char* name_of(Kind kind) {
+  switch (kind) {
+#define FORM(Kernel, Data, name) \
+  case Kind::name:               \
+    return #name;
+    OKTETT_CLOSED_FORMS(FORM)
+#undef FORM
+#define SURFACE(Type, name) \
+  case Kind::name:          \
+    return #name;
+#include "kernels/exact/surfaces.def"
+#undef SURFACE
+    default:
+      return "";
   }
 }
 /// One mathematical shape, of either sort.

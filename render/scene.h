@@ -269,8 +269,8 @@ struct CsgShape {
 
 /// Any shape that an object can have. Copying, moving and destroying one are functions of scene.cpp: inline,
 /// they take the compiler a second in each file that needs them.
-struct Shape : std::variant<MeshShape, TriangleShape, SphereShape, SpheresShape, PlaneShape, DiskShape,
-                            BoxShape, PolygonShape, ExactShape, CsgShape, InstanceShape> {
+struct Shape : std::variant<MeshShape, TriangleShape, SphereShape OKTETT_AND_CLOSED_FORMS, ExactShape,
+                            CsgShape, InstanceShape> {
   using variant::variant;
   Shape();
   Shape(const Shape&);

@@ -6,7 +6,7 @@
 #include <optional>
 #include <tuple>
 
-#include "accel/placed_geometry.h"
+#include "accel/hit_place.h"
 #include "core/math.h"
 #include "core/mesh_geometry.h"
 #include "render/enclosures.h"

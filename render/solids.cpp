@@ -14,9 +14,6 @@ struct IsSolid {
   bool operator()(const MeshShape& shape) const {
     return shape.mesh != nullptr && (shape.by_winding || find_open_edges(*shape.mesh).count == 0);
   }
-  bool operator()(const TriangleShape&) const { return false; }
-  bool operator()(const DiskShape&) const { return false; }
-  bool operator()(const PolygonShape&) const { return false; }
   bool operator()(const ExactShape& shape) const { return !is_open(shape); }
   bool operator()(const InstanceShape& shape) const {
     if (shape.prototype >= prototypes.size()) return false;
@@ -25,7 +22,7 @@ struct IsSolid {
   }
   template <class T>
   bool operator()(const T&) const {
-    return true;
+    return !kIsFlat<T>;
   }
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Which objects of a scene have an inside.
 
-#include "kernels/open_surface.h"
+#include "kernels/exact_form.h"
 #include "render/scene.h"
 
 namespace oktett {

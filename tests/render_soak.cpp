@@ -29,7 +29,7 @@
 #include "render/picture/render.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
-#include "verify/oracles/random_scene.h"
+#include "verify/oracles/known_shapes.h"
 
 namespace oktett::test {
 namespace {

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "kernels/roots/solve.h"
+#include "kernels/roots/roots.h"
 #include "tests/support/exact_roots.h"
 #include "tests/support/random_polynomials.h"
 

@@ -2,7 +2,6 @@
 
 #include "core/isa_select.h"
 #include "verify/probes/kernel_probe.h"
-#include "verify/probes/roots_probe.h"
 #include "verify/probes/simd_probe.h"
 
 namespace oktett {

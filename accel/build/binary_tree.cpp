@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "accel/build/build_arrays.h"
-#include "accel/build/collapse.h"
+#include "accel/build/sah.h"
 #include "accel/build/spatial.h"
 #include "accel/build/wide_tree.h"
 #include "core/parallel.h"

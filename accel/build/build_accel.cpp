@@ -26,26 +26,7 @@ class PoolFiller {
   void run() {
     number_primitives();
     align_spheres();
-    each<Sphere>(Kind::sphere, [](auto& pool, const Geometry& g, std::uint32_t local, std::uint32_t item) {
-      Sphere::add(pool, moved_sphere(std::get<SpheresShape>(g.shape).spheres[local], g.transform), item);
-    });
-    each<Disk>(Kind::disk, [](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-      const DiskShape& s = std::get<DiskShape>(g.shape);
-      const Vec3d n = g.transform.inverse().normal_by_inverse(s.normal);
-      Disk::add(pool, {g.transform.point(s.center), n, s.radius * g.transform.uniform_scale()}, item);
-    });
-    each<BoxSolid>(Kind::box, [](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-      BoxSolid::add(pool, std::get<BoxShape>(g.shape), g.transform, item);
-    });
-    each<Polygon>(Kind::polygon, [](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-      PolygonShape s = std::get<PolygonShape>(g.shape);
-      for (Vec3d& v : s.vertices) v = g.transform.point(v);
-      if (g.transform.determinant() < 0) std::reverse(s.vertices.begin(), s.vertices.end());
-      Polygon::add(pool, s, item);
-    });
-    each<Plane>(Kind::plane, [](auto& pool, const Geometry& g, std::uint32_t, std::uint32_t item) {
-      Plane::add(pool, moved_plane(std::get<PlaneShape>(g.shape), g.transform), item);
-    });
+    each_closed_form([&]<class S>(S, Kind kind) { fill_pool<S>(kind); });
     for (int kind = 0; kind < kKinds; ++kind)
       if (accel_.exact[kind]) arrange_cells(static_cast<Kind>(kind), *accel_.exact[kind]);
     number_paths();
@@ -91,13 +72,15 @@ class PoolFiller {
     accel_.pool_index[accel_.first_pool_index[g] + item - accel_.first_item[g]] = index;
   }
 
-  /// Calls add(pool, geometry, number within the geometry, item) for the items of a closed-form shape.
-  template <class S, class Add>
-  void each(Kind kind, Add&& add) {
+  /// Fills the pool of a closed form.
+  template <class S>
+  void fill_pool(Kind kind) {
     auto& pool = std::get<typename S::Pool>(accel_.pools);
     for (std::uint32_t item : order_[static_cast<int>(kind)]) {
-      const std::uint32_t g = accel_.geometry_of(item);
-      add(pool, accel_.geometries[g], item - accel_.first_item[g], item);
+      const std::uint32_t number = accel_.geometry_of(item);
+      const Geometry& g = accel_.geometries[number];
+      const auto& data = std::get<typename S::Data>(g.shape);
+      S::add(pool, nth_shape<S>(data, item - accel_.first_item[number]), g.transform, item);
     }
     for (std::uint32_t i = 0; i < pool.item.size(); ++i) set_pool_index(pool.item[i], i);
     S::finish(pool);
@@ -209,9 +192,10 @@ namespace {
 
 std::size_t item_count(const Geometry& g) {
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) return mesh->mesh->triangle_count();
-  if (const auto* spheres = std::get_if<SpheresShape>(&g.shape)) return spheres->spheres.size();
   if (const auto* list = std::get_if<InstanceList>(&g.shape)) return list->places.size();
-  return 1;
+  std::size_t count = 1;
+  visit_closed_form(g.shape, [&]<class S>(S, Kind, const auto& data) { count = shape_count<S>(data); });
+  return count;
 }
 
 bool is_usable(const Box& b) { return !b.empty() && is_finite(b.lo) && is_finite(b.hi); }
@@ -231,8 +215,9 @@ Geometry as_instance(Geometry g) {
 
 void wrap_sheared_shapes(std::vector<Geometry>& geometries) {
   for (Geometry& g : geometries) {
-    const bool needs_similarity =
-        std::holds_alternative<SpheresShape>(g.shape) || std::holds_alternative<DiskShape>(g.shape);
+    bool needs_similarity = false;
+    visit_closed_form(g.shape,
+                      [&]<class S>(S, Kind, const auto&) { needs_similarity = S::kNeedsSimilarity; });
     if (needs_similarity && g.transform.is_invertible() && g.transform.uniform_scale() == 0)
       g = as_instance(std::move(g));
   }
@@ -243,6 +228,32 @@ void add_unbounded(Accel& accel, Kind kind, std::uint32_t item, ItemOrder& order
   std::vector<std::uint32_t>& list = order[static_cast<int>(kind)];
   accel.unbounded.push_back({static_cast<std::uint32_t>(list.size()), 1, kind, TriangleTest::watertight});
   list.push_back(item);
+}
+
+/// Adds the shapes of a geometry of a closed form.
+template <class S>
+void add_closed_form(Accel& accel, const Geometry& geometry, const typename S::Data& data, Kind kind,
+                     std::uint32_t first, Column<PrimRef>& refs, ItemOrder& order) {
+  const auto count = static_cast<std::uint32_t>(shape_count<S>(data));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto& shape = nth_shape<S>(data, i);
+    if (!kHasBounds<S> && !S::is_empty(shape)) add_unbounded(accel, kind, first + i, order);
+    const Box box = moved_bounds<S>(shape, geometry.transform);
+    if (!is_usable(box)) continue;
+    refs.push_back(make_ref(box, first + i, kind));
+    accel.bounds.grow(box);
+  }
+}
+
+/// Adds an instance.
+void add_instance(Accel& accel, const Geometry& geometry, std::uint32_t item, Column<PrimRef>& refs,
+                  ItemOrder& order) {
+  const Accel& child = *std::get<InstanceGeometry>(geometry.shape).child;
+  if (!child.unbounded.empty()) return add_unbounded(accel, Kind::instance, item, order);
+  const Box box = instance_bounds(geometry.transform, child);
+  if (!is_usable(box)) return;
+  refs.push_back(make_ref(box, item, Kind::instance));
+  accel.bounds.grow(box);
 }
 
 /// Adds one exact surface and its cells. Cells without bounds go into the list beside the tree.
@@ -324,7 +335,7 @@ std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrd
     first_ref.push_back(refs.size());
     const Geometry& geometry = accel.geometries[g];
     const Kind kind = kind_of(geometry);
-    const std::uint32_t first = accel.first_item[g], end = accel.first_item[g + 1];
+    const std::uint32_t first = accel.first_item[g];
     if (!geometry.transform.is_invertible()) continue;
     if (kind == Kind::instance_list) {
       add_listed(accel, accel.geometries[g], first, refs, order);
@@ -339,20 +350,10 @@ std::vector<std::size_t> add_others(Accel& accel, Column<PrimRef>& refs, ItemOrd
       add_exact(accel, *exact, kind, geometry.transform, first, refs, order);
       continue;
     }
-    for (std::uint32_t item = first; item < end; ++item) {
-      if (is_unbounded(geometry)) {
-        if (kind == Kind::plane && !(length(std::get<PlaneShape>(geometry.shape).normal) > 0)) continue;
-        add_unbounded(accel, kind, item, order);
-        continue;
-      }
-      const Box box =
-          kind == Kind::instance
-              ? instance_bounds(geometry.transform, *std::get<InstanceGeometry>(geometry.shape).child)
-              : shape_bounds(geometry, item - first);
-      if (!is_usable(box)) continue;
-      refs.push_back(make_ref(box, item, kind));
-      accel.bounds.grow(box);
-    }
+    if (kind == Kind::instance) add_instance(accel, geometry, first, refs, order);
+    visit_closed_form(geometry.shape, [&]<class S>(S, Kind, const auto& data) {
+      add_closed_form<S>(accel, geometry, data, kind, first, refs, order);
+    });
   }
   return first_ref;
 }

@@ -7,9 +7,12 @@
 
 #include "accel/node.h"
 #include "core/isa.h"
+#include "core/platform.h"
 #include "kernels/triangle/triangle.h"
 
 namespace oktett {
+
+// ---- The data of the builder.
 
 /// A primitive's box as {-lo, hi}, so that one maximum grows both corners at once (the layout is tinybvh's
 /// idea), with its item number and kind in the gaps. 32 bytes.
@@ -97,13 +100,13 @@ struct alignas(32) BinaryNode {
   Kind kind() const { return static_cast<Kind>(info >> 8 & 0xff); }
   TriangleTest test() const { return static_cast<TriangleTest>(info >> 16 & 0xff); }
   /// Inner nodes: of `slots` places (2 to 8) in a wide node, how many the left child's subtree gets for the
-  /// least cost; 0: a place is better left empty. See accel/build/collapse.h.
+  /// least cost; 0: a place is better left empty. See collapse().
   int left_slots(int slots) const { return static_cast<int>(info >> 3 * (slots - 2) & 7); }
 };
 static_assert(sizeof(BinaryNode) == 32);
 
 /// Cost of a subtree (the areas of its wide nodes and leaves) if it may fill 1 to 7 places of a wide node.
-/// See accel/build/collapse.h.
+/// See collapse().
 struct SubtreeCost {
   float places[7];
 };
@@ -178,5 +181,43 @@ const BuildKernels& build_kernels();
 
 /// Throws Error if this build holds no code for the set.
 const BuildKernels& build_kernels(Isa isa);
+
+// ---- Which binary nodes become wide ones: the choice of least surface-area cost, by dynamic programming
+// (Ylitie, Karras and Laine 2017, section 3). Leaves are whole blocks already, so only the places in wide
+// nodes are distributed. Costs are computed bottom-up while the binary tree is built; a node keeps only its
+// choices.
+
+/// Cost of a leaf: it takes one place, however many there are.
+OKTETT_INLINE SubtreeCost leaf_cost(float area) {
+  SubtreeCost c;
+  for (float& p : c.places) p = area;
+  return c;
+}
+
+/// Cost of an inner node of surface `area`, from the costs of its children. Returns BinaryNode::info.
+OKTETT_INLINE std::uint32_t collapse(const SubtreeCost& l, const SubtreeCost& r, float area,
+                                     SubtreeCost& out) {
+  constexpr int W = BvhNode::kWidth;
+  float shared[W + 1];
+  std::uint32_t left[W + 1];
+  for (int slots = 2; slots <= W; ++slots) {
+    float best = l.places[0] + r.places[slots - 2];
+    std::uint32_t best_left = 1;
+    for (int k = 2; k < slots; ++k) {
+      const float c = l.places[k - 1] + r.places[slots - k - 1];
+      best_left = c < best ? static_cast<std::uint32_t>(k) : best_left;
+      best = c < best ? c : best;
+    }
+    shared[slots] = best, left[slots] = best_left;
+  }
+  std::uint32_t info = BinaryNode::kInner | left[W] << 3 * (W - 2);
+  out.places[0] = area + shared[W];
+  for (int slots = 2; slots < W; ++slots) {
+    const bool share = shared[slots] < out.places[slots - 2];
+    out.places[slots - 1] = share ? shared[slots] : out.places[slots - 2];
+    info |= (share ? left[slots] : 0) << 3 * (slots - 2);
+  }
+  return info;
+}
 
 }  // namespace oktett

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "accel/build/populate.h"
+#include "accel/build/build_arrays.h"
 #include "core/error.h"
 
 namespace oktett {

@@ -5,7 +5,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/build/build_arrays.h"
-#include "accel/build/triangle_source.h"
+#include "accel/build/spatial.h"
 
 namespace oktett {
 

@@ -10,8 +10,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/csg_item.h"
-#include "accel/hit_list.h"
+#include "accel/accel.h"
+#include "accel/accel_data.h"
+#include "accel/hit_sink.h"
 #include "core/box.h"
 
 namespace oktett {
@@ -25,6 +26,10 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options);
 /// A box that holds the solid: intersections and differences are smaller than their operands. Empty if there
 /// is nothing, infinite if it is unbounded.
 Box csg_bounds(const CsgItem& csg);
+
+/// Whether a ray that does not cross the boundary of `geometry`, which is unbounded, runs inside it from
+/// ray.tmin on.
+bool runs_inside(const Accel& accel, std::uint32_t geometry, const Ray& ray);
 
 /// The distance within which crossings from `t` on count as coincident: it covers the rounding of t to float
 /// and the errors of the surfaces.

@@ -2,7 +2,6 @@
 
 #include "accel/accel_data.h"
 #include "accel/csg/csg.h"
-#include "accel/csg/csg_solids.h"
 #include "accel/hit_place.h"
 
 namespace oktett {

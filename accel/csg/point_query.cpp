@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "accel/batch_pieces.h"
-#include "accel/csg/csg_solids.h"
+#include "accel/code.h"
+#include "accel/csg/csg.h"
 #include "accel/hit_place.h"
 #include "accel/instance.h"
-#include "accel/point_code.h"
+#include "kernels/exact_form.h"
 #include "kernels/exact_ops.h"
-#include "kernels/open_surface.h"
 
 namespace oktett {
 
@@ -54,13 +54,13 @@ constexpr Vec3f kDirection{0.4142f, 0.2718f, 0.8686f};
 bool has_inside(const Accel& accel, std::uint32_t geometry) {
   const Geometry& g = accel.geometries[geometry];
   if (const auto* exact = std::get_if<ExactShape>(&g.shape)) return !is_open(*exact);
-  return !std::holds_alternative<DiskShape>(g.shape) && !std::holds_alternative<PolygonShape>(g.shape);
+  return std::visit([]<class T>(const T&) { return !kIsFlat<T>; }, g.shape);
 }
 
 /// The item of an entry of Accel::unbounded that is a shape.
 std::uint32_t item_of(const Accel& accel, const LeafEntry& leaf) {
   if (is_exact(leaf.kind)) return accel.exact_pool(leaf.kind).item_of_cell(leaf.begin);
-  return std::get<Plane::Pool>(accel.pools).item[leaf.begin];
+  return accel.item_in_pool(leaf.kind, leaf.begin);
 }
 
 Ray moved_ray(const Affine& m, const Ray& ray) {
@@ -167,11 +167,15 @@ void for_each_points(std::size_t size, Answer&& answer) {
 }
 
 void require_closest(const Accel& accel, const char* query) {
-  if (!accel.no_closest_point[0].empty())
-    throw Error(
-        std::string(query) + ": " + accel.no_closest_point[0] +
-        " has no nearest points; meshes, spheres, boxes, planes, disks, polygons, cylinders, cones and "
-        "tori have. Ask it with rays or with inside()");
+  if (accel.no_closest_point[0].empty()) return;
+  std::string others = "mesh";
+  for (int k = 0; k < kKinds; ++k) {
+    const auto kind = static_cast<Kind>(k);
+    if (is_closed_form(kind) || (is_exact(kind) && exact_ops(kind).closest != nullptr))
+      others += std::string(", ") + name_of(kind);
+  }
+  throw Error(std::string(query) + ": " + accel.no_closest_point[0] +
+              " has no nearest points; these have: " + others + ". Ask it with rays or with inside()");
 }
 
 /// The points from number `begin` on, in columns. They are valid until the thread's next call.

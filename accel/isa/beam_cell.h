@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accel/beam_view.h"
+#include "accel/exact_table.h"
 #include "core/lanes.h"
 #include "core/simd.h"
 #include "kernels/exact/exact_pool.h"

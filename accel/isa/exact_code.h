@@ -4,7 +4,7 @@
 
 #include "accel/exact_table.h"
 #include "accel/isa/beam_cell.h"
-#include "accel/isa/shape_interactions.h"
+#include "accel/surface/surface_lanes.h"
 #include "kernels/exact/exact_interaction.h"
 
 namespace oktett {

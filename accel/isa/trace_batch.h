@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "accel/isa/trace_query.h"
+#include "accel/code.h"
 #include "accel/traverse/beam/traverse_beam.h"
 #include "accel/traverse/inflight/interleaved.h"
 #include "accel/traverse/inflight/solo.h"

@@ -6,14 +6,11 @@
 #include <string>
 
 #include "accel/accel_data.h"
+#include "accel/code.h"
 #include "accel/csg/csg.h"
-#include "accel/csg/csg_solids.h"
 #include "accel/hit_place.h"
-#include "accel/shape_hits.h"
-#include "accel/surface/interaction_code.h"
-#include "accel/surface/mesh_surface.h"
 #include "accel/surface/offset_origin.h"
-#include "accel/triangle_corners.h"
+#include "accel/surface/surface_lanes.h"
 #include "core/error.h"
 #include "core/lanes.h"
 #include "kernels/exact_ops.h"

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Every crossing of one ray, in no particular order.
 
-#include "accel/hit_list.h"
+#include "accel/hit_sink.h"
 #include "accel/traverse/single.h"
 
 namespace oktett {
@@ -54,9 +54,9 @@ void collect_triangles(const Accel& accel, const TriangleBlock& block, int count
 /// -1 if the ray enters the shape at root `j`, 1 if it leaves it; 0 for shapes without an inside.
 template <class S, class A>
 OKTETT_INLINE float turn_of(const typename S::Pool& pool, std::uint32_t k, int j, const RayState<1, A>& r) {
-  if constexpr (std::is_same_v<S, Plane>)
+  if constexpr (kSolid<S> && S::kRoots == 1)
     return pool.nx[k] * r.d[0][0] + pool.ny[k] * r.d[1][0] + pool.nz[k] * r.d[2][0] < 0 ? -1.0f : 1.0f;
-  return !S::kSolid ? 0.0f : j == 0 ? -1.0f : 1.0f;
+  return !kSolid<S> ? 0.0f : j == 0 ? -1.0f : 1.0f;
 }
 
 /// Appends all hits of a ray with the closed-form shapes of a leaf.

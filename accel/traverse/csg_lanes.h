@@ -3,12 +3,13 @@
 /// swept in lanes. The hits have the same bits as those of accel/csg/csg_sweep.cpp.
 
 #include "accel/csg/csg.h"
-#include "accel/csg/csg_solids.h"
 #include "accel/exact_table.h"
 #include "accel/ray_state.h"
 #include "accel/traverse/node_boxes.h"
 
 namespace oktett {
+
+// ---- Several rays at once against a combination of primitives.
 
 /// In trees of at most this many leaves all leaves are visited, without a look at the nodes.
 inline constexpr std::size_t kAllCsgLeaves = 6;
@@ -148,14 +149,15 @@ class CsgLanes {
   }
 
   OKTETT_INLINE std::uint32_t gather_shape(Kind kind, std::uint32_t k, unsigned lanes) {
-    if (kind == Kind::sphere) return shape_rows<Sphere>(k, lanes);
-    if (kind == Kind::box) return shape_rows<BoxSolid>(k, lanes);
-    return shape_rows<Plane>(k, lanes);
+    std::uint32_t item = kNoId;
+    visit_pool(kind, csg_.solids->pools, [&]<class S>(S, const typename S::Pool& pool) {
+      if constexpr (kSolid<S>) item = shape_rows<S>(pool, k, lanes);
+    });
+    return item;
   }
 
   template <class S>
-  OKTETT_INLINE std::uint32_t shape_rows(std::uint32_t k, unsigned lanes) {
-    const auto& pool = std::get<typename S::Pool>(csg_.solids->pools);
+  OKTETT_INLINE std::uint32_t shape_rows(const typename S::Pool& pool, std::uint32_t k, unsigned lanes) {
     const auto shape = S::template broadcast<D>(pool, k);
     D t[S::kRoots];
     const auto meets = mask_cast<float>(S::roots(doubles_, shape, t)) & F::M::from_bits(lanes);
@@ -164,7 +166,7 @@ class CsgLanes {
       const F tf = to_float(t[j]);
       const auto valid = meets & (rays_.tmin < tf) & (tf <= F(std::numeric_limits<float>::max()));
       F turn(j == 0 ? -1.0f : 1.0f);
-      if constexpr (std::is_same_v<S, Plane>)
+      if constexpr (kSolid<S> && S::kRoots == 1)
         turn = select(mask_cast<float>(dot_lanes(shape.n, doubles_.d) < D(0.0)), F(-1.0f), F(1.0f));
       push_row(rows_, valid, tf, turn, F(0.0f), pool.item[k], false);
     }
@@ -294,5 +296,74 @@ class CsgLanes {
   alignas(64) float depth_[CrossingLanes<N>::kMost][N];
   CrossingLanes<N> rows_;
 };
+
+// ---- Rays against Boolean combinations: gathers the crossings with all solids, sweeps them, takes the
+// first.
+
+template <class A>
+void collect(const Accel& accel, const RayState<1, A>& r, HitList& hits);
+
+/// Appends all crossings of a ray with the solids of a combination, from tmin to infinity: crossings beyond
+/// tmax also tell whether the ray begins inside a solid. False for a ray that can hit nothing.
+template <class A>
+OKTETT_NOINLINE bool gather_solids(const CsgItem& csg, const Ray& ray, HitList& crossings) {
+  RayState<1, A> state;
+  if (state.set({ray.origin, ray.tmin, ray.direction, std::numeric_limits<float>::infinity()},
+                csg.solids->bounds) == 0)
+    return false;
+  collect(*csg.solids, state, crossings);
+  return true;
+}
+
+/// The rays in `lanes` against a combination, one by one.
+template <int W, class A>
+OKTETT_NOINLINE void csg_singly(const CsgItem& csg, RayState<W, A>& r, unsigned lanes) {
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    const Ray ray{{r.o[0][i], r.o[1][i], r.o[2][i]}, r.tmin[i], {r.d[0][i], r.d[1][i], r.d[2][i]}, r.tmax[i]};
+    CsgSweep sweep;
+    Crossing found;
+    if (gather_solids<A>(csg, ray, sweep.solids()) && sweep.first(csg, ray, found))
+      accept_hit(r, i, found.hit.t, found.hit.u, found.hit.v, found.hit.item, found.hit.instance);
+  }
+}
+
+/// The rays in `lanes` of the CsgLanes<A>::N rays from `base` on against a combination, at once.
+template <int W, class A>
+OKTETT_NOINLINE void csg_together(const CsgItem& csg, RayState<W, A>& r, int base, unsigned lanes) {
+  CsgLanes<A> packet(csg, r, base, lanes);
+  typename CsgLanes<A>::Found found;
+  if (!packet.first(found)) return csg_singly(csg, r, lanes << base);
+  const auto& rows = packet.rows();
+  for (unsigned rest = found.lanes; rest != 0; rest &= rest - 1) {
+    const int i = __builtin_ctz(rest), row = found.row[i];
+    accept_hit(r, base + i, found.t[i], rows.part[row][i], rows.exact[row] ? rows.turn[row][i] : 0.0f,
+               rows.item[row], csg_path(csg, kNoId, (found.flipped >> i & 1) != 0));
+  }
+}
+
+/// The rays in `lanes` against the combinations of a leaf.
+template <int W, class A>
+OKTETT_NOINLINE void leaf_csg(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r, unsigned lanes) {
+  constexpr int N = CsgLanes<A>::N;
+  for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
+    const CsgItem& csg = accel.combinations[k];
+    if (!csg.in_lanes) {
+      csg_singly(csg, r, lanes);
+      continue;
+    }
+    for (int base = 0; base < W; base += N) {
+      const unsigned part = lanes >> base & ((2u << (N - 1)) - 1);
+      if (part != 0) csg_together(csg, r, base, part);
+    }
+  }
+}
+
+/// Appends every crossing of a ray with a combination.
+template <class A>
+OKTETT_NOINLINE void collect_csg(const CsgItem& csg, const Ray& ray, HitList& hits) {
+  CsgSweep sweep;
+  if (gather_solids<A>(csg, ray, sweep.solids())) sweep.all(csg, ray, hits);
+}
 
 }  // namespace oktett

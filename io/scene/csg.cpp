@@ -21,9 +21,6 @@ struct WhyFlat {
         "(`solid: winding` takes it as it is)",
         open.count, open.from.x, open.from.y, open.from.z, open.to.x, open.to.y, open.to.z, why);
   }
-  std::string operator()(const DiskShape&) const { return flat("a disk"); }
-  std::string operator()(const PolygonShape&) const { return flat("a polygon"); }
-  std::string operator()(const TriangleShape&) const { return flat("a triangle"); }
   std::string operator()(const ExactShape& shape) const {
     return is_open(shape) ? flat("an open surface") : "";
   }
@@ -38,9 +35,10 @@ struct WhyFlat {
   }
   template <class T>
   std::string operator()(const T&) const {
+    if constexpr (kIsFlat<T>) return flat(std::string("a ") + T::kSurface.key);
     return "";
   }
-  std::string flat(const char* what) const { return std::string(what) + " has no inside; " + why; }
+  std::string flat(const std::string& what) const { return what + " has no inside; " + why; }
 };
 
 }  // namespace

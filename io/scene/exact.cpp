@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/exact/half_spaces.h"
 #include "kernels/exact/lathe.h"
+#include "kernels/exact/polyhedron.h"
 #include "kernels/exact/revolution.h"
 #include "kernels/exact/superquadric.h"
 #include "kernels/fractals/julia.h"

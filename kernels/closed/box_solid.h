@@ -2,15 +2,19 @@
 /// \file Solid boxes, axis-aligned or oriented: the slab method of Kay and Kajiya 1986 in the space where the
 /// box is a cube (slides: the interval of a ray inside a box).
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/transform.h"
+#include "kernels/closed/closest_triangle.h"
 #include "kernels/closed/contract.h"
-#include "kernels/closed/shape_data.h"
 
 namespace oktett {
 
 struct BoxSolid {
   static constexpr int kRoots = 2;
-  static constexpr bool kSolid = true;
+  using Data = BoxShape;
+  static constexpr bool kNeedsSimilarity = false;
 
   struct Pool {
     Column<double> m[12];      ///< row-major 3x4 map from the world to the cube [-1, 1]^3
@@ -25,6 +29,9 @@ struct BoxSolid {
     D m[12];
   };
 
+  static bool is_empty(const BoxShape& s) {
+    return !(s.min.x < s.max.x && s.min.y < s.max.y && s.min.z < s.max.z);
+  }
   /// `to_world` maps the shape's own space to the world and must be invertible.
   static void add(Pool& p, const BoxShape& s, const Affine& to_world, std::uint32_t item) {
     const Affine cube =
@@ -93,6 +100,19 @@ struct BoxSolid {
     return max_component(abs(to_cube(p, i).point(q))) < 1;
   }
 
+  /// The nearest point of the faces, also for points inside. The map may shear the box.
+  static SurfaceNearest closest(const BoxShape& s, const Affine& to_world, const Vec3d& p) {
+    const Vec3d size = (s.max - s.min) * 0.5;
+    Vec3d half[3];
+    for (int k = 0; k < 3; ++k)
+      half[k] = Vec3d{to_world.m[0][k], to_world.m[1][k], to_world.m[2][k]} * size[k];
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d &a = half[k], &b = half[(k + 1) % 3];
+      if (!(std::abs(dot(a, b)) <= 1e-14 * length(a) * length(b))) return closest_on_sheared(s, to_world, p);
+    }
+    return closest_on_straight(to_world.point((s.min + s.max) * 0.5), half, p);
+  }
+
   template <class D, class Fetch>
   OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
     AffineLanes<D> to_cube, to_world;
@@ -127,6 +147,56 @@ struct BoxSolid {
   }
 
  private:
+  /// A box whose axes stay perpendicular: `half` are the vectors from the centre to three faces.
+  static SurfaceNearest closest_on_straight(const Vec3d& center, const Vec3d (&half)[3], const Vec3d& p) {
+    double at[3], size[3], excess[3];
+    int axis = 0;
+    for (int k = 0; k < 3; ++k) {
+      size[k] = length(half[k]);
+      at[k] = dot(p - center, half[k] / size[k]);
+      excess[k] = std::abs(at[k]) - size[k];
+      if (excess[k] > excess[axis]) axis = k;
+    }
+    const double side = at[axis] < 0 ? -1 : 1;
+    const Vec3d normal = half[axis] * (side / size[axis]);
+    // From inside only the nearest face counts.
+    if (excess[axis] <= 0) return {excess[axis] * excess[axis], p - normal * excess[axis], normal};
+    Vec3d point = center;
+    double d2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      point += half[k] * (std::clamp(at[k], -size[k], size[k]) / size[k]);
+      if (excess[k] > 0) d2 += excess[k] * excess[k];
+    }
+    return {d2, point, normal};
+  }
+
+  /// A sheared box: each face is two triangles.
+  static SurfaceNearest closest_on_sheared(const BoxShape& box, const Affine& m, const Vec3d& p) {
+    using D = Simd<double, 1, ScalarIsa>;
+    SurfaceNearest best;
+    const Vec3d center = m.point((box.min + box.max) * 0.5);
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2, i = (axis + 1) % 3, j = (axis + 2) % 3;
+      const auto corner = [&](bool high_i, bool high_j) {
+        Vec3d q = box.min;
+        if (face % 2 == 1) q[axis] = box.max[axis];
+        if (high_i) q[i] = box.max[i];
+        if (high_j) q[j] = box.max[j];
+        return m.point(q);
+      };
+      const Vec3d a = corner(false, false), c = corner(true, true);
+      Vec3d n = normalize(cross(corner(true, false) - a, corner(false, true) - a));
+      if (dot(n, a - center) < 0) n = -n;
+      for (const Vec3d& b : {corner(true, false), corner(false, true)}) {
+        const auto near = closest_on_triangle(oktett::broadcast<D>(p), oktett::broadcast<D>(a),
+                                              oktett::broadcast<D>(b), oktett::broadcast<D>(c));
+        const double u = only_lane(near.u), v = only_lane(near.v);
+        best.keep_nearer(p, {only_lane(near.d2), a + (b - a) * u + (c - a) * v, n});
+      }
+    }
+    return best;
+  }
+
   static Affine map_of(const Column<double> (&columns)[12], std::size_t i) {
     Affine a;
     for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = columns[k][i];

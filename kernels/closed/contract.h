@@ -1,10 +1,15 @@
 #pragma once
 /// \file What a closed-form shape offers the tracer, and how its roots become hits.
 ///
-/// A shape S (one file each) has
-/// - `S::Pool`: columns of double, one element per primitive, plus `item` numbers. `S::add` appends a
-///   primitive; `S::finish` pads with primitives that are never hit, so that lanes may be loaded past the
-///   end;
+/// A shape S (one file each, a line in OKTETT_CLOSED_FORMS) has
+/// - `S::Data`: what describes it. It is flat (kIsFlat) or has an inside. If it describes several shapes,
+///   `S::count(data)` and `S::nth(data, i)` are these; else it is the shape;
+/// - `S::is_empty(shape)`: whether there is nothing to meet;
+/// - `S::kNeedsSimilarity`: whether other maps than similarities distort it into something else; then it is
+///   shown through an instance;
+/// - `S::Pool`: columns of double, one element per primitive, plus `item` numbers.
+///   `S::add(pool, shape, to_world, item)` appends a shape that is not empty; `S::finish` pads with
+///   primitives that are never hit, so that lanes may be loaded past the end;
 /// - `S::Lanes<D>`, `S::load<D>(pool, i)`: primitives i, i + 1, ... in lanes; `S::broadcast<D>(pool, i)`: one
 ///   primitive in all lanes;
 /// - `S::kRoots` and `S::roots(ray, lanes, t)`: where the ray's whole line meets the shape, t[0] <= t[1], and
@@ -13,17 +18,27 @@
 /// - `S::surface(pool, fetch, hits)`: SurfacePoints at HitPoints; fetch(column) returns the elements of a
 ///   pool's column in lanes;
 /// - `S::uv(pool, i, hit, point, s)`: uv and tangents of a single hit, from its place on the ray and its
-/// place
-///   on the surface;
+///   place on the surface;
 /// - `S::uv_lanes(normal, u, v)`, if uv follows from the normal alone: uv in lanes;
-/// - `S::bounds(pool, i)`, except for unbounded shapes;
-/// - `S::kSolid`: whether it has an inside; if so, `S::inside(pool, i, point)`.
+/// - `S::bounds(pool, i)`, except for unbounded shapes; if `S::bounds(S::moved(shape, to_world))` is there,
+/// it
+///   serves the builder, without a pool;
+/// - `S::inside(pool, i, point)` if it has an inside. With a single root it is a half-space, and its Lanes
+///   and Pool have its normal;
+/// - `S::closest(shape, to_world, p)`: the point of the surface nearest to p; the map is a similarity if the
+///   shape needs one. `S::shape(pool, i)`, if it is there, is the shape in the world, else it is looked up.
 
 #include "core/box.h"
 #include "core/soa.h"
+#include "core/transform.h"
+#include "kernels/closed/shape_data.h"
 #include "kernels/closed/surface_points.h"
 
 namespace oktett {
+
+/// Whether S has an inside.
+template <class S>
+inline constexpr bool kSolid = !kIsFlat<typename S::Data>;
 
 /// Whether uv of S is computed in lanes.
 template <class S>

@@ -10,7 +10,8 @@ namespace oktett {
 
 struct Disk {
   static constexpr int kRoots = 1;
-  static constexpr bool kSolid = false;
+  using Data = DiskShape;
+  static constexpr bool kNeedsSimilarity = true;
 
   struct Pool {
     Column<double> cx, cy, cz, nx, ny, nz, radius;  ///< unit normal
@@ -25,11 +26,21 @@ struct Disk {
     D radius;
   };
 
+  static bool is_empty(const DiskShape& s) { return !(s.radius > 0) || !(length(s.normal) > 0); }
+  static DiskShape moved(const DiskShape& s, const Affine& m) {
+    return {m.point(s.center), m.inverse().normal_by_inverse(s.normal), s.radius * m.uniform_scale()};
+  }
+  static DiskShape shape(const Pool& p, std::size_t i) {
+    return {{p.cx[i], p.cy[i], p.cz[i]}, {p.nx[i], p.ny[i], p.nz[i]}, p.radius[i]};
+  }
   static void add(Pool& p, const DiskShape& s, std::uint32_t item) {
     const Vec3d n = normalize(s.normal);
     p.cx.push_back(s.center.x), p.cy.push_back(s.center.y), p.cz.push_back(s.center.z);
     p.nx.push_back(n.x), p.ny.push_back(n.y), p.nz.push_back(n.z);
     p.radius.push_back(s.radius), p.item.push_back(item);
+  }
+  static void add(Pool& p, const DiskShape& s, const Affine& to_world, std::uint32_t item) {
+    add(p, moved(s, to_world), item);
   }
   static void finish(Pool& p) {
     for (int i = 0; i < kPoolPadding; ++i)
@@ -65,6 +76,17 @@ struct Disk {
       e[k] = p.radius[i] * std::sqrt(std::max(0.0, 1 - n[k] * n[k])) * (1 + 0x1p-40);
     const Vec3d pad = Vec3d{1, 1, 1} * (0x1p-45 * (p.radius[i] + max_component(abs(c))));
     return {round_down(c - e - pad), round_up(c + e + pad)};
+  }
+
+  static SurfaceNearest closest(const DiskShape& s, const Affine& to_world, const Vec3d& p) {
+    const Vec3d center = to_world.point(s.center);
+    const Vec3d n = normalize(to_world.inverse().normal_by_inverse(s.normal));
+    const double radius = s.radius * to_world.uniform_scale(), height = dot(n, p - center);
+    const Vec3d flat = (p - center) - n * height;
+    const double away = length(flat);
+    if (away <= radius) return {height * height, p - n * height, n};
+    const Vec3d edge = center + flat * (radius / away);
+    return {height * height + (away - radius) * (away - radius), edge, n};
   }
 
   template <class D, class Fetch>

@@ -2,7 +2,6 @@
 /// \file Infinite planes. They have no bounds, so they stand in a list beside the tree.
 
 #include "kernels/closed/contract.h"
-#include "kernels/closed/shape_data.h"
 
 namespace oktett {
 
@@ -22,9 +21,16 @@ OKTETT_INLINE SurfacePoints<D> plane_surface(const Vec3<D>& n, const D& offset, 
   return {point, D(0x1p-50) * (length_lanes(point) + abs(offset)), n};
 }
 
+/// The foot of the perpendicular from p to the plane through `origin`, of which `n` is the unit normal.
+inline SurfaceNearest closest_on_plane(const Vec3d& origin, const Vec3d& n, const Vec3d& p) {
+  const double height = dot(n, p - origin);
+  return {height * height, p - n * height, n};
+}
+
 struct Plane {
   static constexpr int kRoots = 1;
-  static constexpr bool kSolid = true;  ///< the half-space below
+  using Data = PlaneShape;  ///< the half-space below is inside
+  static constexpr bool kNeedsSimilarity = false;
 
   struct Pool {
     Column<double> nx, ny, nz, offset;  ///< unit normal
@@ -39,10 +45,21 @@ struct Plane {
     D offset;
   };
 
+  static bool is_empty(const PlaneShape& s) { return !(length(s.normal) > 0); }
+  static PlaneShape moved(const PlaneShape& s, const Affine& m) {
+    const Vec3d n = normalize(s.normal);
+    const Vec3d p = m.point(n * s.offset);
+    const Vec3d q = normalize(m.inverse().normal_by_inverse(n));
+    return {q, dot(q, p)};
+  }
+  static PlaneShape shape(const Pool& p, std::size_t i) { return {{p.nx[i], p.ny[i], p.nz[i]}, p.offset[i]}; }
   static void add(Pool& p, const PlaneShape& s, std::uint32_t item) {
     const Vec3d n = normalize(s.normal);
     p.nx.push_back(n.x), p.ny.push_back(n.y), p.nz.push_back(n.z);
     p.offset.push_back(s.offset), p.item.push_back(item);
+  }
+  static void add(Pool& p, const PlaneShape& s, const Affine& to_world, std::uint32_t item) {
+    add(p, moved(s, to_world), item);
   }
   static void finish(Pool& p) {
     for (int i = 0; i < kPoolPadding; ++i)
@@ -65,6 +82,12 @@ struct Plane {
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
     return dot(Vec3d{p.nx[i], p.ny[i], p.nz[i]}, q) < p.offset[i];
+  }
+
+  static SurfaceNearest closest(const PlaneShape& s, const Affine& to_world, const Vec3d& p) {
+    const Vec3d n = normalize(s.normal);
+    return closest_on_plane(to_world.point(n * s.offset), normalize(to_world.inverse().normal_by_inverse(n)),
+                            p);
   }
 
   template <class D, class Fetch>

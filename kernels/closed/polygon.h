@@ -1,15 +1,18 @@
 #pragma once
 /// \file Planar simple polygons: ray against plane, then point in polygon in the dominant coordinate plane.
 
+#include <algorithm>
 #include <vector>
 
+#include "kernels/closed/closest_triangle.h"
 #include "kernels/closed/plane.h"
 
 namespace oktett {
 
 struct Polygon {
   static constexpr int kRoots = 1;
-  static constexpr bool kSolid = false;
+  using Data = PolygonShape;
+  static constexpr bool kNeedsSimilarity = false;
 
   struct Pool {
     Column<double> nx, ny, nz, offset;         ///< plane with unit normal
@@ -43,6 +46,18 @@ struct Polygon {
     return n;
   }
 
+  static bool is_empty(const PolygonShape& s) {
+    return s.vertices.size() < 3 || !(length(area_normal(s.vertices)) > 0);
+  }
+  /// A mirror reverses the order of the vertices, but the front stays the front.
+  static PolygonShape moved(PolygonShape s, const Affine& m) {
+    for (Vec3d& v : s.vertices) v = m.point(v);
+    if (m.determinant() < 0) std::reverse(s.vertices.begin(), s.vertices.end());
+    return s;
+  }
+  static void add(Pool& p, const PolygonShape& s, const Affine& to_world, std::uint32_t item) {
+    add(p, moved(s, to_world), item);
+  }
   static void add(Pool& p, const PolygonShape& s, std::uint32_t item) {
     const Vec3d n = normalize(area_normal(s.vertices));
     Vec3d centroid{0, 0, 0};
@@ -104,6 +119,30 @@ struct Polygon {
   }
 
   static Box bounds(const Pool& p, std::size_t i) { return p.boxes[i]; }
+
+  static SurfaceNearest closest(const PolygonShape& s, const Affine& to_world, const Vec3d& p) {
+    using D = Simd<double, 1, ScalarIsa>;
+    const std::size_t count = s.vertices.size();
+    const Vec3d n = normalize(to_world.inverse().normal_by_inverse(area_normal(s.vertices)));
+    Vec3d centroid{0, 0, 0};
+    for (const Vec3d& q : s.vertices) centroid += q / static_cast<double>(count);
+    const SurfaceNearest foot = closest_on_plane(to_world.point(centroid), n, p);
+    const int i = (dominant_axis(n) + 1) % 3, j = (dominant_axis(n) + 2) % 3;
+    SurfaceNearest best;
+    bool inside = false;
+    Vec3d a = to_world.point(s.vertices[count - 1]);
+    for (const Vec3d& vertex : s.vertices) {
+      const Vec3d b = to_world.point(vertex);
+      const auto edge =
+          closest_on_edge(oktett::broadcast<D>(p), oktett::broadcast<D>(a), oktett::broadcast<D>(b));
+      best.keep_nearer(p, {only_lane(edge.d2), a + (b - a) * only_lane(edge.t), n});
+      if ((a[j] > foot.point[j]) != (b[j] > foot.point[j]) &&
+          foot.point[i] < a[i] + (foot.point[j] - a[j]) / (b[j] - a[j]) * (b[i] - a[i]))
+        inside = !inside;
+      a = b;
+    }
+    return inside ? foot : best;
+  }
 
   template <class D, class Fetch>
   OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {

@@ -2,9 +2,11 @@
 /// \file What describes the shapes with closed-form intersections, each in its own space.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "core/box.h"
 #include "core/description.h"
 #include "core/vec3.h"
 
@@ -18,11 +20,20 @@ enum class TriangleTest : std::uint8_t {
   segura_feito,     ///< Segura and Feito 2001: signs of volumes
 };
 
+/// The smallest box that holds all points.
+OKTETT_INLINE Box bounds_of_points(const Vec3d* begin, const Vec3d* end) {
+  Box box;
+  for (; begin != end; ++begin) box.grow(Box{round_down(*begin), round_up(*begin)});
+  return box;
+}
+
 /// One triangle with corners `v[0]`, `v[1]`, `v[2]`, counter-clockwise seen from outside.
 struct TriangleShape {
   Vec3d v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
+  static constexpr bool kFlat = true;
   static constexpr Surface kSurface{"triangle", "a triangle"};
+  OKTETT_INLINE Box bounds() const { return bounds_of_points(v, v + 3); }
   void describe(auto& p) {
     p.field("vertices", v, whole(3, 3), "counter-clockwise seen from its front");
     const Vec3d ab = v[1] - v[0], ac = v[2] - v[0], bc = v[2] - v[1];
@@ -38,6 +49,10 @@ struct SphereShape {
   double radius = 1;  ///< > 0
 
   static constexpr Surface kSurface{"sphere", "a ball; with a transform also an ellipsoid"};
+  OKTETT_INLINE Box bounds() const {
+    const Vec3d r{radius, radius, radius};
+    return {round_down(center - r), round_up(center + r)};
+  }
   void describe(auto& p) {
     p.field("center", center, kCoordinate, "the centre");
     p.field("radius", radius, kLength, "distance of the surface from the centre");
@@ -48,6 +63,12 @@ struct SphereShape {
 /// Any number of spheres as one shape; each is a primitive.
 struct SpheresShape {
   std::vector<SphereShape> spheres;
+
+  OKTETT_INLINE Box bounds() const {
+    Box box;
+    for (const SphereShape& sphere : spheres) box.grow(sphere.bounds());
+    return box;
+  }
 };
 
 /// The infinite plane at the distance `offset` from the origin along `normal`.
@@ -69,7 +90,14 @@ struct DiskShape {
   Vec3d normal{0, 1, 0};  ///< of any length but zero
   double radius = 1;      ///< > 0
 
+  static constexpr bool kFlat = true;
   static constexpr Surface kSurface{"disk", "a flat round plate"};
+  OKTETT_INLINE Box bounds() const {
+    const Vec3d n = normalize(normal);
+    Vec3d reach;
+    for (int k = 0; k < 3; ++k) reach[k] = radius * std::sqrt(std::max(0.0, 1 - n[k] * n[k]));
+    return {round_down(center - reach), round_up(center + reach)};
+  }
   void describe(auto& p) {
     p.field("center", center, kCoordinate, "the centre");
     p.field("normal", normal, "of any length");
@@ -85,6 +113,7 @@ struct BoxShape {
   Vec3d max{1, 1, 1};  ///< > min
 
   static constexpr Surface kSurface{"box", "a solid box along the axes"};
+  OKTETT_INLINE Box bounds() const { return {round_down(min), round_up(max)}; }
   void describe(auto& p) {
     p.field("min", min, kCoordinate, "the corner of least x, y and z");
     p.field("max", max, kCoordinate, "the corner of greatest x, y and z");
@@ -103,11 +132,33 @@ inline constexpr std::uint32_t kMaxPolygonVertices = 4096;
 struct PolygonShape {
   std::vector<Vec3d> vertices;  ///< at least three, in one plane
 
+  static constexpr bool kFlat = true;
   static constexpr Surface kSurface{
       "polygon", "points in one plane in order, convex or not; edges must not touch each other"};
+  OKTETT_INLINE Box bounds() const {
+    return bounds_of_points(vertices.data(), vertices.data() + vertices.size());
+  }
   void describe(auto& p) {
     p.required("vertices", vertices, whole(3, kMaxPolygonVertices), "counter-clockwise seen from its front");
   }
+};
+
+/// The closed forms: FORM(kernel, data, kind) for each. The kernel is described in kernels/closed/contract.h;
+/// `data` is what geometries and scenes hold; `kind` is the name of its Kind.
+#define OKTETT_CLOSED_FORMS(FORM)    \
+  FORM(Sphere, SpheresShape, sphere) \
+  FORM(Plane, PlaneShape, plane)     \
+  FORM(Disk, DiskShape, disk)        \
+  FORM(BoxSolid, BoxShape, box)      \
+  FORM(Polygon, PolygonShape, polygon)
+/// The data of the closed forms behind other arguments of a template.
+#define OKTETT_AND_CLOSED_FORMS OKTETT_CLOSED_FORMS(OKTETT_AND_DATA)
+#define OKTETT_AND_DATA(Kernel, Data, kind) , Data
+
+/// Whether a shape has no inside.
+template <class Shape>
+inline constexpr bool kIsFlat = requires {
+  Shape::kFlat;
 };
 
 /// How the children of a Boolean expression are combined.

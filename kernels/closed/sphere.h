@@ -6,13 +6,13 @@
 
 #include "core/elementary.h"
 #include "kernels/closed/contract.h"
-#include "kernels/closed/shape_data.h"
 
 namespace oktett {
 
 struct Sphere {
   static constexpr int kRoots = 2;
-  static constexpr bool kSolid = true;
+  using Data = SpheresShape;
+  static constexpr bool kNeedsSimilarity = true;
 
   struct Pool {
     Column<double> x, y, z, radius;
@@ -27,9 +27,20 @@ struct Sphere {
     D radius;
   };
 
+  static std::size_t count(const SpheresShape& data) { return data.spheres.size(); }
+  static const SphereShape& nth(const SpheresShape& data, std::size_t i) { return data.spheres[i]; }
+
+  static bool is_empty(const SphereShape& s) { return !(s.radius > 0); }
+  static SphereShape moved(const SphereShape& s, const Affine& m) {
+    return {m.point(s.center), s.radius * m.uniform_scale()};
+  }
+  static SphereShape shape(const Pool& p, std::size_t i) { return {{p.x[i], p.y[i], p.z[i]}, p.radius[i]}; }
   static void add(Pool& p, const SphereShape& s, std::uint32_t item) {
     p.x.push_back(s.center.x), p.y.push_back(s.center.y), p.z.push_back(s.center.z);
     p.radius.push_back(s.radius), p.item.push_back(item);
+  }
+  static void add(Pool& p, const SphereShape& s, const Affine& to_world, std::uint32_t item) {
+    add(p, moved(s, to_world), item);
   }
   static void finish(Pool& p) {
     for (int i = 0; i < kPoolPadding; ++i) {
@@ -129,15 +140,24 @@ struct Sphere {
   }
 
   static Box bounds(const SphereShape& s) {
+    if (!(s.radius > 0) || !is_finite(s.center)) return {};
     // `roots` finds hits a few roundings outside of the sphere, too.
     const double r = s.radius + 0x1p-45 * (s.radius + max_component(abs(s.center)));
     return {round_down(s.center - Vec3d{r, r, r}), round_up(s.center + Vec3d{r, r, r})};
   }
-  static Box bounds(const Pool& p, std::size_t i) { return bounds({{p.x[i], p.y[i], p.z[i]}, p.radius[i]}); }
+  static Box bounds(const Pool& p, std::size_t i) { return bounds(shape(p, i)); }
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
     const Vec3d m = q - Vec3d{p.x[i], p.y[i], p.z[i]};
     return dot(m, m) < p.radius[i] * p.radius[i];
+  }
+
+  /// To the centre the point along +z is nearest.
+  static SurfaceNearest closest(const SphereShape& s, const Affine& to_world, const Vec3d& p) {
+    const Vec3d center = to_world.point(s.center);
+    const double radius = s.radius * to_world.uniform_scale(), away = length(p - center);
+    const Vec3d n = away > 0 ? (p - center) / away : Vec3d{0, 0, 1};
+    return {(away - radius) * (away - radius), center + n * radius, n};
   }
 
   /// Moving the point onto the sphere removes the error along the normal.

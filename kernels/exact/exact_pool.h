@@ -1,6 +1,7 @@
 #pragma once
 /// \file The pool of an exact surface: its elements, and the cells in which they are looked for.
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -68,6 +69,17 @@ void add_element(Pool& pool, const typename Pool::Element& element, const Affine
 template <class Pool>
 ExactCell& add_cell(Pool& pool, const Vec3d& lo, const Vec3d& hi) {
   return pool.cells.emplace_back(ExactCell{lo, hi, static_cast<std::uint32_t>(pool.elements.size() - 1)});
+}
+
+/// A bound on the length of `map`.vector(v) over that of v: the root of the sum of the squared coefficients
+/// (the Frobenius norm), which is at most sqrt(3) times the greatest quotient.
+inline double stretch(const Affine& map) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3d row{map.m[i][0], map.m[i][1], map.m[i][2]};
+    sum += dot(row, row);
+  }
+  return std::sqrt(sum);
 }
 
 }  // namespace oktett

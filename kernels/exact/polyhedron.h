@@ -2,6 +2,10 @@
 /// \file Convex polyhedra by the slab method over any number of half-spaces (after T. L. Kay, J. T. Kajiya:
 /// Ray Tracing Complex Scenes, SIGGRAPH 1986).
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "core/box.h"
 #include "kernels/exact/polyhedron_data.h"
 #include "kernels/exact/quadratic.h"
@@ -83,5 +87,22 @@ struct Polyhedron {
   /// Position in the plane of the face, in [0, 1] over the size of the solid.
   static SurfaceUv uv(const Pool& pool, std::size_t i, int part, const Vec3d& p);
 };
+
+// ---- What half-spaces have in common.
+
+struct ConvexSolid {
+  enum class Kind {
+    solid,
+    empty,      ///< nothing inside, or less than 1e-11 of its length thick
+    unbounded,  ///< or a billion times longer than wide; also where what is unbounded may be empty
+  };
+  Kind kind = Kind::empty;
+  /// Corners, each at least once, off by no more than 2^-40 of the size.
+  std::vector<Vec3d> vertices;
+  std::vector<std::uint32_t> faces;  ///< the half-spaces that bound it, ascending
+};
+
+/// Clips a large square in each plane by all others. Normals must not be zero.
+ConvexSolid intersect(std::span<const HalfSpace> half_spaces);
 
 }  // namespace oktett

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "kernels/roots/polynomial.h"
-#include "kernels/roots/solve.h"
+#include "kernels/roots/roots.h"
 
 namespace oktett {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/transform.h"
-#include "kernels/closed/surface_nearest.h"
+#include "kernels/closed/surface_points.h"
 
 namespace oktett {
 

@@ -12,7 +12,7 @@
 
 #include "kernels/closed/surface_points.h"
 #include "kernels/exact/exact.h"
-#include "kernels/exact/stretch.h"
+#include "kernels/exact/exact_pool.h"
 #include "kernels/exact/surface_uv.h"
 
 namespace oktett {

@@ -7,7 +7,7 @@
 /// `solve`, which can use double-double, one lane at a time.
 
 #include "core/simd.h"
-#include "kernels/roots/solve.h"
+#include "kernels/roots/roots.h"
 
 namespace oktett::roots {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accel/triangle_corners.h"
+#include "accel/hit_place.h"
 #include "core/random.h"
 #include "render/transport/integrators.h"
 

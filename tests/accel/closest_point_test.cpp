@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "accel/placed_geometry.h"
+#include "accel/hit_place.h"
 #include "accel/point_query.h"
 #include "core/error.h"
 #include "core/lanes.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "accel/accel_data.h"
-#include "accel/traverse/inflight/enter_instance.h"
+#include "accel/traverse/inflight/triangle_steps.h"
 #include "tests/accel/instance_cases.h"
 #include "tests/support/triangle_cases.h"
 

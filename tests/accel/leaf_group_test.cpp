@@ -1,4 +1,4 @@
-#include "accel/traverse/inflight/leaf_group.h"
+#include "accel/traverse/inflight/inflight_traversal.h"
 
 #include <gtest/gtest.h>
 

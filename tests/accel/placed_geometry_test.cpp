@@ -1,4 +1,4 @@
-#include "accel/placed_geometry.h"
+#include "accel/hit_place.h"
 
 #include <gtest/gtest.h>
 

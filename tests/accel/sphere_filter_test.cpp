@@ -1,4 +1,4 @@
-#include "accel/traverse/sphere_filter.h"
+#include "accel/traverse/leaf.h"
 
 #include <gtest/gtest.h>
 

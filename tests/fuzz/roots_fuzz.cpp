@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/roots/solve.h"
+#include "kernels/roots/roots.h"
 #include "tests/fuzz/input.h"
 #include "tests/support/exact_roots.h"
 

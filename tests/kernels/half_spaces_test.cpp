@@ -1,4 +1,4 @@
-#include "kernels/exact/half_spaces.h"
+#include "kernels/exact/polyhedron.h"
 
 #include <gtest/gtest.h>
 

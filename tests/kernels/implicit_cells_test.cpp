@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "kernels/exact/implicit.h"
-#include "kernels/functions/tape_values.h"
+#include "kernels/functions/function_tape.h"
 #include "tests/support/random_expression.h"
 
 namespace oktett::implicit_cells_test {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/roots/solve.h"
+#include "kernels/roots/roots.h"
 #include "tests/support/exact_roots.h"
 #include "tests/support/random_polynomials.h"
-#include "verify/probes/roots_probe.h"
+#include "verify/probes/kernel_probe.h"
 
 namespace oktett::roots_lanes_test {
 namespace {

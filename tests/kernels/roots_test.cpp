@@ -5,7 +5,7 @@
 
 #include "core/math.h"
 #include "kernels/roots/methods.h"
-#include "kernels/roots/solve.h"
+#include "kernels/roots/roots.h"
 #include "tests/support/exact_roots.h"
 #include "tests/support/limits.h"
 #include "tests/support/random_polynomials.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "accel/triangle_corners.h"
+#include "accel/hit_place.h"
 #include "render/geometry.h"
 #include "tests/render/test_scenes.h"
 

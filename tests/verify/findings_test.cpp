@@ -12,7 +12,6 @@
 #include "verify/checks/compare_mode.h"
 #include "verify/checks/findings.h"
 #include "verify/oracles/known_shapes.h"
-#include "verify/oracles/random_scene.h"
 
 namespace oktett::findings_test {
 namespace {

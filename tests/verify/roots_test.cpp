@@ -1,6 +1,6 @@
 /// \file The check of root finders has hard cases, and finds nothing wrong.
 
-#include "verify/checks/roots.h"
+#include "verify/checks/kernels.h"
 
 #include <gtest/gtest.h>
 

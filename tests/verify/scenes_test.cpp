@@ -6,7 +6,6 @@
 #include "verify/checks/endless.h"
 #include "verify/checks/scenes.h"
 #include "verify/oracles/known_shapes.h"
-#include "verify/oracles/random_scene.h"
 
 namespace oktett::scenes_test {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "accel/accel.h"
 #include "accel/query.h"
-#include "accel/trace_mode.h"
 
 namespace oktett {
 

@@ -13,7 +13,6 @@
 #include "io/scene/scene_file.h"
 #include "io/scene/write_scene.h"
 #include "verify/oracles/known_shapes.h"
-#include "verify/oracles/random_scene.h"
 
 namespace oktett {
 

@@ -11,7 +11,6 @@
 #include "verify/checks/exact.h"
 #include "verify/checks/kernels.h"
 #include "verify/checks/meshes.h"
-#include "verify/checks/roots.h"
 #include "verify/checks/scenes.h"
 
 namespace oktett {

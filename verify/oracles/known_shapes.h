@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/scene.h"
+#include "verify/cases/kernel_cases.h"
 #include "verify/oracles/exact.h"
 
 namespace oktett {
@@ -31,5 +32,12 @@ KnownShape draw_known_shape(std::size_t kind, std::uint64_t number);
 std::string known_name(std::size_t kind, std::uint64_t number);
 /// The shape of such a name; nothing for any other name.
 std::optional<KnownShape> known_shape(const std::string& name);
+
+// ---- Random scenes of shapes of all kinds.
+
+/// Scene number `number`: up to a dozen objects under random transforms, among them prototypes with instances
+/// in them, combinations, and rows of instances; the whole scene may be far away, tiny or huge. Objects that
+/// are known shapes have their names, see known_shapes.h.
+Scene draw_scene(std::uint64_t number);
 
 }  // namespace oktett

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Single kernels by themselves, for verification and benchmarks.
+/// \file Single kernels and root finders by themselves, for verification and benchmarks.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +9,8 @@
 #include "core/ray.h"
 
 namespace oktett {
+
+// ---- Kernels.
 
 /// A kernel to be run by itself on `count` pairs of a ray and a shape, for verification and benchmarks. All
 /// columns hold `count` elements; hit[i] becomes 1 or 0, and t, u, v are defined where it is 1.
@@ -51,5 +53,29 @@ const KernelProbeCode& kernel_probe_code();
 std::span<const int> probe_widths(Isa isa);
 /// Runs a kernel on the code of `isa`, `width` pairs at a time, which must be one of probe_widths(isa).
 void probe_kernel(Isa isa, KernelId id, int width, const KernelProbe& probe);
+
+// ---- Root finders in lanes.
+
+/// The root finders in lanes: closed forms, and all or the first of the certified roots.
+enum class RootsKernel : std::uint8_t { closed2, closed3, closed4, all2, all3, all4, all6, first4 };
+
+/// `count` polynomials to be solved in lanes, for verification and benchmarks: coefficients by power, ends of
+/// the interval (not used by closed forms), and the answers by rank.
+struct RootsProbe {
+  std::size_t count = 0;
+  const double* c[7] = {};
+  const double* a = nullptr;
+  const double* b = nullptr;
+  double* x[6] = {};
+  double* error[6] = {};
+  /// Where no certificate could be given.
+  std::uint8_t* unsure = nullptr;
+};
+
+template <class A>
+void run_roots(RootsKernel id, const RootsProbe& probe);
+
+/// Eight polynomials at a time; one on the scalar path. Throws Error if this build holds no code for the set.
+void probe_roots(Isa isa, RootsKernel id, const RootsProbe& probe);
 
 }  // namespace oktett

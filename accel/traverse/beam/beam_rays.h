@@ -14,9 +14,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "accel/beam_view.h"
+#include "accel/exact_table.h"
+#include "accel/ray_state.h"
 #include "accel/traverse/leaf.h"
-#include "accel/traverse/load_span.h"
 
 namespace oktett {
 

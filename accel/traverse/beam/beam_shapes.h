@@ -2,11 +2,67 @@
 /// \file Closed-form and exact shapes against the groups of a beam: the rays of a group that may meet a shape
 /// go to its kernel straight from the columns of the batch.
 
+#include <cmath>
+
 #include "accel/exact_table.h"
-#include "accel/traverse/beam/beam_sphere.h"
+#include "accel/traverse/beam/beam_rays.h"
 #include "accel/traverse/beam/beam_task.h"
+#include "kernels/closed/sphere.h"
 
 namespace oktett {
+
+// ---- A sphere against the groups of a beam in float: which rays surely miss it, and which surely hit it.
+// The bounds are derived in docs/numerics.md.
+
+/// A sphere as seen from the apex. The line (x, y) passes its centre at a distance whose square is
+/// depth^2 (dx^2 + dy^2 + (dx y - dy x)^2) / (1 + x^2 + y^2), with (dx, dy) the distance from the centre.
+struct BeamSphere {
+  float x, y;          ///< the centre
+  float outer, inner;  ///< squares of the radius over the depth, more and less by the error
+  float near, far;     ///< bounds of its depth
+  bool may_be_sure;    ///< the whole sphere is farther than 1 / near_s, see BeamRays
+
+  /// False if the sphere is too near or too large for the bounds.
+  template <class A>
+  OKTETT_INLINE bool set(const Sphere::Pool& pool, std::uint32_t k, const BeamRays<A>& beam) {
+    const double c[3] = {pool.x[k], pool.y[k], pool.z[k]}, radius = pool.radius[k];
+    double m[3];
+    for (int i = 0; i < 3; ++i) m[i] = c[beam.axis[i]] - beam.apex[i];
+    if (beam.mirrored) m[2] = -m[2];
+    const double inverse = 1 / m[2], cx = m[0] * inverse, cy = m[1] * inverse, size = radius * inverse;
+    if (!(m[2] > 0 && size <= 0.5 && std::fabs(cx) <= 4 && std::fabs(cy) <= 4)) return false;
+    const double spread = std::max({double{beam.spread}, std::fabs(cx), std::fabs(cy)});
+    const double error = 0x1p-20 * spread * (1 + spread) + 0x1p-19 * size +
+                         4 * (double{beam.slip} + beam.behind + beam.margin) * inverse;
+    x = static_cast<float>(cx), y = static_cast<float>(cy);
+    const double more = size + error, less = size - error;
+    outer = static_cast<float>(more * more), inner = less > 0 ? static_cast<float>(less * less) : 0.0f;
+    near = static_cast<float>((m[2] - radius) * (1 - 0x1p-20)),
+    far = static_cast<float>((m[2] + radius) * (1 + 0x1p-20));
+    may_be_sure = near * beam.near_s > 1 + 0x1p-20f;
+    return error < 1;
+  }
+
+  template <class A>
+  OKTETT_INLINE void filter(const BeamRays<A>& beam, unsigned groups, BeamLanes& lanes) const {
+    using F = Simd<float, kBeamGroup, A>;
+    const F one(1.0f);
+    for (; groups != 0; groups &= groups - 1) {
+      const int g = __builtin_ctz(groups), base = g * kBeamGroup;
+      const F rx = F::load(beam.x + base), ry = F::load(beam.y + base), dx = rx - F(x), dy = ry - F(y);
+      const F turn = fast_fms(dx, ry, dy * rx), square = fast_fma(dx, dx, fast_fma(dy, dy, turn * turn));
+      const F length = fast_fma(rx, rx, fast_fma(ry, ry, one));
+      // A ray that has met something before the sphere begins misses it, too.
+      const auto misses = (F(outer) * length < square) | (one < F(near) * F::load(beam.hit_lo + base));
+      const auto sure = (square < F(inner) * length) & (F(far) * F::load(beam.hit_hi + base) < one);
+      const unsigned maybe = lanes.maybe[g] & ~bits(misses);
+      lanes.maybe[g] = static_cast<std::uint16_t>(maybe);
+      lanes.sure[g] = static_cast<std::uint16_t>(may_be_sure ? maybe & bits(sure) : 0);
+    }
+  }
+};
+
+// ---- Closed-form and exact shapes against the groups of a beam.
 
 /// The part of a beam that the code of a surface reads.
 template <class A>
@@ -172,6 +228,117 @@ OKTETT_INLINE void shape_leaf_beam(BeamTask<Q, A>& task, const LeafEntry& leaf, 
     for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
       BeamLanes lanes = in_box;
       closed_groups<decltype(shape)>(task, pool, k, kept, lanes);
+    }
+  });
+}
+
+// ---- Unbounded planes against a beam. In the plane of the beam the inverse depth at which a ray meets such
+// a plane is a linear function of (x, y). Before the tree, it bounds the rays. After the tree, the kernel
+// decides for the rays that have met nothing surely nearer. The bounds are derived in docs/numerics.md.
+
+/// The plane n.p = offset as seen from the apex.
+struct BeamPlane {
+  float c, cx, cy;  ///< the inverse depth is c + cx x + cy y
+  float error;      ///< bound on the error of that
+  double height;    ///< of the apex over the plane, along n
+  bool known;       ///< the apex is so far from the plane that the error is bounded
+};
+
+template <class A>
+BeamPlane beam_plane(const Plane::Pool& pool, std::uint32_t k, const BeamRays<A>& beam) {
+  const double n[3] = {pool.nx[k], pool.ny[k], pool.nz[k]};
+  double a[3], at = 0, size = std::fabs(pool.offset[k]);
+  for (int i = 0; i < 3; ++i) {
+    const double p = beam.apex[i];
+    a[i] = n[beam.axis[i]], at += a[i] * p, size += std::fabs(p);
+  }
+  if (beam.mirrored) a[2] = -a[2];
+  const double depth = pool.offset[k] - at;
+  BeamPlane plane;
+  plane.c = static_cast<float>(a[2] / depth), plane.height = -depth;
+  plane.cx = static_cast<float>(a[0] / depth), plane.cy = static_cast<float>(a[1] / depth);
+  plane.error = 0x1p-19f * (std::fabs(plane.c) + std::fabs(plane.cx) + std::fabs(plane.cy)) * beam.spread;
+  // margin * 2^46 is the greatest coordinate of the apex and the scene.
+  plane.known = std::fabs(depth) > 0x1p-12 * (size + beam.margin * 0x1p46) && plane.error < 0x1p60f;
+  return plane;
+}
+
+/// Calls f(pool, k) for each plane among the shapes without bounds.
+template <class Function>
+OKTETT_INLINE void each_plane(const Accel& accel, Function&& f) {
+  const auto& pool = std::get<Plane::Pool>(accel.pools);
+  for (const LeafEntry& leaf : accel.unbounded)
+    if (leaf.kind == Kind::plane)
+      for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) f(pool, k);
+}
+
+/// Inverse depths at which a group meets a plane.
+template <class A>
+OKTETT_INLINE Simd<float, kBeamGroup, A> plane_depths(const BeamPlane& plane, const BeamRays<A>& beam,
+                                                      int g) {
+  using F = Simd<float, kBeamGroup, A>;
+  const int base = g * kBeamGroup;
+  return fast_fma(F(plane.cx), F::load(beam.x + base),
+                  fast_fma(F(plane.cy), F::load(beam.y + base), F(plane.c)));
+}
+
+/// Before the tree: ends rays at planes that they surely meet, since what lies surely beyond is not needed.
+template <class A>
+OKTETT_NOINLINE void bound_by_planes(const Accel& accel, BeamRays<A>& beam) {
+  using F = Simd<float, kBeamGroup, A>;
+  bool bounded = false;
+  each_plane(accel, [&](const Plane::Pool& pool, std::uint32_t k) {
+    const BeamPlane plane = beam_plane(pool, k, beam);
+    if (!plane.known) return;
+    for (unsigned rest = beam.groups; rest != 0; rest &= rest - 1) {
+      const int base = __builtin_ctz(rest) * kBeamGroup;
+      const F s = plane_depths(plane, beam, __builtin_ctz(rest)), least = s - F(plane.error);
+      const F was = F::load(beam.hit_lo + base);
+      const auto sure = (F::load(beam.hit_hi + base) < least) & (s + F(plane.error) < F(beam.near_s)) &
+                        (F(kBeamLeast * kBeamLeast) < least);
+      select(sure, max(least, was), was).store(beam.hit_lo + base);
+    }
+    bounded = true;
+  });
+  if (!bounded) return;
+  for (unsigned rest = beam.groups; rest != 0; rest &= rest - 1) beam.refresh(__builtin_ctz(rest));
+  beam.refresh_window();
+}
+
+/// The rays of a group that may meet a plane nearer than what they have met so far.
+template <class A>
+OKTETT_INLINE unsigned rays_near_plane(const BeamRays<A>& beam, const BeamPlane& plane, int g) {
+  using F = Simd<float, kBeamGroup, A>;
+  const F most = plane_depths(plane, beam, g) + F(plane.error);
+  return bits(~(most <= F::load(beam.hit_lo + g * kBeamGroup))) & 0xffff;
+}
+
+/// The rays of a group that may cross a plane on their way to the apex, where they end: not those that start
+/// on the apex's side. The kernel's numerator is the same number, so its sign is exact.
+template <Query Q, class A>
+OKTETT_INLINE unsigned rays_across_plane(const BeamTask<Q, A>& task, const Plane::Pool& pool, std::uint32_t k,
+                                         const BeamPlane& plane, int g) {
+  using F = Simd<float, kBeamGroup, A>;
+  using D = Simd<double, kBeamGroup, A>;
+  const std::size_t base = static_cast<std::size_t>(g) * kBeamGroup;
+  const Vec3<D> o = to_double(load_rays<F>(task.beam, task.rays, base).o);
+  const D height = dot_lanes(Vec3<D>{D(pool.nx[k]), D(pool.ny[k]), D(pool.nz[k])}, o) - D(pool.offset[k]);
+  const D same = plane.height < 0 ? -height : height, most(std::fabs(plane.height) * 0x1p18);
+  return bits(~mask_cast<float>((D(0.0) < same) & (same <= most))) & 0xffff;
+}
+
+/// After the tree: the hits with planes.
+template <Query Q, class A>
+OKTETT_NOINLINE void decide_planes(BeamTask<Q, A>& task) {
+  each_plane(task.accel, [&](const Plane::Pool& pool, std::uint32_t k) {
+    const BeamPlane plane = beam_plane(pool, k, task.beam);
+    for (unsigned rest = task.beam.groups; rest != 0; rest &= rest - 1) {
+      const int g = __builtin_ctz(rest);
+      unsigned rays = open_rays(task.beam, g);
+      if (plane.known && rays != 0)
+        rays &= task.beam.at_end ? rays_across_plane(task, pool, k, plane, g)
+                                 : rays_near_plane(task.beam, plane, g);
+      if (rays != 0) closed_group<Plane>(task, pool, k, g, rays);
     }
   });
 }

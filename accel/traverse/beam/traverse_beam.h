@@ -8,7 +8,7 @@
 /// traversal.
 
 #include "accel/traverse/beam/beam_instances.h"
-#include "accel/traverse/beam/beam_planes.h"
+#include "accel/traverse/beam/beam_shapes.h"
 #include "accel/traverse/packet.h"
 #include "core/simd_order.h"
 

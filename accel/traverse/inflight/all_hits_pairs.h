@@ -5,7 +5,6 @@
 /// independent of each other.
 
 #include "accel/traverse/all_hits.h"
-#include "accel/traverse/inflight/block_lanes.h"
 #include "accel/traverse/inflight/decide_pairs.h"
 #include "accel/traverse/inflight/inflight_ray.h"
 

@@ -1,15 +1,129 @@
 #pragma once
 /// \file Many single rays in flight through a tree: its nodes and blocks of triangles
 /// (accel/traverse/inflight/triangle_steps.h), leaves of all other shapes, and instances. A ray that reaches
-/// an instance goes inside and stays in flight (accel/traverse/inflight/enter_instance.h).
+/// an instance goes inside and stays in flight.
 
 #include <algorithm>
+#include <limits>
 
-#include "accel/traverse/inflight/leaf_group.h"
-#include "accel/traverse/inflight/sphere_leaves.h"
+#include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/inflight/triangle_steps.h"
+#include "accel/traverse/packet.h"
 
 namespace oktett {
+
+// ---- Rays in flight that wait at the same leaf of shapes, tested together in lanes.
+
+/// Rays of a group at a leaf of closed-form shapes or combinations.
+inline constexpr int kGroupRays = 16;
+
+/// The least number of rays at a leaf that are tested faster together, with a ray in each lane, than one by
+/// one, with a shape in each lane. Greater than kGroupRays if there is none.
+inline int least_group(const LeafEntry& leaf) {
+  // A ray that is alone at a combination or a polygon uses one lane.
+  if (leaf.kind == Kind::polygon || leaf.kind == Kind::csg) return 3;
+  // Alone, each ray takes one step for up to eight shapes. Together, sixteen take two steps for each shape.
+  if (is_closed_form(leaf.kind)) return 2 * leaf.count + 1;
+  return std::numeric_limits<int>::max();
+}
+
+/// Moves the rays that are at the same leaf as *begin next to it, and returns how many there are with *begin,
+/// at most `most`; 0 if that is inside an instance. `kInstances`: the rays may be inside instances; else
+/// their InflightRay::in is not set.
+template <bool kInstances>
+OKTETT_INLINE int rays_at_leaf(InflightRay** begin, InflightRay** end, int most) {
+  const auto is_here = [&](const InflightRay& ray) {
+    return (!kInstances || ray.in.instance == kNoInstance) && ray.current.bits() == (*begin)->current.bits();
+  };
+  if (!is_here(**begin)) return 0;
+  int count = 1;
+  for (InflightRay** at = begin + 1; at != end && count < most; ++at)
+    if (is_here(**at)) std::swap(*at, begin[count++]);
+  return count;
+}
+
+/// `count` rays of a batch side by side, up to their present ends. Lanes that are left over repeat the first.
+template <int N, class A>
+OKTETT_INLINE RayLanes<Simd<float, N, A>> gather_rays(const RaySpan& batch, InflightRay* const* rays,
+                                                      int count) {
+  using F = Simd<float, N, A>;
+  alignas(64) float column[8][N];
+  for (int i = 0; i < N; ++i) {
+    const InflightRay& ray = *rays[i < count ? i : 0];
+    for (int k = 0; k < 3; ++k)
+      column[k][i] = batch.origin[k][ray.index], column[3 + k][i] = batch.direction[k][ray.index];
+    column[6][i] = batch.tmin[ray.index], column[7][i] = ray.tmax;
+  }
+  const auto load = [&](int k) { return F::load(column[k]); };
+  return {{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
+}
+
+// ---- Rays in flight against leaves of spheres. What the test takes of a ray is kept in double, so that it
+// need not be converted at each leaf.
+
+/// Tests rays in flight against the spheres of a tree. Each ray has one of kInflightRays places, and comes
+/// there from a chunk of W rays.
+template <int W, class A>
+class SphereLeaves {
+ public:
+  static constexpr int kSpheres = kShapeLanes<Sphere>;
+  static_assert(kSpheres == TriangleBlock::kSize, "a leaf is tested at once");
+
+  explicit SphereLeaves(const Accel& accel) : pool_(std::get<Sphere::Pool>(accel.pools)) {}
+
+  /// Prepares the rays of a chunk for start().
+  OKTETT_INLINE void prepare(const RayChunk<W, A>& c) {
+    using F = Simd<float, W, A>;
+    using D = Simd<double, W, A>;
+    if (pool_.size() == 0) return;
+    const Vec3<D> d{to_double(F::load(c.d[0])), to_double(F::load(c.d[1])), to_double(F::load(c.d[2]))};
+    (D(1.0) / dot_lanes(d, d)).store(inverse_);
+  }
+
+  /// Puts ray `i` of the chunk at `place`.
+  OKTETT_INLINE void start(std::ptrdiff_t place, const RayChunk<W, A>& c, int i) {
+    if (pool_.size() == 0) return;
+    Line& line = lines_[place];
+    for (int k = 0; k < 3; ++k) line.o[k] = c.o[k][i], line.d[k] = c.d[k][i];
+    line.tmin = c.tmin[i], line.inverse = inverse_[i];
+  }
+
+  /// Returns which spheres of `leaf` the ray at `place` hits, as bits; t[k] is the distance of sphere k. The
+  /// ray is in no instance.
+  OKTETT_INLINE unsigned meet(std::ptrdiff_t place, const InflightRay& ray, const LeafEntry& leaf,
+                              float (&t)[kSpheres]) const {
+    using F = Simd<float, kSpheres, A>;
+    using D = Simd<double, kSpheres, A>;
+    const Line& line = lines_[place];
+    const auto tmax = static_cast<double>(ray.tmax);
+    const RayLanes<D> wide{{D(line.o[0]), D(line.o[1]), D(line.o[2])},
+                           {D(line.d[0]), D(line.d[1]), D(line.d[2])},
+                           D(line.tmin),
+                           D(tmax)};
+    D roots[Sphere::kRoots];
+    const auto maybe = Sphere::roots_in_range(wide, D(line.inverse), D(Sphere::last_root(tmax)),
+                                              Sphere::load<D>(pool_, leaf.begin), roots);
+    if (none(maybe)) return 0;
+    const Vec3<F> unused{F(0.0f), F(0.0f), F(0.0f)};
+    HitLanes<F> hit;
+    const auto met = first_in_range(RayLanes<F>{unused, unused, F(ray.tmin), F(ray.tmax)},
+                                    mask_cast<float>(maybe), roots, hit);
+    hit.t.store(t);
+    return bits(met) & ((2u << (leaf.count - 1)) - 1);
+  }
+
+ private:
+  struct alignas(64) Line {
+    double o[3], d[3], tmin;
+    double inverse;  ///< one over the square of the direction
+  };
+
+  const Sphere::Pool& pool_;
+  alignas(64) double inverse_[W];  ///< of the chunk
+  Line lines_[kInflightRays];
+};
+
+// ---- Many single rays in flight through a tree.
 
 /// Leaves are visited when this many rays wait at leaves, or when no ray is at a node.
 inline constexpr int kLeafThreshold = 8;

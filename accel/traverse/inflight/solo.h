@@ -5,9 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "accel/traverse/inflight/candidate.h"
-#include "accel/traverse/inflight/ray_chunk.h"
-#include "accel/traverse/prefetch.h"
+#include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/single.h"
 #include "core/simd_order.h"
 
@@ -128,31 +126,28 @@ class SoloTraversal {
 
   /// The same for the triangles that the filter did not reject, the bits of `maybe`.
   OKTETT_INLINE bool take(NodeRef ref, const TriangleGuess<F>& guess, unsigned maybe) {
-    if (accel_.pieces)
-      maybe &= ~repeated_lane<A>(candidate_item(accel_.blocks.data(), candidate_, state_, kNoId),
-                                 accel_.blocks[ref.block()]);
-    const unsigned near = bits(guess.t <= guess.t_error) & maybe;
-    if (OKTETT_UNLIKELY(near != 0)) {
-      const float o[3] = {ray_.origin.x, ray_.origin.y, ray_.origin.z};
-      maybe &= ~(near & behind_origin<A>(o, d_, accel_.blocks[ref.block()]));
-    }
-    if (maybe == 0) return false;
-    const HitInterval<F> h = hit_interval(guess, F(ray_.tmin), F(tmax_));
-    const unsigned sure = bits(h.sure) & maybe;
-    if (sure != 0) {
-      if constexpr (Q == Query::any) {
+    const TriangleBlock& block = accel_.blocks[ref.block()];
+    const float o[3] = {ray_.origin.x, ray_.origin.y, ray_.origin.z};
+    const auto repeated = [&] {
+      if (!accel_.pieces) return 0u;
+      return repeated_lane<A>(candidate_item(accel_.blocks.data(), candidate_, state_, kNoId), block);
+    };
+    const auto interval = [&] { return hit_interval(guess, F(ray_.tmin), F(tmax_)); };
+    SureHit hit;
+    switch (judge_block<Q, A>(guess, maybe, 0, block, o, d_, true, hit_lo_, repeated, interval, hit)) {
+      case BlockVerdict::missed:
+        return false;
+      case BlockVerdict::hit:
         candidate_ = kDecidedHit;
         return true;
-      }
-      const SureHit hit = nearest_sure(h, sure, 0);
-      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi)));
-      if (maybe == 1u << hit.lane && hit.hi < hit_lo_) {
+      case BlockVerdict::nearest:
         candidate_ = ref.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
         hit_lo_ = hit.lo, tmax_ = hit.hi;
         return true;
-      }
+      case BlockVerdict::open:
+        break;
     }
-    leaf_triangles_single(accel_.blocks[ref.block()], ref.triangle_count(), exact_state());
+    leaf_triangles_single(block, ref.triangle_count(), exact_state());
     return adopt();
   }
 

@@ -9,12 +9,208 @@
 
 #include <algorithm>
 
-#include "accel/traverse/inflight/block_lanes.h"
-#include "accel/traverse/inflight/enter_instance.h"
-#include "accel/traverse/inflight/inflight_queues.h"
-#include "accel/traverse/inflight/pending_hits.h"
+#include "accel/traverse/inflight/decide_pairs.h"
+#include "accel/traverse/inflight/inflight_ray.h"
+#include "accel/traverse/single.h"
 
 namespace oktett {
+
+// ---- Rays in flight go into instances and out again. A ray in an instance is the transformed ray in the
+// child's tree, with the distances of the ray outside, because directions are not normalised. So what the
+// ray has on its stack, what it has hit and where it ends stay valid on both sides.
+
+/// Prefetches the memory that describes the instance that the ray goes into, if it goes into one.
+OKTETT_INLINE void prefetch_instance(const Accel& accel, const InflightRay& ray) {
+  if (ray.in.instance != kNoInstance) return;
+  const LeafEntry& leaf = accel.leaves[ray.current.table_index()];
+  if (leaf.kind == Kind::instance_list) __builtin_prefetch(&accel.listed_instances[leaf.begin]);
+  if (leaf.kind != Kind::instance) return;
+  const InstanceItem& instance = accel.instances[leaf.begin];
+  __builtin_prefetch(&instance), __builtin_prefetch(&instance.child);
+}
+
+/// Takes the ray out of its instance; `outer` is what it was outside, `accel` holds the instance.
+OKTETT_INLINE void leave_instance(InflightRay& ray, const InflightHead& outer, const Accel& accel) {
+  const InflightHead inside = ray;
+  static_cast<InflightHead&>(ray) = outer;
+  ray.set_end(inside.tmax);
+  ray.hit_lo = inside.hit_lo, ray.candidate = inside.candidate, ray.has_state = inside.has_state;
+  ray.size = inside.size;
+  ray.in.set(accel);
+}
+
+/// Rays that go into an instance each, and are transformed together, one in each lane.
+template <int W, class A>
+class EnteringRays {
+ public:
+  int size() const { return size_; }
+  InflightRay& ray(int i) const { return *ray_[i]; }
+
+  /// Adds a ray that goes into instance `number` of `accel`; `outer` is the ray outside. Returns true if
+  /// there is no room for another.
+  OKTETT_INLINE bool add(InflightRay& ray, const InflightHead& outer, std::uint32_t number,
+                         const Accel& accel) {
+    const int i = size_++;
+    ray_[i] = &ray, number_[i] = number;
+    for (int k = 0; k < 3; ++k) o_[k][i] = outer.o[k], d_[k][i] = outer.d[k];
+    tmin_[i] = ray.tmin, tmax_[i] = ray.tmax, slack_[i] = outer.slack;
+    with_instance(accel, number, [&](const auto& instance, const Accel& child) {
+      for (int k = 0; k < 12; ++k) to_child_[k][i] = static_cast<double>(instance.to_child[k]);
+      for (int k = 0; k < 3; ++k) lo_[k][i] = child.bounds.lo[k], hi_[k][i] = child.bounds.hi[k];
+      child_[i] = &child;
+    });
+    return size_ == W;
+  }
+
+  /// Takes the rays into their instances and calls enter(ray, root) for each. For rays that miss the bounds
+  /// of what is inside, it calls miss(ray). Where a ray is not tame inside, where its stack might overflow,
+  /// or where there are unbounded shapes, it calls stay(ray, number).
+  template <class Enter, class Miss, class Stay>
+  OKTETT_INLINE void go(const Accel& accel, Enter&& enter, Miss&& miss, Stay&& stay) {
+    for (int i = size_; i < W; ++i) repeat_first(i);
+    const auto vec = [](const float(&v)[3][W]) {
+      return Vec3<F>{F::load(v[0]), F::load(v[1]), F::load(v[2])};
+    };
+    RayLanes<F> rays{vec(o_), vec(d_), F::load(tmin_), F::load(tmax_)};
+    const RayLanes<F> outer = rays;
+    transform_rays(*this, outer, rays.o, rays.d);
+    const Vec3<F> lo = vec(lo_), hi = vec(hi_);
+    chunk_.set(rays, (1u << size_) - 1, extent_of(lo, hi));
+    const unsigned met = chunk_.meets(lo, hi);
+    for (int i = 0; i < size_; ++i) {
+      InflightRay& ray = *ray_[i];
+      const Accel& child = *child_[i];
+      if (OKTETT_UNLIKELY((chunk_.tame >> i & 1) == 0 || !child.unbounded.empty() ||
+                          accel.stats.depth + child.stats.depth > kMaxDepth)) {
+        stay(ray, number_[i]);
+        continue;
+      }
+      if ((met >> i & 1) == 0) {
+        miss(ray);
+        continue;
+      }
+      set_lines(ray, chunk_, i);
+      // The entries of the stack that were pushed outside must not be removed too early.
+      ray.slack = std::max(ray.slack, slack_[i]);
+      ray.set_end(ray.tmax);
+      ray.in.accel = &child, ray.in.bytes = TreeBytes(child), ray.in.instance = number_[i];
+      ray.push(NodeRef::way_out(), -1);
+      enter(ray, child.root);
+    }
+    size_ = 0;
+  }
+
+  /// Entry k of the maps into the children, for transform_rays().
+  OKTETT_INLINE Simd<double, W, A> map_entry(int k) const { return Simd<double, W, A>::load(to_child_[k]); }
+
+ private:
+  using F = Simd<float, W, A>;
+
+  /// The greatest |coordinate| of a box each.
+  static OKTETT_INLINE F extent_of(const Vec3<F>& lo, const Vec3<F>& hi) {
+    const auto axis = [](const F& a, const F& b) { return max(abs(a), abs(b)); };
+    return max(axis(lo.x, hi.x), max(axis(lo.y, hi.y), axis(lo.z, hi.z)));
+  }
+
+  OKTETT_INLINE void repeat_first(int i) {
+    for (int k = 0; k < 3; ++k) o_[k][i] = o_[k][0], d_[k][i] = d_[k][0];
+    tmin_[i] = tmin_[0], tmax_[i] = tmax_[0];
+    for (int k = 0; k < 3; ++k) lo_[k][i] = lo_[k][0], hi_[k][i] = hi_[k][0];
+    for (auto& row : to_child_) row[i] = row[0];
+  }
+
+  int size_ = 0;
+  alignas(64) float o_[3][W], d_[3][W], tmin_[W], tmax_[W], slack_[W], lo_[3][W], hi_[3][W];
+  alignas(64) double to_child_[12][W];
+  InflightRay* ray_[W];
+  const Accel* child_[W];
+  std::uint32_t number_[W];
+  RayChunk<W, A> chunk_;
+};
+
+// ---- The candidate hits of finished rays, which are decided together, one in each lane.
+
+/// Up to N candidates. `kInstances`: they may be in instances.
+template <int N, class A, bool kInstances>
+class PendingHits {
+ public:
+  /// Adds triangle `triangle` = block * TriangleBlock::kSize + lane for ray `ray`, in an instance of that
+  /// number or kNoInstance. Returns true if there is no room for another.
+  OKTETT_INLINE bool add(std::uint32_t ray, std::uint32_t triangle, std::uint32_t instance) {
+    ray_[size_] = ray, triangle_[size_] = triangle;
+    if constexpr (kInstances) instance_[size_] = instance;
+    return ++size_ == N;
+  }
+
+  /// Forgets all.
+  void clear() { size_ = 0; }
+
+  /// Decides all for `rays` in `accel` and calls store(ray, hit) for each.
+  template <class Store>
+  OKTETT_NOINLINE void decide(const Accel& accel, const RaySpan& rays, Store&& store) {
+    if (size_ == 0) return;
+    alignas(64) float column[8][N];
+    const TriangleBlock* block[N];
+    std::uint32_t path[N];
+    for (int i = 0; i < N; ++i) {
+      if (i >= size_) add_again(i);
+      Ray ray = rays[ray_[i]];
+      if constexpr (kInstances) {
+        block[i] = accel.blocks.data(), path[i] = kNoId;
+        if (instance_[i] != kNoInstance) ray = go_inside(accel, instance_[i], ray, block[i], path[i]);
+        block[i] += triangle_[i] / TriangleBlock::kSize;
+      }
+      for (int k = 0; k < 3; ++k) column[k][i] = ray.origin[k], column[3 + k][i] = ray.direction[k];
+      column[6][i] = ray.tmin, column[7][i] = ray.tmax;
+    }
+    const auto vec = [&](int k) {
+      return Vec3<F>{F::load(column[k]), F::load(column[k + 1]), F::load(column[k + 2])};
+    };
+    const RayLanes<F> lanes{vec(0), vec(3), F::load(column[6]), F::load(column[7])};
+    HitLanes<F> h;
+    unsigned met;
+    if constexpr (kInstances)
+      met = decide_pairs<N, A>(lanes, gather_triangles<N, A>(block, triangle_), h);
+    else
+      met = decide_pairs<N, A>(lanes, accel.blocks.data(), triangle_, h);
+    alignas(64) float t[N], u[N], v[N];
+    h.t.store(t), h.u.store(u), h.v.store(v);
+    for (int i = 0; i < size_; ++i) {
+      const TriangleBlock& b = kInstances ? *block[i] : accel.blocks[triangle_[i] / TriangleBlock::kSize];
+      const std::uint32_t item = b.item[triangle_[i] % TriangleBlock::kSize];
+      const std::uint32_t instance = kInstances ? path[i] : kNoId;
+      store(ray_[i], (met >> i & 1) != 0 ? Hit{t[i], u[i], v[i], item, instance} : Hit{});
+    }
+    size_ = 0;
+  }
+
+ private:
+  OKTETT_INLINE void add_again(int i) {
+    ray_[i] = ray_[0], triangle_[i] = triangle_[0];
+    if constexpr (kInstances) instance_[i] = instance_[0];
+  }
+
+  using F = Simd<float, N, A>;
+
+  /// The ray in the space of an instance, with the instance's blocks of triangles and the path of its hits.
+  static OKTETT_INLINE Ray go_inside(const Accel& accel, std::uint32_t number, const Ray& ray,
+                                     const TriangleBlock*& blocks, std::uint32_t& path) {
+    using One = Simd<float, 1, A>;
+    const RayLanes<One> outer{broadcast<One>(ray.origin), flush_direction(broadcast<One>(ray.direction)),
+                              One(ray.tmin), One(ray.tmax)};
+    Ray inside;
+    with_instance(accel, number, [&](const auto& instance, const Accel& child) {
+      inside = ray_inside<std::decay_t<decltype(instance)>, A>(instance, outer);
+      blocks = child.blocks.data(), path = outer_path(instance, kNoId);
+    });
+    return inside;
+  }
+
+  int size_ = 0;
+  std::uint32_t triangle_[N], ray_[N], instance_[kInstances ? N : 1];
+};
+
+// ---- Rays in flight through nodes and blocks of triangles.
 
 /// Which trees rays in flight are in.
 enum class InflightTrees {
@@ -107,25 +303,27 @@ class TriangleSteps {
   OKTETT_INLINE void take(InflightRay& ray, const TriangleGuess<F>& guess, const HitInterval<F>& h,
                           unsigned maybe, int first) {
     maybe = maybe >> first & ((1u << kBlock) - 1);
-    if (maybe != 0 && (kInstances ? *ray.in.accel : accel_).pieces)
-      maybe &= ~repeated_lane<A>(repeated_item(ray), blocks(ray)[ray.current.block()]);
-    const unsigned near = bits(guess.t <= guess.t_error) >> first & maybe;
-    if (OKTETT_UNLIKELY(near != 0 && ray.tmin >= 0))
-      maybe &= ~(near & behind_origin<A>(ray.o, ray.d, blocks(ray)[ray.current.block()]));
     if (maybe == 0) return;
-    const unsigned sure = bits(h.sure) >> first & maybe;
-    if (sure != 0) {
-      if constexpr (Q == Query::any) return found(ray);
-      const SureHit hit = nearest_sure(h, sure, first);
-      if ((maybe & (maybe - 1)) != 0) maybe &= bits(maybe_hit(guess, F(hit.hi))) >> first;
-      if (maybe == 1u << hit.lane && hit.hi < ray.hit_lo) {
+    const TriangleBlock& block = blocks(ray)[ray.current.block()];
+    const auto repeated = [&] {
+      return (kInstances ? *ray.in.accel : accel_).pieces ? repeated_lane<A>(repeated_item(ray), block) : 0;
+    };
+    SureHit hit;
+    switch (judge_block<Q, A>(
+        guess, maybe, first, block, ray.o, ray.d, ray.tmin >= 0, ray.hit_lo, repeated,
+        [&]() -> const HitInterval<F>& { return h; }, hit)) {
+      case BlockVerdict::missed:
+        return;
+      case BlockVerdict::hit:
+        return found(ray);
+      case BlockVerdict::nearest:
         ray.candidate = ray.current.block() * kBlock + static_cast<std::uint32_t>(hit.lane);
         if constexpr (kInstances) ray.in.candidate_instance = ray.in.instance;
         ray.hit_lo = hit.lo;
         return shorten<A>(ray, hit.hi);
-      }
+      case BlockVerdict::open:
+        return decide_leaf(ray);
     }
-    decide_leaf(ray);
   }
 
   /// The item of the ray's nearest hit so far, if it is a triangle of the tree that the ray is in, else

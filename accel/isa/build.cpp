@@ -1,7 +1,0 @@
-#include "accel/build/kernels.h"
-
-namespace oktett {
-
-template const BuildKernels& build_kernels<OKTETT_ISA>();
-
-}  // namespace oktett
