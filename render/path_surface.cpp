@@ -34,16 +34,15 @@ namespace {
 
 void set_lobes(PathSurface& s, const PhongParameters& parameters, bool front) {
   s.phong = PhongSurface(parameters, front);
-  s.transmits = parameters.transparency > 0;
-  s.only_delta = s.phong.diffuse == Vec3d{} && s.phong.highlight == Vec3d{};
+  s.transmits = s.phong.transmits();
+  s.only_delta = s.phong.only_delta();
 }
 
 void set_lobes(PathSurface& s, const PrincipledParameters& parameters, bool front) {
   s.principled = true;
   s.layers = PrincipledSurface(parameters, front);
-  s.transmits = parameters.transmission > 0;
-  s.only_delta = s.layers.alpha == 0 && s.layers.opaque == 0 && s.layers.sheen == 0 &&
-                 (s.layers.coat == 0 || s.layers.coat_alpha == 0);
+  s.transmits = s.layers.transmits();
+  s.only_delta = s.layers.only_delta();
 }
 
 PathSurface path_surface(const Material& m, bool front) {

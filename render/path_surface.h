@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/bsdf/phong_lobes.h"
-#include "render/bsdf/principled_surface.h"
+#include "render/bsdf/principled_lobes.h"
 #include "render/geometry.h"
 #include "render/shading_point.h"
 

@@ -6,7 +6,7 @@
 
 #include "accel/accel.h"
 #include "render/bsdf/metals.h"
-#include "render/bsdf/principled_surface.h"
+#include "render/bsdf/principled/base.h"
 #include "render/shading_lanes.h"
 #include "render/surface_textures.h"
 

@@ -14,7 +14,7 @@ static Bsdf bsdf_of(const ShadingPoint& p, const Vec3f& wo) {
 SurfaceBsdf::SurfaceBsdf(const ShadingPoint& p)
     : frame_(broadcast<BsdfFloat>(p.ns), broadcast<BsdfFloat>(p.ng)),
       bsdf_(bsdf_of(p, only_lane(frame_.to_local(broadcast<BsdfFloat>(-p.direction))))),
-      transmits_(p.principled ? p.principled->transmission > 0 : p.values.transparency > 0) {}
+      transmits_(bsdf_.transmits()) {}
 
 BsdfValue SurfaceBsdf::evaluate(const Vec3f& l) const {
   const Vec3<BsdfFloat> light = broadcast<BsdfFloat>(l), local = frame_.to_local(light);

@@ -10,7 +10,7 @@
 #include "core/math.h"
 #include "render/bsdf/ggx.h"
 #include "render/bsdf/optics.h"
-#include "render/bsdf/principled_surface.h"
+#include "render/bsdf/principled/base.h"
 #include "render/sampling/square_sample.h"
 
 namespace oktett {

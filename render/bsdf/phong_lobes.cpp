@@ -1,7 +1,5 @@
 #include "render/bsdf/phong_lobes.h"
 
-#include "render/bsdf/lobes.h"
-
 namespace oktett {
 
 static constexpr double kMost = 1e9;

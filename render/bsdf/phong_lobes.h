@@ -27,6 +27,11 @@ struct PhongSurface {
   Vec3d color, diffuse, highlight, mirror;
   double exponent = 0, transparency = 0, eta = 1;
   bool only_diffuse = false;  ///< all other lobes are black
+
+  /// Whether its lobes are black but in finitely many directions.
+  bool only_delta() const { return diffuse == Vec3d{} && highlight == Vec3d{}; }
+  /// Whether light may pass to the other side.
+  bool transmits() const { return transparency > 0; }
 };
 
 /// The sum of (Phong 1975, each light as it is lit by lamps divided by pi)
@@ -110,6 +115,8 @@ class PhongLobes {
   typename F::M only_delta() const {
     return mask_cast<float>((choice_[kDiffuse] == D(0.0)) & (choice_[kHighlight] == D(0.0)));
   }
+
+  bool transmits() const { return s_->transmits(); }
 
   /// After the surface has been copied to another place.
   void rebind(const PhongSurface& surface) { s_ = &surface; }

@@ -5,7 +5,7 @@
 
 #include "accel/accel_data.h"
 #include "accel/geometry_bounds.h"
-#include "render/bsdf/principled_lobes.h"
+#include "render/bsdf/principled/base.h"
 
 namespace oktett {
 
