@@ -4,7 +4,7 @@
 
 #include "core/affine_lanes.h"
 #include "core/quotients.h"
-#include "render/light_source.h"
+#include "render/shading_columns.h"
 
 namespace oktett {
 

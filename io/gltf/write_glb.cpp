@@ -16,10 +16,10 @@
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
 #include "io/mesh/unify.h"
-#include "io/obj/material_textures.h"
 #include "io/obj/written_materials.h"
 #include "io/text/file_access.h"
 #include "io/text/mapped_file.h"
+#include "render/material.h"
 
 namespace oktett {
 

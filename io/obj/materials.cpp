@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/suggest.h"
-#include "io/obj/material_textures.h"
 #include "io/obj/parsed_obj.h"
+#include "render/material.h"
 
 namespace oktett {
 namespace {

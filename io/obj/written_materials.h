@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/mesh/mesh_output.h"
-#include "io/obj/material_textures.h"
+#include "render/material.h"
 
 namespace oktett {
 

@@ -8,8 +8,8 @@
 
 #include "io/cache/scene_cache.h"
 #include "io/image/image_access.h"
-#include "io/obj/material_textures.h"
 #include "io/text/files_read.h"
+#include "render/material.h"
 
 namespace oktett {
 

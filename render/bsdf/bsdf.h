@@ -15,7 +15,7 @@
 #include "core/vec3.h"
 #include "render/bsdf/phong_lobes.h"
 #include "render/bsdf/principled_lobes.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 

@@ -3,9 +3,9 @@
 /// metal, an opaque dielectric or glass. Each lobe stands in a file of render/bsdf/principled; here they are
 /// listed and put together.
 ///
-/// Rough interfaces are GGX facets (render/bsdf/ggx.h). What single scattering loses is given back, so no
-/// roughness darkens: by metal in the lobe of wider facets (MirrorAgain), by glass in lobes that are diffuse
-/// in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the base (metal,
+/// Rough interfaces are GGX facets (render/bsdf/ggx_albedo.h). What single scattering loses is given back, so
+/// no roughness darkens: by metal in the lobe of wider facets (MirrorAgain), by glass in lobes that are
+/// diffuse in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the base (metal,
 /// dielectric over diffuse, glass up to the factor eta^2 that radiance leaves out). Not reciprocal: what lies
 /// below a coat or sheen, as that is weakened by the albedo for the viewer's direction alone, and sheen
 /// itself.

@@ -2,9 +2,13 @@
 /// \file Directions and places made from points of the unit square.
 
 #include "core/vec3.h"
-#include "render/sampling/square_sample.h"
 
 namespace oktett {
+
+/// A point of the unit square, [0, 1) in both coordinates.
+struct SquareSample {
+  double x = 0, y = 0;
+};
 
 /// A unit vector about the unit normal `n` with density cos(angle) / pi.
 Vec3f cosine_direction(const Vec3f& n, const SquareSample& s);

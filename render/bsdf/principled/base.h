@@ -18,7 +18,6 @@
 /// - `leave(s, v, first, out)`: directions that leave facets other than mirrored;
 /// - `transmits(s)`: light may pass to the other side.
 
-#include "render/bsdf/ggx.h"
 #include "render/bsdf/ggx_albedo.h"
 
 namespace oktett {

@@ -4,7 +4,7 @@
 /// The coefficients are the rational fits of the MaterialX library to the paper's tables.
 
 #include "render/bsdf/principled/base.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 
