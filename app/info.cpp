@@ -26,8 +26,8 @@
 #include "io/scene/surface_table.h"
 #include "kernels/exact_ops.h"
 #include "render/camera.h"
-#include "render/default_view.h"
 #include "render/geometry.h"
+#include "render/picture/prepared_scene.h"
 #include "render/scene.h"
 
 namespace oktett {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/light_source.h"
 #include "render/scene.h"
 #include "render/scene_lights.h"
+#include "render/shading_columns.h"
 #include "render/texture_sampler.h"
 
 namespace oktett {
@@ -18,7 +18,7 @@ struct AreaLights {
   std::uint32_t samples = 0;        ///< points of a pattern; 0: nothing glows
   std::uint32_t patterns = 0;       ///< a multiple of 16
   std::uint32_t penumbra = 1;       ///< patterns that a hit in a penumbra asks, its own included; divides 16
-  bool at_random = false;           ///< each pixel begins with a random pattern, see adaptive.h
+  bool at_random = false;           ///< each pixel begins with a random pattern, see film/tile.h
   std::uint64_t key = 0;            ///< of the random numbers that choose it
   std::vector<LightSource> points;  ///< those of pattern p are points[p * samples] and on
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/math.h"
-#include "render/bsdf/phong_power.h"
+#include "render/bsdf/phong_lobes.h"
 #include "render/path_surface.h"
-#include "render/surface_textures.h"
+#include "render/shading_point.h"
 
 namespace oktett {
 

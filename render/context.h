@@ -11,7 +11,7 @@
 #include "render/enclosures.h"
 #include "render/geometry.h"
 #include "render/medium/medium_tracker.h"
-#include "render/sampling/filter_sampler.h"
+#include "render/sampling/warp.h"
 #include "render/scene.h"
 #include "render/scene_lights.h"
 #include "render/shading_columns.h"

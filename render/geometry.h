@@ -10,9 +10,18 @@
 
 #include "accel/accel.h"
 #include "core/box.h"
+#include "kernels/exact_form.h"
 #include "render/scene.h"
 
 namespace oktett {
+
+// ---- Which objects of a scene have an inside.
+
+/// Whether the shape has an inside. A mesh that is not closed has none, unless it is `by_winding`; an
+/// instance has one if all objects of its prototype have.
+bool is_solid(const Shape& shape, const std::vector<Prototype>& prototypes);
+
+// ---- Geometries of objects.
 
 /// At least this many instances in a row become one geometry, which takes less memory.
 inline constexpr std::size_t kLeastInstanceList = 64;

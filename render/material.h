@@ -137,6 +137,18 @@ inline constexpr PhongNumber kPhongNumbers[] = {
     {"reflection", &Material::reflection, &Material::reflection_texture, kUnitInterval},
     {"transparency", &Material::transparency, &Material::transparency_texture, kUnitInterval}};
 
+/// Calls f(index) for each member of a material, which may be const, that is an index of a texture.
+template <class AnyMaterial, class F>
+OKTETT_INLINE void for_each_texture(AnyMaterial& m, F&& f) {
+  f(m.color_texture), f(m.specular_texture), f(m.emission_texture);
+  f(m.opacity_texture), f(m.bump_texture), f(m.normal_texture);
+  for (const PhongNumber& number : kPhongNumbers) f(m.*number.texture);
+  f(m.ior_texture);
+  if (!m.principled) return;
+  for (const PrincipledNumber& number : kPrincipledNumbers) f((*m.principled).*number.texture);
+  f(m.principled->sheen_color_texture), f(m.principled->eta_texture), f(m.principled->k_texture);
+}
+
 /// The range of a textured Material::ior.
 inline constexpr Range kPhongIors{1e-3, 1e3};
 

@@ -12,8 +12,19 @@
 #include <vector>
 
 #include "render/context.h"
+#include "render/scene.h"
 
 namespace oktett {
+
+// ---- Cameras and lights that have been moved.
+
+/// The camera at a time.
+Camera camera_at(const Camera& camera, double time);
+
+/// A light as a transform moves it. Environments and skies stay.
+Light moved_light(const Affine& motion, const Light& light);
+
+// ---- Moments of the shutter.
 
 /// More moments look the same in most pictures, and each takes memory.
 inline constexpr std::uint32_t kMostMoments = 64;

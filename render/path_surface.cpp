@@ -1,8 +1,36 @@
 #include "render/path_surface.h"
 
-#include "render/surface_textures.h"
+#include "render/shading_point.h"
 
 namespace oktett {
+
+// ---- The scattering of a shading point, with directions in world space.
+
+using BsdfFloat = FloatsOf<Bsdf::D>;
+
+static Bsdf bsdf_of(const ShadingPoint& p, const Vec3f& wo) {
+  if (p.principled) return principled_bsdf(*p.principled, wo, p.front);
+  return phong_bsdf(phong_parameters(p), wo, p.front);
+}
+
+SurfaceBsdf::SurfaceBsdf(const ShadingPoint& p)
+    : frame_(broadcast<BsdfFloat>(p.ns), broadcast<BsdfFloat>(p.ng)),
+      bsdf_(bsdf_of(p, only_lane(frame_.to_local(broadcast<BsdfFloat>(-p.direction))))),
+      transmits_(bsdf_.transmits()) {}
+
+BsdfValue SurfaceBsdf::evaluate(const Vec3f& l) const {
+  const Vec3<BsdfFloat> light = broadcast<BsdfFloat>(l), local = frame_.to_local(light);
+  if (none(frame_.agrees(light, local, transmits_))) return {};
+  return bsdf_.evaluate(only_lane(local));
+}
+
+std::optional<BsdfSample> SurfaceBsdf::sample(float lobe, const SquareSample& u) const {
+  BsdfSamples<Bsdf::D> s = bsdf_.samples(lobe, u);
+  frame_.to_world(s);
+  return only_sample(s);
+}
+
+// ---- Surfaces.
 
 PhongParameters phong_parameters(const Material& m) {
   PhongParameters parameters;
@@ -34,16 +62,15 @@ namespace {
 
 void set_lobes(PathSurface& s, const PhongParameters& parameters, bool front) {
   s.phong = PhongSurface(parameters, front);
-  s.transmits = parameters.transparency > 0;
-  s.only_delta = s.phong.diffuse == Vec3d{} && s.phong.highlight == Vec3d{};
+  s.transmits = s.phong.transmits();
+  s.only_delta = s.phong.only_delta();
 }
 
 void set_lobes(PathSurface& s, const PrincipledParameters& parameters, bool front) {
   s.principled = true;
   s.layers = PrincipledSurface(parameters, front);
-  s.transmits = parameters.transmission > 0;
-  s.only_delta = s.layers.alpha == 0 && s.layers.opaque == 0 && s.layers.sheen == 0 &&
-                 (s.layers.coat == 0 || s.layers.coat_alpha == 0);
+  s.transmits = s.layers.transmits();
+  s.only_delta = s.layers.only_delta();
 }
 
 PathSurface path_surface(const Material& m, bool front) {

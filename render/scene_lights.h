@@ -11,11 +11,20 @@
 
 #include "core/ray.h"
 #include "render/geometry.h"
+#include "render/light/emitter.h"
 #include "render/light/light_set.h"
 #include "render/scene.h"
 #include "render/texture_sampler.h"
 
 namespace oktett {
+
+// ---- Rectangles that meshes hold as two triangles.
+
+/// The rectangle that two triangles of the same light cover, within a millionth of its size. As one emitter
+/// it is sampled with less noise and in lanes.
+std::optional<RectangleEmitter> rectangle_of(const TriangleEmitter& a, const TriangleEmitter& b);
+
+// ---- The lights of a scene.
 
 /// The sun of a sky.
 DirectionalLight sun_of(const SkyLight& light);

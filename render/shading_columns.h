@@ -4,8 +4,26 @@
 #include <cstdint>
 
 #include "accel/interaction_block.h"
+#include "core/vec3.h"
+#include "render/light/emitter.h"
 
 namespace oktett {
+
+/// A light in the precision of shading.
+struct LightSource {
+  Vec3f place;  ///< position, or the unit vector towards a directional light
+  Color color;
+  bool directional = false;
+  bool falloff = false;
+  bool spot = false;
+  bool glows = false;                  ///< a point of a glowing surface, whose light goes by Lambert's law
+  Vec3f axis;                          ///< of a spot: unit vector along the middle of its cone; of a glowing
+                                       ///< surface: the unit normal of its front
+  float cos_inner = 1, cos_outer = 0;  ///< of a spot: cosines of the angles between which it fades
+  float back = 0;  ///< of a glowing surface: the fraction of the front's light that the back gives, 0 or 1
+  float lift = 0;  ///< of a glowing surface: shadow rays end this far above it
+  AimedProfile profile = {};
+};
 
 /// What local shading needs of a material, in one cache line. Numbered like World::materials.
 struct alignas(64) ShadingMaterial {
@@ -48,13 +66,6 @@ struct ShadingColumns {
   std::uint64_t varying, sending;
 };
 
-/// The columns of a wavefront that `begin_shading` reads, and those to which it adds light.
-struct ShadedRays {
-  const float* direction[3];
-  const float* throughput[3];
-  float* radiance[3];
-};
-
 /// Rays that change a pixel by less than this are not traced.
 inline constexpr float kLeastThroughput = 1 / 4096.0f;
 
@@ -65,25 +76,29 @@ struct BounceColumns {
   std::uint64_t sent = 0;  ///< bit k: hit k sends such a ray
 };
 
-/// What the rays of a wavefront hand on to those that leave their hits.
+/// The columns of the rays of a wavefront, of their hits and of the light that they find.
 struct ArrivingRays {
-  const std::uint32_t* sample;
+  const float *direction[3], *throughput[3];
   const float *distance, *t;  ///< lengths of the paths to the rays' origins, and from there to the hits
+  const std::uint32_t* sample;
   const std::uint8_t* bounces;
+  float* radiance[3];
 };
 
-/// The columns of a queue of rays from its end on. `kGroup` entries more than are added may be overwritten.
-struct QueuedRays {
-  float *origin[3], *direction[3], *throughput[3], *tmin, *tmax, *distance;
-  std::uint32_t* sample;
-  std::uint8_t *bounces, *from_camera;
-};
-
-/// The columns of a queue of shadow rays from its end on. `kGroup` entries more than there are hits may
-/// be overwritten.
+/// The columns of a queue of shadow rays. Rays are added behind the first `size`. One group of lanes more
+/// than are added may be overwritten.
 struct ShadowColumns {
-  float *origin[3], *direction[3], *light[3];
+  float *origin[3], *direction[3], *tmax, *light[3];
   std::uint32_t* owner;
+  std::size_t size;
+};
+
+/// The columns of a queue of rays of the next bounce, likewise.
+struct OnwardColumns {
+  float *origin[3], *direction[3], *throughput[3], *distance;
+  std::uint32_t* sample;
+  std::uint8_t* bounces;
+  std::size_t size;
 };
 
 }  // namespace oktett

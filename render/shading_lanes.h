@@ -3,7 +3,7 @@
 /// cosines.
 
 #include "core/lanes.h"
-#include "render/light_source.h"
+#include "render/shading_columns.h"
 
 namespace oktett {
 

@@ -6,11 +6,62 @@
 
 #include "accel/accel.h"
 #include "render/bsdf/metals.h"
-#include "render/bsdf/principled_surface.h"
+#include "render/bsdf/principled/base.h"
 #include "render/shading_lanes.h"
-#include "render/surface_textures.h"
 
 namespace oktett {
+
+// ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space.
+
+static const PatternTexture* pattern_in(std::span<const Texture> list, std::uint32_t texture) {
+  if (texture >= list.size()) return nullptr;
+  const Texture& t = list[texture];
+  return t.pattern ? &*t.pattern : nullptr;
+}
+
+const PatternTexture* pattern_of(const RenderContext& context, std::uint32_t texture) {
+  return pattern_in(context.texture_list, texture);
+}
+
+/// Channels that are negative, NaN or infinite count as 0.
+static Color valid_color(const Color& c) {
+  const auto valid = [](float x) { return x > 0 && std::isfinite(x) ? x : 0; };
+  return {valid(c.x), valid(c.y), valid(c.z)};
+}
+
+Color texture_color(const Textures& textures, std::uint32_t texture, const TexturePlace& place) {
+  if (const PatternTexture* pattern = pattern_in(textures.list, texture)) {
+    const Texture& t = textures.list[texture];
+    return valid_color(pattern_color(*pattern, place.position) * t.gain + Color{t.base, t.base, t.base});
+  }
+  if (texture == kNoId || textures.images == nullptr) return {1, 1, 1};
+  return valid_color(textures.images->color(texture, place.uv, place.dx, place.dy));
+}
+
+float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
+  if (pattern_of(context, texture) != nullptr) return texture_color(context, texture, place).x;
+  if (texture == kNoId || context.textures == nullptr) return 1;
+  return context.textures->value(texture, place.uv, place.dx, place.dy);
+}
+
+/// Whether any texture of the material is such that is(texture).
+template <class Is>
+static bool any_texture(const Material& m, const Is& is) {
+  bool some = false;
+  for_each_texture(m, [&](std::uint32_t texture) { some = some || is(texture); });
+  return some;
+}
+
+bool has_textures(const Material& m) {
+  return any_texture(m, [](std::uint32_t texture) { return texture != kNoId; });
+}
+
+bool has_pattern(const RenderContext& context, const Material& m) {
+  return any_texture(m, [&](std::uint32_t t) { return pattern_of(context, t) != nullptr; });
+}
+
+// ---- Points.
+
 namespace {
 
 /// Changes of uv across a pixel.

@@ -16,7 +16,7 @@
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
 #include "io/mesh/vertices.h"
-#include "io/obj/material_textures.h"
+#include "render/material.h"
 #include "io/obj/write_obj.h"
 #include "io/text/file_content.h"
 #include "io/text/files.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/obj/material_textures.h"
+#include "render/material.h"
 #include "io/obj/parsed_obj.h"
 
 namespace oktett {

@@ -7,7 +7,7 @@
 
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
-#include "io/obj/material_textures.h"
+#include "render/material.h"
 
 namespace oktett {
 

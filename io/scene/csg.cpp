@@ -2,7 +2,7 @@
 
 #include "core/mesh_geometry.h"
 #include "io/scene/readers.h"
-#include "render/solids.h"
+#include "render/geometry.h"
 
 namespace oktett {
 namespace {

@@ -15,7 +15,7 @@
 #include "io/scene/readers.h"
 #include "io/scene/utf8.h"
 #include "render/light_groups.h"
-#include "render/moved.h"
+#include "render/moments.h"
 
 namespace oktett {
 namespace {

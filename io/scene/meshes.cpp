@@ -8,7 +8,7 @@
 
 #include "io/cache/scene_cache.h"
 #include "io/image/library.h"
-#include "io/obj/material_textures.h"
+#include "render/material.h"
 #include "io/text/files.h"
 
 namespace oktett {

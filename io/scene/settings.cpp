@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "io/scene/readers.h"
-#include "render/moved.h"
+#include "render/moments.h"
 
 namespace oktett {
 namespace {

@@ -29,6 +29,10 @@ bool Bsdf::only_delta() const {
   return std::visit([](const auto& kept) { return any(kept.lobes.only_delta()); }, lobes_);
 }
 
+bool Bsdf::transmits() const {
+  return std::visit([](const auto& kept) { return kept.lobes.transmits(); }, lobes_);
+}
+
 Bsdf phong_bsdf(const PhongParameters& parameters, const Vec3f& wo, bool front) {
   return {PhongSurface(parameters, front), wo};
 }

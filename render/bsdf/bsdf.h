@@ -13,10 +13,9 @@
 #include <variant>
 
 #include "core/vec3.h"
-#include "render/bsdf/lobes.h"
 #include "render/bsdf/phong_lobes.h"
 #include "render/bsdf/principled_lobes.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 
@@ -42,6 +41,8 @@ class Bsdf {
   BsdfSamples<D> samples(float lobe, const SquareSample& u) const;
   /// Whether `evaluate` is black everywhere.
   bool only_delta() const;
+  /// Whether light may pass to the other side.
+  bool transmits() const;
 
  private:
   /// Lobes with the surface that they refer to.

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "core/math.h"
-#include "render/bsdf/ggx.h"
 #include "render/bsdf/optics.h"
-#include "render/bsdf/principled_surface.h"
-#include "render/sampling/square_sample.h"
+#include "render/bsdf/principled/base.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 

@@ -6,6 +6,7 @@
 /// at room temperature.
 
 #include "core/description.h"
+#include "render/bsdf/optics.h"
 #include "render/bsdf/principled_parameters.h"
 
 namespace oktett {
@@ -22,6 +23,11 @@ inline constexpr Choice<Conductor> kMetals[] = {
     {"titanium", {{2.698f, 2.479f, 2.310f}, {3.757f, 3.351f, 3.088f}}}};
 
 /// What a metal reflects of light that meets it head-on, from air.
-Color head_on_color(const Conductor& metal);
+OKTETT_INLINE Color head_on_color(const Conductor& metal) {
+  Color color;
+  for (int k = 0; k < 3; ++k)
+    color[k] = static_cast<float>(conductor_fresnel(1, double{metal.eta[k]}, double{metal.k[k]}));
+  return color;
+}
 
 }  // namespace oktett

@@ -1,10 +1,22 @@
 #pragma once
 /// \file Phong's illumination model with ideal mirrors and glass, as of Material, for light of unit radiance.
 
+#include "core/math.h"
 #include "render/bsdf/lobe_lanes.h"
-#include "render/bsdf/phong_power.h"
 
 namespace oktett {
+
+/// Whole exponents up to 1024 are raised to by squaring; most materials have such exponents.
+inline bool by_squaring(double exponent) {
+  return exponent >= 0 && exponent <= 1024 &&
+         static_cast<double>(static_cast<unsigned>(exponent)) == exponent;
+}
+
+/// `cosine`, in [0, 1] or NaN, to the power of a material's exponent.
+inline double phong_power(double cosine, double exponent) {
+  return by_squaring(exponent) ? portable::whole_power(cosine, static_cast<unsigned>(exponent))
+                               : portable::pow(cosine, exponent);
+}
 
 /// Weights are in [0, inf); they are clamped to 1e9. A sum above 1 gains energy.
 struct PhongParameters {
@@ -22,11 +34,29 @@ struct PhongParameters {
 struct PhongSurface {
   PhongSurface() = default;
   /// `front`: the viewer is outside, where the geometric normal points to.
-  PhongSurface(const PhongParameters& parameters, bool front);
+  OKTETT_INLINE PhongSurface(const PhongParameters& parameters, bool front)
+      : color(limited(parameters.color, 0, kMost)),
+        exponent(limited(parameters.phong, 0, kMost)),
+        transparency(limited(parameters.transparency, 0, kMost)) {
+    const Vec3d specular_color = limited(parameters.specular_color, 0, kMost);
+    diffuse = color * limited(parameters.diffuse, 0, kMost);
+    highlight = specular_color * limited(parameters.specular, 0, kMost);
+    mirror = specular_color * limited(parameters.reflection, 0, kMost);
+    const double ior = limited(parameters.ior, 1e-3, 1e3);
+    eta = static_cast<float>(front ? ior : 1 / ior);
+    only_diffuse =
+        max_component(diffuse) > 0 && highlight == Vec3d{} && mirror == Vec3d{} && transparency == 0;
+  }
 
+  static constexpr double kMost = 1e9;
   Vec3d color, diffuse, highlight, mirror;
   double exponent = 0, transparency = 0, eta = 1;
   bool only_diffuse = false;  ///< all other lobes are black
+
+  /// Whether its lobes are black but in finitely many directions.
+  bool only_delta() const { return diffuse == Vec3d{} && highlight == Vec3d{}; }
+  /// Whether light may pass to the other side.
+  bool transmits() const { return transparency > 0; }
 };
 
 /// The sum of (Phong 1975, each light as it is lit by lamps divided by pi)
@@ -110,6 +140,8 @@ class PhongLobes {
   typename F::M only_delta() const {
     return mask_cast<float>((choice_[kDiffuse] == D(0.0)) & (choice_[kHighlight] == D(0.0)));
   }
+
+  bool transmits() const { return s_->transmits(); }
 
   /// After the surface has been copied to another place.
   void rebind(const PhongSurface& surface) { s_ = &surface; }

@@ -1,20 +1,73 @@
 #pragma once
 /// \file The principled material (in the vocabulary of Burley 2012 and OpenPBR): sheen over a coat over
-/// metal, an opaque dielectric or glass.
+/// metal, an opaque dielectric or glass. Each lobe stands in a file of render/bsdf/principled; here they are
+/// listed and put together.
 ///
-/// Rough interfaces are GGX facets (render/bsdf/ggx.h). What single scattering loses is given back, so no
-/// roughness darkens: by metal in the lobe of wider facets (MirrorAgain), by glass in lobes that are diffuse
-/// in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the base (metal,
+/// Rough interfaces are GGX facets (render/bsdf/ggx_albedo.h). What single scattering loses is given back, so
+/// no roughness darkens: by metal in the lobe of wider facets (MirrorAgain), by glass in lobes that are
+/// diffuse in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the base (metal,
 /// dielectric over diffuse, glass up to the factor eta^2 that radiance leaves out). Not reciprocal: what lies
 /// below a coat or sheen, as that is weakened by the albedo for the viewer's direction alone, and sheen
 /// itself.
 
-#include "render/bsdf/ggx.h"
-#include "render/bsdf/grazing.h"
-#include "render/bsdf/principled_surface.h"
-#include "render/bsdf/sheen.h"
+#include <type_traits>
+
+#include "render/bsdf/principled/coat.h"
+#include "render/bsdf/principled/diffuse.h"
+#include "render/bsdf/principled/glass.h"
+#include "render/bsdf/principled/mirror.h"
+#include "render/bsdf/principled/sheen.h"
 
 namespace oktett {
+
+template <template <class> class... L>
+struct LobeList {};
+
+/// The lobes in the order in which their weights are found and one of them is chosen: layers from the top.
+using PrincipledList =
+    LobeList<SheenLobe, CoatLobe, MirrorLobe, GlassLobe, DiffuseLobe, MetalAgainLobe, GlassAgainLobe>;
+/// The same lobes in the order in which their values are added.
+using PrincipledSum =
+    LobeList<MirrorLobe, GlassLobe, CoatLobe, MetalAgainLobe, DiffuseLobe, GlassAgainLobe, SheenLobe>;
+
+/// What the lobes of a list need of one side of a surface.
+template <class List>
+struct SurfaceOf;
+template <template <class> class... L>
+struct SurfaceOf<LobeList<L...>> : PrincipledBase, L<Simd<double, 1, ScalarIsa>>::Surface... {
+  SurfaceOf() = default;
+  SurfaceOf(const PrincipledParameters& p, const PrincipledBase& b)
+      : PrincipledBase(b), L<Simd<double, 1, ScalarIsa>>::Surface(p, b)... {}
+};
+
+/// The lobes of a list for a viewer.
+template <class D, class List>
+struct LobesOf;
+template <class D, template <class> class... L>
+struct LobesOf<D, LobeList<L...>> : L<D>... {
+  static constexpr int kChances = (0 + ... + L<D>::kChances);
+
+  /// The first entry of a lobe among the probabilities.
+  template <class Lobe>
+  static constexpr int first_of() {
+    int first = 0;
+    bool found = false;
+    ((found = found || std::is_same_v<Lobe, L<D>>, first += found ? 0 : L<D>::kChances), ...);
+    return first;
+  }
+};
+
+/// What one side of a surface of the principled material needs, whatever the directions.
+struct PrincipledSurface : SurfaceOf<PrincipledList> {
+  PrincipledSurface() = default;
+  /// `is_front`: the viewer is outside, where the geometric normal points to.
+  PrincipledSurface(const PrincipledParameters& p, bool is_front);
+
+  /// Whether its lobes are black but in finitely many directions.
+  bool only_delta() const;
+  /// Whether light may pass to the other side.
+  bool transmits() const;
+};
 
 /// In lanes of doubles D, for viewers of the same surface.
 template <class D>
@@ -25,11 +78,11 @@ class PrincipledLobes {
   using Surface = PrincipledSurface;
 
   PrincipledLobes(const PrincipledSurface& surface, const Vec3<F>& wo)
-      : s_(&surface), wo_(direction_above<D>(wo)), base_(facets(s_->alpha)) {
-    set_layers();
-    if (s_->metal > 0) set_metal();
-    if (s_->opaque > 0) set_opaque();
-    if (s_->glass > 0) set_glass();
+      : s_(&surface), view_{&surface, direction_above<D>(wo), {}} {
+    view_.facets = SeenFacets<D>(view_.wo, base().alpha);
+    ArrivingLight<D> arriving;
+    each(PrincipledList{}, lobes_,
+         [&](auto& lobe, const auto& s, int first) { lobe.set(s, view_, arriving, &choice_[first]); });
     choice_.normalize();
   }
 
@@ -39,136 +92,128 @@ class PrincipledLobes {
     const F dark(0.0f);
     const auto up = wi.z > dark, down = wi.z < dark;
     const Vec3<D> w = unit_lanes(to_double(wi));
-    BsdfValues<D> sum{{dark, dark, dark}, dark};
-    const auto put = [&](const typename F::M& lanes, const Value& v) {
-      sum.value = select_lanes(lanes, to_float(v.value), sum.value);
-      sum.pdf = select(lanes, to_float(v.pdf), sum.pdf);
+    BsdfValues<D> result{{dark, dark, dark}, dark};
+    const auto put = [&](const typename F::M& lanes, const LobeSum<D>& sum) {
+      result.value = select_lanes(lanes, to_float(sum.value), result.value);
+      result.pdf = select(lanes, to_float(sum.pdf), result.pdf);
     };
     if (any(up)) put(up, above(w));
-    if (s_->glass > 0 && !s_->glass_smooth && any(down)) put(down, below(w));
-    return sum;
+    if (any(down)) put(down, below(w));
+    return result;
   }
 
   /// As Bsdf::sample.
   BsdfSamples<D> sample(const D& lobe, const D& x, const D& y) const {
     D place = lobe;
     const D chosen = choice_.pick(place);
+    LobeSampling<D> drawn(view_.wo, chosen, place, x, y);
+    each(PrincipledList{}, lobes_, [&](const auto& some, const auto& s, int first) {
+      some.sample(s, view_, first, &choice_[first], drawn);
+    });
+    if (any(drawn.facets)) sample_facets(drawn);
+
     BsdfSamples<D> sample;
     sample.pdf = F(0.0f);
     sample.weight = {F(0.0f), F(0.0f), F(0.0f)};
-    M scattered = chosen < D(-1.0), found = scattered;
-    Vec3<D> direction = wo_, weight = wo_;
-    const auto scatter = [&](const M& lanes, const Vec3<D>& d) {
-      direction = select_lanes(lanes, d, direction), scattered = scattered | lanes;
-    };
-    const auto deflect = [&](const M& lanes, const Vec3<D>& d, const Vec3<D>& coefficient, const D& chance) {
-      direction = select_lanes(lanes, d, direction);
-      weight = select_lanes(lanes, scale_lanes(coefficient, D(1.0) / chance), weight);
-      const D most = max(max(coefficient.x, coefficient.y), coefficient.z);
-      found = found | (lanes & (most > D(0.0)) & (chance > D(0.0)));
-    };
-    if (const M m = chosen == D(kDiffuse); any(m)) scatter(m, cosine_above(x, y));
-    const M over = chosen == D(kAgainAbove), under = chosen == D(kAgainBelow);
-    if (any(over | under)) {
-      const Vec3<D> w = grazing_above(s_->alpha, x, y);
-      scatter(over, w), scatter(under, flipped(w));
-    }
-    if (const M m = chosen == D(kSheen); any(m)) scatter(m, sheen_direction(x, y));
-    sample_facets(chosen, place, x, y, scatter);
-    sample_smooth(chosen, place, deflect);
-
-    sample.direction = to_float(direction);
+    sample.direction = to_float(drawn.direction);
     sample.transmitted = sample.direction.z < F(0.0f);
-    const auto delta = mask_cast<float>(found), rough = mask_cast<float>(scattered);
+    const auto delta = mask_cast<float>(drawn.deflected), rough = mask_cast<float>(drawn.scattered);
     if (any(rough)) {
       const BsdfValues<D> at = evaluate(sample.direction);
       sample.weight = {at.value.x / at.pdf, at.value.y / at.pdf, at.value.z / at.pdf};
       sample.pdf = select(rough, at.pdf, F(0.0f));
     }
-    sample.weight = select_lanes(delta, to_float(weight), sample.weight);
+    sample.weight = select_lanes(delta, to_float(drawn.weight), sample.weight);
     sample.found = delta | (rough & (sample.pdf > F(0.0f)));
     return sample;
   }
 
   /// The lanes in which `evaluate` is black everywhere.
   typename F::M only_delta() const {
-    const D zero(0.0);
-    M none = (choice_[kSheen] == zero) & (choice_[kDiffuse] == zero) & (choice_[kAgainAbove] == zero) &
-             (choice_[kAgainBelow] == zero) & (choice_[kMetalAgain] == zero);
-    if (s_->coat_alpha > 0) none = none & (choice_[kCoat] == zero);
-    if (s_->alpha > 0) none = none & (choice_[kMirror] == zero);
-    if (!s_->glass_smooth) none = none & (choice_[kGlass] == zero);
+    M none = view_.wo.z == view_.wo.z;
+    each(PrincipledList{}, lobes_, [&](const auto& lobe, const auto& s, int first) {
+      if (lobe.is_delta(s, base())) return;
+      for (int i = 0; i < lobe.kChances; ++i) none = none & (choice_[first + i] == D(0.0));
+    });
     return mask_cast<float>(none);
   }
 
+  bool transmits() const { return s_->transmits(); }
+
   /// After the surface has been copied to another place.
-  void rebind(const PrincipledSurface& surface) { s_ = &surface; }
-
- private:
-  /// kMirror: metal and opaque dielectric. kGlass: reflected or transmitted, as Fresnel's equations say.
-  /// kMetalAgain: what single scattering by metal loses.
-  /// kAgainAbove, kAgainBelow: what single scattering by glass loses, on the viewer's side and on the other.
-  enum Lobe { kSheen, kCoat, kMirror, kGlass, kDiffuse, kMetalAgain, kAgainAbove, kAgainBelow, kLobes };
-
-  /// Of the viewer's direction; nothing for smooth interfaces.
-  struct Facets {
-    D lambda{0.0}, reflected{0.0};  ///< ggx_lambda, ggx_reflected_scale
-  };
-  struct Value {
-    Vec3<D> value{D(0.0), D(0.0), D(0.0)};
-    D pdf{0.0};
-  };
-  /// Of a lobe without colour.
-  struct GreyValue {
-    D value, pdf;
-  };
-
-  static Vec3<D> flipped(const Vec3<D>& w) { return {w.x, w.y, -w.z}; }
-  static Vec3<D> grey(const D& x) { return {x, x, x}; }
-
-  Facets facets(double alpha) const {
-    if (alpha == 0) return {};
-    return {ggx_lambda(wo_, D(alpha)), ggx_reflected_scale(wo_, D(alpha))};
+  void rebind(const PrincipledSurface& surface) {
+    s_ = &surface;
+    view_.base = &surface;
   }
 
-  // Defined in render/bsdf/principled_setup.h.
-  void set_layers();
-  void set_metal();
-  void set_opaque();
-  void set_glass();
+ private:
+  using Lobes = LobesOf<D, PrincipledList>;
 
-  Vec3<D> metal_fresnel(const D& cosine) const;
-  D glass_fresnel(const D& cosine) const;
-  D chance_of_reflection(const D& reflectance) const;
+  const PrincipledBase& base() const { return *s_; }
 
-  // Defined in render/bsdf/principled_values.h.
-  GreyValue facet_lobe(const Facets& f, double alpha, const Vec3<D>& h, const Vec3<D>& wi, const D& weight,
-                       const D& chance) const;
-  Value above(const Vec3<D>& wi) const;
-  Value below(const Vec3<D>& wi) const;
-  Value transmitted(const Vec3<D>& wi) const;
-  D sheen_density(const Vec3<D>& wi) const;
+  /// Calls act(lobe, its surface, its first entry among the probabilities) for lobes that the surface has.
+  template <template <class> class... L, class SomeLobes, class Act>
+  OKTETT_INLINE void each(LobeList<L...>, SomeLobes& lobes, Act&& act) const {
+    const auto call = [&](auto& lobe, const auto& s, int first) {
+      if (lobe.is_there(s, base())) act(lobe, s, first);
+    };
+    (call(of<L<D>>(lobes), static_cast<const typename L<D>::Surface&>(*s_), Lobes::template first_of<L<D>>()),
+     ...);
+  }
+  template <class Lobe>
+  static OKTETT_INLINE Lobe& of(Lobes& lobes) {
+    return lobes;
+  }
+  template <class Lobe>
+  static OKTETT_INLINE const Lobe& of(const Lobes& lobes) {
+    return lobes;
+  }
 
-  // Defined in render/bsdf/principled_samples.h.
-  template <class Scatter>
-  void sample_facets(const D& chosen, const D& place, const D& x, const D& y, Scatter&& scatter) const;
-  template <class Deflect>
-  void sample_smooth(const D& chosen, const D& place, Deflect&& deflect) const;
-  Vec3<D> sheen_direction(const D& x, const D& y) const;
+  OKTETT_INLINE LobeSum<D> above(const Vec3<D>& wi) const {
+    const Vec3<D> half = unit_lanes(view_.wo + wi);
+    const LobeLight<D> light{wi, half, min(D(1.0), dot_lanes(view_.wo, half))};
+    LobeSum<D> sum;
+    if (base().alpha > 0) {
+      MirroringFacets<D> facets(view_, light);
+      each(PrincipledSum{}, lobes_, [&](const auto& lobe, const auto& s, int first) {
+        if constexpr (requires { lobe.reflect(s, view_, facets, &choice_[first], sum.pdf); })
+          lobe.reflect(s, view_, facets, &choice_[first], sum.pdf);
+      });
+      sum.value = facets.reflectance * facets.shown;
+    }
+    each(PrincipledSum{}, lobes_, [&](const auto& lobe, const auto& s, int first) {
+      if constexpr (requires { lobe.add_above(s, view_, light, &choice_[first], sum); })
+        if (!lobe.is_delta(s, base())) lobe.add_above(s, view_, light, &choice_[first], sum);
+    });
+    return sum;
+  }
+
+  OKTETT_INLINE LobeSum<D> below(const Vec3<D>& wi) const {
+    LobeSum<D> sum;
+    each(PrincipledSum{}, lobes_, [&](const auto& lobe, const auto& s, int first) {
+      if constexpr (requires { lobe.add_below(s, view_, wi, &choice_[first], sum); })
+        if (!lobe.is_delta(s, base())) lobe.add_below(s, view_, wi, &choice_[first], sum);
+    });
+    return sum;
+  }
+
+  /// Directions that leave the facets of the lobes that were chosen.
+  OKTETT_INLINE void sample_facets(LobeSampling<D>& out) const {
+    const D bound = select(out.all_facets, D(1.0), reflecting_bound(view_.wo, out.alpha));
+    out.normal = ggx_normal(view_.wo, out.alpha, bound, out.x, out.y);
+    out.cosine = dot_lanes(view_.wo, out.normal);
+    out.reflected = out.normal * (D(2.0) * out.cosine) - view_.wo;
+    out.mirrored = out.facets;
+    each(PrincipledList{}, lobes_, [&](const auto& lobe, const auto& s, int first) {
+      if constexpr (requires { lobe.leave(s, view_, first, out); }) lobe.leave(s, view_, first, out);
+    });
+    out.scatter(out.mirrored & (out.reflected.z > D(0.0)), out.reflected);
+  }
 
   const PrincipledSurface* s_;
-  Vec3<D> wo_;
-  Facets base_, coat_facets_, again_facets_;
-  D sheen_{0.0}, coat_{0.0}, metal_{0.0}, opaque_{0.0}, glass_{0.0};  ///< weights, without what lies above
-  SheenLobe fibres_[D::kWidth];
-  D metal_again_{0.0};  ///< weight of metal times the scale of MirrorAgain
-  // Lobes of diffuse shape: coefficient * loss(wi) * |cos(wi)|.
-  D diffuse_{0.0}, glass_again_above_{0.0}, glass_again_below_{0.0};
-  LobeChances<D, kLobes> choice_;
+  LobeView<D> view_;
+  Lobes lobes_;
+  LobeChances<D, Lobes::kChances> choice_;
 };
 
 }  // namespace oktett
-
-#include "render/bsdf/principled_samples.h"
-#include "render/bsdf/principled_setup.h"
-#include "render/bsdf/principled_values.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "render/film/tile_parts.h"
+#include "render/film/tile.h"
 
 namespace oktett {
 namespace {

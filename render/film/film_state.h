@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "render/film/tile.h"
-#include "render/film/tile_sums.h"
 #include "render/tone.h"
 
 namespace oktett {

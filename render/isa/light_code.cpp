@@ -1,7 +1,5 @@
 #include "render/isa/light_code.h"
 
-#include "render/isa/light_choices.h"
-
 namespace oktett {
 
 template <class A>

@@ -1,12 +1,8 @@
 #include "render/transport/render_code.h"
 
-#include "render/isa/bounce_rays.h"
-#include "render/isa/lens_rays.h"
+#include "render/isa/camera_rays.h"
 #include "render/isa/light_code.h"
-#include "render/isa/path_begin.h"
-#include "render/isa/sample_points.h"
 #include "render/isa/shading.h"
-#include "render/isa/view_directions.h"
 #include "render/isa/wavefront_lanes.h"
 #include "render/transport/path_shading.h"
 

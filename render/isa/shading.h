@@ -3,11 +3,16 @@
 
 #include "accel/surface/offset_origin.h"
 #include "core/simd_memory.h"
+#include "core/simd_native.h"
 #include "core/simd_order.h"
-#include "render/bsdf/phong_power.h"
+#include "render/bsdf/optics.h"
+#include "render/bsdf/phong_lobes.h"
 #include "render/context.h"
+#include "render/sampling/owen_sobol.h"
 #include "render/shading_columns.h"
 #include "render/shading_lanes.h"
+#include "render/transport/path_block.h"
+#include "render/transport/sample_dimensions.h"
 
 namespace oktett {
 
@@ -82,7 +87,7 @@ OKTETT_INLINE Vec3<F> fetch_materials(const ShadingMaterial* table, ShadingColum
 }
 
 template <class A>
-void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table, const ShadedRays& rays,
+void begin_shading_code(const InteractionBlock& s, const ShadingMaterial* table, const ArrivingRays& rays,
                         ShadingColumns& c) {
   using F = ShadingLanes<A>;
   c.varying = c.sending = 0;
@@ -174,12 +179,12 @@ OKTETT_INLINE F profile_values(const AimedProfile& profile, const Vec3<F>& l) {
 }
 
 template <class A>
-std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light, const ShadingColumns& c,
-                             const ShadowColumns& out) {
+void shadow_rays_code(const InteractionBlock& s, const LightSource& light, const ShadingColumns& c,
+                      ShadowColumns& out) {
   using F = ShadingLanes<A>;
   const F zero(0.0f);
   const Vec3<F> place = broadcast<F>(light.place), light_color = broadcast<F>(light.color);
-  std::size_t end = 0;
+  std::size_t end = out.size;
   for (std::size_t i = 0; i < c.count; i += F::kWidth) {
     if (none(~(F::load(c.diffuse + i) == zero) | ~(F::load(c.specular + i) == zero))) continue;
     const Vec3<F> position = load_lanes<F>(s.position, i);
@@ -211,7 +216,152 @@ std::size_t shadow_rays_code(const InteractionBlock& s, const LightSource& light
     for (int k = 0; k < F::kWidth; k += 8) owner += store_compact<A>(lit >> k & 0xff, c.ray + i + k, owner);
     end += static_cast<std::size_t>(__builtin_popcount(lit));
   }
-  return end;
+  out.size = end;
+}
+
+// ---- Rays that mirrors and glass send out.
+
+/// Writes rays that leave hits i, i + 1, ... in `lanes` with these directions and weights, except those that
+/// are not worth tracing.
+template <class F>
+OKTETT_INLINE void put_bounces(const InteractionBlock& s, const ShadingColumns& c, std::size_t i,
+                               unsigned lanes, const Vec3<F>& direction, const Vec3<F>& weight,
+                               BounceColumns& out) {
+  const F zero(0.0f), least(kLeastThroughput);
+  const Vec3<F> arriving = load_lanes<F>(c.throughput, i);
+  const Vec3<F> throughput{arriving.x * weight.x, arriving.y * weight.y, arriving.z * weight.z};
+  const unsigned sent = lanes & ~bits((weight.x == zero) & (weight.y == zero) & (weight.z == zero)) &
+                        ~bits((throughput.x < least) & (throughput.y < least) & (throughput.z < least));
+  if (sent == 0) return;
+  out.sent |= std::uint64_t{sent} << i;
+  store_lanes(offset_lanes(load_lanes<F>(s.position, i), load_lanes<F>(s.position_error, i),
+                           load_lanes<F>(s.geometric_normal, i), direction),
+              out.origin, i);
+  store_lanes(direction, out.direction, i), store_lanes(throughput, out.throughput, i);
+}
+
+template <class A>
+void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, BounceColumns& mirrored,
+                      BounceColumns& refracted) {
+  using F = ShadingLanes<A>;
+  const F zero(0.0f), one(1.0f);
+  for (std::size_t i = 0; i < c.count; i += F::kWidth) {
+    const F reflection = F::load(c.reflection + i), transparency = F::load(c.transparency + i);
+    const unsigned real = real_lanes<F>(c, i);
+    const unsigned clear = ~bits(transparency == zero) & real;
+    if (((~bits(reflection == zero) & real) | clear) == 0) continue;
+    const Vec3<F> d = load_lanes<F>(c.direction, i), ns = load_lanes<F>(c.ns, i), ng = load_lanes<F>(c.ng, i);
+    Vec3<F> mirror = scale_lanes(load_lanes<F>(c.specular_color, i), reflection);
+    if (clear != 0) {
+      const F eta = F::load(c.eta + i);
+      Vec3<F> direction;
+      auto exists = refract_lanes(d, ns, eta, direction);
+      // The direction must lead below the true surface.
+      const auto above = exists & (zero <= dot_lanes(direction, ng));
+      if (any(above)) {
+        Vec3<F> other;
+        const auto there = refract_lanes(d, ng, eta, other);
+        direction = select_lanes(above, other, direction);
+        exists = (exists & ~above) | (above & there);
+      }
+      const F reflectance =
+          select(exists, to_float(fresnel_lanes(to_double(-dot_lanes(d, ns)), to_double(eta))), one);
+      const F more = transparency * reflectance;
+      mirror = {mirror.x + more, mirror.y + more, mirror.z + more};
+      put_bounces(s, c, i, clear & bits(exists), direction,
+                  scale_lanes(load_lanes<F>(c.color, i), transparency * (one - reflectance)), refracted);
+    }
+    put_bounces(s, c, i, real, reflect_above_lanes(d, ns, ng), mirror, mirrored);
+  }
+}
+
+template <class A>
+void queue_rays_code(const BounceColumns& leaving, const std::uint32_t* rays, const ArrivingRays& from,
+                     OnwardColumns& to) {
+  using F = ShadingLanes<A>;
+  constexpr std::size_t W = F::kWidth;
+  std::size_t end = to.size;
+  for (std::size_t i = 0; i < ShadingColumns::kMost; i += W) {
+    const auto lanes = static_cast<unsigned>(leaving.sent >> i) & ((1u << W) - 1);
+    if (lanes == 0) continue;
+    store_compact(lanes, load_lanes<F>(leaving.origin, i), to.origin, end);
+    store_compact(lanes, load_lanes<F>(leaving.direction, i), to.direction, end);
+    store_compact(lanes, load_lanes<F>(leaving.throughput, i), to.throughput, end);
+    for (unsigned left = lanes; left != 0; left &= left - 1, ++end) {
+      const std::uint32_t ray = rays[i + static_cast<unsigned>(__builtin_ctz(left))];
+      to.sample[end] = from.sample[ray];
+      to.distance[end] = from.distance[ray] + from.t[ray];
+      to.bounces[end] = static_cast<std::uint8_t>(from.bounces[ray] + 1);
+    }
+  }
+  to.size = end;
+}
+
+// ---- The start of shading by path tracing: what it knows of the hits of a block, and random numbers.
+
+/// sobol_point for all hits, as whole numbers. Plain loops, which compilers turn into vector code.
+template <class A>
+void sobol_words(const PathBlock& c, std::uint32_t dimension, std::uint32_t* x, std::uint32_t* y) {
+  std::uint64_t key[PathBlock::kMost];
+  std::uint32_t number[PathBlock::kMost];
+  const std::uint64_t step = (std::uint64_t{dimension} + 1) * kGoldenBits;
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i) key[i] = mix_bits(c.key[i] + step);
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i) number[i] = shuffled_sample(c.number[i], key[i]);
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i)
+    x[i] = reversed_bits(scrambled_upwards(number[i], static_cast<std::uint32_t>(key[i])));
+  if (y == nullptr) return;
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i)
+    y[i] =
+        reversed_bits(scrambled_upwards(pascal_product(number[i]), static_cast<std::uint32_t>(key[i] >> 32)));
+}
+
+template <class A>
+void sobol_points_of(const PathBlock& c, std::uint32_t dimension, double* x, double* y) {
+  std::uint32_t words[2][PathBlock::kMost];
+  sobol_words<A>(c, dimension, words[0], y != nullptr ? words[1] : nullptr);
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i) x[i] = words[0][i] * 0x1p-32;
+  if (y == nullptr) return;
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i) y[i] = words[1][i] * 0x1p-32;
+}
+
+template <class A>
+void sobol_numbers_of(const PathBlock& c, std::uint32_t dimension, float* x) {
+  std::uint32_t words[PathBlock::kMost];
+  sobol_words<A>(c, dimension, words, nullptr);
+  for (std::size_t i = 0; i < PathBlock::kMost; ++i)
+    x[i] = static_cast<float>(static_cast<std::int32_t>(words[i] >> 8)) * 0x1p-24f;
+}
+
+template <class A>
+void begin_path_code(const InteractionBlock& s, const ArrivingRays& rays, unsigned level, PathBlock& c) {
+  using F = Simd<float, kDoubleLanes<A>, A>;
+  c.behind = 0;
+  for (std::size_t i = 0; i < c.count; i += F::kWidth) {
+    const PickedLanes<F> ray(c.ray + i);
+    const auto load = [&](const float* const(&column)[3]) {
+      return Vec3<F>{ray.load(column[0]), ray.load(column[1]), ray.load(column[2])};
+    };
+    const auto row = [&](const float(&column)[3][PathBlock::kMost]) {
+      return Vec3<F>{F::load(column[0] + i), F::load(column[1] + i), F::load(column[2] + i)};
+    };
+    const auto put = [&](const Vec3<F>& v, float(&column)[3][PathBlock::kMost]) {
+      v.x.store(column[0] + i), v.y.store(column[1] + i), v.z.store(column[2] + i);
+    };
+    const Vec3<F> direction = load(rays.direction);
+    Vec3<F> ng, ns;
+    const auto behind = face_ray(direction, row(s.geometric_normal), row(s.shading_normal), ng, ns);
+    c.behind |= std::uint64_t{bits(behind)} << i;
+    put(direction, c.direction), put(load(rays.throughput), c.throughput), put(ng, c.ng), put(ns, c.ns);
+  }
+  const auto of = [&](Decision decision) { return dimension(decision, level); };
+  sobol_numbers_of<A>(c, of(Decision::lobe), c.lobe);
+  sobol_points_of<A>(c, of(Decision::direction), c.direction_x, c.direction_y);
+  if (c.asks_lights) {
+    sobol_points_of<A>(c, of(Decision::light), c.light, nullptr);
+    sobol_points_of<A>(c, of(Decision::light_place), c.light_x, c.light_y);
+  }
+  // A path has no more bounces than its wavefront.
+  if (level + 1 > kSureBounces) sobol_numbers_of<A>(c, of(Decision::roulette), c.roulette);
 }
 
 }  // namespace oktett

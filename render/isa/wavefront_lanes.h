@@ -4,7 +4,7 @@
 #include "core/simd_memory.h"
 #include "core/simd_order.h"
 #include "render/isa/shading.h"
-#include "render/transport/color_column.h"
+#include "render/transport/ray_queue.h"
 
 namespace oktett {
 

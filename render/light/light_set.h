@@ -9,7 +9,7 @@
 #include "render/light/emitter.h"
 #include "render/light/light_sample.h"
 #include "render/light/light_tree.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 

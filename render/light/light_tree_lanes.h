@@ -12,8 +12,8 @@
 #include "core/platform.h"
 #include "core/simd.h"
 #include "core/vec3.h"
-#include "render/light/light_quad.h"
 #include "render/light/light_sample.h"
+#include "render/light/light_tree.h"
 
 namespace oktett {
 

@@ -2,13 +2,50 @@
 /// \file Light on its way through a medium: how much passes, and where it is scattered.
 
 #include <cstdint>
+#include <limits>
 
 #include "core/random.h"
 #include "core/vec3.h"
+#include "render/medium/density_grid.h"
 #include "render/medium/medium.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
+
+// ---- How a medium scatters light: the phase function of Henyey and Greenstein (1941).
+
+/// Density per solid angle of scattering from `direction`, in which light or a path travels, into `onward`.
+/// It is also the value of the phase function. `anisotropy` is clamped to kMostAnisotropy.
+float phase_value(const Vec3f& direction, const Vec3f& onward, float anisotropy);
+
+/// A direction of that density.
+Vec3f phase_direction(const Vec3f& direction, float anisotropy, const SquareSample& u);
+
+// ---- The blocks of a DensityGrid along a ray, in order (Amanatides and Woo 1987).
+
+/// A part of a ray within one block.
+struct BlockSpan {
+  double begin = 0, end = 0;  ///< distances along the ray
+  double most = 0;            ///< no density in it is greater
+};
+
+class BlockWalk {
+ public:
+  /// Origin and direction in units of cells; the part of the ray from 0 to `length` is walked.
+  BlockWalk(const DensityGrid& grid, const Vec3d& origin, const Vec3d& direction, double length);
+
+  /// The next block; false behind the last one.
+  bool next(BlockSpan& span);
+
+ private:
+  const DensityGrid& grid_;
+  double begin_ = 0, end_ = 0;
+  int block_[3] = {}, step_[3] = {};
+  double crossing_[3] = {}, across_[3] = {};  ///< distance to the next border along each axis, and between
+                                              ///< two borders
+};
+
+// ---- Tracking.
 
 /// As many random numbers as a ray needs, in order.
 class TrackingNumbers {

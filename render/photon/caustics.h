@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "render/path_surface.h"
 #include "render/photon/photon_map.h"
 #include "render/photon/photon_source.h"
-#include "render/surface_bsdf.h"
 
 namespace oktett {
 

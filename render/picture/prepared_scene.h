@@ -3,13 +3,27 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "core/box.h"
 #include "render/geometry.h"
 #include "render/picture/render.h"
 #include "render/scene.h"
 #include "render/scene_lights.h"
 
 namespace oktett {
+
+// ---- A camera and lights for scenes that state none.
+
+/// A camera that looks at the centre of `bounds` from a three-quarter view, as near as it can be with all of
+/// the box in the frame. Field of view, projection and up direction are those of `given`. Empty or non-finite
+/// bounds count as the box from -1 to 1.
+Camera frame_bounds(const Box& bounds, const Camera& given, const Film& film);
+
+/// A key light from above left of the camera and a weaker fill light from its right.
+std::vector<Light> default_lights(const Camera& camera, const Film& film);
+
+// ---- The scene.
 
 /// What of a scene may change from picture to picture.
 struct PictureSettings {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/random.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett {
 

@@ -48,41 +48,4 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
 /// Which queue of a Wavefront holds the shadow rays of path tracing to lights that other rays can meet.
 inline constexpr std::size_t kAreaQueue = 1;
 
-/// Ambient occlusion: white times the cosine-weighted fraction of directions that meet nothing within the
-/// radius.
-void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                             const ShadingPoint& p);
-
-// Pictures of what the camera sees, without light. See render/transport/flat_integrators.cpp.
-
-/// The shading normal in world space, [-1, 1] shown as [0, 1].
-void shade_normal(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// Distance along the view axis: white at the near end of the scene's bounds, black at the far end.
-void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// The colour of the material, textures included.
-void shade_albedo(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// The fractional parts of u and v as red and green.
-void shade_uv(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// The place between the two ends of the scene's bounds, [0, 1] along x, y and z as red, green and blue.
-void shade_position(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                    const ShadingPoint& p);
-
-/// A colour made of the number of the object.
-void shade_object(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// A colour made of the numbers of the object and of the primitive in it.
-void shade_primitive(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                     const ShadingPoint& p);
-
-/// The cosine between the shading normal and the viewer: grey on front sides, red on backs.
-void shade_facing(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
-/// Dark lines, one pixel wide, along the edges of triangles, on surfaces that are brighter the more they face
-/// the viewer.
-void shade_wire(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p);
-
 }  // namespace oktett

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "render/medium/phase.h"
+#include "render/medium/medium_tracker.h"
 #include "render/sampling/owen_sobol.h"
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
@@ -136,7 +136,7 @@ void shade_scattering(const RenderContext& context, Wavefront& wavefront,
     const EnclosureStack* const around = &wavefront.paths.enclosures[c.ray[k]];
     const float anisotropy = context.media[events[k]->medium].anisotropy();
     output.shade_alone(c, k, around, around, false, [&](PathQueues& out) {
-      shade_path_run<MediumScattering>(found, path_rays(wavefront), c, anisotropy, true, {&k, 1}, out);
+      shade_path_run<MediumScattering>(found, arriving_rays(wavefront), c, anisotropy, true, {&k, 1}, out);
     });
   }
   output.finish();

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "render/path_surface.h"
 #include "render/photon/caustics.h"
 #include "render/sampling/owen_sobol.h"
-#include "render/surface_bsdf.h"
 #include "render/transport/grouped_light.h"
 #include "render/transport/integrators.h"
 #include "render/transport/path_lights.h"
@@ -64,19 +64,7 @@ void add_caustics(const RenderContext& context, Wavefront& wavefront, std::size_
 
 // ---- Blocks
 
-PathRays path_rays(const Wavefront& wavefront) {
-  PathRays rays;
-  for (int k = 0; k < 3; ++k) {
-    rays.direction[k] = wavefront.rays.rays.direction[k].data();
-    rays.throughput[k] = wavefront.rays.throughput.part[k].data();
-  }
-  rays.distance = wavefront.rays.distance.data();
-  rays.t = wavefront.hits.t.data();
-  rays.sample = wavefront.rays.sample.data();
-  return rays;
-}
-
-void begin_path_block(const RenderContext& context, const Wavefront& wavefront, const std::uint32_t* which,
+void begin_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                       const InteractionBlock& found, PathBlock& c) {
   for (std::size_t k = 0; k < kMostHits; ++k) {
     const std::uint32_t i = which[std::min(k, c.count - 1)], sample = wavefront.rays.sample[i];
@@ -86,7 +74,7 @@ void begin_path_block(const RenderContext& context, const Wavefront& wavefront, 
     c.bounces[k] = wavefront.rays.bounces[i];
   }
   c.asks_lights = !context.sampled->set().empty();
-  render_code(context.isa).begin_path(found, path_rays(wavefront), wavefront.level, c);
+  render_code(context.isa).begin_path(found, arriving_rays(wavefront), wavefront.level, c);
 }
 
 void choose_lights(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* entry,
@@ -98,35 +86,11 @@ void choose_lights(const RenderContext& context, Wavefront& wavefront, const std
       wavefront.sampled_emitter[c.ray[entry[i]]] = c.light_emitter[entry[i]];
 }
 
-static PathShadows end_of(ShadowQueue& queue, std::size_t count) {
-  PathShadows to;
-  to.size = queue.size();
-  queue.resize_uninitialized(to.size + count + kGroup);
-  for (int k = 0; k < 3; ++k) {
-    to.origin[k] = queue.rays.origin[k].data();
-    to.direction[k] = queue.rays.direction[k].data();
-    to.light[k] = queue.light.part[k].data();
-  }
-  to.tmax = queue.rays.tmax.data();
-  to.owner = queue.owner.data();
-  return to;
-}
-
-static PathOnward end_of(RayQueue& queue, PathColumns& paths, std::size_t count) {
-  PathOnward to;
-  to.size = queue.size();
-  queue.resize_uninitialized(to.size + count + kGroup);
-  paths.resize_uninitialized(to.size + count + kGroup);
-  for (int k = 0; k < 3; ++k) {
-    to.origin[k] = queue.rays.origin[k].data();
-    to.direction[k] = queue.rays.direction[k].data();
-    to.throughput[k] = queue.throughput.part[k].data();
-  }
-  to.distance = queue.distance.data();
+static PathOnward end_of(RayQueue& queue, PathColumns& paths, std::size_t more) {
+  PathOnward to{end_of(queue, more), nullptr, nullptr};
+  paths.resize_uninitialized(queue.size());
   to.pdf = paths.pdf.data();
   to.from = paths.from.data();
-  to.sample = queue.sample.data();
-  to.bounces = queue.bounces.data();
   return to;
 }
 
@@ -171,9 +135,7 @@ void PathOutput::finish() {
   };
   fill(delta.rays.tmin, deltas_, delta.size(), like.tmin);
   fill(area.rays.tmin, areas_, area.size(), like.tmin);
-  fill(next.rays.tmin, onward_, next.size(), like.tmin);
-  fill(next.rays.tmax, onward_, next.size(), like.tmax);
-  std::fill(next.from_camera.data() + onward_, next.from_camera.data() + next.size(), std::uint8_t{0});
+  finish_rays(next, onward_);
   wavefront_.counts.refracted += queues_.next.transmitted;
   wavefront_.counts.reflected += next.size() - onward_ - queues_.next.transmitted;
 }
@@ -203,7 +165,7 @@ std::size_t take_first_surface(Shown* shown, std::size_t count, std::uint32_t* e
   return taken;
 }
 
-void shade_run(const RenderCode& code, const InteractionBlock& found, const PathRays& rays,
+void shade_run(const RenderCode& code, const InteractionBlock& found, const ArrivingRays& rays,
                const PathBlock& c, const PathSurface& surface, const PathRun& run, PathQueues& out) {
   if (surface.principled)
     code.shade_principled(found, rays, c, surface.layers, surface.transmits, run, out);
@@ -222,7 +184,8 @@ void shade_runs(const RenderContext& context, Wavefront& wavefront, const Intera
     count -= run.count;
     count_lanes(wavefront, run.count, code.path_lanes);
     for (std::size_t k = 0; k < kGroup; ++k) entry[run.count + k] = entry[run.count - 1];
-    shade_run(code, found, path_rays(wavefront), c, (*context.path_surfaces)[number], run, output.queues());
+    shade_run(code, found, arriving_rays(wavefront), c, (*context.path_surfaces)[number], run,
+              output.queues());
   }
 }
 
@@ -234,7 +197,8 @@ void shade_lone(const RenderContext& context, Wavefront& wavefront, const Intera
     add_caustics(context, wavefront, ray, hit.point);
   const EnclosureStack* const around = context.tracks_enclosures ? &wavefront.paths.enclosures[ray] : nullptr;
   output.shade_alone(c, hit.entry, around, &hit.boundary.behind, true, [&](PathQueues& out) {
-    shade_run(render_code(Isa::scalar), found, path_rays(wavefront), c, hit.surface, {&hit.entry, 1}, out);
+    shade_run(render_code(Isa::scalar), found, arriving_rays(wavefront), c, hit.surface, {&hit.entry, 1},
+              out);
   });
 }
 

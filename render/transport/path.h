@@ -19,11 +19,8 @@ inline bool is_caustic(const RenderContext& context, const Wavefront& wavefront,
          wavefront.paths.scattered[ray] != 0;
 }
 
-/// The columns of the wavefront's rays.
-PathRays path_rays(const Wavefront& wavefront);
-
 /// Fills a block of the hits of rays `which`, `c.count` of them, up to the random numbers.
-void begin_path_block(const RenderContext& context, const Wavefront& wavefront, const std::uint32_t* which,
+void begin_path_block(const RenderContext& context, Wavefront& wavefront, const std::uint32_t* which,
                       const InteractionBlock& found, PathBlock& c);
 
 /// Chooses a light for each of the `count` entries listed in `entry`, whose `from` is set.

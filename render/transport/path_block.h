@@ -6,6 +6,7 @@
 #include "accel/interaction_block.h"
 #include "render/light/light_sample.h"
 #include "render/path_surface.h"
+#include "render/shading_columns.h"
 
 namespace oktett {
 
@@ -60,39 +61,22 @@ struct PathBlock {
   LightPoint from[kMost];  ///< for which lights are sampled, of the hits that are shaded in lanes
 };
 
-/// The columns of a wavefront's rays that a PathBlock is filled from.
-struct PathRays {
-  const float *direction[3], *throughput[3], *distance;
-  const float* t;  ///< of the hits
-  const std::uint32_t* sample;
-};
-
 /// Hits of one PathSurface: entries of a PathBlock, the last one repeated to the end of its group.
 struct PathRun {
   const std::uint32_t* entry;
   std::size_t count;
 };
 
-/// The columns of a queue of shadow rays. One group more than there are hits may be overwritten.
-struct PathShadows {
-  float *origin[3], *direction[3], *tmax, *light[3];
-  std::uint32_t* owner;
-  std::size_t size;  ///< grows
-};
-
-/// The columns of the next bounce. One group more than there are hits may be overwritten.
-struct PathOnward {
-  float *origin[3], *direction[3], *throughput[3], *distance, *pdf;
-  std::uint32_t* sample;
-  std::uint8_t* bounces;
+/// The columns of the next bounce.
+struct PathOnward : OnwardColumns {
+  float* pdf;
   LightPoint* from;
-  std::size_t size;               ///< grows
   std::uint64_t transmitted = 0;  ///< how many of the rays are
 };
 
 /// Where the rays of a block go.
 struct PathQueues {
-  PathShadows delta, area;
+  ShadowColumns delta, area;
   PathOnward next;
 };
 

@@ -8,7 +8,7 @@
 #include "core/simd_memory.h"
 #include "core/simd_native.h"
 #include "core/simd_order.h"
-#include "render/bsdf/shading_frame.h"
+#include "render/bsdf/lobe_lanes.h"
 #include "render/shading_lanes.h"
 #include "render/transport/path_block.h"
 
@@ -58,7 +58,7 @@ class PathShading {
   using M = typename F::M;
   static constexpr int W = D::kWidth;
 
-  PathShading(const InteractionBlock& found, const PathRays& rays, const PathBlock& block, bool transmits,
+  PathShading(const InteractionBlock& found, const ArrivingRays& rays, const PathBlock& block, bool transmits,
               PathQueues& out)
       : found_(found), rays_(rays), c_(block), transmits_(transmits), out_(out) {}
 
@@ -126,7 +126,7 @@ class PathShading {
     for (const bool straight : {true, false}) {
       const unsigned which = lit & (straight ? points : areas);
       if (which == 0) continue;
-      PathShadows& to = straight ? out_.delta : out_.area;
+      ShadowColumns& to = straight ? out_.delta : out_.area;
       store_compact(which, start, to.origin, to.size);
       store_compact(which, direction, to.direction, to.size);
       store_compact(which, arriving, to.light, to.size);
@@ -170,7 +170,7 @@ class PathShading {
   }
 
   const InteractionBlock& found_;
-  const PathRays& rays_;
+  const ArrivingRays& rays_;
   const PathBlock& c_;
   bool transmits_;
   PathQueues& out_;
@@ -180,7 +180,7 @@ class PathShading {
 };
 
 template <class Scattering>
-void shade_path_run(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+void shade_path_run(const InteractionBlock& found, const ArrivingRays& rays, const PathBlock& block,
                     const typename Scattering::Surface& surface, bool transmits, const PathRun& run,
                     PathQueues& out) {
   PathShading<Scattering> shading(found, rays, block, transmits, out);
@@ -192,10 +192,10 @@ void shade_path_run(const InteractionBlock& found, const PathRays& rays, const P
 }
 
 template <class A>
-void shade_phong_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+void shade_phong_code(const InteractionBlock& found, const ArrivingRays& rays, const PathBlock& block,
                       const PhongSurface& surface, bool transmits, const PathRun& run, PathQueues& out);
 template <class A>
-void shade_principled_code(const InteractionBlock& found, const PathRays& rays, const PathBlock& block,
+void shade_principled_code(const InteractionBlock& found, const ArrivingRays& rays, const PathBlock& block,
                            const PrincipledSurface& surface, bool transmits, const PathRun& run,
                            PathQueues& out);
 

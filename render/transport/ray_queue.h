@@ -2,6 +2,7 @@
 /// \file Queues of rays to trace, each with the sample that it belongs to.
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -10,9 +11,33 @@
 #include "core/vec3.h"
 #include "render/enclosures.h"
 #include "render/light/light_sample.h"
-#include "render/transport/color_column.h"
 
 namespace oktett {
+
+struct ColorColumn {
+  Column<float> part[3];  ///< red, green, blue
+
+  std::size_t size() const { return part[0].size(); }
+  bool empty() const { return part[0].empty(); }
+  /// Colours that are new hold no defined value.
+  void resize_uninitialized(std::size_t n) {
+    for (Column<float>& p : part) p.resize_uninitialized(n);
+  }
+  /// Sets the first `count` colours.
+  void fill(std::size_t count, const Color& color) {
+    for (int k = 0; k < 3; ++k) std::fill_n(part[k].data(), count, color[k]);
+  }
+  Color operator[](std::size_t i) const { return {part[0][i], part[1][i], part[2][i]}; }
+  void set(std::size_t i, const Color& color) {
+    for (int k = 0; k < 3; ++k) part[k][i] = color[k];
+  }
+  void add(std::size_t i, const Color& color) {
+    for (int k = 0; k < 3; ++k) part[k][i] += color[k];
+  }
+  void push_back(const Color& color) {
+    for (int k = 0; k < 3; ++k) part[k].push_back(color[k]);
+  }
+};
 
 /// Rays of unit direction with their state, in columns. Clearing a queue keeps its memory.
 struct RayQueue {

@@ -4,9 +4,9 @@
 #include "core/isa.h"
 #include "render/context.h"
 #include "render/shading_columns.h"
-#include "render/transport/color_column.h"
 #include "render/transport/path_block.h"
 #include "render/transport/path_lights.h"
+#include "render/transport/ray_queue.h"
 
 namespace oktett {
 
@@ -34,28 +34,26 @@ struct RenderCode {
   void (*sobol_points)(std::uint32_t first, std::uint32_t last, std::uint64_t key, double* x, double* y);
   /// Fills all columns after `ray` and `material` from the rays and from a table of materials, and adds their
   /// unlit light, except for materials that vary, to the radiance of the rays.
-  void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ShadedRays&,
+  void (*begin_shading)(const InteractionBlock&, const ShadingMaterial* table, const ArrivingRays&,
                         ShadingColumns&);
   /// Writes the rays to one light, with the light that they carry if nothing blocks them, for all hits that
-  /// it could reach. Returns their number.
-  std::size_t (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&,
-                             const ShadowColumns& out);
+  /// it could reach. Their tmin and tmax are left out.
+  void (*shadow_rays)(const InteractionBlock&, const LightSource&, const ShadingColumns&, ShadowColumns& out);
   /// Adds the rays that mirrors and glass send out. Those that would bring next to no light are left out.
   void (*bounce_rays)(const InteractionBlock&, const ShadingColumns&, BounceColumns& mirrored,
                       BounceColumns& refracted);
   /// Writes the rays that are sent, in the order of their hits. `rays`: entries of the rays that arrive at
   /// these.
-  void (*queue_rays)(const BounceColumns&, const std::uint32_t* rays, const ArrivingRays&,
-                     const QueuedRays& to);
+  void (*queue_rays)(const BounceColumns&, const std::uint32_t* rays, const ArrivingRays&, OnwardColumns& to);
 
   /// Fills the columns of a PathBlock up to the random numbers, but those for `ray`, `key`, `number` and
   /// `bounces`, which are given.
-  void (*begin_path)(const InteractionBlock&, const PathRays&, unsigned level, PathBlock&);
+  void (*begin_path)(const InteractionBlock&, const ArrivingRays&, unsigned level, PathBlock&);
   /// Writes the shadow rays and the rays of the next bounce of hits of one surface. All columns of the block
   /// are filled.
-  void (*shade_phong)(const InteractionBlock&, const PathRays&, const PathBlock&, const PhongSurface&,
+  void (*shade_phong)(const InteractionBlock&, const ArrivingRays&, const PathBlock&, const PhongSurface&,
                       bool transmits, const PathRun&, PathQueues&);
-  void (*shade_principled)(const InteractionBlock&, const PathRays&, const PathBlock&,
+  void (*shade_principled)(const InteractionBlock&, const ArrivingRays&, const PathBlock&,
                            const PrincipledSurface&, bool transmits, const PathRun&, PathQueues&);
   LightCode lights;
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "accel/accel.h"
 #include "render/shading_point.h"
 #include "render/transport/grouped_light.h"
+#include "render/transport/medium_paths.h"
 #include "render/transport/render_code.h"
 
 namespace oktett {
@@ -99,6 +102,107 @@ void trace_shadows(const RenderContext& context, Wavefront& wavefront, ShadowQue
   if (context.light_groups == nullptr) return;
   for (std::size_t i = 0; i < queue.size(); ++i)
     if (!is_black(queue.light[i])) add_shadow_to_layers(context, wavefront, queue, i, queue.light[i]);
+}
+
+namespace {
+
+/// Shadow rays on their way through media and transparent surfaces.
+struct ShadowWalks {
+  struct State {
+    std::uint32_t entry;  ///< of the queue
+    Color light;          ///< what is left of it
+    EnclosureStack enclosures;
+    TrackingNumbers numbers;
+  };
+  RayBatch rays;
+  std::vector<State> states;
+
+  void push_back(const Ray& ray, const State& state) { rays.push_back(ray), states.push_back(state); }
+  void clear() { rays.resize_uninitialized(0), states.clear(); }
+};
+
+/// Takes the walks of one queue from surface to surface.
+class ShadowWalker {
+ public:
+  ShadowWalker(const RenderContext& context, ShadowRule rule) : context_(context), rule_(rule) {}
+
+  /// Replaces `walks` by their parts behind the next surface. The light of those that meet none goes to
+  /// `arriving`, at their entry.
+  void step(ShadowWalks& walks, std::vector<Color>& arriving) {
+    const Accel& accel = *context_.world->accel;
+    hits_.resize_uninitialized(walks.states.size());
+    closest_hit(accel, walks.rays.span(), hits_.span(), context_.isa);
+    kept_.clear();
+    for (std::uint32_t k = 0; k < walks.states.size(); ++k) {
+      if (!pass_medium(walks.rays[k], hits_[k], walks.states[k])) continue;
+      if (hits_[k].valid())
+        kept_.push_back(k);
+      else
+        arriving[walks.states[k].entry] = walks.states[k].light;
+    }
+    rest_.clear();
+    for (std::size_t first = 0; first < kept_.size(); first += InteractionBlock::kMost) {
+      const std::size_t count = std::min(InteractionBlock::kMost, kept_.size() - first);
+      const auto which = std::span(kept_).subspan(first, count);
+      surface_interactions(accel, walks.rays, hits_, which, found_, context_.isa);
+      for (std::size_t n = 0; n < count; ++n)
+        pass_surface(walks.rays[which[n]], hits_[which[n]], found_[n], walks.states[which[n]]);
+    }
+    std::swap(walks, rest_);
+  }
+
+ private:
+  /// Attenuates the light of a walk before its hit, or before its end. False if nothing is left, or if the
+  /// surface surely stops it.
+  bool pass_medium(const Ray& ray, const Hit& hit, ShadowWalks::State& state) const {
+    const World& world = *context_.world;
+    if (hit.valid()) {
+      const Material& m = material_at(world, identify(*world.accel, hit));
+      if (is_opaque(m, rule_) && !encloses(m)) return false;
+    }
+    const std::uint32_t medium = medium_in(world, state.enclosures, context_.outer_medium);
+    if (medium == kNoId) return true;
+    const Vec3d direction(ray.direction);
+    const double scale = length(direction), end = static_cast<double>(hit.valid() ? hit.t : ray.tmax);
+    const MediumSegment segment{ray.origin, Vec3f(direction / scale), end * scale};
+    state.light = state.light * context_.media[medium].transmittance(segment, state.numbers);
+    return !is_black(state.light);
+  }
+
+  void pass_surface(const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
+                    const ShadowWalks::State& state) {
+    const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
+    const Boundary boundary =
+        boundary_at(*context_.world, state.enclosures, s, front, index_of_refraction(context_, ray, hit, s));
+    Color light = state.light;
+    if (!boundary.hidden) light = light * transmittance(context_, ray, hit, s, rule_, boundary.ior);
+    if (is_black(light)) return;
+    rest_.push_back(continue_behind(ray, s), {state.entry, light, boundary.behind, state.numbers});
+  }
+
+  const RenderContext& context_;
+  ShadowRule rule_;
+  HitBatch hits_;
+  std::vector<std::uint32_t> kept_;  ///< walks that met a surface
+  InteractionBlock found_;
+  ShadowWalks rest_;
+};
+
+}  // namespace
+
+void trace_shadows_in_media(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue,
+                            ShadowRule rule) {
+  if (queue.size() == 0) return;
+  ShadowWalks walks;
+  for (std::uint32_t i = 0; i < queue.size(); ++i)
+    walks.push_back(queue.rays[i], {i, queue.light[i], queue.enclosures[i],
+                                    tracking_numbers(wavefront, queue.owner[i], MediumDecision::shadow)});
+  std::vector<Color> arriving(queue.size(), Color{0, 0, 0});
+  ShadowWalker walker(context, rule);
+  for (unsigned layer = 0; layer < kMostPassages && !walks.states.empty(); ++layer)
+    walker.step(walks, arriving);
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    if (!is_black(arriving[i])) add_arriving(context, wavefront, queue, i, arriving[i]);
 }
 
 }  // namespace oktett

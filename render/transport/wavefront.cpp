@@ -1,6 +1,7 @@
 #include "render/transport/wavefront.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "accel/accel.h"
@@ -10,11 +11,163 @@
 #include "render/transport/integrators.h"
 #include "render/transport/medium_paths.h"
 #include "render/transport/path.h"
-#include "render/transport/penumbra.h"
 #include "render/transport/render_code.h"
 #include "render/transport/shadow.h"
 
 namespace oktett {
+
+// ---- Penumbras of lamps in Whitted's model: a hit that sees some points of its pattern and not others asks
+// more points. Penumbras are a small part of most pictures but hold nearly all noise of soft shadows.
+
+namespace {
+
+/// What Wavefront::lamp_view holds of a ray's hit.
+enum View : std::uint8_t { kSeesPoint = 1, kMissesPoint = 2, kBoth = 3, kListed = 4 };
+
+/// Rays are traced when this many have gathered.
+constexpr std::size_t kBatch = 4096;
+
+std::span<ShadowQueue> lamp_queues(const RenderContext& context, Wavefront& wavefront) {
+  return std::span(wavefront.shadows).subspan(context.lights.size(), context.area_lights.samples);
+}
+
+float share_of_pattern(const AreaLights& area) { return 1.0f / static_cast<float>(area.penumbra); }
+
+/// Notes which points the owners of `queue` see.
+void note_view(const ShadowQueue& queue, Column<std::uint8_t>& view) {
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    view[queue.owner[i]] |= is_black(queue.light[i]) ? kMissesPoint : kSeesPoint;
+}
+
+void add_lamp_light(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue) {
+  const float share = share_of_pattern(context.area_lights);
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const std::uint32_t owner = queue.owner[i];
+    std::uint8_t& view = wavefront.lamp_view[owner];
+    Color light = queue.light[i];
+    if (context.area_lights.penumbra > 1 && (view & kBoth) == kBoth) {
+      if ((view & kListed) == 0) wavefront.penumbra.push_back(owner);
+      view |= kListed;
+      light = light * share;
+    }
+    if (!is_black(light)) add_arriving(context, wavefront, queue, i, light);
+  }
+}
+
+void trace_penumbra_rays(const RenderContext& context, Wavefront& wavefront, ShadowQueue& queue) {
+  const float share = share_of_pattern(context.area_lights);
+  find_arriving(context, queue, ShadowRule::transparent_passes);
+  for (std::size_t i = 0; i < queue.size(); ++i)
+    if (const Color light = queue.light[i] * share; !is_black(light))
+      add_arriving(context, wavefront, queue, i, light);
+  count_shadow_rays(wavefront, queue.size());
+  queue.clear();
+}
+
+}  // namespace
+
+/// Makes the wavefront ready for the hits of a bounce, none of which is in a penumbra yet.
+static void start_penumbras(const RenderContext& context, Wavefront& wavefront) {
+  if (context.area_lights.empty()) return;
+  wavefront.lamp_view.resize_uninitialized(wavefront.rays.size());
+  std::fill_n(wavefront.lamp_view.data(), wavefront.rays.size(), std::uint8_t{0});
+  wavefront.penumbra.clear();
+}
+
+/// Traces the queued shadow rays to points of area lights and adds the light that arrives. A hit in a
+/// penumbra receives only the share of the points that it has asked so far, and is put on
+/// `wavefront.penumbra`. All rays of a hit must be queued at once.
+static void flush_lamp_shadows(const RenderContext& context, Wavefront& wavefront) {
+  const std::span<ShadowQueue> queues = lamp_queues(context, wavefront);
+  for (ShadowQueue& queue : queues) {
+    count_shadow_rays(wavefront, queue.size());
+    if (queue.size() == 0) continue;
+    find_arriving(context, queue, ShadowRule::transparent_passes);
+    note_view(queue, wavefront.lamp_view);
+  }
+  for (ShadowQueue& queue : queues) {
+    add_lamp_light(context, wavefront, queue);
+    queue.clear();
+  }
+}
+
+/// Asks the other points for all hits on `wavefront.penumbra`, and adds their share of the light.
+static void shade_penumbras(const RenderContext& context, Wavefront& wavefront) {
+  const std::span<const std::uint32_t> hits(wavefront.penumbra);
+  const auto pattern = [&](std::uint32_t ray) { return pattern_of(wavefront, ray); };
+  ShadowQueue& queue = wavefront.penumbra_shadows;
+  InteractionBlock found;
+  for (std::size_t first = 0, last; first < hits.size(); first = last) {
+    for (last = first + 1; last < hits.size() && last < first + InteractionBlock::kMost &&
+                           pattern(hits[last]) == pattern(hits[first]);)
+      ++last;
+    const std::span<const std::uint32_t> block = hits.subspan(first, last - first);
+    surface_interactions(*context.world->accel, wavefront.rays.rays, wavefront.hits, block, found,
+                         context.isa);
+    queue_penumbra_rays(context, wavefront, block, found, queue);
+    if (queue.size() >= kBatch) trace_penumbra_rays(context, wavefront, queue);
+  }
+  if (queue.size() > 0) trace_penumbra_rays(context, wavefront, queue);
+}
+
+// ---- Columns.
+
+ArrivingRays arriving_rays(Wavefront& wavefront) {
+  ArrivingRays rays;
+  for (int k = 0; k < 3; ++k) {
+    rays.direction[k] = wavefront.rays.rays.direction[k].data();
+    rays.throughput[k] = wavefront.rays.throughput.part[k].data();
+    rays.radiance[k] = wavefront.radiance.part[k].data();
+  }
+  rays.distance = wavefront.rays.distance.data();
+  rays.t = wavefront.hits.t.data();
+  rays.sample = wavefront.rays.sample.data();
+  rays.bounces = wavefront.rays.bounces.data();
+  return rays;
+}
+
+/// Entries that the code of an instruction set may overwrite behind what it adds.
+static constexpr std::size_t kOverwritten = ShadingColumns::kGroup;
+
+ShadowColumns end_of(ShadowQueue& queue, std::size_t more) {
+  ShadowColumns to;
+  to.size = queue.size();
+  queue.resize_uninitialized(to.size + more + kOverwritten);
+  for (int k = 0; k < 3; ++k) {
+    to.origin[k] = queue.rays.origin[k].data();
+    to.direction[k] = queue.rays.direction[k].data();
+    to.light[k] = queue.light.part[k].data();
+  }
+  to.tmax = queue.rays.tmax.data();
+  to.owner = queue.owner.data();
+  return to;
+}
+
+OnwardColumns end_of(RayQueue& queue, std::size_t more) {
+  OnwardColumns to;
+  to.size = queue.size();
+  queue.resize_uninitialized(to.size + more + kOverwritten);
+  for (int k = 0; k < 3; ++k) {
+    to.origin[k] = queue.rays.origin[k].data();
+    to.direction[k] = queue.rays.direction[k].data();
+    to.throughput[k] = queue.throughput.part[k].data();
+  }
+  to.distance = queue.distance.data();
+  to.sample = queue.sample.data();
+  to.bounces = queue.bounces.data();
+  return to;
+}
+
+void finish_rays(RayQueue& queue, std::size_t first) {
+  const Ray like;
+  const std::size_t count = queue.size() - first;
+  std::fill_n(queue.rays.tmin.data() + first, count, like.tmin);
+  std::fill_n(queue.rays.tmax.data() + first, count, like.tmax);
+  std::fill_n(queue.from_camera.data() + first, count, std::uint8_t{0});
+}
+
+// ---- Wavefronts.
+
 namespace {
 
 /// Shadow rays are traced when this many have gathered.

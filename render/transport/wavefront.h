@@ -109,6 +109,15 @@ struct Wavefront {
   RayCounts counts;
 };
 
+/// The columns of its rays, whose hits are known.
+ArrivingRays arriving_rays(Wavefront& wavefront);
+/// A queue opened for at most `more` rays, which are added behind those that it holds. Afterwards it must be
+/// resized to the rays that it has then.
+ShadowColumns end_of(ShadowQueue& queue, std::size_t more);
+OnwardColumns end_of(RayQueue& queue, std::size_t more);
+/// Sets those columns of the rays from `first` on that are the same for all rays of a bounce.
+void finish_rays(RayQueue& queue, std::size_t first);
+
 /// Counts shadow rays of the present bounce.
 void count_shadow_rays(Wavefront& wavefront, std::size_t rays);
 

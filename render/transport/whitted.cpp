@@ -41,16 +41,6 @@ void name_hits(const RenderContext& context, const std::uint32_t* which, const I
     c.ray[k] = c.ray[c.count - 1], c.material[k] = c.material[c.count - 1];
 }
 
-ShadedRays shaded_rays(Wavefront& wavefront) {
-  ShadedRays rays;
-  for (int k = 0; k < 3; ++k) {
-    rays.direction[k] = wavefront.rays.rays.direction[k].data();
-    rays.throughput[k] = wavefront.rays.throughput.part[k].data();
-    rays.radiance[k] = wavefront.radiance.part[k].data();
-  }
-  return rays;
-}
-
 /// Sets what varies over a surface, for hit `k`.
 void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, ShadingColumns& c) {
   InteractionBlock::put(c.throughput, k, throughput);
@@ -121,26 +111,14 @@ void limit_bounces(const RenderContext& context, Wavefront& wavefront, const Sha
   }
 }
 
-void queue_bounces(const RenderContext& context, const Wavefront& wavefront, const ShadingColumns& c,
+void queue_bounces(const RenderContext& context, Wavefront& wavefront, const ShadingColumns& c,
                    const BounceColumns& sent, RayQueue& queue) {
   if (sent.sent == 0) return;
-  const std::size_t first = queue.size(), end = first + static_cast<std::size_t>(std::popcount(sent.sent));
-  queue.resize_uninitialized(end + ShadingColumns::kGroup);
-  QueuedRays to;
-  for (int k = 0; k < 3; ++k) {
-    to.origin[k] = queue.rays.origin[k].data() + first;
-    to.direction[k] = queue.rays.direction[k].data() + first;
-    to.throughput[k] = queue.throughput.part[k].data() + first;
-  }
-  to.tmin = queue.rays.tmin.data() + first, to.tmax = queue.rays.tmax.data() + first;
-  to.distance = queue.distance.data() + first, to.sample = queue.sample.data() + first;
-  to.bounces = queue.bounces.data() + first, to.from_camera = queue.from_camera.data() + first;
-  const RayQueue& rays = wavefront.rays;
-  render_code(context.isa)
-      .queue_rays(sent, c.ray,
-                  {rays.sample.data(), rays.distance.data(), wavefront.hits.t.data(), rays.bounces.data()},
-                  to);
-  queue.resize_uninitialized(end);
+  const std::size_t first = queue.size();
+  OnwardColumns to = end_of(queue, static_cast<std::size_t>(std::popcount(sent.sent)));
+  render_code(context.isa).queue_rays(sent, c.ray, arriving_rays(wavefront), to);
+  queue.resize_uninitialized(to.size);
+  finish_rays(queue, first);
 }
 
 /// Queues the rays that leave holes, mirrors and glass one by one, as those of a sample follow the order of
@@ -187,19 +165,12 @@ void push_bounces(const RenderContext& context, Wavefront& wavefront, const Inte
 void push_shadow_rays(const RenderContext& context, const InteractionBlock& found, const LightSource& light,
                       const ShadingColumns& c, ShadowQueue& queue) {
   const std::size_t first = queue.size();
-  queue.resize_uninitialized(first + c.count + ShadingColumns::kGroup);
-  ShadowColumns out;
-  for (int k = 0; k < 3; ++k) {
-    out.origin[k] = queue.rays.origin[k].data() + first;
-    out.direction[k] = queue.rays.direction[k].data() + first;
-    out.light[k] = queue.light.part[k].data() + first;
-  }
-  out.owner = queue.owner.data() + first;
-  const std::size_t count = render_code(context.isa).shadow_rays(found, light, c, out);
+  ShadowColumns out = end_of(queue, c.count);
+  render_code(context.isa).shadow_rays(found, light, c, out);
+  queue.resize_uninitialized(out.size);
   const Ray like;
-  std::fill_n(queue.rays.tmin.data() + first, count, like.tmin);
-  std::fill_n(queue.rays.tmax.data() + first, count, light.directional ? like.tmax : kBeforeLight);
-  queue.resize_uninitialized(first + count);
+  std::fill_n(queue.rays.tmin.data() + first, out.size - first, like.tmin);
+  std::fill_n(queue.rays.tmax.data() + first, out.size - first, light.directional ? like.tmax : kBeforeLight);
 }
 
 /// Which points of the area lights the hit of a ray asks.
@@ -215,7 +186,7 @@ void shade_whitted_block(const RenderContext& context, Wavefront& wavefront, con
   c.count = count;
   name_hits(context, which, found, c);
   count_lanes(wavefront, count, render_code(context.isa).whitted_lanes);
-  render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
+  render_code(context.isa).begin_shading(found, context.materials.data(), arriving_rays(wavefront), c);
   const bool records = context.data_layers || !context.all_opaque;
   Color straight[ShadingColumns::kMost];
   bool has_holes = false;
@@ -277,7 +248,7 @@ void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
   // Their light that needs no lamp has been added before.
   Color radiance[ShadingColumns::kMost];
   for (std::size_t k = 0; k < which.size(); ++k) radiance[k] = wavefront.radiance[which[k]];
-  render_code(context.isa).begin_shading(found, context.materials.data(), shaded_rays(wavefront), c);
+  render_code(context.isa).begin_shading(found, context.materials.data(), arriving_rays(wavefront), c);
   for (std::size_t k = 0; k < which.size(); ++k) {
     wavefront.radiance.set(which[k], radiance[k]);
     if (!context.materials[c.material[k]].varies) continue;

@@ -1,6 +1,6 @@
 /// \file Adaptive sampling: numbers of samples, freedom from bias, stated against true error.
 
-#include "render/film/adaptive.h"
+#include "render/film/tile.h"
 
 #include <gtest/gtest.h>
 

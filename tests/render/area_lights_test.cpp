@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "render/context.h"
-#include "render/solids.h"
+#include "render/geometry.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::area_lights_test {

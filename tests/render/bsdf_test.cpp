@@ -5,7 +5,7 @@
 #include <cfloat>
 
 #include "render/bsdf/optics.h"
-#include "render/bsdf/sheen.h"
+#include "render/bsdf/principled/sheen.h"
 #include "tests/render/bsdf_support.h"
 
 namespace oktett::bsdf_test {
@@ -154,7 +154,7 @@ TEST(Bsdf, SheenLobeKeepsWhatItTakes) {
 // The albedo that the paper's fit gives, computed apart from its published coefficients.
 TEST(Bsdf, SheenHasTheAlbedoOfItsFit) {
   const auto albedo = [](double mu, double roughness) {
-    return SheenLobe(Vec3d{std::sqrt(1 - mu * mu), 0, mu}, roughness).albedo();
+    return SheenFibres(Vec3d{std::sqrt(1 - mu * mu), 0, mu}, roughness).albedo();
   };
   EXPECT_NEAR(albedo(0.1, 0.3), 0.439954, 1e-5);
   EXPECT_NEAR(albedo(0.5, 0.3), 0.020821, 1e-5);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/default_view.h"
+#include "render/picture/prepared_scene.h"
 
 namespace oktett::camera_test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "core/random.h"
 #include "render/moments.h"
-#include "render/photon/casters.h"
 #include "render/photon/caustics.h"
+#include "render/photon/photon_source.h"
 #include "tests/render/photon_support.h"
 
 namespace oktett::caustics_test {

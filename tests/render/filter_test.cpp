@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "render/sampling/filter_sampler.h"
+#include "render/sampling/warp.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::filter_test {

@@ -1,4 +1,4 @@
-#include "render/light/light_bounds.h"
+#include "render/light/light_tree.h"
 
 #include <gtest/gtest.h>
 #include <numbers>

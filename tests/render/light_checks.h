@@ -12,7 +12,7 @@
 #include "core/random.h"
 #include "core/vec3.h"
 #include "render/light/light_sample.h"
-#include "render/sampling/square_sample.h"
+#include "render/sampling/warp.h"
 
 namespace oktett::light_checks {
 

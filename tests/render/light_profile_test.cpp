@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "render/light/aimed_profile.h"
-#include "render/moved.h"
+#include "render/light/emitter.h"
+#include "render/moments.h"
 #include "render/scene_lights.h"
 #include "tests/render/photon_support.h"
 

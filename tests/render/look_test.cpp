@@ -12,8 +12,6 @@
 #include "render/camera.h"
 #include "render/light/environment_map.h"
 #include "render/look/mesh_view.h"
-#include "render/look/smooth_normals.h"
-#include "render/look/studio.h"
 #include "tests/render/light_checks.h"
 #include "tests/render/look_meshes.h"
 #include "tests/render/test_scenes.h"

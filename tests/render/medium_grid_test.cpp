@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "render/medium/block_walk.h"
 #include "render/medium/density_noise.h"
+#include "render/medium/medium_tracker.h"
 #include "tests/render/medium_support.h"
 
 namespace oktett::medium_grid_test {

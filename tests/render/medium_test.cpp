@@ -9,7 +9,6 @@
 
 #include "core/math.h"
 #include "render/medium/medium_tracker.h"
-#include "render/medium/phase.h"
 #include "render/sampling/owen_sobol.h"
 
 namespace oktett::medium_test {

@@ -11,7 +11,6 @@
 
 #include "render/geometry.h"
 #include "render/moments.h"
-#include "render/moved.h"
 #include "render/sampling/owen_sobol.h"
 #include "tests/render/test_scenes.h"
 

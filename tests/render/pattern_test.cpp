@@ -14,7 +14,7 @@
 
 #include "core/random.h"
 #include "render/bsdf/metals.h"
-#include "render/surface_textures.h"
+#include "render/shading_point.h"
 #include "tests/render/light_checks.h"
 #include "tests/render/test_scenes.h"
 

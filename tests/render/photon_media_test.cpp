@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "render/bsdf/optics.h"
 #include "render/medium/density_grid.h"
-#include "render/photon/photon_media.h"
+#include "render/photon/trace_photons.h"
 #include "tests/render/photon_support.h"
 
 namespace oktett::photon_media_test {

@@ -1,4 +1,4 @@
-#include "render/light/rectangle_pair.h"
+#include "render/scene_lights.h"
 
 #include <gtest/gtest.h>
 

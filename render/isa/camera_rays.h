@@ -1,5 +1,5 @@
 #pragma once
-/// \file lens_rays for one instruction set.
+/// \file Rays of cameras, for one instruction set.
 
 #include <algorithm>
 #include <numbers>
@@ -8,8 +8,34 @@
 #include "core/lanes.h"
 #include "core/simd_native.h"
 #include "render/camera.h"
+#include "render/sampling/owen_sobol.h"
+#include "render/transport/render_code.h"
 
 namespace oktett {
+
+// ---- Points of Sobol's sequence for consecutive samples.
+
+/// sobol_point for the samples [first, last) of one sequence. Plain loops of fixed length, which compilers
+/// turn into vector code.
+template <class A>
+void sobol_points_code(std::uint32_t first, std::uint32_t last, std::uint64_t key, double* x, double* y) {
+  constexpr std::uint32_t kGroup = 16;
+  const auto seed_x = static_cast<std::uint32_t>(key), seed_y = static_cast<std::uint32_t>(key >> 32);
+  for (std::uint32_t begin = first; begin < last; begin += kGroup) {
+    std::uint32_t number[kGroup];
+    double at[2][kGroup];
+    for (std::uint32_t k = 0; k < kGroup; ++k) number[k] = shuffled_sample(begin + k, key);
+    for (std::uint32_t k = 0; k < kGroup; ++k)
+      at[0][k] = reversed_bits(scrambled_upwards(number[k], seed_x)) * 0x1p-32;
+    for (std::uint32_t k = 0; k < kGroup; ++k)
+      at[1][k] = reversed_bits(scrambled_upwards(pascal_product(number[k]), seed_y)) * 0x1p-32;
+    const std::uint32_t count = std::min(kGroup, last - begin);
+    for (std::uint32_t k = 0; k < count; ++k) x[begin - first + k] = at[0][k];
+    for (std::uint32_t k = 0; k < count; ++k) y[begin - first + k] = at[1][k];
+  }
+}
+
+// ---- Rays of a camera with a lens.
 
 /// disk_point in lanes, with the same bits.
 template <class D>
@@ -69,6 +95,37 @@ void lens_rays_code(const CameraFrame& camera, const FilmPoints& points, RayBatc
     };
     store(origin, rays.origin), store(direction, rays.direction);
   }
+}
+
+// ---- Directions of a pinhole camera.
+
+/// In groups of eight points; one at a time without vector registers.
+template <class A>
+void view_directions_code(const ViewPlane& plane, const ViewPoints& points) {
+  constexpr int W = kDoubleLanes<A>;
+  using D = Simd<double, W, A>;
+  const Vec3<D> corner = broadcast<D>(plane.corner), across = broadcast<D>(plane.per_pixel_x),
+                down = broadcast<D>(plane.per_pixel_y);
+  const auto directions = [&](const double* x_column, const double* y_column, float* out_x, float* out_y,
+                              float* out_z) {
+    const D x = D::load(x_column), y = D::load(y_column);
+    const Vec3<D> place{corner.x + across.x * x + down.x * y, corner.y + across.y * x + down.y * y,
+                        corner.z + across.z * x + down.z * y};
+    const auto direction = float_quotients(place, sqrt(dot_lanes(place, place)));
+    direction.x.store(out_x), direction.y.store(out_y), direction.z.store(out_z);
+  };
+  float* const* out = points.direction;
+  std::size_t i = 0;
+  for (; i + W <= points.count; i += W)
+    directions(points.x + i, points.y + i, out[0] + i, out[1] + i, out[2] + i);
+  if (i == points.count) return;
+  double x[W] = {}, y[W] = {};
+  float d[3][W];
+  const std::size_t rest = points.count - i;
+  for (std::size_t k = 0; k < rest; ++k) x[k] = points.x[i + k], y[k] = points.y[i + k];
+  directions(x, y, d[0], d[1], d[2]);
+  for (std::size_t k = 0; k < rest; ++k)
+    for (int axis = 0; axis < 3; ++axis) out[axis][i + k] = d[axis][k];
 }
 
 }  // namespace oktett

@@ -1,4 +1,4 @@
-#include "render/bsdf/sheen.h"
+#include "render/bsdf/principled/sheen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace oktett {
 
-SheenLobe::SheenLobe(const Vec3d& wo, double roughness) {
+SheenFibres::SheenFibres(const Vec3d& wo, double roughness) {
   const double x = std::clamp(wo.z, 0.0, 1.0), y = std::clamp(roughness, 0.01, 1.0);
   const double width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
   const double mean = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) / (0.046391 + y);
@@ -24,7 +24,7 @@ SheenLobe::SheenLobe(const Vec3d& wo, double roughness) {
   if (radius > 0) cosine_ = wo.x / radius, sine_ = wo.y / radius;
 }
 
-double SheenLobe::density(const Vec3d& wi) const {
+double SheenFibres::density(const Vec3d& wi) const {
   if (!(wi.z > 0)) return 0;
   const double x = cosine_ * wi.x + sine_ * wi.y, y = cosine_ * wi.y - sine_ * wi.x;
   const Vec3d w{a_ * x + b_ * wi.z, a_ * y, wi.z};
@@ -32,7 +32,7 @@ double SheenLobe::density(const Vec3d& wi) const {
   return wi.z * stretch * stretch / std::numbers::pi;
 }
 
-Vec3d SheenLobe::sample(const SquareSample& u) const {
+Vec3d SheenFibres::sample(const SquareSample& u) const {
   const Vec3d w = Vec3d(cosine_direction({0, 0, 1}, u));
   const double x = (w.x - b_ * w.z) / a_, y = w.y / a_;
   return normalize(Vec3d{cosine_ * x - sine_ * y, sine_ * x + cosine_ * y, w.z});
