@@ -37,7 +37,7 @@ Skeleton read_point(SceneLoad& load, const YamlNode& node) {
   return read_skeleton_map<PointSkeleton>(load, node, "point");
 }
 std::string point_schema(Schema& schema) {
-  return Schema::any_of({schema_of(schema, kAnyNumber, Vec3d{}), schema.map("point", PointSkeleton{})});
+  return Schema::any_of({Schema::vector(), schema.map("point", PointSkeleton{})});
 }
 
 constexpr std::uint32_t kLeastVertices = 3;
@@ -55,8 +55,7 @@ Skeleton read_polygon(SceneLoad& load, const YamlNode& node) {
   return PolygonSkeleton{polygon.vertices};
 }
 std::string polygon_schema(Schema& schema) {
-  const std::string list =
-      Schema::list(schema_of(schema, kAnyNumber, Vec3d{}), Range{kLeastVertices, kMaxCoordinate});
+  const std::string list = Schema::list(Schema::vector(), Range{kLeastVertices, kMaxCoordinate});
   const auto map = [&] {
     SchemaMap vertices(schema);
     vertices.add_one_of("vertices", "points in one plane in order", list);

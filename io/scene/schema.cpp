@@ -43,7 +43,7 @@ constexpr struct {
 } kForms[] = {
     {"file", [](Schema&) { return Schema::file(); }},
     {"text", [](Schema&) { return Schema::text(); }},
-    {"points", [](Schema&) { return Schema::list(reference("vector")); }},
+    {"points", [](Schema&) { return Schema::list(Schema::vector()); }},
     {"samples",
      [](Schema&) {
        const std::string number = Schema::number(whole(2, kMaxHeightSide), "integer");
@@ -106,6 +106,12 @@ std::string Schema::numbers(std::size_t count, const Range& range) {
   return list(number(range), whole(n, n));
 }
 
+std::string Schema::vector(const Range& range) {
+  return limits(range).empty() ? reference("vector") : numbers(3, range);
+}
+
+std::string Schema::color() { return reference("color"); }
+
 std::string Schema::list(const std::string& item, const Range& counts) {
   // An empty node is a list without items.
   std::string text = fmt::format("{{\"type\": {}, \"items\": {}",
@@ -141,29 +147,6 @@ std::string written(const ClipBox& box) {
   return fmt::format("{{min: {}, max: {}}}", written(box.lo), written(box.hi));
 }
 
-std::string schema_of(Schema&, const Range& range, double) { return Schema::number(range); }
-std::string schema_of(Schema&, const Range& range, float) { return Schema::number(range); }
-std::string schema_of(Schema&, const Range& range, std::uint32_t) { return Schema::number(range, "integer"); }
-std::string schema_of(Schema&, const Range& range, const Vec3d&) {
-  return limits(range).empty() ? reference("vector") : Schema::numbers(3, range);
-}
-std::string schema_of(Schema&, const Range&, const Color&) { return reference("color"); }
-std::string schema_of(Schema&, const Range& range, std::span<const double> value) {
-  return Schema::numbers(value.size(), range);
-}
-std::string schema_of(Schema&, const Range& range, std::span<const Vec3d>) {
-  return Schema::list(reference("vector"), range);
-}
-std::string schema_of(Schema& schema, const Range&, const SolidBox&) {
-  return schema.map("bounds", Corners<Parameter::Need::required>{});
-}
-std::string schema_of(Schema& schema, const Range&, const ClipBox&) {
-  return schema.map("clip", Corners<Parameter::Need::optional>{});
-}
-std::string schema_of(Schema&, const Range&, const std::vector<Monomial>&) { return Schema::text(); }
-std::string schema_of(Schema&, const Range&, const FunctionTape&) { return Schema::text(); }
-std::string schema_of(Schema&, const Range&, const HalfSpace&) { return Schema::numbers(4); }
-std::string schema_of(Schema&, const Range&, const ProfilePoint&) { return Schema::numbers(2); }
 std::string schema_of(Schema& schema, const Range&, const ByHand& value) {
   const auto* const form = std::ranges::find(kForms, value.form, [](const auto& f) { return f.name; });
   if (form == std::end(kForms)) throw Error(std::string("no form of a value is called ") + value.form);

@@ -42,6 +42,8 @@ class Schema {
   static std::string any_of(const std::vector<std::string>& schemas);
   static std::string number(const Range& range, const char* type = "number");
   static std::string numbers(std::size_t count, const Range& range = kAnyNumber);
+  static std::string vector(const Range& range = kAnyNumber);
+  static std::string color();
   static std::string list(const std::string& item, const Range& counts = kNonNegative);
   /// A map with any keys.
   static std::string entries(const std::string& value);
@@ -59,8 +61,7 @@ class Schema {
 };
 
 // How a default is written in a scene file.
-inline std::string written(double x) { return fmt::format("{:g}", x); }
-inline std::string written(float x) { return fmt::format("{:g}", x); }
+inline std::string written(std::floating_point auto x) { return fmt::format("{:g}", x); }
 inline std::string written(std::uint32_t x) { return fmt::format("{}", x); }
 inline std::string written(std::same_as<bool> auto x) { return x ? "true" : "false"; }
 inline std::string written(const Vec3d& v) { return fmt::format("[{:g}, {:g}, {:g}]", v.x, v.y, v.z); }
@@ -91,27 +92,36 @@ std::string usual_value(const Parameter& parameter, const T& value) {
 }
 
 // What a value of a type may be. `range` is that of its parameter.
-std::string schema_of(Schema& schema, const Range& range, double value);
-std::string schema_of(Schema& schema, const Range& range, float value);
-std::string schema_of(Schema& schema, const Range& range, std::uint32_t value);
-std::string schema_of(Schema& schema, const Range& range, const Vec3d& value);
-std::string schema_of(Schema& schema, const Range& range, const Color& value);
-std::string schema_of(Schema& schema, const Range& range, std::span<const double> value);
-std::string schema_of(Schema& schema, const Range& range, std::span<const Vec3d> value);
-std::string schema_of(Schema& schema, const Range& range, const SolidBox& value);
-std::string schema_of(Schema& schema, const Range& range, const ClipBox& value);
-std::string schema_of(Schema& schema, const Range& range, const std::vector<Monomial>& value);
-std::string schema_of(Schema& schema, const Range& range, const FunctionTape& value);
-std::string schema_of(Schema& schema, const Range& range, const HalfSpace& value);
-std::string schema_of(Schema& schema, const Range& range, const ProfilePoint& value);
+inline std::string schema_of(Schema&, const Range& range, std::floating_point auto) {
+  return Schema::number(range);
+}
+inline std::string schema_of(Schema&, const Range& range, std::uint32_t) {
+  return Schema::number(range, "integer");
+}
+inline std::string schema_of(Schema&, const Range&, std::same_as<bool> auto) { return Schema::boolean(); }
+inline std::string schema_of(Schema&, const Range& range, const Vec3d&) { return Schema::vector(range); }
+inline std::string schema_of(Schema&, const Range&, const Color&) { return Schema::color(); }
+inline std::string schema_of(Schema&, const Range& range, std::span<const double> value) {
+  return Schema::numbers(value.size(), range);
+}
+inline std::string schema_of(Schema&, const Range& counts, std::span<const Vec3d>) {
+  return Schema::list(Schema::vector(), counts);
+}
+inline std::string schema_of(Schema&, const Range&, const std::vector<Monomial>&) { return Schema::text(); }
+inline std::string schema_of(Schema&, const Range&, const FunctionTape&) { return Schema::text(); }
+inline std::string schema_of(Schema&, const Range&, const HalfSpace&) { return Schema::numbers(4); }
+inline std::string schema_of(Schema&, const Range&, const ProfilePoint&) { return Schema::numbers(2); }
+inline std::string schema_of(Schema& schema, const Range&, const SolidBox&) {
+  return schema.map("bounds", Corners<Parameter::Need::required>{});
+}
+inline std::string schema_of(Schema& schema, const Range&, const ClipBox&) {
+  return schema.map("clip", Corners<Parameter::Need::optional>{});
+}
 std::string schema_of(Schema& schema, const Range& range, const Affine& value);
 std::string schema_of(Schema& schema, const Range& range, const BlobSource& value);
 std::string schema_of(Schema& schema, const Range& range, const ByHand& value);
-std::string schema_of(Schema& /*schema*/, const Range& /*range*/, std::same_as<bool> auto) {
-  return Schema::boolean();
-}
 template <class T>
-std::string schema_of(Schema& /*schema*/, const Range& /*range*/, const ChoiceOf<T>& choice) {
+std::string schema_of(Schema&, const Range&, const ChoiceOf<T>& choice) {
   std::vector<std::string> words;
   for (const Choice<T>& c : choice.choices) words.push_back(c.name);
   return Schema::words(words);

@@ -67,8 +67,8 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera::Foc
   focus.distance = load.values.number(node, kPositive);
 }
 
-std::string schema_of(Schema& schema, const Range&, const Camera::Focus&) {
-  return Schema::any_of({Schema::number(kPositive), schema_of(schema, kAnyNumber, Vec3d{})});
+std::string schema_of(Schema&, const Range&, const Camera::Focus&) {
+  return Schema::any_of({Schema::number(kPositive), Schema::vector()});
 }
 
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera& camera) {

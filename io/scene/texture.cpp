@@ -35,8 +35,8 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, Layout& lay
   out = static_cast<Vec3f>(Vec3d{v[0], v[1], v[2]});
 }
 
-std::string schema_of(Schema& schema, const Range&, const Layout& layout) {
-  std::vector<std::string> forms{Schema::numbers(2), schema_of(schema, kAnyNumber, Vec3d{})};
+std::string schema_of(Schema&, const Range&, const Layout& layout) {
+  std::vector<std::string> forms{Schema::numbers(2), Schema::vector()};
   if (layout.single_number) forms.insert(forms.begin(), Schema::number(kAnyNumber));
   return Schema::any_of(forms);
 }

@@ -16,7 +16,7 @@ namespace {
 /// More keys than any curve needs.
 constexpr std::size_t kMostKeys = 4096;
 
-std::string vector_schema(Schema& schema) { return schema_of(schema, kAnyNumber, Vec3d{}); }
+std::string vector_schema(Schema&) { return Schema::vector(); }
 
 Affine read_translate(SceneLoad& load, const YamlNode& node) {
   return Affine::translation(load.values.vector(node));
@@ -27,9 +27,7 @@ Affine read_scale(SceneLoad& load, const YamlNode& node) {
   const double s = load.values.number(node);
   return Affine::scaling({s, s, s});
 }
-std::string scale_schema(Schema& schema) {
-  return Schema::any_of({Schema::number(kAnyNumber), vector_schema(schema)});
-}
+std::string scale_schema(Schema&) { return Schema::any_of({Schema::number(kAnyNumber), Schema::vector()}); }
 
 /// A rotation about an axis.
 struct Turn {
@@ -52,7 +50,7 @@ Affine read_rotate(SceneLoad& load, const YamlNode& node) {
   return Affine::rotation(turn.axis / max_component(abs(turn.axis)), turn.angle);
 }
 std::string rotate_schema(Schema& schema) {
-  return Schema::any_of({vector_schema(schema), schema.map("rotate", Turn{})});
+  return Schema::any_of({Schema::vector(), schema.map("rotate", Turn{})});
 }
 
 Affine read_matrix(SceneLoad& load, const YamlNode& node) {
