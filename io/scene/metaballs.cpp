@@ -225,9 +225,6 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
 
 }  // namespace
 
-/// The counts of lists that must not be empty.
-static constexpr Range kNotEmpty{1, kMaxCoordinate};
-
 std::string elements_schema(Schema& schema) {
   const auto element = [&] {
     SchemaMap map(schema);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -25,10 +24,7 @@ struct Surroundings {
 };
 
 /// What an object may have besides the one key that says what it is.
-constexpr struct {
-  const char *key, *meaning;
-  std::string (*schema)(Schema&);
-} kObjectKeys[] = {
+constexpr SchemaRow kObjectKeys[] = {
     {"material", "its name, or a map", material_schema},
     {"transform", "operations in order, or one",
      [](Schema& schema) { return schema_of(schema, kAnyNumber, Affine{}); }},
@@ -36,15 +32,10 @@ constexpr struct {
      [](Schema& schema) { return schema_of(schema, kAnyNumber, MotionPointer{}); }},
     {"name", "for mattes; no two objects have the same", [](Schema&) { return Schema::text(); }}};
 
-std::string operands_schema(Schema& schema) {
-  return Schema::list(object_schema(schema), whole(1, std::numeric_limits<std::uint32_t>::max()));
-}
+std::string operands_schema(Schema& schema) { return Schema::list(object_schema(schema), kNotEmpty); }
 
 /// What an object may be besides a shape that describes its parameters.
-constexpr struct {
-  const char *key, *meaning;
-  std::string (*schema)(Schema&);
-} kOtherShapes[] = {
+constexpr SchemaRow kOtherShapes[] = {
     {"spheres", "many balls", spheres_schema},
     {kCsgKeys[0].name, "what is in any of the solids", operands_schema},
     {kCsgKeys[1].name, "what is in all of the solids", operands_schema},
@@ -281,7 +272,7 @@ static std::string object_schema(Schema& schema) {
     ShapeSchemas shapes{schema, map};
     visit_surfaces(shapes);
     map.add_one_of(kOtherShapes);
-    for (const auto& other : kObjectKeys) map.add(other.key, other.meaning, other.schema(schema));
+    for (const SchemaRow& other : kObjectKeys) map.add(other.key, other.meaning, other.schema(schema));
     map.not_both("transform", "motion");
     return map.text();
   });

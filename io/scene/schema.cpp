@@ -37,20 +37,17 @@ std::string limits(const Range& range) {
 }
 
 /// What ByHand::form may be.
-constexpr struct {
-  std::string_view name;
-  std::string (*schema)(Schema&);
-} kForms[] = {
-    {"file", [](Schema&) { return Schema::file(); }},
-    {"text", [](Schema&) { return Schema::text(); }},
-    {"points", [](Schema&) { return Schema::list(Schema::vector()); }},
-    {"samples",
+constexpr SchemaRow kForms[] = {
+    {"file", "", [](Schema&) { return Schema::file(); }},
+    {"text", "", [](Schema&) { return Schema::text(); }},
+    {"points", "", [](Schema&) { return Schema::list(Schema::vector()); }},
+    {"samples", "",
      [](Schema&) {
        const std::string number = Schema::number(whole(2, kMaxHeightSide), "integer");
        return Schema::any_of({number, Schema::list(number, whole(2, 2))});
      }},
-    {"elements", elements_schema},
-    {"blends", blends_schema},
+    {"elements", "", elements_schema},
+    {"blends", "", blends_schema},
 };
 
 }  // namespace
@@ -148,9 +145,9 @@ std::string written(const ClipBox& box) {
 }
 
 std::string schema_of(Schema& schema, const Range&, const ByHand& value) {
-  const auto* const form = std::ranges::find(kForms, value.form, [](const auto& f) { return f.name; });
-  if (form == std::end(kForms)) throw Error(std::string("no form of a value is called ") + value.form);
-  return form->schema(schema);
+  for (const SchemaRow& form : kForms)
+    if (std::string_view(form.key) == value.form) return form.schema(schema);
+  throw Error(std::string("no form of a value is called ") + value.form);
 }
 
 void SchemaMap::not_both(const char* a, const char* b, const char*, const char*) {

@@ -22,6 +22,16 @@ namespace oktett {
 /// rule is one of numbers that are computed, and in expressions.
 std::string scene_schema();
 
+/// The counts of lists that must not be empty.
+inline constexpr Range kNotEmpty{1, kMaxCoordinate};
+
+class Schema;
+/// A key that is read by hand, and what its value may be.
+struct SchemaRow {
+  const char *key, *meaning;
+  std::string (*schema)(Schema&);
+};
+
 /// The definitions of a schema. Those of maps, which may contain each other, have names.
 class Schema {
  public:
