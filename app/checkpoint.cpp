@@ -8,8 +8,10 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -91,43 +93,75 @@ void FilmSaver::finish(const ImageMetadata& metadata) {
 
 // ---- What the bits of a picture depend on.
 
-static const char* filter_name(FilterKind kind) {
-  for (const Choice<FilterKind>& known : kFilterKinds)
-    if (known.value == kind) return known.name;
-  return "";
-}
+namespace {
 
-/// The settings of a scene that its sums depend on, and the files that were read for it. Tone curves are not
-/// among them: they are applied to the finished picture.
+/// The settings of a scene that the sums of its picture depend on, from their descriptions: a new one belongs
+/// to them unless it is left out here.
+class SettingList : public ParameterVisitor<SettingList> {
+ public:
+  explicit SettingList(FilmFingerprint::Entries& list) : list_(list) {}
+
+  template <class T>
+  bool visit(const Parameter& parameter, T& value) {
+    const std::string_view key = parameter.key;
+    // Tone curves are applied to the finished picture, and --size stands for both of its sides.
+    const bool left_out = key == "tone" || key == "exposure" || key == "width" || key == "height";
+    if (left_out) return false;
+    if constexpr (requires { value.describe(*this); })
+      value.describe(*this);
+    else
+      list_.emplace_back(name_of(key), text(value));
+    return false;
+  }
+
+ private:
+  /// The option of the command line, if there is one.
+  static std::string name_of(std::string_view key) {
+    constexpr std::pair<std::string_view, const char*> kOptions[] = {
+        {"crop", "--cropwindow"}, {"kind", "--integrator"},     {"samples", "--spp"},
+        {"seed", "--seed"},       {"clamp", "--clamp"},         {"error", "--error"},
+        {"filter", "--filter"},   {"max_samples", "--max-spp"}, {"cryptomatte", "--cryptomatte"}};
+    for (const auto& [known, option] : kOptions)
+      if (key == known) return option;
+    return fmt::format("'{}'", key);
+  }
+
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  static std::string text(T value) { return fmt::format("{}", value); }
+  static std::string text(std::span<const double> values) {
+    return fmt::format("{}", fmt::join(values, ","));
+  }
+  static std::string text(const CausticSettings::Radius& radius) { return text(radius.value); }
+  template <class T>
+  static std::string text(const ChoiceOf<T>& choice) {
+    return std::ranges::find(choice.choices, choice.value, &Choice<T>::value)->name;
+  }
+
+  FilmFingerprint::Entries& list_;
+};
+
+}  // namespace
+
+/// What the sums of a picture depend on: settings, and the files that were read for the scene.
 static FilmFingerprint fingerprint_of(const Scene& scene, const std::vector<std::string>& files,
                                       const RenderArguments& arguments, bool data_layers) {
   FilmFingerprint fingerprint;
-  const auto add = [&](const char* name, const auto& value) {
+  const auto add = [&](const std::string& name, const auto& value) {
     fingerprint.settings.emplace_back(name, fmt::format("{}", value));
   };
-  const Film& film = scene.film;
-  const IntegratorSettings& integrator = scene.integrator;
+  Film film = scene.film;
+  IntegratorSettings integrator = scene.integrator;
   add("the version", program_version());
   add("--size", fmt::format("{}x{}", film.width, film.height));
-  add("--cropwindow", fmt::format("{},{},{},{}", film.crop[0], film.crop[1], film.crop[2], film.crop[3]));
-  add("--integrator", to_string(integrator.kind));
-  add("--spp", integrator.samples);
-  add("--seed", integrator.seed);
-  add("the depth", integrator.depth);
-  add("--clamp", integrator.clamp);
-  add("--error", integrator.error);
-  if (integrator.error > 0) add("--max-spp", integrator.max_samples);
-  add("--filter", filter_name(film.filter));
-  add("the radius of the filter", film.filter_radius);
-  add("--cryptomatte", film.cryptomatte);
+  SettingList settings(fingerprint.settings);
+  film.describe(settings);
+  integrator.describe(settings);
   add("the use of data layers", data_layers);
-  add("the number of photons", integrator.caustics.photons);
-  add("the number of photon passes", integrator.caustics.passes);
   add("--look", arguments.look.empty() ? "default" : arguments.look);
   add("--up", arguments.up.empty() ? "default" : arguments.up);
   add("--view", arguments.viewpoint.empty() ? "default" : arguments.viewpoint);
-  for (const auto& [name, value] : parse_definitions(arguments.definitions))
-    fingerprint.settings.emplace_back("-D " + name, value);
+  for (const auto& [name, value] : parse_definitions(arguments.definitions)) add("-D " + name, value);
   fingerprint.files = hash_files(files, std::filesystem::path(arguments.scene).parent_path().string());
   return fingerprint;
 }

@@ -25,6 +25,11 @@ void read_number(const char* option, std::string_view text, const Range& range, 
 
 }  // namespace
 
+void expect_in_range(const char* option, std::uint32_t number, const Range& range) {
+  if (!range.contains(number))
+    throw Error(fmt::format("{}: {} is out of range; expected {} to {}", option, number, range.lo, range.hi));
+}
+
 void add_tone_option(Verb& verb, std::string& tone) {
   verb.choice("--tone", tone, "K", "Tone curve of 8-bit pictures", names_of<ToneKind>(kToneKinds));
 }
@@ -54,8 +59,7 @@ void override_film(const FilmArguments& a, Scene& scene) {
   read_number("--error", a.error, kErrors, scene.integrator.error);
   if (a.cryptomatte) film.cryptomatte = true;
   if (!a.max_samples) return;
-  if (*a.max_samples < 1 || *a.max_samples > 65536)
-    throw Error(fmt::format("--max-spp: {} is out of range; expected 1 to 65536", *a.max_samples));
+  expect_in_range("--max-spp", *a.max_samples, kPixelSamples);
   scene.integrator.max_samples = *a.max_samples;
 }
 

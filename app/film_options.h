@@ -20,6 +20,9 @@ struct FilmArguments {
 void add_tone_option(Verb& verb, std::string& tone);
 void add_film_options(Verb& verb, FilmArguments& arguments);
 
+/// Throws Error if the number that is given for `option` is out of range.
+void expect_in_range(const char* option, std::uint32_t number, const Range& range);
+
 /// Overrides settings of the scene by the arguments. Throws Error for unknown words and numbers out of range.
 void override_film(const FilmArguments& arguments, Scene& scene);
 

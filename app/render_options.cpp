@@ -48,21 +48,17 @@ constexpr const char* kViewpoints[] = {"auto", "outside", "inside"};
 constexpr const char* kUps[] = {"x", "y", "z", "-x", "-y", "-z"};
 /// In the order of BuildQuality.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
-// The same bounds as in a scene file.
-constexpr std::uint32_t kMaxSide = 65536;
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
-constexpr std::uint32_t kMaxSamples = 65536;
 
 void parse_size(const std::string& text, Film& film) {
   const std::size_t cross = text.find('x');
   const bool good = cross != std::string::npos && parse_number(text.substr(0, cross), film.width) &&
                     parse_number(text.substr(cross + 1), film.height);
   if (!good) throw Error(fmt::format("--size: '{}' is not of the form WxH, e.g. 960x540", text));
-  const bool fits = film.width >= 1 && film.width <= kMaxSide && film.height >= 1 &&
-                    film.height <= kMaxSide && std::uint64_t{film.width} * film.height <= kMaxPixels;
+  const bool fits = kFilmSides.contains(film.width) && kFilmSides.contains(film.height) &&
+                    std::uint64_t{film.width} * film.height <= kMostFilmPixels;
   if (!fits)
     throw Error(fmt::format("--size: {} is out of range; expected sides of 1 to {} and at most {} pixels",
-                            text, kMaxSide, kMaxPixels));
+                            text, kMostFilmSide, kMostFilmPixels));
 }
 
 void parse_crop(const std::string& text, double (&crop)[4]) {
@@ -176,9 +172,7 @@ void override_scene(const RenderArguments& arguments, Scene& scene) {
     caustics.photons = CausticSettings::kUsualPhotons;
   if (arguments.seed) scene.integrator.seed = *arguments.seed;
   if (arguments.samples) {
-    if (*arguments.samples < 1 || *arguments.samples > kMaxSamples)
-      throw Error(
-          fmt::format("--spp: {} is out of range; expected 1 to {}", *arguments.samples, kMaxSamples));
+    expect_in_range("--spp", *arguments.samples, kPixelSamples);
     scene.integrator.samples = *arguments.samples;
   }
 }

@@ -1,17 +1,21 @@
 #pragma once
-/// \file How a shape describes its parameters: once, beside its data. The reader of scene files, the table in
-/// docs/scene-format.md and the random cases of verification are made from these descriptions.
+/// \file How shapes, lights, settings and all else of a scene describe their parameters: once, beside the
+/// data. The reader of scene files, their JSON Schema, the tables in docs/scene-format.md and the random
+/// cases of verification are made from these descriptions.
 ///
 /// A data struct has
 /// - `void describe(auto& p)`, which visits its parameters in order, e.g. `p.field("radius", radius, kLength,
 ///   "distance of the surface from the centre")`, see ParameterVisitor. The default of a parameter is the
 ///   value that its member has before the visit;
-/// - `kSurface`, its key in scene files. A struct with several keys has
+/// - `kSurface`, of a shape, its key in scene files. A struct with several keys has
 ///   `static void surfaces(auto& v)` instead, which calls `v.surface(key, shape)` for each, with the values
-///   that it starts from.
+///   that it starts from;
+/// - `kMap`, if it is no shape and is called otherwise than its key, such as "a medium".
 
 #include <cstdint>
 #include <initializer_list>
+#include <span>
+#include <type_traits>
 
 #include "core/vec3.h"
 
@@ -48,6 +52,9 @@ constexpr Range whole(std::uint32_t lo, std::uint32_t hi) {
   return {static_cast<double>(lo), static_cast<double>(hi)};
 }
 
+/// Seeds of random numbers.
+inline constexpr Range kAnySeed = whole(0, 0xffffffff);
+
 /// A shape of scene files.
 struct Surface {
   const char* key;
@@ -76,7 +83,7 @@ struct Choice {
 template <class T>
 struct ChoiceOf {
   T& value;
-  std::initializer_list<Choice<T>> choices;
+  std::span<const Choice<T>> choices;
 };
 
 /// A box {min, max} with an inside; both are needed.
@@ -90,35 +97,47 @@ struct ClipBox {
 /// A value that has no member of its own: whoever reads the shape reads it, too.
 struct ByHand {
   const char* type;            ///< in Markdown
+  const char* form;            ///< its definition in the JSON Schema, see io/scene/schema.cpp
   const char* usual = "none";  ///< the default
 };
 
 /// What `describe` is called with. `Self` has `visit(const Parameter&, value)`, with a reference to a member
-/// or one of the types above; it returns whether the parameter is given. It may hide `check` and
-/// `nothing_if`.
+/// or one of the types above; it returns whether the parameter is given, as all that visit one do. It may
+/// hide what stands below `choice`.
 template <class Self>
 class ParameterVisitor {
  public:
-  void field(const char* key, auto&& value, const Range& range, const char* meaning) {
-    self().visit(Parameter{key, meaning, range, Parameter::Need::defaulted}, value);
+  bool field(const char* key, auto&& value, const Range& range, const char* meaning) {
+    return self().visit(Parameter{key, meaning, range, Parameter::Need::defaulted}, value);
   }
   void required(const char* key, auto&& value, const Range& range, const char* meaning) {
     self().visit(Parameter{key, meaning, range, Parameter::Need::required}, value);
   }
-  /// Returns whether it is given.
   bool optional(const char* key, auto&& value, const Range& range, const char* meaning) {
     return self().visit(Parameter{key, meaning, range, Parameter::Need::optional}, value);
   }
   // The same for what is no number or has no limits.
-  void field(const char* key, auto&& value, const char* text) { field(key, value, kAnyNumber, text); }
+  bool field(const char* key, auto&& value, const char* text) { return field(key, value, kAnyNumber, text); }
   void required(const char* key, auto&& value, const char* text) { required(key, value, kAnyNumber, text); }
   bool optional(const char* key, auto&& value, const char* text) {
     return optional(key, value, kAnyNumber, text);
   }
   template <class T>
-  void choice(const char* key, T& value, std::initializer_list<Choice<T>> choices, const char* meaning) {
-    field(key, ChoiceOf<T>{value, choices}, meaning);
+  bool choice(const char* key, T& value, std::type_identity_t<std::span<const Choice<T>>> choices,
+              const char* meaning) {
+    return field(key, ChoiceOf<T>{value, choices}, meaning);
   }
+  template <class T>
+  bool choice(const char* key, T& value, std::initializer_list<Choice<T>> choices, const char* meaning) {
+    return choice(key, value, std::span<const Choice<T>>(choices.begin(), choices.size()), meaning);
+  }
+  /// Exactly one of the keys is given. If it has a message, the reader sees to that; else who goes on with
+  /// the values does.
+  void one_of(std::initializer_list<const char*> /*keys*/, const char* /*message*/ = nullptr) {}
+  /// At most one of both is given, else it is an error at the value of `at`, of the whole map for null. The
+  /// message may be left out.
+  void not_both(const char* /*a*/, const char* /*b*/, const char* /*message*/ = nullptr,
+                const char* /*at*/ = nullptr) {}
   /// Makes it an error at the value of `key` (of the whole map for null) if not `ok`; ", found `found`"
   /// follows the message if that is given.
   void check(bool /*ok*/, const char* /*key*/, const char* /*message*/, const double* /*found*/ = nullptr) {}

@@ -67,7 +67,7 @@ static void set_depth_range(const Box& box, RenderContext& context) {
 }
 
 std::uint32_t first_samples(const IntegratorSettings& settings) {
-  return std::clamp(settings.samples, settings.error > 0 ? kLeastPilot : 1u, 65536u);
+  return std::clamp(settings.samples, settings.error > 0 ? kLeastPilot : 1u, kMostSamples);
 }
 
 std::vector<LightSource> light_sources(const Scene& scene) {

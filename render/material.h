@@ -49,26 +49,39 @@ struct PrincipledMaterial {
   bool operator==(const PrincipledMaterial&) const = default;
 };
 
-/// A number of the principled material, its name in scene files, the texture that multiplies it, and the
-/// range to which the product is clamped.
+/// A number of the principled material, its name and meaning in scene files, the texture that multiplies it,
+/// and the range to which the product is clamped.
 struct PrincipledNumber {
   const char* name;
   float PrincipledParameters::*value;
   std::uint32_t PrincipledMaterial::*texture;
+  const char* meaning;
   Range range = kUnitInterval;
 };
 inline constexpr Range kPrincipledIors{0.25, 4};
 inline constexpr PrincipledNumber kPrincipledNumbers[] = {
-    {"metallic", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture},
-    {"roughness", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture},
-    {"specular", &PrincipledParameters::specular, &PrincipledMaterial::specular_texture},
-    {"transmission", &PrincipledParameters::transmission, &PrincipledMaterial::transmission_texture},
-    {"coat", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture},
-    {"coat_roughness", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture},
-    {"sheen", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture},
-    {"sheen_roughness", &PrincipledParameters::sheen_roughness, &PrincipledMaterial::sheen_roughness_texture},
-    {"ior", &PrincipledParameters::ior, &PrincipledMaterial::ior_texture, kPrincipledIors},
-    {"coat_ior", &PrincipledParameters::coat_ior, &PrincipledMaterial::coat_ior_texture, {1, 4}}};
+    {"metallic", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture,
+     "weight of metal; the rest is plastic or glass"},
+    {"roughness", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture,
+     "from a mirror, 0, to 1"},
+    {"specular", &PrincipledParameters::specular, &PrincipledMaterial::specular_texture,
+     "scales the reflection of the opaque dielectric; 0.5 is what `ior` says"},
+    {"transmission", &PrincipledParameters::transmission, &PrincipledMaterial::transmission_texture,
+     "weight of glass in what is not metal"},
+    {"coat", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture, "weight of a clear coat"},
+    {"coat_roughness", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture,
+     "of the coat"},
+    {"sheen", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture,
+     "weight of fibres on top of all"},
+    {"sheen_roughness", &PrincipledParameters::sheen_roughness, &PrincipledMaterial::sheen_roughness_texture,
+     "of the fibres"},
+    {"ior", &PrincipledParameters::ior, &PrincipledMaterial::ior_texture,
+     "index of refraction inside relative to outside", kPrincipledIors},
+    {"coat_ior",
+     &PrincipledParameters::coat_ior,
+     &PrincipledMaterial::coat_ior_texture,
+     "index of refraction of the coat",
+     {1, 4}}};
 
 /// The priority of materials that have none: lower than all others.
 inline constexpr std::int32_t kNoPriority = -1;
@@ -127,15 +140,18 @@ struct PhongNumber {
   const char* name;
   float Material::*value;
   std::uint32_t Material::*texture;
+  const char* meaning;
   Range range = kNonNegative;
 };
 inline constexpr PhongNumber kPhongNumbers[] = {
-    {"ambient", &Material::ambient, &Material::ambient_texture},
-    {"diffuse", &Material::diffuse, &Material::diffuse_texture},
-    {"specular", &Material::specular, &Material::specular_weight_texture},
-    {"phong", &Material::phong, &Material::phong_texture},
-    {"reflection", &Material::reflection, &Material::reflection_texture, kUnitInterval},
-    {"transparency", &Material::transparency, &Material::transparency_texture, kUnitInterval}};
+    {"ambient", &Material::ambient, &Material::ambient_texture, "weight of ambient light"},
+    {"diffuse", &Material::diffuse, &Material::diffuse_texture, "weight of diffuse light"},
+    {"specular", &Material::specular, &Material::specular_weight_texture, "weight of highlights"},
+    {"phong", &Material::phong, &Material::phong_texture, "exponent of the highlight"},
+    {"reflection", &Material::reflection, &Material::reflection_texture, "weight of the mirrored ray",
+     kUnitInterval},
+    {"transparency", &Material::transparency, &Material::transparency_texture,
+     "weight of light that passes through", kUnitInterval}};
 
 /// Calls f(index) for each member of a material, which may be const, that is an index of a texture.
 template <class AnyMaterial, class F>

@@ -12,6 +12,13 @@ namespace oktett {
 struct MotionKey {
   double time = 0;
   Affine transform;  ///< invertible
+
+  static constexpr const char* kMap = "a key of a motion";
+  void describe(auto& p) {
+    p.required("time", time, "later than that of the key before");
+    p.required("transform", transform,
+               "the transform at that time; not singular, and no mirror image of others");
+  }
 };
 
 /// A product of transforms, the outermost first, each of which is given by keys of ascending times. Between

@@ -1,6 +1,7 @@
 #pragma once
 /// \file A scene as data: what a scene file says, or what a program puts together, before anything is built.
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -49,13 +50,48 @@ struct Camera {
   double shutter[2] = {0, 1};       ///< times at which it opens and closes; not descending
   MotionPointer motion{};           ///< moves `from`, `at`, `up` and `focus_at`
   bool operator==(const Camera&) const = default;
+
+  static constexpr Range kFieldsOfView{0, 180, true, true};
+  void describe(auto& p) {
+    p.field("from", from, "the eye");
+    p.field("at", at, "what it looks at");
+    p.field("up", up, "what points up in the picture; not parallel to the view");
+    p.field("fov", fov, kFieldsOfView, "perspective: full vertical angle in degrees");
+    p.choice("projection", projection,
+             {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}},
+             "how the camera projects");
+    p.field("height", height, kPositive, "orthographic: height of what is seen");
+    p.not_both("aperture", "f_number");
+    if (p.optional("aperture", aperture, kNonNegative, "diameter of the lens; 0: all is sharp")) f_number = 0;
+    if (p.optional("f_number", f_number, kPositive, "perspective: focal length over aperture")) aperture = 0;
+    p.optional("focus", Focus{focus, focus_at},
+               "what is sharp: a distance along the view axis, or a point before the camera");
+    p.field("shutter", shutter, "times when it opens and closes");
+    p.check(shutter[0] <= shutter[1], "shutter", "the shutter closes before it opens");
+    p.optional("motion", motion, "transforms of `from`, `at`, `up` and a point in `focus`");
+  }
+  /// Camera::focus or Camera::focus_at.
+  struct Focus {
+    double& distance;
+    std::optional<Vec3d>& point;
+  };
 };
+
+/// Most pixels of a film along an edge and in all.
+inline constexpr std::uint32_t kMostFilmSide = 65536;
+inline constexpr std::uint64_t kMostFilmPixels = std::uint64_t{1} << 30;
+inline constexpr Range kFilmSides = whole(1, kMostFilmSide);
+/// Most samples of a pixel.
+inline constexpr std::uint32_t kMostSamples = 65536;
+inline constexpr Range kPixelSamples = whole(1, kMostSamples);
+/// IntegratorSettings::depth.
+inline constexpr Range kDepths = whole(0, 64);
 
 /// The picture: its size in pixels, the part of it that is rendered, and how samples become pixels and
 /// pixels become files.
 struct Film {
-  std::uint32_t width = 960;   ///< > 0
-  std::uint32_t height = 540;  ///< > 0
+  std::uint32_t width = 960;   ///< in kFilmSides; both together at most kMostFilmPixels
+  std::uint32_t height = 540;  ///< likewise
   /// Part of the picture to render, as fractions [0, 1] of width and height: x0, x1, y0, y1 (pbrt's order).
   double crop[4] = {0, 1, 0, 1};
   FilterKind filter = FilterKind::box;
@@ -63,6 +99,21 @@ struct Film {
   Tone tone{};
   bool cryptomatte = false;  ///< also coverage by objects and materials
   bool operator==(const Film&) const = default;
+
+  void describe(auto& p) {
+    p.field("width", width, kFilmSides, "pixels");
+    p.field("height", height, kFilmSides, "pixels");
+    p.check(std::uint64_t{width} * height <= kMostFilmPixels, nullptr, "the film has more than 2^30 pixels");
+    p.field("crop", crop, kUnitInterval,
+            "the part to render: x0, x1, y0, y1 as fractions of width and height");
+    p.check(crop[0] < crop[1] && crop[2] < crop[3], "crop",
+            "the crop window is empty; expected [x0, x1, y0, y1] with x0 < x1 and y0 < y1");
+    if (p.choice("filter", filter, kFilterKinds, "how samples become pixels")) filter_radius = 0;
+    p.optional("filter_radius", filter_radius, kFilterRadii, "in pixels; by filter if it is left out");
+    p.choice("tone", tone.kind, kToneKinds, "tone curve of 8-bit pictures");
+    p.field("exposure", tone.exposure, kExposures, "of 8-bit pictures, in stops");
+    p.field("cryptomatte", cryptomatte, "mattes of objects and materials in EXR files");
+  }
 };
 
 /// How light is computed.
@@ -131,13 +182,23 @@ struct CausticSettings {
   std::uint32_t passes = 16;  ///< [1, kMostPasses]; sample s of a pixel uses pass s modulo `passes`
   double radius = 0;          ///< of the first pass in world units; 0: chosen by the photons
   bool operator==(const CausticSettings&) const = default;
+
+  void describe(auto& p) {
+    p.field("photons", photons, whole(1, kMostPhotons), "emitted per pass");
+    p.field("passes", passes, whole(1, kMostPasses), "how many times photons are emitted anew");
+    p.optional("radius", Radius{radius}, "within which photons count in the first pass, or `auto`");
+  }
+  /// Greater than 0, or chosen by the photons.
+  struct Radius {
+    double& value;
+  };
 };
 
 /// How light is computed, and with how many samples.
 struct IntegratorSettings {
   IntegratorKind kind = IntegratorKind::whitted;
-  std::uint32_t samples = 4;  ///< per pixel, [1, 65536]
-  std::uint32_t depth = 6;    ///< greatest number of bounces after the camera ray, [0, 64]
+  std::uint32_t samples = 4;  ///< per pixel, in kPixelSamples
+  std::uint32_t depth = 6;    ///< greatest number of bounces after the camera ray, in kDepths
   std::uint32_t seed = 0;
   double ao_radius =
       0;  ///< reach of ambient-occlusion rays in world units; 0: a tenth of the scene's diagonal
@@ -145,7 +206,7 @@ struct IntegratorSettings {
   double clamp = 0;
   /// If not 0, pixels get more than `samples` samples until their relative error is about this.
   double error = 0;
-  std::uint32_t max_samples = 1024;  ///< most samples of a pixel if `error` is given, [1, 65536]
+  std::uint32_t max_samples = 1024;  ///< most samples of a pixel if `error` is given, in kPixelSamples
   CausticSettings caustics = {};
   /// Shadow rays of each hit to points of glowing surfaces in Whitted's model, [0, 1024]; 0: these light
   /// nothing.
@@ -154,6 +215,25 @@ struct IntegratorSettings {
   /// 8 or 16.
   std::uint32_t penumbra_factor = 4;
   bool operator==(const IntegratorSettings&) const = default;
+
+  void describe(auto& p) {
+    p.choice("kind", kind, kIntegratorKinds, "what is computed for a pixel");
+    p.field("samples", samples, kPixelSamples, "per pixel");
+    p.field("depth", depth, kDepths, "bounces after the camera ray");
+    p.field("seed", seed, kAnySeed, "of the random numbers");
+    p.field("ao_radius", ao_radius, kNonNegative, "`ao`: reach of rays; 0: a tenth of the scene's diagonal");
+    p.field("clamp", clamp, kNonNegative, "brighter samples are darkened to it, which loses light; 0: none");
+    p.field("error", error, kErrors,
+            "pixels get more samples until their relative error is about this; 0: none do");
+    p.field("max_samples", max_samples, kPixelSamples, "with `error`: most per pixel");
+    p.field("caustics", caustics, "`path`: photons, by `true` or a map");
+    p.field("light_samples", light_samples, whole(0, 1024),
+            "`whitted`: shadow rays per hit to lights that have an area; 0: these light nothing");
+    p.field("penumbra_factor", penumbra_factor, whole(1, 16),
+            "`whitted`: how many times as many, 1, 2, 4, 8 or 16, where some are blocked");
+    const double found = penumbra_factor;
+    p.check(std::has_single_bit(penumbra_factor), "penumbra_factor", "expected 1, 2, 4, 8 or 16", &found);
+  }
 };
 
 /// Whether the settings ask for photons.
@@ -239,7 +319,7 @@ struct MeshShape {
 
   static constexpr Surface kSurface{"mesh", "the triangles of a file"};
   void describe(auto& p) {
-    p.required("file", ByHand{"mesh file"}, "triangles and, with OBJ, their materials");
+    p.required("file", ByHand{"mesh file", "file"}, "triangles and, with OBJ, their materials");
     p.field("smooth", smooth, "interpolates the normals of the file");
     p.field("weld", weld, "makes one of all vertices at the same place, which an STL file does not share");
     p.choice("test", test,

@@ -24,10 +24,6 @@ namespace oktett {
 
 namespace {
 
-// The bounds of scene files.
-constexpr std::uint32_t kMostPixelsAlong = 65536, kMostSamples = 65536;
-constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30;
-
 constexpr unsigned kDataLayers = 1, kSampleCounts = 2, kMattes = 4, kMoves = 8, kCamera = 16;
 
 void append_pairs(std::string& bytes, const FilmFingerprint::Entries& pairs) {
@@ -99,9 +95,9 @@ void take_window(ByteReader& reader, FilmFormat& format) {
                            &format.full_width, &format.full_height})
     *x = reader.number<std::uint32_t>();
   const PixelWindow& w = format.window;
-  const bool good = w.x0 < w.x1 && w.x1 <= format.full_width && format.full_width <= kMostPixelsAlong &&
-                    w.y0 < w.y1 && w.y1 <= format.full_height && format.full_height <= kMostPixelsAlong;
-  if (!good || std::uint64_t{format.full_width} * format.full_height > kMostPixels)
+  const bool good = w.x0 < w.x1 && w.x1 <= format.full_width && format.full_width <= kMostFilmSide &&
+                    w.y0 < w.y1 && w.y1 <= format.full_height && format.full_height <= kMostFilmSide;
+  if (!good || std::uint64_t{format.full_width} * format.full_height > kMostFilmPixels)
     throw Error("its picture has a size that cannot be");
 }
 

@@ -9,7 +9,7 @@
 #include "io/image/heights.h"
 #include "io/scene/exact.h"
 #include "io/scene/readers.h"
-#include "io/scene/shape_reader.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 #include "kernels/functions/tape_data.h"
 #include "kernels/heights/height_grid.h"
@@ -90,19 +90,11 @@ std::shared_ptr<const HeightGrid> sample_function(SceneLoad& load, const YamlNod
 
 MaybeForm finish(const ShapeNode& at, HeightFieldShape& shape) {
   const Fields& fields = at.fields;
-  HeightInterpolation interpolation = HeightInterpolation::bilinear;
-  if (const YamlNode* choice = fields["interpolation"])
-    interpolation =
-        at.load.values.choice<HeightInterpolation>(*choice, {{"nearest", HeightInterpolation::nearest},
-                                                             {"triangles", HeightInterpolation::triangles},
-                                                             {"bilinear", HeightInterpolation::bilinear}});
   const YamlNode *file = fields["file"], *function = fields["function"];
   if (!file && !function) throw Error(at.key.where(), "height_field needs 'file' or 'function'");
   if (file && function) throw Error(function->where(), "height_field has either 'file' or 'function'");
-  if (file && fields["samples"])
-    throw Error(fields["samples"]->where(), "a height field from a file has no 'samples'");
-  shape.grid = file ? read_file(at.load, *file, interpolation)
-                    : sample_function(at.load, *function, fields["samples"], shape.size, interpolation);
+  shape.grid = file ? read_file(at.load, *file, shape.interpolation)
+                    : sample_function(at.load, *function, fields["samples"], shape.size, shape.interpolation);
   const double unit = shape.size.y * shape.grid->unit();
   const double least = shape.grid->least() * unit, greatest = shape.grid->greatest() * unit;
   if (!(std::max(std::abs(least), std::abs(greatest)) <= kMaxCoordinate))

@@ -13,6 +13,7 @@
 #include "io/image/image.h"
 #include "io/photometry/ies_file.h"
 #include "io/scene/readers.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 #include "render/light_groups.h"
 #include "render/moments.h"
@@ -22,49 +23,22 @@ namespace {
 
 constexpr auto kPi = static_cast<float>(std::numbers::pi);
 
-/// The colour of a light: as `color`, or in a radiometric unit under another key, which is pi times as much.
-void read_light_color(SceneLoad& load, const Fields& fields, const YamlNode& node, const char* radiometric,
-                      Color& out) {
-  const YamlNode *color = fields["color"], *unit = fields[radiometric];
-  if (color && unit)
-    throw Error(node.where(), std::string("expected 'color' or '") + radiometric + "', not both");
-  load.values.read_color(color, out);
-  if (!unit) return;
-  load.values.read_color(unit, out);
-  out *= 1 / kPi;
+// A colour in a radiometric unit is pi times as much.
+Color color_of_unit(Color unit) {
+  unit *= 1 / kPi;
+  return unit;
 }
 
-Vec3d read_direction(SceneLoad& load, const YamlNode& node) {
-  const Vec3d direction = load.values.vector(node);
-  if (direction == Vec3d{0, 0, 0}) throw Error(node.where(), "the direction must not be zero");
-  return direction;
-}
-
-/// What is said of the light that was read last.
-LightTraits& traits_of_last(SceneLoad& load) {
-  load.scene.light_traits.resize(load.scene.lights.size());
-  return load.scene.light_traits.back();
-}
-
-/// Adds a light and puts it into its group.
-void add_light(SceneLoad& load, const Fields& fields, Light light) {
-  load.scene.lights.push_back(std::move(light));
-  if (const YamlNode* group = fields["light_group"])
-    traits_of_last(load).group = read_light_group(load, *group);
-}
-
-/// Moves the light that was read last.
-void read_light_motion(SceneLoad& load, const Fields& fields) {
-  const YamlNode* node = fields["motion"];
-  if (!node) return;
-  Motion motion;
-  motion.factors.push_back(read_motion(load.values, *node));
-  if (!motion.moves()) {
-    Light& last = load.scene.lights.back();
-    last = moved_light(motion.at(0), last);
-    return;
+/// Adds a light, moved to where it stands all the time if its motion has only one key.
+void add_light(SceneLoad& load, Light light, LightTraits traits) {
+  if (traits.motion && !traits.motion->moves()) {
+    light = moved_light(traits.motion->at(0), light);
+    traits.motion = nullptr;
   }
-  traits_of_last(load).motion = std::make_shared<const Motion>(std::move(motion));
+  load.scene.lights.push_back(std::move(light));
+  if (!traits.motion && traits.group.empty()) return;
+  load.scene.light_traits.resize(load.scene.lights.size());
+  load.scene.light_traits.back() = std::move(traits);
 }
 
 /// The power of a lamp of greatest intensity 1.
@@ -79,87 +53,142 @@ double flux(const SpotLight& light) {
   return 2 * std::numbers::pi * (1 - (inner + outer) / 2);
 }
 
-/// `power` instead of a colour, for a light whose profile and angles have been read.
-template <class PointOrSpot>
-void read_power(SceneLoad& load, const Fields& fields, const YamlNode& node, PointOrSpot& light) {
-  const YamlNode* power = fields["power"];
-  if (!power) return;
-  if (fields["color"] || fields["intensity"])
-    throw Error(node.where(), "expected 'color', 'intensity' or 'power', not two of them");
-  load.values.read_color(power, light.color);
-  light.color *= static_cast<float>(1 / (std::numbers::pi * flux(light)));
+/// A file of a light profile.
+struct ProfileFile {
+  std::shared_ptr<const LightProfile>& profile;
+};
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, ProfileFile& file) {
+  file.profile = std::make_shared<const LightProfile>(read_light_profile(load.values.existing_file(node)));
 }
+std::string schema_of(Schema&, const Range&, const ProfileFile&) { return Schema::file(); }
 
-/// The file of `profile`, if it is given, and what goes with it.
+// What lights of several kinds have.
+constexpr const char* kWhite = "of a white surface that faces the light";
+void describe_group(auto& p, std::string& group) {
+  p.optional("light_group", LightGroupName{group}, "the layer that gets the light, too");
+}
+void describe_traits(auto& p, LightTraits& traits) {
+  p.optional("motion", traits.motion, "transforms of the light");
+  describe_group(p, traits.group);
+}
+void describe_direction(auto& p, const char* key, Vec3d& direction, const char* meaning) {
+  p.field(key, direction, meaning);
+  p.check(!(direction == Vec3d{0, 0, 0}), key, "the direction must not be zero");
+}
+/// What points and spots have.
 template <class PointOrSpot>
-void read_profile(SceneLoad& load, const Fields& fields, PointOrSpot& light) {
-  if (const YamlNode* file = fields["profile"]) {
-    attempt(*file, [&] {
-      light.profile =
-          std::make_shared<const LightProfile>(read_light_profile(load.values.existing_file(*file)));
-    });
-    load.values.read(fields["rotate"], light.rotation, kAnyNumber);
-  } else if (fields["rotate"] != nullptr) {
-    throw Error(fields["rotate"]->where(), "'rotate' turns a 'profile', which is missing");
+struct LampColor {
+  Color intensity{1, 1, 1}, power{1, 1, 1};
+
+  void describe_color(auto& p, PointOrSpot& light) {
+    p.field("color", light.color, kWhite);
+    p.optional("intensity", intensity, "instead of `color`: W/sr");
+    p.optional("power", power, "instead of `color`: W of the whole light");
+    p.not_both("color", "intensity");
+    for (const char* key : {"color", "intensity"})
+      p.not_both(key, "power", "expected 'color', 'intensity' or 'power', not two of them");
   }
-}
+  void describe_profile(auto& p, PointOrSpot& light) {
+    p.optional("profile", ProfileFile{light.profile},
+               "an IES file; its brightest direction has the intensity");
+    p.field("rotate", light.rotation, "degrees by which the profile is turned about its axis");
+  }
+  /// For a light whose profile and angles have been read.
+  void finish(const Fields& fields, PointOrSpot& light) const {
+    if (fields["rotate"] && !fields["profile"])
+      throw Error(fields["rotate"]->where(), "'rotate' turns a 'profile', which is missing");
+    if (fields["intensity"]) light.color = color_of_unit(intensity);
+    if (!fields["power"]) return;
+    light.color = power;
+    light.color *= static_cast<float>(1 / (std::numbers::pi * flux(light)));
+  }
+};
 
-void read_point(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(
-      node, "a point light",
-      {"position", "color", "intensity", "power", "falloff", "profile", "rotate", "motion", "light_group"});
-  PointLight light;
-  light.position = load.values.vector(fields.require("position"));
-  read_light_color(load, fields, node, "intensity", light.color);
-  read_profile(load, fields, light);
-  read_power(load, fields, node, light);
+struct PointKeys {
+  PointLight light{};
+  LampColor<PointLight> color{};
+  LightTraits traits{};
+
+  static constexpr const char* kMap = "a point light";
+  void describe(auto& p) {
+    p.required("position", light.position, "where it stands");
+    color.describe_color(p, light);
+    p.field("falloff", light.falloff,
+            "divides by the squared distance; `intensity`, `power` and `profile` set it");
+    color.describe_profile(p, light);
+    describe_traits(p, traits);
+  }
+};
+
+void finish(SceneLoad& load, const Fields& fields, const YamlNode&, PointKeys& keys) {
+  PointLight& light = keys.light;
+  keys.color.finish(fields, light);
   // An intensity means light that falls off.
-  light.falloff = fields["intensity"] || fields["power"] || fields["profile"];
-  load.values.read(fields["falloff"], light.falloff);
-  if (!light.falloff && (fields["intensity"] || fields["power"]))
+  const bool falls_off = fields["intensity"] || fields["power"];
+  if (!fields["falloff"]) light.falloff = falls_off || fields["profile"];
+  if (!light.falloff && falls_off)
     throw Error(fields["falloff"]->where(),
                 fmt::format("'{}' is that of a light that falls off; expected 'falloff: true', or 'color'",
                             fields["power"] ? "power" : "intensity"));
-  add_light(load, fields, light);
-  read_light_motion(load, fields);
+  add_light(load, light, keys.traits);
 }
 
-void read_spot(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a spot light",
-                      {"position", "direction", "at", "color", "intensity", "power", "inner_angle",
-                       "outer_angle", "profile", "rotate", "motion", "light_group"});
-  SpotLight light;
-  light.position = load.values.vector(fields.require("position"));
-  const YamlNode *direction = fields["direction"], *at = fields["at"];
-  if (direction && at) throw Error(node.where(), "expected 'direction' or 'at', not both");
-  if (direction) light.direction = read_direction(load, *direction);
-  if (at) {
-    light.direction = load.values.vector(*at) - light.position;
+struct SpotKeys {
+  SpotLight light{};
+  Vec3d at{0, 0, 0};
+  LampColor<SpotLight> color{};
+  LightTraits traits{};
+
+  static constexpr const char* kMap = "a spot light";
+  void describe(auto& p) {
+    p.required("position", light.position, "where it stands");
+    describe_direction(p, "direction", light.direction, "along the middle of the cone");
+    p.optional("at", at, "instead of `direction`: a point there");
+    color.describe_color(p, light);
+    p.optional("inner_angle", light.inner_angle, Range{0, 180},
+               "where light begins to fade; 3/4 of the outer one if left out");
+    p.field("outer_angle", light.outer_angle, Range{0, 180, true},
+            "degrees from the middle where light ends");
+    color.describe_profile(p, light);
+    describe_traits(p, traits);
+    p.not_both("direction", "at");
+    for (const char* key : {"inner_angle", "outer_angle"})
+      p.not_both("profile", key, "expected 'profile' or angles, not both");
+  }
+};
+
+void finish(SceneLoad& load, const Fields& fields, const YamlNode& node, SpotKeys& keys) {
+  SpotLight& light = keys.light;
+  if (const YamlNode* at = fields["at"]) {
+    light.direction = keys.at - light.position;
     if (light.direction == Vec3d{0, 0, 0}) throw Error(at->where(), "the light stands where it points to");
   }
-  read_light_color(load, fields, node, "intensity", light.color);
-  read_profile(load, fields, light);
-  if (light.profile && (fields["inner_angle"] || fields["outer_angle"]))
-    throw Error(node.where(), "expected 'profile' or angles, not both");
-  load.values.read(fields["outer_angle"], light.outer_angle, {0, 180, true, false});
-  light.inner_angle = 0.75 * light.outer_angle;
-  load.values.read(fields["inner_angle"], light.inner_angle, {0, 180});
+  if (!fields["inner_angle"]) light.inner_angle = 0.75 * light.outer_angle;
   if (light.inner_angle > light.outer_angle)
     throw Error(node.where(), "'inner_angle' is greater than 'outer_angle'");
-  read_power(load, fields, node, light);
-  add_light(load, fields, light);
-  read_light_motion(load, fields);
+  keys.color.finish(fields, light);
+  add_light(load, light, keys.traits);
 }
 
-void read_directional(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a directional light",
-                      {"direction", "color", "irradiance", "angle", "motion", "light_group"});
-  DirectionalLight light;
-  if (const YamlNode* direction = fields["direction"]) light.direction = read_direction(load, *direction);
-  read_light_color(load, fields, node, "irradiance", light.color);
-  load.values.read(fields["angle"], light.angle, {0, 180});
-  add_light(load, fields, light);
-  read_light_motion(load, fields);
+struct DirectionalKeys {
+  DirectionalLight light{};
+  Color irradiance{1, 1, 1};
+  LightTraits traits{};
+
+  static constexpr const char* kMap = "a directional light";
+  void describe(auto& p) {
+    describe_direction(p, "direction", light.direction, "of travel");
+    p.field("color", light.color, kWhite);
+    p.optional("irradiance", irradiance, "instead of `color`: W/m²");
+    p.not_both("color", "irradiance");
+    p.field("angle", light.angle, Range{0, 180}, "angular diameter in degrees");
+    describe_traits(p, traits);
+  }
+};
+
+void finish(SceneLoad& load, const Fields& fields, const YamlNode&, DirectionalKeys& keys) {
+  if (fields["irradiance"]) keys.light.color = color_of_unit(keys.irradiance);
+  add_light(load, keys.light, keys.traits);
 }
 
 /// The radiance of a picture file of all directions.
@@ -179,35 +208,53 @@ std::shared_ptr<const EnvironmentPicture> read_environment_picture(SceneLoad& lo
   return std::make_shared<const EnvironmentPicture>(std::move(environment));
 }
 
-void read_environment(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "an environment", {"file", "color", "rotate", "light_group"});
-  EnvironmentLight light;
-  load.values.read_color(fields["color"], light.color);
-  load.values.read(fields["rotate"], light.rotation, kAnyNumber);
-  add_light(load, fields, std::move(light));
-  const YamlNode& file = fields.require("file");
-  attempt(file, [&] {
-    std::get<EnvironmentLight>(load.scene.lights.back()).picture = read_environment_picture(load, file);
-  });
+/// An image of all directions.
+struct EnvironmentFile {
+  std::shared_ptr<const EnvironmentPicture>& picture;
+};
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, EnvironmentFile& file) {
+  file.picture = read_environment_picture(load, node);
+}
+std::string schema_of(Schema&, const Range&, const EnvironmentFile&) { return Schema::file(); }
+
+struct EnvironmentKeys {
+  EnvironmentLight light{};
+  LightTraits traits{};
+
+  static constexpr const char* kMap = "an environment";
+  void describe(auto& p) {
+    p.required("file", EnvironmentFile{light.picture}, "an image of all directions");
+    p.field("color", light.color, "multiplies the image");
+    p.field("rotate", light.rotation, "degrees about the y axis");
+    describe_group(p, traits.group);
+  }
+};
+
+struct SkyKeys {
+  SkyLight light{};
+  LightTraits traits{};
+
+  static constexpr const char* kMap = "a sky";
+  void describe(auto& p) {
+    describe_direction(p, "sun", light.sun, "towards the sun");
+    p.field("turbidity", light.turbidity, Range{2, 10}, "from very clear to hazy");
+    p.field("ground", light.ground, "colour below the horizon");
+    p.field("color", light.color, "multiplies radiance in kcd/m²");
+    describe_group(p, traits.group);
+  }
+};
+
+/// Of lights that need no more than they say.
+template <class Keys>
+void finish(SceneLoad& load, const Fields&, const YamlNode&, Keys& keys) {
+  add_light(load, std::move(keys.light), keys.traits);
 }
 
-void read_sky(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a sky", {"sun", "turbidity", "ground", "color", "light_group"});
-  SkyLight light;
-  if (const YamlNode* sun = fields["sun"]) light.sun = read_direction(load, *sun);
-  load.values.read(fields["turbidity"], light.turbidity, {2, 10});
-  load.values.read_color(fields["ground"], light.ground);
-  load.values.read_color(fields["color"], light.color);
-  add_light(load, fields, light);
-}
-
-/// The radiance of a diffuse lamp of `area` that gives off the power at `node`: power / (pi * area). Throws
-/// Error if single precision has no such number, or if the lamp is so small that the solid angle in which it
-/// is seen from 10 000 away has none.
-Color radiance_of_power(SceneLoad& load, const YamlNode& node, double area) {
+/// The radiance of a diffuse lamp of `area` that gives off the power `color`, given at `node`: power / (pi *
+/// area). Throws Error if single precision has no such number, or if the lamp is so small that the solid
+/// angle in which it is seen from 10 000 away has none.
+Color radiance_of_power(Color color, const YamlNode& node, double area) {
   constexpr double kLeastArea = 1e-28;
-  Color color;
-  load.values.read_color(&node, color);
   for (int k = 0; k < 3; ++k) {
     if (!(color[k] > 0)) continue;
     if (area < kLeastArea)
@@ -237,84 +284,138 @@ void warn_of_idle_lamp(SceneLoad& load, const YamlNode& node) {
               "the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size");
 }
 
-/// Adds an object that glows, of `area`. It is given `radiance`, or `power` in all.
-void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Shape shape, double area) {
-  const YamlNode *radiance = fields["radiance"], *power = fields["power"];
-  if (radiance && power) throw Error(node.where(), "expected 'radiance' or 'power', not both");
+/// What lights that are objects have.
+struct Glow {
+  Color radiance{1, 1, 1}, power{1, 1, 1};
+  LightTraits traits{};
+
+  void describe(auto& p) {
+    p.field("radiance", radiance, "W/(m² sr)");
+    p.optional("power", power, "instead of `radiance`: W of the whole light");
+    p.not_both("radiance", "power");
+    describe_traits(p, traits);
+  }
+};
+
+/// Adds an object that glows, of `area`.
+void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Glow& glow, Shape shape,
+                 double area) {
   warn_of_idle_lamp(load, node);
   Material m;
   m.color = {0, 0, 0}, m.ambient = m.diffuse = 0;
-  m.emission = {1, 1, 1};
+  m.emission = glow.radiance;
   m.emits_behind = false;
-  if (const YamlNode* group = fields["light_group"]) m.light_group = read_light_group(load, *group);
-  load.values.read_color(radiance, m.emission);
-  if (power) m.emission = radiance_of_power(load, *power, area);
+  m.light_group = glow.traits.group;
+  if (const YamlNode* power = fields["power"]) m.emission = radiance_of_power(glow.power, *power, area);
   load.scene.materials.push_back(std::move(m));
   Object object;
   object.shape = std::move(shape);
   object.material = static_cast<std::uint32_t>(load.scene.materials.size() - 1);
   object.where = node.where();
-  if (const YamlNode* motion = fields["motion"]) {
-    Motion moved;
-    moved.factors.push_back(read_motion(load.values, *motion));
-    object.transform = moved.at(0);
-    if (moved.moves()) object.motion = std::make_shared<const Motion>(std::move(moved));
+  if (const MotionPointer& motion = glow.traits.motion) {
+    object.transform = motion->at(0);
+    if (motion->moves()) object.motion = motion;
   }
   load.scene.objects.push_back(std::move(object));
 }
 
-void read_sphere_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a sphere light",
-                      {"center", "radius", "radiance", "power", "motion", "light_group"});
-  SphereShape sphere;
-  sphere.center = load.values.vector(fields.require("center"));
-  load.values.read(fields["radius"], sphere.radius, kPositive);
-  add_glowing(load, fields, node, sphere, 4 * std::numbers::pi * sphere.radius * sphere.radius);
+struct SphereLightKeys {
+  SphereShape sphere{};
+  Glow glow{};
+
+  static constexpr const char* kMap = "a sphere light";
+  void describe(auto& p) {
+    p.required("center", sphere.center, "the centre");
+    p.field("radius", sphere.radius, kPositive, "of the ball");
+    glow.describe(p);
+  }
+};
+
+void finish(SceneLoad& load, const Fields& fields, const YamlNode& node, SphereLightKeys& keys) {
+  const SphereShape& sphere = keys.sphere;
+  add_glowing(load, fields, node, keys.glow, sphere, 4 * std::numbers::pi * sphere.radius * sphere.radius);
 }
 
-void read_disk_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a disk light",
-                      {"center", "normal", "radius", "radiance", "power", "motion", "light_group"});
-  DiskShape disk;
-  disk.normal = {0, -1, 0};
-  disk.center = load.values.vector(fields.require("center"));
-  if (const YamlNode* normal = fields["normal"]) disk.normal = read_direction(load, *normal);
-  load.values.read(fields["radius"], disk.radius, kPositive);
-  add_glowing(load, fields, node, disk, std::numbers::pi * disk.radius * disk.radius);
+struct DiskLightKeys {
+  DiskShape disk{.normal = {0, -1, 0}};
+  Glow glow{};
+
+  static constexpr const char* kMap = "a disk light";
+  void describe(auto& p) {
+    p.required("center", disk.center, "the centre");
+    describe_direction(p, "normal", disk.normal, "to the side that glows");
+    p.field("radius", disk.radius, kPositive, "of the disk");
+    glow.describe(p);
+  }
+};
+
+void finish(SceneLoad& load, const Fields& fields, const YamlNode& node, DiskLightKeys& keys) {
+  const DiskShape& disk = keys.disk;
+  add_glowing(load, fields, node, keys.glow, disk, std::numbers::pi * disk.radius * disk.radius);
 }
 
-void read_rectangle_light(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "a rectangle light",
-                      {"corner", "u", "v", "radiance", "power", "motion", "light_group"});
-  const Vec3d corner = load.values.vector(fields.require("corner"));
-  const Vec3d u = load.values.vector(fields.require("u")), v = load.values.vector(fields.require("v"));
-  const double area = length(u) * length(v);
-  if (!(area > 0)) throw Error(node.where(), "the edges 'u' and 'v' must not be zero");
-  if (std::abs(dot(u, v)) > 1e-6 * area)
-    throw Error(node.where(), "the edges 'u' and 'v' must be perpendicular");
-  add_glowing(load, fields, node, PolygonShape{{corner, corner + u, corner + u + v, corner + v}}, area);
+struct RectangleLightKeys {
+  Vec3d corner{0, 0, 0}, u{1, 0, 0}, v{0, 1, 0};
+  Glow glow{};
+
+  static constexpr const char* kMap = "a rectangle light";
+  void describe(auto& p) {
+    p.required("corner", corner, "a corner");
+    p.required("u", u, "an edge from there");
+    p.required("v", v, "the other edge, perpendicular; the side to which u x v points glows");
+    const double area = length(u) * length(v);
+    p.check(area > 0, nullptr, "the edges 'u' and 'v' must not be zero");
+    p.check(!(std::abs(dot(u, v)) > 1e-6 * area), nullptr, "the edges 'u' and 'v' must be perpendicular");
+    glow.describe(p);
+  }
+};
+
+void finish(SceneLoad& load, const Fields& fields, const YamlNode& node, RectangleLightKeys& keys) {
+  const Vec3d &corner = keys.corner, &u = keys.u, &v = keys.v;
+  add_glowing(load, fields, node, keys.glow, PolygonShape{{corner, corner + u, corner + u + v, corner + v}},
+              length(u) * length(v));
+}
+
+template <class Keys>
+void read_light(SceneLoad& load, const YamlNode& node) {
+  Keys keys;
+  const Fields fields = read_described(load, node, Keys::kMap, keys);
+  finish(load, fields, node, keys);
+}
+template <class Keys>
+std::string light_schema(Schema& schema) {
+  return schema.map(Keys::kMap, Keys{});
 }
 
 struct LightKind {
-  const char* key;
+  const char *key, *meaning;
   void (*read)(SceneLoad&, const YamlNode&);
+  std::string (*schema)(Schema&);
 };
-constexpr LightKind kLightKinds[] = {{"point", read_point},
-                                     {"spot", read_spot},
-                                     {"directional", read_directional},
-                                     {"environment", read_environment},
-                                     {"sky", read_sky},
-                                     {"sphere", read_sphere_light},
-                                     {"disk", read_disk_light},
-                                     {"rectangle", read_rectangle_light}};
+template <class Keys>
+constexpr LightKind light_kind(const char* key, const char* meaning) {
+  return {key, meaning, read_light<Keys>, light_schema<Keys>};
+}
+constexpr LightKind kLightKinds[] = {light_kind<PointKeys>("point", "a point that shines in all directions"),
+                                     light_kind<SpotKeys>("spot", "a point that shines into a cone"),
+                                     light_kind<DirectionalKeys>("directional", "parallel light"),
+                                     light_kind<EnvironmentKeys>("environment", "an image of all directions"),
+                                     light_kind<SkyKeys>("sky", "the clear sky by day"),
+                                     light_kind<SphereLightKeys>("sphere", "a ball that glows"),
+                                     light_kind<DiskLightKeys>("disk", "a disk that glows"),
+                                     light_kind<RectangleLightKeys>("rectangle", "a rectangle that glows")};
 
 }  // namespace
 
 // A layer is called light_NAME.R; EXR files hold names of up to 255 characters.
 static constexpr std::size_t kLongestLightGroup = 247;
 
-std::string read_light_group(SceneLoad& load, const YamlNode& node) {
-  std::string name = load.values.text(node, "^[A-Za-z0-9_-]{1,247}$");
+std::string schema_of(Schema&, const Range&, const LightGroupName&) {
+  return Schema::matching(fmt::format("^[A-Za-z0-9_-]{{1,{}}}$", kLongestLightGroup));
+}
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, LightGroupName& group) {
+  const std::string name = load.values.text(node);
   if (!is_light_group_name(name))
     throw Error(node.where(),
                 "a light group's name has letters, digits, '_' and '-' only, because layers of "
@@ -325,12 +426,15 @@ std::string read_light_group(SceneLoad& load, const YamlNode& node) {
                 fmt::format("a light group's name has at most {} characters, because layers of the "
                             "picture are named after it; found {}",
                             kLongestLightGroup, name.size()));
-  if (name == kDefaultLightGroup) return {};
+  if (name == kDefaultLightGroup) {
+    group.name.clear();
+    return;
+  }
   load.light_groups.insert(name);
   // The default group is one more.
   if (load.light_groups.size() >= kMostLightGroups)
     throw Error(node.where(), fmt::format("there are more than {} light groups", kMostLightGroups - 1));
-  return name;
+  group.name = name;
 }
 
 void read_lights(SceneLoad& load, const YamlNode& node) {
@@ -340,7 +444,6 @@ void read_lights(SceneLoad& load, const YamlNode& node) {
   for (const YamlNode* item : list_items(node, "lights"))
     attempt(*item, [&] {
       const Fields fields(*item, "a light", keys);
-      declare_one_of(*item, {keys.begin(), keys.end()});
       const std::vector<MapEntry> entries = map_entries(*item, "a light");
       if (entries.size() != 1)
         throw Error(item->where(),
@@ -349,5 +452,7 @@ void read_lights(SceneLoad& load, const YamlNode& node) {
         if (entries[0].key->text == kind.key) kind.read(load, *entries[0].value);
     });
 }
+
+std::string lights_schema(Schema& schema) { return Schema::list(schema.one_of("a light", kLightKinds)); }
 
 }  // namespace oktett

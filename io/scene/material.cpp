@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/math.h"
 #include "io/scene/readers.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 #include "io/text/files.h"
 #include "render/bsdf/metals.h"
@@ -16,60 +18,52 @@
 namespace oktett {
 namespace {
 
-bool is_texture(const YamlNode* node) { return node != nullptr && node->kind == YamlKind::map; }
+constexpr std::uint32_t kMostPriority = 1'000'000;
 
-/// A number, or a texture that takes its place.
-void read_textured(SceneLoad& load, const YamlNode* node, float& out, std::uint32_t& texture,
-                   const Range& range) {
-  if (!is_texture(node)) return load.values.read(node, out, range);
-  out = 1;
-  read_texture(load, node, texture);
-}
+/// A map of the principled model. Its colour is that of the material.
+struct PrincipledKeys {
+  Material& m;
+  PrincipledMaterial principled{};
+  Conductor named{}, measured{};
 
-/// A colour, or a texture that takes its place.
-void read_textured(SceneLoad& load, const YamlNode* node, Color& out, std::uint32_t& texture) {
-  if (!is_texture(node)) return load.values.read_color(node, out);
-  out = {1, 1, 1};
-  read_texture(load, node, texture);
-}
+  static constexpr const char* kMap = "a principled material";
+  void describe(auto& p) {
+    PrincipledParameters& values = principled.parameters;
+    p.field("base_color", Textured<Color>{m.color, m.color_texture},
+            "of metal head-on, of diffuse light, and of light that passes glass");
+    p.field("thin", values.thin, "glass is thin walls, which do not bend light");
+    p.field("sheen_color", Textured<Color>{values.sheen_color, principled.sheen_color_texture},
+            "of the fibres");
+    p.optional("metal", ChoiceOf<Conductor>{named, kMetals}, "instead of `eta` and `k`: those of this metal");
+    p.optional("eta", Textured<Color>{measured.eta, principled.eta_texture},
+               "index of refraction of the metal");
+    p.optional("k", Textured<Color>{measured.k, principled.k_texture}, "how the metal absorbs");
+    for (const PrincipledNumber& number : kPrincipledNumbers)
+      p.field(number.name, Textured<float>{values.*number.value, principled.*number.texture}, number.range,
+              number.meaning);
+    for (const char* key : {"eta", "k"})
+      p.not_both("metal", key, "expected 'metal' or 'eta' and 'k', not both");
+  }
+};
 
-/// A texture that multiplies a value which is no texture itself.
-void read_map(SceneLoad& load, const YamlNode* node, std::uint32_t& texture) {
-  if (node && texture != kNoId)
-    throw Error(node->where(),
-                "this texture multiplies a value that is a texture itself; expected one of them");
-  read_texture(load, node, texture);
-}
-
-/// The complex index of refraction of a metal.
-std::optional<Conductor> read_conductor(SceneLoad& load, const Fields& fields, const YamlNode& node,
-                                        PrincipledMaterial& principled) {
-  const YamlNode *metal_name = fields["metal"], *eta = fields["eta"], *k = fields["k"];
-  if (metal_name && (eta || k)) throw Error(node.where(), "expected 'metal' or 'eta' and 'k', not both");
-  if (metal_name) return load.values.choice<Conductor>(*metal_name, kMetals);
+/// The complex index of refraction of the metal, if it is given.
+std::optional<Conductor> conductor_of(const Fields& fields, const YamlNode& node,
+                                      const PrincipledKeys& keys) {
+  const YamlNode *eta = fields["eta"], *k = fields["k"];
+  if (fields["metal"]) return keys.named;
   if (!eta && !k) return std::nullopt;
   if (!eta || !k) throw Error(node.where(), "a metal's index of refraction needs both 'eta' and 'k'");
-  Conductor metal;
-  read_textured(load, eta, metal.eta, principled.eta_texture);
-  read_textured(load, k, metal.k, principled.k_texture);
-  if (!(std::min({metal.eta.x, metal.eta.y, metal.eta.z}) > 0))
+  if (!(std::min({keys.measured.eta.x, keys.measured.eta.y, keys.measured.eta.z}) > 0))
     throw Error(eta->where(), "expected numbers greater than 0");
-  return metal;
+  return keys.measured;
 }
 
-void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
-  std::vector<const char*> keys{"base_color", "thin", "sheen_color", "metal", "eta", "k"};
-  for (const PrincipledNumber& number : kPrincipledNumbers) keys.push_back(number.name);
-  const Fields fields(node, "a principled material", keys);
-  PrincipledMaterial principled;
-  PrincipledParameters& p = principled.parameters;
-  read_textured(load, fields["base_color"], m.color, m.color_texture);
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, PrincipledKeys& keys) {
+  const Fields fields = read_described(load, node, keys.kMap, keys);
+  Material& m = keys.m;
+  PrincipledParameters& p = keys.principled.parameters;
   p.base_color = m.color;
-  for (const PrincipledNumber& number : kPrincipledNumbers)
-    read_textured(load, fields[number.name], p.*number.value, principled.*number.texture, number.range);
-  read_textured(load, fields["sheen_color"], p.sheen_color, principled.sheen_color_texture);
-  load.values.read(fields["thin"], p.thin);
-  p.conductor = read_conductor(load, fields, node, principled);
+  p.conductor = conductor_of(fields, node, keys);
   if (p.conductor) {
     if (!fields["metallic"]) p.metallic = 1;
     if (p.metallic == 0)
@@ -77,33 +71,99 @@ void read_principled(SceneLoad& load, const YamlNode& node, Material& m) {
     // What shows no indices of refraction shows this.
     if (!fields["base_color"]) p.base_color = m.color = head_on_color(*p.conductor);
   }
-  m.principled = principled;
+  m.principled = keys.principled;
   resemble_principled(m);
 }
 
-/// The keys of Phong's model, and those of all materials.
-constexpr const char* kPhongKeys[] = {"color",    "specular_color", "ambient",      "diffuse", "specular",
-                                      "phong",    "reflection",     "transparency", "ior",     "roughness",
-                                      "metallic", "map_color",      "map_specular"};
-constexpr const char* kCommonKeys[] = {
-    "principled",  "emits",    "emission",          "map_emission",         "opacity",
-    "map_opacity", "map_bump", "map_normal",        "bump_scale",           "surface",
-    "interior",    "priority", "attenuation_color", "attenuation_distance", "light_group"};
+/// The keys of Phong's model.
+struct PhongKeys {
+  Material& m;
+  PrincipledMaterial rough{};  ///< with `roughness` and `metallic`
+
+  void describe(auto& p) {
+    p.field("color", Textured<Color>{m.color, m.color_texture}, "of diffuse, ambient and transmitted light");
+    p.field("specular_color", Textured<Color>{m.specular_color, m.specular_texture},
+            "of highlights and mirror reflections");
+    for (const PhongNumber& number : kPhongNumbers)
+      p.field(number.name, Textured<float>{m.*number.value, m.*number.texture}, number.range, number.meaning);
+    p.field("ior", Textured<float>{m.ior, m.ior_texture}, kPositive,
+            "index of refraction inside relative to outside");
+    p.optional("roughness", Textured<float>{rough.parameters.roughness, rough.roughness_texture},
+               kUnitInterval, "makes `path` use a principled material of this colour");
+    p.optional("metallic", Textured<float>{rough.parameters.metallic, rough.metallic_texture}, kUnitInterval,
+               "likewise");
+    p.optional("map_color", TextureMap{m.color_texture, true}, "multiplies `color`");
+    p.optional("map_specular", TextureMap{m.specular_texture, true}, "multiplies `specular_color`");
+  }
+};
+
+/// The keys of all materials.
+struct CommonKeys {
+  Material& m;
+  std::uint32_t priority = 0;
+  Color attenuation{1, 1, 1};
+  double distance = 1;
+
+  void describe(auto& p) {
+    p.optional("principled", PrincipledKeys{m}, "instead of the keys of Phong's model");
+    p.choice("emits", m.emits_behind, {{"both", true}, {"front", false}}, "which sides glow");
+    p.field("emission", Textured<Color>{m.emission, m.emission_texture}, "radiance given off");
+    p.optional("map_emission", TextureMap{m.emission_texture, true}, "multiplies `emission`");
+    p.field("opacity", Textured<float>{m.opacity, m.opacity_texture}, kUnitInterval,
+            "the part of the surface that is there");
+    p.optional("map_opacity", TextureMap{m.opacity_texture, true}, "multiplies `opacity`");
+    p.optional("map_bump", TextureMap{m.bump_texture}, "heights");
+    p.optional("map_normal", TextureMap{m.normal_texture}, "an image of tangent-space normals");
+    p.field("bump_scale", m.bump_scale, "multiplies the heights of `map_bump`");
+    p.field("surface", m.surface, "false: an invisible boundary of the interior");
+    p.optional("interior", MediumName{m.interior}, "the medium in solids of this material");
+    p.optional("priority", priority, whole(0, kMostPriority),
+               "where solids overlap, the highest fills the space");
+    p.optional("attenuation_color", attenuation, "instead of `interior`: what is left of white light");
+    p.optional("attenuation_distance", distance, kPositiveLength, "after this distance");
+    p.optional("light_group", LightGroupName{m.light_group}, "layer for the light of `emission`");
+    for (const char* key : {"attenuation_color", "attenuation_distance"})
+      p.not_both("interior", key, "a material has either an 'interior' or an attenuation", key);
+  }
+};
+
+struct MaterialKeys {
+  PhongKeys phong;
+  CommonKeys common;
+
+  static constexpr const char* kMap = "a material";
+  void describe(auto& p) {
+    phong.describe(p);
+    common.describe(p);
+  }
+};
 
 /// Throws Error if a principled material also has keys of Phong's model.
-void refuse_phong_keys(const YamlNode& node) {
-  for (const MapEntry& entry : map_entries(node, "a material"))
-    if (std::ranges::find(kPhongKeys, entry.key->text) != std::end(kPhongKeys))
+void refuse_phong_keys(const YamlNode& node, const PhongKeys& phong) {
+  const KeyList list(phong);
+  for (const MapEntry& entry : map_entries(node, MaterialKeys::kMap))
+    if (std::ranges::find(list.keys, entry.key->text) != list.keys.end())
       throw Error(entry.key->where(), quote(entry.key->text) + " has no meaning beside 'principled'");
 }
 
+/// Throws Error if a material without a surface has keys that describe one.
+void refuse_surface_keys(const YamlNode& node) {
+  constexpr const char* kAllowed[] = {"surface", "interior", "priority"};
+  for (const MapEntry& entry : map_entries(node, MaterialKeys::kMap))
+    if (std::ranges::find(kAllowed, entry.key->text) == std::end(kAllowed))
+      throw Error(entry.key->where(), quote(entry.key->text) + " has no meaning beside 'surface: false'");
+}
+
 /// `roughness` and `metallic` beside Phong's parameters make a principled material of them.
-void read_roughness(SceneLoad& load, const YamlNode* roughness, const YamlNode* metallic, Material& m) {
-  if (!roughness && !metallic) return;
+void finish_roughness(const Fields& fields, const PrincipledMaterial& rough, Material& m) {
+  if (!fields["roughness"] && !fields["metallic"]) return;
   PrincipledMaterial& principled = m.principled.emplace(principled_like(m));
-  read_textured(load, roughness, principled.parameters.roughness, principled.roughness_texture,
-                kUnitInterval);
-  read_textured(load, metallic, principled.parameters.metallic, principled.metallic_texture, kUnitInterval);
+  if (fields["roughness"]) {
+    principled.parameters.roughness = rough.parameters.roughness;
+    principled.roughness_texture = rough.roughness_texture;
+  }
+  principled.parameters.metallic = rough.parameters.metallic;
+  principled.metallic_texture = rough.metallic_texture;
 }
 
 /// Throws Error if the normals are those of a pattern.
@@ -112,6 +172,47 @@ void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, const Ma
     throw Error(
         node->where(),
         "a pattern holds no normals; expected an image, or 'map_bump', which takes a pattern as heights");
+}
+
+/// The medium that leaves `attenuation_color` of white light after `attenuation_distance`, as in glTF.
+std::uint32_t add_attenuation(SceneLoad& load, const Fields& fields, const CommonKeys& keys) {
+  const YamlNode *color = fields["attenuation_color"], *distance = fields["attenuation_distance"];
+  if (!color || !distance)
+    throw Error((color ? color : distance)->where(),
+                "expected both 'attenuation_color' and 'attenuation_distance'");
+  Medium medium;
+  for (int c = 0; c < 3; ++c) {
+    const float left = keys.attenuation[c];
+    if (!(left > 0 && left <= 1))
+      throw Error(color->where(), "expected numbers greater than 0 and at most 1");
+    medium.absorption[c] = std::min(
+        kMostCoefficient, static_cast<float>(-portable::log(static_cast<double>(left)) / keys.distance));
+  }
+  load.scene.media.push_back(medium);
+  return static_cast<std::uint32_t>(load.scene.media.size() - 1);
+}
+
+/// What is inside of solids of the material.
+void finish_interior(SceneLoad& load, const Fields& fields, const YamlNode& node, const CommonKeys& keys) {
+  Material& m = keys.m;
+  if (!m.surface) {
+    refuse_surface_keys(node);
+    m.ambient = m.diffuse = 0;
+    m.transparency = 1;
+    m.ior = 1;
+    m.color = {1, 1, 1};
+  }
+  const YamlNode *interior = fields["interior"], *priority = fields["priority"];
+  const YamlNode* color = fields["attenuation_color"];
+  if (color || fields["attenuation_distance"]) m.interior = add_attenuation(load, fields, keys);
+  if (priority) m.priority = static_cast<std::int32_t>(keys.priority);
+  const YamlNode* given = interior ? interior : color ? color : priority;
+  if (given && m.transparency == 0)
+    throw Error(given->where(),
+                "no light enters this material; expected 'transparency', 'transmission' or 'surface: false' "
+                "beside what is inside");
+  if (given && m.principled && m.principled->parameters.thin)
+    throw Error(given->where(), "thin glass has no inside");
 }
 
 /// Warns of the keys that change nothing, given the others.
@@ -126,41 +227,24 @@ void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& 
 }
 
 std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::string& name) {
-  std::vector<const char*> keys(std::begin(kPhongKeys), std::end(kPhongKeys));
-  keys.insert(keys.end(), std::begin(kCommonKeys), std::end(kCommonKeys));
-  const Fields fields(node, "a material", keys);
-  SceneValues& values = load.values;
   Material m;
   m.name = name;
-  read_textured(load, fields["color"], m.color, m.color_texture);
-  read_textured(load, fields["specular_color"], m.specular_color, m.specular_texture);
-  read_textured(load, fields["emission"], m.emission, m.emission_texture);
-  for (const PhongNumber& number : kPhongNumbers)
-    read_textured(load, fields[number.name], m.*number.value, m.*number.texture, number.range);
-  read_textured(load, fields["ior"], m.ior, m.ior_texture, kPositive);
-  read_textured(load, fields["opacity"], m.opacity, m.opacity_texture, kUnitInterval);
-  read_roughness(load, fields["roughness"], fields["metallic"], m);
-  if (const YamlNode* emits = fields["emits"])
-    m.emits_behind = values.choice<bool>(*emits, {{"both", true}, {"front", false}});
-  if (const YamlNode* group = fields["light_group"]) m.light_group = read_light_group(load, *group);
-  read_map(load, fields["map_color"], m.color_texture);
-  read_map(load, fields["map_specular"], m.specular_texture);
-  read_map(load, fields["map_emission"], m.emission_texture);
-  read_map(load, fields["map_opacity"], m.opacity_texture);
-  read_texture(load, fields["map_bump"], m.bump_texture);
-  read_texture(load, fields["map_normal"], m.normal_texture);
+  MaterialKeys keys{{m}, {m}};
+  const Fields fields = read_described(load, node, keys.kMap, keys);
+  finish_roughness(fields, keys.phong.rough, m);
   refuse_normal_pattern(load, fields["map_normal"], m);
-  values.read(fields["bump_scale"], m.bump_scale, kAnyNumber);
-  if (const YamlNode* principled = fields["principled"]) {
-    refuse_phong_keys(node);
-    read_principled(load, *principled, m);
-  }
-  read_interior(load, fields, node, m);
+  if (fields["principled"]) refuse_phong_keys(node, keys.phong);
+  finish_interior(load, fields, node, keys.common);
   warn_of_unused_keys(load, fields, m);
   load.scene.material_places.resize(load.scene.materials.size());
   load.scene.material_places.push_back(node.where());
   load.scene.materials.push_back(std::move(m));
   return static_cast<std::uint32_t>(load.scene.materials.size() - 1);
+}
+
+std::string material_map_schema(Schema& schema) {
+  Material usual;
+  return schema.map(MaterialKeys::kMap, MaterialKeys{{usual}, {usual}});
 }
 
 }  // namespace
@@ -174,6 +258,12 @@ void define_materials(SceneLoad& load, const YamlNode& materials) {
     load.scene.materials.resize(std::size_t{index} + 1);
     load.scene.material_places.resize(std::size_t{index} + 1);
   }
+}
+
+std::string materials_schema(Schema& schema) { return Schema::entries(material_map_schema(schema)); }
+
+std::string material_schema(Schema& schema) {
+  return Schema::any_of({Schema::text(), material_map_schema(schema)});
 }
 
 /// Whether a file defines one material after the other for other programs, and is often made by one: of such

@@ -8,7 +8,7 @@
 #include "io/scene/exact.h"
 #include "io/scene/number_line.h"
 #include "io/scene/readers.h"
-#include "io/scene/shape_reader.h"
+#include "io/scene/schema.h"
 
 namespace oktett {
 namespace {
@@ -23,64 +23,91 @@ void check_count(std::size_t count, const Location& place) {
     throw Error(place, "more than " + std::to_string(kMaxBalls) + " elements in one object");
 }
 
-// Skeletons
+// Skeletons: maps of their parameters, or lists of their points.
 
-PolygonSkeleton read_polygon(SceneLoad& load, const YamlNode& node) {
+template <class T>
+T read_skeleton_map(SceneLoad& load, const YamlNode& node, const char* key) {
+  T skeleton;
+  read_described(load, node, key, skeleton);
+  return skeleton;
+}
+
+Skeleton read_point(SceneLoad& load, const YamlNode& node) {
+  if (node.kind == YamlKind::sequence) return PointSkeleton{load.values.vector(node)};
+  return read_skeleton_map<PointSkeleton>(load, node, "point");
+}
+std::string point_schema(Schema& schema) {
+  return Schema::any_of({Schema::vector(), schema.map("point", PointSkeleton{})});
+}
+
+constexpr std::uint32_t kLeastVertices = 3;
+
+Skeleton read_polygon(SceneLoad& load, const YamlNode& node) {
   const YamlNode& list =
       node.kind == YamlKind::sequence ? node : Fields(node, "polygon", {"vertices"}).require("vertices");
   PolygonShape polygon;
-  declare_count(list, {3, kMaxCoordinate});
   for (const YamlNode* vertex : list_items(list, "vertices"))
     polygon.vertices.push_back(load.values.vector(*vertex));
-  if (polygon.vertices.size() < 3)
-    throw Error(list.where(),
-                "expected at least 3 vertices, found " + std::to_string(polygon.vertices.size()));
+  if (polygon.vertices.size() < kLeastVertices)
+    throw Error(list.where(), fmt::format("expected at least {} vertices, found {}", kLeastVertices,
+                                          polygon.vertices.size()));
   if (const std::string why = why_degenerate(polygon); !why.empty()) throw Error(list.where(), why);
-  return {polygon.vertices};
+  return PolygonSkeleton{polygon.vertices};
 }
+std::string polygon_schema(Schema& schema) {
+  const std::string list = Schema::list(Schema::vector(), Range{kLeastVertices, kMaxCoordinate});
+  const auto map = [&] {
+    SchemaMap vertices(schema);
+    vertices.add_one_of("vertices", "points in one plane in order", list);
+    return vertices.text();
+  };
+  return Schema::any_of({list, schema.define("polygon", typeid(PolygonSkeleton), map)});
+}
+
+Skeleton read_segment(SceneLoad& load, const YamlNode& node) {
+  return read_skeleton_map<SegmentSkeleton>(load, node, "segment");
+}
+std::string segment_schema(Schema& schema) { return schema.map("segment", SegmentSkeleton{}); }
+
+Skeleton read_ellipsoid(SceneLoad& load, const YamlNode& node) {
+  return read_skeleton_map<EllipsoidSkeleton>(load, node, "ellipsoid");
+}
+std::string ellipsoid_schema(Schema& schema) { return schema.map("ellipsoid", EllipsoidSkeleton{}); }
+
+constexpr struct {
+  const char *key, *meaning;
+  Skeleton (*read)(SceneLoad&, const YamlNode&);
+  std::string (*schema)(Schema&);
+} kSkeletons[] = {{"point", "a point", read_point, point_schema},
+                  {"segment", "a line between two points", read_segment, segment_schema},
+                  {"polygon", "points in one plane in order", read_polygon, polygon_schema},
+                  {"ellipsoid", "an ellipsoid", read_ellipsoid, ellipsoid_schema}};
 
 // Elements
 
-/// A map of the parameters of T, or a list of its points.
-template <class T>
-void read_skeleton(SceneLoad& load, const YamlNode& node, const char* what, Skeleton& out) {
-  T skeleton;
-  if constexpr (std::is_same_v<T, PolygonSkeleton>) {
-    skeleton = read_polygon(load, node);
-  } else if (std::is_same_v<T, PointSkeleton> && node.kind == YamlKind::sequence) {
-    skeleton = {load.values.vector(node)};
-  } else {
-    read_described(load, node, what, skeleton);
+struct PotentialKeys {
+  Potential potential{};
+  double radius = 1, b = 1;
+
+  void describe(auto& p) {
+    p.choice("potential", potential.kind,
+             {{"inverse_square", PotentialKind::inverse_square},
+              {"gaussian", PotentialKind::gaussian},
+              {"quadratic", PotentialKind::quadratic},
+              {"rational", PotentialKind::rational},
+              {"wyvill", PotentialKind::wyvill}},
+             "how it falls with the distance");
+    p.field("radius", radius, kPositive, "how far it reaches, of all but `gaussian` and `quadratic`");
+    p.field("b", b, kPositive, "how it falls, of `gaussian` and `quadratic`");
+    p.field("d", potential.d, kNonNegative, "how it falls, of `rational`");
+    p.field("weight", potential.weight, kStrength, "of either sign");
   }
-  out = std::move(skeleton);
-}
+};
 
-constexpr struct {
-  const char* key;
-  void (*read)(SceneLoad&, const YamlNode&, const char* what, Skeleton&);
-} kSkeletons[] = {{"point", read_skeleton<PointSkeleton>},
-                  {"segment", read_skeleton<SegmentSkeleton>},
-                  {"polygon", read_skeleton<PolygonSkeleton>},
-                  {"ellipsoid", read_skeleton<EllipsoidSkeleton>}};
-
-std::vector<std::string> skeleton_keys() {
-  std::vector<std::string> keys;
-  for (const auto& skeleton : kSkeletons) keys.emplace_back(skeleton.key);
-  return keys;
-}
-
-Potential read_potential(SceneLoad& load, const Fields& fields) {
-  Potential p;
-  if (const YamlNode* kind = fields["potential"])
-    p.kind = load.values.choice<PotentialKind>(*kind, {{"inverse_square", PotentialKind::inverse_square},
-                                                       {"gaussian", PotentialKind::gaussian},
-                                                       {"quadratic", PotentialKind::quadratic},
-                                                       {"rational", PotentialKind::rational},
-                                                       {"wyvill", PotentialKind::wyvill}});
+Potential finish_potential(const Fields& fields, PotentialKeys& keys) {
+  Potential& p = keys.potential;
   const bool by_b = p.kind == PotentialKind::gaussian || p.kind == PotentialKind::quadratic;
-  load.values.read(fields[by_b ? "b" : "radius"], p.scale, kPositive);
-  if (p.kind == PotentialKind::rational) load.values.read(fields["d"], p.d, kNonNegative);
-  load.values.read(fields["weight"], p.weight, kStrength);
+  p.scale = by_b ? keys.b : keys.radius;
   for (const char* key : {"b", "radius", "d"}) {
     const YamlNode* value = fields[key];
     const bool meant = key[0] == 'd' ? p.kind == PotentialKind::rational : (key[0] == 'b') == by_b;
@@ -89,14 +116,17 @@ Potential read_potential(SceneLoad& load, const Fields& fields) {
   return p;
 }
 
-constexpr const char* kElementKeys[] = {"point",  "segment", "polygon", "ellipsoid", "potential",
-                                        "radius", "b",       "d",       "weight"};
-
 /// A map with the key of a skeleton and its potential.
 FieldElement read_element(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "element", kElementKeys);
+  PotentialKeys keys;
+  std::vector<const char*> known;
+  for (const auto& skeleton : kSkeletons) known.push_back(skeleton.key);
+  std::ranges::copy(KeyList(keys).keys, std::back_inserter(known));
+  const Fields fields(node, "element", known);
+  ParameterReader reader(load, node, fields);
+  keys.describe(reader);
   FieldElement element;
-  element.potential = read_potential(load, fields);
+  element.potential = finish_potential(fields, keys);
   const char* found = nullptr;
   for (const auto& skeleton : kSkeletons) {
     const YamlNode* value = fields[skeleton.key];
@@ -105,10 +135,16 @@ FieldElement read_element(SceneLoad& load, const YamlNode& node) {
       throw Error(value->where(),
                   std::string("an element has one skeleton: '") + found + "' or '" + skeleton.key + "'");
     found = skeleton.key;
-    skeleton.read(load, *value, found, element.skeleton);
+    element.skeleton = skeleton.read(load, *value);
   }
   if (!found) throw Error(node.where(), "expected a skeleton: point, segment, polygon or ellipsoid");
   return element;
+}
+
+/// The keys of an element.
+void add_element(SchemaMap& map) {
+  map.add_one_of(kSkeletons);
+  PotentialKeys{}.describe(map);
 }
 
 bool all_metaballs(const std::vector<FieldElement>& elements) {
@@ -137,14 +173,10 @@ MaybeForm read_elements(const ShapeNode& at, const YamlNode& list, double iso) {
   BlobTreeShape tree;
   tree.iso = iso;
   const auto items = list_items(list, "elements");
-  declare_count(list, kNotEmpty);
   if (items.empty()) throw Error(list.where(), "the list of elements is empty");
   check_count(items.size(), list.where());
   for (const YamlNode* item : items)
-    attempt(*item, [&] {
-      tree.elements.push_back(read_element(at.load, *item));
-      declare_one_of(*item, skeleton_keys());
-    });
+    attempt(*item, [&] { tree.elements.push_back(read_element(at.load, *item)); });
   if (none_positive(tree)) return at.skip("no element has a positive weight");
   if (all_metaballs(tree.elements)) {
     MetaballsShape shape{iso, {}};
@@ -167,14 +199,6 @@ constexpr Choice<Blend::Op> kBlends[] = {{"sum", Blend::Op::sum},
 
 /// Appends what a node of the tree stands for, in postfix order. Only the outermost one has other keys.
 void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape& tree) {
-  std::vector<std::string> known(std::begin(kElementKeys), std::end(kElementKeys));
-  for (const Choice<Blend::Op>& blend : kBlends) known.emplace_back(blend.name);
-  declare_keys(node, "a blend or an element", known);
-  if (level > 1) {
-    std::vector<std::string> kinds = skeleton_keys();
-    for (const Choice<Blend::Op>& blend : kBlends) kinds.emplace_back(blend.name);
-    declare_one_of(node, kinds);
-  }
   const std::vector<MapEntry> entries = map_entries(node, "blend");
   for (const Choice<Blend::Op>& blend : kBlends) {
     const auto found =
@@ -189,7 +213,6 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
       throw Error(list->where(),
                   "blends are nested deeper than " + std::to_string(kMaxBlendLevels) + " levels");
     const auto items = list_items(*list, blend.name);
-    declare_count(*list, kNotEmpty);
     if (items.empty()) throw Error(list->where(), std::string("the list of '") + blend.name + "' is empty");
     for (const YamlNode* item : items) attempt(*item, [&] { read_blend(load, *item, level + 1, tree); });
     tree.blends.push_back({blend.value, 0, static_cast<std::uint32_t>(items.size())});
@@ -202,8 +225,26 @@ void read_blend(SceneLoad& load, const YamlNode& node, int level, BlobTreeShape&
 
 }  // namespace
 
+std::string elements_schema(Schema& schema) {
+  const auto element = [&] {
+    SchemaMap map(schema);
+    add_element(map);
+    return map.text();
+  };
+  return Schema::list(schema.define("element", typeid(FieldElement), element), kNotEmpty);
+}
+
+std::string blends_schema(Schema& schema) {
+  const auto blend = [&] {
+    SchemaMap map(schema);
+    add_element(map);
+    for (const Choice<Blend::Op>& b : kBlends) map.add_one_of(b.name, "a blend", blends_schema(schema));
+    return map.text();
+  };
+  return Schema::list(schema.define("a blend or an element", typeid(Blend), blend), kNotEmpty);
+}
+
 MaybeForm finish(const ShapeNode& at, MetaballsShape& shape) {
-  declare_one_of(at.node, {"balls", "file", "elements"});
   const YamlNode* source = nullptr;
   for (const char* name : {"balls", "file", "elements"}) {
     if (const YamlNode* value = at.fields[name]) {
@@ -227,12 +268,7 @@ MaybeForm finish(const ShapeNode& at, MetaballsShape& shape) {
 
 MaybeForm finish(const ShapeNode& at, BlobTreeShape& tree) {
   bool found = false;
-  std::vector<std::string> names;
-  for (const Choice<Blend::Op>& blend : kBlends) {
-    names.emplace_back(blend.name);
-    found |= at.fields[blend.name] != nullptr;
-  }
-  declare_one_of(at.node, names);
+  for (const Choice<Blend::Op>& blend : kBlends) found |= at.fields[blend.name] != nullptr;
   if (!found) throw Error(at.node.where(), "a blobtree needs one of 'sum', 'max', 'min' and 'difference'");
   read_blend(at.load, at.node, 1, tree);
   if (none_positive(tree)) return at.skip("no element has a positive weight");

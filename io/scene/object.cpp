@@ -5,9 +5,13 @@
 #include <utility>
 
 #include "io/scene/readers.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 
 namespace oktett {
+
+static std::string object_schema(Schema& schema);
+
 namespace {
 
 /// What a group hands to its members.
@@ -18,6 +22,37 @@ struct Surroundings {
   bool is_dropped = false;  ///< the members are checked but not kept
   Motion motion;            ///< its value at time 0 is `transform`
 };
+
+/// What an object may have besides the one key that says what it is.
+constexpr SchemaRow kObjectKeys[] = {
+    {"material", "its name, or a map", material_schema},
+    {"transform", "operations in order, or one",
+     [](Schema& schema) { return schema_of(schema, kAnyNumber, Affine{}); }},
+    {"motion", "instead of `transform`: transforms by time",
+     [](Schema& schema) { return schema_of(schema, kAnyNumber, MotionPointer{}); }},
+    {"name", "for mattes; no two objects have the same", [](Schema&) { return Schema::text(); }}};
+
+std::string operands_schema(Schema& schema) { return Schema::list(object_schema(schema), kNotEmpty); }
+
+/// What an object may be besides a shape that describes its parameters.
+constexpr SchemaRow kOtherShapes[] = {
+    {"spheres", "many balls", spheres_schema},
+    {kCsgKeys[0].name, "what is in any of the solids", operands_schema},
+    {kCsgKeys[1].name, "what is in all of the solids", operands_schema},
+    {kCsgKeys[2].name, "what is in the first solid and in no other", operands_schema},
+    {"group", "objects, with one transform, and one material and name for those without their own",
+     objects_schema},
+    {"instance", "the prototype of this name", [](Schema&) { return Schema::text(); }}};
+
+/// Every key that says what an object is.
+const std::vector<std::string>& kinds_of_objects() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all = shape_keys();
+    for (const auto& other : kOtherShapes) all.emplace_back(other.key);
+    return all;
+  }();
+  return keys;
+}
 
 /// Several objects as one operand: their union.
 Object unite(std::vector<Object> members, const Location& where) {
@@ -31,12 +66,10 @@ Object unite(std::vector<Object> members, const Location& where) {
 /// The one entry of an object that says what it is. Throws Error for keys that no object has. Where errors
 /// are gathered, an object without a shape has null entries.
 MapEntry find_shape(const YamlNode& node) {
-  const std::vector<std::string>& shapes = object_keys();
+  const std::vector<std::string>& shapes = kinds_of_objects();
   const std::string shape_names = fmt::format("{}", fmt::join(shapes, ", "));
   std::vector<std::string> known = shapes;
-  known.insert(known.end(), {"material", "transform", "motion", "name"});
-  declare_keys(node, "an object", known);
-  declare_one_of(node, shapes);
+  for (const auto& other : kObjectKeys) known.emplace_back(other.key);
   MapEntry shape{nullptr, nullptr};
   for (const MapEntry& entry : map_entries(node, "an object")) {
     const std::string& key = entry.key->text;
@@ -78,7 +111,9 @@ class ObjectReader {
   void read_object(const YamlNode& node, const Surroundings& outer) {
     const auto [key, value] = find_shape(node);
     const std::string kind = key ? key->text : "";
-    const Fields fields(node, "an object", {kind.c_str(), "material", "transform", "motion", "name"});
+    const char* known[1 + std::size(kObjectKeys)] = {kind.c_str()};
+    for (std::size_t i = 0; i < std::size(kObjectKeys); ++i) known[i + 1] = kObjectKeys[i].key;
+    const Fields fields(node, "an object", known);
     const bool is_group = kind == "group", is_instance = kind == "instance";
 
     Object object;
@@ -121,7 +156,7 @@ class ObjectReader {
 
   void read_transform_of(const YamlNode& node, bool is_group, const Surroundings& outer,
                          Surroundings& inner) {
-    const Affine own = read_transform(load_.values, node);
+    const Affine own = read_transform(load_, node);
     inner.transform = outer.transform * own;
     inner.motion.factors.push_back({{0, own}});
     std::string reason = why_degenerate(own);
@@ -138,7 +173,7 @@ class ObjectReader {
   }
 
   void read_motion_of(const YamlNode& node, Surroundings& inner) {
-    inner.motion.factors.push_back(read_motion(load_.values, node));
+    inner.motion.factors.push_back(read_motion(load_, node));
     if (inner.motion.factors.back().size() > 1 && !name_.empty())
       throw Error(node.where(), "what is in a prototype cannot move by itself; move its instances");
     if (inner.motion.factors.back().size() > 1 && is_operand_)
@@ -159,7 +194,6 @@ class ObjectReader {
   std::optional<Shape> read_csg(CsgOp op, const YamlNode& key, const YamlNode& operands,
                                 const Surroundings& outer) {
     const auto nodes = list_items(operands, key.text);
-    declare_count(operands, kNotEmpty);
     if (nodes.empty()) throw Error(key.where(), key.text + " needs at least one operand");
     // Operands stand in the space of the combination, whose transform applies to all.
     const Surroundings inner{{}, outer.material, {}, outer.is_dropped, {}};
@@ -220,7 +254,32 @@ class ObjectReader {
   int levels_ = 0;
 };
 
+/// Adds the shapes that describe their parameters.
+struct ShapeSchemas {
+  Schema& schema;
+  SchemaMap& map;
+
+  void surface(const Surface& surface, const auto& shape) {
+    map.add_one_of(surface.key, surface.meaning, schema.map(surface.key, shape));
+  }
+};
+
 }  // namespace
+
+static std::string object_schema(Schema& schema) {
+  return schema.define("an object", typeid(Object), [&] {
+    SchemaMap map(schema);
+    ShapeSchemas shapes{schema, map};
+    visit_surfaces(shapes);
+    map.add_one_of(kOtherShapes);
+    for (const SchemaRow& other : kObjectKeys) map.add(other.key, other.meaning, other.schema(schema));
+    map.not_both("transform", "motion");
+    return map.text();
+  });
+}
+
+std::string objects_schema(Schema& schema) { return Schema::list(object_schema(schema)); }
+std::string prototypes_schema(Schema& schema) { return Schema::entries(object_schema(schema)); }
 
 void define_prototypes(SceneLoad& load, const YamlNode& define) {
   for (const auto& [key, value] : map_entries(define, "define")) {

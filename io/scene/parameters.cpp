@@ -1,5 +1,4 @@
 #include "io/scene/parameters.h"
-#include "io/scene/read_probe.h"
 
 #include <algorithm>
 #include <utility>
@@ -36,7 +35,6 @@ void SceneParameters::add_default(const YamlNode& key, const YamlNode& value) {
   if (!is_name(name)) throw Error(key.where(), "a name consists of letters, digits, '_' and '-'");
   if (value.kind != YamlKind::scalar)
     throw Error(value.where(), "expected a number or text, found " + value.describe());
-  if (value.file->probe) value.file->probe->value(value, {ReadType::Kind::text});
   std::string text = expand(value);
   const auto [place, is_new] = values_.try_emplace(name, Value{std::move(text), false, false, false});
   if (!is_new) place->second.used = true;

@@ -13,13 +13,68 @@
 
 namespace oktett {
 
-// Each changes only what its node gives, so that a file overrides what it includes key by key.
-void read_camera(SceneLoad& load, const YamlNode& node);
-void read_film(SceneLoad& load, const YamlNode& node);
-void read_integrator(SceneLoad& load, const YamlNode& node);
+class Schema;
 
+// ---- Values that are read by their type, see io/scene/described.h.
+
+/// A file that is there.
+struct FilePath {
+  std::string& path;
+};
+/// A number or a colour, or an index into Scene::textures: that of a texture that takes its place.
+template <class T>
+struct Textured {
+  T& value;
+  std::uint32_t& texture;
+};
+/// A texture, or a file with an image. One that `multiplies` a value must not find a texture in its place.
+struct TextureMap {
+  std::uint32_t& texture;
+  bool multiplies = false;
+};
+/// The index into Scene::media by name.
+struct MediumName {
+  std::uint32_t& index;
+};
+/// The name of a light group; empty for the default one.
+struct LightGroupName {
+  std::string& name;
+};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, FilePath& file);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Textured<float>& number);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Textured<Color>& color);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, TextureMap& map);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, MediumName& medium);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, LightGroupName& group);
+/// A list of operations, applied in order, or a single one: translate, scale, rotate or matrix. The result
+/// may be singular.
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Affine& transform);
+/// Never null; one factor.
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, MotionPointer& motion);
+// These change only what the node gives, so that a file overrides what it includes key by key.
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera& camera);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Camera::Focus& focus);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, IntegratorSettings& integrator);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CausticSettings& caustics);
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, CausticSettings::Radius& radius);
+
+std::string schema_of(Schema& schema, const Range& range, const FilePath& file);
+std::string schema_of(Schema& schema, const Range& range, const Textured<float>& number);
+std::string schema_of(Schema& schema, const Range& range, const Textured<Color>& color);
+std::string schema_of(Schema& schema, const Range& range, const TextureMap& map);
+std::string schema_of(Schema& schema, const Range& range, const MediumName& medium);
+std::string schema_of(Schema& schema, const Range& range, const LightGroupName& group);
+std::string schema_of(Schema& schema, const Range& range, const MotionPointer& motion);
+std::string schema_of(Schema& schema, const Range& range, const Camera::Focus& focus);
+std::string schema_of(Schema& schema, const Range& range, const CausticSettings& caustics);
+std::string schema_of(Schema& schema, const Range& range, const CausticSettings::Radius& radius);
+
+// ---- What is read by hand, each with what it may be.
+
+Affine read_transform(SceneLoad& load, const YamlNode& node);
 /// The keys of a motion: at least one, of ascending times and regular transforms.
-std::vector<MotionKey> read_motion(SceneValues& values, const YamlNode& node);
+std::vector<MotionKey> read_motion(SceneLoad& load, const YamlNode& node);
 
 /// Adds warnings of materials of Phong's model that may give back more light than they receive, if the scene
 /// is path traced: of each one in a scene file, and once of each MTL file. Called when all else is read.
@@ -28,31 +83,27 @@ void warn_of_energy(Scene& scene);
 /// Reads a scene file with all that it includes. Throws Error; where errors are gathered, keeps them in
 /// `load.errors`.
 void read_scene_file(const std::string& path, SceneLoad& load);
-/// Reads all sections of a scene from a tree that stands in no file. Throws Error.
-void read_scene_tree(const YamlNode& root);
-
 /// Adds the lights in a list.
 void read_lights(SceneLoad& load, const YamlNode& node);
-/// The name of a light group; empty for the default one.
-std::string read_light_group(SceneLoad& load, const YamlNode& node);
+std::string lights_schema(Schema& schema);
+/// Greatest absorption, scattering and emission of a medium per unit length, after `density`.
+inline constexpr float kMostCoefficient = 1e9f;
 /// Adds the named media in the map `media` to the scene.
 void define_media(SceneLoad& load, const YamlNode& media);
+std::string media_schema(Schema& schema);
 /// Sets what fills the space around the scene, by the name of a medium.
 void read_outer_medium(SceneLoad& load, const YamlNode& node);
-/// The keys of a material that say what is inside of its solids; those of its surface have been read.
-void read_interior(SceneLoad& load, const Fields& fields, const YamlNode& node, Material& m);
+std::string medium_schema(Schema& schema);
 /// Adds the named materials in the map `materials` to the scene.
 void define_materials(SceneLoad& load, const YamlNode& materials);
+std::string materials_schema(Schema& schema);
 /// Adds the prototypes in the map `define` to the scene. Each may hold instances of those before it.
 void define_prototypes(SceneLoad& load, const YamlNode& define);
+std::string prototypes_schema(Schema& schema);
 /// Adds the objects in the list `objects` to the scene.
 void read_objects(SceneLoad& load, const YamlNode& objects);
+std::string objects_schema(Schema& schema);
 
-/// A texture: a file, or a map with the file and how it lies on the surface, or with a pattern. `out` becomes
-/// its index into Scene::textures; it stays if `node` is null.
-void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out);
-/// What every pattern has besides its own parameters.
-inline constexpr const char* kPatternKeys[] = {"colors", "transform"};
 /// Calls what(pattern) for one pattern of each kind, with its defaults.
 template <class What, class... P>
 void visit_patterns_of(const What& what, std::type_identity<std::variant<P...>>) {
@@ -65,18 +116,24 @@ void visit_patterns(const What& what) {
 
 /// Index into Scene::materials for a name, or for an inline map, which is appended.
 std::uint32_t read_material(SceneLoad& load, const YamlNode& node);
+std::string material_schema(Schema& schema);
 
 /// The boolean combinations by their keys.
 inline constexpr Choice<CsgOp> kCsgKeys[] = {
     {"union", CsgOp::unite}, {"intersection", CsgOp::intersect}, {"difference", CsgOp::subtract}};
-/// Every key that says what an object is: shapes, boolean combinations, `group` and `instance`.
-const std::vector<std::string>& object_keys();
+/// Every shape that describes its parameters, by its key.
+const std::vector<std::string>& shape_keys();
 
 /// The shape that `node`, the value of `key`, describes. Nothing, after a warning, if it is degenerate.
 std::optional<Shape> read_shape(SceneLoad& load, const YamlNode& key, const YamlNode& node);
 /// A list of spheres, {centers, radius} or {file}. Spheres of radius 0 are left out with a warning; nothing,
 /// after another one, if no sphere is left.
 std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const YamlNode& node);
+std::string spheres_schema(Schema& schema);
+
+// The elements of metaballs, and the lists of blob trees.
+std::string elements_schema(Schema& schema);
+std::string blends_schema(Schema& schema);
 
 /// Calls read(path) for the image file that `node` names. An Error that it throws, whose text may begin with
 /// the path, is thrown again at the place of the name, since an image has no lines.

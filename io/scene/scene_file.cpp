@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
 #include "io/scene/scene_limits.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 #include "io/scene/yaml.h"
 #include "io/text/files.h"
@@ -105,13 +107,57 @@ constexpr Color kPlainBackground{0.30f, 0.34f, 0.40f};
 /// Per pixel, of a glTF file with a camera or lights of its own.
 constexpr std::uint32_t kSceneSamples = 64;
 
+/// A section with a reader of its own, and what it may be. One that `defines` names may be what is missing
+/// later.
+struct Section {
+  std::function<void(SceneLoad&, const YamlNode&)> read;
+  std::function<std::string(Schema&)> schema;
+  bool defines = false;
+};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, Section& section) {
+  if (!attempt(node, [&] { section.read(load, node); }) && section.defines) load.miss_definitions();
+}
+std::string schema_of(Schema& schema, const Range&, const Section& section) { return section.schema(schema); }
+
+/// The top level of a scene file, in the order in which it is read.
+struct SceneKeys {
+  Scene& scene;
+  Section include{};
+
+  static constexpr const char* kMap = "a scene";
+  void describe(auto& p) {
+    p.required("oktett", Section{read_version, version_schema}, "version of the format");
+    p.optional("params", Section{read_parameters, parameters_schema, true}, "values of ${name}");
+    p.optional("include", include, "files to merge, as if their sections stood before those of the file");
+    p.optional("camera", scene.camera, "of the whole scene if left out");
+    p.optional("film", scene.film, "size and form of the picture");
+    p.optional("integrator", scene.integrator, "how light is computed");
+    p.optional("background", scene.background, "colour where rays meet nothing");
+    p.optional("ambient_light", scene.ambient_light, "colour that `ambient` of materials multiplies");
+    p.optional("media", Section{define_media, media_schema, true}, "media by name");
+    p.optional("medium", Section{read_outer_medium, medium_schema},
+               "name of the medium outside of all solids");
+    p.optional("materials", Section{define_materials, materials_schema, true}, "materials by name");
+    p.optional("lights", Section{read_lights, lights_schema}, "two by the camera if left out");
+    p.optional("define", Section{define_prototypes, prototypes_schema, true}, "prototypes by name");
+    p.optional("objects", Section{read_objects, objects_schema}, "what there is to be seen");
+  }
+
+ private:
+  static void read_version(SceneLoad& load, const YamlNode& node) {
+    if (!node.missing && (node.kind != YamlKind::scalar || load.values.text(node) != "1"))
+      throw Error(node.where(), "expected format version 1, found " + node.describe());
+  }
+  static std::string version_schema(Schema&) { return Schema::number(whole(1, 1), "integer"); }
+  static void read_parameters(SceneLoad& load, const YamlNode& node) { load.parameters.add_defaults(node); }
+  static std::string parameters_schema(Schema&) { return Schema::entries(Schema::text()); }
+};
+
 /// Reads a scene file and, before its own sections, those that it includes.
 class FileReader {
  public:
   explicit FileReader(SceneLoad& load) : load_(load) {}
-
-  /// Reads the sections of a tree that stands in no file.
-  void read_tree(const YamlNode& root) { read_sections(root); }
 
   void read(const std::string& path) {
     chain_.push_back({path, canonical_path(path)});
@@ -142,39 +188,12 @@ class FileReader {
   void read_sections(const YamlNode& root) {
     if (root.kind != YamlKind::map)
       throw Error(root.where(), "expected a map that begins with 'oktett: 1', found " + root.describe());
-    const Fields fields(root, "a scene",
-                        {"oktett", "include", "params", "camera", "film", "integrator", "background",
-                         "ambient_light", "media", "medium", "materials", "lights", "define", "objects"});
-    attempt(root, [&] { check_version(fields, root); });
-    const auto section = [&](const char* key, auto read_section) {
-      const YamlNode* node = fields[key];
-      return node == nullptr || attempt(*node, [&] { read_section(load_, *node); });
-    };
-    const auto definitions = [&](const char* key, auto read_section) {
-      if (!section(key, read_section)) load_.miss_definitions();
-    };
-    definitions("params", [](SceneLoad& load, const YamlNode& node) { load.parameters.add_defaults(node); });
-    definitions("include", [&](SceneLoad&, const YamlNode& node) { read_includes(node); });
-    section("camera", read_camera);
-    section("film", read_film);
-    section("integrator", read_integrator);
-    load_.values.read_color(fields["background"], load_.scene.background);
-    load_.values.read_color(fields["ambient_light"], load_.scene.ambient_light);
-    definitions("media", define_media);
-    section("medium", read_outer_medium);
-    definitions("materials", define_materials);
-    section("lights", read_lights);
-    definitions("define", define_prototypes);
-    section("objects", read_objects);
-  }
-
-  void check_version(const Fields& fields, const YamlNode& root) {
-    const YamlNode* version = fields["oktett"];
-    if (!version) throw Error(root.where(), "the format version is missing: expected 'oktett: 1'");
-    const bool known =
-        version->kind == YamlKind::scalar &&
-        (probed(*version, {ReadType::Kind::integer, {1, 1}}) || load_.values.text(*version) == "1");
-    if (!known) throw Error(version->where(), "expected format version 1, found " + version->describe());
+    SceneKeys keys{load_.scene,
+                   {[this](SceneLoad&, const YamlNode& node) { read_includes(node); }, {}, true}};
+    const Fields fields(root, keys.kMap, KeyList(keys).keys);
+    if (!fields["oktett"]) report(root, "the format version is missing: expected 'oktett: 1'");
+    ParameterReader reader(load_, root, fields);
+    keys.describe(reader);
   }
 
   void read_includes(const YamlNode& node) {
@@ -239,9 +258,11 @@ Scene scene_from_gltf(const std::string& path, GltfScene file) {
 
 }  // namespace
 
-void read_scene_tree(const YamlNode& root) {
-  SceneLoad load({});
-  FileReader(load).read_tree(root);
+std::string scene_schema() {
+  Scene usual;
+  Schema schema;
+  const Section include{{}, [](Schema&) { return Schema::list(Schema::file()); }};
+  return schema.text(schema.map(SceneKeys::kMap, SceneKeys{usual, include}));
 }
 
 void read_scene_file(const std::string& path, SceneLoad& load) {

@@ -1,18 +1,16 @@
+/// \file The camera and the integrator of scene files, where their descriptions do not say all.
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <limits>
 #include <memory>
 
 #include "io/scene/readers.h"
 #include "render/moments.h"
+#include "io/scene/schema.h"
 
 namespace oktett {
 namespace {
-
-constexpr std::uint32_t kMaxFilmSide = 65536;
-constexpr std::uint64_t kMaxFilmPixels = std::uint64_t{1} << 30;
 
 void check_view(const Camera& camera, const YamlNode& node) {
   const Vec3d view = camera.at - camera.from;
@@ -24,114 +22,16 @@ void check_view(const Camera& camera, const YamlNode& node) {
     throw Error(node.where(), "the camera's 'up' is parallel to its view direction");
 }
 
-void read_lens(SceneValues& values, const Fields& fields, const YamlNode& node, Camera& camera) {
-  const YamlNode *aperture = fields["aperture"], *f_number = fields["f_number"], *focus = fields["focus"];
-  if (aperture && f_number) throw Error(node.where(), "expected 'aperture' or 'f_number', not both");
-  values.read(aperture, camera.aperture, kNonNegative);
-  values.read(f_number, camera.f_number, kPositive);
-  if (aperture) camera.f_number = 0;
-  if (f_number) camera.aperture = 0;
+void check_lens(const Fields& fields, const YamlNode& node, const Camera& camera) {
+  const YamlNode *f_number = fields["f_number"], *focus = fields["focus"];
   if (f_number && camera.projection == Projection::orthographic)
     throw Error(f_number->where(), "an orthographic view has no f-number; expected 'aperture'");
-  if (focus && focus->kind == YamlKind::sequence) {
-    camera.focus_at = values.vector(*focus);
-  } else if (focus) {
-    camera.focus_at.reset();
-    values.read(focus, camera.focus, kPositive);
-  }
   if (camera.focus_at && !(dot(*camera.focus_at - camera.from, camera.at - camera.from) > 0))
     throw Error(focus ? focus->where() : node.where(), "the point in focus does not lie before the camera");
 }
 
 /// Warns of settings that change nothing, given the others.
-void warn_of_unused_settings(SceneLoad& load, const Fields& fields, const Camera& camera) {
-  const bool perspective = camera.projection == Projection::perspective;
-  load.warn_if_unused(fields, "fov", !perspective, "an orthographic view has a 'height'");
-  load.warn_if_unused(fields, "height", perspective, "a perspective view has a 'fov'");
-}
-
-}  // namespace
-
-void read_camera(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "camera",
-                      {"from", "at", "up", "fov", "projection", "height", "aperture", "f_number", "focus",
-                       "shutter", "motion"});
-  SceneValues& values = load.values;
-  Camera& camera = load.scene.camera;
-  load.scene.camera_given = true;
-  values.read(fields["from"], camera.from);
-  values.read(fields["at"], camera.at);
-  values.read(fields["up"], camera.up);
-  values.read(fields["fov"], camera.fov, {0, 180, true, true});
-  values.read(fields["height"], camera.height, kPositive);
-  if (const YamlNode* projection = fields["projection"])
-    camera.projection = values.choice<Projection>(
-        *projection, {{"perspective", Projection::perspective}, {"orthographic", Projection::orthographic}});
-  check_view(camera, node);
-  read_lens(values, fields, node, camera);
-  warn_of_unused_settings(load, fields, camera);
-  if (const YamlNode* shutter = fields["shutter"]) {
-    values.numbers(*shutter, camera.shutter);
-    if (camera.shutter[0] > camera.shutter[1])
-      throw Error(shutter->where(), "the shutter closes before it opens");
-  }
-  if (const YamlNode* motion = fields["motion"]) {
-    const auto moved = std::make_shared<Motion>();
-    moved->factors.push_back(read_motion(values, *motion));
-    camera.motion = moved;
-    // One key says where the camera stands all the time.
-    if (moved->moves()) return;
-    camera = camera_at(camera, 0);
-    camera.motion = nullptr;
-  }
-}
-
-void read_film(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(
-      node, "film",
-      {"width", "height", "crop", "filter", "filter_radius", "tone", "exposure", "cryptomatte"});
-  Film& film = load.scene.film;
-  if (const YamlNode* width = fields["width"]) film.width = load.values.integer(*width, 1, kMaxFilmSide);
-  if (const YamlNode* height = fields["height"]) film.height = load.values.integer(*height, 1, kMaxFilmSide);
-  if (std::uint64_t{film.width} * film.height > kMaxFilmPixels)
-    throw Error(node.where(), "the film has more than 2^30 pixels");
-  if (const YamlNode* crop = fields["crop"]) {
-    load.values.numbers(*crop, film.crop, kUnitInterval);
-    if (film.crop[0] >= film.crop[1] || film.crop[2] >= film.crop[3])
-      throw Error(crop->where(),
-                  "the crop window is empty; expected [x0, x1, y0, y1] with x0 < x1 and y0 < y1");
-  }
-  if (const YamlNode* filter = fields["filter"]) {
-    film.filter = load.values.choice<FilterKind>(*filter, kFilterKinds);
-    film.filter_radius = 0;
-  }
-  load.values.read(fields["filter_radius"], film.filter_radius, kFilterRadii);
-  if (const YamlNode* tone = fields["tone"]) film.tone.kind = load.values.choice<ToneKind>(*tone, kToneKinds);
-  load.values.read(fields["exposure"], film.tone.exposure, kExposures);
-  load.values.read(fields["cryptomatte"], film.cryptomatte);
-}
-
-/// `caustics`: a flag, or a map of settings, which switches them on.
-static void read_caustics(SceneLoad& load, const YamlNode& node, CausticSettings& caustics) {
-  SceneValues& values = load.values;
-  if (node.kind == YamlKind::scalar) {
-    caustics.photons = values.boolean(node) ? CausticSettings::kUsualPhotons : 0;
-    return;
-  }
-  const Fields fields(node, "caustics", {"photons", "passes", "radius"});
-  caustics.photons = CausticSettings::kUsualPhotons;
-  if (const YamlNode* photons = fields["photons"])
-    caustics.photons = values.integer(*photons, 1, CausticSettings::kMostPhotons);
-  if (const YamlNode* passes = fields["passes"])
-    caustics.passes = values.integer(*passes, 1, CausticSettings::kMostPasses);
-  if (const YamlNode* radius = fields["radius"]) {
-    caustics.radius = 0;
-    if (values.text(*radius) != "auto") values.read(radius, caustics.radius, kPositive);
-  }
-}
-
-/// Warns of settings that change nothing, given the others.
-static void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
+void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
   IntegratorSettings s = load.scene.integrator;
   if (load.integrator) s.kind = *load.integrator;
   const auto warn = [&](const char* key, bool is_unused, const std::string& why) {
@@ -154,32 +54,67 @@ static void warn_of_unused_settings(SceneLoad& load, const Fields& fields) {
                    s.max_samples));
 }
 
-void read_integrator(SceneLoad& load, const YamlNode& node) {
-  const Fields fields(node, "integrator",
-                      {"kind", "samples", "depth", "seed", "ao_radius", "clamp", "error", "max_samples",
-                       "caustics", "light_samples", "penumbra_factor"});
-  SceneValues& values = load.values;
-  IntegratorSettings& integrator = load.scene.integrator;
-  if (const YamlNode* kind = fields["kind"])
-    integrator.kind = values.choice<IntegratorKind>(*kind, kIntegratorKinds);
-  if (const YamlNode* samples = fields["samples"]) integrator.samples = values.integer(*samples, 1, 65536);
-  if (const YamlNode* depth = fields["depth"]) integrator.depth = values.integer(*depth, 0, 64);
-  if (const YamlNode* seed = fields["seed"])
-    integrator.seed = values.integer(*seed, 0, std::numeric_limits<std::uint32_t>::max());
-  values.read(fields["ao_radius"], integrator.ao_radius, kNonNegative);
-  values.read(fields["clamp"], integrator.clamp, kNonNegative);
-  values.read(fields["error"], integrator.error, kErrors);
-  if (const YamlNode* most = fields["max_samples"]) integrator.max_samples = values.integer(*most, 1, 65536);
-  if (const YamlNode* lights = fields["light_samples"])
-    integrator.light_samples = values.integer(*lights, 0, 1024);
-  if (const YamlNode* factor = fields["penumbra_factor"]) {
-    integrator.penumbra_factor = values.integer(*factor, 1, 16);
-    if (!std::has_single_bit(integrator.penumbra_factor))
-      throw Error(factor->where(),
-                  fmt::format("expected 1, 2, 4, 8 or 16, found {}", integrator.penumbra_factor));
+}  // namespace
+
+// ---- A distance, or a point.
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera::Focus& focus) {
+  if (node.kind == YamlKind::sequence) {
+    focus.point = load.values.vector(node);
+    return;
   }
-  if (const YamlNode* caustics = fields["caustics"]) read_caustics(load, *caustics, integrator.caustics);
-  warn_of_unused_settings(load, fields);
+  focus.point.reset();
+  focus.distance = load.values.number(node, kPositive);
+}
+
+std::string schema_of(Schema&, const Range&, const Camera::Focus&) {
+  return Schema::any_of({Schema::number(kPositive), Schema::vector()});
+}
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, Camera& camera) {
+  load.scene.camera_given = true;
+  const Fields fields = read_described(load, node, "camera", camera);
+  check_view(camera, node);
+  check_lens(fields, node, camera);
+  const bool perspective = camera.projection == Projection::perspective;
+  load.warn_if_unused(fields, "fov", !perspective, "an orthographic view has a 'height'");
+  load.warn_if_unused(fields, "height", perspective, "a perspective view has a 'fov'");
+  // One key says where the camera stands all the time.
+  if (!camera.motion || camera.motion->moves()) return;
+  camera = camera_at(camera, 0);
+  camera.motion = nullptr;
+}
+
+// ---- `auto`, or a number.
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, CausticSettings::Radius& radius) {
+  radius.value = 0;
+  if (load.values.text(node) != "auto") radius.value = load.values.number(node, kPositive);
+}
+
+std::string schema_of(Schema&, const Range&, const CausticSettings::Radius&) {
+  return Schema::any_of({Schema::words({"auto"}), Schema::number(kPositive)});
+}
+
+// ---- A flag, or a map of settings, which switches them on.
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, CausticSettings& caustics) {
+  if (node.kind == YamlKind::scalar) {
+    caustics.photons = load.values.boolean(node) ? CausticSettings::kUsualPhotons : 0;
+    return;
+  }
+  caustics.photons = CausticSettings::kUsualPhotons;
+  read_described(load, node, "caustics", caustics);
+}
+
+std::string schema_of(Schema& schema, const Range&, const CausticSettings&) {
+  CausticSettings usual;
+  usual.photons = CausticSettings::kUsualPhotons;
+  return Schema::any_of({Schema::boolean(), schema.map("caustics", usual)});
+}
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, IntegratorSettings& integrator) {
+  warn_of_unused_settings(load, read_described(load, node, "integrator", integrator));
 }
 
 }  // namespace oktett

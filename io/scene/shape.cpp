@@ -5,7 +5,7 @@
 #include "io/mesh/load/load_mesh.h"
 #include "io/scene/exact.h"
 #include "io/scene/readers.h"
-#include "io/scene/shape_reader.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 
 namespace oktett {
@@ -101,13 +101,10 @@ struct SurfaceNames {
 
 }  // namespace
 
-const std::vector<std::string>& object_keys() {
+const std::vector<std::string>& shape_keys() {
   static const std::vector<std::string> keys = [] {
     SurfaceNames all;
     visit_surfaces(all);
-    all.names.emplace_back("spheres");
-    for (const auto& csg : kCsgKeys) all.names.emplace_back(csg.name);
-    all.names.insert(all.names.end(), {"group", "instance"});
     return all.names;
   }();
   return keys;

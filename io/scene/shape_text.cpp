@@ -172,9 +172,7 @@ void add_by_hand(Writer& writer, const MeshShape& shape, SideFiles& files) {
 }
 template <class Writer>
 void add_by_hand(Writer& writer, const HeightFieldShape& shape, SideFiles& files) {
-  constexpr const char* kNames[] = {"nearest", "triangles", "bilinear"};
   writer.add("file", '"' + files.heights(*shape.grid) + '"');
-  writer.add("interpolation", kNames[static_cast<std::size_t>(shape.grid->interpolation())]);
 }
 template <class Writer>
 void add_by_hand(Writer& writer, const BlobTreeShape& shape, SideFiles&) {
@@ -185,6 +183,7 @@ void add_by_hand(Writer& writer, const BlobTreeShape& shape, SideFiles&) {
 template <class T>
 std::string described_text(const char* key, T shape, SideFiles& files,
                            NormalMethod normals = NormalMethod::gradient) {
+  if constexpr (std::is_same_v<T, HeightFieldShape>) shape.interpolation = shape.grid->interpolation();
   ParameterWriter<T> writer(shape, normals);
   add_by_hand(writer, shape, files);
   return std::string(key) + ": " + writer.map();

@@ -2,7 +2,7 @@
 
 #include "io/scene/number_line.h"
 #include "io/scene/readers.h"
-#include "io/scene/shape_reader.h"
+#include "io/scene/schema.h"
 
 namespace oktett {
 namespace {
@@ -39,6 +39,20 @@ class SphereList {
   std::size_t skipped_ = 0;
 };
 
+/// Spheres of one radius, or those of a file.
+struct SpheresKeys {
+  double radius = 1;
+
+  void describe(auto& p) {
+    p.optional("centers", ByHand{"list of points", "points"}, "the centres");
+    p.field("radius", radius, kNonNegative, "of all of them");
+    p.optional("file", ByHand{"file", "file"}, "text of lines `x y z radius`");
+    p.one_of({"centers", "file"});
+    p.not_both("file", "centers", "spheres from a file have no 'centers'", "centers");
+    p.not_both("file", "radius", "spheres from a file have no 'radius'", "radius");
+  }
+};
+
 SphereShape sphere_of(NumberLine& line) {
   SphereShape s;
   for (int axis = 0; axis < 3; ++axis) s.center[axis] = line.number();
@@ -62,12 +76,9 @@ std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const Ya
       });
     return list.finish(key);
   }
-  const Fields fields(node, "spheres", {"centers", "radius", "file"});
-  declare_one_of(node, {"centers", "file"});
+  SpheresKeys keys;
+  const Fields fields = read_described(load, node, "spheres", keys);
   if (const YamlNode* file = fields["file"]) {
-    for (const char* other : {"centers", "radius"})
-      if (const YamlNode* value = fields[other])
-        throw Error(value->where(), std::string("spheres from a file have no '") + other + "'");
     read_number_file(load, *file, kMaxSphereFileBytes, "the sphere files", "4 numbers (x y z radius)",
                      [&](NumberLine& line) {
                        list.count(line.place());
@@ -75,13 +86,16 @@ std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const Ya
                      });
     return list.finish(key);
   }
-  double radius = 1;
-  load.values.read(fields["radius"], radius, kNonNegative);
   for (const YamlNode* center : list_items(fields.require("centers"), "centers")) {
     list.count(center->where());
-    list.add({load.values.vector(*center), radius}, center->where());
+    list.add({load.values.vector(*center), keys.radius}, center->where());
   }
   return list.finish(key);
+}
+
+std::string spheres_schema(Schema& schema) {
+  const std::string sphere = schema.map(SphereShape::kSurface.key, SphereShape{});
+  return Schema::any_of({Schema::list(sphere), schema.map("spheres", SpheresKeys{})});
 }
 
 }  // namespace oktett

@@ -6,33 +6,12 @@
 #include <string_view>
 
 #include "io/scene/readers.h"
-#include "io/scene/shape_reader.h"
+#include "io/scene/schema.h"
 
 namespace oktett {
 namespace {
 
 using Type = DescribedParameter::Type;
-
-std::string written(double x) { return fmt::format("{:g}", x); }
-std::string written(std::uint32_t x) { return fmt::format("{}", x); }
-std::string written(std::same_as<bool> auto x) { return x ? "true" : "false"; }
-std::string written(const Vec3d& v) { return fmt::format("[{:g}, {:g}, {:g}]", v.x, v.y, v.z); }
-std::string written(std::span<const double> x) { return fmt::format("[{:g}]", fmt::join(x, ", ")); }
-std::string written(std::span<const Vec3d> points) {
-  std::string text;
-  for (const Vec3d& p : points) text += (text.empty() ? "[" : ", ") + written(p);
-  return text + "]";
-}
-std::string written(const ClipBox& box) {
-  return fmt::format("{{min: {}, max: {}}}", written(box.lo), written(box.hi));
-}
-std::string written(const ByHand& value) { return value.usual; }
-template <class T>
-std::string written(const ChoiceOf<T>& choice) {
-  for (const Choice<T>& c : choice.choices)
-    if (c.value == choice.value) return c.name;
-  return "";
-}
 
 /// What a value may be, in Markdown.
 std::string allowed(const Range& range, double) {
@@ -62,7 +41,7 @@ template <class T>
 std::string allowed(const Range&, const ChoiceOf<T>& choice) {
   std::string words;
   for (const Choice<T>& c : choice.choices) {
-    const bool last = &c == choice.choices.end() - 1;
+    const bool last = &c == &choice.choices.back();
     words += fmt::format("{}`{}`", words.empty() ? "" : last ? " or " : ", ", c.name);
   }
   return words;
@@ -97,11 +76,7 @@ class ParameterList : public ParameterVisitor<ParameterList> {
     const Type type = std::is_same_v<T, double>          ? Type::number
                       : std::is_same_v<T, std::uint32_t> ? Type::whole_number
                                                          : Type::other;
-    std::string usual;
-    if constexpr (requires { written(value); }) usual = written(value);
-    if (parameter.need == Parameter::Need::required) usual = "required";
-    if (parameter.need == Parameter::Need::optional) usual = "none";
-    list_.push_back({parameter, type, allowed(parameter.range, value), std::move(usual)});
+    list_.push_back({parameter, type, allowed(parameter.range, value), usual_value(parameter, value)});
     return false;
   }
   void normals() {

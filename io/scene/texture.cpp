@@ -1,87 +1,119 @@
 /// \file The textures of scene files: images, and patterns.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "io/scene/readers.h"
-#include "io/scene/shape_reader.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 
 namespace oktett {
 namespace {
 
-constexpr const char* kImageKeys[] = {"file", "scale", "offset", "clamp", "channel"};
 /// Most colours of a pattern.
-constexpr std::size_t kMostColors = 64;
+constexpr std::uint32_t kMostColors = 64;
 
-/// One number for all axes, [u, v], or [u, v, w].
-void read_layout(SceneValues& values, const YamlNode* node, Vec3f& out, bool single_number) {
-  if (!node) return;
+/// [u, v] or [u, v, w], and for a scale also one number for all axes.
+struct Layout {
+  Vec3f& value;
+  bool single_number;
+};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, Layout& layout) {
+  Vec3f& out = layout.value;
   double v[3] = {out.x, out.y, out.z};
-  if (single_number && node->kind == YamlKind::scalar)
-    v[0] = v[1] = v[2] = values.number(*node);
+  if (layout.single_number && node.kind == YamlKind::scalar)
+    v[0] = v[1] = v[2] = load.values.number(node);
   else
-    values.numbers(*node, {v, node->kind == YamlKind::sequence && node->items.size() == 3 ? 3u : 2u});
+    load.values.numbers(node, {v, node.kind == YamlKind::sequence && node.items.size() == 3 ? 3u : 2u});
   out = static_cast<Vec3f>(Vec3d{v[0], v[1], v[2]});
 }
 
-std::vector<Color> read_colors(SceneLoad& load, const YamlNode& node) {
-  std::vector<Color> colors;
-  declare_count(node, {1, kMostColors});
-  for (const YamlNode* item : list_items(node, "colors")) colors.push_back(load.values.color(*item));
-  if (colors.empty() || colors.size() > kMostColors)
-    throw Error(node.where(), fmt::format("expected 1 to {} colors, found {}", kMostColors, colors.size()));
-  return colors;
+std::string schema_of(Schema&, const Range&, const Layout& layout) {
+  std::vector<std::string> forms{Schema::numbers(2), Schema::vector()};
+  if (layout.single_number) forms.insert(forms.begin(), Schema::number(kAnyNumber));
+  return Schema::any_of(forms);
 }
 
-template <class P>
-PatternTexture read_pattern_of(SceneLoad& load, const YamlNode& node, P pattern) {
-  KeyList known(pattern);
-  known.keys.insert(known.keys.end(), std::begin(kPatternKeys), std::end(kPatternKeys));
-  const Fields fields(node, P::kSurface.key, known.keys);
-  ParameterReader reader(load, node, fields);
-  pattern.describe(reader);
-  PatternTexture texture;
-  texture.pattern = pattern;
-  if (const YamlNode* colors = fields["colors"]) texture.colors = read_colors(load, *colors);
-  if (const YamlNode* transform = fields["transform"]) {
-    const Affine to_object = read_transform(load.values, *transform);
-    if (!to_object.is_invertible())
-      throw Error(transform->where(), "expected a map with an inverse, found a singular one");
-    texture.to_pattern = to_object.inverse();
-  }
-  return texture;
+/// A map with an inverse, which is what is kept.
+struct InverseOf {
+  Affine& inverse;
+};
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, InverseOf& map) {
+  const Affine to_object = read_transform(load, node);
+  if (!to_object.is_invertible())
+    throw Error(node.where(), "expected a map with an inverse, found a singular one");
+  map.inverse = to_object.inverse();
 }
+
+std::string schema_of(Schema& schema, const Range& range, const InverseOf&) {
+  return schema_of(schema, range, Affine{});
+}
+
+/// A pattern with what all patterns have.
+template <class P>
+struct PatternKeys {
+  P pattern;
+  PatternTexture texture;
+
+  void describe(auto& p) {
+    pattern.describe(p);
+    p.optional("colors", texture.colors, whole(1, kMostColors),
+               "in equal steps; black and white if left out");
+    p.optional("transform", InverseOf{texture.to_pattern},
+               "from the space of the pattern to that of the object");
+  }
+};
+
+/// What a texture has besides its pattern or image.
+struct TexelKeys {
+  float &gain, &base;
+
+  void describe(auto& p) {
+    p.field("gain", gain, "multiplies the texel");
+    p.field("base", base, "is added to it then");
+  }
+};
+
+struct ImageKeys {
+  Texture& texture;
+
+  void describe(auto& p) {
+    p.optional("file", FilePath{texture.path}, "the image");
+    p.optional("scale", Layout{texture.scale, true}, "multiplies texture coordinates");
+    p.optional("offset", Layout{texture.offset, false}, "added to them then");
+    p.field("clamp", texture.clamp, "extends the edge instead of repeating");
+    p.choice("channel", texture.channel,
+             {{"red", ImageChannel::red},
+              {"green", ImageChannel::green},
+              {"blue", ImageChannel::blue},
+              {"alpha", ImageChannel::alpha}},
+             "what a number is taken from");
+  }
+};
 
 /// The pattern of this name, if there is one.
 std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& name, const YamlNode& node) {
   std::optional<PatternTexture> texture;
-  visit_patterns([&](auto pattern) {
-    if (name == decltype(pattern)::kSurface.key) texture = read_pattern_of(load, node, pattern);
+  visit_patterns([&]<class P>(P pattern) {
+    if (name != P::kSurface.key) return;
+    PatternKeys<P> keys{pattern, {}};
+    read_described(load, node, P::kSurface.key, keys);
+    texture = std::move(keys.texture);
+    texture->pattern = keys.pattern;
   });
   return texture;
 }
 
-void read_image(SceneLoad& load, const Fields& fields, Texture& texture) {
-  SceneValues& values = load.values;
-  texture.path = values.existing_file(fields.require("file"));
-  read_layout(values, fields["scale"], texture.scale, true);
-  read_layout(values, fields["offset"], texture.offset, false);
-  values.read(fields["clamp"], texture.clamp);
-  if (const YamlNode* channel = fields["channel"])
-    texture.channel = values.choice<ImageChannel>(*channel, {{"red", ImageChannel::red},
-                                                             {"green", ImageChannel::green},
-                                                             {"blue", ImageChannel::blue},
-                                                             {"alpha", ImageChannel::alpha}});
-}
-
-}  // namespace
-
 /// The index of the texture, which is added if it is new; `place`: where it is named.
-static std::uint32_t add_texture(SceneLoad& load, const Texture& texture, const Location& place) {
+std::uint32_t add_texture(SceneLoad& load, const Texture& texture, const Location& place) {
   const std::uint32_t index = load.textures.add(texture);
   std::vector<Location>& places = load.scene.texture_places;
   if (index >= places.size()) {
@@ -91,22 +123,18 @@ static std::uint32_t add_texture(SceneLoad& load, const Texture& texture, const 
   return index;
 }
 
-static std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
-  SceneValues& values = load.values;
+std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   Texture texture;
   if (node.kind != YamlKind::map) {
-    texture.path = values.existing_file(node);
+    texture.path = load.values.existing_file(node);
     return add_texture(load, texture, node.where());
   }
-  std::vector<const char*> keys(std::begin(kImageKeys), std::end(kImageKeys));
-  std::vector<std::string> sources{"file"};
-  visit_patterns([&](const auto& pattern) {
-    keys.push_back(std::decay_t<decltype(pattern)>::kSurface.key);
-    sources.emplace_back(keys.back());
-  });
-  keys.insert(keys.end(), {"gain", "base"});
+  ImageKeys image{texture};
+  TexelKeys texel{texture.gain, texture.base};
+  std::vector<const char*> keys = KeyList(image).keys;
+  visit_patterns([&]<class P>(const P&) { keys.push_back(P::kSurface.key); });
+  std::ranges::copy(KeyList(texel).keys, std::back_inserter(keys));
   const Fields fields(node, "a texture", keys);
-  declare_one_of(node, sources);
   // A pattern stands alone but for gain and base.
   const std::vector<MapEntry> entries = map_entries(node, "a texture");
   for (const MapEntry& entry : entries) {
@@ -118,14 +146,68 @@ static std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
                     quote(other.key->text) + " has no meaning beside " + quote(entry.key->text));
     break;
   }
-  if (!texture.pattern) read_image(load, fields, texture);
-  values.read(fields["gain"], texture.gain, kAnyNumber);
-  values.read(fields["base"], texture.base, kAnyNumber);
-  return add_texture(load, texture, texture.pattern ? node.where() : fields.require("file").where());
+  ParameterReader reader(load, node, fields);
+  const Location place = texture.pattern ? node.where() : fields.require("file").where();
+  if (!texture.pattern) image.describe(reader);
+  texel.describe(reader);
+  return add_texture(load, texture, place);
 }
 
-void read_texture(SceneLoad& load, const YamlNode* node, std::uint32_t& out) {
-  if (node) attempt(*node, [&] { out = read_texture(load, *node); });
+std::string texture_schema(Schema& schema) {
+  return schema.define("a texture", typeid(Texture), [&] {
+    SchemaMap map(schema);
+    Texture usual;
+    ImageKeys{usual}.describe(map);
+    map.one_of({"file"});
+    visit_patterns([&]<class P>(const P& pattern) {
+      const Surface& s = P::kSurface;
+      map.add_one_of(s.key, s.meaning, schema.map(s.key, PatternKeys<P>{pattern, {}}));
+    });
+    TexelKeys{usual.gain, usual.base}.describe(map);
+    return map.text();
+  });
+}
+
+}  // namespace
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, FilePath& file) {
+  file.path = load.values.existing_file(node);
+}
+std::string schema_of(Schema&, const Range&, const FilePath&) { return Schema::file(); }
+
+// A map is a texture, and so is a file where no other value may stand.
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, TextureMap& map) {
+  if (map.multiplies && map.texture != kNoId)
+    throw Error(node.where(),
+                "this texture multiplies a value that is a texture itself; expected one of them");
+  map.texture = read_texture(load, node);
+}
+std::string schema_of(Schema& schema, const Range&, const TextureMap&) {
+  return Schema::any_of({Schema::file(), texture_schema(schema)});
+}
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range& range, Textured<float>& number) {
+  if (node.kind != YamlKind::map) {
+    number.value = load.values.single(node, range);
+    return;
+  }
+  number.value = 1;
+  number.texture = read_texture(load, node);
+}
+std::string schema_of(Schema& schema, const Range& range, const Textured<float>&) {
+  return Schema::any_of({Schema::number(range), texture_schema(schema)});
+}
+
+void read_value(SceneLoad& load, const YamlNode& node, const Range&, Textured<Color>& color) {
+  if (node.kind != YamlKind::map) {
+    color.value = load.values.color(node);
+    return;
+  }
+  color.value = {1, 1, 1};
+  color.texture = read_texture(load, node);
+}
+std::string schema_of(Schema& schema, const Range& range, const Textured<Color>& color) {
+  return Schema::any_of({schema_of(schema, range, color.value), texture_schema(schema)});
 }
 
 }  // namespace oktett

@@ -27,16 +27,11 @@ std::string describe(const Range& range, const char* noun) {
   return has_hi ? fmt::format("{} {}", noun, greatest) : noun;
 }
 
-void declare_keys(const YamlNode& node, const std::string& what, const std::vector<std::string>& known) {
-  if (node.file->probe && node.kind == YamlKind::map) node.file->probe->keys(node, what, known);
-}
-
 std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what) {
   std::vector<MapEntry> entries;
   if (node.kind == YamlKind::null) return entries;
   if (node.kind != YamlKind::map)
     throw Error(node.where(), "expected a map for " + what + ", found " + node.describe());
-  if (node.file->probe) node.file->probe->entries(node, what);
   for (std::size_t i = 0; i + 1 < node.items.size(); i += 2)
     entries.push_back({node.items[i], node.items[i + 1]});
   return entries;
@@ -46,16 +41,7 @@ std::span<const YamlNode* const> list_items(const YamlNode& node, const std::str
   if (node.kind == YamlKind::null) return {};
   if (node.kind != YamlKind::sequence)
     throw Error(node.where(), "expected a list for " + what + ", found " + node.describe());
-  if (node.file->probe) node.file->probe->entries(node, what);
   return node.items;
-}
-
-void declare_count(const YamlNode& list, const Range& counts) {
-  if (list.file->probe && list.kind == YamlKind::sequence) list.file->probe->count(list, counts);
-}
-
-void declare_one_of(const YamlNode& map, const std::vector<std::string>& keys) {
-  if (map.file->probe && map.kind == YamlKind::map) map.file->probe->one_of(map, keys);
 }
 
 std::string suggest(const std::string& name, std::span<const std::string> known) {
@@ -64,7 +50,6 @@ std::string suggest(const std::string& name, std::span<const std::string> known)
 
 Fields::Fields(const YamlNode& node, const std::string& what, std::span<const char* const> known)
     : node_(node), what_(what) {
-  if (node.file->probe) declare_keys(node, what, {known.begin(), known.end()});
   for (const auto& [key, value] : map_entries(node, what)) {
     if (std::find(known.begin(), known.end(), key->text) != known.end()) continue;
     const std::vector<std::string> names(known.begin(), known.end());
@@ -83,7 +68,6 @@ const YamlNode* Fields::operator[](const char* key) const {
 
 const YamlNode& Fields::require(const char* key) const {
   if (const YamlNode* value = (*this)[key]) return *value;
-  if (node_.file->probe && node_.kind == YamlKind::map) return node_.file->probe->required(node_, key);
   const Error error(node_.where(), what_ + " needs " + quote(key));
   ErrorList* const errors = node_.file->errors;
   if (errors == nullptr) throw error;
@@ -91,35 +75,19 @@ const YamlNode& Fields::require(const char* key) const {
   return errors->missing_value(node_);
 }
 
-bool probed(const YamlNode& node, const ReadType& type) {
-  if (!node.file->probe) return false;
-  node.file->probe->value(node, type);
-  return true;
-}
-
-double some_number(const Range& range) {
+/// A number in the range.
+static double some_number(const Range& range) {
   for (const double x : {1.0, 0.5, 0.0, range.lo, range.hi})
     if (range.contains(x)) return x;
   return 0.5 * (range.lo + range.hi);
 }
 
-std::size_t SceneValues::probe_words(const YamlNode& node, std::vector<std::string> words) {
-  if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected text");
-  const std::size_t count = words.size();
-  node.file->probe->value(node, {ReadType::Kind::choice, {}, 0, std::move(words)});
-  return node.file->probe->chosen(count);
-}
-
-std::string SceneValues::text(const YamlNode& node) { return text(node, ""); }
-
-std::string SceneValues::text(const YamlNode& node, const char* pattern) {
+std::string SceneValues::text(const YamlNode& node) {
   if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected text, found " + node.describe());
-  if (probed(node, {ReadType::Kind::text, {}, 0, {}, pattern})) return node.text;
   return parameters_.expand(node);
 }
 
 bool SceneValues::boolean(const YamlNode& node) {
-  if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::boolean})) return false;
   const auto read = [&] {
     const std::string word = node.kind == YamlKind::scalar ? text(node) : "";
     if (word == "true") return true;
@@ -158,7 +126,6 @@ double SceneValues::number(const YamlNode& node, const Range& range) {
 
 double SceneValues::read_number(const YamlNode& node, const Range& range) {
   if (node.kind != YamlKind::scalar) throw Error(node.where(), "expected a number, found " + node.describe());
-  if (probed(node, {ReadType::Kind::number, range})) return some_number(range);
   const std::string written = text(node);
   const char* begin = written.data() + (written.starts_with('+') ? 1 : 0);
   const char* const end = written.data() + written.size();
@@ -178,15 +145,20 @@ double SceneValues::read_number(const YamlNode& node, const Range& range) {
               fmt::format("expected {}, found {}", describe(range, "a number"), quote(written)));
 }
 
+float SceneValues::single(const YamlNode& node, const Range& range) {
+  const auto value = static_cast<float>(number(node, range));
+  // A tiny number may become a zero that is not allowed.
+  if (!range.contains(value))
+    report(node, "expected " + describe(range, "a number") + ", found " + node.describe());
+  return value;
+}
+
 std::uint32_t SceneValues::integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi) {
   return read_or(
       node, [&] { return read_integer(node, lo, hi); }, [&] { return lo; });
 }
 
 std::uint32_t SceneValues::read_integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi) {
-  const Range range = whole(lo, hi);
-  if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::integer, range}))
-    return static_cast<std::uint32_t>(some_number(range));
   const double value =
       number(node, {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()});
   if (value != std::floor(value) || value < lo || value > hi)
@@ -204,10 +176,6 @@ void SceneValues::read_numbers(const YamlNode& node, std::span<double> out, cons
   if (node.kind != YamlKind::sequence)
     throw Error(node.where(),
                 fmt::format("expected a list of {} numbers, found {}", out.size(), node.describe()));
-  if (probed(node, {ReadType::Kind::numbers, range, out.size()})) {
-    node.file->probe->fill(out, range);
-    return;
-  }
   if (node.items.size() != out.size())
     throw Error(node.where(), fmt::format("expected {} numbers, found {}", out.size(), node.items.size()));
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = number(*node.items[i], range);
@@ -233,8 +201,6 @@ Color SceneValues::color(const YamlNode& node) {
 }
 
 Color SceneValues::color_of(const YamlNode& node) {
-  const bool fits = node.kind == YamlKind::sequence || node.kind == YamlKind::scalar;
-  if (fits && probed(node, {ReadType::Kind::color})) return {1, 1, 1};
   if (node.kind == YamlKind::sequence) {
     double c[3];
     numbers(node, c, kNonNegative);
@@ -253,7 +219,6 @@ Color SceneValues::color_of(const YamlNode& node) {
 }
 
 std::string SceneValues::existing_file(const YamlNode& node) {
-  if (node.kind == YamlKind::scalar && probed(node, {ReadType::Kind::file})) return "";
   if (node.missing) throw FollowingError();
   const std::string written = text(node);
   if (written.empty()) throw Error(node.where(), "expected the path of a file, found nothing");
@@ -270,30 +235,6 @@ void SceneValues::fail_choice(const YamlNode& node, const std::string& word,
                               std::span<const std::string> names) {
   std::string message = fmt::format("expected {}, found {}", fmt::join(names, " or "), quote(word));
   throw Error(node.where(), message + suggest(word, names));
-}
-
-void SceneValues::read(const YamlNode* node, double& out, const Range& range) {
-  if (node) out = number(*node, range);
-}
-
-void SceneValues::read(const YamlNode* node, float& out, const Range& range) {
-  if (!node) return;
-  out = static_cast<float>(number(*node, range));
-  // A tiny number may become a zero that is not allowed.
-  if (!range.contains(out))
-    report(*node, "expected " + describe(range, "a number") + ", found " + node->describe());
-}
-
-void SceneValues::read(const YamlNode* node, Vec3d& out) {
-  if (node) out = vector(*node);
-}
-
-void SceneValues::read_color(const YamlNode* node, Color& out) {
-  if (node) out = color(*node);
-}
-
-void SceneValues::read(const YamlNode* node, bool& out) {
-  if (node) out = boolean(*node);
 }
 
 }  // namespace oktett

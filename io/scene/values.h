@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "core/description.h"
-#include "core/transform.h"
 #include "core/vec3.h"
 #include "io/scene/error_list.h"
 #include "io/scene/parameters.h"
-#include "io/scene/read_probe.h"
 #include "io/scene/yaml.h"
 
 namespace oktett {
@@ -28,26 +26,12 @@ struct MapEntry {
   const YamlNode* value;
 };
 
-/// Says that `node` is a map that may have these keys, to who watches.
-void declare_keys(const YamlNode& node, const std::string& what, const std::vector<std::string>& known);
-
 /// The entries of a map in order; none for an empty node. Throws Error if `node` is anything else; `what`
 /// names it.
 std::vector<MapEntry> map_entries(const YamlNode& node, const std::string& what);
 
 /// The items of a list; none for an empty node. Throws Error if `node` is anything else; `what` names it.
 std::span<const YamlNode* const> list_items(const YamlNode& node, const std::string& what);
-
-/// Tells who watches what the value is read as. Returns whether someone does; then any value is allowed.
-bool probed(const YamlNode& node, const ReadType& type);
-
-/// Says how many entries a list may have, to who watches.
-void declare_count(const YamlNode& list, const Range& counts);
-/// Counts of lists that must not be empty.
-inline constexpr Range kNotEmpty{1, kMaxCoordinate};
-
-/// Says that a map must have exactly one of these keys, to who watches. Its keys have been declared.
-void declare_one_of(const YamlNode& map, const std::vector<std::string>& keys);
 
 /// "; did you mean 'x'?" for the nearest of `known`, or nothing.
 std::string suggest(const std::string& name, std::span<const std::string> known);
@@ -79,11 +63,11 @@ class SceneValues {
   explicit SceneValues(SceneParameters& parameters) : parameters_(parameters) {}
 
   std::string text(const YamlNode& node);
-  /// The same. Who watches is told that it has to match a regular expression.
-  std::string text(const YamlNode& node, const char* pattern);
   bool boolean(const YamlNode& node);
   /// A number or an expression.
   double number(const YamlNode& node, const Range& range = kAnyNumber);
+  /// The same in single precision, which must be in the range, too.
+  float single(const YamlNode& node, const Range& range);
   std::uint32_t integer(const YamlNode& node, std::uint32_t lo, std::uint32_t hi);
   /// A list of as many numbers as `out` holds.
   void numbers(const YamlNode& node, std::span<double> out, const Range& range = kAnyNumber);
@@ -100,7 +84,6 @@ class SceneValues {
   }
   template <class T>
   T choice(const YamlNode& node, std::span<const Choice<T>> choices) {
-    if (node.file->probe) return choices[probe_choice(node, choices)].value;
     const auto read = [&] {
       const std::string word = text(node);
       std::vector<std::string> names;
@@ -113,21 +96,7 @@ class SceneValues {
     return read_or(node, read, [&] { return choices[0].value; });
   }
 
-  // The same for an optional field: `out` keeps its value if `node` is null.
-  void read(const YamlNode* node, double& out, const Range& range = kAnyNumber);
-  void read(const YamlNode* node, float& out, const Range& range);
-  void read(const YamlNode* node, Vec3d& out);
-  void read_color(const YamlNode* node, Color& out);
-  void read(const YamlNode* node, bool& out);
-
  private:
-  template <class Choices>
-  static std::size_t probe_choice(const YamlNode& node, const Choices& choices) {
-    std::vector<std::string> names;
-    for (const auto& c : choices) names.emplace_back(c.name);
-    return probe_words(node, std::move(names));
-  }
-  static std::size_t probe_words(const YamlNode& node, std::vector<std::string> words);
   [[noreturn]] static void fail_choice(const YamlNode& node, const std::string& word,
                                        std::span<const std::string> names);
   double expression(const YamlNode& node, const std::string& text);
@@ -138,9 +107,5 @@ class SceneValues {
 
   SceneParameters& parameters_;
 };
-
-/// A list of operations, applied in order, or a single one: translate, scale, rotate or matrix. The result
-/// may be singular.
-Affine read_transform(SceneValues& values, const YamlNode& node);
 
 }  // namespace oktett

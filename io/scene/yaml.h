@@ -19,7 +19,6 @@ enum class YamlKind : std::uint8_t { null, scalar, sequence, map };
 
 struct YamlFile;
 class ErrorList;
-class ReadProbe;
 
 /// One node. A map's `items` alternate between keys (scalars, all different) and values. Aliases share the
 /// node they name.
@@ -48,7 +47,6 @@ struct YamlFile {
   std::string text;
   std::deque<YamlNode> nodes;
   const YamlNode* root = nullptr;
-  ReadProbe* probe = nullptr;      ///< of a tree that is no file but stands for all; else null
   ErrorList* errors = nullptr;     ///< where errors are gathered; null: the first one is thrown
   std::size_t expanded_nodes = 0;  ///< number of nodes with each alias counted as what it stands for
 

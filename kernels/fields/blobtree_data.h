@@ -85,12 +85,13 @@ struct BlobTreeShape {
       "where the blend of potentials, one of the four, exceeds `iso`; at most 32 levels of blends in "
       "blends"};
   void describe(auto& p) {
-    constexpr ByHand kList{"list of [elements](#skeletons-and-potentials) and blends"};
+    constexpr ByHand kList{"list of [elements](#skeletons-and-potentials) and blends", "blends"};
     p.field("iso", iso, kIso, "the value on the surface");
     p.optional("sum", kList, "a blend: the sum of all");
     p.optional("max", kList, "a blend: the greatest of all");
     p.optional("min", kList, "a blend: the least of all");
     p.optional("difference", kList, "a blend: the first without all others");
+    p.one_of({"sum", "max", "min", "difference"});
     p.normals();
   }
 };

@@ -21,6 +21,7 @@ struct MetaBall {
   double radius = 1;
   double strength = 1;
 
+  static constexpr const char* kMap = "ball";
   void describe(auto& p) {
     p.field("center", center, kCoordinate, "where the potential is greatest");
     p.field("radius", radius, kPositiveLength, "how far the potential reaches");
@@ -38,10 +39,11 @@ struct MetaballsShape {
   void describe(auto& p) {
     p.field("iso", iso, kIso, "the value on the surface");
     p.optional("balls", balls, whole(1, kMaxBalls), "the balls");
-    p.optional("file", ByHand{"file"},
+    p.optional("file", ByHand{"file", "file"},
                "a text file of the balls, `x y z radius [strength]` per line, `#` begins a comment");
-    p.optional("elements", ByHand{"list of [elements](#skeletons-and-potentials)"},
+    p.optional("elements", ByHand{"list of [elements](#skeletons-and-potentials)", "elements"},
                "potentials of points, segments, polygons and ellipsoids");
+    p.one_of({"balls", "file", "elements"});
     p.normals();
   }
 };

@@ -35,21 +35,27 @@ struct HeightFieldShape {
   bool open = true;     ///< without the sides and the bottom at y = base, which make it a solid
   double base = 0;      ///< below all heights, unless open
   HeightWalk walk = HeightWalk::pyramid;
+  /// What the scene file asked for; `grid` is as it says.
+  HeightInterpolation interpolation = HeightInterpolation::bilinear;
 
   static constexpr Surface kSurface{"height_field",
                                     "heights over a rectangle, from one of `file` and `function`"};
   void describe(auto& p) {
-    p.optional("file", ByHand{"file"},
+    p.optional("file", ByHand{"file", "file"},
                "a grey image. 8 and 16 bits have values from 0 to 1, all others (EXR, TIFF) those that are "
                "stored; the top row lies at the least z");
-    p.optional("function", ByHand{"[expression](#values) in x and z"}, "the heights where there is no file");
-    p.field("samples", ByHand{"whole number or `[columns, rows]`, at least 2", "512"},
+    p.optional("function", ByHand{"[expression](#values) in x and z", "text"},
+               "the heights where there is no file");
+    p.field("samples", ByHand{"whole number or `[columns, rows]`, at least 2", "samples", "512"},
             "at how many places along each side the function is taken");
     p.field("size", size, kLength,
             "the rectangle lies about the y axis, x from -size.x / 2 to size.x / 2 and z likewise; the value "
             "of a sample times size.y is y");
-    p.field("interpolation", ByHand{"`nearest`, `triangles` or `bilinear`", "bilinear"},
-            "what is between four samples; `nearest` makes level steps");
+    p.choice("interpolation", interpolation,
+             {{"nearest", HeightInterpolation::nearest},
+              {"triangles", HeightInterpolation::triangles},
+              {"bilinear", HeightInterpolation::bilinear}},
+             "what is between four samples; `nearest` makes level steps");
     open &=
         !p.optional("base", base, kCoordinate,
                     "a y below all heights, which makes it a solid with upright sides and a bottom there");
@@ -57,6 +63,8 @@ struct HeightFieldShape {
              {{"pyramid", HeightWalk::pyramid}, {"cells", HeightWalk::cells}, {"spans", HeightWalk::spans}},
              "[which find the same](surfaces.md#height-fields)");
     p.normals();
+    p.one_of({"file", "function"});
+    p.not_both("file", "samples", "a height field from a file has no 'samples'", "samples");
   }
 };
 

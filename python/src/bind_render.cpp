@@ -44,7 +44,7 @@ void override_camera(const py::dict& camera, Scene& scene) {
     else if (name == "up")
       scene.camera.up = parse_vector(value, what);
     else if (name == "fov")
-      scene.camera.fov = parse_number(value, what, {0, 180, true, true});
+      scene.camera.fov = parse_number(value, what, Camera::kFieldsOfView);
     else
       throw py::value_error("camera: there is no key '" + name + "'" +
                             did_you_mean(name, std::vector<std::string>{"from", "at", "up", "fov"},
@@ -68,9 +68,9 @@ IntegratorKind parse_integrator(const std::string& name) {
 
 using Whole = std::optional<std::int64_t>;
 
-void override_whole(const Whole& given, const char* name, std::int64_t lo, std::int64_t hi,
-                    std::uint32_t& out) {
+void override_whole(const Whole& given, const char* name, const Range& range, std::uint32_t& out) {
   if (!given) return;
+  const auto lo = static_cast<std::int64_t>(range.lo), hi = static_cast<std::int64_t>(range.hi);
   if (*given < lo || *given > hi)
     throw py::value_error(std::string(name) + ": expected " + std::to_string(lo) + " to " +
                           std::to_string(hi) + ", found " + std::to_string(*given));
@@ -133,11 +133,11 @@ py::dict render_scene(SceneStore& store, const Whole& width, const Whole& height
                       const std::optional<py::dict>& camera,
                       const std::optional<std::vector<std::string>>& wanted, const py::object& progress) {
   Scene scene = store.scene();
-  override_whole(width, "width", 1, 65536, scene.film.width);
-  override_whole(height, "height", 1, 65536, scene.film.height);
-  override_whole(samples, "samples", 1, 65536, scene.integrator.samples);
-  override_whole(depth, "depth", 0, 64, scene.integrator.depth);
-  override_whole(seed, "seed", 0, 0xffffffff, scene.integrator.seed);
+  override_whole(width, "width", kFilmSides, scene.film.width);
+  override_whole(height, "height", kFilmSides, scene.film.height);
+  override_whole(samples, "samples", kPixelSamples, scene.integrator.samples);
+  override_whole(depth, "depth", kDepths, scene.integrator.depth);
+  override_whole(seed, "seed", kAnySeed, scene.integrator.seed);
   if (integrator) scene.integrator.kind = parse_integrator(*integrator);
   if (camera) override_camera(*camera, scene);
 

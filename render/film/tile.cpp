@@ -347,9 +347,9 @@ std::vector<MatteSums> decode_mattes(ByteReader& reader, std::size_t pixels) {
 
 /// Sums are divided by counts, and counts number the samples that are added.
 void check_counts(const TileSums& sums) {
-  constexpr std::uint32_t kMostSamples = 65536 + kMostAddedSamples;
+  constexpr std::uint32_t kMost = kMostSamples + kMostAddedSamples;
   for (std::size_t i = 0; i < sums.pixels.size(); ++i)
-    if (sums.samples[i] > kMostSamples || sums.pixels[i].good > sums.samples[i] ||
+    if (sums.samples[i] > kMost || sums.pixels[i].good > sums.samples[i] ||
         sums.pixels[i].hits > sums.pixels[i].good)
       throw Error("a tile has counts that none can have");
 }

@@ -206,6 +206,24 @@ TEST_F(CheckpointCommand, AnotherSceneIsRefused) {
   expect_success({"render", "moved/a.yaml", "--resume", "c.film"});
 }
 
+TEST_F(CheckpointCommand, ASceneWithAnotherSettingIsRefused) {
+  expect_success({"render", "a.yaml", "-o", "a.exr", "--checkpoint", "c.film"});
+  const struct {
+    std::string before, setting, difference;
+  } cases[] = {{"samples: 4", "depth: 7", "'depth' is 6 there and 7 here"},
+               {"samples: 4", "clamp: 2", "--clamp is 0 there and 2 here"},
+               {"samples: 4", "caustics: {photons: 5}", "'photons' is 0 there and 5 here"},
+               {"height: 60", "filter: tent", "--filter is box there and tent here"},
+               {"height: 60", "filter_radius: 2", "'filter_radius' is 0 there and 2 here"},
+               {"height: 60", "crop: [0, 0.5, 0, 1]", "--cropwindow is 0,1,0,1 there and 0,0.5,0,1 here"}};
+  for (const auto& c : cases) {
+    std::string scene = kScene;
+    scene.insert(scene.find(c.before) + c.before.size(), ", " + c.setting);
+    dir_.write("a.yaml", scene);
+    expect_failure({"render", "--resume", "c.film"}, 2, "c.film: is of another picture: " + c.difference);
+  }
+}
+
 TEST_F(CheckpointCommand, WrongWordsAreRefused) {
   struct Case {
     Words words;

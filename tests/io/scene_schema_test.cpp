@@ -74,6 +74,7 @@ class Validator {
     }
     if (rule == "oneOf")
       return std::ranges::count_if(value.items, [&](const YamlNode* s) { return accepts(node, *s); }) == 1;
+    if (rule == "not") return !accepts(node, value);
     if (rule == "anyOf")
       return std::ranges::any_of(value.items, [&](const YamlNode* s) { return accepts(node, *s); });
     if (rule == "type") {
@@ -148,13 +149,27 @@ TEST_F(SceneSchema, TheCopyIsCurrent) {
       << "expected the output of `oktett info --schema` in docs/oktett.schema.json";
 }
 
-// What is read only beside two other keys is not found, and may be anything.
-TEST_F(SceneSchema, NearlyEveryPlaceHasAType) {
-  int places = 0, unknown = 0;
+TEST_F(SceneSchema, EveryPlaceHasATypeAndAMeaning) {
+  int places = 0, meanings = 0;
   for (std::size_t at = 0; (at = schema.find("\n  \"", at)) != std::string::npos; ++at) ++places;
-  for (std::size_t at = 0; (at = schema.find(": {}", at)) != std::string::npos; ++at) ++unknown;
+  for (std::size_t at = 0; (at = schema.find(": {\"description\": \"", at)) != std::string::npos; ++at)
+    ++meanings;
   EXPECT_GT(places, 300);
-  EXPECT_LE(unknown, 3);
+  EXPECT_EQ(meanings, places);
+  EXPECT_EQ(schema.find("{}"), std::string::npos);
+}
+
+// What users may write is told in the document, too.
+TEST_F(SceneSchema, EveryKeyIsInTheDocument) {
+  const std::string document = test::file_content(source / "docs/scene-format.md");
+  int count = 0;
+  for (std::size_t at = 0; (at = schema.find("\n  \"", at)) != std::string::npos; ++count) {
+    at += 4;
+    const std::string key = schema.substr(at, schema.find('"', at) - at);
+    const std::regex named("[`{ ]" + key + "[`:,} ]");
+    EXPECT_TRUE(std::regex_search(document, named)) << key;
+  }
+  EXPECT_GT(count, 300);
 }
 
 TEST_F(SceneSchema, AcceptsEveryExample) {
@@ -304,6 +319,21 @@ TEST_F(SceneSchema, RefusesWhatTheReaderRefuses) {
                            "lights: [null]",
                            "lights: [{sphere: {center: [0, 0, 0]}, sky: }]",
                            "lights: [{sky: {light_group: a b}}]",
+                           "lights: [{rectangle: {corner: [0, 0, 0], u: [1, 0, 0]}}]",
+                           "lights: [{point: {position: [0, 0, 0], color: [1, 1, 1], power: [1, 1, 1]}}]",
+                           "lights: [{spot: {position: [0, 0, 0], at: [1, 0, 0], direction: [1, 0, 0]}}]",
+                           "lights: [{point: {position: [0, 0, 0], rotate: x}}]",
+                           "camera: {aperture: 1, f_number: 2}",
+                           "integrator: {caustics: {radius: near}}",
+                           "media: {a: {density: x}}",
+                           "objects: [{sphere: , transform: [], motion: [{time: 0, transform: []}]}]",
+                           "objects: [{sphere: , transform: {rotate: {axis: [0, 1, 0]}}}]",
+                           "objects: [{polynomial: {bounds: {min: [0, 0, 0], max: [1, 1, 1]}}}]",
+                           "objects: [{quadric: {clip: {min: [0, 0]}}}]",
+                           "objects: [{implicit: {function: x, bounds: {min: [0, 0, 0]}}}]",
+                           "objects: [{superellipsoid: {radii: [1, -1, 1]}}]",
+                           "objects: [{height_field: {function: x, samples: [4, 5, 6]}}]",
+                           "objects: [{height_field: {samples: 4}}]",
                            "lights: [{sky: {light_group: ''}}]",
                            "lights: [{sky: {light_group: 3.5}}]"}) {
     EXPECT_NE(files.error_v1(text), "no error") << text;

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "io/scene/shape_reader.h"
+#include "io/scene/described.h"
 #include "io/scene/surface_table.h"
 #include "tests/io/scene_test_support.h"
 

@@ -1,8 +1,13 @@
 #pragma once
-/// \file Reads a shape by what it says of its parameters (core/description.h). Within io/ only.
+/// \file Reads what describes its parameters (core/description.h). Within io/ only.
+///
+/// A value that is more than a number, a choice or a described map has a `read_value(load, node, range,
+/// value)` and, for the JSON Schema, a `schema_of(schema, range, value)` (io/scene/schema.h), both found by
+/// its type.
 
 #include <fmt/format.h>
 
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -31,12 +36,12 @@ void visit_surfaces(auto& v) {
   visit_surfaces_of(v, std::type_identity<ExactForm::variant>{});
 }
 
-/// The keys of a shape's parameters.
+/// The keys of what is described.
 class KeyList : public ParameterVisitor<KeyList> {
  public:
   template <class T>
-  explicit KeyList(T shape) {
-    shape.describe(*this);
+  explicit KeyList(T described) {
+    described.describe(*this);
   }
   template <class T>
   bool visit(const Parameter& parameter, T&) {
@@ -48,8 +53,46 @@ class KeyList : public ParameterVisitor<KeyList> {
   std::vector<const char*> keys;
 };
 
+template <class T>
+concept Described = requires(T& value, KeyList& keys) {
+  value.describe(keys);
+};
+template <class T>
+concept HasReader = requires(SceneLoad& load, const YamlNode& node, const Range& range, T& value) {
+  read_value(load, node, range, value);
+};
+
+/// What a described map is called: T::kMap, else its key.
+template <class T>
+const char* map_name(const char* key) {
+  if constexpr (requires { T::kMap; })
+    return T::kMap;
+  else
+    return key;
+}
+
+/// The corners of a box; both are needed, or either may be left out.
+template <Parameter::Need need>
+struct Corners {
+  Vec3d lo{}, hi{};
+
+  void describe(auto& p) {
+    p.visit(Parameter{"min", "the corner of least x, y and z", kCoordinate, need}, lo);
+    p.visit(Parameter{"max", "the corner of greatest x, y and z", kCoordinate, need}, hi);
+  }
+};
+
 /// A function of x, y and z.
 FunctionTape read_function(SceneLoad& load, const YamlNode& node);
+
+// Items of lists. Each returns whether the item is kept; it warns of those that are not.
+bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point);
+bool read_item(SceneLoad& load, const YamlNode& node, Color& color);
+bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane);
+bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point);
+bool read_item(SceneLoad& load, const YamlNode& node, Affine& map);
+bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source);
+bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball);
 
 /// Reads the values of the fields of a map into the members that they describe.
 class ParameterReader : public ParameterVisitor<ParameterReader> {
@@ -74,6 +117,8 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   bool is_wrong() const { return is_wrong_; }
   void normals() { describe_normals(*this, normal_method); }
   void check(bool ok, const char* key, const char* message, const double* found = nullptr) const;
+  void one_of(std::initializer_list<const char*> keys, const char* message = nullptr) const;
+  void not_both(const char* a, const char* b, const char* message = nullptr, const char* at = nullptr) const;
   void nothing_if(bool is_empty, const char* reason) {
     if (is_empty && !why_nothing && !is_wrong_) why_nothing = reason;
   }
@@ -85,8 +130,12 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   void read(const YamlNode& node, const Parameter& parameter, double& value) {
     value = load_.values.number(node, parameter.range);
   }
+  void read(const YamlNode& node, const Parameter& parameter, float& value) {
+    value = load_.values.single(node, parameter.range);
+  }
   void read(const YamlNode& node, const Parameter& parameter, std::uint32_t& value);
   void read(const YamlNode& node, const Parameter&, bool& value) { value = load_.values.boolean(node); }
+  void read(const YamlNode& node, const Parameter&, Color& value) { value = load_.values.color(node); }
   void read(const YamlNode& node, const Parameter& parameter, Vec3d& value);
   void read(const YamlNode& node, const Parameter& parameter, std::span<double> values) {
     load_.values.numbers(node, values, parameter.range);
@@ -103,6 +152,7 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   }
   template <class T>
   void read(const YamlNode& node, const Parameter& parameter, std::vector<T>& list) {
+    list.clear();
     for (const YamlNode* item : items_of(node, parameter)) {
       T value{};
       bool keep = false;
@@ -110,6 +160,9 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
       if (keep) list.push_back(std::move(value));
     }
   }
+  template <class T>
+  requires HasReader<T> || Described<T>
+  void read(const YamlNode& node, const Parameter& parameter, T& value);
   /// The items of a list whose length is checked.
   static std::span<const YamlNode* const> items_of(const YamlNode& node, const Parameter& parameter);
 
@@ -120,21 +173,23 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
   bool is_wrong_ = false;
 };
 
-/// Reads a map of parameters that has no special cases; `what` names it.
+/// Reads a map of parameters; `what` names it. Returns its fields, for what the description does not say.
 template <class T>
-void read_described(SceneLoad& load, const YamlNode& node, const char* what, T& value) {
-  static const KeyList known{T{}};
-  const Fields fields(node, what, known.keys);
+Fields read_described(SceneLoad& load, const YamlNode& node, const char* what, T& value) {
+  static const KeyList known{value};
+  Fields fields(node, what, known.keys);
   ParameterReader reader(load, node, fields);
   value.describe(reader);
+  return fields;
 }
 
-// Items of lists. Each returns whether the item is kept; it warns of those that are not.
-bool read_item(SceneLoad& load, const YamlNode& node, Vec3d& point);
-bool read_item(SceneLoad& load, const YamlNode& node, HalfSpace& plane);
-bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point);
-bool read_item(SceneLoad& load, const YamlNode& node, Affine& map);
-bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source);
-bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball);
+template <class T>
+requires HasReader<T> || Described<T>
+void ParameterReader::read(const YamlNode& node, const Parameter& parameter, T& value) {
+  if constexpr (HasReader<T>)
+    read_value(load_, node, parameter.range, value);
+  else
+    read_described(load_, node, map_name<T>(parameter.key), value);
+}
 
 }  // namespace oktett

@@ -1,5 +1,9 @@
-#include "io/scene/shape_reader.h"
+#include "io/scene/described.h"
 
+#include <algorithm>
+
+#include "io/scene/readers.h"
+#include "io/scene/schema.h"
 #include "io/scene/utf8.h"
 #include "kernels/exact/polynomial_expression.h"
 #include "kernels/fractals/ifs.h"
@@ -21,6 +25,53 @@ namespace {
   throw Error(text == node.text ? node.where(at) : node.where(), message);
 }
 
+constexpr const char* kNoDirection = "the direction must not be zero";
+
+struct BlobLine {
+  Vec3d at{0, 0, 0}, direction{0, 1, 0};
+
+  void describe(auto& p) {
+    p.field("point", at, "a point on it");
+    p.required("direction", direction, "of any length but zero");
+    p.check(length(direction) > 0, "direction", kNoDirection);
+  }
+};
+
+struct BlobPlane {
+  Vec3d normal{0, 1, 0};
+  double offset = 0;
+
+  void describe(auto& p) {
+    p.required("normal", normal, "of any length but zero");
+    p.field("offset", offset, "distance from the origin along the unit normal");
+    p.check(length(normal) > 0, "normal", kNoDirection);
+  }
+};
+
+struct BlobSourceKeys {
+  BlobSource source;
+  BlobLine line;
+  BlobPlane plane;
+
+  static constexpr const char* kMap = "a source";
+  void describe(auto& p) {
+    using Kind = BlobSource::Kind;
+    p.one_of({"point", "line", "plane"}, "a source is one of 'point', 'line' and 'plane'");
+    if (p.optional("point", source.at, "a point")) source.kind = Kind::point;
+    if (p.optional("line", line, "an endless line")) {
+      source.kind = Kind::line;
+      source.at = line.at;
+      source.direction = line.direction;
+    }
+    if (p.optional("plane", plane, "an endless plane")) {
+      source.kind = Kind::plane;
+      source.direction = plane.normal;
+      source.offset = plane.offset;
+    }
+    p.field("weight", source.weight, "of either sign");
+  }
+};
+
 }  // namespace
 
 void ParameterReader::check(bool ok, const char* key, const char* message, const double* found) const {
@@ -28,6 +79,17 @@ void ParameterReader::check(bool ok, const char* key, const char* message, const
   const YamlNode* value = key ? fields_[key] : &node_;
   if (!value) value = last_ ? last_ : &node_;
   throw Error(value->where(), found ? fmt::format("{}, found {:.6g}", message, *found) : message);
+}
+
+void ParameterReader::one_of(std::initializer_list<const char*> keys, const char* message) const {
+  const auto given = std::ranges::count_if(keys, [&](const char* key) { return fields_[key] != nullptr; });
+  if (message != nullptr && given != 1) throw Error(node_.where(), message);
+}
+
+void ParameterReader::not_both(const char* a, const char* b, const char* message, const char* at) const {
+  if (fields_[a] == nullptr || fields_[b] == nullptr) return;
+  throw Error((at ? *fields_[at] : node_).where(),
+              message ? message : fmt::format("expected '{}' or '{}', not both", a, b));
 }
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std::uint32_t& value) {
@@ -52,8 +114,10 @@ void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std
 }
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, SolidBox& box) {
-  const Fields fields(node, parameter.key, {"min", "max"});
-  box.lo = load_.values.vector(fields.require("min")), box.hi = load_.values.vector(fields.require("max"));
+  Corners<Parameter::Need::required> corners{box.lo, box.hi};
+  const Fields fields = read_described(load_, node, parameter.key, corners);
+  box.lo = corners.lo;
+  box.hi = corners.hi;
   for (int k = 0; k < 3; ++k)
     if (!(box.lo[k] < box.hi[k]))
       throw Error(fields.require("max").where(),
@@ -61,9 +125,10 @@ void ParameterReader::read(const YamlNode& node, const Parameter& parameter, Sol
 }
 
 void ParameterReader::read(const YamlNode& node, const Parameter& parameter, ClipBox& box) {
-  const Fields fields(node, parameter.key, {"min", "max"});
-  load_.values.read(fields["min"], box.lo);
-  load_.values.read(fields["max"], box.hi);
+  Corners<Parameter::Need::optional> corners{box.lo, box.hi};
+  const Fields fields = read_described(load_, node, parameter.key, corners);
+  box.lo = corners.lo;
+  box.hi = corners.hi;
   for (int k = 0; k < 3; ++k)
     if (box.lo[k] > box.hi[k])
       throw Error((fields["max"] ? *fields["max"] : node).where(),
@@ -82,8 +147,6 @@ void ParameterReader::read(const YamlNode& node, const Parameter&, std::vector<M
 std::span<const YamlNode* const> ParameterReader::items_of(const YamlNode& node, const Parameter& parameter) {
   const auto items = list_items(node, parameter.key);
   const Range& counts = parameter.range;
-  declare_count(node, counts);
-  if (node.file->probe) return items;
   if (counts.contains(static_cast<double>(items.size()))) return items;
   const std::string expected = counts.lo == counts.hi ? fmt::format("{}", counts.lo)
                                : counts.lo == 0       ? fmt::format("at most {}", counts.hi)
@@ -111,8 +174,13 @@ bool read_item(SceneLoad& load, const YamlNode& node, ProfilePoint& point) {
   return true;
 }
 
+bool read_item(SceneLoad& load, const YamlNode& node, Color& color) {
+  color = load.values.color(node);
+  return true;
+}
+
 bool read_item(SceneLoad& load, const YamlNode& node, Affine& map) {
-  map = read_transform(load.values, node);
+  read_value(load, node, kAnyNumber, map);
   if (!map.is_invertible()) throw Error(node.where(), "expected a map with an inverse, found a singular one");
   if (const double norm = Ifs::norm(map); !(norm < 1))
     throw Error(
@@ -123,37 +191,19 @@ bool read_item(SceneLoad& load, const YamlNode& node, Affine& map) {
 }
 
 bool read_item(SceneLoad& load, const YamlNode& node, BlobSource& source) {
-  const Fields fields(node, "a source", {"point", "line", "plane", "weight"});
-  declare_one_of(node, {"point", "line", "plane"});
-  load.values.read(fields["weight"], source.weight);
-  const YamlNode *point = fields["point"], *line = fields["line"], *plane = fields["plane"];
-  if ((point != nullptr) + (line != nullptr) + (plane != nullptr) != 1)
-    throw Error(node.where(), "a source is one of 'point', 'line' and 'plane'");
-  const YamlNode* direction = nullptr;
-  if (point) {
-    source.kind = BlobSource::Kind::point;
-    source.at = load.values.vector(*point);
-  } else if (line) {
-    const Fields of(*line, "line", {"point", "direction"});
-    source.kind = BlobSource::Kind::line;
-    load.values.read(of["point"], source.at);
-    direction = &of.require("direction");
-  } else {
-    const Fields of(*plane, "plane", {"normal", "offset"});
-    source.kind = BlobSource::Kind::plane;
-    direction = &of.require("normal");
-    load.values.read(of["offset"], source.offset);
-  }
-  if (direction) {
-    source.direction = load.values.vector(*direction);
-    if (!(length(source.direction) > 0)) throw Error(direction->where(), "the direction must not be zero");
-  }
+  BlobSourceKeys keys;
+  read_described(load, node, keys.kMap, keys);
+  source = keys.source;
   if (source.weight == 0) load.warn(node.where(), "the weight is zero; the source is skipped");
   return source.weight != 0;
 }
 
+std::string schema_of(Schema& schema, const Range&, const BlobSource&) {
+  return schema.map(BlobSourceKeys::kMap, BlobSourceKeys{});
+}
+
 bool read_item(SceneLoad& load, const YamlNode& node, MetaBall& ball) {
-  read_described(load, node, "ball", ball);
+  read_described(load, node, MetaBall::kMap, ball);
   return true;
 }
 
