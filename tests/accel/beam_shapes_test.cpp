@@ -1,5 +1,7 @@
 /// \file The filters of closed-form and exact shapes in beams: every ray has the same bits as alone by the
-/// scalar path, also rays along silhouettes, from far away, and from the surface itself.
+/// scalar path, also rays along silhouettes, from far away, and from the surface itself. That beams hit what
+/// oracles say is tested by TraceModes.NearestHitsAreThoseOfTheOracles and, for exact surfaces, by
+/// Exact.AgreesWithItsOracle.
 
 #include <gtest/gtest.h>
 

@@ -261,18 +261,24 @@ TEST(ClosestShapes, NoSampleIsNearer) {
 // The normal points from the surface to points outside.
 TEST(ClosestShapes, NormalsPointOutwards) {
   CaseRandom r(4);
+  int solids = 0;
   for (const Sampled& s : surfaces()) {
     const bool is_solid = inside(*build_accel({s.geometry}), Vec3f(Vec3d{0.6, 0.01, 0.02}));
     if (!is_solid) continue;
     const auto plain = build_accel({s.geometry});
+    int checked = 0;
     for (int i = 0; i < 300; ++i) {
       const Vec3f p = Vec3f(r.vector() * 2.0);
       const ClosestPoint c = closest_point(*plain, p);
       if (c.distance < 1e-4f) continue;
+      ++checked;
       const float along = dot(p - c.point, c.normal);
       EXPECT_EQ(along > 0, !inside(*plain, p)) << s.name << " " << p.x << " " << p.y << " " << p.z;
     }
+    EXPECT_GT(checked, 280) << s.name;
+    ++solids;
   }
+  EXPECT_GE(solids, 4);
 }
 
 // Of all things in a scene the nearest counts, at equal distance the first.

@@ -67,11 +67,13 @@ Sides split(const Soup& soup, std::size_t room, bool every_axis = true, bool par
 
 // Far-away, huge and tiny scenes round the crossings of edges with the plane.
 TEST(Spatial, PartsCoverTheirTriangles) {
+  int splits = 0;
   for (const double scale : {1.0, 1e30, 1e-20, 1e-38})
     for (const Vec3d& middle : {Vec3d{0, 0, 0}, Vec3d{3e4, -1e6, 70} * scale}) {
       const Soup soup = random_soup(200, scale, middle, 3);
       const Sides s = split(soup, 400);
       if (s.left.empty()) continue;
+      ++splits;
       std::map<std::uint32_t, std::vector<Box>> parts;
       for (const PrimRef& r : s.left) parts[r.item].push_back(box_of(r));
       for (const PrimRef& r : s.right) parts[r.item].push_back(box_of(r));
@@ -99,6 +101,7 @@ TEST(Spatial, PartsCoverTheirTriangles) {
         }
       }
     }
+  EXPECT_GE(splits, 4);  // of 8 soups
 }
 
 TEST(Spatial, PartsEndAtThePlaneOrAreWhole) {

@@ -11,6 +11,7 @@
 #include "tests/accel/same_hits.h"
 #include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
+#include "verify/oracles/closed.h"
 
 namespace oktett::trace_modes_test {
 namespace {
@@ -182,6 +183,84 @@ TEST(TraceModes, SameHitsOfFewTriangles) {
     const auto plain = build_accel(one), fast = build_accel(one, {BuildQuality::fast});
     expect_same(*plain, *fast, rays_at(targets, 200, 12, 1, {}), "few");
   }
+}
+
+/// Things whose hits are known without the library.
+struct KnownThings {
+  TriangleMesh mesh;
+  std::vector<SphereShape> spheres;
+  std::vector<DiskShape> disks;
+  PlaneShape plane{{0, 0, 1}, -0.9};
+
+  std::vector<Geometry> geometries() const {
+    std::vector<Geometry> all = {
+        {MeshGeometry{&mesh}, {}, kNoId}, {plane, {}, kNoId}, {SpheresShape{spheres}, {}, kNoId}};
+    for (const DiskShape& disk : disks) all.push_back({disk, {}, kNoId});
+    return all;
+  }
+
+  /// The nearest hit that the oracles find, one thing after the other; undecided if one of them is.
+  OracleAnswer nearest(const Ray& ray) const {
+    OracleAnswer best;
+    const auto take = [&](const OracleAnswer& a) {
+      if (best.verdict == OracleVerdict::undecided || a.verdict == OracleVerdict::miss) return;
+      if (a.verdict == OracleVerdict::undecided || best.verdict == OracleVerdict::miss || a.t < best.t)
+        best = a;
+    };
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+      const Vec3f corner[] = {mesh.positions[mesh.indices[i]], mesh.positions[mesh.indices[i + 1]],
+                              mesh.positions[mesh.indices[i + 2]]};
+      take(oracle_triangle(ray, corner, {}));
+    }
+    for (const SphereShape& sphere : spheres) take(oracle_sphere(ray, sphere));
+    for (const DiskShape& disk : disks) take(oracle_disk(ray, disk));
+    take(oracle_plane(ray, plane));
+    return best;
+  }
+};
+
+// The other tests compare ways of tracing with each other. Here each is compared with a loop over all things
+// in extended precision: rays of one apex, so that every beam is full, then all others.
+TEST(TraceModes, NearestHitsAreThoseOfTheOracles) {
+  KnownThings things;
+  things.mesh = soup(300, 21, 1);
+  CaseRandom r(22);
+  for (int i = 0; i < 60; ++i) things.spheres.push_back({r.vector(), 0.02 + 0.1 * r.unit()});
+  for (int i = 0; i < 60; ++i)
+    things.disks.push_back({r.vector(), normalize(r.vector()), 0.02 + 0.1 * r.unit()});
+  RayBatch rays;
+  for (int beam = 0; beam < 8; ++beam) {
+    const Vec3f apex(r.vector() * (beam % 2 == 0 ? 4.0 : 0.8));
+    const Vec3d target = r.vector() * 0.7;
+    for (int i = 0; i < 256; ++i) rays.push_back({apex, 0, Vec3f(target + r.vector() * 0.3) - apex, kInf});
+  }
+  const RayBatch others = rays_at(things.mesh, 1000, 23, 1, {});
+  for (std::size_t i = 0; i < others.size(); ++i) rays.push_back(others[i]);
+  std::vector<OracleAnswer> truth;
+  int met = 0, missed = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    truth.push_back(things.nearest(rays[i]));
+    met += truth[i].verdict == OracleVerdict::hit, missed += truth[i].verdict == OracleVerdict::miss;
+  }
+  EXPECT_GT(met, 1500);
+  EXPECT_GT(missed, 200);
+  EXPECT_GT(met + missed, 2900);
+  const auto accel = build_accel(things.geometries());
+  HitBatch hits;
+  hits.resize_uninitialized(rays.size());
+  for (const Isa isa : available_isas())
+    for (const TraceMode mode : kTraceModes) {
+      closest_hit(*accel, rays.span(), hits.span(), isa, mode);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (truth[i].verdict == OracleVerdict::undecided) continue;
+        ASSERT_EQ(hits[i].valid(), truth[i].verdict == OracleVerdict::hit)
+            << to_string(isa) << ' ' << int(mode) << ' ' << i;
+        if (hits[i].valid()) {
+          ASSERT_NEAR(hits[i].t, truth[i].t, 2e-7 * truth[i].t + truth[i].t_error)
+              << to_string(isa) << ' ' << int(mode) << ' ' << i;
+        }
+      }
+    }
 }
 
 }  // namespace

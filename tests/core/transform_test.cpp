@@ -76,17 +76,20 @@ double distance_from_inverse(const Affine& a, const Affine& b) {
 /// A map that turns, flattens and turns again has an inverse whose cofactors cancel.
 TEST(Affine, InvertsFlatMaps) {
   Dice<double> dice(1);
+  int inverted = 0;
   for (int i = 0; i < 20000; ++i) {
     const double flat = std::ldexp(1.0, -dice.below(41));
     const Affine m = Affine::rotation(dice.vec(180)) * Affine::scaling({1, flat, 1}) *
                      Affine::rotation(dice.vec(180)) * Affine::scaling({1, 1, dice.range(0.5, 2)});
     if (!m.is_invertible()) continue;
+    ++inverted;
     EXPECT_LT(distance_from_inverse(m.inverse(), m), 0x1p-46) << "flat by " << flat;
     const Vec3d p = dice.vec(3);
     const Affine moved = Affine::translation(p) * m;
     const Vec3d there = m.inverse().vector(p), shift = moved.inverse().point({0, 0, 0});
     EXPECT_LT(distance(there, -shift), 0x1p-46 / flat);
   }
+  EXPECT_GT(inverted, 18000);
 }
 
 TEST(Affine, NormalsStayPerpendicular) {

@@ -131,10 +131,12 @@ TEST_F(SurfaceTable, NoOtherKeyIsAccepted) {
 }
 
 TEST_F(SurfaceTable, RangesEndWhereTheyAreSaidTo) {
+  int ranges = 0;
   for (const DescribedSurface& s : described_surfaces())
     for (const DescribedParameter& p : s.parameters) {
       const bool is_vector = p.text.starts_with("3 lengths");
       if (p.type == Type::other && !is_vector) continue;
+      ++ranges;
       const auto refuses = [&](double x) {
         const std::string number = fmt::format("{}", x);
         const std::string value = is_vector ? fmt::format("[1, {}, 1]", number) : number;
@@ -154,6 +156,7 @@ TEST_F(SurfaceTable, RangesEndWhereTheyAreSaidTo) {
       EXPECT_FALSE(refuses(r.lo + std::max(step, 1e-12 * std::abs(r.lo))));
       EXPECT_FALSE(refuses(r.hi - std::max(step, 1e-12 * std::abs(r.hi))));
     }
+  EXPECT_GT(ranges, 20);
 }
 
 /// The values of the parameters of a shape, of those kinds that can be compared.

@@ -89,6 +89,7 @@ TEST(March, PolesInTheMiddleAreNoNoise) {
 /// Random roots, far apart or close together, are all found, as far as doubles can resolve them.
 TEST(March, FindsRandomRoots) {
   std::mt19937 random(3);
+  int checked = 0;
   for (int k = 0; k < 2000; ++k) {
     std::vector<double> roots;
     const auto unit = [&] { return (random() + 0.5) / 4294967296.0; };
@@ -98,8 +99,10 @@ TEST(March, FindsRandomRoots) {
     double least = 1;
     for (std::size_t i = 1; i < roots.size(); ++i) least = std::min(least, roots[i] - roots[i - 1]);
     if (least < 1e-5) continue;
+    ++checked;
     expect_roots(find(product(roots), 0, 1), roots, 1e-9);
   }
+  EXPECT_GT(checked, 1500);
 }
 
 /// Touching is no crossing; it costs few steps although rounding hides the sign over 2^-26 of the range.

@@ -75,7 +75,7 @@ TEST(Denoise, TheErrorFalls) {
       const double before = error(picture, truth);
       denoise(picture);
       const double after = error(picture, truth);
-      RecordProperty("factor", std::to_string(before / after));
+      RecordProperty((first ? "room_" : "balls_") + std::to_string(samples), std::to_string(before / after));
       // The sky leaves little noise but at edges, which stay.
       EXPECT_LT(after, before / (first ? 3.5 : 1.7))
           << first << ' ' << samples << ": " << before << ' ' << after;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -70,6 +71,7 @@ TEST(LightSet, IsEmptyWithoutLight) {
 TEST(LightSet, ProbabilitiesSumToOneAndSayHowOftenEmittersAreChosen) {
   const LightSet set(all_kinds());
   Random random(1);
+  int compared = 0;
   for (int i = 0; i < 20; ++i) {
     const LightPoint point{random.direction() * 2.0f, random.direction(), i % 2 == 0};
     std::vector<double> expected, counted(set.emitters().size());
@@ -92,17 +94,21 @@ TEST(LightSet, ProbabilitiesSumToOneAndSayHowOftenEmittersAreChosen) {
         continue;
       }
       EXPECT_NEAR(counted[j], expected[j], 5 * std::sqrt(expected[j]) + 1);
+      compared += counted[j] > 0;
     }
   }
+  EXPECT_GT(compared, 100);  // of 20 points and 10 emitters
 }
 
 TEST(LightSet, PdfIsThatOfTheSample) {
   const LightSet set(all_kinds());
   Random random(2);
+  int deltas = 0, distant = 0, near = 0;
   for (int i = 0; i < 20000; ++i) {
     const LightPoint point{random.direction() * 2.0f, random.direction()};
     const auto s = set.sample(point, random(), random.square());
     if (!s) continue;
+    ++(s->delta ? deltas : std::isinf(s->distance) ? distant : near);
     if (s->delta) {
       EXPECT_EQ(set.pdf(point, s->emitter, s->direction, s->distance), 0);
       EXPECT_NEAR(s->pdf, set.probability(point, s->emitter), 1e-6);
@@ -113,6 +119,7 @@ TEST(LightSet, PdfIsThatOfTheSample) {
       EXPECT_NEAR(set.pdf(point, s->emitter, s->direction, s->distance) / s->pdf, 1, 1e-3);
     }
   }
+  EXPECT_GT(std::min({deltas, distant, near}), 1000);
 }
 
 // The light of all emitters together is the sum of the light of each.
@@ -131,6 +138,7 @@ TEST(LightSet, SumsTheLightOfAllEmitters) {
     error = std::sqrt(std::max(0.0, squares / samples - sum / samples * (sum / samples)) / samples);
     return sum / samples;
   };
+  int lit = 0;
   for (int i = 0; i < 10; ++i) {
     const LightPoint point{random.direction(), random.direction(), true};
     double expected = 0, variance = 0, error;
@@ -140,7 +148,9 @@ TEST(LightSet, SumsTheLightOfAllEmitters) {
     }
     const double mean = irradiance(set, point, 100000, error);
     EXPECT_NEAR(mean, expected, 4 * std::sqrt(variance + error * error)) << i;
+    lit += mean > 0;
   }
+  EXPECT_EQ(lit, 10);
 }
 
 // Rays in random directions, which see discs of the sun and the sky behind them, give the same light.

@@ -216,15 +216,18 @@ TEST(LightTree, NeverLeavesOutAnEmitterThatLightsThePoint) {
     const std::vector<LightBounds> bounds = bounds_of(emitters);
     const LightTree tree(bounds);
     Random random(4);
+    int lit = 0;
     for (int i = 0; i < 40; ++i) {
       LightPoint point = random_point(random, size);
       if (i % 4 == 0) point.position = bounds[static_cast<std::size_t>(i)].box.lo;
       if (i % 4 == 1) point.position = bounds[static_cast<std::size_t>(i)].box.center();
       for (std::uint32_t j = 0; j < emitters.size(); ++j)
         if (lights(emitters[j], point, random)) {
+          ++lit;
           ASSERT_GT(tree.probability(point, j), 0) << j;
         }
     }
+    EXPECT_GT(lit, 2000) << size;
   }
 }
 

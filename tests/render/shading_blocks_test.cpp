@@ -1,3 +1,6 @@
+/// \file Hits shaded in lanes have the bits of hits shaded alone. What the values should be is tested where
+/// the oracle is: BsdfFurnace and PrincipledSets integrate materials, LightTransport compares whole paths.
+
 #include <gtest/gtest.h>
 
 #include <cmath>
