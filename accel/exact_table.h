@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "accel/hit_sink.h"
 #include "accel/code.h"
+#include "accel/hit_sink.h"
 #include "core/isa_select.h"
 #include "core/lanes.h"
-#include "core/simd_native.h"
 #include "core/platform.h"
 #include "core/simd.h"
+#include "core/simd_native.h"
 #include "core/vec3.h"
 #include "kernels/kinds.h"
 

@@ -3,8 +3,8 @@
 /// one lane, so a hit gets the same bits alone and in a group.
 
 #include "accel/accel_data.h"
-#include "core/lanes.h"
 #include "accel/code.h"
+#include "core/lanes.h"
 #include "core/simd_native.h"
 #include "kernels/closed/surface_points.h"
 

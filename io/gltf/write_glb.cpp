@@ -16,10 +16,10 @@
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
 #include "io/mesh/vertices.h"
-#include "render/material.h"
 #include "io/obj/write_obj.h"
 #include "io/text/file_content.h"
 #include "io/text/files.h"
+#include "render/material.h"
 
 namespace oktett {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "render/material.h"
 #include "io/obj/parsed_obj.h"
+#include "render/material.h"
 
 namespace oktett {
 namespace {

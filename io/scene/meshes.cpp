@@ -8,8 +8,8 @@
 
 #include "io/cache/scene_cache.h"
 #include "io/image/library.h"
-#include "render/material.h"
 #include "io/text/files.h"
+#include "render/material.h"
 
 namespace oktett {
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "io/scene/readers.h"
-#include "render/moments.h"
 #include "io/scene/schema.h"
+#include "render/moments.h"
 
 namespace oktett {
 namespace {

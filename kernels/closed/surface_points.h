@@ -2,11 +2,11 @@
 /// \file Surface points at hits, in lanes: what the formulas of all shapes share. Single hits use them with
 /// one lane, so a hit gets the same bits alone and in a group.
 
-#include "core/lanes.h"
 #include <cmath>
 #include <limits>
-#include "core/simd_memory.h"
+#include "core/lanes.h"
 #include "core/ray.h"
+#include "core/simd_memory.h"
 #include "core/surface_interaction.h"
 #include "core/vec3.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/elementary.h"
-#include "core/simd_memory.h"
 #include "core/lanes.h"
+#include "core/simd_memory.h"
 #include "render/bsdf/lobe_lanes.h"
 #include "render/bsdf/principled_parameters.h"
 

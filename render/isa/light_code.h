@@ -2,8 +2,6 @@
 /// \file Light samples and look-ups in environment maps for many points, for one instruction set. Columns are
 /// up to 64 long; entries up to the end of the last group of lanes are read and written.
 
-#include "core/simd_native.h"
-#include "render/light/emitter_lanes.h"
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +10,8 @@
 #include "core/four.h"
 #include "core/simd.h"
 #include "core/simd_memory.h"
+#include "core/simd_native.h"
+#include "render/light/emitter_lanes.h"
 #include "render/light/light_tree.h"
 #include "render/light/light_tree_lanes.h"
 #include "render/transport/path_lights.h"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/lanes.h"
 #include "core/elementary.h"
+#include "core/lanes.h"
 #include "core/math.h"
 #include "core/vec3.h"
 #include "render/light/environment_picture.h"

@@ -4,8 +4,8 @@
 
 #include "accel/accel_data.h"
 #include "accel/traverse/leaf.h"
-#include "core/simd_memory.h"
 #include "core/lanes.h"
+#include "core/simd_memory.h"
 #include "kernels/triangle/triangle_classify.h"
 
 namespace oktett {
