@@ -105,10 +105,11 @@ CrossedSolid crossed_solid(const Accel& accel, const Hit& hit) {
   return solid;
 }
 
-Ray ray_inside(const HitPlace& place, const Ray& ray) {
-  const Affine& m = place.inverse;
+Ray moved_ray(const Affine& m, const Ray& ray) {
   return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
 }
+
+Ray ray_inside(const HitPlace& place, const Ray& ray) { return moved_ray(place.inverse, ray); }
 
 // ---- Walks over everything that a structure shows, through all chains of instances.
 

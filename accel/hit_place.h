@@ -52,6 +52,8 @@ struct CrossedSolid {
 };
 CrossedSolid crossed_solid(const Accel& accel, const Hit& hit);
 
+/// The image of a ray, computed in double.
+Ray moved_ray(const Affine& m, const Ray& ray);
 /// The ray in the space of the structure at `place`.
 Ray ray_inside(const HitPlace& place, const Ray& ray);
 

@@ -63,10 +63,6 @@ std::uint32_t item_of(const Accel& accel, const LeafEntry& leaf) {
   return accel.item_in_pool(leaf.kind, leaf.begin);
 }
 
-Ray moved_ray(const Affine& m, const Ray& ray) {
-  return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
-}
-
 InsideTest::InsideTest(const Accel& accel, Isa isa)
     : accel_(accel),
       isa_(isa),

@@ -115,10 +115,6 @@ static void move_by_instances(const HitPlace& place, const Ray& ray, float t, Su
   s.bitangent = Vec3f(m.vector(Vec3d(s.bitangent)));
 }
 
-static Ray moved_ray(const Affine& m, const Ray& ray) {
-  return {Vec3f(m.point(Vec3d(ray.origin))), ray.tmin, Vec3f(m.vector(Vec3d(ray.direction))), ray.tmax};
-}
-
 /// Brings a surface interaction found inside instances and combinations to the world.
 static void move_interaction(const HitPlace& place, const Ray& ray, float t, SurfaceInteraction& s) {
   if (place.moved) move_by_instances(place, ray, t, s);

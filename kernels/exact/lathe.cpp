@@ -23,11 +23,11 @@ void powers(double p0, double p1, double p2, double p3, double (&c)[4]) {
   c[3] = ((p3 - p0) - 3 * (p2 - p1)) / 8;
 }
 
-struct Interval {
+struct CurveInterval {
   double lo, hi;
 };
-Interval range_of(const double (&c)[4]) {
-  Interval i{HUGE_VAL, -HUGE_VAL};
+CurveInterval range_of(const double (&c)[4]) {
+  CurveInterval i{HUGE_VAL, -HUGE_VAL};
   for_extremes(c, [&](double, double f) { i = {std::min(i.lo, f), std::max(i.hi, f)}; });
   return i;
 }
@@ -40,7 +40,7 @@ std::vector<Piece> pieces_of(const std::vector<ProfilePoint>& p) {
     powers(p[i].height, p[i + 1].height, p[i + 2].height, p[i + 3].height, piece.y);
     piece.radius[0] = p[i].radius, piece.radius[1] = p[i + 3].radius;
     piece.height[0] = p[i].height, piece.height[1] = p[i + 3].height;
-    const Interval y = range_of(piece.y);
+    const CurveInterval y = range_of(piece.y);
     piece.least_y = y.lo, piece.greatest_y = y.hi, piece.most = range_of(piece.r).hi;
     pieces.push_back(piece);
   }
