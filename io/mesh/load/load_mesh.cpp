@@ -17,7 +17,7 @@ namespace oktett {
 namespace {
 
 /// All that reading knows of a format.
-struct Format {
+struct ReadFormat {
   std::string_view extension;
   ParsedMesh (*parse)(const std::string& path);  ///< null: the file is read in one step
   MeshFile (*load)(const std::string& path);
@@ -34,35 +34,35 @@ MeshFile load_in_two_steps(const std::string& path) { return finish_mesh(path, p
 
 MeshFile load_gltf(const std::string& path) { return one_mesh(path, load_gltf_scene(path)); }
 
-constexpr std::array kFormats{
-    Format{".obj", parse_obj, load_obj, find_obj_errors},
-    Format{".ply", parse_by_default<parse_ply>, load_in_two_steps},
-    Format{".stl", parse_by_default<parse_stl>, load_in_two_steps, nullptr, true},
-    Format{".gltf", nullptr, load_gltf},
-    Format{".glb", nullptr, load_gltf},
+constexpr std::array kReadFormats{
+    ReadFormat{".obj", parse_obj, load_obj, find_obj_errors},
+    ReadFormat{".ply", parse_by_default<parse_ply>, load_in_two_steps},
+    ReadFormat{".stl", parse_by_default<parse_stl>, load_in_two_steps, nullptr, true},
+    ReadFormat{".gltf", nullptr, load_gltf},
+    ReadFormat{".glb", nullptr, load_gltf},
 };
 
 /// The format of a file of that name, or null.
-const Format* find_format(const std::string& path) {
+const ReadFormat* find_format(const std::string& path) {
   const std::string extension = lower_case_extension(without_packing(path));
-  const auto found = std::ranges::find(kFormats, extension, &Format::extension);
-  return found == kFormats.end() ? nullptr : found;
+  const auto found = std::ranges::find(kReadFormats, extension, &ReadFormat::extension);
+  return found == kReadFormats.end() ? nullptr : found;
 }
 
-const Format& format_of(const std::string& path) {
-  if (const Format* const format = find_format(path)) return *format;
+const ReadFormat& format_of(const std::string& path) {
+  if (const ReadFormat* const format = find_format(path)) return *format;
   throw Error(Location{path}, "unknown kind of mesh file; expected " + mesh_extensions());
 }
 
 }  // namespace
 
 bool repeats_vertices(const std::string& path) {
-  const Format* const format = find_format(path);
+  const ReadFormat* const format = find_format(path);
   return format != nullptr && format->repeats_vertices;
 }
 
 std::vector<Error> find_mesh_errors(const std::string& path) {
-  const Format* const format = find_format(path);
+  const ReadFormat* const format = find_format(path);
   if (format == nullptr || format->find_errors == nullptr) return {};
   return format->find_errors(path);
 }
@@ -71,7 +71,7 @@ bool is_mesh_file(const std::string& path) { return find_format(path) != nullptr
 
 std::string mesh_extensions() {
   std::vector<std::string> extensions;
-  for (const Format& format : kFormats) extensions.emplace_back(format.extension);
+  for (const ReadFormat& format : kReadFormats) extensions.emplace_back(format.extension);
   return or_list(extensions) + ", also packed as .gz";
 }
 
