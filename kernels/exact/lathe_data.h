@@ -39,10 +39,13 @@ struct TurnedProfile {
         "points, also back and forth; `bezier`: 3 n + 1 control points");
     p.field("open", open, "without the disks at the ends");
     p.required(
-        "points", points, whole(kind == Kind::linear ? 2 : 4, kMaxProfilePoints),
-        "the profile, of 2 points at least if it is `linear`. For `spline`, `sor` and `curve` the first "
+        "points", points, whole(2, kMaxProfilePoints),
+        "the profile, of 4 points at least unless it is `linear`. For `spline`, `sor` and `curve` the first "
         "and the last point only give the directions at the ends; for `spline`, `sor` and `linear` "
         "heights ascend");
+    const auto count = static_cast<double>(points.size());
+    static_assert(kMaxProfilePoints == 1024);
+    p.check(kind == Kind::linear || count >= 4, "points", "expected 4 to 1024 points", &count);
     p.normals();
   }
 };
