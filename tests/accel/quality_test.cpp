@@ -160,6 +160,8 @@ TEST(Quality, CuttingLowersTheCostWhereSizesAreMixed) {
     if (q == BuildQuality::fast) continue;
     RecordProperty(q == BuildQuality::best ? "best" : "balanced",
                    std::to_string(a->stats.sah_cost / least[0]));
+    // 0.52 for balanced, 0.47 for best, on this soup: room for other ways to choose splits, while trees that
+    // split nothing have 1.
     EXPECT_LT(a->stats.sah_cost, 0.8 * least[0]);
     EXPECT_LT(b->stats.sah_cost, least[1]);
   }
@@ -171,6 +173,7 @@ TEST(Quality, BlocksAreFull) {
     const Leaves leaves(*build(m, q));
     const double filled = static_cast<double>(leaves.placed) / static_cast<double>(leaves.blocks);
     RecordProperty(q == BuildQuality::balanced ? "balanced" : "fast", std::to_string(filled));
+    // 7.85 and 7.79 of 8: room for 2.6 and 3.9 times as many empty places, as this mesh is one of many.
     EXPECT_GT(filled, q == BuildQuality::balanced ? 7.6 : 7.2);
   }
 }

@@ -76,7 +76,9 @@ TEST(Denoise, TheErrorFalls) {
       denoise(picture);
       const double after = error(picture, truth);
       RecordProperty((first ? "room_" : "balls_") + std::to_string(samples), std::to_string(before / after));
-      // The sky leaves little noise but at edges, which stay.
+      // The sky leaves little noise but at edges, which stay. With these seeds the room has factors of 6.9
+      // and 4.3 (16 and 64 samples), the balls of 2.1 and 1.9. The bounds are a fifth and a tenth below the
+      // smaller ones: room for other random numbers, not for a denoiser that does half as much.
       EXPECT_LT(after, before / (first ? 3.5 : 1.7))
           << first << ' ' << samples << ": " << before << ' ' << after;
     }

@@ -65,6 +65,8 @@ TEST(SmallLamp, BlocksOfARoomAreKnownWithinTwoPercent) {
   }
   RecordProperty("worst_percent", std::to_string(100 * worst));
   RecordProperty("rms_percent", std::to_string(100 * std::sqrt(squares)));
+  // With these seeds 1.55 % and 0.73 %, a quarter below the bounds: so much is a deviation that is estimated
+  // from eight runs off by, if another order of random numbers takes the place of this one.
   EXPECT_LT(worst, 0.02);
   EXPECT_LT(std::sqrt(squares), 0.01);
 }
