@@ -69,4 +69,6 @@ foreach(pair command:oktett dev:liboktett-dev python:python3-oktett)
   install(FILES cmake/package/copyright ${PROJECT_BINARY_DIR}/package/changelog.gz
     DESTINATION ${CMAKE_INSTALL_DOCDIR}/../${CMAKE_MATCH_2} COMPONENT ${CMAKE_MATCH_1} EXCLUDE_FROM_ALL)
 endforeach()
+install(FILES cmake/package/lintian-overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides RENAME oktett
+  COMPONENT command EXCLUDE_FROM_ALL)
 include(CPack)
