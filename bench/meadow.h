@@ -1,6 +1,6 @@
 #pragma once
 /// \file A meadow of many plants from few models: 61 models of 1.1 million triangles together, 4000 plants
-/// that show 19.5 million, the sizes of the forest in the slides on instancing.
+/// that show 19.5 million, the sizes of the forest of Zachmann 2010.
 
 #include <cstddef>
 #include <vector>

@@ -7,7 +7,7 @@
 /// - `void describe(auto& p)`, which visits its parameters in order, e.g. `p.field("radius", radius, kLength,
 ///   "distance of the surface from the centre")`, see ParameterVisitor. The default of a parameter is the
 ///   value that its member has before the visit;
-/// - `kSurface`, of a shape, its key in scene files. A struct with several keys has
+/// - `kShapeInfo`, of a shape, its key in scene files. A struct with several keys has
 ///   `static void surfaces(auto& v)` instead, which calls `v.surface(key, shape)` for each, with the values
 ///   that it starts from;
 /// - `kMap`, if it is no shape and is called otherwise than its key, such as "a medium".
@@ -56,7 +56,7 @@ constexpr Range whole(std::uint32_t lo, std::uint32_t hi) {
 inline constexpr Range kAnySeed = whole(0, 0xffffffff);
 
 /// A shape of scene files.
-struct Surface {
+struct ShapeInfo {
   const char* key;
   const char* meaning;  ///< one line
 };

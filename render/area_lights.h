@@ -1,5 +1,5 @@
 #pragma once
-/// \file Glowing surfaces as lamps of Whitted's model: points on them, which many hits share.
+/// \file Glowing surfaces as emitters of Whitted's model: points on them, which many hits share.
 
 #include <cstdint>
 #include <vector>

@@ -78,9 +78,9 @@ std::vector<LightSource> light_sources(const Scene& scene) {
 }
 
 void enclose_camera(const Camera& camera, RenderContext& context) {
-  if (!context.tracks_enclosures) return;
+  if (!context.tracks_dielectrics) return;
   context.camera_place = Vec3f(camera.from);
-  context.camera_enclosures = enclosures_at(context, context.camera_place);
+  context.camera_dielectrics = dielectrics_at(context, context.camera_place);
 }
 
 /// See RenderContext::interiors.
@@ -115,8 +115,8 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   c.lights = light_sources(scene);
   c.area_lights = area_lights(lights, textures, c.settings);
   c.interiors = interiors(scene, world);
-  c.tracks_enclosures = world.tracks_enclosures;
-  if (c.tracks_enclosures) {
+  c.tracks_dielectrics = world.tracks_dielectrics;
+  if (c.tracks_dielectrics) {
     for (const Medium& medium : scene.media) c.media.emplace_back(medium);
     c.outer_medium = scene.medium;
     enclose_camera(scene.camera, c);
@@ -128,7 +128,7 @@ RenderContext make_context(const Scene& scene, const World& world, const SceneLi
   if (traits(c.settings.kind).traces_paths)
     c.path_surfaces = std::make_shared<const std::vector<PathSurface>>(path_surfaces(world));
   c.opaque_background = !(c.background == Color{0, 0, 0}) || lights.has_environment();
-  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_enclosures;
+  c.all_opaque = c.opaque_background && !world.has_holes && !c.tracks_dielectrics;
   const double diagonal = world.bounds.empty() ? 0 : length(Vec3d(world.bounds.hi) - Vec3d(world.bounds.lo));
   const double radius = scene.integrator.ao_radius > 0 ? scene.integrator.ao_radius : diagonal / 10;
   c.ao_radius = radius > 0 ? static_cast<float>(radius) : 1;

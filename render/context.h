@@ -8,7 +8,7 @@
 #include "core/isa.h"
 #include "render/area_lights.h"
 #include "render/camera.h"
-#include "render/enclosures.h"
+#include "render/dielectric_stack.h"
 #include "render/geometry.h"
 #include "render/medium/medium_tracker.h"
 #include "render/sampling/warp.h"
@@ -43,14 +43,14 @@ struct RenderContext {
   bool some_only_send_rays = false;  ///< some of `materials`, see only_sends_rays(); for Whitted's model
   /// Two for each of World::materials, for path tracing; else null.
   std::shared_ptr<const std::vector<PathSurface>> path_surfaces;
-  bool tracks_enclosures = false;      ///< rays must know in which solids they are, see enclosures.h
+  bool tracks_dielectrics = false;     ///< rays must know in which solids they are, see dielectric_stack.h
   std::vector<MediumTracker> media;    ///< numbered as in Scene::media
   std::uint32_t outer_medium = kNoId;  ///< the medium outside of all solids
   /// Extinction of homogeneous interiors, numbered as World::materials, for Whitted's model; empty if no
   /// material has one.
   std::vector<Vec3d> interiors;
-  EnclosureStack camera_enclosures;  ///< the solids around the camera
-  Vec3f camera_place;                ///< where `camera_enclosures` holds
+  DielectricStack camera_dielectrics;  ///< the solids around the camera
+  Vec3f camera_place;                  ///< where `camera_dielectrics` holds
   Color background, ambient_light;
   /// A background that gives light is part of the picture, with alpha 1; a black one leaves the picture
   /// transparent.

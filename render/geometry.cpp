@@ -6,7 +6,7 @@
 
 #include "accel/hit_place.h"
 #include "core/mesh_geometry.h"
-#include "render/enclosures.h"
+#include "render/dielectric_stack.h"
 
 namespace oktett {
 
@@ -48,7 +48,7 @@ class WorldBuilder {
   WorldBuilder(const Scene& scene, const BuildOptions& options) : scene_(scene), options_(options) {}
 
   World build() {
-    world_.tracks_enclosures = needs_enclosures(scene_);
+    world_.tracks_dielectrics = needs_dielectrics(scene_);
     for (const Prototype& prototype : scene_.prototypes) prototypes_.push_back(build_list(prototype.objects));
     world_.accel = build_list(scene_.objects);
     world_.bounds = bounds(*world_.accel);
@@ -257,7 +257,7 @@ class WorldBuilder {
     }
   }
 
-  static bool needs_enclosures(const Scene& scene) {
+  static bool needs_dielectrics(const Scene& scene) {
     if (!traits(scene.integrator.kind).traces_paths) return false;
     return scene.medium != kNoId || std::ranges::any_of(scene.materials, [](const Material& m) {
              return m.interior != kNoId || m.priority != kNoPriority;
@@ -275,7 +275,7 @@ class WorldBuilder {
 
   /// What ObjectMaterials::solid is for object number `id`.
   std::uint32_t solid(const Object& object, std::uint32_t id) {
-    if (!world_.tracks_enclosures || !may_enclose(object)) return kNoId;
+    if (!world_.tracks_dielectrics || !may_enclose(object)) return kNoId;
     if (!is_solid(object.shape, scene_.prototypes)) return kNoId;
     world_.has_enclosing_solids = true;
     return combination_ != kNoId ? combination_ : id;

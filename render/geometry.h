@@ -60,7 +60,7 @@ struct World {
   /// Of all structures but that of `pose`. Not null.
   std::shared_ptr<const StructureObjects> structure_objects;
   Box bounds;                         ///< of all that is bounded
-  bool tracks_enclosures = false;     ///< paths must know which solids they are in
+  bool tracks_dielectrics = false;    ///< paths must know which solids they are in
   bool has_enclosing_solids = false;  ///< there are any that they must know of
   bool has_holes = false;             ///< some material is not opaque everywhere, or is no surface at all
   bool has_clear = false;             ///< some material is transparent

@@ -10,8 +10,8 @@ namespace oktett {
 
 // ---- Cameras and lights that have been moved.
 
-/// Turns the profile of a lamp, aimed along `down`, as a transform turns what is seen of it: down and where
-/// horizontal angles count from.
+/// Turns the profile of an emitter, aimed along `down`, as a transform turns what is seen of it: down and
+/// where horizontal angles count from.
 static void turn_profile(const Affine& motion, Vec3d& down, double& rotation) {
   const Vec3d zero = motion.vector(aim(nullptr, down, rotation).zero);
   down = motion.vector(down);

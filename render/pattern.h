@@ -34,7 +34,7 @@ struct Turbulence {
 struct CheckerPattern {
   double size = 1;
 
-  static constexpr Surface kSurface{"checker", "cubes of the first and the last colour in turn"};
+  static constexpr ShapeInfo kShapeInfo{"checker", "cubes of the first and the last colour in turn"};
   void describe(auto& p) { p.field("size", size, kPatternSize, "the edge of a cube"); }
   bool operator==(const CheckerPattern&) const = default;
 };
@@ -43,7 +43,7 @@ struct CheckerPattern {
 struct GradientPattern {
   Vec3d from{0, 0, 0}, to{0, 1, 0};
 
-  static constexpr Surface kSurface{"gradient", "from the first colour to the last along a line"};
+  static constexpr ShapeInfo kShapeInfo{"gradient", "from the first colour to the last along a line"};
   void describe(auto& p) {
     p.field("from", from, kCoordinate, "where the first colour ends");
     p.field("to", to, kCoordinate, "where the last colour begins");
@@ -57,8 +57,8 @@ struct RadialPattern {
   Vec3d center{0, 0, 0};
   double inner = 0, outer = 1;
 
-  static constexpr Surface kSurface{"radial",
-                                    "from the first colour to the last by the distance from a point"};
+  static constexpr ShapeInfo kShapeInfo{"radial",
+                                        "from the first colour to the last by the distance from a point"};
   void describe(auto& p) {
     p.field("center", center, kCoordinate, "the point");
     p.field("inner", inner, kLength, "the distance at which the first colour ends");
@@ -73,7 +73,7 @@ struct NoisePattern {
   double size = 1;
   Turbulence turbulence{};
 
-  static constexpr Surface kSurface{"noise", "clouds of all colours"};
+  static constexpr ShapeInfo kShapeInfo{"noise", "clouds of all colours"};
   void describe(auto& p) {
     p.field("size", size, kPatternSize, "the greatest details");
     turbulence.describe(p);
@@ -87,8 +87,8 @@ struct MarblePattern {
   double distortion = 1;
   Turbulence turbulence{};
 
-  static constexpr Surface kSurface{"marble",
-                                    "layers across x, back and forth through the colours, folded by noise"};
+  static constexpr ShapeInfo kShapeInfo{
+      "marble", "layers across x, back and forth through the colours, folded by noise"};
   void describe(auto& p) {
     p.field("size", size, kPatternSize, "the distance of two layers");
     p.field("distortion", distortion, kTurbulence, "how far noise moves them, in sizes");
@@ -103,7 +103,7 @@ struct WoodPattern {
   double distortion = 0.4;
   Turbulence turbulence{2, 0.4};
 
-  static constexpr Surface kSurface{
+  static constexpr ShapeInfo kShapeInfo{
       "wood", "rings about the y axis, each from the first colour to the last, bent by noise"};
   void describe(auto& p) {
     p.field("size", size, kPatternSize, "the width of a ring");

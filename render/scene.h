@@ -317,7 +317,7 @@ struct MeshShape {
   bool by_winding = false;  ///< take part in combinations even if the mesh is not closed
   bool weld = false;        ///< what the scene file asked for; `mesh` is as it says
 
-  static constexpr Surface kSurface{"mesh", "the triangles of a file"};
+  static constexpr ShapeInfo kShapeInfo{"mesh", "the triangles of a file"};
   void describe(auto& p) {
     p.required("file", ByHand{"mesh file", "file"}, "triangles and, with OBJ, their materials");
     p.field("smooth", smooth, "interpolates the normals of the file");

@@ -9,7 +9,7 @@
 #include "accel/hit_place.h"
 #include "core/math.h"
 #include "core/mesh_geometry.h"
-#include "render/enclosures.h"
+#include "render/dielectric_stack.h"
 #include "render/light/sky.h"
 #include "render/light_groups.h"
 #include "render/shading_point.h"

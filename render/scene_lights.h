@@ -1,5 +1,5 @@
 #pragma once
-/// \file The lights of a scene as path tracing asks for them: its lamps, its environment, and the surfaces
+/// \file The lights of a scene as path tracing asks for them: its emitters, its environment, and the surfaces
 /// that glow.
 
 #include <cstdint>

@@ -30,7 +30,7 @@ struct alignas(64) ShadingMaterial {
   static constexpr std::int16_t kAnyPower = -1;
 
   Color color, specular_color;
-  Color unlit;  ///< light that needs no lamp: emission + color * ambient * ambient light
+  Color unlit;  ///< light that needs no emitter: emission + color * ambient * ambient light
   float diffuse, specular, phong, reflection, transparency, ior;
   /// `phong` if highlights are raised to it by squaring, 0 if there are none, else kAnyPower.
   std::int16_t exponent;

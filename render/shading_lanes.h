@@ -39,7 +39,7 @@ OKTETT_INLINE Simd<double, W, A> turn_to_light(const Vec3f& place, const Vec3<Si
   return square;
 }
 
-/// What is left of the light of a lamp at a distance, where it falls off.
+/// What is left of the light of an emitter at a distance, where it falls off.
 template <int W, class A>
 OKTETT_INLINE Simd<float, W, A> falloff(const Simd<double, W, A>& squared_distance) {
   return to_float(Simd<double, W, A>(1.0) / squared_distance);

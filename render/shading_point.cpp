@@ -331,7 +331,7 @@ bool is_opaque(const Material& m, ShadowRule rule) {
 }
 
 /// Whether path tracing scatters the light that the material lets through. Then light samples at the surface
-/// itself find the lamp behind it, and light that passed straight would count twice.
+/// itself find the emitter behind it, and light that passed straight would count twice.
 static bool scatters_passing_light(const RenderContext& context, const Material& m, const TexturePlace& place,
                                    std::optional<float> ior) {
   if (!m.principled || !traits(context.settings.kind).traces_paths) return false;

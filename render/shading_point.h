@@ -91,7 +91,7 @@ ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const H
 /// This is to end only rays that make no way: a line can meet hundreds of surfaces of a Menger sponge.
 inline constexpr unsigned kMostPassages = 1u << 14;
 
-/// What stops light on its way from a lamp.
+/// What stops light on its way from an emitter.
 enum class ShadowRule {
   /// Opaque materials, and in path tracing glass that scatters light. Other transparent ones attenuate light
   /// by colour * transparency and do not bend it.

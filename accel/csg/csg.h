@@ -1,11 +1,11 @@
 #pragma once
-/// \file Boolean combinations of solids (slides: intervals along the ray, combined up the tree). The solids
-/// of one combination stand in a structure of their own. A ray's crossings with all of them are gathered,
-/// sorted, and swept once from near to far.
+/// \file Boolean combinations of solids (Zachmann 2010: intervals along the ray, combined up the tree). The
+/// solids of one combination stand in a structure of their own. A ray's crossings with all of them are
+/// gathered, sorted, and swept once from near to far.
 ///
-/// Departs from the slides: no intervals are built. Each crossing changes the state of one operand, and the
-/// change is followed up the expression only as far as states change, so k crossings take about k log k steps
-/// however many operands there are.
+/// Departs from Zachmann 2010: no intervals are built. Each crossing changes the state of one operand, and
+/// the change is followed up the expression only as far as states change, so k crossings take about k log k
+/// steps however many operands there are.
 
 #include <cstdint>
 #include <vector>

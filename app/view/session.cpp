@@ -190,14 +190,14 @@ struct NameOfShape {
   std::string operator()(const ExactShape& s) const {
     return std::visit(
         [](const auto& form) -> std::string {
-          if constexpr (requires { form.kSurface.key; }) return form.kSurface.key;
+          if constexpr (requires { form.kShapeInfo.key; }) return form.kShapeInfo.key;
           return "exact surface";
         },
         s.form);
   }
   template <class S>
   std::string operator()(const S&) const {
-    return S::kSurface.key;
+    return S::kShapeInfo.key;
   }
 };
 

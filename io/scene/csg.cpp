@@ -35,7 +35,7 @@ struct WhyFlat {
   }
   template <class T>
   std::string operator()(const T&) const {
-    if constexpr (kIsFlat<T>) return flat(std::string("a ") + T::kSurface.key);
+    if constexpr (kIsFlat<T>) return flat(std::string("a ") + T::kShapeInfo.key);
     return "";
   }
   std::string flat(const std::string& what) const { return what + " has no inside; " + why; }

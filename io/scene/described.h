@@ -24,8 +24,8 @@ namespace oktett {
 template <class V, class... T>
 void visit_surfaces_of(V& v, std::type_identity<std::variant<T...>>) {
   const auto visit = [&]<class S>(std::type_identity<S>) {
-    if constexpr (requires { S::kSurface; })
-      v.surface(S::kSurface, S{});
+    if constexpr (requires { S::kShapeInfo; })
+      v.surface(S::kShapeInfo, S{});
     else if constexpr (requires { S::surfaces(v); })
       S::surfaces(v);
   };

@@ -1,4 +1,4 @@
-/// \file The lights of scene files. Lamps that have an area become objects that glow.
+/// \file The lights of scene files. Emitters that have an area become objects that glow.
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ void add_light(SceneLoad& load, Light light, LightTraits traits) {
   load.scene.light_traits.back() = std::move(traits);
 }
 
-/// The power of a lamp of greatest intensity 1.
+/// The power of an emitter of greatest intensity 1.
 double flux(const PointLight& light) {
   return light.profile ? profile_flux(*light.profile) : 4 * std::numbers::pi;
 }
@@ -77,7 +77,7 @@ void describe_direction(auto& p, const char* key, Vec3d& direction, const char* 
 }
 /// What points and spots have.
 template <class PointOrSpot>
-struct LampColor {
+struct EmitterColor {
   Color intensity{1, 1, 1}, power{1, 1, 1};
 
   void describe_color(auto& p, PointOrSpot& light) {
@@ -106,7 +106,7 @@ struct LampColor {
 
 struct PointKeys {
   PointLight light{};
-  LampColor<PointLight> color{};
+  EmitterColor<PointLight> color{};
   LightTraits traits{};
 
   static constexpr const char* kMap = "a point light";
@@ -136,7 +136,7 @@ void finish(SceneLoad& load, const Fields& fields, const YamlNode&, PointKeys& k
 struct SpotKeys {
   SpotLight light{};
   Vec3d at{0, 0, 0};
-  LampColor<SpotLight> color{};
+  EmitterColor<SpotLight> color{};
   LightTraits traits{};
 
   static constexpr const char* kMap = "a spot light";
@@ -250,8 +250,8 @@ void finish(SceneLoad& load, const Fields&, const YamlNode&, Keys& keys) {
   add_light(load, std::move(keys.light), keys.traits);
 }
 
-/// The radiance of a diffuse lamp of `area` that gives off the power `color`, given at `node`: power / (pi *
-/// area). Throws Error if single precision has no such number, or if the lamp is so small that the solid
+/// The radiance of a diffuse emitter of `area` that gives off the power `color`, given at `node`: power / (pi
+/// * area). Throws Error if single precision has no such number, or if the emitter is so small that the solid
 /// angle in which it is seen from 10 000 away has none.
 Color radiance_of_power(Color color, const YamlNode& node, double area) {
   constexpr double kLeastArea = 1e-28;
@@ -260,7 +260,7 @@ Color radiance_of_power(Color color, const YamlNode& node, double area) {
     if (area < kLeastArea)
       throw Error(
           node.where(),
-          fmt::format("the lamp is too small: its area is {:.2g}, and at least {:.0g} is expected with "
+          fmt::format("the light is too small: its area is {:.2g}, and at least {:.0g} is expected with "
                       "a power; a 'point' light may have a power, too",
                       area, kLeastArea));
     const float radiance = color[k] * static_cast<float>(1 / (std::numbers::pi * area));
@@ -275,13 +275,13 @@ Color radiance_of_power(Color color, const YamlNode& node, double area) {
   return color;
 }
 
-/// Warns of a lamp that is seen, but lights nothing.
-void warn_of_idle_lamp(SceneLoad& load, const YamlNode& node) {
+/// Warns of an emitter that is seen, but lights nothing.
+void warn_of_idle_emitter(SceneLoad& load, const YamlNode& node) {
   const IntegratorSettings& s = load.scene.integrator;
   const IntegratorKind kind = load.integrator.value_or(s.kind);
   if (traits(kind).light_from_points && s.light_samples == 0)
     load.warn(node.where(),
-              "the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size");
+              "the light lights nothing: 'whitted' needs 'light_samples' for lights of some size");
 }
 
 /// What lights that are objects have.
@@ -300,7 +300,7 @@ struct Glow {
 /// Adds an object that glows, of `area`.
 void add_glowing(SceneLoad& load, const Fields& fields, const YamlNode& node, Glow& glow, Shape shape,
                  double area) {
-  warn_of_idle_lamp(load, node);
+  warn_of_idle_emitter(load, node);
   Material m;
   m.color = {0, 0, 0}, m.ambient = m.diffuse = 0;
   m.emission = glow.radiance;

@@ -259,7 +259,7 @@ struct ShapeSchemas {
   Schema& schema;
   SchemaMap& map;
 
-  void surface(const Surface& surface, const auto& shape) {
+  void surface(const ShapeInfo& surface, const auto& shape) {
     map.add_one_of(surface.key, surface.meaning, schema.map(surface.key, shape));
   }
 };

@@ -57,7 +57,7 @@ class ShapeReader {
       : load_(load), key_(key), node_(node) {}
 
   template <class T>
-  void surface(const Surface& surface, T shape) {
+  void surface(const ShapeInfo& surface, T shape) {
     if (known || key_.text != surface.key) return;
     known = true;
     const KeyList list(shape);
@@ -95,7 +95,7 @@ class ShapeReader {
 };
 
 struct SurfaceNames {
-  void surface(const Surface& surface, const auto&) { names.push_back(surface.key); }
+  void surface(const ShapeInfo& surface, const auto&) { names.push_back(surface.key); }
   std::vector<std::string> names;
 };
 

@@ -193,7 +193,7 @@ std::string described_text(const char* key, T shape, SideFiles& files,
 struct KeyFinder {
   const SuperquadricShape& shape;
   const char* key = nullptr;
-  void surface(const Surface& surface, const SuperquadricShape& other) {
+  void surface(const ShapeInfo& surface, const SuperquadricShape& other) {
     if (other.form == shape.form && other.ratio == shape.ratio) key = surface.key;
   }
 };
@@ -214,7 +214,7 @@ std::string form_text(const T& form, SideFiles& files, NormalMethod normals) {
     SuperquadricShape::surfaces(finder);
     return described_text(finder.key, form, files, normals);
   } else {
-    return described_text(T::kSurface.key, form, files, normals);
+    return described_text(T::kShapeInfo.key, form, files, normals);
   }
 }
 
@@ -236,8 +236,8 @@ std::string shape_text(const Shape& shape, SideFiles& files) {
         } else if constexpr (std::is_same_v<T, SpheresShape>) {
           return "spheres: " +
                  list_text(s.spheres, [](const SphereShape& sphere) { return map_text(sphere); });
-        } else if constexpr (requires { T::kSurface; }) {
-          return described_text(T::kSurface.key, s, files);
+        } else if constexpr (requires { T::kShapeInfo; }) {
+          return described_text(T::kShapeInfo.key, s, files);
         } else {
           return "";
         }

@@ -94,7 +94,7 @@ std::optional<Shape> read_spheres(SceneLoad& load, const YamlNode& key, const Ya
 }
 
 std::string spheres_schema(Schema& schema) {
-  const std::string sphere = schema.map(SphereShape::kSurface.key, SphereShape{});
+  const std::string sphere = schema.map(SphereShape::kShapeInfo.key, SphereShape{});
   return Schema::any_of({Schema::list(sphere), schema.map("spheres", SpheresKeys{})});
 }
 

@@ -101,7 +101,7 @@ std::string items(MetaBall ball) {
 struct SurfaceList {
   std::vector<DescribedSurface> list;
 
-  void surface(const Surface& surface, auto shape) {
+  void surface(const ShapeInfo& surface, auto shape) {
     DescribedSurface& entry = list.emplace_back(DescribedSurface{surface, {}});
     ParameterList visitor(entry.parameters);
     shape.describe(visitor);
@@ -124,7 +124,7 @@ std::vector<DescribedSurface> described_surfaces() {
 
 std::vector<DescribedSurface> described_patterns() {
   SurfaceList all;
-  visit_patterns([&](auto pattern) { all.surface(decltype(pattern)::kSurface, pattern); });
+  visit_patterns([&](auto pattern) { all.surface(decltype(pattern)::kShapeInfo, pattern); });
   return std::move(all.list);
 }
 

@@ -18,7 +18,7 @@ struct DescribedParameter {
 };
 
 struct DescribedSurface {
-  Surface surface;
+  ShapeInfo surface;
   std::vector<DescribedParameter> parameters;
 };
 

@@ -103,9 +103,9 @@ struct ImageKeys {
 std::optional<PatternTexture> read_pattern(SceneLoad& load, const std::string& name, const YamlNode& node) {
   std::optional<PatternTexture> texture;
   visit_patterns([&]<class P>(P pattern) {
-    if (name != P::kSurface.key) return;
+    if (name != P::kShapeInfo.key) return;
     PatternKeys<P> keys{pattern, {}};
-    read_described(load, node, P::kSurface.key, keys);
+    read_described(load, node, P::kShapeInfo.key, keys);
     texture = std::move(keys.texture);
     texture->pattern = keys.pattern;
   });
@@ -132,7 +132,7 @@ std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   ImageKeys image{texture};
   TexelKeys texel{texture.gain, texture.base};
   std::vector<const char*> keys = KeyList(image).keys;
-  visit_patterns([&]<class P>(const P&) { keys.push_back(P::kSurface.key); });
+  visit_patterns([&]<class P>(const P&) { keys.push_back(P::kShapeInfo.key); });
   std::ranges::copy(KeyList(texel).keys, std::back_inserter(keys));
   const Fields fields(node, "a texture", keys);
   // A pattern stands alone but for gain and base.
@@ -160,7 +160,7 @@ std::string texture_schema(Schema& schema) {
     ImageKeys{usual}.describe(map);
     map.one_of({"file"});
     visit_patterns([&]<class P>(const P& pattern) {
-      const Surface& s = P::kSurface;
+      const ShapeInfo& s = P::kShapeInfo;
       map.add_one_of(s.key, s.meaning, schema.map(s.key, PatternKeys<P>{pattern, {}}));
     });
     TexelKeys{usual.gain, usual.base}.describe(map);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file Solid boxes, axis-aligned or oriented: the slab method of Kay and Kajiya 1986 in the space where the
-/// box is a cube (slides: the interval of a ray inside a box).
+/// box is a cube (Zachmann 2010: the interval of a ray inside a box).
 
 #include <algorithm>
 #include <cmath>

@@ -32,7 +32,7 @@ struct TriangleShape {
   Vec3d v[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
   static constexpr bool kFlat = true;
-  static constexpr Surface kSurface{"triangle", "a triangle"};
+  static constexpr ShapeInfo kShapeInfo{"triangle", "a triangle"};
   OKTETT_INLINE Box bounds() const { return bounds_of_points(v, v + 3); }
   void describe(auto& p) {
     p.field("vertices", v, whole(3, 3), "counter-clockwise seen from its front");
@@ -48,7 +48,7 @@ struct SphereShape {
   Vec3d center{0, 0, 0};
   double radius = 1;  ///< > 0
 
-  static constexpr Surface kSurface{"sphere", "a ball; with a transform also an ellipsoid"};
+  static constexpr ShapeInfo kShapeInfo{"sphere", "a ball; with a transform also an ellipsoid"};
   OKTETT_INLINE Box bounds() const {
     const Vec3d r{radius, radius, radius};
     return {round_down(center - r), round_up(center + r)};
@@ -76,7 +76,7 @@ struct PlaneShape {
   Vec3d normal{0, 1, 0};  ///< of any length but zero
   double offset = 0;      ///< in units of length, whatever the length of `normal`; of either sign
 
-  static constexpr Surface kSurface{"plane", "a plane without end; what is behind it is inside"};
+  static constexpr ShapeInfo kShapeInfo{"plane", "a plane without end; what is behind it is inside"};
   void describe(auto& p) {
     p.field("normal", normal, "away from the inside, of any length");
     p.field("offset", offset, kCoordinate, "distance from the origin along the unit normal");
@@ -91,7 +91,7 @@ struct DiskShape {
   double radius = 1;      ///< > 0
 
   static constexpr bool kFlat = true;
-  static constexpr Surface kSurface{"disk", "a flat round plate"};
+  static constexpr ShapeInfo kShapeInfo{"disk", "a flat round plate"};
   OKTETT_INLINE Box bounds() const {
     const Vec3d n = normalize(normal);
     Vec3d reach;
@@ -112,7 +112,7 @@ struct BoxShape {
   Vec3d min{-1, -1, -1};
   Vec3d max{1, 1, 1};  ///< > min
 
-  static constexpr Surface kSurface{"box", "a solid box along the axes"};
+  static constexpr ShapeInfo kShapeInfo{"box", "a solid box along the axes"};
   OKTETT_INLINE Box bounds() const { return {round_down(min), round_up(max)}; }
   void describe(auto& p) {
     p.field("min", min, kCoordinate, "the corner of least x, y and z");
@@ -133,7 +133,7 @@ struct PolygonShape {
   std::vector<Vec3d> vertices;  ///< at least three, in one plane
 
   static constexpr bool kFlat = true;
-  static constexpr Surface kSurface{
+  static constexpr ShapeInfo kShapeInfo{
       "polygon", "points in one plane in order, convex or not; edges must not touch each other"};
   OKTETT_INLINE Box bounds() const {
     return bounds_of_points(vertices.data(), vertices.data() + vertices.size());

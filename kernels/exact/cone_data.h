@@ -12,7 +12,7 @@ struct ConeShape {
   double from_radius = 1, to_radius = 0;
   bool open = false;
 
-  static constexpr Surface kSurface{"cone", "a cone, or a part of one that is cut off at both ends"};
+  static constexpr ShapeInfo kShapeInfo{"cone", "a cone, or a part of one that is cut off at both ends"};
   void describe(auto& p) {
     p.field("from", from, kCoordinate, "one end of the axis");
     p.field("to", to, kCoordinate, "the other end");

@@ -11,7 +11,7 @@ namespace oktett {
 struct CyclideShape {
   double major = 0.6, minor = 0.25, taper = 0.15;
 
-  static constexpr Surface kSurface{
+  static constexpr ShapeInfo kShapeInfo{
       "cyclide", "Dupin's cyclide around the z axis: a torus whose tube is thinner at +x and thicker at -x"};
   void describe(auto& p) {
     p.field("major", major, kLength, "half the distance of the middles of the tube at +x and -x");

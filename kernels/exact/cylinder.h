@@ -1,5 +1,5 @@
 #pragma once
-/// \file Cylinders with ends. In the own space x^2 + y^2 = 1, -1 <= z <= 1 (slides: x^2 + y^2 = 1).
+/// \file Cylinders with ends. In the own space x^2 + y^2 = 1, -1 <= z <= 1 (Zachmann 2010: x^2 + y^2 = 1).
 
 #include "kernels/exact/cylinder_data.h"
 #include "kernels/exact/quadratic.h"

@@ -12,7 +12,7 @@ struct CylinderShape {
   double radius = 1;
   bool open = false;
 
-  static constexpr Surface kSurface{"cylinder", "a round column between two points"};
+  static constexpr ShapeInfo kShapeInfo{"cylinder", "a round column between two points"};
   void describe(auto& p) {
     p.field("from", from, kCoordinate, "one end of the axis");
     p.field("to", to, kCoordinate, "the other end");

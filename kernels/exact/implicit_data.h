@@ -13,7 +13,7 @@ struct ImplicitShape {
   Vec3d lo{-1, -1, -1}, hi{1, 1, 1};  ///< lo < hi
   bool open = false;                  ///< without the faces of the box
 
-  static constexpr Surface kSurface{"implicit", "the zeros of a function"};
+  static constexpr ShapeInfo kShapeInfo{"implicit", "the zeros of a function"};
   void describe(auto& p) {
     p.required("function", function, "negative inside; at most 1024 steps after common parts are shared");
     p.required("bounds", SolidBox{lo, hi}, "the box that cuts it, and whose faces close it");

@@ -22,8 +22,8 @@ inline constexpr std::uint32_t kMaxHalfSpaces = 1024;
 struct PolyhedronShape {
   std::vector<HalfSpace> planes;
 
-  static constexpr Surface kSurface{"polyhedron",
-                                    "what is inside of all planes; they must bound it on all sides"};
+  static constexpr ShapeInfo kShapeInfo{"polyhedron",
+                                        "what is inside of all planes; they must bound it on all sides"};
   void describe(auto& p) {
     p.required("planes", planes, whole(0, kMaxHalfSpaces), "each n · p <= d; n need not be of unit length");
     p.normals();

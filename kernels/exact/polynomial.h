@@ -1,5 +1,5 @@
 #pragma once
-/// \file Polynomials in x, y and z inside of a box (slides; Melcher).
+/// \file Polynomials in x, y and z inside of a box (Zachmann 2010; Melcher).
 ///
 /// A ray turns the polynomial into one in s by Horner's rule, nested over the three coordinates: a list of
 /// steps that is made once per surface, in the order of coordinates that takes the fewest operations. Powers

@@ -25,7 +25,7 @@ struct PolynomialShape {
   bool open = false;                  ///< without the faces of the box
   roots::Method root_finder = roots::Method::automatic;
 
-  static constexpr Surface kSurface{"polynomial", "the zeros of a polynomial in x, y and z"};
+  static constexpr ShapeInfo kShapeInfo{"polynomial", "the zeros of a polynomial in x, y and z"};
   void describe(auto& p) {
     p.required("equation", terms, "below 0 inside");
     p.required("bounds", SolidBox{lo, hi}, "the box that cuts it, and whose faces close it");

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Quadrics (slides: x^2 + y^2 = 1, x^2 + y^2 - z = 0, x^2 + y^2 - z^2 = 1), also cut by a box.
+/// \file Quadrics (Zachmann 2010: x^2 + y^2 = 1, x^2 + y^2 - z = 0, x^2 + y^2 - z^2 = 1), also cut by a box.
 
 #include <algorithm>
 #include <cmath>

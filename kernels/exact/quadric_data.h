@@ -10,7 +10,7 @@
 
 namespace oktett {
 
-/// A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0 (slides: x^2 + y^2 = 1,
+/// A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0 (Zachmann 2010: x^2 + y^2 = 1,
 /// x^2 + y^2 - z = 0, x^2 + y^2 - z^2 = 1).
 struct QuadricShape {
   std::array<double, 10> coefficients{1, 1, 1, 0, 0, 0, 0, 0, 0, -1};  ///< A to J

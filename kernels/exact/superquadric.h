@@ -1,5 +1,5 @@
 #pragma once
-/// \file Superquadrics and ratioquadrics (slides; A. H. Barr: Superquadrics and Angle-Preserving
+/// \file Superquadrics and ratioquadrics (Zachmann 2010; A. H. Barr: Superquadrics and Angle-Preserving
 /// Transformations, 1981; C. Blanc, C. Schlick: Ratioquadrics, 1996).
 
 #include "kernels/exact/exact.h"

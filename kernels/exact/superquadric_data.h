@@ -8,8 +8,9 @@
 
 namespace oktett {
 
-/// Superquadrics (slides). With `ratio` the powers |x|^p are replaced by Blanc and Schlick's pseudo-powers
-/// g_p(x) = |x| / (p + (1 - p) |x|); nothing is inside beyond their poles, |x| >= p / (p - 1) for p > 1.
+/// Superquadrics (Zachmann 2010). With `ratio` the powers |x|^p are replaced by Blanc and Schlick's
+/// pseudo-powers g_p(x) = |x| / (p + (1 - p) |x|); nothing is inside beyond their poles, |x| >= p / (p - 1)
+/// for p > 1.
 struct SuperquadricShape {
   enum class Form : std::uint8_t {
     ellipsoid,    ///< |x/a|^p + |y/b|^q + |z/c|^r = 1

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Tori (slides: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
+/// \file Tori (Zachmann 2010: (c - sqrt(x^2 + y^2))^2 + z^2 = a^2).
 
 #include "kernels/exact/centered_quartic.h"
 #include "kernels/exact/round_profile.h"

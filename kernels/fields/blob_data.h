@@ -31,8 +31,8 @@ struct BlobShape {
   bool open = false;  ///< without the faces of the box
   roots::Method root_finder = roots::Method::automatic;
 
-  static constexpr Surface kSurface{"blob",
-                                    "where the sum of weight / distance² of its sources exceeds `iso`"};
+  static constexpr ShapeInfo kShapeInfo{"blob",
+                                        "where the sum of weight / distance² of its sources exceeds `iso`"};
   void describe(auto& p) {
     p.required("sources", sources, whole(1, kMaxBlobSources),
                "points, lines and planes with weights of either sign");

@@ -80,7 +80,7 @@ struct BlobTreeShape {
   std::vector<FieldElement> elements;
   std::vector<Blend> blends;
 
-  static constexpr Surface kSurface{
+  static constexpr ShapeInfo kShapeInfo{
       "blobtree",
       "where the blend of potentials, one of the four, exceeds `iso`; at most 32 levels of blends in "
       "blends"};

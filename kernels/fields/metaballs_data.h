@@ -34,7 +34,7 @@ struct MetaballsShape {
   double iso = 0.5;
   std::vector<MetaBall> balls;
 
-  static constexpr Surface kSurface{
+  static constexpr ShapeInfo kShapeInfo{
       "metaballs", "where the sum of the potentials of one of `balls`, `file` and `elements` exceeds `iso`"};
   void describe(auto& p) {
     p.field("iso", iso, kIso, "the value on the surface");

@@ -26,7 +26,7 @@ struct IfsShape {
   double least = 0;
   bool every_level = false;
 
-  static constexpr Surface kSurface{"ifs", "the base, moved by `depth` of the maps in all orders"};
+  static constexpr ShapeInfo kShapeInfo{"ifs", "the base, moved by `depth` of the maps in all orders"};
   void describe(auto& p) {
     p.required("maps", maps, whole(1, kMaxIfsMaps), "each a contraction with an inverse");
     p.field("depth", depth, whole(0, kMaxIfsDepth), "how many maps follow each other");

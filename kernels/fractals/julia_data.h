@@ -19,7 +19,7 @@ struct JuliaShape {
   double slice = 0;
   std::uint32_t iterations = 10;
 
-  static constexpr Surface kSurface{"julia", "a slice of the Julia set of q² + c in the quaternions"};
+  static constexpr ShapeInfo kShapeInfo{"julia", "a slice of the Julia set of q² + c in the quaternions"};
   void describe(auto& p) {
     p.field("c", c, "the quaternion that is added; \\|c\\| <= 2");
     const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);

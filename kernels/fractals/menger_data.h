@@ -16,7 +16,7 @@ inline constexpr int kMaxMengerDepth = 16;
 struct MengerShape {
   std::uint32_t depth = 4;
 
-  static constexpr Surface kSurface{"menger", "Menger's sponge in the cube [-1, 1]³"};
+  static constexpr ShapeInfo kShapeInfo{"menger", "Menger's sponge in the cube [-1, 1]³"};
   void describe(auto& p) {
     p.field("depth", depth, whole(0, kMaxMengerDepth), "how often holes are cut; 0 is the cube");
   }

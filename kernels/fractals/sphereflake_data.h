@@ -17,8 +17,8 @@ struct SphereflakeShape {
   std::uint32_t depth = 4;  ///< balls smaller than 2^-40 of the first are left out
   double ratio = 1.0 / 3.0;
 
-  static constexpr Surface kSurface{"sphereflake",
-                                    "a ball with nine smaller ones on it, which have smaller ones on them"};
+  static constexpr ShapeInfo kShapeInfo{
+      "sphereflake", "a ball with nine smaller ones on it, which have smaller ones on them"};
   void describe(auto& p) {
     p.field("depth", depth, whole(0, kMaxSphereflakeDepth), "generations below the first ball of radius 1");
     p.field("ratio", ratio, {0, 0.5, true}, "of a child's radius to its parent's");

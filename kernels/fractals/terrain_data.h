@@ -21,7 +21,7 @@ struct TerrainShape {
   double roughness = 0.5;
   double base = -1;
 
-  static constexpr Surface kSurface{"terrain", "a random landscape over the square [-1, 1]² of x and z"};
+  static constexpr ShapeInfo kShapeInfo{"terrain", "a random landscape over the square [-1, 1]² of x and z"};
   void describe(auto& p) {
     p.field("depth", depth, whole(0, kMaxTerrainDepth), "2^depth cells to the side");
     p.field("seed", seed, whole(0, 0xffffffff), "which of many landscapes");

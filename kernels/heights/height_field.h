@@ -1,6 +1,6 @@
 #pragma once
 /// \file Height fields: surfaces y = h(x, z) over a grid of samples, traced as a grid and not as a mesh
-/// (slides; F. K. Musgrave: Grid Tracing, 1988).
+/// (Zachmann 2010; F. K. Musgrave: Grid Tracing, 1988).
 
 #include "kernels/heights/height_pyramid.h"
 

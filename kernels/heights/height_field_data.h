@@ -14,9 +14,9 @@ class HeightGrid;
 
 /// The surface between four neighbouring samples.
 enum class HeightInterpolation : std::uint8_t {
-  nearest,    ///< a level square at their mean height, with upright walls to its neighbours (slides)
+  nearest,    ///< a level square at their mean height, with upright walls to its neighbours (Zachmann 2010)
   triangles,  ///< two, which meet on the line from the corner (column + 1, row) to (column, row + 1)
-  bilinear,   ///< a patch of a hyperbolic paraboloid (slides)
+  bilinear,   ///< a patch of a hyperbolic paraboloid (Zachmann 2010)
 };
 
 /// How a ray passes over the cells between samples. The hits are the same for each.
@@ -38,8 +38,8 @@ struct HeightFieldShape {
   /// What the scene file asked for; `grid` is as it says.
   HeightInterpolation interpolation = HeightInterpolation::bilinear;
 
-  static constexpr Surface kSurface{"height_field",
-                                    "heights over a rectangle, from one of `file` and `function`"};
+  static constexpr ShapeInfo kShapeInfo{"height_field",
+                                        "heights over a rectangle, from one of `file` and `function`"};
   void describe(auto& p) {
     p.optional("file", ByHand{"file", "file"},
                "a grey image. 8 and 16 bits have values from 0 to 1, all others (EXR, TIFF) those that are "

@@ -126,7 +126,7 @@ struct LineWalk {
   }
 };
 
-/// Cell by cell (slides).
+/// Cell by cell (Zachmann 2010).
 template <int K, class D>
 OKTETT_INLINE void walk_cells(HeightSearch<K, D>& search) {
   if (none(search.wanted)) return;
@@ -153,8 +153,8 @@ OKTETT_INLINE void walk_cells(HeightSearch<K, D>& search) {
 /// By spans: the cells that a line passes between two grid lines across its lesser direction. With
 /// m = |lesser / greater| <= 1 they are floor(1 / m) or one more, which is decided by where the line meets
 /// the first of them (C. Henning, P. Stephenson: Accelerating the Ray Tracing of Height Fields, GRAPHITE
-/// 2004; slides). Here a decision that rounding may have changed is made by the lines of the grid themselves,
-/// and the heights of the cells of a span are compared with the line in groups of up to kGroup.
+/// 2004; Zachmann 2010). Here a decision that rounding may have changed is made by the lines of the grid
+/// themselves, and the heights of the cells of a span are compared with the line in groups of up to kGroup.
 template <int K, class D, bool kAlongX>
 class SpanWalk {
  public:

@@ -12,8 +12,8 @@ namespace oktett {
 
 namespace interval {
 
-/// Enclosure of sin (shift 0.25) or cos (shift 0) on `a`, given the function at its ends: it is 1 where
-/// x / (2 pi) - shift is whole, and -1 half way between.
+/// StackedDielectric of sin (shift 0.25) or cos (shift 0) on `a`, given the function at its ends: it is 1
+/// where x / (2 pi) - shift is whole, and -1 half way between.
 template <class D>
 OKTETT_INLINE Interval<D> wave(const Interval<D>& a, const D& at_lo, const D& at_hi, double shift) {
   const D turn(0.5 / std::numbers::pi), error(lane::kSinError), slack(0x1p-20 * 0x1p-10);

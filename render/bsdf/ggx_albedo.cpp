@@ -182,7 +182,7 @@ const MirrorTables& mirror_tables() {
 
 /// The width of the facets whose lobe resembles that of the light which facets of width `alpha` send to each
 /// other: the one that comes closest to random walks between facets (docs/light.md).
-double again_width(double alpha) { return std::min(1.0, 1.2 * std::sqrt(alpha)); }
+double multiple_width(double alpha) { return std::min(1.0, 1.2 * std::sqrt(alpha)); }
 
 /// The albedo of mirroring facets of width `width`, split by the light that they show: [viewer][light], both
 /// at the nodes. Light between two nodes counts for both, by its place.
@@ -203,11 +203,12 @@ std::vector<double> albedo_by_light(const AlbedoNodes& nodes, double width) {
   return share;
 }
 
-/// MirrorAgain::scale at the nodes, times the roughness, so that interpolation between roughnesses errs less.
-/// Sinkhorn's iteration (1964): sets each scale so that the lobe has the wanted albedo, until none changes.
-std::vector<double> again_scales(const AlbedoNodes& nodes, double alpha) {
+/// MirrorMultipleScattering::scale at the nodes, times the roughness, so that interpolation between
+/// roughnesses errs less. Sinkhorn's iteration (1964): sets each scale so that the lobe has the wanted
+/// albedo, until none changes.
+std::vector<double> multiple_scales(const AlbedoNodes& nodes, double alpha) {
   const std::size_t n = nodes.count;
-  const std::vector<double> share = albedo_by_light(nodes, again_width(alpha));
+  const std::vector<double> share = albedo_by_light(nodes, multiple_width(alpha));
   std::vector<double> scale(n, 1), loss(n);
   for (std::size_t i = 0; i < n; ++i) loss[i] = 1 - mirror_tables().at(nodes.mu(i), alpha);
   constexpr int kMostRounds = 100;
@@ -226,8 +227,8 @@ std::vector<double> again_scales(const AlbedoNodes& nodes, double alpha) {
   return scale;
 }
 
-const AlbedoTable& again_table() {
-  static const AlbedoTable table = AlbedoTable::by_width(kMirrorNodes, NodeWidth::alpha, again_scales);
+const AlbedoTable& multiple_table() {
+  static const AlbedoTable table = AlbedoTable::by_width(kMirrorNodes, NodeWidth::alpha, multiple_scales);
   return table;
 }
 
@@ -315,8 +316,8 @@ TablePair<Tables> tables_for(double eta) {
 MirrorAlbedo::MirrorAlbedo(double alpha)
     : row_(mirror_tables().albedo.row(alpha)), mean_loss_(alpha > 0 ? mirror_tables().loss.at(alpha) : 0) {}
 
-MirrorAgain::MirrorAgain(double alpha)
-    : row_(again_table().row(alpha)), alpha_(again_width(alpha)), factor_(1 / std::sqrt(alpha)) {}
+MirrorMultipleScattering::MirrorMultipleScattering(double alpha)
+    : row_(multiple_table().row(alpha)), alpha_(multiple_width(alpha)), factor_(1 / std::sqrt(alpha)) {}
 
 /// The table holds how the albedo differs from that of the smooth interface times that of mirrors, which it
 /// tends to for small alpha.

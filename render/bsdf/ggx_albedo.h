@@ -218,11 +218,11 @@ class MirrorAlbedo {
 /// The light that mirroring facets send to each other before it leaves the surface. Its lobe is that of wider
 /// facets, times scale(mu) for the viewer and for the light. So it is reciprocal. Its albedo is
 /// 1 - MirrorAlbedo.
-class MirrorAgain {
+class MirrorMultipleScattering {
  public:
-  MirrorAgain() = default;
+  MirrorMultipleScattering() = default;
   /// `alpha` > 0: the width of the mirroring facets.
-  explicit MirrorAgain(double alpha);
+  explicit MirrorMultipleScattering(double alpha);
   /// Of the wider facets.
   double alpha() const { return alpha_; }
   template <class D>

@@ -59,7 +59,7 @@ struct PhongSurface {
   bool transmits() const { return transparency > 0; }
 };
 
-/// The sum of (Phong 1975, each light as it is lit by lamps divided by pi)
+/// The sum of (Phong 1975, each light as it is lit by emitters divided by pi)
 /// - color * diffuse * cos(wi) / pi,
 /// - specular_color * specular * max(0, r.wi)^phong / pi, r the mirrored viewer. As light is not
 ///   foreshortened here, this lobe is not reciprocal;

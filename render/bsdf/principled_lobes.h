@@ -4,11 +4,11 @@
 /// listed and put together.
 ///
 /// Rough interfaces are GGX facets (render/bsdf/ggx_albedo.h). What single scattering loses is given back, so
-/// no roughness darkens: by metal in the lobe of wider facets (MirrorAgain), by glass in lobes that are
-/// diffuse in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the base (metal,
-/// dielectric over diffuse, glass up to the factor eta^2 that radiance leaves out). Not reciprocal: what lies
-/// below a coat or sheen, as that is weakened by the albedo for the viewer's direction alone, and sheen
-/// itself.
+/// no roughness darkens: by metal in the lobe of wider facets (MirrorMultipleScattering), by glass in lobes
+/// that are diffuse in shape (Kulla 2017). A layer takes its albedo from what lies below. Reciprocal: the
+/// base (metal, dielectric over diffuse, glass up to the factor eta^2 that radiance leaves out). Not
+/// reciprocal: what lies below a coat or sheen, as that is weakened by the albedo for the viewer's direction
+/// alone, and sheen itself.
 
 #include <type_traits>
 
@@ -25,10 +25,10 @@ struct LobeList {};
 
 /// The lobes in the order in which their weights are found and one of them is chosen: layers from the top.
 using PrincipledList =
-    LobeList<SheenLobe, CoatLobe, MirrorLobe, GlassLobe, DiffuseLobe, MetalAgainLobe, GlassAgainLobe>;
+    LobeList<SheenLobe, CoatLobe, MirrorLobe, GlassLobe, DiffuseLobe, MetalMultipleLobe, GlassMultipleLobe>;
 /// The same lobes in the order in which their values are added.
 using PrincipledSum =
-    LobeList<MirrorLobe, GlassLobe, CoatLobe, MetalAgainLobe, DiffuseLobe, GlassAgainLobe, SheenLobe>;
+    LobeList<MirrorLobe, GlassLobe, CoatLobe, MetalMultipleLobe, DiffuseLobe, GlassMultipleLobe, SheenLobe>;
 
 /// What the lobes of a list need of one side of a surface.
 template <class List>

@@ -24,8 +24,8 @@ namespace oktett {
 // early, and the picture would be too dark: the mean of samples whose number depends on them is biased (Kirk
 // and Arvo 1991). The samples of neighbours are independent of those of the pixel, so its mean stays
 // unbiased, and none of its samples is thrown away. For this, pixels must share nothing random. They do
-// share photons (caustics.h) and points of lamps (area_lights.h), so each pixel begins with a random one of
-// these. For the same reason nothing is decided a second time when more samples are there.
+// share photons (caustics.h) and points of emitters (area_lights.h), so each pixel begins with a random one
+// of these. For the same reason nothing is decided a second time when more samples are there.
 
 /// Neighbours up to this many pixels away, in x and in y, decide.
 inline constexpr std::uint32_t kNeighbourhood = 2;

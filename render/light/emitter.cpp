@@ -11,7 +11,7 @@
 
 namespace oktett {
 
-// ---- A profile on a lamp that points somewhere.
+// ---- A profile on an emitter that points somewhere.
 
 float AimedProfile::operator()(const Vec3d& direction) const {
   if (profile == nullptr) return 1;

@@ -18,7 +18,7 @@
 
 namespace oktett {
 
-// ---- A profile on a lamp that points somewhere.
+// ---- A profile on an emitter that points somewhere.
 
 /// A profile and where its angles count from; without a profile the same in all directions.
 struct AimedProfile {
@@ -26,7 +26,7 @@ struct AimedProfile {
   Vec3d down{0, -1, 0};  ///< unit; vertical angles count from here
   Vec3d zero{1, 0, 0};   ///< unit, perpendicular to `down`: horizontal angle 0
 
-  /// The factor on the intensity in the unit vector `direction` away from the lamp.
+  /// The factor on the intensity in the unit vector `direction` away from the emitter.
   float operator()(const Vec3d& direction) const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The intensity of a small lamp by direction, as its maker measures it.
+/// \file The intensity of a small emitter by direction, as its maker measures it.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace oktett {
 
-/// A table of intensities. Vertical angles count in degrees from the lamp's axis, which usually points down,
-/// horizontal ones about it.
+/// A table of intensities. Vertical angles count in degrees from the emitter's axis, which usually points
+/// down, horizontal ones about it.
 struct LightProfile {
   std::vector<double> vertical;    ///< ascending, within [0, 180]; beyond them it is dark
   std::vector<double> horizontal;  ///< ascending from 0 to 360, or 0 alone: the same all around
@@ -20,7 +20,7 @@ struct LightProfile {
 /// The value for angles in degrees: `vertical` within [0, 180], `horizontal` within [0, 360].
 double profile_value(const LightProfile& profile, double vertical, double horizontal);
 
-/// The integral of the values over all directions: the power in W of a lamp of greatest intensity 1 W/sr.
+/// The integral of the values over all directions: the power in W of an emitter of greatest intensity 1 W/sr.
 double profile_flux(const LightProfile& profile);
 
 }  // namespace oktett

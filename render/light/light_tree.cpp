@@ -375,7 +375,8 @@ class LightTree::Builder {
 LightTree::LightTree(std::span<const LightBounds> emitters) {
   if (emitters.empty()) return;
   if (emitters.size() > LightQuad::kMostNumbers)
-    throw Error(fmt::format("{} lamps; at most {} can be sampled", emitters.size(), LightQuad::kMostNumbers));
+    throw Error(
+        fmt::format("{} lights; at most {} can be sampled", emitters.size(), LightQuad::kMostNumbers));
   std::vector<Item> items(emitters.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = make_item(emitters[i], i);
   const Vec3f wide = box_of_centers(items).extent();

@@ -6,7 +6,7 @@
 /// Departs in these points:
 /// - A node has up to four children, and bounds emitters by spheres.
 /// - The importance of a node estimates the mean of the cosines over its emitters, where the papers take
-///   their upper bounds. It is 0 only where these are. Beside many lamps, that and the four children make
+///   their upper bounds. It is 0 only where these are. Beside many emitters, that and the four children make
 ///   the variance of a choice ten times smaller.
 /// - The build estimates the spread of normals from their mean.
 /// - Where no child can light the point the choice goes on by power, so that the probabilities of all

@@ -22,7 +22,7 @@ inline constexpr float kLeastCosine = 1e-3f;
 
 /// The part of the greatest cosine in the estimate of a mean cosine, and the part of the square of the radius
 /// that the square of the distance is at least. Chosen for small variance in rows, clouds and clusters of
-/// lamps.
+/// emitters.
 inline constexpr float kPartOfGreatest = 0.1f;
 inline constexpr float kPartOfRadius = 0.125f;
 

@@ -252,16 +252,16 @@ void light_by(Scene& scene, EnvironmentPicture picture) {
   scene.background = {0, 0, 0};
 }
 
-/// Sky and sun through the openings, and a weak lamp beside the camera that leaves nothing black.
+/// Sky and sun through the openings, and a weak emitter beside the camera that leaves nothing black.
 void light_room(Scene& scene, const InteriorView& view, const Vec3d& up) {
   light_by(scene, overcast_picture(studio_frame(view.camera, up)));
   if (view.sun) scene.lights.push_back(DirectionalLight{-*view.sun, {1.15f, 1.06f, 0.95f}, 1.5});
   const StudioFrame frame = studio_frame(view.camera, up);
   const double distance = length(view.camera.at - view.camera.from);
-  PointLight lamp;
-  lamp.position = view.camera.from + (frame.right * -0.1 + up * 0.15) * (0.2 * distance);
-  lamp.color = Color{1, 0.97f, 0.92f} * (view.sun ? 0.3f : 0.7f);
-  scene.lights.push_back(lamp);
+  PointLight emitter;
+  emitter.position = view.camera.from + (frame.right * -0.1 + up * 0.15) * (0.2 * distance);
+  emitter.color = Color{1, 0.97f, 0.92f} * (view.sun ? 0.3f : 0.7f);
+  scene.lights.push_back(emitter);
 }
 
 /// Coarse meshes without normals get some, so that their triangles do not show.

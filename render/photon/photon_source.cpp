@@ -161,7 +161,8 @@ GlowingPlace place_on(const SphereEmitter& e, const SquareSample& s) {
   return {Vec3d(e.center) + n * double{e.radius}, n, 4 * std::numbers::pi * e.radius * e.radius};
 }
 
-/// A ray that starts off the surface of a lamp, whose place is known to some units in the last place only.
+/// A ray that starts off the surface of an emitter, whose place is known to some units in the last place
+/// only.
 Ray ray_from(const Vec3d& position, const Vec3d& normal, const Vec3d& direction) {
   const double blur = 0x1p-20 * max_component(abs(position)) + 0x1p-100;
   Ray ray;

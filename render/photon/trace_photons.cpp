@@ -16,12 +16,12 @@ namespace oktett {
 
 // ---- What solids and media do to photons: where these start in them, and how much light passes.
 
-std::vector<EnclosureStack> start_enclosures(const RenderContext& context,
-                                             std::span<const PhotonStart> starts) {
-  std::vector<EnclosureStack> enclosures;
-  if (!context.tracks_enclosures) return enclosures;
-  enclosures.resize(starts.size());
-  if (!context.world->has_enclosing_solids) return enclosures;
+std::vector<DielectricStack> start_dielectrics(const RenderContext& context,
+                                               std::span<const PhotonStart> starts) {
+  std::vector<DielectricStack> dielectrics;
+  if (!context.tracks_dielectrics) return dielectrics;
+  dielectrics.resize(starts.size());
+  if (!context.world->has_enclosing_solids) return dielectrics;
   std::map<std::uint32_t, std::size_t> firsts;  // by emitter
   RayBatch between;
   std::vector<std::pair<std::size_t, std::size_t>> others;  // with the first photon of the emitter
@@ -29,23 +29,23 @@ std::vector<EnclosureStack> start_enclosures(const RenderContext& context,
     const Vec3f& place = starts[i].ray.origin;
     const auto [found, is_new] = firsts.try_emplace(starts[i].emitter, i);
     const std::size_t first = found->second;
-    if (is_new) enclosures[i] = enclosures_at(context, place);
+    if (is_new) dielectrics[i] = dielectrics_at(context, place);
     const Ray way{starts[first].ray.origin, 0, place - starts[first].ray.origin, 1};
     if (way.direction == Vec3f{0, 0, 0})
-      enclosures[i] = enclosures[first];
+      dielectrics[i] = dielectrics[first];
     else
       between.push_back(way), others.push_back({i, first});
   }
-  if (others.empty()) return enclosures;
+  if (others.empty()) return dielectrics;
   HitLists lists;
   all_hits(*context.world->accel, between.span(), lists, context.isa);
   for (std::uint32_t k = 0; k < others.size(); ++k)
-    enclosures[others[k].first] =
-        enclosures_behind(context, enclosures[others[k].second], between[k], lists.of_ray(k));
-  return enclosures;
+    dielectrics[others[k].first] =
+        dielectrics_behind(context, dielectrics[others[k].second], between[k], lists.of_ray(k));
+  return dielectrics;
 }
 
-Color passing_media(const RenderContext& context, const EnclosureStack& around, const MediumSegment& segment,
+Color passing_media(const RenderContext& context, const DielectricStack& around, const MediumSegment& segment,
                     TrackingNumbers numbers) {
   const std::uint32_t medium = medium_in(*context.world, around, context.outer_medium);
   return medium == kNoId ? Color{1, 1, 1} : context.media[medium].transmittance(segment, numbers);
@@ -54,20 +54,20 @@ Color passing_media(const RenderContext& context, const EnclosureStack& around, 
 namespace {
 
 /// Follows the light of one photon back to where it comes from.
-Color reaching(const RenderContext& context, const PhotonStart& start, EnclosureStack around,
+Color reaching(const RenderContext& context, const PhotonStart& start, DielectricStack around,
                const TrackingNumbers& numbers) {
   Color light{1, 1, 1};
   Ray ray{start.ray.origin, 0, -start.ray.direction, std::numeric_limits<float>::infinity()};
   for (unsigned layer = 0; layer < kMostPassages; ++layer) {
     const Hit hit = closest_hit(*context.world->accel, ray, context.isa);
-    if (context.tracks_enclosures) {
+    if (context.tracks_dielectrics) {
       const double end = hit.valid() ? static_cast<double>(hit.t) : std::numeric_limits<double>::infinity();
       light = light * passing_media(context, around, {ray.origin, ray.direction, end}, numbers);
     }
     if (!hit.valid()) return light;
     const SurfaceInteraction s = surface_interaction(*context.world->accel, ray, hit);
     bool hidden = false;
-    if (context.tracks_enclosures) {
+    if (context.tracks_dielectrics) {
       const Boundary boundary =
           boundary_at(*context.world, around, s, !(dot(ray.direction, s.geometric_normal) > 0));
       around = boundary.behind, hidden = boundary.hidden;
@@ -82,7 +82,7 @@ Color reaching(const RenderContext& context, const PhotonStart& start, Enclosure
 }  // namespace
 
 std::vector<Color> reaching_start(const RenderContext& context, std::span<const PhotonStart> starts,
-                                  std::span<const EnclosureStack> around,
+                                  std::span<const DielectricStack> around,
                                   std::span<const TrackingNumbers> numbers) {
   std::vector<Color> light(starts.size(), Color{1, 1, 1});
   // Few scenes have anything in this way, and one look at all rays finds those.
@@ -98,8 +98,8 @@ std::vector<Color> reaching_start(const RenderContext& context, std::span<const 
   any_hit(*context.world->accel, outward, meets, context.isa);
   for (std::size_t k = 0; k < distant.size(); ++k) {
     const std::size_t i = distant[k];
-    if (!meets[k] && !context.tracks_enclosures) continue;
-    light[i] = reaching(context, starts[i], around.empty() ? EnclosureStack{} : around[i], numbers[i]);
+    if (!meets[k] && !context.tracks_dielectrics) continue;
+    light[i] = reaching(context, starts[i], around.empty() ? DielectricStack{} : around[i], numbers[i]);
   }
   return light;
 }
@@ -127,13 +127,13 @@ struct PhotonQueue {
   std::vector<float> index_square;  ///< around the photon, relative to where it started
   std::vector<std::uint16_t> bounces;
   std::vector<float> distance;
-  std::vector<EnclosureStack> enclosures;  ///< empty unless the scene tracks solids
+  std::vector<DielectricStack> dielectrics;  ///< empty unless the scene tracks solids
 
   std::size_t size() const { return number.size(); }
   void clear() {
     rays.resize_uninitialized(0);
     number.clear(), power.clear(), index_square.clear(), bounces.clear(), distance.clear();
-    enclosures.clear();
+    dielectrics.clear();
   }
   void push_back(const Ray& ray, std::uint32_t photon, const Color& color, float square, unsigned bounce,
                  float way) {
@@ -205,8 +205,8 @@ class PhotonChunk {
       queue_.push_back(start->ray, number, start->power * share, 1, 0, 0);
       energy_.emitted += double{color_weight(queue_.power.back())};
     }
-    queue_.enclosures = start_enclosures(context_, starts);
-    const std::vector<Color> reaching = reaching_start(context_, starts, queue_.enclosures, numbers);
+    queue_.dielectrics = start_dielectrics(context_, starts);
+    const std::vector<Color> reaching = reaching_start(context_, starts, queue_.dielectrics, numbers);
     for (std::size_t i = 0; i < starts.size(); ++i) energy_.absorbed += attenuate(i, reaching[i]);
   }
 
@@ -222,7 +222,7 @@ class PhotonChunk {
     closest_hit(*context_.world->accel, queue_.rays.span(), hits_.span(), context_.isa);
     std::vector<std::uint32_t> met;
     for (std::uint32_t i = 0; i < queue_.size(); ++i) {
-      if (context_.tracks_enclosures) pass_media(i);
+      if (context_.tracks_dielectrics) pass_media(i);
       if (hits_.item[i] == kNoId)
         energy_.escaped += double{color_weight(queue_.power[i])};
       else if (max_component(queue_.power[i]) > 0)
@@ -246,23 +246,23 @@ class PhotonChunk {
     const double end =
         hits_.item[i] == kNoId ? std::numeric_limits<double>::infinity() : static_cast<double>(hits_.t[i]);
     energy_.media +=
-        attenuate(i, passing_media(context_, queue_.enclosures[i], {ray.origin, ray.direction, end},
+        attenuate(i, passing_media(context_, queue_.dielectrics[i], {ray.origin, ray.direction, end},
                                    choices_.in_media(queue_.number[i], level_)));
   }
 
   /// `around`: the solids that the photon is in from here on; null if the scene tracks none.
   void push(std::size_t i, const ShadingPoint& p, const Vec3f& direction, const Color& power,
-            float index_square, unsigned bounces, const EnclosureStack* around) {
+            float index_square, unsigned bounces, const DielectricStack* around) {
     Ray ray;
     ray.origin = offset_origin(p.surface, direction), ray.direction = direction;
     next_.push_back(ray, queue_.number[i], power, index_square, bounces, queue_.distance[i] + p.t);
-    if (around != nullptr) next_.enclosures.push_back(*around);
+    if (around != nullptr) next_.dielectrics.push_back(*around);
   }
 
   /// Solids count as in shade_path.
   void arrive(std::size_t i, const ShadingPoint& p) {
-    if (!context_.tracks_enclosures) return meet(i, p, nullptr, nullptr);
-    const EnclosureStack& before = queue_.enclosures[i];
+    if (!context_.tracks_dielectrics) return meet(i, p, nullptr, nullptr);
+    const DielectricStack& before = queue_.dielectrics[i];
     const Boundary boundary =
         boundary_at(*context_.world, before, p.surface, p.front, index_of_refraction(p));
     if (boundary.hidden)
@@ -277,8 +277,8 @@ class PhotonChunk {
   }
 
   /// Keeps the photon at a surface and sends it on. `before` and `behind`: the solids on both sides.
-  void meet(std::size_t i, const ShadingPoint& p, const EnclosureStack* before,
-            const EnclosureStack* behind) {
+  void meet(std::size_t i, const ShadingPoint& p, const DielectricStack* before,
+            const DielectricStack* behind) {
     const std::uint32_t number = queue_.number[i];
     const Color power = queue_.power[i];
     const unsigned bounces = queue_.bounces[i];

@@ -15,9 +15,9 @@ namespace oktett {
 
 void enclose_camera_rays(const RenderContext& context, Wavefront& wavefront) {
   const std::size_t count = wavefront.rays.size();
-  Column<EnclosureStack>& enclosures = wavefront.paths.enclosures;
-  enclosures.resize_uninitialized(count);
-  std::fill_n(enclosures.data(), count, context.camera_enclosures);
+  Column<DielectricStack>& dielectrics = wavefront.paths.dielectrics;
+  dielectrics.resize_uninitialized(count);
+  std::fill_n(dielectrics.data(), count, context.camera_dielectrics);
   if (!context.world->has_enclosing_solids) return;
   // Where a camera has more than one place, surfaces may lie in between.
   RayBatch between;
@@ -31,7 +31,8 @@ void enclose_camera_rays(const RenderContext& context, Wavefront& wavefront) {
   HitLists lists;
   all_hits(*context.world->accel, between.span(), lists, context.isa);
   for (std::uint32_t k = 0; k < away.size(); ++k)
-    enclosures[away[k]] = enclosures_behind(context, context.camera_enclosures, between[k], lists.of_ray(k));
+    dielectrics[away[k]] =
+        dielectrics_behind(context, context.camera_dielectrics, between[k], lists.of_ray(k));
 }
 
 TrackingNumbers tracking_numbers(const Wavefront& wavefront, std::uint32_t ray, MediumDecision decision) {
@@ -51,7 +52,7 @@ void pass_media(const RenderContext& context, Wavefront& wavefront) {
   wavefront.medium_events.clear();
   for (std::uint32_t i = 0; i < wavefront.rays.size(); ++i) {
     const std::uint32_t medium =
-        medium_in(*context.world, wavefront.paths.enclosures[i], context.outer_medium);
+        medium_in(*context.world, wavefront.paths.dielectrics[i], context.outer_medium);
     if (medium == kNoId) continue;
     const Ray ray = wavefront.rays.rays[i];
     const Color before = wavefront.rays.throughput[i];
@@ -133,7 +134,7 @@ void shade_scattering(const RenderContext& context, Wavefront& wavefront,
   choose_lights(context, wavefront, all, c.count, c);
   PathOutput output(wavefront, c.count);
   for (std::uint32_t k = 0; k < c.count; ++k) {
-    const EnclosureStack* const around = &wavefront.paths.enclosures[c.ray[k]];
+    const DielectricStack* const around = &wavefront.paths.dielectrics[c.ray[k]];
     const float anisotropy = context.media[events[k]->medium].anisotropy();
     output.shade_alone(c, k, around, around, false, [&](PathQueues& out) {
       shade_path_run<MediumScattering>(found, arriving_rays(wavefront), c, anisotropy, true, {&k, 1}, out);

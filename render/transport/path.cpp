@@ -103,17 +103,17 @@ PathOutput::PathOutput(Wavefront& wavefront, std::size_t places)
               end_of(wavefront.next, wavefront.next_paths, places)} {}
 
 void PathOutput::note_alone(const PathQueues& before, const PathBlock& c, std::size_t k,
-                            const EnclosureStack* around, const EnclosureStack* behind, bool scatters) {
+                            const DielectricStack* around, const DielectricStack* behind, bool scatters) {
   const std::uint32_t ray = c.ray[k];
   const bool sent = queues_.next.size > before.next.size;
   if (around != nullptr) {
     const bool light_behind =
         dot(InteractionBlock::get(c.ng, k), InteractionBlock::get(c.light_direction, k)) < 0;
-    const EnclosureStack& at_light = light_behind ? *behind : *around;
-    if (queues_.delta.size > before.delta.size) wavefront_.shadows[0].enclosures.push_back(at_light);
-    if (queues_.area.size > before.area.size) wavefront_.shadows[kAreaQueue].enclosures.push_back(at_light);
+    const DielectricStack& at_light = light_behind ? *behind : *around;
+    if (queues_.delta.size > before.delta.size) wavefront_.shadows[0].dielectrics.push_back(at_light);
+    if (queues_.area.size > before.area.size) wavefront_.shadows[kAreaQueue].dielectrics.push_back(at_light);
     const bool transmitted = queues_.next.transmitted > before.next.transmitted;
-    if (sent) wavefront_.next_paths.enclosures.push_back(transmitted ? *behind : *around);
+    if (sent) wavefront_.next_paths.dielectrics.push_back(transmitted ? *behind : *around);
   }
   if (!sent) return;
   const bool scattered = wavefront_.level > 0 && wavefront_.paths.scattered[ray] != 0;
@@ -195,7 +195,8 @@ void shade_lone(const RenderContext& context, Wavefront& wavefront, const Intera
   const std::uint32_t ray = c.ray[hit.entry];
   if (context.caustics != nullptr && !hit.surface.only_delta)
     add_caustics(context, wavefront, ray, hit.point);
-  const EnclosureStack* const around = context.tracks_enclosures ? &wavefront.paths.enclosures[ray] : nullptr;
+  const DielectricStack* const around =
+      context.tracks_dielectrics ? &wavefront.paths.dielectrics[ray] : nullptr;
   output.shade_alone(c, hit.entry, around, &hit.boundary.behind, true, [&](PathQueues& out) {
     shade_run(render_code(Isa::scalar), found, arriving_rays(wavefront), c, hit.surface, {&hit.entry, 1},
               out);
@@ -210,7 +211,7 @@ void pass_straight(const RenderContext& context, Wavefront& wavefront, std::size
   wavefront.next_paths.push_back(camera ? 0 : wavefront.paths.pdf[ray],
                                  camera ? LightPoint{} : wavefront.paths.from[ray],
                                  !camera && wavefront.paths.scattered[ray] != 0,
-                                 context.tracks_enclosures ? &hit.boundary.behind : nullptr);
+                                 context.tracks_dielectrics ? &hit.boundary.behind : nullptr);
 }
 
 /// Fills `hit` and the normals of its entry. False if the ray passes straight on: through a hole, or where
@@ -220,8 +221,8 @@ bool meet_alone(const RenderContext& context, Wavefront& wavefront, const RayHis
   const std::size_t k = hit.entry, ray = c.ray[k];
   hit.point = shading_point(context, wavefront.rays.rays[ray], wavefront.hits[ray], history, found);
   ShadingPoint& p = hit.point;
-  if (context.tracks_enclosures) {
-    hit.boundary = boundary_at(*context.world, wavefront.paths.enclosures[ray], p.surface, p.front,
+  if (context.tracks_dielectrics) {
+    hit.boundary = boundary_at(*context.world, wavefront.paths.dielectrics[ray], p.surface, p.front,
                                index_of_refraction(p));
     if (hit.boundary.hidden) return false;
     if (hit.boundary.ior) {
@@ -246,7 +247,7 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
   PathBlock c;
   c.count = count;
   begin_path_block(context, wavefront, which, found, c);
-  const bool all_alone = context.one_by_one || context.tracks_enclosures || context.caustics != nullptr;
+  const bool all_alone = context.one_by_one || context.tracks_dielectrics || context.caustics != nullptr;
   Shown shown[kMostHits];
   std::uint32_t asks[kMostHits];
   std::size_t in_lanes = 0, asking = 0;

@@ -39,8 +39,8 @@ class PathOutput {
   /// before and behind the surface; null unless the scene tracks them. `scatters`: a direction that is not
   /// one of finitely many counts as scattered, see PathColumns.
   template <class Shade>
-  void shade_alone(const PathBlock& c, std::size_t k, const EnclosureStack* around,
-                   const EnclosureStack* behind, bool scatters, Shade&& shade) {
+  void shade_alone(const PathBlock& c, std::size_t k, const DielectricStack* around,
+                   const DielectricStack* behind, bool scatters, Shade&& shade) {
     const PathQueues before = queues_;
     shade(queues_);
     note_alone(before, c, k, around, behind, scatters);
@@ -50,8 +50,8 @@ class PathOutput {
   void finish();
 
  private:
-  void note_alone(const PathQueues& before, const PathBlock& c, std::size_t k, const EnclosureStack* around,
-                  const EnclosureStack* behind, bool scatters);
+  void note_alone(const PathQueues& before, const PathBlock& c, std::size_t k, const DielectricStack* around,
+                  const DielectricStack* behind, bool scatters);
 
   Wavefront& wavefront_;
   std::size_t deltas_, areas_, onward_;  ///< sizes of the queues before

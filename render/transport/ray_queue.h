@@ -9,7 +9,7 @@
 #include "core/ray.h"
 #include "core/soa.h"
 #include "core/vec3.h"
-#include "render/enclosures.h"
+#include "render/dielectric_stack.h"
 #include "render/light/light_sample.h"
 
 namespace oktett {
@@ -101,16 +101,16 @@ struct PathColumns {
   /// 1 if any surface on the path sent it on otherwise than mirrors and clear glass do. Set only if
   /// RenderContext::caustics is.
   Column<std::uint8_t> scattered;
-  Column<EnclosureStack> enclosures;  ///< the solids around the ray, from the camera on; empty unless the
-                                      ///< scene tracks them
+  Column<DielectricStack> dielectrics;  ///< the solids around the ray, from the camera on; empty unless the
+                                        ///< scene tracks them
 
-  void clear() { resize_uninitialized(0), enclosures.resize_uninitialized(0); }
+  void clear() { resize_uninitialized(0), dielectrics.resize_uninitialized(0); }
   void resize_uninitialized(std::size_t n) {
     pdf.resize_uninitialized(n), from.resize_uninitialized(n), scattered.resize_uninitialized(n);
   }
-  void push_back(float density, const LightPoint& point, bool was_scattered, const EnclosureStack* around) {
+  void push_back(float density, const LightPoint& point, bool was_scattered, const DielectricStack* around) {
     pdf.push_back(density), from.push_back(point), scattered.push_back(was_scattered ? 1 : 0);
-    if (around != nullptr) enclosures.push_back(*around);
+    if (around != nullptr) dielectrics.push_back(*around);
   }
 };
 
@@ -128,8 +128,8 @@ struct ShadowQueue {
   RayBatch rays;
   Column<std::uint32_t> owner;
   ColorColumn light;
-  Column<std::uint8_t> occluded;      ///< written by find_arriving if nothing lets light pass
-  Column<EnclosureStack> enclosures;  ///< the solids at the origins; empty unless the scene tracks them
+  Column<std::uint8_t> occluded;        ///< written by find_arriving if nothing lets light pass
+  Column<DielectricStack> dielectrics;  ///< the solids at the origins; empty unless the scene tracks them
   PassingRays passing;
 
   std::size_t size() const { return owner.size(); }
@@ -137,7 +137,7 @@ struct ShadowQueue {
   void clear() { resize_uninitialized(0); }
   void resize_uninitialized(std::size_t n) {
     rays.resize_uninitialized(n), owner.resize_uninitialized(n), light.resize_uninitialized(n);
-    if (n == 0) enclosures.resize_uninitialized(0);
+    if (n == 0) dielectrics.resize_uninitialized(0);
   }
   void set(std::size_t i, const Ray& ray, std::uint32_t ray_owner, const Color& color) {
     rays.set(i, ray), owner[i] = ray_owner, light.set(i, color);

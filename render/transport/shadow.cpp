@@ -111,7 +111,7 @@ struct ShadowWalks {
   struct State {
     std::uint32_t entry;  ///< of the queue
     Color light;          ///< what is left of it
-    EnclosureStack enclosures;
+    DielectricStack dielectrics;
     TrackingNumbers numbers;
   };
   RayBatch rays;
@@ -160,7 +160,7 @@ class ShadowWalker {
       const Material& m = material_at(world, identify(*world.accel, hit));
       if (is_opaque(m, rule_) && !encloses(m)) return false;
     }
-    const std::uint32_t medium = medium_in(world, state.enclosures, context_.outer_medium);
+    const std::uint32_t medium = medium_in(world, state.dielectrics, context_.outer_medium);
     if (medium == kNoId) return true;
     const Vec3d direction(ray.direction);
     const double scale = length(direction), end = static_cast<double>(hit.valid() ? hit.t : ray.tmax);
@@ -173,7 +173,7 @@ class ShadowWalker {
                     const ShadowWalks::State& state) {
     const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
     const Boundary boundary =
-        boundary_at(*context_.world, state.enclosures, s, front, index_of_refraction(context_, ray, hit, s));
+        boundary_at(*context_.world, state.dielectrics, s, front, index_of_refraction(context_, ray, hit, s));
     Color light = state.light;
     if (!boundary.hidden) light = light * transmittance(context_, ray, hit, s, rule_, boundary.ior);
     if (is_black(light)) return;
@@ -195,7 +195,7 @@ void trace_shadows_in_media(const RenderContext& context, Wavefront& wavefront, 
   if (queue.size() == 0) return;
   ShadowWalks walks;
   for (std::uint32_t i = 0; i < queue.size(); ++i)
-    walks.push_back(queue.rays[i], {i, queue.light[i], queue.enclosures[i],
+    walks.push_back(queue.rays[i], {i, queue.light[i], queue.dielectrics[i],
                                     tracking_numbers(wavefront, queue.owner[i], MediumDecision::shadow)});
   std::vector<Color> arriving(queue.size(), Color{0, 0, 0});
   ShadowWalker walker(context, rule);

@@ -16,18 +16,18 @@
 
 namespace oktett {
 
-// ---- Penumbras of lamps in Whitted's model: a hit that sees some points of its pattern and not others asks
-// more points. Penumbras are a small part of most pictures but hold nearly all noise of soft shadows.
+// ---- Penumbras of emitters in Whitted's model: a hit that sees some points of its pattern and not others
+// asks more points. Penumbras are a small part of most pictures but hold nearly all noise of soft shadows.
 
 namespace {
 
-/// What Wavefront::lamp_view holds of a ray's hit.
+/// What Wavefront::emitter_view holds of a ray's hit.
 enum View : std::uint8_t { kSeesPoint = 1, kMissesPoint = 2, kBoth = 3, kListed = 4 };
 
 /// Rays are traced when this many have gathered.
 constexpr std::size_t kBatch = 4096;
 
-std::span<ShadowQueue> lamp_queues(const RenderContext& context, Wavefront& wavefront) {
+std::span<ShadowQueue> emitter_queues(const RenderContext& context, Wavefront& wavefront) {
   return std::span(wavefront.shadows).subspan(context.lights.size(), context.area_lights.samples);
 }
 
@@ -39,11 +39,11 @@ void note_view(const ShadowQueue& queue, Column<std::uint8_t>& view) {
     view[queue.owner[i]] |= is_black(queue.light[i]) ? kMissesPoint : kSeesPoint;
 }
 
-void add_lamp_light(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue) {
+void add_emitter_light(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue) {
   const float share = share_of_pattern(context.area_lights);
   for (std::size_t i = 0; i < queue.size(); ++i) {
     const std::uint32_t owner = queue.owner[i];
-    std::uint8_t& view = wavefront.lamp_view[owner];
+    std::uint8_t& view = wavefront.emitter_view[owner];
     Color light = queue.light[i];
     if (context.area_lights.penumbra > 1 && (view & kBoth) == kBoth) {
       if ((view & kListed) == 0) wavefront.penumbra.push_back(owner);
@@ -69,24 +69,24 @@ void trace_penumbra_rays(const RenderContext& context, Wavefront& wavefront, Sha
 /// Makes the wavefront ready for the hits of a bounce, none of which is in a penumbra yet.
 static void start_penumbras(const RenderContext& context, Wavefront& wavefront) {
   if (context.area_lights.empty()) return;
-  wavefront.lamp_view.resize_uninitialized(wavefront.rays.size());
-  std::fill_n(wavefront.lamp_view.data(), wavefront.rays.size(), std::uint8_t{0});
+  wavefront.emitter_view.resize_uninitialized(wavefront.rays.size());
+  std::fill_n(wavefront.emitter_view.data(), wavefront.rays.size(), std::uint8_t{0});
   wavefront.penumbra.clear();
 }
 
 /// Traces the queued shadow rays to points of area lights and adds the light that arrives. A hit in a
 /// penumbra receives only the share of the points that it has asked so far, and is put on
 /// `wavefront.penumbra`. All rays of a hit must be queued at once.
-static void flush_lamp_shadows(const RenderContext& context, Wavefront& wavefront) {
-  const std::span<ShadowQueue> queues = lamp_queues(context, wavefront);
+static void flush_emitter_shadows(const RenderContext& context, Wavefront& wavefront) {
+  const std::span<ShadowQueue> queues = emitter_queues(context, wavefront);
   for (ShadowQueue& queue : queues) {
     count_shadow_rays(wavefront, queue.size());
     if (queue.size() == 0) continue;
     find_arriving(context, queue, ShadowRule::transparent_passes);
-    note_view(queue, wavefront.lamp_view);
+    note_view(queue, wavefront.emitter_view);
   }
   for (ShadowQueue& queue : queues) {
-    add_lamp_light(context, wavefront, queue);
+    add_emitter_light(context, wavefront, queue);
     queue.clear();
   }
 }
@@ -257,14 +257,14 @@ void flush_shadows(const RenderContext& context, Wavefront& wavefront) {
     ShadowQueue& queue = wavefront.shadows[n];
     const bool holes = path && n == kAreaQueue;
     const ShadowRule rule = holes ? ShadowRule::holes_pass : ShadowRule::transparent_passes;
-    if (context.tracks_enclosures)
+    if (context.tracks_dielectrics)
       trace_shadows_in_media(context, wavefront, queue, rule);
     else
       trace_shadows(context, wavefront, queue, rule);
     count_shadow_rays(wavefront, queue.size());
     queue.clear();
   }
-  if (!context.area_lights.empty()) flush_lamp_shadows(context, wavefront);
+  if (!context.area_lights.empty()) flush_emitter_shadows(context, wavefront);
 }
 
 bool shadows_are_full(const Wavefront& wavefront) {
@@ -397,17 +397,17 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
     find_hits(context, wavefront);
     if (wavefront.level == 0) {
       // If several wavefronts share a pixel, all of them are needed for its mean.
-      const bool may_be_empty = !context.opaque_background && !context.tracks_enclosures;
+      const bool may_be_empty = !context.opaque_background && !context.tracks_dielectrics;
       if (wavefront.whole_pixels && may_be_empty && !meets_anything(wavefront)) return false;
       fill_samples(context, wavefront.samples);
       fill_camera_rays(wavefront);
       start_layers(context, wavefront);
-      if (context.tracks_enclosures) enclose_camera_rays(context, wavefront);
+      if (context.tracks_dielectrics) enclose_camera_rays(context, wavefront);
     }
-    if (context.tracks_enclosures) pass_media(context, wavefront);
+    if (context.tracks_dielectrics) pass_media(context, wavefront);
     start_level(context, wavefront);
     cover_background(context, wavefront);
-    if (context.tracks_enclosures) shade_media(context, wavefront);
+    if (context.tracks_dielectrics) shade_media(context, wavefront);
     shade_hits(context, wavefront);
     add_to_samples(context, wavefront);
     if (!wavefront.refracted.empty()) wavefront.next.append(wavefront.refracted);

@@ -72,7 +72,7 @@ struct LoneHit {
   std::uint32_t entry = 0;  ///< of the block
   PathSurface surface;
   ShadingPoint point;
-  Boundary boundary;  ///< if the scene tracks enclosures
+  Boundary boundary;  ///< if the scene tracks dielectrics
 };
 
 /// The rays of one bounce of some samples, and what is kept for the next bounce. The result of a sample does
@@ -96,7 +96,7 @@ struct Wavefront {
   std::vector<ShadowQueue> shadows;
   /// With area lights: which of the points that the hit of a ray has asked it sees, see penumbra.cpp; the
   /// rays whose hits lie in penumbras; and shadow rays of these.
-  Column<std::uint8_t> lamp_view;
+  Column<std::uint8_t> emitter_view;
   std::vector<std::uint32_t> penumbra;
   ShadowQueue penumbra_shadows;
   std::vector<MediumEvent> medium_events;  ///< of rays that are scattered or find light in media

@@ -24,7 +24,7 @@ Color passing_interior(const RenderContext& context, const ShadingPoint& p) {
   return Color(Vec3d{portable::exp(-depth.x), portable::exp(-depth.y), portable::exp(-depth.z)});
 }
 
-/// Adds the light of a hit that needs no lamp. `throughput` includes the opacity of the surface.
+/// Adds the light of a hit that needs no emitter. `throughput` includes the opacity of the surface.
 void add_unlit(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p,
                const Color& throughput) {
   wavefront.radiance.add(ray, throughput * (p.emission + p.color * p.values.ambient * context.ambient_light));
@@ -59,8 +59,8 @@ void put_varying(const ShadingPoint& p, const Color& throughput, std::size_t k, 
   if (p.values.reflection != 0 || p.values.transparency != 0) c.sending |= std::uint64_t{1} << k;
 }
 
-/// Finishes the columns of hit `k`, whose material varies, and adds its light that needs no lamp. Returns the
-/// light that passes straight through holes.
+/// Finishes the columns of hit `k`, whose material varies, and adds its light that needs no emitter. Returns
+/// the light that passes straight through holes.
 OKTETT_NOINLINE Color finish_varying(const RenderContext& context, Wavefront& wavefront,
                                      const SurfaceInteraction& found, std::size_t k, ShadingColumns& c) {
   const std::uint32_t i = c.ray[k];
@@ -245,7 +245,7 @@ void queue_penumbra_rays(const RenderContext& context, Wavefront& wavefront,
   ShadingColumns c;
   c.count = which.size();
   name_hits(context, which.data(), found, c);
-  // Their light that needs no lamp has been added before.
+  // Their light that needs no emitter has been added before.
   Color radiance[ShadingColumns::kMost];
   for (std::size_t k = 0; k < which.size(); ++k) radiance[k] = wavefront.radiance[which[k]];
   render_code(context.isa).begin_shading(found, context.materials.data(), arriving_rays(wavefront), c);

@@ -92,7 +92,7 @@ TEST(SceneFilm, WarnsOfLampsThatLightNothing) {
                                     "}]\nobjects: [{plane: {}}]\n");
   };
   const std::string idle =
-      "warning: the lamp lights nothing: 'whitted' needs 'light_samples' for lamps of some size\n";
+      "warning: the light lights nothing: 'whitted' needs 'light_samples' for lights of some size\n";
   const std::string sphere = "sphere: {center: [0, 4, 0]}", point = "point: {position: [0, 4, 0]}";
   EXPECT_EQ(warnings("", sphere), "scene.yaml:3:19: " + idle);
   EXPECT_EQ(warnings("", "disk: {center: [0, 4, 0], radius: 1}"), "scene.yaml:3:17: " + idle);

@@ -57,7 +57,7 @@ TEST(SceneLampPower, TheSmallestAndTheLargestLightAsMuchAsOthers) {
 std::string error_of(const std::string& lamp) { return SceneFiles().error_v1("lights:\n  - " + lamp + "\n"); }
 
 TEST(SceneLampPower, LampsThatAreTooSmallAreRefused) {
-  const std::string small = "the lamp is too small: its area is ";
+  const std::string small = "the light is too small: its area is ";
   expect_starts(
       error_of("sphere: {center: [0, 0, 0], radius: 1e-20, power: [1, 1, 1]}"),
       "scene.yaml:3:55: " + small + "1.3e-39, and at least 1e-28 is expected with a power; a 'point'");

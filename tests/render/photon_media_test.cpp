@@ -160,7 +160,7 @@ TEST(PhotonMedia, PhotonsStartInTheSolidsAroundTheirLamp) {
   std::vector<PhotonStart> starts;
   for (std::uint32_t i = 0; i < 200; ++i)
     if (const auto s = ready.source.emit(0.5, {(i + 0.5) / 200, 0.37}, {0.2, 0.3})) starts.push_back(*s);
-  const std::vector<EnclosureStack> around = start_enclosures(ready.context, starts);
+  const std::vector<DielectricStack> around = start_dielectrics(ready.context, starts);
   ASSERT_EQ(around.size(), starts.size());
   std::size_t in_bubble = 0;
   for (std::size_t i = 0; i < starts.size(); ++i) {

@@ -136,9 +136,9 @@ class GlassLobe {
 
 /// The light that single scattering loses is split between both sides such that the split is the same
 /// backwards (Kulla 2017).
-struct GlassAgainSurface {
-  GlassAgainSurface() = default;
-  OKTETT_INLINE GlassAgainSurface(const PrincipledParameters& p, const PrincipledBase& base) {
+struct GlassMultipleSurface {
+  GlassMultipleSurface() = default;
+  OKTETT_INLINE GlassMultipleSurface(const PrincipledParameters& p, const PrincipledBase& base) {
     const GlassSurface glass(p, base);
     if (glass.smooth) return;
     const double eta = glass.eta, high = std::max(eta, 1 / eta), transmittance = 1 - mean_fresnel(high);
@@ -160,10 +160,10 @@ struct GlassAgainSurface {
 /// the light: the cosine has a density in proportion to its power t, t = -1/2 for narrow facets, 0 for wider
 /// ones, 1 for the widest. Of these, each has the least variance in its range of alpha.
 template <class D>
-class GlassAgainLobe {
+class GlassMultipleLobe {
  public:
   using M = typename D::M;
-  using Surface = GlassAgainSurface;
+  using Surface = GlassMultipleSurface;
   static constexpr int kChances = 2;  ///< on the viewer's side and on the other
 
   static bool is_there(const Surface& s, const PrincipledBase&) { return s.loss > 0 && s.loss_behind > 0; }

@@ -98,12 +98,12 @@ Vec3d mean_reflectance(Fresnel&& fresnel_of) {
   return sum;
 }
 
-struct MetalAgainSurface {
-  MetalAgainSurface() = default;
-  OKTETT_INLINE MetalAgainSurface(const PrincipledParameters& p, const PrincipledBase& base) {
+struct MetalMultipleSurface {
+  MetalMultipleSurface() = default;
+  OKTETT_INLINE MetalMultipleSurface(const PrincipledParameters& p, const PrincipledBase& base) {
     const double loss = base.mirror_loss;
     if (!(base.metal > 0 && loss > 0)) return;
-    lobe = MirrorAgain(base.alpha);
+    lobe = MirrorMultipleScattering(base.alpha);
     const MirrorSurface metal(p, base);
     const Vec3d mean = metal.has_conductor ? mean_reflectance([&](double c) {
       return Vec3d{conductor_fresnel(c, metal.eta.x, metal.k.x), conductor_fresnel(c, metal.eta.y, metal.k.y),
@@ -116,13 +116,13 @@ struct MetalAgainSurface {
   }
   Vec3d color;      ///< what facets reflect of the light that they send to each other
   double most = 0;  ///< its greatest component; 0: there is no such light
-  MirrorAgain lobe;
+  MirrorMultipleScattering lobe;
 };
 
 template <class D>
-class MetalAgainLobe {
+class MetalMultipleLobe {
  public:
-  using Surface = MetalAgainSurface;
+  using Surface = MetalMultipleSurface;
   static constexpr int kChances = 1;
 
   static bool is_there(const Surface& s, const PrincipledBase&) { return s.most > 0; }
@@ -150,7 +150,7 @@ class MetalAgainLobe {
 
  private:
   SeenFacets<D> facets_;
-  D weight_{0.0};  ///< of metal, times the scale of MirrorAgain
+  D weight_{0.0};  ///< of metal, times the scale of MirrorMultipleScattering
 };
 
 }  // namespace oktett

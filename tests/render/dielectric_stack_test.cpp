@@ -1,6 +1,6 @@
 /// \file The solids around a path: stacks of them, cameras inside, light in their interiors.
 
-#include "render/enclosures.h"
+#include "render/dielectric_stack.h"
 
 #include <gtest/gtest.h>
 
@@ -9,20 +9,20 @@
 #include "render/bsdf/optics.h"
 #include "tests/render/medium_support.h"
 
-namespace oktett::enclosures_test {
+namespace oktett::dielectrics_test {
 namespace {
 
 using namespace test;
 
-TEST(EnclosureStack, RemovesWhatWasEntered) {
-  EnclosureStack stack;
+TEST(DielectricStack, RemovesWhatWasEntered) {
+  DielectricStack stack;
   stack.leave({1, 1});
   EXPECT_EQ(stack.size(), 0u);
   stack.enter({1, 10}), stack.enter({2, 20}), stack.enter({1, 11});
   stack.leave({1, 10});
   ASSERT_EQ(stack.size(), 2u);
-  EXPECT_EQ(stack[0], (Enclosure{2, 20}));
-  EXPECT_EQ(stack[1], (Enclosure{1, 11}));
+  EXPECT_EQ(stack[0], (StackedDielectric{2, 20}));
+  EXPECT_EQ(stack[1], (StackedDielectric{1, 11}));
   // By another material of the same solid.
   stack.leave({2, 99});
   ASSERT_EQ(stack.size(), 1u);
@@ -31,12 +31,12 @@ TEST(EnclosureStack, RemovesWhatWasEntered) {
   EXPECT_EQ(stack.size(), 1u);
 }
 
-TEST(EnclosureStack, ForgetsTheFirstOfTooMany) {
-  EnclosureStack stack;
-  for (std::uint32_t i = 0; i < EnclosureStack::kMost + 3; ++i) stack.enter({i, i});
-  ASSERT_EQ(stack.size(), EnclosureStack::kMost);
+TEST(DielectricStack, ForgetsTheFirstOfTooMany) {
+  DielectricStack stack;
+  for (std::uint32_t i = 0; i < DielectricStack::kMost + 3; ++i) stack.enter({i, i});
+  ASSERT_EQ(stack.size(), DielectricStack::kMost);
   EXPECT_EQ(stack[0].solid, 3u);
-  EXPECT_EQ(stack[EnclosureStack::kMost - 1].solid, EnclosureStack::kMost + 2);
+  EXPECT_EQ(stack[DielectricStack::kMost - 1].solid, DielectricStack::kMost + 2);
 }
 
 /// Balls around the origin and a half-space below y = 2, all of glass with a priority.
@@ -53,13 +53,13 @@ World nested_world(Scene& scene) {
   return build_world(scene);
 }
 
-TEST(Enclosures, AreFoundAtAnyPoint) {
+TEST(Dielectrics, AreFoundAtAnyPoint) {
   Scene scene;
   const World world = nested_world(scene);
   RenderContext context;
   context.world = &world;
   const auto solids_at = [&](const Vec3f& point) {
-    const EnclosureStack stack = enclosures_at(context, point);
+    const DielectricStack stack = dielectrics_at(context, point);
     std::vector<std::uint32_t> solids;
     for (std::uint32_t i = 0; i < stack.size(); ++i) solids.push_back(stack[i].solid);
     return solids;
@@ -73,7 +73,7 @@ TEST(Enclosures, AreFoundAtAnyPoint) {
   EXPECT_EQ(solids_at({0, -1.5f, 0}).size(), 3u);
 }
 
-TEST(Enclosures, OpenSurfacesAndOpaqueMaterialsHaveNoInside) {
+TEST(Dielectrics, OpenSurfacesAndOpaqueMaterialsHaveNoInside) {
   Scene scene;
   scene.integrator.kind = IntegratorKind::path;
   const std::uint32_t clear = add_material(scene, filled(scene, 1.5f, {1, 1, 1}));
@@ -87,11 +87,11 @@ TEST(Enclosures, OpenSurfacesAndOpaqueMaterialsHaveNoInside) {
   EXPECT_FALSE(world.has_enclosing_solids);
   RenderContext context;
   context.world = &world;
-  EXPECT_EQ(enclosures_at(context, {0, 0, 0}).size(), 0u);
+  EXPECT_EQ(dielectrics_at(context, {0, 0, 0}).size(), 0u);
 }
 
 // The camera in a ball of glass, in smoke in glass, and below a water level that no upward ray leaves twice.
-TEST(Enclosures, TheCameraMayBeginInside) {
+TEST(Dielectrics, TheCameraMayBeginInside) {
   Scene scene = medium_scene(1, 4);
   scene.camera.from = {0, 0, 0}, scene.camera.at = {0, 0, -1};
   add_object(scene, PlaneShape{{0, 0, 1}, -10}, add_material(scene, glowing({1, 1, 1})));
@@ -131,7 +131,7 @@ std::vector<Material> clear_glasses(float ior) {
 // Seen from the centre, light comes along the normal, from before the camera and from behind it. Radiance
 // keeps its value across the surface but for Fresnel's reflectance F: before, behind, before, ... count (1 -
 // F) F^k after the lengths 1, 3, 5, ... within the glass.
-TEST(Enclosures, GlassAroundTheCameraReflectsInside) {
+TEST(Dielectrics, GlassAroundTheCameraReflectsInside) {
   constexpr double kIor = 1.5, f = 0.04;
   for (const Material& ball : clear_glasses(kIor)) {
     Medium medium;
@@ -152,7 +152,7 @@ TEST(Enclosures, GlassAroundTheCameraReflectsInside) {
 
 // Away from the centre rays meet the surface again and again at the same angle, here with the sines 0.6 and
 // 0.8. The critical one is 2/3: beyond it nothing from outside is seen, only what the glass itself gives off.
-TEST(Enclosures, GlassAroundTheCameraReflectsAllBeyondTheCriticalAngle) {
+TEST(Dielectrics, GlassAroundTheCameraReflectsAllBeyondTheCriticalAngle) {
   for (const Material& ball : clear_glasses(1.5f)) {
     Medium medium;
     medium.absorption = {1, 0.75f, 2}, medium.emission = {0.25f, 0, 1};
@@ -176,7 +176,7 @@ TEST(Enclosures, GlassAroundTheCameraReflectsAllBeyondTheCriticalAngle) {
 }
 
 // Rough glass around the camera keeps the light of a white sky, but for the errors of its tables.
-TEST(Enclosures, RoughGlassAroundTheCameraIsWhite) {
+TEST(Dielectrics, RoughGlassAroundTheCameraIsWhite) {
   Material rough = clear_glasses(1.5f)[1];
   rough.principled->parameters.roughness = 0.5f;
   Scene scene = inside_ball(rough, {}, {0, 0, 0}, {0, 0, -1});
@@ -188,7 +188,7 @@ TEST(Enclosures, RoughGlassAroundTheCameraIsWhite) {
 }
 
 // An orthographic camera whose view is partly inside: each ray begins where its place is.
-TEST(Enclosures, EachPlaceOfTheCameraHasItsSolids) {
+TEST(Dielectrics, EachPlaceOfTheCameraHasItsSolids) {
   Scene scene = bare_scene(2);
   scene.integrator.kind = IntegratorKind::path;
   scene.camera.projection = Projection::orthographic, scene.camera.height = 2;
@@ -232,4 +232,4 @@ TEST(Interiors, WhittedAttenuatesLightInGlass) {
 }
 
 }  // namespace
-}  // namespace oktett::enclosures_test
+}  // namespace oktett::dielectrics_test

@@ -16,34 +16,36 @@ namespace oktett {
 struct RenderContext;
 
 /// A solid that a path has entered, by the material that it met there. Both are indices into World.
-struct Enclosure {
+struct StackedDielectric {
   std::uint32_t solid = kNoId, material = kNoId;
   float ior = 1;  ///< index of refraction of the material where it was entered
-  bool operator==(const Enclosure& other) const { return solid == other.solid && material == other.material; }
+  bool operator==(const StackedDielectric& other) const {
+    return solid == other.solid && material == other.material;
+  }
 };
 
 /// Solids in the order in which they were entered. Of more than kMost the first one is forgotten.
-class EnclosureStack {
+class DielectricStack {
  public:
   static constexpr std::uint32_t kMost = 8;
 
   std::uint32_t size() const { return size_; }
-  const Enclosure& operator[](std::uint32_t i) const { return entries_[i]; }
+  const StackedDielectric& operator[](std::uint32_t i) const { return entries_[i]; }
 
-  void enter(const Enclosure& enclosure);
+  void enter(const StackedDielectric& dielectric);
   /// Removes the solid. If it was not entered by this material, another entry of the solid is removed: the
   /// faces of a solid may have different materials. Nothing happens if there is none.
-  void leave(const Enclosure& enclosure);
+  void leave(const StackedDielectric& dielectric);
 
  private:
   std::uint32_t size_ = 0;
-  Enclosure entries_[kMost];
+  StackedDielectric entries_[kMost];
 };
 
 /// A place where a path meets a surface.
 struct Boundary {
-  EnclosureStack behind;  ///< the solids around the path if it goes on behind the surface
-  bool hidden = false;    ///< a solid of higher priority fills both sides: the path goes straight on
+  DielectricStack behind;  ///< the solids around the path if it goes on behind the surface
+  bool hidden = false;     ///< a solid of higher priority fills both sides: the path goes straight on
   /// Index of refraction of the material relative to what surrounds it; nothing if that of the material
   /// holds.
   std::optional<float> ior;
@@ -54,22 +56,22 @@ bool encloses(const Material& material);
 
 /// `before`: the solids around a path that meets a surface named by `surface`; `front`: it comes from where
 /// the surface's normal points to; `ior`: that of the material there.
-Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+Boundary boundary_at(const World& world, const DielectricStack& before, const SurfaceInteraction& surface,
                      bool front, float ior);
 /// The same for rays that are not bent: indices of refraction are left out.
-Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+Boundary boundary_at(const World& world, const DielectricStack& before, const SurfaceInteraction& surface,
                      bool front);
 
 /// The medium in the solids given, an index into Scene::media; `outside` if there are none.
-std::uint32_t medium_in(const World& world, const EnclosureStack& enclosures, std::uint32_t outside);
+std::uint32_t medium_in(const World& world, const DielectricStack& dielectrics, std::uint32_t outside);
 
 /// The solids that a point lies in, by the crossings of a ray from there with all surfaces. Those that it
 /// leaves first come last.
-EnclosureStack enclosures_at(const RenderContext& context, const Vec3f& point);
+DielectricStack dielectrics_at(const RenderContext& context, const Vec3f& point);
 
 /// The solids around a ray that starts with those of `before` and goes straight through the surfaces that
 /// `hits` lists in order.
-EnclosureStack enclosures_behind(const RenderContext& context, const EnclosureStack& before, const Ray& ray,
-                                 std::span<const Hit> hits);
+DielectricStack dielectrics_behind(const RenderContext& context, const DielectricStack& before,
+                                   const Ray& ray, std::span<const Hit> hits);
 
 }  // namespace oktett

@@ -1,4 +1,4 @@
-#include "render/enclosures.h"
+#include "render/dielectric_stack.h"
 
 #include <algorithm>
 #include <limits>
@@ -8,19 +8,19 @@
 
 namespace oktett {
 
-void EnclosureStack::enter(const Enclosure& enclosure) {
+void DielectricStack::enter(const StackedDielectric& dielectric) {
   if (size_ == kMost) {
     std::copy(entries_ + 1, entries_ + kMost, entries_);
     --size_;
   }
-  entries_[size_++] = enclosure;
+  entries_[size_++] = dielectric;
 }
 
-void EnclosureStack::leave(const Enclosure& enclosure) {
+void DielectricStack::leave(const StackedDielectric& dielectric) {
   std::uint32_t found = size_;
   for (std::uint32_t i = 0; i < size_; ++i)
-    if (entries_[i].solid == enclosure.solid &&
-        (found == size_ || entries_[i] == enclosure || !(entries_[found] == enclosure)))
+    if (entries_[i].solid == dielectric.solid &&
+        (found == size_ || entries_[i] == dielectric || !(entries_[found] == dielectric)))
       found = i;
   if (found == size_) return;
   std::copy(entries_ + found + 1, entries_ + size_, entries_ + found);
@@ -33,13 +33,13 @@ bool encloses(const Material& m) {
   return m.transparency > 0;
 }
 
-static const Material& material_of(const World& world, const Enclosure& e) {
+static const Material& material_of(const World& world, const StackedDielectric& e) {
   return world.materials[e.material];
 }
 
 /// The entry that fills the space; null if there is none.
-static const Enclosure* filling(const World& world, const EnclosureStack& stack) {
-  const Enclosure* best = nullptr;
+static const StackedDielectric* filling(const World& world, const DielectricStack& stack) {
+  const StackedDielectric* best = nullptr;
   for (std::uint32_t i = 0; i < stack.size(); ++i)
     if (best == nullptr || material_of(world, stack[i]).priority >= material_of(world, *best).priority)
       best = &stack[i];
@@ -47,25 +47,25 @@ static const Enclosure* filling(const World& world, const EnclosureStack& stack)
 }
 
 /// The solid whose boundary a surface is; its `solid` is kNoId if there is none.
-static Enclosure enclosure_of(const World& world, const SurfaceInteraction& surface) {
-  Enclosure e;
+static StackedDielectric dielectric_of(const World& world, const SurfaceInteraction& surface) {
+  StackedDielectric e;
   e.material = material_index(world, surface.user, surface.material_slot);
   if (surface.user < world.objects.size() && encloses(world.materials[e.material]))
     e.solid = world.objects[surface.user].solid;
   return e;
 }
 
-Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+Boundary boundary_at(const World& world, const DielectricStack& before, const SurfaceInteraction& surface,
                      bool front, float ior) {
   Boundary b;
   b.behind = before;
-  Enclosure e = enclosure_of(world, surface);
+  StackedDielectric e = dielectric_of(world, surface);
   if (e.solid == kNoId) return b;
   e.ior = ior;
   front ? b.behind.enter(e) : b.behind.leave(e);
   const std::int32_t priority = material_of(world, e).priority;
   if (priority == kNoPriority) return b;
-  const Enclosure* around = filling(world, front ? before : b.behind);
+  const StackedDielectric* around = filling(world, front ? before : b.behind);
   if (around == nullptr || material_of(world, *around).priority == kNoPriority) return b;
   const std::int32_t other = material_of(world, *around).priority;
   // On the way out a solid of the same priority hides the boundary, too, if it was entered later: it fills
@@ -76,22 +76,22 @@ Boundary boundary_at(const World& world, const EnclosureStack& before, const Sur
   return b;
 }
 
-Boundary boundary_at(const World& world, const EnclosureStack& before, const SurfaceInteraction& surface,
+Boundary boundary_at(const World& world, const DielectricStack& before, const SurfaceInteraction& surface,
                      bool front) {
   Boundary b = boundary_at(world, before, surface, front, 1);
   b.ior.reset();
   return b;
 }
 
-std::uint32_t medium_in(const World& world, const EnclosureStack& enclosures, std::uint32_t outside) {
-  const Enclosure* e = filling(world, enclosures);
+std::uint32_t medium_in(const World& world, const DielectricStack& dielectrics, std::uint32_t outside) {
+  const StackedDielectric* e = filling(world, dielectrics);
   return e != nullptr ? material_of(world, *e).interior : outside;
 }
 
-EnclosureStack enclosures_behind(const RenderContext& context, const EnclosureStack& before, const Ray& ray,
-                                 std::span<const Hit> hits) {
+DielectricStack dielectrics_behind(const RenderContext& context, const DielectricStack& before,
+                                   const Ray& ray, std::span<const Hit> hits) {
   const World& world = *context.world;
-  EnclosureStack stack = before;
+  DielectricStack stack = before;
   for (const Hit& hit : hits) {
     const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
     const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
@@ -101,21 +101,21 @@ EnclosureStack enclosures_behind(const RenderContext& context, const EnclosureSt
 }
 
 /// The solids that the ray leaves without having entered them, in order.
-static std::vector<Enclosure> left_by(const RenderContext& context, const Ray& ray) {
+static std::vector<StackedDielectric> left_by(const RenderContext& context, const Ray& ray) {
   const World& world = *context.world;
   std::vector<Hit> hits;
   all_hits(*world.accel, ray, hits);
-  std::vector<Enclosure> entered, left;
+  std::vector<StackedDielectric> entered, left;
   for (const Hit& hit : hits) {
     const SurfaceInteraction s = surface_interaction(*world.accel, ray, hit);
-    Enclosure e = enclosure_of(world, s);
+    StackedDielectric e = dielectric_of(world, s);
     if (e.solid == kNoId) continue;
     e.ior = index_of_refraction(context, ray, hit, s);
     if (!(dot(ray.direction, s.geometric_normal) > 0)) {
       entered.push_back(e);
       continue;
     }
-    const auto same_solid = [&](const Enclosure& other) { return other.solid == e.solid; };
+    const auto same_solid = [&](const StackedDielectric& other) { return other.solid == e.solid; };
     const auto found = std::find_if(entered.begin(), entered.end(), same_solid);
     if (found != entered.end())
       entered.erase(found);
@@ -125,14 +125,14 @@ static std::vector<Enclosure> left_by(const RenderContext& context, const Ray& r
   return left;
 }
 
-EnclosureStack enclosures_at(const RenderContext& context, const Vec3f& point) {
-  EnclosureStack stack;
+DielectricStack dielectrics_at(const RenderContext& context, const Vec3f& point) {
+  DielectricStack stack;
   if (!context.world->has_enclosing_solids) return stack;
   // A direction along no axis or diagonal, where rays might run along edges. A solid without bounds, such as
   // a half-space, may be left in one of two opposite directions only.
   const Vec3f direction = normalize(Vec3f{0.5377f, 0.7221f, -0.4349f});
-  std::vector<Enclosure> left = left_by(context, {point, 0, direction});
-  std::vector<Enclosure> behind = left_by(context, {point, 0, -direction});
+  std::vector<StackedDielectric> left = left_by(context, {point, 0, direction});
+  std::vector<StackedDielectric> behind = left_by(context, {point, 0, -direction});
   if (behind.size() > left.size()) std::swap(left, behind);
   for (std::size_t i = left.size(); i-- > 0;) stack.enter(left[i]);
   return stack;
