@@ -9,11 +9,6 @@
 namespace oktett {
 namespace {
 
-const char* skip_plain_blanks(const char* p) {
-  while (is_blank(*p)) ++p;
-  return p;
-}
-
 /// The start of the next value on the line.
 const char* next_value(const char* p, const PlyProperty& property) {
   p = skip_plain_blanks(p);

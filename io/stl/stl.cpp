@@ -32,11 +32,6 @@ struct StlChunk {
   std::optional<MeshFailure> failure;  ///< the first one
 };
 
-const char* skip_plain_blanks(const char* p) {
-  while (is_blank(*p)) ++p;
-  return p;
-}
-
 /// Past `word` at `p`; null if something else stands there.
 const char* match_word(const char* p, std::string_view word) {
   for (const char c : word)

@@ -109,6 +109,11 @@ inline const char* next_line(const char* line_end, const char* text_end) {
 /// A backslash at the end of the text joins nothing, and means nothing.
 inline bool is_continuation(const char* p) { return p[0] == '\\' && is_line_end(p[1]); }
 
+inline const char* skip_plain_blanks(const char* p) {
+  while (is_blank(*p)) ++p;
+  return p;
+}
+
 /// Past blanks and joints of lines.
 inline const char* skip_blanks(const char* p) {
   for (;;) {
