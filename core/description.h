@@ -97,7 +97,7 @@ struct ClipBox {
 /// A value that has no member of its own: whoever reads the shape reads it, too.
 struct ByHand {
   const char* type;            ///< in Markdown
-  const char* form;            ///< its definition in the JSON Schema, see io/scene/schema.cpp
+  const char* form;            ///< its definition in the JSON Schema
   const char* usual = "none";  ///< the default
 };
 
