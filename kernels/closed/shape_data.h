@@ -143,7 +143,7 @@ struct PolygonShape {
   }
 };
 
-/// The closed forms: FORM(kernel, data, kind) for each. The kernel is described in kernels/closed/contract.h;
+/// The closed forms: FORM(kernel, data, kind) for each. The kernel is described in contract.h;
 /// `data` is what geometries and scenes hold; `kind` is the name of its Kind.
 #define OKTETT_CLOSED_FORMS(FORM)    \
   FORM(Sphere, SpheresShape, sphere) \
