@@ -67,13 +67,13 @@ constexpr bool kHasArea = requires(const E& e) {
 };
 
 /// What the choice of a surface needs.
-struct Emitter {
+struct WeighedArea {
   std::uint32_t emitter;
   double area, weight, sum;  ///< `sum`: of the weights up to and with this one
 };
 
-std::vector<Emitter> emitters_of(const std::vector<Emitter>& emitters) {
-  std::vector<Emitter> emitters;
+std::vector<WeighedArea> areas_of(const std::vector<Emitter>& emitters) {
+  std::vector<WeighedArea> areas;
   double sum = 0;
   for (std::uint32_t i = 0; i < emitters.size(); ++i)
     std::visit(
@@ -82,21 +82,21 @@ std::vector<Emitter> emitters_of(const std::vector<Emitter>& emitters) {
             const double area = area_of(e), weight = area * double{color_weight(e.radiance)};
             if (!(weight > 0 && sum + weight < kMostWeight)) return;
             sum += weight;
-            emitters.push_back({i, area, weight, sum});
+            areas.push_back({i, area, weight, sum});
           }
         },
         emitters[i]);
-  return emitters;
+  return areas;
 }
 
 /// The point that `s` chooses, as a light that gives its share of the light of `count` of them.
 LightSource light_at(const SceneLights& lights, const TextureSampler* textures,
-                     const std::vector<Emitter>& emitters, SquareSample s, std::uint32_t count) {
-  const double target = s.x * emitters.back().sum;
-  const auto above = [](double sum, const Emitter& emitter) { return sum < emitter.sum; };
-  const auto found = std::upper_bound(emitters.begin(), emitters.end() - 1, target, above);
-  const Emitter& emitter = *found;
-  s.x = std::clamp((target - (emitter.sum - emitter.weight)) / emitter.weight, 0.0, 0x1.fffffffffffffp-1);
+                     const std::vector<WeighedArea>& areas, SquareSample s, std::uint32_t count) {
+  const double target = s.x * areas.back().sum;
+  const auto above = [](double sum, const WeighedArea& chosen) { return sum < chosen.sum; };
+  const auto found = std::upper_bound(areas.begin(), areas.end() - 1, target, above);
+  const WeighedArea& chosen = *found;
+  s.x = std::clamp((target - (chosen.sum - chosen.weight)) / chosen.weight, 0.0, 0x1.fffffffffffffp-1);
   LightSource light;
   std::visit(
       [&]<class E>(const E& e) {
@@ -105,14 +105,13 @@ LightSource light_at(const SceneLights& lights, const TextureSampler* textures,
           light.place = Vec3f(p.place), light.axis = Vec3f(normalize(p.normal));
           light.back = e.both_sides ? 1.0f : 0.0f;
           LightSample sample{};
-          sample.emitter = emitter.emitter, sample.u = static_cast<float>(p.u),
+          sample.emitter = chosen.emitter, sample.u = static_cast<float>(p.u),
           sample.v = static_cast<float>(p.v);
-          const double share =
-              emitter.area * emitters.back().sum / (emitter.weight * std::numbers::pi * count);
+          const double share = chosen.area * areas.back().sum / (chosen.weight * std::numbers::pi * count);
           light.color = Color(Vec3d(e.radiance * lights.texture_at(sample, textures)) * share);
         }
       },
-      lights.set().emitters()[emitter.emitter]);
+      lights.set().emitters()[chosen.emitter]);
   light.glows = light.falloff = true;
   light.lift = 0x1p-20f * max_component(abs(light.place));
   return light;
@@ -134,8 +133,8 @@ AreaLights area_lights(const SceneLights& lights, const TextureSampler* textures
                        const IntegratorSettings& settings) {
   AreaLights area;
   if (!traits(settings.kind).light_from_points || settings.light_samples == 0) return area;
-  const std::vector<Emitter> emitters = emitters_of(lights.set().emitters());
-  if (emitters.empty()) return area;
+  const std::vector<WeighedArea> areas = areas_of(lights.set().emitters());
+  if (areas.empty()) return area;
   area.samples = settings.light_samples,
   area.penumbra = std::bit_floor(std::clamp(settings.penumbra_factor, 1u, kPlaces));
   // As many as a pixel has samples, if they are not too many.
@@ -145,7 +144,7 @@ AreaLights area_lights(const SceneLights& lights, const TextureSampler* textures
   const std::uint64_t key = sequence_key(mix_bits(settings.seed), kDimension);
   area.at_random = settings.error > 0, area.key = mix_bits(key);
   for (std::uint32_t i = 0; i < area.patterns * area.samples; ++i)
-    area.points.push_back(light_at(lights, textures, emitters, sobol_point(i, key), area.samples));
+    area.points.push_back(light_at(lights, textures, areas, sobol_point(i, key), area.samples));
   return area;
 }
 
