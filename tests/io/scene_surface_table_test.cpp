@@ -189,7 +189,7 @@ struct Defaults {
   int compared = 0;
 
   template <class T>
-  void surface(const Surface& surface, T start) {
+  void surface(const ShapeInfo& surface, T start) {
     const auto is_this = [&](const DescribedSurface& s) { return s.surface.key == std::string(surface.key); };
     const DescribedSurface& s = *std::find_if(table.begin(), table.end(), is_this);
     Values values = needed(s);
