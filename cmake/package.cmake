@@ -49,6 +49,8 @@ pkg-config.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-oktett)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+  ${PROJECT_SOURCE_DIR}/cmake/package/python/postinst ${PROJECT_SOURCE_DIR}/cmake/package/python/prerm)
 if(OKTETT_BUILD_PYTHON)
   # The modules are for one version of Python, that of the release. One of them uses the other.
   math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
