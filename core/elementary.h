@@ -43,7 +43,7 @@ struct Estrin {
   OKTETT_INLINE static D sum(const double (&c)[N], const D& x) {
     static_assert(N > 8 && N <= 16);
     const D x2 = x * x, x4 = x2 * x2;
-    // No coefficient beyond the first is read, which not every compiler sees.
+    // Powers beyond the highest are never used; the index is kept in range for compilers that cannot tell.
     const auto of = [&](std::size_t power) { return D(c[power < N ? N - 1 - power : 0]); };
     const auto pair = [&](std::size_t i) { return i + 1 < N ? of(i + 1) * x + of(i) : of(i); };
     const auto quad = [&](std::size_t i) { return i + 2 < N ? pair(i + 2) * x2 + pair(i) : pair(i); };

@@ -275,7 +275,7 @@ Color radiance_of_power(Color color, const YamlNode& node, double area) {
   return color;
 }
 
-/// Warns of an emitter that is seen, but lights nothing.
+/// Warns of a light that is seen but lights no other surface.
 void warn_of_idle_emitter(SceneLoad& load, const YamlNode& node) {
   const IntegratorSettings& s = load.scene.integrator;
   const IntegratorKind kind = load.integrator.value_or(s.kind);

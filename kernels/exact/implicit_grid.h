@@ -16,7 +16,7 @@ struct ImplicitGridCell {
   float bend[2];  ///< the second derivative along a unit direction is at least -bend[0] and at most bend[1]
   /// Bounds the derivative along a unit direction, whose rounding error is less than kSlopeError of this.
   float slope;
-  float error;  ///< bounds rounding errors of values, and the width of the dielectric of a point's value
+  float error;  ///< bounds rounding errors of values, and the width of the enclosure of a point's value
 };
 static_assert(sizeof(ImplicitGridCell) == 4 * sizeof(float));
 

@@ -3,14 +3,14 @@
 /// sampled, no bound on the slope is asked of the user.
 ///
 /// `field` gives, in lanes,
-/// - field.over(t): Dual<Interval<D>>, dielectrics of f and f' over an interval of t;
-/// - field.at(t): a dielectric of f at a point.
+/// - field.over(t): Dual<Interval<D>>, enclosures of f and f' over an interval of t;
+/// - field.at(t): an enclosure of f at a point.
 ///
 /// The ray is walked from a to b. A step over which 0 is not in f (R. E. Moore: Interval Analysis, 1966), nor
 /// in the mean value form f(m) + f'(X) (X - m), has a certain sign; the next one is twice as long, but for
 /// the first after one that had to be halved. Where f is monotone the signs at the ends decide. Any other
 /// step is halved. What rounding does not let one tell, where the ray touches the surface or lies in it, is a
-/// *gap*: it is passed over by steps as long as the dielectric is mere rounding noise, and only if the sign
+/// *gap*: it is passed over by steps as long as the enclosure is mere rounding noise, and only if the sign
 /// has turned on its far side is there a crossing. Steps of 2^-44 of the range end the halving: those over
 /// which f is not bounded hold a pole or the border of where f is defined. Undefined counts as
 /// positive.
@@ -37,7 +37,7 @@ enum class Jumps {
   list_steep,  ///< and as kJumpPart also those where f is bounded, but steps or is infinitely steep
 };
 
-/// 1 or -1 where a dielectric tells the sign, else 0.
+/// 1 or -1 where an enclosure tells the sign, else 0.
 template <class D>
 OKTETT_INLINE D certain_sign(const Interval<D>& f) {
   return select((D(0.0) < f.lo) | f.is_void(), D(1.0), select(f.hi < D(0.0), D(-1.0), D(0.0)));
@@ -138,7 +138,7 @@ struct March {
       value = select(smooth & mean.is_bounded(), intersect(f.v, mean), f.v);
       sign = select(open, certain_sign(value), sign);
       open = live & (sign == zero);
-      // Where the sign in the middle is certain, as beside a pole, a wide dielectric there is no noise.
+      // Where the sign in the middle is certain, as beside a pole, a wide enclosure there is no noise.
       noise = open & smooth & (certain_sign(at_m) == zero) &
               (value.hi - value.lo <= D(8.0) * (at_m.hi - at_m.lo) + D(kTiny * 16));
     }

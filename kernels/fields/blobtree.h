@@ -266,7 +266,7 @@ struct BlobTreePool : ExactPool<BlobTreeElement> {
 
 namespace field {
 
-// From the description to what the pool holds (blobtree_program.cpp).
+// From the description to what the pool holds.
 
 /// The program: each list of a blend taken two at a time, from the left. Empty if the description is
 /// malformed.

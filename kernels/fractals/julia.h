@@ -1,6 +1,6 @@
 #pragma once
 /// \file Filled quaternion Julia sets of q^2 + c after a number of iterations (A. Norton: Generation and
-/// Display of Geometric Fractals in 3-D, 1982), solved by dielectrics along the ray
+/// Display of Geometric Fractals in 3-D, 1982), solved by enclosures along the ray
 /// (kernels/exact/march.h).
 ///
 /// With z_0 = q and z_k+1 = z_k^2 + c, the surface is where |z_n| = R = (1 + sqrt(1 + 4 |c|)) / 2; what is
@@ -57,7 +57,7 @@ struct JuliaField {
     }
   };
 
-  /// Dielectrics of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
+  /// Enclosures of value and derivative on |h| <= half about o + m d. Where the point surely escapes, what
   /// is told of it is positive and no more than the value.
   OKTETT_INLINE Dual<Interval<D>> about(const D& m, const D& half) const {
     const D zero(0.0), two(2.0), u(kRound), radius(e.radius * (1 + 0x1p-40)), limit(e.radius * e.radius);

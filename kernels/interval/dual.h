@@ -12,7 +12,7 @@ namespace oktett {
 
 namespace interval {
 
-/// StackedDielectric of sin (shift 0.25) or cos (shift 0) on `a`, given the function at its ends: it is 1
+/// Enclosure of sin (shift 0.25) or cos (shift 0) on `a`, given the function at its ends: it is 1
 /// where x / (2 pi) - shift is whole, and -1 half way between.
 template <class D>
 OKTETT_INLINE Interval<D> wave(const Interval<D>& a, const D& at_lo, const D& at_hi, double shift) {

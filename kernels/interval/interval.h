@@ -148,7 +148,7 @@ template <class D>
 OKTETT_INLINE Interval<D> hull(const Interval<D>& a, const Interval<D>& b) {
   return interval::carry(a, b, {min(a.lo, b.lo), max(a.hi, b.hi)});
 }
-/// The intersection of two dielectrics of the same values.
+/// The intersection of two enclosures of the same values.
 template <class D>
 OKTETT_INLINE Interval<D> intersect(const Interval<D>& a, const Interval<D>& b) {
   return {max(a.lo, b.lo), min(a.hi, b.hi)};

@@ -94,8 +94,8 @@ struct Wavefront {
   /// tracing the first queue holds rays to lights that are seen as points, the second those to all others.
   /// Rays of ambient occlusion are in the first queue. Owners are entries of `rays`.
   std::vector<ShadowQueue> shadows;
-  /// With area lights: which of the points that the hit of a ray has asked it sees, see penumbra.cpp; the
-  /// rays whose hits lie in penumbras; and shadow rays of these.
+  /// With area lights: which of the points that the hit of a ray has asked it sees (share_of_pattern,
+  /// trace_penumbra_rays); the rays whose hits lie in penumbras; and shadow rays of these.
   Column<std::uint8_t> emitter_view;
   std::vector<std::uint32_t> penumbra;
   ShadowQueue penumbra_shadows;

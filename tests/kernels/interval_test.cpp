@@ -136,7 +136,7 @@ TEST(Interval, UnaryFunctionsHoldEveryValue) {
       for (const double x : points) {
         const L truth = u.truth(x);
         expect_held(r, truth, u.name + std::string(" of ") + std::to_string(x));
-        // At a point the dielectric is narrow, but for sines of angles beyond their range.
+        // At a point the enclosure is narrow, but for sines of angles beyond their range.
         if (std::abs(truth) < 1e250L && std::abs(x) < lane::kMaxAngle) {
           const I at = u.f(I(D(x)));
           const L scale = std::max(std::abs(truth), static_cast<L>(u.floor)) + 1e-250L;

@@ -74,7 +74,7 @@ TEST(March, FindsKnownRoots) {
                 10 * M_PI, 11 * M_PI, 12 * M_PI, 13 * M_PI, 14 * M_PI, 15 * M_PI});
 }
 
-/// Beside a pole the dielectric is wide but its sign is certain. That is not the rounding noise of a touch.
+/// Beside a pole the enclosure is wide but its sign is certain. That is not the rounding noise of a touch.
 TEST(March, PolesInTheMiddleAreNoNoise) {
   const double root = std::sqrt(0.01 / 0.6);
   expect_roots(find(

@@ -159,7 +159,7 @@ int each_known(int seed, int count, const F& check) {
   return known;
 }
 
-/// Values in plain arithmetic are off by at most the error, and the dielectric of a value is no wider.
+/// Values in plain arithmetic are off by at most the error, and the enclosure of a value is no wider.
 TEST(Variation, ErrorsHold) {
   const int known = each_known(11, 40000, [](const Trial& t, std::mt19937& random) {
     const double error = only_lane(t.over.error) * (1 + 0x1p-20) + 0x1p-900;

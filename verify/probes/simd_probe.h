@@ -37,7 +37,7 @@ struct SimdColumns {
 };
 
 /// What one instruction set does. Widths other than 4, 8 and 16 are ignored; the order functions are those of
-/// core/simd_order.h, core/simd_lookup.h and core/simd_words.h.
+/// core/simd_order.h and core/simd_memory.h.
 struct SimdProbeCode {
   void (*floats)(SimdOp op, int width, const SimdColumns<float>& run);
   void (*doubles)(SimdOp op, int width, const SimdColumns<double>& run);
