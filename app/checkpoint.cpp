@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/render_options.h"
+#include "app/setting_options.h"
 #include "app/text.h"
 #include "core/error.h"
 #include "io/film/film_file.h"
@@ -117,12 +118,7 @@ class SettingList : public ParameterVisitor<SettingList> {
  private:
   /// The option of the command line, if there is one.
   static std::string name_of(std::string_view key) {
-    constexpr std::pair<std::string_view, const char*> kOptions[] = {
-        {"crop", "--cropwindow"}, {"kind", "--integrator"},     {"samples", "--spp"},
-        {"seed", "--seed"},       {"clamp", "--clamp"},         {"error", "--error"},
-        {"filter", "--filter"},   {"max_samples", "--max-spp"}, {"cryptomatte", "--cryptomatte"}};
-    for (const auto& [known, option] : kOptions)
-      if (key == known) return option;
+    if (const char* const option = option_of_setting(key)) return option;
     return fmt::format("'{}'", key);
   }
 

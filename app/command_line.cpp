@@ -129,6 +129,10 @@ void Verb::option(const char* names, OptionTarget target, const char* value, con
       target);
 }
 
+void Verb::number(const char* names, std::string& target, const char* value, const char* help) {
+  app_->add_option(names, target, help)->type_name(value)->transform(whole_number<std::uint32_t>());
+}
+
 void Verb::choice(const char* names, std::string& target, const char* value, const char* help,
                   std::vector<std::string> choices) {
   const std::string text = fmt::format("{}: {}", help, or_list(choices));

@@ -54,6 +54,8 @@ class Verb {
   Verb(CLI::App& app, OptionChoices& choices) : app_(&app), choices_(&choices) {}
 
   void option(const char* names, OptionTarget target, const char* value, const char* help);
+  /// An option for a whole number of 32 bits, of which the word is kept.
+  void number(const char* names, std::string& target, const char* value, const char* help);
   /// An option for one of several words, which the help text lists after `help`.
   void choice(const char* names, std::string& target, const char* value, const char* help,
               std::vector<std::string> choices);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/command_line.h"
-#include "app/film_options.h"
+#include "app/setting_options.h"
 #include "app/text.h"
 #include "app/unused_options.h"
 #include "core/error.h"
@@ -21,8 +21,8 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> films;
   std::string outfile;
-  FilmArguments film;
-  bool allow_missing = false, quiet = false;
+  SettingWords settings;
+  bool allow_missing = false, denoise = false, quiet = false;
 };
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) {
@@ -104,7 +104,7 @@ class Shares {
 Tone tone_of(const MergeArguments& arguments, const Tone& tone) {
   Scene scene;
   scene.film.tone = tone;
-  override_film(arguments.film, scene);
+  override_settings(arguments.settings, scene);
   return scene.film.tone;
 }
 
@@ -112,13 +112,13 @@ int run_merge(const MergeArguments& arguments) {
   if (arguments.outfile.empty()) throw Error("expected -o FILE, the picture to write");
   check_output(arguments.outfile);
   tone_of(arguments, {});
-  warn_of_unused_tone(arguments.film, arguments.outfile);
+  warn_of_unused_tone(arguments.settings, arguments.outfile);
   // Films are read twice: all are checked before the picture takes memory, and one at a time is in memory.
   Shares shares(arguments.allow_missing);
   for (const std::string& path : arguments.films) shares.add(path, read_film(path));
   shares.check_complete();
   const FilmPlan& plan = shares.first().film->plan();
-  if (arguments.film.denoise && !plan.format.data_layers)
+  if (arguments.denoise && !plan.format.data_layers)
     throw Error("--denoise needs the data layers of films that were made for EXR files");
   Picture picture = make_picture(plan, tone_of(arguments, shares.first().film->tone()));
   for (const auto& [number, part] : shares.parts()) {
@@ -132,7 +132,7 @@ int run_merge(const MergeArguments& arguments) {
     }
   }
   const std::size_t missing = shares.tiles_missing();
-  if (arguments.film.denoise && missing == 0) denoise(picture);
+  if (arguments.denoise && missing == 0) denoise(picture);
   write_image(arguments.outfile, picture, shares.first().metadata);
   if (!arguments.quiet) fmt::print("wrote {}\n", arguments.outfile);
   std::fflush(stdout);
@@ -149,9 +149,8 @@ void add_merge_command(CommandLine& line) {
   verb.positionals("films", a->films, "FILM...", "Film files of oktett render --shard or --checkpoint");
   verb.option("-o,--outfile", &a->outfile, "FILE", "Picture to write");
   verb.flag("--allow-missing", a->allow_missing, "Leave pixels transparent that no film has");
-  add_tone_option(verb, a->film.tone);
-  verb.option("--exposure", &a->film.exposure, "STOPS", "Exposure of 8-bit pictures");
-  verb.flag("--denoise", a->film.denoise, "Smooth the noise of the merged picture");
+  for (const char* option : {"--tone", "--exposure"}) add_setting_option(verb, option, a->settings);
+  verb.flag("--denoise", a->denoise, "Smooth the noise of the merged picture");
   verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");
 }
 

@@ -322,7 +322,7 @@ RenderOptions options_of(const RenderArguments& arguments, bool data_layers) {
   options.isa = choose_isa(arguments.isa);
   options.threads = arguments.threads;
   options.build = parse_bvh_option(arguments.bvh);
-  options.data_layers = data_layers || arguments.film.denoise;
+  options.data_layers = data_layers || arguments.denoise;
   return options;
 }
 
@@ -405,7 +405,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   watch.lap();
   // The rest of a picture that was stopped is black.
   const bool is_seen = writes_picture || (preview && !writes_film);
-  if (arguments.film.denoise && is_seen && !result.report.stopped) denoise(result.picture);
+  if (arguments.denoise && is_seen && !result.report.stopped) denoise(result.picture);
   times.denoise = watch.lap();
   ImageMetadata metadata = metadata_of(line, arguments, result);
   checkpoint.complete(metadata);

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <string_view>
 
 #include "app/command_line.h"
@@ -49,33 +47,6 @@ constexpr const char* kUps[] = {"x", "y", "z", "-x", "-y", "-z"};
 /// In the order of BuildQuality.
 constexpr const char* kQualities[] = {"fast", "balanced", "best"};
 
-void parse_size(const std::string& text, Film& film) {
-  const std::size_t cross = text.find('x');
-  const bool good = cross != std::string::npos && parse_number(text.substr(0, cross), film.width) &&
-                    parse_number(text.substr(cross + 1), film.height);
-  if (!good) throw Error(fmt::format("--size: '{}' is not of the form WxH, e.g. 960x540", text));
-  const bool fits = kFilmSides.contains(film.width) && kFilmSides.contains(film.height) &&
-                    std::uint64_t{film.width} * film.height <= kMostFilmPixels;
-  if (!fits)
-    throw Error(fmt::format("--size: {} is out of range; expected sides of 1 to {} and at most {} pixels",
-                            text, kMostFilmSide, kMostFilmPixels));
-}
-
-void parse_crop(const std::string& text, double (&crop)[4]) {
-  std::string_view rest = text;
-  bool good = true;
-  for (int i = 0; i < 4; ++i) {
-    const std::size_t comma = rest.find(',');
-    good = good && parse_number(rest.substr(0, comma), crop[i]) && crop[i] >= 0 && crop[i] <= 1;
-    good = good && (comma == std::string_view::npos) == (i == 3);
-    rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
-  }
-  if (!good || crop[0] >= crop[1] || crop[2] >= crop[3])
-    throw Error(fmt::format(
-        "--cropwindow: '{}' is not of the form x0,x1,y0,y1 with 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1",
-        text));
-}
-
 /// The index of `word` in a list of names. Throws Error if it is not in the list.
 template <std::size_t N>
 std::size_t index_of(const char* complaint, const std::string& word, const char* const (&names)[N],
@@ -97,13 +68,8 @@ const char* to_string(IntegratorKind kind) {
 
 void add_picture_options(Verb& verb, RenderArguments& a) {
   verb.option("-t,--nthreads", &a.threads, "N", "Threads; default: all processors");
-  verb.option("--spp", &a.samples, "N", "Samples per pixel");
-  verb.option("--size", &a.size, "WxH", "Size of the full frame in pixels");
-  verb.option("--cropwindow", &a.crop, "x0,x1,y0,y1", "Part of the frame to render, as fractions of it");
-  verb.option("--seed", &a.seed, "N", "Seed of the random numbers");
-  verb.choice("--integrator", a.integrator, "K", "What is computed for a pixel",
-              names_of<IntegratorKind>(kIntegratorKinds));
-  add_film_options(verb, a.film);
+  add_setting_options(verb, a.settings);
+  verb.flag("--denoise", a.denoise, "Smooth the noise of the finished picture");
   verb.flag("--caustics", a.caustics, "Light through mirrors and glass by photons, with --integrator path");
   add_cache_options(verb, a.cache);
   verb.choice("--look", a.look, "LOOK", "How a mesh given alone is shown",
@@ -162,31 +128,23 @@ BuildOptions parse_bvh_option(const std::string& quality) {
 }
 
 void override_scene(const RenderArguments& arguments, Scene& scene) {
-  if (!arguments.size.empty()) parse_size(arguments.size, scene.film);
-  if (!arguments.crop.empty()) parse_crop(arguments.crop, scene.film.crop);
-  if (!arguments.integrator.empty())
-    scene.integrator.kind = choice_of<IntegratorKind>("--integrator", arguments.integrator, kIntegratorKinds);
-  override_film(arguments.film, scene);
+  override_settings(arguments.settings, scene);
   CausticSettings& caustics = scene.integrator.caustics;
   if ((arguments.caustics || !arguments.photon_map.empty()) && caustics.photons == 0)
     caustics.photons = CausticSettings::kUsualPhotons;
-  if (arguments.seed) scene.integrator.seed = *arguments.seed;
-  if (arguments.samples) {
-    expect_in_range("--spp", *arguments.samples, kPixelSamples);
-    scene.integrator.samples = *arguments.samples;
-  }
 }
 
 std::optional<Look> look_of(const RenderArguments& arguments) {
   const bool alone = is_mesh_file(arguments.scene);
   if (arguments.look.empty()) {
-    if (!alone || !arguments.integrator.empty()) return std::nullopt;
+    if (!alone || is_given(arguments.settings, "--integrator")) return std::nullopt;
     return Look::studio;
   }
   const auto look = static_cast<Look>(
       index_of("--look: unknown look", arguments.look, kLooks, "studio, clay, normals or wire"));
   if (!alone) throw Error("--look is for meshes given alone; a scene file says itself how it looks");
-  if (!arguments.integrator.empty()) throw Error("--look chooses the integrator; expected no --integrator");
+  if (is_given(arguments.settings, "--integrator"))
+    throw Error("--look chooses the integrator; expected no --integrator");
   return look;
 }
 
@@ -206,7 +164,7 @@ Viewpoint viewpoint_of(const RenderArguments& arguments) {
       index_of("--view: unknown place", arguments.viewpoint, kViewpoints, "auto, outside or inside"));
   if (!is_mesh_file(arguments.scene))
     throw Error("--view is for meshes given alone; the camera of a scene file says where it stands");
-  if (!arguments.integrator.empty())
+  if (is_given(arguments.settings, "--integrator"))
     throw Error("--view belongs to the looks of a mesh; expected no --integrator");
   return viewpoint;
 }

@@ -1,7 +1,6 @@
 #pragma once
 /// \file What the user asks of `oktett render`, and how it changes a scene.
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,8 +9,8 @@
 #include "accel/accel.h"
 #include "app/checkpoint.h"
 #include "app/command_line.h"
-#include "app/film_options.h"
 #include "app/limits.h"
+#include "app/setting_options.h"
 #include "io/cache/scene_cache.h"
 #include "io/scene/scene_file.h"
 #include "render/look/default_look.h"
@@ -39,12 +38,8 @@ struct RenderArguments {
   std::string outfile;
   bool no_output = false;
   unsigned threads = 0;
-  std::optional<std::uint32_t> samples;
-  std::optional<std::uint32_t> seed;
-  std::string size;
-  std::string crop;
-  std::string integrator;
-  FilmArguments film;
+  SettingWords settings;
+  bool denoise = false;
   /// Of a mesh given alone; empty: the default.
   std::string look, up, viewpoint;
   std::string isa;

@@ -22,7 +22,7 @@ static Scene load_overridden(const RenderArguments& arguments) {
   const std::optional<Vec3d> up = up_of(arguments);
   const Viewpoint viewpoint = viewpoint_of(arguments);
   std::optional<IntegratorKind> integrator;
-  if (!arguments.integrator.empty()) integrator = none.integrator.kind;
+  if (is_given(arguments.settings, "--integrator")) integrator = none.integrator.kind;
   Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions), integrator);
   override_scene(arguments, scene);
   if (!look && !up) return scene;

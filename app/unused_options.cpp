@@ -9,32 +9,32 @@
 namespace oktett {
 
 void check_target_options(const RenderArguments& arguments, const PictureTarget& target) {
-  const FilmArguments& film = arguments.film;
   const bool exr = !target.picture.empty() && keeps_all_planes(target.picture);
-  if (film.cryptomatte && !exr && !target.film)
+  if (is_given(arguments.settings, "--cryptomatte") && !exr && !target.film)
     throw Error("--cryptomatte needs an EXR file, the only one that holds mattes; expected -o FILE.exr");
-  if (film.denoise && target.film)
+  if (arguments.denoise && target.film)
     throw Error("--denoise: a film keeps the noise; expected it at oktett merge, which makes the picture");
   const bool shows = !arguments.show.empty() || !arguments.display_server.empty();
-  if (film.denoise && target.picture.empty() && !shows)
+  if (arguments.denoise && target.picture.empty() && !shows)
     throw Error("--denoise: there is no picture to smooth; expected --outfile or --show");
-  if (!shows) warn_of_unused_tone(film, target.picture);
+  if (!shows) warn_of_unused_tone(arguments.settings, target.picture);
 }
 
-void warn_of_unused_tone(const FilmArguments& film, const std::string& picture) {
+void warn_of_unused_tone(const SettingWords& words, const std::string& picture) {
   if (picture.empty() || !keeps_light(picture)) return;
-  for (const auto& [name, value] : {std::pair{"--tone", film.tone}, {"--exposure", film.exposure}})
-    if (!value.empty()) say("warning: {} has no effect on EXR and HDR files, which keep the light\n", name);
+  for (const char* option : {"--tone", "--exposure"})
+    if (is_given(words, option))
+      say("warning: {} has no effect on EXR and HDR files, which keep the light\n", option);
 }
 
 void check_light_options(const RenderArguments& arguments, Scene& scene) {
   const IntegratorSettings& settings = scene.integrator;
-  const FilmArguments& film = arguments.film;
+  const auto given = [&](const char* option) { return is_given(arguments.settings, option); };
   if (arguments.caustics && !traits(settings.kind).traces_paths)
     throw Error("--caustics needs the integrator 'path'");
-  if (film.max_samples && settings.error == 0)
+  if (given("--max-spp") && settings.error == 0)
     throw Error("--max-spp is for adaptive sampling; expected --error, too, or 'error' in the scene");
-  const bool asked = film.max_samples || arguments.samples || !film.error.empty();
+  const bool asked = given("--max-spp") || given("--spp") || given("--error");
   if (!asked || settings.error == 0) return;
   if (settings.max_samples < settings.samples)
     throw Error(fmt::format("--max-spp: {} is less than the {} samples that every pixel gets first (--spp)",

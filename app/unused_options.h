@@ -17,7 +17,7 @@ struct PictureTarget {
 void check_target_options(const RenderArguments& arguments, const PictureTarget& target);
 
 /// Warns of options for pictures of 8 bits if `picture` is an EXR or HDR file.
-void warn_of_unused_tone(const FilmArguments& film, const std::string& picture);
+void warn_of_unused_tone(const SettingWords& words, const std::string& picture);
 
 /// Refuses caustics where the integrator has none, and numbers of samples that would silently be others;
 /// `scene` has all that was asked for. What else has no effect is added to its warnings.

@@ -129,7 +129,7 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
   RenderOptions options;
   options.isa = isa_, options.textures = loaded_.textures.get();
   options.tile_size = tile_edge(samples);
-  options.data_layers = needs_data(state.layer) || (last && (layers || arguments_.film.denoise));
+  options.data_layers = needs_data(state.layer) || (last && (layers || arguments_.denoise));
   // The coarse pass ends even if the view changes meanwhile: else nothing would be seen during a drag.
   if (scale == 1) options.stop = &cancel_;
   Layer layer{state.layer, state.tone, 0, 1, prepared.world().bounds};
@@ -155,7 +155,7 @@ bool Session::render_pass(const ViewState& state, std::uint64_t view, std::uint3
     seconds_per_pixel_ =
         std::max(1e-9, seconds_since(start) / (double{1} * result.picture.width * result.picture.height));
   if (scale > 1) canvas_.show(result.picture, whole, layer);
-  if (last && arguments_.film.denoise) {
+  if (last && arguments_.denoise) {
     denoise(result.picture);
     canvas_.show(result.picture, whole, layer);
   }
