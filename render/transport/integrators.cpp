@@ -54,13 +54,12 @@ float pixels_to_edge(const RenderContext& context, const Wavefront& wavefront, s
 }  // namespace
 
 /// The shading normal in world space, [-1, 1] shown as [0, 1].
-static void shade_normal(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+void shade_normal(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   wavefront.radiance.set(ray, p.surface.shading_normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f});
 }
 
 /// Distance along the view axis: white at the near end of the scene's bounds, black at the far end.
-static void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                        const ShadingPoint& p) {
+void shade_depth(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const auto depth = static_cast<float>(camera_depth(context.camera, p.surface.position));
   const float shown = (context.far_depth - depth) / (context.far_depth - context.near_depth);
   const float grey = std::clamp(shown, 0.0f, 1.0f);
@@ -68,19 +67,19 @@ static void shade_depth(const RenderContext& context, Wavefront& wavefront, std:
 }
 
 /// The colour of the material, textures included.
-static void shade_albedo(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+void shade_albedo(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   wavefront.radiance.set(ray, p.color);
 }
 
 /// The fractional parts of u and v as red and green.
-static void shade_uv(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+void shade_uv(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const Vec2f uv = p.surface.uv;
   wavefront.radiance.set(ray, {uv.x - std::floor(uv.x), uv.y - std::floor(uv.y), 0});
 }
 
 /// The place between the two ends of the scene's bounds, [0, 1] along x, y and z as red, green and blue.
-static void shade_position(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                           const ShadingPoint& p) {
+void shade_position(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                    const ShadingPoint& p) {
   const Box& box = context.world->bounds;
   Color color;
   for (int k = 0; k < 3; ++k) {
@@ -92,26 +91,24 @@ static void shade_position(const RenderContext& context, Wavefront& wavefront, s
 }
 
 /// A colour made of the number of the object.
-static void shade_object(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+void shade_object(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   wavefront.radiance.set(ray, color_of(p.surface.user));
 }
 
 /// A colour made of the numbers of the object and of the primitive in it.
-static void shade_primitive(const RenderContext&, Wavefront& wavefront, std::size_t ray,
-                            const ShadingPoint& p) {
+void shade_primitive(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   wavefront.radiance.set(ray, color_of(std::uint64_t{p.surface.user} << 32 | p.surface.primitive));
 }
 
 /// The cosine between the shading normal and the viewer: grey on front sides, red on backs.
-static void shade_facing(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
+void shade_facing(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const float cosine = facing(p);
   wavefront.radiance.set(ray, p.front ? Color{cosine, cosine, cosine} : Color{cosine, 0, 0});
 }
 
 /// Dark lines, one pixel wide, along the edges of triangles, on surfaces that are brighter the more they face
 /// the viewer.
-static void shade_wire(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                       const ShadingPoint& p) {
+void shade_wire(const RenderContext& context, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
   const bool line = pixels_to_edge(context, wavefront, ray, p) < kHalfLine;
   const float grey = line ? 0.02f : 0.2f + 0.6f * facing(p);
   wavefront.radiance.set(ray, {grey, grey, grey});
@@ -121,8 +118,8 @@ static void shade_wire(const RenderContext& context, Wavefront& wavefront, std::
 
 /// Ambient occlusion: white times the cosine-weighted fraction of directions that meet nothing within the
 /// radius.
-static void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
-                                    const ShadingPoint& p) {
+void shade_ambient_occlusion(const RenderContext& context, Wavefront& wavefront, std::size_t ray,
+                             const ShadingPoint& p) {
   const std::uint32_t sample = wavefront.rays.sample[ray];
   const std::uint64_t directions =
       sequence_key(wavefront.samples.key[sample], dimension(Decision::direction));
@@ -131,27 +128,6 @@ static void shade_ambient_occlusion(const RenderContext& context, Wavefront& wav
   if (dot(direction, p.ng) <= 0) return;
   const Ray probe{offset_origin(p.surface, direction), 0, direction, context.ao_radius};
   wavefront.shadows.front().push_back(probe, static_cast<std::uint32_t>(ray), wavefront.rays.throughput[ray]);
-}
-
-// ---- All integrators.
-
-const Integrator& integrator(IntegratorKind kind) {
-  // In the order of IntegratorKind.
-  static constexpr Integrator table[] = {
-      {nullptr, shade_whitted_block},
-      {nullptr, shade_path_block},
-      {shade_ambient_occlusion, nullptr},
-      {shade_normal, nullptr},
-      {shade_depth, nullptr},
-      {shade_albedo, nullptr},
-      {shade_uv, nullptr},
-      {shade_position, nullptr},
-      {shade_object, nullptr},
-      {shade_primitive, nullptr},
-      {shade_facing, nullptr},
-      {shade_wire, nullptr},
-  };
-  return table[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace oktett
