@@ -37,12 +37,12 @@ struct Texture {
 /// indices into Scene::textures or kNoId; each multiplies its parameter.
 struct PrincipledMaterial {
   PrincipledParameters parameters;  ///< base_color is that of Material::color, with its texture
-  std::uint32_t metallic_texture = kNoId, roughness_texture = kNoId, specular_texture = kNoId;
-  std::uint32_t transmission_texture = kNoId, coat_texture = kNoId, coat_roughness_texture = kNoId;
-  std::uint32_t sheen_texture = kNoId, sheen_color_texture = kNoId, sheen_roughness_texture = kNoId;
-  std::uint32_t ior_texture = kNoId, coat_ior_texture = kNoId;
-  std::uint32_t eta_texture = kNoId,
-                k_texture = kNoId;  ///< colours, of `parameters.conductor` if that is given
+#define OKTETT_TEXTURE(name, ...) std::uint32_t name##_texture = kNoId;
+  OKTETT_PRINCIPLED_NUMBERS(OKTETT_TEXTURE)
+  OKTETT_PRINCIPLED_COLORS(OKTETT_TEXTURE)
+#undef OKTETT_TEXTURE
+  /// Of colours of `parameters.conductor`, if that is given.
+  std::uint32_t eta_texture = kNoId, k_texture = kNoId;
   /// Whitted's model shows at each hit what comes near to the parameters there, see resemble_principled;
   /// false: it shows the numbers of Material.
   bool resembled = false;
@@ -55,33 +55,29 @@ struct PrincipledNumber {
   const char* name;
   float PrincipledParameters::*value;
   std::uint32_t PrincipledMaterial::*texture;
+  Range range;
   const char* meaning;
-  Range range = kUnitInterval;
 };
-inline constexpr Range kPrincipledIors{0.25, 4};
 inline constexpr PrincipledNumber kPrincipledNumbers[] = {
-    {"metallic", &PrincipledParameters::metallic, &PrincipledMaterial::metallic_texture,
-     "weight of metal; the rest is plastic or glass"},
-    {"roughness", &PrincipledParameters::roughness, &PrincipledMaterial::roughness_texture,
-     "from a mirror, 0, to 1"},
-    {"specular", &PrincipledParameters::specular, &PrincipledMaterial::specular_texture,
-     "scales the reflection of the opaque dielectric; 0.5 is what `ior` says"},
-    {"transmission", &PrincipledParameters::transmission, &PrincipledMaterial::transmission_texture,
-     "weight of glass in what is not metal"},
-    {"coat", &PrincipledParameters::coat, &PrincipledMaterial::coat_texture, "weight of a clear coat"},
-    {"coat_roughness", &PrincipledParameters::coat_roughness, &PrincipledMaterial::coat_roughness_texture,
-     "of the coat"},
-    {"sheen", &PrincipledParameters::sheen, &PrincipledMaterial::sheen_texture,
-     "weight of fibres on top of all"},
-    {"sheen_roughness", &PrincipledParameters::sheen_roughness, &PrincipledMaterial::sheen_roughness_texture,
-     "of the fibres"},
-    {"ior", &PrincipledParameters::ior, &PrincipledMaterial::ior_texture,
-     "index of refraction inside relative to outside", kPrincipledIors},
-    {"coat_ior",
-     &PrincipledParameters::coat_ior,
-     &PrincipledMaterial::coat_ior_texture,
-     "index of refraction of the coat",
-     {1, 4}}};
+#define OKTETT_ROW(name, usual, range, meaning) \
+  {#name, &PrincipledParameters::name, &PrincipledMaterial::name##_texture, range, meaning},
+    OKTETT_PRINCIPLED_NUMBERS(OKTETT_ROW)
+#undef OKTETT_ROW
+};
+
+/// A colour likewise.
+struct PrincipledColor {
+  const char* name;
+  Color PrincipledParameters::*value;
+  std::uint32_t PrincipledMaterial::*texture;
+  const char* meaning;
+};
+inline constexpr PrincipledColor kPrincipledColors[] = {
+#define OKTETT_ROW(name, usual, meaning) \
+  {#name, &PrincipledParameters::name, &PrincipledMaterial::name##_texture, meaning},
+    OKTETT_PRINCIPLED_COLORS(OKTETT_ROW)
+#undef OKTETT_ROW
+};
 
 /// The priority of materials that have none: lower than all others.
 inline constexpr std::int32_t kNoPriority = -1;
@@ -162,7 +158,8 @@ OKTETT_INLINE void for_each_texture(AnyMaterial& m, F&& f) {
   f(m.ior_texture);
   if (!m.principled) return;
   for (const PrincipledNumber& number : kPrincipledNumbers) f((*m.principled).*number.texture);
-  f(m.principled->sheen_color_texture), f(m.principled->eta_texture), f(m.principled->k_texture);
+  for (const PrincipledColor& color : kPrincipledColors) f((*m.principled).*color.texture);
+  f(m.principled->eta_texture), f(m.principled->k_texture);
 }
 
 /// The range of a textured Material::ior.

@@ -126,7 +126,8 @@ PrincipledParameters principled_at(const RenderContext& c, const PrincipledMater
   at.base_color = color;
   for (const PrincipledNumber& number : kPrincipledNumbers)
     at.*number.value = textured(c, at.*number.value, m.*number.texture, number.range, place);
-  at.sheen_color = textured(c, at.sheen_color, m.sheen_color_texture, place);
+  for (const PrincipledColor& tint : kPrincipledColors)
+    at.*tint.value = textured(c, at.*tint.value, m.*tint.texture, place);
   if (at.conductor) {
     at.conductor->eta = textured(c, at.conductor->eta, m.eta_texture, place);
     at.conductor->k = textured(c, at.conductor->k, m.k_texture, place);

@@ -32,8 +32,8 @@ struct PrincipledKeys {
     p.field("base_color", Textured<Color>{m.color, m.color_texture},
             "of metal head-on, of diffuse light, and of light that passes glass");
     p.field("thin", values.thin, "glass is thin walls, which do not bend light");
-    p.field("sheen_color", Textured<Color>{values.sheen_color, principled.sheen_color_texture},
-            "of the fibres");
+    for (const PrincipledColor& color : kPrincipledColors)
+      p.field(color.name, Textured<Color>{values.*color.value, principled.*color.texture}, color.meaning);
     p.optional("metal", ChoiceOf<Conductor>{named, kMetals}, "instead of `eta` and `k`: those of this metal");
     p.optional("eta", Textured<Color>{measured.eta, principled.eta_texture},
                "index of refraction of the metal");

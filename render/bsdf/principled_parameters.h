@@ -3,12 +3,14 @@
 
 #include <optional>
 
+#include "core/description.h"
 #include "core/vec3.h"
 
 namespace oktett {
 
 /// Greatest index of refraction of the principled material.
 inline constexpr double kMostIor = 4;
+inline constexpr Range kPrincipledIors{1 / kMostIor, kMostIor};
 
 /// The complex index of refraction eta + i k of a metal, for each component of a colour.
 struct Conductor {
@@ -17,22 +19,34 @@ struct Conductor {
   bool operator==(const Conductor&) const = default;
 };
 
-/// See PrincipledLobes. Weights, colours and roughnesses are clamped to [0, 1].
+/// The numbers of the principled material: NUMBER(name, default, range, meaning) for each. A roughness is the
+/// root of the width of facets; below kLeastRoughness the lobe is delta.
+#define OKTETT_PRINCIPLED_NUMBERS(NUMBER)                                              \
+  NUMBER(metallic, 0, kUnitInterval, "weight of metal; the rest is plastic or glass")  \
+  NUMBER(roughness, 0.5f, kUnitInterval, "from a mirror, 0, to 1")                     \
+  NUMBER(specular, 0.5f, kUnitInterval,                                                \
+         "scales the reflection of the opaque dielectric; 0.5 is what `ior` says")     \
+  NUMBER(transmission, 0, kUnitInterval, "weight of glass in what is not metal")       \
+  NUMBER(coat, 0, kUnitInterval, "weight of a clear coat")                             \
+  NUMBER(coat_roughness, 0, kUnitInterval, "of the coat")                              \
+  NUMBER(sheen, 0, kUnitInterval, "weight of fibres on top of all")                    \
+  NUMBER(sheen_roughness, 0.3f, kUnitInterval, "of the fibres")                        \
+  NUMBER(ior, 1.5f, kPrincipledIors, "index of refraction inside relative to outside") \
+  NUMBER(coat_ior, 1.5f, (Range{1, kMostIor}), "index of refraction of the coat")
+/// Its colours likewise: COLOR(name, default, meaning). The others are members of their own.
+#define OKTETT_PRINCIPLED_COLORS(COLOR) COLOR(sheen_color, (Color{1, 1, 1}), "of the fibres")
+
+/// See PrincipledLobes. Numbers are clamped to their ranges, colours to [0, 1].
 struct PrincipledParameters {
-  Color base_color{0.8f, 0.8f,
-                   0.8f};  ///< of metal head-on, of diffuse light, of light that passes an interface
-  float metallic = 0;      ///< weight of metal; the rest is dielectric
-  float roughness = 0.5f;  ///< root of the width of facets. Below kLeastRoughness a delta lobe
-  float specular = 0.5f;   ///< scales the reflectance head-on of the opaque dielectric by twice this
-  float ior = 1.5f;        ///< index of refraction, inside relative to outside; [1/4, 4]
-  float transmission = 0;  ///< weight of glass in the dielectric; the rest is opaque
-  bool thin = false;       ///< glass is a thin wall: light passes without being bent
-  float coat = 0;          ///< weight of a clear dielectric layer on top
-  float coat_roughness = 0;
-  float coat_ior = 1.5f;  ///< [1, 4]
-  float sheen = 0;        ///< weight of fibres on top of all
-  Color sheen_color{1, 1, 1};
-  float sheen_roughness = 0.3f;
+  /// Of metal head-on, of diffuse light, of light that passes an interface.
+  Color base_color{0.8f, 0.8f, 0.8f};
+#define OKTETT_NUMBER(name, usual, range, meaning) float name = usual;
+#define OKTETT_COLOR(name, usual, meaning) Color name = usual;
+  OKTETT_PRINCIPLED_NUMBERS(OKTETT_NUMBER)
+  OKTETT_PRINCIPLED_COLORS(OKTETT_COLOR)
+#undef OKTETT_NUMBER
+#undef OKTETT_COLOR
+  bool thin = false;                   ///< glass is a thin wall: light passes without being bent
   std::optional<Conductor> conductor;  ///< of the metal, instead of base_color
   bool operator==(const PrincipledParameters&) const = default;
 };
