@@ -68,53 +68,35 @@ struct Choose {
     using type = xsimd::batch<T, ARCH>;      \
     using mask = xsimd::batch_bool<T, ARCH>; \
   };
+/// For lanes of 32 bits and of 64.
+#define OKTETT_CHOOSE_ALL(W, A, NARROW, WIDE) \
+  OKTETT_CHOOSE(float, W, A, NARROW)          \
+  OKTETT_CHOOSE(std::int32_t, W, A, NARROW)   \
+  OKTETT_CHOOSE(double, W, A, WIDE)
 
 #if defined(OKTETT_COMPILED_SSE42)
-OKTETT_CHOOSE(float, 4, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(float, 8, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(float, 16, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(double, 4, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(double, 8, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(double, 16, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(std::int32_t, 4, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(std::int32_t, 8, Sse42Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(std::int32_t, 16, Sse42Isa, xsimd::sse4_2)
+OKTETT_CHOOSE_ALL(4, Sse42Isa, xsimd::sse4_2, xsimd::sse4_2)
+OKTETT_CHOOSE_ALL(8, Sse42Isa, xsimd::sse4_2, xsimd::sse4_2)
+OKTETT_CHOOSE_ALL(16, Sse42Isa, xsimd::sse4_2, xsimd::sse4_2)
 #endif
 #if defined(OKTETT_COMPILED_AVX2)
 using XsimdAvx2 = xsimd::fma3<xsimd::avx2>;
-OKTETT_CHOOSE(float, 4, Avx2Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(float, 8, Avx2Isa, XsimdAvx2)
-OKTETT_CHOOSE(float, 16, Avx2Isa, XsimdAvx2)
-OKTETT_CHOOSE(double, 4, Avx2Isa, XsimdAvx2)
-OKTETT_CHOOSE(double, 8, Avx2Isa, XsimdAvx2)
-OKTETT_CHOOSE(double, 16, Avx2Isa, XsimdAvx2)
-OKTETT_CHOOSE(std::int32_t, 4, Avx2Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(std::int32_t, 8, Avx2Isa, XsimdAvx2)
-OKTETT_CHOOSE(std::int32_t, 16, Avx2Isa, XsimdAvx2)
+OKTETT_CHOOSE_ALL(4, Avx2Isa, xsimd::sse4_2, XsimdAvx2)
+OKTETT_CHOOSE_ALL(8, Avx2Isa, XsimdAvx2, XsimdAvx2)
+OKTETT_CHOOSE_ALL(16, Avx2Isa, XsimdAvx2, XsimdAvx2)
 #endif
 #if defined(OKTETT_COMPILED_AVX512)
-OKTETT_CHOOSE(float, 4, Avx512Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(float, 8, Avx512Isa, XsimdAvx2)
-OKTETT_CHOOSE(float, 16, Avx512Isa, xsimd::avx512bw)
-OKTETT_CHOOSE(double, 4, Avx512Isa, XsimdAvx2)
-OKTETT_CHOOSE(double, 8, Avx512Isa, xsimd::avx512bw)
-OKTETT_CHOOSE(double, 16, Avx512Isa, xsimd::avx512bw)
-OKTETT_CHOOSE(std::int32_t, 4, Avx512Isa, xsimd::sse4_2)
-OKTETT_CHOOSE(std::int32_t, 8, Avx512Isa, XsimdAvx2)
-OKTETT_CHOOSE(std::int32_t, 16, Avx512Isa, xsimd::avx512bw)
+OKTETT_CHOOSE_ALL(4, Avx512Isa, xsimd::sse4_2, XsimdAvx2)
+OKTETT_CHOOSE_ALL(8, Avx512Isa, XsimdAvx2, xsimd::avx512bw)
+OKTETT_CHOOSE_ALL(16, Avx512Isa, xsimd::avx512bw, xsimd::avx512bw)
 #endif
 #if defined(OKTETT_COMPILED_NEON)
-OKTETT_CHOOSE(float, 4, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(float, 8, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(float, 16, NeonIsa, xsimd::neon64)
 OKTETT_CHOOSE(double, 2, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(double, 4, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(double, 8, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(double, 16, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(std::int32_t, 4, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(std::int32_t, 8, NeonIsa, xsimd::neon64)
-OKTETT_CHOOSE(std::int32_t, 16, NeonIsa, xsimd::neon64)
+OKTETT_CHOOSE_ALL(4, NeonIsa, xsimd::neon64, xsimd::neon64)
+OKTETT_CHOOSE_ALL(8, NeonIsa, xsimd::neon64, xsimd::neon64)
+OKTETT_CHOOSE_ALL(16, NeonIsa, xsimd::neon64, xsimd::neon64)
 #endif
+#undef OKTETT_CHOOSE_ALL
 #undef OKTETT_CHOOSE
 
 // Operations on one lane, by plain arithmetic. Each gives the same bits as the operation of the same name on

@@ -10,12 +10,42 @@ using xsimd::batch;
 using xsimd::batch_bool;
 using Sse = xsimd::sse4_2;
 
+// Operations whose names differ only by the size of the registers: `mm` begins those of the processor,
+// `whole` ends those of whole numbers, and `bits64` ends the one that fills a register with a number of 64
+// bits.
+//
 // min(a, b) is a < b ? a : b and max(a, b) is a > b ? a : b, hence b if either is NaN: pass the accumulator
 // second.
-OKTETT_INLINE batch<float, Sse> min(batch<float, Sse> a, batch<float, Sse> b) { return _mm_min_ps(a, b); }
-OKTETT_INLINE batch<float, Sse> max(batch<float, Sse> a, batch<float, Sse> b) { return _mm_max_ps(a, b); }
-OKTETT_INLINE batch<double, Sse> min(batch<double, Sse> a, batch<double, Sse> b) { return _mm_min_pd(a, b); }
-OKTETT_INLINE batch<double, Sse> max(batch<double, Sse> a, batch<double, Sse> b) { return _mm_max_pd(a, b); }
+#define OKTETT_IN_REGISTERS(A, mm, whole, bits64)                                                          \
+  OKTETT_INLINE batch<float, A> min(batch<float, A> a, batch<float, A> b) { return mm##_min_ps(a, b); }    \
+  OKTETT_INLINE batch<float, A> max(batch<float, A> a, batch<float, A> b) { return mm##_max_ps(a, b); }    \
+  OKTETT_INLINE batch<double, A> min(batch<double, A> a, batch<double, A> b) { return mm##_min_pd(a, b); } \
+  OKTETT_INLINE batch<double, A> max(batch<double, A> a, batch<double, A> b) { return mm##_max_pd(a, b); } \
+  OKTETT_INLINE batch<float, A> bit_cast_float(batch<std::int32_t, A> a) {                                 \
+    return mm##_cast##whole##_ps(a);                                                                       \
+  }                                                                                                        \
+  OKTETT_INLINE batch<std::int32_t, A> bit_cast_int(batch<float, A> a) { return mm##_castps_##whole(a); }  \
+  OKTETT_INLINE batch<double, A> low_bits_to_exponent(batch<double, A> a) {                                \
+    return mm##_cast##whole##_pd(mm##_slli_epi64(mm##_castpd_##whole(a), 52));                             \
+  }                                                                                                        \
+  OKTETT_INLINE batch<double, A> biased_exponent(batch<double, A> a) {                                     \
+    const auto exponent = mm##_srli_epi64(mm##_castpd_##whole(a), 52);                                     \
+    const auto number = mm##_or_##whole(exponent, mm##_castpd_##whole(mm##_set1_pd(0x1p52)));              \
+    return mm##_sub_pd(mm##_cast##whole##_pd(number), mm##_set1_pd(0x1p52));                               \
+  }                                                                                                        \
+  OKTETT_INLINE batch<double, A> significand(batch<double, A> a) {                                         \
+    const auto low = mm##_and_##whole(mm##_castpd_##whole(a), mm##_set1_##bits64(0x000fffffffffffff));     \
+    return mm##_cast##whole##_pd(mm##_or_##whole(low, mm##_castpd_##whole(mm##_set1_pd(1.0))));            \
+  }
+#define OKTETT_FUSED(T, A, mm, p)                                              \
+  OKTETT_INLINE batch<T, A> fma(batch<T, A> a, batch<T, A> b, batch<T, A> c) { \
+    return mm##_fmadd_##p(a, b, c);                                            \
+  }                                                                            \
+  OKTETT_INLINE batch<T, A> fms(batch<T, A> a, batch<T, A> b, batch<T, A> c) { \
+    return mm##_fmsub_##p(a, b, c);                                            \
+  }
+
+OKTETT_IN_REGISTERS(Sse, _mm, si128, epi64x)
 
 OKTETT_INLINE void set_four(batch<float, Sse>& r, float x, float y, float z, float w) {
   r = _mm_setr_ps(x, y, z, w);
@@ -57,57 +87,14 @@ OKTETT_INLINE float reduce_min(batch<float, Sse> a) {
   const __m128 pairs = _mm_min_ps(a, _mm_movehl_ps(a, a));
   return _mm_cvtss_f32(_mm_min_ss(pairs, _mm_shuffle_ps(pairs, pairs, 1)));
 }
-OKTETT_INLINE batch<float, Sse> bit_cast_float(batch<std::int32_t, Sse> a) { return _mm_castsi128_ps(a); }
-OKTETT_INLINE batch<std::int32_t, Sse> bit_cast_int(batch<float, Sse> a) { return _mm_castps_si128(a); }
-
-OKTETT_INLINE batch<double, Sse> low_bits_to_exponent(batch<double, Sse> a) {
-  return _mm_castsi128_pd(_mm_slli_epi64(_mm_castpd_si128(a), 52));
-}
-OKTETT_INLINE batch<double, Sse> biased_exponent(batch<double, Sse> a) {
-  const __m128i whole =
-      _mm_or_si128(_mm_srli_epi64(_mm_castpd_si128(a), 52), _mm_castpd_si128(_mm_set1_pd(0x1p52)));
-  return _mm_sub_pd(_mm_castsi128_pd(whole), _mm_set1_pd(0x1p52));
-}
-OKTETT_INLINE batch<double, Sse> significand(batch<double, Sse> a) {
-  const __m128i low = _mm_and_si128(_mm_castpd_si128(a), _mm_set1_epi64x(0x000fffffffffffff));
-  return _mm_castsi128_pd(_mm_or_si128(low, _mm_castpd_si128(_mm_set1_pd(1.0))));
-}
 
 #if defined(OKTETT_COMPILED_AVX2)
 using Avx = XsimdAvx2;
-OKTETT_INLINE batch<float, Avx> min(batch<float, Avx> a, batch<float, Avx> b) { return _mm256_min_ps(a, b); }
-OKTETT_INLINE batch<float, Avx> max(batch<float, Avx> a, batch<float, Avx> b) { return _mm256_max_ps(a, b); }
-OKTETT_INLINE batch<double, Avx> min(batch<double, Avx> a, batch<double, Avx> b) {
-  return _mm256_min_pd(a, b);
-}
-OKTETT_INLINE batch<double, Avx> max(batch<double, Avx> a, batch<double, Avx> b) {
-  return _mm256_max_pd(a, b);
-}
-
-OKTETT_INLINE batch<float, Sse> fma(batch<float, Sse> a, batch<float, Sse> b, batch<float, Sse> c) {
-  return _mm_fmadd_ps(a, b, c);
-}
-OKTETT_INLINE batch<float, Sse> fms(batch<float, Sse> a, batch<float, Sse> b, batch<float, Sse> c) {
-  return _mm_fmsub_ps(a, b, c);
-}
-OKTETT_INLINE batch<float, Avx> fma(batch<float, Avx> a, batch<float, Avx> b, batch<float, Avx> c) {
-  return _mm256_fmadd_ps(a, b, c);
-}
-OKTETT_INLINE batch<float, Avx> fms(batch<float, Avx> a, batch<float, Avx> b, batch<float, Avx> c) {
-  return _mm256_fmsub_ps(a, b, c);
-}
-OKTETT_INLINE batch<double, Sse> fma(batch<double, Sse> a, batch<double, Sse> b, batch<double, Sse> c) {
-  return _mm_fmadd_pd(a, b, c);
-}
-OKTETT_INLINE batch<double, Sse> fms(batch<double, Sse> a, batch<double, Sse> b, batch<double, Sse> c) {
-  return _mm_fmsub_pd(a, b, c);
-}
-OKTETT_INLINE batch<double, Avx> fma(batch<double, Avx> a, batch<double, Avx> b, batch<double, Avx> c) {
-  return _mm256_fmadd_pd(a, b, c);
-}
-OKTETT_INLINE batch<double, Avx> fms(batch<double, Avx> a, batch<double, Avx> b, batch<double, Avx> c) {
-  return _mm256_fmsub_pd(a, b, c);
-}
+OKTETT_IN_REGISTERS(Avx, _mm256, si256, epi64x)
+OKTETT_FUSED(float, Sse, _mm, ps)
+OKTETT_FUSED(double, Sse, _mm, pd)
+OKTETT_FUSED(float, Avx, _mm256, ps)
+OKTETT_FUSED(double, Avx, _mm256, pd)
 
 OKTETT_INLINE unsigned bits(batch_bool<float, Avx> m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
 OKTETT_INLINE unsigned bits(batch_bool<double, Avx> m) {
@@ -149,48 +136,14 @@ OKTETT_INLINE batch<float, Avx> narrow(batch<double, Avx> lo, batch<double, Avx>
 OKTETT_INLINE float reduce_min(batch<float, Avx> a) {
   return reduce_min(batch<float, Sse>(_mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1))));
 }
-OKTETT_INLINE batch<float, Avx> bit_cast_float(batch<std::int32_t, Avx> a) { return _mm256_castsi256_ps(a); }
-OKTETT_INLINE batch<std::int32_t, Avx> bit_cast_int(batch<float, Avx> a) { return _mm256_castps_si256(a); }
-OKTETT_INLINE batch<double, Avx> low_bits_to_exponent(batch<double, Avx> a) {
-  return _mm256_castsi256_pd(_mm256_slli_epi64(_mm256_castpd_si256(a), 52));
-}
-OKTETT_INLINE batch<double, Avx> biased_exponent(batch<double, Avx> a) {
-  const __m256i whole = _mm256_or_si256(_mm256_srli_epi64(_mm256_castpd_si256(a), 52),
-                                        _mm256_castpd_si256(_mm256_set1_pd(0x1p52)));
-  return _mm256_sub_pd(_mm256_castsi256_pd(whole), _mm256_set1_pd(0x1p52));
-}
-OKTETT_INLINE batch<double, Avx> significand(batch<double, Avx> a) {
-  const __m256i low = _mm256_and_si256(_mm256_castpd_si256(a), _mm256_set1_epi64x(0x000fffffffffffff));
-  return _mm256_castsi256_pd(_mm256_or_si256(low, _mm256_castpd_si256(_mm256_set1_pd(1.0))));
-}
 #endif
 
 #if defined(OKTETT_COMPILED_AVX512)
 using Avx5 = xsimd::avx512bw;
-OKTETT_INLINE batch<float, Avx5> min(batch<float, Avx5> a, batch<float, Avx5> b) {
-  return _mm512_min_ps(a, b);
-}
-OKTETT_INLINE batch<float, Avx5> max(batch<float, Avx5> a, batch<float, Avx5> b) {
-  return _mm512_max_ps(a, b);
-}
-OKTETT_INLINE batch<double, Avx5> min(batch<double, Avx5> a, batch<double, Avx5> b) {
-  return _mm512_min_pd(a, b);
-}
-OKTETT_INLINE batch<double, Avx5> max(batch<double, Avx5> a, batch<double, Avx5> b) {
-  return _mm512_max_pd(a, b);
-}
-OKTETT_INLINE batch<float, Avx5> fma(batch<float, Avx5> a, batch<float, Avx5> b, batch<float, Avx5> c) {
-  return _mm512_fmadd_ps(a, b, c);
-}
-OKTETT_INLINE batch<float, Avx5> fms(batch<float, Avx5> a, batch<float, Avx5> b, batch<float, Avx5> c) {
-  return _mm512_fmsub_ps(a, b, c);
-}
-OKTETT_INLINE batch<double, Avx5> fma(batch<double, Avx5> a, batch<double, Avx5> b, batch<double, Avx5> c) {
-  return _mm512_fmadd_pd(a, b, c);
-}
-OKTETT_INLINE batch<double, Avx5> fms(batch<double, Avx5> a, batch<double, Avx5> b, batch<double, Avx5> c) {
-  return _mm512_fmsub_pd(a, b, c);
-}
+OKTETT_IN_REGISTERS(Avx5, _mm512, si512, epi64)
+OKTETT_FUSED(float, Avx5, _mm512, ps)
+OKTETT_FUSED(double, Avx5, _mm512, pd)
+
 OKTETT_INLINE unsigned bits(batch_bool<float, Avx5> m) { return m.data; }
 OKTETT_INLINE unsigned bits(batch_bool<double, Avx5> m) { return m.data; }
 OKTETT_INLINE unsigned bits(batch_bool<std::int32_t, Avx5> m) { return m.data; }
@@ -216,22 +169,8 @@ OKTETT_INLINE float reduce_min(batch<float, Avx5> a) {
 OKTETT_INLINE batch<float, Avx5> concat(batch<float, Avx> lo, batch<float, Avx> hi) {
   return _mm512_insertf32x8(_mm512_castps256_ps512(lo), hi, 1);
 }
-OKTETT_INLINE batch<float, Avx5> bit_cast_float(batch<std::int32_t, Avx5> a) {
-  return _mm512_castsi512_ps(a);
-}
-OKTETT_INLINE batch<std::int32_t, Avx5> bit_cast_int(batch<float, Avx5> a) { return _mm512_castps_si512(a); }
-OKTETT_INLINE batch<double, Avx5> low_bits_to_exponent(batch<double, Avx5> a) {
-  return _mm512_castsi512_pd(_mm512_slli_epi64(_mm512_castpd_si512(a), 52));
-}
-OKTETT_INLINE batch<double, Avx5> biased_exponent(batch<double, Avx5> a) {
-  const __m512i whole = _mm512_or_si512(_mm512_srli_epi64(_mm512_castpd_si512(a), 52),
-                                        _mm512_castpd_si512(_mm512_set1_pd(0x1p52)));
-  return _mm512_sub_pd(_mm512_castsi512_pd(whole), _mm512_set1_pd(0x1p52));
-}
-OKTETT_INLINE batch<double, Avx5> significand(batch<double, Avx5> a) {
-  const __m512i low = _mm512_and_si512(_mm512_castpd_si512(a), _mm512_set1_epi64(0x000fffffffffffff));
-  return _mm512_castsi512_pd(_mm512_or_si512(low, _mm512_castpd_si512(_mm512_set1_pd(1.0))));
-}
 #endif
+#undef OKTETT_IN_REGISTERS
+#undef OKTETT_FUSED
 
 }  // namespace oktett::native
