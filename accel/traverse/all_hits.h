@@ -54,8 +54,10 @@ void collect_triangles(const Accel& accel, const TriangleBlock& block, int count
 /// -1 if the ray enters the shape at root `j`, 1 if it leaves it; 0 for shapes without an inside.
 template <class S, class A>
 OKTETT_INLINE float turn_of(const typename S::Pool& pool, std::uint32_t k, int j, const RayState<1, A>& r) {
-  if constexpr (kSolid<S> && S::kRoots == 1)
-    return pool.nx[k] * r.d[0][0] + pool.ny[k] * r.d[1][0] + pool.nz[k] * r.d[2][0] < 0 ? -1.0f : 1.0f;
+  if constexpr (kSolid<S> && S::kRoots == 1) {
+    const Vec3d n = S::template broadcast<double>(pool, k).n, d{r.d[0][0], r.d[1][0], r.d[2][0]};
+    return dot(n, d) < 0 ? -1.0f : 1.0f;
+  }
   return !kSolid<S> ? 0.0f : j == 0 ? -1.0f : 1.0f;
 }
 

@@ -11,23 +11,22 @@
 
 namespace oktett {
 
-struct BoxSolid {
+/// Numbers of a primitive: the rows of the 3x4 map from the world to the cube [-1, 1]^3, and of its inverse.
+struct BoxSolid : NumberedShape<BoxSolid, 24> {
   static constexpr int kRoots = 2;
   using Data = BoxShape;
   static constexpr bool kNeedsSimilarity = false;
 
-  struct Pool {
-    Column<double> m[12];      ///< row-major 3x4 map from the world to the cube [-1, 1]^3
-    Column<double> world[12];  ///< its inverse
-    Column<std::uint32_t> item;
-    std::size_t size() const { return item.size(); }
-    std::size_t bytes() const { return m[0].bytes() * 24 + item.bytes(); }
-  };
-
   template <class D>
   struct Lanes {
-    D m[12];
+    D m[12];  ///< to the cube
   };
+  template <class D, class Number>
+  OKTETT_INLINE static Lanes<D> lanes(const Number& number) {
+    Lanes<D> l;
+    for (int k = 0; k < 12; ++k) l.m[k] = number(k);
+    return l;
+  }
 
   static bool is_empty(const BoxShape& s) {
     return !(s.min.x < s.max.x && s.min.y < s.max.y && s.min.z < s.max.z);
@@ -37,28 +36,9 @@ struct BoxSolid {
     const Affine cube =
         to_world * Affine::translation((s.min + s.max) * 0.5) * Affine::scaling((s.max - s.min) * 0.5);
     const Affine inverse = cube.inverse();
-    for (int k = 0; k < 12; ++k) {
-      p.m[k].push_back(inverse.m[k / 4][k % 4]);
-      p.world[k].push_back(cube.m[k / 4][k % 4]);
-    }
-    p.item.push_back(item);
-  }
-  static void finish(Pool& p) {
-    for (int i = 0; i < kPoolPadding; ++i)
-      for (Column<double>& c : p.m) c.push_back(std::numeric_limits<double>::quiet_NaN());
-  }
-
-  template <class D>
-  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
-    Lanes<D> l;
-    for (int k = 0; k < 12; ++k) l.m[k] = D::load(&p.m[k][i]);
-    return l;
-  }
-  template <class D>
-  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
-    Lanes<D> l;
-    for (int k = 0; k < 12; ++k) l.m[k] = D(p.m[k][i]);
-    return l;
+    std::array<double, 24> numbers;
+    for (int k = 0; k < 12; ++k) numbers[k] = inverse.m[k / 4][k % 4], numbers[12 + k] = cube.m[k / 4][k % 4];
+    p.add(numbers, item);
   }
 
   /// A ray exactly parallel to a slab is inside it throughout or never; a ray in a face counts as inside.
@@ -81,8 +61,8 @@ struct BoxSolid {
     return meets & (near <= far);
   }
 
-  static Affine to_cube(const Pool& p, std::size_t i) { return map_of(p.m, i); }
-  static Affine to_world(const Pool& p, std::size_t i) { return map_of(p.world, i); }
+  static Affine to_cube(const Pool& p, std::size_t i) { return map_of(p.number, i); }
+  static Affine to_world(const Pool& p, std::size_t i) { return map_of(p.number + 12, i); }
 
   static Box bounds(const Pool& p, std::size_t i) {
     const Affine world = to_world(p, i);
@@ -117,8 +97,8 @@ struct BoxSolid {
   OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
     AffineLanes<D> to_cube, to_world;
     for (int k = 0; k < 12; ++k) {
-      to_cube.m[k / 4][k % 4] = fetch(p.m[k]);
-      to_world.m[k / 4][k % 4] = fetch(p.world[k]);
+      to_cube.m[k / 4][k % 4] = fetch(p.number[k]);
+      to_world.m[k / 4][k % 4] = fetch(p.number[12 + k]);
     }
     const Vec3<D> world = hit.point(), q = map_point(to_cube, world), m{abs(q.x), abs(q.y), abs(q.z)};
     // The face met is the nearest one; the lowest axis wins ties.
@@ -197,7 +177,7 @@ struct BoxSolid {
     return best;
   }
 
-  static Affine map_of(const Column<double> (&columns)[12], std::size_t i) {
+  static Affine map_of(const Column<double>* columns, std::size_t i) {
     Affine a;
     for (int k = 0; k < 12; ++k) a.m[k / 4][k % 4] = columns[k][i];
     return a;

@@ -9,7 +9,7 @@
 ///   shown through an instance;
 /// - `S::Pool`: columns of double, one element per primitive, plus `item` numbers.
 ///   `S::add(pool, shape, to_world, item)` appends a shape that is not empty; `S::finish` pads with
-///   primitives that are never hit, so that lanes may be loaded past the end;
+///   primitives that are never hit, so that lanes may be loaded past the end. See NumberedShape;
 /// - `S::Lanes<D>`, `S::load<D>(pool, i)`: primitives i, i + 1, ... in lanes; `S::broadcast<D>(pool, i)`: one
 ///   primitive in all lanes;
 /// - `S::kRoots` and `S::roots(ray, lanes, t)`: where the ray's whole line meets the shape, t[0] <= t[1], and
@@ -27,6 +27,9 @@
 ///   and Pool have its normal;
 /// - `S::closest(shape, to_world, p)`: the point of the surface nearest to p; the map is a similarity if the
 ///   shape needs one. `S::shape(pool, i)`, if it is there, is the shape in the world, else it is looked up.
+
+#include <array>
+#include <limits>
 
 #include "core/box.h"
 #include "core/soa.h"
@@ -49,6 +52,44 @@ inline constexpr bool kHasUvLanes = requires(Simd<double, 1, ScalarIsa>& u,
 
 /// How many lanes past its last element a pool must be readable.
 inline constexpr int kPoolPadding = 16;
+
+/// The part of the contract of a shape S whose primitives are N numbers each: `S::numbers(shape)`, which
+/// `S::lanes<D>(number)` turns into S::Lanes<D>, where `number(k)` is number k.
+template <class S, int N>
+struct NumberedShape {
+  struct Pool {
+    Column<double> number[N];
+    Column<std::uint32_t> item;
+    std::size_t size() const { return item.size(); }
+    std::size_t bytes() const { return number[0].bytes() * N + item.bytes(); }
+    void add(const std::array<double, N>& numbers, std::uint32_t name) {
+      for (int k = 0; k < N; ++k) number[k].push_back(numbers[k]);
+      item.push_back(name);
+    }
+  };
+
+  template <class Shape>
+  static void add(Pool& p, const Shape& s, std::uint32_t item) {
+    p.add(S::numbers(s), item);
+  }
+  template <class Shape>
+  static void add(Pool& p, const Shape& s, const Affine& to_world, std::uint32_t item) {
+    add(p, S::moved(s, to_world), item);
+  }
+  static void finish(Pool& p) {
+    for (Column<double>& c : p.number)
+      for (int i = 0; i < kPoolPadding; ++i) c.push_back(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  template <class D>
+  OKTETT_INLINE static auto load(const Pool& p, std::size_t i) {
+    return S::template lanes<D>([&](int k) { return D::load(&p.number[k][i]); });
+  }
+  template <class D>
+  OKTETT_INLINE static auto broadcast(const Pool& p, std::size_t i) {
+    return S::template lanes<D>([&](int k) { return D(p.number[k][i]); });
+  }
+};
 
 /// Takes the first root of each lane in `meets` inside (tmin, tmax] as the hit. Distances are rounded to
 /// float, as hits store them, before they are compared, so that every traversal makes the same choice.

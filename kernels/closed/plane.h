@@ -27,23 +27,24 @@ inline SurfaceNearest closest_on_plane(const Vec3d& origin, const Vec3d& n, cons
   return {height * height, p - n * height, n};
 }
 
-struct Plane {
+struct Plane : NumberedShape<Plane, 4> {
   static constexpr int kRoots = 1;
   using Data = PlaneShape;  ///< the half-space below is inside
   static constexpr bool kNeedsSimilarity = false;
 
-  struct Pool {
-    Column<double> nx, ny, nz, offset;  ///< unit normal
-    Column<std::uint32_t> item;
-    std::size_t size() const { return item.size(); }
-    std::size_t bytes() const { return nx.bytes() * 4 + item.bytes(); }
-  };
-
   template <class D>
   struct Lanes {
-    Vec3<D> n;
+    Vec3<D> n;  ///< unit normal
     D offset;
   };
+  template <class D, class Number>
+  OKTETT_INLINE static Lanes<D> lanes(const Number& number) {
+    return {{number(0), number(1), number(2)}, number(3)};
+  }
+  static std::array<double, 4> numbers(const PlaneShape& s) {
+    const Vec3d n = normalize(s.normal);
+    return {n.x, n.y, n.z, s.offset};
+  }
 
   static bool is_empty(const PlaneShape& s) { return !(length(s.normal) > 0); }
   static PlaneShape moved(const PlaneShape& s, const Affine& m) {
@@ -52,27 +53,9 @@ struct Plane {
     const Vec3d q = normalize(m.inverse().normal_by_inverse(n));
     return {q, dot(q, p)};
   }
-  static PlaneShape shape(const Pool& p, std::size_t i) { return {{p.nx[i], p.ny[i], p.nz[i]}, p.offset[i]}; }
-  static void add(Pool& p, const PlaneShape& s, std::uint32_t item) {
-    const Vec3d n = normalize(s.normal);
-    p.nx.push_back(n.x), p.ny.push_back(n.y), p.nz.push_back(n.z);
-    p.offset.push_back(s.offset), p.item.push_back(item);
-  }
-  static void add(Pool& p, const PlaneShape& s, const Affine& to_world, std::uint32_t item) {
-    add(p, moved(s, to_world), item);
-  }
-  static void finish(Pool& p) {
-    for (int i = 0; i < kPoolPadding; ++i)
-      for (Column<double>* c : {&p.nx, &p.ny, &p.nz, &p.offset}) c->push_back(0);
-  }
-
-  template <class D>
-  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
-    return {{D::load(&p.nx[i]), D::load(&p.ny[i]), D::load(&p.nz[i])}, D::load(&p.offset[i])};
-  }
-  template <class D>
-  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
-    return {{D(p.nx[i]), D(p.ny[i]), D(p.nz[i])}, D(p.offset[i])};
+  static PlaneShape shape(const Pool& p, std::size_t i) {
+    const auto s = broadcast<double>(p, i);
+    return {s.n, s.offset};
   }
 
   template <class D>
@@ -81,7 +64,8 @@ struct Plane {
   }
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
-    return dot(Vec3d{p.nx[i], p.ny[i], p.nz[i]}, q) < p.offset[i];
+    const auto s = broadcast<double>(p, i);
+    return dot(s.n, q) < s.offset;
   }
 
   static SurfaceNearest closest(const PlaneShape& s, const Affine& to_world, const Vec3d& p) {
@@ -92,12 +76,13 @@ struct Plane {
 
   template <class D, class Fetch>
   OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
-    return plane_surface({fetch(p.nx), fetch(p.ny), fetch(p.nz)}, fetch(p.offset), hit);
+    const auto s = lanes<D>([&](int k) { return fetch(p.number[k]); });
+    return plane_surface(s.n, s.offset, hit);
   }
 
   /// uv: coordinates in the plane, in world units, along a basis that for the ground (0, 1, 0) is (x, -z).
   static void uv(const Pool& p, std::size_t i, const Vec3d&, const Vec3d& point, SurfaceInteraction& s) {
-    const Vec3d n{p.nx[i], p.ny[i], p.nz[i]};
+    const Vec3d n = broadcast<double>(p, i).n;
     const int k = dominant_axis(n);
     const Vec3d u = normalize(k == 1 ? cross(n, Vec3d{0, 0, -1}) * -1.0 : cross(Vec3d{0, 1, 0}, n));
     const Vec3d v = cross(n, u);

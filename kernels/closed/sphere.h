@@ -9,23 +9,23 @@
 
 namespace oktett {
 
-struct Sphere {
+struct Sphere : NumberedShape<Sphere, 4> {
   static constexpr int kRoots = 2;
   using Data = SpheresShape;
   static constexpr bool kNeedsSimilarity = true;
-
-  struct Pool {
-    Column<double> x, y, z, radius;
-    Column<std::uint32_t> item;
-    std::size_t size() const { return item.size(); }
-    std::size_t bytes() const { return x.bytes() * 4 + item.bytes(); }
-  };
 
   template <class D>
   struct Lanes {
     Vec3<D> center;
     D radius;
   };
+  template <class D, class Number>
+  OKTETT_INLINE static Lanes<D> lanes(const Number& number) {
+    return {{number(0), number(1), number(2)}, number(3)};
+  }
+  static std::array<double, 4> numbers(const SphereShape& s) {
+    return {s.center.x, s.center.y, s.center.z, s.radius};
+  }
 
   static std::size_t count(const SpheresShape& data) { return data.spheres.size(); }
   static const SphereShape& nth(const SpheresShape& data, std::size_t i) { return data.spheres[i]; }
@@ -34,28 +34,9 @@ struct Sphere {
   static SphereShape moved(const SphereShape& s, const Affine& m) {
     return {m.point(s.center), s.radius * m.uniform_scale()};
   }
-  static SphereShape shape(const Pool& p, std::size_t i) { return {{p.x[i], p.y[i], p.z[i]}, p.radius[i]}; }
-  static void add(Pool& p, const SphereShape& s, std::uint32_t item) {
-    p.x.push_back(s.center.x), p.y.push_back(s.center.y), p.z.push_back(s.center.z);
-    p.radius.push_back(s.radius), p.item.push_back(item);
-  }
-  static void add(Pool& p, const SphereShape& s, const Affine& to_world, std::uint32_t item) {
-    add(p, moved(s, to_world), item);
-  }
-  static void finish(Pool& p) {
-    for (int i = 0; i < kPoolPadding; ++i) {
-      for (Column<double>* c : {&p.x, &p.y, &p.z}) c->push_back(0);
-      p.radius.push_back(std::numeric_limits<double>::quiet_NaN());
-    }
-  }
-
-  template <class D>
-  OKTETT_INLINE static Lanes<D> load(const Pool& p, std::size_t i) {
-    return {{D::load(&p.x[i]), D::load(&p.y[i]), D::load(&p.z[i])}, D::load(&p.radius[i])};
-  }
-  template <class D>
-  OKTETT_INLINE static Lanes<D> broadcast(const Pool& p, std::size_t i) {
-    return {{D(p.x[i]), D(p.y[i]), D(p.z[i])}, D(p.radius[i])};
+  static SphereShape shape(const Pool& p, std::size_t i) {
+    const auto s = broadcast<double>(p, i);
+    return {s.center, s.radius};
   }
 
   /// Where the line of a ray comes closest to the centre, in multiples of its direction, and the square of
@@ -148,8 +129,9 @@ struct Sphere {
   static Box bounds(const Pool& p, std::size_t i) { return bounds(shape(p, i)); }
 
   static bool inside(const Pool& p, std::size_t i, const Vec3d& q) {
-    const Vec3d m = q - Vec3d{p.x[i], p.y[i], p.z[i]};
-    return dot(m, m) < p.radius[i] * p.radius[i];
+    const auto [center, radius] = broadcast<double>(p, i);
+    const Vec3d m = q - center;
+    return dot(m, m) < radius * radius;
   }
 
   /// To the centre the point along +z is nearest.
@@ -163,10 +145,10 @@ struct Sphere {
   /// Moving the point onto the sphere removes the error along the normal.
   template <class D, class Fetch>
   OKTETT_INLINE static SurfacePoints<D> surface(const Pool& p, const Fetch& fetch, const HitPoints<D>& hit) {
-    const Vec3<D> c{fetch(p.x), fetch(p.y), fetch(p.z)};
-    const D radius = fetch(p.radius);
-    const Vec3<D> n = unit_lanes(sub_lanes(hit.point(), c));
-    return {add_lanes(c, scale_lanes(n, radius)), D(0x1p-48) * (length_lanes(c) + radius), n};
+    const auto s = lanes<D>([&](int k) { return fetch(p.number[k]); });
+    const Vec3<D> n = unit_lanes(sub_lanes(hit.point(), s.center));
+    return {add_lanes(s.center, scale_lanes(n, s.radius)), D(0x1p-48) * (length_lanes(s.center) + s.radius),
+            n};
   }
 
   /// Longitude from +x towards +z and latitude from the south pole, both scaled to [0, 1], where the normal
@@ -179,12 +161,13 @@ struct Sphere {
   }
   static void uv(const Pool& p, std::size_t i, const Vec3d& hit, const Vec3d&, SurfaceInteraction& s) {
     using D = Simd<double, 1, ScalarIsa>;
-    const Vec3d n = normalize(hit - Vec3d{p.x[i], p.y[i], p.z[i]});
+    const auto [center, radius] = broadcast<double>(p, i);
+    const Vec3d n = normalize(hit - center);
     D u, v;
     uv_lanes(oktett::broadcast<D>(n), u, v);
     s.uv = {static_cast<float>(only_lane(u)), static_cast<float>(only_lane(v))};
-    s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * p.radius[i]));
-    const double across = std::sqrt(n.x * n.x + n.z * n.z), turn = std::numbers::pi * p.radius[i];
+    s.tangent = Vec3f(Vec3d{-n.z, 0, n.x} * (2 * std::numbers::pi * radius));
+    const double across = std::sqrt(n.x * n.x + n.z * n.z), turn = std::numbers::pi * radius;
     if (across > 0) s.bitangent = Vec3f(Vec3d{-n.y * n.x / across, across, -n.y * n.z / across} * turn);
   }
 };

@@ -243,8 +243,8 @@ TEST(Build, LeavesOfSpheresAreAligned) {
     EXPECT_EQ(leaf.begin % 8, 0u);
     for (std::uint32_t k = leaf.begin; k < leaf.begin + leaf.count; ++k) {
       const SphereShape& s = spheres.spheres[pool.item[k]];
-      EXPECT_EQ(pool.x[k], s.center.x);
-      EXPECT_EQ(pool.radius[k], s.radius);
+      EXPECT_EQ(Sphere::shape(pool, k).center, s.center);
+      EXPECT_EQ(Sphere::shape(pool, k).radius, s.radius);
       ++seen[pool.item[k]];
     }
   }

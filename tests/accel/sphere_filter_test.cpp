@@ -27,8 +27,9 @@ void expect_no_hit_is_left_out(const Ray& whole, const Sphere::Pool& pool, int p
   HitLanes<F> hit;
   const bool met = any(first_root<Sphere>(lanes, to_double(lanes), Sphere::broadcast<D>(pool, 0), hit));
   const bool maybe = (SphereFilter<F>(lanes).may_meet(spheres, 0) & 1u) != 0;
-  EXPECT_TRUE(maybe || !met) << exact_text(ray) << " sphere " << pool.x[0] << ' ' << pool.y[0] << ' '
-                             << pool.z[0] << ' ' << pool.radius[0];
+  const SphereShape s = Sphere::shape(pool, 0);
+  EXPECT_TRUE(maybe || !met) << exact_text(ray) << " sphere " << s.center.x << ' ' << s.center.y << ' '
+                             << s.center.z << ' ' << s.radius;
   ++(met ? counts.hits : counts.misses);
   counts.left_out += maybe ? 0 : 1;
 }

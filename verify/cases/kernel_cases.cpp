@@ -123,7 +123,7 @@ Targets make_oriented_box(CaseRandom& r, const Frame& f, KernelCases& cases, std
       Affine::translation(r.vector() * f.scale + f.offset) * rotation * Affine::scaling(size);
   BoxSolid::Pool pool;
   BoxSolid::add(pool, {}, world, 0);
-  for (int k = 0; k < 12; ++k) cases.shape[k][i] = pool.m[k][0];
+  for (int k = 0; k < 12; ++k) cases.shape[k][i] = pool.number[k][0];
   const auto side = [&] { return r.bits() & 1 ? 1.0 : -1.0; };
   const Vec3d corner{side(), side(), side()};
   Vec3d edge = corner, normal{0, 0, 0};

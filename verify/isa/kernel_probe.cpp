@@ -56,27 +56,6 @@ void run_triangle(TriangleTest test, const KernelProbe& run) {
   }
 }
 
-/// The columns of a pool element, in the order in which its Lanes hold them.
-template <class D>
-struct PoolColumns {
-  const KernelProbe& run;
-  std::size_t b;
-  OKTETT_INLINE D operator()(int k) const { return load_column<D>(run.shape[k], b, run.count); }
-  OKTETT_INLINE Vec3<D> vec(int k) const { return {(*this)(k), (*this)(k + 1), (*this)(k + 2)}; }
-};
-
-template <class S, class D>
-OKTETT_INLINE typename S::template Lanes<D> lanes_of(const PoolColumns<D>& column) {
-  if constexpr (std::is_same_v<S, Sphere>) return {column.vec(0), column(3)};
-  if constexpr (std::is_same_v<S, Plane>) return {column.vec(0), column(3)};
-  if constexpr (std::is_same_v<S, Disk>) return {column.vec(0), column.vec(3), column(6)};
-  if constexpr (std::is_same_v<S, BoxSolid>) {
-    typename S::template Lanes<D> l;
-    for (int k = 0; k < 12; ++k) l.m[k] = column(k);
-    return l;
-  }
-}
-
 /// A sphere solved by the algebraic method, so that first_root can be asked for it.
 struct AlgebraicSphere : Sphere {
   template <class D>
@@ -97,13 +76,14 @@ template <class S, int W, class A>
 void run_shape(const KernelProbe& run) {
   using F = Simd<float, W, A>;
   using D = Simd<double, W, A>;
-  using Base = std::conditional_t<std::is_base_of_v<Sphere, S>, Sphere, S>;
   RayState<W, A> state;
   for (std::size_t b = 0; b < run.count; b += W) {
     const RayLanes<F> ray = load_span<F>(run.rays, b);
     const unsigned valid = state.set(ray.o, ray.d, ray.tmin, ray.tmax, Box{});
+    const auto shape =
+        S::template lanes<D>([&](int k) { return load_column<D>(run.shape[k], b, run.count); });
     HitLanes<F> h;
-    const auto found = first_root<S>(ray, to_double(ray), lanes_of<Base>(PoolColumns<D>{run, b}), h);
+    const auto found = first_root<S>(ray, to_double(ray), shape, h);
     store_results(run, b, bits(found) & valid, h);
   }
 }

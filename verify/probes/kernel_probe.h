@@ -18,7 +18,7 @@ struct KernelProbe {
   std::size_t count = 0;
   RaySpan rays;
   const float* corner[3][3] = {};  ///< triangles: [corner][axis]
-  const double* shape[12] = {};    ///< other shapes: the columns of their pool, in its order
+  const double* shape[12] = {};    ///< other shapes: the numbers of their Lanes
   float* t = nullptr;
   float* u = nullptr;
   float* v = nullptr;

@@ -25,7 +25,7 @@ struct BeamSphere {
   /// False if the sphere is too near or too large for the bounds.
   template <class A>
   OKTETT_INLINE bool set(const Sphere::Pool& pool, std::uint32_t k, const BeamRays<A>& beam) {
-    const double c[3] = {pool.x[k], pool.y[k], pool.z[k]}, radius = pool.radius[k];
+    const auto [c, radius] = Sphere::broadcast<double>(pool, k);
     double m[3];
     for (int i = 0; i < 3; ++i) m[i] = c[beam.axis[i]] - beam.apex[i];
     if (beam.mirrored) m[2] = -m[2];
@@ -246,14 +246,14 @@ struct BeamPlane {
 
 template <class A>
 BeamPlane beam_plane(const Plane::Pool& pool, std::uint32_t k, const BeamRays<A>& beam) {
-  const double n[3] = {pool.nx[k], pool.ny[k], pool.nz[k]};
-  double a[3], at = 0, size = std::fabs(pool.offset[k]);
+  const auto [n, offset] = Plane::broadcast<double>(pool, k);
+  double a[3], at = 0, size = std::fabs(offset);
   for (int i = 0; i < 3; ++i) {
     const double p = beam.apex[i];
     a[i] = n[beam.axis[i]], at += a[i] * p, size += std::fabs(p);
   }
   if (beam.mirrored) a[2] = -a[2];
-  const double depth = pool.offset[k] - at;
+  const double depth = offset - at;
   BeamPlane plane;
   plane.c = static_cast<float>(a[2] / depth), plane.height = -depth;
   plane.cx = static_cast<float>(a[0] / depth), plane.cy = static_cast<float>(a[1] / depth);
@@ -322,7 +322,8 @@ OKTETT_INLINE unsigned rays_across_plane(const BeamTask<Q, A>& task, const Plane
   using D = Simd<double, kBeamGroup, A>;
   const std::size_t base = static_cast<std::size_t>(g) * kBeamGroup;
   const Vec3<D> o = to_double(load_rays<F>(task.beam, task.rays, base).o);
-  const D height = dot_lanes(Vec3<D>{D(pool.nx[k]), D(pool.ny[k]), D(pool.nz[k])}, o) - D(pool.offset[k]);
+  const auto [n, offset] = Plane::broadcast<D>(pool, k);
+  const D height = dot_lanes(n, o) - offset;
   const D same = plane.height < 0 ? -height : height, most(std::fabs(plane.height) * 0x1p18);
   return bits(~mask_cast<float>((D(0.0) < same) & (same <= most))) & 0xffff;
 }
