@@ -3,6 +3,7 @@
 /// width and instruction set gives the same bits; those of core/math.h are these with one lane.
 
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -27,12 +28,12 @@ OKTETT_INLINE D round_even(const D& x) {
 
 /// Two ways to add up a polynomial, which differ in the last bits; `c` from the highest power down.
 ///
-/// Horner's scheme has the fewest operations.
+/// Horner's scheme has the fewest operations. Terms above those of c[kFirst] are left out.
 struct Horner {
-  template <class D, std::size_t N>
+  template <std::size_t kFirst = 0, class D, std::size_t N>
   OKTETT_INLINE static D sum(const double (&c)[N], const D& x) {
-    D sum(c[0]);
-    for (std::size_t i = 1; i < N; ++i) sum = sum * x + D(c[i]);
+    D sum(c[kFirst]);
+    for (std::size_t i = kFirst + 1; i < N; ++i) sum = sum * x + D(c[i]);
     return sum;
   }
 };
@@ -141,18 +142,19 @@ OKTETT_INLINE D without_quarters(const D& x, const D& quarters) {
          quarters * D(2.02226624871116645580e-21);
 }
 
-/// The sine of an angle of up to an eighth of a turn, by Taylor's series.
-template <class D>
+/// The sine of an angle of up to an eighth of a turn, by the `kTerms` terms of Taylor's series behind the
+/// first.
+template <std::size_t kTerms = 8, class D>
 OKTETT_INLINE D sin_of_eighth(const D& angle) {
   constexpr double kTaylor[] = {
       1 / 355687428096000.0, -1 / 1307674368000.0, 1 / 6227020800.0, -1 / 39916800.0,
       1 / 362880.0,          -1 / 5040.0,          1 / 120.0,        -1 / 6.0};
   const D square = angle * angle;
-  return angle + angle * (square * Horner::sum(kTaylor, square));
+  return angle + angle * (square * Horner::sum<std::size(kTaylor) - kTerms>(kTaylor, square));
 }
 
-/// The cosine of such an angle.
-template <class D>
+/// The cosine of such an angle, by `kTerms` terms.
+template <std::size_t kTerms = 10, class D>
 OKTETT_INLINE D cos_of_eighth(const D& angle) {
   constexpr double kTaylor[] = {-1 / 6402373705728000.0,
                                 1 / 20922789888000.0,
@@ -164,7 +166,7 @@ OKTETT_INLINE D cos_of_eighth(const D& angle) {
                                 1 / 24.0,
                                 -1 / 2.0,
                                 1};
-  return Horner::sum(kTaylor, angle * angle);
+  return Horner::sum<std::size(kTaylor) - kTerms>(kTaylor, angle * angle);
 }
 
 /// Sine and cosine of `turn` times a full circle, 0 <= turn <= 1. The absolute error is below 1e-15.
@@ -172,22 +174,9 @@ template <int W, class A>
 OKTETT_INLINE void sin_cos_of_turn(const Simd<double, W, A>& turn, Simd<double, W, A>& sine,
                                    Simd<double, W, A>& cosine) {
   using D = Simd<double, W, A>;
-  // Taylor's series, for angles up to pi/4.
-  constexpr double kSine[] = {-1 / 1307674368000.0, 1 / 6227020800.0, -1 / 39916800.0, 1 / 362880.0,
-                              -1 / 5040.0,          1 / 120.0,        -1 / 6.0};
-  constexpr double kCosine[] = {1 / 20922789888000.0,
-                                -1 / 87178291200.0,
-                                1 / 479001600.0,
-                                -1 / 3628800.0,
-                                1 / 40320.0,
-                                -1 / 720.0,
-                                1 / 24.0,
-                                -1 / 2.0,
-                                1};
   const D quarters = turn * D(4.0), quadrant = whole_part(quarters + D(0.5));
-  const D angle = (quarters - quadrant) * D(std::numbers::pi / 2), square = angle * angle;
-  const D s = angle + angle * (square * Horner::sum(kSine, square));
-  const D c = Horner::sum(kCosine, square);
+  const D angle = (quarters - quadrant) * D(std::numbers::pi / 2);
+  const D s = sin_of_eighth<7>(angle), c = cos_of_eighth<9>(angle);
   const auto first = quadrant == D(1.0), second = quadrant == D(2.0), third = quadrant == D(3.0);
   const auto odd = first | third;
   const D along = select(odd, s, c), across = select(odd, c, s);
