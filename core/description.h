@@ -89,10 +89,26 @@ struct ChoiceOf {
 /// A box {min, max} with an inside; both are needed.
 struct SolidBox {
   Vec3d &lo, &hi;
+
+  void describe(auto& p) {
+    p.required("min", lo, kCoordinate, "the corner of least x, y and z");
+    p.required("max", hi, kCoordinate, "the corner of greatest x, y and z");
+    p.check(lo.x < hi.x, "max", "the x of max must be greater than that of min");
+    p.check(lo.y < hi.y, "max", "the y of max must be greater than that of min");
+    p.check(lo.z < hi.z, "max", "the z of max must be greater than that of min");
+  }
 };
 /// A box {min, max}, either of which may be left out. One without volume cuts everything away.
 struct ClipBox {
   Vec3d &lo, &hi;
+
+  void describe(auto& p) {
+    p.optional("min", lo, kCoordinate, "the corner of least x, y and z");
+    p.optional("max", hi, kCoordinate, "the corner of greatest x, y and z");
+    p.check(lo.x <= hi.x, "max", "the clip box has min > max along x");
+    p.check(lo.y <= hi.y, "max", "the clip box has min > max along y");
+    p.check(lo.z <= hi.z, "max", "the clip box has min > max along z");
+  }
 };
 /// A value that has no member of its own: whoever reads the shape reads it, too.
 struct ByHand {

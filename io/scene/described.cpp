@@ -113,28 +113,6 @@ void ParameterReader::read(const YamlNode& node, const Parameter& parameter, std
     points[i] = load_.values.vector(*items[i]);
 }
 
-void ParameterReader::read(const YamlNode& node, const Parameter& parameter, SolidBox& box) {
-  Corners<Parameter::Need::required> corners{box.lo, box.hi};
-  const Fields fields = read_described(load_, node, parameter.key, corners);
-  box.lo = corners.lo;
-  box.hi = corners.hi;
-  for (int k = 0; k < 3; ++k)
-    if (!(box.lo[k] < box.hi[k]))
-      throw Error(fields.require("max").where(),
-                  fmt::format("the {} of max must be greater than that of min", "xyz"[k]));
-}
-
-void ParameterReader::read(const YamlNode& node, const Parameter& parameter, ClipBox& box) {
-  Corners<Parameter::Need::optional> corners{box.lo, box.hi};
-  const Fields fields = read_described(load_, node, parameter.key, corners);
-  box.lo = corners.lo;
-  box.hi = corners.hi;
-  for (int k = 0; k < 3; ++k)
-    if (box.lo[k] > box.hi[k])
-      throw Error((fields["max"] ? *fields["max"] : node).where(),
-                  fmt::format("the {} box has min > max along {}", parameter.key, "xyz"[k]));
-}
-
 void ParameterReader::read(const YamlNode& node, const Parameter&, std::vector<Monomial>& terms) {
   const std::string text = load_.values.text(node);
   try {

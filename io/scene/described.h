@@ -71,17 +71,6 @@ const char* map_name(const char* key) {
     return key;
 }
 
-/// The corners of a box; both are needed, or either may be left out.
-template <Parameter::Need need>
-struct Corners {
-  Vec3d lo{}, hi{};
-
-  void describe(auto& p) {
-    p.visit(Parameter{"min", "the corner of least x, y and z", kCoordinate, need}, lo);
-    p.visit(Parameter{"max", "the corner of greatest x, y and z", kCoordinate, need}, hi);
-  }
-};
-
 /// A function of x, y and z.
 FunctionTape read_function(SceneLoad& load, const YamlNode& node);
 
@@ -141,8 +130,6 @@ class ParameterReader : public ParameterVisitor<ParameterReader> {
     load_.values.numbers(node, values, parameter.range);
   }
   void read(const YamlNode& node, const Parameter& parameter, std::span<Vec3d> points);
-  void read(const YamlNode& node, const Parameter& parameter, SolidBox& box);
-  void read(const YamlNode& node, const Parameter& parameter, ClipBox& box);
   void read(const YamlNode& node, const Parameter& parameter, std::vector<Monomial>& terms);
   void read(const YamlNode& node, const Parameter&, FunctionTape& f) { f = read_function(load_, node); }
   void read(const YamlNode&, const Parameter&, const ByHand&) {}

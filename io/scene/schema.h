@@ -121,12 +121,6 @@ inline std::string schema_of(Schema&, const Range&, const std::vector<Monomial>&
 inline std::string schema_of(Schema&, const Range&, const FunctionTape&) { return Schema::text(); }
 inline std::string schema_of(Schema&, const Range&, const HalfSpace&) { return Schema::numbers(4); }
 inline std::string schema_of(Schema&, const Range&, const ProfilePoint&) { return Schema::numbers(2); }
-inline std::string schema_of(Schema& schema, const Range&, const SolidBox&) {
-  return schema.map("bounds", Corners<Parameter::Need::required>{});
-}
-inline std::string schema_of(Schema& schema, const Range&, const ClipBox&) {
-  return schema.map("clip", Corners<Parameter::Need::optional>{});
-}
 std::string schema_of(Schema& schema, const Range& range, const Affine& value);
 std::string schema_of(Schema& schema, const Range& range, const BlobSource& value);
 std::string schema_of(Schema& schema, const Range& range, const ByHand& value);

@@ -95,7 +95,7 @@ TEST(SceneQuadrics, ErrorsHaveTheirPlace) {
        {many, "scene.yaml:2:33: expected at most 1024 planes, found 1025"},
        {"objects: [{quadric: {coefficients: [1, 1, 1]}}]", "scene.yaml:2:36: expected 10 numbers, found 3"},
        {"objects: [{quadric: {clip: {min: [0, 3, 0]}}}]",
-        "scene.yaml:2:28: the clip box has min > max along y"},
+        "scene.yaml:2:34: the clip box has min > max along y"},
        {"objects: [{quadric: {clip: {max: [-2, 0, 0]}}}]",
         "scene.yaml:2:34: the clip box has min > max along x"},
        {"objects: [{quadric: {clip: {low: 1}}}]", "scene.yaml:2:29: unknown key 'low' in clip"},

@@ -60,7 +60,7 @@ TEST(SceneSuperquadrics, ErrorsHaveTheirPlace) {
        {"objects: [{superellipsoid: {open: true}}]", "scene.yaml:2:29: unknown key 'open' in superellipsoid"},
        {"objects: [{ratioellipsoid: {m: 1}}]", "scene.yaml:2:29: unknown key 'm' in ratioellipsoid"},
        {"objects: [{superhyperboloid: {clip: {min: [3, 0, 0]}}}]",
-        "scene.yaml:2:37: the clip box has min > max along x"},
+        "scene.yaml:2:43: the clip box has min > max along x"},
        {"objects: [{supertoroid: {d: -1}}]", "scene.yaml:2:29: expected a number of at least 0"},
        {"objects: [{supertoroid: {e: -1}}]", "scene.yaml:2:29: expected a number of at least 0"},
        // g_m stays below 1 / (1 - m) = 2.
