@@ -168,17 +168,6 @@ void map_samples_code(const EnvironmentTables& map, LightGroup& group) {
   }
 }
 
-/// Three columns of lanes from a member of each emitter, in double.
-template <class D, class Get>
-OKTETT_INLINE Vec3<D> emitter_vectors(const Get& get) {
-  double x[D::kWidth], y[D::kWidth], z[D::kWidth];
-  for (int k = 0; k < D::kWidth; ++k) {
-    const Vec3f& v = get(k);
-    x[k] = v.x, y[k] = v.y, z[k] = v.z;
-  }
-  return {D::load(x), D::load(y), D::load(z)};
-}
-
 template <class D>
 OKTETT_INLINE Vec3<D> group_positions(const LightGroup& group, std::size_t i) {
   using F = FloatsOf<D>;
@@ -195,65 +184,19 @@ OKTETT_INLINE void store_samples(const LightSamples<D>& s, LightGroup& group, st
   s.u.store(group.x + i), s.v.store(group.y + i);
 }
 
-/// A column of lanes from a number of each emitter.
-template <class D, class Get>
-OKTETT_INLINE D emitter_numbers(const Get& get) {
-  double x[D::kWidth];
-  for (int k = 0; k < D::kWidth; ++k) x[k] = static_cast<double>(get(k));
-  return D::load(x);
-}
-
-template <class D, class Get>
-OKTETT_INLINE typename D::M emitter_flags(const Get& get) {
-  unsigned flags = 0;
-  for (int k = 0; k < D::kWidth; ++k) flags |= (get(k) ? 1u : 0u) << k;
-  return D::M::from_bits(flags);
-}
-
-/// Calls `sample(emitter, i)` for each group of lanes, where `emitter(k)` is that of lane k of the entries
+/// Calls `sample(emitters, i)` for each group of lanes, where `emitters` are the EmitterLanes of the entries
 /// from `i` on.
 template <class D, class Kind, class Sample>
 OKTETT_INLINE void for_groups(const LightGroup& group, const Sample& sample) {
   for (std::size_t i = 0; i < group.count; i += D::kWidth)
-    sample([&, i](int k) -> const Kind& { return *static_cast<const Kind*>(group.emitter[i + k]); }, i);
+    sample(EmitterLanes<D, Kind>{group.emitter + i}, i);
 }
 
-template <class A>
-void triangle_samples_code(LightGroup& group) {
+template <class A, class Flat>
+void flat_samples_code(LightGroup& group) {
   using D = LightLanes<A>;
-  for_groups<D, TriangleEmitter>(group, [&](const auto& emitter, std::size_t i) {
-    const Vec3<D> a = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).a; });
-    const Vec3<D> b = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).b; });
-    const Vec3<D> c = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).c; });
-    const TriangleViews<D> views(sub_lanes(a, group_positions<D>(group, i)), sub_lanes(b, a), sub_lanes(c, a),
-                                 emitter_flags<D>([&](int k) { return emitter(k).both_sides; }));
-    store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
-  });
-}
-
-template <class A>
-void rectangle_samples_code(LightGroup& group) {
-  using D = LightLanes<A>;
-  for_groups<D, RectangleEmitter>(group, [&](const auto& emitter, std::size_t i) {
-    const Vec3<D> corner = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).corner; });
-    const RectangleViews<D> views(
-        sub_lanes(corner, group_positions<D>(group, i)),
-        emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).edge_u; }),
-        emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).edge_v; }),
-        emitter_flags<D>([&](int k) { return emitter(k).both_sides; }));
-    store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
-  });
-}
-
-template <class A>
-void disk_samples_code(LightGroup& group) {
-  using D = LightLanes<A>;
-  for_groups<D, DiskEmitter>(group, [&](const auto& emitter, std::size_t i) {
-    const Vec3<D> center = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).center; });
-    const DiskViews<D> views(sub_lanes(center, group_positions<D>(group, i)),
-                             emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).normal; }),
-                             emitter_numbers<D>([&](int k) { return emitter(k).radius; }),
-                             emitter_flags<D>([&](int k) { return emitter(k).both_sides; }));
+  for_groups<D, Flat>(group, [&](const auto& emitter, std::size_t i) {
+    const auto views = view(emitter, group_positions<D>(group, i));
     store_samples(views.sample(D::load(group.x + i), D::load(group.y + i)), group, i);
   });
 }
@@ -262,10 +205,9 @@ template <class A>
 void sphere_samples_code(LightGroup& group) {
   using D = LightLanes<A>;
   for_groups<D, SphereEmitter>(group, [&](const auto& emitter, std::size_t i) {
-    const Vec3<D> center = emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).center; });
-    store_samples(sample_spheres(sub_lanes(center, group_positions<D>(group, i)),
-                                 emitter_numbers<D>([&](int k) { return emitter(k).radius; }),
-                                 D::load(group.x + i), D::load(group.y + i)),
+    const Vec3<D> to_center = sub_lanes(emitter(&SphereEmitter::center), group_positions<D>(group, i));
+    store_samples(sample_spheres(to_center, emitter(&SphereEmitter::radius), D::load(group.x + i),
+                                 D::load(group.y + i)),
                   group, i);
   });
 }
@@ -274,13 +216,9 @@ template <class A>
 void point_samples_code(LightGroup& group) {
   using D = LightLanes<A>;
   for_groups<D, LightCone>(group, [&](const auto& cone, std::size_t i) {
-    const Vec3<D> position = emitter_vectors<D>([&](int k) -> const Vec3f& { return cone(k).position; });
-    const PointSamples<D> points =
-        sample_points(sub_lanes(position, group_positions<D>(group, i)),
-                      emitter_vectors<D>([&](int k) -> const Vec3f& { return cone(k).axis; }),
-                      emitter_numbers<D>([&](int k) { return cone(k).cos_inner; }),
-                      emitter_numbers<D>([&](int k) { return cone(k).cos_outer; }),
-                      emitter_flags<D>([&](int k) { return cone(k).falls_off; }));
+    const Vec3<D> to = sub_lanes(cone(&LightCone::position), group_positions<D>(group, i));
+    const PointSamples<D> points = sample_points(to, cone(&LightCone::axis), cone(&LightCone::cos_inner),
+                                                 cone(&LightCone::cos_outer), cone(&LightCone::falls_off));
     store_samples(points.at, group, i);
     points.scale.store(group.scale + i);
   });
@@ -290,10 +228,9 @@ template <class A>
 void sun_directions_code(LightGroup& group) {
   using D = LightLanes<A>;
   for_groups<D, DirectionalEmitter>(group, [&](const auto& emitter, std::size_t i) {
-    const auto towards = to_float(
-        around_lanes(emitter_vectors<D>([&](int k) -> const Vec3f& { return emitter(k).direction; }),
-                     D::load(group.x + i) * emitter_numbers<D>([&](int k) { return emitter(k).height; }),
-                     D::load(group.y + i)));
+    const auto towards = to_float(around_lanes(emitter(&DirectionalEmitter::direction),
+                                               D::load(group.x + i) * emitter(&DirectionalEmitter::height),
+                                               D::load(group.y + i)));
     towards.x.store(group.direction[0] + i), towards.y.store(group.direction[1] + i);
     towards.z.store(group.direction[2] + i);
   });

@@ -63,17 +63,6 @@ std::optional<LightSample> only_sample(const LightSamples<Lane>& s, const Color&
                      .v = static_cast<float>(only_lane(s.v))};
 }
 
-std::optional<LightSample> sample_emitter(const Emitter& emitter, const LightPoint& point,
-                                          const SquareSample& s) {
-  return std::visit([&](const auto& e) { return sample_kind(e, point, s); }, emitter);
-}
-
-float emitter_pdf(const Emitter& emitter, const LightPoint& point, const Vec3f& direction, float distance) {
-  const float pdf =
-      std::visit([&](const auto& e) { return pdf_kind(e, point, direction, distance); }, emitter);
-  return pdf > 0 && std::isfinite(pdf) ? pdf : 0;
-}
-
 /// The density, per solid angle, of directions from a point of a sphere into it.
 static constexpr double kInwardPdf = 1 / (2 * std::numbers::pi);
 
@@ -91,45 +80,25 @@ float own_emitter_pdf(const Emitter& emitter) {
   return sphere != nullptr && sphere->both_sides ? static_cast<float>(kInwardPdf) : 0;
 }
 
-std::optional<LightBounds> light_bounds(const Emitter& emitter) {
-  const auto bounds = std::visit(
-      [](const auto& e) -> std::optional<LightBounds> {
-        if constexpr (requires { bounds_kind(e); }) return bounds_kind(e);
-        return std::nullopt;
-      },
-      emitter);
-  if (!bounds || !(bounds->power > 0) || !std::isfinite(bounds->power)) return std::nullopt;
-  const bool finite = is_finite(bounds->box.lo) && is_finite(bounds->box.hi) && is_finite(bounds->axis) &&
-                      std::isfinite(bounds->spread) && std::isfinite(bounds->reach);
-  return finite ? bounds : std::nullopt;
+// Triangles, parallelograms and disks.
+
+/// The emitter as seen from the point.
+template <class Flat>
+static auto view_from(const LightPoint& p, const Flat& e) {
+  const void* const only = &e;
+  return view(EmitterLanes<Lane, Flat>{&only}, broadcast<Lane>(Vec3d(p.position)));
 }
 
-/// `position` relative to the point.
-static Vec3<Lane> seen_from(const LightPoint& p, const Vec3f& position) {
-  return broadcast<Lane>(Vec3d(position) - Vec3d(p.position));
+template <class Flat>
+static std::optional<LightSample> sample_kind(const Flat& e, const LightPoint& p, const SquareSample& s) {
+  return only_sample(view_from(p, e).sample(Lane(s.x), Lane(s.y)), e.radiance);
 }
 
-static Lane::M one_lane(bool x) { return Lane::M::from_bits(x ? 1 : 0); }
-
-/// The vector to what a ray meets.
-static Vec3<Lane> along(const Vec3f& direction, float distance) {
-  return broadcast<Lane>(Vec3d(direction) * double{distance});
-}
-
-// Triangles.
-
-static TriangleViews<Lane> view(const TriangleEmitter& e, const LightPoint& p) {
-  const Vec3d a(e.a);
-  return {seen_from(p, e.a), broadcast<Lane>(Vec3d(e.b) - a), broadcast<Lane>(Vec3d(e.c) - a),
-          one_lane(e.both_sides)};
-}
-
-std::optional<LightSample> sample_kind(const TriangleEmitter& e, const LightPoint& p, const SquareSample& s) {
-  return only_sample(view(e, p).sample(Lane(s.x), Lane(s.y)), e.radiance);
-}
-
-float pdf_kind(const TriangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
-  return static_cast<float>(only_lane(view(e, p).pdf(along(direction, distance))));
+/// At the end of the vector that leads to what a ray meets.
+template <class Flat>
+static float pdf_kind(const Flat& e, const LightPoint& p, const Vec3f& direction, float distance) {
+  const auto to = broadcast<Lane>(Vec3d(direction) * double{distance});
+  return static_cast<float>(only_lane(view_from(p, e).pdf(to)));
 }
 
 /// The bounds of a flat thing.
@@ -143,30 +112,14 @@ static LightBounds flat_bounds(const Box& box, const Vec3d& normal, double area,
           .power = static_cast<float>(color_weight(radiance) * area)};
 }
 
-std::optional<LightBounds> bounds_kind(const TriangleEmitter& e) {
+static std::optional<LightBounds> bounds_kind(const TriangleEmitter& e) {
   const Vec3d normal = cross(Vec3d(e.b) - Vec3d(e.a), Vec3d(e.c) - Vec3d(e.a));
   Box box;
   for (const Vec3f& corner : {e.a, e.b, e.c}) box.grow(corner);
   return flat_bounds(box, normal, length(normal) / 2, e.radiance, e.both_sides);
 }
 
-// Parallelograms.
-
-static RectangleViews<Lane> view(const RectangleEmitter& e, const LightPoint& p) {
-  return {seen_from(p, e.corner), broadcast<Lane>(Vec3d(e.edge_u)), broadcast<Lane>(Vec3d(e.edge_v)),
-          one_lane(e.both_sides)};
-}
-
-std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoint& p,
-                                       const SquareSample& s) {
-  return only_sample(view(e, p).sample(Lane(s.x), Lane(s.y)), e.radiance);
-}
-
-float pdf_kind(const RectangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
-  return static_cast<float>(only_lane(view(e, p).pdf(along(direction, distance))));
-}
-
-std::optional<LightBounds> bounds_kind(const RectangleEmitter& e) {
+static std::optional<LightBounds> bounds_kind(const RectangleEmitter& e) {
   const Vec3d normal = cross(Vec3d(e.edge_u), Vec3d(e.edge_v));
   Box box;
   for (const Vec3f& corner :
@@ -175,21 +128,7 @@ std::optional<LightBounds> bounds_kind(const RectangleEmitter& e) {
   return flat_bounds(box, normal, length(normal), e.radiance, e.both_sides);
 }
 
-// Disks.
-
-static DiskViews<Lane> view(const DiskEmitter& e, const LightPoint& p) {
-  return {seen_from(p, e.center), broadcast<Lane>(Vec3d(e.normal)), Lane(e.radius), one_lane(e.both_sides)};
-}
-
-std::optional<LightSample> sample_kind(const DiskEmitter& e, const LightPoint& p, const SquareSample& s) {
-  return only_sample(view(e, p).sample(Lane(s.x), Lane(s.y)), e.radiance);
-}
-
-float pdf_kind(const DiskEmitter& e, const LightPoint& p, const Vec3f& direction, float distance) {
-  return static_cast<float>(only_lane(view(e, p).pdf(along(direction, distance))));
-}
-
-std::optional<LightBounds> bounds_kind(const DiskEmitter& e) {
+static std::optional<LightBounds> bounds_kind(const DiskEmitter& e) {
   const Vec3d n = normalize(Vec3d(e.normal));
   const double r = e.radius;
   const Vec3d half{r * std::sqrt(std::max(0.0, 1 - n.x * n.x)), r * std::sqrt(std::max(0.0, 1 - n.y * n.y)),
@@ -202,7 +141,8 @@ std::optional<LightBounds> bounds_kind(const DiskEmitter& e) {
 
 static double cap_height(double sine_square) { return only_lane(cap_height_lanes(Lane(sine_square))); }
 
-std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint& p, const SquareSample& s) {
+static std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint& p,
+                                              const SquareSample& s) {
   const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position);
   const double square = dot(to_center, to_center), r = e.radius, r_square = r * r;
   if (square >= r_square) {
@@ -216,7 +156,7 @@ std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint&
   return sample_at(direction * distance, e.radiance, 1 / (4 * std::numbers::pi), false);
 }
 
-float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f&, float) {
+static float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f&, float) {
   const Vec3d to_center = Vec3d(e.center) - Vec3d(p.position);
   const double square = dot(to_center, to_center), r_square = double{e.radius} * e.radius;
   if (square >= r_square)
@@ -224,7 +164,7 @@ float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f&, float)
   return e.both_sides ? static_cast<float>(1 / (4 * std::numbers::pi)) : 0;
 }
 
-std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
+static std::optional<LightBounds> bounds_kind(const SphereEmitter& e) {
   const double r = e.radius;
   const Vec3d half{r, r, r};
   return LightBounds{
@@ -248,18 +188,20 @@ static std::optional<LightSample> sample_cone(const LightCone& cone, const Color
   return sample;
 }
 
-std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p, const SquareSample&) {
+static std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p,
+                                              const SquareSample&) {
   return sample_cone(light_cone(e), e.intensity, e.profile(Vec3d(p.position) - Vec3d(e.position)), p);
 }
 
-std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p, const SquareSample&) {
+static std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p,
+                                              const SquareSample&) {
   return sample_cone(light_cone(e), e.intensity, 1, p);
 }
 
-float pdf_kind(const PointEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
-float pdf_kind(const SpotEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
+static float pdf_kind(const PointEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
+static float pdf_kind(const SpotEmitter&, const LightPoint&, const Vec3f&, float) { return 0; }
 
-std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
+static std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
   if (!e.falloff) return std::nullopt;
   return LightBounds{.box = {e.position, e.position},
                      .spread = static_cast<float>(std::numbers::pi),
@@ -267,7 +209,7 @@ std::optional<LightBounds> bounds_kind(const PointEmitter& e) {
                      .power = static_cast<float>(color_weight(e.intensity) / lit_part(std::numbers::pi))};
 }
 
-std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
+static std::optional<LightBounds> bounds_kind(const SpotEmitter& e) {
   const double inner = portable::acos(std::clamp(double{e.cos_inner}, -1.0, 1.0));
   const double outer = portable::acos(std::clamp(double{e.cos_outer}, -1.0, 1.0));
   const double spread = std::max(std::min(inner, outer), outer - std::numbers::pi / 2);
@@ -303,8 +245,8 @@ static bool in_disk(const DirectionalEmitter& e, const Vec3f& direction) {
   return dot(chord, chord) <= longest * longest;
 }
 
-std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint&,
-                                       const SquareSample& s) {
+static std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint&,
+                                              const SquareSample& s) {
   LightSample sample{.direction = e.direction,
                      .distance = std::numeric_limits<float>::infinity(),
                      .radiance = e.irradiance,
@@ -322,12 +264,12 @@ std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightP
   return sample;
 }
 
-float pdf_kind(const DirectionalEmitter& e, const LightPoint&, const Vec3f& direction, float) {
+static float pdf_kind(const DirectionalEmitter& e, const LightPoint&, const Vec3f& direction, float) {
   return e.angle > 0 && in_disk(e, direction) ? sun_pdf(e) : 0;
 }
 
-std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint&,
-                                       const SquareSample& s) {
+static std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint&,
+                                              const SquareSample& s) {
   if (!e.map || !e.map->samples()) return std::nullopt;
   const EnvironmentMap::Sample sample = e.map->sample(s);
   return LightSample{.direction = sample.direction,
@@ -340,8 +282,34 @@ std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightP
                      .v = sample.v};
 }
 
-float pdf_kind(const EnvironmentEmitter& e, const LightPoint&, const Vec3f& direction, float) {
+static float pdf_kind(const EnvironmentEmitter& e, const LightPoint&, const Vec3f& direction, float) {
   return e.map ? e.map->pdf(direction) : 0;
+}
+
+// Emitters of any kind.
+
+std::optional<LightSample> sample_emitter(const Emitter& emitter, const LightPoint& point,
+                                          const SquareSample& s) {
+  return std::visit([&](const auto& e) { return sample_kind(e, point, s); }, emitter);
+}
+
+float emitter_pdf(const Emitter& emitter, const LightPoint& point, const Vec3f& direction, float distance) {
+  const float pdf =
+      std::visit([&](const auto& e) { return pdf_kind(e, point, direction, distance); }, emitter);
+  return pdf > 0 && std::isfinite(pdf) ? pdf : 0;
+}
+
+std::optional<LightBounds> light_bounds(const Emitter& emitter) {
+  const auto bounds = std::visit(
+      [](const auto& e) -> std::optional<LightBounds> {
+        if constexpr (requires { bounds_kind(e); }) return bounds_kind(e);
+        return std::nullopt;
+      },
+      emitter);
+  if (!bounds || !(bounds->power > 0) || !std::isfinite(bounds->power)) return std::nullopt;
+  const bool finite = is_finite(bounds->box.lo) && is_finite(bounds->box.hi) && is_finite(bounds->axis) &&
+                      std::isfinite(bounds->spread) && std::isfinite(bounds->reach);
+  return finite ? bounds : std::nullopt;
 }
 
 Color infinite_radiance(const Emitter& emitter, const Vec3f& direction) {

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The functions of emitter.h for each kind of emitter.
+/// \file What several kinds of emitters have in common.
 
 #include <cmath>
 #include <optional>
@@ -10,26 +10,6 @@ namespace oktett {
 
 /// Below this solid angle flat emitters are sampled by area: it hardly differs, and is exact.
 inline constexpr double kLeastSolidAngle = 1e-6;
-
-std::optional<LightSample> sample_kind(const TriangleEmitter& e, const LightPoint& p, const SquareSample& s);
-std::optional<LightSample> sample_kind(const RectangleEmitter& e, const LightPoint& p, const SquareSample& s);
-std::optional<LightSample> sample_kind(const DiskEmitter& e, const LightPoint& p, const SquareSample& s);
-std::optional<LightSample> sample_kind(const SphereEmitter& e, const LightPoint& p, const SquareSample& s);
-std::optional<LightSample> sample_kind(const PointEmitter& e, const LightPoint& p, const SquareSample& s);
-std::optional<LightSample> sample_kind(const SpotEmitter& e, const LightPoint& p, const SquareSample& s);
-std::optional<LightSample> sample_kind(const DirectionalEmitter& e, const LightPoint& p,
-                                       const SquareSample& s);
-std::optional<LightSample> sample_kind(const EnvironmentEmitter& e, const LightPoint& p,
-                                       const SquareSample& s);
-
-float pdf_kind(const TriangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const RectangleEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const DiskEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const SphereEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const PointEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const SpotEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const DirectionalEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
-float pdf_kind(const EnvironmentEmitter& e, const LightPoint& p, const Vec3f& direction, float distance);
 
 /// What points and spots have in common: the light of a point goes everywhere.
 struct LightCone {
@@ -48,14 +28,6 @@ float sun_pdf(const DirectionalEmitter& e);
 /// The unit vector at an angle from the unit vector `axis` whose cosine is 1 - `one_minus_cos`. `turn` in [0,
 /// 1) goes once around.
 Vec3d around(const Vec3d& axis, double one_minus_cos, double turn);
-
-/// The bounds without a check of their numbers.
-std::optional<LightBounds> bounds_kind(const TriangleEmitter& e);
-std::optional<LightBounds> bounds_kind(const RectangleEmitter& e);
-std::optional<LightBounds> bounds_kind(const DiskEmitter& e);
-std::optional<LightBounds> bounds_kind(const SphereEmitter& e);
-std::optional<LightBounds> bounds_kind(const PointEmitter& e);
-std::optional<LightBounds> bounds_kind(const SpotEmitter& e);
 
 /// A sample at the end of `to`, the vector from the point. Nothing if pdf or distance are 0, infinite or NaN,
 /// or the light is not finite.

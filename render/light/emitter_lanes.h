@@ -51,6 +51,33 @@ OKTETT_INLINE Vec3<D> around_lanes(const Vec3<D>& axis, const D& one_minus_cos, 
   return tangent * (size * cosine) + bitangent * (size * sine) + axis * (D(1.0) - one_minus_cos);
 }
 
+/// Emitters of one kind, one in each lane: members of them in lanes.
+template <class D, class Kind>
+struct EmitterLanes {
+  const void* const* emitter;
+
+  OKTETT_INLINE const Kind& of(int lane) const { return *static_cast<const Kind*>(emitter[lane]); }
+  OKTETT_INLINE Vec3<D> operator()(Vec3f Kind::*member) const {
+    double x[D::kWidth], y[D::kWidth], z[D::kWidth];
+    for (int k = 0; k < D::kWidth; ++k) {
+      const Vec3f& v = of(k).*member;
+      x[k] = v.x, y[k] = v.y, z[k] = v.z;
+    }
+    return {D::load(x), D::load(y), D::load(z)};
+  }
+  OKTETT_INLINE typename D::M operator()(bool Kind::*member) const {
+    unsigned flags = 0;
+    for (int k = 0; k < D::kWidth; ++k) flags |= (of(k).*member ? 1u : 0u) << k;
+    return D::M::from_bits(flags);
+  }
+  template <class T>
+  OKTETT_INLINE D operator()(T Kind::*member) const {
+    double x[D::kWidth];
+    for (int k = 0; k < D::kWidth; ++k) x[k] = static_cast<double>(of(k).*member);
+    return D::load(x);
+  }
+};
+
 // ---- Spheres, suns, points and spots.
 
 /// 1 - cosine of the half angle of the cone that a sphere fills, by the square of the sine.
@@ -393,5 +420,23 @@ struct DiskViews {
     return select(cap > D(0.0), D(0.5) * by_area + by_cap, by_area);
   }
 };
+
+/// Flat emitters as seen from points.
+template <class D>
+OKTETT_INLINE TriangleViews<D> view(const EmitterLanes<D, TriangleEmitter>& e, const Vec3<D>& from) {
+  const Vec3<D> a = e(&TriangleEmitter::a);
+  return {sub_lanes(a, from), sub_lanes(e(&TriangleEmitter::b), a), sub_lanes(e(&TriangleEmitter::c), a),
+          e(&TriangleEmitter::both_sides)};
+}
+template <class D>
+OKTETT_INLINE RectangleViews<D> view(const EmitterLanes<D, RectangleEmitter>& e, const Vec3<D>& from) {
+  return {sub_lanes(e(&RectangleEmitter::corner), from), e(&RectangleEmitter::edge_u),
+          e(&RectangleEmitter::edge_v), e(&RectangleEmitter::both_sides)};
+}
+template <class D>
+OKTETT_INLINE DiskViews<D> view(const EmitterLanes<D, DiskEmitter>& e, const Vec3<D>& from) {
+  return {sub_lanes(e(&DiskEmitter::center), from), e(&DiskEmitter::normal), e(&DiskEmitter::radius),
+          e(&DiskEmitter::both_sides)};
+}
 
 }  // namespace oktett
