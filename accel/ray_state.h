@@ -153,6 +153,22 @@ OKTETT_INLINE void accept_hit(RayState<W, A>& r, int i, float t, float u, float 
   r.tmax[i] = t, r.u[i] = u, r.v[i] = v, r.item[i] = item, r.path[i] = path;
 }
 
+/// N numbers of a column of W from lane `base` on. Lanes past the end of a narrower column repeat its first.
+template <int N, int W, class A>
+OKTETT_INLINE Simd<float, N, A> load_part(const float* column, int base) {
+  using F = Simd<float, N, A>;
+  if constexpr (N <= W) return F::load(column + base);
+  float padded[N];
+  for (int i = 0; i < N; ++i) padded[i] = column[i < W ? i : 0];
+  return F::load(padded);
+}
+/// N rays of a state, likewise.
+template <int N, int W, class A>
+OKTETT_INLINE RayLanes<Simd<float, N, A>> load_part(const RayState<W, A>& r, int base) {
+  const auto load = [&](const float* column) { return load_part<N, W, A>(column, base); };
+  return load_ray_lanes(load, r.o, r.d, r.tmin, r.tmax);
+}
+
 /// Those of `lanes` whose rays have a hit.
 template <int W, class A>
 OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
@@ -169,20 +185,13 @@ OKTETT_INLINE unsigned found_lanes(const RayState<W, A>& r, unsigned lanes) {
 /// W rays from column position `b`; lanes past the end repeat the last ray.
 template <class F>
 OKTETT_INLINE RayLanes<F> load_span(const RaySpan& rays, std::size_t b) {
-  constexpr int W = F::kWidth;
-  if (OKTETT_LIKELY(b + W <= rays.size)) {
-    return {{F::load(rays.origin[0] + b), F::load(rays.origin[1] + b), F::load(rays.origin[2] + b)},
-            {F::load(rays.direction[0] + b), F::load(rays.direction[1] + b), F::load(rays.direction[2] + b)},
-            F::load(rays.tmin + b),
-            F::load(rays.tmax + b)};
-  }
+  const auto load = [&](const float* column) { return F::load(column + b); };
   const auto load_tail = [&](const float* column) {
     return F::load_front(column + b, static_cast<int>(rays.size - b));
   };
-  return {{load_tail(rays.origin[0]), load_tail(rays.origin[1]), load_tail(rays.origin[2])},
-          {load_tail(rays.direction[0]), load_tail(rays.direction[1]), load_tail(rays.direction[2])},
-          load_tail(rays.tmin),
-          load_tail(rays.tmax)};
+  if (OKTETT_LIKELY(b + F::kWidth <= rays.size))
+    return load_ray_lanes(load, rays.origin, rays.direction, rays.tmin, rays.tmax);
+  return load_ray_lanes(load_tail, rays.origin, rays.direction, rays.tmin, rays.tmax);
 }
 
 }  // namespace oktett

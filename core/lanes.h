@@ -17,11 +17,31 @@ struct RayLanes {
   F tmin, tmax;
 };
 
+/// Rays whose lanes `load` makes of columns: three each of `o` and `d`, one each of `tmin` and `tmax`.
+template <class Load, class Columns, class Column>
+OKTETT_INLINE auto load_ray_lanes(const Load& load, const Columns& o, const Columns& d, const Column& tmin,
+                                  const Column& tmax) {
+  return RayLanes<decltype(load(tmin))>{
+      {load(o[0]), load(o[1]), load(o[2])}, {load(d[0]), load(d[1]), load(d[2])}, load(tmin), load(tmax)};
+}
+
 /// What a kernel finds in each lane; defined only where the returned mask is set.
 template <class F>
 struct HitLanes {
   F t, u, v;
 };
+
+/// Calls take(lane, t, u, v) for each of `lanes`, which hold hits.
+template <class F, class Take>
+OKTETT_INLINE void each_hit(unsigned lanes, const HitLanes<F>& hits, Take&& take) {
+  if (lanes == 0) return;
+  alignas(64) float t[F::kWidth], u[F::kWidth], v[F::kWidth];
+  hits.t.store(t), hits.u.store(u), hits.v.store(v);
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const int i = __builtin_ctz(lanes);
+    take(i, t[i], u[i], v[i]);
+  }
+}
 
 template <int W, class A>
 OKTETT_INLINE Vec3<Simd<double, W, A>> to_double(const Vec3<Simd<float, W, A>>& v) {

@@ -42,13 +42,10 @@ void collect_triangles(const Accel& accel, const TriangleBlock& block, int count
     for (int k = 0; k < count; ++k) front |= (turn_of(block, k, r) < 0 ? 1u : 0u) << k;
   }
   if (lanes == 0) return;
-  alignas(64) float t[N], u[N], v[N];
-  h.t.store(t), h.u.store(u), h.v.store(v);
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int k = __builtin_ctz(lanes);
+  each_hit(lanes, h, [&](int k, float t, float u, float v) {
     const bool entered = (front >> k & 1) != (is_mirrored(accel, block.item[k]) ? 1u : 0u);
-    hits.push({t[k], u[k], v[k], block.item[k], kNoId}, entered ? -1.0f : 1.0f);
-  }
+    hits.push({t, u, v, block.item[k], kNoId}, entered ? -1.0f : 1.0f);
+  });
 }
 
 /// -1 if the ray enters the shape at root `j`, 1 if it leaves it; 0 for shapes without an inside.

@@ -33,17 +33,8 @@ class CsgLanes {
   template <int W>
   OKTETT_INLINE CsgLanes(const CsgItem& csg, const RayState<W, A>& r, int base, unsigned lanes)
       : csg_(csg), lanes_(lanes) {
-    // Lanes past the end of a narrow state repeat its first one.
-    const auto load = [&](const float* column) {
-      if constexpr (N <= W) return F::load(column + base);
-      float padded[N];
-      for (int i = 0; i < N; ++i) padded[i] = column[i < W ? i : 0];
-      return F::load(padded);
-    };
-    rays_ = {{load(r.o[0]), load(r.o[1]), load(r.o[2])},
-             {load(r.d[0]), load(r.d[1]), load(r.d[2])},
-             load(r.tmin),
-             load(r.tmax)};
+    const auto load = [&](const float* column) { return load_part<N, W, A>(column, base); };
+    rays_ = load_part<N>(r, base);
     inv_ = {load(r.inv[0]), load(r.inv[1]), load(r.inv[2])};
     slab_slack_ = load(r.slack);
   }

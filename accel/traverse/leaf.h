@@ -67,11 +67,7 @@ class SphereFilter {
 /// The rays of a state, in lanes.
 template <int W, class A>
 OKTETT_INLINE RayLanes<Simd<float, W, A>> load_rays(const RayState<W, A>& r) {
-  using F = Simd<float, W, A>;
-  return {{F::load(r.o[0]), F::load(r.o[1]), F::load(r.o[2])},
-          {F::load(r.d[0]), F::load(r.d[1]), F::load(r.d[2])},
-          F::load(r.tmin),
-          F::load(r.tmax)};
+  return load_part<W>(r, 0);
 }
 
 /// The shear of W rays whose directions are greatest along axis `z`.
@@ -89,11 +85,8 @@ OKTETT_INLINE ShearLanes<Simd<double, W, A>> load_shear(const RayState<W, A>& r,
 /// One ray in all N lanes.
 template <int N, class A>
 OKTETT_INLINE RayLanes<Simd<float, N, A>> broadcast_ray(const RayState<1, A>& r) {
-  using F = Simd<float, N, A>;
-  return {{F(r.o[0][0]), F(r.o[1][0]), F(r.o[2][0])},
-          {F(r.d[0][0]), F(r.d[1][0]), F(r.d[2][0])},
-          F(r.tmin[0]),
-          F(r.tmax[0])};
+  const auto load = [](const float* column) { return Simd<float, N, A>(*column); };
+  return load_ray_lanes(load, r.o, r.d, r.tmin, r.tmax);
 }
 
 /// The shear of one ray in all N lanes.
@@ -115,12 +108,8 @@ OKTETT_INLINE void accept_packet(RayState<W, A>& r, unsigned lanes, const HitLan
   using I = Simd<std::int32_t, W, A>;
   const F nearest = F::load(r.tmax);
   // At equal distance the numbers of the items decide.
-  for (unsigned same = lanes & bits(h.t == nearest); OKTETT_UNLIKELY(same != 0); same &= same - 1) {
-    const int i = __builtin_ctz(same);
-    alignas(64) float t[W], u[W], v[W];
-    h.t.store(t), h.u.store(u), h.v.store(v);
-    accept_hit(r, i, t[i], u[i], v[i], item, kNoId);
-  }
+  if (const unsigned same = lanes & bits(h.t == nearest); OKTETT_UNLIKELY(same != 0))
+    each_hit(same, h, [&](int i, float t, float u, float v) { accept_hit(r, i, t, u, v, item, kNoId); });
   const auto nearer = F::M::from_bits(lanes) & (h.t < nearest);
   select(nearer, h.t, nearest).store(r.tmax);
   select(nearer, h.u, F::load(r.u)).store(r.u), select(nearer, h.v, F::load(r.v)).store(r.v);
@@ -135,12 +124,7 @@ OKTETT_INLINE void accept_packet(RayState<W, A>& r, unsigned lanes, const HitLan
 template <int N, class A>
 OKTETT_INLINE void accept_single(RayState<1, A>& r, unsigned lanes, const HitLanes<Simd<float, N, A>>& h,
                                  const std::uint32_t* items) {
-  alignas(64) float t[N], u[N], v[N];
-  h.t.store(t), h.u.store(u), h.v.store(v);
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const int k = __builtin_ctz(lanes);
-    accept_hit(r, 0, t[k], u[k], v[k], items[k], kNoId);
-  }
+  each_hit(lanes, h, [&](int k, float t, float u, float v) { accept_hit(r, 0, t, u, v, items[k], kNoId); });
 }
 
 /// One of the textbook triangle tests on any lanes.

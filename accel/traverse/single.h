@@ -23,27 +23,12 @@ OKTETT_NOINLINE void leaf_exact(const Accel& accel, const LeafEntry& leaf, RaySt
     for (int base = 0; base < W; base += N) {
       const unsigned part = lanes >> base & ((1u << N) - 1);
       if (part == 0) continue;
-      // Lanes past the end of a narrow state repeat its first one.
-      const auto load = [&](const float* column) {
-        if constexpr (N <= W) return F::load(column + base);
-        float padded[N];
-        for (int i = 0; i < N; ++i) padded[i] = column[i < W ? i : 0];
-        return F::load(padded);
-      };
-      const RayLanes<F> rays{{load(r.o[0]), load(r.o[1]), load(r.o[2])},
-                             {load(r.d[0]), load(r.d[1]), load(r.d[2])},
-                             load(r.tmin),
-                             load(r.tmax)};
       HitLanes<F> hits;
-      unsigned met = first(pool, cell, rays, part, hits);
+      const unsigned met = first(pool, cell, load_part<N>(r, base), part, hits);
       if (met == 0) continue;
       const std::uint32_t item = pool.item_of_cell(cell);
-      float t[N], u[N], v[N];
-      hits.t.store(t), hits.u.store(u), hits.v.store(v);
-      for (; met != 0; met &= met - 1) {
-        const int i = __builtin_ctz(met);
-        accept_hit(r, base + i, t[i], u[i], v[i], item, kNoId);
-      }
+      each_hit(met, hits,
+               [&](int i, float t, float u, float v) { accept_hit(r, base + i, t, u, v, item, kNoId); });
     }
   }
 }

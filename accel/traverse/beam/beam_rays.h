@@ -364,10 +364,7 @@ OKTETT_INLINE RayLanes<F> load_rays(const BeamRays<A>& beam, const RaySpan& rays
     for (int i = 0; i < F::kWidth; ++i) lanes[i] = column[beam.order[at + static_cast<std::size_t>(i)]];
     return F::load(lanes);
   };
-  return {{gather(rays.origin[0]), gather(rays.origin[1]), gather(rays.origin[2])},
-          {gather(rays.direction[0]), gather(rays.direction[1]), gather(rays.direction[2])},
-          gather(rays.tmin),
-          gather(rays.tmax)};
+  return load_ray_lanes(gather, rays.origin, rays.direction, rays.tmin, rays.tmax);
 }
 
 /// The rays of one group.

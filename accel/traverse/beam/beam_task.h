@@ -340,21 +340,17 @@ OKTETT_NOINLINE void decide_listed(BeamTask<Q, A>& task, const std::uint8_t* ray
   const auto load = [&](int c) { return F::load(column[c]); };
   const RayLanes<F> rays{{load(0), load(1), load(2)}, {load(3), load(4), load(5)}, load(6), load(7)};
   HitLanes<F> hit;
-  unsigned met = decide_pairs<kBeamGroup, A>(rays, task.accel.blocks.data(), ids, hit) & ((1u << count) - 1);
-  if (met == 0) return;
-  alignas(64) float t[kBeamGroup], u[kBeamGroup], v[kBeamGroup];
-  hit.t.store(t), hit.u.store(u), hit.v.store(v);
-  for (; met != 0; met &= met - 1) {
-    const int i = __builtin_ctz(met);
+  const unsigned met = decide_pairs<kBeamGroup, A>(rays, task.accel.blocks.data(), ids, hit);
+  each_hit(met & ((1u << count) - 1), hit, [&](int i, float t, float u, float v) {
     if constexpr (Q == Query::any) {
       task.beam.hit_lo[ray[i]] = std::numeric_limits<float>::infinity();
     } else {
       const std::uint32_t item =
           task.accel.blocks[ids[i] / TriangleBlock::kSize].item[ids[i] % TriangleBlock::kSize];
       accept_beam(task.out.hits, task.beam, __builtin_fabsf(column[3 + task.beam.axis[2]][i]), ray[i],
-                  {t[i], u[i], v[i], item, kNoId});
+                  {t, u, v, item, kNoId});
     }
-  }
+  });
 }
 
 /// Decides the list of unclear candidates.

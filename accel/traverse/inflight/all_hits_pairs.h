@@ -175,20 +175,14 @@ class AllHitsTraversal {
       const I index = I::load(reinterpret_cast<const std::int32_t*>(ray)) * I(kFloats);
       const auto number = [&](const float& first) { return gather(&first, index); };
       const InflightHead& g = group_[0];
-      const RayLanes<C> rays{{number(g.o[0]), number(g.o[1]), number(g.o[2])},
-                             {number(g.d[0]), number(g.d[1]), number(g.d[2])},
-                             number(g.tmin),
-                             number(g.tmax)};
+      const RayLanes<C> rays = load_ray_lanes(number, g.o, g.d, g.tmin, g.tmax);
       HitLanes<C> h;
       unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), triangle, h);
       met &= (2u << (count - 1)) - 1;
-      alignas(64) float t[kChunk], u[kChunk], v[kChunk];
-      h.t.store(t), h.u.store(u), h.v.store(v);
-      for (; met != 0; met &= met - 1) {
-        const int i = __builtin_ctz(met);
+      each_hit(met, h, [&](int i, float t, float u, float v) {
         const std::uint32_t item = accel_.blocks[triangle[i] / kBlock].item[triangle[i] % kBlock];
-        add({{{t[i], u[i], v[i], item, kNoId}, 0.0f}, static_cast<std::uint32_t>(first_) + ray[i]});
-      }
+        add({{{t, u, v, item, kNoId}, 0.0f}, static_cast<std::uint32_t>(first_) + ray[i]});
+      });
       triangles_.size = at;
     }
   }

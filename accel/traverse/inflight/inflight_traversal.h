@@ -96,10 +96,7 @@ class SphereLeaves {
     using D = Simd<double, kSpheres, A>;
     const Line& line = lines_[place];
     const auto tmax = static_cast<double>(ray.tmax);
-    const RayLanes<D> wide{{D(line.o[0]), D(line.o[1]), D(line.o[2])},
-                           {D(line.d[0]), D(line.d[1]), D(line.d[2])},
-                           D(line.tmin),
-                           D(tmax)};
+    const auto wide = load_ray_lanes([](double x) { return D(x); }, line.o, line.d, line.tmin, tmax);
     D roots[Sphere::kRoots];
     const auto maybe = Sphere::roots_in_range(wide, D(line.inverse), D(Sphere::last_root(tmax)),
                                               Sphere::load<D>(pool_, leaf.begin), roots);
