@@ -288,68 +288,13 @@ OKTETT_INLINE void run_step(const TapeStep& s, T* r) {
   T& out = r[s.out];
   const T &a = r[s.a], &b = r[s.b];
   switch (s.op) {
-    case TapeOp::constant:
-      return set(out, s.c);
-    case TapeOp::negate:
-      return void(out = -a);
-    case TapeOp::add:
-      return void(out = a + b);
-    case TapeOp::add_constant:
-      return void(out = plus(a, s.c));
-    case TapeOp::subtract:
-      return void(out = a - b);
-    case TapeOp::multiply:
-      return void(out = a * b);
-    case TapeOp::multiply_constant:
-      return void(out = times(a, s.c));
-    case TapeOp::divide:
-      return void(out = a / b);
-    case TapeOp::square:
-      return void(out = sqr(a));
-    case TapeOp::whole_power:
-      return void(out = pow(a, s.n));
-    case TapeOp::real_power:
-      return void(out = pow(a, s.c));
-    case TapeOp::sqrt:
-      return void(out = sqrt(a));
-    case TapeOp::abs:
-      return void(out = abs(a));
-    case TapeOp::sin:
-      return void(out = sin(a));
-    case TapeOp::cos:
-      return void(out = cos(a));
-    case TapeOp::sin_cos: {
-      T sine, cosine;
-      sin_cos(a, sine, cosine);
-      out = sine, r[s.b] = cosine;
-      return;
-    }
-    case TapeOp::tan:
-      return void(out = tan(a));
-    case TapeOp::asin:
-      return void(out = asin(a));
-    case TapeOp::acos:
-      return void(out = acos(a));
-    case TapeOp::atan:
-      return void(out = atan(a));
-    case TapeOp::atan2:
-      return void(out = atan2(a, b));
-    case TapeOp::exp:
-      return void(out = exp(a));
-    case TapeOp::log:
-      return void(out = log(a));
-    case TapeOp::min:
-      return void(out = min(a, b));
-    case TapeOp::max:
-      return void(out = max(a, b));
-    case TapeOp::floor:
-      return void(out = floor(a));
-    case TapeOp::ceil:
-      return void(out = ceil(a));
-    case TapeOp::round:
-      return void(out = round(a));
-    case TapeOp::sign:
-      return void(out = sign(a));
+#define OP(name, text, step) \
+  case TapeOp::name: {       \
+    step;                    \
+    return;                  \
+  }
+    OKTETT_TAPE_OPS(OP)
+#undef OP
   }
 }
 

@@ -15,37 +15,44 @@ inline constexpr int kMaxTapeRegisters = 48;
 /// numbers.
 inline constexpr int kMaxTapePower = 256;
 
-/// What a step computes from the registers a and b and the numbers c and n.
+/// What a step computes from the registers a and b and the numbers c and n: OP(name, text, step) for each
+/// operation, where `text` is how it is written and `step` how it is done
+/// (kernels/functions/function_tape.h). Powers with a real exponent are defined for a >= 0; `sin_cos` puts
+/// the cosine into the register b.
+#define OKTETT_TAPE_OPS(OP)                                                                        \
+  OP(constant, "({c})", set(out, s.c))                                                             \
+  OP(negate, "(-{a})", out = -a)                                                                   \
+  OP(add, "({a}+{b})", out = a + b)                                                                \
+  OP(add_constant, "({a}+({c}))", out = plus(a, s.c))                                              \
+  OP(subtract, "({a}-{b})", out = a - b)                                                           \
+  OP(multiply, "({a}*{b})", out = a * b)                                                           \
+  OP(multiply_constant, "({a}*({c}))", out = times(a, s.c))                                        \
+  OP(divide, "({a}/{b})", out = a / b)                                                             \
+  OP(square, "({a}^2)", out = sqr(a))                                                              \
+  OP(whole_power, "({a}^({n}))", out = pow(a, s.n))                                                \
+  OP(real_power, "({a}^({c}))", out = pow(a, s.c))                                                 \
+  OP(sqrt, "sqrt({a})", out = sqrt(a))                                                             \
+  OP(abs, "abs({a})", out = abs(a))                                                                \
+  OP(sin, "sin({a})", out = sin(a))                                                                \
+  OP(cos, "cos({a})", out = cos(a))                                                                \
+  OP(sin_cos, "sin({a})", T sine; T cosine; sin_cos(a, sine, cosine); out = sine; r[s.b] = cosine) \
+  OP(tan, "tan({a})", out = tan(a))                                                                \
+  OP(asin, "asin({a})", out = asin(a))                                                             \
+  OP(acos, "acos({a})", out = acos(a))                                                             \
+  OP(atan, "atan({a})", out = atan(a))                                                             \
+  OP(atan2, "atan2({a}, {b})", out = atan2(a, b))                                                  \
+  OP(exp, "exp({a})", out = exp(a))                                                                \
+  OP(log, "log({a})", out = log(a))                                                                \
+  OP(min, "min({a}, {b})", out = min(a, b))                                                        \
+  OP(max, "max({a}, {b})", out = max(a, b))                                                        \
+  OP(floor, "floor({a})", out = floor(a))                                                          \
+  OP(ceil, "ceil({a})", out = ceil(a))                                                             \
+  OP(round, "round({a})", out = round(a))                                                          \
+  OP(sign, "sign({a})", out = sign(a))
 enum class TapeOp : std::uint8_t {
-  constant,  ///< c
-  negate,
-  add,
-  add_constant,  ///< a + c
-  subtract,
-  multiply,
-  multiply_constant,  ///< a c
-  divide,
-  square,
-  whole_power,  ///< a^n
-  real_power,   ///< a^c, for a >= 0
-  sqrt,
-  abs,
-  sin,
-  cos,
-  sin_cos,  ///< the cosine goes to the register `b`
-  tan,
-  asin,
-  acos,
-  atan,
-  atan2,
-  exp,
-  log,
-  min,
-  max,
-  floor,
-  ceil,
-  round,
-  sign,
+#define OP(name, text, step) name,
+  OKTETT_TAPE_OPS(OP)
+#undef OP
 };
 
 /// One step: register `out` becomes the result. Registers 0 to 2 hold x, y and z.
