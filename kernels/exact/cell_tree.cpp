@@ -33,7 +33,7 @@ double area(const CellBox& box) {
 }
 
 /// What one attempt may cost. Whether it costs more does not depend on the order in which threads work.
-struct Effort {
+struct DivisionEffort {
   double coarseness;
   std::atomic<std::int64_t> left;
 };
@@ -41,7 +41,7 @@ struct Effort {
 /// Divides to the end, then keeps the divisions that are expected to save time (surface area heuristic).
 class Division {
  public:
-  Division(const CellRule& rule, Effort& effort, CellTree& tree, std::uint32_t element,
+  Division(const CellRule& rule, DivisionEffort& effort, CellTree& tree, std::uint32_t element,
            std::vector<ExactCell>& cells)
       : rule_(rule), effort_(effort), tree_(tree), element_(element), cells_(cells) {}
 
@@ -138,7 +138,7 @@ class Division {
   }
 
   const CellRule& rule_;
-  Effort& effort_;
+  DivisionEffort& effort_;
   CellTree& tree_;
   std::uint32_t element_;
   std::vector<ExactCell>& cells_;
@@ -152,7 +152,7 @@ std::uint32_t CellTree::divide(const CellRule& rule, const CellBox& box, std::sp
   const std::int64_t own = kWorkPerPart * static_cast<std::int64_t>(part.size() + 1);
   for (double coarseness = 1;; coarseness *= kCoarser) {
     const std::int64_t work = own + std::min(kMostSpare, spare);
-    Effort effort{coarseness, work};
+    DivisionEffort effort{coarseness, work};
     const std::uint32_t root = Division(rule, effort, *this, element, cells).grow(box, part, 0).node;
     spare -= std::max<std::int64_t>(work - std::max<std::int64_t>(effort.left, 0) - own, 0);
     if (effort.left >= 0) return root;

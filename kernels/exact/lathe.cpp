@@ -60,12 +60,12 @@ double signed_area(const std::vector<Piece>& pieces) {
 }
 
 /// The point of the curve nearest to (rho, y).
-struct Nearest {
+struct CurvePoint {
   std::size_t piece = 0;
   double v = 0, distance2 = HUGE_VAL;
 };
-Nearest nearest_point(const LatheElement& e, double rho, double y) {
-  Nearest best;
+CurvePoint nearest_point(const LatheElement& e, double rho, double y) {
+  CurvePoint best;
   for (std::size_t k = 0; k < e.pieces.size(); ++k) {
     const Piece& p = e.pieces[k];
     const double dy = std::max({p.least_y - y, y - p.greatest_y, 0.0}), dr = std::max(rho - p.most, 0.0);
@@ -98,7 +98,7 @@ Nearest nearest_point(const LatheElement& e, double rho, double y) {
 struct Normal2 {
   double r, y;
 };
-Normal2 normal_at(const LatheElement& e, const Nearest& at) {
+Normal2 normal_at(const LatheElement& e, const CurvePoint& at) {
   const Piece& p = e.pieces[at.piece];
   const double dr = cubic_slope(p.r, at.v), dy = cubic_slope(p.y, at.v), l = std::sqrt(dr * dr + dy * dy);
   return l > 0 ? Normal2{e.side * dy / l, -e.side * dr / l} : Normal2{1, 0};
@@ -325,7 +325,7 @@ Slope Lathe::slope_at(const Pool& pool, std::size_t i, int part, const Vec3d& p)
   if (part == 1) return {-e.side * (p.y - e.pieces.front().height[0]), {0, -e.side, 0}};
   if (part == 2) return {e.side * (p.y - e.pieces.back().height[1]), {0, e.side, 0}};
   const double rho = std::sqrt(p.x * p.x + p.z * p.z);
-  const Nearest at = nearest_point(e, rho, p.y);
+  const CurvePoint at = nearest_point(e, rho, p.y);
   const Normal2 n = normal_at(e, at);
   const Piece& piece = e.pieces[at.piece];
   const double per_rho = rho > 0 ? n.r / rho : 0;
@@ -349,7 +349,7 @@ bool Lathe::inside(const Pool& pool, std::size_t i, const Vec3d& p) {
 SurfaceUv Lathe::uv(const Pool& pool, std::size_t i, int, const Vec3d& p) {
   const LatheElement& e = pool.elements[i];
   const double rho = std::sqrt(p.x * p.x + p.z * p.z), pieces = static_cast<double>(e.pieces.size());
-  const Nearest at = nearest_point(e, rho, p.y);
+  const CurvePoint at = nearest_point(e, rho, p.y);
   // A step along the curve, which is its derivative times that of v, changes v by as much.
   const Piece& piece = e.pieces[at.piece];
   const double dr = cubic_slope(piece.r, at.v), dy = cubic_slope(piece.y, at.v);
