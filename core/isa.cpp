@@ -9,19 +9,8 @@ namespace oktett {
 static constexpr Isa kAll[] = {Isa::scalar, Isa::sse42, Isa::avx2, Isa::avx512, Isa::neon};
 
 const char* to_string(Isa isa) {
-  switch (isa) {
-    case Isa::scalar:
-      return "scalar";
-    case Isa::sse42:
-      return "sse4.2";
-    case Isa::avx2:
-      return "avx2";
-    case Isa::avx512:
-      return "avx512";
-    case Isa::neon:
-      return "neon";
-  }
-  return "?";
+  constexpr const char* kNames[] = {"scalar", "sse4.2", "avx2", "avx512", "neon"};
+  return kNames[static_cast<int>(isa)];
 }
 
 std::optional<Isa> parse_isa(std::string_view name) {

@@ -48,23 +48,11 @@ bool begins_with_word(const char* p, std::string_view word) {
 enum class State { outside, solid, loop, vertex0, vertex1, vertex2, endloop, endfacet };
 
 const char* expected_in(State state) {
-  switch (state) {
-    case State::outside:
-      return "'solid'";
-    case State::solid:
-      return "'facet normal' or 'endsolid'";
-    case State::loop:
-      return "'outer loop'";
-    case State::vertex0:
-    case State::vertex1:
-    case State::vertex2:
-      return "'vertex'";
-    case State::endloop:
-      return "'endloop'";
-    case State::endfacet:
-      return "'endfacet'";
-  }
-  return "";
+  constexpr const char* kExpected[] = {"'solid'",      "'facet normal' or 'endsolid'",
+                                       "'outer loop'", "'vertex'",
+                                       "'vertex'",     "'vertex'",
+                                       "'endloop'",    "'endfacet'"};
+  return kExpected[static_cast<int>(state)];
 }
 
 MeshFailure unexpected(State state, const char* p, const char* text_end) {
