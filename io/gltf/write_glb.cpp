@@ -278,13 +278,7 @@ void GltfMaterialWriter::extend(tinygltf::Material& out, const char* name, Value
 }
 
 void GltfMaterialWriter::note_losses(MeshLosses& losses) const {
-  std::set<std::uint32_t> lost;
-  for (Material m : file_.materials)
-    for_each_texture(m, [&](std::uint32_t index) {
-      if (index != kNoId && !written_.contains(index)) lost.insert(index);
-    });
-  if (!lost.empty())
-    losses.push_back("lost: " + count_of(lost.size(), "texture") + ", which glTF cannot show as they are");
+  note_lost_textures(file_.materials, written_, "glTF", losses);
 }
 
 namespace {

@@ -3,12 +3,15 @@
 
 #include <charconv>
 #include <concepts>
+#include <cstdint>
 #include <cstring>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/image/output.h"
+#include "render/material.h"
 
 namespace oktett {
 
@@ -76,6 +79,19 @@ using MeshLosses = std::vector<std::string>;
 /// "1 material", "2 materials".
 inline std::string count_of(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// Notes the textures of the materials that are not among those `written`.
+inline void note_lost_textures(const std::vector<Material>& materials, const std::set<std::uint32_t>& written,
+                               const char* format, MeshLosses& losses) {
+  std::set<std::uint32_t> lost{kNoId};
+  for (const Material& m : materials)
+    for_each_texture(m, [&](std::uint32_t index) {
+      if (!written.contains(index)) lost.insert(index);
+    });
+  if (lost.size() > 1)
+    losses.push_back("lost: " + count_of(lost.size() - 1, "texture") + ", which " + format +
+                     " cannot show as they are");
 }
 
 }  // namespace oktett

@@ -201,13 +201,7 @@ class MtlWriting {
   }
 
   void note_losses(const std::vector<std::string>& names) {
-    std::set<std::uint32_t> lost;
-    for (Material m : file_.materials)
-      for_each_texture(m, [&](std::uint32_t index) {
-        if (index != kNoId && !written_.contains(index)) lost.insert(index);
-      });
-    if (!lost.empty())
-      losses_.push_back("lost: " + count_of(lost.size(), "texture") + ", which MTL cannot show as they are");
+    note_lost_textures(file_.materials, written_, "MTL", losses_);
     note_changed_materials(names);
   }
 
