@@ -1,5 +1,5 @@
 #pragma once
-/// \file What `oktett view` holds: a private folder, the view that a page asks for, and the session.
+/// \file What `oktett view` holds: the view that a page asks for, and the session.
 ///
 /// A session is a scene that is being looked at: it is read, rendered in finer and finer passes as the view
 /// changes, and read again when one of its files changes.
@@ -28,26 +28,6 @@
 #include "render/picture/prepared_scene.h"
 
 namespace oktett {
-
-// ---- Temporary files that other users of the machine cannot read.
-
-/// A new folder for temporary files that only this user can enter. It is removed with all it holds at the
-/// end of its life.
-class PrivateFolder {
- public:
-  /// Throws Error.
-  PrivateFolder();
-  ~PrivateFolder();
-  PrivateFolder(const PrivateFolder&) = delete;
-  PrivateFolder& operator=(const PrivateFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  /// Makes a file that only this user can read, and returns its path. Throws Error.
-  std::filesystem::path write(std::string_view name, std::string_view content) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 // ---- What a page may change about the picture: as text from the page, and back.
 

@@ -1,12 +1,11 @@
 /// \file `oktett view`.
 
-extern char** environ;
-
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/random.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <memory>
@@ -21,6 +20,7 @@ extern char** environ;
 #include "app/view/http.h"
 #include "app/view/page_files.h"
 #include "app/view/session.h"
+#include "io/text/files.h"
 
 namespace oktett {
 

@@ -1,5 +1,7 @@
 #include "io/text/files.h"
 
+#include <fcntl.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -187,6 +189,34 @@ std::string path_to_open(const std::string& path) {
   const std::lock_guard lock(stand_in_mutex);
   const auto found = stand_ins.find(path);
   return found == stand_ins.end() ? path : found->second;
+}
+
+PrivateFolder::PrivateFolder() {
+  std::error_code error;
+  std::string pattern = (fs::temp_directory_path(error) / "oktett-XXXXXX").string();
+  if (error || mkdtemp(pattern.data()) == nullptr)
+    throw Error("no temporary folder can be made", ErrorKind::io);
+  path_ = pattern;
+}
+
+PrivateFolder::~PrivateFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+fs::path PrivateFolder::write(std::string_view name, std::string_view content) const {
+  const fs::path file = path_ / name;
+  const int to = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  bool written = to >= 0;
+  while (written && !content.empty()) {
+    // No more than 2 GB are written at once.
+    const ssize_t count = ::write(to, content.data(), content.size());
+    written = count > 0;
+    if (written) content.remove_prefix(static_cast<std::size_t>(count));
+  }
+  if (to >= 0) close(to);
+  if (!written) throw Error(file.string() + ": cannot be written", ErrorKind::io);
+  return file;
 }
 
 namespace {

@@ -1,11 +1,13 @@
 #pragma once
-/// \file Files by their names: which may be read, which were read, which was meant, and what stands in for
-/// some.
+/// \file Files by their names: which may be read, which were read, which was meant, what stands in for some,
+/// and a folder for temporary ones.
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace oktett {
@@ -51,6 +53,24 @@ class StandIns {
 /// The path of the file that is opened for `path`: that of its stand-in, or `path` itself. Threads may call
 /// it at the same time.
 std::string path_to_open(const std::string& path);
+
+/// A new folder for temporary files that only this user can enter. It is removed with all it holds at the
+/// end of its life.
+class PrivateFolder {
+ public:
+  /// Throws Error.
+  PrivateFolder();
+  ~PrivateFolder();
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Makes a file that only this user can read, and returns its path. Throws Error.
+  std::filesystem::path write(std::string_view name, std::string_view content) const;
+
+ private:
+  std::filesystem::path path_;
+};
 
 /// Notes the files that are read while an object of this class exists. Only one may exist at a time.
 class FilesRead {

@@ -1,12 +1,11 @@
 #include <pybind11/pybind11.h>
-#include <stdlib.h>
 
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <set>
-#include <system_error>
+#include <string>
 #include <utility>
 
 #include "core/error.h"
@@ -20,38 +19,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Writes files to a folder of their own, which goes with the object.
-class TemporaryFiles {
- public:
-  explicit TemporaryFiles(const FileContents& files) {
-    if (files.empty()) return;
-    std::string pattern = (fs::temp_directory_path() / "oktett-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw Error("cannot make a folder for files: " + std::generic_category().message(errno), ErrorKind::io);
-    folder_ = pattern;
-    for (const auto& [name, content] : files) {
-      // OpenImageIO asks for the end of the name.
-      const fs::path path = folder_ / (std::to_string(paths_.size()) + fs::path(name).extension().string());
-      std::ofstream file(path, std::ios::binary);
-      file.write(content.data(), static_cast<std::streamsize>(content.size()));
-      file.close();
-      if (!file) throw Error(Location{path.string()}, "cannot write", ErrorKind::io);
-      paths_.emplace(name, path.string());
-    }
+/// Writes files to `folder`; returns their paths by their names.
+std::map<std::string, std::string> write_files(const FileContents& files, const PrivateFolder& folder) {
+  std::map<std::string, std::string> paths;
+  for (const auto& [name, content] : files) {
+    // OpenImageIO asks for the end of the name.
+    const std::string number = std::to_string(paths.size());
+    paths.emplace(name, folder.write(number + fs::path(name).extension().string(), content).string());
   }
-  ~TemporaryFiles() {
-    std::error_code ignored;
-    if (!folder_.empty()) fs::remove_all(folder_, ignored);
-  }
-  TemporaryFiles(const TemporaryFiles&) = delete;
-  TemporaryFiles& operator=(const TemporaryFiles&) = delete;
-
-  const std::map<std::string, std::string>& paths() const { return paths_; }
-
- private:
-  fs::path folder_;
-  std::map<std::string, std::string> paths_;
-};
+  return paths;
+}
 
 class FilesOfIo final : public Files {
  public:
@@ -61,8 +38,9 @@ class FilesOfIo final : public Files {
     static std::mutex reading;
     const std::lock_guard lock(reading);
     const FilesRead noted;
-    const TemporaryFiles temporary(contents);
-    const StandIns stand_ins(temporary.paths());
+    std::optional<PrivateFolder> folder;
+    if (!contents.empty()) folder.emplace();
+    const StandIns stand_ins(folder ? write_files(contents, *folder) : std::map<std::string, std::string>());
     SceneRead result;
     result.scene = load_scene(path, definitions);
     // What stands in for images is gone later.
