@@ -45,7 +45,7 @@ TEST(SphereFilter, LeavesOutNoHit) {
     for (std::size_t i = 0; i < kCount; ++i) {
       Sphere::Pool pool;
       const auto column = [&](int k) { return cases.shape[k][i]; };
-      Sphere::add(pool, {{column(0), column(1), column(2)}, column(3)}, 0);
+      Sphere::add(pool, SphereShape{{column(0), column(1), column(2)}, column(3)}, 0);
       Sphere::finish(pool);
       for (const int power : {0, -40, 40, -60, 60, -120, 100})
         expect_no_hit_is_left_out(cases.rays[i], pool, power, counts);
