@@ -53,18 +53,19 @@ class SettingVisitor : public ParameterVisitor<SettingVisitor<Act>> {
 };
 
 template <class Act>
-void each_setting(Scene& scene, Act act) {
+void each_setting(Film& film, IntegratorSettings& integrator, Act act) {
   SettingVisitor<Act> visitor(std::move(act));
-  scene.film.describe(visitor);
-  scene.integrator.describe(visitor);
+  film.describe(visitor);
+  integrator.describe(visitor);
 }
 
 /// Adds an option as the type of its setting asks for.
 void add_option(Verb& verb, const SettingOption& option, SettingWords& words) {
   SettingWord& word = words[option.name];
   if (option.key.empty()) verb.option(option.name, &word.text, option.value, option.help);
-  Scene usual;
-  each_setting(usual, [&]<class T>(const Parameter& parameter, T& setting) {
+  Film film;
+  IntegratorSettings integrator;
+  each_setting(film, integrator, [&]<class T>(const Parameter& parameter, T& setting) {
     if (parameter.key != option.key) return false;
     if constexpr (std::is_same_v<T, bool>)
       verb.flag(option.name, word.flag, option.help);
@@ -137,7 +138,7 @@ const char* option_of_setting(std::string_view key) {
 
 void override_settings(const SettingWords& words, Scene& scene) {
   if (is_given(words, kSize)) parse_size(words.at(kSize).text, scene.film);
-  each_setting(scene, [&]<class T>(const Parameter& parameter, T& setting) {
+  each_setting(scene.film, scene.integrator, [&]<class T>(const Parameter& parameter, T& setting) {
     const char* const option = option_of_setting(parameter.key);
     if (option == nullptr || !is_given(words, option)) return false;
     const std::string& text = words.at(option).text;

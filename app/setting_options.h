@@ -1,6 +1,6 @@
 #pragma once
-/// \file Options of `oktett render` that override settings of the film and the integrator. One is a row of
-/// setting_options.cpp: what values it takes, the description of the setting says (core/description.h).
+/// \file Options of `oktett render` that override settings of the film and the integrator. Each is a row of
+/// setting_options.cpp. Its values and limits come from the description of the setting (core/description.h).
 
 #include <map>
 #include <string>

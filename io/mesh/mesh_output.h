@@ -84,13 +84,13 @@ inline std::string count_of(std::size_t count, const char* what) {
 /// Notes the textures of the materials that are not among those `written`.
 inline void note_lost_textures(const std::vector<Material>& materials, const std::set<std::uint32_t>& written,
                                const char* format, MeshLosses& losses) {
-  std::set<std::uint32_t> lost{kNoId};
+  std::set<std::uint32_t> lost;
   for (const Material& m : materials)
     for_each_texture(m, [&](std::uint32_t index) {
-      if (!written.contains(index)) lost.insert(index);
+      if (index != kNoId && !written.contains(index)) lost.insert(index);
     });
-  if (lost.size() > 1)
-    losses.push_back("lost: " + count_of(lost.size() - 1, "texture") + ", which " + format +
+  if (!lost.empty())
+    losses.push_back("lost: " + count_of(lost.size(), "texture") + ", which " + format +
                      " cannot show as they are");
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Files by their names: which may be read, which were read, which was meant, what stands in for some,
-/// and a folder for temporary ones.
+/// \file Files by their names: which may be read, which were read, which one a misspelt name means, what is
+/// opened in place of another. And a folder for temporary files.
 
 #include <cstdint>
 #include <filesystem>

@@ -16,9 +16,9 @@ inline constexpr int kMaxTapeRegisters = 48;
 inline constexpr int kMaxTapePower = 256;
 
 /// What a step computes from the registers a and b and the numbers c and n: OP(name, text, step) for each
-/// operation, where `text` is how it is written and `step` how a tape that runs does it.
-/// Powers with a real exponent are defined for a >= 0; `sin_cos` puts the cosine
-/// into the register b.
+/// operation. `text` is the expression as it is written, `step` the statements that compute it.
+/// Powers with a real exponent are defined for a >= 0. `sin_cos` puts the cosine into the
+/// register b.
 #define OKTETT_TAPE_OPS(OP)                                                                        \
   OP(constant, "({c})", set(out, s.c))                                                             \
   OP(negate, "(-{a})", out = -a)                                                                   \
