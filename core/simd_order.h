@@ -226,7 +226,7 @@ OKTETT_INLINE int store_descending(const Simd<float, 8, A>& keys, unsigned lanes
 }
 
 /// Writes the `values` of the lanes in `lanes` to `out`, lowest lane first; returns their number. T has 32
-/// bits. All eight elements of `out` may be overwritten; it may begin at `values` or before.
+/// bits. Eight `values` are read, and eight of `out` may be overwritten; it may begin at `values` or before.
 template <class A, class T>
 OKTETT_INLINE int store_compact(unsigned lanes, const T* values, T* out) {
 #if defined(OKTETT_COMPILED_AVX2)

@@ -131,7 +131,8 @@ class PathShading {
       store_compact(which, direction, to.direction, to.size);
       store_compact(which, arriving, to.light, to.size);
       store_compact(which, tmax, to.tmax + to.size);
-      std::uint32_t owner[W];
+      static_assert(W <= 8);
+      std::uint32_t owner[8] = {};  // store_compact() reads eight
       for (int k = 0; k < W; ++k) owner[k] = c_.ray[entry_[k]];
       store_compact<A>(which, owner, to.owner + to.size);
       to.size += static_cast<std::size_t>(__builtin_popcount(which));
