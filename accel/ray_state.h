@@ -12,6 +12,10 @@ namespace oktett {
 
 // ---- Rays on their way through a tree.
 
+/// Rays that one vector of floats holds: those of a chunk, and of a packet where nothing says how many.
+template <class A>
+inline constexpr int kChunkRays = std::is_same_v<A, Avx512Isa> ? 16 : 8;
+
 /// Greatest |coordinate| in the box.
 OKTETT_INLINE float box_extent(const Box& b) {
   float e = 0;

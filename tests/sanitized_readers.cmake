@@ -26,6 +26,7 @@ endforeach()
 target_sources(test_readers PRIVATE core/bytes_test.cpp core/pages_test.cpp core/soa_test.cpp core/virtual_array_test.cpp)
 target_link_libraries(test_readers PRIVATE sanitized_readers GTest::gtest_main)
 oktett_unity(test_readers)
+set_target_properties(test_readers PROPERTIES UNITY_BUILD_BATCH_SIZE 5)  # sanitized code takes long
 add_dependencies(oktett_tests test_readers)
 # A sanitizer takes a quarter of a second to start, so several tests share a process.
 set(shards 8)

@@ -7,4 +7,12 @@ template void trace<Query::any, OKTETT_ISA>(const Accel&, const RaySpan&, const 
 
 template Hit trace_one<Query::any, OKTETT_ISA>(const Accel&, const Ray&);
 
+// Packets that other units call.
+template void trace_packet<Query::any, kChunkRays<OKTETT_ISA>, OKTETT_ISA>(
+    const Accel&, RayState<kChunkRays<OKTETT_ISA>, OKTETT_ISA>&, unsigned);
+
+template void table_leaf_packet<Query::any, kBeamGroup, OKTETT_ISA>(const Accel&, const LeafEntry&,
+                                                                    RayState<kBeamGroup, OKTETT_ISA>&,
+                                                                    unsigned);
+
 }  // namespace oktett

@@ -7,4 +7,12 @@ template void trace<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, co
 
 template Hit trace_one<Query::closest, OKTETT_ISA>(const Accel&, const Ray&);
 
+// Packets that other units call.
+template void trace_packet<Query::closest, kChunkRays<OKTETT_ISA>, OKTETT_ISA>(
+    const Accel&, RayState<kChunkRays<OKTETT_ISA>, OKTETT_ISA>&, unsigned);
+
+template void table_leaf_packet<Query::closest, kBeamGroup, OKTETT_ISA>(const Accel&, const LeafEntry&,
+                                                                        RayState<kBeamGroup, OKTETT_ISA>&,
+                                                                        unsigned);
+
 }  // namespace oktett

@@ -12,7 +12,7 @@
 
 namespace oktett {
 
-// ---- Rays. The two queries that trace() answers are compiled in closest_hit.cpp and any_hit.cpp.
+// ---- Rays. The two queries that trace() answers are compiled beside this file, see accel/traverse/ways.h.
 
 template <class A>
 void trace_all_hits(const Accel& accel, const RaySpan& rays, RayHitList& hits) {

@@ -138,7 +138,7 @@ OKTETT_INLINE typename F::M textbook_test(TriangleTest test, const RayLanes<F>& 
 
 /// One ray against the first `count` triangles of a block, all at once.
 template <class A>
-OKTETT_INLINE void leaf_triangles_single(const TriangleBlock& block, int count, RayState<1, A>& r) {
+OKTETT_NOINLINE void leaf_triangles_single(const TriangleBlock& block, int count, RayState<1, A>& r) {
   constexpr int N = TriangleBlock::kSize;
   using F = Simd<float, N, A>;
   const auto ray = broadcast_ray<N>(r);

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "accel/traverse/single.h"
+#include "accel/traverse/ways.h"
 
 namespace oktett {
 
@@ -93,9 +94,6 @@ struct PacketEntry {
   unsigned lanes;
 };
 
-template <Query Q, int W, class A>
-void trace_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes);
-
 /// The rays in `lanes` through one instance. The transform may put them into different octants, so they are
 /// grouped anew.
 template <Query Q, class Instance, int W, class A>
@@ -126,26 +124,27 @@ OKTETT_INLINE void traverse_each(const Accel& accel, RayState<W, A>& r, unsigned
   }
 }
 
-/// The rays in `lanes` against a leaf of the table.
 template <Query Q, int W, class A>
 OKTETT_NOINLINE void table_leaf_packet(const Accel& accel, const LeafEntry& leaf, RayState<W, A>& r,
                                        unsigned lanes) {
-  if (leaf.kind == Kind::triangle) {
-    leaf_textbook_packet(leaf.test, accel.blocks[leaf.begin], leaf.count, r, lanes);
-  } else if (holds_instances(leaf.kind)) {
-    each_instance(accel, leaf, [&](const auto& instance, const Accel& child) {
-      if (Q == Query::any) lanes &= ~found_lanes(r, lanes);
-      if (lanes != 0) instance_packet<Q>(instance, child, r, lanes);
-      return lanes != 0;
-    });
-  } else if (leaf.kind == Kind::csg) {
-    leaf_csg(accel, leaf, r, lanes);
-  } else if (is_exact(leaf.kind)) {
-    leaf_exact(accel, leaf, r, lanes);
-  } else {
-    visit_pool(leaf.kind, accel.pools, [&](auto shape, const auto& pool) {
-      leaf_shape_packet<decltype(shape)>(pool, leaf.begin, leaf.count, r, lanes);
-    });
+  if constexpr (!std::is_same_v<A, ScalarIsa>) {
+    if (leaf.kind == Kind::triangle) {
+      leaf_textbook_packet(leaf.test, accel.blocks[leaf.begin], leaf.count, r, lanes);
+    } else if (holds_instances(leaf.kind)) {
+      each_instance(accel, leaf, [&](const auto& instance, const Accel& child) {
+        if (Q == Query::any) lanes &= ~found_lanes(r, lanes);
+        if (lanes != 0) instance_packet<Q>(instance, child, r, lanes);
+        return lanes != 0;
+      });
+    } else if (leaf.kind == Kind::csg) {
+      leaf_csg(accel, leaf, r, lanes);
+    } else if (is_exact(leaf.kind)) {
+      leaf_exact(accel, leaf, r, lanes);
+    } else {
+      visit_pool(leaf.kind, accel.pools, [&](auto shape, const auto& pool) {
+        leaf_shape_packet<decltype(shape)>(pool, leaf.begin, leaf.count, r, lanes);
+      });
+    }
   }
 }
 
@@ -206,22 +205,22 @@ OKTETT_NOINLINE void traverse_packet(const Accel& accel, RayState<W, A>& r, unsi
   }
 }
 
-/// The rays in `lanes` against everything: the list of unbounded shapes, then the tree, in groups that share
-/// an octant and the axis of greatest direction. The other lanes must contain finite numbers.
 template <Query Q, int W, class A>
 void trace_packet(const Accel& accel, RayState<W, A>& r, unsigned lanes) {
-  for (const LeafEntry& leaf : accel.unbounded) table_leaf_packet<Q>(accel, leaf, r, lanes);
-  if (Q == Query::any) lanes &= ~found_lanes(r, lanes);
-  if (accel.root.is_none()) return;
-  while (lanes != 0) {
-    const int first = __builtin_ctz(lanes);
-    unsigned group = lanes & r.z_axis[r.z_axis_of(first)];
-    for (int k = 0; k < 3; ++k) group &= r.negative[k] >> first & 1 ? r.negative[k] : ~r.negative[k];
-    lanes &= ~group;
-    if (__builtin_popcount(group) >= kMinPacketRays<W>)
-      traverse_packet<Q>(accel, r, group);
-    else
-      traverse_each<Q>(accel, r, group, accel.root);
+  if constexpr (!std::is_same_v<A, ScalarIsa>) {
+    for (const LeafEntry& leaf : accel.unbounded) table_leaf_packet<Q>(accel, leaf, r, lanes);
+    if (Q == Query::any) lanes &= ~found_lanes(r, lanes);
+    if (accel.root.is_none()) return;
+    while (lanes != 0) {
+      const int first = __builtin_ctz(lanes);
+      unsigned group = lanes & r.z_axis[r.z_axis_of(first)];
+      for (int k = 0; k < 3; ++k) group &= r.negative[k] >> first & 1 ? r.negative[k] : ~r.negative[k];
+      lanes &= ~group;
+      if (__builtin_popcount(group) >= kMinPacketRays<W>)
+        traverse_packet<Q>(accel, r, group);
+      else
+        traverse_each<Q>(accel, r, group, accel.root);
+    }
   }
 }
 

@@ -9,7 +9,7 @@
 
 #include "accel/traverse/beam/beam_instances.h"
 #include "accel/traverse/beam/beam_shapes.h"
-#include "accel/traverse/packet.h"
+#include "accel/traverse/ways.h"
 #include "core/simd_order.h"
 
 namespace oktett {

@@ -74,10 +74,6 @@ struct TreeBytes {
 // ---- Rays prepared for the slab test in fused form, plane * (1/d) - o * (1/d). The bounds on its rounding
 // errors are part of the ray.
 
-/// Rays that one vector of floats holds: those of a chunk, and of a packet where nothing says how many.
-template <class A>
-inline constexpr int kChunkRays = std::is_same_v<A, Avx512Isa> ? 16 : 8;
-
 /// Least extent of scene and origin for which products do not underflow; other rays are not tame.
 inline constexpr float kChunkMinExtent = 0x1p-36f;
 /// A direction component below this part of the greatest is replaced by it.

@@ -8,14 +8,14 @@
 
 #include "accel/traverse/inflight/inflight_ray.h"
 #include "accel/traverse/inflight/triangle_steps.h"
-#include "accel/traverse/packet.h"
+#include "accel/traverse/ways.h"
 
 namespace oktett {
 
 // ---- Rays in flight that wait at the same leaf of shapes, tested together in lanes.
 
 /// Rays of a group at a leaf of closed-form shapes or combinations.
-inline constexpr int kGroupRays = 16;
+inline constexpr int kGroupRays = kBeamGroup;
 
 /// The least number of rays at a leaf that are tested faster together, with a ray in each lane, than one by
 /// one, with a shape in each lane. Greater than kGroupRays if there is none.

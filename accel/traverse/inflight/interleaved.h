@@ -121,18 +121,6 @@ class BundleEntry {
 
 // ---- A batch of single rays, interleaved.
 
-/// Which rays of a batch are traced: all, or only some chunks of kChunkRays<A> neighbours. The last chunk of
-/// a batch may be shorter.
-struct BatchChunks {
-  const std::uint32_t* first;  ///< of each chunk, the position of its first ray; null: all rays
-  std::size_t count;           ///< of chunks
-
-  template <class A>
-  static BatchChunks all(const RaySpan& rays) {
-    return {nullptr, (rays.size + kChunkRays<A> - 1) / kChunkRays<A>};
-  }
-};
-
 /// Traces rays of a batch; see the top of the file.
 template <Query Q, class A, InflightTrees kTrees>
 class InterleavedTraversal : InflightTraversal<InterleavedTraversal<Q, A, kTrees>, Q, A, kTrees> {
@@ -281,20 +269,17 @@ OKTETT_NOINLINE void run_interleaved(const Accel& accel, const RaySpan& rays, co
   InterleavedTraversal<Q, A, kTrees>(accel, rays, chunks, out).run();
 }
 
-/// The rays in `chunks` against everything; each hit is at the position of its ray.
 template <Query Q, class A>
 void trace_interleaved(const Accel& accel, const RaySpan& rays, const BatchChunks& chunks,
                        const HitSink<Q>& out) {
-  if (has_instances(accel))
-    run_interleaved<Q, A, InflightTrees::instances>(accel, rays, chunks, out);
-  else if (pays_to_prefetch(accel, rays))
-    run_interleaved<Q, A, InflightTrees::large>(accel, rays, chunks, out);
-  else
-    run_interleaved<Q, A, InflightTrees::small>(accel, rays, chunks, out);
-}
-template <Query Q, class A>
-void trace_interleaved(const Accel& accel, const RaySpan& rays, const HitSink<Q>& out) {
-  trace_interleaved<Q, A>(accel, rays, BatchChunks::all<A>(rays), out);
+  if constexpr (!std::is_same_v<A, ScalarIsa>) {
+    if (has_instances(accel))
+      run_interleaved<Q, A, InflightTrees::instances>(accel, rays, chunks, out);
+    else if (pays_to_prefetch(accel, rays))
+      run_interleaved<Q, A, InflightTrees::large>(accel, rays, chunks, out);
+    else
+      run_interleaved<Q, A, InflightTrees::small>(accel, rays, chunks, out);
+  }
 }
 
 }  // namespace oktett

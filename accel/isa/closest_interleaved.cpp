@@ -1,0 +1,7 @@
+#include "accel/traverse/inflight/interleaved.h"
+
+namespace oktett {
+
+template void trace_interleaved<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, const BatchChunks&, const HitSink<Query::closest>&);
+
+}  // namespace oktett
