@@ -69,7 +69,7 @@ execute_process(COMMAND gzip -9nf changelog WORKING_DIRECTORY ${PROJECT_BINARY_D
 foreach(pair command:oktett dev:liboktett-dev python:python3-oktett)
   string(REGEX MATCH "(.*):(.*)" unused ${pair})
   install(FILES cmake/package/copyright ${PROJECT_BINARY_DIR}/package/changelog.gz
-    DESTINATION ${CMAKE_INSTALL_DOCDIR}/../${CMAKE_MATCH_2} COMPONENT ${CMAKE_MATCH_1} EXCLUDE_FROM_ALL)
+    DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${CMAKE_MATCH_2} COMPONENT ${CMAKE_MATCH_1} EXCLUDE_FROM_ALL)
 endforeach()
 install(FILES cmake/package/lintian-overrides DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides RENAME oktett
   COMPONENT command EXCLUDE_FROM_ALL)
