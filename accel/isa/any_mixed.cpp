@@ -2,6 +2,7 @@
 
 namespace oktett {
 
-template void trace_mixed<Query::any, OKTETT_ISA>(const Accel&, const RaySpan&, const HitSink<Query::any>&, bool);
+template void trace_mixed<Query::any, OKTETT_ISA>(const Accel&, const RaySpan&, const HitSink<Query::any>&,
+                                                  bool);
 
 }  // namespace oktett

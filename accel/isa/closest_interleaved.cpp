@@ -2,6 +2,7 @@
 
 namespace oktett {
 
-template void trace_interleaved<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, const BatchChunks&, const HitSink<Query::closest>&);
+template void trace_interleaved<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, const BatchChunks&,
+                                                            const HitSink<Query::closest>&);
 
 }  // namespace oktett

@@ -2,6 +2,7 @@
 
 namespace oktett {
 
-template void trace_mixed<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&, const HitSink<Query::closest>&, bool);
+template void trace_mixed<Query::closest, OKTETT_ISA>(const Accel&, const RaySpan&,
+                                                      const HitSink<Query::closest>&, bool);
 
 }  // namespace oktett

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Batches of rays of all kinds: which traversal takes which rays. The choice changes the speed, never a
-/// hit.
+/// \file Batches of rays of all kinds: which traversal takes which rays. The choice changes the speed, never
+/// a hit.
 
 #include <algorithm>
 #include <limits>
