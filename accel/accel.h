@@ -1,5 +1,5 @@
 #pragma once
-/// \file The acceleration structure: built from geometries, then asked with rays, one at a time or in
+/// \file The acceleration structure: built from geometries, then queried with rays, one at a time or in
 /// batches.
 
 #include <cstddef>
@@ -22,7 +22,7 @@
 namespace oktett {
 
 /// A tree of bounding volumes over geometries, made by build_accel. It never changes, so any number of
-/// threads may ask it at the same time.
+/// threads may query it at the same time.
 class Accel;
 
 /// A mesh to trace. The mesh must outlive the acceleration structure, which refers to its normals and uvs.
@@ -117,7 +117,7 @@ AccelStats stats(const Accel& accel);
 Box bounds(const Accel& accel);
 
 // Queries. The hits are the same bits for every instruction set, number of threads, order of rays and size of
-// a batch, and for rays asked one at a time. Batches of more than 4096 rays are shared out among threads.
+// a batch, and for rays traced one at a time. Batches of more than 4096 rays are shared out among threads.
 // Rays that start at one point or end at one point, and rays that run together, are traced faster if they are
 // neighbours in the batch. Throws Error if the arrays of one call differ in size, or if this build has no
 // code for `isa`.
@@ -154,7 +154,7 @@ void count_hits(const Accel& accel, const RaySpan& rays, std::span<std::uint32_t
 void count_hits(const Accel& accel, std::span<const Ray> rays, std::span<std::uint32_t> counts,
                 Isa isa = default_isa());
 
-/// What shading needs to know of a hit, which is valid and was found by asking `accel` with `ray`.
+/// What shading needs to know of a hit, which is valid and was found by tracing `ray` in `accel`.
 SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const Hit& hit);
 
 /// Names what was hit: sets only `geometry`, `primitive`, `user` and `material_slot`. Faster than

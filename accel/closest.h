@@ -27,9 +27,9 @@ struct Nearest {
   }
 };
 
-/// The point asked for, as one structure sees it.
+/// The point of a query, as one structure sees it.
 struct PointPlace {
-  Vec3d world;                     ///< in the space of the structure that is asked
+  Vec3d world;                     ///< in the space of the structure that is queried
   Affine to_world, to_here;        ///< between that space and this structure's; only if `moved`
   bool moved = false;              ///< the structure is shown by an instance
   Vec3f lo, hi;                    ///< a box that holds the point in this space
@@ -46,7 +46,7 @@ struct PointPlace {
   }
 };
 
-/// The place of a point, which is finite, in the structure that is asked.
+/// The place of a point, which is finite, in the structure that is queried.
 PointPlace place_point(const Accel& accel, const Vec3f& point);
 /// What is known of the nearest surface before it is looked for, given that of another point: no more than
 /// the way to that point farther, by the triangle inequality.

@@ -36,7 +36,7 @@ class FilmSaver {
 
   /// The problem since the last call; empty if there was none.
   std::string take_warning();
-  /// Whether `problem` was the last that take_warning told.
+  /// Whether `problem` was the last that take_warning reported.
   bool has_told(const std::string& problem) const { return problem == told_; }
   /// Writes the file for the last time, with the metadata of the finished picture. Throws Error of kind io.
   void finish(const ImageMetadata& metadata);

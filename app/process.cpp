@@ -45,8 +45,8 @@ void write_line(const char* text) {
 [[noreturn]] void leave(const char* text, int status) {
   // Several threads may end the process at the same time; one line is enough. The others wait until it is
   // written.
-  static std::atomic_flag told;
-  if (!told.test_and_set())
+  static std::atomic_flag reported;
+  if (!reported.test_and_set())
     write_line(text);
   else
     poll(nullptr, 0, 500);

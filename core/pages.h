@@ -34,7 +34,7 @@ std::size_t whole_pages(std::size_t bytes);
 std::size_t whole_pages(std::size_t bytes, std::size_t page);
 
 /// Address space for so many bytes, which read as zero. Pages are allocated when they are first written.
-/// Whole huge pages are asked for: rays read nodes and triangles in random order, and with small pages, most
+/// Whole huge pages are requested: rays read nodes and triangles in random order, and with small pages, most
 /// reads of a large tree miss the processor's table of addresses (TLB). Throws std::bad_alloc.
 void* reserve_pages(std::size_t bytes);
 

@@ -46,7 +46,7 @@ struct Affine {
   /// Determinant of the linear part; negative for a mirror.
   double determinant() const;
   /// The inverse map; each entry is off by a few roundings, measured in the greatest of its row. For a
-  /// singular map the result holds non-finite numbers: ask `is_invertible` first.
+  /// singular map the result holds non-finite numbers: call `is_invertible` first.
   Affine inverse() const;
   /// True if all entries are finite and the map has a finite inverse.
   bool is_invertible() const;

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What can be asked of any exact surface without knowing which it is: one table of functions for each
+/// \file What any exact surface can do, without knowing which it is: one table of functions for each
 /// line of kernels/exact/surfaces.def.
 
 #include <memory>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The kinds: everything that a leaf of the tree can hold. What is asked of a kind is asked by name
+/// \file The kinds: everything that a leaf of the tree can hold. What a kind can do is looked up by name
 /// here, in the table of an exact surface (kernels/exact_ops.h) or of the kernel of a closed form
 /// (kernels/closed_forms.h); nothing follows from the order of the enumeration.
 

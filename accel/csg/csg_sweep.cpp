@@ -78,7 +78,7 @@ class States {
 
   const CsgItem* csg_ = nullptr;
   const CsgNode* nodes_ = nullptr;
-  std::vector<int> inside_;  ///< per node: how many children are, weighted as the node's kind asks for
+  std::vector<int> inside_;  ///< per node: how many children are, weighted as the node's kind requires
   std::vector<int> depth_;   ///< per solid
   std::vector<std::uint32_t> touched_nodes_, touched_solids_;
 };
@@ -107,7 +107,7 @@ std::size_t group_end(const std::vector<Event>& events, std::size_t first, float
 /// Sets the states at the beginning of the ray. It begins inside a primitive if the first crossing leaves it.
 /// It begins inside a mesh, instance or combination as many times as the crossings up to some distance leave
 /// it more often than they enter; coincident crossings have no order there. Unbounded solids without a
-/// crossing are asked.
+/// crossing are evaluated.
 void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   const Accel& solids = *csg.solids;
   if (s.begin.size() < csg.first_solid.back()) s.begin.resize(csg.first_solid.back());

@@ -20,13 +20,13 @@ namespace oktett {
 namespace {
 
 /// Answers for one structure. A point is inside of a solid if a ray from it crosses the boundary an odd
-/// number of times. Unbounded solids differ: a shape is asked by its function, and a combination whether the
-/// far end of the ray is inside of it.
+/// number of times. Unbounded solids differ: a shape is judged by its function, and a combination
+/// by whether the far end of the ray is inside of it.
 class InsideTest {
  public:
   InsideTest(const Accel& accel, Isa isa);
 
-  /// answers[i] becomes 1 if points[i] is inside of any solid, else 0. Any number of threads may ask.
+  /// answers[i] becomes 1 if points[i] is inside of any solid, else 0. Any number of threads may call it.
   void operator()(const PointSpan& points, std::uint8_t* answers) const;
 
  private:
@@ -35,7 +35,7 @@ class InsideTest {
     const Accel* accel;
     std::uint32_t geometry, instance, item;
     bool is_combination;
-    Affine to_here;  ///< from the space of the structure that is asked
+    Affine to_here;  ///< from the space of the structure that is queried
   };
 
   void find_unbounded(const Accel& accel, const Affine& to_here, std::uint32_t instance);
@@ -132,17 +132,17 @@ bool InsideTest::is_inside(const Ray& ray, std::span<const Hit> hits) const {
 void InsideTest::operator()(const PointSpan& points, std::uint8_t* answers) const {
   static thread_local RayBatch rays;
   static thread_local HitLists lists;
-  static thread_local std::vector<std::size_t> asked;
-  asked.clear();
+  static thread_local std::vector<std::size_t> near;
+  near.clear();
   for (std::size_t i = 0; i < points.size; ++i) {
     answers[i] = 0;
     const Vec3f p = points[i];
-    if (is_finite(p) && (!unbounded_.empty() || accel_.bounds.contains(p))) asked.push_back(i);
+    if (is_finite(p) && (!unbounded_.empty() || accel_.bounds.contains(p))) near.push_back(i);
   }
-  rays.resize_uninitialized(asked.size());
-  for (std::size_t k = 0; k < asked.size(); ++k) rays.set(k, {points[asked[k]], 0, kDirection});
+  rays.resize_uninitialized(near.size());
+  for (std::size_t k = 0; k < near.size(); ++k) rays.set(k, {points[near[k]], 0, kDirection});
   all_hits(accel_, rays.span(), lists, isa_);
-  for (std::size_t k = 0; k < asked.size(); ++k) answers[asked[k]] = is_inside(rays[k], lists.of_ray(k));
+  for (std::size_t k = 0; k < near.size(); ++k) answers[near[k]] = is_inside(rays[k], lists.of_ray(k));
 }
 
 }  // namespace
@@ -170,8 +170,8 @@ void require_closest(const Accel& accel, const char* query) {
     if (is_closed_form(kind) || (is_exact(kind) && exact_ops(kind).closest != nullptr))
       others += std::string(", ") + name_of(kind);
   }
-  throw Error(std::string(query) + ": " + accel.no_closest_point[0] +
-              " has no nearest points; these have: " + others + ". Ask it with rays or with inside()");
+  throw Error(std::string(query) + ": " + accel.no_closest_point[0] + " has no nearest points; these have: " +
+              others + ". It can be queried with rays and with inside()");
 }
 
 /// The points from number `begin` on, in columns. They are valid until the thread's next call.

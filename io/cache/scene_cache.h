@@ -36,7 +36,7 @@ class CacheFolder {
   /// the entry is made without one: that takes time, but does no harm.
   std::shared_ptr<Lock> lock(const std::string& name) const;
 
-  /// Reads an entry by `read(file)`, if there is one. An entry that is damaged is told of, and counts as
+  /// Reads an entry by `read(file)`, if there is one. An entry that is damaged is reported, and counts as
   /// missing. Returns whether it was read.
   bool read(const std::string& name, const std::function<void(const CacheFile&)>& read) const;
   /// Writes an entry and removes those that were not used for the longest time, as far as room is needed.

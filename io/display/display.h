@@ -33,7 +33,7 @@ class Display {
   void update(const Picture& picture, const FinishedTile& tile);
   /// Waits until everything is sent, at most for the time allowed, and ends the connection.
   void finish();
-  /// What went wrong, once: empty if nothing did or it was already told.
+  /// What went wrong, once: empty if nothing did or it was already reported.
   std::string take_warning();
 
  private:

@@ -99,7 +99,7 @@ class Checking {
       if (lower_case_extension(path) != ".mtl") continue;
       MeshFile file;
       MtlPlaces places;
-      // What else is wrong in it has been told.
+      // What else is wrong in it has been reported.
       try {
         load_mtl(path, file.materials, file.textures, file.warnings, &places);
       } catch (const Error&) {

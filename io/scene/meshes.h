@@ -17,7 +17,7 @@ namespace oktett {
 /// One path for all that lead to the same file; `path` itself if there is no such file.
 std::string canonical_path(const std::string& path);
 
-/// Images that cannot be read at all are told of in the warnings of `file`, where the statement that names
+/// Images that cannot be read at all are named in the warnings of `file`, where the statement that names
 /// them is known. Their textures lose the path, and are white.
 void check_textures(MeshFile& file);
 

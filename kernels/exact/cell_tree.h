@@ -28,7 +28,7 @@ struct CellRange {
   double lo, hi;
 };
 
-/// What a function is made of. Asked by several threads at once.
+/// What a function is made of. Called by several threads at once.
 class CellRule {
  public:
   virtual ~CellRule() = default;

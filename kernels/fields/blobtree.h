@@ -297,7 +297,7 @@ class CellField {
       if (BlobCode::op(code_[i]) == BlobCode::element) kept_[k++] = Track<D>(part(i), line);
   }
 
-  // Not inlined: the march asks in many places, and that would be most of the code of the library.
+  // Not inlined: the march calls it in many places, and that would be most of the code of the library.
   OKTETT_NOINLINE Dual<Interval<D>> over(const Interval<D>& x) const { return run<Dual<Interval<D>>>(x); }
   OKTETT_NOINLINE Interval<D> at(const D& s) const { return run<Interval<D>>(Interval<D>(s)); }
 
