@@ -155,14 +155,17 @@ TEST(SceneFilm, ReadsMotions) {
       "    motion: [{time: 0, transform: {translate: [0, 0, 1]}}, {time: 1, transform: {translate: [0, 0, "
       "3]}}]\n"
       "  - sphere: {}\n"
-      "    motion: [{time: 7, transform: {scale: 4}}]\n");
+      "    motion: [{time: 7, transform: {scale: 4}}]\n"
+      "  - sphere: {}\n"
+      "    motion: [{time: 0, transform: {scale: 0.5}}, {time: 1, transform: {scale: 2}}]\n");
   EXPECT_EQ(scene.camera.shutter[1], 0.5);
   ASSERT_NE(scene.camera.motion, nullptr);
   EXPECT_EQ(scene.camera.motion->at(0.5), Affine::translation({0.5, 0, 0}));
   ASSERT_EQ(scene.light_traits.size(), 2u);
   EXPECT_EQ(scene.light_traits[0].motion, nullptr);
   EXPECT_EQ(scene.light_traits[1].motion->at(1), Affine::translation({0, 2, 0}));
-  ASSERT_EQ(scene.objects.size(), 4u);
+  ASSERT_EQ(scene.objects.size(), 5u);
+  EXPECT_EQ(scene.objects[4].motion->at(1), Affine::scaling({2, 2, 2}));
   EXPECT_EQ(scene.objects[0].motion->at(2), Affine::scaling({3, 3, 3}));
   EXPECT_EQ(scene.objects[1].motion->at(1), Affine::translation({0, 0, 3}) * Affine::scaling({2, 2, 2}));
   EXPECT_EQ(scene.objects[1].transform, Affine::translation({0, 0, 1}) * Affine::scaling({2, 2, 2}));

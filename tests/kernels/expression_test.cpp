@@ -89,6 +89,8 @@ TEST(Expression, BindsVariables) {
   const Expression parsed = parse_expression("x^2 + 3*y1 - e", names);
   const double values[] = {4, 5, 6};
   EXPECT_EQ(evaluate(parsed, values), 16 + 15 - 6);
+  const std::string_view others[] = {"X", "_a", "bZ_"};
+  EXPECT_EQ(evaluate(parse_expression("X + _a*bZ_", others), values), 4 + 5 * 6);
 }
 
 /// The parsed form can be walked without recursion: operands come first, the last node is the root.
