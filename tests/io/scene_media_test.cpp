@@ -186,7 +186,8 @@ TEST(SceneMedia, ReportsBadPlacesAndNoise) {
   expect_error("media: {a: {grid: none.grid}}\n", "none.grid");
   expect_error("media: {a: {bounds: {}}}\n", "only a medium with a 'grid' or 'noise' has a place");
   for (const std::string flat : {"[0, 1, 1]", "[1, 0, 1]", "[1, 1, 0]"})
-    expect_error("media: {a: {noise: {}, bounds: {min: [0, 0, 0], max: " + flat + "}}}\n", "'min' below 'max'");
+    expect_error("media: {a: {noise: {}, bounds: {min: [0, 0, 0], max: " + flat + "}}}\n",
+                 "'min' below 'max'");
   expect_error("media: {a: {noise: {}, transform: {scale: 0}}}\n", "2:35");
   expect_error("media: {a: {noise: {size: 1}}}\n", "2 to 512");
   expect_error("media: {a: {noise: {threshold: 1}}}\n", "less than 1");
