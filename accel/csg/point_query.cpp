@@ -171,7 +171,7 @@ void require_closest(const Accel& accel, const char* query) {
       others += std::string(", ") + name_of(kind);
   }
   throw Error(std::string(query) + ": " + accel.no_closest_point[0] + " has no nearest points; these have: " +
-              others + ". It can be queried with rays and with inside()");
+              others + ". Ask it with rays or with inside()");
 }
 
 /// The points from number `begin` on, in columns. They are valid until the thread's next call.
