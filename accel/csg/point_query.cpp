@@ -170,8 +170,8 @@ void require_closest(const Accel& accel, const char* query) {
     if (is_closed_form(kind) || (is_exact(kind) && exact_ops(kind).closest != nullptr))
       others += std::string(", ") + name_of(kind);
   }
-  throw Error(std::string(query) + ": " + accel.no_closest_point[0] + " has no nearest points; these have: " +
-              others + ". Ask it with rays or with inside()");
+  throw Error(std::string(query) + ": " + accel.no_closest_point[0] +
+              " has no nearest points; these have: " + others + ". Ask it with rays or with inside()");
 }
 
 /// The points from number `begin` on, in columns. They are valid until the thread's next call.
