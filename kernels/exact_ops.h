@@ -1,6 +1,6 @@
 #pragma once
-/// \file What any exact surface can do, without knowing which it is: one table of functions for each
-/// line of kernels/exact/surfaces.def.
+/// \file What every exact surface can do, called without its type: one table of functions for each line
+/// of kernels/exact/surfaces.def.
 
 #include <memory>
 

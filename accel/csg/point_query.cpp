@@ -132,17 +132,17 @@ bool InsideTest::is_inside(const Ray& ray, std::span<const Hit> hits) const {
 void InsideTest::operator()(const PointSpan& points, std::uint8_t* answers) const {
   static thread_local RayBatch rays;
   static thread_local HitLists lists;
-  static thread_local std::vector<std::size_t> near;
-  near.clear();
+  static thread_local std::vector<std::size_t> tested;
+  tested.clear();
   for (std::size_t i = 0; i < points.size; ++i) {
     answers[i] = 0;
     const Vec3f p = points[i];
-    if (is_finite(p) && (!unbounded_.empty() || accel_.bounds.contains(p))) near.push_back(i);
+    if (is_finite(p) && (!unbounded_.empty() || accel_.bounds.contains(p))) tested.push_back(i);
   }
-  rays.resize_uninitialized(near.size());
-  for (std::size_t k = 0; k < near.size(); ++k) rays.set(k, {points[near[k]], 0, kDirection});
+  rays.resize_uninitialized(tested.size());
+  for (std::size_t k = 0; k < tested.size(); ++k) rays.set(k, {points[tested[k]], 0, kDirection});
   all_hits(accel_, rays.span(), lists, isa_);
-  for (std::size_t k = 0; k < near.size(); ++k) answers[near[k]] = is_inside(rays[k], lists.of_ray(k));
+  for (std::size_t k = 0; k < tested.size(); ++k) answers[tested[k]] = is_inside(rays[k], lists.of_ray(k));
 }
 
 }  // namespace

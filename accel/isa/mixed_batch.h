@@ -67,6 +67,7 @@ int max_beam_steps(const Accel& accel) {
 
 /// Batches of fewer rays are no beams: what a beam costs before its first node is more than it saves.
 inline constexpr std::size_t kLeastBeamRays = 64;
+
 /// The only leaf of a structure that has but one, of exact surfaces.
 OKTETT_INLINE const LeafEntry* only_exact_leaf(const Accel& accel) {
   if (!accel.root.is_leaf() || accel.root.is_none() || accel.root.is_triangles()) return nullptr;

@@ -136,7 +136,7 @@ OKTETT_INLINE typename F::M textbook_test(TriangleTest test, const RayLanes<F>& 
   return segura_feito(ray, tri, hit);
 }
 
-/// One ray against the first `count` triangles of a block, all at once.
+/// One ray against the first `count` triangles of a block, all at once. A call: many places need it rarely.
 template <class A>
 OKTETT_NOINLINE void leaf_triangles_single(const TriangleBlock& block, int count, RayState<1, A>& r) {
   constexpr int N = TriangleBlock::kSize;

@@ -35,7 +35,7 @@ struct HeightFieldShape {
   bool open = true;     ///< without the sides and the bottom at y = base, which make it a solid
   double base = 0;      ///< below all heights, unless open
   HeightWalk walk = HeightWalk::pyramid;
-  /// What the scene file says; `grid` is as it says.
+  /// The interpolation of the scene file, for which `grid` was made.
   HeightInterpolation interpolation = HeightInterpolation::bilinear;
 
   static constexpr ShapeInfo kShapeInfo{"height_field",
