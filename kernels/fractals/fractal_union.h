@@ -11,8 +11,7 @@
 /// Everything is a function of the line alone.
 ///
 /// A walk that has looked at kMostUnionSteps parts is given up: it finds nothing more, and is counted
-/// (interval::count_uncertified). Parts that overlap almost entirely, would take
-/// forever.
+/// (interval::count_uncertified). Where parts overlap almost entirely, it would take forever.
 
 #include <limits>
 

@@ -112,6 +112,15 @@ std::vector<Sampled> surfaces() {
                  },
                  [h](const Vec3d& p) { return off_box(p, h); },
                  {{0, 0, 0}, {0, 0, 1.5}, {0.5, 0, 0}}});
+  const Vec3d c{0.7, 0.1, 0.9};
+  all.push_back({"box beside the origin", geometry(BoxShape{c - h, c + h}),
+                 [h, c](CaseRandom& r) {
+                   Vec3d p = r.vector() * h;
+                   const int axis = static_cast<int>(r.unit() * 3);
+                   p[axis] = r.sign() < 0 ? -h[axis] : h[axis];
+                   return c + p;
+                 },
+                 [h, c](const Vec3d& p) { return off_box(p - c, h); }});
   all.push_back({"plane", geometry(PlaneShape{{0, 0, 2}, 0.25}),
                  [](CaseRandom& r) {
                    return Vec3d{4 * r.sign(), 4 * r.sign(), 0.25};
@@ -258,27 +267,31 @@ TEST(ClosestShapes, NoSampleIsNearer) {
   }
 }
 
-// The normal points from the surface to points outside.
+// The normal points from the surface to points outside, also where the shape is mirrored or sheared.
 TEST(ClosestShapes, NormalsPointOutwards) {
   CaseRandom r(4);
   int solids = 0;
   for (const Sampled& s : surfaces()) {
-    const bool is_solid = inside(*build_accel({s.geometry}), Vec3f(Vec3d{0.6, 0.01, 0.02}));
-    if (!is_solid) continue;
-    const auto plain = build_accel({s.geometry});
-    int checked = 0;
-    for (int i = 0; i < 300; ++i) {
-      const Vec3f p = Vec3f(r.vector() * 2.0);
-      const ClosestPoint c = closest_point(*plain, p);
-      if (c.distance < 1e-4f) continue;
-      ++checked;
-      const float along = dot(p - c.point, c.normal);
-      EXPECT_EQ(along > 0, !inside(*plain, p)) << s.name << " " << p.x << " " << p.y << " " << p.z;
+    if (!inside(*build_accel({s.geometry}), Vec3f(Vec3d{0.6, 0.01, 0.02}))) continue;
+    const bool any = std::holds_alternative<BoxShape>(s.geometry.shape);
+    for (int round = 0; round < 3; ++round) {
+      const Affine m = round == 0 ? Affine{} : random_map(r, any && round == 2);
+      const auto accel = placed(s.geometry, m, 0);
+      const double size = std::cbrt(std::abs(m.determinant()));
+      int checked = 0;
+      for (int i = 0; i < 300; ++i) {
+        const Vec3f p(m.point(r.vector() * 2.0));
+        const ClosestPoint c = closest_point(*accel, p);
+        if (c.distance < 1e-4 * size) continue;
+        ++checked;
+        const float along = dot(p - c.point, c.normal);
+        EXPECT_EQ(along > 0, !inside(*accel, p)) << s.name << ", round " << round << ", point " << i;
+      }
+      EXPECT_GT(checked, 270) << s.name;
     }
-    EXPECT_GT(checked, 280) << s.name;
     ++solids;
   }
-  EXPECT_GE(solids, 4);
+  EXPECT_GE(solids, 5);
 }
 
 // Of all things in a scene the nearest counts, at equal distance the first.

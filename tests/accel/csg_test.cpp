@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "accel/accel_data.h"
+#include "accel/hit_place.h"
 #include "verify/checks/csg.h"
 #include "verify/oracles/mesh.h"
 
@@ -385,6 +386,15 @@ TEST(Csg, ManyOperands) {
     deep = std::move(next);
   }
   EXPECT_EQ(crossings(*built(whole(std::move(deep))), ray_along_x(0, 0.5f)).size(), 402u);
+}
+
+/// A position's error grows by what lies along the ray within the reach of faces that count as coincident.
+TEST(Csg, ErrorsOfPositionsHoldTheReach) {
+  for (const float direction : {0.25f, -0.25f, 0.0f, 3.0f, -1e-20f}) {
+    const double least = 0.125 + 0.5 * std::abs(double{direction});
+    EXPECT_GE(widened_error(0.125f, 0.5f, direction), least);
+    EXPECT_LE(widened_error(0.125f, 0.5f, direction), least * (1 + 1e-6));
+  }
 }
 
 }  // namespace

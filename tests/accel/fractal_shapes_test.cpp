@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernels/fractals/fractal_union.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/accel/fractal_cases.h"
 
@@ -313,6 +314,29 @@ TEST(Menger, TheDiagonalIsCantorsDust) {
     for (std::size_t i = 0; i < dust.size(); ++i) {
       EXPECT_FLOAT_EQ(hits[2 * i].t, static_cast<float>(0.5 + dust[i].first));
       EXPECT_FLOAT_EQ(hits[2 * i + 1].t, static_cast<float>(0.5 + dust[i].second));
+    }
+  }
+}
+
+/// Bounds leave room for points whose coordinates are off by the slack: those that the part of the world's
+/// origin in a coordinate has and those that the size of the element adds.
+TEST(Fractals, BoundsLeaveRoomForRounding) {
+  Numbers random{17};
+  constexpr double kRadius = 1.5, kSlack = 0.01;
+  for (int i = 0; i < 100; ++i) {
+    ExactFrame frame;
+    frame.to_world = Affine::translation(random.vector() * (i % 3 == 0 ? 10.0 : 0.5)) *
+                     Affine::rotation(random.vector() * 180.0) * Affine::scaling({1, 2, 0.5});
+    frame.to_own = frame.to_world.inverse();
+    const Box box =
+        bounds_by_support(frame, kSlack, kRadius, [](const Vec3d& w) { return kRadius * length(w); });
+    for (int k = 0; k < 3; ++k) {
+      const auto& row = frame.to_world.m[k];
+      const double reach = kRadius * std::hypot(row[0], row[1], row[2]);
+      const double pad = kSlack * (std::abs(row[3]) + reach);
+      EXPECT_LE(box.lo[k], row[3] - reach - pad);
+      EXPECT_GE(box.hi[k], row[3] + reach + pad);
+      EXPECT_NEAR(box.hi[k] - box.lo[k], 2 * (reach + pad), 1e-5 * (1 + std::abs(row[3])));
     }
   }
 }

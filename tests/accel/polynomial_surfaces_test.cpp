@@ -4,6 +4,7 @@
 
 #include "accel/accel.h"
 #include "kernels/exact/polynomial_expression.h"
+#include "kernels/fields/blob.h"
 #include "tests/accel/all_crossings.h"
 #include "tests/support/limits.h"
 #include "verify/cases/kernel_cases.h"
@@ -127,6 +128,33 @@ TEST(Blobs, OfFewSources) {
   const auto hits = crossings(dent, {1, 2, 9}, {0, 0, -1});
   ASSERT_EQ(hits.size(), 2u);
   EXPECT_GT(hits[0].t, 4.1f);
+}
+
+/// One source makes a ball; of several, the box is no larger than if all were at the one that lies farthest.
+TEST(Blobs, BoxesOfPoints) {
+  for (const Vec3d& at : {Vec3d{0, 0, 0}, Vec3d{100, -100, 3}, Vec3d{-0.5, 20, -1000}}) {
+    BlobShape one;
+    one.sources = {{BlobSource::Kind::point, at, {}, 0, 4}};
+    one.iso = 0.25;
+    const auto ball = blob_box(one);
+    ASSERT_TRUE(ball);
+    BlobShape three = one;
+    three.sources.push_back({BlobSource::Kind::point, at + Vec3d{1, 2, -1}, {}, 0, 1});
+    three.sources.push_back({BlobSource::Kind::point, at + Vec3d{-1, 0.5, 0}, {}, 0, -2});
+    const auto box = blob_box(three);
+    ASSERT_TRUE(box);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR((*ball)[0][k], at[k] - 4, 1e-8);
+      EXPECT_NEAR((*ball)[1][k], at[k] + 4, 1e-8);
+      EXPECT_LE((*ball)[0][k], at[k] - 4);
+      EXPECT_GE((*ball)[1][k], at[k] + 4);
+      // Weights of 5 at one point reach sqrt(20).
+      EXPECT_LT((*box)[0][k], at[k] - 4);
+      EXPECT_GT((*box)[1][k], at[k] + 4);
+      EXPECT_GT((*box)[0][k], at[k] - 1 - std::sqrt(20.0));
+      EXPECT_LT((*box)[1][k], at[k] + 2 + std::sqrt(20.0));
+    }
+  }
 }
 
 /// Through a source the sum is infinite, along a line as well.

@@ -139,6 +139,20 @@ TEST(FunctionTape, ValuesAndGradientsOfSmoothFunctions) {
   }
 }
 
+/// With steep walls an arcsine goes on beyond -1 and 1 with its value there; before, the values are its own.
+TEST(FunctionTape, ArcsinesGoOnBehindTheirWalls) {
+  using Steep = Gradient<D, Walls::steep>;
+  const D zero(0.0);
+  for (const double x : {-7.0, -1.25, -1.0, -0.75, 0.0, 0.5, 1.0, 1.5, 20.0}) {
+    const Steep at{D(x), {D(1.0), zero, zero}};
+    const double nearest = std::fmin(std::fmax(x, -1), 1);
+    EXPECT_NEAR(number(asin(at).v), std::asin(nearest), 1e-15) << x;
+    EXPECT_NEAR(number(acos(at).v), std::acos(nearest), 1e-15) << x;
+    EXPECT_GT(number(asin(at).d.x), 0) << x;
+    EXPECT_LT(number(acos(at).d.x), 0) << x;
+  }
+}
+
 /// Undefined is NaN and stays NaN through all following operations.
 TEST(FunctionTape, UndefinedIsNan) {
   for (const char* text : {"sqrt(x - 1)",

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -69,6 +70,58 @@ TEST(SurfaceList, EverySurfaceIsVerifiedAndKeepsItsTraits) {
       EXPECT_GE(ops.bytes(*pool), sizeof(ExactFrame) + sizeof(ExactCell)) << ops.name;
     }
   for (const Listed& line : kLines) EXPECT_TRUE(verified.contains(line.name)) << line.name;
+}
+
+/// A solid's inside is where its oracle is negative. Points so near to the surface that a small step changes
+/// the oracle's sign are left out.
+TEST(SurfaceList, InsideIsWhereTheOracleIsNegative) {
+  CaseRandom random(8);
+  std::map<std::string, int> within, beyond;
+  for (int round = 0; round < 12; ++round)
+    for (const ExactOracle& oracle : draw_exact_oracles(random)) {
+      const ExactOps& ops = exact_ops(kind_of(oracle.shape.form));
+      const auto pool = ops.make_pool();
+      ops.add(*pool, oracle.shape, {}, 0);
+      if (pool->frames.empty() || oracle.where || is_open(oracle.shape)) continue;
+      const Vec3d middle = (oracle.lo + oracle.hi) * 0.5, half = (oracle.hi - oracle.lo) * 0.5;
+      for (int i = 0; i < 60; ++i) {
+        const Vec3d p = middle + half * random.vector() * 1.1;
+        const bool truth = oracle.f(Vec3l(p)) < 0;
+        bool sure = true;
+        for (int k = 0; k < 6; ++k) {
+          Vec3d q = p;
+          q[k / 2] += (k % 2 == 0 ? 1e-5 : -1e-5) * max_component(half);
+          sure &= (oracle.f(Vec3l(q)) < 0) == truth;
+        }
+        if (!sure) continue;
+        ++(truth ? within : beyond)[ops.name];
+        EXPECT_EQ(ops.inside(*pool, 0, pool->frames[0].to_own.point(p)), truth)
+            << oracle.name << " at " << p.x << " " << p.y << " " << p.z;
+      }
+    }
+  for (const Listed& line : kLines) {
+    EXPECT_GT(within[line.name], 10) << line.name;
+    EXPECT_GT(beyond[line.name], 10) << line.name;
+  }
+}
+
+/// A box without thickness along any axis holds no surface.
+TEST(SurfaceList, FlatBoxesHoldNothing) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3d lo{-1, -1, -1}, hi{1, 1, 1};
+    hi[axis] = lo[axis] = 0.25;
+    PolynomialShape polynomial;
+    polynomial.terms = {{2, 0, 0, 1}, {0, 2, 0, 1}, {0, 0, 2, 1}, {0, 0, 0, -1}};
+    polynomial.lo = lo, polynomial.hi = hi;
+    BlobShape blob{{{}}};
+    blob.bounded = true, blob.lo = lo, blob.hi = hi;
+    for (const ExactForm& form : {ExactForm(polynomial), ExactForm(blob)}) {
+      const ExactOps& ops = exact_ops(kind_of(form));
+      const auto pool = ops.make_pool();
+      ops.add(*pool, {form}, {}, 0);
+      EXPECT_TRUE(pool->frames.empty()) << ops.name << " along " << axis;
+    }
+  }
 }
 
 }  // namespace oktett::surface_list_test
