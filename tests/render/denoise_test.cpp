@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "render/film/film.h"
 #include "tests/render/test_scenes.h"
 
 namespace oktett::denoise_test {
@@ -160,6 +161,42 @@ TEST(Denoise, BadPixelsAndOddSizesDoNoHarm) {
     denoise(p);
     for (const char* channel : {"R", "G", "B"})
       for (const float v : p.find(channel)->values) ASSERT_TRUE(std::isfinite(v));
+  }
+}
+
+// Two pixels p and q that differ in colour alone. The distance is the mean over the channels of
+// ((p - q)^2 - (Var p + min(Var p, Var q))) / (strength^2 (Var p + Var q)), and the weight (1 + d / 16)^-16.
+TEST(Denoise, StrengthCountsStandardDeviations) {
+  FilmFormat format;
+  format.window = {0, 0, 2, 1};
+  format.full_width = 2, format.data_layers = true;
+  const double colors[3][2] = {{1, 0.5}, {0.4, 0.7}, {0.25, 0.25}};
+  for (const double strength : {0.5, 1.0, 2.0}) {
+    Picture p = make_picture(format);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string channel(1, "RGB"[k]);
+      for (std::size_t i = 0; i < 2; ++i) {
+        p.find(channel)->values[i] = static_cast<float>(colors[k][i]);
+        // With what the denoiser adds to it this is 1.
+        p.find("Albedo." + channel)->values[i] = 0.95f;
+        // Means over five pixels, with the border repeated: 0.04 and 0.05.
+        p.find("Variance." + channel)->values[i] = i == 0 ? 0.02f : 0.07f;
+      }
+    }
+    DenoiseOptions options;
+    options.window = 1, options.patch = 0, options.strength = static_cast<float>(strength);
+    denoise(p, options);
+    for (std::size_t i = 0; i < 2; ++i) {
+      // (p - q)^2 is 0.25, 0.09 and 0.
+      const double noise_of_three = i == 0 ? 3 * 0.08 : 3 * 0.09;
+      const double distance = (0.34 - noise_of_three) / (3 * strength * strength * 0.09);
+      const double weight = std::pow(1 + distance / 16, -16);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double want = (colors[k][i] + weight * colors[k][1 - i]) / (1 + weight);
+        EXPECT_NEAR(p.find(std::string(1, "RGB"[k]))->values[i], want, 1e-5)
+            << strength << ' ' << i << ' ' << k;
+      }
+    }
   }
 }
 

@@ -179,6 +179,24 @@ TEST(FilmState, WhatMovesGetsWholeRoundsOfSamples) {
   other.add_samples(16);
 }
 
+// 32 pixels if those make four tiles for each share, else 16, and if those do not either, 8.
+TEST(FilmState, TilesAreAsLargeAsSharesAllow) {
+  struct Row {
+    std::uint32_t width, height, shares, size;
+  };
+  const Row rows[] = {{64, 64, 1, 32},     {1920, 1080, 1, 32}, {128, 64, 2, 32},   {97, 33, 2, 32},
+                      {96, 64, 2, 16},     {64, 32, 2, 16},     {48, 32, 2, 8},     {33, 32, 2, 8},
+                      {8, 8, 2, 8},        {1, 1, 2, 8},        {128, 96, 3, 32},   {128, 65, 3, 32},
+                      {128, 64, 3, 16},    {64, 48, 3, 16},     {64, 32, 3, 8},     {640, 640, 100, 32},
+                      {640, 608, 100, 16}, {320, 320, 100, 16}, {320, 304, 100, 8}, {1920, 1080, 1000, 16}};
+  for (const Row& row : rows) {
+    FilmFormat format;
+    format.window = {3, 5, 3 + row.width, 5 + row.height};
+    EXPECT_EQ(tile_size_of(format, row.shares), row.size)
+        << row.width << " x " << row.height << ", " << row.shares << " shares";
+  }
+}
+
 TEST(FilmState, EachTileIsOfOneShare) {
   for (const std::uint32_t count : {1u, 2u, 7u, 8u, 9u, 100u}) {
     std::multiset<std::size_t> seen;

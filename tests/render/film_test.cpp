@@ -33,6 +33,12 @@ TEST(Film, DataLayersDescribeTheNearestSurface) {
   EXPECT_EQ(value(p, "Variance.R", 15, 15), 0);
 }
 
+// Who fills a picture by hand need not place it.
+TEST(Picture, StandsAtTheCornerOfItsFrame) {
+  const Picture p;
+  EXPECT_TRUE(p.x == 0 && p.y == 0);
+}
+
 TEST(Film, EmptyPixelsSaySo) {
   const Picture p = run(bare_scene(3)).picture;
   EXPECT_EQ(value(p, "Z", 1, 1), kInf);

@@ -72,6 +72,32 @@ TEST(LightProfile, ValuesAreThoseOfTheTableAndLinearBetween) {
   EXPECT_EQ(profile_value(*p, std::nan(""), 10), 0);
 }
 
+// Two angles are the fewest between which there is anything to interpolate.
+TEST(LightProfile, ValuesOfTwoAnglesAreLinearBetween) {
+  const LightProfile turned{{0, 80}, {0}, {1, 0.5f}};
+  for (const double h : {0.0, 123.0, 360.0}) {
+    EXPECT_EQ(profile_value(turned, 0, h), 1);
+    EXPECT_NEAR(profile_value(turned, 20, h), 0.875, 1e-12);
+    EXPECT_NEAR(profile_value(turned, 40, h), 0.75, 1e-12);
+    EXPECT_NEAR(profile_value(turned, 60, h), 0.625, 1e-12);
+    EXPECT_EQ(profile_value(turned, 80, h), 0.5);
+    EXPECT_EQ(profile_value(turned, 81, h), 0);
+  }
+  const LightProfile both{{20, 60}, {0, 360}, {1, 0.5f, 0, 0.25f}};
+  EXPECT_EQ(profile_value(both, 20, 0), 1);
+  EXPECT_EQ(profile_value(both, 60, 0), 0.5);
+  EXPECT_EQ(profile_value(both, 20, 360), 0);
+  EXPECT_EQ(profile_value(both, 60, 360), 0.25);
+  EXPECT_NEAR(profile_value(both, 40, 180), 0.4375, 1e-12);
+  EXPECT_NEAR(profile_value(both, 30, 90), 0.875 * 0.75 + 0.0625 * 0.25, 1e-12);
+  EXPECT_NEAR(profile_value(both, 50, 270), 0.625 * 0.25 + 0.1875 * 0.75, 1e-12);
+  // Many vertical angles, but one horizontal one.
+  const LightProfile bright_ring{{0, 10, 40, 90}, {0}, {0, 1, 0.4f, 0}};
+  EXPECT_NEAR(profile_value(bright_ring, 5, 200), 0.5, 1e-7);
+  EXPECT_NEAR(profile_value(bright_ring, 25, 10), 0.7, 1e-7);
+  EXPECT_NEAR(profile_value(bright_ring, 65, 350), 0.2, 1e-7);
+}
+
 TEST(LightProfile, IsAimedAlongItsAxis) {
   const auto down = aim(random_profile(2), {0, -2, 0}, 0);
   const auto at = [](double v, double h) {

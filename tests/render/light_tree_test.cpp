@@ -8,6 +8,7 @@
 
 #include "core/isa.h"
 #include "render/light/emitter.h"
+#include "render/light/light_tree_lanes.h"
 #include "render/transport/render_code.h"
 #include "tests/render/light_checks.h"
 
@@ -252,6 +253,37 @@ TEST(LightTree, IsConservativeAtGrazingAngles) {
     ASSERT_GT(tree.probability(point, 0), 0);
   }
   EXPECT_GT(lit, 500);
+}
+
+// cos(a + b) = cos(a) cos(b) - sin(a) sin(b). The bound takes 1 for sin(a), and cos(b)^2 or 1 for cos(b): it
+// loses no more than this makes of each product, and a constant.
+TEST(LightTree, FindsAnglesBeyondASum) {
+  using F = Simd<float, 1, ScalarIsa>;
+  const auto says_beyond = [](double cosine, double limit, double ball) {
+    return any(
+        is_beyond(F(static_cast<float>(cosine)), F(static_cast<float>(limit)), F(static_cast<float>(ball))));
+  };
+  Random random(6);
+  int clear = 0;
+  for (int i = 0; i < 300000; ++i) {
+    const double a = random.between(0, std::numbers::pi);
+    const double b = random.between(0, std::numbers::pi / 2) * std::pow(random(), i % 4);
+    const double loss =
+        std::sin(b) * (1 - std::sin(a)) + std::abs(std::cos(a)) * (1 - std::cos(b)) + double{kLeastCosine};
+    const double sum = std::cos(a + b), surely = sum - loss;
+    const double cosines[] = {std::cos(random.between(0, std::numbers::pi)),
+                              sum + random.between(-1e-3, 1e-3), surely + random.between(-0.02, 1e-3)};
+    for (const double wanted : cosines) {
+      const double cosine = std::clamp(wanted, -1.0, 1.0);
+      const bool beyond = says_beyond(cosine, std::cos(a), std::sin(b));
+      ASSERT_TRUE(!beyond || std::acos(cosine) > a + b) << a << ' ' << b << ' ' << cosine;
+      if (cosine > surely - 1e-6) continue;
+      ++clear;
+      ASSERT_TRUE(beyond) << a << ' ' << b << ' ' << cosine;
+    }
+  }
+  EXPECT_GT(clear, 100000);
+  EXPECT_FALSE(says_beyond(-1, 1, 1)) << "any angle may be added";
 }
 
 TEST(LightTree, LeavesOutWhatIsBehindAnOpaqueSurfaceOnly) {
