@@ -33,8 +33,8 @@ struct FilmPlan {
   bool operator==(const FilmPlan&) const = default;
 };
 
-/// The edge of tiles: 32 pixels, or 16 or 8 if a picture in so many shares would else have fewer than four
-/// tiles for each of them.
+/// The edge of tiles: 32 pixels, or 16 or 8 if a picture in so many shares, at least two, would else have
+/// fewer than four tiles for each of them.
 std::uint32_t tile_size_of(const FilmFormat& format, std::uint32_t shares);
 
 /// The sums of a tile as bytes, and how many samples more than the plan's each of its pixels has.
