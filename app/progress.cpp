@@ -56,9 +56,9 @@ void PhaseLine::end() {
   say("\r\x1b[K");
 }
 
-ProgressLine::ProgressLine(Mode mode) : terminal_(isatty(STDERR_FILENO) == 1) {
-  shown_ = mode == Mode::always || (mode == Mode::automatic && terminal_);
-}
+ProgressLine::ProgressLine(Mode mode)
+    : terminal_(isatty(STDERR_FILENO) == 1),
+      shown_(mode == Mode::always || (mode == Mode::automatic && terminal_)) {}
 
 void ProgressLine::show(const RenderProgress& progress) {
   if (!shown_) return;

@@ -28,8 +28,8 @@ class ProgressLine {
  private:
   void print(const RenderProgress& progress);
 
-  bool shown_ = false;  ///< anything is shown at all
-  bool terminal_ = false;
+  const bool terminal_;
+  const bool shown_;  ///< anything is shown at all
   bool line_open_ = false;
   bool held_back_ = false;
   RenderProgress last_;
@@ -49,7 +49,7 @@ class PhaseLine {
   void end();
 
  private:
-  bool shown_ = false;
+  bool shown_;
 };
 
 /// "reading bunny.obj   42.0%  elapsed 1.2 s  remaining 1.7 s"; without a total only what has elapsed.

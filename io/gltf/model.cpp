@@ -133,8 +133,7 @@ class MaterialReader {
     float strength = 1;
     read(extension("KHR_materials_emissive_strength"), "emissiveStrength", kMost, strength);
     out_.emission = out_.emission * strength;
-    if (!(out_.emission.x <= kMost && out_.emission.y <= kMost && out_.emission.z <= kMost))
-      fail("its emission is out of range");
+    if (!(max_component(out_.emission) <= static_cast<float>(kMost))) fail("its emission is out of range");
     read(extension("KHR_materials_ior"), "ior", 1000, out_.ior);
     out_.unlit = in_.extensions.contains("KHR_materials_unlit");
     const Value& transmission = extension("KHR_materials_transmission");

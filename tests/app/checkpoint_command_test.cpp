@@ -255,6 +255,16 @@ TEST_F(CheckpointCommand, WrongWordsAreRefused) {
   EXPECT_EQ(file_count(dir_), 1u);
 }
 
+TEST_F(CheckpointCommand, TheTimeBetweenCheckpointsHasLimits) {
+  for (const char* seconds : {"86401", "86400.5", "1e300", "inf", "nan", "0.0009", "0", "-1"})
+    expect_failure(
+        {"render", "a.yaml", "-o", "a.exr", "--checkpoint", "c.film", "--every", seconds}, 2,
+        std::string("--every: '") + seconds + "' is out of range; expected seconds from 0.001 to 86400");
+  EXPECT_EQ(file_count(dir_), 1u);
+  for (const char* seconds : {"86400", "0.001"})
+    expect_success({"render", "a.yaml", "-o", "a.exr", "--checkpoint", "c.film", "--every", seconds});
+}
+
 /// What would be written last would replace what was written before. Also where the path leads through links.
 TEST_F(CheckpointCommand, FilesMustNotReplaceEachOther) {
   fs::create_symlink("a.exr", dir_.path() / "link.exr");

@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 """What strangers may do to the viewer's server: view_server_test.py OKTETT. Each request is answered by a
 status, and afterwards the server still answers others."""
+import json
+import math
 import pathlib
 import signal
 import socket
 import stat
+import struct
 import sys
 import tempfile
 import time
@@ -12,7 +15,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from view_support import SCENE, ViewerTest, exr_parts, png_parts
+from view_support import SCENE, VIEW_TYPE, ViewerTest, exr_parts, png_parts
 
 ViewerTest.OKTETT = sys.argv.pop(1)
 EVER = 30  # seconds after which something that hangs has failed
@@ -214,6 +217,67 @@ class Server(ViewerTest):
         self.assertTrue(data.startswith(b"HTTP/1.1 415 "), data[:40])
         self.assertEqual(data.count(b"HTTP/1.1 "), 1)
         self.is_well()
+
+
+class Frames(ViewerTest):
+    def frame(self, is_wanted):
+        """Waits for a finished picture whose status `is_wanted`. Gives the status and the tiles, each as its
+        place, size and bytes."""
+        for _ in range(10 * EVER):
+            data = self.fetch(self.path + "frame?since=0")[1]
+            size, = struct.unpack_from("<I", data)
+            status, at, tiles = json.loads(data[4:4 + size]), 4 + size, []
+            if status["settled"] and status["view"] == status["shown"] and is_wanted(status):
+                break
+            time.sleep(0.1)
+        else:
+            self.fail("in vain waited for the finished picture")
+        for x, y, width, height, coarse in status["tiles"]:
+            if not coarse:
+                tiles.append((x, y, width, height, data[at:at + 4 * width * height]))
+            at += 4 * width * height
+        return status, tiles
+
+    def pixel(self, tiles, x, y):
+        for left, top, width, height, data in reversed(tiles):
+            if left <= x < left + width and top <= y < top + height:
+                at = 4 * ((y - top) * width + x - left)
+                return list(data[at:at + 4])
+        self.fail(f"no tile holds pixel {x}, {y}")
+
+    def test_depths_span_the_scene(self):
+        # All that is seen lies far from the origin, with its centre 5 away from the camera.
+        self.start("""oktett: 1
+camera: {from: [10, 20, 35], at: [10, 20, 30], fov: 40}
+film: {width: 96, height: 64}
+integrator: {kind: whitted, samples: 4}
+objects:
+  - sphere: {center: [10, 20, 30], radius: 1}
+""")
+        self.assertEqual(self.view("layer=depth"), 200)
+        status, tiles = self.frame(lambda status: status["state"]["layer"] == "depth")
+        # The bounds are a cube of edge 2.
+        radius = math.sqrt(3)
+        for a, b in zip(status["center"], (10, 20, 30), strict=True):
+            self.assertAlmostEqual(a, b, 5)
+        self.assertAlmostEqual(status["radius"], radius, 5)
+        for x, y in ((48, 32), (42, 32), (48, 24)):
+            depth = json.loads(self.fetch(self.path + f"pick?x={x}&y={y}")[1])["depth"]
+            self.assertTrue(4 <= depth < 4.5, depth)
+            red, green, blue, alpha = self.pixel(tiles, x, y)
+            self.assertAlmostEqual(red, 255 * (5 + radius - depth) / (2 * radius), delta=3)
+            self.assertEqual([green, blue, alpha], [red, red, 255])
+        self.assertEqual(self.pixel(tiles, 2, 2), [0, 0, 0, 0])
+
+    def test_an_edit_is_shown_without_another_one(self):
+        self.start()
+        before = self.frame(lambda status: status["edits"] == 1)[1]
+        # Replaced at once, so that the file changes but once.
+        edited = self.scene.with_name("edited.yaml")
+        edited.write_text(SCENE.replace("radius: 0.6", "radius: 0.9"))
+        edited.replace(self.scene)
+        after = self.frame(lambda status: status["edits"] == 2)[1]
+        self.assertNotEqual(self.pixel(before, 48, 20), self.pixel(after, 48, 20))
 
 
 class Files(ViewerTest):

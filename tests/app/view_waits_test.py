@@ -57,6 +57,8 @@ class Waits(ViewerTest):
             if b'"error"' in self.fetch(self.path + "frame?since=0")[1]:
                 break
             time.sleep(0.05)
+        else:
+            self.fail("the error was not reported")
         for extension in ("png", "exr"):
             self.assertEqual(self.picture(extension)[0], 200)
 

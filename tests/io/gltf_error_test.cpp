@@ -125,6 +125,70 @@ TEST(GltfError, Json) {
   }
 }
 
+// A number at its limit is read, the next greater one is an error, and so is one below zero.
+TEST(GltfError, FactorsOfMaterialsHaveLimits) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const auto error = [&](std::string material, double x) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", x);
+    const std::size_t place = material.find('#');
+    return files.error(out.glb("\"materials\":[{" + material.replace(place, 1, text) + "}]," +
+                               one_node("{\"attributes\":{\"POSITION\":0},\"material\":0}")));
+  };
+  struct Factor {
+    std::string before, after;  // of the number
+    double most;
+    std::string name;  // in the message; of a colour, none
+  };
+  const auto pbr = [](const std::string& key) { return "\"pbrMetallicRoughness\":{\"" + key + "\":"; };
+  const auto extension = [](const std::string& name, const std::string& key) {
+    return "\"extensions\":{\"KHR_materials_" + name + "\":{\"" + key + "\":";
+  };
+  std::vector<Factor> factors = {
+      {pbr("metallicFactor"), "}", 1, "metallicFactor"},
+      {pbr("roughnessFactor"), "}", 1, "roughnessFactor"},
+      {pbr("baseColorFactor") + "[1,1,1,", "]}", 1, "baseColorFactor"},
+      {"\"alphaCutoff\":", "", 1e30, "alphaCutoff"},
+  };
+  struct Extension {
+    std::string name, key;
+    double most;
+  };
+  for (const Extension& e : {Extension{"emissive_strength", "emissiveStrength", 1e30},
+                             {"ior", "ior", 1000},
+                             {"transmission", "transmissionFactor", 1},
+                             {"volume", "thicknessFactor", 1e30},
+                             {"specular", "specularFactor", 1},
+                             {"clearcoat", "clearcoatFactor", 1},
+                             {"clearcoat", "clearcoatRoughnessFactor", 1},
+                             {"sheen", "sheenRoughnessFactor", 1}})
+    factors.push_back({extension(e.name, e.key), "}}", e.most, e.key});
+  for (const auto& [before, after] :
+       {std::pair<std::string, std::string>{"", ",1,1"}, {"1,", ",1"}, {"1,1,", ""}}) {
+    factors.push_back({pbr("baseColorFactor") + "[" + before, after + ",1]}", 1, ""});
+    factors.push_back({"\"emissiveFactor\":[" + before, after + "]", 1e30, ""});
+    factors.push_back({extension("sheen", "sheenColorFactor") + "[" + before, after + "]}}", 1, ""});
+  }
+  for (const Factor& factor : factors) {
+    const std::string material = factor.before + "#" + factor.after;
+    const std::string wrong =
+        "a.glb: materials[0]: " + (factor.name.empty() ? "expected a colour of three numbers in range"
+                                                       : "'" + factor.name + "' is out of range");
+    EXPECT_EQ(error(material, 0), "no error") << material;
+    EXPECT_EQ(error(material, factor.most), "no error") << material;
+    EXPECT_EQ(error(material, std::nextafter(factor.most, INFINITY)), wrong) << material;
+    EXPECT_EQ(error(material, -1e-9), wrong) << material;
+  }
+  // What emits is the product.
+  for (const char* color : {"[#,0,0]", "[0,#,0]", "[0,0,#]"})
+    EXPECT_EQ(error(std::string("\"emissiveFactor\":") + color + "," +
+                        extension("emissive_strength", "emissiveStrength") + "1e20}}",
+                    1e20),
+              "a.glb: materials[0]: its emission is out of range");
+}
+
 TEST(GltfError, Numbers) {
   const GltfFiles files;
   const auto error = [&](std::size_t at, auto value) {

@@ -31,6 +31,34 @@ TEST(GltfScene, NodesMoveMeshes) {
   for (const Vec3f& n : mesh.normals) EXPECT_LT(length(Vec3d(n) - Vec3d{0, 0, 1}), 1e-5);
 }
 
+// Of a part that is turned by (x, y) -> (-y, x) after scaling by 1, 2 and 4, the normal (a, b, c) becomes
+// (-b / 2, a, c / 4), made to have length 1. Parts that are not moved keep theirs.
+TEST(GltfScene, NormalsOfMovedPartsStayPerpendicular) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  out.vectors({{1, 0, 0}, {0.6f, 0.8f, 0}, {0, 0.6f, 0.8f}});
+  const std::string s = std::to_string(std::sqrt(0.5));
+  const TriangleMesh mesh =
+      files
+          .load(out.glb("\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1}}]}],"
+                        "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[5,6,7],\"scale\":[1,2,4],"
+                        "\"rotation\":[0,0," +
+                        s + "," + s + "]}],\"scenes\":[{\"nodes\":[0,1]}]"))
+          .mesh;
+  ASSERT_EQ(mesh.normals.size(), 6u);
+  const Vec3d expected[] = {{1, 0, 0},
+                            {0.6, 0.8, 0},
+                            {0, 0.6, 0.8},
+                            {0, 1, 0},
+                            Vec3d{-0.4, 0.6, 0} / std::sqrt(0.52),
+                            Vec3d{-0.3, 0, 0.2} / std::sqrt(0.13)};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(length(Vec3d(mesh.normals[i]) - expected[i]), 1e-5) << i;
+  EXPECT_EQ(to_vector(mesh.normal_indices), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+  // Points are moved by the same map.
+  EXPECT_LT(length(Vec3d(mesh.positions[5]) - Vec3d{3, 6, 7}), 1e-4);
+}
+
 // A mirror keeps the front the front: the corners run the other way around.
 TEST(GltfScene, MirrorsTurnTriangles) {
   const GltfFiles files;

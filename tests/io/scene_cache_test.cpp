@@ -75,6 +75,47 @@ void expect_same(const ObjFile& a, const ObjFile& b) {
     EXPECT_EQ(to_string(a.warnings[i]), to_string(b.warnings[i]));
 }
 
+// Headers of any length, also where the header ends beside a place at which sections begin.
+TEST(CacheFiles, HeadersAndSectionsComeBack) {
+  const TempDir dir;
+  const std::string path = dir.file("entry");
+  Column<std::uint8_t> filled(70000);
+  for (std::size_t i = 0; i < filled.size(); ++i) filled[i] = static_cast<std::uint8_t>(i * 31 + i / 251);
+  const CacheSection empty, large = section_of(filled), one{filled.data() + 5, 1};
+  for (const std::vector<CacheSection>& sections :
+       {std::vector<CacheSection>{}, {empty}, {large}, {one, empty, large}}) {
+    const std::vector<CacheSection> nothing(sections.size());
+    const std::size_t exact = 65536 - cache_file_bytes("", nothing);
+    std::vector<std::size_t> lengths{0, 1, 2, 3, 4, 7, 8, 9, 15, 16, 17, 100, 4095, 4096, 4097, 4200};
+    for (std::size_t k = 0; k <= 40; ++k) lengths.push_back(exact - 20 + k);
+    for (const std::size_t length : lengths) {
+      SCOPED_TRACE(std::to_string(sections.size()) + " sections, header of " + std::to_string(length));
+      std::string header(length, '\0');
+      for (std::size_t i = 0; i < length; ++i) header[i] = static_cast<char>(i * 7 + length);
+      write_cache_file(path, header, sections, 1'500'000'000'123'456'789);
+      EXPECT_EQ(fs::file_size(path), cache_file_bytes(header, sections));
+      try {
+        const CacheFile file(path);
+        EXPECT_TRUE(file.header() == header);
+        EXPECT_EQ(file.time(), 1'500'000'000'123'456'789);
+        ASSERT_EQ(file.sections(), sections.size());
+        for (std::size_t i = 0; i < sections.size(); ++i) {
+          const CacheSection& expected = sections[i];
+          ASSERT_EQ(file.count<std::uint8_t>(i), expected.bytes);
+          Column<std::uint8_t> copied;
+          file.copy(i, copied);
+          const VirtualArray<std::uint8_t> mapped = file.map<std::uint8_t>(i);
+          if (expected.bytes == 0) continue;
+          EXPECT_EQ(std::memcmp(copied.data(), expected.data, expected.bytes), 0) << i;
+          EXPECT_EQ(std::memcmp(mapped.data(), expected.data, expected.bytes), 0) << i;
+        }
+      } catch (const Error& error) {
+        ADD_FAILURE() << error.what();
+      }
+    }
+  }
+}
+
 /// A folder with a mesh and a cache, and what the cache told.
 class SceneCacheTest : public testing::Test {
  protected:

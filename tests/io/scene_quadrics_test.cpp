@@ -98,6 +98,8 @@ TEST(SceneQuadrics, ErrorsHaveTheirPlace) {
         "scene.yaml:2:34: the clip box has min > max along y"},
        {"objects: [{quadric: {clip: {max: [-2, 0, 0]}}}]",
         "scene.yaml:2:34: the clip box has min > max along x"},
+       {"objects: [{quadric: {clip: {min: [0, 0, 1.5]}}}]",
+        "scene.yaml:2:34: the clip box has min > max along z"},
        {"objects: [{quadric: {clip: {low: 1}}}]", "scene.yaml:2:29: unknown key 'low' in clip"},
        {"objects: [{infinite_cylinder: {radius: 1}}]",
         "scene.yaml:2:32: unknown key 'radius' in infinite_cylinder"},
@@ -120,7 +122,12 @@ TEST(SceneQuadrics, DegenerateOnesAreSkipped) {
         "scene.yaml:2:13: warning: there is nothing inside of all planes; the object is skipped"},
        {"quadric: {coefficients: [0, 0, 0, 0, 0, 0, 0, 0, 0, 1]}",
         "scene.yaml:2:13: warning: the equation does not depend on x, y or z"},
-       {"paraboloid: {clip: {min: [0, 0, 1]}}", "scene.yaml:2:13: warning: the clip box has no volume"}});
+       // A box without thickness is no error, along no axis.
+       {"paraboloid: {clip: {min: [1, 0, 0]}}", "scene.yaml:2:13: warning: the clip box has no volume"},
+       {"paraboloid: {clip: {min: [0, 1, 0]}}", "scene.yaml:2:13: warning: the clip box has no volume"},
+       {"paraboloid: {clip: {min: [0, 0, 1]}}", "scene.yaml:2:13: warning: the clip box has no volume"},
+       {"quadric: {clip: {min: [1, 2, 3], max: [1, 2, 3]}}",
+        "scene.yaml:2:13: warning: the clip box has no volume"}});
 }
 
 }  // namespace

@@ -234,6 +234,22 @@ TEST(CheckOutput, RefusesWhatCannotBeWritten) {
   EXPECT_EQ(test::file_count(dir), 2u);
 }
 
+// Writers that make no file: for them the format is an unknown one.
+TEST(CheckOutput, RefusesWritersThatMakeNoFile) {
+  const TempDir dir;
+  std::string without;
+  for (const char* extension : {"null", "term"}) {
+    if (OIIO::ImageOutput::create(std::string("a.") + extension) == nullptr)
+      without += std::string(" ") + extension;
+    const std::string path = dir.file(std::string("a.") + extension);
+    EXPECT_EQ(kind_of([&] { check_output(path); }), ErrorKind::bad_input) << path;
+    EXPECT_EQ(kind_of([&] { write_image(path, color_picture(4, 4, 1, 1, 1, 1)); }), ErrorKind::bad_input)
+        << path;
+  }
+  EXPECT_EQ(test::file_count(dir), 0u);
+  if (!without.empty()) GTEST_SKIP() << "OpenImageIO has no writers that would be refused:" << without;
+}
+
 TEST(CheckOutput, NamesKnownFormats) {
   try {
     check_output("a.xyz");

@@ -152,6 +152,78 @@ TEST(ImageTextures, ImagesInMemory) {
   EXPECT_EQ(textures.warnings()[0].where.file, "no image");
 }
 
+/// The texture of the bytes of a file, and the file is gone.
+Texture in_memory(const std::string& path) {
+  Texture texture = texture_of("model.glb, images[0]");
+  texture.content = std::make_shared<const std::string>(test::file_content(path));
+  std::filesystem::remove(path);
+  return texture;
+}
+
+// All pixels have their places and values. JPEG and WebP change them a little.
+TEST(ImageTextures, PixelsOfImagesInMemory) {
+  const TempDir dir;
+  constexpr int kWidth = 24, kHeight = 16;
+  Bytes pixels;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (const int byte : {8 * x + 20, 12 * y + 20, 4 * (x + y) + 20})
+        pixels.push_back(static_cast<std::uint8_t>(byte));
+  std::string without;
+  for (const auto& [name, most] : {std::pair{"a.png", 1e-6f}, {"a.jpg", 0.06f}, {"a.webp", 0.06f}}) {
+    if (OIIO::ImageOutput::create(name) == nullptr) {
+      without += std::string(" ") + name;
+      continue;
+    }
+    const ImageTextures textures({in_memory(write_pixels(dir.file(name), kWidth, kHeight, 3, pixels))});
+    EXPECT_TRUE(textures.warnings().empty()) << name;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const Vec2f uv{(static_cast<float>(x) + 0.5f) / kWidth, 1 - (static_cast<float>(y) + 0.5f) / kHeight};
+        const Vec3f stored = textures.normal(0, uv, kNoChange, kNoChange);
+        const std::size_t at = 3 * static_cast<std::size_t>(y * kWidth + x);
+        for (std::size_t c = 0; c < 3; ++c)
+          ASSERT_NEAR(stored[static_cast<int>(c)], static_cast<float>(pixels[at + c]) / 255, most)
+              << name << " " << x << " " << y;
+      }
+  }
+  if (!without.empty()) GTEST_SKIP() << "OpenImageIO cannot write" << without;
+}
+
+// Each warns and is white. Only PNG, JPEG and WebP may stand in memory.
+TEST(ImageTextures, BrokenImagesInMemoryWarnAndAreWhite) {
+  const TempDir dir;
+  Bytes noise;
+  std::mt19937 random(3);
+  for (int i = 0; i < 64 * 64 * 3; ++i) noise.push_back(static_cast<std::uint8_t>(random()));
+  std::vector<Texture> list;
+  const auto add = [&](const std::string& content) {
+    list.push_back(texture_of("model.glb, images[" + std::to_string(list.size()) + "]"));
+    list.back().content = std::make_shared<const std::string>(content);
+  };
+  for (const char* name : {"a.png", "a.jpg", "a.webp"}) {
+    if (OIIO::ImageOutput::create(name) == nullptr) continue;
+    const std::string whole = test::file_content(write_pixels(dir.file(name), 64, 64, 3, noise));
+    add(whole.substr(0, 12));
+    add(whole.substr(0, 30));
+    add(whole.substr(0, 12) + std::string(1000, '\x55'));
+    add("x" + whole);
+  }
+  for (const char* name : {"a.bmp", "a.tif"})
+    add(test::file_content(write_pixels(dir.file(name), 64, 64, 3, noise)));
+  for (const char* text : {"", "x", "\x89PNG", "\xff\xd8\xff", "RIFF....WEBP", "RIFF....WAVE", "no image"})
+    add(text);
+  const ImageTextures textures(list);
+  ASSERT_EQ(textures.warnings().size(), list.size());
+  for (std::uint32_t i = 0; i < list.size(); ++i) {
+    EXPECT_EQ(textures.color(i, {0.2f, 0.2f}, kNoChange, kNoChange), (Color{1, 1, 1})) << i;
+    const Warning& warning = textures.warnings()[i];
+    EXPECT_EQ(warning.where.file, list[i].path);
+    EXPECT_NE(warning.message.find("cannot read the image"), std::string::npos) << warning.message;
+    EXPECT_EQ(warning.message.find('\n'), std::string::npos) << warning.message;
+  }
+}
+
 TEST(ImageTextures, ScaleOffsetGainAndBase) {
   const TempDir dir;
   Texture moved = texture_of(checkers(dir));

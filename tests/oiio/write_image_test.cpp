@@ -1,11 +1,21 @@
 #include <OpenImageIO/imageio.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -15,6 +25,7 @@
 
 #include "core/error.h"
 #include "io/image/image.h"
+#include "io/image/output.h"
 #include "tests/support/temp_dir.h"
 
 namespace oktett::write_image_test {
@@ -228,6 +239,85 @@ TEST(WriteImage, AFullDiskLeavesTheOldFileAndNoTemporary) {
     }
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(test::file_count(dir), 14u);
+}
+
+constexpr mode_t kMasks[] = {0, 022, 027, 0077};
+
+mode_t permissions(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : ~mode_t{0};
+}
+
+// As those of all files that programs make. TIFF is written by the name of the temporary.
+TEST(WriteImage, FilesHaveThePermissionsThatTheUmaskLeaves) {
+  const TempDir dir;
+  Picture picture = empty_picture(8, 8);
+  for (const char* name : {"R", "G", "B"})
+    picture.planes.push_back({name, PlaneType::half_float, Column<float>(64, 0.5f), {}});
+  for (const mode_t mask : kMasks) {
+    const mode_t before = umask(mask);
+    for (const char* name : {"a.png", "a.exr", "a.jpg", "a.tif"}) {
+      EXPECT_NO_THROW(write_image(dir.file(name), picture));
+      EXPECT_EQ(permissions(dir.file(name)), 0666 & ~mask) << name << " " << mask;
+    }
+    OutputFile file(dir.file("a.txt"));
+    file.write("text");
+    file.commit_unflushed(0);
+    EXPECT_EQ(permissions(dir.file("a.txt")), 0666 & ~mask) << mask;
+    umask(before);
+  }
+}
+
+/// From now on this process cannot create files without a name, as on file systems that have none. False if
+/// the system has no such filters.
+bool forbid_unnamed_files() {
+  constexpr std::uint32_t kFlags =
+      offsetof(seccomp_data, args[2]) + (std::endian::native == std::endian::big ? sizeof(std::uint32_t) : 0);
+  sock_filter steps[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                         BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_openat, 0, 3),
+                         BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kFlags),
+                         BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, O_TMPFILE & ~O_DIRECTORY, 0, 1),
+                         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EOPNOTSUPP),
+                         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+  const sock_fprog program{static_cast<unsigned short>(std::size(steps)), steps};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0 &&
+         open(".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600) < 0 && errno == EOPNOTSUPP;
+}
+
+// The temporary has a name from the start, beside the file.
+TEST(WriteImage, FileSystemsWithoutUnnamedFilesWillDo) {
+  const TempDir dir;
+  constexpr int kSkipped = 77;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    if (!forbid_unnamed_files()) _exit(kSkipped);
+    int faults = 0;
+    try {
+      for (const mode_t mask : kMasks) {
+        umask(mask);
+        {
+          OutputFile dropped(dir.file("a.txt"));
+          faults += test::file_count(dir) != (mask == kMasks[0] ? 1u : 2u);
+        }
+        OutputFile file(dir.file("a.txt"));
+        file.write("text");
+        file.commit();
+        faults += permissions(dir.file("a.txt")) != (0666 & ~mask);
+        faults += test::file_content(dir.file("a.txt")) != "text" || test::file_count(dir) != 1;
+      }
+    } catch (const Error&) {
+      ++faults;
+    }
+    _exit(faults);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kSkipped)
+    GTEST_SKIP() << "calls of the system cannot be refused here";
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "number of faults";
 }
 
 // The same pixels as a writer gives that has a file's name.
