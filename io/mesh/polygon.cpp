@@ -1,8 +1,12 @@
 #include "io/mesh/polygon.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
+
+#include "core/double_double.h"
+#include "core/mesh.h"
 
 namespace oktett {
 
@@ -47,30 +51,141 @@ void BlockerTree::split(const std::vector<PlanePoint>& points, std::uint32_t nod
   split(points, 2 * node + 1, leaf + leaves / 2, leaves / 2);
 }
 
+// ---- The sign of an area.
+
+/// The sign of a sum of six numbers, by an expansion whose parts do not overlap.
+static int sign_of_sum(const double (&terms)[6]) {
+  double parts[6];
+  int count = 0;
+  for (double carry : terms) {
+    for (int i = 0; i < count; ++i) {
+      const DoubleDouble sum = two_sum(carry, parts[i]);
+      carry = sum.hi, parts[i] = sum.lo;
+    }
+    parts[count++] = carry;
+  }
+  while (count > 0 && parts[count - 1] == 0) --count;
+  return count == 0 ? 0 : parts[count - 1] > 0 ? 1 : -1;
+}
+
+int orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
+  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x), area = left - right;
+  // (3 + 16 u) u times the sum of the magnitudes, with u = 2^-53.
+  const double error = 0x1.8000000000008p-52 * (std::abs(left) + std::abs(right));
+  if (area > error) return 1;
+  if (area < -error) return -1;
+  // Products of floats are exact.
+  return sign_of_sum({a.x * b.y, -(a.y * b.x), b.x * c.y, -(b.y * c.x), c.x * a.y, -(c.y * a.x)});
+}
+
+// ---- Crossings of the boundary with itself.
+
 namespace {
 
-/// Corners that may be looked at while a polygon is cut: enough for all pairs of a thousand corners, and
-/// beyond that for any that do not meet themselves again and again.
-constexpr std::int64_t kBudget = 1 << 20, kBudgetPerCorner = 64;
+/// Finds edges that cross, but for such as only touch. Pairs are looked for in a binary tree of runs of
+/// edges, whose boxes are small, since edges that follow each other lie together.
+class CrossingSearch {
+ public:
+  explicit CrossingSearch(const std::vector<PlanePoint>& points) : points_(points) {
+    leaves_ = 1;
+    while (points.size() > kEdges * leaves_) leaves_ *= 2;
+    boxes_.resize(2 * leaves_);
+    for (std::size_t leaf = 0; leaf < leaves_; ++leaf) {
+      Box& box = boxes_[leaves_ + leaf];
+      for (std::size_t i = begin_of(leaf); i < begin_of(leaf + 1); ++i)
+        box.grow(point(i)), box.grow(point(i + 1));
+    }
+    for (std::size_t node = leaves_; --node > 0;) {
+      boxes_[node].grow(boxes_[2 * node].lo), boxes_[node].grow(boxes_[2 * node].hi);
+      boxes_[node].grow(boxes_[2 * node + 1].lo), boxes_[node].grow(boxes_[2 * node + 1].hi);
+    }
+    steps_ = kMostSteps + kMostStepsPerCorner * static_cast<std::int64_t>(points.size());
+  }
+
+  bool run() { return within(1); }
+
+ private:
+  static constexpr std::size_t kEdges = 8;
+  /// Pairs of nodes and of edges that are looked at. Long edges that lie slantwise beside each other, or on
+  /// each other again and again, could take longer.
+  static constexpr std::int64_t kMostSteps = 1 << 22, kMostStepsPerCorner = 16;
+
+  struct Box {
+    PlanePoint lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
+    void grow(const PlanePoint& p) {
+      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+    }
+    bool meets(const Box& b) const {
+      return lo.x <= b.hi.x && b.lo.x <= hi.x && lo.y <= b.hi.y && b.lo.y <= hi.y;
+    }
+  };
+
+  const PlanePoint& point(std::size_t i) const { return points_[i < points_.size() ? i : 0]; }
+  std::size_t begin_of(std::size_t leaf) const { return points_.size() * leaf / leaves_; }
+  bool cross_at(std::size_t i, std::size_t j) const {
+    const PlanePoint &a = point(i), &b = point(i + 1), &c = point(j), &d = point(j + 1);
+    if (std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||
+        std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y))
+      return false;
+    return orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0;
+  }
+
+  /// Among the edges of a node.
+  bool within(std::size_t node) {
+    if (node < leaves_) return within(2 * node) || within(2 * node + 1) || between(2 * node, 2 * node + 1);
+    const std::size_t begin = begin_of(node - leaves_), end = begin_of(node - leaves_ + 1);
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t j = i + 2; j < end; ++j)
+        if (cross_at(i, j)) return true;
+    return false;
+  }
+
+  /// Between those of two nodes of one level.
+  bool between(std::size_t a, std::size_t b) {
+    if (--steps_ < 0 || !boxes_[a].meets(boxes_[b])) return false;
+    if (a < leaves_)
+      return between(2 * a, 2 * b) || between(2 * a, 2 * b + 1) || between(2 * a + 1, 2 * b) ||
+             between(2 * a + 1, 2 * b + 1);
+    steps_ -= static_cast<std::int64_t>(kEdges * kEdges);
+    for (std::size_t i = begin_of(a - leaves_); i < begin_of(a - leaves_ + 1); ++i)
+      for (std::size_t j = begin_of(b - leaves_); j < begin_of(b - leaves_ + 1); ++j)
+        if (cross_at(i, j)) return true;
+    return false;
+  }
+
+  const std::vector<PlanePoint>& points_;
+  std::size_t leaves_;
+  std::vector<Box> boxes_;
+  std::int64_t steps_;
+};
+
+/// Whether a polygon without reflex corners goes around once: it turns back twice along x.
+bool goes_around_once(const std::vector<PlanePoint>& points) {
+  int changes = 0, way = 0, first = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double by = points[i + 1 < points.size() ? i + 1 : 0].x - points[i].x;
+    const int to = by > 0 ? 1 : by < 0 ? -1 : way;
+    changes += way != 0 && to != way;
+    way = to;
+    if (first == 0) first = to;
+  }
+  return changes + (way != first) <= 2;
+}
+
+/// Corners with twins that may be looked at: enough for all pairs of a thousand corners at one place, and
+/// beyond that for those that do not meet again and again.
+constexpr std::int64_t kMostTwins = 1 << 20, kMostTwinsPerCorner = 16;
 
 Vec3d area_vector(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return cross(b - a, c - a); }
 
-/// Whether the diagonal between corners 0 and 2 leaves both triangles with the same winding.
-bool splits_at_first(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
-  return dot(area_vector(a, b, c), area_vector(a, c, d)) > 0;
-}
-
-std::span<const std::uint32_t> triangulate_quad(std::span<const Vec3f> points) {
-  static constexpr std::uint32_t first[6] = {0, 1, 2, 0, 2, 3};
-  static constexpr std::uint32_t second[6] = {1, 2, 3, 1, 3, 0};
-  const Vec3d a(points[0]), b(points[1]), c(points[2]), d(points[3]);
-  return !splits_at_first(a, b, c, d) && splits_at_first(b, c, d, a) ? second : first;
-}
-
 }  // namespace
 
+// ---- Triangles.
+
 std::span<const std::uint32_t> PolygonTriangulator::run(std::span<const Vec3f> points) {
-  if (points.size() == 4) return triangulate_quad(points);
+  crosses_itself_ = false;
+  if (points.size() == 4) return cut_quad(points);
   triangles_.clear();
   remaining_ = points.size();
   link();
@@ -79,6 +194,19 @@ std::span<const std::uint32_t> PolygonTriangulator::run(std::span<const Vec3f> p
   else
     fan_out(0);
   return triangles_;
+}
+
+std::span<const std::uint32_t> PolygonTriangulator::cut_quad(std::span<const Vec3f> points) {
+  static constexpr std::uint32_t first[6] = {0, 1, 2, 0, 2, 3};
+  static constexpr std::uint32_t second[6] = {1, 2, 3, 1, 3, 0};
+  const Vec3d a(points[0]), b(points[1]), c(points[2]), d(points[3]);
+  // The diagonal must leave both triangles with the same winding.
+  const double by_first = dot(area_vector(a, b, c), area_vector(a, c, d));
+  if (by_first > 0) return first;
+  const double by_second = dot(area_vector(b, c, d), area_vector(b, d, a));
+  if (by_second > 0) return second;
+  crosses_itself_ = by_first < 0 && by_second < 0;
+  return first;
 }
 
 /// Along the axis in which the area vector (Newell's) is longest, so that the winding becomes positive. False
@@ -107,45 +235,120 @@ void PolygonTriangulator::link() {
   }
 }
 
-/// Ear clipping (Meisters 1975). Corners are tried in turn; if a whole round finds no ear, the polygon
-/// touches or crosses itself and the demands are lowered step by step until one can be cut off.
+/// Whether a corner may be cut off changes only when a neighbour is, or when the corner that keeps it from
+/// that no longer does. So each is tried when it may have changed, and all ears are known. A polygon that
+/// touches itself may have none under the strictest rule, one that crosses itself none at all; then the
+/// demands are lowered.
 void PolygonTriangulator::clip_ears() {
   const std::size_t count = points_.size();
-  budget_ = kBudget + kBudgetPerCorner * static_cast<std::int64_t>(count);
   find_blocking();
-
-  std::uint32_t corner = 1;
-  Rule rule = Rule::no_contact;
-  std::size_t misses = 0;
-  while (remaining_ > 3 && budget_ > 0) {
-    if (may_cut_off(corner, rule)) {
-      const std::uint32_t next = next_[corner];
-      cut_off(corner);
-      // Skipping one spreads the cuts around the polygon, which keeps triangles from growing thin.
-      corner = next_[next];
-      rule = Rule::no_contact;
-      misses = 0;
-    } else {
-      corner = next_[corner];
-      if (++misses == remaining_) {
-        rule = static_cast<Rule>(static_cast<int>(rule) + 1);
-        misses = 0;
-      }
-    }
+  crosses_itself_ = blockers_.blocking() == 0 ? !goes_around_once(points_) : CrossingSearch(points_).run();
+  first_waiter_.assign(count, kNoId);
+  waiters_.clear();
+  due_.assign(count, 0);
+  round_ = 0, last_ = 0;
+  twins_left_ = kMostTwins + kMostTwinsPerCorner * static_cast<std::int64_t>(count);
+  now_.clear(), later_.clear();
+  for (std::uint32_t i = 0; i < count && remaining_ > 3; ++i)
+    if (is_left(i) && encloses_nothing(i)) cut_off(i);
+  // From corner 1 on, so that a convex polygon begins with the triangle of its first three.
+  for (std::uint32_t i = 1; i <= count; ++i)
+    if (const std::uint32_t corner = i < count ? i : 0; is_left(corner)) try_again(corner);
+  cut_in_rounds(Rule::no_contact);
+  if (remaining_ > 3) {
+    for (std::uint32_t corner = last_, k = 0, left = static_cast<std::uint32_t>(remaining_); k < left;
+         ++k, corner = next_[corner])
+      try_again(corner);
+    cut_in_rounds(Rule::no_overlap);
   }
-  fan_out(previous_[corner]);
+  // What is left has no area, or crosses itself.
+  std::int64_t budget = 64 * static_cast<std::int64_t>(count);
+  while (remaining_ > 3 && twins_left_ > 0 && (budget -= static_cast<std::int64_t>(remaining_)) > 0) {
+    if (!cut_one(Rule::flat)) {
+      crosses_itself_ = true;
+      if (!cut_one(Rule::convex)) cut_one(Rule::any);
+    }
+    cut_in_rounds(Rule::no_overlap);
+  }
+  if (remaining_ > 3) crosses_itself_ = true;
+  fan_out(last_);
 }
 
+/// Tries all corners that are due, and those that become due thereby.
+void PolygonTriangulator::cut_in_rounds(Rule rule) {
+  while (remaining_ > 3 && twins_left_ > 0 && !later_.empty()) {
+    ++round_;
+    std::swap(now_, later_);
+    later_.clear();
+    for (const std::uint32_t corner : now_) {
+      if (due_[corner] != round_) continue;
+      due_[corner] = 0;
+      if (turn(corner) <= 0) continue;
+      if (const std::uint32_t blocker = find_blocker(corner, rule); blocker != kNoId) {
+        waiters_.push_back({corner, first_waiter_[blocker]});
+        first_waiter_[blocker] = static_cast<std::uint32_t>(waiters_.size() - 1);
+        continue;
+      }
+      // The next corner waits for the next round: that spreads the cuts around the polygon, which keeps
+      // triangles from growing thin.
+      cut_off(corner);
+      if (remaining_ <= 3 || twins_left_ <= 0) return;
+    }
+  }
+}
+
+/// Cuts off the first corner that a lenient rule allows.
+bool PolygonTriangulator::cut_one(Rule rule) {
+  std::uint32_t corner = last_;
+  for (std::size_t k = 0; k < remaining_; ++k, corner = next_[corner]) {
+    const int turned = turn(corner);
+    if (rule == Rule::flat ? turned != 0 : rule == Rule::convex && turned <= 0) continue;
+    cut_off(corner);
+    return true;
+  }
+  return false;
+}
+
+/// Also cuts off what encloses nothing then: behind it another corner could be taken for an ear.
 void PolygonTriangulator::cut_off(std::uint32_t corner) {
-  const std::uint32_t before = previous_[corner], after = next_[corner];
-  triangles_.insert(triangles_.end(), {before, corner, after});
-  next_[before] = after;
-  previous_[after] = before;
-  --remaining_;
-  if (blocking_[corner]) blockers_.change(corner, -1);
-  blocking_[corner] = 0;
-  update_blocking(before);
-  update_blocking(after);
+  while (true) {
+    const std::uint32_t before = previous_[corner], after = next_[corner];
+    triangles_.insert(triangles_.end(), {before, corner, after});
+    next_[before] = after;
+    previous_[after] = before;
+    --remaining_;
+    last_ = after;
+    due_[corner] = 0;
+    if (blocking_[corner]) {
+      blockers_.change(corner, -1);
+      blocking_[corner] = 0;
+      try_again_those_kept_by(corner);
+    }
+    for (const std::uint32_t neighbour : {after, before}) {
+      update_blocking(neighbour);
+      try_again(neighbour);
+    }
+    if (remaining_ <= 3) return;
+    if (encloses_nothing(after))
+      corner = after;
+    else if (encloses_nothing(before))
+      corner = before;
+    else
+      return;
+  }
+}
+
+void PolygonTriangulator::try_again(std::uint32_t corner) {
+  if (due_[corner] == round_ + 1) return;
+  due_[corner] = round_ + 1;
+  later_.push_back(corner);
+}
+
+void PolygonTriangulator::try_again_those_kept_by(std::uint32_t corner) {
+  for (std::uint32_t w = std::exchange(first_waiter_[corner], kNoId); w != kNoId; w = waiters_[w].next) {
+    const std::uint32_t kept = waiters_[w].corner;
+    if (is_left(kept)) try_again(kept);
+  }
 }
 
 void PolygonTriangulator::fan_out(std::uint32_t first) {
@@ -156,46 +359,39 @@ void PolygonTriangulator::fan_out(std::uint32_t first) {
   }
 }
 
-double PolygonTriangulator::turn(std::uint32_t corner) const {
-  return cross(points_[previous_[corner]], points_[corner], points_[next_[corner]]);
+int PolygonTriangulator::turn(std::uint32_t corner) const {
+  return orientation(points_[previous_[corner]], points_[corner], points_[next_[corner]]);
 }
 
-bool PolygonTriangulator::may_cut_off(std::uint32_t corner, Rule rule) {
-  --budget_;
-  // An edge without length, or one that is walked back and forth, encloses nothing.
+/// An edge without length, or one that is walked back and forth.
+bool PolygonTriangulator::encloses_nothing(std::uint32_t corner) const {
   const Point& after = points_[next_[corner]];
-  if (points_[corner] == after || points_[previous_[corner]] == after) return true;
-  const double turned = turn(corner);
-  switch (rule) {
-    case Rule::no_contact:
-    case Rule::no_overlap:
-      return turned > 0 && !is_blocked(corner, rule);
-    case Rule::flat:
-      return turned == 0;
-    case Rule::convex:
-      return turned > 0;
-    case Rule::any:
-      break;
-  }
-  return true;
+  return points_[corner] == after || points_[previous_[corner]] == after;
 }
 
-/// Whether the rest of the polygon reaches into the triangle at `corner`. If it does, one of its reflex
-/// corners lies there, or a corner at the same place as one of the triangle's leads into it.
-bool PolygonTriangulator::is_blocked(std::uint32_t corner, Rule rule) {
-  if (blockers_.blocking() == 0) return false;
+/// What of the rest of the polygon reaches into the triangle at `corner`, or kNoId. If anything does, one of
+/// its reflex corners lies there, or a corner at the same place as one of the triangle's leads into it.
+std::uint32_t PolygonTriangulator::find_blocker(std::uint32_t corner, Rule rule) {
+  std::uint32_t found = kNoId;
+  if (blockers_.blocking() == 0) return found;
   const std::uint32_t before = previous_[corner], after = next_[corner];
   const Point &a = points_[before], &b = points_[corner], &c = points_[after];
-  return blockers_.any_in(a, b, c, [&](std::uint32_t other) {
-    --budget_;
+  const int least = rule == Rule::no_contact ? 0 : 1;
+  const auto keeps = [&](std::uint32_t other) {
     if (!blocking_[other] || other == before || other == corner || other == after) return false;
     const Point& p = points_[other];
-    if (p == a) return enters(before, corner, after, other);
-    if (p == b) return enters(corner, after, before, other);
-    if (p == c) return enters(after, before, corner, other);
-    const double ab = cross(a, b, p), bc = cross(b, c, p), ca = cross(c, a, p);
-    return rule == Rule::no_contact ? ab >= 0 && bc >= 0 && ca >= 0 : ab > 0 && bc > 0 && ca > 0;
-  });
+    if (twin_[other]) --twins_left_;
+    const bool blocks = p == a   ? enters(before, corner, after, other)
+                        : p == b ? enters(corner, after, before, other)
+                        : p == c ? enters(after, before, corner, other)
+                                 : orientation(a, b, p) >= least && orientation(b, c, p) >= least &&
+                                       orientation(c, a, p) >= least;
+    if (blocks) found = other;
+    return blocks;
+  };
+  // The corners that follow are the likeliest.
+  if (!keeps(next_[after]) && !keeps(previous_[before])) blockers_.any_in(a, b, c, keeps);
+  return found;
 }
 
 /// Whether an edge at `twin`, which stands at the same place as `corner`, leads between the directions to
@@ -203,21 +399,25 @@ bool PolygonTriangulator::is_blocked(std::uint32_t corner, Rule rule) {
 bool PolygonTriangulator::enters(std::uint32_t corner, std::uint32_t right, std::uint32_t left,
                                  std::uint32_t twin) const {
   for (const std::uint32_t to : {next_[twin], previous_[twin]})
-    if (cross(points_[corner], points_[right], points_[to]) > 0 &&
-        cross(points_[corner], points_[to], points_[left]) > 0)
+    if (orientation(points_[corner], points_[right], points_[to]) > 0 &&
+        orientation(points_[corner], points_[to], points_[left]) > 0)
       return true;
   return false;
 }
 
+/// Also tries those again that the corner kept, if it no longer blocks or its edges have changed.
 void PolygonTriangulator::update_blocking(std::uint32_t corner) {
-  const bool blocks = twin_[corner] || !(turn(corner) > 0);
-  if (blocks == static_cast<bool>(blocking_[corner])) return;
-  blocking_[corner] = blocks;
-  blockers_.change(corner, blocks ? 1 : -1);
+  const bool blocks = twin_[corner] || turn(corner) <= 0;
+  if (blocks != static_cast<bool>(blocking_[corner])) {
+    blocking_[corner] = blocks;
+    blockers_.change(corner, blocks ? 1 : -1);
+  }
+  if (!first_waiter_.empty() && (!blocks || twin_[corner])) try_again_those_kept_by(corner);
 }
 
 void PolygonTriangulator::find_blocking() {
   const std::size_t count = points_.size();
+  first_waiter_.clear();
   blockers_.build(points_);
   by_place_.resize(count);
   std::iota(by_place_.begin(), by_place_.end(), 0u);

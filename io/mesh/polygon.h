@@ -18,10 +18,15 @@ struct PlanePoint {
   bool operator==(const PlanePoint&) const = default;
 };
 
-/// Twice the area of the triangle, positive if it turns to the left.
+/// Twice the area of the triangle, positive if it turns to the left; rounded.
 inline double cross(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
+
+/// Its sign, exact for points whose coordinates are floats: 1 if it turns to the left, 0 if there is no area.
+/// J. R. Shewchuk: Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates,
+/// Discrete & Computational Geometry 18, 1997.
+int orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
 
 /// All corners in a balanced kd-tree (Bentley 1975) whose nodes count the corners that block.
 class BlockerTree {
@@ -100,32 +105,48 @@ class BlockerTree {
   std::vector<std::uint32_t> blocking_;
 };
 
-/// Cuts polygons into triangles, always two fewer than corners. Keeps its buffers from one polygon to the
-/// next.
+/// Cuts polygons into triangles, always two fewer than corners, by taking off ears (G. H. Meisters: Polygons
+/// Have Ears, American Mathematical Monthly 82, 1975). Keeps its buffers from one polygon to the next.
 class PolygonTriangulator {
  public:
   /// Three corner numbers for each triangle, in the winding of the polygon; valid until the next call. A
-  /// simple polygon is covered without overlap, and no triangle is degenerate unless two corners coincide.
-  /// The time grows like n log n. If a polygon of more than a thousand corners would take longer, because it
-  /// meets itself again and again, what is left of it is cut into a fan. Points must be finite.
+  /// polygon that does not cross itself, seen along the axis in which its area is greatest, is covered
+  /// without overlap, also where it touches itself or holes are joined to it by bridges; no triangle is
+  /// degenerate unless corners coincide or all that is left lies on a line. The time grows like n log n.
+  /// Points must be finite.
   std::span<const std::uint32_t> run(std::span<const Vec3f> points);
+
+  /// Whether the polygon of the last call crosses itself, so that its triangles may overlap or be turned
+  /// over.
+  bool crosses_itself() const { return crosses_itself_; }
 
  private:
   using Point = PlanePoint;
   /// What keeps a corner from being cut off, from the strictest to the most lenient demand.
   enum class Rule { no_contact, no_overlap, flat, convex, any };
+  /// A corner that another one keeps from being cut off, and the next of those it keeps.
+  struct Waiter {
+    std::uint32_t corner, next;
+  };
 
+  std::span<const std::uint32_t> cut_quad(std::span<const Vec3f> points);
   bool project(std::span<const Vec3f> points);
   void link();
   void clip_ears();
+  void cut_in_rounds(Rule rule);
+  bool cut_one(Rule rule);
   void cut_off(std::uint32_t corner);
   void fan_out(std::uint32_t first);
-  bool may_cut_off(std::uint32_t corner, Rule rule);
-  bool is_blocked(std::uint32_t corner, Rule rule);
+  void try_again(std::uint32_t corner);
+  void try_again_those_kept_by(std::uint32_t corner);
+  /// Corners that were cut off are linked from none.
+  bool is_left(std::uint32_t corner) const { return next_[previous_[corner]] == corner; }
+  bool encloses_nothing(std::uint32_t corner) const;
+  std::uint32_t find_blocker(std::uint32_t corner, Rule rule);
   bool enters(std::uint32_t corner, std::uint32_t right, std::uint32_t left, std::uint32_t twin) const;
   void update_blocking(std::uint32_t corner);
   void find_blocking();
-  double turn(std::uint32_t corner) const;
+  int turn(std::uint32_t corner) const;
 
   std::vector<Point> points_;
   std::vector<std::uint32_t> next_, previous_;
@@ -133,8 +154,15 @@ class PolygonTriangulator {
   std::vector<std::uint8_t> blocking_;  ///< reflex, straight or twin, and not cut off yet
   BlockerTree blockers_;
   std::vector<std::uint32_t> by_place_;
+  std::uint32_t last_ = 0;  ///< a corner that is left
   std::size_t remaining_ = 0;
-  std::int64_t budget_ = 0;
+  std::uint32_t round_ = 0;                  ///< from 1 on
+  std::vector<std::uint32_t> due_;           ///< per corner: the round in which it is tried
+  std::vector<std::uint32_t> now_, later_;   ///< corners to be tried in this and in the next round
+  std::vector<std::uint32_t> first_waiter_;  ///< per corner: the first of those it keeps, in `waiters_`
+  std::vector<Waiter> waiters_;
+  std::int64_t twins_left_ = 0;  ///< how many corners with twins may still be looked at
+  bool crosses_itself_ = false;
   std::vector<std::uint32_t> triangles_;
 };
 

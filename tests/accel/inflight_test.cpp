@@ -250,8 +250,12 @@ TEST(Interleaved, NodesMissNoBox) {
       // Exactly in a face or along an edge.
       for (int k = 0; k < 3; ++k)
         if (r.bits() % 4 == 0) from[k] = corner[k];
-      if (r.bits() % 8 == 0) from.x = 0;
-      Ray ray{from, 0, corner - from, kInf};
+      Vec3f direction = corner - from;
+      if (b.lo.x == b.hi.x && r.bits() % 2 == 0) {
+        from = b.lo + (b.hi - b.lo) * static_cast<float>(r.unit()), from.x = 0;
+        direction = Vec3f(r.vector() * scale), direction.x = std::copysign(direction.x, b.lo.x);
+      }
+      Ray ray{from, 0, direction, kInf};
       if (i % 3 == 0) ray.direction = ray.direction * static_cast<float>(r.magnitude(-6, 6) / scale);
       rays.push_back(ray);
     }
@@ -270,6 +274,35 @@ TEST(Interleaved, NodesMissNoBox) {
   }
   EXPECT_GT(met, 20000);
   EXPECT_LT(more, 2 * met);
+}
+
+// Faces so near to where rays begin that the way there is less than what the scene's size leaves unsure.
+TEST(Interleaved, FacesRightBeforeTheOrigin) {
+  TriangleRandom random(43);
+  for (const int exponent : {-30, -36, -40}) {
+    const float beside = std::ldexp(1.0f, exponent);
+    TriangleMesh mesh;
+    const auto add = [&](const Vec3f& p) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(p);
+    };
+    RayBatch rays;
+    for (int i = 0; i < 400; ++i) {
+      const auto y = static_cast<float>(i % 20) - 10, z = static_cast<float>(i / 20) - 10;
+      add({beside, y, z}), add({beside, y + 0.75f, z}), add({beside, y, z + 0.75f});
+      Vec3f direction = random.vector();
+      direction.x = std::abs(direction.x) + 0.1f;
+      rays.push_back({{0, y + 0.25f, z + 0.25f}, 0, direction, kInf});
+    }
+    const auto accel = build_accel({{MeshGeometry{&mesh}, {}, kNoId}});
+    const HitBatch expected = scalar_hits(*accel, rays);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      EXPECT_NEAR(expected[i].t, beside / rays[i].direction.x, 1e-14) << exponent << " ray " << i;
+    EXPECT_EQ(
+        expect_hits(*accel, rays, expected,
+                    {TraceMode::interleaved, TraceMode::single, TraceMode::packet8, TraceMode::automatic}),
+        400);
+  }
 }
 
 /// Rays that begin far from each other prefetch a tree that is larger than the cache of a core.

@@ -336,7 +336,7 @@ TEST_F(CheckpointCommand, FullDisksLeaveTheOldFilm) {
 TEST_F(CheckpointCommand, SignalsLeaveACheckpoint) {
   CommandProcess process(dir_, {"render", "a.yaml", "-o", "a.exr", "--spp", "600", "-t", "1", "--checkpoint",
                                 "c.film", "--progress"});
-  EXPECT_TRUE(process.wait_for_err("%", 20));
+  EXPECT_TRUE(process.wait_for_err("%", 120));
   process.send(SIGTERM);
   EXPECT_EQ(process.wait(), 128 + SIGTERM);
   EXPECT_TRUE(contains(process.err(), "go on with: oktett render --resume c.film")) << process.err();

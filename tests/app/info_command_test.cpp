@@ -74,5 +74,29 @@ TEST(InfoCommand, CountsThroughInstances) {
   EXPECT_TRUE(contains(run_command(dir, {"info", scene}).out, "triangles"));
 }
 
+// Bounds of each closed form, alone in its scene, by hand.
+TEST(InfoCommand, BoundsOfClosedForms) {
+  const TempDir dir;
+  struct Case {
+    const char *shape, *lo, *hi;
+  };
+  for (const Case& c :
+       {Case{"sphere: {center: [1, 2, 3], radius: 0.5}", "[0.5, 1.5, 2.5]", "[1.5, 2.5, 3.5]"},
+        {"disk: {center: [1, 2, 3], normal: [0, 0, -2], radius: 2}", "[-1, 0, 3]", "[3, 4, 3]"},
+        // Its normal has a sine of 0.8 against x, of 0.6 against y and of 1 against z.
+        {"disk: {center: [0, 0, 7], normal: [3, 4, 0], radius: 10}", "[-8, -6, -3]", "[8, 6, 17]"},
+        {"box: {min: [-1, -2, -3], max: [4, 5, 6]}", "[-1, -2, -3]", "[4, 5, 6]"},
+        {"triangle: {vertices: [[1, 0, 0], [0, 2, 0], [0, 0, -3]]}", "[0, 0, -3]", "[1, 2, 0]"},
+        {"polygon: {vertices: [[0, 0, 5], [4, 0, 5], [1, 1, 5], [0, 4, 5]]}", "[0, 0, 5]", "[4, 4, 5]"}}) {
+    const std::string scene =
+        dir.write("scene.yaml", std::string("oktett: 1\nobjects:\n  - ") + c.shape + "\n");
+    const CommandResult result = run_command(dir, {"info", "--json", scene});
+    EXPECT_EQ(result.status, 0) << result.err;
+    for (const std::string& part :
+         {"\"bounds_min\": " + std::string(c.lo), "\"bounds_max\": " + std::string(c.hi)})
+      EXPECT_TRUE(contains(result.out, part)) << c.shape << ": " << part << "\n" << result.out;
+  }
+}
+
 }  // namespace
 }  // namespace oktett::info_command_test

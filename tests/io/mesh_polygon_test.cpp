@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <numbers>
@@ -186,6 +187,219 @@ RC_GTEST_PROP(Polygon, ArbitraryCornersGiveTwoTrianglesLess,
   Polygon p(4 + points.size() % 3);
   for (const auto& [x, y, z] : points) p.push_back({float(x % 5), float(y % 5), float(z % 2)});
   triangulate(p);
+}
+
+/// A corridor that winds inwards and back: only its two ends have ears.
+Polygon spiral(int corners, double turns) {
+  Polygon p;
+  const int half = corners / 2;
+  for (int side = 0; side < 2; ++side)
+    for (int i = 0; i < half; ++i) {
+      const double s = static_cast<double>(side == 0 ? i : half - 1 - i) / half;
+      const double angle = 2 * std::numbers::pi * turns * s, radius = (1 - 0.9 * s) * (side == 0 ? 1 : 0.97);
+      p.push_back(
+          {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
+    }
+  return p;
+}
+
+/// The outline of a random maze without loops, of whole numbers: the way around a tree whose branches are as
+/// wide as the corridors between them. All corners are at right angles or straight.
+Polygon maze(int width, int height, std::mt19937& random) {
+  // A cell's four ways lead to its neighbours in the tree.
+  static constexpr int kX[4] = {1, 0, -1, 0}, kY[4] = {0, 1, 0, -1};
+  std::vector<std::array<bool, 4>> open(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  const auto cell = [&](int x, int y) -> std::array<bool, 4>& {
+    return open[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  };
+  std::vector<std::pair<int, int>> path{{0, 0}};
+  std::vector<char> seen(open.size());
+  seen[0] = 1;
+  while (!path.empty()) {
+    const auto [x, y] = path.back();
+    int ways[4], count = 0;
+    for (int way = 0; way < 4; ++way) {
+      const int u = x + kX[way], v = y + kY[way];
+      if (u >= 0 && u < width && v >= 0 && v < height &&
+          !seen[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)])
+        ways[count++] = way;
+    }
+    if (count == 0) {
+      path.pop_back();
+      continue;
+    }
+    const int way = ways[random() % static_cast<unsigned>(count)];
+    const int u = x + kX[way], v = y + kY[way];
+    cell(x, y)[static_cast<std::size_t>(way)] = true;
+    cell(u, v)[static_cast<std::size_t>((way + 2) % 4)] = true;
+    seen[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)] = 1;
+    path.emplace_back(u, v);
+  }
+  // Counter-clockwise around the tree: at each cell the next way to the left of where one came from.
+  Polygon p;
+  int x = 0, y = 0, way = 0;
+  while (!cell(x, y)[static_cast<std::size_t>(way)]) ++way;
+  const int first = way;
+  do {
+    x += kX[way], y += kY[way];
+    // The corners of the cell that are passed on the right hand, up to the next way out.
+    int next = (way + 3) % 4;
+    const auto corner = [&](int before, int after) {
+      p.push_back({static_cast<float>(4 * x + kX[before] + kX[after]),
+                   static_cast<float>(4 * y + kY[before] + kY[after]), 0});
+    };
+    corner((way + 2) % 4, next);
+    while (!cell(x, y)[static_cast<std::size_t>(next)]) {
+      corner(next, (next + 1) % 4);
+      next = (next + 1) % 4;
+    }
+    way = next;
+  } while (x != 0 || y != 0 || way != first);
+  return p;
+}
+
+/// Whether p is inside, by the corners of `polygon` that a ray along x passes.
+bool holds(const Polygon& polygon, double x, double y) {
+  bool odd = false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3d a(polygon[i]), b(polygon[i + 1 < polygon.size() ? i + 1 : 0]);
+    if ((a.y > y) != (b.y > y)) odd ^= x < a.x + (y - a.y) * (b.x - a.x) / (b.y - a.y);
+  }
+  return odd;
+}
+
+/// Each of some random points inside is in one triangle, others in none, and the areas add up. The polygon,
+/// in the xy plane, does not cross itself.
+void expect_tiled(const Polygon& polygon, std::mt19937& random, int points) {
+  PolygonTriangulator triangulator;
+  const auto t = triangulator.run(polygon);
+  EXPECT_FALSE(triangulator.crosses_itself());
+  ASSERT_EQ(t.size(), 3 * (polygon.size() - 2));
+  expect_covered(polygon);
+  Vec3f lo = polygon[0], hi = polygon[0];
+  for (const Vec3f& p : polygon) lo = min(lo, p), hi = max(hi, p);
+  for (int k = 0; k < points; ++k) {
+    const double x = lo.x + (hi.x - lo.x) * (static_cast<double>(random()) + 0.5) / 4294967296.0,
+                 y = lo.y + (hi.y - lo.y) * (static_cast<double>(random()) + 0.5) / 4294967296.0;
+    int within = 0;
+    for (std::size_t i = 0; i < t.size(); i += 3) {
+      const auto side = [&](std::size_t from, std::size_t to) {
+        const Vec3d a(polygon[t[i + from]]), b(polygon[t[i + to]]);
+        return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x) > 0;
+      };
+      const bool ab = side(0, 1), bc = side(1, 2), ca = side(2, 0);
+      within += ab == bc && bc == ca;
+    }
+    EXPECT_EQ(within, holds(polygon, x, y) ? 1 : 0) << x << " " << y;
+  }
+}
+
+TEST(Polygon, SpiralsAreTiled) {
+  std::mt19937 random(5);
+  for (const auto& [corners, turns] : {std::pair{40, 0.7}, {720, 3.0}, {720, 12.5}, {6000, 12.5}})
+    expect_tiled(spiral(corners, turns), random, 50);
+  expect_covered(spiral(100000, 20));
+}
+
+TEST(Polygon, MazesAreTiled) {
+  std::mt19937 random(6);
+  for (int round = 0; round < 40; ++round) {
+    Polygon p = maze(2 + static_cast<int>(random() % 14), 2 + static_cast<int>(random() % 14), random);
+    std::rotate(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(random() % p.size()), p.end());
+    expect_tiled(p, random, 30);
+    // Slanted and a little crooked: no two edges are parallel.
+    for (Vec3f& v : p) {
+      const float x = v.x + static_cast<float>(random() % 1024) / 4096,
+                  y = v.y + static_cast<float>(random() % 1024) / 4096;
+      v = {0.8f * x - 0.6f * y, 0.6f * x + 0.8f * y, 0};
+    }
+    expect_tiled(p, random, 30);
+  }
+  expect_covered(maze(130, 130, random));
+}
+
+// Corners of a chain that leave a straight line by the rounding of their coordinates alone.
+TEST(Polygon, ChainsThatAreAlmostStraight) {
+  std::mt19937 random(7);
+  for (const float slope : {0.1f, 1e-7f, 3.3333333f, 12345.678f})
+    for (const int n : {10, 1000}) {
+      Polygon p;
+      for (int i = 0; i <= n; ++i) p.push_back({static_cast<float>(i), slope * static_cast<float>(i), 0});
+      p.push_back({static_cast<float>(n), slope * static_cast<float>(n) + 0.5f * static_cast<float>(n), 0});
+      for (int i = n; i >= 0; i -= 3)
+        p.push_back(
+            {static_cast<float>(i), slope * static_cast<float>(i) + 0.25f * static_cast<float>(n), 0});
+      expect_tiled(p, random, 30);
+    }
+}
+
+TEST(Polygon, CrossingsAreReported) {
+  const auto crosses = [](const Polygon& p) {
+    PolygonTriangulator triangulator;
+    triangulator.run(p);
+    return triangulator.crosses_itself();
+  };
+  EXPECT_TRUE(crosses({{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2.5f, 0}}));
+  EXPECT_TRUE(crosses({{0, 3, 0}, {2, -3, 0}, {-3, 1, 0}, {3, 1, 0}, {-2, -3, 0}}));  // a pentagram
+  // A limacon, and a strip bent until its ends overlap.
+  Polygon limacon, strip;
+  for (int i = 0; i < 100; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 100, radius = 0.5 + std::cos(angle);
+    limacon.push_back(
+        {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
+  }
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 2.2 * std::numbers::pi * (i < 30 ? i : 59 - i) / 29, radius = i < 30 ? 1 : 0.5;
+    strip.push_back(
+        {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0});
+  }
+  EXPECT_TRUE(crosses(limacon));
+  EXPECT_TRUE(crosses(strip));
+  // These touch themselves, which is allowed: in a corner, along an edge, and by a bridge to a hole.
+  EXPECT_FALSE(crosses({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}}));
+  EXPECT_FALSE(crosses({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 0, 0}, {0, 4, 0}}));
+  EXPECT_FALSE(crosses({{0, 0, 0},
+                        {6, 0, 0},
+                        {6, 6, 0},
+                        {0, 6, 0},
+                        {0, 0, 0},
+                        {2, 2, 0},
+                        {2, 4, 0},
+                        {4, 4, 0},
+                        {4, 2, 0},
+                        {2, 2, 0}}));
+  EXPECT_FALSE(crosses({{0, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}));
+  EXPECT_FALSE(crosses({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}));
+}
+
+// Against whole numbers of 128 bits.
+TEST(Polygon, OrientationsAreExact) {
+  std::mt19937_64 random(8);
+  __extension__ using Whole = __int128;
+  int zeros = 0;
+  for (int i = 0; i < 200000; ++i) {
+    std::int64_t v[6];
+    for (std::int64_t& x : v) x = static_cast<std::int64_t>(random() % (1u << 25)) - (1 << 24);
+    if (i % 4 == 1) v[4] = 2 * v[2] - v[0], v[5] = 2 * v[3] - v[1] + static_cast<std::int64_t>(random() % 2);
+    // One point may be 2^20 times as far away, and the others as close together.
+    const std::int64_t far = i % 3 == 0 ? std::int64_t{1} << 20 : 1;
+    v[0] *= far, v[1] *= far;
+    const PlanePoint p[3] = {
+        {static_cast<double>(static_cast<float>(v[0])), static_cast<double>(static_cast<float>(v[1]))},
+        {static_cast<double>(static_cast<float>(v[2])), static_cast<double>(static_cast<float>(v[3]))},
+        {static_cast<double>(static_cast<float>(v[4])), static_cast<double>(static_cast<float>(v[5]))}};
+    const auto whole = [&](int k, bool y) { return static_cast<Whole>(y ? p[k].y : p[k].x); };
+    const Whole area = (whole(1, false) - whole(0, false)) * (whole(2, true) - whole(0, true)) -
+                       (whole(1, true) - whole(0, true)) * (whole(2, false) - whole(0, false));
+    ASSERT_EQ(orientation(p[0], p[1], p[2]), area > 0 ? 1 : area < 0 ? -1 : 0) << i;
+    zeros += area == 0;
+  }
+  EXPECT_GT(zeros, 1000);
+  // From the smallest float to the largest.
+  EXPECT_EQ(orientation({0, 0}, {0x1p-149, 0}, {0, 0x1p-149}), 1);
+  EXPECT_EQ(orientation({0, 0}, {0x1p127, 0x1p-149}, {0x1p127, 0}), -1);
+  EXPECT_EQ(orientation({0x1p127, 0x1p127}, {-0x1p127, -0x1p127}, {0x1p-149, 0x1p-149}), 0);
+  EXPECT_EQ(orientation({0x1p127, 0x1p127}, {-0x1p127, -0x1p127}, {0x1p-149, 0}), 1);
 }
 
 TEST(Polygon, HugeOnesTakeAboutLinearTime) {

@@ -157,7 +157,8 @@ TEST(SceneFilm, ReadsMotions) {
       "  - sphere: {}\n"
       "    motion: [{time: 7, transform: {scale: 4}}]\n"
       "  - sphere: {}\n"
-      "    motion: [{time: 0, transform: {scale: 0.5}}, {time: 1, transform: {scale: 2}}]\n");
+      "    motion: [{time: 0, transform: {scale: 0.5}}, {time: 1, transform: {scale: 2}}, {time: 2, "
+      "transform: {scale: 0.5}}]\n");
   EXPECT_EQ(scene.camera.shutter[1], 0.5);
   ASSERT_NE(scene.camera.motion, nullptr);
   EXPECT_EQ(scene.camera.motion->at(0.5), Affine::translation({0.5, 0, 0}));

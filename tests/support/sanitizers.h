@@ -1,5 +1,5 @@
 #pragma once
-/// \file Whether a sanitizer watches the tests.
+/// \file Whether a sanitizer watches the tests, or an emulator of another processor runs them.
 
 #include "core/platform.h"
 
@@ -9,6 +9,12 @@ namespace oktett::test {
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;
+#endif
+
+#if defined(OKTETT_EMULATED)
+constexpr bool kEmulated = true;
+#else
+constexpr bool kEmulated = false;
 #endif
 
 /// How many of `all` random cases a slow test tries: under sanitizers, which take ten times as long, an
