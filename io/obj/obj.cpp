@@ -37,6 +37,7 @@ class ObjLoad {
     stop_at_first_failure();
     drop_unused_columns();
     note_skipped();
+    note_crossings();
     obj_.has_faces = total_.faces > 0;
     return std::move(obj_);
   }
@@ -160,6 +161,12 @@ class ObjLoad {
         note(skipped.where, "unknown keyword " + quote_name(skipped.keyword) + " is ignored");
       }
     }
+  }
+
+  void note_crossings() {
+    FaceCrossings all;
+    for (const ObjChunk& chunk : chunks_) all += chunk.crossings;
+    if (all.count > 0) note(all.first, all.words());
   }
 
   void note(const char* where, std::string message) {

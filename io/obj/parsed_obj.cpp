@@ -246,7 +246,7 @@ class FaceReader {
     if (corners_.size() < 3)
       stop_at(p, "a face needs at least 3 corners, found " + std::to_string(corners_.size()));
     if (corners_.size() - 2 > last_triangle_ - next_.triangles) stop_changed(p);
-    write_polygon();
+    write_polygon(p);
     return end;
   }
 
@@ -309,7 +309,7 @@ class FaceReader {
     stop_at(p, what + " is out of range: the file defines " + std::to_string(total));
   }
 
-  void write_polygon() {
+  void write_polygon(const char* where) {
     if (corners_.size() == 3 || !options_.positions_known) {
       for (std::size_t i = 2; i < corners_.size(); ++i)
         write_triangle(corners_[0], corners_[i - 1], corners_[i]);
@@ -318,6 +318,7 @@ class FaceReader {
     points_.clear();
     for (const Corner& corner : corners_) points_.push_back(mesh_.positions[corner.position]);
     const std::span<const std::uint32_t> cut = triangulator_.run(points_);
+    if (triangulator_.crosses_itself()) chunk_.crossings.add(where);
     for (std::size_t i = 0; i < cut.size(); i += 3)
       write_triangle(corners_[cut[i]], corners_[cut[i + 1]], corners_[cut[i + 2]]);
   }

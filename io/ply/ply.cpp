@@ -95,6 +95,7 @@ void PlyFaceWriter::write_polygon() {
     points_.clear();
     for (const std::uint32_t corner : corners_) points_.push_back(mesh_.positions[corner]);
     const std::span<const std::uint32_t> cut = triangulator_.run(points_);
+    if (triangulator_.crosses_itself()) crossings_.add(where_);
     for (std::size_t i = 0; i < cut.size(); i += 3) write(cut[i], cut[i + 1], cut[i + 2]);
   }
   next_uv_ += uvs_.size() / 2;
@@ -213,6 +214,18 @@ class PlyLoad {
            {0, 0}});
   }
 
+  void note_crossings() {
+    FaceCrossings all;
+    for (const PlyFaces& faces : faces_)
+      for (const PlyChunk& chunk : faces.chunks) all += chunk.crossings;
+    if (all.count == 0) return;
+    // Bytes have no lines.
+    if (header_.format == PlyFormat::ascii)
+      note(all.first, all.words());
+    else
+      parsed_.notices.push_back({static_cast<std::uint64_t>(all.first - text_.data()), all.words(), {0, 0}});
+  }
+
   void stop_at_first_failure() const {
     std::optional<MeshFailure> first;
     for (const PlyPart* part : parts_)
@@ -278,11 +291,13 @@ class PlyLoad {
   /// After the vertices, because how a polygon is cut depends on them.
   void read_faces() {
     for (PlyFaces& faces : faces_)
-      for_each_chunk(faces, [&](const PlyChunk& chunk) {
+      for_each_chunk(faces, [&](PlyChunk& chunk) {
         PlyFaceWriter writer(faces, chunk, parsed_.mesh);
         body_->read_faces(faces, chunk, writer);
+        chunk.crossings = writer.crossings();
       });
     stop_at_first_failure();
+    note_crossings();
   }
 
   void finish() {

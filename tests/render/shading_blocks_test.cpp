@@ -157,7 +157,7 @@ TEST(ShadingBlocks, WhittedIsThatOfSingleHits) {
 /// How many hits are shaded at once. Paths compute in double, of which fewer fit into registers.
 std::size_t width_of(IntegratorKind kind, Isa isa) {
   if (isa == Isa::scalar) return 1;
-  if (kind == IntegratorKind::path) return isa == Isa::sse42 ? 4 : 8;
+  if (kind == IntegratorKind::path) return isa == Isa::sse42 || isa == Isa::neon ? 4 : 8;
   return isa == Isa::avx512 ? 16 : 8;
 }
 
