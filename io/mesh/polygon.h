@@ -25,8 +25,7 @@ inline double cross(const PlanePoint& a, const PlanePoint& b, const PlanePoint& 
 }
 
 /// Its sign, exact for points whose coordinates are floats: 1 if it turns to the left, 0 if there is no area.
-/// J. R. Shewchuk: Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates,
-/// Discrete & Computational Geometry 18, 1997.
+/// By the error bound and the expansions of Shewchuk 1997.
 int orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
 
 /// All corners in a balanced kd-tree (Bentley 1975) whose nodes count the corners that block.
@@ -106,8 +105,8 @@ class BlockerTree {
   std::vector<std::uint32_t> blocking_;
 };
 
-/// Cuts polygons into triangles, always two fewer than corners, by taking off ears (G. H. Meisters: Polygons
-/// Have Ears, American Mathematical Monthly 82, 1975). Keeps its buffers from one polygon to the next.
+/// Cuts polygons into triangles, always two fewer than corners, by taking off ears (Meisters 1975). Keeps its
+/// buffers from one polygon to the next.
 class PolygonTriangulator {
  public:
   /// Three corner numbers for each triangle, in the winding of the polygon; valid until the next call. A
