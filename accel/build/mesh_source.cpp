@@ -11,13 +11,13 @@ namespace {
 /// References made by one task.
 constexpr std::size_t kTrianglesTogether = 1u << 12;
 
-/// Finite, and three corners in different places.
-bool is_usable(const Vec3f (&v)[3]) {
+/// Corners may coincide: no ray hits such a triangle, but a point has a nearest one on it.
+bool is_finite(const Vec3f (&v)[3]) {
   std::uint32_t greatest = 0;
   for (const Vec3f& p : v)
     for (int k = 0; k < 3; ++k)
       greatest = std::max(greatest, std::bit_cast<std::uint32_t>(p[k]) & 0x7fffffffu);
-  return greatest < 0x7f800000u && v[0] != v[1] && v[1] != v[2] && v[2] != v[0];
+  return greatest < 0x7f800000u;
 }
 
 bool have_same_bits(const Vec3f& a, const Vec3f& b) {
@@ -66,7 +66,7 @@ Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool
   arrays.populate(refs, triangles, parallel);
   struct Part {
     Box bounds;
-    std::size_t usable = 0;
+    std::size_t finite = 0;
   };
   const Chunks chunks(triangles, kTrianglesTogether);
   std::vector<Part> parts(chunks.count);
@@ -77,21 +77,21 @@ Box MeshSource::add_references(std::uint32_t geometry, BuildArrays& arrays, bool
       const std::uint32_t item = mesh.first_item + static_cast<std::uint32_t>(i);
       Vec3f v[3];
       corners(mesh, item, v);
-      if (!is_usable(v)) continue;
+      if (!is_finite(v)) continue;
       const Vec3f lo = min(min(v[0], v[1]), v[2]), hi = max(max(v[0], v[1]), v[2]);
       part.bounds.lo = min(lo, part.bounds.lo), part.bounds.hi = max(hi, part.bounds.hi);
       *out++ = {{-lo.x, -lo.y, -lo.z}, item, {hi.x, hi.y, hi.z}, kind};
-      ++part.usable;
+      ++part.finite;
     }
   });
-  // Close the gaps that unusable triangles left.
+  // Close the gaps that the others left.
   Box bounds;
   PrimRef* end = refs;
   for (std::size_t c = 0; c < parts.size(); ++c) {
     const PrimRef* from = refs + c * chunks.size;
-    if (from != end) std::copy(from, from + parts[c].usable, end);
-    end += parts[c].usable;
-    if (parts[c].usable > 0) bounds.grow(parts[c].bounds);
+    if (from != end) std::copy(from, from + parts[c].finite, end);
+    end += parts[c].finite;
+    if (parts[c].finite > 0) bounds.grow(parts[c].bounds);
   }
   arrays.count += static_cast<std::size_t>(end - refs);
   return bounds;

@@ -12,8 +12,8 @@ class MeshSource final : public TriangleSource {
  public:
   explicit MeshSource(const Accel& accel);
 
-  /// Adds references to all triangles of mesh geometry `geometry` to arrays.refs; those that are degenerate
-  /// or not finite are left out. Returns their bounds.
+  /// Adds references to all triangles of mesh geometry `geometry` to arrays.refs; those that are not
+  /// finite are left out. Returns their bounds.
   Box add_references(std::uint32_t geometry, BuildArrays& arrays, bool parallel) const;
 
   void note_vertices(const PrimRef* refs, std::uint32_t count, VertexNumbers* out) const override;

@@ -16,7 +16,7 @@ namespace oktett {
 namespace {
 
 /// Begins every file; the number is the version of the format.
-constexpr std::string_view kMagic = "oktett cache 1\n";
+constexpr std::string_view kMagic = "oktett cache 2\n";
 /// A multiple of the page size of every system.
 constexpr std::uint64_t kAlign = 65536;
 constexpr std::uint64_t kMostHeader = std::uint64_t{1} << 28;

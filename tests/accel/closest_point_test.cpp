@@ -38,7 +38,6 @@ ClosestPoint closest_of_all(const Accel& accel, const Vec3f& point) {
         v[k] = placed.instance == kNoId ? Vec3d(Vec3f(own.point(Vec3d(corner))))
                                         : placed.to_world.point(Vec3d(corner));
       }
-      if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
       const auto c = closest_on_triangle(broadcast<D>(Vec3d(point)), broadcast<D>(v[0]), broadcast<D>(v[1]),
                                          broadcast<D>(v[2]));
       const double d2 = only_lane(c.d2);
@@ -100,6 +99,9 @@ struct Soup {
       TriangleCase c = adversarial_case(r, scale * (i % 3 == 0 ? 1.0f : 0.1f));
       const Vec3f shift = r.vector() * (scale * 3);
       if (i % 31 == 0) c.corner[2] = c.corner[0] + (c.corner[1] - c.corner[0]) * 0.5f;
+      // Two corners, or all, at one place.
+      if (i % 37 == 0) c.corner[2] = c.corner[1];
+      if (i % 41 == 0) c.corner[1] = c.corner[2] = c.corner[0];
       for (const Vec3f& v : c.corner) {
         mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
         mesh.positions.push_back(v + shift);
