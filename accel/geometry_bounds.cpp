@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accel/accel_data.h"
+#include "core/mesh_geometry.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {
@@ -41,10 +42,10 @@ bool is_unbounded(const Geometry& g) {
 Box geometry_bounds(const Geometry& g) {
   Box box;
   if (const auto* mesh = std::get_if<MeshGeometry>(&g.shape)) {
-    for (const Vec3f& p : mesh->mesh->positions) {
+    each_corner(*mesh->mesh, [&](const Vec3f& p) {
       const Vec3d q = g.transform.point(Vec3d(p));
       box.grow(Box{round_down(q), round_up(q)});
-    }
+    });
   } else if (const auto* exact = std::get_if<ExactShape>(&g.shape)) {
     box = exact_bounds(*exact, g.transform);
   } else if (const auto* instance = std::get_if<InstanceGeometry>(&g.shape)) {

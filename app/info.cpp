@@ -59,8 +59,7 @@ struct ShapeBounds {
 
   Box operator()(const MeshShape& shape) const {
     Box box;
-    if (shape.mesh)
-      for (const Vec3f& p : shape.mesh->positions) box.grow(p);
+    if (shape.mesh) each_corner(*shape.mesh, [&](const Vec3f& p) { box.grow(p); });
     return box;
   }
   template <class T>
@@ -85,7 +84,8 @@ Box object_bounds(const Object& object, const std::vector<Box>& prototypes) {
     return box.empty() || object.transform.is_identity() ? box : transform_bounds(object.transform, box);
   }
   Box box;
-  for (const Vec3f& p : shape->mesh->positions) grow(box, object.transform.point(static_cast<Vec3d>(p)));
+  each_corner(*shape->mesh,
+              [&](const Vec3f& p) { grow(box, object.transform.point(static_cast<Vec3d>(p))); });
   return box;
 }
 

@@ -12,6 +12,12 @@ inline Vec3d corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t 
   return Vec3d(mesh.positions[mesh.indices[3 * triangle + k]]);
 }
 
+/// Calls f(position) for the corners of all triangles; files may hold vertices that none has.
+template <class F>
+void each_corner(const TriangleMesh& mesh, F&& f) {
+  for (const std::uint32_t i : mesh.indices) f(mesh.positions[i]);
+}
+
 /// The normal of a triangle, twice as long as its area; it points to the front.
 inline Vec3d area_normal(const TriangleMesh& mesh, std::size_t triangle) {
   const Vec3d a = corner(mesh, triangle, 0);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "tests/app/run_command.h"
@@ -72,6 +73,19 @@ TEST(InfoCommand, CountsThroughInstances) {
                            "\"bounds_min\": [-1, -3, -1]", "\"bounds_max\": [6.0", "\"camera_given\": false"})
     EXPECT_TRUE(contains(result.out, part)) << part << "\n" << result.out;
   EXPECT_TRUE(contains(run_command(dir, {"info", scene}).out, "triangles"));
+}
+
+TEST(InfoCommand, VerticesOfNoTriangleDoNotCount) {
+  const TempDir dir;
+  dir.write("stray.obj", std::string("v 100 0 -7\n") + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n");
+  dir.write("turned.yaml",
+            "oktett: 1\nobjects:\n  - mesh: {file: stray.obj}\n    transform: {translate: [0, 0, 2]}\n");
+  for (const auto& [file, lo, hi] : {std::array{"stray.obj", "[0, 0, 0]", "[1, 1, 0]"},
+                                     std::array{"turned.yaml", "[0, 0, 2]", "[1, 1, 2]"}}) {
+    const CommandResult result = run_command(dir, {"info", "--json", file});
+    EXPECT_TRUE(contains(result.out, "\"bounds_min\": " + std::string(lo))) << result.out;
+    EXPECT_TRUE(contains(result.out, "\"bounds_max\": " + std::string(hi))) << result.out;
+  }
 }
 
 // Bounds of each closed form, alone in its scene, by hand.
