@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/mesh/reading.h"
+#include "io/text/scan.h"
 
 namespace oktett {
 
@@ -181,7 +182,7 @@ void GltfFile::fail(const std::string& message) const { throw Error(Location{pat
 void GltfFile::split_chunks(std::string_view text) {
   is_binary_ = text.starts_with("glTF");
   if (!is_binary_) {
-    json_ = text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
+    json_ = without_byte_order_mark(text);
     return;
   }
   if (text.size() < kHeaderBytes)

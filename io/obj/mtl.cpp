@@ -110,10 +110,10 @@ class MtlReader {
 
   void run() {
     const MappedFile file(path_);
-    const std::string_view text = file.text();
+    const std::string_view text = without_byte_order_mark(file.text());
     const char* const end = text.data() + text.size();
     LineCounter lines(text);
-    for (const char* p = text.data() + (text.starts_with("\xef\xbb\xbf") ? 3 : 0); p < end;) {
+    for (const char* p = text.data(); p < end;) {
       p = skip_blanks(p);
       MtlLine line(p, path_, lines, warnings_);
       if (line.keyword() == "newmtl")

@@ -23,11 +23,8 @@ class ObjLoad {
       : path_(path),
         options_(options),
         file_(path),
-        text_(file_.text()),
-        phase_("reading", std::filesystem::path(path).filename().string(), kPasses * text_.size()) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (text_.starts_with(byte_order_mark)) text_.remove_prefix(byte_order_mark.size());
-  }
+        text_(without_byte_order_mark(file_.text())),
+        phase_("reading", std::filesystem::path(path).filename().string(), kPasses * text_.size()) {}
 
   ParsedMesh run() {
     count();

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/text/file_content.h"
+#include "io/text/scan.h"
 
 namespace oktett {
 namespace {
@@ -145,7 +146,7 @@ std::vector<Around> full_circle(const std::vector<double>& angles) {
 LightProfile read_light_profile(const std::string& path) {
   const MappedFile file(path);
   if (file.text().size() > kMostBytes) throw Error(Location{path}, "the file is larger than 32 MB");
-  Words words(path, file.text());
+  Words words(path, without_byte_order_mark(file.text()));
   skip_header(words);
   words.number("the number of lamps");
   words.number("the lumens of a lamp");

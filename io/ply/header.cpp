@@ -48,6 +48,9 @@ class HeaderReader {
     header_.format = *format_;
     // Bytes that look like an end of line may begin the body.
     header_.body = cr_only && *line_end_ == '\r' ? line_end_ + 1 : next_;
+    // A text that another program put behind a header of its own.
+    if (*format_ == PlyFormat::ascii)
+      header_.body = without_byte_order_mark({header_.body, text_end_}).data();
     return std::move(header_);
   }
 

@@ -109,7 +109,7 @@ static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec2f) == 2 * sizeof(
 class PlyLoad {
  public:
   PlyLoad(const std::string& path, const MeshReadOptions& options)
-      : path_(path), options_(options), file_(path), text_(file_.text()) {}
+      : path_(path), options_(options), file_(path), text_(without_byte_order_mark(file_.text())) {}
 
   ParsedMesh run() {
     try {
@@ -126,7 +126,7 @@ class PlyLoad {
       read_faces();
     } catch (const MeshFailure& failure) {
       const bool is_line = in_header_ || header_.format == PlyFormat::ascii || failure.where < header_.body;
-      (is_line ? fail_at_line : fail_at_byte)(path_, text_, failure);
+      (is_line ? fail_at_line : fail_at_byte)(path_, is_line ? text_ : file_.text(), failure);
     }
     finish();
     return std::move(parsed_);

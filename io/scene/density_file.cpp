@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "io/text/file_content.h"
+#include "io/text/scan.h"
 
 namespace oktett {
 namespace {
@@ -116,7 +117,7 @@ class DensityReader {
 
 std::shared_ptr<const DensityGrid> read_density_file(const std::string& path) {
   const MappedFile file(path);
-  return DensityReader(path, file.text()).read();
+  return DensityReader(path, without_byte_order_mark(file.text())).read();
 }
 
 }  // namespace oktett

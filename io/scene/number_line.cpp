@@ -5,6 +5,8 @@
 #include <cmath>
 #include <system_error>
 
+#include "io/text/scan.h"
+
 namespace oktett {
 namespace {
 
@@ -56,7 +58,9 @@ void read_number_file(SceneLoad& load, const YamlNode& node, std::size_t max_byt
     throw Error(node.where(), std::string(files) + " are larger than " +
                                   std::to_string(kMaxSphereFileBytes >> 20) + " MiB in all");
   Location place{path, 0, 1};
-  for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+  std::size_t end = 0;
+  for (std::size_t begin = text.size() - without_byte_order_mark(text).size(); begin < text.size();
+       begin = end + 1) {
     end = std::min(text.find('\n', begin), text.size());
     ++place.line;
     NumberLine line(std::string_view(text).substr(begin, end - begin), place, expected);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "io/text/scan.h"
 
 namespace oktett {
 namespace {
@@ -35,7 +36,7 @@ bool is_control(unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' &&
 }  // namespace
 
 void check_text(std::string& text, const std::string& path) {
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  text.erase(0, text.size() - without_byte_order_mark(text).size());
   Location place{path, 1, 1};
   for (std::size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);

@@ -208,10 +208,12 @@ class StlLoad {
       : path_(path), options_(options), file_(path), text_(file_.text()) {}
 
   ParsedMesh run() {
-    if (is_text())
+    if (is_text()) {
+      text_ = without_byte_order_mark(text_);
       read_text();
-    else
+    } else {
       read_bytes();
+    }
     parsed_.has_faces = parsed_.mesh.triangle_count() > 0;
     return std::move(parsed_);
   }
@@ -226,7 +228,7 @@ class StlLoad {
 
   /// Some programs write `solid` to the header of files of bytes, too.
   bool is_text() const {
-    const char* p = text_.data();
+    const char* p = without_byte_order_mark(text_).data();
     while (is_blank(*p) || (*p != '\0' && is_line_end(*p))) ++p;
     if (!begins_with_word(p, "solid")) return false;
     if (text_.size() >= kHeaderBytes && text_.size() == kHeaderBytes + kFacetBytes * stated_count())
@@ -322,7 +324,7 @@ class StlLoad {
   const std::string path_;
   const MeshReadOptions options_;
   const FileContent file_;
-  const std::string_view text_;
+  std::string_view text_;
   Phase phase_{"reading", std::filesystem::path(path_).filename().string(), text_.size()};
   ParsedMesh parsed_;
 };

@@ -16,6 +16,11 @@
 
 namespace oktett {
 
+/// The text behind the mark that some programs put before UTF-8.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
+}
+
 /// Thirty-two characters: few lines are longer, so that how many steps a line takes is mostly known
 /// beforehand. Bit i of a result speaks of character i.
 class TextBlock {

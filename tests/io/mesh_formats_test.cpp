@@ -82,5 +82,49 @@ TEST(MeshFormats, PicturesAreTheSame) {
   EXPECT_GT(std::count(alpha->values.begin(), alpha->values.end(), 1.0f), 400);
 }
 
+// The mark before UTF-8 is left out of every text; bytes that happen to begin like it stay.
+TEST(MeshFormats, ByteOrderMarks) {
+  const std::string mark = "\xef\xbb\xbf";
+  const ObjFiles files;
+  const MeshModel model{
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}}, {}, {}, {{{0, 1, 2}, {}}, {{1, 3, 2}, {}}}};
+  const std::string stl =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "endsolid a\n";
+  std::string header = ply_bytes(model, {.format = PlyFormat::ascii});
+  const std::string body = header.substr(header.find("end_header\n") + 11);
+  header.resize(header.size() - body.size());
+  std::string bytes = stl_of(model);
+  std::copy(mark.begin(), mark.end(), bytes.begin());
+  struct Case {
+    const char* name;
+    std::string content;
+    std::size_t triangles;
+  };
+  for (const Case& c : {Case{"a.obj", mark + obj_text(model), 2},
+                        {"a.ply", mark + header + body, 2},
+                        {"b.ply", header + mark + body, 2},
+                        {"c.ply", mark + ply_bytes(model, {.format = PlyFormat::big_endian}), 2},
+                        {"a.stl", mark + stl, 1},
+                        {"b.stl", bytes, 2}}) {
+    files.write(c.name, c.content);
+    EXPECT_EQ(load_mesh(files.dir.file(c.name)).mesh.triangle_count(), c.triangles) << c.name;
+  }
+
+  files.write("balls.txt", mark + "0 0 0 1\n3 0 0 1\n");
+  files.write("f.grid", mark + "oktett density grid 1\nsize 2 2 2\nvalues text\n0 1 2 3 4 5 6 7\n");
+  files.write("a.ies", mark + "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 60\n0 90\n0\n5 5\n");
+  files.write("scene.yaml", mark +
+                                "oktett: 1\n"
+                                "media: {m: {scattering: [1, 1, 1], grid: f.grid}}\n"
+                                "materials: {s: {surface: false, interior: m}}\n"
+                                "lights: [{point: {position: [0, 9, 0], profile: a.ies}}]\n"
+                                "objects:\n"
+                                "  - spheres: {file: balls.txt}\n"
+                                "  - metaballs: {file: balls.txt}\n"
+                                "  - {sphere: {center: [9, 0, 0]}, material: s}\n");
+  EXPECT_EQ(load_scene(files.dir.file("scene.yaml")).objects.size(), 3u);
+}
+
 }  // namespace
 }  // namespace oktett::test::mesh_formats_test
