@@ -116,8 +116,9 @@ class PolygonTriangulator {
   /// Points must be finite.
   std::span<const std::uint32_t> run(std::span<const Vec3f> points);
 
-  /// Whether the polygon of the last call crosses itself, so that its triangles may overlap or be turned
-  /// over.
+  /// Whether the polygon of the last call was seen to cross itself, so that its triangles may overlap or be
+  /// turned over; or met itself at one place so often that the rest was cut into a fan. A crossing exactly
+  /// in a corner, or among very many long edges side by side, may go unseen.
   bool crosses_itself() const { return crosses_itself_; }
 
  private:
