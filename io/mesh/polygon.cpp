@@ -31,12 +31,8 @@ void BlockerTree::split(const std::vector<PlanePoint>& points, std::uint32_t nod
                         std::size_t leaves) {
   const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(begin_of(leaf));
   const auto end = order_.begin() + static_cast<std::ptrdiff_t>(begin_of(leaf + leaves));
-  Box box{points[*begin], points[*begin]};
-  for (auto it = begin; it != end; ++it) {
-    const PlanePoint& p = points[*it];
-    box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y)};
-    box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y)};
-  }
+  PlaneBox box;
+  for (auto it = begin; it != end; ++it) box.grow(points[*it]);
   boxes_[node] = box;
   if (leaves == 1) {
     for (auto it = begin; it != end; ++it) leaf_of_[*it] = node;
@@ -91,13 +87,14 @@ class CrossingSearch {
     while (points.size() > kEdges * leaves_) leaves_ *= 2;
     boxes_.resize(2 * leaves_);
     for (std::size_t leaf = 0; leaf < leaves_; ++leaf) {
-      Box& box = boxes_[leaves_ + leaf];
-      for (std::size_t i = begin_of(leaf); i < begin_of(leaf + 1); ++i)
-        box.grow(point(i)), box.grow(point(i + 1));
+      PlaneBox& box = boxes_[leaves_ + leaf];
+      // With the end of its last edge.
+      for (std::size_t i = begin_of(leaf); i <= begin_of(leaf + 1); ++i) box.grow(point(i));
     }
     for (std::size_t node = leaves_; --node > 0;) {
-      boxes_[node].grow(boxes_[2 * node].lo), boxes_[node].grow(boxes_[2 * node].hi);
-      boxes_[node].grow(boxes_[2 * node + 1].lo), boxes_[node].grow(boxes_[2 * node + 1].hi);
+      boxes_[node] = boxes_[2 * node];
+      boxes_[node].grow(boxes_[2 * node + 1].lo);
+      boxes_[node].grow(boxes_[2 * node + 1].hi);
     }
     steps_ = kMostSteps + kMostStepsPerCorner * static_cast<std::int64_t>(points.size());
   }
@@ -109,17 +106,6 @@ class CrossingSearch {
   /// Pairs of nodes and of edges that are looked at. Long edges that lie slantwise beside each other, or on
   /// each other again and again, could take longer.
   static constexpr std::int64_t kMostSteps = 1 << 22, kMostStepsPerCorner = 16;
-
-  struct Box {
-    PlanePoint lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
-    void grow(const PlanePoint& p) {
-      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
-      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
-    }
-    bool meets(const Box& b) const {
-      return lo.x <= b.hi.x && b.lo.x <= hi.x && lo.y <= b.hi.y && b.lo.y <= hi.y;
-    }
-  };
 
   const PlanePoint& point(std::size_t i) const { return points_[i < points_.size() ? i : 0]; }
   std::size_t begin_of(std::size_t leaf) const { return points_.size() * leaf / leaves_; }
@@ -156,7 +142,7 @@ class CrossingSearch {
 
   const std::vector<PlanePoint>& points_;
   std::size_t leaves_;
-  std::vector<Box> boxes_;
+  std::vector<PlaneBox> boxes_;
   std::int64_t steps_;
 };
 

@@ -2,6 +2,7 @@
 /// \file Triangulation of polygons that may be concave, not quite plane, or degenerate.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,6 +18,20 @@ namespace oktett {
 struct PlanePoint {
   double x, y;
   bool operator==(const PlanePoint&) const = default;
+};
+
+/// A box in the plane, empty at first.
+struct PlaneBox {
+  PlanePoint lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
+
+  void grow(const PlanePoint& p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+  }
+  /// Boxes that touch meet, too.
+  bool meets(const PlaneBox& b) const {
+    return lo.x <= b.hi.x && b.lo.x <= hi.x && lo.y <= b.hi.y && b.lo.y <= hi.y;
+  }
 };
 
 /// Twice the area of the triangle, positive if it turns to the left; rounded.
@@ -66,32 +81,28 @@ class BlockerTree {
   }
 
  private:
-  struct Box {
-    PlanePoint lo, hi;
-  };
   /// A line that a triangle lies to the left of.
   struct Edge {
     PlanePoint from, to;
     bool sure;  ///< rounding leaves the third corner on that side
 
     /// Rounding is monotonic, so no point of the box computes to a greater area than this corner of it.
-    bool misses(const Box& box) const {
+    bool misses(const PlaneBox& box) const {
       const PlanePoint most{to.y - from.y >= 0 ? box.lo.x : box.hi.x,
                             to.x - from.x >= 0 ? box.hi.y : box.lo.y};
       return sure && cross(from, to, most) < 0;
     }
   };
   struct Triangle {
-    Box box;
+    PlaneBox box;
     Edge edges[3];
 
     Triangle(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c)
         : box{{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
               {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}},
           edges{{a, b, cross(a, b, c) >= 0}, {b, c, cross(b, c, a) >= 0}, {c, a, cross(c, a, b) >= 0}} {}
-    bool misses(const Box& b) const {
-      return b.hi.x < box.lo.x || b.lo.x > box.hi.x || b.hi.y < box.lo.y || b.lo.y > box.hi.y ||
-             edges[0].misses(b) || edges[1].misses(b) || edges[2].misses(b);
+    bool misses(const PlaneBox& b) const {
+      return !box.meets(b) || edges[0].misses(b) || edges[1].misses(b) || edges[2].misses(b);
     }
   };
 
@@ -101,7 +112,7 @@ class BlockerTree {
   std::uint32_t first_leaf_ =
       1;  ///< number of leaves; nodes are numbered from 1, the children of k are 2k and 2k + 1
   std::vector<std::uint32_t> order_, leaf_of_;
-  std::vector<Box> boxes_;
+  std::vector<PlaneBox> boxes_;
   std::vector<std::uint32_t> blocking_;
 };
 

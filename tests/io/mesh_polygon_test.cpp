@@ -28,6 +28,12 @@ Vec3d polygon_area(const Polygon& p) {
   return sum;
 }
 
+/// A square with a square hole, joined by a bridge that is walked in both directions.
+Polygon square_with_hole() {
+  return {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {0, 6, 0}, {0, 0, 0},
+          {2, 2, 0}, {2, 4, 0}, {4, 4, 0}, {4, 2, 0}, {2, 2, 0}};
+}
+
 /// n - 2 triangles with corners of the polygon.
 std::vector<std::uint32_t> triangulate(const Polygon& polygon) {
   PolygonTriangulator triangulator;
@@ -127,17 +133,7 @@ TEST(Polygon, CollinearCornersMakeNoDegenerateTriangles) {
 TEST(Polygon, CoincidentCorners) {
   expect_covered_in_all_poses({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
   expect_covered_in_all_poses({{0, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}});
-  // A square with a square hole, joined by a bridge that is walked in both directions.
-  expect_covered_in_all_poses({{0, 0, 0},
-                               {6, 0, 0},
-                               {6, 6, 0},
-                               {0, 6, 0},
-                               {0, 0, 0},
-                               {2, 2, 0},
-                               {2, 4, 0},
-                               {4, 4, 0},
-                               {4, 2, 0},
-                               {2, 2, 0}});
+  expect_covered_in_all_poses(square_with_hole());
   // Two triangles that touch in a corner.
   expect_covered_in_all_poses({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}});
 }
@@ -357,16 +353,7 @@ TEST(Polygon, CrossingsAreReported) {
   // These touch themselves, which is allowed: in a corner, along an edge, and by a bridge to a hole.
   EXPECT_FALSE(crosses({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}}));
   EXPECT_FALSE(crosses({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 0, 0}, {0, 4, 0}}));
-  EXPECT_FALSE(crosses({{0, 0, 0},
-                        {6, 0, 0},
-                        {6, 6, 0},
-                        {0, 6, 0},
-                        {0, 0, 0},
-                        {2, 2, 0},
-                        {2, 4, 0},
-                        {4, 4, 0},
-                        {4, 2, 0},
-                        {2, 2, 0}}));
+  EXPECT_FALSE(crosses(square_with_hole()));
   EXPECT_FALSE(crosses({{0, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}));
   EXPECT_FALSE(crosses({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}));
 }
