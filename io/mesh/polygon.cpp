@@ -78,8 +78,8 @@ int orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
 
 namespace {
 
-/// Finds edges that cross, but for such as only touch. Pairs are looked for in a binary tree of runs of
-/// edges, whose boxes are small, since edges that follow each other lie together.
+/// Finds two edges that cross; touching does not count. Edges that follow each other lie together, so runs of
+/// them, joined to a binary tree, have small boxes.
 class CrossingSearch {
  public:
   explicit CrossingSearch(const std::vector<PlanePoint>& points) : points_(points) {
@@ -221,10 +221,9 @@ void PolygonTriangulator::link() {
   }
 }
 
-/// Whether a corner may be cut off changes only when a neighbour is, or when the corner that keeps it from
-/// that no longer does. So each is tried when it may have changed, and all ears are known. A polygon that
-/// touches itself may have none under the strictest rule, one that crosses itself none at all; then the
-/// demands are lowered.
+/// A corner that cannot be cut off is tried again when a neighbour was cut off, or when the corner that
+/// blocks it no longer does; nothing else changes the answer. A polygon that touches itself may have no ear
+/// by the strictest rule, and one that crosses itself none at all; then a more lenient rule is taken.
 void PolygonTriangulator::clip_ears() {
   const std::size_t count = points_.size();
   find_blocking();
@@ -355,8 +354,9 @@ bool PolygonTriangulator::encloses_nothing(std::uint32_t corner) const {
   return points_[corner] == after || points_[previous_[corner]] == after;
 }
 
-/// What of the rest of the polygon reaches into the triangle at `corner`, or kNoId. If anything does, one of
-/// its reflex corners lies there, or a corner at the same place as one of the triangle's leads into it.
+/// A corner that blocks the triangle at `corner`, or kNoId. If the rest of the polygon reaches into the
+/// triangle, a reflex corner lies there, or a corner at the same place as one of the triangle's leads into
+/// it.
 std::uint32_t PolygonTriangulator::find_blocker(std::uint32_t corner, Rule rule) {
   std::uint32_t found = kNoId;
   if (blockers_.blocking() == 0) return found;
@@ -375,7 +375,7 @@ std::uint32_t PolygonTriangulator::find_blocker(std::uint32_t corner, Rule rule)
     if (blocks) found = other;
     return blocks;
   };
-  // The corners that follow are the likeliest.
+  // Mostly it is one of the two corners next to the triangle.
   if (!keeps(next_[after]) && !keeps(previous_[before])) blockers_.any_in(a, b, c, keeps);
   return found;
 }
@@ -391,7 +391,7 @@ bool PolygonTriangulator::enters(std::uint32_t corner, std::uint32_t right, std:
   return false;
 }
 
-/// Also tries those again that the corner kept, if it no longer blocks or its edges have changed.
+/// If the corner no longer blocks, or has a twin and other edges now, those that it blocked are due again.
 void PolygonTriangulator::update_blocking(std::uint32_t corner) {
   const bool blocks = twin_[corner] || turn(corner) <= 0;
   if (blocks != static_cast<bool>(blocking_[corner])) {
