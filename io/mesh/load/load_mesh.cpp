@@ -9,6 +9,7 @@
 #include "io/gltf/gltf.h"
 #include "io/mesh/load/parse_mesh.h"
 #include "io/mesh/vertices.h"
+#include "io/off/off.h"
 #include "io/ply/ply.h"
 #include "io/stl/stl.h"
 #include "io/text/files.h"
@@ -38,6 +39,7 @@ constexpr std::array kReadFormats{
     ReadFormat{".obj", parse_obj, load_obj, find_obj_errors},
     ReadFormat{".ply", parse_by_default<parse_ply>, load_in_two_steps},
     ReadFormat{".stl", parse_by_default<parse_stl>, load_in_two_steps, nullptr, true},
+    ReadFormat{".off", parse_by_default<parse_off>, load_in_two_steps},
     ReadFormat{".gltf", nullptr, load_gltf},
     ReadFormat{".glb", nullptr, load_gltf},
 };
