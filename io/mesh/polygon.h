@@ -178,26 +178,4 @@ class PolygonTriangulator {
   std::vector<std::uint32_t> triangles_;
 };
 
-/// The faces of a file that cross themselves.
-struct FaceCrossings {
-  std::uint64_t count = 0;
-  const char* first = nullptr;  ///< where the first of them begins
-
-  void add(const char* where) {
-    if (count++ == 0) first = where;
-  }
-  /// Those of what follows.
-  FaceCrossings& operator+=(const FaceCrossings& later) {
-    if (count == 0) first = later.first;
-    count += later.count;
-    return *this;
-  }
-  /// A warning, which stands where the first one begins.
-  std::string words() const {
-    return (count == 1 ? "a face crosses itself: its"
-                       : std::to_string(count) + " faces cross themselves: their") +
-           std::string(" triangles may overlap");
-  }
-};
-
 }  // namespace oktett

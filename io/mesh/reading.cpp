@@ -6,6 +6,28 @@
 
 namespace oktett {
 
+MeshOddities& MeshOddities::operator+=(const MeshOddities& later) {
+  for (const auto member : {&MeshOddities::crossings, &MeshOddities::small_faces, &MeshOddities::bad_normals,
+                            &MeshOddities::no_normals, &MeshOddities::no_uvs})
+    this->*member += later.*member;
+  return *this;
+}
+
+void MeshOddities::report(const std::function<void(const char*, std::string)>& note) const {
+  const auto say = [&](const Tally& tally, const std::string& one, const std::string& many) {
+    if (tally.count > 0) note(tally.first, tally.count == 1 ? one : std::to_string(tally.count) + many);
+  };
+  say(crossings, "a face crosses itself: its triangles may overlap",
+      " faces cross themselves: their triangles may overlap");
+  say(small_faces, "a face of fewer than 3 corners is skipped", " faces of fewer than 3 corners are skipped");
+  say(bad_normals, "a normal is not finite: corners that have it show the normal of their face",
+      " normals are not finite: corners that have them show the normal of their face");
+  say(no_normals, "a corner names a normal, but the file defines none",
+      " corners name a normal, but the file defines none");
+  say(no_uvs, "a corner names texture coordinates, but the file defines none",
+      " corners name texture coordinates, but the file defines none");
+}
+
 void fail_at_line(const std::string& path, std::string_view text, const MeshFailure& failure) {
   const TextPosition position = LineCounter(text).at(failure.where);
   throw Error(Location{path, position.line, position.column}, failure.message);

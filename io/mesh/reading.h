@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -60,6 +61,36 @@ inline void keep_first(std::optional<MeshFailure>& first, const char* where, std
 inline void keep_first(std::optional<MeshFailure>& first, const std::optional<MeshFailure>& other) {
   if (other) keep_first(first, other->where, other->message);
 }
+
+/// How often a text holds something that is read with a warning, and where first.
+struct Tally {
+  std::uint64_t count = 0;
+  const char* first = nullptr;
+
+  void add(const char* where) {
+    if (count++ == 0) first = where;
+  }
+  /// That of what follows.
+  Tally& operator+=(const Tally& later) {
+    if (count == 0) first = later.first;
+    count += later.count;
+    return *this;
+  }
+};
+
+/// What of a mesh is read with a warning.
+struct MeshOddities {
+  Tally crossings;    ///< faces that cross themselves
+  Tally small_faces;  ///< faces of fewer than three corners
+  Tally bad_normals;  ///< normals that are not finite
+  Tally no_normals;   ///< corners that name a normal where the file defines none
+  Tally no_uvs;       ///< the same of texture coordinates
+
+  /// Those of what follows.
+  MeshOddities& operator+=(const MeshOddities& later);
+  /// Calls note(where, words) for each that there is.
+  void report(const std::function<void(const char*, std::string)>& note) const;
+};
 
 [[noreturn]] inline void stop_at(const char* where, std::string message) {
   throw MeshFailure{where, std::move(message)};

@@ -34,7 +34,7 @@ class ObjLoad {
     stop_at_first_failure();
     drop_unused_columns();
     note_skipped();
-    note_crossings();
+    note_oddities();
     obj_.has_faces = total_.faces > 0;
     return std::move(obj_);
   }
@@ -160,10 +160,10 @@ class ObjLoad {
     }
   }
 
-  void note_crossings() {
-    FaceCrossings all;
-    for (const ObjChunk& chunk : chunks_) all += chunk.crossings;
-    if (all.count > 0) note(all.first, all.words());
+  void note_oddities() {
+    MeshOddities all;
+    for (const ObjChunk& chunk : chunks_) all += chunk.oddities;
+    all.report([this](const char* where, std::string words) { note(where, std::move(words)); });
   }
 
   void note(const char* where, std::string message) {

@@ -187,8 +187,12 @@ void read_vertices(ObjChunk& chunk, TriangleMesh& mesh) {
     if (is_delimiter(p + 1))
       return read_vector<read_coordinate>(p + 1,
                                           place(mesh.positions, next.positions, last.positions, p + 1));
-    if (p[1] == 'n' && is_delimiter(p + 2))
-      return read_vector<read_number>(p + 2, place(mesh.normals, next.normals, last.normals, p + 2));
+    if (p[1] == 'n' && is_delimiter(p + 2)) {
+      Vec3f& normal = place(mesh.normals, next.normals, last.normals, p + 2);
+      const char* const rest = read_vector<read_number>(p + 2, normal);
+      if (!is_finite(normal)) chunk.oddities.bad_normals.add(p);
+      return rest;
+    }
     if (p[1] == 't' && is_delimiter(p + 2)) return read_uv(p + 2, place(mesh.uvs, next.uvs, last.uvs, p + 2));
     return p;
   });
@@ -243,8 +247,10 @@ class FaceReader {
       end = next_word(read_corner(end, corner));
       corners_.push_back(corner);
     }
-    if (corners_.size() < 3)
-      stop_at(p, "a face needs at least 3 corners, found " + std::to_string(corners_.size()));
+    if (corners_.size() < 3) {
+      chunk_.oddities.small_faces.add(p);
+      return end;
+    }
     if (corners_.size() - 2 > last_triangle_ - next_.triangles) stop_changed(p);
     write_polygon(p);
     return end;
@@ -271,9 +277,11 @@ class FaceReader {
     p = read_index(p, "vertex", total_.positions, next_.positions, corner.position);
     if (*p == '/') {
       ++p;
-      if (*p != '/' && !is_delimiter(p)) p = read_index(p, "uv", total_.uvs, next_.uvs, corner.uv);
+      if (*p != '/' && !is_delimiter(p))
+        p = read_index_if_any(p, "uv", total_.uvs, next_.uvs, corner.uv, chunk_.oddities.no_uvs);
       if (*p == '/' && !is_delimiter(++p))
-        p = read_index(p, "normal", total_.normals, next_.normals, corner.normal);
+        p = read_index_if_any(p, "normal", total_.normals, next_.normals, corner.normal,
+                              chunk_.oddities.no_normals);
     }
     if (!is_delimiter(p)) stop_at_corner(start);
     chunk_.uses_uvs = chunk_.uses_uvs || corner.uv != kNoId;
@@ -290,6 +298,18 @@ class FaceReader {
     if (end == first) stop_at_corner(p);
     if (value == 0 || value > (negative ? so_far : total)) stop_at_index(p, end, kind, total, so_far);
     index = static_cast<std::uint32_t>(negative ? so_far - value : value - 1);
+    return end;
+  }
+
+  /// The same for what faces may name though the file defines none at all.
+  static const char* read_index_if_any(const char* p, const char* kind, std::uint64_t total,
+                                       std::uint64_t so_far, std::uint32_t& index, Tally& missing) {
+    if (total > 0) return read_index(p, kind, total, so_far, index);
+    missing.add(p);
+    std::uint64_t value = 0;
+    const char* const first = p + (*p == '-' || *p == '+' ? 1 : 0);
+    const char* const end = scan_whole(first, value);
+    if (end == first) stop_at_corner(p);
     return end;
   }
 
@@ -318,7 +338,7 @@ class FaceReader {
     points_.clear();
     for (const Corner& corner : corners_) points_.push_back(mesh_.positions[corner.position]);
     const std::span<const std::uint32_t> cut = triangulator_.run(points_);
-    if (triangulator_.crosses_itself()) chunk_.crossings.add(where);
+    if (triangulator_.crosses_itself()) chunk_.oddities.crossings.add(where);
     for (std::size_t i = 0; i < cut.size(); i += 3)
       write_triangle(corners_[cut[i]], corners_[cut[i + 1]], corners_[cut[i + 2]]);
   }

@@ -88,7 +88,7 @@ struct ObjChunk {
   ObjBrace last_brace;
   bool uses_uvs = false;               ///< found in the second pass
   bool uses_normals = false;           ///< found in the second pass
-  FaceCrossings crossings;             ///< found in the second pass
+  MeshOddities oddities;               ///< found in the second pass
   std::optional<MeshFailure> failure;  ///< the first one
   bool gathers = false;                ///< lines behind a failure are read, too
   std::vector<MeshFailure> failures;   ///< all, in any order, if they are gathered

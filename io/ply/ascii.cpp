@@ -180,7 +180,7 @@ class AsciiBody final : public PlyBody {
           chunk.triangles += strips.triangles;
         } else if (i == faces.indices) {
           read_length(p, property, length);
-          chunk.triangles += count_polygon(length, skip_plain_blanks(p));
+          chunk.triangles += count_polygon(length);
           // What follows the last list that matters is looked at later.
           if (i < last) p = skip_property(value, property);
         } else {

@@ -212,7 +212,7 @@ class BinaryBody final : public PlyBody {
       chunk.triangles += strips.triangles;
       return;
     }
-    chunk.triangles += count_polygon(length, starts[list]);
+    chunk.triangles += count_polygon(length);
     if (faces.texcoords == PlyElement::kNone) return;
     const auto uvs = static_cast<std::size_t>(faces.texcoords);
     const PlyType type = faces.element->properties[uvs].length_type;

@@ -24,7 +24,7 @@ struct PlyChunk {
   // Of elements that make triangles. `uvs` are those of corners.
   std::uint64_t triangles = 0, triangles_before = 0;
   std::uint64_t uvs = 0, uvs_before = 0;
-  FaceCrossings crossings{};
+  MeshOddities oddities{};
   std::optional<MeshFailure> failure{};  ///< the first one
 };
 
@@ -84,8 +84,8 @@ class PlyFaceWriter {
   void end();
 
   std::uint64_t vertex_count() const { return vertex_count_; }
-  /// Faces so far that cross themselves.
-  const FaceCrossings& crossings() const { return crossings_; }
+  /// Of the faces so far.
+  const MeshOddities& oddities() const { return oddities_; }
   /// The indices of the next `count` triangles, which the caller fills in.
   std::uint32_t* take_triangles(std::uint64_t count, const char* where);
 
@@ -106,11 +106,11 @@ class PlyFaceWriter {
   std::vector<float> uvs_;
   std::vector<Vec3f> points_;
   PolygonTriangulator triangulator_;
-  FaceCrossings crossings_;
+  MeshOddities oddities_;
 };
 
-/// Triangles of a polygon, or of strips; throws MeshFailure at `where` if it has too few corners.
-std::uint64_t count_polygon(std::uint64_t corners, const char* where);
+/// Triangles of a polygon; none if it has too few corners.
+std::uint64_t count_polygon(std::uint64_t corners);
 class StripCounter {
  public:
   void add(std::int64_t index) {

@@ -5,7 +5,9 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/error.h"
 #include "io/text/number.h"
 
 namespace oktett {
@@ -84,10 +86,27 @@ class HeaderReader {
     else if (words_[0] == "property")
       read_property();
     else
+      skip_line();
+    return true;
+  }
+
+  /// Some programs write comments without the word. What looks like a misspelled keyword is none.
+  void skip_line() {
+    const std::string word(words_[0].substr(0, 64));
+    const std::vector<std::string> known{"comment", "obj_info", "format",
+                                         "element", "property", "end_header"};
+    const bool is_text = (word[0] >= 'a' && word[0] <= 'z') || (word[0] >= 'A' && word[0] <= 'Z');
+    if (!is_text || !did_you_mean(word, known).empty())
       stop_at(words_[0].data(),
               "expected 'comment', 'obj_info', 'format', 'element', 'property' or 'end_header', found " +
-                  quote_name(words_[0].substr(0, 64)));
-    return true;
+                  quote_name(word));
+    note(
+        "the line is not read; expected 'comment', 'obj_info', 'format', 'element', 'property' or "
+        "'end_header'");
+  }
+
+  void note(std::string words) {
+    if (header_.notices.size() < kMostParts) header_.notices.push_back({line_, std::move(words)});
   }
 
   std::string found_word(std::size_t i) const {
@@ -151,8 +170,8 @@ class HeaderReader {
     property.name = words_.back();
     PlyElement& element = header_.elements.back();
     if (element.find({property.name}) != PlyElement::kNone)
-      stop_at(words_.back().data(),
-              "element " + quote_name(element.name) + " has a second property " + quote_name(property.name));
+      note("element " + quote_name(element.name) + " has a second property " + quote_name(property.name) +
+           "; the first counts");
     if (element.properties.size() == kMostParts)
       stop_at(line_, "more than " + std::to_string(kMostParts) + " properties");
     element.properties.push_back(property);

@@ -51,7 +51,8 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  const char* body = nullptr;  ///< behind the header
+  const char* body = nullptr;        ///< behind the header
+  std::vector<MeshFailure> notices;  ///< what is read with a warning
 
   const PlyElement* find(std::string_view name) const;
 };

@@ -16,10 +16,7 @@
 
 namespace oktett {
 
-std::uint64_t count_polygon(std::uint64_t corners, const char* where) {
-  if (corners < 3) stop_at(where, "a face needs at least 3 corners, found " + std::to_string(corners));
-  return corners - 2;
-}
+std::uint64_t count_polygon(std::uint64_t corners) { return corners < 3 ? 0 : corners - 2; }
 
 void check_texcoords(std::uint64_t values, std::uint64_t corners, const char* where) {
   if (values == 0 || values == 2 * corners) return;
@@ -85,17 +82,18 @@ void PlyFaceWriter::write_strips() {
 }
 
 void PlyFaceWriter::write_polygon() {
-  count_polygon(corners_.size(), where_);
   check_texcoords(uvs_.size(), corners_.size(), where_);
   if (uvs_.size() / 2 > last_uv_ - next_uv_) stop_changed(where_);
   for (std::size_t i = 0; i < uvs_.size() / 2; ++i) mesh_.uvs[next_uv_ + i] = {uvs_[2 * i], uvs_[2 * i + 1]};
-  if (corners_.size() == 3) {
+  if (corners_.size() < 3) {
+    oddities_.small_faces.add(where_);
+  } else if (corners_.size() == 3) {
     write(0, 1, 2);
   } else {
     points_.clear();
     for (const std::uint32_t corner : corners_) points_.push_back(mesh_.positions[corner]);
     const std::span<const std::uint32_t> cut = triangulator_.run(points_);
-    if (triangulator_.crosses_itself()) crossings_.add(where_);
+    if (triangulator_.crosses_itself()) oddities_.crossings.add(where_);
     for (std::size_t i = 0; i < cut.size(); i += 3) write(cut[i], cut[i + 1], cut[i + 2]);
   }
   next_uv_ += uvs_.size() / 2;
@@ -135,6 +133,7 @@ class PlyLoad {
  private:
   /// What each element is to the mesh. Places of the parts are those of the elements.
   void choose_parts() {
+    for (const MeshFailure& notice : header_.notices) note(notice.where, notice.message);
     faces_.reserve(header_.elements.size());
     others_.reserve(header_.elements.size());
     for (const PlyElement& element : header_.elements) {
@@ -214,16 +213,20 @@ class PlyLoad {
            {0, 0}});
   }
 
-  void note_crossings() {
-    FaceCrossings all;
+  void note_oddities() {
+    MeshOddities all;
     for (const PlyFaces& faces : faces_)
-      for (const PlyChunk& chunk : faces.chunks) all += chunk.crossings;
-    if (all.count == 0) return;
-    // Bytes have no lines.
-    if (header_.format == PlyFormat::ascii)
-      note(all.first, all.words());
-    else
-      parsed_.notices.push_back({static_cast<std::uint64_t>(all.first - text_.data()), all.words(), {0, 0}});
+      for (const PlyChunk& chunk : faces.chunks) all += chunk.oddities;
+    for (const Vec3f& normal : parsed_.mesh.normals)
+      if (!is_finite(normal)) all.bad_normals.add(vertices_.element->where);
+    all.report([this](const char* where, std::string words) {
+      // Bytes have no lines.
+      if (header_.format == PlyFormat::ascii || where < header_.body)
+        note(where, std::move(words));
+      else
+        parsed_.notices.push_back(
+            {static_cast<std::uint64_t>(where - text_.data()), std::move(words), {0, 0}});
+    });
   }
 
   void stop_at_first_failure() const {
@@ -294,10 +297,10 @@ class PlyLoad {
       for_each_chunk(faces, [&](PlyChunk& chunk) {
         PlyFaceWriter writer(faces, chunk, parsed_.mesh);
         body_->read_faces(faces, chunk, writer);
-        chunk.crossings = writer.crossings();
+        chunk.oddities = writer.oddities();
       });
     stop_at_first_failure();
-    note_crossings();
+    note_oddities();
   }
 
   void finish() {

@@ -194,6 +194,96 @@ static void read_facets(std::vector<StlChunk>& chunks, std::size_t index, Vec3f*
 
 namespace {
 
+/// Reads facets word by word, for files that leave line ends, normals or the last `endsolid` out or hold
+/// comments, as programs in use write or read them.
+class LooseFacets {
+ public:
+  explicit LooseFacets(std::string_view text) : next_(text.data()), end_(text.data() + text.size()) {}
+
+  /// The corners, three for each triangle. Throws MeshFailure.
+  std::vector<Vec3f> run() {
+    expect("solid");
+    skip_name();
+    for (;;) {
+      skip_space();
+      if (next_ >= end_) return std::move(corners_);
+      if (take("endsolid")) {
+        skip_name();
+      } else if (take("solid")) {
+        skip_name();
+      } else {
+        read_facet();
+      }
+    }
+  }
+
+ private:
+  /// Past blanks, line ends and comments.
+  void skip_space() {
+    while (next_ < end_ && *next_ != '\0') {
+      if (is_blank(*next_) || is_line_end(*next_))
+        ++next_;
+      else if (*next_ == '#' || *next_ == ';' || (next_[0] == '/' && next_[1] == '/'))
+        next_ = find_line_end(next_);
+      else
+        return;
+    }
+  }
+
+  bool take(std::string_view word) {
+    skip_space();
+    const char* const rest = match_word(next_, word);
+    if (rest == nullptr) return false;
+    next_ = rest;
+    return true;
+  }
+
+  void expect(std::string_view word) {
+    if (take(word)) return;
+    stop_at(next_, "expected '" + std::string(word) + "'" +
+                       (next_ >= end_ ? ", found the end of the file" : ", found " + quote_word(next_)));
+  }
+
+  /// The name of a solid: up to the end of the line, or to a facet.
+  void skip_name() {
+    while (next_ < end_ && !is_line_end(*next_) && match_word(next_, "facet") == nullptr) {
+      while (next_ < end_ && !is_line_end(*next_) && !is_blank(*next_)) ++next_;
+      next_ = skip_plain_blanks(next_);
+    }
+  }
+
+  void read_facet() {
+    expect("facet");
+    if (take("normal"))
+      for (int k = 0; k < 3; ++k) skip_number();
+    expect("outer"), expect("loop");
+    for (int k = 0; k < 3; ++k) {
+      expect("vertex");
+      Vec3f corner;
+      for (int axis = 0; axis < 3; ++axis) {
+        skip_space();
+        next_ = read_coordinate(next_, corner[axis]);
+      }
+      corners_.push_back(corner);
+    }
+    expect("endloop"), expect("endfacet");
+  }
+
+  /// Of a normal, which may hold anything.
+  void skip_number() {
+    skip_space();
+    while (next_ < end_ && !is_line_end(*next_) && !is_blank(*next_)) ++next_;
+  }
+
+  const char* next_;
+  const char* const end_;
+  std::vector<Vec3f> corners_;
+};
+
+}  // namespace
+
+namespace {
+
 constexpr std::size_t kHeaderBytes = 84;
 /// A normal, three vertices and an attribute of two bytes.
 constexpr std::size_t kFacetBytes = 50;
@@ -264,7 +354,23 @@ class StlLoad {
     });
     std::optional<MeshFailure> first;
     for (const StlChunk& chunk : chunks) keep_first(first, chunk.failure);
-    if (first) fail_at_line(path_, text_, *first);
+    if (first) read_loosely(*first);
+  }
+
+  /// Other programs read more than the format allows.
+  void read_loosely(const MeshFailure& failure) {
+    std::vector<Vec3f> corners;
+    try {
+      corners = LooseFacets(text_).run();
+    } catch (const MeshFailure&) {
+      fail_at_line(path_, text_, failure);
+    }
+    allocate(corners.size() / 3);
+    std::ranges::copy(corners, parsed_.mesh.positions.data());
+    number_corners(0, corners.size() / 3);
+    parsed_.notices.push_back({static_cast<std::uint64_t>(failure.where - text_.data()),
+                               failure.message + "; read all the same",
+                               LineCounter(text_).at(failure.where)});
   }
 
   void read_bytes() {

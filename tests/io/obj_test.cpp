@@ -143,6 +143,33 @@ TEST(Obj, LinesAndPointsAreSkippedWithOneWarning) {
             (std::vector<std::string>{"mesh.obj:5:1: warning: lines and points are skipped"}));
 }
 
+// Other programs read these files; a warning says what is left out.
+TEST(Obj, FacesThatNameWhatIsNotThereAreReadWithAWarning) {
+  const ObjFiles files;
+  const auto expect = [&](const std::string& text, const std::string& warning) {
+    const ObjFile file = files.load(kSquare + text);
+    EXPECT_EQ(files.as_text(file.warnings), std::vector<std::string>{warning}) << text;
+    EXPECT_EQ(file.mesh.triangle_count(), 1u) << text;
+    EXPECT_TRUE(file.mesh.normal_indices.empty() && file.mesh.uv_indices.empty()) << text;
+  };
+  expect("f 1//1 2//1 3//1\n", "mesh.obj:5:6: warning: 3 corners name a normal, but the file defines none");
+  expect("f 1/7 2 3\n",
+         "mesh.obj:5:5: warning: a corner names texture coordinates, but the file defines none");
+  expect("f 1 2 3\nf 1 2\nf 1 # 2 3\nf\n",
+         "mesh.obj:6:1: warning: 3 faces of fewer than 3 corners are skipped");
+  expect("f 1 2 3\nf 1 \\\n2\n", "mesh.obj:6:1: warning: a face of fewer than 3 corners is skipped");
+  // But what is there must be the right one.
+  EXPECT_EQ(files.error(kSquare + "vn 0 0 1\nf 1//1 2//2 3//1\n"),
+            "mesh.obj:6:11: normal index 2 is out of range: the file defines 1");
+}
+
+TEST(Obj, NormalsThatAreNotFiniteAreReported) {
+  EXPECT_EQ(
+      ObjFiles().warnings(kSquare + "vn 0 0 1\nvn nan nan nan\nvn 0 inf 0\nf 1//1 2//2 3//1\n"),
+      std::vector<std::string>{"mesh.obj:6:1: warning: 2 normals are not finite: corners that have them "
+                               "show the normal of their face"});
+}
+
 TEST(Obj, EachUnknownKeywordWarnsOnce) {
   EXPECT_EQ(ObjFiles().warnings(kSquare + "curv 0 1\nlod 1\n curv 2 3\nvp 1 2\nf 1 2 3\nfoo\nlod 2\n"),
             (std::vector<std::string>{"mesh.obj:5:1: warning: unknown keyword 'curv' is ignored",

@@ -116,5 +116,47 @@ TEST(Ply, WhatIsNotReadIsSaid) {
             std::vector<std::string>{"a.ply: warning: 4 bytes behind the last element are not read"});
 }
 
+// Other programs read these files; a warning says what is left out.
+TEST(Ply, OddHeadersAndFacesAreReadWithAWarning) {
+  const PlyFiles files;
+  const std::string body = "element face 2\nproperty list uchar int vertex_index\nend_header\n";
+  const std::string points = "property float x\nproperty float y\nproperty float z\n";
+  EXPECT_EQ(
+      files.warnings("ply\nformat ascii 1.0\nCreated by Blender\nelement vertex 3\n" + points + body +
+                     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n"),
+      std::vector<std::string>{"a.ply:3:1: warning: the line is not read; expected 'comment', 'obj_info', "
+                               "'format', 'element', 'property' or 'end_header'"});
+  EXPECT_EQ(files.warnings("ply\nformat ascii 1.0\nelement vertex 3\n" + points +
+                           "property float q\nproperty float q\n" + body +
+                           "0 0 0 7 8\n1 0 0 7 8\n0 1 0 7 8\n3 0 1 2\n2 0 1\n"),
+            (std::vector<std::string>{
+                "a.ply:8:1: warning: element 'vertex' has a second property 'q'; the first counts",
+                "a.ply:16:1: warning: a face of fewer than 3 corners is skipped"}));
+  // The first x is the position.
+  const MeshFile file = files.load("ply\nformat ascii 1.0\nelement vertex 3\n" + points +
+                                   "property float x\n" + body + "0 0 0 7\n1 0 0 7\n0 1 0 7\n3 0 1 2\n0\n");
+  EXPECT_EQ(file.mesh.positions[1], (Vec3f{1, 0, 0}));
+  EXPECT_EQ(file.mesh.triangle_count(), 1u);
+  EXPECT_EQ(
+      files.warnings("ply\nformat ascii 1.0\nelement vertex 3\n" + points +
+                     "property float nx\nproperty float ny\nproperty float nz\n" + body +
+                     "0 0 0 nan nan nan\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n3 2 1 0\n"),
+      std::vector<std::string>{"a.ply:3:1: warning: a normal is not finite: corners that have it show the "
+                               "normal of their face"});
+}
+
+TEST(Ply, SmallFacesInBytesAreSkipped) {
+  const PlyFiles files;
+  for (const PlyFormat format : {PlyFormat::little_endian, PlyFormat::big_endian}) {
+    MeshModel model;
+    model.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    model.faces = {{{0, 1}, {}}, {{0, 1, 2}, {}}, {{}, {}}};
+    const MeshFile file = files.load(ply_bytes(model, {.format = format}));
+    EXPECT_EQ(file.mesh.triangle_count(), 1u);
+    EXPECT_EQ(to_vector(file.mesh.indices), (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(file.warnings.size(), 1u);
+  }
+}
+
 }  // namespace
 }  // namespace oktett::test::ply_test

@@ -122,9 +122,9 @@ TEST(SceneCheck, WarnsOfWhatNothingRefersTo) {
 
 TEST(SceneCheck, AllLinesOfAnObjFile) {
   SceneFiles files;
-  files.dir.write("bad.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 9\nf 1 2\nf 1 2 3\nf 0 1 2\n?\x01\n");
+  files.dir.write("bad.obj", "v 0 0 0\nv 1 x 0\nv 0 1 0\nf 1 2 9\nf 1 2 -\nf 1 2 3\nf 0 1 2\n?\x01\n");
   const Lines expected{"bad.obj:2:5: ", "bad.obj:4:7: vertex index 9 is out of range",
-                       "bad.obj:5:1: a face needs at least 3 corners", "bad.obj:7:3: vertex index 0",
+                       "bad.obj:5:7: expected a corner", "bad.obj:7:3: vertex index 0",
                        "bad.obj:8:1: expected an OBJ keyword"};
   const auto expect = [&](const Lines& found) {
     ASSERT_EQ(found.size(), expected.size());

@@ -1,5 +1,7 @@
 #include "io/stl/stl.h"
 
+#include "core/mesh_geometry.h"
+
 #include "tests/io/mesh_test_support.h"
 
 namespace oktett::test::stl_test {
@@ -162,8 +164,6 @@ TEST(Stl, DamagedTextIsRefused) {
             "a.stl:5:10: expected a finite number, but '1e99' is out of range");
   EXPECT_EQ(with("vertex 1 0 0", "vertex 1 x 0"), "a.stl:5:10: expected a number, found 'x'");
   EXPECT_EQ(with("endloop", "vertex 2 2 2"), "a.stl:7:1: expected 'endloop', found 'vertex'");
-  EXPECT_EQ(with("endsolid a\n", ""),
-            "a.stl:9:1: expected 'facet normal' or 'endsolid', found the end of the file");
   EXPECT_EQ(with("endsolid a\n", "endsolid a\nfacet"), "a.stl:10:1: expected 'solid', found 'facet'");
   EXPECT_EQ(with("endfacet", "endfacet\nendfacet"),
             "a.stl:9:1: expected 'facet normal' or 'endsolid', found 'endfacet'");
@@ -213,15 +213,54 @@ TEST(Stl, DamagedBytesAreRefused) {
   }
 }
 
+// Programs in use read more than the format allows; each gives the triangle and says where it is odd.
+TEST(Stl, LooseTextIsReadWithAWarning) {
+  const StlFiles files;
+  const std::pair<std::string, std::string> cases[] = {
+      {"solid a\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+       "a\n",
+       "a.stl:2:6: warning: expected 'facet normal' or 'endsolid', found ''; read all the same"},
+      {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+       "0\nendloop\nendfacet\n",
+       "a.stl:9:1: warning: expected 'facet normal' or 'endsolid', found the end of the file; read all the "
+       "same"},
+      {"solid a\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop "
+       "endfacet\nendsolid a\n",
+       "a.stl:3:1: warning: expected 'outer loop', found 'endsolid'; read all the same"},
+      {"solid facet normal nan nan nan outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet "
+       "endsolid",
+       "a.stl:1:107: warning: expected 'facet normal' or 'endsolid', found the end of the file; read all the "
+       "same"},
+      {"solid a\n# by hand\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0 ; first\nvertex 1 0 0\nvertex 0 1 "
+       "0\n"
+       "endloop // done\nendfacet\nendsolid\n",
+       "a.stl:2:1: warning: expected 'facet normal' or 'endsolid', found ''; read all the same"},
+  };
+  for (const auto& [text, warning] : cases) {
+    EXPECT_EQ(files.error(text), "no error") << text;
+    EXPECT_EQ(files.warnings(text), std::vector<std::string>{warning}) << text;
+    const MeshFile file = files.load(text);
+    ASSERT_EQ(file.mesh.triangle_count(), 1u) << text;
+    EXPECT_EQ(corner(file.mesh, 0, 1), (Vec3d{1, 0, 0}));
+    EXPECT_EQ(corner(file.mesh, 0, 2), (Vec3d{0, 1, 0}));
+  }
+}
+
 TEST(Stl, CutShortAtEveryByte) {
   const StlFiles files;
   std::mt19937 random(5);
   MeshModel model = random_triangles(random);
   while (model.faces.size() < 2) model = random_triangles(random);
   std::string text = stl_text(model);
-  text.resize(text.rfind("endsolid"));
+  text.resize(text.rfind("endfacet"));
   for (std::size_t size = 0; size < text.size(); ++size) {
     const std::string error = files.error(text.substr(0, size));
+    // Between facets the file reads on as one without an end.
+    if (error == "no error") {
+      EXPECT_EQ(files.warnings(text.substr(0, size)).size(),
+                1u + (files.load(text.substr(0, size)).mesh.triangle_count() == 0));
+      continue;
+    }
     EXPECT_TRUE(error.starts_with("a.stl:") && error.find("expected") != std::string::npos) << error;
   }
 }
