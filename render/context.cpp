@@ -44,8 +44,8 @@ static ShadingMaterial shading_material(const Material& m, const RenderContext& 
   s.unlit = m.emission + m.color * m.ambient * context.ambient_light;
   s.diffuse = m.diffuse, s.specular = m.specular, s.phong = m.phong;
   s.exponent = highlight_exponent(m.specular, m.phong);
-  s.varies =
-      has_textures(m) || m.opacity != 1 || (!m.emits_behind && glows(m)) || !m.surface || m.interior != kNoId;
+  s.varies = has_textures(m) || m.filter || m.opacity != 1 || (!m.emits_behind && glows(m)) || !m.surface ||
+             m.interior != kNoId;
   s.reflection = m.reflection;
   s.transparency = m.transparency, s.ior = m.ior;
   return s;

@@ -51,7 +51,8 @@ float greatest_albedo(const Material& m, std::span<const Texture> textures) {
   const float transparency = most(m.transparency, m.transparency_texture, 1);
   Color sum = color * most(m.diffuse, m.diffuse_texture, kAny) +
               m.specular_color * bounds(m.specular_texture).greatest * mirror;
-  for (int k = 0; k < 3; ++k) sum[k] += transparency * std::max(1.0f, color[k]);
+  const Color passing = m.filter.value_or(color);
+  for (int k = 0; k < 3; ++k) sum[k] += transparency * std::max(1.0f, passing[k]);
   return max_component(sum);
 }
 

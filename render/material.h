@@ -14,8 +14,12 @@
 
 namespace oktett {
 
-/// A channel of an image as it is stored. An image without alpha has 1 there.
-enum class ImageChannel : std::uint8_t { red, green, blue, alpha };
+/// A channel of an image as it is stored, or the luminance (Rec.709) of its colours as stored. An image
+/// without alpha has 1 there.
+enum class ImageChannel : std::uint8_t { red, green, blue, alpha, luminance };
+
+/// How the colours of an image are encoded: as its file says, or whatever it says as sRGB or linear.
+enum class TextureColors : std::uint8_t { of_file, srgb, linear };
 
 /// An image file and how it is laid over the uv square, or a pattern. ImageTextures reads the file.
 struct Texture {
@@ -28,6 +32,7 @@ struct Texture {
   std::optional<PatternTexture> pattern{};  ///< instead of an image; only gain and base apply to it
   /// What a number is taken from (colours and normals are those of all channels).
   ImageChannel channel = ImageChannel::red;
+  TextureColors color_space = TextureColors::of_file;  ///< of a colour (MTL `-colorspace`)
   /// If not null, the bytes of the image file; `path` is only its name then.
   std::shared_ptr<const std::string> content{};
   bool operator==(const Texture&) const = default;
@@ -90,7 +95,7 @@ inline constexpr std::int32_t kNoPriority = -1;
 /// - transparency * (refracted and reflected ray, split by Fresnel's equations).
 struct Material {
   std::string name;
-  Color color{0.8f, 0.8f, 0.8f};  ///< colour of diffuse and ambient light, and of light that passes through
+  Color color{0.8f, 0.8f, 0.8f};  ///< colour of diffuse and ambient light
   Color specular_color{1, 1, 1};  ///< colour of highlights and mirror reflections
   Color emission{0, 0, 0};        ///< radiance
   bool emits_behind = true;       ///< both sides glow; false: only that of the geometric normal
@@ -101,6 +106,7 @@ struct Material {
   float phong = 32;               ///< Phong exponent, [0, inf)
   float reflection = 0;           ///< weight of the mirror ray, [0, 1]
   float transparency = 0;         ///< weight of light that passes through, [0, 1]; 0 = opaque
+  std::optional<Color> filter{};  ///< colour of that light (MTL `Tf`); not given: `color`, with its texture
   float ior = 1.5f;               ///< index of refraction inside relative to outside, > 0
   float opacity = 1;              ///< part of the surface that is there, [0, 1]; the rest is holes
   /// If given, path tracing scatters light by it. Emission, opacity, bumps and normals are those of the other

@@ -41,6 +41,7 @@ PhongParameters phong_parameters(const Material& m) {
   parameters.phong = m.phong;
   parameters.reflection = m.reflection;
   parameters.transparency = m.transparency;
+  parameters.filter = m.filter;
   parameters.ior = m.ior;
   return parameters;
 }
@@ -54,6 +55,7 @@ PhongParameters phong_parameters(const ShadingPoint& p) {
   parameters.phong = p.values.phong;
   parameters.reflection = p.values.reflection;
   parameters.transparency = p.values.transparency;
+  parameters.filter = p.material->filter;
   parameters.ior = p.ior;
   return parameters;
 }

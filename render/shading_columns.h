@@ -59,6 +59,7 @@ struct ShadingColumns {
   float throughput[3][kMost];        ///< of the ray, times the opacity of the surface
   float ng[3][kMost], ns[3][kMost];  ///< as in ShadingPoint
   float color[3][kMost], specular_color[3][kMost];
+  float filter[3][kMost];  ///< of light that passes through hits that are `varying`; of others it is `color`
   float diffuse[kMost], specular[kMost], phong[kMost], reflection[kMost], transparency[kMost];
   float eta[kMost];  ///< index of refraction behind the surface, as the ray sees it, relative to before it
   std::int32_t exponent[kMost];

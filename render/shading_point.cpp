@@ -356,7 +356,7 @@ Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit
   const float hole = 1 - opacity;
   if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
   if (scatters_passing_light(context, m, place, ior)) return {hole, hole, hole};
-  const Color color = textured(context, m.color, m.color_texture, place);
+  const Color color = m.filter ? *m.filter : textured(context, m.color, m.color_texture, place);
   return color * (transparency_at(context, m, place) * opacity) + Color{hole, hole, hole};
 }
 

@@ -24,7 +24,8 @@ namespace oktett {
 struct TextureSource {
   std::string path;
   std::shared_ptr<const std::string> content{};  ///< if not null, the bytes of the file
-  bool alpha = false;                            ///< some texture shows the alpha channel
+  TextureColors color_space = TextureColors::of_file;
+  bool alpha = false;  ///< some texture shows the alpha channel
 };
 
 /// All members may be called by many threads at once; they throw Error of kind io for what files are not.

@@ -225,6 +225,10 @@ Color MipMap::stored(const TexturePatch& patch, bool clamp) const {
 }
 
 float MipMap::channel(ImageChannel channel, const TexturePatch& patch, bool clamp) const {
+  if (channel == ImageChannel::luminance && colors_ == 3) {
+    const Color c = stored(patch, clamp);
+    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+  }
   auto place = static_cast<std::uint32_t>(channel);
   if (channel == ImageChannel::alpha) {
     if (!alpha_) return 1;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "io/image/library.h"
@@ -92,14 +93,15 @@ class FileTextures final : public TextureSampler {
   static constexpr std::size_t kNoFile = ~std::size_t{0};  ///< of a pattern, or white
 
   void list_files() {
-    std::map<std::pair<std::string, const std::string*>, std::size_t> known;
+    std::map<std::tuple<std::string, const std::string*, TextureColors>, std::size_t> known;
     for (const Texture& texture : textures_) {
       if (texture.path.empty()) {
         file_of_.push_back(kNoFile);
         continue;
       }
-      const auto [place, is_new] = known.try_emplace({texture.path, texture.content.get()}, files_.size());
-      if (is_new) files_.push_back({{texture.path, texture.content}});
+      const auto [place, is_new] =
+          known.try_emplace({texture.path, texture.content.get(), texture.color_space}, files_.size());
+      if (is_new) files_.push_back({{texture.path, texture.content, texture.color_space}});
       TextureSource& source = files_[place->second].source;
       source.alpha = source.alpha || texture.channel == ImageChannel::alpha;
       file_of_.push_back(place->second);

@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <system_error>
 #include <unordered_map>
 #include <utility>
 
 #include "core/error.h"
+#include "io/image/contents.h"
+#include "io/obj/names.h"
 #include "io/obj/parsed_obj.h"
 #include "render/material.h"
 
@@ -18,23 +21,13 @@ struct Library {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   MtlPlaces places;
-  std::unordered_map<std::string, std::size_t> by_name;
+  std::unordered_map<std::string, std::size_t> by_name, by_plain_name;
   bool complete = true;  ///< every file could be read
 };
 
 bool is_file(const std::string& path) {
   std::error_code error;
   return fs::is_regular_file(path, error);
-}
-
-/// `name` in `directory`; with slashes for the backslashes of Windows if only that exists.
-std::string resolve(const std::string& directory, std::string_view name) {
-  const std::string path = (fs::path(directory) / fs::path(name)).string();
-  if (is_file(path) || name.find('\\') == std::string_view::npos) return path;
-  std::string slashes(name);
-  std::replace(slashes.begin(), slashes.end(), '\\', '/');
-  const std::string other = (fs::path(directory) / fs::path(slashes)).string();
-  return is_file(other) ? other : path;
 }
 
 bool ends_like_library(std::string_view name) {
@@ -63,24 +56,26 @@ Library load_libraries(const std::vector<MeshStatement>& statements, const std::
     }
   }
   // The first definition of a name counts.
-  for (std::size_t i = 0; i < library.materials.size(); ++i)
+  for (std::size_t i = 0; i < library.materials.size(); ++i) {
     library.by_name.emplace(library.materials[i].name, i);
+    library.by_plain_name.emplace(plain_material_name(library.materials[i].name), i);
+  }
   return library;
 }
 
 /// Adds the materials of the slots in their order.
 class SlotMaterials {
  public:
-  SlotMaterials(const Library& library, ObjFile& obj, std::vector<MeshStatement>& notices)
+  SlotMaterials(Library& library, ObjFile& obj, std::vector<MeshStatement>& notices)
       : library_(library), obj_(obj), notices_(notices), textures_(library.textures.size(), kNoId) {}
 
   void add(const MeshStatement& slot) {
-    const auto found = library_.by_name.find(slot.words);
-    if (found != library_.by_name.end()) {
-      Material material = library_.materials[found->second];
+    if (const std::optional<std::size_t> found = find(slot.words)) {
+      Material material = library_.materials[*found];
+      settle_maps(material);
       for_each_texture(material, [this](std::uint32_t& texture) { texture = take_texture(texture); });
       obj_.material_places.resize(obj_.materials.size());
-      obj_.material_places.push_back(library_.places.materials[found->second]);
+      obj_.material_places.push_back(library_.places.materials[*found]);
       obj_.materials.push_back(std::move(material));
       return;
     }
@@ -96,6 +91,37 @@ class SlotMaterials {
   }
 
  private:
+  std::optional<std::size_t> find(const std::string& name) const {
+    if (const auto found = library_.by_name.find(name); found != library_.by_name.end()) return found->second;
+    const auto found = library_.by_plain_name.find(plain_material_name(name));
+    return found != library_.by_plain_name.end() ? std::optional(found->second) : std::nullopt;
+  }
+
+  /// Decides what only images can say: Blender writes normal maps as `map_Bump`, and `map_d` means the alpha
+  /// of an image that has some.
+  void settle_maps(Material& m) {
+    if (m.bump_texture != kNoId && contents_of(m.bump_texture).normals) {
+      if (m.normal_texture == kNoId) m.normal_texture = m.bump_texture;
+      m.bump_texture = kNoId;
+      m.bump_scale = 1;
+    }
+    if (m.opacity_texture == kNoId || !contents_of(m.opacity_texture).alpha) return;
+    Texture masked = library_.textures[m.opacity_texture];
+    if (masked.channel != ImageChannel::luminance) return;
+    masked.channel = ImageChannel::alpha;
+    const Location place = library_.places.textures[m.opacity_texture];
+    m.opacity_texture = static_cast<std::uint32_t>(library_.textures.size());
+    library_.textures.push_back(std::move(masked));
+    library_.places.textures.push_back(place);
+    textures_.push_back(kNoId);
+  }
+
+  const ImageContents& contents_of(std::uint32_t texture) {
+    const auto [entry, is_new] = contents_.try_emplace(library_.textures[texture].path);
+    if (is_new) entry->second = image_contents(entry->first);
+    return entry->second;
+  }
+
   /// For the first that are not defined: a file may have many, and many materials that each is compared to.
   std::string suggestion(const std::string& name) {
     constexpr int kMost = 20;
@@ -116,10 +142,11 @@ class SlotMaterials {
     return textures_[texture];
   }
 
-  const Library& library_;
+  Library& library_;
   ObjFile& obj_;
   std::vector<MeshStatement>& notices_;
   std::vector<std::uint32_t> textures_;
+  std::unordered_map<std::string, ImageContents> contents_;  ///< by path
   int suggested_ = 0;
 };
 
@@ -163,17 +190,25 @@ std::vector<Run> collect_runs(std::vector<ObjChunk>& chunks, std::uint64_t trian
 
 std::vector<std::string> split_library_names(std::string_view text, const std::string& directory) {
   if (text.empty()) return {};
-  const std::string whole = resolve(directory, text);
+  const std::string whole = find_named_file(directory, text);
   if (is_file(whole)) return {whole};
   std::vector<std::string> paths;
+  text = without_comment(text);
+  const auto next_blank = [&](std::size_t from) {
+    std::size_t at = from;
+    do {
+      at = std::min(text.find_first_of(" \t", at + 1), text.size());
+    } while (at < text.size() && text[at - 1] == '\\');
+    return at;
+  };
   std::size_t begin = 0;
   while (begin < text.size()) {
     // Up to the first blank behind `.mtl`, or all that is left.
     std::size_t end = begin;
     do {
-      end = std::min(text.find_first_of(" \t", end + 1), text.size());
+      end = next_blank(end);
     } while (end < text.size() && !ends_like_library(text.substr(begin, end - begin)));
-    paths.push_back(resolve(directory, text.substr(begin, end - begin)));
+    paths.push_back(find_named_file(directory, text.substr(begin, end - begin)));
     begin = std::min(text.find_first_not_of(" \t", end), text.size());
   }
   return paths;
@@ -209,7 +244,7 @@ void assign_slots(std::vector<ObjChunk>& chunks, const char* text, ParsedMesh& p
 void resolve_materials(const std::vector<MeshStatement>& libraries,
                        const std::vector<MeshStatement>& materials, const std::string& obj_path, ObjFile& obj,
                        std::vector<MeshStatement>& notices) {
-  const Library library = load_libraries(libraries, obj_path, obj, notices);
+  Library library = load_libraries(libraries, obj_path, obj, notices);
   SlotMaterials slots(library, obj, notices);
   for (const MeshStatement& material : materials) slots.add(material);
 }

@@ -26,6 +26,16 @@ float clamp_unit(float x) { return std::clamp(x, 0.0f, 1.0f); }
 /// Rec.709.
 float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
+/// The programs whose files mean other things by a statement than others do, known by a comment before the
+/// first material.
+enum class MtlWriter { other, meshlab, vtk, blender, oktett };
+
+constexpr std::pair<std::string_view, MtlWriter> kWriters[] = {
+    {"Converted by Meshlab", MtlWriter::meshlab},
+    {"written by the visualization toolkit", MtlWriter::vtk},
+    {"# Blender", MtlWriter::blender},
+    {"# Written by Oktett", MtlWriter::oktett}};
+
 /// What the statements of one material say, before they are put in terms of Material.
 struct Statements {
   std::optional<Color> ka, kd, ks, ke, tf;
@@ -37,6 +47,7 @@ struct Statements {
   };
   std::array<Principled, 5> principled;  ///< in the order of kPrincipled
   Location ior_place;                    ///< of the last Ni
+  Location tr_place;                     ///< of the last Tr
 };
 
 constexpr std::pair<const char*, std::optional<Color> Statements::*> kColors[] = {{"ka", &Statements::ka},
@@ -104,6 +115,7 @@ class MtlReader {
         directory_(std::filesystem::path(path).parent_path().string()),
         materials_(materials),
         first_(materials.size()),
+        texture_list_(textures),
         textures_(textures),
         warnings_(warnings),
         places_(places) {}
@@ -116,6 +128,7 @@ class MtlReader {
     for (const char* p = text.data(); p < end;) {
       p = skip_blanks(p);
       MtlLine line(p, path_, lines, warnings_);
+      if (*p == '#' && !in_material_) note_writer(p);
       if (line.keyword() == "newmtl")
         start_material(line);
       else if (in_material_)
@@ -128,6 +141,13 @@ class MtlReader {
   }
 
  private:
+  /// The comment stands at `p`.
+  void note_writer(const char* p) {
+    const std::string_view comment(p, static_cast<std::size_t>(find_line_end(p) - p));
+    for (const auto& [words, writer] : kWriters)
+      if (comment.find(words) != std::string_view::npos) writer_ = writer;
+  }
+
   void start_material(MtlLine& line) {
     finish_material();
     Material material;
@@ -154,6 +174,7 @@ class MtlReader {
       read(take_part(line, "d"), said_.d);
     } else if (key == "tr") {
       read(take_part(line, "Tr"), said_.tr);
+      said_.tr_place = line.where();
     } else if (key == "ns") {
       read(take(
                line, [](float x) { return x >= 0; }, "Ns must not be negative"),
@@ -170,7 +191,7 @@ class MtlReader {
     for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
       if (key == kPrincipled[i].key) read(take_part(line, kPrincipled[i].name), said_.principled[i].value);
       if (key == std::string("map_").append(kPrincipled[i].key))
-        if (const auto texture = read_mtl_texture(line, directory_))
+        if (const auto texture = read_mtl_texture(line, directory_, ImageChannel::luminance))
           said_.principled[i].texture = add_texture(*texture, line);
     }
   }
@@ -212,7 +233,9 @@ class MtlReader {
   }
 
   void read_texture(MtlLine& line, std::uint32_t Material::*slot, Material& material) {
-    const std::optional<MtlTexture> texture = read_mtl_texture(line, directory_);
+    const bool is_number = slot == &Material::opacity_texture || slot == &Material::bump_texture;
+    const std::optional<MtlTexture> texture =
+        read_mtl_texture(line, directory_, is_number ? ImageChannel::luminance : ImageChannel::red);
     if (!texture) return;
     material.*slot = add_texture(*texture, line);
     if (slot == &Material::bump_texture) material.bump_scale = texture->bump_scale;
@@ -222,18 +245,31 @@ class MtlReader {
     if (!in_material_) return;
     Material& m = materials_.back();
     set_opacity(m);
-    set_diffuse(m);
-    set_specular(m);
+    limit_light(m);
+    set_diffuse(said_, m);
+    set_specular(said_, m);
     if (said_.ke)
       m.emission = *said_.ke;
     else if (m.emission_texture != kNoId)
       m.emission = {1, 1, 1};
-    set_principled(m);
+    if (is_principled()) set_principled(m);
+    drop_doubled_normals(m);
+  }
+
+  /// Some programs name a normal map as `norm` for some readers and as `map_Bump` for others.
+  void drop_doubled_normals(Material& m) const {
+    if (m.bump_texture == kNoId || m.normal_texture == kNoId) return;
+    if (texture_list_[m.bump_texture].path != texture_list_[m.normal_texture].path) return;
+    m.bump_texture = kNoId;
+    m.bump_scale = 1;
+  }
+
+  bool is_principled() const {
+    return std::ranges::any_of(said_.principled,
+                               [](const Statements::Principled& p) { return p.value || p.texture; });
   }
 
   void set_principled(Material& m) {
-    const auto said = [](const Statements::Principled& p) { return p.value || p.texture; };
-    if (std::ranges::none_of(said_.principled, said)) return;
     PrincipledMaterial& principled = m.principled.emplace(principled_like(m));
     limit_ior(principled.parameters.ior);
     for (std::size_t i = 0; i < std::size(kPrincipled); ++i) {
@@ -253,16 +289,36 @@ class MtlReader {
                                      kLeast, kMost, ior)});
   }
 
-  void set_opacity(Material& m) const {
-    if (said_.d)
-      m.transparency = 1 - *said_.d;
-    else if (said_.tr)
-      m.transparency = *said_.tr;
+  /// The part of the surface that covers what is behind it, if some statement says so. `d` counts where `Tr`
+  /// is there, too.
+  std::optional<float> coverage() {
+    if (!said_.tr) return said_.d;
+    const bool is_opacity = writer_ == MtlWriter::meshlab || writer_ == MtlWriter::vtk;
+    if (!said_.d) return is_opacity ? *said_.tr : 1 - *said_.tr;
+    constexpr float kSame = 0.01f;  // some programs write few digits
+    if (std::abs(*said_.tr - (1 - *said_.d)) > kSame && std::abs(*said_.tr - *said_.d) > kSame)
+      warnings_.push_back({said_.tr_place, fmt::format("Tr {} and d {} contradict each other; d counts",
+                                                       *said_.tr, *said_.d)});
+    return said_.d;
   }
 
-  void set_diffuse(Material& m) const {
-    if (said_.kd) {
-      m.color = *said_.kd;
+  /// Physically based materials are covered in parts, as programs that write them show them, and `Tf` is how
+  /// much light passes the rest; others are see-through.
+  void set_opacity(Material& m) {
+    const std::optional<float> covered = coverage();
+    if (!is_principled()) {
+      // As exact as Tr says it.
+      if (covered) m.transparency = said_.d || *covered != 1 - *said_.tr ? 1 - *covered : *said_.tr;
+      return;
+    }
+    m.opacity = covered.value_or(1);
+    const bool says_transmission = writer_ == MtlWriter::blender || writer_ == MtlWriter::oktett;
+    if (said_.tf && says_transmission) m.transparency = clamp_unit(said_.tf->y);
+  }
+
+  void set_diffuse(const Statements& said, Material& m) const {
+    if (said.kd) {
+      m.color = *said.kd;
       m.diffuse = 1;
     } else if (m.color_texture != kNoId) {
       m.color = {1, 1, 1};
@@ -271,38 +327,70 @@ class MtlReader {
     if (m.transparency > 0) {
       // In MTL the surface and what is seen through it share the light; weights of Material add up.
       m.diffuse *= 1 - m.transparency;
-      // One colour serves both what is scattered and what passes, and the filter shows more.
-      if (said_.tf) {
-        const float before = luminance(m.color);
-        m.color = *said_.tf;
-        const float after = luminance(m.color);
-        m.diffuse = after > 0 ? clamp_unit(m.diffuse * before / after) : 0;
+      if (!is_principled()) {
+        // Kd colours what is scattered, Tf what passes, which does not bend where no Ni says so.
+        m.filter = min(said.tf.value_or(Color{1, 1, 1}), Color{1, 1, 1});
+        if (said.ior_place.line == 0) m.ior = 1;
       }
     }
-    if (said_.ka) {
+    if (said.ka) {
       const float brightness = luminance(m.color);
-      m.ambient = brightness > 0 ? clamp_unit(luminance(*said_.ka) / brightness) : 0;
+      m.ambient = brightness > 0 ? clamp_unit(luminance(*said.ka) / brightness) : 0;
     }
   }
 
-  void set_specular(Material& m) const {
-    const bool has_color = said_.ks && max_component(*said_.ks) > 0;
+  static void set_specular(const Statements& said, Material& m) {
+    const bool has_color = said.ks && max_component(*said.ks) > 0;
     // A black Ks takes away the highlight but not the reflections that glass has by nature.
-    if (has_color) m.specular_color = *said_.ks;
-    m.specular = has_color || (!said_.ks && m.specular_texture != kNoId) ? 1.0f : 0.0f;
-    const bool mirrors = said_.illum == 3 || said_.illum == 5;
-    if (mirrors && said_.ks) m.reflection = clamp_unit(luminance(*said_.ks));
+    if (has_color) m.specular_color = *said.ks;
+    m.specular = has_color || (!said.ks && m.specular_texture != kNoId) ? 1.0f : 0.0f;
+    const bool mirrors = said.illum == 3 || said.illum == 5;
+    if (mirrors && said.ks) m.reflection = clamp_unit(luminance(*said.ks));
+  }
+
+  /// What a material of these statements gives back, at most.
+  float albedo_of(const Statements& said, const Material& start) const {
+    Material m = start;
+    set_diffuse(said, m);
+    set_specular(said, m);
+    return greatest_albedo(m, texture_list_);
+  }
+
+  /// Darkens Kd and Ks until the surface gives back no more light than arrives. Highlights with the exponent
+  /// 0, as wide as the hemisphere, which some programs write everywhere, get only what the diffuse light
+  /// leaves.
+  void limit_light(const Material& m) {
+    constexpr float kMost = 1 + 1e-5f;
+    const auto scaled = [&](float kd, float ks) {
+      Statements said = said_;
+      if (said.kd) said.kd = *said.kd * kd;
+      if (said.ks) said.ks = *said.ks * ks;
+      return said;
+    };
+    const auto limit = [&](const auto& part) {
+      if (!(albedo_of(part(1.0f), m) > kMost)) return;
+      float least = 0, most = 1;
+      for (int i = 0; i < 24; ++i) {
+        const float middle = (least + most) / 2;
+        (albedo_of(part(middle), m) > 1 ? most : least) = middle;
+      }
+      said_ = part(least);
+    };
+    if (m.phong < 1) limit([&](float s) { return scaled(1, s); });
+    limit([&](float s) { return scaled(s, s); });
   }
 
   const std::string path_;
   const std::string directory_;
   std::vector<Material>& materials_;
   const std::size_t first_;
+  const std::vector<Texture>& texture_list_;
   TextureList textures_;
   std::vector<Warning>& warnings_;
   MtlPlaces* places_;
   std::unordered_set<std::string> names_, noted_;
   Statements said_;
+  MtlWriter writer_ = MtlWriter::other;
   bool in_material_ = false;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/mesh/reading.h"
+#include "io/obj/names.h"
 #include "io/text/number.h"
 
 namespace oktett {
@@ -113,15 +114,30 @@ void read_channel(MtlLine& line, ImageChannel& channel) {
   constexpr std::pair<std::string_view, ImageChannel> kChannels[] = {{"r", ImageChannel::red},
                                                                      {"g", ImageChannel::green},
                                                                      {"b", ImageChannel::blue},
-                                                                     {"m", ImageChannel::alpha}};
+                                                                     {"m", ImageChannel::alpha},
+                                                                     {"l", ImageChannel::luminance}};
   const std::string_view word = line.peek();
   for (const auto& [name, value] : kChannels)
     if (word == name) channel = value;
-  if (word == "l" || word == "z")
-    line.warn("the channel '" + std::string(word) + "' is not supported; expected r, g, b or m");
+  if (word == "z")
+    line.warn("the channel 'z' is not supported; expected r, g, b, m or l");
   else if (std::ranges::none_of(kChannels, [&](const auto& known) { return known.first == word; }))
-    line.warn("unknown channel " + quote_name(std::string(word)) + "; expected r, g, b or m");
+    line.warn("unknown channel " + quote_name(std::string(word)) + "; expected r, g, b, m or l");
   line.take();
+}
+
+/// `-colorspace`, which is no part of the format: how the colours are encoded.
+void read_color_space(MtlLine& line, TextureColors& colors) {
+  std::string name(line.take());
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  constexpr std::string_view kLinear[] = {"linear", "lin_rec709", "non-color", "noncolor", "raw", "none"};
+  if (name == "srgb" || name == "srgb_texture")
+    colors = TextureColors::srgb;
+  else if (std::ranges::find(kLinear, name) != std::end(kLinear))
+    colors = TextureColors::linear;
+  else
+    line.warn("unknown colour space " + quote_name(name) + "; expected sRGB or linear");
 }
 
 /// Reads the option that was taken from the line. False if its name is unknown.
@@ -141,6 +157,8 @@ bool read_option(const std::string& name, MtlLine& line, MtlTexture& result) {
     read_option_number(line, result.bump_scale);
   } else if (name == "-imfchan") {
     read_channel(line, texture.channel);
+  } else if (name == "-colorspace") {
+    read_color_space(line, texture.color_space);
   } else if (name == "-clamp") {
     texture.clamp = line.take() == "on";
   } else if (name == "-blendu" || name == "-blendv" || name == "-cc" || name == "-boost" ||
@@ -150,17 +168,6 @@ bool read_option(const std::string& name, MtlLine& line, MtlTexture& result) {
     return false;
   }
   return true;
-}
-
-std::string resolve(const std::string& directory, std::string name) {
-  const auto join = [&directory](const std::string& n) {
-    return (std::filesystem::path(directory) / n).string();
-  };
-  const std::string path = join(name);
-  std::error_code error;
-  if (name.find('\\') == std::string::npos || std::filesystem::exists(path, error)) return path;
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return join(name);
 }
 
 }  // namespace
@@ -180,8 +187,10 @@ std::uint32_t TextureList::add(const Texture& texture) {
   return index;
 }
 
-std::optional<MtlTexture> read_mtl_texture(MtlLine& line, const std::string& directory) {
+std::optional<MtlTexture> read_mtl_texture(MtlLine& line, const std::string& directory,
+                                           ImageChannel channel) {
   MtlTexture result;
+  result.texture.channel = channel;
   while (line.peek().starts_with('-') && line.has_more_than_one_word()) {
     const std::string option(line.peek());
     if (option.find('.') != std::string::npos) break;  // a file name after all
@@ -193,7 +202,7 @@ std::optional<MtlTexture> read_mtl_texture(MtlLine& line, const std::string& dir
     line.warn("expected the name of a texture file");
     return std::nullopt;
   }
-  result.texture.path = resolve(directory, name);
+  result.texture.path = find_named_file(directory, name);
   return result;
 }
 

@@ -71,7 +71,8 @@ struct MtlTexture {
 };
 
 /// Reads the options and the file name behind the keyword. The name may contain blanks; it is relative to
-/// `directory`. Nothing, and a warning, if there is no name.
-std::optional<MtlTexture> read_mtl_texture(MtlLine& line, const std::string& directory);
+/// `directory`. `channel` is what a number is taken from without `-imfchan`. Nothing, and a warning, if there
+/// is no name.
+std::optional<MtlTexture> read_mtl_texture(MtlLine& line, const std::string& directory, ImageChannel channel);
 
 }  // namespace oktett

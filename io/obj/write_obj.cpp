@@ -82,11 +82,7 @@ class MtlWriting {
     if (glows(m)) color("Ke", m.emission);
     number("Ns", m.phong);
     number("Ni", m.ior);
-    if (m.transparency > 0) {
-      const float d = 1 - m.transparency;
-      // d is what other programs know best.
-      number(1 - d == m.transparency ? "d" : "Tr", 1 - d == m.transparency ? d : m.transparency);
-    }
+    write_opacity(m);
     if (m.principled) {
       const PrincipledParameters& p = m.principled->parameters;
       number("Pr", p.roughness), number("Pm", p.metallic), number("Ps", p.sheen);
@@ -95,7 +91,7 @@ class MtlWriting {
     write_textures(m);
   }
 
-  /// The inverse of what load_mtl makes of Kd, Tf and Ka.
+  /// The inverse of what load_mtl makes of Kd and Ka.
   void write_diffuse(const Material& m) {
     const Material standard;
     const float part = m.transparency > 0 ? 1 - m.transparency : 1;
@@ -104,13 +100,26 @@ class MtlWriting {
       // What load_mtl takes if there is no Kd.
     } else if (m.principled || m.diffuse == part) {
       color("Kd", m.color);
-    } else if (m.transparency > 0) {
-      color("Kd", m.color * (part > 0 ? m.diffuse / part : 1.0f));
-      color("Tf", m.color);
     } else {
-      color("Kd", m.color * m.diffuse);
+      color("Kd", m.color * (part > 0 ? m.diffuse / part : 1.0f));
     }
     if (m.ambient != standard.ambient) write_ambient(m.ambient, luminance_of(m.color));
+  }
+
+  /// d is what other programs know best.
+  void write_opacity(const Material& m) {
+    if (m.principled) {
+      if (m.opacity != 1) number("d", m.opacity);
+      const float t = m.principled->parameters.transmission;
+      if (t > 0) color("Tf", {t, t, t});
+    } else if (m.transparency > 0) {
+      const float d = 1 - m.transparency;
+      number(1 - d == m.transparency ? "d" : "Tr", 1 - d == m.transparency ? d : m.transparency);
+      const Color passing = m.filter.value_or(m.color);
+      if (!(passing == Color{1, 1, 1})) color("Tf", passing);
+    } else if (m.opacity != 1) {
+      number("d", m.opacity);
+    }
   }
 
   /// A grey, but for the last bits of its blue, that is by this part as bright.
@@ -133,21 +142,26 @@ class MtlWriting {
   }
 
   void write_textures(const Material& m) {
-    texture("map_Kd", m.color_texture);
-    texture("map_Ks", m.specular_texture);
-    texture("map_Ke", m.emission_texture);
-    texture("map_d", m.opacity_texture);
-    texture("map_Bump", m.bump_texture, m.bump_scale);
-    texture("norm", m.normal_texture);
+    constexpr auto kColors = std::nullopt;
+    constexpr auto kNumber = ImageChannel::luminance;
+    texture("map_Kd", m.color_texture, kColors);
+    texture("map_Ks", m.specular_texture, kColors);
+    texture("map_Ke", m.emission_texture, kColors);
+    texture("map_d", m.opacity_texture, kNumber);
+    texture("map_Bump", m.bump_texture, kNumber, m.bump_scale);
+    texture("norm", m.normal_texture, kColors);
+    // Blender takes normal maps from there alone; the others that know `norm` prefer it.
+    if (m.bump_texture == kNoId) texture("map_Bump", m.normal_texture, kColors);
     if (!m.principled) return;
-    texture("map_Pr", m.principled->roughness_texture);
-    texture("map_Pm", m.principled->metallic_texture);
-    texture("map_Ps", m.principled->sheen_texture);
-    texture("map_Pc", m.principled->coat_texture);
-    texture("map_Pcr", m.principled->coat_roughness_texture);
+    texture("map_Pr", m.principled->roughness_texture, kNumber);
+    texture("map_Pm", m.principled->metallic_texture, kNumber);
+    texture("map_Ps", m.principled->sheen_texture, kNumber);
+    texture("map_Pc", m.principled->coat_texture, kNumber);
+    texture("map_Pcr", m.principled->coat_roughness_texture, kNumber);
   }
 
-  void texture(const char* key, std::uint32_t index, float bump = 1) {
+  /// `usual`: the channel that need not be named; nothing for colours, which have none.
+  void texture(const char* key, std::uint32_t index, std::optional<ImageChannel> usual, float bump = 1) {
     if (index == kNoId) return;
     const Texture& t = file_.textures[index];
     if (t.pattern) return;
@@ -163,9 +177,11 @@ class MtlWriting {
     if (t.base != 0 || t.gain != 1) out_.text(" -mm ").number(t.base).text(" ").number(t.gain);
     if (bump != 1) out_.text(" -bm ").number(bump);
     if (t.clamp) out_.text(" -clamp on");
-    constexpr const char* kChannels[] = {"r", "g", "b", "m"};  // in the order of ImageChannel
-    if (t.channel != ImageChannel::red)
+    constexpr const char* kChannels[] = {"r", "g", "b", "m", "l"};  // in the order of ImageChannel
+    if (usual && t.channel != *usual)
       out_.text(" -imfchan ").text(kChannels[static_cast<std::size_t>(t.channel)]);
+    if (t.color_space != TextureColors::of_file)
+      out_.text(t.color_space == TextureColors::srgb ? " -colorspace sRGB" : " -colorspace linear");
     out_.text(" ").text(name).text("\n");
   }
 

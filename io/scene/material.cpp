@@ -79,9 +79,11 @@ void read_value(SceneLoad& load, const YamlNode& node, const Range&, PrincipledK
 struct PhongKeys {
   Material& m;
   PrincipledMaterial rough{};  ///< with `roughness` and `metallic`
+  Color filter{1, 1, 1};
 
   void describe(auto& p) {
-    p.field("color", Textured<Color>{m.color, m.color_texture}, "of diffuse, ambient and transmitted light");
+    p.field("color", Textured<Color>{m.color, m.color_texture}, "of diffuse and ambient light");
+    p.optional("filter", filter, "colour of light that passes through; `color` if left out");
     p.field("specular_color", Textured<Color>{m.specular_color, m.specular_texture},
             "of highlights and mirror reflections");
     for (const PhongNumber& number : kPhongNumbers)
@@ -231,6 +233,7 @@ std::uint32_t append_material(SceneLoad& load, const YamlNode& node, const std::
   m.name = name;
   MaterialKeys keys{{m}, {m}};
   const Fields fields = read_described(load, node, keys.kMap, keys);
+  if (fields["filter"]) m.filter = keys.phong.filter;
   finish_roughness(fields, keys.phong.rough, m);
   refuse_normal_pattern(load, fields["map_normal"], m);
   if (fields["principled"]) refuse_phong_keys(node, keys.phong);
@@ -266,18 +269,10 @@ std::string material_schema(Schema& schema) {
   return Schema::any_of({Schema::text(), material_map_schema(schema)});
 }
 
-/// Whether a file defines one material after the other for other programs, and is often made by one: of such
-/// a file one warning is enough.
-static bool is_library(const std::string& file) {
-  const std::string extension = lower_case_extension(file);
-  return extension != ".yaml" && extension != ".yml";
-}
-
 void warn_of_energy(Scene& scene) {
   if (!traits(scene.integrator.kind).traces_paths) return;
   // What exceeds 1 by rounding is not meant.
   constexpr float kMost = 1.001f;
-  std::map<std::string, std::pair<Warning, int>> of_libraries;  // with the number of other materials
   const std::size_t count = std::min(scene.materials.size(), scene.material_places.size());
   for (std::size_t i = 0; i < count; ++i) {
     const Material& m = scene.materials[i];
@@ -285,19 +280,9 @@ void warn_of_energy(Scene& scene) {
     if (m.principled || place.file.empty()) continue;
     const float albedo = greatest_albedo(m, scene.textures);
     if (!(albedo > kMost)) continue;
-    const Warning warning{place,
-                          fmt::format("this material may give back {:.3g} times the light that it receives, "
-                                      "so paths grow brighter with each bounce",
-                                      albedo)};
-    if (!is_library(place.file))
-      scene.warnings.push_back(warning);
-    else if (const auto [found, is_new] = of_libraries.try_emplace(place.file, warning, 0); !is_new)
-      ++found->second.second;
-  }
-  for (auto& [file, found] : of_libraries) {
-    auto& [warning, others] = found;
-    if (others > 0) warning.message += fmt::format("; so may {} more of this file", others);
-    scene.warnings.push_back(std::move(warning));
+    scene.warnings.push_back({place, fmt::format("this material may give back {:.3g} times the light that it "
+                                                 "receives, so paths grow brighter with each bounce",
+                                                 albedo)});
   }
 }
 

@@ -343,7 +343,6 @@ Scene load_scene(const std::string& path, const Definitions& definitions,
                     mesh_extensions() + ")");
   Scene scene = scene_from_mesh(path);
   if (integrator) scene.integrator.kind = *integrator;
-  warn_of_energy(scene);
   for (const Warning& warning : SceneParameters(definitions).unused()) scene.warnings.push_back(warning);
   return scene;
 }

@@ -94,8 +94,13 @@ struct ImageKeys {
              {{"red", ImageChannel::red},
               {"green", ImageChannel::green},
               {"blue", ImageChannel::blue},
-              {"alpha", ImageChannel::alpha}},
+              {"alpha", ImageChannel::alpha},
+              {"luminance", ImageChannel::luminance}},
              "what a number is taken from");
+    p.choice(
+        "color_space", texture.color_space,
+        {{"auto", TextureColors::of_file}, {"srgb", TextureColors::srgb}, {"linear", TextureColors::linear}},
+        "how colours are encoded, whatever the file says");
   }
 };
 

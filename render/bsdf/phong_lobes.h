@@ -1,6 +1,8 @@
 #pragma once
 /// \file Phong's illumination model with ideal mirrors and glass, as of Material, for light of unit radiance.
 
+#include <optional>
+
 #include "core/math.h"
 #include "render/bsdf/lobe_lanes.h"
 
@@ -20,14 +22,15 @@ inline double phong_power(double cosine, double exponent) {
 
 /// Weights are in [0, inf); they are clamped to 1e9. A sum above 1 gains energy.
 struct PhongParameters {
-  Color color{0.8f, 0.8f, 0.8f};  ///< of diffuse light and of light that passes through
+  Color color{0.8f, 0.8f, 0.8f};  ///< of diffuse light
   Color specular_color{1, 1, 1};  ///< of the highlight and of the mirror
   float diffuse = 0.8f;
-  float specular = 0;      ///< weight of the highlight
-  float phong = 32;        ///< exponent of the highlight, [0, inf)
-  float reflection = 0;    ///< weight of the mirror
-  float transparency = 0;  ///< weight of smooth glass
-  float ior = 1.5f;        ///< index of refraction behind the front side relative to before it, > 0
+  float specular = 0;             ///< weight of the highlight
+  float phong = 32;               ///< exponent of the highlight, [0, inf)
+  float reflection = 0;           ///< weight of the mirror
+  float transparency = 0;         ///< weight of smooth glass
+  std::optional<Color> filter{};  ///< of light that passes through; not given: color
+  float ior = 1.5f;               ///< index of refraction behind the front side relative to before it, > 0
 };
 
 /// What one side of a surface needs, whatever the directions.
@@ -35,11 +38,11 @@ struct PhongSurface {
   PhongSurface() = default;
   /// `front`: the viewer is outside, where the geometric normal points to.
   OKTETT_INLINE PhongSurface(const PhongParameters& parameters, bool front)
-      : color(limited(parameters.color, 0, kMost)),
+      : filter(limited(parameters.filter.value_or(parameters.color), 0, kMost)),
         exponent(limited(parameters.phong, 0, kMost)),
         transparency(limited(parameters.transparency, 0, kMost)) {
     const Vec3d specular_color = limited(parameters.specular_color, 0, kMost);
-    diffuse = color * limited(parameters.diffuse, 0, kMost);
+    diffuse = limited(parameters.color, 0, kMost) * limited(parameters.diffuse, 0, kMost);
     highlight = specular_color * limited(parameters.specular, 0, kMost);
     mirror = specular_color * limited(parameters.reflection, 0, kMost);
     const double ior = limited(parameters.ior, 1e-3, 1e3);
@@ -49,7 +52,7 @@ struct PhongSurface {
   }
 
   static constexpr double kMost = 1e9;
-  Vec3d color, diffuse, highlight, mirror;
+  Vec3d filter, diffuse, highlight, mirror;
   double exponent = 0, transparency = 0, eta = 1;
   bool only_diffuse = false;  ///< all other lobes are black
 
@@ -64,7 +67,7 @@ struct PhongSurface {
 /// - specular_color * specular * max(0, r.wi)^phong / pi, r the mirrored viewer. As light is not
 ///   foreshortened here, this lobe is not reciprocal;
 /// - a mirror: specular_color * reflection;
-/// - glass: transparency, of which Fresnel's fraction is reflected and the rest, times color, refracted.
+/// - glass: transparency, of which Fresnel's fraction is reflected and the rest, times filter, refracted.
 ///
 /// In lanes of doubles D, for viewers of the same surface.
 template <class D>
@@ -177,7 +180,8 @@ class PhongLobes {
     const D reflectance = select(passes, min(D(1.0), fresnel_lanes(w.z, eta)), D(1.0));
     const D reflected = D(s_->transparency) * reflectance;
     mirror_ = mirror_ + Vec3<D>{reflected, reflected, reflected};
-    refracted_ = broadcast<D>(s_->color) * select(passes, D(s_->transparency) * (D(1.0) - reflectance), zero);
+    refracted_ =
+        broadcast<D>(s_->filter) * select(passes, D(s_->transparency) * (D(1.0) - reflectance), zero);
   }
 
   /// `cosine` in [0, 1] to the power of the exponent.

@@ -268,8 +268,11 @@ void bounce_rays_code(const InteractionBlock& s, const ShadingColumns& c, Bounce
           select(exists, to_float(fresnel_lanes(to_double(-dot_lanes(d, ns)), to_double(eta))), one);
       const F more = transparency * reflectance;
       mirror = {mirror.x + more, mirror.y + more, mirror.z + more};
+      Vec3<F> filter = load_lanes<F>(c.color, i);
+      if (const auto varying = static_cast<unsigned>(c.varying >> i) & real; varying != 0)
+        filter = select_lanes(F::M::from_bits(varying), load_lanes<F>(c.filter, i), filter);
       put_bounces(s, c, i, clear & bits(exists), direction,
-                  scale_lanes(load_lanes<F>(c.color, i), transparency * (one - reflectance)), refracted);
+                  scale_lanes(filter, transparency * (one - reflectance)), refracted);
     }
     put_bounces(s, c, i, real, reflect_above_lanes(d, ns, ng), mirror, mirrored);
   }

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -65,7 +66,8 @@ TEST(Mtl, StatementsOfPhysicallyBasedRenderingMakeItPrincipled) {
   const PrincipledParameters& a = mtl.materials[0].principled->parameters;
   EXPECT_EQ(a.base_color, (Color{0.1f, 0.2f, 0.3f}));
   EXPECT_EQ(a.ior, 1.33f);
-  EXPECT_EQ(a.transmission, 0.75f);
+  EXPECT_EQ(a.transmission, 0);
+  EXPECT_EQ(mtl.materials[0].opacity, 0.25f);
   EXPECT_EQ(a.roughness, 0.25f);
   EXPECT_EQ(a.metallic, 1);
   EXPECT_EQ(a.sheen, 0.5f);
@@ -99,11 +101,75 @@ TEST(Mtl, TransparencyFromEitherKeyword) {
   EXPECT_EQ(material("Kd 1 1 1\nd 0.25\n").diffuse, 0.25f);
 }
 
+// Kd colours what is scattered, Tf what passes; exporters write `Tf 1 1 1` of every material.
 TEST(Mtl, FilterColorsWhatPasses) {
-  const Material m = material("Kd 0.5 0.5 0.5\nTf 0 1 0\nd 0.5\n");
-  EXPECT_EQ(m.color, (Color{0, 1, 0}));
-  EXPECT_NEAR(m.diffuse, 0.5 * 0.5 / 0.7152, 1e-6);
-  EXPECT_EQ(material("Kd 0.5 0.5 0.5\nTf 0 1 0\n").color, (Color{0.5f, 0.5f, 0.5f}));
+  const Material m = material("Kd 0.5 0.25 0.125\nTf 0 1 0\nd 0.5\n");
+  EXPECT_EQ(m.color, (Color{0.5f, 0.25f, 0.125f}));
+  EXPECT_EQ(m.diffuse, 0.5f);
+  EXPECT_EQ(m.filter, (Color{0, 1, 0}));
+  for (const char* text : {"Kd 0 0 0\nd 0.1\n", "Kd 0 0 0\nd 0.1\nTf 1 1 1\n", "Kd 0 0 0\nTr 0.9\nTf 1\n"})
+    EXPECT_EQ(material(text).filter, (Color{1, 1, 1})) << text;
+  EXPECT_FALSE(material("Kd 0.5 0.5 0.5\nTf 0 1 0\n").filter);
+  EXPECT_EQ(material("d 0.5\nTf 9 1 1\n").filter, (Color{1, 1, 1}));
+}
+
+// What passes does not bend where no Ni says so.
+TEST(Mtl, LightPassesStraightWithoutNi) {
+  EXPECT_EQ(material("d 0.5\n").ior, 1);
+  EXPECT_EQ(material("d 0.5\nNi 1.45\n").ior, 1.45f);
+  EXPECT_EQ(material("d 0.5\nNi 1\n").ior, 1);
+}
+
+// MeshLab and VTK write the opacity as Tr, all others the transparency.
+TEST(Mtl, TrIsReadAsItsWriterMeansIt) {
+  const auto transparency = [](const std::string& text) {
+    const Mtl mtl = load(text);
+    EXPECT_EQ(mtl.warnings, std::vector<std::string>{}) << text;
+    return mtl.materials.at(0).transparency;
+  };
+  const std::string meshlab = "#\n# Wavefront material file\n# Converted by Meshlab Group\n#\n\nnewmtl m\n";
+  const std::string vtk = "# wavefront obj file written by the visualization toolkit\n\nnewmtl m\n";
+  EXPECT_EQ(transparency(meshlab + "Kd 1 1 1\nTr 1.000000\n"), 0);
+  EXPECT_EQ(transparency(vtk + "Tr 0.25\n"), 0.75f);
+  EXPECT_EQ(transparency(vtk + "d 0.25\nTr 0.25\n"), 0.75f);
+  EXPECT_EQ(transparency("# another\nnewmtl m\nTr 0.25\n"), 0.25f);
+  EXPECT_EQ(transparency("newmtl m\n# Converted by Meshlab Group\nTr 0.25\n"), 0.25f);
+  EXPECT_EQ(transparency("newmtl m\nd 0.25\nTr 0.751\n"), 0.75f);
+  EXPECT_EQ(
+      load("newmtl m\nTr 0.5\nd 0.25\n").warnings,
+      std::vector<std::string>{"m.mtl:2:1: warning: Tr 0.5 and d 0.25 contradict each other; d counts"});
+}
+
+// Blender writes the alpha of physically based materials as d, and how much light passes as Tf.
+TEST(Mtl, PhysicallyBasedMaterialsAreCoveredInParts) {
+  const Mtl mtl = load("# Blender 4.3.2 MTL File: 'a.blend'\nnewmtl a\nKd 0 0 0\nd 0.25\nTf 1 1 1\nPr 0\n");
+  const Material& m = mtl.materials.at(0);
+  EXPECT_EQ(m.opacity, 0.25f);
+  EXPECT_EQ(m.principled->parameters.transmission, 1);
+  EXPECT_EQ(load("newmtl a\nTf 1 1 1\nPr 0\n").materials.at(0).principled->parameters.transmission, 0);
+}
+
+// A white surface whose highlight is as wide as the hemisphere would give back three times what arrives.
+TEST(Mtl, NoMoreLightIsGivenBackThanArrives) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> any(0, 3);
+  for (int i = 0; i < 300; ++i) {
+    std::string text = "newmtl a\n";
+    for (const char* key : {"Kd", "Ks", "Tf"})
+      text += key + fmt::format(" {} {} {}\n", any(random), any(random), any(random));
+    text += fmt::format("Ns {}\nd {}\nillum {}\n", i % 3 == 0 ? 0 : any(random) * 9, any(random) / 3, i % 10);
+    if (i % 2 == 0) text += "map_Kd -mm 0.5 3 a.png\n";
+    const Mtl mtl = load(text);
+    EXPECT_LE(greatest_albedo(mtl.materials.at(0), mtl.textures), 1.0001f) << text;
+  }
+  // Only what is too much goes, and a wide highlight before the colour.
+  const Material white = material("Kd 1 1 1\nKs 1 1 1\nNs 0\n");
+  EXPECT_EQ(white.color, (Color{1, 1, 1}));
+  EXPECT_LE(white.specular * white.specular_color.x, 1e-5f);
+  const Material shiny = material("Kd 1 0.5 0.5\nKs 1 1 1\nNs 199\n");
+  EXPECT_NEAR(shiny.color.x, 1 / 1.01, 1e-5);
+  EXPECT_NEAR(shiny.color.y, 0.5 / 1.01, 1e-5);
+  EXPECT_EQ(material("Kd 0.5 0.5 0.5\nKs 0.5 0.5 0.5\nNs 1\n").color, (Color{0.5f, 0.5f, 0.5f}));
 }
 
 TEST(Mtl, IlluminationModelsThatMirror) {
@@ -114,7 +180,7 @@ TEST(Mtl, IlluminationModelsThatMirror) {
   }
   for (const char* model : {"0", "1", "2", "4", "6", "7", "9"})
     EXPECT_EQ(material(std::string("Ks 0.5 0.5 0.5\nillum ") + model + "\n").reflection, 0);
-  EXPECT_EQ(material("Ks 9 9 9\nillum 3\n").reflection, 1);
+  EXPECT_EQ(material("Kd 0 0 0\nKs 1 1 1\nNs 1e9\nillum 3\n").reflection, 1);
   const Material glass = material("Kd 1 1 1\nKs 0 0 0\nd 0\nNi 1.5\nillum 7\n");
   EXPECT_EQ(glass.transparency, 1);
   EXPECT_EQ(glass.ior, 1.5f);
@@ -143,6 +209,14 @@ TEST(Mtl, TexturesOfAllKinds) {
   EXPECT_EQ(b.bump_scale, 2);
   EXPECT_EQ(b.color_texture, a.color_texture);
   EXPECT_EQ(b.bump_texture, a.bump_texture);
+}
+
+TEST(Mtl, NormalMapsMayBeNamedTwice) {
+  const Material m = material("norm n.png\nmap_Bump -bm 2 n.png\n");
+  EXPECT_NE(m.normal_texture, kNoId);
+  EXPECT_EQ(m.bump_texture, kNoId);
+  EXPECT_EQ(m.bump_scale, 1);
+  EXPECT_NE(material("norm n.png\nmap_Bump b.png\n").bump_texture, kNoId);
 }
 
 TEST(Mtl, TextureOptions) {
@@ -174,17 +248,47 @@ TEST(Mtl, NumbersTakeTheChannelThatIsNamed) {
   const Mtl mtl = load(
       "newmtl a\nmap_Pr -imfchan g t.png\nmap_Pm -imfchan b t.png\nmap_d -imfchan m t.png\nmap_Pc -imfchan r "
       "t.png\nmap_Ps -imfchan l t.png\nmap_Pcr -imfchan q t.png\n");
-  EXPECT_EQ(mtl.warnings, (std::vector<std::string>{
-                              "m.mtl:6:17: warning: the channel 'l' is not supported; expected r, g, b or m",
-                              "m.mtl:7:18: warning: unknown channel 'q'; expected r, g, b or m"}));
+  EXPECT_EQ(mtl.warnings,
+            std::vector<std::string>{"m.mtl:7:18: warning: unknown channel 'q'; expected r, g, b, m or l"});
   const Material& m = mtl.materials.at(0);
   const auto channel = [&](std::uint32_t texture) { return mtl.textures.at(texture).channel; };
   EXPECT_EQ(channel(m.principled->roughness_texture), ImageChannel::green);
   EXPECT_EQ(channel(m.principled->metallic_texture), ImageChannel::blue);
   EXPECT_EQ(channel(m.opacity_texture), ImageChannel::alpha);
-  for (const std::uint32_t texture :
-       {m.principled->coat_texture, m.principled->sheen_texture, m.principled->coat_roughness_texture})
-    EXPECT_EQ(channel(texture), ImageChannel::red);
+  EXPECT_EQ(channel(m.principled->coat_texture), ImageChannel::red);
+  for (const std::uint32_t texture : {m.principled->sheen_texture, m.principled->coat_roughness_texture})
+    EXPECT_EQ(channel(texture), ImageChannel::luminance);
+  const Mtl usual = load("newmtl a\nmap_d t.png\nmap_Bump u.png\nmap_Pr v.png\n");
+  for (const Texture& texture : usual.textures) EXPECT_EQ(texture.channel, ImageChannel::luminance);
+}
+
+TEST(Mtl, ColorSpacesAreThoseThatAreNamed) {
+  const Mtl mtl = load(
+      "newmtl a\nmap_Kd -colorspace sRGB a.png\nmap_Ks -colorspace Linear a.png\n"
+      "map_Ke -colorspace pq a.png\n");
+  EXPECT_EQ(mtl.warnings, std::vector<std::string>{
+                              "m.mtl:4:23: warning: unknown colour space 'pq'; expected sRGB or linear"});
+  const Material& m = mtl.materials.at(0);
+  EXPECT_EQ(mtl.textures.at(m.color_texture).color_space, TextureColors::srgb);
+  EXPECT_EQ(mtl.textures.at(m.specular_texture).color_space, TextureColors::linear);
+  EXPECT_EQ(mtl.textures.at(m.emission_texture).color_space, TextureColors::of_file);
+}
+
+// Of all that a name may mean the first that is a file counts.
+TEST(Mtl, NamesOfTexturesMayBeWrittenInManyWays) {
+  const ObjFiles files;
+  for (const char* name : {"a b.png", "c#d.png", "e #f.png", "g.png"}) files.write(name, "");
+  const auto name = [&](const std::string& written) {
+    return load("newmtl a\nmap_Kd " + written + "\n", files).textures.at(0).path;
+  };
+  EXPECT_EQ(name("a\\ b.png"), "a b.png");
+  EXPECT_EQ(name("a b.png"), "a b.png");
+  EXPECT_EQ(name("\"a b.png\""), "a b.png");
+  EXPECT_EQ(name("a\\ b.png # its wood"), "a b.png");
+  EXPECT_EQ(name("c#d.png"), "c#d.png");
+  EXPECT_EQ(name("e #f.png"), "e #f.png");
+  EXPECT_EQ(name("g.png #f.png"), "g.png");
+  EXPECT_EQ(name("gone.png # old"), "gone.png");
 }
 
 TEST(Mtl, TexturesWithDifferentOptionsDiffer) {
@@ -243,7 +347,7 @@ TEST(Mtl, PartsOutsideOfZeroToOneWarnAndAreLimited) {
   EXPECT_EQ(p.sheen, 1);
   EXPECT_EQ(p.coat, 0);
   EXPECT_EQ(p.coat_roughness, 1);
-  EXPECT_EQ(p.transmission, 1);
+  EXPECT_EQ(mtl.materials[0].opacity, 0);
   EXPECT_EQ(mtl.materials.at(1).color, (Color{0, 0, 0}));
   EXPECT_EQ(mtl.materials.at(1).transparency, 1);
   EXPECT_EQ(mtl.materials.at(2).transparency, 0);

@@ -53,6 +53,22 @@ TEST(ObjMaterials, WithoutUseThereAreNone) {
   }
 }
 
+TEST(ObjMaterials, CommentsAndEscapedBlanksAreNoPartOfNames) {
+  const ObjFiles files;
+  files.dir.write("m.mtl",
+                  "newmtl red # warm\nKd 1 0 0\nnewmtl dark blue\nKd 0 0 1\nnewmtl a #1\nKd 0 1 0\n");
+  files.dir.write("my n.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+  const ObjFile file = files.load("mtllib m.mtl # of the house\nmtllib my\\ n.mtl\n" + kSquare +
+                                  "usemtl red\n" + kFace + "usemtl dark\\ blue # cold\n" + kFace +
+                                  "usemtl a #1\n" + kFace + "usemtl grey # x\n" + kFace);
+  EXPECT_EQ(files.as_text(file.warnings), std::vector<std::string>{});
+  ASSERT_EQ(file.materials.size(), 4u);
+  EXPECT_EQ(file.materials[0].color, (Color{1, 0, 0}));
+  EXPECT_EQ(file.materials[1].color, (Color{0, 0, 1}));
+  EXPECT_EQ(file.materials[2].color, (Color{0, 1, 0}));
+  EXPECT_EQ(file.materials[3].color, (Color{0.5f, 0.5f, 0.5f}));
+}
+
 TEST(ObjMaterials, UndefinedOnesAreGreyWithOneWarning) {
   const ObjFiles files;
   const ObjFile file =

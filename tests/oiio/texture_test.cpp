@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "io/image/color.h"
+#include "io/image/contents.h"
+#include "io/obj/obj.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/temp_dir.h"
 
@@ -127,6 +129,97 @@ TEST(ImageTextures, ChannelsOfNumbers) {
                 2e-4f)
         << i;
   EXPECT_NEAR(textures.color(3, {0, 0}, kNoChange, kNoChange).y, srgb_to_linear(100 / 255.0f), 2e-4f);
+}
+
+TEST(ImageTextures, LuminanceIsThatOfTheColorsAsStored) {
+  const TempDir dir;
+  const std::string path = write_pixels(dir.file("a.png"), 1, 1, 4, Bytes{10, 100, 200, 50});
+  const std::string grey = write_pixels(dir.file("b.png"), 1, 1, 2, Bytes{30, 60});
+  std::vector<Texture> list{texture_of(path), texture_of(grey)};
+  for (Texture& texture : list) texture.channel = ImageChannel::luminance;
+  const ImageTextures textures(list);
+  EXPECT_NEAR(textures.value(0, {0, 0}, kNoChange, kNoChange),
+              (0.2126 * 10 + 0.7152 * 100 + 0.0722 * 200) / 255, 1e-6);
+  EXPECT_NEAR(textures.value(1, {0, 0}, kNoChange, kNoChange), 30 / 255.0, 1e-6);
+}
+
+// The same file may be shown as it says and otherwise.
+TEST(ImageTextures, ColorsAreEncodedAsTheTextureSays) {
+  const TempDir dir;
+  const std::string path = write_pixels(dir.file("a.png"), 1, 1, 3, Bytes{10, 100, 200});
+  std::vector<Texture> list(3, texture_of(path));
+  list[1].color_space = TextureColors::linear;
+  list[2].color_space = TextureColors::srgb;
+  const ImageTextures textures(list);
+  for (const std::uint32_t i : {0u, 2u})
+    EXPECT_NEAR(textures.color(i, {0, 0}, kNoChange, kNoChange).y, srgb_to_linear(100 / 255.0f), 1e-6) << i;
+  EXPECT_NEAR(textures.color(1, {0, 0}, kNoChange, kNoChange).y, 100 / 255.0, 1e-6);
+}
+
+TEST(ImageContents, NormalMapsAndAlphaAreKnown) {
+  const TempDir dir;
+  std::mt19937 random(2);
+  Bytes normals, heights, colors, mask, solid;
+  std::normal_distribution<double> slope(0, 0.4);
+  for (int i = 0; i < 64; ++i) {
+    Vec3d n = normalize(Vec3d{slope(random), slope(random), 1});
+    for (int k = 0; k < 3; ++k) normals.push_back(static_cast<std::uint8_t>(127.5 * (n[k] + 1) + 0.5));
+    heights.insert(heights.end(), 3, static_cast<std::uint8_t>(random() % 256));
+    for (int k = 0; k < 3; ++k) colors.push_back(static_cast<std::uint8_t>(random() % 256));
+    for (int k = 0; k < 4; ++k) mask.push_back(static_cast<std::uint8_t>(random() % 256));
+    for (int k = 0; k < 4; ++k) solid.push_back(k == 3 ? 255 : static_cast<std::uint8_t>(random() % 256));
+  }
+  const auto contents = [&](const char* name, int channels, const Bytes& bytes) {
+    return image_contents(write_pixels(dir.file(name), 8, 8, channels, bytes));
+  };
+  EXPECT_TRUE(contents("normals.png", 3, normals).normals);
+  EXPECT_TRUE(contents("flat.png", 3, Bytes{[] {
+                         Bytes flat;
+                         for (int i = 0; i < 64; ++i) flat.insert(flat.end(), {128, 128, 255});
+                         return flat;
+                       }()})
+                  .normals);
+  EXPECT_FALSE(contents("heights.png", 3, heights).normals);
+  EXPECT_FALSE(contents("white.png", 3, Bytes(192, 255)).normals);
+  EXPECT_FALSE(contents("colors.png", 3, colors).normals);
+  EXPECT_FALSE(contents("blue.png", 3, Bytes{[] {
+                          Bytes blue;
+                          for (int i = 0; i < 64; ++i) blue.insert(blue.end(), {40, 90, 240});
+                          return blue;
+                        }()})
+                   .normals);
+  EXPECT_TRUE(contents("mask.png", 4, mask).alpha);
+  EXPECT_FALSE(contents("solid.png", 4, solid).alpha);
+  EXPECT_FALSE(contents("none.png", 3, colors).alpha);
+  const ImageContents gone = image_contents(dir.file("gone.png"));
+  EXPECT_FALSE(gone.normals || gone.alpha);
+}
+
+// Blender writes normal maps as map_Bump; the mask of map_d is the alpha of an image that has one.
+TEST(ObjImages, MapsAreReadAsTheirImagesShow) {
+  const TempDir dir;
+  write_pixels(dir.file("n.png"), 1, 1, 3, Bytes{128, 128, 255});
+  write_pixels(dir.file("h.png"), 1, 1, 3, Bytes{128, 128, 128});
+  write_pixels(dir.file("a.png"), 1, 1, 4, Bytes{255, 255, 255, 100});
+  write_pixels(dir.file("s.png"), 1, 1, 4, Bytes{50, 50, 50, 255});
+  dir.write("m.mtl",
+            "newmtl a\nmap_Bump -bm 1 n.png\nmap_d a.png\nmap_Kd a.png\nnewmtl b\nmap_Bump -bm 2 "
+            "h.png\nmap_d s.png\n"
+            "newmtl c\nmap_d -imfchan r a.png\nmap_Bump n.png\nnorm n.png\n");
+  const MeshFile file = load_obj(dir.write(
+      "m.obj",
+      "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n"));
+  EXPECT_TRUE(file.warnings.empty());
+  const auto texture = [&](std::uint32_t i) { return file.textures.at(i); };
+  const Material &a = file.materials.at(0), &b = file.materials.at(1), &c = file.materials.at(2);
+  EXPECT_EQ(texture(a.normal_texture).path, dir.file("n.png"));
+  EXPECT_EQ(a.bump_texture, kNoId);
+  EXPECT_EQ(texture(a.opacity_texture).channel, ImageChannel::alpha);
+  EXPECT_EQ(texture(b.bump_texture).path, dir.file("h.png"));
+  EXPECT_EQ(b.normal_texture, kNoId);
+  EXPECT_EQ(texture(b.opacity_texture).channel, ImageChannel::luminance);
+  EXPECT_EQ(texture(c.opacity_texture).channel, ImageChannel::red);
+  EXPECT_EQ(c.bump_texture, kNoId);
 }
 
 // Bytes in memory give what the same bytes in a file do.

@@ -140,6 +140,9 @@ TexelImage OpenImageIoLibrary::read_texels(const TextureSource& source) const {
   const int alpha = source.alpha ? spec.alpha_channel : -1;
   image.alpha = alpha >= 0;
   image.encoding = color_encoding(spec);
+  if (source.color_space != TextureColors::of_file)
+    image.encoding = {source.color_space == TextureColors::srgb ? TransferCurve::srgb : TransferCurve::linear,
+                      1};
   if (spec.format.basetype == OIIO::TypeDesc::UINT8)
     image.bytes =
         read_texel_numbers<std::uint8_t>(*input, source.path, OIIO::TypeDesc::UINT8, image.colors, alpha);
