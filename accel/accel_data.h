@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,9 +51,7 @@ struct CsgItem {
   std::vector<std::uint32_t> operand_of;  ///< node of each geometry of `solids`
   /// Number of each geometry's first solid, and the number of solids at the end.
   std::vector<std::uint32_t> first_solid;
-  std::vector<std::uint8_t> inverted;  ///< per geometry: 1 for a mesh that is wound inside out
-  /// Such meshes inside instances: structure and geometry, sorted.
-  std::vector<std::pair<const Accel*, std::uint32_t>> inverted_inside;
+  bool has_meshes = false;  ///< among the solids and in instances of them
   std::vector<CsgNode> nodes;  ///< the root first
   std::vector<std::uint32_t>
       unbounded;                     ///< geometries of `solids` that a ray may be inside without a crossing
@@ -106,6 +105,11 @@ struct GeometryFrame {
   bool mirrored = false;
 };
 
+class WindingField;
+
+/// How a ray that crosses a mesh tells where it is inside, see accel/winding/mesh_sense.h.
+enum class MeshSense : std::uint8_t { closed, even, open, inverted };
+
 /// The tree over `geometries` and the pools that its leaves point to.
 ///
 /// Instance paths: within one structure, "no instance" is path kNoId, and a hit below instance item k with
@@ -136,6 +140,7 @@ class Accel {
   std::vector<LeafEntry> unbounded;   ///< tested against every ray
   std::uint32_t path_count = 0;       ///< number of instance paths in here
   std::vector<GeometryFrame> frames;  ///< per geometry
+  bool has_mirrors = false;           ///< the transform of a geometry mirrors it
   std::vector<std::uint8_t> kinds;    ///< Kind of each geometry
   std::vector<std::uint32_t> users;   ///< Geometry::user of each
   /// What index_in_pool() looks up: one number per shape of a pool, and where those of each geometry begin.
@@ -147,6 +152,11 @@ class Accel {
   /// What is shown that closest_point does not answer for, in words; empty if there is nothing of the kind.
   /// [1]: if an instance shows this structure distorted.
   std::string no_closest_point[2];
+  /// What questions about points need of meshes, made when it is first asked for: winding_field(accel) and,
+  /// per geometry, mesh_sense(accel, geometry).
+  mutable std::once_flag winding_once, senses_once;
+  mutable std::unique_ptr<const WindingField> winding;
+  mutable std::vector<MeshSense> senses;
 
   OKTETT_INLINE const ExactPoolBase& exact_pool(Kind kind) const { return *exact[static_cast<int>(kind)]; }
 

@@ -11,6 +11,11 @@
 
 namespace oktett {
 
+struct WindingTree;
+struct WindingSum;
+struct WindingMap;
+class OpenParts;
+
 // ---- Rays.
 
 /// What each ray of a batch hits. Without vector registers every ray goes alone, whatever the mode.
@@ -41,6 +46,13 @@ const TraceCode& trace_code(Isa isa);
 struct PointCode {
   /// The nearest surface of each point.
   void (*closest)(const Accel&, const PointSpan& points, Nearest* nearest);
+  /// The sum over a tree for a point in its unit, where a child is seen as a whole if that leaves out at most
+  /// `limit`: in float for points of coordinates below 2^30 and trees over triangles, in double, and in
+  /// double as a map shows the tree.
+  WindingSum (*winding)(const WindingTree&, const Vec3f& point, float limit);
+  WindingSum (*winding_precise)(const WindingTree&, const Vec3d& point, double limit, OpenParts*);
+  WindingSum (*winding_mapped)(const WindingTree&, const Vec3d& point, double limit, const WindingMap&,
+                               OpenParts*);
 };
 
 template <class A>

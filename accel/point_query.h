@@ -80,13 +80,24 @@ void closest_point(const Accel& accel, std::span<const Vec3f> points, std::span<
 /// The same for one point.
 ClosestPoint closest_point(const Accel& accel, const Vec3f& point, Isa isa = default_isa());
 
-/// answers[i] becomes 1 if points[i] is inside of any solid, else 0. A point is inside of a solid if a ray
-/// from it crosses the boundary an odd number of times; the direction of the ray is fixed. Each of these is a
-/// solid of its own: the triangles of one mesh together, a sphere, a box, the half-space behind a plane, an
-/// exact surface that is not open, a combination; and each of them in every instance. So a point in two
-/// meshes that overlap is inside; one where a single mesh overlaps itself is outside. A mesh must be closed,
-/// however it is wound. Disks, polygons and open surfaces have no inside. Points that are not finite are
-/// outside. For points on a boundary either answer may come.
+/// How it is judged whether a point is inside of meshes.
+enum class InsideRule : std::uint8_t {
+  /// By the crossings of one ray from the point, for each mesh alone, as in combinations. Where all edges
+  /// pair up, a point is inside of a mesh that winds around it, in either sense: also where shells of one
+  /// mesh
+  /// overlap; not where an inner shell of the other sense cuts a hole. Where faces are wound against each
+  /// other, but every edge has an even number of them, it is inside after an odd number of crossings. In
+  /// meshes with holes the answer depends on the direction of the ray, which is fixed.
+  crossings,
+  /// By |winding_number()| > 1/2, of all meshes together: for meshes with holes, doubled or turned faces, and
+  /// for surfaces in several meshes. Decided exactly; a point where it is 1/2, as on a face, is outside.
+  winding,
+};
+
+/// answers[i] becomes 1 if points[i] is inside of any solid, else 0. Each of these is a solid of its own: the
+/// triangles of one mesh together, a sphere, a box, the half-space behind a plane, an exact surface that is
+/// not open, a combination; and each of them in every instance. Disks, polygons and open surfaces have no
+/// inside. Points that are not finite are outside. For points on a boundary either answer may come.
 void inside(const Accel& accel, const PointSpan& points, std::span<std::uint8_t> answers,
             Isa isa = default_isa());
 /// The same for an array of structures.
@@ -94,6 +105,27 @@ void inside(const Accel& accel, std::span<const Vec3f> points, std::span<std::ui
             Isa isa = default_isa());
 /// The same for one point.
 bool inside(const Accel& accel, const Vec3f& point, Isa isa = default_isa());
+
+/// The same by either rule; the rule counts for meshes, other solids are judged as ever.
+void inside(const Accel& accel, const PointSpan& points, std::span<std::uint8_t> answers, InsideRule rule,
+            Isa isa = default_isa());
+void inside(const Accel& accel, std::span<const Vec3f> points, std::span<std::uint8_t> answers,
+            InsideRule rule, Isa isa = default_isa());
+bool inside(const Accel& accel, const Vec3f& point, InsideRule rule, Isa isa = default_isa());
+
+/// numbers[i] becomes how often all meshes together wind around points[i]: the sum of the solid angles of
+/// their triangles over 4 pi, positive seen from the back (Jacobson et al. 2013). It is whole for a closed
+/// mesh, and between where there are holes. It is off by at most `error`, which is at least 2^-20, and by a
+/// rounding to float. Mirrored instances keep their outside. On a surface it is the mean of both sides. Each
+/// other solid that holds the point adds 1. NaN for points that are not finite. Throws Error if `error` is
+/// less.
+void winding_number(const Accel& accel, const PointSpan& points, std::span<float> numbers,
+                    double error = 1e-4, Isa isa = default_isa());
+/// The same for an array of structures.
+void winding_number(const Accel& accel, std::span<const Vec3f> points, std::span<float> numbers,
+                    double error = 1e-4, Isa isa = default_isa());
+/// The same for one point.
+float winding_number(const Accel& accel, const Vec3f& point, double error = 1e-4, Isa isa = default_isa());
 
 /// distances[i] becomes the distance of points[i] to the nearest point of all surfaces, as closest_point
 /// finds it, negative if the point is inside(); infinite for a miss. Throws Error where closest_point does.
@@ -104,5 +136,12 @@ void signed_distance(const Accel& accel, std::span<const Vec3f> points, std::spa
                      Isa isa = default_isa());
 /// The same for one point.
 float signed_distance(const Accel& accel, const Vec3f& point, Isa isa = default_isa());
+
+/// The same, negative where the point is inside() by the rule.
+void signed_distance(const Accel& accel, const PointSpan& points, std::span<float> distances, InsideRule rule,
+                     Isa isa = default_isa());
+void signed_distance(const Accel& accel, std::span<const Vec3f> points, std::span<float> distances,
+                     InsideRule rule, Isa isa = default_isa());
+float signed_distance(const Accel& accel, const Vec3f& point, InsideRule rule, Isa isa = default_isa());
 
 }  // namespace oktett

@@ -164,12 +164,18 @@ static bool listed_before(const Hit& a, const Hit& b) {
   return a.item < b.item;
 }
 
-static void sort_hits(Hit* begin, Hit* end) {
-  if (end - begin > 32) return std::stable_sort(begin, end, listed_before);
-  for (Hit* at = begin; at < end; ++at) {
-    const Hit hit = *at;
-    Hit* to = at;
-    for (; to > begin && listed_before(hit, to[-1]); --to) *to = to[-1];
+/// Hits, or crossings.
+inline const Hit& hit_of(const Hit& hit) { return hit; }
+inline const Hit& hit_of(const Crossing& crossing) { return crossing.hit; }
+
+template <class Element>
+static void sort_hits(Element* begin, Element* end) {
+  const auto before = [](const Element& a, const Element& b) { return listed_before(hit_of(a), hit_of(b)); };
+  if (end - begin > 32) return std::stable_sort(begin, end, before);
+  for (Element* at = begin; at < end; ++at) {
+    const Element hit = *at;
+    Element* to = at;
+    for (; to > begin && before(hit, to[-1]); --to) *to = to[-1];
     *to = hit;
   }
 }
@@ -184,50 +190,63 @@ void all_hits(const Accel& accel, const Ray& ray, std::vector<Hit>& hits, Isa is
   sort_hits(hits.data(), hits.data() + hits.size());
 }
 
+/// The elements of lists of either kind.
+inline std::vector<Hit>& elements_of(HitLists& lists) { return lists.hits; }
+inline std::vector<Crossing>& elements_of(CrossingLists& lists) { return lists.crossings; }
+inline void take_crossing(const Crossing& crossing, Hit& hit) { hit = crossing.hit; }
+inline void take_crossing(const Crossing& crossing, Crossing& to) { to = crossing; }
+
 /// Groups the crossings of a batch by ray. The hits of each ray are not sorted.
-static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, HitLists& out) {
+template <class Lists>
+static void group_by_ray(const std::vector<RayHit>& found, std::size_t rays, Lists& out) {
   out.begin.assign(rays + 1, 0);
   for (const RayHit& h : found) ++out.begin[h.ray + 1];
   for (std::size_t i = 0; i < rays; ++i) out.begin[i + 1] += out.begin[i];
-  out.hits.resize(found.size());
+  auto& elements = elements_of(out);
+  elements.resize(found.size());
   static thread_local std::vector<std::size_t> next;
   next.assign(out.begin.begin(), out.begin.end() - 1);
-  for (const RayHit& h : found) out.hits[next[h.ray]++] = h.crossing.hit;
+  for (const RayHit& h : found) take_crossing(h.crossing, elements[next[h.ray]++]);
 }
 
 /// The same, and merges the crossings of exact surfaces.
-static void merge_by_ray(const Accel& accel, const std::vector<RayHit>& found, std::size_t rays,
-                         HitLists& out) {
+template <class Lists>
+static void merge_by_ray(const Accel& accel, const std::vector<RayHit>& found, std::size_t rays, Lists& out) {
   std::vector<std::vector<Crossing>> of_ray(rays);
   for (const RayHit& h : found) of_ray[h.ray].push_back(h.crossing);
-  out.hits.clear();
+  auto& elements = elements_of(out);
+  elements.clear();
   out.begin.assign(1, 0);
   for (std::vector<Crossing>& crossings : of_ray) {
     HitList list(crossings);
     merge_crossings(accel, list, 0);
-    for (const Crossing& c : crossings) out.hits.push_back(c.hit);
-    out.begin.push_back(out.hits.size());
+    for (const Crossing& c : crossings) take_crossing(c, elements.emplace_back());
+    out.begin.push_back(elements.size());
   }
 }
 
 /// Removes the repeated hits of triangles that stand in several leaves. The hits of each ray must be sorted.
-static void drop_repeated(const Accel& accel, HitLists& out) {
+template <class Lists>
+static void drop_repeated(const Accel& accel, Lists& out) {
+  auto& elements = elements_of(out);
   std::size_t kept = 0, at = 0;
   for (std::size_t i = 0; i + 1 < out.begin.size(); ++i) {
     const std::size_t end = out.begin[i + 1], first = kept;
     for (; at < end; ++at) {
-      const Hit& h = out.hits[at];
-      if (kept > first && h == out.hits[kept - 1] && h.instance == kNoId && is_triangle(accel, h.item))
+      const Hit& h = hit_of(elements[at]);
+      if (kept > first && h == hit_of(elements[kept - 1]) && h.instance == kNoId &&
+          is_triangle(accel, h.item))
         continue;
-      out.hits[kept++] = h;
+      elements[kept++] = elements[at];
     }
     out.begin[i + 1] = kept;
   }
-  out.hits.resize(kept);
+  elements.resize(kept);
 }
 
 /// The hits of a batch, not sorted. Those of triangles that stand in several leaves may be repeated.
-static void find_hits(const Accel& accel, const RaySpan& rays, const TraceCode& code, HitLists& out) {
+template <class Lists>
+static void find_hits(const Accel& accel, const RaySpan& rays, const TraceCode& code, Lists& out) {
   static thread_local RayHitList found;
   found.clear();
   code.all_hits(accel, rays, found);
@@ -238,10 +257,17 @@ static void find_hits(const Accel& accel, const RaySpan& rays, const TraceCode& 
 }
 
 /// Sorts the hits of each ray and removes repeated ones.
-static void sort_lists(const Accel& accel, HitLists& lists) {
+template <class Lists>
+static void sort_lists(const Accel& accel, Lists& lists) {
+  auto& elements = elements_of(lists);
   for (std::size_t i = 0; i + 1 < lists.begin.size(); ++i)
-    sort_hits(lists.hits.data() + lists.begin[i], lists.hits.data() + lists.begin[i + 1]);
+    sort_hits(elements.data() + lists.begin[i], elements.data() + lists.begin[i + 1]);
   if (accel.pieces) drop_repeated(accel, lists);
+}
+
+void all_crossings(const Accel& accel, const RaySpan& rays, CrossingLists& lists, Isa isa) {
+  find_hits(accel, rays, trace_code(isa), lists);
+  sort_lists(accel, lists);
 }
 
 template <class Rays>

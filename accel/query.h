@@ -1,7 +1,13 @@
 #pragma once
-/// \file The queries of accel/accel.h with a prescribed traversal, for verification and benchmarks.
+/// \file The queries of accel/accel.h with a prescribed traversal, for verification and benchmarks; and all
+/// crossings of rays with what all_hits does not tell.
+
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include "accel/accel.h"
+#include "accel/hit_sink.h"
 
 namespace oktett {
 
@@ -20,5 +26,19 @@ enum class TraceMode : std::uint8_t {
 
 void closest_hit(const Accel& accel, const RaySpan& rays, const HitSpan& hits, Isa isa, TraceMode mode);
 void any_hit(const Accel& accel, const RaySpan& rays, std::uint8_t* occluded, Isa isa, TraceMode mode);
+
+/// The crossings of each ray of a batch: those of ray i are crossings[begin[i]] to crossings[begin[i + 1] -
+/// 1].
+struct CrossingLists {
+  std::vector<Crossing> crossings;
+  std::vector<std::size_t> begin;
+
+  std::span<const Crossing> of_ray(std::size_t i) const {
+    return {crossings.data() + begin[i], begin[i + 1] - begin[i]};
+  }
+};
+
+/// What all_hits lists of at most 4096 rays, with the turn of each crossing.
+void all_crossings(const Accel& accel, const RaySpan& rays, CrossingLists& lists, Isa isa);
 
 }  // namespace oktett

@@ -1,4 +1,5 @@
-/// \file Questions about points: nearest points, inside or outside, and signed distances, by instruction set.
+/// \file Questions about points: nearest points, inside or outside, winding numbers and signed distances, by
+/// instruction set.
 /// One thread. The mesh is OKTETT_BENCH_MESH or a generated one; `spheres` are 100 000 that do not touch,
 /// `instances` are 1000 of a small mesh under any maps.
 
@@ -112,6 +113,21 @@ void ask(benchmark::State& state, int number, Place place, const Ask& query) {
               ask<std::uint8_t>(state, number, where,
                                 [&](const Accel& accel, const std::vector<Vec3f>& p,
                                     std::vector<std::uint8_t>& a) { inside(accel, p, a, isa); });
+            });
+        add(fmt::format("inside_winding/{}/{}/{}", scenes[number], name, to_string(isa)),
+            [number, where = place, isa](benchmark::State& state) {
+              ask<std::uint8_t>(state, number, where,
+                                [&](const Accel& accel, const std::vector<Vec3f>& p,
+                                    std::vector<std::uint8_t>& a) {
+                                  inside(accel, p, a, InsideRule::winding, isa);
+                                });
+            });
+        add(fmt::format("winding_number/{}/{}/{}", scenes[number], name, to_string(isa)),
+            [number, where = place, isa](benchmark::State& state) {
+              ask<float>(state, number, where,
+                         [&](const Accel& accel, const std::vector<Vec3f>& p, std::vector<float>& a) {
+                           winding_number(accel, p, a, 1e-4, isa);
+                         });
             });
       }
   return true;

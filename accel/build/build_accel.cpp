@@ -9,6 +9,7 @@
 #include "accel/closest.h"
 #include "accel/csg/csg.h"
 #include "accel/geometry_bounds.h"
+#include "accel/winding/winding_field.h"
 #include "core/error.h"
 #include "kernels/exact_ops.h"
 
@@ -429,6 +430,7 @@ std::shared_ptr<const Accel> build_accel(std::vector<Geometry> geometries, const
     items += item_count(g);
     accel->frames.push_back(
         {g.transform.inverse(), g.transform.is_identity(), g.transform.determinant() < 0});
+    accel->has_mirrors |= accel->frames.back().mirrored;
     accel->kinds.push_back(static_cast<std::uint8_t>(kind_of(g)));
     accel->users.push_back(g.user);
     if (std::holds_alternative<MeshGeometry>(g.shape)) accel->stats.triangles += item_count(g);

@@ -8,23 +8,12 @@
 
 #include "accel/accel_data.h"
 #include "accel/geometry_bounds.h"
+#include "accel/winding/mesh_sense.h"
 #include "kernels/exact_ops.h"
 
 namespace oktett {
 
 namespace {
-
-/// Six times the volume that a mesh encloses, negative if it is wound inside out.
-double signed_volume(const TriangleMesh& mesh) {
-  if (mesh.positions.empty()) return 0;
-  const Vec3d origin(mesh.positions[0]);
-  double volume = 0;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const auto corner = [&](std::size_t k) { return Vec3d(mesh.positions[mesh.indices[i + k]]) - origin; };
-    volume += dot(corner(0), cross(corner(1), corner(2)));
-  }
-  return volume;
-}
 
 /// The structures that an instance or a list of instances shows.
 std::vector<const Accel*> children_of(const Geometry& g) {
@@ -36,20 +25,18 @@ std::vector<const Accel*> children_of(const Geometry& g) {
   return children;
 }
 
-bool is_inside_out(const Geometry& g) {
-  const auto* mesh = std::get_if<MeshGeometry>(&g.shape);
-  return mesh != nullptr && signed_volume(*mesh->mesh) < 0;
-}
-
-/// Appends the meshes wound inside out in `accel` and its instances. `seen`: structures that have been
-/// visited, so that each is visited once however many instances show it.
-void find_inverted(const Accel& accel, std::set<const Accel*>& seen,
-                   std::vector<std::pair<const Accel*, std::uint32_t>>& found) {
-  if (!seen.insert(&accel).second) return;
+/// Finds the senses of the meshes in `accel` and its instances, so that no ray has to. Returns whether there
+/// are meshes. `seen`: structures that have been visited, so that each is visited once however many instances
+/// show it.
+bool prepare_senses(const Accel& accel, std::set<const Accel*>& seen) {
+  if (!seen.insert(&accel).second) return false;
+  bool has_meshes = false;
   for (std::uint32_t g = 0; g < accel.geometries.size(); ++g) {
-    if (is_inside_out(accel.geometries[g])) found.emplace_back(&accel, g);
-    for (const Accel* child : children_of(accel.geometries[g])) find_inverted(*child, seen, found);
+    if (std::holds_alternative<MeshGeometry>(accel.geometries[g].shape))
+      mesh_sense(accel, g), has_meshes = true;
+    for (const Accel* child : children_of(accel.geometries[g])) has_meshes |= prepare_senses(*child, seen);
   }
+  return has_meshes;
 }
 
 /// Whether the crossings of all solids can be listed in lanes: all are primitives whose crossings one call
@@ -162,8 +149,6 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
     csg.nodes.push_back({e.op, is_first, parent, static_cast<std::uint32_t>(e.children.size())});
     for (const Geometry& g : e.solids) {
       if (is_unbounded(g)) csg.unbounded.push_back(static_cast<std::uint32_t>(solids.size()));
-      csg.inverted.push_back(is_inside_out(g));
-      for (const Accel* child : children_of(g)) find_inverted(*child, seen, csg.inverted_inside);
       solids.push_back(g);
       csg.operand_of.push_back(node);
     }
@@ -171,7 +156,7 @@ CsgItem build_csg(const CsgExpression& expression, const BuildOptions& options) 
   };
   add(add, expression, kNoId, true);
   csg.solids = build_accel(std::move(solids), options);
-  std::sort(csg.inverted_inside.begin(), csg.inverted_inside.end());
+  csg.has_meshes = prepare_senses(*csg.solids, seen);
   number_solids(csg);
   csg.in_lanes = fits_lanes(csg);
   find_needed(csg);

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <span>
 
 #include "accel/accel_data.h"
 #include "accel/csg/csg.h"
 #include "accel/hit_place.h"
+#include "accel/winding/mesh_sense.h"
 
 namespace oktett {
 namespace {
@@ -138,14 +140,6 @@ void start_states(const CsgItem& csg, const Ray& ray, float slack, Scratch& s) {
   }
 }
 
-/// Whether the hit is with a mesh inside an instance that is wound inside out.
-bool is_inverted_inside(const CsgItem& csg, const Hit& hit) {
-  if (csg.inverted_inside.empty() || hit.instance == kNoId) return false;
-  const Accel* accel = follow_path(*csg.solids, hit.instance).accel;
-  return std::binary_search(csg.inverted_inside.begin(), csg.inverted_inside.end(),
-                            std::pair(accel, accel->geometry_of(hit.item)));
-}
-
 /// Calls f(crossing) for each crossing of the combination until it returns false.
 template <class Function>
 void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& crossings, Function&& f) {
@@ -153,13 +147,14 @@ void sweep(const CsgItem& csg, const Ray& ray, const std::vector<Crossing>& cros
   Scratch& s = scratch;
   s.events.clear();
   const Accel& solids = *csg.solids;
+  std::span<const float> turns;
+  if (csg.has_meshes) turns = solid_turns(solids, crossings);
   for (std::uint32_t i = 0; i < crossings.size(); ++i) {
-    if (crossings[i].turn == 0) continue;
+    const float turn = turns.empty() ? crossings[i].turn : turns[i];
+    if (turn == 0) continue;
     const Hit& hit = crossings[i].hit;
     const std::uint32_t item = hit.instance == kNoId ? hit.item : top_item(solids, hit.instance);
     const std::uint32_t geometry = solids.geometry_of(item);
-    const bool inverted = csg.inverted[geometry] != 0 || is_inverted_inside(csg, hit);
-    const float turn = inverted ? -crossings[i].turn : crossings[i].turn;
     std::uint32_t solid = csg.first_solid[geometry];
     if (csg.first_solid[geometry + 1] > solid + 1) solid += item - solids.first_item[geometry];
     s.events.push_back({hit.t, turn, solid, geometry, i});

@@ -7,6 +7,7 @@
 #include "accel/surface/surface_lanes.h"
 #include "accel/traverse/closest.h"
 #include "accel/traverse/inflight/all_hits_pairs.h"
+#include "accel/winding/winding_walk.h"
 #include "core/simd_memory.h"
 #include "core/simd_native.h"
 
@@ -40,7 +41,7 @@ const TraceCode& trace_code() {
 
 template const TraceCode& trace_code<OKTETT_ISA>();
 
-// ---- Nearest points.
+// ---- Points: what is nearest, and winding numbers.
 
 template <class A>
 static void closest(const Accel& accel, const PointSpan& points, Nearest* nearest) {
@@ -66,8 +67,25 @@ static void closest(const Accel& accel, const PointSpan& points, Nearest* neares
 }
 
 template <class A>
+static WindingSum winding(const WindingTree& tree, const Vec3f& point, float limit) {
+  return WindingWalk<A, float, false>(tree, point, limit, nullptr, nullptr).run();
+}
+
+template <class A>
+static WindingSum winding_precise(const WindingTree& tree, const Vec3d& point, double limit,
+                                  OpenParts* parts) {
+  return WindingWalk<A, double, false>(tree, point, limit, nullptr, parts).run();
+}
+
+template <class A>
+static WindingSum winding_mapped(const WindingTree& tree, const Vec3d& point, double limit,
+                                 const WindingMap& map, OpenParts* parts) {
+  return WindingWalk<A, double, true>(tree, point, limit, &map, parts).run();
+}
+
+template <class A>
 const PointCode& point_code() {
-  static constexpr PointCode code = {closest<A>};
+  static constexpr PointCode code = {closest<A>, winding<A>, winding_precise<A>, winding_mapped<A>};
   return code;
 }
 

@@ -1,6 +1,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <string>
+
 #include "python/src/bind.h"
 #include "python/src/fields.h"
 #include "python/src/point_queries.h"
@@ -34,24 +36,45 @@ py::object ask_closest_point(SceneStore& scene, py::handle given, const Fields& 
   return py::module_::import("oktett._results").attr("ClosestPoints")(**result);
 }
 
-py::array ask_inside(SceneStore& scene, py::handle given) {
+InsideRule rule_of(const std::string& name, const char* argument) {
+  if (name == "crossings") return InsideRule::crossings;
+  if (name == "winding") return InsideRule::winding;
+  throw py::value_error(std::string(argument) + ": expected 'crossings' or 'winding', not '" + name + "'");
+}
+
+py::array ask_inside(SceneStore& scene, py::handle given, const std::string& name) {
+  const InsideRule rule = rule_of(name, "rule");
   const FloatArray points = float_rows(given, "points", 3);
   py::array_t<bool> result(row_shape(points));
   auto* const answers = reinterpret_cast<std::uint8_t*>(result.mutable_data());
   const std::shared_ptr<const World> world = world_of(scene);
   run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
-    inside(*world, points.data(), begin, end, answers);
+    inside(*world, points.data(), begin, end, rule, answers);
   });
   return result;
 }
 
-py::array ask_signed_distance(SceneStore& scene, py::handle given) {
+py::array ask_winding_number(SceneStore& scene, py::handle given, double error) {
+  if (!(error >= 0x1p-20))
+    throw py::value_error("error: expected a number of at least 2^-20, not " + std::to_string(error));
+  const FloatArray points = float_rows(given, "points", 3);
+  py::array_t<float> result(row_shape(points));
+  float* const numbers = result.mutable_data();
+  const std::shared_ptr<const World> world = world_of(scene);
+  run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
+    winding_numbers(*world, points.data(), begin, end, error, numbers);
+  });
+  return result;
+}
+
+py::array ask_signed_distance(SceneStore& scene, py::handle given, const std::string& name) {
+  const InsideRule rule = rule_of(name, "sign");
   const FloatArray points = float_rows(given, "points", 3);
   py::array_t<float> result(row_shape(points));
   float* const distances = result.mutable_data();
   const std::shared_ptr<const World> world = world_of(scene);
   run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
-    signed_distances(*world, points.data(), begin, end, distances);
+    signed_distances(*world, points.data(), begin, end, rule, distances);
   });
   return result;
 }
@@ -73,16 +96,32 @@ scene holds another shape, or one of the round ones distorted, and for other sha
 constexpr const char* kInsideDoc = R"(Whether each point is inside of any solid: bool (...).
 
 points: shape (..., 3).
+rule: how meshes are judged.
+    'crossings': each alone, by one ray from the point. A point is inside of a closed mesh that winds around it,
+        in either sense; where faces are wound against each other, after an odd number of crossings. In meshes
+        with holes the answer depends on the direction of the ray.
+    'winding': all together, where abs(winding_number) > 1/2; for open and damaged meshes. Decided exactly.
 
-Solids are closed meshes, each of which counts on its own, spheres, boxes, half-spaces of planes, exact
-surfaces that are not open, combinations, and instances of them. Of points on a boundary nothing is promised.
-A point that is not finite is outside. Raises ValueError for other shapes of arrays.)";
+Solids are meshes, spheres, boxes, half-spaces of planes, exact surfaces that are not open, combinations, and
+instances of them. Of points on a boundary nothing is promised. A point that is not finite is outside. Raises
+ValueError for other shapes of arrays.)";
+
+constexpr const char* kWindingNumberDoc =
+    R"(How often all meshes together wind around each point: float32 (...).
+
+points: shape (..., 3).
+error: the numbers are off by at most this, at least 2^-20, and a rounding.
+
+It is the sum of the solid angles of the triangles over 4 pi, positive seen from the back: 1 in a closed mesh,
+-1 if that is inside out, 0 outside, between where there are holes, the mean of both sides on a surface. Each
+other solid that holds the point adds 1. NaN for points that are not finite. Raises ValueError for other shapes
+of arrays.)";
 
 constexpr const char* kSignedDistanceDoc =
     R"(The distance of each point to the nearest surface: float32 (...).
 
-It is that of closest_point, and negative where inside says that the point is inside. points and errors are
-those of closest_point.)";
+It is that of closest_point, and negative where inside, by the rule that `sign` names, says that the point is
+inside. points and errors are those of closest_point.)";
 
 }  // namespace
 
@@ -91,8 +130,11 @@ void bind_point_queries(SceneClass& scene) {
   const Fields usual{"distance", "point", "object", "primitive", "uv", "normal"};
   scene.def("closest_point", ask_closest_point, "points"_a, py::kw_only(), "fields"_a = usual,
             kClosestPointDoc);
-  scene.def("inside", ask_inside, "points"_a, kInsideDoc);
-  scene.def("signed_distance", ask_signed_distance, "points"_a, kSignedDistanceDoc);
+  scene.def("inside", ask_inside, "points"_a, py::kw_only(), "rule"_a = "crossings", kInsideDoc);
+  scene.def("winding_number", ask_winding_number, "points"_a, py::kw_only(), "error"_a = 1e-4,
+            kWindingNumberDoc);
+  scene.def("signed_distance", ask_signed_distance, "points"_a, py::kw_only(), "sign"_a = "crossings",
+            kSignedDistanceDoc);
 }
 
 }  // namespace oktett::python

@@ -65,14 +65,19 @@ void closest_points(const World& world, const float* points, std::size_t begin, 
   describe_hits(world, {}, hits, places, named);
 }
 
-void inside(const World& world, const float* points, std::size_t begin, std::size_t end,
+void inside(const World& world, const float* points, std::size_t begin, std::size_t end, InsideRule rule,
             std::uint8_t* answers) {
-  oktett::inside(*world.accel, rows(points, begin, end), std::span(answers + begin, end - begin));
+  oktett::inside(*world.accel, rows(points, begin, end), std::span(answers + begin, end - begin), rule);
+}
+
+void winding_numbers(const World& world, const float* points, std::size_t begin, std::size_t end,
+                     double error, float* numbers) {
+  winding_number(*world.accel, rows(points, begin, end), std::span(numbers + begin, end - begin), error);
 }
 
 void signed_distances(const World& world, const float* points, std::size_t begin, std::size_t end,
-                      float* distances) {
-  signed_distance(*world.accel, rows(points, begin, end), std::span(distances + begin, end - begin));
+                      InsideRule rule, float* distances) {
+  signed_distance(*world.accel, rows(points, begin, end), std::span(distances + begin, end - begin), rule);
 }
 
 }  // namespace oktett::python

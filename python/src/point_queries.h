@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "accel/point_query.h"
 #include "python/src/ray_queries.h"
 #include "render/geometry.h"
 
@@ -23,11 +24,15 @@ void closest_points(const World& world, const float* points, std::size_t begin, 
                     const ClosestColumns& out);
 
 /// answers[i] becomes 1 or 0 for the points [begin, end).
-void inside(const World& world, const float* points, std::size_t begin, std::size_t end,
+void inside(const World& world, const float* points, std::size_t begin, std::size_t end, InsideRule rule,
             std::uint8_t* answers);
+
+/// numbers[i] becomes the winding number at the point, off by at most `error`.
+void winding_numbers(const World& world, const float* points, std::size_t begin, std::size_t end,
+                     double error, float* numbers);
 
 /// distances[i] becomes the distance to the nearest surface, negative inside of solids.
 void signed_distances(const World& world, const float* points, std::size_t begin, std::size_t end,
-                      float* distances);
+                      InsideRule rule, float* distances);
 
 }  // namespace oktett::python

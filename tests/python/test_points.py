@@ -114,3 +114,46 @@ def test_open3d_has_the_same_by_its_names(points):
     for query in (scene.compute_closest_points, scene.compute_distance, scene.compute_signed_distance, scene.compute_occupancy):
         with pytest.raises(ValueError, match=r"\(\.\.\., 3\)"):
             query(np.zeros((4, 2)))
+
+
+def solid_angles(vertices, faces, points):
+    """The winding number of each point, in float64 (van Oosterom and Strackee 1983)."""
+    turns = np.zeros(len(points))
+    for face in faces:
+        a, b, c = (vertices[k].astype(float) - points for k in face)
+        la, lb, lc = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+        x = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
+        turns += np.arctan2((a * np.cross(b, c)).sum(1), x) / (2 * np.pi)
+    return turns
+
+
+def test_winding_numbers_of_open_and_damaged_meshes(points):
+    vertices, faces = ball(2)
+    random = np.random.default_rng(4)
+    broken = faces[random.random(len(faces)) > 0.15]
+    broken = np.concatenate([broken, faces[:20], faces[30:40, ::-1]])
+    scene = oktett.Scene(vertices, broken)
+    expected = solid_angles(vertices, broken, points.astype(float))
+    for error in (1e-2, 1e-4, 1e-6):
+        numbers = scene.winding_number(points, error=error)
+        assert numbers.dtype == np.float32 and np.abs(numbers - expected).max() <= error + 1e-6
+    assert scene.winding_number(points) == pytest.approx(expected, abs=1.01e-4)
+    inside = scene.inside(points, rule="winding")
+    assert np.array_equal(inside, np.abs(expected) > 0.5) and inside.any() and not inside.all()
+    distance = scene.closest_point(points).distance
+    assert np.array_equal(scene.signed_distance(points, sign="winding"), np.where(inside, -distance, distance))
+    grid = scene.winding_number(points.reshape(30, 50, 3).astype(float))
+    assert grid.shape == (30, 50) and np.array_equal(grid.ravel(), scene.winding_number(points))
+    whole = oktett.Scene(vertices, faces)
+    assert np.array_equal(whole.inside(points, rule="winding"), whole.inside(points))
+    assert np.isnan(whole.winding_number([[np.nan, 0, 0]])).all()
+    assert oktett.Scene().winding_number(points[:3]).tolist() == [0, 0, 0]
+    with pytest.raises(ValueError, match="rule: expected 'crossings' or 'winding', not 'rays'"):
+        scene.inside(points, rule="rays")
+    with pytest.raises(ValueError, match="sign: expected 'crossings' or 'winding', not ''"):
+        scene.signed_distance(points, sign="")
+    for error in (0, -1, float("nan")):
+        with pytest.raises(ValueError, match="error: expected a number of at least"):
+            scene.winding_number(points, error=error)
+    with pytest.raises(ValueError, match=r"points: expected .* \(\.\.\., 3\), found the shape \(3, 6\)"):
+        scene.winding_number(np.zeros((3, 6)))

@@ -177,11 +177,14 @@ class AllHitsTraversal {
       const InflightHead& g = group_[0];
       const RayLanes<C> rays = load_ray_lanes(number, g.o, g.d, g.tmin, g.tmax);
       HitLanes<C> h;
-      unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), triangle, h);
+      unsigned front = 0;
+      unsigned met = decide_pairs<kChunk, A>(rays, accel_.blocks.data(), triangle, h, &front);
       met &= (2u << (count - 1)) - 1;
       each_hit(met, h, [&](int i, float t, float u, float v) {
         const std::uint32_t item = accel_.blocks[triangle[i] / kBlock].item[triangle[i] % kBlock];
-        add({{{t, u, v, item, kNoId}, 0.0f}, static_cast<std::uint32_t>(first_) + ray[i]});
+        const bool mirrored = accel_.has_mirrors && is_mirrored(accel_, item);
+        const float turn = (front >> i & 1) != (mirrored ? 1u : 0u) ? -1.0f : 1.0f;
+        add({{{t, u, v, item, kNoId}, turn}, static_cast<std::uint32_t>(first_) + ray[i]});
       });
       triangles_.size = at;
     }

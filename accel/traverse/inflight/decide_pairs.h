@@ -127,11 +127,11 @@ OKTETT_INLINE TriangleLanes<Simd<float, N, A>> gather_triangles(const TriangleBl
 
 /// Ray i of `ray` against triangle i of `tri`, for all i at once, with the same bits as decide_watertight of
 /// each pair alone. The rays may differ in the axis of their greatest direction component. Returns a bit for
-/// each ray that meets its triangle at tmin < t <= tmax. Unused lanes may have any triangle and any finite
-/// ray.
+/// each ray that meets its triangle at tmin < t <= tmax, and in `front`, if it is not null, for each of these
+/// that meets it from the front. Unused lanes may have any triangle and any finite ray.
 template <int N, class A>
 OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, TriangleLanes<Simd<float, N, A>> tri,
-                                    HitLanes<Simd<float, N, A>>& hit) {
+                                    HitLanes<Simd<float, N, A>>& hit, unsigned* front = nullptr) {
   using F = Simd<float, N, A>;
   using D = Simd<double, N, A>;
   ray.d = flush_direction(ray.d);
@@ -149,14 +149,18 @@ OKTETT_INLINE unsigned decide_pairs(RayLanes<Simd<float, N, A>> ray, TriangleLan
   const D inv_dz = D(1.0) / d.z;
   const ShearLanes<D> shear{to_double(permute(ray.o)), inv_dz, d.x * inv_dz, d.y * inv_dz};
   tri = {permute(tri.a), permute(tri.b), permute(tri.c)};
-  return bits(decide_watertight(shear, tri, ray.tmin, ray.tmax, hit));
+  typename F::M clockwise;
+  const unsigned met = bits(decide_watertight(shear, tri, ray.tmin, ray.tmax, hit, clockwise));
+  if (front != nullptr) *front = bits(clockwise) ^ bits(mask_cast<float>(inv_dz < D(0.0)));
+  return met;
 }
 
 /// The same for triangles `ids[i]` = block * TriangleBlock::kSize + lane of `blocks`.
 template <int N, class A>
 OKTETT_INLINE unsigned decide_pairs(const RayLanes<Simd<float, N, A>>& ray, const TriangleBlock* blocks,
-                                    const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit) {
-  return decide_pairs<N, A>(ray, gather_triangles<N, A>(blocks, ids), hit);
+                                    const std::uint32_t* ids, HitLanes<Simd<float, N, A>>& hit,
+                                    unsigned* front = nullptr) {
+  return decide_pairs<N, A>(ray, gather_triangles<N, A>(blocks, ids), hit, front);
 }
 
 }  // namespace oktett
