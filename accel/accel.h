@@ -165,6 +165,18 @@ SurfaceInteraction identify(const Accel& accel, const Hit& hit);
 /// transform; of a combination or an instance, the shape inside it.
 Affine object_transform(const Accel& accel, const Hit& hit);
 
+/// The triangle of a mesh that was hit.
+struct MeshHit {
+  const TriangleMesh* mesh = nullptr;  ///< null for any other shape
+  std::uint32_t triangle = 0;
+  Affine to_world;  ///< from the mesh's own space
+};
+MeshHit mesh_hit(const Accel& accel, const Hit& hit);
+
+/// Sets dp/du and dp/dv of a triangle with these corners and their texture coordinates; leaves them where
+/// those do not span anything.
+void set_uv_tangents(const std::array<Vec2f, 3>& uv, const Vec3f (&corners)[3], Vec3f& by_u, Vec3f& by_v);
+
 /// out[k] becomes the surface interaction of ray and hit number which[k], for at most InteractionBlock::kMost
 /// of them: the bits that surface_interaction gives, except that uv and tangents are left out. Throws
 /// Error if there are more.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/command_line.h"
+#include "app/gltf_words.h"
 #include "app/limits.h"
 #include "app/progress.h"
 #include "app/text.h"
@@ -19,6 +20,7 @@ namespace {
 struct ConvertArguments {
   std::string input, output;
   ConvertOptions options;
+  GltfWords gltf;
   LimitArguments limits;
   bool quiet = false;
 };
@@ -29,7 +31,9 @@ int run_convert(const ConvertArguments& arguments) {
   check_mesh_output(arguments.output, arguments.options);
   const Conversion done = [&] {
     const PhaseLine phases(arguments.quiet);
-    return convert_mesh(arguments.input, arguments.output, arguments.options);
+    ConvertOptions options = arguments.options;
+    options.gltf = gltf_options(arguments.gltf);
+    return convert_mesh(arguments.input, arguments.output, options);
   }();
   print_warnings(done.warnings);
   if (arguments.quiet) return 0;
@@ -52,6 +56,7 @@ void add_convert_command(CommandLine& line) {
   verb.flag("--ascii", a->options.ascii,
             ("Write text instead of bytes (" + and_list(text_mesh_extensions()) + ")").c_str());
   verb.flag("--weld", a->options.weld, "Make one of all vertices at the same place");
+  add_gltf_options(verb, a->gltf, false);
   verb.flag("--quiet", a->quiet, "Print nothing but warnings and errors");
   add_limit_options(verb, a->limits);
 }

@@ -15,6 +15,7 @@
 
 #include "accel/traverse/trace_counts.h"
 #include "app/command_line.h"
+#include "app/gltf_words.h"
 #include "app/json.h"
 #include "app/limits.h"
 #include "app/render_options.h"
@@ -163,6 +164,7 @@ struct InfoArguments {
   std::string file;
   LimitArguments limits;
   std::vector<std::string> definitions;
+  GltfWords gltf;
   std::string bvh;
   bool json = false;
   bool trace = false;
@@ -289,7 +291,8 @@ void print_json(const Scene& scene, const SceneSummary& summary, const TreeSumma
 
 int run_info(const InfoArguments& arguments) {
   apply_limits(arguments.limits);
-  const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions));
+  const Scene scene = load_scene(arguments.file, parse_definitions(arguments.definitions), std::nullopt,
+                                 gltf_options(arguments.gltf));
   print_warnings(scene.warnings);
   const SceneSummary summary = summarize(scene);
   const TreeSummary tree = build_trees(scene, arguments);
@@ -308,6 +311,7 @@ void add_info_command(CommandLine& line) {
                             [arguments] { return run_info(*arguments); });
   verb.positional("file", arguments->file, "FILE", "Scene file (.yaml) or mesh");
   verb.option("-D", &arguments->definitions, "k=v", "Define ${k} of the scene file; may be repeated");
+  add_gltf_options(verb, arguments->gltf, false);
   add_bvh_option(verb, arguments->bvh);
   verb.flag("--trace", arguments->trace, "Trace the camera's rays and print what they met in the tree");
   verb.flag("--json", arguments->json, "Print one JSON object");

@@ -352,7 +352,32 @@ int say_stopped(int signal, double percent, const Checkpoint& checkpoint) {
   return signal == SIGALRM ? kExitTimeout : 128 + signal;
 }
 
+int run_render(const CommandLine& line, RenderArguments arguments);
+
+/// One picture after the other, each as by --time.
+int run_frames(const CommandLine& line, const RenderArguments& arguments) {
+  const Frames frames = frames_of(arguments.frames);
+  if (arguments.scene.empty()) return line.missing("scene");
+  const CheckpointArguments& kept = arguments.checkpoints;
+  if (!kept.checkpoint.empty() || !kept.resume.empty() || !kept.shard.empty())
+    throw Error("--frames writes several pictures; it does not go with --checkpoint, --resume and --shard");
+  GltfWords words = arguments.gltf;
+  if (words.time.empty()) words.time = "0";
+  const double start = *gltf_options(words).time;
+  const std::string output = output_path(arguments);
+  for (int i = frames.first; i <= frames.last; ++i) {
+    RenderArguments one = arguments;
+    one.frames = {};
+    one.gltf.time = fmt::format("{}", start + i / frames.rate);
+    if (!output.empty()) one.outfile = frame_path(output, i);
+    if (const int status = run_render(line, std::move(one)); status != 0) return status;
+  }
+  return 0;
+}
+
 int run_render(const CommandLine& line, RenderArguments arguments) {
+  if (!arguments.frames.frames.empty()) return run_frames(line, arguments);
+  if (!arguments.frames.rate.empty()) throw Error("--fps needs --frames");
   check_stats(arguments.stats);
   Checkpoint checkpoint(line, arguments);
   if (arguments.scene.empty()) return line.missing("scene");

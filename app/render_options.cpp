@@ -81,6 +81,7 @@ void add_picture_options(Verb& verb, RenderArguments& a) {
   verb.choice("--isa", a.isa, "NAME", "Instruction set", {"auto", "sse4.2", "avx2", "avx512", "scalar"});
   add_bvh_option(verb, a.bvh);
   verb.option("-D", &a.definitions, "k=v", "Define ${k} of the scene file; may be repeated");
+  add_gltf_options(verb, a.gltf, true);
   add_limit_options(verb, a.limits);
 }
 
@@ -88,6 +89,7 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.optional_positional("scene", a.scene, "SCENE|MESH", "Scene file (.yaml) or mesh");
   verb.option("-o,--outfile", &a.outfile, "FILE",
               "Picture to write; default: the scene's name with .png, here");
+  add_frame_options(verb, a.frames);
   verb.flag("--no-output", a.no_output, "Write no picture, for measuring");
   add_picture_options(verb, a);
   verb.option("--photon-map", &a.photon_map, "FILE",

@@ -9,6 +9,7 @@
 #include "accel/accel.h"
 #include "app/checkpoint.h"
 #include "app/command_line.h"
+#include "app/gltf_words.h"
 #include "app/limits.h"
 #include "app/setting_options.h"
 #include "io/cache/scene_cache.h"
@@ -52,6 +53,8 @@ struct RenderArguments {
   std::string photon_map;  ///< file; empty: photons are not kept
   CheckpointArguments checkpoints;
   CacheArguments cache;
+  GltfWords gltf;
+  FrameWords frames;
   bool quiet = false;
   bool verbose = false;
   bool progress = false;

@@ -23,7 +23,8 @@ static Scene load_overridden(const RenderArguments& arguments) {
   const Viewpoint viewpoint = viewpoint_of(arguments);
   std::optional<IntegratorKind> integrator;
   if (is_given(arguments.settings, "--integrator")) integrator = none.integrator.kind;
-  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions), integrator);
+  Scene scene = load_scene(arguments.scene, parse_definitions(arguments.definitions), integrator,
+                           gltf_options(arguments.gltf));
   override_scene(arguments, scene);
   if (!look && !up) return scene;
   if (!is_mesh_alone(scene)) {

@@ -10,7 +10,7 @@ set(OKTETT_PUBLIC_HEADERS
   render/scene.h render/material.h render/pattern.h render/medium/medium.h render/medium/density_grid.h render/bsdf/principled_parameters.h render/light/environment_picture.h
   render/light/light_profile.h
   render/sampling/filter_kind.h render/tone.h render/motion.h render/camera.h render/picture.h render/render_options.h render/picture/render.h render/texture_sampler.h
-  io/scene/scene_file.h io/mesh/mesh_file.h io/mesh/load/load_mesh.h io/obj/obj.h io/image/image.h io/image/metadata.h io/image/texture.h io/image/heights.h)
+  io/scene/scene_file.h io/gltf/gltf_options.h io/mesh/mesh_file.h io/mesh/load/load_mesh.h io/obj/obj.h io/image/image.h io/image/metadata.h io/image/texture.h io/image/heights.h)
 # What describes the exact surfaces.
 file(GLOB data_headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS core/description.h kernels/*/*_data.h)
 list(APPEND OKTETT_PUBLIC_HEADERS kernels/exact_form.h kernels/exact/normal_method.h ${data_headers})

@@ -19,6 +19,10 @@ struct TriangleMesh {
   Column<Vec3f> positions;
   Column<Vec3f> normals;  ///< of any length but zero
   Column<Vec2f> uvs;
+  /// One for each of `normals`: a vector along the surface, and on which side of it, +1 or -1, the second
+  /// axis of normal maps lies; zeros for none. Or empty: the axes are those of u and v.
+  Column<std::array<float, 4>> tangents;
+  Column<Vec2f> second_uvs;       ///< further texture coordinates, one for each of `uvs`; or empty
   Column<std::uint32_t> indices;  ///< three per triangle, into positions
   Column<std::uint32_t>
       normal_indices;                ///< three per triangle, kNoId for a corner without a normal; or empty
@@ -29,18 +33,21 @@ struct TriangleMesh {
   /// Memory of all columns.
   std::size_t bytes() const {
     return positions.bytes() + normals.bytes() + uvs.bytes() + indices.bytes() + normal_indices.bytes() +
-           uv_indices.bytes() + material_slots.bytes();
+           uv_indices.bytes() + material_slots.bytes() + tangents.bytes() + second_uvs.bytes();
   }
 };
 
 /// The texture coordinates of the corners of a triangle: those of the mesh if all three have some, else
-/// (0, 0), (1, 0) and (0, 1), so that u and v are the weights of the second and the third corner.
-inline std::array<Vec2f, 3> corner_uvs(const TriangleMesh& mesh, std::uint32_t triangle) {
+/// (0, 0), (1, 0) and (0, 1), so that u and v are the weights of the second and the third corner. `layer`: of
+/// uvs, 0, or of second_uvs, 1.
+inline std::array<Vec2f, 3> corner_uvs(const TriangleMesh& mesh, std::uint32_t triangle,
+                                       std::uint8_t layer = 0) {
   std::array<Vec2f, 3> uv{{{0, 0}, {1, 0}, {0, 1}}};
-  if (mesh.uv_indices.empty()) return uv;
+  const Column<Vec2f>& uvs = layer == 0 ? mesh.uvs : mesh.second_uvs;
+  if (mesh.uv_indices.empty() || uvs.empty()) return uv;
   const std::uint32_t* index = &mesh.uv_indices[3 * std::size_t{triangle}];
   if (index[0] != kNoId && index[1] != kNoId && index[2] != kNoId)
-    for (std::size_t k = 0; k < 3; ++k) uv[k] = mesh.uvs[index[k]];
+    for (std::size_t k = 0; k < 3; ++k) uv[k] = uvs[index[k]];
   return uv;
 }
 

@@ -21,18 +21,29 @@ enum class ImageChannel : std::uint8_t { red, green, blue, alpha, luminance };
 /// How the colours of an image are encoded: as its file says, or whatever it says as sRGB or linear.
 enum class TextureColors : std::uint8_t { of_file, srgb, linear };
 
+/// What an image shows beyond its edges.
+enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
+/// That along u and v.
+struct TextureWraps {
+  TextureWrap u = TextureWrap::repeat, v = TextureWrap::repeat;
+  bool operator==(const TextureWraps&) const = default;
+};
+inline constexpr TextureWraps kClampedTexture{TextureWrap::clamp, TextureWrap::clamp};
+
 /// An image file and how it is laid over the uv square, or a pattern. ImageTextures reads the file.
 struct Texture {
   std::string path;                         ///< of the image; empty for a pattern
-  bool clamp = false;                       ///< clamp to the edge instead of repeating (MTL `-clamp on`)
-  Vec3f offset{0, 0, 0};                    ///< added to uv after scaling (MTL `-o`)
+  TextureWraps wrap{};                      ///< beyond the edges (MTL `-clamp on`: clamped)
+  Vec3f offset{0, 0, 0};                    ///< added to uv after scaling and turning (MTL `-o`)
   Vec3f scale{1, 1, 1};                     ///< multiplies uv (MTL `-s`)
+  float rotation = 0;                       ///< turns scaled uv counter-clockwise about (0, 0); radians
   float gain = 1;                           ///< multiplies the texel (MTL `-mm base gain`)
   float base = 0;                           ///< added to the texel (MTL `-mm base gain`)
   std::optional<PatternTexture> pattern{};  ///< instead of an image; only gain and base apply to it
   /// What a number is taken from (colours and normals are those of all channels).
   ImageChannel channel = ImageChannel::red;
   TextureColors color_space = TextureColors::of_file;  ///< of a colour (MTL `-colorspace`)
+  std::uint8_t uv_layer = 0;  ///< of what meshes have: 0 for TriangleMesh::uvs, 1 for second_uvs
   /// If not null, the bytes of the image file; `path` is only its name then.
   std::shared_ptr<const std::string> content{};
   bool operator==(const Texture&) const = default;
@@ -121,6 +132,7 @@ struct Material {
   std::uint32_t bump_texture = kNoId;  ///< height, perturbs the shading normal (map_Bump)
   std::uint32_t normal_texture = kNoId;  ///< tangent-space normal (norm)
   float bump_scale = 1;                  ///< MTL `-bm`
+  float normal_scale = 1;                ///< multiplies the tilt of mapped normals
   // Each multiplies the number of its name.
   std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;

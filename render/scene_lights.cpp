@@ -295,7 +295,9 @@ Color SceneLights::texture_at(const LightSample& sample, const TextureSampler* t
   const std::array<Vec2f, 3> uv = corner_uvs(mesh, found->triangle);
   const float weight[3] = {1 - sample.u - sample.v, sample.u, sample.v};
   TexturePlace at;
+  const std::array<Vec2f, 3> second = corner_uvs(mesh, found->triangle, 1);
   for (std::size_t k = 0; k < 3; ++k) {
+    at.second.uv.x += second[k].x * weight[k], at.second.uv.y += second[k].y * weight[k];
     at.uv.x += uv[k].x * weight[k], at.uv.y += uv[k].y * weight[k];
     at.position += corner(mesh, found->triangle, k) * double{weight[k]};
   }

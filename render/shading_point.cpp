@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "accel/accel.h"
+#include "core/math.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled/base.h"
 #include "render/shading_lanes.h"
@@ -23,6 +24,12 @@ const PatternTexture* pattern_of(const RenderContext& context, std::uint32_t tex
   return pattern_in(context.texture_list, texture);
 }
 
+/// Where the image of a texture is looked up.
+static const UvPlace& uv_place(std::span<const Texture> list, std::uint32_t texture,
+                               const TexturePlace& place) {
+  return texture < list.size() && list[texture].uv_layer != 0 ? place.second : place;
+}
+
 /// Channels that are negative, NaN or infinite count as 0.
 static Color valid_color(const Color& c) {
   const auto valid = [](float x) { return x > 0 && std::isfinite(x) ? x : 0; };
@@ -35,13 +42,15 @@ Color texture_color(const Textures& textures, std::uint32_t texture, const Textu
     return valid_color(pattern_color(*pattern, place.position) * t.gain + Color{t.base, t.base, t.base});
   }
   if (texture == kNoId || textures.images == nullptr) return {1, 1, 1};
-  return valid_color(textures.images->color(texture, place.uv, place.dx, place.dy));
+  const UvPlace& at = uv_place(textures.list, texture, place);
+  return valid_color(textures.images->color(texture, at.uv, at.dx, at.dy));
 }
 
 float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
   if (pattern_of(context, texture) != nullptr) return texture_color(context, texture, place).x;
   if (texture == kNoId || context.textures == nullptr) return 1;
-  return context.textures->value(texture, place.uv, place.dx, place.dy);
+  const UvPlace& at = uv_place(context.texture_list, texture, place);
+  return context.textures->value(texture, at.uv, at.dx, at.dy);
 }
 
 /// Whether any texture of the material is such that is(texture).
@@ -86,9 +95,8 @@ Footprint footprint(const SurfaceInteraction& s, const Vec3f& x, const Vec3f& y,
 }
 
 /// The neighbours of a camera ray are known. Other rays count as cones with the angle of a pixel.
-Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& hit,
-                            const SurfaceInteraction& s, const RayHistory& history) {
-  Vec3f x, y;
+void pixel_vectors(const RenderContext& c, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
+                   const RayHistory& history, Vec3f& x, Vec3f& y) {
   if (history.from_camera && history.distance == 0) {
     pixel_footprint(c.camera, ray, s.position, s.geometric_normal, x, y);
   } else {
@@ -97,7 +105,31 @@ Footprint texture_footprint(const RenderContext& c, const Ray& ray, const Hit& h
     make_basis(s.geometric_normal, x, y);
     x *= width, y *= width;
   }
-  return footprint(s, x, y, c.footprint_scale);
+}
+
+bool has_second_uvs(const RenderContext& context, const Material& m) {
+  return any_texture(m, [&](std::uint32_t t) {
+    return t < context.texture_list.size() && context.texture_list[t].uv_layer != 0;
+  });
+}
+
+/// Texture coordinates of the second layer, and what they add to the point.
+SurfaceInteraction by_second_uvs(const RenderContext& context, const SurfaceInteraction& s, const Hit& hit) {
+  const MeshHit at = mesh_hit(*context.world->accel, hit);
+  SurfaceInteraction second = s;
+  if (at.mesh == nullptr) return second;
+  const std::array<Vec2f, 3> uv = corner_uvs(*at.mesh, at.triangle, 1);
+  const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  second.uv = {0, 0};
+  Vec3f corners[3];
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    second.uv.x += uv[i].x * weights[k], second.uv.y += uv[i].y * weights[k];
+    const std::uint32_t vertex = at.mesh->indices[3 * std::size_t{at.triangle} + i];
+    corners[k] = Vec3f(at.to_world.vector(Vec3d(at.mesh->positions[vertex])));
+  }
+  set_uv_tangents(uv, corners, second.tangent, second.bitangent);
+  return second;
 }
 
 Color textured(const RenderContext& c, const Color& color, std::uint32_t texture, const TexturePlace& place) {
@@ -181,7 +213,7 @@ Vec3f unit_normal(const Vec3f& bent, const Vec3f& n) {
 
 /// The normal of the surface displaced by a height map along `n` (Blinn 1978).
 Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
-             const TexturePlace& place) {
+             const UvPlace& place) {
   const Vec3f across = cross(s.tangent, s.bitangent);
   if (c.textures == nullptr || !(dot(across, across) > 0)) return n;
   const auto step = [](float x, float y) { return std::max(0.5f * (std::abs(x) + std::abs(y)), 0x1p-11f); };
@@ -206,27 +238,84 @@ Vec3f bumped_by_pattern(const PatternTexture& pattern, float scale, const Affine
   return unit_normal(Vec3f(normalize(to_object.normal_by_inverse(own - (slope - own * dot(slope, own))))), n);
 }
 
-/// The normal from a tangent-space normal map: its first axis runs along dp/du, its second to the side of
-/// dp/dv.
-Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Vec3f& n,
-             const TexturePlace& place) {
-  const Vec3f flat = s.tangent - n * dot(s.tangent, n);
-  if (c.textures == nullptr || !(dot(flat, flat) > 0)) return n;
-  const Vec3f t = normalize(flat), left = cross(n, t), b = dot(left, s.bitangent) < 0 ? -left : left;
+/// The axes of a normal map on a surface; of any length.
+struct MapAxes {
+  Vec3f first, second;
+};
+
+/// What the coordinates in the image add to the point, where uv do so as in `s`.
+MapAxes image_axes(const RenderContext& c, std::uint32_t texture, const SurfaceInteraction& s) {
+  if (texture >= c.texture_list.size()) return {s.tangent, s.bitangent};
+  const Texture& t = c.texture_list[texture];
+  const Vec3f by_u = t.scale.x < 0 ? -s.tangent : s.tangent,
+              by_v = t.scale.y < 0 ? -s.bitangent : s.bitangent;
+  if (t.rotation == 0) return {by_u, by_v};
+  const auto cosine = static_cast<float>(portable::cos(double{t.rotation})),
+             sine = static_cast<float>(portable::sin(double{t.rotation}));
+  const float wide = std::abs(t.scale.x), high = std::abs(t.scale.y);
+  return {by_u * (cosine * high) - by_v * (sine * wide), by_u * (sine * high) + by_v * (cosine * wide)};
+}
+
+/// The tangents of the mesh that was hit; zeros if it has none there.
+MapAxes tangent_axes(const RenderContext& c, const Hit& hit, const Vec3f& n) {
+  const MeshHit at = mesh_hit(*c.world->accel, hit);
+  if (at.mesh == nullptr || at.mesh->tangents.empty()) return {};
+  const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Vec3f tangent{0, 0, 0};
+  float side = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t index = at.mesh->normal_indices[3 * std::size_t{at.triangle} + k];
+    if (index == kNoId) return {};
+    const std::array<float, 4>& own = at.mesh->tangents[index];
+    tangent += Vec3f{own[0], own[1], own[2]} * weights[k];
+    side += own[3] * weights[k];
+  }
+  const Vec3f first = Vec3f(at.to_world.vector(Vec3d(tangent)));
+  const bool is_left = (side < 0) == (at.to_world.determinant() < 0);
+  return {first, is_left ? cross(n, first) : cross(first, n)};
+}
+
+/// The normal from a tangent-space normal map: its first axis runs along the mesh's tangents, else along the
+/// image's own; its second to the side of the image's second one.
+Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction& s, const Hit& hit,
+             const Vec3f& n, const UvPlace& place) {
+  if (c.textures == nullptr) return n;
+  MapAxes axes = tangent_axes(c, hit, n);
+  Vec3f flat = axes.first - n * dot(axes.first, n);
+  if (!(dot(flat, flat) > 0)) {
+    axes = image_axes(c, m.normal_texture, s);
+    flat = axes.first - n * dot(axes.first, n);
+  }
+  if (!(dot(flat, flat) > 0)) return n;
+  const Vec3f t = normalize(flat), left = cross(n, t), b = dot(left, axes.second) < 0 ? -left : left;
   const Vec3f texel = c.textures->normal(m.normal_texture, s.uv, place.dx, place.dy) * 2 - Vec3f{1, 1, 1};
-  return unit_normal(t * texel.x + b * texel.y + n * texel.z, n);
+  return unit_normal(t * (texel.x * m.normal_scale) + b * (texel.y * m.normal_scale) + n * texel.z, n);
 }
 
 /// What the textures of a material ask of a hit.
 class TexturedHit {
  public:
   TexturedHit(const RenderContext& context, const Material& m, const SurfaceInteraction& s, const Hit& hit)
-      : context_(context), m_(m), s_(s) {
+      : context_(context), m_(m), s_(s), hit_(hit) {
     place.uv = s.uv;
+    if (has_second_uvs(context, m)) {
+      second_ = by_second_uvs(context, s, hit);
+      place.second.uv = second_->uv;
+    }
     if (!has_pattern(context, m)) return;
     to_world_ = object_transform(*context.world->accel, hit);
     to_object_ = to_world_.inverse();
     place.position = to_object_.point(Vec3d(s.position));
+  }
+
+  /// Sets how the places change across a pixel.
+  void set_footprints(const Vec3f& x, const Vec3f& y) {
+    const auto set = [&](const SurfaceInteraction& s, UvPlace& at) {
+      const Footprint f = footprint(s, x, y, context_.footprint_scale);
+      at.dx = f.dx, at.dy = f.dy;
+    };
+    set(s_, place);
+    if (second_) set(*second_, place.second);
   }
 
   Vec3f shading_normal() const {
@@ -235,17 +324,28 @@ class TexturedHit {
       const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
       n = bumped_by_pattern(*pattern, scale, to_world_, to_object_, place.position, n);
     } else if (m_.bump_texture != kNoId) {
-      n = bumped(context_, m_, s_, n, place);
+      n = bumped(context_, m_, surface_of(m_.bump_texture), n, place_of(m_.bump_texture));
     }
-    return m_.normal_texture == kNoId ? n : mapped(context_, m_, s_, n, place);
+    if (m_.normal_texture == kNoId) return n;
+    return mapped(context_, m_, surface_of(m_.normal_texture), hit_, n, place_of(m_.normal_texture));
   }
 
   TexturePlace place;
 
  private:
+  const UvPlace& place_of(std::uint32_t texture) const {
+    return uv_place(context_.texture_list, texture, place);
+  }
+  /// The surface with the uv of a texture's layer.
+  const SurfaceInteraction& surface_of(std::uint32_t texture) const {
+    return second_ && &place_of(texture) == &place.second ? *second_ : s_;
+  }
+
   const RenderContext& context_;
   const Material& m_;
   const SurfaceInteraction& s_;
+  const Hit& hit_;
+  std::optional<SurfaceInteraction> second_;
   Affine to_world_, to_object_;
 };
 
@@ -280,8 +380,9 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   Vec3f ns = s.shading_normal;
   if (textured_here) {
     TexturedHit textures(context, m, s, hit);
-    const Footprint f = texture_footprint(context, ray, hit, s, history);
-    textures.place.dx = f.dx, textures.place.dy = f.dy;
+    Vec3f x, y;
+    pixel_vectors(context, ray, hit, s, history, x, y);
+    textures.set_footprints(x, y);
     ns = textures.shading_normal();
     place = textures.place;
   }

@@ -15,11 +15,16 @@ namespace oktett {
 
 // ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space.
 
-/// Where textures are looked up.
-struct TexturePlace {
+/// A place in texture coordinates.
+struct UvPlace {
   Vec2f uv;
-  Vec2f dx, dy;    ///< changes of uv from this pixel to its neighbours; zero when unknown
+  Vec2f dx, dy;  ///< changes of uv from this pixel to its neighbours; zero when unknown
+};
+
+/// Where textures are looked up.
+struct TexturePlace : UvPlace {
   Vec3d position;  ///< in the object's own space
+  UvPlace second;  ///< of textures whose uv_layer is 1
 };
 
 /// The pattern of a texture; null for an image or kNoId.

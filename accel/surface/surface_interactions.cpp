@@ -26,12 +26,7 @@ void mesh_uv(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
              SurfaceInteraction& s) {
   const std::array<Vec2f, 3> uv = corner_uvs(mesh, triangle);
   s.uv = weighted_uv(uv, u, v);
-  const float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y, du2 = uv[2].x - uv[0].x,
-              dv2 = uv[2].y - uv[0].y;
-  const float det = du1 * dv2 - du2 * dv1;
-  if (det == 0) return;
-  s.tangent = ((p[1] - p[0]) * dv2 - (p[2] - p[0]) * dv1) / det;
-  s.bitangent = ((p[2] - p[0]) * du1 - (p[1] - p[0]) * du2) / det;
+  set_uv_tangents(uv, p, s.tangent, s.bitangent);
 }
 
 void mesh_interaction(const Geometry& g, const GeometryFrame& g_frame, std::uint32_t triangle, const Hit& hit,
@@ -55,6 +50,24 @@ void mesh_interaction(const Geometry& g, const GeometryFrame& g_frame, std::uint
 }
 
 }  // namespace
+
+void set_uv_tangents(const std::array<Vec2f, 3>& uv, const Vec3f (&p)[3], Vec3f& by_u, Vec3f& by_v) {
+  const float du1 = uv[1].x - uv[0].x, dv1 = uv[1].y - uv[0].y, du2 = uv[2].x - uv[0].x,
+              dv2 = uv[2].y - uv[0].y;
+  const float det = du1 * dv2 - du2 * dv1;
+  if (det == 0) return;
+  by_u = ((p[1] - p[0]) * dv2 - (p[2] - p[0]) * dv1) / det;
+  by_v = ((p[2] - p[0]) * du1 - (p[1] - p[0]) * du2) / det;
+}
+
+MeshHit mesh_hit(const Accel& accel, const Hit& hit) {
+  const HitPlace place = follow_path(accel, hit.instance);
+  const HitNames names = identify_in(place, hit);
+  if (names.kind != Kind::triangle) return {};
+  const Geometry& geometry = place.accel->geometries[names.geometry];
+  return {std::get<MeshGeometry>(geometry.shape).mesh, names.primitive,
+          place.moved ? place.to_world * geometry.transform : geometry.transform};
+}
 
 SurfaceInteraction identify(const Accel& accel, const Hit& hit) {
   const HitNames names = identify_in(follow_path(accel, hit.instance), hit);

@@ -161,6 +161,7 @@ GltfElements GltfAccessors::elements(std::uint32_t number) {
   const GltfAccessor& accessor = file_.model().accessors[number];
   GltfElements e;
   e.name = "accessors[" + std::to_string(number) + "]";
+  if (!accessor.problem.empty()) file_.fail(e.name + ": " + accessor.problem);
   e.count = accessor.count, e.number = accessor.number;
   e.components = accessor.components, e.normalized = accessor.normalized;
   const std::uint32_t size = accessor.element_bytes();
@@ -200,6 +201,29 @@ void read_gltf_uvs(const GltfFile& file, const GltfElements& e, Vec2f* out) {
   in_parts(e.count, kPerTask, [&](std::uint64_t first, std::uint64_t last) {
     for (std::uint64_t i = first; i < last; ++i) out[i].y = 1 - out[i].y;
   });
+}
+
+std::vector<float> read_gltf_numbers(const GltfFile& file, const GltfElements& e, std::uint32_t components) {
+  std::vector<float> numbers(std::size_t{components} * e.count);
+  float* const out = numbers.data();
+  switch (components) {
+    case 1:
+      read_all<1>(file, e, GltfCheck::finite, out);
+      break;
+    case 3:
+      read_all<3>(file, e, GltfCheck::finite, out);
+      break;
+    case 4:
+      read_all<4>(file, e, GltfCheck::finite, out);
+      break;
+    default:
+      read_all<16>(file, e, GltfCheck::finite, out);
+  }
+  return numbers;
+}
+
+void read_gltf_tangents(const GltfFile& file, const GltfElements& e, std::array<float, 4>* out) {
+  read_all<4>(file, e, GltfCheck::finite, reinterpret_cast<float*>(out));
 }
 
 void read_gltf_indices(const GltfFile& file, const GltfElements& e, std::uint64_t limit, std::uint32_t* out) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The numbers of accessors. Within io/ only.
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -57,6 +58,12 @@ enum class GltfCheck : std::uint8_t { finite, coordinate };
 void read_gltf_vectors(const GltfFile& file, const GltfElements& elements, GltfCheck check, Vec3f* out);
 /// The same for texture coordinates; v becomes 1 - v, since here it points up in images.
 void read_gltf_uvs(const GltfFile& file, const GltfElements& elements, Vec2f* out);
+/// The numbers of elements of 1, 3, 4 or 16 components, which must be finite. Throws Error for other
+/// elements.
+std::vector<float> read_gltf_numbers(const GltfFile& file, const GltfElements& elements,
+                                     std::uint32_t components);
+/// The same for tangents and the side of the second one.
+void read_gltf_tangents(const GltfFile& file, const GltfElements& elements, std::array<float, 4>* out);
 /// Reads indices, which must be below `limit`. Throws Error if one is not, or for other elements.
 void read_gltf_indices(const GltfFile& file, const GltfElements& elements, std::uint64_t limit,
                        std::uint32_t* out);

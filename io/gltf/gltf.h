@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/transform.h"
+#include "io/gltf/gltf_options.h"
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_output.h"
 #include "render/scene.h"
@@ -26,6 +27,7 @@ struct GltfPlacement {
   std::string name;
   std::uint32_t mesh = 0;
   Affine to_world;
+  MotionPointer motion{};  ///< as GltfOptions::shutter says: from time 0 to 1
 };
 
 /// The default scene of a file.
@@ -34,6 +36,7 @@ struct GltfScene {
   std::vector<GltfPlacement> placements;
   std::vector<Material> materials;
   std::vector<Texture> textures;
+  std::vector<Medium> media;             ///< what Material::interior refers to
   std::vector<Location> texture_places;  ///< where each texture is named
   std::optional<Camera> camera;          ///< the first one
   double aspect = 0;                     ///< width by height of its picture; 0: not given
@@ -43,7 +46,7 @@ struct GltfScene {
 
 /// Reads a .gltf or .glb file, and the buffers beside it. Throws Error, with ErrorKind::io if a file cannot
 /// be read. Image files are not read.
-GltfScene load_gltf_scene(const std::string& path);
+GltfScene load_gltf_scene(const std::string& path, const GltfOptions& options = {});
 
 /// Whether all nodes together, each with triangles of its own, take little more than the meshes once: at most
 /// four million triangles.

@@ -95,8 +95,8 @@ GltfText take_out_data(const std::string& path, std::string_view text) {
 
 std::string decode_data_uri(const std::string& path, const std::string& what, std::string_view uri) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-    throw Error(Location{path}, what + ": expected a data URI in base64");
+  if (comma == std::string_view::npos) throw Error(Location{path}, what + ": expected a data URI");
+  if (!uri.substr(0, comma).ends_with(";base64")) return decode_percent(uri.substr(comma + 1));
   std::string bytes;
   bytes.resize((uri.size() - comma) / 4 * 3 + 3);
   auto* out = reinterpret_cast<unsigned char*>(bytes.data());
@@ -155,26 +155,42 @@ bool has_scheme(std::string_view uri) {
 
 }  // namespace
 
-GltfFile::GltfFile(const std::string& path) : path_(path), file_(path) {
+GltfFile::GltfFile(const std::string& path, const std::string& variant) : path_(path), file_(path) {
   split_chunks(file_.text());
   total_bytes_ = file_.text().size();
   text_ = take_out_data(path_, json_);
   model_ = parse_gltf(path_, text_.json, is_binary_);
   text_.json = {};
-  bool is_first = true;
-  for (const GltfSource& source : model_.buffers) {
-    const std::string where = "buffers[" + std::to_string(buffers_.size()) + "]";
-    std::string_view bytes;
-    if (is_first && is_binary_ && source.uri.empty() && !source.is_fallback)
-      bytes = binary_;
-    else
-      bytes = open_buffer(source, where);
-    is_first = false;
-    if (!source.is_fallback && bytes.size() < source.length)
-      fail(where + ": expected " + std::to_string(source.length) + " bytes, found " +
-           std::to_string(bytes.size()));
-    buffers_.push_back(bytes.substr(0, source.length));
+  buffers_.resize(model_.buffers.size());
+  if (!variant.empty()) choose_variant(variant);
+}
+
+void GltfFile::choose_variant(const std::string& name) {
+  const auto found = std::ranges::find(model_.variants, name);
+  if (found == model_.variants.end()) {
+    std::string names;
+    for (const std::string& known : model_.variants) names += (names.empty() ? "" : ", ") + quote_name(known);
+    fail("there is no variant " + quote_name(name) + "; " +
+         (names.empty() ? "the file has none" : "expected one of " + names));
   }
+  const auto number = static_cast<std::uint32_t>(found - model_.variants.begin());
+  for (GltfMesh& mesh : model_.meshes)
+    for (GltfPrimitive& primitive : mesh.primitives)
+      if (const auto material = primitive.variants.find(number); material != primitive.variants.end())
+        primitive.material = material->second;
+}
+
+std::string_view GltfFile::buffer(std::uint32_t number) const {
+  Buffer& buffer = buffers_[number];
+  if (buffer.is_open) return buffer.bytes;
+  const GltfSource& source = model_.buffers[number];
+  const std::string where = "buffers[" + std::to_string(number) + "]";
+  const std::string_view bytes = open_buffer(number, where);
+  if (!source.is_fallback && bytes.size() < source.length)
+    fail(where + ": expected " + std::to_string(source.length) + " bytes, found " +
+         std::to_string(bytes.size()));
+  buffer = {true, bytes.substr(0, source.length)};
+  return buffer.bytes;
 }
 
 void GltfFile::fail(const std::string& message) const { throw Error(Location{path_}, message); }
@@ -208,7 +224,9 @@ void GltfFile::split_chunks(std::string_view text) {
   if (json_.data() == nullptr) fail("expected a chunk with the JSON behind the header");
 }
 
-std::string_view GltfFile::open_buffer(const GltfSource& source, const std::string& where) {
+std::string_view GltfFile::open_buffer(std::uint32_t number, const std::string& where) const {
+  const GltfSource& source = model_.buffers[number];
+  if (number == 0 && is_binary_ && source.uri.empty() && !source.is_fallback) return binary_;
   if (source.is_fallback && source.uri.empty()) return {};
   if (source.data_uri != kNoId || source.uri.starts_with("data:")) {
     const std::string& decoded = *decoded_.emplace_back(
@@ -233,7 +251,7 @@ std::string GltfFile::path_of(const std::string& uri, const std::string& where) 
 }
 
 std::string_view GltfFile::bytes(const GltfRange& range, const std::string& where) const {
-  const std::string_view buffer = buffers_[range.buffer];
+  const std::string_view buffer = this->buffer(range.buffer);
   if (range.offset > buffer.size() || range.length > buffer.size() - range.offset)
     fail(where + ": bytes " + std::to_string(range.offset) + " to " +
          std::to_string(range.offset + range.length) + " of buffer " + std::to_string(range.buffer) +

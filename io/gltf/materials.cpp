@@ -1,10 +1,12 @@
 #include "io/gltf/gltf_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string_view>
 #include <utility>
 
+#include "core/math.h"
 #include "io/obj/mtl_texture.h"
 #include "render/material.h"
 
@@ -32,12 +34,14 @@ class Materials {
 
  private:
   Material convert(const GltfMaterial& in) {
+    uv_sets_ = gltf_uv_sets(in);
     Material m;
     m.name = in.name;
     m.color = in.base_color;
     m.emission = in.emission, m.emits_behind = in.double_sided;
     m.color_texture = add(in.base_texture);
     m.normal_texture = add(in.normal_texture);
+    m.normal_scale = in.normal_scale;
     m.emission_texture = add(in.emission_texture);
     set_opacity(in, m);
     PrincipledMaterial principled;
@@ -49,11 +53,27 @@ class Materials {
       principled = {};
       principled.parameters.specular = 0, principled.parameters.roughness = 1;
     }
+    set_interior(in, m);
     principled.parameters.base_color = m.color;
     m.principled = principled;
     resemble_principled(m);
     note_uv_sets(in);
     return m;
+  }
+
+  /// Light is absorbed on its way through what is filled.
+  void set_interior(const GltfMaterial& in, Material& m) {
+    constexpr float kLeast = 1e-6f;
+    if (in.attenuation_distance <= 0 || in.thickness == 0 || in.transmission == 0) return;
+    if (in.attenuation == Color{1, 1, 1}) return;
+    Medium medium;
+    medium.name = in.name;
+    for (int k = 0; k < 3; ++k)
+      medium.absorption[k] = static_cast<float>(
+          -portable::log(static_cast<double>(std::max(in.attenuation[k], kLeast))) / in.attenuation_distance);
+    if (!(max_component(medium.absorption) <= kMostAbsorption)) return;
+    m.interior = static_cast<std::uint32_t>(scene_.media.size());
+    scene_.media.push_back(std::move(medium));
   }
 
   void set_opacity(const GltfMaterial& in, Material& m) {
@@ -65,7 +85,7 @@ class Materials {
       m.opacity = in.alpha >= in.alpha_cutoff ? 1 : 0;
     } else {
       m.opacity_texture = add(in.base_texture, ImageChannel::alpha, kGltfMaskSlope * in.alpha,
-                              0.5f - kGltfMaskSlope * in.alpha_cutoff);
+                              kGltfMaskAtCutoff - kGltfMaskSlope * in.alpha_cutoff);
     }
   }
 
@@ -74,6 +94,11 @@ class Materials {
     p.metallic = in.metallic, p.roughness = in.roughness;
     out.metallic_texture = add(in.metallic_roughness_texture, ImageChannel::blue);
     out.roughness_texture = add(in.metallic_roughness_texture, ImageChannel::green);
+    if (in.is_glossy) {
+      const bool shows_texture = in.gloss_texture.texture != kNoId;
+      p.roughness = shows_texture ? 1 : 1 - in.gloss;
+      out.roughness_texture = add(in.gloss_texture, ImageChannel::alpha, -in.gloss, 1);
+    }
     p.ior = std::clamp(in.ior == 0 ? 4.0f : in.ior, 1.0f, 4.0f);
     p.specular = 0.5f * in.specular;
     out.specular_texture = add(in.specular_texture, ImageChannel::alpha);
@@ -93,12 +118,18 @@ class Materials {
                     float base = 0) {
     if (use.texture == kNoId) return kNoId;
     const GltfTexture& in = file_.model().textures[use.texture];
+    if (in.image == kNoId) return kNoId;  // white
     Texture texture;
-    texture.clamp = in.clamp, texture.channel = channel, texture.gain = gain, texture.base = base;
+    texture.wrap = in.wrap, texture.channel = channel, texture.gain = gain, texture.base = base;
+    texture.uv_layer = use.uvs == uv_sets_.second ? 1 : 0;
+    texture.color_space = TextureColors::srgb;
     // Here v points up.
+    const float c = static_cast<float>(std::cos(use.rotation)),
+                s = static_cast<float>(std::sin(use.rotation));
+    texture.rotation = static_cast<float>(use.rotation);
     texture.scale = {use.scale.x, use.scale.y, 1};
-    texture.offset = {use.offset.x, 1 - use.scale.y - use.offset.y, 0};
-    if (in.image != kNoId) set_image(in.image, texture);
+    texture.offset = {use.offset.x + s * use.scale.y, 1 - c * use.scale.y - use.offset.y, 0};
+    set_image(in.image, texture);
     return list_.add(texture);
   }
 
@@ -134,26 +165,23 @@ class Materials {
   }
 
   void note_uv_sets(const GltfMaterial& m) {
-    std::uint32_t used = kNoId;
     bool differ = false;
-    for (const GltfTextureUse* use :
-         {&m.base_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
-          &m.transmission_texture, &m.coat_texture, &m.specular_texture, &m.coat_roughness_texture,
-          &m.sheen_color_texture, &m.sheen_roughness_texture}) {
-      if (use->texture == kNoId) continue;
-      differ = differ || (used != kNoId && use->uvs != used);
-      if (used == kNoId) used = use->uvs;
-    }
+    for_each_texture_use(m, [&](const GltfTextureUse& use) {
+      differ = differ || (use.uvs != uv_sets_.first && use.uvs != uv_sets_.second);
+    });
     if (differ)
       scene_.warnings.push_back(
           {Location{file_.path()}, "material '" + m.name +
-                                       "': its textures lie by several sets of coordinates; the "
-                                       "first of them is used for all"});
+                                       "': its textures lie by more than two sets of coordinates; "
+                                       "the first of them is used for the others"});
   }
+
+  static constexpr float kMostAbsorption = 1e30f;
 
   const GltfFile& file_;
   GltfScene& scene_;
   TextureList list_;
+  UvSets uv_sets_;  ///< of the material that is converted
   std::map<std::uint32_t, Texture> images_;
 };
 

@@ -2,218 +2,89 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
 
-#include "io/gltf/tiny_model.h"
+#include "io/gltf/json.h"
 #include "io/mesh/reading.h"
 
 namespace oktett {
 
-namespace {
-
-using tinygltf::Value;
-
-constexpr double kMost = 1e30;
-
-/// The reading of one material.
-class MaterialReader {
- public:
-  MaterialReader(const std::string& path, const tinygltf::Material& in, std::size_t i, std::size_t textures,
-                 std::vector<std::string>& warnings)
-      : path_(path), in_(in), textures_(textures), warnings_(warnings), where_(gltf_place("materials", i)) {}
-
-  GltfMaterial run() {
-    const tinygltf::PbrMetallicRoughness& pbr = in_.pbrMetallicRoughness;
-    out_.name = in_.name;
-    out_.base_color = color(pbr.baseColorFactor, 1);
-    out_.alpha = number(pbr.baseColorFactor.back(), 1, "baseColorFactor");
-    out_.metallic = number(pbr.metallicFactor, 1, "metallicFactor");
-    out_.roughness = number(pbr.roughnessFactor, 1, "roughnessFactor");
-    out_.emission = color(in_.emissiveFactor, kMost);
-    out_.base_texture = texture(pbr.baseColorTexture);
-    out_.metallic_roughness_texture = texture(pbr.metallicRoughnessTexture);
-    out_.normal_texture = texture(in_.normalTexture);
-    out_.emission_texture = texture(in_.emissiveTexture);
-    if (in_.normalTexture.index >= 0 && in_.normalTexture.scale != 1)
-      warn("the scale of its normals is not read");
-    out_.double_sided = in_.doubleSided;
-    read_alpha();
-    read_extensions();
-    return out_;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(Location{path_}, where_ + ": " + what);
-  }
-  void warn(const std::string& what) { warnings_.push_back(where_ + ": " + what); }
-
-  float number(double x, double most, const char* key) const {
-    if (!(x >= 0 && x <= most)) fail(std::string("'") + key + "' is out of range");
-    return static_cast<float>(x);
-  }
-  Color color(const std::vector<double>& numbers, double most) const {
-    return gltf_color(path_, where_, numbers, most);
-  }
-
-  void read_alpha() {
-    out_.alpha_cutoff = number(in_.alphaCutoff, kMost, "alphaCutoff");
-    if (in_.alphaMode == "MASK")
-      out_.alpha_mode = GltfMaterial::Alpha::mask;
-    else if (in_.alphaMode == "BLEND")
-      out_.alpha_mode = GltfMaterial::Alpha::blend;
-    else if (in_.alphaMode != "OPAQUE")
-      fail("unknown alphaMode " + quote_name(in_.alphaMode));
-  }
-
-  template <class Info>
-  GltfTextureUse texture(const Info& info) {
-    const auto transform = info.extensions.find("KHR_texture_transform");
-    return texture(info.index, info.texCoord,
-                   transform == info.extensions.end() ? nullptr : &transform->second);
-  }
-
-  GltfTextureUse texture(int index, int uvs, const Value* transform) {
-    GltfTextureUse use;
-    if (index == -1) return use;
-    if (index < 0 || static_cast<std::size_t>(index) >= textures_)
-      fail("there is no texture " + std::to_string(index) + ": the file has " + std::to_string(textures_));
-    use.texture = static_cast<std::uint32_t>(index);
-    if (transform != nullptr && transform->IsObject()) {
-      const auto pair = [&](const char* key, Vec2f standard) {
-        const Value& value = transform->Get(key);
-        if (!value.IsArray() || value.ArrayLen() != 2) return standard;
-        return Vec2f{signed_number(value.Get(0)), signed_number(value.Get(1))};
-      };
-      use.offset = pair("offset", {0, 0}), use.scale = pair("scale", {1, 1});
-      const Value& rotation = transform->Get("rotation");
-      if (rotation.IsNumber() && rotation.GetNumberAsDouble() != 0)
-        warn("the rotation of a texture is not read");
-      if (const Value& set = transform->Get("texCoord"); set.IsInt()) uvs = set.GetNumberAsInt();
-    }
-    if (uvs < 0 || uvs >= static_cast<int>(kMostGltfUvs))
-      fail("set " + std::to_string(uvs) + " of texture coordinates; expected 0 to " +
-           std::to_string(kMostGltfUvs - 1));
-    use.uvs = static_cast<std::uint32_t>(uvs);
-    return use;
-  }
-
-  float signed_number(const Value& value) const {
-    const double x = value.IsNumber() ? value.GetNumberAsDouble() : 0;
-    if (!(std::abs(x) <= 1e6)) fail("a transform of a texture is out of range");
-    return static_cast<float>(x);
-  }
-
-  /// An extension, or an empty value.
-  const Value& extension(const char* name) const {
-    static const Value nothing{Value::Object{}};
-    const auto found = in_.extensions.find(name);
-    return found == in_.extensions.end() || !found->second.IsObject() ? nothing : found->second;
-  }
-  void read(const Value& object, const char* key, double most, float& out) const {
-    if (const Value& value = object.Get(key); value.IsNumber())
-      out = number(value.GetNumberAsDouble(), most, key);
-  }
-  void read(const Value& object, const char* key, GltfTextureUse& out) {
-    const Value& info = object.Get(key);
-    if (!info.IsObject()) return;
-    const auto whole = [&](const char* name, int standard) {
-      const Value& value = info.Get(name);
-      return value.IsInt() ? value.GetNumberAsInt() : standard;
-    };
-    const Value& extensions = info.Get("extensions");
-    const Value* const transform = extensions.IsObject() ? &extensions.Get("KHR_texture_transform") : nullptr;
-    out = texture(whole("index", -2), whole("texCoord", 0), transform);
-  }
-
-  void read_extensions() {
-    float strength = 1;
-    read(extension("KHR_materials_emissive_strength"), "emissiveStrength", kMost, strength);
-    out_.emission = out_.emission * strength;
-    if (!(max_component(out_.emission) <= static_cast<float>(kMost))) fail("its emission is out of range");
-    read(extension("KHR_materials_ior"), "ior", 1000, out_.ior);
-    out_.unlit = in_.extensions.contains("KHR_materials_unlit");
-    const Value& transmission = extension("KHR_materials_transmission");
-    read(transmission, "transmissionFactor", 1, out_.transmission);
-    read(transmission, "transmissionTexture", out_.transmission_texture);
-    const Value& volume = extension("KHR_materials_volume");
-    read(volume, "thicknessFactor", kMost, out_.thickness);
-    if (volume.Has("attenuationDistance")) warn("what its inside absorbs is not read");
-    const Value& specular = extension("KHR_materials_specular");
-    read(specular, "specularFactor", 1, out_.specular);
-    read(specular, "specularTexture", out_.specular_texture);
-    if (specular.Has("specularColorFactor") || specular.Has("specularColorTexture"))
-      warn("the colour of its reflections is not read");
-    const Value& coat = extension("KHR_materials_clearcoat");
-    read(coat, "clearcoatFactor", 1, out_.coat);
-    read(coat, "clearcoatTexture", out_.coat_texture);
-    read(coat, "clearcoatRoughnessFactor", 1, out_.coat_roughness);
-    read(coat, "clearcoatRoughnessTexture", out_.coat_roughness_texture);
-    if (coat.Has("clearcoatNormalTexture")) warn("the normals of its coat are not read");
-    read_sheen(extension("KHR_materials_sheen"));
-  }
-
-  void read_sheen(const Value& sheen) {
-    if (const Value& color = sheen.Get("sheenColorFactor"); color.IsArray()) {
-      std::vector<double> numbers;
-      for (std::size_t k = 0; k < color.ArrayLen(); ++k)
-        numbers.push_back(color.Get(static_cast<int>(k)).GetNumberAsDouble());
-      out_.sheen_color = this->color(numbers, 1);
-    }
-    read(sheen, "sheenColorTexture", out_.sheen_color_texture);
-    read(sheen, "sheenRoughnessFactor", 1, out_.sheen_roughness);
-    read(sheen, "sheenRoughnessTexture", out_.sheen_roughness_texture);
-  }
-
-  const std::string& path_;
-  const tinygltf::Material& in_;
-  const std::size_t textures_;
-  std::vector<std::string>& warnings_;
-  const std::string where_;
-  GltfMaterial out_;
-};
-
-}  // namespace
-
-Color gltf_color(const std::string& path, const std::string& where, const std::vector<double>& numbers,
-                 double most) {
-  const bool good = numbers.size() >= 3 && numbers[0] >= 0 && numbers[0] <= most && numbers[1] >= 0 &&
-                    numbers[1] <= most && numbers[2] >= 0 && numbers[2] <= most;
-  if (!good) throw Error(Location{path}, where + ": expected a colour of three numbers in range");
-  return static_cast<Color>(Vec3d{numbers[0], numbers[1], numbers[2]});
+std::uint32_t checked_index(const std::string& path, std::uint64_t index, std::size_t count,
+                            const std::string& where, const char* what) {
+  if (index >= count)
+    throw Error(Location{path}, where + ": there is no " + what + " " + std::to_string(index) +
+                                    ": the file has " + std::to_string(count));
+  return static_cast<std::uint32_t>(index);
 }
 
-GltfMaterial gltf_material(const std::string& path, const tinygltf::Material& m, std::size_t i,
-                           std::size_t textures, std::vector<std::string>& warnings) {
-  return MaterialReader(path, m, i, textures, warnings).run();
+std::uint32_t index_of(const std::string& path, const GltfJson& object, const char* key, std::size_t count,
+                       const std::string& where, const char* what) {
+  const GltfJson* const value = member(object, key);
+  return value == nullptr ? kNoId : checked_index(path, value->get<std::uint64_t>(), count, where, what);
+}
+
+Affine GltfPlace::transform() const {
+  const std::array<double, 4>& q = rotation;
+  Affine map = Affine::translation(translation);
+  if (q[0] != 0 || q[1] != 0 || q[2] != 0) {
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    const auto twice = [&](std::size_t a, std::size_t b) { return 2 * (q[a] * q[b]) / square; };
+    Affine turn;
+    turn.m[0] = {1 - (twice(1, 1) + twice(2, 2)), twice(0, 1) - twice(2, 3), twice(0, 2) + twice(1, 3), 0};
+    turn.m[1] = {twice(0, 1) + twice(2, 3), 1 - (twice(0, 0) + twice(2, 2)), twice(1, 2) - twice(0, 3), 0};
+    turn.m[2] = {twice(0, 2) - twice(1, 3), twice(1, 2) + twice(0, 3), 1 - (twice(0, 0) + twice(1, 1)), 0};
+    map = map * turn;
+  }
+  return scale == Vec3d{1, 1, 1} ? map : map * Affine::scaling(scale);
 }
 
 namespace {
 
-using tinygltf::Value;
+/// How many numbers an element of a type has; 0: there is no such type.
+std::uint32_t components_of(const std::string& type) {
+  constexpr std::pair<std::string_view, std::uint32_t> kTypes[] = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+  for (const auto& [name, count] : kTypes)
+    if (type == name) return count;
+  return 0;
+}
 
-/// Checks tinygltf's model and makes ours of it.
+TextureWrap wrap_of(std::uint64_t code) {
+  constexpr std::uint64_t kClamped = 33071, kMirrored = 33648;
+  return code == kClamped    ? TextureWrap::clamp
+         : code == kMirrored ? TextureWrap::mirror
+                             : TextureWrap::repeat;
+}
+
+/// Checks what a file says and makes the model of it.
 class GltfConversion {
  public:
-  GltfConversion(const std::string& path, TinyModel tiny) : path_(path), in_(std::move(tiny.model)) {
-    out_.buffers = std::move(tiny.buffers), out_.images = std::move(tiny.images);
-    out_.warnings = std::move(tiny.warnings);
-  }
+  GltfConversion(const std::string& path, const GltfJson& root) : path_(path), in_(root) {}
 
   GltfModel run() {
+    take_sources("buffers", out_.buffers);
+    take_sources("images", out_.images);
     take_views();
     take_accessors();
-    for (std::size_t i = 0; i < in_.materials.size(); ++i)
-      out_.materials.push_back(gltf_material(path_, in_.materials[i], i, in_.textures.size(), out_.warnings));
+    const std::size_t textures = list_of(in_, "textures").size();
+    for (const GltfJson& material : list_of(in_, "materials"))
+      out_.materials.push_back(
+          gltf_material(path_, material, out_.materials.size(), textures, out_.warnings));
+    take_variants();
     take_meshes();
     take_cameras();
     take_lights();
     take_nodes();
     take_textures();
-    check_images();
+    for (std::size_t i = 0; i < out_.images.size(); ++i)
+      if (const std::uint32_t view = out_.images[i].view; view != kNoId)
+        checked_index(path_, view, out_.views.size(), gltf_place("images", i), "view");
+    take_skins();
+    take_animations();
     return std::move(out_);
   }
 
@@ -221,53 +92,55 @@ class GltfConversion {
   [[noreturn]] void fail(const std::string& what) const { throw Error(Location{path_}, what); }
   void warn(const std::string& what) { out_.warnings.push_back(what); }
 
-  /// Throws Error unless `index`, which is -1 for none, is below `count`.
-  std::uint32_t index(std::int64_t index, std::size_t count, const std::string& where, const char* what,
-                      bool required = false) const {
-    if (index == -1 && !required) return kNoId;
-    if (index == -2) fail(where + ": the number of its " + what + " is missing");
-    if (index < 0 || static_cast<std::uint64_t>(index) >= count)
-      fail(where + ": there is no " + what + " " + std::to_string(index) + ": the file has " +
-           std::to_string(count));
-    return static_cast<std::uint32_t>(index);
+  std::uint32_t index(const GltfJson& object, const char* key, std::size_t count, const std::string& where,
+                      const char* what) const {
+    return index_of(path_, object, key, count, where, what);
   }
 
-  /// A whole number of an extension; `standard` if it has none.
-  std::int64_t whole(const Value& object, const char* key, std::int64_t standard) const {
-    if (!object.IsObject()) return standard;
-    const Value& value = object.Get(key);
-    return value.IsInt() ? value.GetNumberAsInt() : standard;
-  }
-
-  void take_views() {
-    for (std::size_t i = 0; i < in_.bufferViews.size(); ++i) {
-      const tinygltf::BufferView& v = in_.bufferViews[i];
-      const std::string where = gltf_place("bufferViews", i);
-      GltfView& view = out_.views.emplace_back();
-      view.range = {index(v.buffer, out_.buffers.size(), where, "buffer", true), v.byteOffset, v.byteLength};
-      if (v.byteStride > 255)
-        fail(where + ": a stride of " + std::to_string(v.byteStride) + " bytes is out of range");
-      view.stride = static_cast<std::uint32_t>(v.byteStride);
-      if (const auto packing = v.extensions.find(kGltfMeshopt); packing != v.extensions.end())
-        view.packing = packing_of(packing->second, where);
+  void take_sources(const char* key, std::vector<GltfSource>& sources) {
+    for (const GltfJson& item : list_of(in_, key)) {
+      GltfSource& source = sources.emplace_back();
+      source.uri = text_of(item, "uri");
+      if (source.uri.starts_with(kGltfDataUri)) {
+        const char* const end = source.uri.data() + source.uri.size();
+        std::from_chars(source.uri.data() + kGltfDataUri.size(), end, source.data_uri);
+      }
+      if (item.contains("bufferView"))
+        source.view =
+            static_cast<std::uint32_t>(std::min<std::uint64_t>(whole_of(item, "bufferView", 0), kNoId - 1));
+      source.length = whole_of(item, "byteLength", 0);
+      source.is_fallback = extension_of(item, kGltfMeshopt) != nullptr;
     }
   }
 
-  GltfPacking packing_of(const Value& object, const std::string& where) const {
+  void take_views() {
+    for (const GltfJson& v : list_of(in_, "bufferViews")) {
+      const std::string where = gltf_place("bufferViews", out_.views.size());
+      GltfView& view = out_.views.emplace_back();
+      view.range = {index(v, "buffer", out_.buffers.size(), where, "buffer"), whole_of(v, "byteOffset", 0),
+                    whole_of(v, "byteLength", 0)};
+      const std::uint64_t stride = whole_of(v, "byteStride", 0);
+      if (stride > 252 || stride % 4 != 0)
+        fail(where + ": a stride of " + std::to_string(stride) +
+             " bytes; expected a multiple of 4 that is at most 252");
+      view.stride = static_cast<std::uint32_t>(stride);
+      if (const GltfJson* const packing = extension_of(v, kGltfMeshopt))
+        view.packing = packing_of(*packing, where);
+    }
+  }
+
+  GltfPacking packing_of(const GltfJson& object, const std::string& where) const {
     GltfPacking packing;
-    const auto size = [&](const char* key, std::int64_t standard) {
-      const std::int64_t value = whole(object, key, standard);
-      if (value < 0) fail(where + ": expected '" + key + "' of " + kGltfMeshopt);
-      return static_cast<std::uint64_t>(value);
-    };
-    packing.packed.buffer = index(whole(object, "buffer", -2), out_.buffers.size(), where, "buffer", true);
-    packing.packed.offset = size("byteOffset", 0);
-    packing.packed.length = size("byteLength", -1);
-    packing.stride = static_cast<std::uint32_t>(size("byteStride", -1));
-    packing.count = size("count", -1);
+    for (const char* const key : {"buffer", "byteLength", "byteStride", "count"})
+      if (!object.contains(key)) fail(where + ": expected '" + key + "' of " + kGltfMeshopt);
+    packing.packed.buffer = index(object, "buffer", out_.buffers.size(), where, "buffer");
+    packing.packed.offset = whole_of(object, "byteOffset", 0);
+    packing.packed.length = whole_of(object, "byteLength", 0);
+    packing.stride =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(whole_of(object, "byteStride", 0), kNoId));
+    packing.count = whole_of(object, "count", 0);
     const auto choose = [&](const char* key, std::initializer_list<std::string_view> words) {
-      const Value& value = object.Get(key);
-      const std::string word = value.IsString() ? value.Get<std::string>() : "NONE";
+      const std::string word = text_of(object, key, "NONE");
       const auto* const found = std::ranges::find(words, std::string_view(word));
       if (found == words.end())
         fail(where + ": unknown " + key + " " + quote_name(word) + " of " + kGltfMeshopt);
@@ -279,137 +152,191 @@ class GltfConversion {
     return packing;
   }
 
-  GltfNumber number_type(int code, const std::string& where) const {
+  GltfNumber number_type(const GltfJson& object, std::string& problem) const {
+    const std::uint64_t code = whole_of(object, "componentType", 0);
     for (const GltfNumber number : {GltfNumber::int8, GltfNumber::uint8, GltfNumber::int16,
                                     GltfNumber::uint16, GltfNumber::uint32, GltfNumber::float32})
-      if (code == static_cast<int>(number)) return number;
-    fail(where + ": unknown component type " + std::to_string(code));
+      if (code == static_cast<std::uint64_t>(number)) return number;
+    problem = "unknown component type " + std::to_string(code);
+    return GltfNumber::uint8;
   }
 
   void take_accessors() {
-    for (std::size_t i = 0; i < in_.accessors.size(); ++i) {
-      const tinygltf::Accessor& a = in_.accessors[i];
-      const std::string where = gltf_place("accessors", i);
+    for (const GltfJson& a : list_of(in_, "accessors")) {
+      const std::string where = gltf_place("accessors", out_.accessors.size());
       GltfAccessor& accessor = out_.accessors.emplace_back();
-      accessor.view = index(a.bufferView, out_.views.size(), where, "view");
-      accessor.offset = a.byteOffset, accessor.count = a.count;
-      accessor.number = number_type(a.componentType, where);
-      const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(a.type));
-      accessor.components = static_cast<std::uint32_t>(std::max(components, 1));
-      accessor.normalized = a.normalized;
-      if (!a.sparse.isSparse) continue;
-      GltfSparse sparse;
-      if (a.sparse.count < 0 || a.sparse.indices.byteOffset < 0 || a.sparse.values.byteOffset < 0)
-        fail(where + ": a negative number of sparse elements");
-      sparse.count = static_cast<std::uint64_t>(a.sparse.count);
-      sparse.index_view = index(a.sparse.indices.bufferView, out_.views.size(), where, "view", true);
-      sparse.value_view = index(a.sparse.values.bufferView, out_.views.size(), where, "view", true);
-      sparse.index_offset = static_cast<std::uint64_t>(a.sparse.indices.byteOffset);
-      sparse.value_offset = static_cast<std::uint64_t>(a.sparse.values.byteOffset);
-      sparse.index_number = number_type(a.sparse.indices.componentType, where);
-      accessor.sparse = sparse;
+      accessor.view = index(a, "bufferView", out_.views.size(), where, "view");
+      accessor.offset = whole_of(a, "byteOffset", 0), accessor.count = whole_of(a, "count", 0);
+      accessor.number = number_type(a, accessor.problem);
+      accessor.components = components_of(text_of(a, "type"));
+      if (accessor.components == 0) accessor.problem = "unknown type " + quote_name(text_of(a, "type"));
+      accessor.normalized = flag_of(a, "normalized");
+      if (const GltfJson* const s = member(a, "sparse")) {
+        GltfSparse sparse;
+        const GltfJson &indices = s->at("indices"), &values = s->at("values");
+        sparse.count = whole_of(*s, "count", 0);
+        sparse.index_view = index(indices, "bufferView", out_.views.size(), where, "view");
+        sparse.value_view = index(values, "bufferView", out_.views.size(), where, "view");
+        sparse.index_offset = whole_of(indices, "byteOffset", 0);
+        sparse.value_offset = whole_of(values, "byteOffset", 0);
+        sparse.index_number = number_type(indices, accessor.problem);
+        accessor.sparse = sparse;
+      }
     }
   }
 
-  /// Calls find(name), which returns the number of an attribute or -1, for all that are read.
-  template <class Find>
-  static GltfAttributes attributes_of(const Find& find) {
+  /// The attributes that are read, by their names; there are so many of what the numbers name.
+  GltfAttributes attributes_of(const GltfJson& named, std::size_t count, const std::string& where,
+                               const char* what) const {
     GltfAttributes attributes;
-    attributes.positions = find("POSITION"), attributes.normals = find("NORMAL");
-    for (std::size_t k = 0; k < kMostGltfUvs; ++k) attributes.uvs[k] = find("TEXCOORD_" + std::to_string(k));
+    for (const auto& [name, value] : named.items()) {
+      const auto number = [&, &value = value] {
+        return checked_index(path_, value.get<std::uint64_t>(), count, where, what);
+      };
+      constexpr std::string_view kSet = "TEXCOORD_";
+      if (name == "POSITION") attributes.positions = number();
+      if (name == "NORMAL") attributes.normals = number();
+      if (name == "TANGENT") attributes.tangents = number();
+      if (!name.starts_with(kSet)) continue;
+      std::uint32_t set = 0;
+      const char* const end = name.data() + name.size();
+      const auto [rest, error] = std::from_chars(name.data() + kSet.size(), end, set);
+      if (error == std::errc() && rest == end) attributes.uvs.emplace_back(set, number());
+    }
+    for (int i = 0; i < kMostInfluences; ++i) {
+      const GltfJson *const joints = member(named, ("JOINTS_" + std::to_string(i)).c_str()),
+                            *const weights = member(named, ("WEIGHTS_" + std::to_string(i)).c_str());
+      if (joints == nullptr || weights == nullptr) break;
+      attributes.joints.push_back(checked_index(path_, joints->get<std::uint64_t>(), count, where, what));
+      attributes.weights.push_back(checked_index(path_, weights->get<std::uint64_t>(), count, where, what));
+    }
     return attributes;
   }
 
   void take_meshes() {
-    bool colours = false, targets = false;
-    for (std::size_t i = 0; i < in_.meshes.size(); ++i) {
-      const tinygltf::Mesh& m = in_.meshes[i];
+    bool colours = false;
+    for (const GltfJson& m : list_of(in_, "meshes")) {
+      const std::string where = gltf_place("meshes", out_.meshes.size());
       GltfMesh& mesh = out_.meshes.emplace_back();
-      mesh.name = m.name;
-      for (std::size_t k = 0; k < m.primitives.size(); ++k) {
-        const tinygltf::Primitive& p = m.primitives[k];
+      mesh.name = text_of(m, "name"), mesh.weights = numbers_of(m, "weights");
+      const GltfJson& primitives = list_of(m, "primitives");
+      if (primitives.empty()) warn(where + ": has no primitives");
+      for (const GltfJson& p : primitives) {
         mesh.primitives.push_back(
-            primitive_of(p, gltf_place("meshes", i) + "." + gltf_place("primitives", k)));
-        colours = colours || p.attributes.contains("COLOR_0");
-        targets = targets || !p.targets.empty();
+            primitive_of(p, where + "." + gltf_place("primitives", mesh.primitives.size())));
+        colours = colours || p.at("attributes").contains("COLOR_0");
       }
     }
     if (colours) warn("colours of vertices are not read");
-    if (targets) warn("morph targets are not read: meshes are shown at rest");
   }
 
-  GltfPrimitive primitive_of(const tinygltf::Primitive& p, const std::string& where) const {
+  GltfPrimitive primitive_of(const GltfJson& p, const std::string& where) {
     GltfPrimitive primitive;
     const std::size_t accessors = out_.accessors.size();
-    primitive.mode = p.mode;
-    if (p.mode < 0 || p.mode > GltfPrimitive::kFan) fail(where + ": unknown mode " + std::to_string(p.mode));
-    primitive.material = index(p.material, in_.materials.size(), where, "material");
-    primitive.attributes = attributes_of([&](const std::string& name) {
-      const auto found = p.attributes.find(name);
-      return index(found == p.attributes.end() ? -1 : found->second, accessors, where, "accessor");
-    });
-    primitive.indices = index(p.indices, accessors, where, "accessor");
-    const auto draco = p.extensions.find(kGltfDraco);
-    if (draco == p.extensions.end()) return primitive;
-    const Value& object = draco->second;
-    primitive.indices = index(whole(object, "indices", -1), accessors, where, "accessor");
-    primitive.draco_view = index(whole(object, "bufferView", -2), out_.views.size(), where, "view", true);
-    const Value& attributes = object.Get("attributes");
-    primitive.draco_attributes = attributes_of([&](const std::string& name) {
-      return index(whole(attributes, name.c_str(), -1), kNoId, where, "attribute");
-    });
+    const std::uint64_t mode = whole_of(p, "mode", GltfPrimitive::kTriangles);
+    if (mode > GltfPrimitive::kFan)
+      warn(where + ": unknown mode " + std::to_string(mode) + "; it is left out");
+    primitive.mode = static_cast<int>(std::min<std::uint64_t>(mode, GltfPrimitive::kFan + 1));
+    primitive.material = index(p, "material", list_of(in_, "materials").size(), where, "material");
+    primitive.attributes = attributes_of(p.at("attributes"), accessors, where, "accessor");
+    primitive.indices = index(p, "indices", accessors, where, "accessor");
+    for (const GltfJson& target : list_of(p, "targets"))
+      primitive.targets.push_back(attributes_of(target, accessors, where, "accessor"));
+    if (const GltfJson* const variants = extension_of(p, kGltfVariants))
+      for (const GltfJson& mapping : list_of(*variants, "mappings")) {
+        const std::uint32_t material =
+            index(mapping, "material", list_of(in_, "materials").size(), where, "material");
+        for (const GltfJson& variant : list_of(mapping, "variants"))
+          primitive.variants.emplace(
+              checked_index(path_, variant.get<std::uint64_t>(), out_.variants.size(), where, "variant"),
+              material);
+      }
+    const GltfJson* const draco = extension_of(p, kGltfDraco);
+    if (draco == nullptr) return primitive;
+    primitive.draco_view = index(*draco, "bufferView", out_.views.size(), where, "view");
+    primitive.draco_attributes = attributes_of(draco->at("attributes"), kNoId, where, "attribute");
     return primitive;
   }
 
   void take_cameras() {
-    for (std::size_t i = 0; i < in_.cameras.size(); ++i) {
-      const tinygltf::Camera& c = in_.cameras[i];
+    for (const GltfJson& c : list_of(in_, "cameras")) {
+      const std::string where = gltf_place("cameras", out_.cameras.size());
       GltfCamera& camera = out_.cameras.emplace_back();
-      camera.is_perspective = c.type == "perspective";
-      if (!camera.is_perspective && c.type != "orthographic")
-        fail(gltf_place("cameras", i) + ": unknown type " + quote_name(c.type));
-      camera.yfov = c.perspective.yfov, camera.aspect = c.perspective.aspectRatio;
-      camera.ymag = std::abs(c.orthographic.ymag);
-      if (!camera.is_perspective && c.orthographic.ymag != 0)
-        camera.aspect = std::abs(c.orthographic.xmag / c.orthographic.ymag);
-      if (camera.is_perspective ? !(camera.yfov > 0 && camera.yfov < 3.14) : !(camera.ymag > 0))
-        fail(gltf_place("cameras", i) + ": its field of view is out of range");
+      const std::string type = text_of(c, "type");
+      camera.is_perspective = type == "perspective";
+      if (!camera.is_perspective && type != "orthographic") {
+        camera.problem = "unknown type " + quote_name(type);
+        continue;
+      }
+      const GltfJson* const view = member(c, type.c_str());
+      if (view == nullptr) fail(where + ": '" + type + "' is missing");
+      camera.yfov = number_of(*view, "yfov", 0.7), camera.aspect = number_of(*view, "aspectRatio", 0);
+      const double xmag = number_of(*view, "xmag", 1);
+      camera.ymag = std::abs(number_of(*view, "ymag", 1));
+      if (!camera.is_perspective && camera.ymag > 0) camera.aspect = std::abs(xmag / camera.ymag);
+      if (!(camera.aspect >= 0 && camera.aspect <= kMostAspect)) camera.aspect = 0;
+      const bool good = camera.is_perspective ? camera.yfov > 0 && camera.yfov < 3.14
+                                              : camera.ymag > 0 && camera.ymag <= 1e30;
+      if (!good) camera.problem = "its field of view is out of range";
     }
   }
 
   void take_lights() {
-    for (std::size_t i = 0; i < in_.lights.size(); ++i) {
-      const tinygltf::Light& l = in_.lights[i];
+    const GltfJson* const extension = extension_of(in_, kGltfLights);
+    if (extension == nullptr) return;
+    for (const GltfJson& l : list_of(*extension, "lights")) {
+      const std::string where = gltf_place("lights", out_.lights.size());
       GltfLight& light = out_.lights.emplace_back();
       constexpr std::string_view kKinds[] = {"directional", "point", "spot"};
-      const auto* const kind = std::ranges::find(kKinds, std::string_view(l.type));
-      if (kind == std::end(kKinds)) fail(gltf_place("lights", i) + ": unknown type " + quote_name(l.type));
+      const std::string type = text_of(l, "type");
+      const auto* const kind = std::ranges::find(kKinds, std::string_view(type));
+      if (kind == std::end(kKinds)) warn(where + ": unknown type " + quote_name(type) + "; it is left out");
       light.kind = static_cast<GltfLight::Kind>(kind - std::begin(kKinds));
-      if (!l.color.empty()) light.color = gltf_color(path_, gltf_place("lights", i), l.color, 1e30);
-      light.intensity = l.intensity;
-      light.inner_angle = l.spot.innerConeAngle, light.outer_angle = l.spot.outerConeAngle;
+      if (l.contains("color")) light.color = gltf_color(path_, where, numbers_of(l, "color"), 1e30);
+      light.intensity = number_of(l, "intensity", 1);
+      const GltfJson* const spot = member(l, "spot");
+      light.inner_angle = spot == nullptr ? 0 : number_of(*spot, "innerConeAngle", 0);
+      light.outer_angle = spot == nullptr ? kUsualCone : number_of(*spot, "outerConeAngle", kUsualCone);
       const bool good_angles = light.inner_angle >= 0 && light.inner_angle <= light.outer_angle &&
                                light.outer_angle > 0 && light.outer_angle < 1.5708;
-      if (!(l.intensity >= 0 && l.intensity <= 1e30) || (light.kind == GltfLight::Kind::spot && !good_angles))
-        fail(gltf_place("lights", i) + ": its intensity or angles are out of range");
+      if (!(light.intensity >= 0 && light.intensity <= 1e30) ||
+          (light.kind == GltfLight::Kind::spot && !good_angles))
+        fail(where + ": its intensity or angles are out of range");
     }
   }
 
   void take_nodes() {
-    const std::size_t count = in_.nodes.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const tinygltf::Node& n = in_.nodes[i];
-      const std::string where = gltf_place("nodes", i);
+    const GltfJson& nodes = list_of(in_, "nodes");
+    const std::size_t count = nodes.size();
+    for (const GltfJson& n : nodes) {
+      const std::string where = gltf_place("nodes", out_.nodes.size());
       GltfNode& node = out_.nodes.emplace_back();
-      node.name = n.name;
-      node.to_parent = transform_of(n, where);
-      node.mesh = index(n.mesh, out_.meshes.size(), where, "mesh");
-      node.camera = index(n.camera, out_.cameras.size(), where, "camera");
-      for (const int child : n.children) node.children.push_back(index(child, count, where, "node", true));
-      if (const auto light = n.extensions.find(kGltfLights); light != n.extensions.end())
-        node.light = index(whole(light->second, "light", -2), out_.lights.size(), where, "light", true);
+      node.name = text_of(n, "name");
+      set_transform(n, where, node);
+      node.mesh = index(n, "mesh", out_.meshes.size(), where, "mesh");
+      node.camera = index(n, "camera", out_.cameras.size(), where, "camera");
+      for (const GltfJson& child : list_of(n, "children"))
+        node.children.push_back(checked_index(path_, child.get<std::uint64_t>(), count, where, "node"));
+      if (const GltfJson* const light = extension_of(n, kGltfLights))
+        node.light = index(*light, "light", out_.lights.size(), where, "light");
+      node.skin = index(n, "skin", list_of(in_, "skins").size(), where, "skin");
+      node.weights = numbers_of(n, "weights");
+      if (const GltfJson* const instances = extension_of(n, kGltfInstances)) {
+        const GltfJson& attributes = instances->at("attributes");
+        const std::size_t accessors = out_.accessors.size();
+        node.is_instanced = true;
+        node.instance_translations = index(attributes, "TRANSLATION", accessors, where, "accessor");
+        node.instance_rotations = index(attributes, "ROTATION", accessors, where, "accessor");
+        node.instance_scales = index(attributes, "SCALE", accessors, where, "accessor");
+      }
     }
-    if (in_.scenes.empty()) {
+    choose_roots(count);
+  }
+
+  void choose_roots(std::size_t count) {
+    const GltfJson& scenes = list_of(in_, "scenes");
+    if (scenes.empty()) {
+      if (in_.contains("scene")) checked_index(path_, whole_of(in_, "scene", 0), 0, "scene", "scene");
       // A library of things: all that is in no other is shown.
       std::vector<bool> is_child(count);
       for (const GltfNode& node : out_.nodes)
@@ -419,83 +346,114 @@ class GltfConversion {
       return;
     }
     const std::uint32_t shown =
-        index(std::max(in_.defaultScene, 0), in_.scenes.size(), "scene", "scene", true);
-    if (in_.scenes.size() > 1)
-      warn("of " + std::to_string(in_.scenes.size()) + " scenes, number " + std::to_string(shown) +
-           " is shown");
-    for (const int root : in_.scenes[shown].nodes)
-      out_.roots.push_back(index(root, count, gltf_place("scenes", shown), "node", true));
+        checked_index(path_, whole_of(in_, "scene", 0), scenes.size(), "scene", "scene");
+    if (scenes.size() > 1)
+      warn("of " + std::to_string(scenes.size()) + " scenes, number " + std::to_string(shown) + " is shown");
+    for (const GltfJson& root : list_of(scenes[shown], "nodes"))
+      out_.roots.push_back(
+          checked_index(path_, root.get<std::uint64_t>(), count, gltf_place("scenes", shown), "node"));
   }
 
-  Affine transform_of(const tinygltf::Node& n, const std::string& where) const {
-    const auto check = [&](const std::vector<double>& numbers, std::size_t size, const char* what) {
-      if (!numbers.empty() && numbers.size() != size)
-        fail(where + ": expected " + std::to_string(size) + " numbers in '" + what + "', found " +
-             std::to_string(numbers.size()));
-      return !numbers.empty();
-    };
-    Affine map;
-    if (check(n.matrix, 16, "matrix")) {
+  void set_transform(const GltfJson& n, const std::string& where, GltfNode& node) const {
+    if (const std::vector<double> matrix = numbers_of(n, "matrix"); !matrix.empty()) {
       for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column < 4; ++column) map.m[row][column] = n.matrix[4 * column + row];
-      return map;
+        for (std::size_t column = 0; column < 4; ++column)
+          node.to_parent.m[row][column] = matrix[4 * column + row];
+      return;
     }
-    if (check(n.translation, 3, "translation"))
-      map = Affine::translation({n.translation[0], n.translation[1], n.translation[2]});
-    if (check(n.rotation, 4, "rotation"))
-      map = map * rotation_of({n.rotation[0], n.rotation[1], n.rotation[2], n.rotation[3]}, where);
-    if (check(n.scale, 3, "scale")) map = map * Affine::scaling({n.scale[0], n.scale[1], n.scale[2]});
-    return map;
-  }
-
-  /// The rotation of a quaternion x, y, z, w.
-  Affine rotation_of(const std::array<double, 4>& q, const std::string& where) const {
-    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    if (!(square > 0 && square < 1e60))
-      fail(where + ": the quaternion of its rotation is zero or out of range");
-    const auto twice = [&](std::size_t a, std::size_t b) { return 2 * (q[a] * q[b]) / square; };
-    Affine map;
-    map.m[0] = {1 - (twice(1, 1) + twice(2, 2)), twice(0, 1) - twice(2, 3), twice(0, 2) + twice(1, 3), 0};
-    map.m[1] = {twice(0, 1) + twice(2, 3), 1 - (twice(0, 0) + twice(2, 2)), twice(1, 2) - twice(0, 3), 0};
-    map.m[2] = {twice(0, 2) - twice(1, 3), twice(1, 2) + twice(0, 3), 1 - (twice(0, 0) + twice(1, 1)), 0};
-    return map;
+    if (const std::vector<double> t = numbers_of(n, "translation"); !t.empty())
+      node.place.translation = {t[0], t[1], t[2]};
+    if (const std::vector<double> s = numbers_of(n, "scale"); !s.empty())
+      node.place.scale = {s[0], s[1], s[2]};
+    if (const std::vector<double> q = numbers_of(n, "rotation"); !q.empty()) {
+      node.place.rotation = {q[0], q[1], q[2], q[3]};
+      const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+      if (!(square > 0 && square < 1e60))
+        fail(where + ": the quaternion of its rotation is zero or out of range");
+    }
+    node.to_parent = node.place.transform();
   }
 
   void take_textures() {
-    for (std::size_t i = 0; i < in_.textures.size(); ++i) {
-      const tinygltf::Texture& t = in_.textures[i];
-      const std::string where = gltf_place("textures", i);
+    const GltfJson& samplers = list_of(in_, "samplers");
+    for (const GltfJson& t : list_of(in_, "textures")) {
+      const std::string where = gltf_place("textures", out_.textures.size());
       GltfTexture& texture = out_.textures.emplace_back();
-      std::int64_t image = t.source;
-      if (const auto webp = t.extensions.find("EXT_texture_webp"); webp != t.extensions.end())
-        image = whole(webp->second, "source", image);
-      texture.image = index(image, out_.images.size(), where, "image");
-      const std::uint32_t sampler = index(t.sampler, in_.samplers.size(), where, "sampler");
+      texture.image = index(t, "source", out_.images.size(), where, "image");
+      if (const GltfJson* const webp = extension_of(t, "EXT_texture_webp"); webp && webp->contains("source"))
+        texture.image = index(*webp, "source", out_.images.size(), where, "image");
+      if (extension_of(t, "KHR_texture_basisu") != nullptr)
+        warn(where + ": its KTX2 image is not read; " +
+             (texture.image == kNoId ? "white instead" : "the other one that it names is"));
+      const std::uint32_t sampler = index(t, "sampler", samplers.size(), where, "sampler");
       if (sampler == kNoId) continue;
-      const tinygltf::Sampler& s = in_.samplers[sampler];
-      texture.clamp = s.wrapS == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE && s.wrapT == s.wrapS;
-      if (!texture.clamp &&
-          (s.wrapS != TINYGLTF_TEXTURE_WRAP_REPEAT || s.wrapT != TINYGLTF_TEXTURE_WRAP_REPEAT))
-        warn(where +
-             " repeats, although the file says otherwise: textures repeat or are clamped along both axes");
+      texture.wrap.u = wrap_of(whole_of(samplers[sampler], "wrapS", 0));
+      texture.wrap.v = wrap_of(whole_of(samplers[sampler], "wrapT", 0));
     }
   }
 
-  void check_images() const {
-    for (std::size_t i = 0; i < out_.images.size(); ++i)
-      if (const std::uint32_t view = out_.images[i].view; view != kNoId)
-        index(view, out_.views.size(), gltf_place("images", i), "view", true);
+  void take_variants() {
+    const GltfJson* const extension = extension_of(in_, kGltfVariants);
+    if (extension == nullptr) return;
+    for (const GltfJson& variant : list_of(*extension, "variants"))
+      out_.variants.push_back(text_of(variant, "name"));
   }
 
+  void take_skins() {
+    for (const GltfJson& s : list_of(in_, "skins")) {
+      const std::string where = gltf_place("skins", out_.skins.size());
+      GltfSkin& skin = out_.skins.emplace_back();
+      for (const GltfJson& joint : list_of(s, "joints"))
+        skin.joints.push_back(
+            checked_index(path_, joint.get<std::uint64_t>(), out_.nodes.size(), where, "node"));
+      skin.inverse_binds = index(s, "inverseBindMatrices", out_.accessors.size(), where, "accessor");
+    }
+  }
+
+  void take_animations() {
+    const GltfJson& animations = list_of(in_, "animations");
+    for (std::size_t i = 0; i < animations.size(); ++i) {
+      const GltfJson &channels = list_of(animations[i], "channels"),
+                     &samplers = list_of(animations[i], "samplers");
+      for (std::size_t k = 0; k < channels.size(); ++k)
+        take_channel(channels[k], samplers, gltf_place("animations", i) + "." + gltf_place("channels", k));
+    }
+  }
+
+  void take_channel(const GltfJson& c, const GltfJson& samplers, const std::string& where) {
+    const GltfJson& target = c.at("target");
+    const GltfJson& sampler = samplers[index(c, "sampler", samplers.size(), where, "sampler")];
+    GltfChannel channel;
+    constexpr std::string_view kPaths[] = {"translation", "rotation", "scale", "weights"};
+    const auto* const path = std::ranges::find(kPaths, std::string_view(text_of(target, "path")));
+    // An extension may have further ones, and targets of its own.
+    if (path == std::end(kPaths) || !target.contains("node"))
+      return warn(where + ": animates what is not read");
+    channel.path = static_cast<GltfChannel::Path>(path - std::begin(kPaths));
+    channel.node = index(target, "node", out_.nodes.size(), where, "node");
+    constexpr std::string_view kCurves[] = {"LINEAR", "STEP", "CUBICSPLINE"};
+    const std::string curve = text_of(sampler, "interpolation", "LINEAR");
+    const auto* const found = std::ranges::find(kCurves, std::string_view(curve));
+    if (found == std::end(kCurves))
+      return warn(where + ": unknown interpolation " + quote_name(curve) + "; it is left out");
+    channel.curve = static_cast<GltfChannel::Curve>(found - std::begin(kCurves));
+    channel.times = index(sampler, "input", out_.accessors.size(), where, "accessor");
+    channel.values = index(sampler, "output", out_.accessors.size(), where, "accessor");
+    out_.channels.push_back(channel);
+  }
+
+  static constexpr int kMostInfluences = 8;  ///< sets of four joints
+  static constexpr double kUsualCone = 0.7853981633974483, kMostAspect = 1e6;
+
   const std::string& path_;
-  const tinygltf::Model in_;
+  const GltfJson& in_;
   GltfModel out_;
 };
 
 }  // namespace
 
-GltfModel parse_gltf(const std::string& path, const std::string& json, bool in_bytes) {
-  return GltfConversion(path, parse_tiny_model(path, json, in_bytes)).run();
+GltfModel gltf_model(const std::string& path, const GltfJson& root) {
+  return GltfConversion(path, root).run();
 }
 
 }  // namespace oktett

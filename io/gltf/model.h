@@ -4,13 +4,16 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/mesh.h"
 #include "core/transform.h"
 #include "core/vec3.h"
+#include "render/material.h"
 
 namespace oktett {
 
@@ -73,41 +76,78 @@ struct GltfAccessor {
   std::uint64_t offset = 0, count = 0;
   GltfNumber number = GltfNumber::float32;
   std::uint32_t components = 1;
+  std::string problem{};    ///< why its elements cannot be read; empty: they can
   bool normalized = false;  ///< whole numbers stand for [0, 1] or [-1, 1]
   std::optional<GltfSparse> sparse{};
 
   std::uint32_t element_bytes() const { return bytes_of(number) * components; }
 };
 
-/// Most sets of texture coordinates of a primitive.
-inline constexpr std::size_t kMostGltfUvs = 4;
-
 /// What a vertex has, as an accessor or as a number in Draco's data; kNoId: nothing.
 struct GltfAttributes {
-  std::uint32_t positions = kNoId, normals = kNoId;
-  std::array<std::uint32_t, kMostGltfUvs> uvs{kNoId, kNoId, kNoId, kNoId};
+  std::uint32_t positions = kNoId, normals = kNoId, tangents = kNoId;
+  /// Four joints of a skin and their weights in each.
+  std::vector<std::uint32_t> joints, weights;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> uvs;  ///< sets of texture coordinates by their numbers
+
+  std::uint32_t uv_set(std::uint32_t number) const {
+    for (const auto& [set, accessor] : uvs)
+      if (set == number) return accessor;
+    return kNoId;
+  }
 };
 
 struct GltfPrimitive {
   static constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
 
-  int mode = kTriangles;  ///< [0, 6]
+  int mode = kTriangles;  ///< [0, 6]; 7: of none of these
   std::uint32_t indices = kNoId, material = kNoId;
   GltfAttributes attributes;
   std::uint32_t draco_view = kNoId;  ///< the view with Draco's data
   GltfAttributes draco_attributes;
+  std::vector<GltfAttributes> targets;              ///< what morph targets add
+  std::map<std::uint32_t, std::uint32_t> variants;  ///< materials by the numbers of variants
 };
 
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
+  std::vector<double> weights;  ///< of morph targets; may be shorter than their list
+};
+
+/// The transform of a node in parts, which animations change one by one.
+struct GltfPlace {
+  Vec3d translation{0, 0, 0}, scale{1, 1, 1};
+  std::array<double, 4> rotation{0, 0, 0, 1};  ///< a quaternion x, y, z, w of any length but zero
+
+  Affine transform() const;
 };
 
 struct GltfNode {
   std::string name;
   Affine to_parent;
+  GltfPlace place;  ///< as `to_parent`, unless that is a matrix of the file
   std::vector<std::uint32_t> children;
-  std::uint32_t mesh = kNoId, camera = kNoId, light = kNoId;
+  std::uint32_t mesh = kNoId, camera = kNoId, light = kNoId, skin = kNoId;
+  std::vector<double> weights;  ///< instead of those of the mesh
+  /// Accessors of EXT_mesh_gpu_instancing; kNoId: none.
+  std::uint32_t instance_translations = kNoId, instance_rotations = kNoId, instance_scales = kNoId;
+  bool is_instanced = false;
+};
+
+struct GltfSkin {
+  std::vector<std::uint32_t> joints;  ///< nodes
+  std::uint32_t inverse_binds = kNoId;
+};
+
+/// What an animation changes.
+struct GltfChannel {
+  enum class Path : std::uint8_t { translation, rotation, scale, weights };
+  enum class Curve : std::uint8_t { linear, step, cubic };
+  std::uint32_t node = 0;
+  Path path = Path::translation;
+  Curve curve = Curve::linear;
+  std::uint32_t times = 0, values = 0;  ///< accessors
 };
 
 /// How a material shows a texture.
@@ -115,6 +155,7 @@ struct GltfTextureUse {
   std::uint32_t texture = kNoId;
   std::uint32_t uvs = 0;  ///< number of the set of texture coordinates
   Vec2f offset{0, 0}, scale{1, 1};
+  double rotation = 0;  ///< radians, counter-clockwise in an image
 };
 
 /// Defaults are those of glTF, or leave out what an extension adds.
@@ -127,19 +168,51 @@ struct GltfMaterial {
   Alpha alpha_mode = Alpha::opaque;
   float metallic = 1, roughness = 1;
   Color emission{0, 0, 0};  ///< with its strength
+  float normal_scale = 1;
   bool double_sided = false, unlit = false;
   float ior = 1.5f, transmission = 0, thickness = 0, specular = 1;
+  Color attenuation{1, 1, 1};       ///< what is left of white light within
+  double attenuation_distance = 0;  ///< after this way; 0: nothing is absorbed
   float coat = 0, coat_roughness = 0;
   Color sheen_color{0, 0, 0};
   float sheen_roughness = 0;
+  bool is_glossy = false;  ///< roughness is 1 minus gloss times the alpha of `gloss_texture`
+  float gloss = 1;
+  GltfTextureUse gloss_texture;
   GltfTextureUse base_texture, metallic_roughness_texture, normal_texture, emission_texture;
   GltfTextureUse transmission_texture, specular_texture, coat_texture, coat_roughness_texture;
   GltfTextureUse sheen_color_texture, sheen_roughness_texture;
 };
 
+/// Calls f(use) for all textures that a material shows, the most important first.
+template <class F>
+void for_each_texture_use(const GltfMaterial& m, const F& f) {
+  for (const GltfTextureUse* use :
+       {&m.base_texture, &m.metallic_roughness_texture, &m.gloss_texture, &m.normal_texture,
+        &m.emission_texture, &m.transmission_texture, &m.coat_texture, &m.specular_texture,
+        &m.coat_roughness_texture, &m.sheen_color_texture, &m.sheen_roughness_texture})
+    if (use->texture != kNoId) f(*use);
+}
+
+/// The sets of texture coordinates by which a material shows textures; kNoId: there is no such one. A mesh
+/// has two.
+struct UvSets {
+  std::uint32_t first = kNoId, second = kNoId;
+};
+inline UvSets gltf_uv_sets(const GltfMaterial& m) {
+  UvSets sets;
+  for_each_texture_use(m, [&](const GltfTextureUse& use) {
+    if (sets.first == kNoId)
+      sets.first = use.uvs;
+    else if (use.uvs != sets.first && sets.second == kNoId)
+      sets.second = use.uvs;
+  });
+  return sets;
+}
+
 struct GltfTexture {
   std::uint32_t image = kNoId;
-  bool clamp = false;
+  TextureWraps wrap;
 };
 
 /// An image or a buffer: in a file, a data URI or a view; a buffer with neither is that of the GLB file.
@@ -153,13 +226,14 @@ struct GltfSource {
 
 struct GltfCamera {
   bool is_perspective = true;
-  double yfov = 0.7;  ///< radians
-  double aspect = 0;  ///< 0: that of the film
-  double ymag = 1;    ///< half of the height
+  std::string problem{};  ///< why a picture cannot show what it sees; empty: it can
+  double yfov = 0.7;      ///< radians
+  double aspect = 0;      ///< 0: that of the film
+  double ymag = 1;        ///< half of the height
 };
 
 struct GltfLight {
-  enum class Kind : std::uint8_t { directional, point, spot };
+  enum class Kind : std::uint8_t { directional, point, spot, unknown };
   Kind kind = Kind::point;
   Color color{1, 1, 1};
   double intensity = 1;
@@ -177,6 +251,9 @@ struct GltfModel {
   std::vector<GltfTexture> textures;
   std::vector<GltfCamera> cameras;
   std::vector<GltfLight> lights;
+  std::vector<GltfSkin> skins;
+  std::vector<GltfChannel> channels;  ///< of all animations; the first one of a node's property counts
+  std::vector<std::string> variants;  ///< their names
   std::vector<std::string> warnings;  ///< what is not shown as the file says
 };
 

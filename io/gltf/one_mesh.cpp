@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -54,6 +55,17 @@ class Joining {
     mesh_.positions.resize_uninitialized(sizes.positions);
     mesh_.normals.resize_uninitialized(sizes.normals);
     mesh_.uvs.resize_uninitialized(sizes.uvs);
+    const auto any = [&](const auto& has) {
+      return std::ranges::any_of(scene.meshes, [&](const GltfSharedMesh& m) { return has(*m.mesh); });
+    };
+    if (any([](const TriangleMesh& m) { return !m.tangents.empty(); })) {
+      mesh_.tangents.resize_uninitialized(sizes.normals);
+      std::fill(mesh_.tangents.begin(), mesh_.tangents.end(), std::array<float, 4>{});
+    }
+    if (any([](const TriangleMesh& m) { return !m.second_uvs.empty(); })) {
+      mesh_.second_uvs.resize_uninitialized(sizes.uvs);
+      std::fill(mesh_.second_uvs.begin(), mesh_.second_uvs.end(), Vec2f{0, 0});
+    }
     mesh_.indices.resize_uninitialized(sizes.corners);
     if (sizes.normals > 0) mesh_.normal_indices.resize_uninitialized(sizes.corners);
     if (sizes.uvs > 0) mesh_.uv_indices.resize_uninitialized(sizes.corners);
@@ -95,6 +107,13 @@ class Joining {
       if (size > 0) out = Vec3f(moved * (1 / size));
     });
     std::ranges::copy(part.uvs, mesh_.uvs.begin() + static_cast<std::ptrdiff_t>(before_.uvs));
+    std::ranges::copy(part.second_uvs, mesh_.second_uvs.begin() + static_cast<std::ptrdiff_t>(before_.uvs));
+    const float side = map.determinant() < 0 ? -1 : 1;
+    for_all(part.tangents.size(), [&](std::size_t i) {
+      const std::array<float, 4>& own = part.tangents[i];
+      const Vec3f t(map.vector(Vec3d(Vec3f{own[0], own[1], own[2]})));
+      mesh_.tangents[before_.normals + i] = is_identity ? own : std::array{t.x, t.y, t.z, own[3] * side};
+    });
     for (std::size_t i = 0; i < part.positions.size() && !is_identity; ++i) {
       const Vec3f& p = mesh_.positions[before_.positions + i];
       for (const float x : {p.x, p.y, p.z})
@@ -185,7 +204,7 @@ MeshFile one_mesh(const std::string& path, GltfScene scene) {
   });
   if (has_materials) {
     file.materials = std::move(slots.materials);
-    file.textures = std::move(scene.textures);
+    file.textures = std::move(scene.textures), file.media = std::move(scene.media);
     file.texture_places = std::move(scene.texture_places);
   } else {
     file.mesh.material_slots.clear();

@@ -16,8 +16,8 @@ namespace oktett {
 namespace {
 
 template <int kSize>
-std::vector<float> numbers_of(const GltfFile& file, const draco::Mesh& mesh, std::uint32_t id,
-                              const std::string& where) {
+std::vector<float> draco_numbers(const GltfFile& file, const draco::Mesh& mesh, std::uint32_t id,
+                                 const std::string& where) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(id);
   if (attribute == nullptr || attribute->num_components() != kSize)
     file.fail(where + ": its data hold no attribute " + std::to_string(id) + " of " + std::to_string(kSize) +
@@ -34,8 +34,9 @@ std::vector<float> numbers_of(const GltfFile& file, const draco::Mesh& mesh, std
 
 bool can_unpack_draco() { return true; }
 
-DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes, const GltfAttributes& wanted,
-                       std::size_t uv_set, const std::string& where) {
+DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
+                       const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
+                       const std::string& where) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
@@ -44,9 +45,13 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes, const GltfA
   const draco::Mesh& mesh = *result.value();
   DracoMesh out;
   out.vertices = mesh.num_points();
-  out.positions = numbers_of<3>(file, mesh, wanted.positions, where);
-  if (wanted.normals != kNoId) out.normals = numbers_of<3>(file, mesh, wanted.normals, where);
-  if (wanted.uvs[uv_set] != kNoId) out.uvs = numbers_of<2>(file, mesh, wanted.uvs[uv_set], where);
+  out.numbers[0] = draco_numbers<3>(file, mesh, wanted[0], where);
+  for (std::size_t i = 1; i < wanted.size(); ++i) {
+    if (wanted[i] == kNoId) continue;
+    out.numbers[i] = kDracoSizes[i] == 2   ? draco_numbers<2>(file, mesh, wanted[i], where)
+                     : kDracoSizes[i] == 3 ? draco_numbers<3>(file, mesh, wanted[i], where)
+                                           : draco_numbers<4>(file, mesh, wanted[i], where);
+  }
   out.indices.reserve(std::size_t{3} * mesh.num_faces());
   for (draco::FaceIndex i(0); i < mesh.num_faces(); ++i)
     for (const draco::PointIndex& corner : mesh.face(i)) out.indices.push_back(corner.value());
@@ -57,8 +62,8 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes, const GltfA
 
 bool can_unpack_draco() { return false; }
 
-DracoMesh unpack_draco(const GltfFile& file, std::string_view, const GltfAttributes&, std::size_t,
-                       const std::string& where) {
+DracoMesh unpack_draco(const GltfFile& file, std::string_view,
+                       const std::array<std::uint32_t, kDracoSizes.size()>&, const std::string& where) {
   file.fail(where + ": is packed by Draco, without which this program is built");
 }
 

@@ -2,6 +2,7 @@
 /// \file What libraries have packed: meshes by Draco (KHR_draco_mesh_compression), views by meshoptimizer
 /// (EXT_meshopt_compression). Within io/ only.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -14,18 +15,22 @@ namespace oktett {
 /// Whether the program is built with Draco's library.
 bool can_unpack_draco();
 
-/// What Draco's data hold: three indices for each triangle, and the numbers of each vertex one after the
-/// other.
+/// How many numbers a vertex has of each attribute that is read: positions, normals, texture coordinates,
+/// tangents, further texture coordinates.
+inline constexpr std::array<std::size_t, 5> kDracoSizes{3, 3, 2, 4, 2};
+
+/// What Draco's data hold: three indices for each triangle, and for each attribute the numbers of each vertex
+/// one after the other, none unless asked for.
 struct DracoMesh {
   std::uint64_t vertices = 0;
   std::vector<std::uint32_t> indices;
-  std::vector<float> positions, normals, uvs;  ///< normals and uvs are empty unless asked for
+  std::array<std::vector<float>, kDracoSizes.size()> numbers;
 };
 
-/// Unpacks the attributes, which `wanted` gives by their numbers in the data, with one set of texture
-/// coordinates. Throws Error, which begins with `where`, for damaged data.
-DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes, const GltfAttributes& wanted,
-                       std::size_t uv_set, const std::string& where);
+/// Unpacks the attributes, which `wanted` gives by their numbers in the data; kNoId: not wanted. Throws
+/// Error, which begins with `where`, for damaged data.
+DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
+                       const std::array<std::uint32_t, kDracoSizes.size()>& wanted, const std::string& where);
 
 /// Unpacks a view. Throws Error if its bytes are damaged, or if the program is built without meshoptimizer.
 std::string unpack_meshopt(const GltfFile& file, const GltfPacking& packing, const std::string& where);

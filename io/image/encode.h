@@ -1,6 +1,6 @@
 #pragma once
 /// \file What image files hold of a picture, the same whichever library writes them; and the formats that are
-/// written without OpenImageIO. Not for other folders.
+/// written without OpenImageIO. For io/ only.
 
 #include <cstddef>
 #include <cstdint>

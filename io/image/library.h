@@ -1,6 +1,6 @@
 #pragma once
 /// \file The part of io/ that knows OpenImageIO, behind an interface; and which files may be read as images.
-/// Not for other folders.
+/// For io/ only.
 ///
 /// OpenImageIO brings hundreds of shared libraries: to start with them takes a third of a second and 120 MB.
 /// So its users, io/image/oiio/, are a shared library of their own, which is loaded when the first image is

@@ -51,14 +51,18 @@ Cover cover(std::uint32_t i, std::uint32_t size, std::uint32_t next) {
 
 }  // namespace
 
-MipMap::Neighbours MipMap::neighbours(float place, std::uint32_t size, bool clamp) {
-  if (!clamp) place -= std::floor(place);
+MipMap::Neighbours MipMap::neighbours(float place, std::uint32_t size, TextureWrap wrap) {
+  if (wrap == TextureWrap::repeat) place -= std::floor(place);
+  if (wrap == TextureWrap::mirror) place -= 2 * std::floor(0.5f * place);
   const float x = place * static_cast<float>(size) - 0.5f;
   const float whole = std::floor(x);
-  const auto first = static_cast<std::int32_t>(whole), last = static_cast<std::int32_t>(size) - 1;
+  const auto first = static_cast<std::int32_t>(whole), count = static_cast<std::int32_t>(size);
   const auto wrapped = [&](std::int32_t i) {
-    if (clamp) return std::clamp(i, 0, last);
-    return i < 0 ? i + last + 1 : i > last ? i - last - 1 : i;
+    if (wrap == TextureWrap::clamp) return std::clamp(i, 0, count - 1);
+    if (wrap == TextureWrap::repeat) return i < 0 ? i + count : i >= count ? i - count : i;
+    // The image, then its mirror image, again and again.
+    const std::int32_t in_pair = i < 0 ? -1 - i : i >= 2 * count ? i - 2 * count : i;
+    return in_pair < count ? in_pair : 2 * count - 1 - in_pair;
   };
   return {static_cast<std::uint32_t>(wrapped(first)), static_cast<std::uint32_t>(wrapped(first + 1)),
           x - whole};
@@ -156,10 +160,10 @@ std::array<float, N> MipMap::texel(std::size_t level, std::uint32_t x, std::uint
 }
 
 template <std::size_t N>
-std::array<float, N> MipMap::bilinear(std::size_t level, float s, float t, bool clamp,
+std::array<float, N> MipMap::bilinear(std::size_t level, float s, float t, TextureWraps wrap,
                                       const Channels& channels) const {
-  const Neighbours x = neighbours(s, levels_[level].width, clamp),
-                   y = neighbours(t, levels_[level].height, clamp);
+  const Neighbours x = neighbours(s, levels_[level].width, wrap.u),
+                   y = neighbours(t, levels_[level].height, wrap.v);
   const auto row = [&](std::uint32_t i) {
     return mix(texel<N>(level, x.first, i, channels), texel<N>(level, x.second, i, channels), x.fraction);
   };
@@ -168,65 +172,66 @@ std::array<float, N> MipMap::bilinear(std::size_t level, float s, float t, bool 
 
 /// At (s, t), in levels whose pixels are as large as `size` pixels of the image, which is at least 1.
 template <std::size_t N>
-std::array<float, N> MipMap::trilinear(float size, float s, float t, bool clamp,
+std::array<float, N> MipMap::trilinear(float size, float s, float t, TextureWraps wrap,
                                        const Channels& channels) const {
   // size = 2^level * (1 + fraction)
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(size);
   const std::size_t level = (bits >> 23) - 127, last = levels_.size() - 1;
-  if (level >= last) return bilinear<N>(last, s, t, clamp, channels);
+  if (level >= last) return bilinear<N>(last, s, t, wrap, channels);
   const float fraction = std::bit_cast<float>((bits & 0x7fffffu) | 0x3f800000u) - 1;
-  const std::array<float, N> fine = bilinear<N>(level, s, t, clamp, channels);
-  return fraction > 0 ? mix(fine, bilinear<N>(level + 1, s, t, clamp, channels), fraction) : fine;
+  const std::array<float, N> fine = bilinear<N>(level, s, t, wrap, channels);
+  return fraction > 0 ? mix(fine, bilinear<N>(level + 1, s, t, wrap, channels), fraction) : fine;
 }
 
 template <std::size_t N>
-std::array<float, N> MipMap::filtered(const TexturePatch& p, bool clamp, const Channels& channels) const {
+std::array<float, N> MipMap::filtered(const TexturePatch& p, TextureWraps wrap,
+                                      const Channels& channels) const {
   // The axes of the ellipse J x of all |x| = 1 are the singular vectors of J, in pixels of the image.
   const auto width = static_cast<float>(levels_[0].width), height = static_cast<float>(levels_[0].height);
   const float sx = p.dsdx * width, sy = p.dsdy * width, tx = p.dtdx * height, ty = p.dtdy * height;
   const float ss = sx * sx + sy * sy, st = sx * tx + sy * ty, tt = tx * tx + ty * ty;
   const float half = (ss - tt) * 0.5f, root = std::sqrt(half * half + st * st);
   const float longer = std::sqrt((ss + tt) * 0.5f + root);
-  if (!(longer > 1)) return bilinear<N>(0, p.s, p.t, clamp, channels);
+  if (!(longer > 1)) return bilinear<N>(0, p.s, p.t, wrap, channels);
   const float shorter = std::max({std::abs(sx * ty - sy * tx) / longer, longer / kMostPoints, 1.0f});
   // A circle is one point, although its axes are rounded.
   const int points = static_cast<int>(std::ceil(longer / shorter - 0.01f));
   float s = half >= 0 ? half + root : st, t = half >= 0 ? st : root - half;
   const float length = std::sqrt(s * s + t * t);
-  if (points <= 1 || !(length > 0)) return trilinear<N>(shorter, p.s, p.t, clamp, channels);
+  if (points <= 1 || !(length > 0)) return trilinear<N>(shorter, p.s, p.t, wrap, channels);
   s = s / length * longer / width;
   t = t / length * longer / height;
   const auto count = static_cast<float>(points);
   std::array<float, N> sum{};
   for (int i = 0; i < points; ++i) {
     const float at = (static_cast<float>(i) + 0.5f) / count - 0.5f;
-    const std::array<float, N> point = trilinear<N>(shorter, p.s + at * s, p.t + at * t, clamp, channels);
+    const std::array<float, N> point = trilinear<N>(shorter, p.s + at * s, p.t + at * t, wrap, channels);
     for (std::size_t c = 0; c < N; ++c) sum[c] += point[c];
   }
   for (float& v : sum) v /= count;
   return sum;
 }
 
-Color MipMap::colors(const TexturePatch& patch, bool clamp, const Channels& channels) const {
+Color MipMap::colors(const TexturePatch& patch, TextureWraps wrap, const Channels& channels) const {
   if (colors_ == 1) {
-    const float grey = filtered<1>(patch, clamp, channels)[0];
+    const float grey = filtered<1>(patch, wrap, channels)[0];
     return {grey, grey, grey};
   }
-  const std::array<float, 3> rgb = filtered<3>(patch, clamp, channels);
+  const std::array<float, 3> rgb = filtered<3>(patch, wrap, channels);
   return {rgb[0], rgb[1], rgb[2]};
 }
 
-Color MipMap::color(const TexturePatch& patch, bool clamp) const {
-  return colors(patch, clamp, {0, 0, linear_of_byte_.data()});
+Color MipMap::color(const TexturePatch& patch, TextureWraps wrap) const {
+  return colors(patch, wrap, {0, 0, linear_of_byte_.data()});
 }
 
-Color MipMap::stored(const TexturePatch& patch, bool clamp) const {
-  return colors(patch, clamp, {0, stored_at_, stored_of_byte_.data()});
+Color MipMap::stored(const TexturePatch& patch, TextureWraps wrap) const {
+  return colors(patch, wrap, {0, stored_at_, stored_of_byte_.data()});
 }
 
-float MipMap::channel(ImageChannel channel, const TexturePatch& patch, bool clamp) const {
+float MipMap::channel(ImageChannel channel, const TexturePatch& patch, TextureWraps wrap) const {
   if (channel == ImageChannel::luminance && colors_ == 3) {
-    const Color c = stored(patch, clamp);
+    const Color c = stored(patch, wrap);
     return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
   }
   auto place = static_cast<std::uint32_t>(channel);
@@ -236,7 +241,7 @@ float MipMap::channel(ImageChannel channel, const TexturePatch& patch, bool clam
   } else if (colors_ == 1) {
     place = 0;
   }
-  return filtered<1>(patch, clamp, {place, stored_at_ + place, stored_of_byte_.data()})[0];
+  return filtered<1>(patch, wrap, {place, stored_at_ + place, stored_of_byte_.data()})[0];
 }
 
 }  // namespace oktett

@@ -47,12 +47,12 @@ class MipMap {
   /// 8/3 per channel of an 8-bit image. Throws std::bad_alloc.
   explicit MipMap(TexelImage image);
 
-  /// Linear Rec.709; grey is repeated. Coordinates beyond [0, 1] are clamped to the edge, or repeat.
-  Color color(const TexturePatch& patch, bool clamp) const;
+  /// Linear Rec.709; grey is repeated.
+  Color color(const TexturePatch& patch, TextureWraps wrap) const;
   /// The colours as stored; grey is repeated.
-  Color stored(const TexturePatch& patch, bool clamp) const;
+  Color stored(const TexturePatch& patch, TextureWraps wrap) const;
   /// A channel as stored; an alpha that is not there is 1.
-  float channel(ImageChannel channel, const TexturePatch& patch, bool clamp) const;
+  float channel(ImageChannel channel, const TexturePatch& patch, TextureWraps wrap) const;
 
   /// How many levels there are, and their sizes.
   std::size_t levels() const { return levels_.size(); }
@@ -73,7 +73,7 @@ class MipMap {
   };
 
   struct Neighbours;
-  static Neighbours neighbours(float place, std::uint32_t size, bool clamp);
+  static Neighbours neighbours(float place, std::uint32_t size, TextureWrap wrap);
 
   bool in_bytes(std::size_t level) const { return level == 0 && !bytes_.empty(); }
   void halve(std::size_t level);
@@ -82,12 +82,13 @@ class MipMap {
   template <std::size_t N>
   std::array<float, N> texel(std::size_t level, std::uint32_t x, std::uint32_t y, const Channels&) const;
   template <std::size_t N>
-  std::array<float, N> bilinear(std::size_t level, float s, float t, bool clamp, const Channels&) const;
+  std::array<float, N> bilinear(std::size_t level, float s, float t, TextureWraps wrap,
+                                const Channels&) const;
   template <std::size_t N>
-  std::array<float, N> trilinear(float size, float s, float t, bool clamp, const Channels&) const;
+  std::array<float, N> trilinear(float size, float s, float t, TextureWraps wrap, const Channels&) const;
   template <std::size_t N>
-  std::array<float, N> filtered(const TexturePatch&, bool clamp, const Channels&) const;
-  Color colors(const TexturePatch&, bool clamp, const Channels&) const;
+  std::array<float, N> filtered(const TexturePatch&, TextureWraps wrap, const Channels&) const;
+  Color colors(const TexturePatch&, TextureWraps wrap, const Channels&) const;
 
   std::vector<Level> levels_;
   Column<std::uint8_t> bytes_;  ///< level 0 of an 8-bit image: the colours as stored, then alpha

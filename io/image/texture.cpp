@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/math.h"
 #include "io/image/library.h"
 #include "io/image/mip_map.h"
 #include "io/text/files.h"
@@ -26,23 +27,37 @@ struct TextureFile {
   std::string problem{};
 };
 
-/// So large that float and integers hold every place that follows from them.
-float bounded(float v, bool clamp) {
+/// So small that float and integers hold every place that follows from them.
+float bounded(float v, TextureWrap wrap) {
   if (!std::isfinite(v)) return 0;
-  return clamp ? std::clamp(v, -1.0f, 2.0f) : v - std::floor(v);
+  if (wrap == TextureWrap::clamp) return std::clamp(v, -1.0f, 2.0f);
+  return wrap == TextureWrap::mirror ? v - 2 * std::floor(0.5f * v) : v - std::floor(v);
 }
 
 float bounded_change(float v) { return std::isfinite(v) ? std::clamp(v, -16.0f, 16.0f) : 0; }
 
-TexturePatch patch_of(const Texture& texture, Vec2f uv, Vec2f dx, Vec2f dy) {
-  const float s = bounded(uv.x * texture.scale.x + texture.offset.x, texture.clamp);
-  const float t = bounded(uv.y * texture.scale.y + texture.offset.y, texture.clamp);
-  return {s,
-          1 - t,
-          bounded_change(dx.x * texture.scale.x),
-          bounded_change(-dx.y * texture.scale.y),
-          bounded_change(dy.x * texture.scale.x),
-          bounded_change(-dy.y * texture.scale.y)};
+/// A texture with what its rotation turns by.
+struct TurnedTexture : Texture {
+  explicit TurnedTexture(Texture texture)
+      : Texture(std::move(texture)),
+        cosine(static_cast<float>(portable::cos(double{rotation}))),
+        sine(static_cast<float>(portable::sin(double{rotation}))) {}
+
+  /// A vector of uv as the texture lays it out.
+  Vec2f laid(Vec2f uv) const {
+    const Vec2f scaled{uv.x * scale.x, uv.y * scale.y};
+    if (rotation == 0) return scaled;
+    return {cosine * scaled.x - sine * scaled.y, sine * scaled.x + cosine * scaled.y};
+  }
+
+  float cosine, sine;
+};
+
+TexturePatch patch_of(const TurnedTexture& texture, Vec2f uv, Vec2f dx, Vec2f dy) {
+  const Vec2f at = texture.laid(uv), x = texture.laid(dx), y = texture.laid(dy);
+  const float s = bounded(at.x + texture.offset.x, texture.wrap.u);
+  const float t = bounded(at.y + texture.offset.y, texture.wrap.v);
+  return {s, 1 - t, bounded_change(x.x), bounded_change(-x.y), bounded_change(y.x), bounded_change(-y.y)};
 }
 
 void load(TextureFile& file) {
@@ -56,8 +71,8 @@ void load(TextureFile& file) {
 
 class FileTextures final : public TextureSampler {
  public:
-  FileTextures(std::vector<Texture> textures, std::vector<Warning>& warnings)
-      : textures_(std::move(textures)) {
+  FileTextures(std::vector<Texture> textures, std::vector<Warning>& warnings) {
+    for (Texture& texture : textures) textures_.emplace_back(std::move(texture));
     list_files();
     tbb::parallel_for(std::size_t{0}, files_.size(), [this](std::size_t i) { load(files_[i]); });
     for (const TextureFile& file : files_)
@@ -69,24 +84,24 @@ class FileTextures final : public TextureSampler {
   Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return {1, 1, 1};
-    const Texture& texture = textures_[index];
-    return image->color(patch_of(texture, uv, dx, dy), texture.clamp) * texture.gain +
+    const TurnedTexture& texture = textures_[index];
+    return image->color(patch_of(texture, uv, dx, dy), texture.wrap) * texture.gain +
            Color{texture.base, texture.base, texture.base};
   }
 
   float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return 1;
-    const Texture& texture = textures_[index];
-    return image->channel(texture.channel, patch_of(texture, uv, dx, dy), texture.clamp) * texture.gain +
+    const TurnedTexture& texture = textures_[index];
+    return image->channel(texture.channel, patch_of(texture, uv, dx, dy), texture.wrap) * texture.gain +
            texture.base;
   }
 
   Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
     const MipMap* const image = image_of(index);
     if (image == nullptr) return {0.5f, 0.5f, 1};
-    const Texture& texture = textures_[index];
-    return image->stored(patch_of(texture, uv, dx, dy), texture.clamp);
+    const TurnedTexture& texture = textures_[index];
+    return image->stored(patch_of(texture, uv, dx, dy), texture.wrap);
   }
 
  private:
@@ -115,7 +130,7 @@ class FileTextures final : public TextureSampler {
     return image ? &*image : nullptr;
   }
 
-  std::vector<Texture> textures_;
+  std::vector<TurnedTexture> textures_;
   std::vector<TextureFile> files_;
   std::vector<std::size_t> file_of_;  ///< per texture
 };

@@ -16,8 +16,8 @@ namespace oktett {
 ///
 /// Colours are made linear before they are filtered: 8-bit images count as sRGB unless the file says
 /// otherwise. `value` gives the texture's channel as stored, `normal` the first three. Unassociated alpha is
-/// ignored. uv is multiplied by `scale`, moved by `offset`, then repeated or clamped; (0, 0) is the lower
-/// left corner of the image. The result is base + gain * texel.
+/// ignored. uv is multiplied by `scale`, turned by `rotation`, moved by `offset`, then wrapped; (0, 0) is the
+/// lower left corner of the image. The result is base + gain * texel.
 ///
 /// A lookup depends on its arguments alone: each MIP level is computed from the one above by a fixed rule.
 class ImageTextures : public TextureSampler {

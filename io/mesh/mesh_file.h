@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/mesh.h"
 #include "render/material.h"
+#include "render/medium/medium.h"
 
 namespace oktett {
 
@@ -15,6 +16,7 @@ struct MeshFile {
   TriangleMesh mesh;                ///< polygons are triangulated; mesh.material_slots indexes `materials`
   std::vector<Material> materials;  ///< in order of first use; empty if no face names a material
   std::vector<Texture> textures;    ///< what the materials' texture indices refer to
+  std::vector<Medium> media;        ///< what Material::interior refers to
   std::vector<Location> texture_places;  ///< where each texture is named first
   std::vector<Location>
       material_places;            ///< where a file defines each material, if it has lines; may be shorter

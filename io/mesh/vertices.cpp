@@ -123,11 +123,12 @@ namespace {
 struct CornerLook {
   Vec3f normal{0, 0, 0};
   Vec2f uv{0, 0};
+  std::uint32_t tangent = kNoId, second_uv = kNoId;  ///< indices of what has no index of its own
 
   /// By their bits: -0 and 0 differ, and a NaN is like itself.
   bool operator==(const CornerLook& other) const { return std::memcmp(this, &other, sizeof *this) == 0; }
 };
-static_assert(sizeof(CornerLook) == 20);
+static_assert(sizeof(CornerLook) == 28);
 
 class Unifying {
  public:
@@ -164,6 +165,11 @@ class Unifying {
     for (const CornerLook& look : looks_) {
       if (has_normals_) out_.normals.push_back(look.normal);
       if (has_uvs_) out_.uvs.push_back(look.uv);
+      if (has_normals_ && !mesh_.tangents.empty())
+        out_.tangents.push_back(look.tangent == kNoId ? std::array<float, 4>{}
+                                                      : mesh_.tangents[look.tangent]);
+      if (has_uvs_ && !mesh_.second_uvs.empty())
+        out_.second_uvs.push_back(look.second_uv == kNoId ? Vec2f{0, 0} : mesh_.second_uvs[look.second_uv]);
     }
   }
 
@@ -175,11 +181,17 @@ class Unifying {
       // A triangle that lacks one of them is shown flat.
       const bool smooth = index[0] != kNoId && index[1] != kNoId && index[2] != kNoId;
       if (!smooth) ++out_.flat;
-      for (std::size_t k = 0; k < 3; ++k) looks[k].normal = smooth ? mesh_.normals[index[k]] : flat(first);
+      for (std::size_t k = 0; k < 3; ++k) {
+        looks[k].normal = smooth ? mesh_.normals[index[k]] : flat(first);
+        if (smooth && !mesh_.tangents.empty()) looks[k].tangent = index[k];
+      }
     }
     if (has_uvs_) {
       const std::array<Vec2f, 3> uvs = corner_uvs(mesh_, triangle);
-      for (std::size_t k = 0; k < 3; ++k) looks[k].uv = uvs[k];
+      for (std::size_t k = 0; k < 3; ++k) {
+        looks[k].uv = uvs[k];
+        if (!mesh_.second_uvs.empty()) looks[k].second_uv = mesh_.uv_indices[first + k];
+      }
     }
     return looks;
   }

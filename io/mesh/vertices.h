@@ -2,6 +2,7 @@
 /// \file Vertices at the same place; and meshes for formats in which a vertex has one position, one normal
 /// and one texture coordinate. Within io/ only.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,8 +18,10 @@ void weld_positions(TriangleMesh& mesh);
 
 struct UnifiedMesh {
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;  ///< one for each position; empty if no triangle has normals
-  std::vector<Vec2f> uvs;      ///< likewise
+  std::vector<Vec3f> normals;                  ///< one for each position; empty if no triangle has normals
+  std::vector<Vec2f> uvs;                      ///< likewise
+  std::vector<std::array<float, 4>> tangents;  ///< likewise; zeros where there are none
+  std::vector<Vec2f> second_uvs;               ///< likewise
   std::vector<std::uint32_t> indices;
   std::size_t split = 0;  ///< vertices behind those of the mesh, which repeat positions
   std::size_t flat = 0;  ///< triangles without normals in a mesh that has some; theirs are the geometric ones

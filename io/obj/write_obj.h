@@ -19,7 +19,7 @@ MeshLosses write_obj(const std::string& path, const MeshFile& file);
 /// Whether two materials scatter light alike, their names and textures aside.
 inline bool is_same_material(Material a, Material b) {
   for (Material* m : {&a, &b}) {
-    m->name.clear();
+    m->name.clear(), m->interior = kNoId;
     for_each_texture(*m, [](std::uint32_t& index) { index = kNoId; });
     if (!m->principled) continue;
     m->principled->resembled = false;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/gltf/gltf_options.h"
 #include "io/obj/mtl_texture.h"
 #include "io/scene/meshes.h"
 #include "io/scene/parameters.h"
@@ -56,6 +57,7 @@ struct SceneLoad {
   NameTable media, materials, prototypes, objects;
   TextureList textures{scene.textures};
   std::optional<IntegratorKind> integrator;  ///< instead of that of the file
+  GltfOptions gltf;                          ///< of included glTF files
   std::set<std::string> light_groups;        ///< names that lights and materials have given
   std::vector<int> prototype_levels;         ///< of instances, its own included, per prototype
   std::size_t spheres = 0, sphere_file_bytes = 0;

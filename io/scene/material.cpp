@@ -116,6 +116,7 @@ struct CommonKeys {
     p.optional("map_opacity", TextureMap{m.opacity_texture, true}, "multiplies `opacity`");
     p.optional("map_bump", TextureMap{m.bump_texture}, "heights");
     p.optional("map_normal", TextureMap{m.normal_texture}, "an image of tangent-space normals");
+    p.field("normal_scale", m.normal_scale, "multiplies the tilt of `map_normal`");
     p.field("bump_scale", m.bump_scale, "multiplies the heights of `map_bump`");
     p.field("surface", m.surface, "false: an invisible boundary of the interior");
     p.optional("interior", MediumName{m.interior}, "the medium in solids of this material");
@@ -225,6 +226,7 @@ void warn_of_unused_keys(SceneLoad& load, const Fields& fields, const Material& 
   load.warn_if_unused(fields, "light_group", dark, "'emission' is black");
   const bool shines = m.principled || m.specular > 0 || m.reflection > 0 || m.transparency > 0;
   load.warn_if_unused(fields, "map_specular", !shines, "'specular', 'reflection' and 'transparency' are 0");
+  load.warn_if_unused(fields, "normal_scale", m.normal_texture == kNoId, "there is no 'map_normal'");
   load.warn_if_unused(fields, "bump_scale", m.bump_texture == kNoId, "there is no 'map_bump'");
 }
 

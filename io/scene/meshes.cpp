@@ -33,8 +33,11 @@ std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene) {
   std::ranges::move(file.texture_places, std::back_inserter(scene.texture_places));
   std::ranges::move(file.material_places, std::back_inserter(scene.material_places));
   std::move(file.textures.begin(), file.textures.end(), std::back_inserter(scene.textures));
+  const auto first_medium = static_cast<std::uint32_t>(scene.media.size());
+  std::move(file.media.begin(), file.media.end(), std::back_inserter(scene.media));
   std::vector<std::uint32_t> indices;
   for (Material& material : file.materials) {
+    if (material.interior != kNoId) material.interior += first_medium;
     for_each_texture(material, [first_texture](std::uint32_t& texture) {
       if (texture != kNoId) texture += first_texture;
     });

@@ -34,6 +34,7 @@ class Adding {
   Adding(const std::string& path, GltfScene& file, Scene& scene) : path_(path), file_(file), scene_(scene) {
     MeshFile common;
     common.materials = std::move(file.materials), common.textures = std::move(file.textures);
+    common.media = std::move(file.media);
     common.texture_places = std::move(file.texture_places), common.warnings = std::move(file.warnings);
     check_textures(common);
     materials_ = append_materials(common, scene);
@@ -80,6 +81,7 @@ class Adding {
   void add(const GltfPlacement& placement, Shape shape) {
     scene_.objects.push_back(object(placement.name, std::move(shape)));
     scene_.objects.back().transform = placement.to_world;
+    scene_.objects.back().motion = placement.motion;
   }
 
   const std::string& path_;
@@ -208,7 +210,7 @@ class FileReader {
     if (std::find(seen_.begin(), seen_.end(), canonical) != seen_.end()) return;
     if (is_gltf_file(path)) {
       seen_.push_back(canonical);
-      add_gltf(path, load_gltf_scene(path), load_.scene);
+      add_gltf(path, load_gltf_scene(path, load_.gltf), load_.scene);
       load_.prototype_levels.resize(load_.scene.prototypes.size());
       return;
     }
@@ -275,15 +277,16 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
 }
 
 static Scene load_scene_file(const std::string& path, const Definitions& definitions,
-                             std::optional<IntegratorKind> integrator) {
+                             std::optional<IntegratorKind> integrator, const GltfOptions& gltf) {
   SceneLoad load(definitions);
+  load.gltf = gltf;
   load.integrator = integrator;
   read_scene_file(path, load);
   return std::move(load.scene);
 }
 
 Scene load_scene_file(const std::string& path, const Definitions& definitions) {
-  return load_scene_file(path, definitions, std::nullopt);
+  return load_scene_file(path, definitions, std::nullopt, {});
 }
 
 /// Whether a ray could hit one of the triangles.
@@ -293,15 +296,19 @@ static bool has_area(const TriangleMesh& mesh) {
   return false;
 }
 
-Scene scene_from_mesh(const std::string& path) {
+Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   expect_readable(path);
+  if (!is_gltf_file(path) && !(gltf == GltfOptions{}))
+    throw Error(Location{path}, "a time and variants are for glTF files");
   Scene scene;
   scene.source = path;
   MeshLibrary meshes;
   MeshLibrary::Entry entry;
   if (is_gltf_file(path)) {
-    GltfScene file = load_gltf_scene(path);
-    if (file.camera || !file.lights.empty() || !can_be_one_mesh(file))
+    GltfScene file = load_gltf_scene(path, gltf);
+    const bool moves =
+        std::ranges::any_of(file.placements, [](const auto& p) { return p.motion != nullptr; });
+    if (moves || file.camera || !file.lights.empty() || !can_be_one_mesh(file))
       return scene_from_gltf(path, std::move(file));
     entry = MeshLibrary::add(one_mesh(path, std::move(file)), scene);
   } else {
@@ -310,6 +317,8 @@ Scene scene_from_mesh(const std::string& path) {
   MeshShape shape;
   shape.mesh = entry.mesh;
   shape.slot_materials = entry.slot_materials;
+  // glTF 2.0, 3.7.2.1: without normals triangles are flat.
+  shape.smooth = !is_gltf_file(path) || !entry.mesh->normals.empty();
   if (shape.mesh->triangle_count() == 0) {
     scene.warnings.push_back(Warning{Location{path, 0, 0}, "the mesh has no triangles"});
     return scene;
@@ -333,15 +342,16 @@ Scene load_scene(const std::string& path, const Definitions& definitions) {
 }
 
 Scene load_scene(const std::string& path, const Definitions& definitions,
-                 std::optional<IntegratorKind> integrator) {
+                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf) {
   expect_readable(path);
   const std::string extension = lower_case_extension(path);
-  if (extension == ".yaml" || extension == ".yml") return load_scene_file(path, definitions, integrator);
+  if (extension == ".yaml" || extension == ".yml")
+    return load_scene_file(path, definitions, integrator, gltf);
   if (!is_mesh_file(path))
     throw Error(Location{path, 0, 0},
                 std::string("unknown kind of file; expected a scene (.yaml, .yml) or a mesh (") +
                     mesh_extensions() + ")");
-  Scene scene = scene_from_mesh(path);
+  Scene scene = scene_from_mesh(path, gltf);
   if (integrator) scene.integrator.kind = *integrator;
   for (const Warning& warning : SceneParameters(definitions).unused()) scene.warnings.push_back(warning);
   return scene;

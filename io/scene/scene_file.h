@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "io/gltf/gltf_options.h"
 #include "render/scene.h"
 
 namespace oktett {
@@ -20,13 +21,14 @@ Scene load_scene_file(const std::string& path, const Definitions& definitions = 
 /// A glTF file that has a camera or lights, or shows too many instances for one mesh, is a scene of its own
 /// instead.
 /// Throws Error as load_obj does.
-Scene scene_from_mesh(const std::string& path);
+Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf = {});
 
 /// Calls load_scene_file for .yaml and .yml, scene_from_mesh for mesh files; throws Error for any other
 /// extension.
 Scene load_scene(const std::string& path, const Definitions& definitions = {});
-/// The same with another integrator, if it is given, which is also what is warned of.
+/// The same with another integrator, if it is given, which is also what is warned of. `gltf`: what is shown
+/// of the glTF file that `path` names, or of those that a scene file includes; throws Error for other meshes.
 Scene load_scene(const std::string& path, const Definitions& definitions,
-                 std::optional<IntegratorKind> integrator);
+                 std::optional<IntegratorKind> integrator, const GltfOptions& gltf = {});
 
 }  // namespace oktett

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -84,12 +85,17 @@ struct TexelKeys {
 
 struct ImageKeys {
   Texture& texture;
+  bool clamp = false, mirror = false;
+  double rotate = 0;
 
   void describe(auto& p) {
     p.optional("file", FilePath{texture.path}, "the image");
     p.optional("scale", Layout{texture.scale, true}, "multiplies texture coordinates");
     p.optional("offset", Layout{texture.offset, false}, "added to them then");
-    p.field("clamp", texture.clamp, "extends the edge instead of repeating");
+    p.field("rotate", rotate, kAngle, "degrees by which they are turned before that, counter-clockwise");
+    p.field("clamp", clamp, "extends the edge instead of repeating");
+    p.field("mirror", mirror, "repeats the image and its mirror image in turn");
+    p.not_both("clamp", "mirror", "an image is either clamped or mirrored", "mirror");
     p.choice("channel", texture.channel,
              {{"red", ImageChannel::red},
               {"green", ImageChannel::green},
@@ -101,6 +107,12 @@ struct ImageKeys {
         "color_space", texture.color_space,
         {{"auto", TextureColors::of_file}, {"srgb", TextureColors::srgb}, {"linear", TextureColors::linear}},
         "how colours are encoded, whatever the file says");
+  }
+  /// Sets what is not read in place.
+  void finish() {
+    if (clamp) texture.wrap = kClampedTexture;
+    if (mirror) texture.wrap = {TextureWrap::mirror, TextureWrap::mirror};
+    texture.rotation = static_cast<float>(rotate * (std::numbers::pi / 180));
   }
 };
 
@@ -153,7 +165,7 @@ std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   }
   ParameterReader reader(load, node, fields);
   const Location place = texture.pattern ? node.where() : fields.require("file").where();
-  if (!texture.pattern) image.describe(reader);
+  if (!texture.pattern) image.describe(reader), image.finish();
   texel.describe(reader);
   return add_texture(load, texture, place);
 }

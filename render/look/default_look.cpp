@@ -268,7 +268,7 @@ void light_room(Scene& scene, const InteriorView& view, const Vec3d& up) {
 void smooth(MeshShape& shape) {
   constexpr std::size_t kFine = 1000000;
   constexpr double kCrease = 40;
-  if (!shape.mesh->normals.empty() || shape.mesh->triangle_count() > kFine) return;
+  if (!shape.smooth || !shape.mesh->normals.empty() || shape.mesh->triangle_count() > kFine) return;
   auto mesh = std::make_shared<TriangleMesh>(*shape.mesh);
   add_smooth_normals(*mesh, kCrease);
   shape.mesh = std::move(mesh);

@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "io/scene/scene_file.h"
+#include "render/look/default_look.h"
 #include "tests/io/gltf_test_support.h"
 
 namespace oktett::test::gltf_scene_test {
@@ -217,7 +221,7 @@ TEST(GltfScene, Materials) {
   EXPECT_EQ(roughness.channel, ImageChannel::green);
   EXPECT_EQ(files.files.without_directory(roughness.path), "a b.jpg");
   EXPECT_FALSE(roughness.content);
-  EXPECT_TRUE(roughness.clamp);
+  EXPECT_EQ(roughness.wrap, kClampedTexture);
   EXPECT_EQ(file.textures.at(p.metallic_texture).channel, ImageChannel::blue);
   EXPECT_EQ(file.textures.at(m.normal_texture).content->size(), image.size() + 300);
 }
@@ -241,20 +245,299 @@ TEST(GltfScene, MasksAreSteepAndGlassIsThickWithAVolume) {
   EXPECT_FALSE(m.emits_behind);
 }
 
+/// The material `json`, with a texture of an image that is not there and a sampler.
+MeshFile with_material(const GltfFiles& files, const std::string& json, const std::string& sampler = "{}") {
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  out.array(std::vector<float>{0, 0, 1, 0, 0, 1}, kFloat, "VEC2", 2);
+  out.array(std::vector<float>{0.25, 0.5, 0, 0, 1, 1}, kFloat, "VEC2", 2);
+  return files.load(out.glb(
+      "\"images\":[{\"uri\":\"a.png\"}],\"samplers\":[" + sampler +
+      "],\"textures\":[{\"source\":0,\"sampler\":0}],\"materials\":[" + json + "]," +
+      one_node("{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1,\"TEXCOORD_1\":2},\"material\":0}")));
+}
+
+TEST(GltfScene, SamplersWrapEachAxis) {
+  const GltfFiles files;
+  const std::string material = "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}";
+  const std::pair<const char*, TextureWrap> codes[] = {
+      {"33071", TextureWrap::clamp}, {"33648", TextureWrap::mirror}, {"10497", TextureWrap::repeat}};
+  for (const auto& [s, u] : codes)
+    for (const auto& [t, v] : codes) {
+      const std::string sampler = std::string("{\"wrapS\":") + s + ",\"wrapT\":" + t + "}";
+      const MeshFile file = with_material(files, material, sampler);
+      EXPECT_EQ(file.textures.at(0).wrap, (TextureWraps{u, v})) << sampler;
+      EXPECT_EQ(file.warnings.size(), 0u);
+    }
+}
+
+/// Where KHR_texture_transform looks up (u, v): offset + R (scale * uv), where the angle counts
+/// counter-clockwise as the image is seen, and v points down.
+TEST(GltfScene, TexturesAreTurned) {
+  const GltfFiles files;
+  for (const double angle : {0.0, 1.0, -2.5}) {
+    const MeshFile file =
+        with_material(files,
+                      "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+                      "\"KHR_texture_transform\":{\"offset\":[0.25,-0.5],\"scale\":[2,3],\"rotation\":" +
+                          std::to_string(angle) + "}}}}}");
+    const Texture& t = file.textures.at(0);
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (const auto& [u, v] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.3, 0.8}}) {
+      const double x = 0.25 + c * 2 * u + s * 3 * v, y = -0.5 - s * 2 * u + c * 3 * v;
+      // Here v points up, and textures are turned and moved after they were scaled.
+      const double us = u * double{t.scale.x}, vs = (1 - v) * double{t.scale.y}, turn = double{t.rotation};
+      EXPECT_NEAR(std::cos(turn) * us - std::sin(turn) * vs + double{t.offset.x}, x, 1e-5);
+      EXPECT_NEAR(1 - (std::sin(turn) * us + std::cos(turn) * vs + double{t.offset.y}), y, 1e-5);
+    }
+  }
+}
+
+TEST(GltfScene, TexturesLieByTwoSetsOfCoordinates) {
+  const GltfFiles files;
+  const auto use = [](const char* set) { return "{\"index\":0,\"texCoord\":" + std::string(set) + "}"; };
+  const MeshFile both =
+      with_material(files, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":" + use("0") +
+                               "},\"extensions\":{\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,1,1],"
+                               "\"sheenColorTexture\":" +
+                               use("1") + "}}}");
+  const Material& m = both.materials.at(0);
+  EXPECT_EQ(both.textures.at(m.color_texture).uv_layer, 0);
+  EXPECT_EQ(both.textures.at(m.principled->sheen_color_texture).uv_layer, 1);
+  EXPECT_EQ(to_vector(both.mesh.uvs), (std::vector<Vec2f>{{0, 1}, {1, 1}, {0, 0}}));
+  EXPECT_EQ(to_vector(both.mesh.second_uvs), (std::vector<Vec2f>{{0.25f, 0.5f}, {0, 1}, {1, 0}}));
+  // One set alone is the first one of the mesh, whichever texture shows it.
+  for (const std::string extension :
+       {"KHR_materials_sheen\":{\"sheenColorFactor\":[1,1,1],\"sheenColorTexture",
+        "KHR_materials_specular\":{\"specularTexture", "KHR_materials_clearcoat\":{\"clearcoatTexture",
+        "KHR_materials_clearcoat\":{\"clearcoatFactor\":1,\"clearcoatRoughnessTexture",
+        "KHR_materials_transmission\":{\"transmissionTexture"}) {
+    const MeshFile one = with_material(files, "{\"extensions\":{\"" + extension + "\":" + use("1") + "}}}");
+    EXPECT_EQ(one.textures.at(0).uv_layer, 0) << extension;
+    EXPECT_EQ(one.mesh.uvs[0], (Vec2f{0.25f, 0.5f})) << extension;
+    EXPECT_TRUE(one.mesh.second_uvs.empty());
+  }
+  // A set that is not there is told.
+  EXPECT_EQ(
+      files.files.as_text(
+          with_material(files, "{\"pbrMetallicRoughness\":{\"baseColorTexture\":" + use("4") + "}}")
+              .warnings),
+      (std::vector<std::string>{"a.glb: warning: meshes[0].primitives[0]: has no TEXCOORD_4, by which its "
+                                "material shows textures"}));
+}
+
+TEST(GltfScene, NormalTexturesHaveScaleAndTangents) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  out.vectors({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+  out.array(std::vector<float>{1, 0, 0, -1, 0, 1, 0, -1, 1, 0, 0, -1}, kFloat, "VEC4", 4);
+  const auto read = [&](const std::string& node) {
+    return files.load(out.glb(
+        "\"images\":[{\"uri\":\"a.png\"}],\"textures\":[{\"source\":0}],\"materials\":[{\"normalTexture\":"
+        "{\"index\":0,\"scale\":-0.5}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+        "\"NORMAL\":1,\"TANGENT\":2},\"material\":0}]}],\"nodes\":[{\"mesh\":0" +
+        node + "}]"));
+  };
+  const MeshFile file = read("");
+  EXPECT_EQ(file.materials.at(0).normal_scale, -0.5f);
+  EXPECT_EQ(file.mesh.tangents[1], (std::array<float, 4>{0, 1, 0, -1}));
+  // As one mesh they are moved, and a mirror changes the side.
+  const MeshFile moved = read(",\"scale\":[-2,1,1]");
+  EXPECT_EQ(moved.mesh.tangents[0], (std::array<float, 4>{-2, 0, 0, 1}));
+}
+
+TEST(GltfScene, MasksKeepWhatIsEqualToTheCutoff) {
+  const GltfFiles files;
+  for (const double alpha : {1.0, 0.25, 0.7})
+    for (int texel = 1; texel < 256; ++texel) {
+      const double cutoff = alpha * texel / 255;
+      char text[400];
+      std::snprintf(
+          text, sizeof text,
+          "{\"alphaMode\":\"MASK\",\"alphaCutoff\":%.17g,\"pbrMetallicRoughness\":{\"baseColorFactor\":"
+          "[1,1,1,%.17g],\"baseColorTexture\":{\"index\":0}}}",
+          cutoff, alpha);
+      const MeshFile file = with_material(files, text);
+      const Texture& mask = file.textures.at(file.materials.at(0).opacity_texture);
+      const auto opacity = [&](int v) { return static_cast<float>(v) / 255.0f * mask.gain + mask.base; };
+      EXPECT_GE(opacity(texel), 1) << alpha << " " << texel;
+      EXPECT_LE(opacity(texel - 1), 0) << alpha << " " << texel;
+      if (texel > 3) texel += 6;
+    }
+}
+
+TEST(GltfScene, GlassAbsorbsWhatTheVolumeSays) {
+  const GltfFiles files;
+  const std::string volume =
+      "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+      "\"attenuationColor\":[0.5,1,0.25]}";
+  const MeshFile file = with_material(
+      files, "{\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1}," + volume + "}}");
+  const Medium& medium = file.media.at(file.materials.at(0).interior);
+  EXPECT_NEAR(medium.absorption.x, std::log(2.0) / 2, 1e-6);
+  EXPECT_EQ(medium.absorption.y, 0);
+  EXPECT_NEAR(medium.absorption.z, std::log(4.0) / 2, 1e-6);
+  EXPECT_EQ(with_material(files, "{\"extensions\":{" + volume + "}}").materials.at(0).interior, kNoId);
+}
+
+TEST(GltfScene, SpecularAndGlossBecomeMetalOrPlastic) {
+  const GltfFiles files;
+  const auto read = [&](const std::string& gloss) {
+    return with_material(files, "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{" + gloss + "}}}");
+  };
+  const MeshFile plastic = read(
+      "\"diffuseFactor\":[0.5,0.25,0,0.5],\"specularFactor\":[0.04,0.04,0.04],\"glossinessFactor\":0.75");
+  EXPECT_EQ(plastic.materials.at(0).color, (Color{0.5f, 0.25f, 0}));
+  EXPECT_EQ(plastic.materials.at(0).principled->parameters.metallic, 0);
+  EXPECT_EQ(plastic.materials.at(0).principled->parameters.roughness, 0.25f);
+  EXPECT_NEAR(plastic.materials.at(0).principled->parameters.specular, 0.5, 1e-6);
+  const MeshFile metal = read("\"diffuseFactor\":[0,0,0,1],\"specularFactor\":[1,0.5,0.25]");
+  EXPECT_EQ(metal.materials.at(0).color, (Color{1, 0.5f, 0.25f}));
+  EXPECT_EQ(metal.materials.at(0).principled->parameters.metallic, 1);
+  EXPECT_EQ(metal.materials.at(0).principled->parameters.roughness, 0);
+  const MeshFile textured = read("\"specularGlossinessTexture\":{\"index\":0},\"glossinessFactor\":0.5");
+  const Texture& t = textured.textures.at(textured.materials.at(0).principled->roughness_texture);
+  EXPECT_EQ(t.channel, ImageChannel::alpha);
+  EXPECT_EQ(t.gain, -0.5f);
+  EXPECT_EQ(t.base, 1);
+}
+
+TEST(GltfScene, VariantsChooseMaterials) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const std::string path = files.files.write(
+      "a.glb",
+      out.glb(
+          "\"extensionsUsed\":[\"KHR_materials_variants\"],\"extensionsRequired\":[\"KHR_materials_"
+          "variants\"],"
+          "\"extensions\":{\"KHR_materials_variants\":{\"variants\":[{\"name\":\"day\"},{\"name\":\"night\"},"
+          "{\"name\":\"dusk\"}]}},"
+          "\"materials\":[{\"name\":\"a\"},{\"name\":\"b\"},{\"name\":\"c\"}]," +
+          one_node(
+              "{\"attributes\":{\"POSITION\":0},\"material\":0,\"extensions\":{\"KHR_materials_variants\":"
+              "{\"mappings\":[{\"material\":1,\"variants\":[0,2]},{\"material\":2,\"variants\":[1]}]}}}")));
+  const auto shown = [&](const std::string& variant) {
+    GltfOptions options;
+    options.variant = variant;
+    const GltfScene scene = load_gltf_scene(path, options);
+    return scene.materials.at(scene.meshes.at(0).slots.at(0)).name;
+  };
+  EXPECT_EQ(shown(""), "a");
+  EXPECT_EQ(shown("day"), "b");
+  EXPECT_EQ(shown("night"), "c");
+  EXPECT_EQ(shown("dusk"), "b");
+  try {
+    shown("noon");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(files.files.without_directory(e.what()),
+              "a.glb: there is no variant 'noon'; expected one of 'day', 'night', 'dusk'");
+  }
+}
+
+TEST(GltfScene, NodesShowTheirMeshManyTimes) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  out.vectors({{1, 0, 0}, {0, 2, 0}});
+  out.array(std::vector<std::int8_t>{0, 0, 127, 0, 0, 0, 0, 127}, kInt8, "VEC4", 4, ",\"normalized\":true");
+  out.vectors({{1, 1, 1}, {3, 1, 1}});
+  const GltfScene scene = files.scene(out.glb(
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0,"
+      "\"translation\":[10,0,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{"
+      "\"TRANSLATION\":1,\"ROTATION\":2,\"SCALE\":3}}}}],\"extensionsUsed\":[\"EXT_mesh_gpu_instancing\"],"
+      "\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]"));
+  ASSERT_EQ(scene.placements.size(), 2u);
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  // Half a turn about z, then moved; and stretched.
+  EXPECT_LT(length(scene.placements[0].to_world.point({1, 0, 0}) - Vec3d{10, 0, 0}), 1e-6);
+  EXPECT_LT(length(scene.placements[0].to_world.point({0, 1, 0}) - Vec3d{11, -1, 0}), 1e-6);
+  EXPECT_LT(length(scene.placements[1].to_world.point({1, 0, 0}) - Vec3d{13, 2, 0}), 1e-6);
+}
+
+// KHR_lights_punctual: the square of (cos a - cos outer) / (cos inner - cos outer).
+TEST(GltfScene, SpotsFadeAsTheSquareOfTheCosine) {
+  const GltfFiles files;
+  const GltfScene scene = files.scene(with_triangle(
+      "\"nodes\":[{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"extensions\":{\"KHR_lights_"
+      "punctual\":"
+      "{\"lights\":[{\"type\":\"spot\",\"spot\":{\"innerConeAngle\":0.3,\"outerConeAngle\":0.9}}]}}"));
+  const LightProfile& profile = *std::get<SpotLight>(scene.lights.at(0)).profile;
+  for (int i = 0; i <= 100; ++i) {
+    const double angle = 0.01 * i;
+    const double part =
+        std::clamp((std::cos(angle) - std::cos(0.9)) / (std::cos(0.3) - std::cos(0.9)), 0.0, 1.0);
+    EXPECT_NEAR(profile_value(profile, angle * 180 / std::numbers::pi, 0), part * part, 2e-5) << angle;
+  }
+}
+
+TEST(GltfScene, ValidPartsThatAreNotShownDoNotMatter) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}});
+  out.array(std::vector<std::uint8_t>{0, 1, 2, 3}, kUint8, "SCALAR", 1);
+  out.buffers = "{\"byteLength\":" + std::to_string(out.binary.size()) +
+                "},{\"byteLength\":9},{\"byteLength\":9,\"uri\":\"none.bin\"},"
+                "{\"byteLength\":1,\"uri\":\"data:application/octet-stream,%00\"}";
+  out.accessors += ",{\"componentType\":5126,\"count\":4,\"type\":\"VEC9\"}";
+  const auto read = [&](const std::string& rest, const std::string& primitive) {
+    return files.load(out.glb(one_node(primitive) + rest));
+  };
+  const std::string plain = "{\"attributes\":{\"POSITION\":0},\"indices\":1}";
+  const MeshFile odd = read(
+      ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":4,\"znear\":1}},"
+      "{\"type\":\"fisheye\"}]",
+      plain + ",{\"attributes\":{\"NORMAL\":0}},{\"attributes\":{\"POSITION\":0},\"mode\":9}");
+  EXPECT_EQ(odd.mesh.triangle_count(), 1u);
+  EXPECT_EQ(
+      files.files.as_text(odd.warnings),
+      (std::vector<std::string>{
+          "a.glb: warning: meshes[0]: primitives without an attribute POSITION are skipped",
+          "a.glb: warning: meshes[0].primitives[0]: expected three corners for each triangle, found 4 in "
+          "all; the last ones are left out",
+          "a.glb: warning: meshes[0].primitives[2]: unknown mode 9; it is left out"}));
+  // Elements without bytes are zeros: here the indices.
+  out.accessors += ",{\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}";
+  const MeshFile zeros = read("", "{\"attributes\":{\"POSITION\":0},\"indices\":3}");
+  EXPECT_EQ(to_vector(zeros.mesh.indices), (std::vector<std::uint32_t>{0, 0, 0}));
+  // A camera that cannot be shown is left out.
+  const GltfScene scene =
+      files.scene(out.glb("\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":4,\"znear\":1}}],"
+                          "\"nodes\":[{\"camera\":0}]"));
+  EXPECT_FALSE(scene.camera);
+  EXPECT_EQ(files.files.as_text(scene.warnings),
+            (std::vector<std::string>{
+                "a.glb: warning: cameras[0]: its field of view is out of range; it is left out"}));
+}
+
+// glTF 2.0, 3.7.2.1.
+TEST(GltfScene, MeshesWithoutNormalsAreFlat) {
+  const GltfFiles files;
+  GltfWriter out;
+  out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, -0.3f}});
+  out.array(std::vector<std::uint8_t>{0, 1, 2, 2, 1, 3}, kUint8, "SCALAR", 1);
+  Scene scene = load_scene(
+      files.files.write("a.glb", out.glb(one_node("{\"attributes\":{\"POSITION\":0},\"indices\":1}"))));
+  apply_look(scene, Look::studio);
+  const auto& shape = std::get<MeshShape>(scene.objects.at(0).shape);
+  EXPECT_TRUE(shape.mesh->normals.empty());
+}
+
 TEST(GltfScene, WhatIsLostIsSaid) {
   const GltfFiles files;
   GltfWriter out;
   out.vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-  EXPECT_EQ(
-      files.warnings(out.glb(
-          "\"extensionsUsed\":[\"EXT_something\",\"KHR_materials_ior\"],\"skins\":[{\"joints\":[0]}],"
-          "\"animations\":[{\"channels\":[],\"samplers\":[]}]," +
-          one_node("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":0},\"targets\":[{\"POSITION\":0}]}"))),
-      (std::vector<std::string>{"a.glb: warning: animations are not read: things are shown at rest",
-                                "a.glb: warning: skins are not read: meshes are shown at rest",
-                                "a.glb: warning: extension 'EXT_something' is not read",
-                                "a.glb: warning: colours of vertices are not read",
-                                "a.glb: warning: morph targets are not read: meshes are shown at rest"}));
+  EXPECT_EQ(files.warnings(out.glb(
+                "\"extensionsUsed\":[\"EXT_something\",\"KHR_materials_ior\"],\"skins\":[{\"joints\":[0]}],"
+                "\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,\"path\":\"scale\"}}],"
+                "\"samplers\":[{\"input\":0,\"output\":0}]}]," +
+                one_node("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":0},\"targets\":[{\"POSITION\":0}]}"))),
+            (std::vector<std::string>{
+                "a.glb: warning: animations are not shown without a time: things are shown at rest",
+                "a.glb: warning: colours of vertices are not read",
+                "a.glb: warning: extension 'EXT_something' is not read"}));
 }
 
 }  // namespace

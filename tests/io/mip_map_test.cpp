@@ -22,22 +22,29 @@ TexelImage noise(std::uint32_t width, std::uint32_t height, std::uint32_t colors
   return image;
 }
 
-/// The first channel of pixel (x, y) of `image`, which repeats or is clamped.
-double pixel(const TexelImage& image, long x, long y, bool clamp) {
-  const auto in = [&](long i, long n) { return clamp ? std::clamp(i, 0l, n - 1) : ((i % n) + n) % n; };
-  const auto at = static_cast<std::size_t>(in(y, image.height) * image.width + in(x, image.width));
+TextureWraps wraps(bool clamp) { return clamp ? kClampedTexture : TextureWraps{}; }
+
+/// The first channel of pixel (x, y) of `image` and what is around it.
+double pixel(const TexelImage& image, long x, long y, TextureWraps wrap) {
+  const auto in = [](long i, long n, TextureWrap w) {
+    const long in_one = ((i % n) + n) % n, in_two = ((i % (2 * n)) + 2 * n) % (2 * n);
+    if (w == TextureWrap::mirror) return std::min(in_two, 2 * n - 1 - in_two);
+    return w == TextureWrap::clamp ? std::clamp(i, 0l, n - 1) : in_one;
+  };
+  const auto at =
+      static_cast<std::size_t>(in(y, image.height, wrap.v) * image.width + in(x, image.width, wrap.u));
   return static_cast<double>(image.floats[at * image.channels()]);
 }
 
 /// Bilinear at (s, t), written down as the sum of all four corners.
-double bilinear(const TexelImage& image, double s, double t, bool clamp) {
+double bilinear(const TexelImage& image, double s, double t, TextureWraps wrap) {
   const double x = s * image.width - 0.5, y = t * image.height - 0.5;
   double sum = 0;
   for (const long i : {0l, 1l})
     for (const long j : {0l, 1l}) {
       const long column = std::lround(std::floor(x)) + i, row = std::lround(std::floor(y)) + j;
       sum += (1 - std::abs(x - static_cast<double>(column))) * (1 - std::abs(y - static_cast<double>(row))) *
-             pixel(image, column, row, clamp);
+             pixel(image, column, row, wrap);
     }
   return sum;
 }
@@ -46,16 +53,17 @@ TEST(MipMap, WithoutChangesBilinear) {
   const TexelImage image = noise(13, 7, 1, 1);
   const MipMap map(image);
   std::mt19937 random(2);
-  std::uniform_real_distribution<float> repeated(0, 1), beyond(-1, 2);
-  for (int i = 0; i < 2000; ++i)
-    for (const bool clamp : {false, true}) {
-      const float s = clamp ? beyond(random) : repeated(random),
-                  t = clamp ? beyond(random) : repeated(random);
-      // Patches smaller than a pixel are no wider.
-      const float change = i % 2 == 0 ? 0 : 0.05f;
-      ASSERT_NEAR(map.color({s, t, change, 0, 0, change}, clamp).x, bilinear(image, s, t, clamp), 3e-6)
-          << s << " " << t;
-    }
+  std::uniform_real_distribution<float> beyond(-2, 3);
+  constexpr TextureWrap kAll[] = {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
+  for (int i = 0; i < 500; ++i)
+    for (const TextureWrap u : kAll)
+      for (const TextureWrap v : kAll) {
+        const float s = beyond(random), t = beyond(random);
+        // Patches smaller than a pixel are no wider.
+        const float change = i % 2 == 0 ? 0 : 0.05f;
+        ASSERT_NEAR(map.color({s, t, change, 0, 0, change}, {u, v}).x, bilinear(image, s, t, {u, v}), 6e-6)
+            << s << " " << t;
+      }
 }
 
 /// A patch whose pixels are those of a level.
@@ -76,11 +84,11 @@ TEST(MipMap, LevelsAreAveragesOfBlocks) {
         double sum = 0;
         for (std::uint32_t j = y * 8 / height; j < (y + 1) * 8 / height; ++j)
           for (std::uint32_t i = x * 32 / width; i < (x + 1) * 32 / width; ++i)
-            sum += pixel(image, i, j, true);
+            sum += pixel(image, i, j, kClampedTexture);
         const double mean = sum * width * height / (32 * 8);
         const float s = (static_cast<float>(x) + 0.5f) / static_cast<float>(width);
         const float t = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
-        ASSERT_NEAR(map.color(patch_of_level(image, level, s, t), true).x, mean, 1e-6)
+        ASSERT_NEAR(map.color(patch_of_level(image, level, s, t), wraps(true)).x, mean, 1e-6)
             << level << " " << x << " " << y;
       }
   }
@@ -98,7 +106,8 @@ TEST(MipMap, OddSidesKeepTheMean) {
     }
     const double mean = sum / static_cast<double>(image.floats.size());
     const MipMap map(std::move(image));
-    EXPECT_NEAR(map.color({0.3f, 0.6f, 16, 0, 0, 16}, false).x, mean, 2e-6 * mean) << width << " " << height;
+    EXPECT_NEAR(map.color({0.3f, 0.6f, 16, 0, 0, 16}, wraps(false)).x, mean, 2e-6 * mean)
+        << width << " " << height;
   }
 }
 
@@ -112,7 +121,7 @@ TEST(MipMap, AnEvenImageStaysEvenWhateverThePatch) {
     const float size = std::exp2(static_cast<float>(i % 12) - 7);
     const TexturePatch patch{change(random),        change(random),        size * change(random),
                              size * change(random), size * change(random), size * change(random)};
-    const Color c = map.color(patch, i % 2 == 0);
+    const Color c = map.color(patch, wraps(i % 2 == 0));
     ASSERT_NEAR(c.x, 0.1f, 1e-7);
     ASSERT_NEAR(c.y, 7.3f, 5e-6);
   }
@@ -127,7 +136,7 @@ double mean_over(const TexelImage& image, const TexturePatch& p) {
       sum += bilinear(
           image, static_cast<double>(p.s) + x * static_cast<double>(p.dsdx) + y * static_cast<double>(p.dsdy),
           static_cast<double>(p.t) + x * static_cast<double>(p.dtdx) + y * static_cast<double>(p.dtdy),
-          false);
+          TextureWraps{});
     }
   return sum / 1024;
 }
@@ -154,8 +163,8 @@ TEST(MipMap, LongPatchesAverageAlongTheirLongerAxis) {
       const TexturePatch quarter{patch.s, patch.t, -along_y / w, along_x / h, -across_y / w, across_x / h};
       const double truth = mean_over(image, patch);
       const auto squared = [](double v) { return v * v; };
-      error += squared(static_cast<double>(map.color(patch, false).x) - truth);
-      turned += squared(static_cast<double>(map.color(quarter, false).x) - truth);
+      error += squared(static_cast<double>(map.color(patch, wraps(false)).x) - truth);
+      turned += squared(static_cast<double>(map.color(quarter, wraps(false)).x) - truth);
       variance += squared(truth - 0.5);
     }
     EXPECT_LT(error, 0.45 * variance) << width;
@@ -170,8 +179,8 @@ TEST(MipMap, StripesVanishAcrossAndStayAlong) {
   const MipMap map(std::move(image));
   const float white = 32.5f / 64;
   for (const float size : {4.0f, 9.0f, 15.0f}) {
-    EXPECT_NEAR(map.color({white, 0.5f, size / 64, 0, 0, 1.0f / 64}, false).x, 0.5f, 0.13f) << size;
-    EXPECT_EQ(map.color({white, 0.5f, 1.0f / 64, 0, 0, size / 64}, false).x, 1) << size;
+    EXPECT_NEAR(map.color({white, 0.5f, size / 64, 0, 0, 1.0f / 64}, wraps(false)).x, 0.5f, 0.13f) << size;
+    EXPECT_EQ(map.color({white, 0.5f, 1.0f / 64, 0, 0, size / 64}, wraps(false)).x, 1) << size;
   }
 }
 
@@ -197,13 +206,13 @@ TEST(MipMap, KindsOfImagesAgree) {
   for (int i = 0; i < 1000; ++i) {
     const float size = std::exp2(6 * unit(random) - 5);
     const TexturePatch patch{unit(random), unit(random), size, size * unit(random), 0, size * unit(random)};
-    ASSERT_EQ(a.color(patch, false), b.color(patch, false));
-    ASSERT_EQ(a.stored(patch, false), b.stored(patch, false));
-    ASSERT_NE(a.stored(patch, false), a.color(patch, false));
+    ASSERT_EQ(a.color(patch, wraps(false)), b.color(patch, wraps(false)));
+    ASSERT_EQ(a.stored(patch, wraps(false)), b.stored(patch, wraps(false)));
+    ASSERT_NE(a.stored(patch, wraps(false)), a.color(patch, wraps(false)));
     for (const ImageChannel channel :
          {ImageChannel::red, ImageChannel::green, ImageChannel::blue, ImageChannel::alpha})
-      ASSERT_EQ(a.channel(channel, patch, false), b.channel(channel, patch, false));
-    ASSERT_EQ(a.channel(ImageChannel::blue, patch, false), a.stored(patch, false).z);
+      ASSERT_EQ(a.channel(channel, patch, wraps(false)), b.channel(channel, patch, wraps(false)));
+    ASSERT_EQ(a.channel(ImageChannel::blue, patch, wraps(false)), a.stored(patch, wraps(false)).z);
   }
 }
 
@@ -220,7 +229,7 @@ TEST(MipMap, BitsAreTheSameOnEveryMachine) {
     patch.dtdx = size * unit();
     patch.dsdy = size * unit();
     patch.dtdy = size * unit();
-    const Color c = map.color(patch, i % 2 == 0);
+    const Color c = map.color(patch, wraps(i % 2 == 0));
     for (const float v : {c.x, c.y, c.z}) hash = (hash ^ std::bit_cast<std::uint32_t>(v)) * 0x100000001b3u;
   }
   EXPECT_EQ(hash, 5509113479268296741u);

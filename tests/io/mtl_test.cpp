@@ -229,7 +229,7 @@ TEST(Mtl, TextureOptions) {
   ASSERT_EQ(mtl.textures.size(), 5u);
   Texture expected;
   expected.path = "my picture 1.png";
-  expected.clamp = true;
+  expected.wrap = kClampedTexture;
   expected.offset = {0.5f, 0.25f, 0};
   expected.scale = {2, 3, 4};
   expected.base = 0.1f;

@@ -111,7 +111,9 @@ TEST(SceneFile, ReadsMaterials) {
   EXPECT_EQ(m.opacity_texture, m.color_texture);
   EXPECT_EQ(m.normal_texture, m.color_texture);
   EXPECT_EQ(scene.textures.at(m.emission_texture).scale, (Vec3f{4, 4, 4}));
-  const Texture bump{files.dir.file("wood.png"), true, {0.5f, 0.25f, 0}, {2, 3, 1}, 2, -1};
+  Texture bump;
+  bump.path = files.dir.file("wood.png"), bump.wrap = kClampedTexture;
+  bump.offset = {0.5f, 0.25f, 0}, bump.scale = {2, 3, 1}, bump.gain = 2, bump.base = -1;
   EXPECT_EQ(scene.textures.at(m.bump_texture), bump);
 }
 

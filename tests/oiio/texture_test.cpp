@@ -65,7 +65,7 @@ TEST(ImageTextures, OriginIsTheLowerLeftCorner) {
 TEST(ImageTextures, RepeatAndClampBeyondTheEdge) {
   const TempDir dir;
   Texture clamped = texture_of(checkers(dir));
-  clamped.clamp = true;
+  clamped.wrap = kClampedTexture;
   const ImageTextures textures({texture_of(checkers(dir)), clamped});
   for (const float whole : {-3.0f, -1.0f, 1.0f, 7.0f})
     EXPECT_EQ(textures.color(0, {0.25f + whole, 0.75f}, kNoChange, kNoChange), (Color{1, 0, 0})) << whole;
@@ -383,7 +383,7 @@ TEST(ImageTextures, PathsAreTakenLiterally) {
 TEST(ImageTextures, AnyCoordinatesAreSafe) {
   const TempDir dir;
   Texture clamped = texture_of(checkers(dir));
-  clamped.clamp = true;
+  clamped.wrap = kClampedTexture;
   const ImageTextures textures({texture_of(checkers(dir)), clamped});
   const float inf = std::numeric_limits<float>::infinity();
   const float odd[] = {

@@ -132,6 +132,112 @@ TEST(Texture, NormalMapsReplaceTheNormal) {
   EXPECT_NEAR(color(run_textured(scene, textures), 8, 4).x, 1, 1e-5f);
 }
 
+/// The light that a normal map sends back from a lamp far away in this direction.
+float lit(const Scene& square, const Vec3d& to_light) {
+  Scene scene = square;
+  scene.lights = {DirectionalLight{-to_light, {1, 1, 1}}};
+  const FunctionTextures textures;
+  return color(run_textured(scene, textures), 8, 4).x;
+}
+
+TriangleMesh& mesh_of(Scene& scene) {
+  auto& shape = std::get<MeshShape>(scene.objects[0].shape);
+  auto mesh = std::make_shared<TriangleMesh>(*shape.mesh);
+  TriangleMesh& own = *mesh;
+  shape.mesh = std::move(mesh);
+  return own;
+}
+
+// The tilt is multiplied, the normal made to have length 1.
+TEST(Texture, NormalMapsHaveAScale) {
+  Material m = diffuse({1, 1, 1});
+  m.normal_texture = 3;
+  for (const float scale : {0.0f, 0.5f, 2.0f, -1.0f}) {
+    m.normal_scale = scale;
+    const Vec3d expected = normalize(Vec3d{0.6 * double{scale}, 0, 0.8});
+    EXPECT_NEAR(lit(textured_square(m), expected), 1, 1e-5f) << scale;
+  }
+}
+
+// The map leans to its first axis: the tangent, or where that is missing +u.
+TEST(Texture, NormalMapsFollowTheTangentsOfAMesh) {
+  Material m = diffuse({1, 1, 1});
+  m.normal_texture = 3;
+  const auto square_with = [&](const std::array<float, 4>& tangent) {
+    Scene scene = textured_square(m);
+    TriangleMesh& mesh = mesh_of(scene);
+    for (int k = 0; k < 4; ++k) mesh.normals.push_back({0, 0, 1}), mesh.tangents.push_back(tangent);
+    mesh.normal_indices = mesh.indices;
+    return scene;
+  };
+  EXPECT_NEAR(lit(square_with({0, 1, 0, 1}), {0, 0.6, 0.8}), 1, 1e-5f);
+  EXPECT_NEAR(lit(square_with({-2, 0, 0, 1}), {-0.6, 0, 0.8}), 1, 1e-5f);
+  EXPECT_NEAR(lit(square_with({0, 0, 0, 0}), {0.6, 0, 0.8}), 1, 1e-5f);
+  // The object turned by a quarter and mirrored.
+  Scene turned = square_with({0, 1, 0, 1});
+  turned.objects[0].transform.m = {{{0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}}};
+  EXPECT_NEAR(lit(turned, {-0.6, 0, 0.8}), 1, 1e-5f);
+}
+
+/// As FunctionTextures, with a normal that leans towards the second axis of the map.
+class LeaningUp : public FunctionTextures {
+ public:
+  Vec3f normal(std::uint32_t, Vec2f, Vec2f, Vec2f) const override { return {0.5f, 0.8f, 0.9f}; }
+};
+
+// The second axis is cross(n, tangent) times the sign; mirrors keep what the picture of the object shows.
+TEST(Texture, TangentsHaveASide) {
+  Material m = diffuse({1, 1, 1});
+  m.normal_texture = 3;
+  for (const float side : {1.0f, -1.0f})
+    for (const double mirror : {1.0, -1.0}) {
+      Scene scene = textured_square(m);
+      TriangleMesh& mesh = mesh_of(scene);
+      for (int k = 0; k < 4; ++k) mesh.normals.push_back({0, 0, 1}), mesh.tangents.push_back({1, 0, 0, side});
+      mesh.normal_indices = mesh.indices;
+      scene.objects[0].transform = Affine::scaling({1, mirror, 1});
+      scene.lights = {DirectionalLight{{0, -0.6 * double{side} * mirror, -0.8}, {1, 1, 1}}};
+      const LeaningUp textures;
+      EXPECT_NEAR(color(run_textured(scene, textures), 8, 4).x, 1, 1e-5f) << side << " " << mirror;
+    }
+}
+
+// An image turned by an angle counter-clockwise on uv has its first axis turned the other way on the surface.
+TEST(Texture, NormalMapsTurnWithTheirImage) {
+  Material m = diffuse({1, 1, 1});
+  m.normal_texture = 3;
+  for (const double angle : {0.0, 0.5, 2.0, -1.0}) {
+    Scene scene = textured_square(m);
+    scene.textures.resize(4);
+    scene.textures[3].rotation = static_cast<float>(angle);
+    EXPECT_NEAR(lit(scene, {0.6 * std::cos(angle), -0.6 * std::sin(angle), 0.8}), 1, 1e-5f) << angle;
+  }
+  Scene mirrored = textured_square(m);
+  mirrored.textures.resize(4);
+  mirrored.textures[3].scale = {-1, 1, 1};
+  EXPECT_NEAR(lit(mirrored, {-0.6, 0, 0.8}), 1, 1e-5f);
+}
+
+// A texture of the second layer is looked up by the mesh's second coordinates, with their footprint.
+TEST(Texture, TexturesMayLieBySecondCoordinates) {
+  Material m = diffuse({1, 1, 1});
+  m.color_texture = 0;
+  Scene scene = textured_square(m);
+  scene.textures.resize(1);
+  scene.integrator.kind = IntegratorKind::albedo;
+  TriangleMesh& mesh = mesh_of(scene);
+  for (const Vec2f& uv : mesh.uvs) mesh.second_uvs.push_back({uv.y, 0.5f * uv.x});
+  const FunctionTextures textures;
+  const Color first = color(run_textured(scene, textures), 4, 9);
+  EXPECT_NEAR(textures.last_dx.x, 1.0f / 16, 1e-5f);
+  scene.textures[0].uv_layer = 1;
+  const Color second = color(run_textured(scene, textures), 4, 9);
+  EXPECT_NEAR(second.x, first.y, 1e-3f);
+  EXPECT_NEAR(second.y, 0.5f * first.x, 1e-3f);
+  EXPECT_NEAR(textures.last_dx.y, 0.5f / 16, 1e-5f);
+  EXPECT_NEAR(textures.last_dx.x, 0, 1e-5f);
+}
+
 // Without data layers, lights reach textured hits in lanes, beside hits without textures. Pictures with data
 // layers are shaded hit by hit and must be the same, holes and samples that are not finite included.
 TEST(Texture, TexturedSurfacesLookTheSameInLanes) {

@@ -178,6 +178,8 @@ void note_scene(const GltfScene& scene, MeshLosses& losses) {
 
 MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses& losses) {
   if (!is_gltf_file(path)) {
+    if (!(options.gltf == GltfOptions{}))
+      throw Error(Location{path}, "a time and variants are for glTF files");
     MeshFile file = load_mesh(path);
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
     if (format != nullptr && format->note_unread != nullptr)
@@ -185,7 +187,7 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
     if (options.weld) weld_positions(file.mesh);
     return file;
   }
-  GltfScene scene = load_gltf_scene(path);
+  GltfScene scene = load_gltf_scene(path, options.gltf);
   note_scene(scene, losses);
   MeshFile file = one_mesh(path, std::move(scene));
   if (options.weld) weld_positions(file.mesh);

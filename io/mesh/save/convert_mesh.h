@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "core/error.h"
+#include "io/gltf/gltf_options.h"
 
 namespace oktett {
 
 struct ConvertOptions {
   bool ascii = false;  ///< text instead of bytes, for .ply and .stl
   bool weld = false;   ///< make one of all vertices at the same place, -0 as 0
+  GltfOptions gltf{};  ///< what of a glTF file is read; nothing may be asked of others
 };
 
 /// What became of a mesh.

@@ -1,0 +1,20 @@
+#pragma once
+/// \file What can be asked of glTF files.
+
+#include <optional>
+#include <string>
+
+namespace oktett {
+
+/// What of a glTF file is shown.
+struct GltfOptions {
+  /// Seconds from the start of the animations; nothing: all is where the file places it without them.
+  std::optional<double> time;
+  /// Seconds for which things move from then on. Meshes that are bent do not.
+  double shutter = 0;
+  std::string variant;  ///< of KHR_materials_variants; empty: none
+
+  bool operator==(const GltfOptions&) const = default;
+};
+
+}  // namespace oktett
