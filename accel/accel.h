@@ -161,17 +161,12 @@ SurfaceInteraction surface_interaction(const Accel& accel, const Ray& ray, const
 /// surface_interaction.
 SurfaceInteraction identify(const Accel& accel, const Hit& hit);
 
+/// Where on its mesh a hit lies, for attribute_at; on no mesh if another shape was hit.
+MeshPoint mesh_point(const Accel& accel, const Hit& hit);
+
 /// The map to the world from the own space of the shape that was hit, which is that before its geometry's
 /// transform; of a combination or an instance, the shape inside it.
 Affine object_transform(const Accel& accel, const Hit& hit);
-
-/// The triangle of a mesh that was hit.
-struct MeshHit {
-  const TriangleMesh* mesh = nullptr;  ///< null for any other shape
-  std::uint32_t triangle = 0;
-  Affine to_world;  ///< from the mesh's own space
-};
-MeshHit mesh_hit(const Accel& accel, const Hit& hit);
 
 /// Sets dp/du and dp/dv of a triangle with these corners and their texture coordinates; leaves them where
 /// those do not span anything.

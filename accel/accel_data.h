@@ -51,7 +51,7 @@ struct CsgItem {
   std::vector<std::uint32_t> operand_of;  ///< node of each geometry of `solids`
   /// Number of each geometry's first solid, and the number of solids at the end.
   std::vector<std::uint32_t> first_solid;
-  bool has_meshes = false;  ///< among the solids and in instances of them
+  bool has_meshes = false;     ///< among the solids and in instances of them
   std::vector<CsgNode> nodes;  ///< the root first
   std::vector<std::uint32_t>
       unbounded;                     ///< geometries of `solids` that a ray may be inside without a crossing

@@ -116,11 +116,11 @@ void ask(benchmark::State& state, int number, Place place, const Ask& query) {
             });
         add(fmt::format("inside_winding/{}/{}/{}", scenes[number], name, to_string(isa)),
             [number, where = place, isa](benchmark::State& state) {
-              ask<std::uint8_t>(state, number, where,
-                                [&](const Accel& accel, const std::vector<Vec3f>& p,
-                                    std::vector<std::uint8_t>& a) {
-                                  inside(accel, p, a, InsideRule::winding, isa);
-                                });
+              ask<std::uint8_t>(
+                  state, number, where,
+                  [&](const Accel& accel, const std::vector<Vec3f>& p, std::vector<std::uint8_t>& a) {
+                    inside(accel, p, a, InsideRule::winding, isa);
+                  });
             });
         add(fmt::format("winding_number/{}/{}/{}", scenes[number], name, to_string(isa)),
             [number, where = place, isa](benchmark::State& state) {

@@ -252,7 +252,8 @@ class WorldBuilder {
     world_.materials = scene_.materials;
     world_.materials.emplace_back();
     for (const Material& m : scene_.materials) {
-      world_.has_holes |= m.opacity != 1 || m.opacity_texture != kNoId || !m.surface;
+      world_.has_holes |=
+          m.opacity != 1 || m.opacity_texture != kNoId || m.tint_opacity_texture != kNoId || !m.surface;
       world_.has_clear |= m.transparency != 0;
     }
   }

@@ -43,7 +43,7 @@ float greatest_albedo(const Material& m, std::span<const Texture> textures) {
     return std::min(value * bounds(texture).greatest.x, limit);
   };
   constexpr float kAny = std::numeric_limits<float>::infinity();
-  const Color color = m.color * bounds(m.color_texture).greatest;
+  const Color color = m.color * bounds(m.color_texture).greatest * bounds(m.tint_texture).greatest;
   const float least_exponent = m.phong * bounds(m.phong_texture).least.x;
   // The highlight's cosine to the power n, over pi, has the integral 2 / (n + 1) over its hemisphere.
   const float mirror = most(m.specular, m.specular_weight_texture, kAny) * 2 / (least_exponent + 1) +

@@ -30,9 +30,10 @@ struct TextureWraps {
 };
 inline constexpr TextureWraps kClampedTexture{TextureWrap::clamp, TextureWrap::clamp};
 
-/// An image file and how it is laid over the uv square, or a pattern. ImageTextures reads the file.
+/// An image file and how it is laid over the uv square, a pattern, or an attribute of meshes. ImageTextures
+/// reads the file.
 struct Texture {
-  std::string path;                         ///< of the image; empty for a pattern
+  std::string path;                         ///< of the image; else empty
   TextureWraps wrap{};                      ///< beyond the edges (MTL `-clamp on`: clamped)
   Vec3f offset{0, 0, 0};                    ///< added to uv after scaling and turning (MTL `-o`)
   Vec3f scale{1, 1, 1};                     ///< multiplies uv (MTL `-s`)
@@ -46,6 +47,9 @@ struct Texture {
   std::uint8_t uv_layer = 0;  ///< of what meshes have: 0 for TriangleMesh::uvs, 1 for second_uvs
   /// If not null, the bytes of the image file; `path` is only its name then.
   std::shared_ptr<const std::string> content{};
+  /// Instead of an image, if not empty: the attribute of this name of the mesh that is hit, see attribute_at.
+  /// Only gain, base and channel apply to it. What has no such attribute shows white.
+  std::string attribute{};
   bool operator==(const Texture&) const = default;
 };
 
@@ -137,6 +141,8 @@ struct Material {
   std::uint32_t ambient_texture = kNoId, diffuse_texture = kNoId, specular_weight_texture = kNoId;
   std::uint32_t phong_texture = kNoId, reflection_texture = kNoId, transparency_texture = kNoId;
   std::uint32_t ior_texture = kNoId;
+  /// These multiply `color` and `opacity` once more: colours of vertices beside an image.
+  std::uint32_t tint_texture = kNoId, tint_opacity_texture = kNoId;
   /// False: the boundary of the interior has no surface, and light passes it as if it were not there.
   bool surface = true;
   std::uint32_t interior = kNoId;  ///< index into Scene::media: what fills solids of this material
@@ -173,7 +179,7 @@ OKTETT_INLINE void for_each_texture(AnyMaterial& m, F&& f) {
   f(m.color_texture), f(m.specular_texture), f(m.emission_texture);
   f(m.opacity_texture), f(m.bump_texture), f(m.normal_texture);
   for (const PhongNumber& number : kPhongNumbers) f(m.*number.texture);
-  f(m.ior_texture);
+  f(m.ior_texture), f(m.tint_texture), f(m.tint_opacity_texture);
   if (!m.principled) return;
   for (const PrincipledNumber& number : kPrincipledNumbers) f((*m.principled).*number.texture);
   for (const PrincipledColor& color : kPrincipledColors) f((*m.principled).*color.texture);

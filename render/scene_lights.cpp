@@ -129,7 +129,8 @@ class EmitterCollector {
   static bool can_sample(const Material& m) {
     // Where another solid hides the surface it gives no light. Only a ray that meets the surface can tell.
     const bool may_be_hidden = encloses(m) && m.priority != kNoPriority;
-    return glows(m) && m.opacity == 1 && m.opacity_texture == kNoId && !may_be_hidden;
+    return glows(m) && m.opacity == 1 && m.opacity_texture == kNoId && m.tint_opacity_texture == kNoId &&
+           !may_be_hidden;
   }
 
   bool may_glow(const PlacedGeometry& p) const {
@@ -296,6 +297,7 @@ Color SceneLights::texture_at(const LightSample& sample, const TextureSampler* t
   const float weight[3] = {1 - sample.u - sample.v, sample.u, sample.v};
   TexturePlace at;
   const std::array<Vec2f, 3> second = corner_uvs(mesh, found->triangle, 1);
+  at.on_mesh = {&mesh, found->triangle, sample.u, sample.v};
   for (std::size_t k = 0; k < 3; ++k) {
     at.second.uv.x += second[k].x * weight[k], at.second.uv.y += second[k].y * weight[k];
     at.uv.x += uv[k].x * weight[k], at.uv.y += uv[k].y * weight[k];

@@ -6,13 +6,15 @@
 
 #include "accel/accel.h"
 #include "core/math.h"
+#include "core/mesh_geometry.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled/base.h"
 #include "render/shading_lanes.h"
 
 namespace oktett {
 
-// ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space.
+// ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space,
+// attributes by that on the mesh.
 
 static const PatternTexture* pattern_in(std::span<const Texture> list, std::uint32_t texture) {
   if (texture >= list.size()) return nullptr;
@@ -30,6 +32,24 @@ static const UvPlace& uv_place(std::span<const Texture> list, std::uint32_t text
   return texture < list.size() && list[texture].uv_layer != 0 ? place.second : place;
 }
 
+static const Texture* attribute_in(std::span<const Texture> list, std::uint32_t texture) {
+  return texture < list.size() && !list[texture].attribute.empty() ? &list[texture] : nullptr;
+}
+
+const Texture* attribute_texture(const RenderContext& context, std::uint32_t texture) {
+  return attribute_in(context.texture_list, texture);
+}
+
+/// What an attribute has at a place; nothing if there is none.
+static std::optional<AttributeValue> attribute_value(const Texture& t, const MeshPoint& place) {
+  if (place.mesh == nullptr) return std::nullopt;
+  const MeshAttribute* const attribute = find_attribute(*place.mesh, t.attribute);
+  if (attribute == nullptr) return std::nullopt;
+  AttributeValue value = attribute_at(place, *attribute);
+  for (float& x : value) x = x * t.gain + t.base;
+  return value;
+}
+
 /// Channels that are negative, NaN or infinite count as 0.
 static Color valid_color(const Color& c) {
   const auto valid = [](float x) { return x > 0 && std::isfinite(x) ? x : 0; };
@@ -41,6 +61,10 @@ Color texture_color(const Textures& textures, std::uint32_t texture, const Textu
     const Texture& t = textures.list[texture];
     return valid_color(pattern_color(*pattern, place.position) * t.gain + Color{t.base, t.base, t.base});
   }
+  if (const Texture* t = attribute_in(textures.list, texture)) {
+    const std::optional<AttributeValue> value = attribute_value(*t, place.on_mesh);
+    return value ? valid_color({(*value)[0], (*value)[1], (*value)[2]}) : Color{1, 1, 1};
+  }
   if (texture == kNoId || textures.images == nullptr) return {1, 1, 1};
   const UvPlace& at = uv_place(textures.list, texture, place);
   return valid_color(textures.images->color(texture, at.uv, at.dx, at.dy));
@@ -48,6 +72,10 @@ Color texture_color(const Textures& textures, std::uint32_t texture, const Textu
 
 float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
   if (pattern_of(context, texture) != nullptr) return texture_color(context, texture, place).x;
+  if (const Texture* t = attribute_texture(context, texture)) {
+    const std::optional<AttributeValue> value = attribute_value(*t, place.on_mesh);
+    return value ? (*value)[static_cast<std::size_t>(t->channel)] : 1;
+  }
   if (texture == kNoId || context.textures == nullptr) return 1;
   const UvPlace& at = uv_place(context.texture_list, texture, place);
   return context.textures->value(texture, at.uv, at.dx, at.dy);
@@ -65,8 +93,14 @@ bool has_textures(const Material& m) {
   return any_texture(m, [](std::uint32_t texture) { return texture != kNoId; });
 }
 
-bool has_pattern(const RenderContext& context, const Material& m) {
-  return any_texture(m, [&](std::uint32_t t) { return pattern_of(context, t) != nullptr; });
+TextureNeeds texture_needs(const RenderContext& context, const Material& m) {
+  TextureNeeds needs;
+  for_each_texture(m, [&](std::uint32_t t) {
+    if (t == kNoId) return;
+    needs.position = needs.position || pattern_of(context, t) != nullptr;
+    needs.mesh = needs.mesh || attribute_texture(context, t) != nullptr;
+  });
+  return needs;
 }
 
 // ---- Points.
@@ -115,18 +149,19 @@ bool has_second_uvs(const RenderContext& context, const Material& m) {
 
 /// Texture coordinates of the second layer, and what they add to the point.
 SurfaceInteraction by_second_uvs(const RenderContext& context, const SurfaceInteraction& s, const Hit& hit) {
-  const MeshHit at = mesh_hit(*context.world->accel, hit);
+  const MeshPoint at = mesh_point(*context.world->accel, hit);
   SurfaceInteraction second = s;
   if (at.mesh == nullptr) return second;
   const std::array<Vec2f, 3> uv = corner_uvs(*at.mesh, at.triangle, 1);
   const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
   second.uv = {0, 0};
+  const Affine to_world = object_transform(*context.world->accel, hit);
   Vec3f corners[3];
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k);
     second.uv.x += uv[i].x * weights[k], second.uv.y += uv[i].y * weights[k];
     const std::uint32_t vertex = at.mesh->indices[3 * std::size_t{at.triangle} + i];
-    corners[k] = Vec3f(at.to_world.vector(Vec3d(at.mesh->positions[vertex])));
+    corners[k] = Vec3f(to_world.vector(Vec3d(at.mesh->positions[vertex])));
   }
   set_uv_tangents(uv, corners, second.tangent, second.bitangent);
   return second;
@@ -149,7 +184,14 @@ float textured(const RenderContext& c, float value, std::uint32_t texture, const
 }
 
 float opacity_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
-  return m.surface ? textured(c, m.opacity, m.opacity_texture, kUnitInterval, place) : 0;
+  if (!m.surface) return 0;
+  const float opacity = textured(c, m.opacity, m.opacity_texture, kUnitInterval, place);
+  return textured(c, opacity, m.tint_opacity_texture, kUnitInterval, place);
+}
+
+/// Of diffuse light, and of light that passes.
+Color color_at(const RenderContext& c, const Material& m, const TexturePlace& place) {
+  return textured(c, textured(c, m.color, m.color_texture, place), m.tint_texture, place);
 }
 
 PrincipledParameters principled_at(const RenderContext& c, const PrincipledMaterial& m, const Color& color,
@@ -228,13 +270,11 @@ Vec3f bumped(const RenderContext& c, const Material& m, const SurfaceInteraction
   return unit_normal(n * std::abs(area) - (area < 0 ? -tilt : tilt), n);
 }
 
-/// The same for a pattern, whose heights are given in space: the surface where F = 0 becomes that where
-/// F = height |grad F|, so its normal loses the part of the heights' gradient that runs along the surface
-/// (Perlin 1985). All in the object's space, which `to_world` leads out of.
-Vec3f bumped_by_pattern(const PatternTexture& pattern, float scale, const Affine& to_world,
-                        const Affine& to_object, const Vec3d& position, const Vec3f& n) {
+/// The same for heights that are given in space and have the gradient `slope`: the surface where F = 0
+/// becomes that where F = height |grad F|, so its normal loses the part of the gradient that runs along the
+/// surface (Perlin 1985). All in the object's space, which `to_world` leads out of.
+Vec3f bumped_by_slope(const Vec3d& slope, const Affine& to_world, const Affine& to_object, const Vec3f& n) {
   const Vec3d own = normalize(to_world.normal_by_inverse(Vec3d(n)));
-  const Vec3d slope = pattern_slope(pattern, position) * double{scale};
   return unit_normal(Vec3f(normalize(to_object.normal_by_inverse(own - (slope - own * dot(slope, own))))), n);
 }
 
@@ -258,7 +298,7 @@ MapAxes image_axes(const RenderContext& c, std::uint32_t texture, const SurfaceI
 
 /// The tangents of the mesh that was hit; zeros if it has none there.
 MapAxes tangent_axes(const RenderContext& c, const Hit& hit, const Vec3f& n) {
-  const MeshHit at = mesh_hit(*c.world->accel, hit);
+  const MeshPoint at = mesh_point(*c.world->accel, hit);
   if (at.mesh == nullptr || at.mesh->tangents.empty()) return {};
   const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
   Vec3f tangent{0, 0, 0};
@@ -270,8 +310,9 @@ MapAxes tangent_axes(const RenderContext& c, const Hit& hit, const Vec3f& n) {
     tangent += Vec3f{own[0], own[1], own[2]} * weights[k];
     side += own[3] * weights[k];
   }
-  const Vec3f first = Vec3f(at.to_world.vector(Vec3d(tangent)));
-  const bool is_left = (side < 0) == (at.to_world.determinant() < 0);
+  const Affine to_world = object_transform(*c.world->accel, hit);
+  const Vec3f first = Vec3f(to_world.vector(Vec3d(tangent)));
+  const bool is_left = (side < 0) == (to_world.determinant() < 0);
   return {first, is_left ? cross(n, first) : cross(first, n)};
 }
 
@@ -292,6 +333,25 @@ Vec3f mapped(const RenderContext& c, const Material& m, const SurfaceInteraction
   return unit_normal(t * (texel.x * m.normal_scale) + b * (texel.y * m.normal_scale) + n * texel.z, n);
 }
 
+/// The gradient along a triangle of the number that a texture takes from an attribute, without its gain.
+Vec3d attribute_slope(const Texture& t, const MeshPoint& place) {
+  const MeshAttribute* const attribute =
+      place.mesh == nullptr ? nullptr : find_attribute(*place.mesh, t.attribute);
+  if (attribute == nullptr || attribute->domain == AttributeDomain::face) return {};
+  const TriangleMesh& mesh = *place.mesh;
+  const std::uint32_t triangle = place.triangle;
+  const auto height = [&](float u, float v) -> double {
+    return attribute_at({&mesh, triangle, u, v}, *attribute)[static_cast<std::size_t>(t.channel)];
+  };
+  const Vec3d a = corner(mesh, triangle, 0), b = corner(mesh, triangle, 1) - a,
+              c = corner(mesh, triangle, 2) - a;
+  const Vec3d normal = cross(b, c);
+  const double square = dot(normal, normal), h = height(0, 0);
+  if (!(square > 0)) return {};
+  // Its products with b and c are the differences of the heights.
+  return (cross(c, normal) * (height(1, 0) - h) + cross(normal, b) * (height(0, 1) - h)) * (1 / square);
+}
+
 /// What the textures of a material ask of a hit.
 class TexturedHit {
  public:
@@ -302,7 +362,9 @@ class TexturedHit {
       second_ = by_second_uvs(context, s, hit);
       place.second.uv = second_->uv;
     }
-    if (!has_pattern(context, m)) return;
+    const TextureNeeds needs = texture_needs(context, m);
+    if (needs.mesh) place.on_mesh = mesh_point(*context.world->accel, hit);
+    if (!needs.position && attribute_texture(context, m.bump_texture) == nullptr) return;
     to_world_ = object_transform(*context.world->accel, hit);
     to_object_ = to_world_.inverse();
     place.position = to_object_.point(Vec3d(s.position));
@@ -322,7 +384,10 @@ class TexturedHit {
     Vec3f n = s_.shading_normal;
     if (const PatternTexture* pattern = pattern_of(context_, m_.bump_texture)) {
       const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
-      n = bumped_by_pattern(*pattern, scale, to_world_, to_object_, place.position, n);
+      n = bumped_by_slope(pattern_slope(*pattern, place.position) * double{scale}, to_world_, to_object_, n);
+    } else if (const Texture* attribute = attribute_texture(context_, m_.bump_texture)) {
+      const double scale = double{m_.bump_scale} * double{attribute->gain};
+      n = bumped_by_slope(attribute_slope(*attribute, place.on_mesh) * scale, to_world_, to_object_, n);
     } else if (m_.bump_texture != kNoId) {
       n = bumped(context_, m_, surface_of(m_.bump_texture), n, place_of(m_.bump_texture));
     }
@@ -386,7 +451,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
     ns = textures.shading_normal();
     place = textures.place;
   }
-  p.color = textured(context, m.color, m.color_texture, place);
+  p.color = color_at(context, m, place);
   p.specular_color = textured(context, m.specular_color, m.specular_texture, place);
   p.emission = textured(context, m.emission, m.emission_texture, place);
   p.values = phong_values(context, m, place);
@@ -429,7 +494,7 @@ ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const H
 bool is_opaque(const Material& m, ShadowRule rule) {
   if (!m.surface) return false;
   return (m.transparency == 0 || rule == ShadowRule::holes_pass) && m.opacity == 1 &&
-         m.opacity_texture == kNoId;
+         m.opacity_texture == kNoId && m.tint_opacity_texture == kNoId;
 }
 
 /// Whether path tracing scatters the light that the material lets through. Then light samples at the surface
@@ -457,7 +522,7 @@ Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit
   const float hole = 1 - opacity;
   if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
   if (scatters_passing_light(context, m, place, ior)) return {hole, hole, hole};
-  const Color color = m.filter ? *m.filter : textured(context, m.color, m.color_texture, place);
+  const Color color = m.filter ? *m.filter : color_at(context, m, place);
   return color * (transparency_at(context, m, place) * opacity) + Color{hole, hole, hole};
 }
 

@@ -13,7 +13,8 @@
 
 namespace oktett {
 
-// ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space.
+// ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space,
+// attributes by that on the mesh.
 
 /// A place in texture coordinates.
 struct UvPlace {
@@ -25,10 +26,14 @@ struct UvPlace {
 struct TexturePlace : UvPlace {
   Vec3d position;  ///< in the object's own space
   UvPlace second;  ///< of textures whose uv_layer is 1
+  MeshPoint on_mesh;
 };
 
 /// The pattern of a texture; null for an image or kNoId.
 const PatternTexture* pattern_of(const RenderContext& context, std::uint32_t texture);
+
+/// The texture, if it shows an attribute of meshes; else null.
+const Texture* attribute_texture(const RenderContext& context, std::uint32_t texture);
 
 /// The textures of a scene, and what reads its images (null: they are white).
 struct Textures {
@@ -45,8 +50,12 @@ inline Color texture_color(const RenderContext& context, std::uint32_t texture, 
 float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place);
 
 bool has_textures(const Material& material);
-/// Whether any texture of the material is a pattern.
-bool has_pattern(const RenderContext& context, const Material& material);
+/// What its textures need to know of a place beside its uv.
+struct TextureNeeds {
+  bool position = false;  ///< some texture is a pattern
+  bool mesh = false;      ///< some texture shows an attribute of the mesh
+};
+TextureNeeds texture_needs(const RenderContext& context, const Material& material);
 
 // ---- Points.
 

@@ -60,13 +60,12 @@ void set_uv_tangents(const std::array<Vec2f, 3>& uv, const Vec3f (&p)[3], Vec3f&
   by_v = ((p[2] - p[0]) * du1 - (p[1] - p[0]) * du2) / det;
 }
 
-MeshHit mesh_hit(const Accel& accel, const Hit& hit) {
+MeshPoint mesh_point(const Accel& accel, const Hit& hit) {
   const HitPlace place = follow_path(accel, hit.instance);
   const HitNames names = identify_in(place, hit);
   if (names.kind != Kind::triangle) return {};
-  const Geometry& geometry = place.accel->geometries[names.geometry];
-  return {std::get<MeshGeometry>(geometry.shape).mesh, names.primitive,
-          place.moved ? place.to_world * geometry.transform : geometry.transform};
+  const TriangleMesh* mesh = std::get<MeshGeometry>(place.accel->geometries[names.geometry].shape).mesh;
+  return {mesh, names.primitive, hit.u, hit.v};
 }
 
 SurfaceInteraction identify(const Accel& accel, const Hit& hit) {

@@ -11,7 +11,7 @@ namespace oktett {
 namespace {
 
 /// The number changes with what parse_mesh makes of a file.
-constexpr std::string_view kMeshKind = "mesh 1 " OKTETT_VERSION;
+constexpr std::string_view kMeshKind = "mesh 2 " OKTETT_VERSION;
 
 void append(std::string& bytes, const std::vector<MeshStatement>& statements) {
   append_number(bytes, static_cast<std::uint32_t>(statements.size()));
@@ -34,6 +34,39 @@ std::vector<MeshStatement> take_statements(ByteReader& reader) {
     statements.push_back(std::move(s));
   }
   return statements;
+}
+
+/// All but the values.
+void append(std::string& bytes, const std::vector<MeshAttribute>& attributes) {
+  append_number(bytes, static_cast<std::uint32_t>(attributes.size()));
+  for (const MeshAttribute& a : attributes) {
+    append_text(bytes, a.name);
+    append_number(bytes, static_cast<std::uint8_t>(a.domain));
+    append_number(bytes, static_cast<std::uint8_t>(a.components));
+  }
+}
+
+std::vector<MeshAttribute> take_attributes(ByteReader& reader) {
+  std::vector<MeshAttribute> attributes;
+  for (std::uint32_t left = reader.count(6); left > 0; --left) {
+    MeshAttribute a;
+    a.name = reader.text();
+    const auto domain = reader.number<std::uint8_t>();
+    a.components = reader.number<std::uint8_t>();
+    if (domain > 2 || a.components < 1 || a.components > 4) throw Error("has an impossible attribute");
+    a.domain = static_cast<AttributeDomain>(domain);
+    attributes.push_back(std::move(a));
+  }
+  return attributes;
+}
+
+/// Whether there is one value for each vertex, triangle or corner, in one of the two columns.
+bool are_attributes(const TriangleMesh& mesh) {
+  for (const MeshAttribute& a : mesh.attributes) {
+    const std::size_t size = domain_size(mesh, a.domain) * a.components;
+    if (a.floats.size() + a.srgb.size() != size || (!a.floats.empty() && !a.srgb.empty())) return false;
+  }
+  return true;
 }
 
 /// Whether `good` holds for all elements.
@@ -69,15 +102,21 @@ std::string mesh_header(const MeshEntry& entry) {
   append_number(bytes, static_cast<std::uint8_t>(entry.parsed.has_faces));
   append(bytes, entry.parsed.libraries);
   append(bytes, entry.parsed.materials);
+  append(bytes, entry.parsed.textures);
   append(bytes, entry.parsed.notices);
+  append(bytes, entry.parsed.mesh.attributes);
   return bytes;
 }
 
 std::vector<CacheSection> mesh_sections(const MeshEntry& entry) {
   const TriangleMesh& mesh = entry.parsed.mesh;
-  return {section_of(mesh.positions),     section_of(mesh.normals),        section_of(mesh.uvs),
-          section_of(mesh.indices),       section_of(mesh.normal_indices), section_of(mesh.uv_indices),
-          section_of(mesh.material_slots)};
+  std::vector<CacheSection> sections{
+      section_of(mesh.positions),     section_of(mesh.normals),        section_of(mesh.uvs),
+      section_of(mesh.indices),       section_of(mesh.normal_indices), section_of(mesh.uv_indices),
+      section_of(mesh.material_slots)};
+  for (const MeshAttribute& a : mesh.attributes)
+    sections.push_back(section_of(a.floats)), sections.push_back(section_of(a.srgb));
+  return sections;
 }
 
 MeshEntry read_mesh_header(const CacheFile& file) {
@@ -91,8 +130,10 @@ MeshEntry read_mesh_header(const CacheFile& file) {
       *n = reader.number<std::int64_t>();
     entry.checksum = reader.number<std::uint64_t>();
     entry.parsed.has_faces = reader.number<std::uint8_t>() != 0;
-    for (auto* list : {&entry.parsed.libraries, &entry.parsed.materials, &entry.parsed.notices})
+    for (auto* list :
+         {&entry.parsed.libraries, &entry.parsed.materials, &entry.parsed.textures, &entry.parsed.notices})
       *list = take_statements(reader);
+    entry.parsed.mesh.attributes = take_attributes(reader);
   } catch (const Error& error) {
     file.fail(error.what());
   }
@@ -104,14 +145,19 @@ void read_mesh_columns(const CacheFile& file, MeshEntry& entry) {
   file.copy(0, mesh.positions), file.copy(1, mesh.normals), file.copy(2, mesh.uvs);
   file.copy(3, mesh.indices), file.copy(4, mesh.normal_indices), file.copy(5, mesh.uv_indices);
   file.copy(6, mesh.material_slots);
+  std::size_t section = 7;
+  for (MeshAttribute& a : mesh.attributes) file.copy(section++, a.floats), file.copy(section++, a.srgb);
   const std::size_t corners = mesh.indices.size(), positions = mesh.positions.size();
-  const std::size_t slots = entry.parsed.materials.size();
-  const bool good = corners % 3 == 0 &&
-                    all_of(mesh.indices, [=](std::uint32_t index) { return index < positions; }) &&
-                    are_indices(mesh.normal_indices, corners, mesh.normals.size()) &&
-                    are_indices(mesh.uv_indices, corners, mesh.uvs.size()) &&
-                    mesh.material_slots.size() == (slots > 0 ? corners / 3 : 0) &&
-                    all_of(mesh.material_slots, [=](std::uint16_t slot) { return slot < slots; });
+  // Of images there is one slot more, for faces without; one alone needs no numbers.
+  const std::size_t images = entry.parsed.textures.size();
+  const std::size_t slots = images > 0 ? images + 1 : entry.parsed.materials.size();
+  const bool good =
+      corners % 3 == 0 && all_of(mesh.indices, [=](std::uint32_t index) { return index < positions; }) &&
+      are_indices(mesh.normal_indices, corners, mesh.normals.size()) &&
+      are_indices(mesh.uv_indices, corners, mesh.uvs.size()) &&
+      (mesh.material_slots.size() == (slots > 0 ? corners / 3 : 0) ||
+       (images > 0 && mesh.material_slots.empty())) &&
+      are_attributes(mesh) && all_of(mesh.material_slots, [=](std::uint16_t slot) { return slot < slots; });
   if (!good) file.fail("has indices that lead nowhere");
 }
 

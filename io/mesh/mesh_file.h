@@ -23,4 +23,12 @@ struct MeshFile {
   std::vector<Warning> warnings;  ///< what was skipped
 };
 
+/// The material of an image that a file names without one; of a face without an image if `texture` is kNoId.
+inline Material image_material(const std::string& name, std::uint32_t texture) {
+  Material m;
+  m.name = name;
+  if (texture != kNoId) m.color = {1, 1, 1}, m.diffuse = 1, m.color_texture = texture;
+  return m;
+}
+
 }  // namespace oktett

@@ -10,7 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/mesh.h"
 #include "io/image/output.h"
+#include "io/mesh/reading.h"
 #include "render/material.h"
 
 namespace oktett {
@@ -79,6 +81,13 @@ using MeshLosses = std::vector<std::string>;
 /// "1 material", "2 materials".
 inline std::string count_of(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// Notes the attributes for which kept(attribute) is false.
+template <class Kept>
+void note_lost_attributes(const TriangleMesh& mesh, const Kept& kept, MeshLosses& losses) {
+  for (const MeshAttribute& attribute : mesh.attributes)
+    if (!kept(attribute)) losses.push_back("lost: the attribute " + quote_name(attribute.name));
 }
 
 /// Notes the textures of the materials that are not among those `written`.

@@ -43,6 +43,7 @@ struct ParsedMesh {
   TriangleMesh mesh;
   std::vector<MeshStatement> libraries;  ///< what follows `mtllib` in an OBJ file
   std::vector<MeshStatement> materials;  ///< names of the material slots of the mesh
+  std::vector<MeshStatement> textures;   ///< file names of images, each a slot, where there are no materials
   std::vector<MeshStatement> notices;    ///< warnings
   bool has_faces = true;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstring>
 #include <utility>
@@ -41,6 +42,8 @@ class Weld {
     sort_into_buckets();
     oneapi::tbb::parallel_for(std::size_t{0}, kBuckets, [this](std::size_t b) { find_equal(b); });
     keep_first_ones();
+    for (MeshAttribute& attribute : mesh_.attributes)
+      if (attribute.domain == AttributeDomain::vertex) weld(attribute);
     for_each_block(mesh_.indices.size(), [this](std::size_t, std::size_t i) {
       std::uint32_t& index = mesh_.indices[i];
       index = kept_[first_[index]];
@@ -105,6 +108,34 @@ class Weld {
     mesh_.positions = std::move(positions);
   }
 
+  /// Of values that are the same wherever vertices become one, those of the first ones are left.
+  void weld(MeshAttribute& attribute) {
+    attribute.floats.empty() ? weld(attribute, attribute.srgb) : weld(attribute, attribute.floats);
+  }
+  template <class T>
+  void weld(MeshAttribute& attribute, Column<T>& values) {
+    const std::size_t size = attribute.components;
+    std::atomic<bool> differ{false};
+    for_each_block(count_, [&](std::size_t, std::size_t i) {
+      if (first_[i] != i && std::memcmp(&values[size * i], &values[size * first_[i]], size * sizeof(T)) != 0)
+        differ.store(true, std::memory_order_relaxed);
+    });
+    const auto copy = [&](std::size_t from, std::size_t to, Column<T>& out) {
+      std::copy_n(&values[size * from], size, &out[size * to]);
+    };
+    Column<T> result(size * (differ ? mesh_.indices.size() : mesh_.positions.size()));
+    if (differ) {
+      attribute.domain = AttributeDomain::corner;
+      for_each_block(mesh_.indices.size(),
+                     [&](std::size_t, std::size_t i) { copy(mesh_.indices[i], i, result); });
+    } else {
+      for_each_block(count_, [&](std::size_t, std::size_t i) {
+        if (first_[i] == i) copy(i, kept_[i], result);
+      });
+    }
+    values = std::move(result);
+  }
+
   TriangleMesh& mesh_;
   const std::size_t count_, blocks_;
   Column<std::uint32_t> hashes_, members_;  ///< members_: vertices by bucket
@@ -132,13 +163,20 @@ static_assert(sizeof(CornerLook) == 28);
 
 class Unifying {
  public:
-  explicit Unifying(const TriangleMesh& mesh)
-      : mesh_(mesh), has_normals_(any(mesh.normal_indices)), has_uvs_(any(mesh.uv_indices)) {}
+  Unifying(const TriangleMesh& mesh, bool keep_faces)
+      : mesh_(mesh), has_normals_(any(mesh.normal_indices)), has_uvs_(any(mesh.uv_indices)) {
+    for (const MeshAttribute& attribute : mesh.attributes)
+      if (attribute.domain == AttributeDomain::corner ||
+          (attribute.domain == AttributeDomain::face && !keep_faces))
+        splitting_.push_back(&attribute);
+  }
 
   UnifiedMesh run() {
     out_.positions.assign(mesh_.positions.begin(), mesh_.positions.end());
     out_.indices.assign(mesh_.indices.begin(), mesh_.indices.end());
-    if (has_normals_ || has_uvs_) split();
+    corner_of_.assign(splitting_.empty() ? 0 : mesh_.positions.size(), 0);
+    if (has_normals_ || has_uvs_ || !splitting_.empty()) split();
+    for (const MeshAttribute& attribute : mesh_.attributes) out_.attributes.push_back(unified(attribute));
     return std::move(out_);
   }
 
@@ -157,8 +195,8 @@ class Unifying {
     for (std::uint32_t triangle = 0; triangle < mesh_.triangle_count(); ++triangle) {
       const std::array<CornerLook, 3> looks = looks_of(triangle);
       for (std::size_t k = 0; k < 3; ++k) {
-        std::uint32_t& index = out_.indices[3 * std::size_t{triangle} + k];
-        index = vertex(index, looks[k]);
+        const std::size_t corner = 3 * std::size_t{triangle} + k;
+        out_.indices[corner] = vertex(out_.indices[corner], looks[k], corner);
       }
     }
     out_.split = out_.positions.size() - count;
@@ -201,29 +239,76 @@ class Unifying {
     return flat_normal(corner(0), corner(1), corner(2));
   }
 
-  /// The vertex at `position` that looks like that; new if there is none.
-  std::uint32_t vertex(std::uint32_t position, const CornerLook& look) {
+  /// The vertex at `position` that looks like that corner; new if there is none.
+  std::uint32_t vertex(std::uint32_t position, const CornerLook& look, std::size_t corner) {
     if (!used_[position]) {
       used_[position] = true, looks_[position] = look;
+      if (!splitting_.empty()) corner_of_[position] = corner;
       return position;
     }
     std::uint32_t last = position;
     for (std::uint32_t i = position; i != kNoId; last = i, i = next_[i])
-      if (looks_[i] == look) return i;
+      if (looks_[i] == look && carry_the_same(i, corner)) return i;
     if (out_.positions.size() >= kNoId - 1) throw Error("more vertices than 32-bit indices can tell apart");
     const auto added = static_cast<std::uint32_t>(out_.positions.size());
     out_.positions.push_back(mesh_.positions[position]);
     looks_.push_back(look), next_.push_back(kNoId);
+    if (!splitting_.empty()) corner_of_.push_back(corner);
     next_[last] = added;
     return added;
   }
 
+  /// Where the value of a corner stands in an attribute of faces or corners.
+  static std::size_t value_place(const MeshAttribute& attribute, std::size_t corner) {
+    return (attribute.domain == AttributeDomain::face ? corner / 3 : corner) * attribute.components;
+  }
+
+  /// Whether the attributes that are split are those of the corner that made the vertex.
+  bool carry_the_same(std::uint32_t vertex, std::size_t corner) const {
+    for (const MeshAttribute* a : splitting_) {
+      const std::size_t one = value_place(*a, corner_of_[vertex]), other = value_place(*a, corner);
+      const auto equal = [&](const auto& values) {
+        return values.empty() ||
+               std::memcmp(&values[one], &values[other], a->components * sizeof(values[0])) == 0;
+      };
+      if (!equal(a->floats) || !equal(a->srgb)) return false;
+    }
+    return true;
+  }
+
+  MeshAttribute unified(const MeshAttribute& attribute) const {
+    MeshAttribute out;
+    out.name = attribute.name, out.components = attribute.components;
+    const bool splits = std::ranges::find(splitting_, &attribute) != splitting_.end();
+    if (attribute.domain == AttributeDomain::face && !splits) {
+      out.domain = AttributeDomain::face;
+      out.floats = attribute.floats, out.srgb = attribute.srgb;
+      return out;
+    }
+    const auto fill = [&](const auto& values, auto& to) {
+      if (values.empty()) return;
+      const std::size_t size = attribute.components;
+      to.resize_uninitialized(out_.positions.size() * size);
+      // Vertices that no triangle has are those before the split ones.
+      std::memset(to.data(), 0, to.size() * sizeof(to[0]));
+      if (!splits) std::copy_n(values.data(), values.size(), to.data());
+      for (std::size_t corner = 0; corner < out_.indices.size(); ++corner) {
+        const std::size_t from = splits ? value_place(attribute, corner) : mesh_.indices[corner] * size;
+        std::copy_n(values.data() + from, size, to.data() + out_.indices[corner] * size);
+      }
+    };
+    fill(attribute.floats, out.floats), fill(attribute.srgb, out.srgb);
+    return out;
+  }
+
   const TriangleMesh& mesh_;
   const bool has_normals_, has_uvs_;
+  std::vector<const MeshAttribute*> splitting_;  ///< by which vertices differ, too
   UnifiedMesh out_;
   std::vector<CornerLook> looks_;
-  std::vector<std::uint32_t> next_;  ///< the next vertex at the same position
-  std::vector<bool> used_;           ///< by a triangle so far
+  std::vector<std::uint32_t> next_;       ///< the next vertex at the same position
+  std::vector<bool> used_;                ///< by a triangle so far
+  std::vector<std::uint64_t> corner_of_;  ///< the first that a vertex was made for; if attributes are split
 };
 
 }  // namespace
@@ -237,7 +322,9 @@ void UnifiedMesh::note_changes(std::size_t before, MeshLosses& losses) const {
                      " without normals get those of flat triangles");
 }
 
-UnifiedMesh unify_vertices(const TriangleMesh& mesh) { return Unifying(mesh).run(); }
+UnifiedMesh unify_vertices(const TriangleMesh& mesh, bool keep_faces) {
+  return Unifying(mesh, keep_faces).run();
+}
 
 Vec3f flat_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   const Vec3d normal = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));

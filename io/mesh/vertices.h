@@ -13,7 +13,7 @@
 namespace oktett {
 
 /// Makes one of all positions that are equal, -0 as 0. The first of each place is kept, in the order of the
-/// mesh.
+/// mesh. Attributes of vertices at one place that differ become those of corners.
 void weld_positions(TriangleMesh& mesh);
 
 struct UnifiedMesh {
@@ -23,17 +23,19 @@ struct UnifiedMesh {
   std::vector<std::array<float, 4>> tangents;  ///< likewise; zeros where there are none
   std::vector<Vec2f> second_uvs;               ///< likewise
   std::vector<std::uint32_t> indices;
-  std::size_t split = 0;  ///< vertices behind those of the mesh, which repeat positions
+  std::vector<MeshAttribute> attributes;  ///< of vertices, and of faces unless these are split, too
+  std::size_t split = 0;                  ///< vertices behind those of the mesh, which repeat positions
   std::size_t flat = 0;  ///< triangles without normals in a mesh that has some; theirs are the geometric ones
 
   /// What is changed, for the losses of the file.
   void note_changes(std::size_t before, MeshLosses& losses) const;
 };
 
-/// The vertices of `mesh` keep their numbers. A position that is shown with several normals or texture
-/// coordinates is repeated at the end for each further one. Triangles without texture coordinates in a mesh
-/// that has some get those of corner_uvs.
-UnifiedMesh unify_vertices(const TriangleMesh& mesh);
+/// The vertices of `mesh` keep their numbers. A position that is shown with several normals, texture
+/// coordinates or values of an attribute is repeated at the end for each further one. Triangles without
+/// texture coordinates in a mesh that has some get those of corner_uvs. Attributes of faces become those of
+/// vertices, too, unless `keep_faces`.
+UnifiedMesh unify_vertices(const TriangleMesh& mesh, bool keep_faces = false);
 
 /// Of length 1, to the front of the triangle; zero for a degenerate one.
 Vec3f flat_normal(const Vec3f& a, const Vec3f& b, const Vec3f& c);

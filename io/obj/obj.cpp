@@ -33,6 +33,7 @@ class ObjLoad {
     assign_slots(chunks_, text_.data(), obj_);
     stop_at_first_failure();
     drop_unused_columns();
+    take_colors();
     note_skipped();
     note_oddities();
     obj_.has_faces = total_.faces > 0;
@@ -91,6 +92,11 @@ class ObjLoad {
         std::any_of(chunks_.begin(), chunks_.end(), [](const ObjChunk& chunk) { return chunk.has_slash; });
     TriangleMesh& mesh = obj_.mesh;
     mesh.positions.resize_uninitialized(total_.positions);
+    const bool has_colors =
+        std::any_of(chunks_.begin(), chunks_.end(), [](const ObjChunk& chunk) { return chunk.has_colors; });
+    if (has_colors && total_.triangles > 0) colors_.numbers.resize_uninitialized(3 * total_.positions);
+    if (!has_colors && total_.painted > 0 && total_.painted == total_.positions && total_.triangles > 0)
+      colors_.painted.resize_uninitialized(3 * total_.painted);
     mesh.uvs.resize_uninitialized(total_.uvs);
     mesh.normals.resize_uninitialized(total_.normals);
     mesh.indices.resize_uninitialized(3 * total_.triangles);
@@ -99,11 +105,51 @@ class ObjLoad {
   }
 
   void read_all_vertices() {
-    for_each_chunk([this](ObjChunk& chunk) {
-      if (chunk.counts.positions + chunk.counts.uvs + chunk.counts.normals == 0) return;
-      read_vertices(chunk, obj_.mesh);
-      if (chunk.counts.faces == 0) file_.release(chunk.begin, chunk.end);
-    });
+    const auto read = [this](ObjChunk& chunk) {
+      const ObjCounts& counts = chunk.counts;
+      if (counts.positions + counts.uvs + counts.normals + counts.painted == 0) return;
+      read_vertices(chunk, obj_.mesh, colors_);
+      if (counts.faces == 0) file_.release(chunk.begin, chunk.end);
+    };
+    for_each_chunk(read);
+    sum_colors();
+    // Those that begin in the middle of chunks alone were not expected.
+    if (all_colors_.count == 0 || !colors_.numbers.empty() || total_.triangles == 0 || first_failure())
+      return;
+    colors_.numbers.resize_uninitialized(3 * total_.positions);
+    oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) { read(chunks_[i]); });
+    sum_colors();
+  }
+
+  void sum_colors() {
+    all_colors_ = {};
+    for (const ObjChunk& chunk : chunks_) {
+      const ObjColors& c = chunk.colors;
+      all_colors_.count += c.count;
+      if (all_colors_.without == nullptr) all_colors_.without = c.without;
+      all_colors_.greatest = std::max(all_colors_.greatest, c.greatest);
+      all_colors_.are_bytes = all_colors_.are_bytes && c.are_bytes;
+      all_colors_.are_whole = all_colors_.are_whole && c.are_whole;
+    }
+  }
+
+  void take_colors() {
+    const bool painted = !colors_.painted.empty() && all_colors_.count == 0;
+    if (all_colors_.count > 0 && !colors_.numbers.empty()) {
+      colors_.painted.clear();
+      set_colors(obj_.mesh, all_colors_, std::move(colors_));
+      if (all_colors_.count < total_.positions)
+        note(all_colors_.without, "vertices without colours, this one and " +
+                                      std::to_string(total_.positions - all_colors_.count - 1) +
+                                      " more, are white");
+    } else if (painted) {
+      set_colors(obj_.mesh, all_colors_, std::move(colors_));
+    } else if (total_.painted > 0 && total_.triangles > 0) {
+      obj_.notices.push_back({0,
+                              std::to_string(total_.painted) + " colours of '#MRGB' for " +
+                                  std::to_string(total_.positions) + " vertices are not read",
+                              {}});
+    }
   }
 
   /// After all vertices, because how a polygon is cut depends on them, and they may come behind it.
@@ -177,6 +223,8 @@ class ObjLoad {
   Phase phase_;
   std::vector<ObjChunk> chunks_;
   ObjCounts total_;
+  ObjColorColumns colors_;
+  ObjColors all_colors_;
   ParsedMesh obj_;
   bool gathers_ = false;
 };
@@ -211,6 +259,26 @@ ParsedMesh parse_obj(const std::string& path) {
   return parsed;
 }
 
+/// One material for each image that the file names, and a last one for faces without, if slots tell them
+/// apart.
+static void add_texture_materials(const std::string& path, const std::vector<MeshStatement>& names,
+                                  const std::function<TextPosition(std::uint64_t)>& position,
+                                  MeshFile& file) {
+  if (names.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  for (const MeshStatement& name : names) {
+    Texture texture;
+    texture.path = (folder / name.words).string();
+    const TextPosition place = position(name.at);
+    file.textures.push_back(std::move(texture));
+    file.texture_places.push_back(Location{path, place.line, place.column});
+    file.materials.push_back(
+        image_material(name.words, static_cast<std::uint32_t>(file.textures.size() - 1)));
+    if (file.mesh.material_slots.empty()) return;
+  }
+  file.materials.push_back(image_material("without image", kNoId));
+}
+
 MeshFile finish_mesh(const std::string& path, ParsedMesh parsed,
                      const std::function<TextPosition(std::uint64_t)>& position) {
   MeshFile obj;
@@ -218,6 +286,7 @@ MeshFile finish_mesh(const std::string& path, ParsedMesh parsed,
   // Those about materials stand before others of the same place.
   std::vector<MeshStatement> notices;
   resolve_materials(parsed.libraries, parsed.materials, path, obj, notices);
+  add_texture_materials(path, parsed.textures, position, obj);
   std::ranges::move(parsed.notices, std::back_inserter(notices));
   std::ranges::stable_sort(notices, {}, &MeshStatement::at);
   std::vector<Warning> warnings;
@@ -232,7 +301,7 @@ MeshFile finish_mesh(const std::string& path, ParsedMesh parsed,
 
 MeshFile finish_mesh(const std::string& path, ParsedMesh parsed) {
   std::unordered_map<std::uint64_t, TextPosition> positions;
-  for (const auto* list : {&parsed.libraries, &parsed.materials, &parsed.notices})
+  for (const auto* list : {&parsed.libraries, &parsed.materials, &parsed.textures, &parsed.notices})
     for (const MeshStatement& statement : *list) positions.emplace(statement.at, statement.position);
   return finish_mesh(path, std::move(parsed), [&](std::uint64_t at) { return positions[at]; });
 }

@@ -1,10 +1,15 @@
 #include "io/obj/parsed_obj.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/parallel.h"
+#include "io/image/color.h"
 #include "io/mesh/polygon.h"
 #include "io/mesh/reading.h"
 #include "io/text/number.h"
@@ -12,6 +17,9 @@
 namespace oktett {
 
 namespace {
+
+/// Instead of the numbers of a colour: the vertex has none, and is white.
+constexpr float kNoColor = -1;
 
 constexpr const char* kBraceInBlock = "a block starts within a block; expected '}' first";
 constexpr const char* kBraceAlone = "'}' without a block before it";
@@ -79,16 +87,40 @@ const char* count_face(ObjChunk& chunk, const char* p) {
   return shape.continued() ? find_joined_line_end(p) : shape.end;
 }
 
+constexpr std::string_view kPaint = "#MRGB ";
+
+/// Colours in a comment of ZBrush: eight hexadecimal digits each, a mask and three bytes.
+std::uint64_t count_paint(const char* p, const char* end) { return static_cast<std::uint64_t>(end - p) / 8; }
+
+/// Where the digits begin in the comment at `p`; null if it is another one.
+const char* paint_in(const char* p) {
+  for (const char c : kPaint)
+    if (*p++ != c) return nullptr;
+  return skip_plain_blanks(p);
+}
+
+/// Of a comment that is no such one.
+void note_comment(ObjChunk& chunk, const char* p) {
+  const char* const digits = paint_in(p);
+  if (digits == nullptr) return;
+  const char* const end = find_line_end(digits);
+  chunk.counts.painted += count_paint(digits, end);
+}
+
 /// Counts the line at `p` and returns the end of the joined line.
 const char* count_line(ObjChunk& chunk, const char* p) {
   if (p[0] == 'f' && is_delimiter(p + 1)) return count_face(chunk, p);
-  if (p[0] == 'v' && is_delimiter(p + 1))
+  if (p[0] == 'v' && is_delimiter(p + 1)) {
+    // Where the first vertex has a colour, most others have one.
+    if (chunk.counts.positions == 0) chunk.has_colors = count_words(p) >= 7;
     ++chunk.counts.positions;
-  else if (p[0] == 'v' && p[1] == 'n' && is_delimiter(p + 2))
+  } else if (p[0] == 'v' && p[1] == 'n' && is_delimiter(p + 2))
     ++chunk.counts.normals;
   else if (p[0] == 'v' && p[1] == 't' && is_delimiter(p + 2))
     ++chunk.counts.uvs;
-  else if (p[0] != '#' && !is_line_end(p[0]))
+  else if (p[0] == '#')
+    note_comment(chunk, p);
+  else if (!is_line_end(p[0]))
     note_statement(chunk, p);
   const char* end = find_line_end(p);
   return end > p && end[-1] == '\\' ? find_joined_line_end(p) : end;
@@ -174,28 +206,145 @@ const char* read_uv(const char* p, Vec2f& out) {
 
 }  // namespace
 
-void read_vertices(ObjChunk& chunk, TriangleMesh& mesh) {
-  ObjCounts next = chunk.before, last = next;
-  last += chunk.counts;
-  read_lines(chunk, [&](const char* p) {
-    // The element for the values at `at`.
-    const auto place = [](auto& column, std::uint64_t& i, std::uint64_t end, const char* at) -> auto& {
-      if (i == end) stop_changed(at);
-      return column[i++];
-    };
+namespace {
+
+/// Reads the vertices of a chunk and the colours behind them.
+class VertexReader {
+ public:
+  VertexReader(ObjChunk& chunk, TriangleMesh& mesh, ObjColorColumns& colors)
+      : chunk_(chunk),
+        mesh_(mesh),
+        numbers_(colors.numbers.data()),
+        painted_(colors.painted.data()),
+        next_(chunk.before),
+        last_(next_) {
+    last_ += chunk.counts;
+  }
+
+  void run() {
+    chunk_.colors = {};
+    read_lines(chunk_, [this](const char* p) { return read_line(p); });
+  }
+
+ private:
+  const char* read_line(const char* p) {
+    if (p[0] == '#' && painted_ != nullptr) read_paint(p);
     if (p[0] != 'v') return p;
-    if (is_delimiter(p + 1))
-      return read_vector<read_coordinate>(p + 1,
-                                          place(mesh.positions, next.positions, last.positions, p + 1));
+    if (is_delimiter(p + 1)) return read_position(p + 1);
     if (p[1] == 'n' && is_delimiter(p + 2)) {
-      Vec3f& normal = place(mesh.normals, next.normals, last.normals, p + 2);
+      Vec3f& normal = place(mesh_.normals, next_.normals, last_.normals, p + 2);
       const char* const rest = read_vector<read_number>(p + 2, normal);
-      if (!is_finite(normal)) chunk.oddities.bad_normals.add(p);
+      if (!is_finite(normal)) chunk_.oddities.bad_normals.add(p);
       return rest;
     }
-    if (p[1] == 't' && is_delimiter(p + 2)) return read_uv(p + 2, place(mesh.uvs, next.uvs, last.uvs, p + 2));
+    if (p[1] == 't' && is_delimiter(p + 2))
+      return read_uv(p + 2, place(mesh_.uvs, next_.uvs, last_.uvs, p + 2));
     return p;
-  });
+  }
+
+  /// The element for the values at `at`.
+  template <class T>
+  static T& place(Column<T>& column, std::uint64_t& i, std::uint64_t end, const char* at) {
+    if (i == end) stop_changed(at);
+    return column[i++];
+  }
+
+  const char* read_position(const char* p) {
+    const std::uint64_t vertex = next_.positions;
+    const char* const end =
+        read_vector<read_coordinate>(p, place(mesh_.positions, next_.positions, last_.positions, p));
+    if (numbers_ == nullptr && is_line_end(*end)) return end;
+    return read_color(p, end, vertex);
+  }
+
+  /// The colour behind the coordinates of a vertex. Other numbers of them are no colours: a fourth coordinate
+  /// is a weight.
+  const char* read_color(const char* vertex_at, const char* p, std::uint64_t vertex) {
+    float c[4];
+    int count = 0;
+    for (const char* end = p; count < 4 && !is_line_end(*end) && *end != '#'; ++count) {
+      NumberProblem problem = NumberProblem::none;
+      end = scan_float(end, c[count], problem);
+      if (end == nullptr || !(c[count] >= 0 && c[count] <= std::numeric_limits<float>::max())) break;
+      p = end = skip_blanks(end);
+    }
+    ObjColors& found = chunk_.colors;
+    if (count < 3) {
+      if (found.without == nullptr) found.without = vertex_at;
+      if (numbers_ != nullptr) std::fill_n(numbers_ + 3 * vertex, 3, kNoColor);
+      return p;
+    }
+    ++found.count;
+    if (found.first == nullptr) found.first = vertex_at;
+    for (int k = 0; k < 3; ++k) {
+      found.greatest = std::max(found.greatest, c[k]);
+      const float level = c[k] * 255, whole = std::nearbyint(level);
+      // Programs write bytes with six digits or more.
+      found.are_bytes = found.are_bytes && std::abs(level - whole) <= 4e-4f;
+      found.are_whole = found.are_whole && c[k] == std::nearbyint(c[k]);
+      if (numbers_ != nullptr) numbers_[3 * vertex + static_cast<std::uint64_t>(k)] = c[k];
+    }
+    return p;
+  }
+
+  void read_paint(const char* p) {
+    const char* digits = paint_in(p);
+    if (digits == nullptr) return;
+    for (std::uint64_t left = count_paint(digits, find_line_end(digits)); left > 0; --left, digits += 8) {
+      if (next_.painted == last_.painted) stop_changed(p);
+      std::uint8_t* const out = painted_ + 3 * next_.painted++;
+      for (int k = 0; k < 3; ++k)
+        out[k] = static_cast<std::uint8_t>(16 * digit(digits[2 * k + 2]) + digit(digits[2 * k + 3]));
+    }
+  }
+
+  static int digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : 0;
+  }
+
+  ObjChunk& chunk_;
+  TriangleMesh& mesh_;
+  float* const numbers_;
+  std::uint8_t* const painted_;
+  ObjCounts next_, last_;
+};
+
+}  // namespace
+
+void read_vertices(ObjChunk& chunk, TriangleMesh& mesh, ObjColorColumns& colors) {
+  VertexReader(chunk, mesh, colors).run();
+}
+
+void set_colors(TriangleMesh& mesh, const ObjColors& found, ObjColorColumns colors) {
+  MeshAttribute color;
+  color.name = kColorAttribute, color.components = 3;
+  if (!colors.painted.empty()) {
+    color.srgb = std::move(colors.painted);
+    mesh.attributes.push_back(std::move(color));
+    return;
+  }
+  Column<float>& numbers = colors.numbers;
+  constexpr std::size_t kPart = std::size_t{1} << 16;
+  const bool up_to_255 = found.greatest > 1 && found.are_whole;
+  if (up_to_255 || (found.are_bytes && found.greatest <= 1)) {
+    const float scale = up_to_255 ? 1 : 255;
+    color.srgb.resize_uninitialized(numbers.size());
+    in_parts(numbers.size(), kPart, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        color.srgb[i] = numbers[i] == kNoColor
+                            ? std::uint8_t{255}
+                            : static_cast<std::uint8_t>(std::min(numbers[i] * scale + 0.5f, 255.0f));
+    });
+  } else {
+    in_parts(numbers.size(), kPart, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        numbers[i] = numbers[i] == kNoColor ? 1 : srgb_to_linear(numbers[i]);
+    });
+    color.floats = std::move(numbers);
+  }
+  mesh.attributes.push_back(std::move(color));
 }
 
 namespace {

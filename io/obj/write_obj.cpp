@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include "io/image/color.h"
+#include "io/mesh/reading.h"
 #include "io/obj/obj.h"
 #include "io/text/file_content.h"
 #include "io/text/files.h"
@@ -164,7 +167,7 @@ class MtlWriting {
   void texture(const char* key, std::uint32_t index, std::optional<ImageChannel> usual, float bump = 1) {
     if (index == kNoId) return;
     const Texture& t = file_.textures[index];
-    if (t.pattern) return;
+    if (t.pattern || !t.attribute.empty()) return;
     const std::string name = t.content ? embedded_name(t) : relative_name(t.path);
     if (name.empty()) return;
     written_.insert(index);
@@ -316,8 +319,50 @@ void write_faces(MeshOutput& out, const TriangleMesh& mesh, const std::vector<st
   }
 }
 
+/// The number that the reader takes for `linear`, if there is one.
+float encoded(float linear) {
+  if (!(linear > 0)) return 0;
+  const float most = std::numeric_limits<float>::max();
+  return find_number(linear_to_srgb(std::min(linear, most)), linear, srgb_to_linear);
+}
+
+/// The colours of vertices, if there are some: OBJ can say no others.
+const MeshAttribute* obj_colors(const TriangleMesh& mesh) {
+  const MeshAttribute* const color = find_attribute(mesh, kColorAttribute);
+  const bool said = color != nullptr && color->domain == AttributeDomain::vertex && color->components >= 3;
+  return said ? color : nullptr;
+}
+
+/// The colour of vertex `i` as the reader expects it: encoded by the sRGB curve.
+void write_color(MeshOutput& out, const MeshAttribute& color, std::size_t i) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    out.text(" ");
+    const std::size_t at = i * color.components + k;
+    if (color.floats.empty())
+      out.number(static_cast<float>(color.srgb[at]) / 255);
+    else
+      out.number(encoded(color.floats[at]));
+  }
+}
+
+void note_colors(const MeshAttribute& color, MeshLosses& losses) {
+  if (color.components == 4) losses.push_back("lost: alpha of vertices");
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < color.floats.size(); ++i)
+    if (i % color.components < 3 && srgb_to_linear(encoded(color.floats[i])) != color.floats[i]) ++changed;
+  if (changed > 0)
+    losses.push_back("changed: " + count_of(changed, "number") +
+                     " of colours, which OBJ encodes by the sRGB curve and rounds");
+}
+
 void write_mesh(MeshOutput& out, const TriangleMesh& mesh, const std::vector<std::string>& names) {
-  for (const Vec3f& p : mesh.positions) write_vector(out, "v ", p);
+  const MeshAttribute* const color = obj_colors(mesh);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Vec3f& p = mesh.positions[i];
+    out.text("v ").number(p.x).text(" ").number(p.y).text(" ").number(p.z);
+    if (color != nullptr) write_color(out, *color, i);
+    out.text("\n");
+  }
   if (!mesh.uv_indices.empty())
     for (const Vec2f& uv : mesh.uvs) out.text("vt ").number(uv.x).text(" ").number(uv.y).text("\n");
   if (!mesh.normal_indices.empty())
@@ -340,6 +385,10 @@ MeshLosses write_obj(const std::string& path, const MeshFile& file) {
     out.text("mtllib ").text(fs::path(library_path).filename().string()).text("\n");
   }
   write_mesh(out, file.mesh, names);
+  const MeshAttribute* const color = obj_colors(file.mesh);
+  note_lost_attributes(
+      file.mesh, [&](const MeshAttribute& a) { return &a == color; }, losses);
+  if (color != nullptr) note_colors(*color, losses);
   out.flush();
   // Behind all that takes much space, so that seldom one file is new and the other is not.
   if (library) library->commit();

@@ -1,6 +1,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "io/mesh/reading.h"
@@ -44,6 +45,16 @@ const char* read_index(const char* p, const PlyProperty& property, std::int64_t&
   index = static_cast<std::int64_t>(std::min(value, std::uint64_t{1} << 62));
   if (*p == '-') index = -index;
   return end;
+}
+
+/// A number that becomes part of an attribute; infinite if a float cannot hold it.
+const char* read_extra(const char* p, const PlyProperty& property, float& x) {
+  p = next_value(p, property);
+  NumberProblem problem = NumberProblem::none;
+  if (const char* const end = scan_float(p, x, problem)) return end;
+  if (problem != NumberProblem::overflow) stop_at_number(p, problem);
+  x = *p == '-' ? -HUGE_VALF : HUGE_VALF;
+  return skip_value(p, property);
 }
 
 const char* skip_property(const char* p, const PlyProperty& property) {
@@ -101,16 +112,23 @@ class AsciiBody final : public PlyBody {
     struct Value {
       const PlyProperty* property;
       std::size_t role;
+      const PlyExtra* extra;
     };
     std::vector<Value> values;
     for (std::size_t i = 0; i < vertices.element->properties.size(); ++i) {
       const auto role = std::ranges::find(vertices.roles, static_cast<int>(i));
-      values.push_back(
-          {&vertices.element->properties[i], static_cast<std::size_t>(role - vertices.roles.begin())});
+      values.push_back({&vertices.element->properties[i],
+                        static_cast<std::size_t>(role - vertices.roles.begin()), extra_of(vertices, i)});
     }
     std::uint64_t vertex = chunk.first;
     for_each_line(chunk.begin, chunk.end, chunk.records, [&](const char* p) {
       for (const Value& value : values) {
+        if (value.extra != nullptr) {
+          float x = 0;
+          p = read_extra(p, *value.property, x);
+          value.extra->put(vertex, x);
+          continue;
+        }
         if (value.role == kPlyRoles || columns.base[value.role] == nullptr) {
           p = skip_property(p, *value.property);
           continue;
@@ -130,10 +148,17 @@ class AsciiBody final : public PlyBody {
 
   void read_faces(const PlyFaces& faces, const PlyChunk& chunk, PlyFaceWriter& writer) const override {
     const std::vector<PlyProperty>& properties = faces.element->properties;
+    std::vector<const PlyExtra*> extras;
+    for (std::size_t i = 0; i < properties.size(); ++i) extras.push_back(extra_of(faces, i));
+    std::vector<float> numbers(properties.size());
     for_each_line(chunk.begin, chunk.end, chunk.records, [&](const char* p) {
       writer.begin(p);
       for (int i = 0; i < static_cast<int>(properties.size()); ++i) {
         const PlyProperty& property = properties[static_cast<std::size_t>(i)];
+        if (extras[static_cast<std::size_t>(i)] != nullptr) {
+          p = read_extra(p, property, numbers[static_cast<std::size_t>(i)]);
+          continue;
+        }
         if (i != faces.indices && i != faces.texcoords) {
           p = skip_property(p, property);
           continue;
@@ -144,10 +169,18 @@ class AsciiBody final : public PlyBody {
       }
       expect_end(p);
       writer.end();
+      for (std::size_t i = 0; i < properties.size(); ++i)
+        if (extras[i] != nullptr) writer.put(*extras[i], double{numbers[i]});
     });
   }
 
  private:
+  /// The extra of property `i`, or null.
+  static const PlyExtra* extra_of(const PlyPart& part, std::size_t i) {
+    const auto found = std::ranges::find(part.extras, static_cast<int>(i), &PlyExtra::property);
+    return found == part.extras.end() ? nullptr : &*found;
+  }
+
   static const char* read_item(const char* p, const PlyProperty& property, bool is_index,
                                PlyFaceWriter& writer) {
     if (is_index) {

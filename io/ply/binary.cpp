@@ -66,6 +66,8 @@ class BinaryBody final : public PlyBody {
         if (!(std::abs(x) <= most_of(role)) && must_hold(role)) stop_at(starts[i], bad_coordinate(x));
         *columns.at(role, vertex) = x;
       }
+      for (const PlyExtra& extra : vertices.extras)
+        extra.put(vertex, number_of(vertices, extra, starts[static_cast<std::size_t>(extra.property)]));
     });
   }
 
@@ -75,9 +77,11 @@ class BinaryBody final : public PlyBody {
     if (faces.stride > 0 && !faces.strips && faces.texcoords == PlyElement::kNone &&
         chunk.triangles == chunk.records) {
       const char* const first = chunk.begin + faces.offsets[list] + size_of(indices.length_type);
+      const std::uint64_t triangle = writer.next();
       with_type(indices.type, swap_, [&]<class T, bool kSwap>() {
         if constexpr (std::integral<T>) read_triangles<T, kSwap>(first, faces.stride, chunk.records, writer);
       });
+      read_extras(faces, chunk.begin, triangle, chunk.records);
       return;
     }
     for_each_record(faces, chunk, [&](std::uint64_t, const std::vector<const char*>& starts) {
@@ -89,10 +93,50 @@ class BinaryBody final : public PlyBody {
       }
       if (faces.texcoords != PlyElement::kNone) read_texcoords(faces, starts, writer);
       writer.end();
+      for (const PlyExtra& extra : faces.extras)
+        writer.put(extra, number_of(faces, extra, starts[static_cast<std::size_t>(extra.property)]));
     });
   }
 
  private:
+  double number_of(const PlyPart& part, const PlyExtra& extra, const char* p) const {
+    const PlyType type = part.element->properties[static_cast<std::size_t>(extra.property)].type;
+    return with_type(type, swap_,
+                     [p]<class T, bool kSwap>() { return static_cast<double>(load_value<T, kSwap>(p)); });
+  }
+
+  /// Reads the extras of `count` records of equal size, the first at `p`, for the elements from `first` on.
+  void read_extras(const PlyPart& part, const char* p, std::uint64_t first, std::uint64_t count) const {
+    if (part.extras.empty() || read_bytes(part, p, first, count)) return;
+    for (const PlyExtra& extra : part.extras) {
+      const auto i = static_cast<std::size_t>(extra.property);
+      const char* const begin = p + part.offsets[i];
+      with_type(part.element->properties[i].type, swap_, [&]<class T, bool kSwap>() {
+        for (std::uint64_t k = 0; k < count; ++k)
+          extra.put(first + k, load_value<T, kSwap>(begin + k * part.stride));
+      });
+    }
+  }
+
+  /// The same if they are the bytes of colours one behind the other and nothing else.
+  static bool read_bytes(const PlyPart& part, const char* p, std::uint64_t first, std::uint64_t count) {
+    const std::vector<PlyExtra>& extras = part.extras;
+    const std::size_t begin = part.offsets[static_cast<std::size_t>(extras[0].property)];
+    for (std::size_t k = 0; k < extras.size(); ++k) {
+      const auto i = static_cast<std::size_t>(extras[k].property);
+      if (extras[k].meaning != PlyMeaning::byte || part.element->properties[i].type != PlyType::uint8 ||
+          part.offsets[i] != begin + k || extras[k].component != k)
+        return false;
+    }
+    const auto copy = [&]<std::size_t kSize>() {
+      std::uint8_t* out = extras[0].bytes + first * kSize;
+      for (const char* from = p + begin; count > 0; --count, from += part.stride, out += kSize)
+        std::memcpy(out, from, kSize);
+    };
+    extras.size() == 3 ? copy.template operator()<3>() : copy.template operator()<4>();
+    return true;
+  }
+
   const char* locate(PlyPart& part, const char* begin) const {
     const PlyElement& element = *part.element;
     const std::size_t least = element.least_bytes();
@@ -243,6 +287,7 @@ class BinaryBody final : public PlyBody {
   /// Reads `count` vertices, the first at `p`, column by column.
   void read_block(const PlyVertices& vertices, const char* p, std::uint64_t vertex, std::uint64_t count,
                   const PlyVertexColumns& columns) const {
+    read_extras(vertices, p, vertex, count);
     for (std::size_t role = 0; role < kPlyRoles; ++role) {
       float* const out = columns.at(role, vertex);
       if (out == nullptr) continue;

@@ -11,6 +11,7 @@
 
 #include "core/mesh.h"
 #include "io/mesh/polygon.h"
+#include "io/ply/attributes.h"
 #include "io/ply/header.h"
 
 namespace oktett {
@@ -38,6 +39,7 @@ struct PlyPart {
   // Only in bytes, if all records have the same size; else `stride` is 0.
   std::size_t stride = 0;
   std::vector<std::size_t> offsets;  ///< of each property in a record
+  std::vector<PlyExtra> extras;      ///< what becomes an attribute; in place when records are read
 };
 
 struct PlyVertices : PlyPart {
@@ -86,6 +88,12 @@ class PlyFaceWriter {
   std::uint64_t vertex_count() const { return vertex_count_; }
   /// Of the faces so far.
   const MeshOddities& oddities() const { return oddities_; }
+  /// Sets the number of an extra for all triangles of the record that has ended.
+  void put(const PlyExtra& extra, double x) const {
+    for (std::uint64_t i = first_; i < next_; ++i) extra.put(i, x);
+  }
+  /// The number of the next triangle.
+  std::uint64_t next() const { return next_; }
   /// The indices of the next `count` triangles, which the caller fills in.
   std::uint32_t* take_triangles(std::uint64_t count, const char* where);
 
@@ -98,6 +106,7 @@ class PlyFaceWriter {
   const std::uint64_t vertex_count_;
   TriangleMesh& mesh_;
   std::uint64_t next_;
+  std::uint64_t first_ = 0;  ///< of the record
   const std::uint64_t last_;
   std::uint64_t next_uv_;
   const std::uint64_t last_uv_;

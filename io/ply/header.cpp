@@ -74,7 +74,8 @@ class HeaderReader {
 
   /// Returns whether the header goes on.
   bool read_line() {
-    if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info") return true;
+    if (words_.empty() || words_[0] == "obj_info") return true;
+    if (words_[0] == "comment") return note_texture();
     if (words_[0] == "end_header") {
       expect_words(1, "end_header");
       return false;
@@ -107,6 +108,14 @@ class HeaderReader {
 
   void note(std::string words) {
     if (header_.notices.size() < kMostParts) header_.notices.push_back({line_, std::move(words)});
+  }
+
+  /// What MeshLab says of the image that texture coordinates refer to.
+  bool note_texture() {
+    if (words_.size() < 3 || words_[1] != "TextureFile" || header_.textures.size() == kMostParts) return true;
+    const char* const begin = words_[2].data();
+    header_.textures.emplace_back(begin, static_cast<std::size_t>(words_.back().end() - begin));
+    return true;
   }
 
   std::string found_word(std::size_t i) const {

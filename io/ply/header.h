@@ -51,8 +51,9 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  const char* body = nullptr;        ///< behind the header
-  std::vector<MeshFailure> notices;  ///< what is read with a warning
+  std::vector<std::string_view> textures;  ///< file names behind `comment TextureFile`
+  const char* body = nullptr;              ///< behind the header
+  std::vector<MeshFailure> notices;        ///< what is read with a warning
 
   const PlyElement* find(std::string_view name) const;
 };

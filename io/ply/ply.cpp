@@ -26,6 +26,7 @@ void check_texcoords(std::uint64_t values, std::uint64_t corners, const char* wh
 
 void PlyFaceWriter::begin(const char* where) {
   where_ = where;
+  first_ = next_;
   corners_.clear();
   uvs_.clear();
 }
@@ -149,26 +150,22 @@ class PlyLoad {
       parts_.back()->element = &element;
     }
     if (vertices_.element == nullptr) stop_at(header_.body, "expected an element 'vertex' in the header");
+    choose_face_extras();
   }
 
   void choose_vertices(const PlyElement& element) {
-    const auto scalar = [&](std::initializer_list<std::string_view> names) {
-      const int i = element.find(names);
-      return i != PlyElement::kNone && element.properties[static_cast<std::size_t>(i)].is_list
-                 ? PlyElement::kNone
-                 : i;
-    };
-    vertices_.roles = {scalar({"x"}),  scalar({"y"}),  scalar({"z"}),     scalar({"nx"}),
-                       scalar({"ny"}), scalar({"nz"}), PlyElement::kNone, PlyElement::kNone};
+    const auto find = [&](std::string_view name) { return scalar(element, name); };
+    vertices_.roles = {find("x"),  find("y"),  find("z"),         find("nx"),
+                       find("ny"), find("nz"), PlyElement::kNone, PlyElement::kNone};
     constexpr std::pair<std::string_view, std::string_view> kUvNames[] = {
         {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
     for (const auto& [u, v] : kUvNames)
-      if (!has(6, 8) && scalar({u}) != PlyElement::kNone && scalar({v}) != PlyElement::kNone)
-        vertices_.roles[6] = scalar({u}), vertices_.roles[7] = scalar({v});
+      if (!has(6, 8) && find(u) != PlyElement::kNone && find(v) != PlyElement::kNone)
+        vertices_.roles[6] = find(u), vertices_.roles[7] = find(v);
     if (!has(0, 3)) stop_at(element.where, "expected the properties x, y and z of element 'vertex'");
     vertices_.has_normals = has(3, 6);
     vertices_.has_uvs = has(6, 8);
-    note_colours(element, "vertices");
+    vertices_.extras = choose_attributes(element, vertices_.roles, AttributeDomain::vertex, attributes_);
   }
 
   bool has(std::size_t first, std::size_t last) const {
@@ -189,15 +186,28 @@ class PlyLoad {
     const int texcoords = faces.strips ? PlyElement::kNone : element.find({"texcoord"});
     if (texcoords != PlyElement::kNone && element.properties[static_cast<std::size_t>(texcoords)].is_list)
       faces.texcoords = texcoords;
-    note_colours(element, "faces");
     return faces;
   }
 
-  void note_colours(const PlyElement& element, const char* whose) {
-    const int red = element.find({"red", "diffuse_red", "r"});
-    if (red == PlyElement::kNone) return;
-    note(element.properties[static_cast<std::size_t>(red)].where,
-         std::string("colours of ") + whose + " are not read");
+  /// What numbers of faces become. After the vertices, whose names count first.
+  void choose_face_extras() {
+    for (PlyFaces& faces : faces_) {
+      if (faces.strips) continue;
+      const int texnumber =
+          header_.textures.empty() ? PlyElement::kNone : scalar(*faces.element, "texnumber");
+      const int used[] = {texnumber};
+      faces.extras = choose_attributes(*faces.element, used, AttributeDomain::face, attributes_);
+      if (texnumber == PlyElement::kNone) continue;
+      faces.extras.push_back({.property = texnumber, .meaning = PlyMeaning::slot});
+      has_texnumbers_ = true;
+    }
+  }
+
+  static int scalar(const PlyElement& element, std::string_view name) {
+    const int i = element.find({name});
+    return i != PlyElement::kNone && element.properties[static_cast<std::size_t>(i)].is_list
+               ? PlyElement::kNone
+               : i;
   }
 
   void note(const char* where, std::string words) {
@@ -258,6 +268,66 @@ class PlyLoad {
       mesh.uvs.resize_uninitialized(count);
     mesh.indices.resize_uninitialized(3 * triangles);
     if (corner_uvs_) mesh.uv_indices.resize_uninitialized(3 * triangles);
+    allocate_extras();
+  }
+
+  /// Points without triangles show none.
+  void allocate_extras() {
+    TriangleMesh& mesh = parsed_.mesh;
+    const bool shown = mesh.triangle_count() > 0;
+    if (!shown) {
+      for (PlyPart* part : parts_) part->extras.clear();
+      return;
+    }
+    mesh.attributes = std::move(attributes_);
+    for (const PlyPart* part : parts_)
+      for (const PlyExtra& extra : part->extras) {
+        if (extra.meaning == PlyMeaning::slot) continue;
+        MeshAttribute& attribute = mesh.attributes[extra.attribute];
+        const std::size_t size = domain_size(mesh, attribute.domain) * attribute.components;
+        // Only some of the faces may have one.
+        const bool all = attribute.domain == AttributeDomain::vertex || faces_.size() == 1;
+        if (extra.component > 0 || size == 0) continue;
+        if (extra.meaning == PlyMeaning::byte)
+          all ? attribute.srgb.resize_uninitialized(size) : fill(attribute.srgb, size);
+        else
+          all ? attribute.floats.resize_uninitialized(size) : fill(attribute.floats, size);
+      }
+    choose_textures();
+    for (PlyPart* part : parts_)
+      for (PlyExtra& extra : part->extras) {
+        if (extra.meaning == PlyMeaning::slot) extra.textures = texture_count();
+        extra.place(mesh);
+      }
+  }
+
+  template <class T>
+  static void fill(Column<T>& column, std::size_t size) {
+    column = Column<T>(size, T{});
+  }
+
+  std::uint16_t texture_count() const { return static_cast<std::uint16_t>(header_.textures.size()); }
+
+  /// The images that the header names are shown where there are texture coordinates.
+  void choose_textures() {
+    if (header_.textures.empty()) return;
+    if (!vertices_.has_uvs && !corner_uvs_) {
+      note(header_.textures.front().data(), "images are not shown: there are no texture coordinates");
+      drop_slots();
+      return;
+    }
+    for (const std::string_view name : header_.textures)
+      parsed_.textures.push_back({static_cast<std::uint64_t>(name.data() - text_.data()), std::string(name),
+                                  lines_.at(name.data())});
+    if (has_texnumbers_)
+      fill(parsed_.mesh.material_slots, parsed_.mesh.triangle_count());
+    else if (header_.textures.size() > 1)
+      note(header_.textures[1].data(), "only the first image is shown: faces have no property 'texnumber'");
+  }
+
+  void drop_slots() {
+    for (PlyPart* part : parts_)
+      std::erase_if(part->extras, [](const PlyExtra& e) { return e.meaning == PlyMeaning::slot; });
   }
 
   /// Calls read(chunk) for all chunks, and gives back the pages of the file.
@@ -324,6 +394,8 @@ class PlyLoad {
   std::vector<PlyPart> others_;
   std::unique_ptr<PlyBody> body_;
   bool corner_uvs_ = false;  ///< texture coordinates are those of faces
+  std::vector<MeshAttribute> attributes_;
+  bool has_texnumbers_ = false;
   ParsedMesh parsed_;
 };
 

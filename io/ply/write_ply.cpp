@@ -1,16 +1,65 @@
 #include "io/ply/ply.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
 
 #include "io/mesh/vertices.h"
+#include "io/ply/attributes.h"
 
 namespace oktett {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// The images that a header can name, one for each slot of the mesh that has one.
+class PlyImages {
+ public:
+  PlyImages(const std::string& path, const MeshFile& file) : slots_(file.mesh.material_slots) {
+    for (const Material& m : file.materials) numbers_.push_back(add(path, file, m));
+    if (names_.empty() || file.mesh.uv_indices.empty()) names_.clear(), numbers_.clear();
+  }
+
+  const std::vector<std::string>& names() const { return names_; }
+  const std::set<std::uint32_t>& written() const { return written_; }
+  bool has_numbers() const { return !names_.empty() && !slots_.empty(); }
+  /// -1 for none.
+  std::int32_t number(std::size_t triangle) const { return numbers_[slots_[triangle]]; }
+
+ private:
+  std::int32_t add(const std::string& path, const MeshFile& file, const Material& m) {
+    if (m.color_texture == kNoId) return -1;
+    const Texture& t = file.textures[m.color_texture];
+    const Texture plain{.path = t.path};
+    if (t.path.empty() || !(t == plain) || file.mesh.uv_indices.empty()) return -1;
+    std::error_code error;
+    const fs::path folder = fs::absolute(fs::path(path), error).parent_path();
+    const std::string name = fs::absolute(t.path, error)
+                                 .lexically_normal()
+                                 .lexically_proximate(folder.lexically_normal())
+                                 .string();
+    const bool is_word_like = std::ranges::none_of(name, [](char c) { return c == '\n' || c == '\r'; });
+    if (name.empty() || !is_word_like || name.front() == ' ' || name.back() == ' ') return -1;
+    names_.push_back(name);
+    written_.insert(m.color_texture);
+    return static_cast<std::int32_t>(names_.size() - 1);
+  }
+
+  const Column<std::uint16_t>& slots_;
+  std::vector<std::string> names_;
+  std::vector<std::int32_t> numbers_;  ///< per slot
+  std::set<std::uint32_t> written_;
+};
+
 class PlyWriting {
  public:
-  PlyWriting(const std::string& path, const UnifiedMesh& mesh, bool ascii)
-      : out_(path), mesh_(mesh), ascii_(ascii) {}
+  PlyWriting(const std::string& path, const UnifiedMesh& mesh, const PlyImages& images, bool ascii)
+      : out_(path), mesh_(mesh), images_(images), ascii_(ascii) {}
 
   void run() {
     write_header();
@@ -22,17 +71,72 @@ class PlyWriting {
  private:
   void write_header() {
     out_.text("ply\nformat ").text(ascii_ ? "ascii" : "binary_little_endian").text(" 1.0\n");
-    out_.text("comment Written by Oktett\nelement vertex ").number(mesh_.positions.size()).text("\n");
+    out_.text("comment Written by Oktett\n");
+    for (const std::string& name : images_.names()) out_.text("comment TextureFile ").text(name).text("\n");
+    out_.text("element vertex ").number(mesh_.positions.size()).text("\n");
     const auto properties = [&](std::initializer_list<const char*> names) {
       for (const char* name : names) out_.text("property float ").text(name).text("\n");
     };
     properties({"x", "y", "z"});
     if (!mesh_.normals.empty()) properties({"nx", "ny", "nz"});
     if (!mesh_.uvs.empty()) properties({"s", "t"});
+    describe(AttributeDomain::vertex);
     out_.text("element face ").number(mesh_.indices.size() / 3).text("\nproperty list uchar ");
     // Most readers know int here, and some nothing else.
     const bool is_small = mesh_.positions.size() <= std::numeric_limits<std::int32_t>::max();
-    out_.text(is_small ? "int" : "uint").text(" vertex_indices\nend_header\n");
+    out_.text(is_small ? "int" : "uint").text(" vertex_indices\n");
+    describe(AttributeDomain::face);
+    if (images_.has_numbers()) out_.text("property int texnumber\n");
+    out_.text("end_header\n");
+  }
+
+  void describe(AttributeDomain domain) {
+    for (const MeshAttribute& a : mesh_.attributes) {
+      if (a.domain != domain) continue;
+      constexpr const char* kColors[] = {"red", "green", "blue", "alpha"};
+      for (std::uint32_t k = 0; k < a.components; ++k) {
+        out_.text("property ").text(are_bytes(a) ? "uchar " : "float ");
+        if (is_color(a)) {
+          out_.text(kColors[k]);
+        } else {
+          out_.text(property_name(a));
+          if (a.components > 1) out_.text(std::string(1, kPlyComponent) + std::to_string(k));
+        }
+        out_.text("\n");
+      }
+    }
+  }
+
+  /// Whether readers find the attribute by the names of colours.
+  bool is_color(const MeshAttribute& a) const { return a.components >= 3 && own_name(a) == kColorAttribute; }
+
+  bool are_bytes(const MeshAttribute& a) const { return a.floats.empty() && is_color(a); }
+
+  /// Without what tells a face's from a vertex's of the same name.
+  std::string_view own_name(const MeshAttribute& a) const {
+    std::string_view name = a.name;
+    if (a.domain == AttributeDomain::face && name.starts_with("face_") &&
+        std::ranges::any_of(mesh_.attributes, [&](const MeshAttribute& other) {
+          return other.domain == AttributeDomain::vertex && other.name == name.substr(5);
+        }))
+      name.remove_prefix(5);
+    return name;
+  }
+
+  /// Names are words in headers.
+  std::string property_name(const MeshAttribute& a) const {
+    std::string name(own_name(a));
+    for (char& c : name)
+      if (static_cast<unsigned char>(c) <= ' ' || c == '\x7f') c = '_';
+    return name;
+  }
+
+  void write_attributes(AttributeDomain domain, std::size_t i) {
+    for (const MeshAttribute& a : mesh_.attributes) {
+      if (a.domain != domain) continue;
+      for (std::uint32_t k = 0; k < a.components; ++k)
+        are_bytes(a) ? write(a.srgb[i * a.components + k]) : write(a.value(i, k));
+    }
   }
 
   template <class T>
@@ -53,26 +157,45 @@ class PlyWriting {
     vector(mesh_.positions[i]);
     if (!mesh_.normals.empty()) vector(mesh_.normals[i]);
     if (!mesh_.uvs.empty()) write(mesh_.uvs[i].x), write(mesh_.uvs[i].y);
+    write_attributes(AttributeDomain::vertex, i);
     end_record();
   }
   void write_face(const std::uint32_t* corners) {
     write(std::uint8_t{3});
     for (int k = 0; k < 3; ++k) write(corners[k]);
+    const auto triangle = static_cast<std::size_t>(corners - mesh_.indices.data()) / 3;
+    write_attributes(AttributeDomain::face, triangle);
+    if (images_.has_numbers()) write(images_.number(triangle));
     end_record();
   }
 
   MeshOutput out_;
   const UnifiedMesh& mesh_;
+  const PlyImages& images_;
   const bool ascii_;
   bool is_first_ = true;  ///< of a record
 };
 
 }  // namespace
 
+/// All that materials are beside an image.
+static void note_lost_materials(const MeshFile& file, const PlyImages& images, MeshLosses& losses) {
+  std::size_t lost = 0;
+  for (const Material& m : file.materials) {
+    const bool written = images.written().contains(m.color_texture);
+    if (!(m == image_material(m.name, written ? m.color_texture : kNoId))) ++lost;
+  }
+  if (lost > 0) losses.push_back("lost: " + count_of(lost, "material"));
+  const std::size_t textures = file.textures.size() - images.written().size();
+  if (textures > 0) losses.push_back("lost: " + count_of(textures, "texture"));
+}
+
 MeshLosses write_ply(const std::string& path, const MeshFile& file, bool ascii) {
-  const UnifiedMesh mesh = unify_vertices(file.mesh);
-  PlyWriting(path, mesh, ascii).run();
+  const UnifiedMesh mesh = unify_vertices(file.mesh, true);
+  const PlyImages images(path, file);
+  PlyWriting(path, mesh, images, ascii).run();
   MeshLosses losses;
+  note_lost_materials(file, images, losses);
   mesh.note_changes(file.mesh.positions.size(), losses);
   return losses;
 }

@@ -169,12 +169,14 @@ void finish_roughness(const Fields& fields, const PrincipledMaterial& rough, Mat
   principled.metallic_texture = rough.metallic_texture;
 }
 
-/// Throws Error if the normals are those of a pattern.
+/// Throws Error if the normals are those of a pattern or an attribute.
 void refuse_normal_pattern(const SceneLoad& load, const YamlNode* node, const Material& m) {
-  if (m.normal_texture != kNoId && load.scene.textures[m.normal_texture].pattern)
-    throw Error(
-        node->where(),
-        "a pattern holds no normals; expected an image, or 'map_bump', which takes a pattern as heights");
+  if (m.normal_texture == kNoId) return;
+  const Texture& t = load.scene.textures[m.normal_texture];
+  if (!t.pattern && t.attribute.empty()) return;
+  const std::string what = t.pattern ? "a pattern" : "an attribute";
+  throw Error(node->where(), what + " holds no normals; expected an image, or 'map_bump', which takes " +
+                                 what + " as heights");
 }
 
 /// The medium that leaves `attenuation_color` of white light after `attenuation_distance`, as in glTF.

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "io/cache/scene_cache.h"
 #include "io/image/library.h"
+#include "io/mesh/reading.h"
 #include "io/text/files.h"
 #include "render/material.h"
 
@@ -52,6 +55,76 @@ std::string canonical_path(const std::string& path) {
   const std::filesystem::path canonical = std::filesystem::canonical(path, error);
   return error ? path : canonical.string();
 }
+
+namespace {
+
+class AttributeCheck {
+ public:
+  explicit AttributeCheck(Scene& scene) : scene_(scene) {
+    for (std::uint32_t i = 0; i < scene.materials.size(); ++i)
+      for_each_texture(scene.materials[i], [&](std::uint32_t texture) {
+        if (texture != kNoId && !scene.textures[texture].attribute.empty()) textures_.emplace(i, texture);
+      });
+  }
+
+  void run() {
+    if (textures_.empty()) return;
+    for (const Prototype& prototype : scene_.prototypes)
+      for (const Object& object : prototype.objects) check(object, kNoId);
+    for (const Object& object : scene_.objects) check(object, kNoId);
+  }
+
+ private:
+  /// `outer` is the material of the instance or combination around the object.
+  void check(const Object& object, std::uint32_t outer) {
+    const std::uint32_t own = object.material != kNoId ? object.material : outer;
+    if (const auto* csg = std::get_if<CsgShape>(&object.shape)) {
+      for (const Object& operand : *csg->operands) check(operand, own);
+    } else if (const auto* instance = std::get_if<InstanceShape>(&object.shape)) {
+      if (own == kNoId || instance->prototype >= scene_.prototypes.size()) return;
+      for (const Object& inner : scene_.prototypes[instance->prototype].objects) check_material(inner, own);
+    } else {
+      check_material(object, own);
+    }
+  }
+
+  void check_material(const Object& object, std::uint32_t material) {
+    const auto* shape = std::get_if<MeshShape>(&object.shape);
+    const TriangleMesh* const mesh = shape == nullptr ? nullptr : shape->mesh.get();
+    if (material != kNoId || shape == nullptr) return check_textures_of(mesh, material);
+    for (const std::uint32_t slot : shape->slot_materials) check_textures_of(mesh, slot);
+  }
+
+  void check_textures_of(const TriangleMesh* mesh, std::uint32_t material) {
+    const auto [begin, end] = textures_.equal_range(material);
+    for (auto entry = begin; entry != end; ++entry) {
+      const std::string& name = scene_.textures[entry->second].attribute;
+      if (mesh != nullptr && find_attribute(*mesh, name) != nullptr) continue;
+      if (!told_.emplace(entry->second, mesh).second) continue;
+      warn(entry->second, name, mesh);
+    }
+  }
+
+  void warn(std::uint32_t texture, const std::string& name, const TriangleMesh* mesh) {
+    std::string message = "an object of this material is no mesh, and has no attribute " + quote_name(name);
+    if (mesh != nullptr) {
+      std::vector<std::string> known;
+      for (const MeshAttribute& a : mesh->attributes) known.push_back(a.name);
+      message = "a mesh of this material has no attribute " + quote_name(name) + did_you_mean(name, known);
+    }
+    const bool has_place = texture < scene_.texture_places.size();
+    scene_.warnings.push_back(
+        {has_place ? scene_.texture_places[texture] : Location{scene_.source}, message + "; white instead"});
+  }
+
+  Scene& scene_;
+  std::multimap<std::uint32_t, std::uint32_t> textures_;  ///< those of attributes, by material
+  std::set<std::pair<std::uint32_t, const TriangleMesh*>> told_;
+};
+
+}  // namespace
+
+void warn_of_attributes(Scene& scene) { AttributeCheck(scene).run(); }
 
 const MeshLibrary::Entry& MeshLibrary::load(const std::string& path, const MeshOptions& options,
                                             Scene& scene) {

@@ -24,6 +24,10 @@ void check_textures(MeshFile& file);
 /// Appends the materials and textures of `file` to `scene` and returns the new index of each material.
 std::vector<std::uint32_t> append_materials(MeshFile& file, Scene& scene);
 
+/// Adds a warning for each texture that shows an attribute which an object of its material has not, where it
+/// is white.
+void warn_of_attributes(Scene& scene);
+
 class MeshLibrary {
  public:
   struct Entry {

@@ -19,6 +19,7 @@
 #include "io/scene/utf8.h"
 #include "io/scene/yaml.h"
 #include "io/text/files.h"
+#include "render/look/default_look.h"
 #include "render/look/up_direction.h"
 #include "render/scene.h"
 
@@ -64,12 +65,21 @@ class Adding {
   }
 
  private:
-  MeshShape shape(std::uint32_t mesh) const {
+  MeshShape shape(std::uint32_t mesh) {
     MeshShape shape;
     shape.mesh = file_.meshes[mesh].mesh;
+    const bool colored = find_attribute(*shape.mesh, kColorAttribute) != nullptr;
     for (const std::uint32_t slot : file_.meshes[mesh].slots)
-      shape.slot_materials.push_back(slot < materials_.size() ? materials_[slot] : kNoId);
+      shape.slot_materials.push_back(slot < materials_.size() ? materials_[slot]
+                                     : colored                ? colors()
+                                                              : kNoId);
     return shape;
+  }
+
+  /// The material of what has colours but no material.
+  std::uint32_t colors() {
+    if (colors_ == kNoId) colors_ = add_color_material(scene_);
+    return colors_;
   }
 
   Object object(const std::string& name, Shape shape) const {
@@ -88,6 +98,7 @@ class Adding {
   GltfScene& file_;
   Scene& scene_;
   std::vector<std::uint32_t> materials_;
+  std::uint32_t colors_ = kNoId;
 };
 
 }  // namespace
@@ -273,6 +284,7 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   if (load.errors != nullptr && load.errors->failures() > 0) return;
   if (load.integrator) load.scene.integrator.kind = *load.integrator;
   warn_of_energy(load.scene);
+  warn_of_attributes(load.scene);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
 }
 
@@ -333,6 +345,7 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   object.shape = std::move(shape);
   object.name = std::filesystem::path(without_packing(path)).stem().string();
   object.where = {path, 0, 0};
+  show_colors(scene, object);
   scene.objects.push_back(std::move(object));
   return scene;
 }

@@ -1,4 +1,4 @@
-/// \file The textures of scene files: images, and patterns.
+/// \file The textures of scene files: images, patterns, and attributes of meshes.
 
 #include <fmt/format.h>
 
@@ -83,6 +83,23 @@ struct TexelKeys {
   }
 };
 
+/// What images and attributes have.
+struct ChannelKeys {
+  ImageChannel& channel;
+
+  void describe(auto& p) {
+    p.choice("channel", channel,
+             {{"red", ImageChannel::red},
+              {"green", ImageChannel::green},
+              {"blue", ImageChannel::blue},
+              {"alpha", ImageChannel::alpha},
+              {"luminance", ImageChannel::luminance}},
+             "what a number is taken from");
+  }
+};
+
+constexpr const char* kAttributeMeaning = "instead of an image: numbers of the mesh, such as `color`";
+
 struct ImageKeys {
   Texture& texture;
   bool clamp = false, mirror = false;
@@ -96,13 +113,7 @@ struct ImageKeys {
     p.field("clamp", clamp, "extends the edge instead of repeating");
     p.field("mirror", mirror, "repeats the image and its mirror image in turn");
     p.not_both("clamp", "mirror", "an image is either clamped or mirrored", "mirror");
-    p.choice("channel", texture.channel,
-             {{"red", ImageChannel::red},
-              {"green", ImageChannel::green},
-              {"blue", ImageChannel::blue},
-              {"alpha", ImageChannel::alpha},
-              {"luminance", ImageChannel::luminance}},
-             "what a number is taken from");
+    ChannelKeys{texture.channel}.describe(p);
     p.choice(
         "color_space", texture.color_space,
         {{"auto", TextureColors::of_file}, {"srgb", TextureColors::srgb}, {"linear", TextureColors::linear}},
@@ -140,6 +151,12 @@ std::uint32_t add_texture(SceneLoad& load, const Texture& texture, const Locatio
   return index;
 }
 
+std::string attribute_name(SceneLoad& load, const YamlNode& node) {
+  std::string name = load.values.text(node);
+  if (name.empty()) throw Error(node.where(), "expected the name of an attribute of meshes, found nothing");
+  return name;
+}
+
 std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   Texture texture;
   if (node.kind != YamlKind::map) {
@@ -149,23 +166,29 @@ std::uint32_t read_texture(SceneLoad& load, const YamlNode& node) {
   ImageKeys image{texture};
   TexelKeys texel{texture.gain, texture.base};
   std::vector<const char*> keys = KeyList(image).keys;
+  keys.push_back("attribute");
   visit_patterns([&]<class P>(const P&) { keys.push_back(P::kShapeInfo.key); });
   std::ranges::copy(KeyList(texel).keys, std::back_inserter(keys));
   const Fields fields(node, "a texture", keys);
-  // A pattern stands alone but for gain and base.
+  // A pattern stands alone but for gain and base, an attribute but for these and a channel.
   const std::vector<MapEntry> entries = map_entries(node, "a texture");
   for (const MapEntry& entry : entries) {
     texture.pattern = read_pattern(load, entry.key->text, *entry.value);
-    if (!texture.pattern) continue;
+    if (entry.key->text == "attribute") texture.attribute = attribute_name(load, *entry.value);
+    const bool is_attribute = !texture.attribute.empty();
+    if (!texture.pattern && !is_attribute) continue;
     for (const MapEntry& other : entries)
-      if (&other != &entry && other.key->text != "gain" && other.key->text != "base")
+      if (&other != &entry && other.key->text != "gain" && other.key->text != "base" &&
+          !(is_attribute && other.key->text == "channel"))
         throw Error(other.key->where(),
                     quote(other.key->text) + " has no meaning beside " + quote(entry.key->text));
     break;
   }
   ParameterReader reader(load, node, fields);
-  const Location place = texture.pattern ? node.where() : fields.require("file").where();
-  if (!texture.pattern) image.describe(reader), image.finish();
+  const bool is_image = !texture.pattern && texture.attribute.empty();
+  const Location place = is_image ? fields.require("file").where() : node.where();
+  if (is_image) image.describe(reader), image.finish();
+  if (!texture.attribute.empty()) ChannelKeys{texture.channel}.describe(reader);
   texel.describe(reader);
   return add_texture(load, texture, place);
 }
@@ -176,6 +199,7 @@ std::string texture_schema(Schema& schema) {
     Texture usual;
     ImageKeys{usual}.describe(map);
     map.one_of({"file"});
+    map.add_one_of("attribute", kAttributeMeaning, Schema::text());
     visit_patterns([&]<class P>(const P& pattern) {
       const ShapeInfo& s = P::kShapeInfo;
       map.add_one_of(s.key, s.meaning, schema.map(s.key, PatternKeys<P>{pattern, {}}));

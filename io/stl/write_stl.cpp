@@ -60,6 +60,8 @@ MeshLosses write_stl(const std::string& path, const MeshFile& file, bool ascii) 
   MeshLosses losses;
   if (!file.mesh.uv_indices.empty()) losses.push_back("lost: texture coordinates");
   if (!file.mesh.normal_indices.empty()) losses.push_back("lost: normals of vertices");
+  note_lost_attributes(
+      file.mesh, [](const MeshAttribute&) { return false; }, losses);
   if (file.mesh.positions.size() < file.mesh.indices.size())
     losses.push_back("lost: which triangles share vertices; read it with --weld to join them again");
   return losses;

@@ -279,8 +279,10 @@ void cover(Scene& scene, Object& object, Material material) {
   object.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
 }
 
+}  // namespace
+
 /// What a mesh without materials is made of.
-Material satin() {
+static Material satin() {
   Material m;
   m.name = "satin";
   m.color = {0.66f, 0.63f, 0.60f};
@@ -292,7 +294,38 @@ Material satin() {
   return m;
 }
 
-}  // namespace
+static std::uint32_t add_color_texture(Scene& scene) {
+  scene.textures.emplace_back().attribute = kColorAttribute;
+  return static_cast<std::uint32_t>(scene.textures.size() - 1);
+}
+
+std::uint32_t add_color_material(Scene& scene) {
+  Material m = satin();
+  m.name = "colors";
+  m.color = m.principled->parameters.base_color = {1, 1, 1};
+  m.color_texture = add_color_texture(scene);
+  resemble_principled(m);
+  scene.materials.push_back(std::move(m));
+  return static_cast<std::uint32_t>(scene.materials.size() - 1);
+}
+
+void show_colors(Scene& scene, Object& object) {
+  const auto& shape = std::get<MeshShape>(object.shape);
+  if (shape.mesh == nullptr || object.material != kNoId) return;
+  if (find_attribute(*shape.mesh, kColorAttribute) == nullptr) return;
+  if (shape.slot_materials.empty()) {
+    object.material = add_color_material(scene);
+    return;
+  }
+  std::uint32_t texture = kNoId;
+  for (const std::uint32_t slot : shape.slot_materials) {
+    if (slot >= scene.materials.size()) continue;
+    Material& m = scene.materials[slot];
+    if (m.color_texture != kNoId || m.tint_texture != kNoId) continue;
+    if (texture == kNoId) texture = add_color_texture(scene);
+    m.color_texture = texture;
+  }
+}
 
 bool is_mesh_alone(const Scene& scene) {
   if (scene.camera_given || scene.lights_given || scene.objects.size() > 1) return false;

@@ -49,6 +49,14 @@ enum class Viewpoint {
   inside,
 };
 
+/// Adds a material that shows the colours of meshes; returns its index.
+std::uint32_t add_color_material(Scene& scene);
+
+/// Shows the colours of a mesh that is given alone, if it has some: as the material of an object without one,
+/// else on those of its materials that have no image. The mesh is that of `object`, which is no part of the
+/// scene yet.
+void show_colors(Scene& scene, Object& object);
+
 /// Whether the scene holds at most one object, a mesh, and neither a camera nor lights.
 bool is_mesh_alone(const Scene& scene);
 

@@ -16,6 +16,13 @@ inline void require_sound(const TriangleMesh& m) {
   require(m.material_slots.empty() || m.material_slots.size() == m.triangle_count(), "slots");
   for (const Vec3f& p : m.positions)
     require(p.x - p.x == 0 && p.y - p.y == 0 && p.z - p.z == 0, "positions are finite");
+  for (const MeshAttribute& a : m.attributes) {
+    require(a.components >= 1 && a.components <= 4 && !a.name.empty(), "attributes have one to four numbers");
+    require(a.floats.size() + a.srgb.size() == domain_size(m, a.domain) * a.components,
+            "values of attributes");
+    require(a.floats.empty() || a.srgb.empty(), "one column of values");
+    require(find_attribute(m, a.name) == &a, "names differ");
+  }
   for (const Vec2f& uv : m.uvs)
     require(uv.x - uv.x == 0 && uv.y - uv.y == 0, "texture coordinates are finite");
 }

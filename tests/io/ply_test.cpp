@@ -105,8 +105,7 @@ TEST(Ply, WhatIsNotReadIsSaid) {
       "property int a\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"
       "0 0 0 1 2 3\n\n  1 0 0 1 2 3\n0 1 0 1 2 3\n5\n\nmore\n";
   EXPECT_EQ(files.warnings(text),
-            (std::vector<std::string>{"a.ply:7:1: warning: colours of vertices are not read",
-                                      "a.ply:10:1: warning: element 'edge' is not read",
+            (std::vector<std::string>{"a.ply:10:1: warning: element 'edge' is not read",
                                       "a.ply: warning: 1 lines behind the last element are not read",
                                       "a.ply: warning: no faces"}));
   EXPECT_EQ(files.load(text).mesh.positions.size(), 3u);

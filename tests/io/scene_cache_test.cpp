@@ -176,6 +176,59 @@ TEST_F(SceneCacheTest, MeshesComeBackWithMaterialsAndWarnings) {
   expect_hit(true, "no faces");
 }
 
+/// What vertices and faces carry, and images that a PLY file names.
+TEST_F(SceneCacheTest, AttributesComeBack) {
+  std::string text =
+      "ply\nformat ascii 1.0\ncomment TextureFile none.png\ncomment TextureFile two.png\nelement vertex 3\n"
+      "property float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float quality\n"
+      "element face 1\nproperty list uchar int vertex_indices\nproperty float flow.0\nproperty float "
+      "flow.1\n";
+  const std::string body =
+      "end_header\n0 0 0 0 0 1 2 3 4\n1 0 0 1 0 5 6 7 8\n0 1 0 0 1 9 8 7 6\n3 0 1 2 0.5 0.25";
+  for (const bool numbered : {false, true}) {
+    mesh_ = dir_.write(
+        "a.ply", text + (numbered ? "property int texnumber\n" : "") + body + (numbered ? " 1\n" : "\n"));
+    const MeshFile plain = load_mesh(mesh_);
+    for (const bool again : {false, true}) {
+      bool hit = !again;
+      const MeshFile cached = load(&hit);
+      EXPECT_EQ(hit, again);
+      expect_same(cached, plain);
+      ASSERT_EQ(cached.mesh.attributes.size(), 3u);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const MeshAttribute &a = cached.mesh.attributes[i], &b = plain.mesh.attributes[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_EQ(a.domain, b.domain);
+        EXPECT_EQ(a.components, b.components);
+        EXPECT_TRUE(same(a.floats, b.floats) && same(a.srgb, b.srgb));
+      }
+    }
+  }
+  const std::string entry = entries(".mesh").at(0);
+  const std::vector<std::function<void(MeshEntry&)>> changes = {
+      [](MeshEntry& e) { e.parsed.mesh.attributes[0].srgb.push_back(1); },
+      [](MeshEntry& e) { e.parsed.mesh.attributes[1].floats.clear(); },
+      [](MeshEntry& e) { e.parsed.mesh.attributes[1].components = 0; },
+      [](MeshEntry& e) { e.parsed.mesh.attributes[2].domain = static_cast<AttributeDomain>(3); },
+      [](MeshEntry& e) { e.parsed.mesh.attributes[2].srgb = e.parsed.mesh.attributes[0].srgb; }};
+  for (const auto& change : changes) {
+    MeshEntry e;
+    {
+      const CacheFile file(entry);
+      e = read_mesh_header(file);
+      read_mesh_columns(file, e);
+    }
+    change(e);
+    write_cache_file(entry, mesh_header(e), mesh_sections(e), 2'000'000'000'000'000'000);
+    told_.clear();
+    bool hit = true;
+    load(&hit);
+    EXPECT_FALSE(hit);
+    EXPECT_EQ(told_.size(), 1u);
+  }
+}
+
 TEST_F(SceneCacheTest, ChangedFilesAreReadAgain) {
   expect_hit(false, "first");
   struct stat before {};

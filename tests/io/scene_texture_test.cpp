@@ -48,6 +48,50 @@ TEST_F(SceneTexture, PatternsAreRead) {
   EXPECT_EQ(texture(m.bump_texture).pattern->pattern, Pattern(WoodPattern{}));
 }
 
+TEST_F(SceneTexture, AttributesAreRead) {
+  const Material m = material(
+      "color: {attribute: color}, opacity: {attribute: color, channel: alpha}, map_bump: {attribute: height, "
+      "gain: 2, base: 1}");
+  EXPECT_EQ(texture(m.color_texture).attribute, "color");
+  EXPECT_EQ(texture(m.opacity_texture).channel, ImageChannel::alpha);
+  EXPECT_EQ(texture(m.bump_texture).attribute, "height");
+  EXPECT_EQ(texture(m.bump_texture).gain, 2);
+  const auto error = [&](const std::string& keys) {
+    return files.error_v1("materials: {m: {" + keys + "}}");
+  };
+  expect_starts(error("color: {attribute: color, clamp: true}"),
+                "scene.yaml:2:43: 'clamp' has no meaning beside 'attribute'");
+  expect_starts(error("color: {attribute: color, file: a.png}"),
+                "scene.yaml:2:43: 'file' has no meaning beside 'attribute'");
+  expect_starts(error("color: {attribute: ''}"),
+                "scene.yaml:2:36: expected the name of an attribute of meshes, found nothing");
+  expect_starts(
+      error("map_normal: {attribute: n}"),
+      "scene.yaml:2:29: an attribute holds no normals; expected an image, or 'map_bump', which takes "
+      "an attribute as heights");
+}
+
+TEST_F(SceneTexture, AttributesThatAreNotThereAreTold) {
+  files.dir.write("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n");
+  EXPECT_EQ(
+      files.warnings_v1("materials: {m: {color: {attribute: colour}}, n: {color: {attribute: color}}}\n"
+                        "objects: [{mesh: {file: a.obj}, material: m}, {mesh: {file: a.obj}, material: n},"
+                        " {sphere: {}, material: n}, {mesh: {file: a.obj}, material: m}]\n"),
+      "scene.yaml:2:24: warning: a mesh of this material has no attribute 'colour'; did you mean 'color'?; "
+      "white instead\n"
+      "scene.yaml:2:57: warning: an object of this material is no mesh, and has no attribute 'color'; white "
+      "instead\n");
+}
+
+TEST_F(SceneTexture, ScansGivenAloneShowTheirColours) {
+  const Scene scan =
+      load_scene(files.dir.write("scan.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n"));
+  ASSERT_LT(scan.objects.at(0).material, scan.materials.size());
+  const Material& m = scan.materials[scan.objects[0].material];
+  EXPECT_EQ(scan.textures.at(m.color_texture).attribute, "color");
+  EXPECT_EQ(m.color, (Color{1, 1, 1}));
+}
+
 TEST_F(SceneTexture, StandInThePlaceOfEveryValue) {
   for (const PhongNumber& number : kPhongNumbers) {
     const Material m = material(std::string(number.name) + ": {noise: }");

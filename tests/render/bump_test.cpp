@@ -124,6 +124,35 @@ void expect_bumps(const Shape& shape, const Affine& map, const char* what, Stand
 
 Shape exact(auto form) { return ExactShape{form, NormalMethod::gradient}; }
 
+/// Heights that a mesh carries, which grow evenly along a direction, bend it as those of space do.
+TEST(AttributeBump, TiltsTheNormalsOfTriangles) {
+  const Vec3d direction = normalize(Vec3d{0.3, 0.8, 0.5});
+  const Affine map = Affine::rotation({20, 30, 40}) * Affine::scaling({1.5, 1, 0.8});
+  auto mesh = test::sphere_mesh(9);
+  MeshAttribute heights;
+  heights.name = "height";
+  for (const Vec3f& p : mesh->positions)
+    heights.floats.push_back(static_cast<float>(dot(Vec3d(p), direction)));
+  mesh->attributes.push_back(heights);
+  MeshShape shape;
+  shape.mesh = mesh, shape.smooth = false;
+  Material plain = test::diffuse({1, 1, 1}), bumpy = plain;
+  bumpy.bump_texture = 0;
+  bumpy.bump_scale = 2;
+  Texture texture;
+  texture.attribute = "height", texture.gain = 0.25f;
+  for (const Stands stands : {Stands::alone, Stands::in_prototype}) {
+    const Seen flat(shape, map, plain, texture, nullptr, stands);
+    const Seen bent(shape, map, bumpy, texture, nullptr, stands);
+    const auto bend = [&](const Vec3d&, const Vec3d& n) {
+      const Vec3d own = normalize(by_transpose(map, n));
+      const Vec3d along = direction - own * dot(direction, own);
+      return by_transpose(map.inverse(), own - along * 0.5);
+    };
+    expect_bent(flat, bent, bend, "mesh");
+  }
+}
+
 TEST(PatternBump, TiltsTheNormalsOfEverySurface) {
   const Affine map = Affine::rotation({20, 30, 40}) * Affine::scaling({1.5, 1, 0.8});
   expect_bumps(SphereShape{}, {}, "sphere");

@@ -55,7 +55,7 @@ void note_polygons(std::size_t polygons, std::size_t triangles, MeshLosses& loss
 }
 
 struct WrittenCounts {
-  std::size_t faces = 0, names = 0, colours = 0;
+  std::size_t faces = 0, names = 0;
   bool is_precise = false;
 };
 
@@ -72,7 +72,6 @@ void count_line(const char* p, WrittenCounts& counts) {
       counts.is_precise = counts.is_precise || significant_digits(word) > kFloatDigits;
     q = word.data() + word.size();
   }
-  if (words >= 6) ++counts.colours;
 }
 
 void note_obj(std::string_view text, std::size_t triangles, MeshLosses& losses) {
@@ -82,7 +81,6 @@ void note_obj(std::string_view text, std::size_t triangles, MeshLosses& losses) 
     count_line(skip_blanks(p), counts);
   if (counts.names > 0)
     losses.push_back("lost: " + count_of(counts.names, "name") + " of objects and groups");
-  if (counts.colours > 0) losses.push_back("lost: colours of vertices");
   if (counts.is_precise) note_precision(losses);
   note_polygons(counts.faces, triangles, losses);
 }
@@ -125,12 +123,11 @@ namespace fs = std::filesystem;
 struct ConvertedFormat {
   std::string_view extension;
   /// Adds to `losses` what the text of a file, whose reader made so many triangles, says beside them: names
-  /// of objects and groups, colours, polygons, digits beyond those of a float. Of colours in PLY files the
-  /// reader itself warns. Null: nothing more to say.
+  /// of objects and groups, polygons, digits beyond those of a float. Null: nothing more to say.
   void (*note_unread)(std::string_view text, std::size_t triangles, MeshLosses& losses);
   MeshLosses (*write)(const std::string& path, const MeshFile& file, bool ascii);
   bool has_text;       ///< there are files of text and of bytes
-  bool has_materials;  ///< it can say them
+  bool has_materials;  ///< it can say some of them
 };
 
 /// For formats that are always text, or never.
@@ -141,7 +138,7 @@ MeshLosses write_either(const std::string& path, const MeshFile& file, bool) {
 
 constexpr std::array kConvertedFormats{
     ConvertedFormat{".obj", note_obj, write_either<write_obj>, false, true},
-    ConvertedFormat{".ply", note_ply, write_ply, true, false},
+    ConvertedFormat{".ply", note_ply, write_ply, true, true},
     ConvertedFormat{".stl", note_stl, write_stl, true, false},
     ConvertedFormat{".glb", nullptr, write_either<write_glb>, false, true},
 };
