@@ -10,8 +10,13 @@ from ._results import ClosestPoints, HitLists, Hits
 
 __version__: str
 
-Field = Literal["t", "object", "primitive", "instance", "uv", "normal", "position"]
-PointField = Literal["distance", "point", "object", "primitive", "instance", "uv", "normal"]
+# Or "attribute:NAME".
+Field = Union[
+    Literal["t", "object", "primitive", "instance", "uv", "normal", "position", "texcoord", "color"], str
+]
+PointField = Union[
+    Literal["distance", "point", "object", "primitive", "instance", "uv", "normal", "texcoord", "color"], str
+]
 InsideRule = Literal["crossings", "winding"]
 Quality = Literal["fast", "balanced", "best"]
 
@@ -26,6 +31,11 @@ class Scene:
         *,
         transform: Optional[npt.ArrayLike] = None,
         quality: Quality = "balanced",
+        normals: Optional[npt.ArrayLike] = None,
+        uvs: Optional[npt.ArrayLike] = None,
+        colors: Optional[npt.ArrayLike] = None,
+        attributes: Optional[Mapping[str, npt.ArrayLike]] = None,
+        material: Optional[Union[str, Mapping[str, Any]]] = None,
     ) -> None: ...
     @staticmethod
     def from_file(
@@ -59,6 +69,11 @@ class Scene:
         *,
         transform: Optional[npt.ArrayLike] = None,
         name: str = "",
+        normals: Optional[npt.ArrayLike] = None,
+        uvs: Optional[npt.ArrayLike] = None,
+        colors: Optional[npt.ArrayLike] = None,
+        attributes: Optional[Mapping[str, npt.ArrayLike]] = None,
+        material: Optional[Union[str, Mapping[str, Any]]] = None,
     ) -> int: ...
     def build(self) -> None: ...
     @property

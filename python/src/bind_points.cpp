@@ -11,7 +11,8 @@
 namespace oktett::python {
 namespace {
 
-const Fields kPointFields{"distance", "point", "object", "primitive", "instance", "uv", "normal"};
+const Fields kPointFields{"distance", "point",  "object",   "primitive", "instance",
+                          "uv",       "normal", "texcoord", "color"};
 
 py::object ask_closest_point(SceneStore& scene, py::handle given, const Fields& fields) {
   check_fields(fields, kPointFields);
@@ -29,7 +30,10 @@ py::object ask_closest_point(SceneStore& scene, py::handle given, const Fields& 
   add("instance", columns.hit.instance, 0);
   add("uv", columns.hit.uv, 2);
   add("normal", columns.hit.normal, 3);
+  add("texcoord", columns.hit.texcoord, 2);
   const std::shared_ptr<const World> world = world_of(scene);
+  columns.hit.attributes = attribute_columns(fields, *world);
+  make_attributes(result, shape, columns.hit.attributes, fields);
   run_in_pieces(static_cast<std::size_t>(points.size() / 3), [&](std::size_t begin, std::size_t end) {
     closest_points(*world, points.data(), begin, end, columns);
   });
@@ -87,7 +91,7 @@ fields: what is wanted. The others are None in the result.
 Returns ClosestPoints:
     distance   float32 (...)     inf if there are no surfaces or if the point is not finite
     point      float32 (..., 3)  the nearest point
-    object, primitive, instance, uv, normal: as in Hits, see closest_hit
+    object, primitive, instance, uv, normal, texcoord, color, attributes: as in Hits, see closest_hit
 
 Of points at equal distance that of the lowest (instance, object, primitive) counts. Meshes, spheres, boxes,
 planes, disks, polygons, cylinders, cones, tori and instances of them are answered. Raises ValueError if the

@@ -51,7 +51,8 @@ RayOrder picture_order(const RayRows& rays) {
   return RayOrder(rays.size, picture_width(rays.rows, rays.size));
 }
 
-const Fields kHitFields{"t", "object", "primitive", "instance", "uv", "normal", "position"};
+const Fields kHitFields{"t",      "object",   "primitive", "instance", "uv",
+                        "normal", "position", "texcoord",  "color"};
 
 /// Calls visit(name, column, components) for each column.
 template <class Visit>
@@ -63,6 +64,7 @@ void visit_fields(HitColumns& columns, const Visit& visit) {
   visit("uv", columns.uv, 2);
   visit("normal", columns.normal, 3);
   visit("position", columns.position, 3);
+  visit("texcoord", columns.texcoord, 2);
 }
 
 py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, py::handle tmax,
@@ -75,6 +77,8 @@ py::object ask_closest_hit(SceneStore& scene, py::handle rays, py::handle tmin, 
     column = make_column(result, name, fields, arguments.shape, components, column);
   });
   const std::shared_ptr<const World> world = world_of(scene);
+  columns.attributes = attribute_columns(fields, *world);
+  make_attributes(result, arguments.shape, columns.attributes, fields);
   run_in_places(picture_order(arguments.rows),
                 [&](std::size_t, Places places) { closest_hits(*world, arguments.rows, places, columns); });
   return py::module_::import("oktett._results").attr("Hits")(**result);
@@ -146,6 +150,7 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
   const RayOrder order(arguments.rows.size, 0);
   std::vector<FoundHits> pieces(order.piece_count());
   const std::shared_ptr<const World> world = world_of(scene);
+  wanted.attributes = attribute_columns(fields, *world);
   run_in_places(order, [&](std::size_t k, Places places) {
     all_hits(*world, arguments.rows, places, wanted, pieces[k]);
   });
@@ -158,6 +163,18 @@ py::object ask_all_hits(SceneStore& scene, py::handle rays, py::handle tmin, py:
   result["uv"] = joined(pieces, &FoundHits::uv, wanted.uv, 2);
   result["normal"] = joined(pieces, &FoundHits::normal, wanted.normal, 3);
   result["position"] = joined(pieces, &FoundHits::position, wanted.position, 3);
+  result["texcoord"] = joined(pieces, &FoundHits::texcoord, wanted.texcoord, 2);
+  put_attributes(result, wanted.attributes, fields, [&](std::size_t i) -> py::object {
+    std::size_t size = 0;
+    for (const FoundHits& piece : pieces) size += piece.attributes[i].size();
+    const auto count = static_cast<py::ssize_t>(size),
+               components = py::ssize_t{wanted.attributes[i].components};
+    py::array_t<float> array(components == 1 ? ArrayShape{count}
+                                             : ArrayShape{count / components, components});
+    float* out = array.mutable_data();
+    for (const FoundHits& piece : pieces) out = std::ranges::copy(piece.attributes[i], out).out;
+    return array;
+  });
   return py::module_::import("oktett._results").attr("HitLists")(**result);
 }
 
@@ -178,7 +195,12 @@ Returns Hits:
     normal     float32 (..., 3)  of unit length, out of solids, for meshes by the order of the corners;
                                  0 for a miss
     position   float32 (..., 3)  the point; 0 for a miss
+    texcoord   float32 (..., 2)  texture coordinates of the mesh; NaN where it has none
+    color      float32 (..., 3)  linear colour of the mesh; NaN where it has none
+    attributes                   a dict of float32 by name for fields "attribute:NAME", (...) or, of k
+                                 numbers, (..., k); NaN where the mesh has none
 
+Values of corners are interpolated in double by the hit's uv, then rounded to float32.
 A ray with a NaN, or of direction zero, hits nothing. Of hits at equal distance the lowest (instance, object,
 primitive) counts. Raises ValueError for other shapes and types.)";
 

@@ -1,7 +1,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "python/src/arrays.h"
 #include "python/src/bind.h"
+#include "python/src/mesh_arrays.h"
 #include "python/src/unlocked.h"
 
 namespace oktett::python {
@@ -19,7 +19,7 @@ using StorePointer = std::shared_ptr<SceneStore>;
 using FileBytes = std::map<std::string, py::bytes>;
 
 /// Grows with what pickles hold.
-constexpr int kPickleVersion = 1;
+constexpr int kPickleVersion = 2;
 
 const std::pair<const char*, BuildQuality> kQualities[] = {
     {"fast", BuildQuality::fast}, {"balanced", BuildQuality::balanced}, {"best", BuildQuality::best}};
@@ -52,36 +52,42 @@ Affine parse_transform(const py::object& value) {
   return map;
 }
 
-std::shared_ptr<const TriangleMesh> make_mesh(const py::object& vertices, const py::object& faces) {
-  const FloatArray positions = float_rows(vertices, "vertices", 3);
-  if (positions.ndim() != 2)
-    throw py::value_error("vertices: expected an array of numbers of shape (n, 3), found the shape " +
-                          shape_text(positions));
-  const auto count = static_cast<std::size_t>(positions.shape(0));
-  const auto indices = triangle_rows(faces, count);
-  auto mesh = std::make_shared<TriangleMesh>();
-  mesh->positions.resize_uninitialized(count);
-  mesh->indices.resize_uninitialized(static_cast<std::size_t>(indices.size()));
-  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
-  if (count > 0)
-    std::memcpy(static_cast<void*>(mesh->positions.data()), positions.data(), count * sizeof(Vec3f));
-  if (indices.size() > 0)
-    std::memcpy(mesh->indices.data(), indices.data(), static_cast<std::size_t>(indices.nbytes()));
-  return mesh;
+/// The material of a dict, read as that of a scene file; nothing for None. A name is that of `added`.
+void set_material(const py::object& material, AddedMesh& added) {
+  if (material.is_none()) return;
+  if (py::isinstance<py::str>(material)) {
+    added.material_name = material.cast<std::string>();
+    return;
+  }
+  if (!py::isinstance<py::dict>(material))
+    throw py::value_error("material: expected a dict with the keys of a material, or a name");
+  py::dict materials, description;
+  materials["added"] = material, description["materials"] = materials;
+  const auto [text, meshes] = py::module_::import("oktett._description")
+                                  .attr("to_text")(description)
+                                  .cast<std::pair<std::string, FileBytes>>();
+  added.material_files.emplace(AddedMesh::kMaterialFile, text);
 }
 
-std::uint32_t add_mesh(SceneStore& scene, const py::object& vertices, const py::object& faces,
-                       const py::object& transform, const std::string& name) {
-  return scene.add({make_mesh(vertices, faces), parse_transform(transform), name});
+std::uint32_t add_mesh(SceneStore& scene, const MeshArrays& arrays, const py::object& transform,
+                       const std::string& name, const py::object& material) {
+  AddedMesh added;
+  added.mesh = make_mesh(arrays);
+  added.transform = parse_transform(transform);
+  added.name = name;
+  set_material(material, added);
+  return scene.add(std::move(added), files);
 }
 
 StorePointer make_scene(const py::object& vertices, const py::object& faces, const py::object& transform,
-                        const std::string& quality) {
+                        const std::string& quality, const py::object& normals, const py::object& uvs,
+                        const py::object& colors, const py::object& attributes, const py::object& material) {
   auto store = std::make_shared<SceneStore>();
   store->set_quality(parse_quality(quality));
   if (vertices.is_none() != faces.is_none())
     throw py::value_error("expected both vertices and faces, or neither");
-  if (!vertices.is_none()) add_mesh(*store, vertices, faces, transform, "");
+  if (!vertices.is_none())
+    add_mesh(*store, {vertices, faces, normals, uvs, colors, attributes}, transform, "", material);
   return store;
 }
 
@@ -124,17 +130,13 @@ py::tuple pickled(const SceneStore& scene) {
   for (const auto& [path, content] : scene.contents()) files[py::str(path)] = py::bytes(content);
   py::list meshes;
   for (const AddedMesh& added : scene.added()) {
-    const TriangleMesh& mesh = *added.mesh;
-    py::array_t<float> positions(ArrayShape{static_cast<py::ssize_t>(mesh.positions.size()), 3});
-    py::array_t<std::uint32_t> indices(ArrayShape{static_cast<py::ssize_t>(mesh.triangle_count()), 3});
     py::array_t<double> transform(ArrayShape{3, 4});
-    if (positions.size() > 0)
-      std::memcpy(positions.mutable_data(), mesh.positions.data(),
-                  static_cast<std::size_t>(positions.nbytes()));
-    if (indices.size() > 0)
-      std::memcpy(indices.mutable_data(), mesh.indices.data(), static_cast<std::size_t>(indices.nbytes()));
     added.transform.to_rows(transform.mutable_data());
-    meshes.append(py::make_tuple(positions, indices, transform, added.name));
+    py::dict material;
+    for (const auto& [path, content] : added.material_contents())
+      material[py::str(path)] = py::bytes(content);
+    meshes.append(
+        py::make_tuple(columns_of(*added.mesh), transform, added.name, added.material_name, material));
   }
   return py::make_tuple(kPickleVersion, scene.path(), scene.definitions(), files, meshes,
                         quality_name(scene.quality()));
@@ -156,7 +158,12 @@ StorePointer unpickled(const py::tuple& state) {
   }
   for (const py::handle entry : state[4].cast<py::list>()) {
     const auto mesh = entry.cast<py::tuple>();
-    add_mesh(*store, mesh[0], mesh[1], mesh[2], mesh[3].cast<std::string>());
+    AddedMesh added;
+    added.mesh = mesh_of(mesh[0].cast<py::tuple>());
+    added.transform = parse_transform(mesh[1]);
+    added.name = mesh[2].cast<std::string>(), added.material_name = mesh[3].cast<std::string>();
+    for (const auto& [file, content] : mesh[4].cast<FileBytes>()) added.material_files.emplace(file, content);
+    store->add(std::move(added), files);
   }
   return store;
 }
@@ -196,30 +203,50 @@ constexpr const char* kFromDictDoc = R"(A scene of a dict with the keys of scene
 
 description: what a scene file says, as dicts, lists, numbers and strings; "oktett": 1 may be left out. Numpy
     arrays may stand for lists. A mesh may be {"vertices": (n, 3), "faces": (m, 3)} instead of {"file": ...},
-    wherever a mesh may stand: in objects, prototypes and combinations.
+    with "normals", "uvs", "colors" and "attributes" as add_mesh takes them, wherever a mesh may stand: in objects, prototypes and combinations.
 
 The others, and errors, are those of from_text.)";
 
 void bind_making(SceneClass& scene) {
   using namespace pybind11::literals;
-  const Definitions none;
+  const Definitions no_definitions;
+  const py::none none;
   scene.def(py::init(&make_scene), "vertices"_a = py::none(), "faces"_a = py::none(), py::kw_only(),
-            "transform"_a = py::none(), "quality"_a = "balanced",
+            "transform"_a = none, "quality"_a = "balanced", "normals"_a = none, "uvs"_a = none,
+            "colors"_a = none, "attributes"_a = none, "material"_a = none,
             "A scene of one mesh, see add_mesh, or an empty one.");
   scene.def_static(
-      "from_file", from_file, "path"_a, py::kw_only(), "definitions"_a = none, "quality"_a = "balanced",
+      "from_file", from_file, "path"_a, py::kw_only(), "definitions"_a = no_definitions,
+      "quality"_a = "balanced",
       "A scene of a scene file (.yaml) or a mesh file. Arguments and errors are those of from_text.");
   scene.def_static("from_text", from_text, "text"_a, py::kw_only(), "name"_a = "<text>.yaml",
-                   "files"_a = FileBytes{}, "definitions"_a = none, "quality"_a = "balanced", kFromTextDoc);
+                   "files"_a = FileBytes{}, "definitions"_a = no_definitions, "quality"_a = "balanced",
+                   kFromTextDoc);
   scene.def_static("from_dict", from_dict, "description"_a, py::kw_only(), "name"_a = "<dict>.yaml",
-                   "files"_a = FileBytes{}, "definitions"_a = none, "quality"_a = "balanced", kFromDictDoc);
-  scene.def("add_mesh", add_mesh, "vertices"_a, "faces"_a, py::kw_only(), "transform"_a = py::none(),
-            "name"_a = "",
-            R"(Adds a triangle mesh and returns the number of the new object.
+                   "files"_a = FileBytes{}, "definitions"_a = no_definitions, "quality"_a = "balanced",
+                   kFromDictDoc);
+  scene.def(
+      "add_mesh",
+      [](SceneStore& s, const py::object& vertices, const py::object& faces, const py::object& transform,
+         const std::string& name, const py::object& normals, const py::object& uvs, const py::object& colors,
+         const py::object& attributes, const py::object& material) {
+        return add_mesh(s, {vertices, faces, normals, uvs, colors, attributes}, transform, name, material);
+      },
+      "vertices"_a, "faces"_a, py::kw_only(), "transform"_a = none, "name"_a = "", "normals"_a = none,
+      "uvs"_a = none, "colors"_a = none, "attributes"_a = none, "material"_a = none,
+      R"(Adds a triangle mesh and returns the number of the new object.
 
 vertices: numbers of shape (n, 3), rounded to float32.
 faces: whole numbers of shape (m, 3), indices into vertices. Corners run counter-clockwise seen from outside.
 transform: a matrix of shape (3, 4) or (4, 4) that maps columns (x, y, z, 1) to the space of the scene.
+normals: shape (n, 3), of vertices, or (m, 3, 3), of the corners of faces. Zero or not finite: none.
+uvs: texture coordinates, shape (n, 2) or (m, 3, 2).
+colors: of vertices, faces or corners of faces, shape (n, 3), (m, 3) or (m, 3, 3), or with alpha 4 for the
+    last 3. Floats are linear; uint8 and uint16 are encoded by the sRGB curve. The attribute "color".
+attributes: a dict of numbers by name, shape (n,), (n, k), (m,), (m, k) or (m, 3, k), k up to 4, rounded to
+    float32. Where m is n, they are those of vertices.
+material: a dict with the keys of a material of scene files, or the name of one in the scene. Textures may be
+    {"attribute": name}. Without one the mesh shows its colors.
 
 The arrays are copied. Triangles of zero area, and with vertices that are not finite, are never hit. Raises
 ValueError for other shapes and for indices out of range.)");

@@ -56,10 +56,47 @@ class HitDescriber {
       if (out_.normal) out_.normal[3 * to + k] = 0;
       if (out_.position) out_.position[3 * to + k] = 0;
     }
+    set_carried(to, {});
+  }
+
+  /// What the mesh carries at a point.
+  void set_carried(std::size_t to, const MeshPoint& point) {
+    if (!out_.texcoord && out_.attributes.empty()) return;
+    if (point.mesh != mesh_ || !mesh_known_) find_attributes(point.mesh);
+    if (out_.texcoord) set_texcoord(to, point);
+    for (std::size_t i = 0; i < out_.attributes.size(); ++i) {
+      const AttributeColumn& column = out_.attributes[i];
+      const std::size_t first = column.components * to;
+      const MeshAttribute* const attribute = of_mesh_[i];
+      AttributeValue value{};
+      if (attribute != nullptr) value = attribute_at(point, *attribute);
+      for (std::uint32_t k = 0; k < column.components; ++k)
+        column.values[first + k] = attribute != nullptr ? value[k] : kNaN;
+    }
+  }
+
+  void find_attributes(const TriangleMesh* mesh) {
+    mesh_ = mesh, mesh_known_ = true;
+    of_mesh_.clear();
+    for (const AttributeColumn& column : out_.attributes)
+      of_mesh_.push_back(mesh == nullptr ? nullptr : find_attribute(*mesh, column.name));
+  }
+
+  void set_texcoord(std::size_t to, const MeshPoint& point) {
+    out_.texcoord[2 * to] = out_.texcoord[2 * to + 1] = kNaN;
+    if (point.mesh == nullptr || point.mesh->uv_indices.empty()) return;
+    const std::array<Vec2f, 3> uv = corner_uvs(*point.mesh, point.triangle);
+    const double u = point.u, v = point.v, w = 1 - u - v;
+    const auto weighted = [=](double a, double b, double c) {
+      return static_cast<float>(a * w + b * u + c * v);
+    };
+    out_.texcoord[2 * to] = weighted(uv[0].x, uv[1].x, uv[2].x);
+    out_.texcoord[2 * to + 1] = weighted(uv[0].y, uv[1].y, uv[2].y);
   }
 
   void name(std::size_t i) {
-    if (!out_.object && !out_.primitive && !out_.uv && !out_.normal && !out_.position) return;
+    const bool carries = out_.texcoord || !out_.attributes.empty();
+    if (!out_.object && !out_.primitive && !out_.uv && !out_.normal && !out_.position && !carries) return;
     const Hit hit = hits_[i];
     if (place_.accel == nullptr || hit.instance != path_) {
       place_ = follow_path(accel_, hit.instance);
@@ -69,6 +106,13 @@ class HitDescriber {
     const std::size_t to = places_[i];
     if (out_.object) out_.object[to] = names.user;
     if (out_.primitive) out_.primitive[to] = names.primitive;
+    if (carries) {
+      MeshPoint point;
+      if (names.kind == Kind::triangle)
+        point = {std::get<MeshGeometry>(place_.accel->geometries[names.geometry].shape).mesh, names.primitive,
+                 hit.u, hit.v};
+      set_carried(to, point);
+    }
     if (names.kind == Kind::triangle && (out_.normal || out_.position)) {
       const Geometry& geometry = place_.accel->geometries[names.geometry];
       const TriangleMesh& mesh = *std::get<MeshGeometry>(geometry.shape).mesh;
@@ -111,6 +155,10 @@ class HitDescriber {
   HitColumns out_;
   HitPlace place_;
   std::uint32_t path_ = kNoId;
+  const TriangleMesh* mesh_ = nullptr;
+  bool mesh_known_ = false;
+  std::vector<const MeshAttribute*> of_mesh_;  ///< those of mesh_, for each column; null for none
+  static constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 };
 
 /// A column of `count` numbers in `values`, or null.
@@ -181,6 +229,13 @@ void all_hits(const World& world, const RayRows& rays, Places places, const HitC
   out.uv = sized(lists.uv, wanted.uv, 2 * count);
   out.normal = sized(lists.normal, wanted.normal, 3 * count);
   out.position = sized(lists.position, wanted.position, 3 * count);
+  out.texcoord = sized(lists.texcoord, wanted.texcoord, 2 * count);
+  out.attributes = wanted.attributes;
+  lists.attributes.resize(out.attributes.size());
+  for (std::size_t i = 0; i < out.attributes.size(); ++i) {
+    lists.attributes[i].resize(count * out.attributes[i].components);
+    out.attributes[i].values = lists.attributes[i].data();
+  }
   if (out.t) std::copy_n(hits.t.data(), count, out.t);
   static thread_local std::vector<std::size_t> own_places;
   own_places.resize(count);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/ray.h"
@@ -24,6 +25,13 @@ struct RayRows {
   std::size_t size = 0;
 };
 
+/// Where the values of an attribute go: `components` for each hit, NaN where a hit has none.
+struct AttributeColumn {
+  std::string name;
+  std::uint32_t components = 1;
+  float* values = nullptr;
+};
+
 /// Where the answers of hits go. A column that is null is not wanted.
 struct HitColumns {
   float* t = nullptr;
@@ -33,6 +41,8 @@ struct HitColumns {
   float* uv = nullptr;        ///< 2 per hit
   float* normal = nullptr;    ///< 3 per hit
   float* position = nullptr;  ///< 3 per hit
+  float* texcoord = nullptr;  ///< 2 per hit
+  std::vector<AttributeColumn> attributes;
 };
 
 /// Fills the columns of `out` but for `t` for hits, and for misses among them: what belongs to hit i at
@@ -52,7 +62,8 @@ void count_hits(const World& world, const RayRows& rays, Places places, std::uin
 /// Columns of all hits of some rays.
 struct FoundHits {
   std::vector<std::size_t> begin;  ///< where the hits of each ray begin; one more than there are rays
-  std::vector<float> t, uv, normal, position;
+  std::vector<float> t, uv, normal, position, texcoord;
+  std::vector<std::vector<float>> attributes;
   std::vector<std::uint32_t> object, primitive, instance;
 };
 

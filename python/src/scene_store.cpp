@@ -2,12 +2,17 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <variant>
 
 #include "core/error.h"
+#include "render/look/default_look.h"
+#include "render/material.h"
 
 namespace oktett::python {
 namespace {
@@ -40,6 +45,53 @@ std::uint32_t count_objects(const std::vector<Object>& objects) {
   return count;
 }
 
+/// The images of a scene and those of materials that were added to it.
+class JoinedTextures final : public TextureSampler {
+ public:
+  explicit JoinedTextures(TextureParts parts) : parts_(std::move(parts)) {}
+
+  Color color(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const auto [images, own] = part(index);
+    return images == nullptr ? Color{1, 1, 1} : images->color(own, uv, dx, dy);
+  }
+  float value(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const auto [images, own] = part(index);
+    return images == nullptr ? 1 : images->value(own, uv, dx, dy);
+  }
+  Vec3f normal(std::uint32_t index, Vec2f uv, Vec2f dx, Vec2f dy) const override {
+    const auto [images, own] = part(index);
+    return images == nullptr ? Vec3f{0.5f, 0.5f, 1} : images->normal(own, uv, dx, dy);
+  }
+
+ private:
+  /// What holds a texture, and the number that it has there.
+  std::pair<const TextureSampler*, std::uint32_t> part(std::uint32_t index) const {
+    for (auto p = parts_.rbegin(); p != parts_.rend(); ++p)
+      if (p->first <= index) return {p->images.get(), index - static_cast<std::uint32_t>(p->first)};
+    return {nullptr, index};
+  }
+
+  TextureParts parts_;
+};
+
+std::shared_ptr<const TextureSampler> joined(const std::shared_ptr<const TextureSampler>& own,
+                                             const TextureParts& added) {
+  if (added.empty()) return own;
+  TextureParts parts{{0, own}};
+  parts.insert(parts.end(), added.begin(), added.end());
+  return std::make_shared<const JoinedTextures>(std::move(parts));
+}
+
+/// The number of the material of that name. Throws Error if there is none.
+std::uint32_t material_of(const Scene& scene, const std::string& name) {
+  std::vector<std::string> known;
+  for (std::uint32_t i = 0; i < scene.materials.size(); ++i) {
+    if (scene.materials[i].name == name) return i;
+    if (!scene.materials[i].name.empty()) known.push_back(scene.materials[i].name);
+  }
+  throw Error("material: the scene has no material '" + name + "'" + did_you_mean(name, known));
+}
+
 }  // namespace
 
 std::uint32_t object_count(const Scene& scene) {
@@ -65,11 +117,41 @@ std::shared_ptr<SceneStore> SceneStore::load(const Files& reader, const std::str
   store->definitions_ = definitions;
   store->files_ = std::move(files);
   store->textures_ = std::move(read.textures);
+  store->own_textures_ = store->scene_.textures.size();
   for (const std::string& name : read.paths) store->read_.emplace(name, state_of(name));
   return store;
 }
 
-std::uint32_t SceneStore::add(AddedMesh added) {
+FileContents AddedMesh::material_contents() const {
+  FileContents all = material_files;
+  for (const std::string& path : material_paths) all.emplace(path, content_of(path));
+  return all;
+}
+
+std::uint32_t SceneStore::append_material(SceneRead read) {
+  Material& m = read.scene.materials.at(0);
+  const auto first_texture = static_cast<std::uint32_t>(scene_.textures.size());
+  const auto first_medium = static_cast<std::uint32_t>(scene_.media.size());
+  for_each_texture(m, [&](std::uint32_t& texture) {
+    if (texture != kNoId) texture += first_texture;
+  });
+  if (m.interior != kNoId) m.interior += first_medium;
+  m.name.clear();
+  if (!read.scene.textures.empty() && read.textures != nullptr)
+    added_textures_.push_back({first_texture, std::move(read.textures)});
+  std::ranges::move(read.scene.textures, std::back_inserter(scene_.textures));
+  std::ranges::move(read.scene.media, std::back_inserter(scene_.media));
+  std::ranges::move(read.scene.warnings, std::back_inserter(scene_.warnings));
+  scene_.materials.push_back(std::move(m));
+  return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+}
+
+std::uint32_t SceneStore::add(AddedMesh added, const Files& (*reader)()) {
+  std::optional<SceneRead> material;
+  if (!added.material_files.empty()) {
+    material = reader().read(AddedMesh::kMaterialFile, {}, added.material_files);
+    added.material_paths = material->paths;
+  }
   const std::lock_guard lock(mutex_);
   const std::uint32_t number = python::object_count(scene_);
   Object object;
@@ -78,6 +160,9 @@ std::uint32_t SceneStore::add(AddedMesh added) {
   object.shape = std::move(shape);
   object.transform = added.transform;
   object.name = added.name;
+  if (material) object.material = append_material(std::move(*material));
+  if (!added.material_name.empty()) object.material = material_of(scene_, added.material_name);
+  show_colors(scene_, object);
   scene_.objects.push_back(std::move(object));
   added_.push_back(std::move(added));
   world_.reset(), ++changes_;
@@ -110,12 +195,14 @@ std::shared_ptr<const TextureSampler> SceneStore::textures() {
   std::vector<Texture> textures;
   {
     const std::lock_guard lock(mutex_);
-    if (textures_ != nullptr || reader_ == nullptr) return textures_;
-    textures = scene_.textures;
+    if (textures_ != nullptr || reader_ == nullptr) return joined(textures_, added_textures_);
+    const auto own = scene_.textures.begin() + static_cast<std::ptrdiff_t>(own_textures_);
+    textures.assign(scene_.textures.begin(), own);
   }
   auto read = reader_->textures(std::move(textures));
   const std::lock_guard lock(mutex_);
-  return textures_ = std::move(read);
+  textures_ = std::move(read);
+  return joined(textures_, added_textures_);
 }
 
 std::uint32_t SceneStore::object_count() const {

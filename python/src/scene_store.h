@@ -23,7 +23,22 @@ struct AddedMesh {
   std::shared_ptr<const TriangleMesh> mesh;
   Affine transform;
   std::string name;
+  std::string material_name{};  ///< of a material in the scene; empty for none
+  /// A scene file of one material, named kMaterialFile, and files that it names; empty for none.
+  FileContents material_files{};
+  std::vector<std::string> material_paths{};  ///< files that it names on the disk
+
+  static constexpr const char* kMaterialFile = "<material>.yaml";
+  /// The first with the second. Throws Error of kind io.
+  FileContents material_contents() const;
 };
+
+/// Images of some textures of a scene, from its texture number `first` on.
+struct TexturePart {
+  std::size_t first;
+  std::shared_ptr<const TextureSampler> images;
+};
+using TextureParts = std::vector<TexturePart>;
 
 /// A scene to which meshes can be added. The acceleration structure is built when it is first needed. Any
 /// number of threads may use one object.
@@ -35,8 +50,10 @@ class SceneStore {
   static std::shared_ptr<SceneStore> load(const Files& reader, const std::string& path,
                                           const Definitions& definitions, FileContents files);
 
-  /// Adds an object and returns its number. The structure is built anew by the next query.
-  std::uint32_t add(AddedMesh added);
+  /// Adds an object and returns its number. The structure is built anew by the next query. `reader` is asked
+  /// for what reads the material, if there is one to read. Throws Error, also if there is no material of that
+  /// name.
+  std::uint32_t add(AddedMesh added, const Files& (*reader)());
 
   /// Waits while another thread builds.
   std::shared_ptr<const World> world();
@@ -64,6 +81,8 @@ class SceneStore {
     bool operator==(const FileState&) const = default;
   };
   static FileState state_of(const std::string& path);
+  /// Adds a material that was read alone; returns its number.
+  std::uint32_t append_material(SceneRead read);
 
   std::mutex building_;        ///< held while textures are read or a structure is built; before mutex_
   mutable std::mutex mutex_;   ///< of all members below, held for moments only
@@ -78,6 +97,8 @@ class SceneStore {
   BuildQuality quality_ = BuildQuality::balanced;
   std::shared_ptr<const World> world_;  ///< null: to be built
   std::shared_ptr<const TextureSampler> textures_;
+  std::size_t own_textures_ = 0;  ///< those that were read with the scene
+  TextureParts added_textures_;   ///< of materials that were added
 };
 
 /// How many numbers build_world gives to the objects of `scene`.
