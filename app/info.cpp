@@ -44,10 +44,11 @@ struct SceneSummary {
   std::uint64_t other_shapes =
       0;  ///< objects that are neither mesh nor instance; a list of spheres counts each
   std::uint64_t instances = 0;
-  double triangles_shown = 0;    ///< counting every instance
-  std::uint64_t unbounded = 0;   ///< infinite planes
-  Box bounds;                    ///< of all that is shown and bounded; empty if nothing is
-  std::uint64_t open_edges = 0;  ///< summed over meshes; see find_open_edges
+  double triangles_shown = 0;        ///< counting every instance
+  std::uint64_t unbounded = 0;       ///< infinite planes
+  Box bounds;                        ///< of all that is shown and bounded; empty if nothing is
+  std::uint64_t open_edges = 0;      ///< summed over meshes; see find_open_edges
+  std::set<std::string> attributes;  ///< names of what meshes carry
 };
 
 namespace {
@@ -144,6 +145,7 @@ class Counter {
       summary_.vertices += mesh.positions.size();
       summary_.mesh_bytes += mesh.bytes();
       summary_.open_edges += find_open_edges(mesh).count;
+      for (const MeshAttribute& a : mesh.attributes) summary_.attributes.insert(a.name);
     }
     return static_cast<double>(mesh.triangle_count());
   }
@@ -234,6 +236,7 @@ void print_text(const Scene& scene, const SceneSummary& summary, const TreeSumma
   if (summary.instances > 0) line("  with instances", count_text(summary.triangles_shown));
   line("vertices", grouped(summary.vertices));
   line("surface", closed_text(summary));
+  if (!summary.attributes.empty()) line("attributes", fmt::format("{}", fmt::join(summary.attributes, ", ")));
   line("other shapes", grouped(summary.other_shapes));
   if (summary.unbounded > 0) line("  unbounded", grouped(summary.unbounded));
   line("instances", grouped(summary.instances));

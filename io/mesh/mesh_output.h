@@ -90,14 +90,17 @@ void note_lost_attributes(const TriangleMesh& mesh, const Kept& kept, MeshLosses
     if (!kept(attribute)) losses.push_back("lost: the attribute " + quote_name(attribute.name));
 }
 
-/// Notes the textures of the materials that are not among those `written`.
+/// Notes the textures of the materials that are not among those `written`. Tints are colours of vertices,
+/// which formats say there.
 inline void note_lost_textures(const std::vector<Material>& materials, const std::set<std::uint32_t>& written,
                                const char* format, MeshLosses& losses) {
   std::set<std::uint32_t> lost;
-  for (const Material& m : materials)
+  for (Material m : materials) {
+    m.tint_texture = m.tint_opacity_texture = kNoId;
     for_each_texture(m, [&](std::uint32_t index) {
       if (index != kNoId && !written.contains(index)) lost.insert(index);
     });
+  }
   if (!lost.empty())
     losses.push_back("lost: " + count_of(lost.size(), "texture") + ", which " + format +
                      " cannot show as they are");

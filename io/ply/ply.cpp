@@ -279,6 +279,7 @@ class PlyLoad {
       for (PlyPart* part : parts_) part->extras.clear();
       return;
     }
+    drop_costly_extras();
     mesh.attributes = std::move(attributes_);
     for (const PlyPart* part : parts_)
       for (const PlyExtra& extra : part->extras) {
@@ -299,6 +300,21 @@ class PlyLoad {
         if (extra.meaning == PlyMeaning::slot) extra.textures = texture_count();
         extra.place(mesh);
       }
+  }
+
+  /// Large polygons with many numbers would take far more memory than the file.
+  void drop_costly_extras() {
+    std::uint64_t numbers = 0;
+    for (const MeshAttribute& a : attributes_)
+      if (a.domain == AttributeDomain::face) numbers += a.components;
+    const std::uint64_t triangles = parsed_.mesh.triangle_count();
+    if (numbers == 0 || triangles <= (16 * text_.size() + (std::uint64_t{1} << 20)) / numbers) return;
+    for (PlyFaces& faces : faces_) {
+      std::erase_if(faces.extras, [](const PlyExtra& e) { return e.meaning != PlyMeaning::slot; });
+      note(faces.element->where,
+           "numbers of faces are not read: they would take much more memory than the file");
+    }
+    std::erase_if(attributes_, [](const MeshAttribute& a) { return a.domain == AttributeDomain::face; });
   }
 
   template <class T>

@@ -106,15 +106,16 @@ class AttributeCheck {
   }
 
   void warn(std::uint32_t texture, const std::string& name, const TriangleMesh* mesh) {
+    // Those of other files are white where a mesh has no colours.
+    const std::vector<Location>& places = scene_.texture_places;
+    if (texture >= places.size() || places[texture].line == 0) return;
     std::string message = "an object of this material is no mesh, and has no attribute " + quote_name(name);
     if (mesh != nullptr) {
       std::vector<std::string> known;
       for (const MeshAttribute& a : mesh->attributes) known.push_back(a.name);
       message = "a mesh of this material has no attribute " + quote_name(name) + did_you_mean(name, known);
     }
-    const bool has_place = texture < scene_.texture_places.size();
-    scene_.warnings.push_back(
-        {has_place ? scene_.texture_places[texture] : Location{scene_.source}, message + "; white instead"});
+    scene_.warnings.push_back({places[texture], message + "; white instead"});
   }
 
   Scene& scene_;

@@ -204,6 +204,23 @@ TEST(PlyAttributes, OddOnesAreNoErrors) {
                   .mesh.attributes.empty());
 }
 
+TEST(PlyAttributes, TakeNoMoreMemoryThanTheFileJustifies) {
+  const PlyFiles files;
+  constexpr int kCorners = 100000, kNumbers = 900;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list int int vertex_indices\n";
+  for (int i = 0; i < kNumbers; ++i) text += "property float n" + std::to_string(i) + "\n";
+  text += "end_header\n0 0 0\n1 0 0\n0 1 0\n" + std::to_string(kCorners);
+  for (int i = 0; i < kCorners; ++i) text += " " + std::to_string(i % 3);
+  for (int i = 0; i < kNumbers; ++i) text += " 1";
+  with_little_memory([&] {
+    const ParsedMesh parsed = files.parse_bytes(text + "\n");
+    EXPECT_TRUE(parsed.mesh.attributes.empty());
+    EXPECT_FALSE(parsed.notices.empty());
+  });
+}
+
 TEST(PlyAttributes, ImagesAreThoseOfTheHeader) {
   const PlyFiles files;
   const std::string text =
