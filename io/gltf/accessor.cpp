@@ -180,6 +180,20 @@ GltfElements GltfAccessors::elements(std::uint32_t number) {
   return e;
 }
 
+std::vector<float> GltfAccessors::numbers(std::uint32_t accessor, std::uint32_t components) {
+  const GltfElements e = elements(accessor);
+  spend(sizeof(float) * std::uint64_t{components} * e.count);
+  return read_gltf_numbers(file_, e, components);
+}
+
+void GltfAccessors::spend(std::uint64_t bytes) {
+  spent_ += bytes;
+  const std::uint64_t most = (std::uint64_t{64} << 20) + 256 * file_.total_bytes();
+  if (spent_ > most)
+    file_.fail("its meshes take more than " + std::to_string(most) + " bytes, too many for " +
+               std::to_string(file_.total_bytes()) + " bytes of files");
+}
+
 void GltfAccessors::add_sparse(const GltfAccessor& accessor, GltfElements& e) {
   const GltfSparse& s = *accessor.sparse;
   const std::uint32_t size = bytes_of(s.index_number);

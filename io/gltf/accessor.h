@@ -38,6 +38,12 @@ class GltfAccessors {
   /// Throws Error if elements are not all there.
   GltfElements elements(std::uint32_t accessor);
 
+  /// The numbers of an accessor, see read_gltf_numbers; counted by spend().
+  std::vector<float> numbers(std::uint32_t accessor, std::uint32_t components);
+
+  /// Counts memory that is taken for the file. Throws Error if it is more in all than the file justifies.
+  void spend(std::uint64_t bytes);
+
   const GltfFile& file() const { return file_; }
 
  private:
@@ -48,6 +54,7 @@ class GltfAccessors {
 
   const GltfFile& file_;
   std::map<std::uint32_t, std::string> unpacked_;  ///< by the number of the view
+  std::uint64_t spent_ = 0;
 };
 
 /// What coordinates must be.

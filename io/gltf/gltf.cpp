@@ -65,7 +65,7 @@ class SceneReader {
         accessors_(file_),
         builder_(accessors_) {
     const GltfAnimator animator(accessors_, options.time.has_value());
-    const int poses = options.time && options.shutter > 0 ? kPoses : 1;
+    const int poses = animator.moves() && options.shutter > 0 ? kPoses : 1;
     for (int i = 0; i < poses; ++i) {
       times_.push_back(static_cast<double>(i) / (kPoses - 1));
       poses_.push_back(animator.at(
@@ -175,12 +175,13 @@ class SceneReader {
     std::vector<GltfPlace> places;
     const auto read = [&](std::uint32_t accessor, std::uint32_t components, const auto& set) {
       if (accessor == kNoId) return;
-      const GltfElements elements = accessors_.elements(accessor);
-      const std::vector<float> numbers = read_gltf_numbers(file_, elements, components);
-      if (places.empty()) places.resize(elements.count);
-      if (places.size() != elements.count)
+      const std::vector<float> numbers = accessors_.numbers(accessor, components);
+      const std::size_t count = numbers.size() / components;
+      accessors_.spend(count * (sizeof(GltfPlace) + sizeof(Affine) + sizeof(GltfPlacement)));
+      if (places.empty()) places.resize(count);
+      if (places.size() != count)
         file_.fail("nodes[" + std::to_string(number) + "]: attributes of " + std::to_string(places.size()) +
-                   " and of " + std::to_string(elements.count) + " instances");
+                   " and of " + std::to_string(count) + " instances");
       for (std::size_t i = 0; i < places.size(); ++i) set(places[i], &numbers[components * i]);
     };
     const auto vector = [](const float* x) { return Vec3d(Vec3f{x[0], x[1], x[2]}); };

@@ -352,7 +352,7 @@ class Build {
     if (elements.count != part.elements[kPositions].count)
       file_.fail(elements.name + ": " + std::to_string(elements.count) + " elements for " +
                  std::to_string(part.elements[kPositions].count) + " vertices of " + part.name);
-    return read_gltf_numbers(file_, elements, components);
+    return accessors_.numbers(accessor, components);
   }
 
   /// Draco's vertices are others than those of what stands beside it.
@@ -390,6 +390,7 @@ class Build {
   void add_skin(const Part& part) {
     const GltfAttributes& a = part.primitive->attributes;
     const std::size_t count = part.elements[kPositions].count;
+    accessors_.spend(sizeof(Affine) * count);
     std::vector<Affine> maps(count, zero_map());
     std::vector<double> sums(count);
     for (std::size_t set = 0; set < a.joints.size(); ++set) {
@@ -489,16 +490,8 @@ class Build {
 GltfBuiltMesh GltfMeshBuilder::build(std::uint32_t number, const GltfBending* bending,
                                      std::vector<std::string>& warnings) {
   Build build(accessors_, number, bending, warnings);
-  spend(build.measure());
+  accessors_.spend(build.measure());
   return build.run();
-}
-
-void GltfMeshBuilder::spend(std::uint64_t bytes) {
-  spent_ += bytes;
-  const std::uint64_t most = (std::uint64_t{64} << 20) + 256 * accessors_.file().total_bytes();
-  if (spent_ > most)
-    accessors_.file().fail("its meshes take more than " + std::to_string(most) + " bytes, too many for " +
-                           std::to_string(accessors_.file().total_bytes()) + " bytes of files");
 }
 
 }  // namespace oktett

@@ -33,10 +33,7 @@ class GltfMeshBuilder {
   GltfBuiltMesh build(std::uint32_t number, const GltfBending* bending, std::vector<std::string>& warnings);
 
  private:
-  void spend(std::uint64_t bytes);
-
   GltfAccessors& accessors_;
-  std::uint64_t spent_ = 0;
 };
 
 }  // namespace oktett

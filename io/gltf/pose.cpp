@@ -52,7 +52,7 @@ void GltfAnimator::read(const GltfChannel& channel, std::size_t number) {
   const std::string where = "animation channel " + std::to_string(number) + ": ";
   Track track;
   track.channel = channel;
-  track.times = read_gltf_numbers(file, accessors_.elements(channel.times), 1);
+  track.times = accessors_.numbers(channel.times, 1);
   const std::size_t keys = track.times.size(), per_key = channel.curve == GltfChannel::Curve::cubic ? 3 : 1;
   if (keys == 0) return;
   for (std::size_t i = 1; i < keys; ++i)
@@ -61,26 +61,15 @@ void GltfAnimator::read(const GltfChannel& channel, std::size_t number) {
     const std::uint32_t mesh = model.nodes[channel.node].mesh;
     if (mesh == kNoId || model.meshes[mesh].primitives.empty()) return;
     track.width = model.meshes[mesh].primitives[0].targets.size();
-    track.values = read_gltf_numbers(file, accessors_.elements(channel.values), 1);
+    track.values = accessors_.numbers(channel.values, 1);
   } else {
     track.width = channel.path == GltfChannel::Path::rotation ? 4 : 3;
-    track.values =
-        read_gltf_numbers(file, accessors_.elements(channel.values), static_cast<std::uint32_t>(track.width));
+    track.values = accessors_.numbers(channel.values, static_cast<std::uint32_t>(track.width));
   }
   if (track.values.size() != keys * per_key * track.width)
     file.fail(where + "expected " + std::to_string(keys * per_key * track.width) + " numbers for " +
               std::to_string(keys) + " keys, found " + std::to_string(track.values.size()));
   if (track.width > 0) tracks_.push_back(std::move(track));
-}
-
-std::optional<std::array<double, 2>> GltfAnimator::times() const {
-  std::optional<std::array<double, 2>> all;
-  for (const Track& track : tracks_) {
-    const auto first = static_cast<double>(track.times.front()),
-               last = static_cast<double>(track.times.back());
-    all = all ? std::array{std::min((*all)[0], first), std::max((*all)[1], last)} : std::array{first, last};
-  }
-  return all;
 }
 
 std::vector<double> GltfAnimator::value_at(const Track& track, double time) {
@@ -123,6 +112,7 @@ std::vector<double> GltfAnimator::value_at(const Track& track, double time) {
 GltfPose GltfAnimator::at(std::optional<double> time) const {
   const GltfModel& model = accessors_.file().model();
   const std::size_t count = model.nodes.size();
+  accessors_.spend(count * (2 * sizeof(Affine) + sizeof(GltfPlace)));
   GltfPose pose;
   std::vector<GltfPlace> places;
   for (const GltfNode& node : model.nodes) {
@@ -175,11 +165,11 @@ std::vector<Affine> gltf_joints(GltfAccessors& accessors, const GltfSkin& skin, 
   std::vector<Affine> joints;
   for (const std::uint32_t node : skin.joints) joints.push_back(pose.to_world[node]);
   if (skin.inverse_binds == kNoId) return joints;
-  const GltfElements elements = accessors.elements(skin.inverse_binds);
-  const std::vector<float> numbers = read_gltf_numbers(accessors.file(), elements, 16);
-  if (elements.count < joints.size())
-    accessors.file().fail(elements.name + ": expected " + std::to_string(joints.size()) +
-                          " matrices, one for each joint, found " + std::to_string(elements.count));
+  const std::vector<float> numbers = accessors.numbers(skin.inverse_binds, 16);
+  if (numbers.size() < 16 * joints.size())
+    accessors.file().fail("accessors[" + std::to_string(skin.inverse_binds) + "]: expected " +
+                          std::to_string(joints.size()) + " matrices, one for each joint, found " +
+                          std::to_string(numbers.size() / 16));
   for (std::size_t i = 0; i < joints.size(); ++i) {
     Affine bind;
     for (std::size_t row = 0; row < 3; ++row)

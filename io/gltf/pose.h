@@ -27,8 +27,7 @@ class GltfAnimator {
   /// the file places them without a time.
   GltfPose at(std::optional<double> time) const;
 
-  /// The first and the last time of all keys; nothing if nothing is animated.
-  std::optional<std::array<double, 2>> times() const;
+  bool moves() const { return !tracks_.empty(); }
 
  private:
   struct Track {

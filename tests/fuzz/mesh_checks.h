@@ -13,6 +13,8 @@ inline void require_sound(const TriangleMesh& m) {
   for (const std::uint32_t i : m.normal_indices) require(i == kNoId || i < m.normals.size(), "normals exist");
   require(m.uv_indices.empty() || m.uv_indices.size() == m.indices.size(), "uv per corner");
   for (const std::uint32_t i : m.uv_indices) require(i == kNoId || i < m.uvs.size(), "uv exist");
+  require(m.tangents.empty() || m.tangents.size() == m.normals.size(), "a tangent for each normal");
+  require(m.second_uvs.empty() || m.second_uvs.size() == m.uvs.size(), "second uv for each");
   require(m.material_slots.empty() || m.material_slots.size() == m.triangle_count(), "slots");
   for (const Vec3f& p : m.positions)
     require(p.x - p.x == 0 && p.y - p.y == 0 && p.z - p.z == 0, "positions are finite");
