@@ -8,7 +8,8 @@
 #include "core/math.h"
 #include "core/mesh_geometry.h"
 #include "render/bsdf/metals.h"
-#include "render/bsdf/principled/base.h"
+#include "render/bsdf/optics.h"
+#include "render/bsdf/principled_lobes.h"
 #include "render/shading_lanes.h"
 
 namespace oktett {
@@ -469,16 +470,22 @@ float index_of_refraction(const ShadingPoint& p) {
   return p.principled ? p.principled->ior : p.ior;
 }
 
+/// The index of refraction of a surface at a place; `place` is not asked without a texture of it.
+template <class Place>
+static float index_of_refraction(const RenderContext& context, const Material& m, Place&& place) {
+  const bool principled = shows_principled(context, m);
+  const std::uint32_t texture = principled ? m.principled->ior_texture : m.ior_texture;
+  const float ior = principled ? m.principled->parameters.ior : m.ior;
+  return texture == kNoId
+             ? ior
+             : textured(context, ior, texture, principled ? kPrincipledIors : kPhongIors, place());
+}
+
 float index_of_refraction(const RenderContext& context, const Ray& ray, const Hit& hit,
                           const SurfaceInteraction& s) {
   const Material& m = material_at(*context.world, s);
   if (!m.surface) return 1;
-  const bool phong = !m.principled;
-  const std::uint32_t texture = phong ? m.ior_texture : m.principled->ior_texture;
-  const float ior = phong ? m.ior : m.principled->parameters.ior;
-  if (texture == kNoId) return ior;
-  return textured(context, ior, texture, phong ? kPhongIors : kPrincipledIors,
-                  texture_place(context, m, ray, hit));
+  return index_of_refraction(context, m, [&] { return texture_place(context, m, ray, hit); });
 }
 
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
@@ -497,33 +504,86 @@ bool is_opaque(const Material& m, ShadowRule rule) {
          m.opacity_texture == kNoId && m.tint_opacity_texture == kNoId;
 }
 
-/// Whether path tracing scatters the light that the material lets through. Then light samples at the surface
-/// itself find the emitter behind it, and light that passed straight would count twice.
-static bool scatters_passing_light(const RenderContext& context, const Material& m, const TexturePlace& place,
-                                   std::optional<float> ior) {
-  if (!m.principled || !traits(context.settings.kind).traces_paths) return false;
-  const PrincipledMaterial& material = *m.principled;
-  PrincipledParameters p = material.parameters;
-  p.roughness = textured(context, p.roughness, material.roughness_texture, kUnitInterval, place);
-  p.ior = ior ? *ior : textured(context, p.ior, material.ior_texture, kPrincipledIors, place);
-  return !is_smooth_glass(p);
+namespace {
+
+/// How smooth glass splits light at a face, colour left out: what goes on, and what stays inside.
+struct FaceSplit {
+  double passed = 0, reflected = 0;
+};
+
+/// A face of glass that light crosses straight.
+struct StraightFace {
+  double ior;                    ///< inside relative to what is before it
+  double before;                 ///< cosine of the angle of incidence there
+  std::optional<double> inside;  ///< that in the glass; nothing where no light gets in
+
+  /// `cosine`: of the angle in air; `own`: index of refraction of the glass relative to air.
+  StraightFace(double cosine, double own, double relative) : ior(relative) {
+    const double sine2 = std::max(0.0, 1 - cosine * cosine), around = own / relative;
+    const double before2 = 1 - sine2 / (around * around), inside2 = 1 - sine2 / (own * own);
+    before = std::sqrt(std::max(0.0, before2));
+    if (before2 > 0 && inside2 > 0) inside = std::sqrt(inside2);
+  }
+};
+
+/// Of Phong's model.
+FaceSplit split_at(const StraightFace& face, double transparency) {
+  const double reflectance = face.inside ? fresnel(face.before, face.ior) : 1;
+  return {transparency * (1 - reflectance), transparency * reflectance};
 }
 
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
-                    ShadowRule rule) {
-  return transmittance(context, ray, hit, s, rule, std::nullopt);
+/// Of the principled material, for path tracing. Nothing passes if it scatters the light that it lets
+/// through: light samples at the surface itself find the emitter behind it, and light that passed straight
+/// would count twice.
+FaceSplit split_at(const StraightFace& face, PrincipledParameters p, bool front) {
+  p.ior = static_cast<float>(face.ior);
+  if (!is_smooth_glass(p)) return {};
+  if (!p.thin && !face.inside) return {0, 1};
+  using D = Simd<double, 1, ScalarIsa>;
+  const auto cosine = static_cast<float>(front || p.thin ? face.before : *face.inside);
+  const Vec3f viewer{std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine};
+  const PrincipledSurface surface(p, front);
+  const D passed = PrincipledLobes<D>(surface, broadcast<FloatsOf<D>>(viewer)).passing_glass();
+  // A thin wall has no inside.
+  return {only_lane(passed), p.thin ? 0 : surface.glass * fresnel(face.before, face.ior)};
 }
 
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
-                    ShadowRule rule, std::optional<float> ior) {
+}  // namespace
+
+StraightPassage straight_passage(const RenderContext& context, const Ray& ray, const Hit& hit,
+                                 const SurfaceInteraction& s, ShadowRule rule, std::optional<float> ior) {
   const Material& m = material_at(*context.world, s);
-  const TexturePlace place = texture_place(context, m, ray, hit);
-  const float opacity = opacity_at(context, m, place);
-  const float hole = 1 - opacity;
-  if (m.transparency == 0 || rule == ShadowRule::holes_pass) return {hole, hole, hole};
-  if (scatters_passing_light(context, m, place, ior)) return {hole, hole, hole};
-  const Color color = m.filter ? *m.filter : color_at(context, m, place);
-  return color * (transparency_at(context, m, place) * opacity) + Color{hole, hole, hole};
+  std::optional<SurfaceInteraction> whole;
+  std::optional<TexturedHit> textures;
+  TexturePlace place;
+  if (has_textures(m)) {
+    whole = surface_interaction(*context.world->accel, ray, hit);
+    textures.emplace(context, m, *whole, hit);
+    place = textures->place;
+  }
+  const float opacity = opacity_at(context, m, place), hole = 1 - opacity;
+  StraightPassage passage{{hole, hole, hole}, 0, !(dot(ray.direction, s.geometric_normal) > 0)};
+  if (m.transparency == 0 || rule == ShadowRule::holes_pass) return passage;
+  const Vec3d normal(textures ? textures->shading_normal() : s.shading_normal), d(ray.direction);
+  const double cosine = std::min(1.0, std::abs(dot(d, normal)) / (length(d) * length(normal)));
+  const bool by_path = m.principled && traits(context.settings.kind).traces_paths;
+  const double own = static_cast<double>(index_of_refraction(context, m, [&] { return place; }));
+  const StraightFace face(cosine, own, ior ? static_cast<double>(*ior) : own);
+  const Color color = color_at(context, m, place);
+  const FaceSplit split =
+      by_path ? split_at(face, principled_at(context, *m.principled, color, place), passage.front)
+              : split_at(face, static_cast<double>(transparency_at(context, m, place)));
+  const Color filter = m.filter && !by_path ? *m.filter : color;
+  passage.passed = filter * (static_cast<float>(split.passed) * opacity) + passage.passed;
+  passage.reflected = std::clamp(static_cast<float>(split.reflected) * opacity, 0.0f, 1.0f);
+  return passage;
+}
+
+Color passing_holes(const RenderContext& context, const Ray& ray, const Hit& hit,
+                    const SurfaceInteraction& s) {
+  const Material& m = material_at(*context.world, s);
+  const float hole = 1 - opacity_at(context, m, texture_place(context, m, ray, hit));
+  return {hole, hole, hole};
 }
 
 }  // namespace oktett

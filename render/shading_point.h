@@ -10,6 +10,7 @@
 #include "core/vec3.h"
 #include "render/context.h"
 #include "render/material.h"
+#include "render/straight_light.h"
 
 namespace oktett {
 
@@ -107,23 +108,26 @@ inline constexpr unsigned kMostPassages = 1u << 14;
 
 /// What stops light on its way from an emitter.
 enum class ShadowRule {
-  /// Opaque materials, and in path tracing glass that scatters light. Other transparent ones attenuate light
-  /// by colour * transparency and do not bend it.
+  /// Opaque materials, and in path tracing glass that scatters light. Other transparent ones take from light
+  /// what they reflect by Fresnel's equations and what their colour absorbs, and do not bend it.
   transparent_passes,
   /// All materials; light passes only through holes. For light that other rays find behind glass.
   holes_pass,
 };
 
-/// The fraction of light that passes straight through the surface at a hit of a shadow ray: through holes
-/// unchanged, and where the rule lets it pass, material colour * transparency. Uses only the names of `s`.
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
-                    ShadowRule rule);
-/// `ior`: the index of refraction there, if it is not that of the material because solids touch
-/// (Boundary::ior).
-Color transmittance(const RenderContext& context, const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
-                    ShadowRule rule, std::optional<float> ior);
+/// What the surface at a hit of a shadow ray, of any length, does to light that goes straight through it. The
+/// ray counts as the way of the light in air; in solids light has the angle that Snell's law then says.
+/// `ior`: the index of refraction relative to what the solid lies in, if it is not that of the material
+/// because solids touch (Boundary::ior).
+StraightPassage straight_passage(const RenderContext& context, const Ray& ray, const Hit& hit,
+                                 const SurfaceInteraction& s, ShadowRule rule,
+                                 std::optional<float> ior = std::nullopt);
 
-/// True if `transmittance` is black at every hit.
+/// The part of light that holes let pass at a hit. Uses only the names of `s`.
+Color passing_holes(const RenderContext& context, const Ray& ray, const Hit& hit,
+                    const SurfaceInteraction& s);
+
+/// True if no light passes straight at any hit.
 bool is_opaque(const Material& material, ShadowRule rule);
 
 }  // namespace oktett

@@ -140,6 +140,12 @@ class PrincipledLobes {
 
   bool transmits() const { return s_->transmits(); }
 
+  /// The part of the viewer's light that its glass, which must be smooth, lets pass, colour left out.
+  D passing_glass() const {
+    const GlassSurface& glass = *s_;
+    return GlassLobe<D>::is_there(glass, base()) ? of<GlassLobe<D>>(lobes_).passing(glass, view_) : D(0.0);
+  }
+
   /// After the surface has been copied to another place.
   void rebind(const PrincipledSurface& surface) {
     s_ = &surface;

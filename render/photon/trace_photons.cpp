@@ -72,7 +72,7 @@ Color reaching(const RenderContext& context, const PhotonStart& start, Dielectri
           boundary_at(*context.world, around, s, !(dot(ray.direction, s.geometric_normal) > 0));
       around = boundary.behind, hidden = boundary.hidden;
     }
-    if (!hidden) light = light * transmittance(context, ray, hit, s, ShadowRule::holes_pass);
+    if (!hidden) light = light * passing_holes(context, ray, hit, s);
     if (light == Color{0, 0, 0}) return light;
     ray.origin = offset_origin(s, ray.direction);
   }

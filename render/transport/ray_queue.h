@@ -11,6 +11,7 @@
 #include "core/vec3.h"
 #include "render/dielectric_stack.h"
 #include "render/light/light_sample.h"
+#include "render/straight_light.h"
 
 namespace oktett {
 
@@ -116,11 +117,11 @@ struct PathColumns {
 
 /// Working memory for shadow rays that may pass surfaces.
 struct PassingRays {
-  std::vector<Color> passed;        ///< the part of the light that has passed, of each ray of the queue
-  std::vector<std::uint32_t> left;  ///< rays of the queue that are still followed
-  std::vector<std::uint32_t> kept;  ///< entries of `left` that the surface they met lets through
-  RayBatch rays, behind;            ///< those of `left`, and their parts behind the surfaces they met
-  HitBatch hits;                    ///< of `left`
+  std::vector<StraightLight> passed;  ///< what has passed, of each ray of the queue
+  std::vector<std::uint32_t> left;    ///< rays of the queue that are still followed
+  std::vector<std::uint32_t> kept;    ///< entries of `left` that the surface they met may let through
+  RayBatch rays, behind;              ///< those of `left`, and their parts behind the surfaces they met
+  HitBatch hits;                      ///< of `left`
 };
 
 /// Shadow rays. Each adds `light` to the radiance of its owner, an entry of a RayQueue, if nothing blocks it.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/accel.h"
+#include "core/math.h"
 #include "render/shading_point.h"
 #include "render/transport/grouped_light.h"
 #include "render/transport/medium_paths.h"
@@ -26,37 +27,54 @@ Ray continue_behind(const Ray& ray, const SurfaceInteraction& s) {
   return rest;
 }
 
-/// Looks at what the rays of `p.left` have met: how much light passes there, and which rays go on behind it.
-static void look_at_surfaces(const RenderContext& context, const RaySpan& rays, ShadowRule rule,
-                             PassingRays& p) {
+/// Looks at what the rays of `p.left` have met: those that meet nothing arrive, `p.kept` may go on.
+static void look_at_surfaces(const RenderContext& context, ShadowRule rule, PassingRays& p) {
   p.kept.clear();
   for (std::uint32_t k = 0; k < p.left.size(); ++k) {
     const Hit hit = p.hits[k];
     if (!hit.valid()) continue;
-    Color& light = p.passed[p.left[k]];
     // Most materials are opaque, and the names are enough to find the material.
-    const SurfaceInteraction names = identify(*context.world->accel, hit);
-    const bool opaque = is_opaque(material_at(*context.world, names), rule);
-    light = opaque ? Color{0, 0, 0} : light * transmittance(context, rays[k], hit, names, rule);
-    if (!is_black(light)) p.kept.push_back(k);
+    if (is_opaque(material_at(*context.world, identify(*context.world->accel, hit)), rule))
+      p.passed[p.left[k]].light = {0, 0, 0};
+    else
+      p.kept.push_back(k);
   }
 }
 
-/// Sets `p.behind` to the parts of the rays of `p.kept` behind what they have met, and `p.left` to their
-/// numbers.
-static void go_behind_surfaces(const RenderContext& context, const RaySpan& rays, PassingRays& p) {
+/// What Whitted's model leaves of light that has come through a solid to the surface where a ray leaves it.
+static Color passing_interior(const RenderContext& context, const Ray& ray, const Hit& hit,
+                              const SurfaceInteraction& s) {
+  const Vec3d extinction = context.interiors[material_index(*context.world, s.user, s.material_slot)];
+  const Vec3d depth = extinction * (static_cast<double>(hit.t) * length(Vec3d(ray.direction)));
+  return Color(Vec3d{portable::exp(-depth.x), portable::exp(-depth.y), portable::exp(-depth.z)});
+}
+
+/// Takes the light of the rays of `p.kept` through the surfaces that they have met. Sets `p.behind` to the
+/// parts of these rays behind, and `p.left` to their numbers.
+static void go_behind_surfaces(const RenderContext& context, const RaySpan& rays, ShadowRule rule,
+                               PassingRays& p) {
   InteractionBlock surfaces;
+  std::size_t left = 0;
   p.behind.resize_uninitialized(p.kept.size());
   for (std::size_t first = 0; first < p.kept.size(); first += InteractionBlock::kMost) {
     const std::size_t count = std::min(InteractionBlock::kMost, p.kept.size() - first);
     surface_interactions(*context.world->accel, rays, p.hits, std::span(p.kept).subspan(first, count),
                          surfaces, context.isa);
     for (std::size_t k = first; k < first + count; ++k) {
-      p.behind.set(k, continue_behind(rays[p.kept[k]], surfaces[k - first]));
-      p.left[k] = p.left[p.kept[k]];
+      const std::uint32_t met = p.kept[k], number = p.left[met];
+      const SurfaceInteraction s = surfaces[k - first];
+      const StraightPassage passage = straight_passage(context, rays[met], p.hits[met], s, rule);
+      StraightLight& light = p.passed[number];
+      if (!passage.front && !context.interiors.empty())
+        light.lose(passing_interior(context, rays[met], p.hits[met], s));
+      light.pass(passage, s.user);
+      if (is_black(light.light)) continue;
+      p.behind.set(left, continue_behind(rays[met], s));
+      p.left[left++] = number;
     }
   }
-  p.left.resize(p.kept.size());
+  p.behind.resize_uninitialized(left);
+  p.left.resize(left);
 }
 
 void add_arriving(const RenderContext& context, Wavefront& wavefront, const ShadowQueue& queue,
@@ -68,21 +86,23 @@ void add_arriving(const RenderContext& context, Wavefront& wavefront, const Shad
 /// Multiplies the light of each ray by what the surfaces in its way leave of it.
 static void pass_surfaces(const RenderContext& context, ShadowQueue& queue, ShadowRule rule) {
   PassingRays& p = queue.passing;
-  p.passed.assign(queue.size(), {1, 1, 1});
+  p.passed.assign(queue.size(), {});
   p.left.resize(queue.size());
   std::iota(p.left.begin(), p.left.end(), 0u);
   RaySpan rays = queue.rays;
   for (unsigned layer = 0; layer < kMostPassages && !p.left.empty(); ++layer) {
     p.hits.resize_uninitialized(p.left.size());
     closest_hit(*context.world->accel, rays, p.hits.span(), context.isa);
-    look_at_surfaces(context, rays, rule, p);
-    go_behind_surfaces(context, rays, p);
+    look_at_surfaces(context, rule, p);
+    go_behind_surfaces(context, rays, rule, p);
     std::swap(p.rays, p.behind);
     rays = p.rays;
   }
-  for (const std::uint32_t i : p.left) p.passed[i] = {0, 0, 0};
-  for (std::size_t i = 0; i < queue.size(); ++i)
-    queue.light.set(i, is_black(p.passed[i]) ? Color{0, 0, 0} : queue.light[i] * p.passed[i]);
+  for (const std::uint32_t i : p.left) p.passed[i].light = {0, 0, 0};
+  for (std::size_t i = 0; i < queue.size(); ++i) {
+    const Color passed = p.passed[i].light;
+    queue.light.set(i, is_black(passed) ? Color{0, 0, 0} : queue.light[i] * passed);
+  }
 }
 
 void find_arriving(const RenderContext& context, ShadowQueue& queue, ShadowRule rule) {
@@ -110,7 +130,7 @@ namespace {
 struct ShadowWalks {
   struct State {
     std::uint32_t entry;  ///< of the queue
-    Color light;          ///< what is left of it
+    StraightLight light;  ///< what is left of it
     DielectricStack dielectrics;
     TrackingNumbers numbers;
   };
@@ -138,7 +158,7 @@ class ShadowWalker {
       if (hits_[k].valid())
         kept_.push_back(k);
       else
-        arriving[walks.states[k].entry] = walks.states[k].light;
+        arriving[walks.states[k].entry] = walks.states[k].light.light;
     }
     rest_.clear();
     for (std::size_t first = 0; first < kept_.size(); first += InteractionBlock::kMost) {
@@ -165,8 +185,8 @@ class ShadowWalker {
     const Vec3d direction(ray.direction);
     const double scale = length(direction), end = static_cast<double>(hit.valid() ? hit.t : ray.tmax);
     const MediumSegment segment{ray.origin, Vec3f(direction / scale), end * scale};
-    state.light = state.light * context_.media[medium].transmittance(segment, state.numbers);
-    return !is_black(state.light);
+    state.light.lose(context_.media[medium].transmittance(segment, state.numbers));
+    return !is_black(state.light.light);
   }
 
   void pass_surface(const Ray& ray, const Hit& hit, const SurfaceInteraction& s,
@@ -174,9 +194,9 @@ class ShadowWalker {
     const bool front = !(dot(ray.direction, s.geometric_normal) > 0);
     const Boundary boundary =
         boundary_at(*context_.world, state.dielectrics, s, front, index_of_refraction(context_, ray, hit, s));
-    Color light = state.light;
-    if (!boundary.hidden) light = light * transmittance(context_, ray, hit, s, rule_, boundary.ior);
-    if (is_black(light)) return;
+    StraightLight light = state.light;
+    if (!boundary.hidden) light.pass(straight_passage(context_, ray, hit, s, rule_, boundary.ior), s.user);
+    if (is_black(light.light)) return;
     rest_.push_back(continue_behind(ray, s), {state.entry, light, boundary.behind, state.numbers});
   }
 
@@ -195,7 +215,9 @@ void trace_shadows_in_media(const RenderContext& context, Wavefront& wavefront, 
   if (queue.size() == 0) return;
   ShadowWalks walks;
   for (std::uint32_t i = 0; i < queue.size(); ++i)
-    walks.push_back(queue.rays[i], {i, queue.light[i], queue.dielectrics[i],
+    walks.push_back(queue.rays[i], {i,
+                                    {queue.light[i]},
+                                    queue.dielectrics[i],
                                     tracking_numbers(wavefront, queue.owner[i], MediumDecision::shadow)});
   std::vector<Color> arriving(queue.size(), Color{0, 0, 0});
   ShadowWalker walker(context, rule);

@@ -84,6 +84,11 @@ class GlassLobe {
     if (!v.base->thin) out.all_facets = out.all_facets | here;
   }
 
+  /// The part of light that smooth glass lets pass, colour left out.
+  OKTETT_INLINE D passing(const Surface& s, const LobeView<D>& v) const {
+    return weight_ * (D(1.0) - fresnel_of(s, *v.base, v.wo.z));
+  }
+
   /// Light that facets let pass.
   OKTETT_INLINE void leave(const Surface& s, const LobeView<D>& v, int first, LobeSampling<D>& out) const {
     if (s.smooth) return;
