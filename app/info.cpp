@@ -182,8 +182,14 @@ std::string count_text(double count) {
   return count < 1e15 ? grouped(static_cast<std::uint64_t>(count)) : fmt::format("{:.3g}", count);
 }
 
-std::string bounds_text(const Box& box) {
+/// `origin`: of the scene.
+std::string bounds_text(const Box& box, const Vec3d& origin) {
   if (box.empty()) return "none";
+  if (!(origin == Vec3d{})) {
+    const Vec3d lo = origin + Vec3d(box.lo), hi = origin + Vec3d(box.hi);
+    return fmt::format("[{:.10g}, {:.10g}, {:.10g}] to [{:.10g}, {:.10g}, {:.10g}]", lo.x, lo.y, lo.z, hi.x,
+                       hi.y, hi.z);
+  }
   return fmt::format("[{:g}, {:g}, {:g}] to [{:g}, {:g}, {:g}]", box.lo.x, box.lo.y, box.lo.z, box.hi.x,
                      box.hi.y, box.hi.z);
 }
@@ -245,7 +251,7 @@ void print_text(const Scene& scene, const SceneSummary& summary, const TreeSumma
   line("textures", grouped(scene.textures.size()));
   line("lights", scene.lights_given ? grouped(scene.lights.size()) : "default");
   line("camera", scene.camera_given ? "given" : "default");
-  line("bounds", bounds_text(summary.bounds));
+  line("bounds", bounds_text(summary.bounds, scene.origin));
   line("mesh memory", bytes_text(summary.mesh_bytes));
   line("BVH memory", bytes_text(tree.world.bvh_bytes));
   if (tree.world.triangles > 0) {
@@ -278,8 +284,10 @@ void print_json(const Scene& scene, const SceneSummary& summary, const TreeSumma
                  {"lights", scene.lights.size()},
                  {"camera_given", scene.camera_given}};
   if (const Box& box = summary.bounds; !box.empty())
-    all.add({{"bounds_min", std::vector<double>{box.lo.x, box.lo.y, box.lo.z}},
-             {"bounds_max", std::vector<double>{box.hi.x, box.hi.y, box.hi.z}}});
+    for (const auto& [key, corner] : {std::pair{"bounds_min", box.lo}, {"bounds_max", box.hi}}) {
+      const Vec3d there = scene.origin + Vec3d(corner);
+      all.add({{key, std::vector<double>{there.x, there.y, there.z}}});
+    }
   all.add({{"mesh_bytes", summary.mesh_bytes},
            {"bvh_bytes", tree.world.bvh_bytes},
            {"sah_cost", tree.world.sah_cost},

@@ -19,8 +19,8 @@ inline constexpr std::uint32_t kNoId = 0xffffffffu;
 /// An indexed triangle mesh. The corners of a triangle run counter-clockwise seen from its front, the outside
 /// of a closed mesh.
 struct TriangleMesh {
-  Column<Vec3f> positions;
-  Column<Vec3f> normals;  ///< of any length but zero
+  Column<Vec3f> positions;  ///< relative to `origin`
+  Column<Vec3f> normals;    ///< of any length but zero
   Column<Vec2f> uvs;
   /// One for each of `normals`: a vector along the surface, and on which side of it, +1 or -1, the second
   /// axis of normal maps lies; zeros for none. Or empty: the axes are those of u and v.
@@ -32,6 +32,9 @@ struct TriangleMesh {
   Column<std::uint32_t> uv_indices;  ///< three per triangle, kNoId for a corner without uv; or empty
   Column<std::uint16_t> material_slots;   ///< one per triangle; or empty if all are in slot 0
   std::vector<MeshAttribute> attributes;  ///< of different names
+  /// Where positions count from; not (0, 0, 0) for files that lie far from it, of which floats would lose
+  /// details. Scenes take it as a translation; trees and queries know of positions alone.
+  Vec3d origin{0, 0, 0};
 
   std::size_t triangle_count() const { return indices.size() / 3; }
   /// Memory of all columns.

@@ -398,6 +398,9 @@ struct Scene {
   bool lights_given = false;              ///< false: render() adds a key and a fill light beside the camera
   std::vector<Prototype> prototypes;
   std::vector<Object> objects;
+  /// The place in the coordinates of its files from which all places of the scene count; far away floats
+  /// would lose details. Planes of positions in pictures count from there, too.
+  Vec3d origin{0, 0, 0};
   // Where a file defines the material or texture of the same number, if it has lines; may be shorter.
   std::vector<Location> material_places, texture_places;
   std::vector<Warning> warnings;  ///< what was skipped or given a default while a file was read

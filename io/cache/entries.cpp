@@ -100,6 +100,7 @@ std::string mesh_header(const MeshEntry& entry) {
   for (const std::int64_t n : {entry.stamp.content_time, entry.stamp.status_time}) append_number(bytes, n);
   append_number(bytes, entry.checksum);
   append_number(bytes, static_cast<std::uint8_t>(entry.parsed.has_faces));
+  for (int k = 0; k < 3; ++k) append_number(bytes, entry.parsed.mesh.origin[k]);
   append(bytes, entry.parsed.libraries);
   append(bytes, entry.parsed.materials);
   append(bytes, entry.parsed.textures);
@@ -130,6 +131,8 @@ MeshEntry read_mesh_header(const CacheFile& file) {
       *n = reader.number<std::int64_t>();
     entry.checksum = reader.number<std::uint64_t>();
     entry.parsed.has_faces = reader.number<std::uint8_t>() != 0;
+    for (int k = 0; k < 3; ++k) entry.parsed.mesh.origin[k] = reader.number<double>();
+    if (!is_finite(entry.parsed.mesh.origin)) throw Error("has a place that is not finite");
     for (auto* list :
          {&entry.parsed.libraries, &entry.parsed.materials, &entry.parsed.textures, &entry.parsed.notices})
       *list = take_statements(reader);

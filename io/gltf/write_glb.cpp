@@ -191,6 +191,8 @@ class GlbWriting {
   void add_node() {
     tinygltf::Node node;
     node.mesh = 0;
+    const Vec3d& origin = mesh_.origin;
+    if (!(origin == Vec3d{})) node.translation = {origin.x, origin.y, origin.z};
     model_.nodes.push_back(node);
     tinygltf::Scene scene;
     scene.nodes = {0};

@@ -34,6 +34,7 @@ class MeshOutput {
   }
   /// The shortest text that reads as `x` again.
   MeshOutput& number(float x) { return digits(x); }
+  MeshOutput& number(double x) { return digits(x); }
   MeshOutput& number(std::integral auto x) { return digits(x); }
   /// The bytes of a number or of a struct of numbers, as they are in memory (little-endian).
   template <class T>

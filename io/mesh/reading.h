@@ -145,6 +145,15 @@ inline const char* read_coordinate(const char* p, float& x) {
   return end;
 }
 
+/// The same, less `centre`, in double before it is rounded.
+inline const char* read_coordinate_from(double centre, const char* p, float& x) {
+  const char* const end = read_coordinate(p, x);
+  double exact = 0;
+  scan_double(p, exact);
+  x = static_cast<float>(exact - centre);
+  return end;
+}
+
 /// Like read_number; throws also if the number is not finite.
 inline const char* read_uv_coordinate(const char* p, float& x) {
   const char* end = read_number(p, x);

@@ -173,6 +173,7 @@ class Unifying {
 
   UnifiedMesh run() {
     out_.positions.assign(mesh_.positions.begin(), mesh_.positions.end());
+    out_.origin = mesh_.origin;
     out_.indices.assign(mesh_.indices.begin(), mesh_.indices.end());
     corner_of_.assign(splitting_.empty() ? 0 : mesh_.positions.size(), 0);
     if (has_normals_ || has_uvs_ || !splitting_.empty()) split();

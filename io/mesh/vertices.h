@@ -17,7 +17,8 @@ namespace oktett {
 void weld_positions(TriangleMesh& mesh);
 
 struct UnifiedMesh {
-  std::vector<Vec3f> positions;
+  std::vector<Vec3f> positions;  ///< relative to `origin`
+  Vec3d origin{0, 0, 0};
   std::vector<Vec3f> normals;                  ///< one for each position; empty if no triangle has normals
   std::vector<Vec2f> uvs;                      ///< likewise
   std::vector<std::array<float, 4>> tangents;  ///< likewise; zeros where there are none

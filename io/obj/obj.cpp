@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
 #include "core/phase.h"
+#include "io/mesh/recentre.h"
 #include "io/obj/parsed_obj.h"
 #include "io/text/file_content.h"
 
@@ -29,6 +31,7 @@ class ObjLoad {
   ParsedMesh run() {
     count();
     read_all_vertices();
+    recentre();
     read_all_faces();
     assign_slots(chunks_, text_.data(), obj_);
     stop_at_first_failure();
@@ -150,6 +153,16 @@ class ObjLoad {
                                   std::to_string(total_.positions) + " vertices are not read",
                               {}});
     }
+  }
+
+  void recentre() {
+    if (first_failure()) return;
+    const std::optional<Vec3d> centre = far_centre(obj_.mesh.positions);
+    if (!centre) return;
+    oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
+      if (chunks_[i].counts.positions > 0) read_positions_from(*centre, chunks_[i], obj_.mesh);
+    });
+    obj_.mesh.origin = *centre;
   }
 
   /// After all vertices, because how a polygon is cut depends on them, and they may come behind it.

@@ -347,6 +347,20 @@ void set_colors(TriangleMesh& mesh, const ObjColors& found, ObjColorColumns colo
   mesh.attributes.push_back(std::move(color));
 }
 
+void read_positions_from(const Vec3d& centre, ObjChunk& chunk, TriangleMesh& mesh) {
+  std::uint64_t next = chunk.before.positions;
+  const std::uint64_t last = next + chunk.counts.positions;
+  read_lines(chunk, [&](const char* p) {
+    if (p[0] != 'v' || !is_delimiter(p + 1)) return p;
+    if (next == last) stop_changed(p);
+    Vec3f v;
+    ++p;
+    for (int k = 0; k < 3; ++k) p = read_coordinate_from(centre[k], skip_blanks(p), v[k]);
+    mesh.positions[next++] = v;
+    return skip_blanks(p);
+  });
+}
+
 namespace {
 
 struct Corner {

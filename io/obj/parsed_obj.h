@@ -163,6 +163,9 @@ void read_vertices(ObjChunk& chunk, TriangleMesh& mesh, ObjColorColumns& colors)
 /// all programs that write them copy from bytes. If one is greater than 1 and all are whole, they are bytes.
 void set_colors(TriangleMesh& mesh, const ObjColors& found, ObjColorColumns colors);
 
+/// Reads `v` of a counted chunk that read_vertices has read again, less `centre`.
+void read_positions_from(const Vec3d& centre, ObjChunk& chunk, TriangleMesh& mesh);
+
 struct ObjFaceOptions {
   /// Whether the positions are all there, so that polygons can be cut properly. If not, faces are only
   /// checked.

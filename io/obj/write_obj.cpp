@@ -359,7 +359,12 @@ void write_mesh(MeshOutput& out, const TriangleMesh& mesh, const std::vector<std
   const MeshAttribute* const color = obj_colors(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const Vec3f& p = mesh.positions[i];
-    out.text("v ").number(p.x).text(" ").number(p.y).text(" ").number(p.z);
+    if (mesh.origin == Vec3d{}) {
+      out.text("v ").number(p.x).text(" ").number(p.y).text(" ").number(p.z);
+    } else {
+      const Vec3d there = mesh.origin + Vec3d(p);
+      out.text("v ").number(there.x).text(" ").number(there.y).text(" ").number(there.z);
+    }
     if (color != nullptr) write_color(out, *color, i);
     out.text("\n");
   }

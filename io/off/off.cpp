@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/phase.h"
 #include "io/mesh/polygon.h"
+#include "io/mesh/recentre.h"
 #include "io/text/file_content.h"
 #include "io/text/number.h"
 
@@ -31,6 +33,7 @@ class OffLoad {
       read_header();
       read_counts();
       read_vertices();
+      recentre();
       read_faces();
     } catch (const MeshFailure& failure) {
       fail_at_line(path_, text_, failure);
@@ -125,11 +128,18 @@ class OffLoad {
 
   void read_vertices() {
     TriangleMesh& mesh = parsed_.mesh;
+    vertices_ = next_;
+    const bool is_far = !(mesh.origin == Vec3d{});
     mesh.positions.resize_uninitialized(vertex_count_);
     if (header_.has_normal) mesh.normals.resize_uninitialized(vertex_count_);
     if (header_.has_uv) mesh.uvs.resize_uninitialized(vertex_count_);
     for (std::uint64_t i = 0; i < vertex_count_; ++i) {
-      for (int k = 0; k < 3; ++k) mesh.positions[i][k] = read_value<read_coordinate>();
+      for (int k = 0; k < 3; ++k) {
+        skip_space();
+        const char* const where = next_;
+        mesh.positions[i][k] = read_value<read_coordinate>();
+        if (is_far) read_coordinate_from(mesh.origin[k], where, mesh.positions[i][k]);
+      }
       if (header_.has_normal) {
         skip_space();
         const char* const where = next_;
@@ -142,6 +152,15 @@ class OffLoad {
         mesh.uvs[i].y = read_value<read_uv_coordinate>();
       }
     }
+  }
+
+  void recentre() {
+    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions);
+    if (!centre) return;
+    parsed_.mesh.origin = *centre;
+    next_ = vertices_;
+    oddities_ = {};
+    read_vertices();
   }
 
   /// Three or four numbers: the rest of the line tells.
@@ -226,7 +245,7 @@ class OffLoad {
   const FileContent file_;
   const std::string_view text_;
   Phase phase_{"reading", std::filesystem::path(path_).filename().string(), text_.size()};
-  const char* next_ = nullptr;
+  const char *next_ = nullptr, *vertices_ = nullptr;
   OffHeader header_;
   std::uint64_t vertex_count_ = 0, face_count_ = 0;
   std::vector<std::uint32_t> corners_, indices_;

@@ -24,6 +24,10 @@ void PlyExtra::put_other(std::uint64_t i, double x) const {
     slots[i] = x >= 0 && x < textures ? static_cast<std::uint16_t>(x) : textures;
     return;
   }
+  if (meaning == PlyMeaning::srgb) {
+    floats[i * step] = srgb_to_linear(x > 0 ? static_cast<float>(x) : 0);
+    return;
+  }
   const double most = meaning == PlyMeaning::srgb8 || meaning == PlyMeaning::part8 ? 255 : 65535;
   const auto part = static_cast<float>(x > 0 ? std::min(x / most, 1.0) : 0);
   const bool curve = meaning == PlyMeaning::srgb8 || meaning == PlyMeaning::srgb16;
@@ -51,8 +55,9 @@ class Choosing {
   }
 
   std::vector<PlyExtra> run() {
-    for (const Names& names : kColorNames)
-      if (take_colors(names)) break;
+    if (!take_linear_colors())
+      for (const Names& names : kColorNames)
+        if (take_colors(names)) break;
     for (std::size_t i = 0; i < properties_.size(); ++i)
       if (free_[i]) take_numbers(i);
     return std::move(extras_);
@@ -64,6 +69,17 @@ class Choosing {
     for (std::size_t i = 0; i < properties_.size(); ++i)
       if (free_[i] && properties_[i].name == name) return i;
     return properties_.size();
+  }
+
+  /// Those in linear floats, in place of the bytes beside them.
+  bool take_linear_colors() {
+    const std::string first = std::string(kColorAttribute) + kPlyComponent + "0";
+    const std::size_t at = find(first);
+    if (at == properties_.size()) return false;
+    take_numbers(at);
+    for (const char* name : kColorNames[0])
+      if (const std::size_t i = find(name); i != properties_.size()) free_[i] = false;
+    return true;
   }
 
   bool take_colors(const Names& names) {
@@ -81,7 +97,7 @@ class Choosing {
     for (std::uint32_t k = 0; k < components; ++k) {
       const PlyType type = properties_[at[k]].type;
       PlyMeaning meaning = PlyMeaning::byte;
-      if (!bytes && !is_whole(type)) meaning = PlyMeaning::number;
+      if (!bytes && !is_whole(type)) meaning = k < 3 ? PlyMeaning::srgb : PlyMeaning::number;
       if (!bytes && is_byte(at[k])) meaning = k < 3 ? PlyMeaning::srgb8 : PlyMeaning::part8;
       if (!bytes && type == PlyType::uint16) meaning = k < 3 ? PlyMeaning::srgb16 : PlyMeaning::part16;
       take(at[k], attribute, k, meaning);

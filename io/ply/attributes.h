@@ -2,9 +2,10 @@
 /// \file The properties of a PLY file that a mesh carries as attributes: colours, and all other numbers of
 /// vertices and faces that have no meaning of their own here. Within io/ only.
 ///
-/// Colours are `red green blue`, `diffuse_red ...` or `r g b`, and `alpha` or `a` with them. Whole numbers
-/// are encoded by the sRGB curve, as those of images are: programs for scans copy them from photographs. They
-/// count 255ths, those of 16 bits without sign 65535ths. Floats are linear: such are written by renderers.
+/// Colours are `red green blue`, `diffuse_red ...` or `r g b`, and `alpha` or `a` with them, encoded by the
+/// sRGB curve: programs for scans copy them from photographs, and Blender and three.js encode floats so, too.
+/// Whole numbers count 255ths, those of 16 bits without sign 65535ths. Beside them `color.0 color.1 color.2`,
+/// and `color.3`, are the same in linear floats: what write_ply adds where bytes would round.
 
 #include <algorithm>
 #include <concepts>
@@ -21,6 +22,7 @@ namespace oktett {
 enum class PlyMeaning : std::uint8_t {
   number,  ///< it stays as it is
   byte,    ///< cut off to 8 bits
+  srgb,    ///< by the sRGB curve
   srgb8,   ///< 255ths by the sRGB curve
   srgb16,  ///< 65535ths by the sRGB curve
   part8,   ///< 255ths

@@ -62,7 +62,10 @@ class BinaryBody final : public PlyBody {
       for (std::size_t role = 0; role < kPlyRoles; ++role) {
         if (columns.base[role] == nullptr) continue;
         const auto i = static_cast<std::size_t>(vertices.roles[role]);
-        const float x = load_float(properties[i].type, swap_, starts[i]);
+        const float x =
+            role < kPlyNormals && columns.is_far()
+                ? static_cast<float>(load_double(properties[i].type, swap_, starts[i]) - columns.centre[role])
+                : load_float(properties[i].type, swap_, starts[i]);
         if (!(std::abs(x) <= most_of(role)) && must_hold(role)) stop_at(starts[i], bad_coordinate(x));
         *columns.at(role, vertex) = x;
       }
@@ -295,6 +298,13 @@ class BinaryBody final : public PlyBody {
       const char* const first = p + vertices.offsets[i];
       const std::size_t step = columns.step[role], stride = vertices.stride;
       const float most = most_of(role);
+      if (role < kPlyNormals && columns.is_far()) {
+        for (std::uint64_t k = 0; k < count; ++k)
+          out[k * step] = static_cast<float>(
+              load_double(vertices.element->properties[i].type, swap_, first + k * stride) -
+              columns.centre[role]);
+        continue;
+      }
       const bool good =
           with_type(vertices.element->properties[i].type, swap_, [&]<class T, bool kSwap>() -> bool {
             bool all = true;

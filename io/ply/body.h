@@ -62,6 +62,8 @@ struct PlyVertexColumns {
   }
   std::array<float*, kPlyRoles> base{};  ///< null for what is not read
   std::array<std::size_t, kPlyRoles> step{};
+  Vec3d centre{};  ///< what is taken off positions before they are rounded
+  bool is_far() const { return !(centre == Vec3d{}); }
 };
 
 /// Writes the triangles of a chunk to a mesh whose columns have their final size.

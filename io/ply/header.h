@@ -113,6 +113,11 @@ inline std::int64_t load_whole(PlyType type, bool swap, const char* p) {
   });
 }
 
+inline double load_double(PlyType type, bool swap, const char* p) {
+  return with_type(type, swap,
+                   [p]<class T, bool kSwap>() { return static_cast<double>(load_value<T, kSwap>(p)); });
+}
+
 inline float load_float(PlyType type, bool swap, const char* p) {
   return with_type(type, swap,
                    [p]<class T, bool kSwap>() { return static_cast<float>(load_value<T, kSwap>(p)); });

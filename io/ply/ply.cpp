@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/phase.h"
+#include "io/mesh/recentre.h"
 #include "io/ply/body.h"
 #include "io/text/file_content.h"
 
@@ -372,8 +374,13 @@ class PlyLoad {
     place(0, 3, mesh.positions.data());
     if (vertices_.has_normals) place(3, 3, mesh.normals.data());
     if (vertices_.has_uvs && !corner_uvs_) place(6, 2, mesh.uvs.data());
-    for_each_chunk(vertices_,
-                   [&](const PlyChunk& chunk) { body_->read_vertices(vertices_, chunk, columns); });
+    const auto read = [&](const PlyChunk& chunk) { body_->read_vertices(vertices_, chunk, columns); };
+    for_each_chunk(vertices_, read);
+    stop_at_first_failure();
+    const std::optional<Vec3d> centre = far_centre(mesh.positions);
+    if (!centre) return;
+    mesh.origin = columns.centre = *centre;
+    for_each_chunk(vertices_, read);
     stop_at_first_failure();
   }
 

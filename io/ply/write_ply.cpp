@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "io/image/color.h"
 #include "io/mesh/vertices.h"
 #include "io/ply/attributes.h"
 
@@ -62,6 +63,7 @@ class PlyWriting {
       : out_(path), mesh_(mesh), images_(images), ascii_(ascii) {}
 
   void run() {
+    for (const MeshAttribute& a : mesh_.attributes) forms_.push_back({is_color(a), needs_floats(a)});
     write_header();
     for (std::size_t i = 0; i < mesh_.positions.size(); ++i) write_vertex(i);
     for (std::size_t i = 0; i < mesh_.indices.size(); i += 3) write_face(&mesh_.indices[i]);
@@ -77,7 +79,10 @@ class PlyWriting {
     const auto properties = [&](std::initializer_list<const char*> names) {
       for (const char* name : names) out_.text("property float ").text(name).text("\n");
     };
-    properties({"x", "y", "z"});
+    if (is_far())
+      for (const char* name : {"x", "y", "z"}) out_.text("property double ").text(name).text("\n");
+    else
+      properties({"x", "y", "z"});
     if (!mesh_.normals.empty()) properties({"nx", "ny", "nz"});
     if (!mesh_.uvs.empty()) properties({"s", "t"});
     describe(AttributeDomain::vertex);
@@ -94,23 +99,36 @@ class PlyWriting {
     for (const MeshAttribute& a : mesh_.attributes) {
       if (a.domain != domain) continue;
       constexpr const char* kColors[] = {"red", "green", "blue", "alpha"};
+      if (is_color(a))
+        for (std::uint32_t k = 0; k < a.components; ++k)
+          out_.text("property uchar ").text(kColors[k]).text("\n");
+      if (!needs_floats(a)) continue;
       for (std::uint32_t k = 0; k < a.components; ++k) {
-        out_.text("property ").text(are_bytes(a) ? "uchar " : "float ");
-        if (is_color(a)) {
-          out_.text(kColors[k]);
-        } else {
-          out_.text(property_name(a));
-          if (a.components > 1) out_.text(std::string(1, kPlyComponent) + std::to_string(k));
-        }
+        out_.text("property float ").text(property_name(a));
+        if (a.components > 1) out_.text(std::string(1, kPlyComponent) + std::to_string(k));
         out_.text("\n");
       }
     }
   }
 
-  /// Whether readers find the attribute by the names of colours.
+  /// Whether readers find the attribute by the names of colours. Most of them know bytes there alone.
   bool is_color(const MeshAttribute& a) const { return a.components >= 3 && own_name(a) == kColorAttribute; }
 
-  bool are_bytes(const MeshAttribute& a) const { return a.floats.empty() && is_color(a); }
+  /// Whether bytes would round the attribute, or it is no colour.
+  bool needs_floats(const MeshAttribute& a) const {
+    if (!is_color(a)) return true;
+    for (std::size_t i = 0; i < a.floats.size(); ++i) {
+      const auto k = static_cast<std::uint32_t>(i % a.components);
+      const std::uint8_t byte = byte_of(a.floats[i], k);
+      if ((k < 3 ? linear_of_srgb_byte(byte) : static_cast<float>(byte) / 255) != a.floats[i]) return true;
+    }
+    return false;
+  }
+
+  static std::uint8_t byte_of(float x, std::uint32_t component) {
+    return component < 3 ? linear_to_srgb8(x)
+                         : static_cast<std::uint8_t>(x > 0 ? std::min(x * 255 + 0.5f, 255.0f) : 0);
+  }
 
   /// Without what tells a face's from a vertex's of the same name.
   std::string_view own_name(const MeshAttribute& a) const {
@@ -132,12 +150,18 @@ class PlyWriting {
   }
 
   void write_attributes(AttributeDomain domain, std::size_t i) {
-    for (const MeshAttribute& a : mesh_.attributes) {
+    for (std::size_t n = 0; n < mesh_.attributes.size(); ++n) {
+      const MeshAttribute& a = mesh_.attributes[n];
       if (a.domain != domain) continue;
-      for (std::uint32_t k = 0; k < a.components; ++k)
-        are_bytes(a) ? write(a.srgb[i * a.components + k]) : write(a.value(i, k));
+      if (forms_[n].as_bytes)
+        for (std::uint32_t k = 0; k < a.components; ++k)
+          write(a.floats.empty() ? a.srgb[i * a.components + k] : byte_of(a.value(i, k), k));
+      if (forms_[n].as_floats)
+        for (std::uint32_t k = 0; k < a.components; ++k) write(a.value(i, k));
     }
   }
+
+  bool is_far() const { return !(mesh_.origin == Vec3d{}); }
 
   template <class T>
   void write(const T& value) {
@@ -154,7 +178,10 @@ class PlyWriting {
 
   void write_vertex(std::size_t i) {
     const auto vector = [this](const Vec3f& v) { write(v.x), write(v.y), write(v.z); };
-    vector(mesh_.positions[i]);
+    if (is_far())
+      for (int k = 0; k < 3; ++k) write(mesh_.origin[k] + static_cast<double>(mesh_.positions[i][k]));
+    else
+      vector(mesh_.positions[i]);
     if (!mesh_.normals.empty()) vector(mesh_.normals[i]);
     if (!mesh_.uvs.empty()) write(mesh_.uvs[i].x), write(mesh_.uvs[i].y);
     write_attributes(AttributeDomain::vertex, i);
@@ -173,7 +200,11 @@ class PlyWriting {
   const UnifiedMesh& mesh_;
   const PlyImages& images_;
   const bool ascii_;
-  bool is_first_ = true;  ///< of a record
+  struct Form {
+    bool as_bytes, as_floats;
+  };
+  std::vector<Form> forms_;  ///< of each attribute
+  bool is_first_ = true;     ///< of a record
 };
 
 }  // namespace

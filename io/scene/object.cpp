@@ -150,8 +150,21 @@ class ObjectReader {
     object.material = inner.material;
     object.transform = inner.transform;
     if (inner.motion.moves()) object.motion = std::make_shared<const Motion>(inner.motion);
+    place_far_mesh(object);
     require_inside(object);
     out_.push_back(std::move(object));
+  }
+
+  /// Positions of a mesh that lies far from the origin count from a place of their own.
+  static void place_far_mesh(Object& object) {
+    const auto* const mesh = std::get_if<MeshShape>(&object.shape);
+    if (mesh == nullptr || mesh->mesh->origin == Vec3d{}) return;
+    const Affine there = Affine::translation(mesh->mesh->origin);
+    object.transform = object.transform * there;
+    if (object.motion == nullptr) return;
+    Motion motion = *object.motion;
+    motion.factors.push_back({{0, there}});
+    object.motion = std::make_shared<const Motion>(std::move(motion));
   }
 
   void read_transform_of(const YamlNode& node, bool is_group, const Surroundings& outer,

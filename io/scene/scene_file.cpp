@@ -14,6 +14,7 @@
 #include "io/mesh/load/load_mesh.h"
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
+#include "io/scene/recentre.h"
 #include "io/scene/scene_limits.h"
 #include "io/scene/schema.h"
 #include "io/scene/utf8.h"
@@ -283,6 +284,7 @@ void read_scene_file(const std::string& path, SceneLoad& load) {
   FileReader(load).read(path);
   if (load.errors != nullptr && load.errors->failures() > 0) return;
   if (load.integrator) load.scene.integrator.kind = *load.integrator;
+  recentre(load.scene);
   warn_of_energy(load.scene);
   warn_of_attributes(load.scene);
   for (const Warning& warning : load.parameters.unused()) load.scene.warnings.push_back(warning);
@@ -342,6 +344,7 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   if (!is_gltf_file(path)) scene.camera.up = guess_up(*shape.mesh);
   scene.background = kPlainBackground;
   Object object;
+  scene.origin = shape.mesh->origin;
   object.shape = std::move(shape);
   object.name = std::filesystem::path(without_packing(path)).stem().string();
   object.where = {path, 0, 0};

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/phase.h"
 #include "io/mesh/reading.h"
+#include "io/mesh/recentre.h"
 #include "io/text/file_content.h"
 
 namespace oktett {
@@ -62,8 +63,10 @@ MeshFailure unexpected(State state, const char* p, const char* text_end) {
 
 class FacetReader {
  public:
-  FacetReader(const StlChunk& chunk, bool is_first, Vec3f* positions)
+  FacetReader(const StlChunk& chunk, bool is_first, Vec3f* positions, const Vec3d& centre)
       : chunk_(chunk),
+        centre_(centre),
+        is_far_(!(centre == Vec3d{})),
         state_(is_first ? State::outside : State::solid),
         next_(positions + 3 * chunk.before),
         last_(next_ + 3 * chunk.triangles) {}
@@ -115,9 +118,10 @@ class FacetReader {
 
   const char* read_vertex(const char* p) {
     if (next_ == last_) stop_changed(p);
-    p = read_coordinate(skip_plain_blanks(p), next_->x);
-    p = read_coordinate(skip_plain_blanks(p), next_->y);
-    p = read_coordinate(skip_plain_blanks(p), next_->z);
+    for (int k = 0; k < 3; ++k) {
+      p = skip_plain_blanks(p);
+      p = is_far_ ? read_coordinate_from(centre_[k], p, (*next_)[k]) : read_coordinate(p, (*next_)[k]);
+    }
     ++next_;
     return end_line(p, static_cast<State>(static_cast<int>(state_) + 1));
   }
@@ -130,6 +134,8 @@ class FacetReader {
   }
 
   const StlChunk& chunk_;
+  const Vec3d centre_;
+  const bool is_far_;
   State state_;
   Vec3f* next_;
   Vec3f* const last_;
@@ -177,12 +183,13 @@ static std::vector<StlChunk> cut_into_facets(std::string_view text, std::size_t 
   return chunks;
 }
 
-/// Reads chunk `index` to `positions`, which holds three for each triangle of the file. Stops at the first
-/// failure in the chunk.
-static void read_facets(std::vector<StlChunk>& chunks, std::size_t index, Vec3f* positions) {
+/// Reads chunk `index`, less `centre`, to `positions`, which holds three for each triangle of the file. Stops
+/// at the first failure in the chunk.
+static void read_facets(std::vector<StlChunk>& chunks, std::size_t index, Vec3f* positions,
+                        const Vec3d& centre) {
   StlChunk& chunk = chunks[index];
   try {
-    const State end = FacetReader(chunk, index == 0, positions).run();
+    const State end = FacetReader(chunk, index == 0, positions, centre).run();
     // Another chunk begins with a facet, as is only right within a solid.
     const bool is_last = index + 1 == chunks.size();
     if (end != (is_last ? State::outside : State::solid))
@@ -198,7 +205,8 @@ namespace {
 /// comments, as programs in use write or read them.
 class LooseFacets {
  public:
-  explicit LooseFacets(std::string_view text) : next_(text.data()), end_(text.data() + text.size()) {}
+  LooseFacets(std::string_view text, const Vec3d& centre)
+      : next_(text.data()), end_(text.data() + text.size()), centre_(centre) {}
 
   /// The corners, three for each triangle. Throws MeshFailure.
   std::vector<Vec3f> run() {
@@ -262,7 +270,7 @@ class LooseFacets {
       Vec3f corner;
       for (int axis = 0; axis < 3; ++axis) {
         skip_space();
-        next_ = read_coordinate(next_, corner[axis]);
+        next_ = read_coordinate_from(centre_[axis], next_, corner[axis]);
       }
       corners_.push_back(corner);
     }
@@ -277,6 +285,7 @@ class LooseFacets {
 
   const char* next_;
   const char* const end_;
+  const Vec3d centre_;
   std::vector<Vec3f> corners_;
 };
 
@@ -346,28 +355,40 @@ class StlLoad {
   void read_text() {
     std::vector<StlChunk> chunks = cut_into_facets(text_, std::max<std::size_t>(options_.chunk_bytes, 1));
     allocate(chunks.empty() ? 0 : chunks.back().before + chunks.back().triangles);
+    read_chunks(chunks, {});
+    std::optional<MeshFailure> first;
+    for (const StlChunk& chunk : chunks) keep_first(first, chunk.failure);
+    if (first) read_loosely(*first, {});
+    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions);
+    if (!centre) return;
+    parsed_.mesh.origin = *centre;
+    if (first)
+      read_loosely(*first, *centre);
+    else
+      read_chunks(chunks, *centre);
+  }
+
+  void read_chunks(std::vector<StlChunk>& chunks, const Vec3d& centre) {
     oneapi::tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
-      read_facets(chunks, i, parsed_.mesh.positions.data());
+      read_facets(chunks, i, parsed_.mesh.positions.data(), centre);
       number_corners(chunks[i].before, chunks[i].before + chunks[i].triangles);
       file_.release(chunks[i].begin, chunks[i].end);
       phase_.add(static_cast<std::uint64_t>(chunks[i].end - chunks[i].begin));
     });
-    std::optional<MeshFailure> first;
-    for (const StlChunk& chunk : chunks) keep_first(first, chunk.failure);
-    if (first) read_loosely(*first);
   }
 
   /// Other programs read more than the format allows.
-  void read_loosely(const MeshFailure& failure) {
+  void read_loosely(const MeshFailure& failure, const Vec3d& centre) {
     std::vector<Vec3f> corners;
     try {
-      corners = LooseFacets(text_).run();
+      corners = LooseFacets(text_, centre).run();
     } catch (const MeshFailure&) {
       fail_at_line(path_, text_, failure);
     }
     allocate(corners.size() / 3);
     std::ranges::copy(corners, parsed_.mesh.positions.data());
     number_corners(0, corners.size() / 3);
+    if (!(centre == Vec3d{})) return;  // it was said before
     parsed_.notices.push_back({static_cast<std::uint64_t>(failure.where - text_.data()),
                                failure.message + "; read all the same",
                                LineCounter(text_).at(failure.where)});
@@ -391,6 +412,8 @@ class StlLoad {
     });
     for (const std::optional<MeshFailure>& failure : failures)
       if (failure) fail_at_byte(path_, text_, *failure);
+    if (const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions))
+      take_off(*centre, parsed_.mesh);
     if (text_.size() > end)
       parsed_.notices.push_back(
           {end, std::to_string(text_.size() - end) + " bytes behind the last triangle are not read", {0, 0}});

@@ -1,5 +1,6 @@
 #include "io/stl/stl.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -32,7 +33,14 @@ void write_text(MeshOutput& out, const TriangleMesh& mesh) {
     const Facet facet = facet_of(mesh, i);
     write_point(out, "facet normal ", facet.normal);
     out.text("outer loop\n");
-    for (const Vec3f& corner : facet.corners) write_point(out, "vertex ", corner);
+    for (const Vec3f& corner : facet.corners) {
+      if (mesh.origin == Vec3d{}) {
+        write_point(out, "vertex ", corner);
+        continue;
+      }
+      const Vec3d there = mesh.origin + Vec3d(corner);
+      out.text("vertex ").number(there.x).text(" ").number(there.y).text(" ").number(there.z).text("\n");
+    }
     out.text("endloop\nendfacet\n");
   }
   out.text("endsolid oktett\n");
@@ -44,8 +52,11 @@ void write_bytes(MeshOutput& out, const std::string& path, const TriangleMesh& m
   std::string header = "Written by Oktett";  // not "solid", by which text is told
   header.resize(80, ' ');
   out.text(header).bytes(static_cast<std::uint32_t>(mesh.triangle_count()));
-  for (std::size_t i = 0; i < mesh.triangle_count(); ++i)
-    out.bytes(facet_of(mesh, i)).bytes(std::uint16_t{0});
+  for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
+    Facet facet = facet_of(mesh, i);
+    for (Vec3f& corner : facet.corners) corner = Vec3f(mesh.origin + Vec3d(corner));
+    out.bytes(facet).bytes(std::uint16_t{0});
+  }
 }
 
 }  // namespace
@@ -58,6 +69,11 @@ MeshLosses write_stl(const std::string& path, const MeshFile& file, bool ascii) 
     write_bytes(out, path, file.mesh);
   out.commit();
   MeshLosses losses;
+  if (!ascii && std::ranges::any_of(file.mesh.positions, [&](const Vec3f& p) {
+        const Vec3d there = file.mesh.origin + Vec3d(p);
+        return !(Vec3d(Vec3f(there)) == there);
+      }))
+    losses.push_back("lost: digits of coordinates beyond single precision");
   if (!file.mesh.uv_indices.empty()) losses.push_back("lost: texture coordinates");
   if (!file.mesh.normal_indices.empty()) losses.push_back("lost: normals of vertices");
   note_lost_attributes(

@@ -78,6 +78,16 @@ const char* scan_float_exactly(const char* p, float& value, NumberProblem& probl
   return end;
 }
 
+const char* scan_double(const char* p, double& value) {
+  const bool negative = *p == '-';
+  p += negative || *p == '+' ? 1 : 0;
+  double magnitude = 0;
+  const auto [end, error] = std::from_chars(p, find_line_end(p), magnitude);
+  if (error == std::errc::result_out_of_range) magnitude = 0;  // as a float it was 0, too
+  value = negative ? -magnitude : magnitude;
+  return end;
+}
+
 const char* scan_long_whole(const char* p, std::uint64_t& value) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   value = 0;

@@ -113,6 +113,9 @@ inline const char* scan_float(const char* p, float& value, NumberProblem& proble
   return q;
 }
 
+/// Reads the decimal number at `p`, which scan_float has accepted, as the nearest double. Returns its end.
+const char* scan_double(const char* p, double& value);
+
 /// Reads the digits at `p` as a whole number; beyond 64 bits it stays at the greatest. Returns `p` if there
 /// are none.
 const char* scan_long_whole(const char* p, std::uint64_t& value);

@@ -138,7 +138,7 @@ TEST(PlyAttributes, ColoursMeanWhatTheirWritersMean) {
   for (std::size_t i = 0; i < 5; ++i) {
     of_bytes.insert(of_bytes.end(), 3, linear_of(levels[i] / 255));
     of_words.insert(of_words.end(), 3, linear_of(levels[i] * 257 / 65535));
-    of_floats.insert(of_floats.end(), 3, static_cast<float>(part[i]));
+    of_floats.insert(of_floats.end(), 3, linear_of(part[i]));
     with_alpha.insert(with_alpha.end(), 3, linear_of(levels[i] / 255));
     with_alpha.push_back(static_cast<float>(levels[4 - i] / 255));
   }

@@ -20,6 +20,7 @@
 #include "io/stl/stl.h"
 #include "io/text/file_content.h"
 #include "io/text/files.h"
+#include "io/text/number.h"
 #include "io/text/scan.h"
 
 namespace oktett {
@@ -27,6 +28,8 @@ namespace oktett {
 // ---- What a mesh file says and its reader leaves aside.
 
 namespace {
+
+const std::string kPrecision = "lost: digits of coordinates beyond single precision";
 
 /// Digits that any float can be told by.
 constexpr int kFloatDigits = 9;
@@ -43,9 +46,15 @@ int significant_digits(std::string_view number) {
   return digits - zeros;
 }
 
-void note_precision(MeshLosses& losses) {
-  losses.push_back("lost: digits of coordinates beyond single precision");
+/// Whether a coordinate loses something as a float: it has more digits than tell floats apart, and is none.
+bool is_beyond_floats(std::string_view number) {
+  if (number.size() <= kFloatDigits || significant_digits(number) <= kFloatDigits) return false;
+  double exact = 0;
+  scan_double(number.data(), exact);
+  return static_cast<double>(static_cast<float>(exact)) != exact;
 }
+
+void note_precision(MeshLosses& losses) { losses.push_back(kPrecision); }
 
 /// Polygons of more than three corners, by what became of them.
 void note_polygons(std::size_t polygons, std::size_t triangles, MeshLosses& losses) {
@@ -68,8 +77,7 @@ void count_line(const char* p, WrittenCounts& counts) {
   for (const char* q = p + keyword.size();; ++words) {
     const std::string_view word = word_at(next_word(q));
     if (word.empty()) break;
-    if (words < 3 && word.size() > kFloatDigits)
-      counts.is_precise = counts.is_precise || significant_digits(word) > kFloatDigits;
+    if (words < 3) counts.is_precise = counts.is_precise || is_beyond_floats(word);
     q = word.data() + word.size();
   }
 }
@@ -85,6 +93,28 @@ void note_obj(std::string_view text, std::size_t triangles, MeshLosses& losses) 
   note_polygons(counts.faces, triangles, losses);
 }
 
+/// Whether some position of a PLY file in bytes is no float. Only files whose vertices come first and have no
+/// lists are looked at; others count as precise if they have doubles.
+bool has_precise_positions(const PlyHeader& header, std::string_view text) {
+  const PlyElement& vertices = header.elements.front();
+  if (vertices.name != "vertex" || vertices.has_lists() || header.format == PlyFormat::ascii) return true;
+  const std::size_t stride = vertices.least_bytes();
+  const bool swap = header.format == PlyFormat::big_endian;
+  std::size_t offset = 0;
+  for (const PlyProperty& property : vertices.properties) {
+    if (property.type == PlyType::float64 &&
+        (property.name == "x" || property.name == "y" || property.name == "z"))
+      for (std::uint64_t i = 0; i < vertices.count; ++i) {
+        const char* const p = header.body + i * stride + offset;
+        if (p + sizeof(double) > text.data() + text.size()) return false;  // changed since it was read
+        const double x = load_double(property.type, swap, p);
+        if (static_cast<double>(static_cast<float>(x)) != x) return true;
+      }
+    offset += size_of(property.type);
+  }
+  return false;
+}
+
 void note_ply(std::string_view text, std::size_t triangles, MeshLosses& losses) {
   PlyHeader header;
   try {
@@ -93,9 +123,12 @@ void note_ply(std::string_view text, std::size_t triangles, MeshLosses& losses) 
     return;  // changed since it was read
   }
   const PlyElement* const vertices = header.find("vertex");
-  if (vertices != nullptr && std::ranges::any_of(vertices->properties, [](const PlyProperty& property) {
-        return property.type == PlyType::float64 && !property.is_list;
-      }))
+  if (vertices != nullptr &&
+      std::ranges::any_of(vertices->properties,
+                          [](const PlyProperty& property) {
+                            return property.type == PlyType::float64 && !property.is_list;
+                          }) &&
+      has_precise_positions(header, text))
     note_precision(losses);
   const PlyElement* const faces = header.find("face");
   if (faces != nullptr && header.find("tristrips") == nullptr) note_polygons(faces->count, triangles, losses);
@@ -181,6 +214,8 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
     if (format != nullptr && format->note_unread != nullptr)
       format->note_unread(FileContent(path).text(), file.mesh.triangle_count(), losses);
+    // A centre was taken off, so that digits are kept.
+    if (!(file.mesh.origin == Vec3d{})) std::erase(losses, kPrecision);
     if (options.weld) weld_positions(file.mesh);
     return file;
   }
