@@ -19,12 +19,6 @@ std::uint64_t mixed_bits(std::uint64_t x) {
   return x ^ x >> 32;
 }
 
-/// A number for a place; both zeros are one.
-std::uint64_t place_number(const Vec3f& p) {
-  const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x + 0.0f)}; };
-  return mixed_bits(mixed_bits(bits(p.x) << 32 | bits(p.y)) + bits(p.z) + 0x9e3779b97f4a7c15u);
-}
-
 /// Sums over the edges of triangles. `balance` is zero if each edge is traversed as often in one direction as
 /// in the other, `parity` if it has an even number of triangles; else that happens once in 2^64.
 struct EdgeSums {
@@ -42,8 +36,8 @@ void add_edges(EdgeSums& sums, const TriangleMesh& mesh, std::size_t t, const Ve
   }
   for (int k = 0; k < 3; ++k) {
     const std::uint64_t a = number[k], b = number[(k + 1) % 3];
-    const std::uint64_t ab = mixed_bits(a + std::rotl(b, 17)), ba = mixed_bits(b + std::rotl(a, 17));
-    sums.balance += ab - ba, sums.parity ^= a == b ? 0 : ab ^ ba;
+    sums.balance += edge_number(a, b);
+    sums.parity ^= a == b ? 0 : edge_number(std::min(a, b), std::max(a, b));
   }
   sums.volume += dot(Vec3d(v[0]) - origin, cross(Vec3d(v[1]) - origin, Vec3d(v[2]) - origin));
 }
@@ -108,6 +102,15 @@ void set_turns(std::span<const MeshCrossing> crossed, std::span<const Crossing> 
 }
 
 }  // namespace
+
+std::uint64_t place_number(const Vec3f& p) {
+  const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x + 0.0f)}; };
+  return mixed_bits(mixed_bits(bits(p.x) << 32 | bits(p.y)) + bits(p.z) + 0x9e3779b97f4a7c15u);
+}
+
+std::uint64_t edge_number(std::uint64_t a, std::uint64_t b) {
+  return mixed_bits(a + std::rotl(b, 17)) - mixed_bits(b + std::rotl(a, 17));
+}
 
 MeshSense mesh_sense(const Accel& accel, std::uint32_t geometry) {
   // A thread that waits in here takes no other task: that could ask for the same.

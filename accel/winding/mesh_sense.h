@@ -10,12 +10,20 @@
 
 #include "accel/accel_data.h"
 #include "accel/hit_sink.h"
+#include "core/vec3.h"
 
 namespace oktett {
 
 /// The sense of a mesh: `closed`, `even`, or `open`, and `inverted` if an open one has a negative volume. The
 /// first call for a structure finds those of all its meshes; they are kept.
 MeshSense mesh_sense(const Accel& accel, std::uint32_t geometry);
+
+/// A number for a place, for edges that are told apart by their ends; both zeros are one. Two places share
+/// one once in 2^64.
+std::uint64_t place_number(const Vec3f& p);
+/// A number for an edge from place `a` to place `b`, its negative for one from b to a: where edges pair up in
+/// opposite directions the sum is zero.
+std::uint64_t edge_number(std::uint64_t a, std::uint64_t b);
 
 /// Whether a ray begins inside of a mesh, given all its crossings with that mesh in their order.
 bool begins_inside(MeshSense sense, std::span<const Crossing> crossings);

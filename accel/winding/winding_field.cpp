@@ -1,14 +1,21 @@
 #include "accel/winding/winding_field.h"
 
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <tuple>
 
 #include "accel/instance.h"
+#include "accel/winding/mesh_sense.h"
 #include "accel/winding/winding_sum.h"
+#include "core/math.h"
+#include "core/parallel.h"
 
 namespace oktett {
 
@@ -60,6 +67,88 @@ void each_part(const Accel& accel, Take&& take) {
   }
 }
 
+/// Surfaces with more open edges than this are not capped.
+constexpr std::size_t kMostCaps = 1u << 13;
+
+/// An edge of a triangle, by the numbers of its ends, the lower first.
+struct WindingEdge {
+  std::uint64_t low, high;
+  std::uint32_t triangle;
+  std::uint8_t corner;
+  bool backwards;
+
+  bool joins(const WindingEdge& b) const { return low == b.low && high == b.high; }
+  bool operator<(const WindingEdge& b) const {
+    return std::tie(low, high, triangle, corner) < std::tie(b.low, b.high, b.triangle, b.corner);
+  }
+};
+
+bool is_closed(const std::vector<WindingTriangle>& triangles) {
+  std::atomic<std::uint64_t> sum = 0;
+  in_parts(triangles.size(), 1u << 13, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t part = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      std::uint64_t number[3];
+      for (int k = 0; k < 3; ++k) number[k] = place_number(triangles[t].corner[k]);
+      for (int k = 0; k < 3; ++k) part += edge_number(number[k], number[(k + 1) % 3]);
+    }
+    sum += part;
+  });
+  return sum == 0;
+}
+
+/// Sets the caps of surfaces. False if there were too many.
+bool set_caps(const std::vector<WindingTriangle>& triangles, std::vector<WindingTriangle>& caps) {
+  if (is_closed(triangles)) return true;
+  std::vector<WindingEdge> edges(3 * triangles.size());
+  in_parts(triangles.size(), 1u << 13, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (std::uint8_t k = 0; k < 3; ++k) {
+        const std::uint64_t a = place_number(triangles[t].corner[k]);
+        const std::uint64_t b = place_number(triangles[t].corner[(k + 1) % 3]);
+        edges[3 * t + k] = {std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(t), k, a > b};
+      }
+  });
+  tbb::parallel_sort(edges.begin(), edges.end());
+  std::optional<Vec3f> tip;
+  for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
+    int balance = 0;
+    for (end = begin; end < edges.size() && edges[end].joins(edges[begin]); ++end)
+      balance += edges[end].backwards ? -1 : 1;
+    if (balance == 0) continue;
+    const WindingEdge& e = edges[begin];
+    const WindingTriangle& t = triangles[e.triangle];
+    Vec3f from = t.corner[e.corner], to = t.corner[(e.corner + 1) % 3];
+    if (e.backwards != (balance < 0)) std::swap(from, to);
+    if (!tip) tip = from;
+    if (*tip == from || *tip == to) continue;
+    if (caps.size() + static_cast<std::size_t>(std::abs(balance)) > kMostCaps) return false;
+    caps.insert(caps.end(), static_cast<std::size_t>(std::abs(balance)), {{*tip, from, to}});
+  }
+  return true;
+}
+
+/// The part of the winding number of caps beyond whole turns, and a bound on its error: the directions of all
+/// (x, y), multiplied.
+WindingSum turns_of_caps(const std::vector<WindingTriangle>& caps, const Vec3d& p) {
+  constexpr double off = 0x1p-47;
+  WindingSum sum;
+  double re = 1, im = 0;
+  for (const WindingTriangle& cap : caps) {
+    const Vec3d a = Vec3d(cap.corner[0]) - p, b = Vec3d(cap.corner[1]) - p, c = Vec3d(cap.corner[2]) - p;
+    const double la = length(a), lb = length(b), lc = length(c), size = la * lb * lc;
+    const double x = 1 + (dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb) / size;
+    const double y = dot(a, cross(b, c)) / size, far = std::sqrt(x * x + y * y);
+    if (!(far > off) || !(size > 1e-200)) return {0, 1};
+    const double turned = (re * x - im * y) / far;
+    im = (re * y + im * x) / far, re = turned;
+    sum.error += off * (1 + 0.25 / far);
+  }
+  sum.value = portable::atan2(im, re) / (2 * std::numbers::pi);
+  sum.error += 0x1p-39;
+  return sum;
+}
+
 }  // namespace
 
 WindingField::WindingField(const Accel& accel) {
@@ -69,12 +158,14 @@ WindingField::WindingField(const Accel& accel) {
   triangles.reserve(accel.stats.triangles);
   each_triangle(accel, [&](const WindingTriangle& t) { triangles.push_back(t); });
   meshes = make_winding_tree(std::span<const WindingTriangle>(triangles));
+  is_capped = set_caps(triangles, caps);
   triangles = {};
   std::vector<WindingMoments> moments;
   each_part(accel, [&](const WindingPart& part) {
     const WindingField& child = winding_field(*part.child);
     shows_others |= child.shows_others;
     if (child.empty()) return;
+    is_capped &= child.is_capped && child.caps.empty();
     parts.push_back(part);
     moments.push_back(child.whole.moved(part.to_outer, std::abs(part.to_outer.uniform_scale())));
   });
@@ -232,7 +323,33 @@ ExactSum exact_sum(const Accel& accel, const Vec3f& point) {
 
 }  // namespace
 
+/// What a sum and the caps tell together: off by at most `error`, which is 1 if they tell nothing.
+static WindingSum capped(const WindingField& field, const Vec3f& point, const WindingSum& sum) {
+  if (!field.is_capped || !(sum.error < 0.5)) return {0, 1};
+  WindingSum turns = field.caps.empty() ? WindingSum{} : turns_of_caps(field.caps, Vec3d(point));
+  if (!(sum.error + turns.error < 0.5)) return {0, 1};
+  turns.value += std::round(sum.value - turns.value);
+  return turns;
+}
+
+/// First tries, with a limit of what is left out of each node.
+struct WindingTry {
+  double limit;
+  bool precise;
+};
+
 double winding_within(const Accel& accel, const Vec3f& point, double error, const PointCode& code) {
+  const WindingField& field = winding_field(accel);
+  if (field.is_capped)
+    for (const WindingTry& t :
+         {WindingTry{0x1p-6, false}, WindingTry{0x1p-9, false}, WindingTry{0x1p-14, true}}) {
+      const WindingSum sum = FieldSum(code, t.limit, t.precise).of(accel, point);
+      if (sum.error <= error) return sum.value;
+      const WindingSum turns = capped(field, point, sum);
+      if (turns.error <= error) return turns.value;
+      // A face that the point is on, or nearly so, stays in doubt.
+      if (t.precise && sum.error >= 0.5) return static_cast<double>(exact_sum(accel, point).turns());
+    }
   // Roundings of float alone come to about this.
   const bool precise = error < 0x1p-14;
   double limit = error / 16;
@@ -245,13 +362,19 @@ double winding_within(const Accel& accel, const Vec3f& point, double error, cons
 }
 
 bool winds_around(const Accel& accel, const Vec3f& point, const PointCode& code) {
-  constexpr struct {
-    double limit;
-    bool precise;
-  } kTries[] = {{0x1p-6, false}, {0x1p-9, false}, {0x1p-14, true}, {0x1p-22, true}, {0x1p-30, true}};
-  for (const auto& t : kTries) {
-    const WindingSum sum = FieldSum(code, t.limit, t.precise).of(accel, point);
-    if (std::abs(std::abs(sum.value) - 0.5) > sum.error) return std::abs(sum.value) > 0.5;
+  const WindingField& field = winding_field(accel);
+  constexpr WindingTry kTries[] = {
+      {0x1p-6, false}, {0x1p-9, false}, {0x1p-14, true}, {0x1p-22, true}, {0x1p-30, true}};
+  const auto tells = [](const WindingSum& sum) { return std::abs(std::abs(sum.value) - 0.5) > sum.error; };
+  for (const WindingTry& t : kTries) {
+    WindingSum sum = FieldSum(code, t.limit, t.precise).of(accel, point);
+    if (t.precise && sum.error >= 0.5) break;
+    if (!tells(sum)) {
+      sum = capped(field, point, sum);
+      // What is 1/2 but for roundings no tree tells apart.
+      if (sum.error < 0x1p-30 && !tells(sum)) break;
+    }
+    if (tells(sum)) return std::abs(sum.value) > 0.5;
   }
   const ExactSum sum = exact_sum(accel, point);
   return std::abs(sum.turns()) - 0.5L > sum.error();

@@ -27,6 +27,11 @@ class WindingField {
   std::vector<WindingPart> parts;
   WindingMoments whole;       ///< of both
   bool shows_others = false;  ///< what is shown is not only meshes
+  /// Triangles from one corner of the holes to all their edges: with these, turned round, the surfaces are
+  /// closed. So the winding number is that of the caps and a whole number. Only if `is_capped`: if there are
+  /// not too many, and all parts are closed.
+  std::vector<WindingTriangle> caps;
+  bool is_capped = false;
   bool empty() const { return meshes.empty() && shown.empty(); }
 };
 

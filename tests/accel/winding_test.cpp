@@ -205,6 +205,31 @@ TEST(Winding, NumbersAreOffByAtMostTheirError) {
   }
 }
 
+// Too many open edges to close.
+TEST(Winding, OfSoups) {
+  CaseRandom random(21);
+  std::vector<Corners> all;
+  for (const Corners& t : triangles_of(make_icosphere(4).mesh)) {
+    all.push_back(t);
+    for (Vec3f& c : all.back()) c += Vec3f(random.vector() * 0.01);
+    if (random.unit() < 0.1) std::swap(all.back()[0], all.back()[1]);
+  }
+  const TriangleMesh soup = mesh_of(all);
+  const auto accel = built(soup);
+  const std::vector<Vec3f> points = points_around(soup, 150, 7);
+  const std::vector<std::uint8_t> answers = ask(*accel, points);
+  for (const double error : {1e-1, 1e-3, 1e-5}) {
+    const std::vector<float> numbers = numbers_of(*accel, points, error, Isa::scalar);
+    for (const Isa isa : available_isas())
+      EXPECT_EQ(numbers_of(*accel, points, error, isa), numbers) << to_string(isa);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const long double w = true_winding(soup, points[i]);
+      ASSERT_LE(std::abs(w - numbers[i]), error + 0x1p-23L) << "point " << i;
+      ASSERT_EQ(answers[i] == 1, std::abs(w) > 0.5L) << "point " << i;
+    }
+  }
+}
+
 TEST(Winding, HoldsUnderMapsAndInInstances) {
   const std::vector<Damaged> meshes = damaged_meshes();
   CaseRandom random(4);
@@ -241,18 +266,18 @@ TEST(Winding, HoldsUnderMapsAndInInstances) {
 }
 
 TEST(Winding, OfManyInstancesAtOnce) {
-  const TriangleMesh ball = make_icosphere(2).mesh;
+  const TriangleMesh ball = make_icosphere(1).mesh;
   for (const double flat : {1.0, 0.5}) {
     InstanceList list{{built(ball)}, {}};
     CaseRandom random(9);
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 200; ++i) {
       InstancePlace place{{}, 0, kNoId};
       (Affine::translation(random.vector()) * Affine::scaling({0.05, 0.05 * flat, 0.05}))
           .to_rows(place.to_list);
       list.places.push_back(place);
     }
     const auto accel = build_accel({{list, {}, kNoId}});
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 150; ++i) {
       const Vec3f p(random.vector());
       long double w = 0;
       for (const InstancePlace& place : list.places)
