@@ -95,11 +95,7 @@ class ObjLoad {
         std::any_of(chunks_.begin(), chunks_.end(), [](const ObjChunk& chunk) { return chunk.has_slash; });
     TriangleMesh& mesh = obj_.mesh;
     mesh.positions.resize_uninitialized(total_.positions);
-    const bool has_colors =
-        std::any_of(chunks_.begin(), chunks_.end(), [](const ObjChunk& chunk) { return chunk.has_colors; });
-    if (has_colors && total_.triangles > 0) colors_.numbers.resize_uninitialized(3 * total_.positions);
-    if (!has_colors && total_.painted > 0 && total_.painted == total_.positions && total_.triangles > 0)
-      colors_.painted.resize_uninitialized(3 * total_.painted);
+    allocate_colors();
     mesh.uvs.resize_uninitialized(total_.uvs);
     mesh.normals.resize_uninitialized(total_.normals);
     mesh.indices.resize_uninitialized(3 * total_.triangles);
@@ -116,30 +112,38 @@ class ObjLoad {
     };
     for_each_chunk(read);
     sum_colors();
-    // Those that begin in the middle of chunks alone were not expected.
-    if (all_colors_.count == 0 || !colors_.numbers.empty() || total_.triangles == 0 || first_failure())
+    // Some may have begun in the middle of chunks, or were no bytes behind those that were.
+    const bool missed = colors_.levels.empty() || !all_colors_.are_bytes || all_colors_.greatest > 1;
+    if (all_colors_.count == 0 || !colors_.numbers.empty() || !missed || total_.triangles == 0 ||
+        first_failure())
       return;
+    colors_ = {};
     colors_.numbers.resize_uninitialized(3 * total_.positions);
     oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) { read(chunks_[i]); });
     sum_colors();
   }
 
+  /// Nothing shows the colours of points.
+  void allocate_colors() {
+    if (total_.triangles == 0) return;
+    const auto any = [this](bool ObjChunk::*has) { return std::ranges::any_of(chunks_, has); };
+    const bool bytes = std::ranges::all_of(
+        chunks_, [](const ObjChunk& chunk) { return chunk.has_levels || !chunk.has_colors; });
+    if (any(&ObjChunk::has_colors))
+      bytes ? colors_.levels.resize_uninitialized(3 * total_.positions)
+            : colors_.numbers.resize_uninitialized(3 * total_.positions);
+    else if (total_.painted > 0 && total_.painted == total_.positions)
+      colors_.painted.resize_uninitialized(3 * total_.painted);
+  }
+
   void sum_colors() {
     all_colors_ = {};
-    for (const ObjChunk& chunk : chunks_) {
-      const ObjColors& c = chunk.colors;
-      all_colors_.count += c.count;
-      if (all_colors_.without == nullptr) all_colors_.without = c.without;
-      all_colors_.greatest = std::max(all_colors_.greatest, c.greatest);
-      all_colors_.are_bytes = all_colors_.are_bytes && c.are_bytes;
-      all_colors_.are_whole = all_colors_.are_whole && c.are_whole;
-    }
+    for (const ObjChunk& chunk : chunks_) all_colors_ += chunk.colors;
   }
 
   void take_colors() {
     const bool painted = !colors_.painted.empty() && all_colors_.count == 0;
-    if (all_colors_.count > 0 && !colors_.numbers.empty()) {
-      colors_.painted.clear();
+    if (all_colors_.count > 0 && !(colors_.numbers.empty() && colors_.levels.empty())) {
       set_colors(obj_.mesh, all_colors_, std::move(colors_));
       if (all_colors_.count < total_.positions)
         note(all_colors_.without, "vertices without colours, this one and " +

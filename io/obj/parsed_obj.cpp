@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/parallel.h"
-#include "io/image/color.h"
 #include "io/mesh/polygon.h"
 #include "io/mesh/reading.h"
 #include "io/text/number.h"
@@ -17,9 +15,6 @@
 namespace oktett {
 
 namespace {
-
-/// Instead of the numbers of a colour: the vertex has none, and is white.
-constexpr float kNoColor = -1;
 
 constexpr const char* kBraceInBlock = "a block starts within a block; expected '}' first";
 constexpr const char* kBraceAlone = "'}' without a block before it";
@@ -107,12 +102,21 @@ void note_comment(ObjChunk& chunk, const char* p) {
   chunk.counts.painted += count_paint(digits, end);
 }
 
+/// What the first vertex of a chunk, at `p`, has behind its coordinates.
+void note_first_color(ObjChunk& chunk, const char* p) {
+  chunk.has_colors = count_words(p) >= 7;
+  if (!chunk.has_colors) return;
+  for (int k = 0; k < 4; ++k) p = next_word(p + word_at(p).size());
+  std::uint8_t levels[3];
+  chunk.has_levels = read_color_levels(p, levels) != nullptr;
+}
+
 /// Counts the line at `p` and returns the end of the joined line.
 const char* count_line(ObjChunk& chunk, const char* p) {
   if (p[0] == 'f' && is_delimiter(p + 1)) return count_face(chunk, p);
   if (p[0] == 'v' && is_delimiter(p + 1)) {
     // Where the first vertex has a colour, most others have one.
-    if (chunk.counts.positions == 0) chunk.has_colors = count_words(p) >= 7;
+    if (chunk.counts.positions == 0) note_first_color(chunk, p);
     ++chunk.counts.positions;
   } else if (p[0] == 'v' && p[1] == 'n' && is_delimiter(p + 2))
     ++chunk.counts.normals;
@@ -214,6 +218,7 @@ class VertexReader {
   VertexReader(ObjChunk& chunk, TriangleMesh& mesh, ObjColorColumns& colors)
       : chunk_(chunk),
         mesh_(mesh),
+        levels_(colors.levels.data()),
         numbers_(colors.numbers.data()),
         painted_(colors.painted.data()),
         next_(chunk.before),
@@ -253,7 +258,12 @@ class VertexReader {
     const std::uint64_t vertex = next_.positions;
     const char* const end =
         read_vector<read_coordinate>(p, place(mesh_.positions, next_.positions, last_.positions, p));
-    if (numbers_ == nullptr && is_line_end(*end)) return end;
+    if (numbers_ == nullptr && levels_ == nullptr && is_line_end(*end)) return end;
+    if (levels_ != nullptr)
+      if (const char* const rest = read_color_levels(end, levels_ + 3 * vertex); rest && is_line_end(*rest)) {
+        ++chunk_.colors.count;
+        return rest;
+      }
     return read_color(p, end, vertex);
   }
 
@@ -271,18 +281,21 @@ class VertexReader {
     ObjColors& found = chunk_.colors;
     if (count < 3) {
       if (found.without == nullptr) found.without = vertex_at;
-      if (numbers_ != nullptr) std::fill_n(numbers_ + 3 * vertex, 3, kNoColor);
+      if (numbers_ != nullptr) std::fill_n(numbers_ + 3 * vertex, 3, kNoObjColor);
+      if (levels_ != nullptr) std::fill_n(levels_ + 3 * vertex, 3, std::uint8_t{255});
       return p;
     }
     ++found.count;
-    if (found.first == nullptr) found.first = vertex_at;
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       found.greatest = std::max(found.greatest, c[k]);
-      const float level = c[k] * 255, whole = std::nearbyint(level);
-      // Programs write bytes with six digits or more.
-      found.are_bytes = found.are_bytes && std::abs(level - whole) <= 4e-4f;
-      found.are_whole = found.are_whole && c[k] == std::nearbyint(c[k]);
-      if (numbers_ != nullptr) numbers_[3 * vertex + static_cast<std::uint64_t>(k)] = c[k];
+      if (found.are_bytes) {
+        const float level = c[k] * 255, whole = std::nearbyint(level);
+        // Programs write bytes with six digits or more.
+        found.are_bytes = std::abs(level - whole) <= 4e-4f;
+        if (levels_ != nullptr) levels_[3 * vertex + k] = static_cast<std::uint8_t>(std::min(whole, 255.0f));
+      }
+      if (found.are_whole) found.are_whole = c[k] == std::nearbyint(c[k]);
+      if (numbers_ != nullptr) numbers_[3 * vertex + k] = c[k];
     }
     return p;
   }
@@ -306,6 +319,7 @@ class VertexReader {
 
   ObjChunk& chunk_;
   TriangleMesh& mesh_;
+  std::uint8_t* const levels_;
   float* const numbers_;
   std::uint8_t* const painted_;
   ObjCounts next_, last_;
@@ -315,36 +329,6 @@ class VertexReader {
 
 void read_vertices(ObjChunk& chunk, TriangleMesh& mesh, ObjColorColumns& colors) {
   VertexReader(chunk, mesh, colors).run();
-}
-
-void set_colors(TriangleMesh& mesh, const ObjColors& found, ObjColorColumns colors) {
-  MeshAttribute color;
-  color.name = kColorAttribute, color.components = 3;
-  if (!colors.painted.empty()) {
-    color.srgb = std::move(colors.painted);
-    mesh.attributes.push_back(std::move(color));
-    return;
-  }
-  Column<float>& numbers = colors.numbers;
-  constexpr std::size_t kPart = std::size_t{1} << 16;
-  const bool up_to_255 = found.greatest > 1 && found.are_whole;
-  if (up_to_255 || (found.are_bytes && found.greatest <= 1)) {
-    const float scale = up_to_255 ? 1 : 255;
-    color.srgb.resize_uninitialized(numbers.size());
-    in_parts(numbers.size(), kPart, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        color.srgb[i] = numbers[i] == kNoColor
-                            ? std::uint8_t{255}
-                            : static_cast<std::uint8_t>(std::min(numbers[i] * scale + 0.5f, 255.0f));
-    });
-  } else {
-    in_parts(numbers.size(), kPart, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        numbers[i] = numbers[i] == kNoColor ? 1 : srgb_to_linear(numbers[i]);
-    });
-    color.floats = std::move(numbers);
-  }
-  mesh.attributes.push_back(std::move(color));
 }
 
 void read_positions_from(const Vec3d& centre, ObjChunk& chunk, TriangleMesh& mesh) {

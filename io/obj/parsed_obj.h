@@ -14,6 +14,7 @@
 #include "core/mesh.h"
 #include "io/mesh/polygon.h"
 #include "io/mesh/reading.h"
+#include "io/obj/colors.h"
 #include "io/obj/obj.h"
 
 namespace oktett {
@@ -66,16 +67,6 @@ struct ObjBrace {
   bool open = false;
 };
 
-/// What is known of the colours of vertices once they are read.
-struct ObjColors {
-  std::uint64_t count = 0;        ///< of vertices that have one
-  const char* without = nullptr;  ///< the first vertex that has none
-  const char* first = nullptr;    ///< the first one, where there was no room for any
-  float greatest = 0;             ///< number
-  bool are_bytes = true;          ///< all numbers are those of whole 255ths
-  bool are_whole = true;          ///< all numbers are whole
-};
-
 /// Most failures of a chunk that are kept where all are gathered.
 inline constexpr std::size_t kMostObjFailures = 1000;
 
@@ -94,6 +85,7 @@ struct ObjChunk {
   ObjCounts before;         ///< in all chunks before it
   bool has_slash = false;   ///< some face refers to normals or uvs
   bool has_colors = false;  ///< its first vertex has one
+  bool has_levels = false;  ///< which is one of bytes
   ObjColors colors;         ///< found in the second pass
   std::vector<ObjMaterialUse> material_uses;
   std::vector<ObjLibrary> libraries;
@@ -149,19 +141,9 @@ void read_lines(ObjChunk& chunk, const Read& read) {
   } while (p < chunk.end && chunk.goes_on());
 }
 
-/// Where the colours of vertices go, three numbers or bytes each; empty if they are not read.
-struct ObjColorColumns {
-  Column<float> numbers;         ///< behind the coordinates, as they stand in the file
-  Column<std::uint8_t> painted;  ///< of `#MRGB`
-};
-
 /// Reads `v`, `vt` and `vn` of a counted chunk to their place in `mesh`, whose columns have their final size,
 /// and colours likewise. Stops at the first failure in the chunk.
 void read_vertices(ObjChunk& chunk, TriangleMesh& mesh, ObjColorColumns& colors);
-
-/// Gives `mesh` its attribute "color" of what was read: the numbers count as encoded by the sRGB curve, which
-/// all programs that write them copy from bytes. If one is greater than 1 and all are whole, they are bytes.
-void set_colors(TriangleMesh& mesh, const ObjColors& found, ObjColorColumns colors);
 
 /// Reads `v` of a counted chunk that read_vertices has read again, less `centre`.
 void read_positions_from(const Vec3d& centre, ObjChunk& chunk, TriangleMesh& mesh);

@@ -14,6 +14,7 @@
 
 #include "io/image/color.h"
 #include "io/mesh/reading.h"
+#include "io/obj/colors.h"
 #include "io/obj/obj.h"
 #include "io/text/file_content.h"
 #include "io/text/files.h"
@@ -323,7 +324,7 @@ void write_faces(MeshOutput& out, const TriangleMesh& mesh, const std::vector<st
 float encoded(float linear) {
   if (!(linear > 0)) return 0;
   const float most = std::numeric_limits<float>::max();
-  return find_number(linear_to_srgb(std::min(linear, most)), linear, srgb_to_linear);
+  return find_number(linear_to_srgb(std::min(linear, most)), linear, linear_of_obj_color);
 }
 
 /// The colours of vertices, if there are some: OBJ can say no others.
@@ -349,7 +350,8 @@ void note_colors(const MeshAttribute& color, MeshLosses& losses) {
   if (color.components == 4) losses.push_back("lost: alpha of vertices");
   std::size_t changed = 0;
   for (std::size_t i = 0; i < color.floats.size(); ++i)
-    if (i % color.components < 3 && srgb_to_linear(encoded(color.floats[i])) != color.floats[i]) ++changed;
+    if (i % color.components < 3 && linear_of_obj_color(encoded(color.floats[i])) != color.floats[i])
+      ++changed;
   if (changed > 0)
     losses.push_back("changed: " + count_of(changed, "number") +
                      " of colours, which OBJ encodes by the sRGB curve and rounds");

@@ -312,6 +312,34 @@ TEST(ObjAttributes, DoNotDependOnHowTheFileIsCut) {
   }
 }
 
+TEST(ObjAttributes, TheCurveIsThatOfSrgb) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> any(0, 1);
+  for (int i = 0; i < 200000; ++i) {
+    const float x = i < 1025 ? static_cast<float>(i) / 1024 : any(random);
+    const long double exact =
+        x <= 0.04045f ? x / 12.92L : std::pow((static_cast<long double>(x) + 0.055L) / 1.055L, 2.4L);
+    ASSERT_LE(std::abs(linear_of_obj_color(x) - exact), 0x1p-23L * exact) << x;
+  }
+}
+
+TEST(ObjAttributes, FewDigitsBehindBytesAreKept) {
+  const ObjFiles files;
+  // The first colour could be one of bytes, the last could not; a number of 255 levels behind small ones.
+  const std::string start = "v 0 0 0 1 0 0.501961\nv 1 0 0 0.00392157 0.25098039 1.0\n", end = "f 1 2 3\n";
+  const auto read = [&](const std::string& third) {
+    return load_obj(files.write("a.obj", start + "v 0 1 0 " + third + "\n" + end), {.chunk_bytes = 1 << 20})
+        .mesh;
+  };
+  const std::vector<std::uint8_t> bytes{255, 0, 128, 1, 64, 255, 0, 0, 255};
+  for (const char* third :
+       {"0 0.000000 1", "0.0 0e0 1.0000000000", "0 0 1 0.5", "+0 -0 1", "0 \\\n 0 1", "0 0 1 # c"})
+    EXPECT_EQ(to_vector(attribute(read(third), "color").srgb), bytes) << third;
+  expect_near(values(read("0 0.3 1"), "color"), {1, 0, linear_of(0.501961), linear_of(0.00392157),
+                                                 linear_of(0.25098039), 1, 0, linear_of(0.3), 1});
+  EXPECT_FLOAT_EQ(values(read("2 0 1"), "color")[6], linear_of(2));
+}
+
 TEST(ObjAttributes, PolypaintIsRead) {
   const ObjFiles files;
   const std::string faces = "f 1 2 3\n";
