@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/command_line.h"
+#include "app/render_options.h"
 #include "app/setting_options.h"
 #include "app/text.h"
 #include "app/unused_options.h"
@@ -22,6 +23,7 @@ struct MergeArguments {
   std::vector<std::string> films;
   std::string outfile;
   SettingWords settings;
+  std::string bits;
   bool allow_missing = false, denoise = false, quiet = false;
 };
 
@@ -111,6 +113,7 @@ Tone tone_of(const MergeArguments& arguments, const Tone& tone) {
 int run_merge(const MergeArguments& arguments) {
   if (arguments.outfile.empty()) throw Error("expected -o FILE, the picture to write");
   check_output(arguments.outfile);
+  check_bits(arguments.bits, arguments.outfile);
   tone_of(arguments, {});
   warn_of_unused_tone(arguments.settings, arguments.outfile);
   // Films are read twice: all are checked before the picture takes memory, and one at a time is in memory.
@@ -133,7 +136,8 @@ int run_merge(const MergeArguments& arguments) {
   }
   const std::size_t missing = shares.tiles_missing();
   if (arguments.denoise && missing == 0) denoise(picture);
-  write_image(arguments.outfile, picture, shares.first().metadata);
+  const auto write = arguments.bits == "16" ? write_image16 : write_image;
+  write(arguments.outfile, picture, shares.first().metadata);
   if (!arguments.quiet) fmt::print("wrote {}\n", arguments.outfile);
   std::fflush(stdout);
   if (missing > 0)
@@ -148,6 +152,7 @@ void add_merge_command(CommandLine& line) {
   Verb verb = line.add_verb("merge", "Put the shares of a picture together", [a] { return run_merge(*a); });
   verb.positionals("films", a->films, "FILM...", "Film files of oktett render --shard or --checkpoint");
   verb.option("-o,--outfile", &a->outfile, "FILE", "Picture to write");
+  add_bits_option(verb, a->bits);
   verb.flag("--allow-missing", a->allow_missing, "Leave pixels transparent that no film has");
   for (const char* option : {"--tone", "--exposure"}) add_setting_option(verb, option, a->settings);
   verb.flag("--denoise", a->denoise, "Smooth the noise of the merged picture");

@@ -17,6 +17,7 @@
 #include "app/checkpoint.h"
 #include "app/command_line.h"
 #include "app/json.h"
+#include "app/picture_warnings.h"
 #include "app/process.h"
 #include "app/progress.h"
 #include "app/render_options.h"
@@ -34,6 +35,7 @@
 #include "io/scene/scene_file.h"
 #include "io/text/files.h"
 #include "kernels/exact/march.h"
+#include "render/asked_textures.h"
 #include "render/film/denoise.h"
 #include "render/picture/render.h"
 
@@ -343,6 +345,16 @@ int say_unsaved(const Error& error, const Checkpoint& checkpoint) {
   return kExitIo;
 }
 
+void write_picture(const RenderArguments& arguments, const std::string& path, bool depth_units,
+                   const Picture& picture, const ImageMetadata& metadata) {
+  if (!depth_units)
+    return arguments.bits == "16" ? write_image16(path, picture, metadata)
+                                  : write_image(path, picture, metadata);
+  const double unit = depth_unit_of(arguments).value_or(depth_unit(picture));
+  write_depth(path, picture, unit, metadata);
+  if (!arguments.quiet) say("depth: steps of {} units of the scene, 0 where nothing is\n", unit);
+}
+
 /// Says that a signal stopped the render; the exit status.
 int say_stopped(int signal, double percent, const Checkpoint& checkpoint) {
   const std::string rest = checkpoint.path().empty()
@@ -396,6 +408,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
                       {writes_film ? "--outfile" : "--checkpoint", checkpoint.target()},
                       {"--photon-map", arguments.photon_map}});
   if (writes_picture) check_output(output);
+  check_bits(arguments.bits, writes_picture ? output : "");
   RenderOptions options = options_of(arguments, writes_film || (writes_picture && keeps_all_planes(output)));
 
   Stopwatch watch;
@@ -407,11 +420,15 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   loading.reset();
   const std::size_t most_warnings = arguments.verbose ? std::numeric_limits<std::size_t>::max() : 20;
   print_warnings(scene.warnings, most_warnings);
-  const ImageTextures textures(scene.textures, scene.texture_places);
+  const ImageTextures textures(asked_textures(scene, options.data_layers), scene.texture_places);
   print_warnings(textures.warnings(), most_warnings);
   options.textures = &textures;
   if (arguments.verbose && !arguments.quiet) print_plan(scene, options, output);
   times.load = watch.lap();
+  const bool depth_units = writes_picture && shows_depth_units(arguments, scene);
+  options.data_layers = options.data_layers || depth_units;
+  if (depth_unit_of(arguments) && !depth_units)
+    throw Error("--depth-unit is for --integrator depth with --bits 16 and a PNG file");
 
   checkpoint.start(scene, files.paths(), arguments, first_metadata(line.text(), arguments, scene), options);
   PhotonFile photons(arguments, scene, options);
@@ -424,6 +441,9 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   RenderResult result = render(std::move(scene), options);
   times.given_up = interval::uncertified_count() - given_up_before;
   shown.finish();
+  // A film may be a share of the picture, or its rest.
+  const std::string nothing = checkpoint.target().empty() ? why_nothing_is_seen(result) : "";
+  if (!nothing.empty()) say("warning: {}\n", nothing);
   const std::optional<Error> lost_photons = try_to([&] { photons.keep(result); });
   times.build = result.report.build_seconds;
   times.render = result.report.render_seconds;
@@ -437,7 +457,7 @@ int run_render(const CommandLine& line, RenderArguments arguments) {
   const std::optional<Error> unsaved = try_to([&] { checkpoint.finish(metadata); });
   // The library that writes images takes as much memory as a large scene: free the scene before it is loaded.
   result.scene = Scene{};
-  if (writes_picture) write_image(output, result.picture, metadata);
+  if (writes_picture) write_picture(arguments, output, depth_units, result.picture, metadata);
   times.write = watch.lap();
   if (preview) preview->print(result.picture);
   if (unsaved && !writes_picture) return say_unsaved(*unsaved, checkpoint);

@@ -10,6 +10,7 @@
 #include "app/terminal/preview.h"
 #include "app/text.h"
 #include "core/error.h"
+#include "io/image/image.h"
 #include "io/mesh/load/load_mesh.h"
 
 namespace oktett {
@@ -91,6 +92,9 @@ void add_render_options(Verb& verb, RenderArguments& a) {
               "Picture to write; default: the scene's name with .png, here");
   add_frame_options(verb, a.frames);
   verb.flag("--no-output", a.no_output, "Write no picture, for measuring");
+  add_bits_option(verb, a.bits);
+  verb.option("--depth-unit", &a.depth_unit, "LENGTH",
+              "Step of --integrator depth with --bits 16; default: a power of ten that fits");
   add_picture_options(verb, a);
   verb.option("--photon-map", &a.photon_map, "FILE",
               "Photons for --caustics: read from FILE, or written if it is missing");
@@ -102,6 +106,26 @@ void add_render_options(Verb& verb, RenderArguments& a) {
   verb.option("--display-server", &a.display_server, "HOST:PORT",
               "Live preview in a viewer that speaks tev's protocol");
   add_show_option(verb, a.show);
+}
+
+void add_bits_option(Verb& verb, std::string& bits) {
+  verb.choice("--bits", bits, "N", "Bits of each number in a PNG file; default: 8", {"8", "16"});
+}
+
+void check_bits(const std::string& bits, const std::string& picture) {
+  if (bits.empty() || bits == "8") return;
+  if (bits != "16") throw Error(fmt::format("--bits: '{}' is unknown; expected 8 or 16", bits));
+  if (!picture.empty() && !can_store_words(picture))
+    throw Error("--bits 16 is for PNG files; expected -o FILE.png");
+}
+
+bool shows_depth_units(const RenderArguments& arguments, const Scene& scene) {
+  return arguments.bits == "16" && scene.integrator.kind == IntegratorKind::depth;
+}
+
+std::optional<double> depth_unit_of(const RenderArguments& arguments) {
+  if (arguments.depth_unit.empty()) return std::nullopt;
+  return parse_amount("--depth-unit", arguments.depth_unit, "units of the scene", 1e-30, 1e30);
 }
 
 void read_render_words(const std::vector<std::string>& words, RenderArguments& arguments) {

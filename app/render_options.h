@@ -38,6 +38,8 @@ struct RenderArguments {
   LimitArguments limits;
   std::string outfile;
   bool no_output = false;
+  std::string bits;        ///< of PNG: 8 or 16; empty: 8
+  std::string depth_unit;  ///< of depths with 16 bits; empty: as it fits
   unsigned threads = 0;
   SettingWords settings;
   bool denoise = false;
@@ -89,6 +91,15 @@ BuildOptions parse_bvh_option(const std::string& quality);
 /// `outfile`, or the scene's name with .png in the current directory; empty if no picture shall be written.
 /// Throws Error if both are asked for.
 std::string output_path(const RenderArguments& arguments);
+
+/// --bits, of verbs that write pictures.
+void add_bits_option(Verb& verb, std::string& bits);
+/// Throws Error if 16 bits are asked for and `picture`, which is written unless it is empty, is none of PNG.
+void check_bits(const std::string& bits, const std::string& picture);
+/// Whether the picture shows depths in steps of a unit.
+bool shows_depth_units(const RenderArguments& arguments, const Scene& scene);
+/// That of --depth-unit, if it is given. Throws Error if it is no length.
+std::optional<double> depth_unit_of(const RenderArguments& arguments);
 
 const char* to_string(IntegratorKind kind);
 

@@ -28,6 +28,7 @@ static Scene load_overridden(const RenderArguments& arguments) {
   override_scene(arguments, scene);
   if (!look && !up) return scene;
   if (!is_mesh_alone(scene)) {
+    if (look && scene.camera_given && !scene.lights_given) light_as_look(scene);
     for (const auto& [option, value] :
          {std::pair{"--look", &arguments.look}, {"--up", &arguments.up}, {"--view", &arguments.viewpoint}})
       if (!value->empty())

@@ -76,6 +76,7 @@ struct RenderReport {
   double build_seconds = 0, render_seconds = 0;
   double photon_seconds = 0;  ///< of tracing photons or of checking those given
   std::uint64_t camera_rays = 0, shadow_rays = 0, reflected_rays = 0, refracted_rays = 0;
+  std::uint64_t camera_hits = 0;      ///< camera rays that met something
   std::vector<BounceReport> bounces;  ///< of Whitted's integrator and of path tracing
   std::uint64_t bad_samples = 0;      ///< NaN or infinite samples that were left out
   std::uint64_t triangles = 0;        ///< each counted once, however many instances show it

@@ -460,6 +460,7 @@ ShadingPoint shading_point(const RenderContext& context, const Ray& ray, const H
   p.ior = textured(context, m.ior, m.ior_texture, kPhongIors, place);
   const bool resembles = textured_here || traits(context.settings.kind).traces_paths;
   if (resembles && shows_principled(context, m)) set_principled(context, place, p);
+  p.normal = ns;
   face_ray(p, ns);
   if (!p.front && !m.emits_behind) p.emission = {0, 0, 0};
   return p;
@@ -488,13 +489,16 @@ float index_of_refraction(const RenderContext& context, const Ray& ray, const Hi
   return index_of_refraction(context, m, [&] { return texture_place(context, m, ray, hit); });
 }
 
+ShownSurface shown_surface(const ShadingPoint& p) {
+  ShownSurface shown{p.surface, p.color, p.opacity};
+  shown.surface.shading_normal = p.normal;
+  return shown;
+}
+
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& found) {
   const Material& m = material_at(*context.world, found);
-  if (has_textures(m)) {
-    const ShadingPoint p = shading_point(context, ray, hit, history, found);
-    return {p.surface, p.color, p.opacity};
-  }
+  if (has_textures(m)) return shown_surface(shading_point(context, ray, hit, history, found));
   return {found, m.color, opacity_at(context, m, {})};
 }
 

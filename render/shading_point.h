@@ -72,6 +72,7 @@ struct ShadingPoint {
   Vec3f direction;  ///< unit direction in which the ray travels
   float t = 0;      ///< distance from the ray's origin
   Vec3f ng, ns;     ///< geometric and shading normal, turned towards the ray's origin; dot(direction, ns) < 0
+  Vec3f normal;     ///< shading normal with textures, on the side that the surface's own normal points to
   bool front = true;  ///< the ray comes from the side that the surface's own normal points to
   Color color, specular_color, emission;           ///< textures included
   float ior = 1.5f;                                ///< inside relative to outside; textures included
@@ -93,11 +94,12 @@ float index_of_refraction(const RenderContext& context, const Ray& ray, const Hi
 
 /// What alpha and the data layers show of a hit.
 struct ShownSurface {
-  SurfaceInteraction surface;
-  Color color;        ///< textures included
-  float opacity = 1;  ///< as in ShadingPoint
+  SurfaceInteraction surface;  ///< its shading normal with textures
+  Color color;                 ///< textures included
+  float opacity = 1;           ///< as in ShadingPoint
 };
 
+ShownSurface shown_surface(const ShadingPoint& p);
 /// The same for a hit of which nothing else is needed. The arguments are those of shading_point().
 ShownSurface shown_surface(const RenderContext& context, const Ray& ray, const Hit& hit,
                            const RayHistory& history, const SurfaceInteraction& s);

@@ -171,7 +171,7 @@ static std::uint32_t parse_film_header(std::string_view bytes, FilmFile& file) {
 namespace {
 
 /// Begins every file; the number is the version of the format.
-constexpr std::string_view kFilmMagic = "oktett film 1\n";
+constexpr std::string_view kFilmMagic = "oktett film 2\n";
 /// The number of a tile, its added samples, the length of its sums.
 constexpr std::size_t kRecordHeader = 4 + 4 + 8;
 
@@ -277,7 +277,7 @@ void write_film(const std::string& path, const FilmFile& file) {
 }
 
 FilmFile parse_film(std::string_view bytes) {
-  if (!bytes.starts_with(kFilmMagic)) throw Error("is not a film of version 1");
+  if (!bytes.starts_with(kFilmMagic)) throw Error("is not a film of version 2");
   ByteReader reader(bytes.substr(kFilmMagic.size()));
   const std::string_view header = reader.take(reader.number<std::uint64_t>());
   if (reader.number<std::uint64_t>() != checksum(header))

@@ -30,14 +30,18 @@ std::array<const PicturePlane*, 3> color_planes(const Picture& picture) {
 /// Coverage in [0, 1]; NaN and infinities count as none.
 float clamped_alpha(float a) { return std::isfinite(a) ? std::clamp(a, 0.0f, 1.0f) : 0; }
 
-FlatImage flatten_to_srgb8(const Picture& picture, bool with_alpha) {
+/// `encoded`: the number of a linear value; `most`: that of 1.
+template <class T>
+FlatImage flatten_to_srgb(const Picture& picture, bool with_alpha, std::vector<T> FlatImage::*numbers,
+                          T (*encoded)(float linear), float most) {
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const PicturePlane* alpha = with_alpha ? &color_plane(picture, "A") : nullptr;
   const std::uint32_t channels = with_alpha ? 4 : 3;
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
-  FlatImage image{picture.width, picture.height, channels, std::vector<std::uint8_t>(pixels * channels), {}};
+  FlatImage image{picture.width, picture.height, channels, {}, {}};
+  (image.*numbers).resize(pixels * channels);
   in_parts(pixels, kPixelsOfPart, [&](std::size_t begin, std::size_t end) {
-    std::uint8_t* out = image.bytes.data() + begin * channels;
+    T* out = (image.*numbers).data() + begin * channels;
     for (std::size_t i = begin; i < end; ++i) {
       const float a = alpha != nullptr ? clamped_alpha(alpha->values[i]) : 1;
       // Without coverage there is no colour to recover; what light there is (a glow) is kept as it is.
@@ -45,8 +49,8 @@ FlatImage flatten_to_srgb8(const Picture& picture, bool with_alpha) {
       const Color light{planes[0]->values[i] / divisor, planes[1]->values[i] / divisor,
                         planes[2]->values[i] / divisor};
       const Color shown = toned(picture.tone, light);
-      for (int k = 0; k < 3; ++k) *out++ = linear_to_srgb8(shown[k]);
-      if (alpha != nullptr) *out++ = static_cast<std::uint8_t>(a * 255 + 0.5f);
+      for (int k = 0; k < 3; ++k) *out++ = encoded(shown[k]);
+      if (alpha != nullptr) *out++ = static_cast<T>(a * most + 0.5f);
     }
   });
   return image;
@@ -55,8 +59,11 @@ FlatImage flatten_to_srgb8(const Picture& picture, bool with_alpha) {
 }  // namespace
 
 FlatImage flatten(const Picture& picture, PixelLayout layout) {
+  const bool with_alpha = layout != PixelLayout::srgb8 && picture.find("A") != nullptr;
+  if (layout == PixelLayout::srgb16_alpha)
+    return flatten_to_srgb(picture, with_alpha, &FlatImage::words, linear_to_srgb16, 65535);
   if (layout != PixelLayout::float_rgb)
-    return flatten_to_srgb8(picture, layout == PixelLayout::srgb8_alpha && picture.find("A") != nullptr);
+    return flatten_to_srgb(picture, with_alpha, &FlatImage::bytes, linear_to_srgb8, 255);
   const std::array<const PicturePlane*, 3> planes = color_planes(picture);
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   FlatImage image{picture.width, picture.height, 3, {}, {}};

@@ -108,11 +108,17 @@ Imf::Header header(const Picture& picture, const std::vector<Attribute>& attribu
   return header;
 }
 
+/// Whether a finite value is too large for half: such light would be lost.
+bool exceeds_half(const PicturePlane& plane) {
+  // What rounds to HALF_MAX does not.
+  constexpr float kLeast = 65520;
+  const auto large = [](float v) { return std::abs(v) >= kLeast && std::isfinite(v); };
+  return plane.type == PlaneType::half_float && std::ranges::any_of(plane.values, large);
+}
+
 /// The nearest halves, of two equally near ones the even one.
 Column<half> to_halves(const Column<float>& values) {
-  const auto nearest = [](float v) {
-    return half(std::isfinite(v) ? std::clamp<float>(v, -HALF_MAX, HALF_MAX) : v);
-  };
+  const auto nearest = [](float v) { return half(v); };
   Column<half> halves(values.size());
   in_parts(values.size(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
     std::transform(values.begin() + begin, values.begin() + end, halves.begin() + begin, nearest);
@@ -124,6 +130,8 @@ void write(Stream& stream, const Picture& picture, const std::vector<Attribute>&
   Imf::Header head = header(picture, attributes);
   Imf::FrameBuffer pixels;
   std::list<Column<half>> halves;
+  // All of them, as programs expect the same type of red, green and blue.
+  const bool wide = std::ranges::any_of(picture.planes, exceeds_half);
   for (const PicturePlane& plane : picture.planes) {
     const std::string& name = plane.name;
     if (name.empty() || name.size() > Imf::Name::MAX_LENGTH || name.find('\0') != std::string::npos)
@@ -135,7 +143,7 @@ void write(Stream& stream, const Picture& picture, const std::vector<Attribute>&
     };
     if (plane.type == PlaneType::unsigned_int)
       add(Imf::UINT, plane.ids.data());
-    else if (plane.type == PlaneType::single_float)
+    else if (wide || plane.type == PlaneType::single_float)
       add(Imf::FLOAT, plane.values.data());
     else
       add(Imf::HALF, halves.emplace_back(to_halves(plane.values)).data());

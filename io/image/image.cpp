@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "io/image/cube_map.h"
 #include "io/image/encode.h"
 #include "io/image/library.h"
 #include "io/image/output.h"
@@ -124,6 +127,62 @@ void write_image(const std::string& path, const Picture& picture, const ImageMet
   file.commit();
 }
 
+bool can_store_words(const std::string& path) {
+  const Format* format = common_format(path);
+  return format != nullptr && std::string_view(format->extension) == ".png";
+}
+
+static void write_words(const std::string& path, const FlatImage& image,
+                        const std::vector<Attribute>& attributes) {
+  if (!can_store_words(path)) throw Error(Location{path}, "only PNG files are written with 16 bits");
+  OutputFile file(path);
+  write_png(file, image, attributes);
+  file.commit();
+}
+
+void write_image16(const std::string& path, const Picture& picture, const ImageMetadata& metadata) {
+  check_planes(picture);
+  write_words(path, flatten(picture, PixelLayout::srgb16_alpha), attributes(metadata));
+}
+
+/// The plane Z of finite depths.
+static const PicturePlane& depth_plane(const Picture& picture) {
+  check_planes(picture);
+  const PicturePlane* plane = picture.find("Z");
+  if (plane == nullptr || plane->type == PlaneType::unsigned_int) throw Error("the picture has no plane Z");
+  return *plane;
+}
+
+/// The greatest number but one, which stands for all that is farther.
+static constexpr double kMostDepth = 65534;
+
+double depth_unit(const Picture& picture) {
+  double farthest = 0;
+  for (const float z : depth_plane(picture).values)
+    if (std::isfinite(z)) farthest = std::max(farthest, static_cast<double>(z));
+  if (!(farthest > 0)) return 1;
+  int exponent = static_cast<int>(std::ceil(std::log10(farthest / kMostDepth)));
+  while (farthest / std::pow(10.0, exponent) > kMostDepth) ++exponent;
+  while (farthest / std::pow(10.0, exponent - 1) <= kMostDepth) --exponent;
+  return std::pow(10.0, exponent);
+}
+
+void write_depth(const std::string& path, const Picture& picture, double unit,
+                 const ImageMetadata& metadata) {
+  const PicturePlane& plane = depth_plane(picture);
+  FlatImage image{picture.width, picture.height, 1, {}, {}};
+  image.words.reserve(plane.values.size());
+  for (const float z : plane.values) {
+    const double steps = std::round(static_cast<double>(z) / unit);
+    image.words.push_back(std::isfinite(z)
+                              ? static_cast<std::uint16_t>(std::clamp(steps, 1.0, kMostDepth + 1))
+                              : std::uint16_t{0});
+  }
+  std::vector<Attribute> all = attributes(metadata);
+  all.push_back({"depthUnit", fmt::format("{}", unit)});
+  write_words(path, image, all);
+}
+
 /// Throws Error if the image must not be read.
 static void check_access(const std::string& path) {
   if (const std::string why = why_not_an_image(path); !why.empty())
@@ -134,6 +193,20 @@ Picture read_image(const std::string& path) {
   note_file_read(path);
   check_access(path);
   return image_library().read(path_to_open(path));
+}
+
+EnvironmentPicture read_environment_image(const std::string& path) {
+  note_file_read(path);
+  check_access(path);
+  const EnvironmentImage image = image_library().read_environment(path_to_open(path));
+  const Picture& picture = image.picture;
+  const PicturePlane* planes[3] = {picture.find("R"), picture.find("G"), picture.find("B")};
+  EnvironmentPicture environment;
+  environment.width = picture.width, environment.height = picture.height;
+  environment.pixels.resize(std::size_t{picture.width} * picture.height);
+  for (std::size_t i = 0; i < environment.pixels.size(); ++i)
+    environment.pixels[i] = {planes[0]->values[i], planes[1]->values[i], planes[2]->values[i]};
+  return image.is_cube ? unfolded_cube(environment) : environment;
 }
 
 HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels) {

@@ -28,6 +28,13 @@ struct TextureSource {
   bool alpha = false;  ///< some texture shows the alpha channel
 };
 
+/// An image of all directions: the planes R, G and B, which fill the frame.
+struct EnvironmentImage {
+  Picture picture;
+  bool is_cube =
+      false;  ///< the six faces of a cube one above the other, as in EXR, else latitude and longitude
+};
+
 /// All members may be called by many threads at once; they throw Error of kind io for what files are not.
 class ImageLibrary {
  public:
@@ -44,6 +51,8 @@ class ImageLibrary {
                      const std::vector<Attribute>& attributes) const = 0;
   /// See read_image.
   virtual Picture read(const std::string& path) const = 0;
+  /// See read_environment_image.
+  virtual EnvironmentImage read_environment(const std::string& path) const = 0;
   /// See read_heights.
   virtual HeightImage read_heights(const std::string& path, std::uint32_t most_side,
                                    std::size_t most_pixels) const = 0;

@@ -73,7 +73,9 @@ MipMap::MipMap(TexelImage image)
       colors_(image.colors),
       alpha_(image.alpha),
       byte_channels_(static_cast<std::uint32_t>(image.channels())) {
-  const bool is_linear = image.encoding.curve == TransferCurve::linear;
+  // Grey light has no primaries, and no 8-bit file says which it means.
+  const bool converts = image.encoding.to_rec709.has_value() && colors_ == 3 && bytes_.empty();
+  const bool is_linear = image.encoding.curve == TransferCurve::linear && !converts;
   stored_at_ = is_linear ? 0 : colors_;
   float_channels_ = stored_at_ + byte_channels_;
   for (std::size_t v = 0; v < 256; ++v) {
@@ -94,6 +96,10 @@ MipMap::MipMap(TexelImage image)
     float* out = floats_.data();
     for (std::size_t i = 0; i < std::size_t{image.width} * image.height; ++i) {
       for (std::uint32_t c = 0; c < stored_at_; ++c) *out++ = decode(image.encoding, in[c]);
+      if (converts) {
+        const Color light = transformed(*image.encoding.to_rec709, {out[-3], out[-2], out[-1]});
+        for (int c = 0; c < 3; ++c) out[c - 3] = light[c];
+      }
       for (std::uint32_t c = 0; c < byte_channels_; ++c) *out++ = *in++;
     }
     image.floats.clear();

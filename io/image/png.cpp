@@ -44,14 +44,24 @@ class PngWriter {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_compression_strategy(png_, kStrategy);
-    png_set_IHDR(png_, info_, image.width, image.height, 8,
-                 image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
+    const bool words = !image.words.empty(), grey = image.channels == 1;
+    png_set_IHDR(png_, info_, image.width, image.height, words ? 16 : 8,
+                 grey                  ? PNG_COLOR_TYPE_GRAY
+                 : image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA
+                                       : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (grey)
+      png_set_gAMA_fixed(png_, info_, PNG_FP_1);
+    else
+      png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
     png_set_text(png_, info_, texts.data(), static_cast<int>(texts.size()));
     png_write_info(png_, info_);
+    // PNG stores the greater byte first.
+    if (words) png_set_swap(png_);
+    const std::size_t row_numbers = std::size_t{image.width} * image.channels;
     for (std::size_t row = 0; row < image.height; ++row)
-      png_write_row(png_, &image.bytes[row * image.width * image.channels]);
+      png_write_row(png_, words ? reinterpret_cast<png_const_bytep>(&image.words[row * row_numbers])
+                                : &image.bytes[row * row_numbers]);
     png_write_end(png_, nullptr);
     return true;
   }
@@ -81,7 +91,7 @@ class PngWriter {
 
 }  // namespace
 
-std::string encode_png(const Picture& picture, const std::vector<Attribute>& attributes) {
+static std::string encode_flat(const FlatImage& image, const std::vector<Attribute>& attributes) {
   std::vector<png_text> texts;
   for (const Attribute& attribute : attributes)
     if (const auto* text = std::get_if<std::string>(&attribute.value)) {
@@ -91,11 +101,19 @@ std::string encode_png(const Picture& picture, const std::vector<Attribute>& att
       entry.key = const_cast<char*>(attribute.name.c_str());
       entry.text = const_cast<char*>(text->c_str());
     }
-  return PngWriter().encode(flatten(picture, PixelLayout::srgb8_alpha), texts);
+  return PngWriter().encode(image, texts);
+}
+
+std::string encode_png(const Picture& picture, const std::vector<Attribute>& attributes) {
+  return encode_flat(flatten(picture, PixelLayout::srgb8_alpha), attributes);
 }
 
 void write_png(OutputFile& file, const Picture& picture, const std::vector<Attribute>& attributes) {
   file.write(encode_png(picture, attributes));
+}
+
+void write_png(OutputFile& file, const FlatImage& image, const std::vector<Attribute>& attributes) {
+  file.write(encode_flat(image, attributes));
 }
 
 }  // namespace oktett

@@ -14,6 +14,9 @@ namespace oktett {
 /// ErrorKind::io if the file cannot be read.
 ParsedMesh parse_ply(const std::string& path, const MeshReadOptions& options = {});
 
+/// Whether a comment of the header names Blender as the writer. Throws Error if the file cannot be read.
+bool is_ply_of_blender(const std::string& path);
+
 /// Writes positions, normals, texture coordinates and triangles: bytes in little-endian order, or text if
 /// `ascii`. Returns what PLY cannot say. Throws Error of kind io if that fails.
 MeshLosses write_ply(const std::string& path, const MeshFile& file, bool ascii);

@@ -191,29 +191,13 @@ void finish(SceneLoad& load, const Fields& fields, const YamlNode&, DirectionalK
   add_light(load, keys.light, keys.traits);
 }
 
-/// The radiance of a picture file of all directions.
-std::shared_ptr<const EnvironmentPicture> read_environment_picture(SceneLoad& load, const YamlNode& node) {
-  const Picture picture = read_image_file(load, node, [](const std::string& path) {
-    Picture read = read_image(path);
-    for (const char* plane : {"R", "G", "B"})
-      if (read.find(plane) == nullptr) throw Error(path + ": the image has no colours");
-    return read;
-  });
-  const PicturePlane* planes[3] = {picture.find("R"), picture.find("G"), picture.find("B")};
-  EnvironmentPicture environment;
-  environment.width = picture.width, environment.height = picture.height;
-  environment.pixels.resize(std::size_t{picture.width} * picture.height);
-  for (std::size_t i = 0; i < environment.pixels.size(); ++i)
-    environment.pixels[i] = {planes[0]->values[i], planes[1]->values[i], planes[2]->values[i]};
-  return std::make_shared<const EnvironmentPicture>(std::move(environment));
-}
-
 /// An image of all directions.
 struct EnvironmentFile {
   std::shared_ptr<const EnvironmentPicture>& picture;
 };
 void read_value(SceneLoad& load, const YamlNode& node, const Range&, EnvironmentFile& file) {
-  file.picture = read_environment_picture(load, node);
+  file.picture =
+      std::make_shared<const EnvironmentPicture>(read_image_file(load, node, read_environment_image));
 }
 std::string schema_of(Schema&, const Range&, const EnvironmentFile&) { return Schema::file(); }
 

@@ -12,6 +12,7 @@
 #include "core/mesh_geometry.h"
 #include "io/gltf/gltf.h"
 #include "io/mesh/load/load_mesh.h"
+#include "io/ply/ply.h"
 #include "io/scene/meshes.h"
 #include "io/scene/readers.h"
 #include "io/scene/recentre.h"
@@ -310,6 +311,15 @@ static bool has_area(const TriangleMesh& mesh) {
   return false;
 }
 
+/// What points up in a mesh that is given alone. In glTF +y does, in STL, the format of printers, +z, and in
+/// PLY by Blender its own +z, unlike in its OBJ.
+static Vec3d up_of(const std::string& path, const TriangleMesh& mesh) {
+  if (is_gltf_file(path)) return {0, 1, 0};
+  const std::string extension = lower_case_extension(without_packing(path));
+  const bool z = extension == ".stl" || (extension == ".ply" && is_ply_of_blender(path));
+  return z ? Vec3d{0, 0, 1} : guess_up(mesh);
+}
+
 Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   expect_readable(path);
   if (!is_gltf_file(path) && !(gltf == GltfOptions{}))
@@ -340,8 +350,7 @@ Scene scene_from_mesh(const std::string& path, const GltfOptions& gltf) {
   if (!has_area(*shape.mesh))
     scene.warnings.push_back(
         Warning{Location{path, 0, 0}, "no triangle of the mesh has an area: there is nothing to be seen"});
-  // In glTF, +y points up.
-  if (!is_gltf_file(path)) scene.camera.up = guess_up(*shape.mesh);
+  scene.camera.up = up_of(path, *shape.mesh);
   scene.background = kPlainBackground;
   Object object;
   scene.origin = shape.mesh->origin;

@@ -60,6 +60,9 @@ enum PlaneIndex {
   kNx,
   kNy,
   kNz,
+  kNgx,
+  kNgy,
+  kNgz,
   kPx,
   kPy,
   kPz,
@@ -75,9 +78,9 @@ enum PlaneIndex {
   kVarianceB,
 };
 constexpr const char* kNames[] = {
-    "R",   "G",   "B",        "A",        "Z",          "N.X",        "N.Y",
-    "N.Z", "P.X", "P.Y",      "P.Z",      "Albedo.R",   "Albedo.G",   "Albedo.B",
-    "u",   "v",   "primID.I", "geomID.I", "Variance.R", "Variance.G", "Variance.B",
+    "R",        "G",    "B",    "A",        "Z",        "N.X",        "N.Y",        "N.Z",
+    "Ng.X",     "Ng.Y", "Ng.Z", "P.X",      "P.Y",      "P.Z",        "Albedo.R",   "Albedo.G",
+    "Albedo.B", "u",    "v",    "primID.I", "geomID.I", "Variance.R", "Variance.G", "Variance.B",
 };
 
 void add3(double (&sum)[3], const Vec3f& v) {
@@ -94,12 +97,14 @@ void add_ids(PixelSum& pixel, const FirstHit& first, const Vec2f& offset) {
 }
 
 void add_first_hit(PixelSum& pixel, const FirstHit& first) {
-  const bool finite = std::isfinite(first.depth) && is_finite(first.normal) && is_finite(first.position) &&
+  const bool finite = std::isfinite(first.depth) && is_finite(first.normal) &&
+                      is_finite(first.geometric_normal) && is_finite(first.position) &&
                       is_finite(first.albedo) && std::isfinite(first.uv.x) && std::isfinite(first.uv.y);
   if (!finite) return;
   ++pixel.hits;
   pixel.depth += static_cast<double>(first.depth);
   add3(pixel.normal, first.normal);
+  add3(pixel.geometric_normal, first.geometric_normal);
   add3(pixel.position, first.position);
   add3(pixel.albedo, first.albedo);
   pixel.uv[0] += static_cast<double>(first.uv.x), pixel.uv[1] += static_cast<double>(first.uv.y);
@@ -261,6 +266,7 @@ void write_pixel(Picture& picture, std::uint32_t x, std::uint32_t y, const Pixel
   set(kA, pixel.alpha, pixel.good);
   for (int k = 0; k < 3; ++k) {
     set(kNx + k, pixel.normal[k], pixel.good);
+    set(kNgx + k, pixel.geometric_normal[k], pixel.good);
     set(kAlbedoR + k, pixel.albedo[k], pixel.good);
     set(kVarianceR + k, variance_of_mean(pixel.color[k], pixel.square[k], pixel.good), 1);
     if (pixel.hits > 0) set(kPx + k, pixel.position[k], pixel.hits);

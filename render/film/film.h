@@ -33,7 +33,7 @@ void write_layers(Picture& picture, std::size_t first, std::size_t at, std::span
 struct PixelSum {
   double color[3] = {}, square[3] = {};
   double alpha = 0;
-  double depth = 0, normal[3] = {}, position[3] = {}, albedo[3] = {}, uv[2] = {};
+  double depth = 0, normal[3] = {}, geometric_normal[3] = {}, position[3] = {}, albedo[3] = {}, uv[2] = {};
   std::uint32_t good = 0;  ///< samples without NaN and infinities; the others are left out
   std::uint32_t hits = 0;  ///< of the good samples, those that met a surface
   float nearest = 0;       ///< squared distance from the pixel's centre of the sample that gave the ids
@@ -69,8 +69,10 @@ FilmFormat format_of(const RenderContext& context);
 /// - Z is the distance along the view axis, not along the ray, as compositing programs expect; infinite where
 ///   there is no surface. P is the position in world space; u and v are the texture coordinates. All of them
 ///   are means over the samples that met a surface.
-/// - N is the shading normal in world space, which points out of solids. Albedo is the base colour. Both are
-///   means over all samples, with 0 for those that met nothing, as denoisers expect.
+/// - N is the shading normal in world space as lights see it, with normal and bump maps, Ng the true normal
+/// of
+///   the surface; both point out of solids. Albedo is the base colour. All are means over all samples, with 0
+///   for those that met nothing, as denoisers expect: at edges normals are shorter than 1.
 /// - primID.I is the primitive in its geometry, geomID.I the object in the scene (as World counts them). They
 ///   are those of the sample nearest to the pixel's centre, never filtered.
 /// - Variance is that of the pixel's mean, estimated from its samples; 0 with fewer than two.

@@ -285,14 +285,24 @@ struct Field {
   Field { offsetof(PixelSum, member), sizeof(PixelSum::member), layers }
 /// All members; arrays are kept number by number.
 constexpr Field kMembers[] = {
-    OKTETT_FIELD(color, false),    OKTETT_FIELD(alpha, false),  OKTETT_FIELD(good, false),
-    OKTETT_FIELD(square, true),    OKTETT_FIELD(depth, true),   OKTETT_FIELD(normal, true),
-    OKTETT_FIELD(position, true),  OKTETT_FIELD(albedo, true),  OKTETT_FIELD(uv, true),
-    OKTETT_FIELD(hits, true),      OKTETT_FIELD(nearest, true), OKTETT_FIELD(has_ids, true),
-    OKTETT_FIELD(primitive, true), OKTETT_FIELD(object, true),
+    OKTETT_FIELD(color, false),
+    OKTETT_FIELD(alpha, false),
+    OKTETT_FIELD(good, false),
+    OKTETT_FIELD(square, true),
+    OKTETT_FIELD(depth, true),
+    OKTETT_FIELD(normal, true),
+    OKTETT_FIELD(geometric_normal, true),
+    OKTETT_FIELD(position, true),
+    OKTETT_FIELD(albedo, true),
+    OKTETT_FIELD(uv, true),
+    OKTETT_FIELD(hits, true),
+    OKTETT_FIELD(nearest, true),
+    OKTETT_FIELD(has_ids, true),
+    OKTETT_FIELD(primitive, true),
+    OKTETT_FIELD(object, true),
 };
 #undef OKTETT_FIELD
-static_assert(sizeof(PixelSum) == 176, "a new member of PixelSum stands in kMembers, too");
+static_assert(sizeof(PixelSum) == 200, "a new member of PixelSum stands in kMembers, too");
 
 /// Calls `use(offset, size)` for each number of a PixelSum that pictures of this format have.
 template <class Use>

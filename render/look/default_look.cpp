@@ -274,6 +274,16 @@ void smooth(MeshShape& shape) {
   shape.mesh = std::move(mesh);
 }
 
+/// The bounces that the materials of a scene need: for diffuse light `usual`; for glass as many as there may
+/// be, since each face of it takes one. Paths of little light end by themselves.
+std::uint32_t bounces_for(const Scene& scene, std::uint32_t usual) {
+  const auto lets_light_through = [](const Material& m) {
+    return m.transparency > 0 || (m.principled && m.principled->parameters.transmission > 0);
+  };
+  return std::ranges::any_of(scene.materials, lets_light_through) ? static_cast<std::uint32_t>(kDepths.hi)
+                                                                  : usual;
+}
+
 void cover(Scene& scene, Object& object, Material material) {
   scene.materials.push_back(std::move(material));
   object.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
@@ -327,6 +337,20 @@ void show_colors(Scene& scene, Object& object) {
   }
 }
 
+void light_as_look(Scene& scene) {
+  // The camera may be tilted, and look straight down.
+  const Vec3d up{0, 1, 0};
+  const Vec3d across = cross(scene.camera.at - scene.camera.from, up);
+  const bool level = length(across) > 1e-3 * length(scene.camera.at - scene.camera.from);
+  const StudioFrame frame = level ? studio_frame(scene.camera, up) : StudioFrame{};
+  light_by(scene, studio_picture(frame, kGroundAlbedo, kHorizon));
+  PointLight emitter;
+  emitter.position = scene.camera.from;
+  emitter.color = Color{1, 0.97f, 0.92f} * 0.25f;
+  scene.lights.push_back(emitter);
+  scene.film.tone.kind = ToneKind::neutral;
+}
+
 bool is_mesh_alone(const Scene& scene) {
   if (scene.camera_given || scene.lights_given || scene.objects.size() > 1) return false;
   return scene.objects.empty() || std::holds_alternative<MeshShape>(scene.objects[0].shape);
@@ -354,7 +378,8 @@ void apply_look(Scene& scene, Look look, Viewpoint viewpoint) {
     return;
   }
   scene.integrator.kind = IntegratorKind::path;
-  scene.integrator.depth = inside ? 4 : 2;
+  const std::uint32_t usual = inside ? 4 : 2;
+  scene.integrator.depth = look == Look::clay ? usual : bounces_for(scene, usual);
   if (inside)
     light_room(scene, *inside, up);
   else

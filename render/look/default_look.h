@@ -60,6 +60,10 @@ void show_colors(Scene& scene, Object& object);
 /// Whether the scene holds at most one object, a mesh, and neither a camera nor lights.
 bool is_mesh_alone(const Scene& scene);
 
+/// Lights a scene that has a camera, but no lights, and where +y points up, by the light of the studio and a
+/// weak emitter at the camera, which leaves nothing black in a room.
+void light_as_look(Scene& scene);
+
 /// Completes a scene that holds nothing but one mesh: camera, ground, light, integrator, and a material for
 /// what has none. Up is that of its camera. Film, seed and what else it says stay. A scene without objects
 /// stays as it is.

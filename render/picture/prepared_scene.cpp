@@ -101,6 +101,7 @@ class Monitor {
 
   void finish_tile(const FinishedTile& tile, const TileCounts& counts) {
     const std::lock_guard lock(mutex_);
+    report_.camera_hits += counts.rays.camera_hits;
     report_.camera_rays += counts.rays.camera, report_.shadow_rays += counts.rays.shadow;
     report_.reflected_rays += counts.rays.reflected, report_.refracted_rays += counts.rays.refracted;
     if (report_.bounces.size() < counts.rays.bounces.size())

@@ -53,9 +53,9 @@ float pixels_to_edge(const RenderContext& context, const Wavefront& wavefront, s
 
 }  // namespace
 
-/// The shading normal in world space, [-1, 1] shown as [0, 1].
+/// The shading normal with textures in world space, [-1, 1] shown as [0, 1].
 void shade_normal(const RenderContext&, Wavefront& wavefront, std::size_t ray, const ShadingPoint& p) {
-  wavefront.radiance.set(ray, p.surface.shading_normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f});
+  wavefront.radiance.set(ray, p.normal * 0.5f + Vec3f{0.5f, 0.5f, 0.5f});
 }
 
 /// Distance along the view axis: white at the near end of the scene's bounds, black at the far end.

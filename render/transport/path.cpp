@@ -271,7 +271,7 @@ void shade_path_block(const RenderContext& context, Wavefront& wavefront, const 
     }
     if (from_camera) {
       if (alone)
-        record_first_hit(context, wavefront, i, {lone.point.surface, lone.point.color, lone.point.opacity});
+        record_first_hit(context, wavefront, i, shown_surface(lone.point));
       else if (context.data_layers)
         record_first_hit(
             context, wavefront, i,

@@ -302,7 +302,7 @@ class HitShader {
       const ShadingPoint p = shading_point(context_, wavefront_.rays.rays[i], wavefront_.hits[i],
                                            {wavefront_.rays.distance[i], from_camera}, found_[k]);
       if (from_camera) {
-        record_first_hit(context_, wavefront_, i, {p.surface, p.color, p.opacity});
+        record_first_hit(context_, wavefront_, i, shown_surface(p));
         cover(context_, wavefront_, i, p.opacity);
       }
       integrator_.shade(context_, wavefront_, i, p);
@@ -402,6 +402,8 @@ bool trace_wavefront(const RenderContext& context, Wavefront& wavefront) {
       fill_samples(context, wavefront.samples);
       fill_camera_rays(wavefront);
       start_layers(context, wavefront);
+      wavefront.counts.camera_hits += static_cast<std::uint64_t>(
+          std::ranges::count_if(wavefront.hits.item, [](std::uint32_t item) { return item != kNoId; }));
       if (context.tracks_dielectrics) enclose_camera_rays(context, wavefront);
     }
     if (context.tracks_dielectrics) pass_media(context, wavefront);
@@ -432,6 +434,7 @@ void record_first_hit(const RenderContext& context, Wavefront& wavefront, std::s
   first = {true,
            static_cast<float>(camera_depth(context.camera, s.position)),
            s.shading_normal,
+           s.geometric_normal,
            s.position,
            shown.color,
            s.uv,

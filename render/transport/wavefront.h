@@ -18,7 +18,7 @@ namespace oktett {
 struct FirstHit {
   bool found = false;
   float depth = 0;  ///< along the view axis
-  Vec3f normal, position;
+  Vec3f normal, geometric_normal, position;
   Color albedo;
   Vec2f uv;
   std::uint32_t primitive = kNoId, object = kNoId;
@@ -56,6 +56,7 @@ struct WavefrontPixel {
 /// How many rays of each kind were traced.
 struct RayCounts {
   std::uint64_t camera = 0, shadow = 0, reflected = 0, refracted = 0;
+  std::uint64_t camera_hits = 0;  ///< camera rays that met something
   std::vector<BounceReport> bounces;
   std::uint64_t total() const { return camera + shadow + reflected + refracted; }
 };

@@ -69,7 +69,7 @@ OKTETT_NOINLINE Color finish_varying(const RenderContext& context, Wavefront& wa
   const ShadingPoint p = shading_point(context, wavefront.rays.rays[i], wavefront.hits[i],
                                        {wavefront.rays.distance[i], from_camera}, found);
   if (from_camera) {
-    record_first_hit(context, wavefront, i, {p.surface, p.color, p.opacity});
+    record_first_hit(context, wavefront, i, shown_surface(p));
     cover(context, wavefront, i, p.opacity);
   }
   const Color left = passing_interior(context, p);

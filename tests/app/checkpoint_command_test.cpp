@@ -151,7 +151,7 @@ TEST_F(CheckpointCommand, SharesThatDoNotFitAreRefused) {
                  "it is one of 3 shares there and of 4 here");
   expect_failure({"merge", "1.film", "other.film", "3.film", "-o", "a.png"}, 2,
                  "the file 'a.yaml' has another content");
-  expect_failure({"merge", "1.film", "a.yaml", "-o", "a.png"}, 2, "a.yaml: is not a film of version 1");
+  expect_failure({"merge", "1.film", "a.yaml", "-o", "a.png"}, 2, "a.yaml: is not a film of version 2");
   expect_failure({"merge", "1.film", "none.film", "-o", "a.png"}, 1, "none.film: cannot read");
   expect_failure({"merge", "1.film"}, 2, "expected -o FILE");
   EXPECT_EQ(file_content(dir_.file("a.png")), "old");
@@ -242,7 +242,7 @@ TEST_F(CheckpointCommand, WrongWordsAreRefused) {
       {{"--every", "3"}, "--every needs --checkpoint"},
       {{"--add-spp", "0"}, "--add-spp: 0 is out of range"},
       {{"--add-spp", "99999999"}, "--add-spp"},
-      {{"--resume", "a.yaml"}, "a.yaml: is not a film of version 1"},
+      {{"--resume", "a.yaml"}, "a.yaml: is not a film of version 2"},
   };
   for (const Case& c : cases) {
     Words words{"render", "a.yaml"};

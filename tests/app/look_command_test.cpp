@@ -71,7 +71,32 @@ TEST(LookCommand, TheFormatOfTheMeshChangesNothing) {
   dir.write("mesh.stl", stl_tetrahedron());
   const std::string usual = picture(dir, {});
   EXPECT_EQ(picture(dir, {}, 0, "mesh.ply"), usual);
-  EXPECT_EQ(picture(dir, {}, 0, "mesh.stl"), usual);
+  EXPECT_EQ(picture(dir, {"--up", "y"}, 0, "mesh.stl"), usual);
+}
+
+TEST(LookCommand, UpIsZInStlAndInPlyByBlender) {
+  const TempDir dir;
+  const std::string ply = kPlyTetrahedron, stl = stl_tetrahedron();
+  dir.write("mesh.ply", ply);
+  dir.write("mesh.stl", stl);
+  const std::string usual = picture(dir, {}, 0, "mesh.ply");
+  const std::string standing = picture(dir, {"--up", "z"}, 0, "mesh.ply");
+  EXPECT_NE(standing, usual);
+  EXPECT_EQ(picture(dir, {}, 0, "mesh.stl"), standing);
+  EXPECT_EQ(picture(dir, {"--up", "z"}, 0, "mesh.stl"), standing);
+  for (const char* writer : {"comment Created in Blender version 4.3.2\n",
+                             "comment Created by Blender 2.93.4 - www.blender.org, source file: ''\r\n"}) {
+    const std::size_t place = ply.find("element vertex");
+    dir.write("mesh.ply", ply.substr(0, place) + writer + ply.substr(place));
+    EXPECT_EQ(picture(dir, {}, 0, "mesh.ply"), standing) << writer;
+    EXPECT_EQ(picture(dir, {"--up", "y"}, 0, "mesh.ply"), usual) << writer;
+  }
+  // Not what other programs say, nor what stands elsewhere.
+  for (const char* writer : {"comment VCGLIB generated\n", "obj_info Blender\n"}) {
+    const std::size_t place = ply.find("element vertex");
+    dir.write("mesh.ply", ply.substr(0, place) + writer + ply.substr(place));
+    EXPECT_EQ(picture(dir, {}, 0, "mesh.ply"), usual) << writer;
+  }
 }
 
 /// A box, lower than wide, whose faces are seen from inside.

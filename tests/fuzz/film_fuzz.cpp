@@ -28,7 +28,7 @@ class FilmMender {
   }
 
  private:
-  static constexpr std::string_view kMagic = "oktett film 1\n";
+  static constexpr std::string_view kMagic = "oktett film 2\n";
   static constexpr std::size_t kRecordHeader = 16;
 
   std::string_view piece(std::size_t size) const { return std::string_view(bytes_).substr(at_, size); }

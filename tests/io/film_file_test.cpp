@@ -112,13 +112,13 @@ TEST_F(FilmFiles, ShortFilesAreRefused) {
     EXPECT_NE(problem(whole.substr(0, size)), "") << size;
   }
   EXPECT_EQ(problem(whole + " "), "the file has not the length that it says");
-  EXPECT_EQ(problem("no film"), "is not a film of version 1");
+  EXPECT_EQ(problem("no film"), "is not a film of version 2");
   std::ofstream(path(), std::ios::binary | std::ios::trunc) << "no film";
   try {
     read_film(path());
     ADD_FAILURE();
   } catch (const Error& error) {
-    EXPECT_EQ(error.what(), path() + ": is not a film of version 1");
+    EXPECT_EQ(error.what(), path() + ": is not a film of version 2");
   }
 }
 

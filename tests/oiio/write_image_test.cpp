@@ -55,9 +55,16 @@ PicturePlane plane(const std::string& name, PlaneType type, std::size_t pixels, 
   return result;
 }
 
-/// What OpenImageIO's own conversion makes of `value`, after clamping what is finite to finite halves.
+/// Whether a value of half is finite, but none of half.
+bool has_large(const Picture& picture) {
+  for (const PicturePlane& plane : picture.planes)
+    for (const float v : plane.values)
+      if (plane.type == PlaneType::half_float && std::isfinite(v) && std::abs(v) >= 65520) return true;
+  return false;
+}
+
+/// What OpenImageIO's own conversion makes of `value`.
 std::uint16_t half_of(float value) {
-  if (std::isfinite(value)) value = std::clamp(value, -65504.0f, 65504.0f);
   std::uint16_t half = 0;
   OIIO::convert_pixel_values(OIIO::TypeFloat, &value, OIIO::TypeHalf, &half, 1);
   return half;
@@ -70,13 +77,14 @@ void expect_planes(const std::string& path, const Picture& picture) {
   const OIIO::ImageSpec spec = input->spec();
   ASSERT_EQ(static_cast<std::size_t>(spec.nchannels), picture.planes.size());
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
+  const bool wide = has_large(picture);
   for (const PicturePlane& expected : picture.planes) {
     const int channel = spec.channelindex(expected.name);
     ASSERT_GE(channel, 0) << expected.name;
     const OIIO::TypeDesc type = spec.channelformat(channel);
     std::vector<std::uint8_t> bytes(pixels * type.size());
     ASSERT_TRUE(input->read_image(0, 0, channel, channel + 1, type, bytes.data())) << input->geterror();
-    if (expected.type == PlaneType::half_float) {
+    if (expected.type == PlaneType::half_float && !wide) {
       ASSERT_EQ(type, OIIO::TypeHalf);
       for (std::size_t i = 0; i < pixels; ++i) {
         std::uint16_t half;
@@ -109,7 +117,7 @@ TEST(WriteExr, EverySizeIsReadBackBitByBit) {
       }
 }
 
-// Every half, what lies midway between two, and the floats beside these. Infinity follows the largest half.
+// Every half, what lies midway between two, and the floats beside these.
 TEST(WriteExr, HalvesAreTheNearestOnes) {
   const TempDir dir;
   Picture picture = empty_picture(1, 1);
@@ -121,6 +129,8 @@ TEST(WriteExr, HalvesAreTheNearestOnes) {
   for (std::uint32_t half = 0; half < 0x7c00; ++half) {
     const float value = value_of(half), middle = 0.5f * value + 0.5f * value_of(half + 1);
     for (const float v : {value, middle, std::nextafter(middle, 0.0f), std::nextafter(middle, 1e9f)}) {
+      // From there on light is kept in single precision.
+      if (v >= 65520) continue;
       halves.values.push_back(v);
       halves.values.push_back(-v);
     }

@@ -59,10 +59,11 @@ TEST(Film, PlanesFollowTheConventions) {
                           : beauty ? PlaneType::half_float
                                    : PlaneType::single_float);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{
-                       "R",   "G",   "B",        "A",        "Z",          "N.X",        "N.Y",
-                       "N.Z", "P.X", "P.Y",      "P.Z",      "Albedo.R",   "Albedo.G",   "Albedo.B",
-                       "u",   "v",   "primID.I", "geomID.I", "Variance.R", "Variance.G", "Variance.B"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"R",        "G",          "B",          "A",         "Z",
+                                             "N.X",      "N.Y",        "N.Z",        "Ng.X",      "Ng.Y",
+                                             "Ng.Z",     "P.X",        "P.Y",        "P.Z",       "Albedo.R",
+                                             "Albedo.G", "Albedo.B",   "u",          "v",         "primID.I",
+                                             "geomID.I", "Variance.R", "Variance.G", "Variance.B"}));
   EXPECT_EQ(run(bare_scene(2), [](RenderOptions& o) { o.data_layers = false; }).picture.planes.size(), 4u);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -34,16 +35,20 @@ void check_header(const std::string& path, const OIIO::ImageSpec& spec) {
   if (spec.width <= 0 || spec.height <= 0) fail(path, "the image has no pixels");
   if (spec.nchannels <= 0 || spec.nchannels > kMaxChannels)
     fail(path, fmt::format("the image has {} channels, expected 1 to {}", spec.nchannels, kMaxChannels));
-  const double bytes = 4.0 * spec.width * spec.height * spec.nchannels;
+  check_size_in_memory(path, spec.width, spec.height, spec.nchannels);
+}
+
+}  // namespace
+
+void check_size_in_memory(const std::string& path, int width, int height, int channels) {
+  const double bytes = 4.0 * width * height * channels;
   // It reads /proc/meminfo, and returns 0 where there is none: unknown, as in a chroot.
   const double limit = 0.25 * static_cast<double>(OIIO::Sysutil::physical_memory());
   if (limit > 0 && bytes > limit)
     fail(path,
          fmt::format("an image of {} x {} x {} channels needs {:.1f} GB, more than a quarter of the memory",
-                     spec.width, spec.height, spec.nchannels, bytes * 1e-9));
+                     width, height, channels, bytes * 1e-9));
 }
-
-}  // namespace
 
 void fail(const std::string& path, const std::string& message) {
   throw Error(Location{path}, message, ErrorKind::io);
@@ -56,6 +61,16 @@ std::string first_line(const std::string& text, const std::string& fallback) {
 }
 
 std::string take_image_error(const std::string& fallback) { return first_line(OIIO::geterror(), fallback); }
+
+/// The way to Rec.709 from the primaries that the header names.
+static std::optional<ColorMatrix> primaries_of(const OIIO::ImageSpec& spec) {
+  Chromaticities chromaticities;
+  const OIIO::TypeDesc type(OIIO::TypeDesc::FLOAT, static_cast<int>(chromaticities.size()));
+  const OIIO::ParamValue* const value = spec.find_attribute("chromaticities", type);
+  if (value == nullptr) return std::nullopt;
+  std::memcpy(chromaticities.data(), value->data(), sizeof chromaticities);
+  return to_rec709(chromaticities);
+}
 
 ColorEncoding color_encoding(const OIIO::ImageSpec& spec) {
   // Names differ between versions of the library: "sRGB" or "srgb_rec709_scene", "Linear" or "lin_rec709",
@@ -70,8 +85,11 @@ ColorEncoding color_encoding(const OIIO::ImageSpec& spec) {
     const float exponent = digit == std::string::npos ? 2.2f : std::strtof(space.c_str() + digit, nullptr);
     if (exponent > 0.1f && exponent < 10) return {TransferCurve::gamma, exponent};
   }
-  if (space.empty() && spec.format.basetype == OIIO::TypeDesc::UINT8) return {TransferCurve::srgb, 1};
-  return {};
+  // TIFF says nothing, of 8 bits or 16.
+  if (space.empty() && !spec.format.is_floating_point()) return {TransferCurve::srgb, 1};
+  ColorEncoding encoding;
+  encoding.to_rec709 = primaries_of(spec);
+  return encoding;
 }
 
 /// Opens the image that `memory` holds, or returns null.

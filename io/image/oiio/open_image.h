@@ -24,6 +24,7 @@ class OpenImageIoLibrary final : public ImageLibrary {
   void write(const std::string& path, const std::string& temporary, const FlatImage& image,
              const std::vector<Attribute>& attributes) const override;
   Picture read(const std::string& path) const override;
+  EnvironmentImage read_environment(const std::string& path) const override;
   HeightImage read_heights(const std::string& path, std::uint32_t most_side,
                            std::size_t most_pixels) const override;
   TexelImage read_texels(const TextureSource& source) const override;
@@ -35,11 +36,14 @@ std::string first_line(const std::string& text, const std::string& fallback);
 /// Throws Error of kind io, which names `path`.
 [[noreturn]] void fail(const std::string& path, const std::string& message);
 
+/// Throws Error of kind io if such an image would take more than a quarter of this machine's memory.
+void check_size_in_memory(const std::string& path, int width, int height, int channels);
+
 /// Takes the pending global error of OpenImageIO; it would be printed at exit otherwise.
 std::string take_image_error(const std::string& fallback);
 
-/// How the colour channels of a file with this header are encoded: as the file says, else sRGB for 8-bit
-/// integers and linear for everything else.
+/// How the colour channels of a file with this header are encoded: as the file says, else sRGB for integers
+/// and linear for everything else. Throws Error if it has impossible primaries.
 ColorEncoding color_encoding(const OIIO::ImageSpec& spec);
 
 /// Opens an image for reading with colours as they are stored, not multiplied by an unassociated alpha. The

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "io/image/color.h"
+#include "io/image/oiio/frame.h"
 #include "io/image/oiio/open_image.h"
 
 namespace oktett::oiio {
@@ -77,14 +78,56 @@ void decode_colors(Picture& picture, const ColorEncoding& encoding, bool multipl
   }
 }
 
+/// Light of other primaries than Rec.709.
+void convert_primaries(Picture& picture, const ColorMatrix& matrix) {
+  PicturePlane* const planes[3] = {picture.find("R"), picture.find("G"), picture.find("B")};
+  for (const PicturePlane* plane : planes)
+    if (plane == nullptr || plane->type == PlaneType::unsigned_int) return;
+  for (std::size_t i = 0; i < planes[0]->values.size(); ++i) {
+    const Color light =
+        transformed(matrix, {planes[0]->values[i], planes[1]->values[i], planes[2]->values[i]});
+    for (int k = 0; k < 3; ++k) planes[k]->values[i] = light[k];
+  }
+}
+
+/// `what(path)`, whose Error names the file.
+template <class What>
+auto naming(const std::string& path, const What& what) {
+  try {
+    return what();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.starts_with(path)) throw;
+    fail(path, message);
+  }
+}
+
+/// All planes of the file, as its pixels lie.
+Picture read_planes(OIIO::ImageInput& input, const std::string& path) {
+  const ImageSpec spec = input.spec();
+  Picture picture;
+  picture.width = static_cast<std::uint32_t>(spec.width);
+  picture.height = static_cast<std::uint32_t>(spec.height);
+  for (int begin = 0; begin < spec.nchannels;) {
+    int end = begin + 1;
+    while (end < spec.nchannels && is_id(spec, end) == is_id(spec, begin)) ++end;
+    append_planes(input, spec, path, begin, end, picture);
+    begin = end;
+  }
+  const bool grey = picture.find("R") == nullptr;
+  expand_grey(picture);
+  const ColorEncoding encoding = naming(path, [&] { return color_encoding(spec); });
+  decode_colors(picture, encoding, spec.get_int_attribute("oiio:UnassociatedAlpha") != 0);
+  if (encoding.to_rec709 && !grey) convert_primaries(picture, *encoding.to_rec709);
+  return picture;
+}
+
 }  // namespace
 
 Picture OpenImageIoLibrary::read(const std::string& path) const {
   const OIIO::ImageInput::unique_ptr input = open_image(path);
   const ImageSpec spec = input->spec();
-  Picture picture;
-  picture.width = static_cast<std::uint32_t>(spec.width);
-  picture.height = static_cast<std::uint32_t>(spec.height);
+  Picture picture = read_planes(*input, path);
   // A window that does not lie inside the frame cannot be expressed; the pixels themselves are whole.
   const bool inside = spec.full_width > 0 && spec.full_height > 0 && spec.x >= spec.full_x &&
                       spec.y >= spec.full_y &&
@@ -94,16 +137,29 @@ Picture OpenImageIoLibrary::read(const std::string& path) const {
   picture.y = inside ? static_cast<std::uint32_t>(spec.y - spec.full_y) : 0;
   picture.full_width = inside ? static_cast<std::uint32_t>(spec.full_width) : picture.width;
   picture.full_height = inside ? static_cast<std::uint32_t>(spec.full_height) : picture.height;
-
-  for (int begin = 0; begin < spec.nchannels;) {
-    int end = begin + 1;
-    while (end < spec.nchannels && is_id(spec, end) == is_id(spec, begin)) ++end;
-    append_planes(*input, spec, path, begin, end, picture);
-    begin = end;
-  }
-  expand_grey(picture);
-  decode_colors(picture, color_encoding(spec), spec.get_int_attribute("oiio:UnassociatedAlpha") != 0);
   return picture;
+}
+
+EnvironmentImage OpenImageIoLibrary::read_environment(const std::string& path) const {
+  const OIIO::ImageInput::unique_ptr input = open_image(path);
+  const ImageSpec spec = input->spec();
+  EnvironmentImage image;
+  image.is_cube = spec.get_string_attribute("textureformat") == "CubeFace Environment";
+  if (image.is_cube && spec.height < 6)
+    fail(path, fmt::format("a cube map has six faces one above the other, found {} rows", spec.height));
+  Picture all = read_planes(*input, path);
+  // The faces fill the data window, whatever is displayed.
+  const ImageFrame frame = image.is_cube ? ImageFrame{all.width, all.height, 0, 0, true}
+                                         : frame_of(spec, input->format_name(), path);
+  image.picture.width = image.picture.full_width = frame.width;
+  image.picture.height = image.picture.full_height = frame.height;
+  for (const char* name : {"R", "G", "B"}) {
+    PicturePlane* const plane = all.find(name);
+    if (plane == nullptr || plane->type == PlaneType::unsigned_int) fail(path, "the image has no colours");
+    plane->values = in_frame(frame, spec, 1, std::move(plane->values));
+    image.picture.planes.push_back(std::move(*plane));
+  }
+  return image;
 }
 
 /// Reads the first `colors` channels, and channel `alpha` unless it is negative.
@@ -134,20 +190,24 @@ TexelImage OpenImageIoLibrary::read_texels(const TextureSource& source) const {
   const OIIO::ImageInput::unique_ptr input = open_image(source.path, memory.get());
   const OIIO::ImageSpec spec = input->spec();
   TexelImage image;
-  image.width = static_cast<std::uint32_t>(spec.width);
-  image.height = static_cast<std::uint32_t>(spec.height);
+  const ImageFrame frame = frame_of(spec, input->format_name(), source.path);
+  image.width = frame.width, image.height = frame.height;
   image.colors = spec.nchannels < 3 ? 1 : 3;
   const int alpha = source.alpha ? spec.alpha_channel : -1;
   image.alpha = alpha >= 0;
-  image.encoding = color_encoding(spec);
-  if (source.color_space != TextureColors::of_file)
-    image.encoding = {source.color_space == TextureColors::srgb ? TransferCurve::srgb : TransferCurve::linear,
-                      1};
+  image.encoding = naming(source.path, [&] { return color_encoding(spec); });
+  if (source.color_space != TextureColors::of_file) {
+    const bool is_srgb = source.color_space == TextureColors::srgb;
+    image.encoding.curve = is_srgb ? TransferCurve::srgb : TransferCurve::linear;
+    image.encoding.exponent = 1;
+  }
   if (spec.format.basetype == OIIO::TypeDesc::UINT8)
     image.bytes =
         read_texel_numbers<std::uint8_t>(*input, source.path, OIIO::TypeDesc::UINT8, image.colors, alpha);
   else
-    image.floats = read_texel_numbers<float>(*input, source.path, OIIO::TypeDesc::FLOAT, image.colors, alpha);
+    image.floats =
+        in_frame(frame, spec, image.channels(),
+                 read_texel_numbers<float>(*input, source.path, OIIO::TypeDesc::FLOAT, image.colors, alpha));
   return image;
 }
 
@@ -204,6 +264,8 @@ HeightImage OpenImageIoLibrary::read_heights(const std::string& path, std::uint3
   const OIIO::ImageInput::unique_ptr input = open_image(path);
   const ImageSpec spec = input->spec();
   check_size(path, spec, most_side, most_pixels);
+  if (!frame_of(spec, input->format_name(), path).is_whole)
+    fail(path, "the image has no heights in a part of its display window, or some outside of it");
   HeightImage image;
   image.columns = static_cast<std::uint32_t>(spec.width),
   image.rows = static_cast<std::uint32_t>(spec.height);
