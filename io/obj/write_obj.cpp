@@ -146,16 +146,16 @@ class MtlWriting {
   }
 
   void write_textures(const Material& m) {
-    constexpr auto kColors = std::nullopt;
+    constexpr auto kNone = std::nullopt;
     constexpr auto kNumber = ImageChannel::luminance;
-    texture("map_Kd", m.color_texture, kColors);
-    texture("map_Ks", m.specular_texture, kColors);
-    texture("map_Ke", m.emission_texture, kColors);
+    texture("map_Kd", m.color_texture, kNone);
+    texture("map_Ks", m.specular_texture, kNone);
+    texture("map_Ke", m.emission_texture, kNone);
     texture("map_d", m.opacity_texture, kNumber);
     texture("map_Bump", m.bump_texture, kNumber, m.bump_scale);
-    texture("norm", m.normal_texture, kColors);
+    texture("norm", m.normal_texture, kNone);
     // Blender takes normal maps from there alone; the others that know `norm` prefer it.
-    if (m.bump_texture == kNoId) texture("map_Bump", m.normal_texture, kColors);
+    if (m.bump_texture == kNoId) texture("map_Bump", m.normal_texture, kNone);
     if (!m.principled) return;
     texture("map_Pr", m.principled->roughness_texture, kNumber);
     texture("map_Pm", m.principled->metallic_texture, kNumber);
