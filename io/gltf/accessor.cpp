@@ -240,6 +240,23 @@ void read_gltf_tangents(const GltfFile& file, const GltfElements& e, std::array<
   read_all<4>(file, e, GltfCheck::finite, reinterpret_cast<float*>(out));
 }
 
+void read_gltf_values(const GltfFile& file, const GltfElements& e, bool parts, float* out) {
+  const std::uint64_t size = e.components;
+  const auto read = [&](std::uint64_t index, const char* from) {
+    with_number(e.number, [&]<class T>() {
+      for (std::uint64_t k = 0; k < size; ++k)
+        out[size * index + k] = as_float(load<T>(from + k * sizeof(T)), e.normalized || parts);
+    });
+  };
+  in_parts(e.count, kPerTask, [&](std::uint64_t first, std::uint64_t last) {
+    if (e.data == nullptr)
+      std::fill(out + size * first, out + size * last, 0.0f);
+    else
+      for (std::uint64_t i = first; i < last; ++i) read(i, e.data + std::uint64_t{e.stride} * i);
+  });
+  for_each_sparse(file, e, read);
+}
+
 void read_gltf_indices(const GltfFile& file, const GltfElements& e, std::uint64_t limit, std::uint32_t* out) {
   const bool is_whole =
       e.number == GltfNumber::uint8 || e.number == GltfNumber::uint16 || e.number == GltfNumber::uint32;

@@ -71,6 +71,10 @@ std::vector<float> read_gltf_numbers(const GltfFile& file, const GltfElements& e
                                      std::uint32_t components);
 /// The same for tangents and the side of the second one.
 void read_gltf_tangents(const GltfFile& file, const GltfElements& elements, std::array<float, 4>* out);
+/// Reads the numbers of all elements, as many of each as it has components, to `out`. `parts`: whole ones of
+/// 8 and 16 bits are parts of the greatest one even if the accessor does not say so. Numbers may be anything.
+/// Throws Error for a sparse element out of range.
+void read_gltf_values(const GltfFile& file, const GltfElements& elements, bool parts, float* out);
 /// Reads indices, which must be below `limit`. Throws Error if one is not, or for other elements.
 void read_gltf_indices(const GltfFile& file, const GltfElements& elements, std::uint64_t limit,
                        std::uint32_t* out);

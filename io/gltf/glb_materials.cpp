@@ -124,9 +124,11 @@ void GltfMaterialWriter::set_opacity(const Material& m, tinygltf::Material& out)
   const Texture* const color = m.color_texture == kNoId ? nullptr : &file_.textures[m.color_texture];
   const bool shares_image = color != nullptr && t.channel == ImageChannel::alpha && t.path == color->path &&
                             t.content == color->content && written_.contains(m.color_texture);
+  const bool shares_colors =
+      m.color_texture == kNoId && t.channel == ImageChannel::alpha && t.attribute == kColorAttribute;
   if (shares_image && t.gain == 1 && t.base == 0) {
     out.alphaMode = "BLEND";
-  } else if (shares_image && t.gain >= kHardGain && t.gain <= kGltfMaskSlope) {
+  } else if ((shares_image || shares_colors) && t.gain >= kHardGain && t.gain <= kGltfMaskSlope) {
     out.alphaMode = "MASK";
     alpha = static_cast<double>(t.gain / kGltfMaskSlope);
     out.alphaCutoff = std::max(0.0, static_cast<double>((kGltfMaskAtCutoff - t.base) / kGltfMaskSlope));
@@ -140,7 +142,9 @@ void GltfMaterialWriter::set_opacity(const Material& m, tinygltf::Material& out)
 void GltfMaterialWriter::set_drawn_opacity(const Material& m, tinygltf::Material& out) {
   const Texture& opacity = file_.textures[m.opacity_texture];
   const Texture* color = m.color_texture == kNoId ? nullptr : &file_.textures[m.color_texture];
-  if (opacity.pattern || (color != nullptr && !written_.contains(m.color_texture))) return;
+  if (opacity.pattern || !opacity.attribute.empty() ||
+      (color != nullptr && !written_.contains(m.color_texture)))
+    return;
   if (color != nullptr && !is_laid_alike(*color, opacity)) return;
   const std::string key =
       "opacity:" + std::to_string(m.color_texture) + ":" + std::to_string(m.opacity_texture);
@@ -168,7 +172,7 @@ void GltfMaterialWriter::set_normals(const Material& m, std::size_t slot, tinygl
   out.normalTexture.scale = double{m.normal_scale};
   if (m.normal_texture != kNoId || m.bump_texture == kNoId) return;
   const Texture& bump = file_.textures[m.bump_texture];
-  if (bump.pattern || bump.scale.x == 0 || bump.scale.y == 0) return;
+  if (bump.pattern || !bump.attribute.empty() || bump.scale.x == 0 || bump.scale.y == 0) return;
   const Vec2f size = uv_lengths(file_.mesh, slot);
   const double width = double{size.x} / std::abs(double{bump.scale.x}),
                height = double{size.y} / std::abs(double{bump.scale.y});
@@ -259,7 +263,7 @@ bool GltfMaterialWriter::is_plain(std::uint32_t index, ImageChannel channel) con
 /// The index of the texture in the model; -1 if it cannot be.
 int GltfMaterialWriter::texture(std::uint32_t index) {
   const Texture& t = file_.textures[index];
-  const int source = t.pattern || t.gain != 1 || t.base != 0 ? -1 : image(t);
+  const int source = t.pattern || !t.attribute.empty() || t.gain != 1 || t.base != 0 ? -1 : image(t);
   if (source < 0) return -1;
   written_.insert(index);
   return add_texture(t, source);

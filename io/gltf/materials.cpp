@@ -28,11 +28,36 @@ class Materials {
   Materials(const GltfFile& file, GltfScene& scene) : file_(file), scene_(scene), list_(scene.textures) {}
 
   void run() {
-    for (const GltfMaterial& m : file_.model().materials) scene_.materials.push_back(convert(m));
+    find_colors();
+    for (const GltfMaterial& m : file_.model().materials) {
+      colors_ = colors_of_[scene_.materials.size()];
+      scene_.materials.push_back(convert(m));
+    }
     scene_.texture_places.assign(scene_.textures.size(), Location{file_.path()});
   }
 
  private:
+  /// What COLOR_0 says of the primitives of a material.
+  struct Colors {
+    bool any = false, alpha = false;
+  };
+
+  void find_colors() {
+    const GltfModel& model = file_.model();
+    colors_of_.resize(model.materials.size());
+    for (const GltfMesh& mesh : model.meshes)
+      for (const GltfPrimitive& primitive : mesh.primitives) {
+        if (primitive.material == kNoId) continue;
+        Colors& colors = colors_of_[primitive.material];
+        for (const GltfCarried& carried : primitive.attributes.carried) {
+          if (!carried.is_color || carried.name != kColorAttribute) continue;
+          const GltfAccessor& accessor = model.accessors[carried.number];
+          colors.any = colors.any || accessor.components >= 3;
+          colors.alpha = colors.alpha || accessor.components == 4;
+        }
+      }
+  }
+
   Material convert(const GltfMaterial& in) {
     uv_sets_ = gltf_uv_sets(in);
     Material m;
@@ -44,12 +69,17 @@ class Materials {
     m.normal_scale = in.normal_scale;
     m.emission_texture = add(in.emission_texture);
     set_opacity(in, m);
+    if (colors_.any) m.tint_texture = add_colors(ImageChannel::red);
     PrincipledMaterial principled;
     set_surface(in, principled);
     if (in.unlit) {
       // What it shows does not depend on light.
       m.emission = in.base_color, m.emission_texture = m.color_texture, m.emits_behind = true;
-      m.color = {0, 0, 0}, m.color_texture = kNoId;
+      if (colors_.any && m.emission_texture == kNoId)
+        m.emission_texture = m.tint_texture;
+      else if (colors_.any)
+        warn(in, "colours of vertices are not shown beside the image of an unlit material");
+      m.color = {0, 0, 0}, m.color_texture = m.tint_texture = kNoId;
       principled = {};
       principled.parameters.specular = 0, principled.parameters.roughness = 1;
     }
@@ -81,12 +111,29 @@ class Materials {
     if (in.alpha_mode == GltfMaterial::Alpha::blend) {
       m.opacity = in.alpha;
       m.opacity_texture = add(in.base_texture, ImageChannel::alpha);
+      if (colors_.alpha) m.tint_opacity_texture = add_colors(ImageChannel::alpha);
+    } else if (in.base_texture.texture == kNoId && colors_.alpha) {
+      m.opacity_texture = add_colors(ImageChannel::alpha, kGltfMaskSlope * in.alpha,
+                                     kGltfMaskAtCutoff - kGltfMaskSlope * in.alpha_cutoff);
     } else if (in.base_texture.texture == kNoId) {
       m.opacity = in.alpha >= in.alpha_cutoff ? 1 : 0;
     } else {
       m.opacity_texture = add(in.base_texture, ImageChannel::alpha, kGltfMaskSlope * in.alpha,
                               kGltfMaskAtCutoff - kGltfMaskSlope * in.alpha_cutoff);
+      if (colors_.alpha) warn(in, "alpha of vertices is not shown beside that of an image where it masks");
     }
+  }
+
+  /// The colours that meshes carry, or a number gain * value + base of them.
+  std::uint32_t add_colors(ImageChannel channel, float gain = 1, float base = 0) {
+    Texture texture;
+    texture.attribute = kColorAttribute;
+    texture.channel = channel, texture.gain = gain, texture.base = base;
+    return list_.add(texture);
+  }
+
+  void warn(const GltfMaterial& m, const std::string& message) {
+    scene_.warnings.push_back({Location{file_.path()}, "material '" + m.name + "': " + message});
   }
 
   void set_surface(const GltfMaterial& in, PrincipledMaterial& out) {
@@ -170,10 +217,8 @@ class Materials {
       differ = differ || (use.uvs != uv_sets_.first && use.uvs != uv_sets_.second);
     });
     if (differ)
-      scene_.warnings.push_back(
-          {Location{file_.path()}, "material '" + m.name +
-                                       "': its textures lie by more than two sets of coordinates; "
-                                       "the first of them is used for the others"});
+      warn(m,
+           "its textures lie by more than two sets of coordinates; the first of them is used for the others");
   }
 
   static constexpr float kMostAbsorption = 1e30f;
@@ -182,6 +227,8 @@ class Materials {
   GltfScene& scene_;
   TextureList list_;
   UvSets uv_sets_;  ///< of the material that is converted
+  Colors colors_;   ///< likewise
+  std::vector<Colors> colors_of_;
   std::map<std::uint32_t, Texture> images_;
 };
 

@@ -5,9 +5,11 @@
 #include <cstring>
 #include <deque>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.h"
+#include "io/gltf/carried.h"
 #include "io/gltf/gltf_file.h"
 #include "io/gltf/packed.h"
 #include "io/mesh/reading.h"
@@ -40,6 +42,7 @@ struct Part {
   std::uint16_t slot = 0;
   const DracoMesh* draco = nullptr;
   bool picks = false;  ///< reads only the elements that its corners name
+  GltfCarrier carrier{};
 };
 
 /// Elements without gaps in memory.
@@ -78,7 +81,8 @@ class Build {
         if (part.has[role]) bytes += 16 * (part.picks ? part.corners : part.elements[role].count);
     check_limit(file_.path(), triangles, "triangles", kMostElements);
     triangles_ = triangles;
-    return bytes;
+    plan_attributes();
+    return bytes + join_->bytes();
   }
 
   GltfBuiltMesh run() {
@@ -89,6 +93,8 @@ class Build {
     if (bending_ != nullptr)
       for (const Part& part : parts_) bend(part);
     fill_indices();
+    for (Part& part : parts_) part.carrier.base = part.base[kPositions];
+    join_->fill(file_, out_.mesh);
     fill_slots();
     return std::move(out_);
   }
@@ -168,6 +174,13 @@ class Build {
       part.has[role] = true, part.accessor[role] = roles[role];
       part.elements[role] = accessors_.elements(roles[role]);
     }
+    for (const GltfCarried& carried : part.primitive->attributes.carried) {
+      const GltfAccessor& accessor = file_.model().accessors[carried.number];
+      if (accessor.is_matrix || !accessor.problem.empty())
+        warn_of(part, carried.name, "expected up to four numbers for each vertex");
+      else
+        carry(part, {carried.name, carried.is_color, carried.number, accessors_.elements(carried.number)});
+    }
     if (part.primitive->indices == kNoId) return;
     part.is_indexed = true;
     part.indices = accessors_.elements(part.primitive->indices);
@@ -178,7 +191,8 @@ class Build {
     const std::string_view bytes = file_.bytes(view.range, part.name);
     const std::array<std::uint32_t, kRoles> roles =
         roles_of(*part.primitive, part.primitive->draco_attributes);
-    DracoMesh& mesh = draco_.emplace_back(unpack_draco(file_, bytes, roles, part.name));
+    const std::vector<GltfCarried>& packed = part.primitive->draco_attributes.carried;
+    DracoMesh& mesh = draco_.emplace_back(unpack_draco(file_, bytes, roles, packed, part.name));
     for (std::size_t role = 0; role < kRoles; ++role) {
       const std::vector<float>& numbers = mesh.numbers[role];
       if (role != kPositions && numbers.empty()) continue;
@@ -188,6 +202,34 @@ class Build {
     }
     part.draco = &mesh, part.is_indexed = true;
     part.indices = elements_of(part.name, mesh.indices.data(), mesh.indices.size(), 1, GltfNumber::uint32);
+    for (std::size_t i = 0; i < packed.size(); ++i) carry_packed(part, packed[i], mesh.carried[i]);
+    for (const GltfCarried& beside : part.primitive->attributes.carried)
+      if (std::ranges::find(packed, beside.name, &GltfCarried::name) == packed.end())
+        warn_of(part, beside.name, "it stands beside Draco's data");
+  }
+
+  /// Whether whole numbers are parts of the greatest one, says the accessor.
+  void carry_packed(Part& part, const GltfCarried& packed, const DracoMesh::Carried& numbers) {
+    GltfCarriedValues values{packed.name, packed.is_color};
+    values.elements = elements_of(part.name, numbers.bytes.data(), part.draco->vertices, numbers.components,
+                                  numbers.number);
+    values.elements.normalized = numbers.normalized;
+    const std::vector<GltfCarried>& named = part.primitive->attributes.carried;
+    const auto found = std::ranges::find(named, packed.name, &GltfCarried::name);
+    if (found != named.end()) values.elements.normalized = file_.model().accessors[found->number].normalized;
+    carry(part, std::move(values));
+  }
+
+  void carry(Part& part, GltfCarriedValues values) {
+    const std::string why = why_not_carried(values, part.elements[kPositions].count);
+    if (why.empty())
+      part.carrier.values.push_back(std::move(values));
+    else
+      warn_of(part, values.name, why);
+  }
+
+  void warn_of(const Part& part, const std::string& name, const std::string& why) {
+    warnings_.push_back(part.name + ": the attribute " + quote_name(name) + " is not read: " + why);
   }
 
   void count_corners(Part& part) {
@@ -223,7 +265,7 @@ class Build {
   void find_rare_uses() {
     if (bending_ != nullptr) {
       // What bends a part belongs to its own elements.
-      for (Part& part : parts_) std::ranges::fill(part.accessor, kNoId);
+      for (Part& part : parts_) own_elements(part);
       return;
     }
     std::map<std::uint32_t, std::uint64_t> corners;
@@ -235,8 +277,27 @@ class Build {
         if (part.has[role])
           part.picks =
               part.picks && part.elements[role].data != nullptr && part.elements[role].sparse_count == 0;
-      if (part.picks) std::ranges::fill(part.accessor, kNoId);
+      for (const GltfCarriedValues& values : part.carrier.values)
+        part.picks = part.picks && values.elements.data != nullptr && values.elements.sparse_count == 0;
+      if (part.picks) own_elements(part);
     }
+  }
+
+  static void own_elements(Part& part) {
+    std::ranges::fill(part.accessor, kNoId);
+    for (GltfCarriedValues& values : part.carrier.values) values.accessor = kNoId;
+  }
+
+  void plan_attributes() {
+    std::vector<const GltfCarrier*> carriers;
+    for (Part& part : parts_) {
+      GltfCarrier& carrier = part.carrier;
+      carrier.positions = part.accessor[kPositions];
+      carrier.vertices = part.picks ? part.corners : part.elements[kPositions].count;
+      carrier.first_corner = 3 * part.first_triangle, carrier.corners = 3 * part.triangles;
+      carriers.push_back(&carrier);
+    }
+    join_.emplace(std::move(carriers));
   }
 
   /// Writes the corners of all triangles, as numbers of the part's own elements.
@@ -279,11 +340,11 @@ class Build {
     for (std::size_t i = 0; i < count; ++i)
       corners[i] = static_cast<std::uint32_t>(std::ranges::lower_bound(used, corners[i]) - used.begin());
     for (std::size_t role = 0; role < kRoles; ++role)
-      if (part.has[role]) pick(part, role, used);
+      if (part.has[role]) pick(part.elements[role], used);
+    for (GltfCarriedValues& values : part.carrier.values) pick(values.elements, used);
   }
 
-  void pick(Part& part, std::size_t role, const std::vector<std::uint32_t>& used) {
-    GltfElements& e = part.elements[role];
+  void pick(GltfElements& e, const std::vector<std::uint32_t>& used) {
     const std::size_t size = std::size_t{bytes_of(e.number)} * e.components;
     std::string& picked = picked_.emplace_back();
     picked.resize(used.size() * size);
@@ -480,6 +541,7 @@ class Build {
   std::vector<Part> parts_;
   std::deque<DracoMesh> draco_;
   std::deque<std::string> picked_;
+  std::optional<GltfCarriedJoin> join_;
   std::uint64_t triangles_ = 0;
   std::uint64_t sizes_[kRoles] = {};
   GltfBuiltMesh out_;

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -169,6 +170,7 @@ class GltfConversion {
       accessor.offset = whole_of(a, "byteOffset", 0), accessor.count = whole_of(a, "count", 0);
       accessor.number = number_type(a, accessor.problem);
       accessor.components = components_of(text_of(a, "type"));
+      accessor.is_matrix = text_of(a, "type").starts_with("MAT");
       if (accessor.components == 0) accessor.problem = "unknown type " + quote_name(text_of(a, "type"));
       accessor.normalized = flag_of(a, "normalized");
       if (const GltfJson* const s = member(a, "sparse")) {
@@ -213,21 +215,46 @@ class GltfConversion {
     return attributes;
   }
 
+  /// The name in the mesh of what vertices carry as `name`; empty: they do not.
+  static std::string carried_name(const std::string& name) {
+    constexpr std::string_view kColors = "COLOR_";
+    if (name.starts_with('_')) return name.substr(1);
+    if (!name.starts_with(kColors)) return "";
+    std::uint32_t set = 0;
+    const char* const end = name.data() + name.size();
+    const auto [rest, error] = std::from_chars(name.data() + kColors.size(), end, set);
+    if (error != std::errc() || rest != end) return "";
+    return set == 0 ? kColorAttribute : kColorAttribute + ("_" + std::to_string(set));
+  }
+
+  /// Adds what the primitive's mesh carries of `named`, as attributes_of reads it.
+  void take_carried(const GltfJson& named, std::size_t count, const std::string& where, const char* what,
+                    GltfAttributes& attributes) {
+    std::set<std::string> names;
+    // Colours stand before names with an underscore.
+    for (const auto& [name, value] : named.items()) {
+      const std::string own = carried_name(name);
+      if (own.empty()) continue;
+      if (names.insert(own).second)
+        attributes.carried.push_back(
+            {own, checked_index(path_, value.get<std::uint64_t>(), count, where, what), name[0] != '_'});
+      else
+        warn(where + ": the attribute " + quote_name(name) + " is not read: another one is called " +
+             quote_name(own));
+    }
+  }
+
   void take_meshes() {
-    bool colours = false;
     for (const GltfJson& m : list_of(in_, "meshes")) {
       const std::string where = gltf_place("meshes", out_.meshes.size());
       GltfMesh& mesh = out_.meshes.emplace_back();
       mesh.name = text_of(m, "name"), mesh.weights = numbers_of(m, "weights");
       const GltfJson& primitives = list_of(m, "primitives");
       if (primitives.empty()) warn(where + ": has no primitives");
-      for (const GltfJson& p : primitives) {
+      for (const GltfJson& p : primitives)
         mesh.primitives.push_back(
             primitive_of(p, where + "." + gltf_place("primitives", mesh.primitives.size())));
-        colours = colours || p.at("attributes").contains("COLOR_0");
-      }
     }
-    if (colours) warn("colours of vertices are not read");
   }
 
   GltfPrimitive primitive_of(const GltfJson& p, const std::string& where) {
@@ -239,6 +266,7 @@ class GltfConversion {
     primitive.mode = static_cast<int>(std::min<std::uint64_t>(mode, GltfPrimitive::kFan + 1));
     primitive.material = index(p, "material", list_of(in_, "materials").size(), where, "material");
     primitive.attributes = attributes_of(p.at("attributes"), accessors, where, "accessor");
+    take_carried(p.at("attributes"), accessors, where, "accessor", primitive.attributes);
     primitive.indices = index(p, "indices", accessors, where, "accessor");
     for (const GltfJson& target : list_of(p, "targets"))
       primitive.targets.push_back(attributes_of(target, accessors, where, "accessor"));
@@ -255,6 +283,7 @@ class GltfConversion {
     if (draco == nullptr) return primitive;
     primitive.draco_view = index(*draco, "bufferView", out_.views.size(), where, "view");
     primitive.draco_attributes = attributes_of(draco->at("attributes"), kNoId, where, "attribute");
+    take_carried(draco->at("attributes"), kNoId, where, "attribute", primitive.draco_attributes);
     return primitive;
   }
 

@@ -76,11 +76,19 @@ struct GltfAccessor {
   std::uint64_t offset = 0, count = 0;
   GltfNumber number = GltfNumber::float32;
   std::uint32_t components = 1;
+  bool is_matrix = false;
   std::string problem{};    ///< why its elements cannot be read; empty: they can
   bool normalized = false;  ///< whole numbers stand for [0, 1] or [-1, 1]
   std::optional<GltfSparse> sparse{};
 
   std::uint32_t element_bytes() const { return bytes_of(number) * components; }
+};
+
+/// What vertices carry as an attribute of their mesh.
+struct GltfCarried {
+  std::string name;          ///< in the mesh: "color" for COLOR_0, "color_1" for COLOR_1, "NAME" for _NAME
+  std::uint32_t number = 0;  ///< as those of GltfAttributes
+  bool is_color = false;     ///< of COLOR_n
 };
 
 /// What a vertex has, as an accessor or as a number in Draco's data; kNoId: nothing.
@@ -89,6 +97,7 @@ struct GltfAttributes {
   /// Four joints of a skin and their weights in each.
   std::vector<std::uint32_t> joints, weights;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> uvs;  ///< sets of texture coordinates by their numbers
+  std::vector<GltfCarried> carried;                          ///< of different names; none of morph targets
 
   std::uint32_t uv_set(std::uint32_t number) const {
     for (const auto& [set, accessor] : uvs)

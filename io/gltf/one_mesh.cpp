@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
@@ -44,6 +45,83 @@ void for_all(std::size_t count, const F& f) {
     for (std::size_t i = begin; i < end; ++i) f(i);
   });
 }
+
+/// Puts what meshes carry behind each other. Where a mesh does not carry what another one does, it is white,
+/// or zero.
+class AttributeJoining {
+ public:
+  AttributeJoining(const GltfScene& scene, const TriangleMesh& whole) : scene_(scene), whole_(whole) {
+    for (const GltfPlacement& placement : scene.placements) {
+      shown_.emplace(placement.mesh);
+      for (const MeshAttribute& a : scene.meshes[placement.mesh].mesh->attributes)
+        if (known_.insert(a.name).second) names_.push_back(a.name);
+    }
+    room_ = kAlways * whole.indices.size();
+    for (const std::uint32_t mesh : shown_)
+      for (const MeshAttribute& a : scene.meshes[mesh].mesh->attributes) room_ += a.size() * a.components;
+  }
+
+  std::vector<MeshAttribute> run(const std::string& path, std::vector<Warning>& warnings) {
+    std::vector<MeshAttribute> all;
+    for (const std::string& name : names_) {
+      MeshAttribute joined = empty(name);
+      const std::uint64_t size = domain_size(whole_, joined.domain) * std::uint64_t{joined.components};
+      if (size > room_) {
+        warnings.push_back({Location{path}, "the attribute " + quote_name(name) +
+                                                " is left out: one mesh of all has no room for it"});
+        continue;
+      }
+      room_ -= size;
+      joined.floats = Column<float>(size, name == kColorAttribute ? 1.0f : 0.0f);
+      Sizes before;
+      for (const GltfPlacement& placement : scene_.placements) {
+        const TriangleMesh& part = *scene_.meshes[placement.mesh].mesh;
+        if (const MeshAttribute* const a = of_mesh_[placement.mesh])
+          copy(part, *a, placement.to_world.determinant() < 0, before, joined);
+        before.add(part);
+      }
+      all.push_back(std::move(joined));
+    }
+    return all;
+  }
+
+ private:
+  /// Numbers for which there is always room, for each corner.
+  static constexpr std::uint64_t kAlways = 16;
+
+  MeshAttribute empty(const std::string& name) {
+    MeshAttribute all;
+    all.name = name;
+    of_mesh_.assign(scene_.meshes.size(), nullptr);
+    for (const std::uint32_t mesh : shown_) {
+      const MeshAttribute* const a = find_attribute(*scene_.meshes[mesh].mesh, name);
+      if (a == nullptr) continue;
+      of_mesh_[mesh] = a;
+      all.components = std::max(all.components, a->components);
+      if (a->domain != AttributeDomain::vertex) all.domain = AttributeDomain::corner;
+    }
+    return all;
+  }
+
+  static void copy(const TriangleMesh& part, const MeshAttribute& a, bool is_mirror, const Sizes& before,
+                   MeshAttribute& all) {
+    const bool by_vertex = all.domain == AttributeDomain::vertex;
+    float* const out = all.floats.data() + all.components * (by_vertex ? before.positions : before.corners);
+    for_all(by_vertex ? part.positions.size() : part.indices.size(), [&](std::size_t i) {
+      const std::size_t corner = i % 3, source = is_mirror && corner > 0 ? 3 - corner : corner;
+      for (std::uint32_t k = 0; k < a.components; ++k)
+        out[i * all.components + k] = by_vertex ? a.value(i, k) : corner_value(part, a, i / 3, source, k);
+    });
+  }
+
+  const GltfScene& scene_;
+  const TriangleMesh& whole_;
+  std::set<std::uint32_t> shown_;
+  std::set<std::string> known_;
+  std::vector<std::string> names_;             ///< in the order in which they come
+  std::vector<const MeshAttribute*> of_mesh_;  ///< those of a name, by mesh
+  std::uint64_t room_ = 0;                     ///< for numbers
+};
 
 /// Appends meshes to one.
 class Joining {
@@ -198,6 +276,7 @@ MeshFile one_mesh(const std::string& path, GltfScene scene) {
     file.mesh = std::move(*scene.meshes[0].mesh);
   } else {
     file.mesh = Joining(path, scene).run(slots.take());
+    file.mesh.attributes = AttributeJoining(scene, file.mesh).run(path, scene.warnings);
   }
   const bool has_materials = std::ranges::any_of(scene.meshes, [](const GltfSharedMesh& m) {
     return std::ranges::any_of(m.slots, [](auto s) { return s != kNoId; });

@@ -1,5 +1,8 @@
 #include "io/gltf/packed.h"
 
+#include <cstring>
+#include <optional>
+
 #include "core/error.h"
 
 #ifdef OKTETT_HAVE_DRACO
@@ -30,13 +33,59 @@ std::vector<float> draco_numbers(const GltfFile& file, const draco::Mesh& mesh, 
   return numbers;
 }
 
+/// The type of numbers that are read as they are.
+std::optional<GltfNumber> number_of_draco(draco::DataType type) {
+  switch (type) {
+    case draco::DT_INT8:
+      return GltfNumber::int8;
+    case draco::DT_UINT8:
+      return GltfNumber::uint8;
+    case draco::DT_INT16:
+      return GltfNumber::int16;
+    case draco::DT_UINT16:
+      return GltfNumber::uint16;
+    case draco::DT_UINT32:
+      return GltfNumber::uint32;
+    case draco::DT_FLOAT32:
+      return GltfNumber::float32;
+    default:
+      return std::nullopt;
+  }
+}
+
+DracoMesh::Carried draco_carried(const GltfFile& file, const draco::Mesh& mesh, const GltfCarried& wanted,
+                                 const std::string& where) {
+  const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(wanted.number);
+  if (attribute == nullptr)
+    file.fail(where + ": its data hold no attribute " + std::to_string(wanted.number));
+  DracoMesh::Carried out;
+  const std::optional<GltfNumber> number = number_of_draco(attribute->data_type());
+  out.number = number.value_or(GltfNumber::float32);
+  out.components = static_cast<std::uint32_t>(attribute->num_components());
+  out.normalized = number && attribute->normalized();
+  const std::size_t size = std::size_t{bytes_of(out.number)} * out.components;
+  out.bytes.resize(size * mesh.num_points());
+  std::vector<float> floats(out.components);
+  for (std::uint32_t i = 0; i < mesh.num_points(); ++i) {
+    const draco::AttributeValueIndex value = attribute->mapped_index(draco::PointIndex(i));
+    const bool good =
+        value.value() < attribute->size() && (number || attribute->ConvertValue<float>(value, floats.data()));
+    if (!good) file.fail(where + ": its data cannot be read as numbers");
+    if (number)
+      std::memcpy(&out.bytes[size * i], attribute->GetAddress(value), size);
+    else
+      std::memcpy(&out.bytes[size * i], floats.data(), size);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool can_unpack_draco() { return true; }
 
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                        const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
-                       const std::string& where) {
+                       const std::vector<GltfCarried>& carried, const std::string& where) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
@@ -52,6 +101,7 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
                      : kDracoSizes[i] == 3 ? draco_numbers<3>(file, mesh, wanted[i], where)
                                            : draco_numbers<4>(file, mesh, wanted[i], where);
   }
+  for (const GltfCarried& one : carried) out.carried.push_back(draco_carried(file, mesh, one, where));
   out.indices.reserve(std::size_t{3} * mesh.num_faces());
   for (draco::FaceIndex i(0); i < mesh.num_faces(); ++i)
     for (const draco::PointIndex& corner : mesh.face(i)) out.indices.push_back(corner.value());
@@ -63,7 +113,8 @@ DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
 bool can_unpack_draco() { return false; }
 
 DracoMesh unpack_draco(const GltfFile& file, std::string_view,
-                       const std::array<std::uint32_t, kDracoSizes.size()>&, const std::string& where) {
+                       const std::array<std::uint32_t, kDracoSizes.size()>&, const std::vector<GltfCarried>&,
+                       const std::string& where) {
   file.fail(where + ": is packed by Draco, without which this program is built");
 }
 

@@ -25,12 +25,21 @@ struct DracoMesh {
   std::uint64_t vertices = 0;
   std::vector<std::uint32_t> indices;
   std::array<std::vector<float>, kDracoSizes.size()> numbers;
+  /// What the mesh carries besides, of any type.
+  struct Carried {
+    GltfNumber number = GltfNumber::float32;
+    std::uint32_t components = 1;
+    bool normalized = false;  ///< say the data
+    std::string bytes{};      ///< without gaps
+  };
+  std::vector<Carried> carried;  ///< as they were asked for
 };
 
-/// Unpacks the attributes, which `wanted` gives by their numbers in the data; kNoId: not wanted. Throws
-/// Error, which begins with `where`, for damaged data.
+/// Unpacks the attributes, which `wanted` and `carried` give by their numbers in the data; kNoId: not wanted.
+/// Throws Error, which begins with `where`, for damaged data.
 DracoMesh unpack_draco(const GltfFile& file, std::string_view bytes,
-                       const std::array<std::uint32_t, kDracoSizes.size()>& wanted, const std::string& where);
+                       const std::array<std::uint32_t, kDracoSizes.size()>& wanted,
+                       const std::vector<GltfCarried>& carried, const std::string& where);
 
 /// Unpacks a view. Throws Error if its bytes are damaged, or if the program is built without meshoptimizer.
 std::string unpack_meshopt(const GltfFile& file, const GltfPacking& packing, const std::string& where);

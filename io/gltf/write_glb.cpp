@@ -14,6 +14,7 @@
 #include "io/gltf/glb_materials.h"
 #include "io/gltf/gltf.h"
 #include "io/gltf/gltf_file.h"
+#include "io/mesh/reading.h"
 #include "io/mesh/vertices.h"
 #include "io/obj/write_obj.h"
 #include "io/text/files.h"
@@ -128,6 +129,73 @@ class GlbWriting {
     if (!mesh_.tangents.empty()) add_tangents();
     if (!mesh_.uvs.empty()) attributes_["TEXCOORD_0"] = add_floats(turned_uvs(mesh_.uvs));
     if (!mesh_.second_uvs.empty()) attributes_["TEXCOORD_1"] = add_floats(turned_uvs(mesh_.second_uvs));
+    // The sets of colours are numbered without gaps.
+    std::vector<const MeshAttribute*> colors;
+    while (const MeshAttribute* const next = color_set(colors.size())) colors.push_back(next);
+    for (const MeshAttribute& a : mesh_.attributes) {
+      const auto set = static_cast<std::size_t>(std::ranges::find(colors, &a) - colors.begin());
+      add_attribute(a, set < colors.size() ? "COLOR_" + std::to_string(set) : own_name(a.name));
+    }
+  }
+
+  /// The attribute that is a set of colours as glTF has them, from 0 to 1; or null.
+  const MeshAttribute* color_set(std::size_t number) const {
+    const std::string name = number == 0 ? kColorAttribute : kColorAttribute + ("_" + std::to_string(number));
+    const auto found = std::ranges::find(mesh_.attributes, name, &MeshAttribute::name);
+    if (found == mesh_.attributes.end() || found->components < 3) return nullptr;
+    for (std::size_t i = 0; i < found->size(); ++i)
+      for (std::uint32_t k = 0; k < found->components; ++k)
+        if (const float x = found->value(i, k); x < 0 || (x > 1 && std::isfinite(x))) return nullptr;
+    return &*found;
+  }
+
+  /// With an underscore before it, as glTF has what it knows nothing of.
+  std::string own_name(const std::string& name) {
+    std::string own = "_" + name;
+    for (char& c : own)
+      if (static_cast<unsigned char>(c) < ' ' || static_cast<unsigned char>(c) >= 0x7f) c = '_';
+    const std::string wanted = own;
+    for (int i = 2; attributes_.contains(own) || own == "_"; ++i) own = wanted + "_" + std::to_string(i);
+    if (own.substr(1) != name)
+      losses_.push_back("changed: the name of the attribute " + quote_name(name) + ", which is " +
+                        quote_name(own.substr(1)) + " now");
+    return own;
+  }
+
+  void add_attribute(const MeshAttribute& a, const std::string& name) {
+    std::vector<float> numbers;
+    numbers.reserve(a.size() * a.components);
+    std::size_t bad = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      for (std::uint32_t k = 0; k < a.components; ++k) {
+        const float x = a.value(i, k);
+        if (!std::isfinite(x)) ++bad;
+        numbers.push_back(std::isfinite(x) ? x : 0);
+      }
+    if (bad > 0)
+      losses_.push_back("changed: " + count_of(bad, "number") + " of the attribute " + quote_name(a.name) +
+                        " that are not finite become 0");
+    if (a.name == kColorAttribute && name != "COLOR_0")
+      losses_.push_back(
+          "changed: colours, which glTF has as three or four parts from 0 to 1; others do not show them");
+    constexpr int kTypes[] = {TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
+                              TINYGLTF_TYPE_VEC4};
+    const int view =
+        add_gltf_view(model_, numbers.data(), numbers.size() * sizeof(float), TINYGLTF_TARGET_ARRAY_BUFFER);
+    attributes_[name] = add_accessor(view, kTypes[a.components - 1], TINYGLTF_COMPONENT_TYPE_FLOAT, a.size());
+  }
+
+  /// Those of the triangles of a slot: where an image is shown without the colours, these only stand beside
+  /// it.
+  std::map<std::string, int> attributes_of(std::size_t slot) const {
+    if (slot >= file_.materials.size()) return attributes_;
+    const Material& m = file_.materials[slot];
+    if (m.color_texture == kNoId || m.tint_texture != kNoId) return attributes_;
+    std::map<std::string, int> own;
+    for (const auto& [name, accessor] : attributes_)
+      own[name.starts_with("COLOR_") ? name == "COLOR_0" ? "_color" : "_color" + name.substr(5) : name] =
+          accessor;
+    return own;
   }
 
   /// Unit vectors and 1 or -1. glTF has tangents for all vertices or for none.
@@ -174,7 +242,7 @@ class GlbWriting {
     for (std::size_t slot = 0; slot < count; ++slot) {
       if (corners[slot].empty()) continue;
       tinygltf::Primitive primitive;
-      primitive.attributes = attributes_;
+      primitive.attributes = attributes_of(slot);
       primitive.mode = TINYGLTF_MODE_TRIANGLES;
       if (slot < file_.materials.size()) primitive.material = materials_.add(slot);
       if (primitive.material >= 0) written_.push_back(slot);

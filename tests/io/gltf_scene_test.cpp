@@ -536,7 +536,6 @@ TEST(GltfScene, WhatIsLostIsSaid) {
                 one_node("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":0},\"targets\":[{\"POSITION\":0}]}"))),
             (std::vector<std::string>{
                 "a.glb: warning: animations are not shown without a time: things are shown at rest",
-                "a.glb: warning: colours of vertices are not read",
                 "a.glb: warning: extension 'EXT_something' is not read"}));
 }
 
