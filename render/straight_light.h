@@ -20,18 +20,19 @@ struct StraightPassage {
 struct StraightLight {
   Color light{1, 1, 1};
   Color between{0, 0, 0};           ///< what returns to the next face after reflection there and at the last
-  std::uint32_t entered = kNobody;  ///< the object that the last surface led into
+  std::uint32_t entered = kNobody;  ///< the material that the last surface led into; of a combination, its
+                                    ///< faces may be those of several objects
 
   static constexpr std::uint32_t kNobody = 0xffffffff;
 
   /// Between surfaces.
   void lose(const Color& left) { light = light * left, between = between * left * left; }
-  /// At a surface of an object.
-  void pass(const StraightPassage& p, std::uint32_t object) {
+  /// At a surface of a material.
+  void pass(const StraightPassage& p, std::uint32_t material) {
     light = light * p.passed;
-    for (int k = 0; k < 3 && !p.front && entered == object; ++k)
+    for (int k = 0; k < 3 && !p.front && entered == material; ++k)
       if (const float rest = 1 - between[k] * p.reflected; rest > 0) light[k] /= rest;
-    entered = p.front ? object : kNobody;
+    entered = p.front ? material : kNobody;
     between = Color{1, 1, 1} * p.reflected;
   }
 };

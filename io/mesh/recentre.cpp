@@ -35,7 +35,9 @@ std::optional<Vec3d> far_centre(std::span<const Vec3f> positions) {
   if (!(extent > 0) || distance_of(all) <= extent * kFar) return std::nullopt;
   const double step = std::exp2(std::ceil(std::log2(extent)));
   Vec3d centre = (Vec3d(all.lo) + Vec3d(all.hi)) / 2.0;
-  for (int k = 0; k < 3; ++k) centre[k] = std::round(centre[k] / step) * step;
+  // Where an axis is not far, nothing is taken off, so that differences of floats are floats.
+  for (int k = 0; k < 3; ++k)
+    centre[k] = std::abs(centre[k]) < 4 * step ? 0 : std::round(centre[k] / step) * step;
   return centre;
 }
 

@@ -67,7 +67,7 @@ static void go_behind_surfaces(const RenderContext& context, const RaySpan& rays
       StraightLight& light = p.passed[number];
       if (!passage.front && !context.interiors.empty())
         light.lose(passing_interior(context, rays[met], p.hits[met], s));
-      light.pass(passage, s.user);
+      light.pass(passage, material_index(*context.world, s.user, s.material_slot));
       if (is_black(light.light)) continue;
       p.behind.set(left, continue_behind(rays[met], s));
       p.left[left++] = number;
@@ -195,7 +195,9 @@ class ShadowWalker {
     const Boundary boundary =
         boundary_at(*context_.world, state.dielectrics, s, front, index_of_refraction(context_, ray, hit, s));
     StraightLight light = state.light;
-    if (!boundary.hidden) light.pass(straight_passage(context_, ray, hit, s, rule_, boundary.ior), s.user);
+    if (!boundary.hidden)
+      light.pass(straight_passage(context_, ray, hit, s, rule_, boundary.ior),
+                 material_index(*context_.world, s.user, s.material_slot));
     if (is_black(light.light)) return;
     rest_.push_back(continue_behind(ray, s), {state.entry, light, boundary.behind, state.numbers});
   }

@@ -1,4 +1,5 @@
-// What vertices of glTF files carry: COLOR_n and _NAME of all types, by themselves and in meshes of several parts.
+// What vertices of glTF files carry: COLOR_n and _NAME of all types, by themselves and in meshes of several
+// parts.
 
 #ifdef OKTETT_HAVE_DRACO
 #include <draco/compression/encode.h>
@@ -68,8 +69,7 @@ void expect_type(int number, const std::array<const char*, 4>& types) {
       out.vectors(kTriangle);
       out.accessor(out.view(bytes, stride), number, 3, types[size - 1],
                    normalized ? ",\"normalized\":true" : "");
-      const TriangleMesh mesh =
-          files.load(out.glb(one_node(primitive("\"POSITION\":0,\"_X\":1")))).mesh;
+      const TriangleMesh mesh = files.load(out.glb(one_node(primitive("\"POSITION\":0,\"_X\":1")))).mesh;
       EXPECT_EQ(carried(mesh, "X").components, size);
       EXPECT_EQ(carried(mesh, "X").domain, AttributeDomain::vertex);
       const std::vector<float> found = floats(mesh, "X");
@@ -95,8 +95,8 @@ TEST(GltfAttributes, SparseOnesAreRead) {
   const std::size_t first = out.view(indices), second = out.view(values);
   const auto sparse = [&](int index) {
     return ",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":" + std::to_string(first) +
-           ",\"componentType\":" + std::to_string(index) + "},\"values\":{\"bufferView\":" +
-           std::to_string(second) + "}}}";
+           ",\"componentType\":" + std::to_string(index) +
+           "},\"values\":{\"bufferView\":" + std::to_string(second) + "}}}";
   };
   const std::string zeros = "{\"componentType\":5121,\"normalized\":true,\"count\":3,\"type\":\"VEC3\"";
   GltfWriter other = out;
@@ -108,8 +108,7 @@ TEST(GltfAttributes, SparseOnesAreRead) {
   other.accessors += "," + zeros + sparse(kUint16);
   std::string bytes = other.glb(rest);
   other.binary[36] = 3;
-  EXPECT_EQ(files.error(other.glb(rest)),
-            "a.glb: accessors[1]: sparse element 3 is out of range: it has 3");
+  EXPECT_EQ(files.error(other.glb(rest)), "a.glb: accessors[1]: sparse element 3 is out of range: it has 3");
 }
 
 TEST(GltfAttributes, NamesAreThoseOfTheFile) {
@@ -123,7 +122,8 @@ TEST(GltfAttributes, NamesAreThoseOfTheFile) {
   out.array(std::vector<float>(3, 1), 5124, "SCALAR", 1);
   const auto names = [&](const std::string& attributes) {
     std::map<std::string, std::uint32_t> found;
-    for (const MeshAttribute& a : files.load(out.glb(one_node(primitive("\"POSITION\":0," + attributes)))).mesh.attributes)
+    for (const MeshAttribute& a :
+         files.load(out.glb(one_node(primitive("\"POSITION\":0," + attributes)))).mesh.attributes)
       found[a.name] = a.components;
     return found;
   };
@@ -145,8 +145,10 @@ TEST(GltfAttributes, NamesAreThoseOfTheFile) {
     EXPECT_EQ(warning("\"_a\":" + std::string(number)),
               start + "'a' is not read: expected up to four numbers for each vertex");
   for (const char* const number : {"2", "4"})
-    EXPECT_EQ(warning("\"COLOR_0\":" + std::string(number)),
-              start + "'color' is not read: expected three or four floats or parts of 8 or 16 bits for each vertex");
+    EXPECT_EQ(
+        warning("\"COLOR_0\":" + std::string(number)),
+        start +
+            "'color' is not read: expected three or four floats or parts of 8 or 16 bits for each vertex");
 }
 
 TEST(GltfAttributes, PartsOfAMeshHaveTheirOwn) {
@@ -168,7 +170,8 @@ TEST(GltfAttributes, PartsOfAMeshHaveTheirOwn) {
   EXPECT_EQ(at_corners(same, "a"), (std::vector<float>{3, 2, 1, 3, 2, 1}));
   const TriangleMesh mixed = read({",\"_a\":1", ",\"_a\":2,\"_b\":1", ""});
   EXPECT_EQ(mixed.positions.size(), 3u);
-  EXPECT_EQ(at_corners(mixed, "a"), (std::vector<float>{3, 0, 2, 0, 1, 0, 8, 9, 6, 7, 4, 5, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(at_corners(mixed, "a"),
+            (std::vector<float>{3, 0, 2, 0, 1, 0, 8, 9, 6, 7, 4, 5, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(at_corners(mixed, "b"), (std::vector<float>{0, 0, 0, 3, 2, 1, 0, 0, 0}));
 }
 
@@ -271,20 +274,22 @@ TEST(GltfAttributes, WhatCannotBeShownIsSaid) {
   out.array(std::vector<float>(12, 0.5f), kFloat, "VEC4", 4);
   out.array(std::vector<float>(6, 0.5f), kFloat, "VEC2", 2);
   const auto warnings = [&](const std::string& more) {
-    return files.warnings(
-        out.glb("\"images\":[{\"uri\":\"a.png\"}],\"textures\":[{\"source\":0}],\"materials\":[{\"name\":\"m\","
-                "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}" +
-                more + "}]," +
-                one_node(primitive("\"POSITION\":0,\"COLOR_0\":1,\"TEXCOORD_0\":2", ",\"material\":0"))));
+    return files.warnings(out.glb(
+        "\"images\":[{\"uri\":\"a.png\"}],\"textures\":[{\"source\":0}],\"materials\":[{\"name\":\"m\","
+        "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}" +
+        more + "}]," +
+        one_node(primitive("\"POSITION\":0,\"COLOR_0\":1,\"TEXCOORD_0\":2", ",\"material\":0"))));
   };
   using Texts = std::vector<std::string>;
   EXPECT_EQ(warnings(",\"alphaMode\":\"BLEND\""), Texts{});
-  EXPECT_EQ(warnings(",\"alphaMode\":\"MASK\""),
-            (Texts{"a.glb: warning: material 'm': alpha of vertices is not shown beside that of an image where it "
-                   "masks"}));
-  EXPECT_EQ(warnings(",\"extensions\":{\"KHR_materials_unlit\":{}}"),
-            (Texts{"a.glb: warning: material 'm': colours of vertices are not shown beside the image of an unlit "
-                   "material"}));
+  EXPECT_EQ(
+      warnings(",\"alphaMode\":\"MASK\""),
+      (Texts{"a.glb: warning: material 'm': alpha of vertices is not shown beside that of an image where it "
+             "masks"}));
+  EXPECT_EQ(
+      warnings(",\"extensions\":{\"KHR_materials_unlit\":{}}"),
+      (Texts{"a.glb: warning: material 'm': colours of vertices are not shown beside the image of an unlit "
+             "material"}));
 }
 
 // ---- Packed
@@ -306,16 +311,16 @@ TEST(GltfAttributes, MeshoptimizerPacksThem) {
   out.buffers = "{\"byteLength\":" + std::to_string(out.binary.size()) +
                 "},{\"byteLength\":12,\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}";
   out.views +=
-      ",{\"buffer\":1,\"byteLength\":12,\"byteStride\":4,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,"
+      ",{\"buffer\":1,\"byteLength\":12,\"byteStride\":4,\"extensions\":{\"EXT_meshopt_compression\":{"
+      "\"buffer\":0,"
       "\"byteOffset\":" +
       std::to_string(offset) + ",\"byteLength\":" + std::to_string(packed.size()) +
       ",\"count\":3,\"byteStride\":4,\"mode\":\"ATTRIBUTES\"}}}";
   out.accessor(1, kUint8, 3, "VEC4", ",\"normalized\":true");
-  const TriangleMesh mesh =
-      files
-          .load(out.glb("\"extensionsRequired\":[\"EXT_meshopt_compression\"]," +
-                        one_node(primitive("\"POSITION\":0,\"COLOR_0\":1"))))
-          .mesh;
+  const TriangleMesh mesh = files
+                                .load(out.glb("\"extensionsRequired\":[\"EXT_meshopt_compression\"]," +
+                                              one_node(primitive("\"POSITION\":0,\"COLOR_0\":1"))))
+                                .mesh;
   std::vector<float> expected;
   for (const std::uint8_t x : colors) expected.push_back(x / 255.0f);
   EXPECT_EQ(floats(mesh, "color"), expected);
@@ -325,8 +330,8 @@ TEST(GltfAttributes, MeshoptimizerPacksThem) {
 
 #ifdef OKTETT_HAVE_DRACO
 
-/// A tetrahedron whose points have colours of bytes, which say of themselves that they are parts or not, and numbers of
-/// other types.
+/// A tetrahedron whose points have colours of bytes, which say of themselves that they are parts or not, and
+/// numbers of other types.
 std::string draco_bytes(bool normalized) {
   constexpr int kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
   const Vec3f points[4] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
@@ -365,23 +370,28 @@ TEST(GltfAttributes, DracoPacksThem) {
     const auto file = [&](const char* flow) {
       GltfWriter own = out;
       own.accessors =
-          "{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"componentType\":5125,\"count\":12,\"type\":"
+          "{\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},{\"componentType\":5125,\"count\":12,"
+          "\"type\":"
           "\"SCALAR\"},{\"componentType\":5121,\"normalized\":true,\"count\":4,\"type\":\"VEC4\"},"
           "{\"componentType\":5122,\"count\":4,\"type\":\"SCALAR\"},"
           "{\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
           "{\"componentType\":5121,\"count\":4,\"type\":\"VEC4\"}";
       return own.glb(
-          "\"materials\":[{\"alphaMode\":\"BLEND\"}],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]," +
-          one_node(primitive(
-              "\"POSITION\":0,\"COLOR_0\":2,\"_bytes\":5,\"_heat\":3,\"_flow\":4,\"_beside\":3",
-              ",\"material\":0,\"indices\":1,\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,"
-              "\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"_bytes\":1,\"_heat\":2,\"_whole\":4,\"_flow\":" +
-                  std::string(flow) + "}}}")));
+          "\"materials\":[{\"alphaMode\":\"BLEND\"}],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]"
+          "," +
+          one_node(
+              primitive("\"POSITION\":0,\"COLOR_0\":2,\"_bytes\":5,\"_heat\":3,\"_flow\":4,\"_beside\":3",
+                        ",\"material\":0,\"indices\":1,\"extensions\":{\"KHR_draco_mesh_compression\":{"
+                        "\"bufferView\":0,"
+                        "\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"_bytes\":1,\"_heat\":2,\"_whole\":4,"
+                        "\"_flow\":" +
+                            std::string(flow) + "}}}")));
     };
     const MeshFile read = files.load(file("3"));
-    EXPECT_EQ(files.files.as_text(read.warnings),
-              (std::vector<std::string>{"a.glb: warning: meshes[0].primitives[0]: the attribute 'beside' is not "
-                                        "read: it stands beside Draco's data"}));
+    EXPECT_EQ(
+        files.files.as_text(read.warnings),
+        (std::vector<std::string>{"a.glb: warning: meshes[0].primitives[0]: the attribute 'beside' is not "
+                                  "read: it stands beside Draco's data"}));
     ASSERT_EQ(read.materials.size(), 1u);
     EXPECT_NE(read.materials[0].tint_texture, kNoId);
     EXPECT_NE(read.materials[0].tint_opacity_texture, kNoId);
@@ -393,7 +403,8 @@ TEST(GltfAttributes, DracoPacksThem) {
       const auto value = [&](const char* name, std::uint32_t k) {
         return carried(read.mesh, name).value(i, k);
       };
-      const std::uint8_t colors[4][4] = {{0, 51, 102, 255}, {51, 51, 0, 0}, {102, 0, 0, 51}, {255, 0, 51, 102}};
+      const std::uint8_t colors[4][4] = {
+          {0, 51, 102, 255}, {51, 51, 0, 0}, {102, 0, 0, 51}, {255, 0, 51, 102}};
       for (std::uint32_t k = 0; k < 4; ++k) {
         EXPECT_EQ(value("color", k), colors[point][k] / 255.0f);
         EXPECT_EQ(value("bytes", k), colors[point][k]);
@@ -456,8 +467,11 @@ TEST_F(GlbAttributes, SetsOfColoursAreNumberedWithoutGaps) {
   MeshFile file = triangle();
   add(file, "color_2", 3, 0.5f), add(file, "color", 4, 1), add(file, "heat", 1, 70);
   add(file, "flow", 2, 1, AttributeDomain::face);
-  EXPECT_EQ(written(file)[0],
-            (Types{{"POSITION", "VEC3"}, {"COLOR_0", "VEC4"}, {"_color_2", "VEC3"}, {"_heat", "SCALAR"}, {"_flow", "VEC2"}}));
+  EXPECT_EQ(written(file)[0], (Types{{"POSITION", "VEC3"},
+                                     {"COLOR_0", "VEC4"},
+                                     {"_color_2", "VEC3"},
+                                     {"_heat", "SCALAR"},
+                                     {"_flow", "VEC2"}}));
   EXPECT_TRUE(losses.empty());
   add(file, "color_1", 3, 0);
   EXPECT_EQ(written(file)[0].count("COLOR_2"), 1u);
@@ -469,13 +483,15 @@ TEST_F(GlbAttributes, WhatIsNoColourOfGltfIsANumber) {
     MeshFile file = triangle();
     add(file, "color", 3, value), add(file, "color_1", 3, 0.5f);
     EXPECT_EQ(written(file)[0], (Types{{"POSITION", "VEC3"}, {"_color", "VEC3"}, {"_color_1", "VEC3"}}));
-    EXPECT_EQ(losses, (Losses{"changed: colours, which glTF has as three or four parts from 0 to 1; others do "
-                              "not show them"}));
+    EXPECT_EQ(losses,
+              (Losses{"changed: colours, which glTF has as three or four parts from 0 to 1; others do "
+                      "not show them"}));
     EXPECT_EQ(floats(load("a.glb").mesh, "color"), std::vector<float>(9, value));
   }
   MeshFile file = triangle();
   add(file, "color", 3, HUGE_VALF), add(file, "a\n", 1, 1), add(file, "a_", 1, 2);
-  EXPECT_EQ(written(file)[0], (Types{{"POSITION", "VEC3"}, {"COLOR_0", "VEC3"}, {"_a_", "SCALAR"}, {"_a__2", "SCALAR"}}));
+  EXPECT_EQ(written(file)[0],
+            (Types{{"POSITION", "VEC3"}, {"COLOR_0", "VEC3"}, {"_a_", "SCALAR"}, {"_a__2", "SCALAR"}}));
   EXPECT_EQ(losses.size(), 3u);
   EXPECT_EQ(floats(load("a.glb").mesh, "color"), std::vector<float>(9, 0));
 }
@@ -505,7 +521,8 @@ TEST_F(GlbAttributes, TintedMaterialsStayTinted) {
   GltfWriter out;
   out.vectors(kTriangle);
   out.array(std::vector<float>(12, 0.5f), kFloat, "VEC4", 4);
-  for (const char* const more : {"", ",\"alphaMode\":\"BLEND\"", ",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25"}) {
+  for (const char* const more :
+       {"", ",\"alphaMode\":\"BLEND\"", ",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.25"}) {
     files.write("in.glb", out.glb("\"materials\":[{\"name\":\"m\"" + std::string(more) + "}]," +
                                   one_node(primitive("\"POSITION\":0,\"COLOR_0\":1", ",\"material\":0"))));
     const MeshFile before = load("in.glb");

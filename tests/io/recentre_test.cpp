@@ -124,12 +124,12 @@ TEST(Recentre, ConversionsKeepThemToo) {
   for (const char* name : {"b.obj", "b.ply", "t.ply", "t.stl"}) {
     SCOPED_TRACE(name);
     const std::string output = dir.file(name);
-    const MeshLosses losses = convert_mesh(input, output, {.ascii = name[0] == 't'});
+    const MeshLosses losses = convert_mesh(input, output, {.ascii = name[0] == 't'}).losses;
     EXPECT_TRUE(
         std::ranges::none_of(losses, [](const std::string& s) { return s.find("digits") != s.npos; }));
     expect_near(corners_of(load_mesh(output).mesh), points, 2 * kNear);
   }
-  const MeshLosses losses = convert_mesh(input, dir.file("b.stl"), {});
+  const MeshLosses losses = convert_mesh(input, dir.file("b.stl"), {}).losses;
   EXPECT_EQ(std::ranges::count(losses, "lost: digits of coordinates beyond single precision"), 1);
 }
 
