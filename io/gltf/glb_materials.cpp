@@ -88,10 +88,18 @@ int GltfMaterialWriter::add(std::size_t slot) {
   tinygltf::Material out;
   out.name = m.name;
   out.doubleSided = m.emits_behind;
-  const PrincipledMaterial p = m.principled ? *m.principled : principled_like(m);
+  PrincipledMaterial p = m.principled ? *m.principled : principled_like(m);
+  // What is there in part and lets the rest of the light pass, as by `d` of MTL, is blended in glTF.
+  float opacity = m.opacity;
+  if (!m.principled && m.transparency < 1) {
+    opacity *= 1 - m.transparency;
+    p.parameters.transmission = 0;
+    // Light that is let pass straight has no index of refraction; plastic does.
+    if (m.ior == 1) p.parameters.ior = PrincipledParameters{}.ior;
+  }
   set_base(m, out);
   set_emission(m, out);
-  set_opacity(m, out);
+  set_opacity(m, opacity, out);
   set_metal(p, out);
   set_glass(p, m.interior, out);
   set_layers(p, out);
@@ -114,10 +122,10 @@ void GltfMaterialWriter::set_emission(const Material& m, tinygltf::Material& out
   set(m.emission_texture, out.emissiveTexture);
 }
 
-void GltfMaterialWriter::set_opacity(const Material& m, tinygltf::Material& out) {
+void GltfMaterialWriter::set_opacity(const Material& m, float opacity, tinygltf::Material& out) {
   double& alpha = out.pbrMetallicRoughness.baseColorFactor[3];
-  alpha = unit(m.opacity);
-  if (m.opacity < 1) out.alphaMode = "BLEND";
+  alpha = unit(opacity);
+  if (opacity < 1) out.alphaMode = "BLEND";
   if (m.opacity_texture == kNoId) return;
   // glTF has one image for colour and opacity.
   const Texture& t = file_.textures[m.opacity_texture];

@@ -29,7 +29,7 @@ class GltfMaterialWriter {
  private:
   void set_base(const Material& m, tinygltf::Material& out);
   void set_emission(const Material& m, tinygltf::Material& out);
-  void set_opacity(const Material& m, tinygltf::Material& out);
+  void set_opacity(const Material& m, float opacity, tinygltf::Material& out);
   void set_drawn_opacity(const Material& m, tinygltf::Material& out);
   void set_normals(const Material& m, std::size_t slot, tinygltf::Material& out);
   void set_metal(const PrincipledMaterial& p, tinygltf::Material& out);

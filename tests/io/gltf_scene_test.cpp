@@ -494,9 +494,9 @@ TEST(GltfScene, ValidPartsThatAreNotShownDoNotMatter) {
   EXPECT_EQ(
       files.files.as_text(odd.warnings),
       (std::vector<std::string>{
-          "a.glb: warning: meshes[0]: primitives without an attribute POSITION are skipped",
           "a.glb: warning: meshes[0].primitives[0]: expected three corners for each triangle, found 4 in "
           "all; the last ones are left out",
+          "a.glb: warning: meshes[0]: primitives without an attribute POSITION are skipped",
           "a.glb: warning: meshes[0].primitives[2]: unknown mode 9; it is left out"}));
   // Elements without bytes are zeros: here the indices.
   out.accessors += ",{\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}";
