@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -77,7 +78,13 @@ TEST_F(GlbImages, BumpsBecomeNormals) {
       write_square("map_Bump -bm 0.1 -s " + exact_text(static_cast<float>(repeats)) + " 1 1 bump.png\n",
                    exact_text(static_cast<float>(side)).c_str());
       const Losses losses = convert("in.obj", "a.glb");
-      EXPECT_EQ(losses.size(), 2u) << testing::PrintToString(losses);
+      EXPECT_EQ(std::ranges::count(losses,
+                                   "changed: 1 bump map, as the normals of heights on a surface whose "
+                                   "coordinates are everywhere as long"),
+                1)
+          << testing::PrintToString(losses);
+      // Heights of 8 bits are wrong by half a step, so the slope over two pixels by a whole one.
+      const double tolerance = 0.01 + 0.1 / 255 / (2.0 / size) * repeats / side;
       const MeshFile after = load("a.glb");
       const Material& m = after.materials.at(0);
       ASSERT_NE(m.normal_texture, kNoId);
@@ -91,7 +98,7 @@ TEST_F(GlbImages, BumpsBecomeNormals) {
         // The derivative of 0.1 (1/2 + sin(2 pi s) / 4), where the image is side / repeats wide.
         const double slope = 0.05 * M_PI * std::cos(2 * M_PI * x / size) / (side / repeats);
         const Vec3d expected = normalize(Vec3d{-slope, 0, 1});
-        EXPECT_LT(length(Vec3d(texel) - expected), 0.03) << x << " " << repeats << " " << side;
+        EXPECT_LT(length(Vec3d(texel) - expected), tolerance) << x << " " << repeats << " " << side;
       }
     }
 }
