@@ -125,7 +125,7 @@ void GltfMaterialWriter::set_emission(const Material& m, tinygltf::Material& out
 void GltfMaterialWriter::set_opacity(const Material& m, float opacity, tinygltf::Material& out) {
   double& alpha = out.pbrMetallicRoughness.baseColorFactor[3];
   alpha = unit(opacity);
-  if (opacity < 1) out.alphaMode = "BLEND";
+  if (opacity < 1 || m.tint_opacity_texture != kNoId) out.alphaMode = "BLEND";
   if (m.opacity_texture == kNoId) return;
   // glTF has one image for colour and opacity.
   const Texture& t = file_.textures[m.opacity_texture];

@@ -217,12 +217,12 @@ class GltfConversion {
 
   /// The name in the mesh of what vertices carry as `name`; empty: they do not.
   static std::string carried_name(const std::string& name) {
-    constexpr std::string_view kColors = "COLOR_";
+    constexpr std::string_view kColorSet = "COLOR_";
     if (name.starts_with('_')) return name.substr(1);
-    if (!name.starts_with(kColors)) return "";
+    if (!name.starts_with(kColorSet)) return "";
     std::uint32_t set = 0;
     const char* const end = name.data() + name.size();
-    const auto [rest, error] = std::from_chars(name.data() + kColors.size(), end, set);
+    const auto [rest, error] = std::from_chars(name.data() + kColorSet.size(), end, set);
     if (error != std::errc() || rest != end) return "";
     return set == 0 ? kColorAttribute : kColorAttribute + ("_" + std::to_string(set));
   }

@@ -106,7 +106,6 @@ TEST(GltfAttributes, SparseOnesAreRead) {
             (std::vector<float>{0, 0, 0, 0, 0, 0, 51 / 255.0f, 102 / 255.0f, 1}));
   // As 16 bits its index is the same, but the accessor has two elements only.
   other.accessors += "," + zeros + sparse(kUint16);
-  std::string bytes = other.glb(rest);
   other.binary[36] = 3;
   EXPECT_EQ(files.error(other.glb(rest)), "a.glb: accessors[1]: sparse element 3 is out of range: it has 3");
 }
