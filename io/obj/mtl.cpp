@@ -360,7 +360,7 @@ class MtlReader {
   /// 0, as wide as the hemisphere, which some programs write everywhere, get only what the diffuse light
   /// leaves.
   void limit_light(const Material& m) {
-    constexpr float kMost = 1 + 1e-5f;
+    constexpr float kMost = 1 + 1e-5f, kWideHighlight = 10;
     const auto scaled = [&](float kd, float ks) {
       Statements said = said_;
       if (said.kd) said.kd = *said.kd * kd;
@@ -376,7 +376,7 @@ class MtlReader {
       }
       said_ = part(least);
     };
-    if (m.phong < 1) limit([&](float s) { return scaled(1, s); });
+    if (m.phong < kWideHighlight) limit([&](float s) { return scaled(1, s); });
     limit([&](float s) { return scaled(s, s); });
   }
 

@@ -184,8 +184,8 @@ class MtlWriting {
     constexpr const char* kChannels[] = {"r", "g", "b", "m", "l"};  // in the order of ImageChannel
     if (usual && t.channel != *usual)
       out_.text(" -imfchan ").text(kChannels[static_cast<std::size_t>(t.channel)]);
-    if (t.color_space != TextureColors::of_file)
-      out_.text(t.color_space == TextureColors::srgb ? " -colorspace sRGB" : " -colorspace linear");
+    // Most readers take the option for a part of the name, so it is written only where it changes something.
+    if (t.color_space == TextureColors::linear) out_.text(" -colorspace linear");
     out_.text(" ").text(name).text("\n");
   }
 

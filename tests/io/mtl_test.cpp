@@ -166,6 +166,7 @@ TEST(Mtl, NoMoreLightIsGivenBackThanArrives) {
   const Material white = material("Kd 1 1 1\nKs 1 1 1\nNs 0\n");
   EXPECT_EQ(white.color, (Color{1, 1, 1}));
   EXPECT_LE(white.specular * white.specular_color.x, 1e-5f);
+  EXPECT_EQ(material("Kd 1 1 1\nKs 0.4 0.4 0.4\nNs 1\n").color, (Color{1, 1, 1}));
   const Material shiny = material("Kd 1 0.5 0.5\nKs 1 1 1\nNs 199\n");
   EXPECT_NEAR(shiny.color.x, 1 / 1.01, 1e-5);
   EXPECT_NEAR(shiny.color.y, 0.5 / 1.01, 1e-5);
