@@ -26,7 +26,6 @@ DEBIAN = [
     Program("CloudCompare", "cloudcompare", "bash /programs/cloudcompare.sh"),
     Program("FreeCAD", "freecad-python3", "python3 /programs/use_freecad.py"),
     Program("Gmsh", "python3-gmsh", "python3 /programs/use_gmsh.py"),
-    Program("Open CASCADE", "occt-draw", "xvfb-run -a occt-draw -b -f /programs/occt.tcl"),
     Program("OpenSceneGraph", "openscenegraph", "bash /programs/osgconv.sh"),
     Program("OpenSCAD", "openscad", "bash /programs/openscad.sh"),
     Program("PCL", "pcl-tools", "bash /programs/pcl.sh"),
@@ -34,15 +33,15 @@ DEBIAN = [
     Program("Draco", "draco", "bash /programs/draco.sh"),
     Program("OpenCTM", "openctm-tools", "bash /programs/openctm.sh"),
     Program("ezdxf", "python3-ezdxf", "python3 /programs/use_ezdxf.py"),
+    Program("tinyobjloader", "python3-tinyobjloader", "python3 /programs/use_tinyobjloader.py"),
     Program("numpy-stl", "python3-stl", "python3 /programs/use_numpy_stl.py"),
     Program("ADMesh", "admesh", "bash /programs/admesh.sh"),
 ]
 NPM_PACKAGES = [
     "three@0.187.0", "@gltf-transform/core@4.5.1", "@gltf-transform/functions@4.5.1", "@gltf-transform/extensions@4.5.1", "obj2gltf@3.2.0",
-    "gltf-pipeline@4.3.1", "@babylonjs/core@9.35.0", "@babylonjs/serializers@9.28.0", "@babylonjs/loaders@9.28.0", "draco3d@1.5.9",
-    "assimpjs@0.0.10", "@loaders.gl/core@4.4.5", "@loaders.gl/ply@4.4.5", "@loaders.gl/obj@4.4.5", "gltf-validator@2.0.0-dev.3.10",
-    "gltfpack@1.3.0", "manifold-3d@3.5.4", "@jscad/modeling@2.13.0", "@jscad/stl-serializer@2.1.23", "@jscad/obj-serializer@2.1.23",
-    "playcanvas@2.23.3",
+    "gltf-pipeline@4.3.1", "@babylonjs/core@9.35.0", "@babylonjs/serializers@9.28.0", "assimpjs@0.0.10", "@loaders.gl/core@4.4.5",
+    "@loaders.gl/ply@4.4.5", "@loaders.gl/obj@4.4.5", "gltf-validator@2.0.0-dev.3.10", "gltfpack@1.3.0", "@jscad/modeling@2.13.0",
+    "@jscad/stl-serializer@2.1.23", "@jscad/obj-serializer@2.1.23",
 ]
 NPM = [
     Program("three.js", "three", "node use_three.mjs"),
