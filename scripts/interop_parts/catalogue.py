@@ -14,7 +14,8 @@ class Program:
     suites: tuple = BOTH
 
 
-BASE_PACKAGES = ["bash", "coreutils", "dash", "diffutils", "findutils", "grep", "gzip", "libc-bin", "mawk", "sed", "util-linux", "xauth", "xvfb"]
+BASE_PACKAGES = ["bash", "coreutils", "dash", "diffutils", "findutils", "grep", "gzip", "libc-bin", "mawk", "sed", "util-linux", "xauth",
+                 "xvfb"]
 DEBIAN = [
     Program("Blender", "blender", "blender --background --factory-startup -noaudio --python /programs/use_blender.py"),
     Program("VTK", "python3-vtk9", "xvfb-run -a python3 /programs/use_vtk.py"),

@@ -25,6 +25,7 @@ class Found:
         self.has_normals = False
         self.colors_of = {}              # face: colour of its material
         self.textured = {}               # face: whether its material has a texture
+        self.reflected = {}              # face: what its material gives back, if more than arrives
         self.color_curve = None
 
     def note(self, text):
@@ -63,7 +64,8 @@ def geometry(mesh, found):
             areas[face.index] += side * dot(polygon_area(points), face.normal)
     wrong = [f.index for f in ALL_FACES if abs(abs(areas[f.index]) - f.area) > 2e-3 * f.area]
     if missed or wrong:
-        found.note("faces %s have areas %s" % (wrong, [round(areas[i], 2) for i in wrong]) if not missed else "%d polygons are not of the house" % missed)
+        found.note("%d polygons are not of the house" % missed if missed
+                   else "faces %s have areas %s" % (wrong, [round(areas[i], 2) for i in wrong]))
         return None
     found.note(found.turn)
     found.note(name)
@@ -137,12 +139,14 @@ def materials(mesh, placed, found, curve=False):
         material = mesh.materials[slot] if 0 <= slot < len(mesh.materials) else None
         if material:
             found.colors_of[face.index], found.textured[face.index] = material.color, material.texture
+            found.reflected[face.index] = max(material.reflected, 1)
             if material.opacity != 1:
                 found.note("opacity %g" % material.opacity)
     if not found.colors_of:
         return
+    close = lambda a, b, to: all(abs(x - to(y)) < 0.006 for x, y in zip(a, b))
     right = lambda to: all(
-        f.index in found.colors_of and all(abs(a - to(b)) < 0.006 for a, b in zip(found.colors_of[f.index], MATERIALS[f.material][1])) for f in ALL_FACES)
+        f.index in found.colors_of and close(found.colors_of[f.index], MATERIALS[f.material][1], to) for f in ALL_FACES)
     if right(lambda x: x):
         found.letters += "m"
     elif right(srgb):
@@ -244,6 +248,7 @@ def check_picture(view, channels, found, times_color, has_colors=True):
             return "normal (%.3g, %.3g, %.3g) for (%.3g, %.3g, %.3g)" % (*normal, *wanted)
         color = expected_albedo(found, face, p, times_color) if has_colors or not times_color or not found.color_curve else None
         seen = tuple(channels["Albedo." + k][i] for k in "RGB")
-        if color and max(abs(a - b) for a, b in zip(color, seen)) > 0.02:
+        # A material that gives back more light than arrives is darker by what is too much.
+        if color and any(not b / found.reflected[index] - 0.02 < a < b + 0.02 for a, b in zip(seen, color)):
             return "albedo (%.3g, %.3g, %.3g) for (%.3g, %.3g, %.3g)" % (*seen, *color)
     return None

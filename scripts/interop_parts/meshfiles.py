@@ -26,6 +26,7 @@ class Material:
     texture: bool = False  # or text that says what is wrong with it
     upside_down: bool = False
     opacity: float = 1.0
+    reflected: float = 0.0  # Kd and Ks of MTL together, at most
 
 
 def upper_left(data):
@@ -33,7 +34,7 @@ def upper_left(data):
     if data[:8] != b"\x89PNG\r\n\x1a\n" or data[24] != 8:
         return None
     packed, palette, at = b"", b"", 8
-    while at < len(data):
+    while at + 12 <= len(data) and data[at - 8:at - 4] != b"IEND":
         size, kind = struct.unpack_from(">I4s", data, at)
         packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
         palette += data[at + 8:at + 8 + size] if kind == b"PLTE" else b""
@@ -73,6 +74,9 @@ def read_mtl(path):
             materials.append(Material(line.split(None, 1)[1].strip()))
         elif words[0] == "Kd":
             materials[-1].color = tuple(map(float, words[1:4]))
+        elif words[0] == "Ks":
+            material = materials[-1]
+            material.reflected = max(map(float, words[1:4])) + max(material.color)
         elif words[0] == "d":
             materials[-1].opacity = float(words[-1])
         elif words[0] == "map_Kd":
@@ -303,7 +307,9 @@ def read_gltf(path):
             if primitive.get("mode", 4) != 4 or "KHR_draco_mesh_compression" in primitive.get("extensions", {}):
                 raise ValueError("not plain triangles")
             a = primitive["attributes"]
-            columns = [gltf.accessor(a[n]) if n in a else None for n in ("POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0")]
+            # Oktett names colours `_color` that would otherwise multiply those of a material which another format shows alone.
+            names = ("POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0" if "COLOR_0" in a else "_color")
+            columns = [gltf.accessor(a[n]) if n in a else None for n in names]
             vertices = [Corner(move(columns[0][i]), *(c[i] if c else None for c in columns[1:])) for i in range(len(columns[0]))]
             for v in vertices:
                 v.normal = turn(v.normal) if v.normal else None

@@ -9,7 +9,8 @@ export async function attempt(what, call) {
   try { await call(); } catch (error) { console.log('FAILED', what, error); }
 }
 
-export const write = (name, data) => fs.writeFileSync(OUT + name, typeof data === 'string' ? data : Buffer.from(data.buffer ?? data, data.byteOffset ?? 0, data.byteLength));
+export const write = (name, data) => fs.writeFileSync(
+  OUT + name, typeof data === 'string' ? data : Buffer.from(data.buffer ?? data, data.byteOffset ?? 0, data.byteLength));
 export const read = (name) => fs.readFileSync(BACK + name);
 export const asArrayBuffer = (b) => b.buffer.slice(b.byteOffset, b.byteOffset + b.byteLength);
 
@@ -41,7 +42,7 @@ export function told(form, meshes) {
     const get = (a, n, v) => a ? Array.from(a.slice(n * v, n * v + Math.min(n, 3))) : null;
     const colors = m.color ? m.color.length / (m.position.length / 3) : 3;
     for (let i = 0; i + 2 < index.length; i += 3)
-      data.polygons.push([0, 1, 2].map((k) => [get(m.position, 3, index[i + k]), get(m.normal, 3, index[i + k]), get(m.uv, 2, index[i + k]), get(m.color, colors, index[i + k])]));
+      data.polygons.push(index.slice(i, i + 3).map((v) => [get(m.position, 3, v), get(m.normal, 3, v), get(m.uv, 2, v), get(m.color, colors, v)]));
     for (let i = 0; i + 2 < index.length; i += 3) data.slots.push(m.material ? data.materials.length : -1);
     if (m.material) data.materials.push(m.material);
     data.vertices += m.position.length / 3;

@@ -9,7 +9,8 @@ const engine = new NullEngine(), scene = new Scene(engine);  // left-handed, as 
 const mirrored = (values) => values.map((x, k) => k % 3 === 2 ? -x : x);
 const meshes = house.materials.map((m, i) => {
   const p = part(i), mesh = new Mesh(m.name, scene), data = new VertexData();
-  Object.assign(data, { positions: mirrored(p.position), normals: mirrored(p.normal), uvs: p.uv, indices: p.index, colors: p.color.flatMap((x, k) => k % 3 === 2 ? [x, 1] : [x]) });
+  const colors = p.color.flatMap((x, k) => k % 3 === 2 ? [x, 1] : [x]);
+  Object.assign(data, { positions: mirrored(p.position), normals: mirrored(p.normal), uvs: p.uv, indices: p.index, colors });
   data.applyToMesh(mesh);
   mesh.material = new PBRMaterial(m.name, scene);
   mesh.material.albedoColor = new Color3(...m.color);

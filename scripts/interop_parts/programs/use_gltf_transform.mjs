@@ -23,7 +23,11 @@ function build() {
 const io = new NodeIO().registerExtensions(ALL_EXTENSIONS);
 await attempt('glb', async () => io.write(OUT + 'house.glb', build()));
 await attempt('gltf', async () => io.write(OUT + 'house.gltf', build()));
-await attempt('quantized', async () => { const d = build(); await d.transform(weld(), quantize({ quantizePosition: 16, quantizeNormal: 10, quantizeTexcoord: 14, quantizeColor: 12 })); await io.write(OUT + 'integers.glb', d); });
+await attempt('integers', async () => {
+  const document = build();
+  await document.transform(weld(), quantize({ quantizePosition: 16, quantizeNormal: 10, quantizeTexcoord: 14, quantizeColor: 12 }));
+  await io.write(OUT + 'integers.glb', document);
+});
 await attempt('separate', async () => new NodeIO().setVertexLayout('separate').write(OUT + 'separate.glb', build()));
 await attempt('read', async () => {
   const document = await io.read(BACK + 'house.glb'), meshes = [];
@@ -33,7 +37,8 @@ await attempt('read', async () => {
       return a && Array.from({ length: a.getCount() }, (_, i) => a.getElement(i, [])).flat();
     };
     const uv = get('TEXCOORD_0')?.map((x, k) => k % 2 ? 1 - x : x), m = p.getMaterial();
-    meshes.push({ position: get('POSITION'), normal: get('NORMAL'), uv, color: get('COLOR_0'), index: p.getIndices() && Array.from(p.getIndices().getArray()),
+    const index = p.getIndices() && Array.from(p.getIndices().getArray());
+    meshes.push({ position: get('POSITION'), normal: get('NORMAL'), uv, color: get('COLOR_0'), index,
       material: m && [m.getName(), m.getBaseColorFactor().slice(0, 3), !!m.getBaseColorTexture()] });
   }
   told('glb', meshes);

@@ -13,7 +13,8 @@ for i, name in enumerate("st"):
 positions, cells = np.array(house["corner_positions"], np.float32), [("triangle", np.array(house["triangles"]))]
 attempt("ply", lambda: meshio.Mesh(positions, cells, point_data=data).write(OUT + "house.ply"))
 attempt("ply", lambda: meshio.Mesh(positions, cells, point_data=data).write(OUT + "text.ply", binary=False))
-attempt("obj", lambda: meshio.Mesh(positions, cells, point_data={"obj:vn": np.array(house["corner_normals"]), "obj:vt": np.array(house["corner_uvs"])}).write(OUT + "house.obj"))
+with_normals = {"obj:vn": np.array(house["corner_normals"]), "obj:vt": np.array(house["corner_uvs"])}
+attempt("obj", lambda: meshio.Mesh(positions, cells, point_data=with_normals).write(OUT + "house.obj"))
 attempt("stl", lambda: meshio.Mesh(positions, cells).write(OUT + "house.stl"))
 attempt("stl", lambda: meshio.Mesh(positions, cells).write(OUT + "bytes.stl", binary=True))
 
