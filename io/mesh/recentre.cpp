@@ -23,7 +23,7 @@ double distance_of(const Box& box) {
 
 }  // namespace
 
-std::optional<Vec3d> far_centre(std::span<const Vec3f> positions) {
+std::optional<Vec3d> far_centre(std::span<const Vec3f> positions, bool exact) {
   if (positions.size() < 3) return std::nullopt;
   // A few tell of nearly all meshes that they are not far: the extent of all is no less.
   Box some;
@@ -35,9 +35,8 @@ std::optional<Vec3d> far_centre(std::span<const Vec3f> positions) {
   if (!(extent > 0) || distance_of(all) <= extent * kFar) return std::nullopt;
   const double step = std::exp2(std::ceil(std::log2(extent)));
   Vec3d centre = (Vec3d(all.lo) + Vec3d(all.hi)) / 2.0;
-  // Where an axis is not far, nothing is taken off, so that differences of floats are floats.
   for (int k = 0; k < 3; ++k)
-    centre[k] = std::abs(centre[k]) < 4 * step ? 0 : std::round(centre[k] / step) * step;
+    centre[k] = exact && std::abs(centre[k]) < 4 * step ? 0 : std::round(centre[k] / step) * step;
   return centre;
 }
 

@@ -11,8 +11,9 @@ namespace oktett {
 
 /// A centre to take off positions that lie more than 128 times their extent from the origin, of which floats
 /// keep fewer than 16 bits; nothing for others. It is a multiple of a power of two that is at least their
-/// extent, so floats can hold it exactly.
-std::optional<Vec3d> far_centre(std::span<const Vec3f> positions);
+/// extent, so floats can hold it exactly. `exact`: positions are those of the file; then nothing is taken off
+/// along axes that are not far, so that all differences are floats, too.
+std::optional<Vec3d> far_centre(std::span<const Vec3f> positions, bool exact);
 
 /// Takes a centre off positions that are exact as floats; so are the differences then.
 void take_off(const Vec3d& centre, TriangleMesh& mesh);

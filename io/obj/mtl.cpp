@@ -356,9 +356,9 @@ class MtlReader {
     return greatest_albedo(m, texture_list_);
   }
 
-  /// Darkens Kd and Ks until the surface gives back no more light than arrives. Highlights with the exponent
-  /// 0, as wide as the hemisphere, which some programs write everywhere, get only what the diffuse light
-  /// leaves.
+  /// Darkens Kd and Ks until the surface gives back no more light than arrives. Highlights of small
+  /// exponents, almost as wide as the hemisphere, which some programs write everywhere, get only what the
+  /// diffuse light leaves.
   void limit_light(const Material& m) {
     constexpr float kMost = 1 + 1e-5f, kWideHighlight = 10;
     const auto scaled = [&](float kd, float ks) {

@@ -161,7 +161,7 @@ class ObjLoad {
 
   void recentre() {
     if (first_failure()) return;
-    const std::optional<Vec3d> centre = far_centre(obj_.mesh.positions);
+    const std::optional<Vec3d> centre = far_centre(obj_.mesh.positions, false);
     if (!centre) return;
     oneapi::tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
       if (chunks_[i].counts.positions > 0) read_positions_from(*centre, chunks_[i], obj_.mesh);

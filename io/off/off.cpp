@@ -155,7 +155,7 @@ class OffLoad {
   }
 
   void recentre() {
-    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions);
+    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, false);
     if (!centre) return;
     parsed_.mesh.origin = *centre;
     next_ = vertices_;

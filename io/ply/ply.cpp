@@ -377,11 +377,20 @@ class PlyLoad {
     const auto read = [&](const PlyChunk& chunk) { body_->read_vertices(vertices_, chunk, columns); };
     for_each_chunk(vertices_, read);
     stop_at_first_failure();
-    const std::optional<Vec3d> centre = far_centre(mesh.positions);
+    const std::optional<Vec3d> centre = far_centre(mesh.positions, !has_digits());
     if (!centre) return;
     mesh.origin = columns.centre = *centre;
     for_each_chunk(vertices_, read);
     stop_at_first_failure();
+  }
+
+  /// Whether positions may have more digits than floats.
+  bool has_digits() const {
+    if (header_.format == PlyFormat::ascii) return true;
+    return std::any_of(vertices_.roles.begin(), vertices_.roles.begin() + kPlyNormals, [this](int property) {
+      const PlyType type = vertices_.element->properties[static_cast<std::size_t>(property)].type;
+      return type == PlyType::float64 || type == PlyType::int32 || type == PlyType::uint32;
+    });
   }
 
   /// After the vertices, because how a polygon is cut depends on them.

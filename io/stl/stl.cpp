@@ -359,7 +359,7 @@ class StlLoad {
     std::optional<MeshFailure> first;
     for (const StlChunk& chunk : chunks) keep_first(first, chunk.failure);
     if (first) read_loosely(*first, {});
-    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions);
+    const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, false);
     if (!centre) return;
     parsed_.mesh.origin = *centre;
     if (first)
@@ -412,7 +412,7 @@ class StlLoad {
     });
     for (const std::optional<MeshFailure>& failure : failures)
       if (failure) fail_at_byte(path_, text_, *failure);
-    if (const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions))
+    if (const std::optional<Vec3d> centre = far_centre(parsed_.mesh.positions, true))
       take_off(*centre, parsed_.mesh);
     if (text_.size() > end)
       parsed_.notices.push_back(
