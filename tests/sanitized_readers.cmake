@@ -5,9 +5,10 @@ set(sanitizers -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno
 file(GLOB sources CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/core/*.cpp ${PROJECT_SOURCE_DIR}/io/text/*.cpp ${PROJECT_SOURCE_DIR}/io/mesh/*.cpp
   ${PROJECT_SOURCE_DIR}/io/mesh/load/*.cpp ${PROJECT_SOURCE_DIR}/io/obj/*.cpp ${PROJECT_SOURCE_DIR}/io/ply/*.cpp
-  ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp)
-list(FILTER sources EXCLUDE REGEX "/write_[a-z_]*\\.cpp$")
-add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp support/temp_dir.cpp)
+  ${PROJECT_SOURCE_DIR}/io/stl/*.cpp ${PROJECT_SOURCE_DIR}/io/off/*.cpp ${PROJECT_SOURCE_DIR}/io/gltf/*.cpp)
+list(FILTER sources EXCLUDE REGEX "/(write|glb)_[a-z_]*\\.cpp$")
+add_library(sanitized_readers STATIC ${sources} ${PROJECT_SOURCE_DIR}/render/material.cpp ${PROJECT_SOURCE_DIR}/io/image/color.cpp
+  support/temp_dir.cpp fuzz/no_images.cpp)
 target_compile_features(sanitized_readers PUBLIC cxx_std_20)
 target_compile_options(sanitized_readers PUBLIC ${sanitizers})
 target_compile_definitions(sanitized_readers PUBLIC OKTETT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ${OKTETT_GLTF_DEFINITIONS})
@@ -16,7 +17,7 @@ target_link_options(sanitized_readers PUBLIC ${sanitizers})
 target_link_libraries(sanitized_readers PUBLIC oktett_internal fmt::fmt ZLIB::ZLIB ${OKTETT_GLTF_LIBRARIES} GTest::gtest rapidcheck)
 oktett_unity(sanitized_readers)
 # This file adds the implementation of tinygltf by a macro, which has no effect after another file has included tinygltf.
-set_source_files_properties(${PROJECT_SOURCE_DIR}/io/gltf/parse.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+set_source_files_properties(${PROJECT_SOURCE_DIR}/io/gltf/tiny.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
 add_executable(test_readers)
 foreach(name gltf gltf_error gltf_packed gzip mesh_polygon mtl obj obj_error obj_material obj_parallel ply ply_error similar_file
@@ -39,7 +40,7 @@ endforeach()
 
 add_library(sanitized_replay OBJECT fuzz/replay.cpp)
 target_link_libraries(sanitized_replay PRIVATE sanitized_readers)
-foreach(name gltf gzip mtl number obj ply stl)
+foreach(name gltf gzip mtl number obj off ply stl)
   add_executable(sanitized_${name}_fuzz fuzz/${name}_fuzz.cpp)
   target_link_libraries(sanitized_${name}_fuzz PRIVATE sanitized_readers sanitized_replay)
   add_dependencies(oktett_tests sanitized_${name}_fuzz)
