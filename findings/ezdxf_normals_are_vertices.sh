@@ -3,8 +3,8 @@
 #
 # One would guess: a line `vn` is a normal, and a loader that has no use for it skips it.
 # What happens: ezdxf 0.18.1 (Debian 12) and 1.4.1 (Debian 13) take every line that begins with v for a vertex. Where normals stand
-# between the vertices, as Open3D and MeshLab write them, or before those of a second object, the faces get normals for corners, without an error. `vt` with two numbers stops
-# it with "OBJ vertex parsing error".
+# between the vertices, as Open3D and MeshLab write them, or before those of a second object, the faces get normals for corners, without an
+# error. `vt` with two numbers stops it with "OBJ vertex parsing error".
 # Why a user of a ray tracer meets it: meshes go to drawings and back by way of OBJ.
 #
 # Needs Debian 12 and its network. Debian 12: python3-ezdxf 0.18.1-1. Debian 13: python3-ezdxf 1.4.1-1. About a minute.
