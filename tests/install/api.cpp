@@ -124,7 +124,7 @@ static_assert(std::constructible_from<ImageTextures, std::vector<Texture>>);
 // Files.
 static_assert(has<Scene(const std::string&, const Definitions&)>(load_scene));
 static_assert(has<Scene(const std::string&, const Definitions&)>(load_scene_file));
-static_assert(has<Scene(const std::string&)>(scene_from_mesh));
+static_assert(has<Scene(const std::string&, const GltfOptions&)>(scene_from_mesh));
 static_assert(has<ObjFile(const std::string&)>(load_obj));
 static_assert(has<MeshFile(const std::string&, const MeshOptions&)>(load_mesh) &&
               has<bool(const std::string&)>(is_mesh_file));
