@@ -51,6 +51,12 @@ static std::optional<AttributeValue> attribute_value(const Texture& t, const Mes
   return value;
 }
 
+/// The number that a texture takes from a value of an attribute.
+static float number_of(const AttributeValue& value, ImageChannel channel) {
+  if (channel == ImageChannel::luminance) return luminance({value[0], value[1], value[2]});
+  return value[static_cast<std::size_t>(channel)];
+}
+
 /// Channels that are negative, NaN or infinite count as 0.
 static Color valid_color(const Color& c) {
   const auto valid = [](float x) { return x > 0 && std::isfinite(x) ? x : 0; };
@@ -75,7 +81,7 @@ float texture_value(const RenderContext& context, std::uint32_t texture, const T
   if (pattern_of(context, texture) != nullptr) return texture_color(context, texture, place).x;
   if (const Texture* t = attribute_texture(context, texture)) {
     const std::optional<AttributeValue> value = attribute_value(*t, place.on_mesh);
-    return value ? (*value)[static_cast<std::size_t>(t->channel)] : 1;
+    return value ? number_of(*value, t->channel) : 1;
   }
   if (texture == kNoId || context.textures == nullptr) return 1;
   const UvPlace& at = uv_place(context.texture_list, texture, place);
@@ -342,7 +348,7 @@ Vec3d attribute_slope(const Texture& t, const MeshPoint& place) {
   const TriangleMesh& mesh = *place.mesh;
   const std::uint32_t triangle = place.triangle;
   const auto height = [&](float u, float v) -> double {
-    return attribute_at({&mesh, triangle, u, v}, *attribute)[static_cast<std::size_t>(t.channel)];
+    return number_of(attribute_at({&mesh, triangle, u, v}, *attribute), t.channel);
   };
   const Vec3d a = corner(mesh, triangle, 0), b = corner(mesh, triangle, 1) - a,
               c = corner(mesh, triangle, 2) - a;

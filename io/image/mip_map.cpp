@@ -236,10 +236,7 @@ Color MipMap::stored(const TexturePatch& patch, TextureWraps wrap) const {
 }
 
 float MipMap::channel(ImageChannel channel, const TexturePatch& patch, TextureWraps wrap) const {
-  if (channel == ImageChannel::luminance && colors_ == 3) {
-    const Color c = stored(patch, wrap);
-    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
-  }
+  if (channel == ImageChannel::luminance && colors_ == 3) return luminance(stored(patch, wrap));
   auto place = static_cast<std::uint32_t>(channel);
   if (channel == ImageChannel::alpha) {
     if (!alpha_) return 1;

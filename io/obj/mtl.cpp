@@ -23,9 +23,6 @@ namespace {
 
 float clamp_unit(float x) { return std::clamp(x, 0.0f, 1.0f); }
 
-/// Rec.709.
-float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-
 /// The programs whose files mean other things by a statement than others do, known by a comment before the
 /// first material.
 enum class MtlWriter { other, meshlab, vtk, blender, oktett };

@@ -25,9 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rec.709, as load_mtl takes it.
-float luminance_of(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
 /// The end of the name of an image's file, by its first bytes.
@@ -107,7 +104,7 @@ class MtlWriting {
     } else {
       color("Kd", m.color * (part > 0 ? m.diffuse / part : 1.0f));
     }
-    if (m.ambient != standard.ambient) write_ambient(m.ambient, luminance_of(m.color));
+    if (m.ambient != standard.ambient) write_ambient(m.ambient, luminance(m.color));
   }
 
   /// d is what other programs know best.
@@ -132,7 +129,7 @@ class MtlWriting {
     if (brightness > 0) {
       const auto ratio = [brightness](float x) { return std::clamp(x / brightness, 0.0f, 1.0f); };
       grey = find_number(part * brightness, part, ratio);
-      blue = find_number(grey, grey, [grey](float b) { return luminance_of({grey, grey, b}); });
+      blue = find_number(grey, grey, [grey](float b) { return luminance({grey, grey, b}); });
     }
     color("Ka", {grey, grey, blue});
   }

@@ -161,6 +161,40 @@ TEST(AttributeTexture, ChannelsAreTakenAsNumbers) {
   }
 }
 
+TEST(AttributeTexture, LuminanceIsThatOfTheColours) {
+  const auto luminance_at = [](const Vec3d& p) {
+    const Color c = color_at(p);
+    return 0.2126 * double{c.x} + 0.7152 * double{c.y} + 0.0722 * double{c.z};
+  };
+  Material m;
+  m.color = {1, 1, 1}, m.ambient = 1, m.diffuse = m.specular = 0;
+  Scene scene = bare_scene(40);
+  scene.camera.from = {0.4, 0.6, 5}, scene.ambient_light = {1, 1, 1};
+  MeshShape shape;
+  shape.mesh = ball();
+  auto mesh = std::make_shared<TriangleMesh>(*shape.mesh);
+  Column<float> values;
+  for (const Vec3f& p : mesh->positions) values.push_back(static_cast<float>(luminance_at(Vec3d(p))));
+  add(*mesh, "luminance", AttributeDomain::vertex, 1, std::move(values));
+  shape.mesh = mesh;
+  m.ambient_texture = m.bump_texture = 0, m.bump_scale = 0.5f;
+  add_object(scene, shape, add_material(scene, m));
+  scene.textures = {attribute("color", ImageChannel::luminance)};
+  const Picture of_colors = test::run(scene).picture;
+  scene.textures = {attribute("luminance")};
+  const Picture of_numbers = test::run(scene).picture;
+  int seen = 0;
+  for (std::uint32_t y = 0; y < 40; ++y)
+    for (std::uint32_t x = 0; x < 40; ++x) {
+      if (test::value(of_colors, "A", x, y) == 0) continue;
+      ++seen;
+      EXPECT_NEAR(test::color(of_colors, x, y).x, luminance_at(Vec3d(test::position(of_colors, x, y))), 3e-5);
+      for (const char* axis : {"N.X", "N.Y", "N.Z"})
+        EXPECT_NEAR(test::value(of_colors, axis, x, y), test::value(of_numbers, axis, x, y), 1e-4f);
+    }
+  EXPECT_GT(seen, 200);
+}
+
 TEST(AttributeTexture, WhatHasNoSuchAttributeIsWhite) {
   const SeenBall seen(attribute("colour"), IntegratorKind::path, Stands::moved);
   seen.each([&](std::uint32_t x, std::uint32_t y, const Vec3d&) {
