@@ -17,14 +17,11 @@ namespace oktett {
 // ---- Textures at places of surfaces: images by uv, patterns by the place in the object's own space,
 // attributes by that on the mesh.
 
+/// The pattern of a texture; null for an image or kNoId.
 static const PatternTexture* pattern_in(std::span<const Texture> list, std::uint32_t texture) {
   if (texture >= list.size()) return nullptr;
   const Texture& t = list[texture];
   return t.pattern ? &*t.pattern : nullptr;
-}
-
-const PatternTexture* pattern_of(const RenderContext& context, std::uint32_t texture) {
-  return pattern_in(context.texture_list, texture);
 }
 
 /// Where the image of a texture is looked up.
@@ -33,12 +30,9 @@ static const UvPlace& uv_place(std::span<const Texture> list, std::uint32_t text
   return texture < list.size() && list[texture].uv_layer != 0 ? place.second : place;
 }
 
+/// The texture, if it shows an attribute of meshes; else null.
 static const Texture* attribute_in(std::span<const Texture> list, std::uint32_t texture) {
   return texture < list.size() && !list[texture].attribute.empty() ? &list[texture] : nullptr;
-}
-
-const Texture* attribute_texture(const RenderContext& context, std::uint32_t texture) {
-  return attribute_in(context.texture_list, texture);
 }
 
 /// What an attribute has at a place; nothing if there is none.
@@ -77,9 +71,10 @@ Color texture_color(const Textures& textures, std::uint32_t texture, const Textu
   return valid_color(textures.images->color(texture, at.uv, at.dx, at.dy));
 }
 
-float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
-  if (pattern_of(context, texture) != nullptr) return texture_color(context, texture, place).x;
-  if (const Texture* t = attribute_texture(context, texture)) {
+/// The number of a texture; 1 for kNoId.
+static float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
+  if (pattern_in(context.texture_list, texture) != nullptr) return texture_color(context, texture, place).x;
+  if (const Texture* t = attribute_in(context.texture_list, texture)) {
     const std::optional<AttributeValue> value = attribute_value(*t, place.on_mesh);
     return value ? number_of(*value, t->channel) : 1;
   }
@@ -88,26 +83,10 @@ float texture_value(const RenderContext& context, std::uint32_t texture, const T
   return context.textures->value(texture, at.uv, at.dx, at.dy);
 }
 
-/// Whether any texture of the material is such that is(texture).
-template <class Is>
-static bool any_texture(const Material& m, const Is& is) {
-  bool some = false;
-  for_each_texture(m, [&](std::uint32_t texture) { some = some || is(texture); });
-  return some;
-}
-
 bool has_textures(const Material& m) {
-  return any_texture(m, [](std::uint32_t texture) { return texture != kNoId; });
-}
-
-TextureNeeds texture_needs(const RenderContext& context, const Material& m) {
-  TextureNeeds needs;
-  for_each_texture(m, [&](std::uint32_t t) {
-    if (t == kNoId) return;
-    needs.position = needs.position || pattern_of(context, t) != nullptr;
-    needs.mesh = needs.mesh || attribute_texture(context, t) != nullptr;
-  });
-  return needs;
+  bool some = false;
+  for_each_texture(m, [&](std::uint32_t texture) { some = some || texture != kNoId; });
+  return some;
 }
 
 // ---- Points.
@@ -146,12 +125,6 @@ void pixel_vectors(const RenderContext& c, const Ray& ray, const Hit& hit, const
     make_basis(s.geometric_normal, x, y);
     x *= width, y *= width;
   }
-}
-
-bool has_second_uvs(const RenderContext& context, const Material& m) {
-  return any_texture(m, [&](std::uint32_t t) {
-    return t < context.texture_list.size() && context.texture_list[t].uv_layer != 0;
-  });
 }
 
 /// Texture coordinates of the second layer, and what they add to the point.
@@ -359,19 +332,37 @@ Vec3d attribute_slope(const Texture& t, const MeshPoint& place) {
   return (cross(c, normal) * (height(1, 0) - h) + cross(normal, b) * (height(0, 1) - h)) * (1 / square);
 }
 
+/// What the textures of a material need to know of a place beside its uv.
+struct TextureNeeds {
+  bool position = false;    ///< some texture is a pattern
+  bool mesh = false;        ///< some texture shows an attribute of the mesh
+  bool second_uvs = false;  ///< some texture has uv_layer 1
+};
+
+TextureNeeds texture_needs(std::span<const Texture> list, const Material& m) {
+  TextureNeeds needs;
+  for_each_texture(m, [&](std::uint32_t t) {
+    if (t >= list.size()) return;
+    needs.position = needs.position || list[t].pattern;
+    needs.mesh = needs.mesh || !list[t].attribute.empty();
+    needs.second_uvs = needs.second_uvs || list[t].uv_layer != 0;
+  });
+  return needs;
+}
+
 /// What the textures of a material ask of a hit.
 class TexturedHit {
  public:
   TexturedHit(const RenderContext& context, const Material& m, const SurfaceInteraction& s, const Hit& hit)
       : context_(context), m_(m), s_(s), hit_(hit) {
     place.uv = s.uv;
-    if (has_second_uvs(context, m)) {
+    const TextureNeeds needs = texture_needs(context.texture_list, m);
+    if (needs.second_uvs) {
       second_ = by_second_uvs(context, s, hit);
       place.second.uv = second_->uv;
     }
-    const TextureNeeds needs = texture_needs(context, m);
     if (needs.mesh) place.on_mesh = mesh_point(*context.world->accel, hit);
-    if (!needs.position && attribute_texture(context, m.bump_texture) == nullptr) return;
+    if (!needs.position && attribute_in(context.texture_list, m.bump_texture) == nullptr) return;
     to_world_ = object_transform(*context.world->accel, hit);
     to_object_ = to_world_.inverse();
     place.position = to_object_.point(Vec3d(s.position));
@@ -389,10 +380,10 @@ class TexturedHit {
 
   Vec3f shading_normal() const {
     Vec3f n = s_.shading_normal;
-    if (const PatternTexture* pattern = pattern_of(context_, m_.bump_texture)) {
+    if (const PatternTexture* pattern = pattern_in(context_.texture_list, m_.bump_texture)) {
       const float scale = m_.bump_scale * context_.texture_list[m_.bump_texture].gain;
       n = bumped_by_slope(pattern_slope(*pattern, place.position) * double{scale}, to_world_, to_object_, n);
-    } else if (const Texture* attribute = attribute_texture(context_, m_.bump_texture)) {
+    } else if (const Texture* attribute = attribute_in(context_.texture_list, m_.bump_texture)) {
       const double scale = double{m_.bump_scale} * double{attribute->gain};
       n = bumped_by_slope(attribute_slope(*attribute, place.on_mesh) * scale, to_world_, to_object_, n);
     } else if (m_.bump_texture != kNoId) {

@@ -30,12 +30,6 @@ struct TexturePlace : UvPlace {
   MeshPoint on_mesh;
 };
 
-/// The pattern of a texture; null for an image or kNoId.
-const PatternTexture* pattern_of(const RenderContext& context, std::uint32_t texture);
-
-/// The texture, if it shows an attribute of meshes; else null.
-const Texture* attribute_texture(const RenderContext& context, std::uint32_t texture);
-
 /// The textures of a scene, and what reads its images (null: they are white).
 struct Textures {
   std::span<const Texture> list;
@@ -47,16 +41,8 @@ Color texture_color(const Textures& textures, std::uint32_t texture, const Textu
 inline Color texture_color(const RenderContext& context, std::uint32_t texture, const TexturePlace& place) {
   return texture_color(Textures{context.texture_list, context.textures}, texture, place);
 }
-/// Its number; 1 for kNoId.
-float texture_value(const RenderContext& context, std::uint32_t texture, const TexturePlace& place);
 
 bool has_textures(const Material& material);
-/// What its textures need to know of a place beside its uv.
-struct TextureNeeds {
-  bool position = false;  ///< some texture is a pattern
-  bool mesh = false;      ///< some texture shows an attribute of the mesh
-};
-TextureNeeds texture_needs(const RenderContext& context, const Material& material);
 
 // ---- Points.
 
