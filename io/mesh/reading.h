@@ -148,6 +148,7 @@ inline const char* read_coordinate(const char* p, float& x) {
 /// The same, less `centre`, in double before it is rounded.
 inline const char* read_coordinate_from(double centre, const char* p, float& x) {
   const char* const end = read_coordinate(p, x);
+  if (centre == 0) return end;
   double exact = 0;
   scan_double(p, exact);
   x = static_cast<float>(exact - centre);

@@ -117,8 +117,8 @@ class OffLoad {
                          std::to_string(face_count_) + " faces");
   }
 
-  template <const char* read(const char*, float&)>
-  float read_value() {
+  template <class Read>
+  float read_value(const Read& read) {
     skip_space();
     if (next_ >= text_end()) stop_at(next_, "expected a number, found the end of the file");
     float x = 0;
@@ -129,27 +129,24 @@ class OffLoad {
   void read_vertices() {
     TriangleMesh& mesh = parsed_.mesh;
     vertices_ = next_;
-    const bool is_far = !(mesh.origin == Vec3d{});
     mesh.positions.resize_uninitialized(vertex_count_);
     if (header_.has_normal) mesh.normals.resize_uninitialized(vertex_count_);
     if (header_.has_uv) mesh.uvs.resize_uninitialized(vertex_count_);
     for (std::uint64_t i = 0; i < vertex_count_; ++i) {
       for (int k = 0; k < 3; ++k) {
-        skip_space();
-        const char* const where = next_;
-        mesh.positions[i][k] = read_value<read_coordinate>();
-        if (is_far) read_coordinate_from(mesh.origin[k], where, mesh.positions[i][k]);
+        mesh.positions[i][k] =
+            read_value([&](const char* p, float& x) { return read_coordinate_from(mesh.origin[k], p, x); });
       }
       if (header_.has_normal) {
         skip_space();
         const char* const where = next_;
-        for (int k = 0; k < 3; ++k) mesh.normals[i][k] = read_value<read_number>();
+        for (int k = 0; k < 3; ++k) mesh.normals[i][k] = read_value(read_number);
         if (!is_finite(mesh.normals[i])) oddities_.bad_normals.add(where);
       }
       if (header_.has_color) read_vertex_color();
       if (header_.has_uv) {
-        mesh.uvs[i].x = read_value<read_uv_coordinate>();
-        mesh.uvs[i].y = read_value<read_uv_coordinate>();
+        mesh.uvs[i].x = read_value(read_uv_coordinate);
+        mesh.uvs[i].y = read_value(read_uv_coordinate);
       }
     }
   }
@@ -170,7 +167,7 @@ class OffLoad {
     const std::size_t others = header_.has_uv ? 2 : 0;
     std::size_t count = count_words(next_);
     count = count >= others ? count - others : 0;
-    for (std::size_t k = 0; k < std::clamp<std::size_t>(count, 3, 4); ++k) read_value<read_number>();
+    for (std::size_t k = 0; k < std::clamp<std::size_t>(count, 3, 4); ++k) read_value(read_number);
   }
 
   void note_color() {

@@ -136,11 +136,9 @@ class AsciiBody final : public PlyBody {
         p = next_value(p, *value.property);
         float* const x = columns.at(value.role, vertex);
         const bool is_normal = value.role >= kPlyNormals && value.role < kPlyUvs;
-        p = is_normal ? read_number(p, *x)
-            : value.role < kPlyNormals
-                ? (columns.is_far() ? read_coordinate_from(columns.centre[value.role], p, *x)
-                                    : read_coordinate(p, *x))
-                : read_uv_coordinate(p, *x);
+        p = is_normal                  ? read_number(p, *x)
+            : value.role < kPlyNormals ? read_coordinate_from(columns.centre[value.role], p, *x)
+                                       : read_uv_coordinate(p, *x);
       }
       expect_end(p);
       ++vertex;

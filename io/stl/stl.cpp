@@ -66,7 +66,6 @@ class FacetReader {
   FacetReader(const StlChunk& chunk, bool is_first, Vec3f* positions, const Vec3d& centre)
       : chunk_(chunk),
         centre_(centre),
-        is_far_(!(centre == Vec3d{})),
         state_(is_first ? State::outside : State::solid),
         next_(positions + 3 * chunk.before),
         last_(next_ + 3 * chunk.triangles) {}
@@ -118,10 +117,7 @@ class FacetReader {
 
   const char* read_vertex(const char* p) {
     if (next_ == last_) stop_changed(p);
-    for (int k = 0; k < 3; ++k) {
-      p = skip_plain_blanks(p);
-      p = is_far_ ? read_coordinate_from(centre_[k], p, (*next_)[k]) : read_coordinate(p, (*next_)[k]);
-    }
+    for (int k = 0; k < 3; ++k) p = read_coordinate_from(centre_[k], skip_plain_blanks(p), (*next_)[k]);
     ++next_;
     return end_line(p, static_cast<State>(static_cast<int>(state_) + 1));
   }
@@ -135,7 +131,6 @@ class FacetReader {
 
   const StlChunk& chunk_;
   const Vec3d centre_;
-  const bool is_far_;
   State state_;
   Vec3f* next_;
   Vec3f* const last_;
@@ -288,10 +283,6 @@ class LooseFacets {
   const Vec3d centre_;
   std::vector<Vec3f> corners_;
 };
-
-}  // namespace
-
-namespace {
 
 constexpr std::size_t kHeaderBytes = 84;
 /// A normal, three vertices and an attribute of two bytes.
