@@ -227,10 +227,8 @@ class PlyLoad {
 
   void note_oddities() {
     MeshOddities all;
-    for (const PlyFaces& faces : faces_)
-      for (const PlyChunk& chunk : faces.chunks) all += chunk.oddities;
-    for (const Vec3f& normal : parsed_.mesh.normals)
-      if (!is_finite(normal)) all.bad_normals.add(vertices_.element->where);
+    for (const PlyPart* part : parts_)
+      for (const PlyChunk& chunk : part->chunks) all += chunk.oddities;
     all.report([this](const char* where, std::string words) {
       // Bytes have no lines.
       if (header_.format == PlyFormat::ascii || where < header_.body)
@@ -374,7 +372,13 @@ class PlyLoad {
     place(0, 3, mesh.positions.data());
     if (vertices_.has_normals) place(3, 3, mesh.normals.data());
     if (vertices_.has_uvs && !corner_uvs_) place(6, 2, mesh.uvs.data());
-    const auto read = [&](const PlyChunk& chunk) { body_->read_vertices(vertices_, chunk, columns); };
+    const auto read = [&](PlyChunk& chunk) {
+      body_->read_vertices(vertices_, chunk, columns);
+      chunk.oddities = {};
+      if (!vertices_.has_normals) return;
+      for (std::uint64_t i = chunk.first; i < chunk.first + chunk.records; ++i)
+        if (!is_finite(mesh.normals[i])) chunk.oddities.bad_normals.add(vertices_.element->where);
+    };
     for_each_chunk(vertices_, read);
     stop_at_first_failure();
     const std::optional<Vec3d> centre = far_centre(mesh.positions, !has_digits());
