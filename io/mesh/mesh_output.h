@@ -36,6 +36,15 @@ class MeshOutput {
   MeshOutput& number(float x) { return digits(x); }
   MeshOutput& number(double x) { return digits(x); }
   MeshOutput& number(std::integral auto x) { return digits(x); }
+  /// Three such numbers, with blanks between them.
+  template <class T>
+  MeshOutput& vector(const Vec3<T>& v) {
+    return number(v.x).text(" ").number(v.y).text(" ").number(v.z);
+  }
+  /// The position `p` of a mesh, its origin added.
+  MeshOutput& position(const TriangleMesh& mesh, const Vec3f& p) {
+    return mesh.origin == Vec3d{} ? vector(p) : vector(mesh.origin + Vec3d(p));
+  }
   /// The bytes of a number or of a struct of numbers, as they are in memory (little-endian).
   template <class T>
   MeshOutput& bytes(const T& value) {

@@ -72,9 +72,7 @@ class MtlWriting {
   }
 
  private:
-  void color(const char* key, const Color& c) {
-    out_.text(key).text(" ").number(c.x).text(" ").number(c.y).text(" ").number(c.z).text("\n");
-  }
+  void color(const char* key, const Color& c) { out_.text(key).text(" ").vector(c).text("\n"); }
   void number(const char* key, float x) { out_.text(key).text(" ").number(x).text("\n"); }
 
   void write(const Material& m) {
@@ -169,12 +167,9 @@ class MtlWriting {
     const std::string name = t.content ? embedded_name(t) : relative_name(t.path);
     if (name.empty()) return;
     written_.insert(index);
-    const auto vector = [this](const char* option, const Vec3f& v) {
-      out_.text(option).number(v.x).text(" ").number(v.y).text(" ").number(v.z);
-    };
     out_.text(key);
-    if (!(t.scale == Vec3f{1, 1, 1})) vector(" -s ", t.scale);
-    if (!(t.offset == Vec3f{0, 0, 0})) vector(" -o ", t.offset);
+    if (!(t.scale == Vec3f{1, 1, 1})) out_.text(" -s ").vector(t.scale);
+    if (!(t.offset == Vec3f{0, 0, 0})) out_.text(" -o ").vector(t.offset);
     if (t.base != 0 || t.gain != 1) out_.text(" -mm ").number(t.base).text(" ").number(t.gain);
     if (bump != 1) out_.text(" -bm ").number(bump);
     if (t.wrap == kClampedTexture) out_.text(" -clamp on");
@@ -285,10 +280,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_vector(MeshOutput& out, const char* keyword, const Vec3f& v) {
-  out.text(keyword).number(v.x).text(" ").number(v.y).text(" ").number(v.z).text("\n");
-}
-
 /// The index of a corner, counted from 1; nothing where there is none.
 void write_index(MeshOutput& out, const Column<std::uint32_t>& indices, std::size_t corner) {
   if (!indices.empty() && indices[corner] != kNoId) out.number(std::uint64_t{indices[corner]} + 1);
@@ -357,20 +348,14 @@ void note_colors(const MeshAttribute& color, MeshLosses& losses) {
 void write_mesh(MeshOutput& out, const TriangleMesh& mesh, const std::vector<std::string>& names) {
   const MeshAttribute* const color = obj_colors(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const Vec3f& p = mesh.positions[i];
-    if (mesh.origin == Vec3d{}) {
-      out.text("v ").number(p.x).text(" ").number(p.y).text(" ").number(p.z);
-    } else {
-      const Vec3d there = mesh.origin + Vec3d(p);
-      out.text("v ").number(there.x).text(" ").number(there.y).text(" ").number(there.z);
-    }
+    out.text("v ").position(mesh, mesh.positions[i]);
     if (color != nullptr) write_color(out, *color, i);
     out.text("\n");
   }
   if (!mesh.uv_indices.empty())
     for (const Vec2f& uv : mesh.uvs) out.text("vt ").number(uv.x).text(" ").number(uv.y).text("\n");
   if (!mesh.normal_indices.empty())
-    for (const Vec3f& n : mesh.normals) write_vector(out, "vn ", n);
+    for (const Vec3f& n : mesh.normals) out.text("vn ").vector(n).text("\n");
   write_faces(out, mesh, names);
 }
 

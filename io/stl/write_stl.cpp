@@ -23,24 +23,12 @@ Facet facet_of(const TriangleMesh& mesh, std::size_t triangle) {
   return facet;
 }
 
-void write_point(MeshOutput& out, const char* before, const Vec3f& p) {
-  out.text(before).number(p.x).text(" ").number(p.y).text(" ").number(p.z).text("\n");
-}
-
 void write_text(MeshOutput& out, const TriangleMesh& mesh) {
   out.text("solid oktett\n");
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
     const Facet facet = facet_of(mesh, i);
-    write_point(out, "facet normal ", facet.normal);
-    out.text("outer loop\n");
-    for (const Vec3f& corner : facet.corners) {
-      if (mesh.origin == Vec3d{}) {
-        write_point(out, "vertex ", corner);
-        continue;
-      }
-      const Vec3d there = mesh.origin + Vec3d(corner);
-      out.text("vertex ").number(there.x).text(" ").number(there.y).text(" ").number(there.z).text("\n");
-    }
+    out.text("facet normal ").vector(facet.normal).text("\nouter loop\n");
+    for (const Vec3f& corner : facet.corners) out.text("vertex ").position(mesh, corner).text("\n");
     out.text("endloop\nendfacet\n");
   }
   out.text("endsolid oktett\n");
