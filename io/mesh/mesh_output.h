@@ -88,6 +88,8 @@ class MeshOutput {
 /// What a written file does not say of what was read: "lost: normals", or says otherwise: "changed: ...".
 using MeshLosses = std::vector<std::string>;
 
+inline constexpr const char* kLostDigits = "lost: digits of coordinates beyond single precision";
+
 /// "1 material", "2 materials".
 inline std::string count_of(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");

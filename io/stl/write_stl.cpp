@@ -61,7 +61,7 @@ MeshLosses write_stl(const std::string& path, const MeshFile& file, bool ascii) 
         const Vec3d there = file.mesh.origin + Vec3d(p);
         return !(Vec3d(Vec3f(there)) == there);
       }))
-    losses.push_back("lost: digits of coordinates beyond single precision");
+    losses.push_back(kLostDigits);
   if (!file.mesh.uv_indices.empty()) losses.push_back("lost: texture coordinates");
   if (!file.mesh.normal_indices.empty()) losses.push_back("lost: normals of vertices");
   note_lost_attributes(

@@ -29,8 +29,6 @@ namespace oktett {
 
 namespace {
 
-const std::string kPrecision = "lost: digits of coordinates beyond single precision";
-
 /// Digits that any float can be told by.
 constexpr int kFloatDigits = 9;
 
@@ -54,7 +52,11 @@ bool is_beyond_floats(std::string_view number) {
   return static_cast<double>(static_cast<float>(exact)) != exact;
 }
 
-void note_precision(MeshLosses& losses) { losses.push_back(kPrecision); }
+/// Of a mesh whose file has coordinates that are no floats. Those of far meshes keep their digits: a centre
+/// was taken off.
+void note_precision(const TriangleMesh& mesh, MeshLosses& losses) {
+  if (mesh.origin == Vec3d{}) losses.push_back(kLostDigits);
+}
 
 /// Polygons of more than three corners, by what became of them.
 void note_polygons(std::size_t polygons, std::size_t triangles, MeshLosses& losses) {
@@ -82,15 +84,15 @@ void count_line(const char* p, WrittenCounts& counts) {
   }
 }
 
-void note_obj(std::string_view text, std::size_t triangles, MeshLosses& losses) {
+void note_obj(std::string_view text, const TriangleMesh& mesh, MeshLosses& losses) {
   WrittenCounts counts;
   const char* const end = text.data() + text.size();
   for (const char* p = text.data(); p < end; p = next_line(find_joined_line_end(p), end))
     count_line(skip_blanks(p), counts);
   if (counts.names > 0)
     losses.push_back("lost: " + count_of(counts.names, "name") + " of objects and groups");
-  if (counts.is_precise) note_precision(losses);
-  note_polygons(counts.faces, triangles, losses);
+  if (counts.is_precise) note_precision(mesh, losses);
+  note_polygons(counts.faces, mesh.triangle_count(), losses);
 }
 
 /// Whether some position of a PLY file in bytes is no float. Only files whose vertices come first and have no
@@ -115,7 +117,7 @@ bool has_precise_positions(const PlyHeader& header, std::string_view text) {
   return false;
 }
 
-void note_ply(std::string_view text, std::size_t triangles, MeshLosses& losses) {
+void note_ply(std::string_view text, const TriangleMesh& mesh, MeshLosses& losses) {
   PlyHeader header;
   try {
     header = read_ply_header(text);
@@ -129,13 +131,15 @@ void note_ply(std::string_view text, std::size_t triangles, MeshLosses& losses) 
                             return property.type == PlyType::float64 && !property.is_list;
                           }) &&
       has_precise_positions(header, text))
-    note_precision(losses);
+    note_precision(mesh, losses);
   const PlyElement* const faces = header.find("face");
-  if (faces != nullptr && header.find("tristrips") == nullptr) note_polygons(faces->count, triangles, losses);
+  if (faces != nullptr && header.find("tristrips") == nullptr)
+    note_polygons(faces->count, mesh.triangle_count(), losses);
 }
 
 /// Some programs write colours of facets to the two bytes behind each.
-void note_stl(std::string_view text, std::size_t triangles, MeshLosses& losses) {
+void note_stl(std::string_view text, const TriangleMesh& mesh, MeshLosses& losses) {
+  const std::size_t triangles = mesh.triangle_count();
   if (text.size() < 84 + 50 * triangles) return;
   std::uint32_t stated = 0;
   std::memcpy(&stated, text.data() + 80, sizeof stated);
@@ -155,9 +159,9 @@ namespace fs = std::filesystem;
 /// All that converting knows of a format.
 struct ConvertedFormat {
   std::string_view extension;
-  /// Adds to `losses` what the text of a file, whose reader made so many triangles, says beside them: names
-  /// of objects and groups, polygons, digits beyond those of a float. Null: nothing more to say.
-  void (*note_unread)(std::string_view text, std::size_t triangles, MeshLosses& losses);
+  /// Adds to `losses` what the text of a file says beside the mesh that its reader made: names of objects and
+  /// groups, polygons, digits beyond those of a float. Null: nothing more to say.
+  void (*note_unread)(std::string_view text, const TriangleMesh& mesh, MeshLosses& losses);
   MeshLosses (*write)(const std::string& path, const MeshFile& file, bool ascii);
   bool has_text;       ///< there are files of text and of bytes
   bool has_materials;  ///< it can say some of them
@@ -213,9 +217,7 @@ MeshFile load(const std::string& path, const ConvertOptions& options, MeshLosses
     MeshFile file = load_mesh(path);
     const ConvertedFormat* const format = find_converted(lower_case_extension(without_packing(path)));
     if (format != nullptr && format->note_unread != nullptr)
-      format->note_unread(FileContent(path).text(), file.mesh.triangle_count(), losses);
-    // A centre was taken off, so that digits are kept.
-    if (!(file.mesh.origin == Vec3d{})) std::erase(losses, kPrecision);
+      format->note_unread(FileContent(path).text(), file.mesh, losses);
     if (options.weld) weld_positions(file.mesh);
     return file;
   }
