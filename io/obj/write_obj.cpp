@@ -183,11 +183,7 @@ class MtlWriting {
 
   /// As seen from the folder of the MTL file; empty if MTL cannot say it.
   std::string relative_name(const std::string& path) const {
-    std::error_code error;
-    const fs::path folder = fs::absolute(fs::path(path_), error).parent_path();
-    const fs::path from_here =
-        fs::absolute(path, error).lexically_normal().lexically_relative(folder.lexically_normal());
-    std::string name = from_here.empty() ? path : from_here.string();
+    const std::string name = path_beside(path_, path);
     if (name.empty() || name.back() == '\\' || name.back() == ' ' || std::ranges::any_of(name, is_control))
       return "";
     return name.front() == '-' || name.front() == ' ' ? "./" + name : name;

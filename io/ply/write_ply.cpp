@@ -1,22 +1,19 @@
 #include "io/ply/ply.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <set>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "io/image/color.h"
 #include "io/mesh/vertices.h"
 #include "io/ply/attributes.h"
+#include "io/text/files.h"
 
 namespace oktett {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// The images that a header can name, one for each slot of the mesh that has one.
 class PlyImages {
@@ -38,12 +35,7 @@ class PlyImages {
     const Texture& t = file.textures[m.color_texture];
     const Texture plain{.path = t.path};
     if (t.path.empty() || !(t == plain) || file.mesh.uv_indices.empty()) return -1;
-    std::error_code error;
-    const fs::path folder = fs::absolute(fs::path(path), error).parent_path();
-    const std::string name = fs::absolute(t.path, error)
-                                 .lexically_normal()
-                                 .lexically_proximate(folder.lexically_normal())
-                                 .string();
+    const std::string name = path_beside(path, t.path);
     const bool is_word_like = std::ranges::none_of(name, [](char c) { return c == '\n' || c == '\r'; });
     if (name.empty() || !is_word_like || name.front() == ' ' || name.back() == ' ') return -1;
     names_.push_back(name);
@@ -96,13 +88,14 @@ class PlyWriting {
   }
 
   void describe(AttributeDomain domain) {
-    for (const MeshAttribute& a : mesh_.attributes) {
+    for (std::size_t n = 0; n < mesh_.attributes.size(); ++n) {
+      const MeshAttribute& a = mesh_.attributes[n];
       if (a.domain != domain) continue;
       constexpr const char* kColors[] = {"red", "green", "blue", "alpha"};
-      if (is_color(a))
+      if (forms_[n].as_bytes)
         for (std::uint32_t k = 0; k < a.components; ++k)
           out_.text("property uchar ").text(kColors[k]).text("\n");
-      if (!needs_floats(a)) continue;
+      if (!forms_[n].as_floats) continue;
       for (std::uint32_t k = 0; k < a.components; ++k) {
         out_.text("property float ").text(property_name(a));
         if (a.components > 1) out_.text(std::string(1, kPlyComponent) + std::to_string(k));

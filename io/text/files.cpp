@@ -98,6 +98,13 @@ std::string lower_case_extension(const std::string& path) {
   return extension;
 }
 
+std::string path_beside(const std::string& from, const std::string& path) {
+  std::error_code error;
+  const fs::path folder = fs::absolute(from, error).parent_path().lexically_normal();
+  const fs::path name = fs::absolute(path, error).lexically_normal().lexically_relative(folder);
+  return name.empty() ? path : name.string();
+}
+
 bool is_packed(const std::string& path) { return lower_case_extension(path) == ".gz"; }
 
 std::string without_packing(const std::string& path) {

@@ -30,6 +30,9 @@ std::string why_unreadable(int descriptor);
 /// ".obj" of "a.OBJ".
 std::string lower_case_extension(const std::string& path);
 
+/// `path` as seen from the folder in which the file `from` lies.
+std::string path_beside(const std::string& from, const std::string& path);
+
 /// Whether the name ends in `.gz`, in upper or lower case: gzip has packed the file.
 bool is_packed(const std::string& path);
 /// The path without that end.
