@@ -286,29 +286,34 @@ class MtlReader {
                                      kLeast, kMost, ior)});
   }
 
-  /// The part of the surface that covers what is behind it, if some statement says so. `d` counts where `Tr`
-  /// is there, too.
-  std::optional<float> coverage() {
-    if (!said_.tr) return said_.d;
-    const bool is_opacity = writer_ == MtlWriter::meshlab || writer_ == MtlWriter::vtk;
-    if (!said_.d) return is_opacity ? *said_.tr : 1 - *said_.tr;
+  /// The part of the surface that covers what is behind it, and the rest: the one that the file says as it
+  /// says it.
+  struct Coverage {
+    float covered = 1, clear = 0;
+  };
+
+  /// Nothing if no statement says so. `d` counts where `Tr` is there, too.
+  std::optional<Coverage> coverage() {
+    const std::optional<float>&d = said_.d, &tr = said_.tr;
     constexpr float kSame = 0.01f;  // some programs write few digits
-    if (std::abs(*said_.tr - (1 - *said_.d)) > kSame && std::abs(*said_.tr - *said_.d) > kSame)
-      warnings_.push_back({said_.tr_place, fmt::format("Tr {} and d {} contradict each other; d counts",
-                                                       *said_.tr, *said_.d)});
-    return said_.d;
+    if (d && tr && std::abs(*tr - (1 - *d)) > kSame && std::abs(*tr - *d) > kSame)
+      warnings_.push_back(
+          {said_.tr_place, fmt::format("Tr {} and d {} contradict each other; d counts", *tr, *d)});
+    if (d) return Coverage{*d, 1 - *d};
+    if (!tr) return std::nullopt;
+    const bool is_opacity = writer_ == MtlWriter::meshlab || writer_ == MtlWriter::vtk;
+    return is_opacity ? Coverage{*tr, 1 - *tr} : Coverage{1 - *tr, *tr};
   }
 
   /// Physically based materials are covered in parts, as programs that write them show them, and `Tf` is how
   /// much light passes the rest; others are see-through.
   void set_opacity(Material& m) {
-    const std::optional<float> covered = coverage();
+    const Coverage said = coverage().value_or(Coverage{});
     if (!is_principled()) {
-      // As exact as Tr says it.
-      if (covered) m.transparency = said_.d || *covered != 1 - *said_.tr ? 1 - *covered : *said_.tr;
+      m.transparency = said.clear;
       return;
     }
-    m.opacity = covered.value_or(1);
+    m.opacity = said.covered;
     const bool says_transmission = writer_ == MtlWriter::blender || writer_ == MtlWriter::oktett;
     if (said_.tf && says_transmission) m.transparency = clamp_unit(said_.tf->y);
   }
