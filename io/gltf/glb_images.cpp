@@ -5,13 +5,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/image/color.h"
 #include "io/image/encode.h"
 #include "io/image/library.h"
 #include "io/image/mip_map.h"
-#include "io/text/files.h"
 #include "render/picture.h"
 
 namespace oktett {
@@ -20,12 +18,7 @@ namespace {
 MipMap texels_of(const Texture& texture) {
   TextureSource source{texture.path, texture.content, texture.color_space,
                        texture.channel == ImageChannel::alpha};
-  if (!texture.content) {
-    note_file_read(texture.path);
-    if (const std::string why = why_not_an_image(texture.path); !why.empty())
-      throw Error(Location{texture.path}, why, ErrorKind::io);
-    source.path = path_to_open(texture.path);
-  }
+  if (!texture.content) source.path = image_to_open(texture.path);
   return MipMap(image_library().read_texels(source));
 }
 

@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "io/image/library.h"
-#include "io/text/files.h"
 
 namespace oktett {
 namespace {
@@ -48,9 +47,9 @@ bool shows_alpha(const TexelImage& image) {
 }  // namespace
 
 ImageContents image_contents(const std::string& path) {
-  if (path.empty() || !why_not_an_image(path).empty()) return {};
+  if (path.empty()) return {};
   try {
-    TextureSource source{path_to_open(path)};
+    TextureSource source{image_to_open(path)};
     source.alpha = true;
     const TexelImage image = image_library().read_texels(source);
     return {shows_normals(image), shows_alpha(image)};

@@ -183,22 +183,10 @@ void write_depth(const std::string& path, const Picture& picture, double unit,
   write_words(path, image, all);
 }
 
-/// Throws Error if the image must not be read.
-static void check_access(const std::string& path) {
-  if (const std::string why = why_not_an_image(path); !why.empty())
-    throw Error(Location{path}, why, ErrorKind::io);
-}
-
-Picture read_image(const std::string& path) {
-  note_file_read(path);
-  check_access(path);
-  return image_library().read(path_to_open(path));
-}
+Picture read_image(const std::string& path) { return image_library().read(image_to_open(path)); }
 
 EnvironmentPicture read_environment_image(const std::string& path) {
-  note_file_read(path);
-  check_access(path);
-  const EnvironmentImage image = image_library().read_environment(path_to_open(path));
+  const EnvironmentImage image = image_library().read_environment(image_to_open(path));
   const Picture& picture = image.picture;
   const PicturePlane* planes[3] = {picture.find("R"), picture.find("G"), picture.find("B")};
   EnvironmentPicture environment;
@@ -210,9 +198,7 @@ EnvironmentPicture read_environment_image(const std::string& path) {
 }
 
 HeightImage read_heights(const std::string& path, std::uint32_t most_side, std::size_t most_pixels) {
-  note_file_read(path);
-  check_access(path);
-  return image_library().read_heights(path_to_open(path), most_side, most_pixels);
+  return image_library().read_heights(image_to_open(path), most_side, most_pixels);
 }
 
 }  // namespace oktett

@@ -184,4 +184,11 @@ std::string why_not_an_image(const std::string& path) {
   return why;
 }
 
+std::string image_to_open(const std::string& path) {
+  note_file_read(path);
+  if (const std::string why = why_not_an_image(path); !why.empty())
+    throw Error(Location{path}, why, ErrorKind::io);
+  return path_to_open(path);
+}
+
 }  // namespace oktett

@@ -80,4 +80,8 @@ using ImageLibraryEntry = const ImageLibrary* (*)();
 /// further files, like the play lists of films.
 std::string why_not_an_image(const std::string& path);
 
+/// The path that is opened for the image `path`, which is noted as read. Throws Error of kind io if it may
+/// not be read.
+std::string image_to_open(const std::string& path);
+
 }  // namespace oktett
