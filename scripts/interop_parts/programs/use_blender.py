@@ -1,20 +1,11 @@
 """Blender: every exporter of its own that writes what Oktett reads, and the importers for the way back."""
 import json
-import os
-import traceback
+import sys
 
 import bpy
 
-house = json.load(open(os.environ["HOUSE"] + "/house.json"))
-out, back = os.environ["OUT"], os.environ["BACK"]
-
-
-def attempt(what, call):
-    try:
-        call()
-    except Exception:
-        print("FAILED", what)
-        traceback.print_exc()
+sys.path.append("/programs")  # Blender looks for modules in its own folders alone
+from house_json import BACK, OUT, attempt, house
 
 
 def empty():
@@ -38,7 +29,7 @@ def build():
         shader.inputs["Base Color"].default_value = (*m["color"], 1)
         if m["texture"]:
             image = material.node_tree.nodes.new("ShaderNodeTexImage")
-            image.image = bpy.data.images.load(out + "/" + m["texture"])
+            image.image = bpy.data.images.load(OUT + m["texture"])
             material.node_tree.links.new(image.outputs["Color"], shader.inputs["Base Color"])
         mesh.materials.append(material)
     for i, polygon in enumerate(mesh.polygons):
@@ -97,22 +88,22 @@ empty()
 build()
 bpy.ops.wm.save_as_mainfile(filepath="/tmp/house.blend")
 axes = {"forward_axis": "Y", "up_axis": "Z"}
-attempt("obj", lambda: bpy.ops.wm.obj_export(filepath=out + "/house.obj", export_colors=True, path_mode="RELATIVE", **axes))
-attempt("obj", lambda: bpy.ops.wm.obj_export(filepath=out + "/triangles.obj", export_triangulated_mesh=True, path_mode="COPY", **axes))
+attempt("obj", lambda: bpy.ops.wm.obj_export(filepath=OUT + "house.obj", export_colors=True, path_mode="RELATIVE", **axes))
+attempt("obj", lambda: bpy.ops.wm.obj_export(filepath=OUT + "triangles.obj", export_triangulated_mesh=True, path_mode="COPY", **axes))
 if old:
     bpy.ops.preferences.addon_enable(module="io_mesh_ply")
     bpy.ops.preferences.addon_enable(module="io_mesh_stl")
-    attempt("ply", lambda: bpy.ops.export_mesh.ply(filepath=out + "/house.ply", axis_forward="Y", axis_up="Z"))
-    attempt("ply", lambda: bpy.ops.export_mesh.ply(filepath=out + "/text.ply", use_ascii=True, axis_forward="Y", axis_up="Z"))
-    attempt("stl", lambda: bpy.ops.export_mesh.stl(filepath=out + "/house.stl", axis_forward="Y", axis_up="Z"))
+    attempt("ply", lambda: bpy.ops.export_mesh.ply(filepath=OUT + "house.ply", axis_forward="Y", axis_up="Z"))
+    attempt("ply", lambda: bpy.ops.export_mesh.ply(filepath=OUT + "text.ply", use_ascii=True, axis_forward="Y", axis_up="Z"))
+    attempt("stl", lambda: bpy.ops.export_mesh.stl(filepath=OUT + "house.stl", axis_forward="Y", axis_up="Z"))
 else:
     for name, options in (("house", {}), ("linear", {"export_colors": "LINEAR"}), ("text", {"ascii_format": True})):
-        attempt("ply", lambda: bpy.ops.wm.ply_export(filepath="%s/%s.ply" % (out, name), export_normals=True, **options, **axes))
-    attempt("stl", lambda: bpy.ops.wm.stl_export(filepath=out + "/house.stl", **axes))
+        attempt("ply", lambda: bpy.ops.wm.ply_export(filepath="%s%s.ply" % (OUT, name), export_normals=True, **options, **axes))
+    attempt("stl", lambda: bpy.ops.wm.stl_export(filepath=OUT + "house.stl", **axes))
 bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
 for name, form in (("house", "GLB"), ("parts", "GLTF_SEPARATE")):
     options = {} if old else {"export_vertex_color": "ACTIVE"}
-    attempt("glb", lambda: bpy.ops.export_scene.gltf(filepath=out + "/" + name, export_format=form, export_yup=False, **options))
+    attempt("glb", lambda: bpy.ops.export_scene.gltf(filepath=OUT + name, export_format=form, export_yup=False, **options))
 
 for form, read in (
         ("obj", lambda p: bpy.ops.wm.obj_import(filepath=p, **axes)),
@@ -124,4 +115,4 @@ for form, read in (
         bpy.ops.preferences.addon_enable(module="io_mesh_ply")
         bpy.ops.preferences.addon_enable(module="io_mesh_stl")
     bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
-    attempt("read " + form, lambda: (read("%s/house.%s" % (back, form)), dump("%s/read_%s.json" % (out, form))))
+    attempt("read " + form, lambda: (read("%shouse.%s" % (BACK, form)), dump("%sread_%s.json" % (OUT, form))))

@@ -1,13 +1,9 @@
 """VTK, or ParaView's VTK: its writers and readers of triangles."""
 import json
-import os
-import sys
-import traceback
 
 import vtk
 
-house = json.load(open(os.environ["HOUSE"] + "/house.json"))
-out, back = os.environ["OUT"], os.environ["BACK"]
+from house_json import BACK, OUT, attempt, house
 
 
 def array(values, name, kind=vtk.vtkFloatArray):
@@ -64,7 +60,7 @@ def window(colors=False):
         actor.GetProperty().SetColor(m["color"])
         if m["texture"]:
             reader = vtk.vtkPNGReader()
-            reader.SetFileName(out + "/" + m["texture"])
+            reader.SetFileName(OUT + m["texture"])
             reader.Update()
             texture = vtk.vtkTexture()
             texture.SetInputConnection(reader.GetOutputPort())
@@ -74,16 +70,8 @@ def window(colors=False):
     return view
 
 
-def attempt(what, call):
-    try:
-        call()
-    except Exception:
-        print("FAILED", what)
-        traceback.print_exc()
-
-
 def write(writer, name, data=None):
-    writer.SetFileName(out + "/" + name)
+    writer.SetFileName(OUT + name)
     if data is not None:
         writer.SetInputData(data)
     writer.Write()
@@ -102,9 +90,9 @@ def ply(name, text):
 def exported(exporter, name, colors=False):
     exporter.SetRenderWindow(window(colors))
     if name.endswith(".obj"):
-        exporter.SetFilePrefix(out + "/" + name[:-4])
+        exporter.SetFilePrefix(OUT + name[:-4])
     else:
-        exporter.SetFileName(out + "/" + name)
+        exporter.SetFileName(OUT + name)
         exporter.SetInlineData(True)
         exporter.SetSaveNormal(True)
     exporter.Write()
@@ -124,11 +112,11 @@ def dump(data, form):
                 color = [x / scale for x in colors.GetTuple(v)[:3]]
             corners.append([points.GetPoint(v), normals.GetTuple(v) if normals else None, uvs.GetTuple(v)[:2] if uvs else None, color])
         polygons.append(corners)
-    json.dump({"vertices": points.GetNumberOfPoints(), "polygons": polygons}, open("%s/read_%s.json" % (out, form), "w"))
+    json.dump({"vertices": points.GetNumberOfPoints(), "polygons": polygons}, open("%sread_%s.json" % (OUT, form), "w"))
 
 
 def read(reader, form):
-    reader.SetFileName("%s/house.%s" % (back, form))
+    reader.SetFileName("%shouse.%s" % (BACK, form))
     reader.Update()
     data = reader.GetOutput()
     if data.IsA("vtkMultiBlockDataSet"):
