@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "io/scene/readers.h"
 #include "io/scene/schema.h"
 #include "io/scene/utf8.h"
-#include "io/text/files.h"
 #include "render/bsdf/metals.h"
 #include "render/bsdf/principled_parameters.h"
 
