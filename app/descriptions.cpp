@@ -112,7 +112,7 @@ std::string program_page(const std::vector<VerbText>& verbs) {
       ".TP\n.B oktett render scene.yaml \\-o scene.exr\nRenders a scene with all its layers.\n"
       ".TP\n.B oktett examples whitted\nCopies an example scene to the current folder.\n"
       ".SH ENVIRONMENT\n"
-      ".TP\n.B OKTETT_ISA\nThe instruction set to use: scalar, sse4.2, avx2 or avx512.\n";
+      ".TP\n.B OKTETT_ISA\nThe instruction set to use: scalar, sse4.2, avx2, avx512 or neon.\n";
   page += kExitStatus;
   page += ".SH SEE ALSO\n";
   for (std::size_t i = 0; i < verbs.size(); ++i)
