@@ -22,6 +22,7 @@ import time
 import numpy as np
 import open3d
 
+from obj_file import read_obj
 from oktett.open3d import RaycastingScene
 
 Theirs = open3d.t.geometry.RaycastingScene
@@ -69,22 +70,11 @@ def make_open3d_hit():
         sys.exit(subprocess.run([sys.executable, *sys.argv], env=environment).returncode)
 
 
-def read_obj(path):
-    vertices, faces = [], []
-    for line in open(path):
-        if line.startswith("v "):
-            vertices.append([float(word) for word in line.split()[1:4]])
-        elif line.startswith("f "):
-            corners = [int(word.split("/")[0]) for word in line.split()[1:]]
-            corners = [c - 1 if c > 0 else len(vertices) + c for c in corners]
-            faces += [[corners[0], corners[k], corners[k + 1]] for k in range(1, len(corners) - 1)]
-    return np.array(vertices, np.float32), np.array(faces, np.uint32)
-
-
 class Mesh:
     def __init__(self, path):
         self.name = os.path.basename(path)
-        self.vertices, self.faces = read_obj(path)
+        self.vertices, faces = read_obj(path)
+        self.faces = faces.astype(np.uint32)
         used = self.vertices[self.faces.ravel()]
         self.low, self.high = used.min(axis=0).astype(float), used.max(axis=0).astype(float)
         self.center = (self.low + self.high) / 2

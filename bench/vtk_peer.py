@@ -19,6 +19,7 @@ import vtk
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 import oktett
+from obj_file import read_obj
 
 
 def ball(levels):
@@ -38,18 +39,6 @@ def ball(levels):
         faces = np.concatenate([np.stack(t, 1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
     x, y, z = vertices.T
     return (vertices * (1 + 0.2 * np.sin(5 * x) * np.cos(7 * y + z))[:, None]).astype(np.float32), faces
-
-
-def read_obj(path):
-    vertices, faces = [], []
-    for line in open(path):
-        if line.startswith("v "):
-            vertices.append([float(word) for word in line.split()[1:4]])
-        elif line.startswith("f "):
-            corners = [int(word.split("/")[0]) for word in line.split()[1:]]
-            corners = [c - 1 if c > 0 else len(vertices) + c for c in corners]
-            faces += [[corners[0], corners[k], corners[k + 1]] for k in range(1, len(corners) - 1)]
-    return np.array(vertices, np.float32), np.array(faces, np.int64)
 
 
 class Theirs:
