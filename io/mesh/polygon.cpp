@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "core/double_double.h"
 #include "core/mesh.h"
 
 namespace oktett {
@@ -47,110 +46,17 @@ void BlockerTree::split(const std::vector<PlanePoint>& points, std::uint32_t nod
   split(points, 2 * node + 1, leaf + leaves / 2, leaves / 2);
 }
 
-// ---- The sign of an area.
-
-/// The sign of a sum of six numbers, by an expansion whose parts do not overlap.
-static int sign_of_sum(const double (&terms)[6]) {
-  double parts[6];
-  int count = 0;
-  for (double carry : terms) {
-    for (int i = 0; i < count; ++i) {
-      const DoubleDouble sum = two_sum(carry, parts[i]);
-      carry = sum.hi, parts[i] = sum.lo;
-    }
-    parts[count++] = carry;
-  }
-  while (count > 0 && parts[count - 1] == 0) --count;
-  return count == 0 ? 0 : parts[count - 1] > 0 ? 1 : -1;
-}
-
-int orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
-  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x), area = left - right;
-  // (3 + 16 u) u times the sum of the magnitudes, with u = 2^-53.
-  const double error = 0x1.8000000000008p-52 * (std::abs(left) + std::abs(right));
-  if (area > error) return 1;
-  if (area < -error) return -1;
-  // Products of floats are exact.
-  return sign_of_sum({a.x * b.y, -(a.y * b.x), b.x * c.y, -(b.y * c.x), c.x * a.y, -(c.y * a.x)});
-}
-
-// ---- Crossings of the boundary with itself.
+// ---- Triangles.
 
 namespace {
 
-/// Finds two edges that cross; touching does not count. Edges that follow each other lie together, so runs of
-/// them, joined to a binary tree, have small boxes.
-class CrossingSearch {
- public:
-  explicit CrossingSearch(const std::vector<PlanePoint>& points) : points_(points) {
-    leaves_ = 1;
-    while (points.size() > kEdges * leaves_) leaves_ *= 2;
-    boxes_.resize(2 * leaves_);
-    for (std::size_t leaf = 0; leaf < leaves_; ++leaf) {
-      PlaneBox& box = boxes_[leaves_ + leaf];
-      // With the end of its last edge.
-      for (std::size_t i = begin_of(leaf); i <= begin_of(leaf + 1); ++i) box.grow(point(i));
-    }
-    for (std::size_t node = leaves_; --node > 0;) {
-      boxes_[node] = boxes_[2 * node];
-      boxes_[node].grow(boxes_[2 * node + 1].lo);
-      boxes_[node].grow(boxes_[2 * node + 1].hi);
-    }
-    steps_ = kMostSteps + kMostStepsPerCorner * static_cast<std::int64_t>(points.size());
-  }
-
-  bool run() { return within(1); }
-
- private:
-  static constexpr std::size_t kEdges = 8;
-  /// Pairs of nodes and of edges that are looked at. Long edges that lie slantwise beside each other, or on
-  /// each other again and again, could take longer.
-  static constexpr std::int64_t kMostSteps = 1 << 22, kMostStepsPerCorner = 16;
-
-  const PlanePoint& point(std::size_t i) const { return points_[i < points_.size() ? i : 0]; }
-  std::size_t begin_of(std::size_t leaf) const { return points_.size() * leaf / leaves_; }
-  bool cross_at(std::size_t i, std::size_t j) const {
-    const PlanePoint &a = point(i), &b = point(i + 1), &c = point(j), &d = point(j + 1);
-    if (std::max(a.x, b.x) < std::min(c.x, d.x) || std::max(c.x, d.x) < std::min(a.x, b.x) ||
-        std::max(a.y, b.y) < std::min(c.y, d.y) || std::max(c.y, d.y) < std::min(a.y, b.y))
-      return false;
-    return orientation(a, b, c) * orientation(a, b, d) < 0 && orientation(c, d, a) * orientation(c, d, b) < 0;
-  }
-
-  /// Among the edges of a node.
-  bool within(std::size_t node) {
-    if (node < leaves_) return within(2 * node) || within(2 * node + 1) || between(2 * node, 2 * node + 1);
-    const std::size_t begin = begin_of(node - leaves_), end = begin_of(node - leaves_ + 1);
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t j = i + 2; j < end; ++j)
-        if (cross_at(i, j)) return true;
-    return false;
-  }
-
-  /// Between those of two nodes of one level.
-  bool between(std::size_t a, std::size_t b) {
-    if (--steps_ < 0 || !boxes_[a].meets(boxes_[b])) return false;
-    if (a < leaves_)
-      return between(2 * a, 2 * b) || between(2 * a, 2 * b + 1) || between(2 * a + 1, 2 * b) ||
-             between(2 * a + 1, 2 * b + 1);
-    steps_ -= static_cast<std::int64_t>(kEdges * kEdges);
-    for (std::size_t i = begin_of(a - leaves_); i < begin_of(a - leaves_ + 1); ++i)
-      for (std::size_t j = begin_of(b - leaves_); j < begin_of(b - leaves_ + 1); ++j)
-        if (cross_at(i, j)) return true;
-    return false;
-  }
-
-  const std::vector<PlanePoint>& points_;
-  std::size_t leaves_;
-  std::vector<PlaneBox> boxes_;
-  std::int64_t steps_;
-};
-
-/// Whether a polygon without reflex corners goes around once: it turns back twice along x.
-bool goes_around_once(const std::vector<PlanePoint>& points) {
+/// Whether all corners turn to the left, and the polygon goes around once: it turns back twice along x.
+bool is_convex(const std::vector<PlanePoint>& points) {
   int changes = 0, way = 0, first = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double by = points[i + 1 < points.size() ? i + 1 : 0].x - points[i].x;
+  for (std::size_t i = 0, before = points.size() - 1; i < points.size(); before = i++) {
+    const std::size_t after = i + 1 < points.size() ? i + 1 : 0;
+    if (orientation(points[before], points[i], points[after]) <= 0) return false;
+    const double by = points[after].x - points[i].x;
     const int to = by > 0 ? 1 : by < 0 ? -1 : way;
     changes += way != 0 && to != way;
     way = to;
@@ -158,6 +64,9 @@ bool goes_around_once(const std::vector<PlanePoint>& points) {
   }
   return changes + (way != first) <= 2;
 }
+
+/// Corners up to which ears are cut off. Beyond, thin ears across thousands of corners take too long.
+constexpr std::size_t kMostEars = 10000;
 
 /// Corners with twins that may be looked at: enough for all pairs of a thousand corners at one place, and
 /// beyond that for those that do not meet again and again.
@@ -167,19 +76,21 @@ Vec3d area_vector(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return cross
 
 }  // namespace
 
-// ---- Triangles.
-
 std::span<const std::uint32_t> PolygonTriangulator::run(std::span<const Vec3f> points) {
   crosses_itself_ = false;
   if (points.size() == 4) return cut_quad(points);
   triangles_.clear();
   remaining_ = points.size();
   link();
-  if (project(points))
-    clip_ears();
-  else
+  if (!project(points)) {
     fan_out(0);
-  return triangles_;
+    return triangles_;
+  }
+  const bool is_small = points.size() <= kMostEars;
+  if (!is_small || !is_convex(points_)) crosses_itself_ = !sweep_.run(points_);
+  if (!is_small && !crosses_itself_) return sweep_.triangles();
+  if (clip_ears()) return triangles_;
+  return sweep_.triangles();
 }
 
 std::span<const std::uint32_t> PolygonTriangulator::cut_quad(std::span<const Vec3f> points) {
@@ -195,13 +106,17 @@ std::span<const std::uint32_t> PolygonTriangulator::cut_quad(std::span<const Vec
   return first;
 }
 
-/// Along the axis in which the area vector (Newell's) is longest, so that the winding becomes positive. False
-/// if there is no area.
+/// Along the axis in which the area vector (Newell's) is longest, so that the winding becomes positive. Where
+/// areas cancel each other, that of the largest triangle counts. False if there is none.
 bool PolygonTriangulator::project(std::span<const Vec3f> points) {
-  Vec3d area;
+  Vec3d area, largest;
   const Vec3d origin(points[0]);
-  for (std::size_t i = 1; i + 1 < points.size(); ++i)
-    area += area_vector(origin, Vec3d(points[i]), Vec3d(points[i + 1]));
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Vec3d part = area_vector(origin, Vec3d(points[i]), Vec3d(points[i + 1]));
+    area += part;
+    if (max_component(abs(part)) > max_component(abs(largest))) largest = part;
+  }
+  if (max_component(abs(area)) == 0) area = largest;
   const int axis = dominant_axis(area);
   if (area[axis] == 0) return false;
   int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -223,11 +138,11 @@ void PolygonTriangulator::link() {
 
 /// A corner that cannot be cut off is tried again when a neighbour was cut off, or when the corner that
 /// blocks it no longer does; nothing else changes the answer. A polygon that touches itself may have no ear
-/// by the strictest rule, and one that crosses itself none at all; then a more lenient rule is taken.
-void PolygonTriangulator::clip_ears() {
+/// by the strictest rule, then a more lenient one is taken; false if there is none by that, either. One that
+/// crosses itself is cut all the same.
+bool PolygonTriangulator::clip_ears() {
   const std::size_t count = points_.size();
   find_blocking();
-  crosses_itself_ = blockers_.blocking() == 0 ? !goes_around_once(points_) : CrossingSearch(points_).run();
   first_waiter_.assign(count, kNoId);
   waiters_.clear();
   due_.assign(count, 0);
@@ -246,17 +161,14 @@ void PolygonTriangulator::clip_ears() {
       try_again(corner);
     cut_in_rounds(Rule::no_overlap);
   }
-  // What is left has no area, or crosses itself.
+  if (remaining_ > 3 && !crosses_itself_) return false;
   std::int64_t budget = 64 * static_cast<std::int64_t>(count);
   while (remaining_ > 3 && twins_left_ > 0 && (budget -= static_cast<std::int64_t>(remaining_)) > 0) {
-    if (!cut_one(Rule::flat)) {
-      crosses_itself_ = true;
-      if (!cut_one(Rule::convex)) cut_one(Rule::any);
-    }
+    if (!cut_one(Rule::flat) && !cut_one(Rule::convex)) cut_one(Rule::any);
     cut_in_rounds(Rule::no_overlap);
   }
-  if (remaining_ > 3) crosses_itself_ = true;
   fan_out(last_);
+  return true;
 }
 
 /// Tries all corners that are due, and those that become due thereby.
@@ -266,6 +178,7 @@ void PolygonTriangulator::cut_in_rounds(Rule rule) {
     std::swap(now_, later_);
     later_.clear();
     for (const std::uint32_t corner : now_) {
+      if (twins_left_ <= 0) return;
       if (due_[corner] != round_) continue;
       due_[corner] = 0;
       if (turn(corner) <= 0) continue;
@@ -277,7 +190,7 @@ void PolygonTriangulator::cut_in_rounds(Rule rule) {
       // The next corner waits for the next round: that spreads the cuts around the polygon, which keeps
       // triangles from growing thin.
       cut_off(corner);
-      if (remaining_ <= 3 || twins_left_ <= 0) return;
+      if (remaining_ <= 3) return;
     }
   }
 }

@@ -10,15 +10,12 @@
 #include <vector>
 
 #include "core/vec3.h"
+#include "io/mesh/plane_point.h"
+#include "io/mesh/polygon_sweep.h"
 
 namespace oktett {
 
 // ---- Corners of a polygon in the plane, to find those within a triangle that keep it from being cut off.
-
-struct PlanePoint {
-  double x, y;
-  bool operator==(const PlanePoint&) const = default;
-};
 
 /// A box in the plane, empty at first.
 struct PlaneBox {
@@ -33,15 +30,6 @@ struct PlaneBox {
     return lo.x <= b.hi.x && b.lo.x <= hi.x && lo.y <= b.hi.y && b.lo.y <= hi.y;
   }
 };
-
-/// Twice the area of the triangle, positive if it turns to the left; rounded.
-inline double cross(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-/// Its sign, exact for points whose coordinates are floats: 1 if it turns to the left, 0 if there is no area.
-/// By the error bound and the expansions of Shewchuk 1997.
-int orientation(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
 
 /// All corners in a balanced kd-tree (Bentley 1975) whose nodes count the corners that block.
 class BlockerTree {
@@ -116,20 +104,22 @@ class BlockerTree {
   std::vector<std::uint32_t> blocking_;
 };
 
-/// Cuts polygons into triangles, always two fewer than corners, by taking off ears (Meisters 1975). Keeps its
-/// buffers from one polygon to the next.
+/// Cuts polygons into triangles, always two fewer than corners: small ones by taking off ears (Meisters
+/// 1975), which gives the better triangles, large ones by a sweep. Keeps its buffers from one polygon to the
+/// next.
 class PolygonTriangulator {
  public:
   /// Three corner numbers for each triangle, in the winding of the polygon; valid until the next call. A
   /// polygon that does not cross itself, seen along the axis in which its area is greatest, is covered
   /// without overlap, also where it touches itself or holes are joined to it by bridges; no triangle is
-  /// degenerate unless corners coincide or all that is left lies on a line. The time grows like n log n.
+  /// degenerate unless corners coincide or lie on an edge that they do not end. The time grows like n log n.
   /// Points must be finite.
   std::span<const std::uint32_t> run(std::span<const Vec3f> points);
 
-  /// Whether the polygon of the last call was seen to cross itself, so that its triangles may overlap or be
-  /// turned over; or met itself at one place so often that the rest was cut into a fan. A crossing exactly
-  /// in a corner, or among very many long edges side by side, may go unseen.
+  /// Whether the polygon of the last call crosses itself, so that its triangles may overlap or be turned
+  /// over: exactly, but that spikes without width may cross anything, and that where one angle is walked
+  /// three times and more a contact may be taken for a crossing. Of four corners only those are told that no
+  /// diagonal cuts into triangles of one winding.
   bool crosses_itself() const { return crosses_itself_; }
 
  private:
@@ -144,7 +134,7 @@ class PolygonTriangulator {
   std::span<const std::uint32_t> cut_quad(std::span<const Vec3f> points);
   bool project(std::span<const Vec3f> points);
   void link();
-  void clip_ears();
+  bool clip_ears();
   void cut_in_rounds(Rule rule);
   bool cut_one(Rule rule);
   void cut_off(std::uint32_t corner);
@@ -161,6 +151,7 @@ class PolygonTriangulator {
   int turn(std::uint32_t corner) const;
 
   std::vector<Point> points_;
+  PolygonSweep sweep_;
   std::vector<std::uint32_t> next_, previous_;
   std::vector<std::uint8_t> twin_;      ///< another corner stands at the same place
   std::vector<std::uint8_t> blocking_;  ///< reflex, straight or twin, and not cut off yet

@@ -76,8 +76,8 @@ Affine read_transform(SceneLoad& load, const YamlNode& node);
 /// The keys of a motion: at least one, of ascending times and regular transforms.
 std::vector<MotionKey> read_motion(SceneLoad& load, const YamlNode& node);
 
-/// Adds warnings of materials of Phong's model in a scene file that may give back more light than they receive,
-/// if the scene is path traced. Called when all else is read.
+/// Adds warnings of materials of Phong's model in a scene file that may give back more light than they
+/// receive, if the scene is path traced. Called when all else is read.
 void warn_of_energy(Scene& scene);
 
 /// Reads a scene file with all that it includes. Throws Error; where errors are gathered, keeps them in

@@ -69,7 +69,8 @@ FilmFormat format_of(const RenderContext& context);
 /// - Z is the distance along the view axis, not along the ray, as compositing programs expect; infinite where
 ///   there is no surface. P is the position in world space; u and v are the texture coordinates. All of them
 ///   are means over the samples that met a surface.
-/// - N is the shading normal in world space as lights see it, with normal and bump maps, Ng the true normal of
+/// - N is the shading normal in world space as lights see it, with normal and bump maps, Ng the true normal
+/// of
 ///   the surface; both point out of solids. Albedo is the base colour. All are means over all samples, with 0
 ///   for those that met nothing, as denoisers expect: at edges normals are shorter than 1.
 /// - primID.I is the primitive in its geometry, geomID.I the object in the scene (as World counts them). They
