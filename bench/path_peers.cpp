@@ -18,6 +18,7 @@
 #include "io/image/image.h"
 #include "io/mesh/load/load_mesh.h"
 #include "io/text/file_content.h"
+#include "render/material.h"
 #include "render/picture/render.h"
 
 namespace fs = std::filesystem;
@@ -57,8 +58,6 @@ Pixels pixels_of(const Picture& picture) {
   }
   return pixels;
 }
-
-double luminance(const Color& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 /// The mean over the pixels of the squared error relative to the light of a pixel; pixels that are darker
 /// than a tenth of the picture's mean count as if they had that. `long_samples` and `samples`: by how much

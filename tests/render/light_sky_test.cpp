@@ -5,14 +5,13 @@
 
 #include <cmath>
 
+#include "render/material.h"
 #include "tests/render/light_checks.h"
 
 namespace oktett::light_sky_test {
 namespace {
 
 using namespace light_checks;
-
-double luminance(const Color& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 Vec3f at_elevation(double degrees, double turn = 0) {
   const double e = degrees * std::numbers::pi / 180;
