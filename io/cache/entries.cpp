@@ -11,7 +11,7 @@ namespace oktett {
 namespace {
 
 /// The number changes with what parse_mesh makes of a file.
-constexpr std::string_view kMeshKind = "mesh 2 " OKTETT_VERSION;
+constexpr std::string_view kMeshKind = "mesh 3 " OKTETT_VERSION;
 
 void append(std::string& bytes, const std::vector<MeshStatement>& statements) {
   append_number(bytes, static_cast<std::uint32_t>(statements.size()));

@@ -73,8 +73,9 @@ class Choosing {
 
   /// Those in linear floats, in place of the bytes beside them.
   bool take_linear_colors() {
-    const std::string first = std::string(kColorAttribute) + kPlyComponent + "0";
-    const std::size_t at = find(first);
+    std::size_t at = properties_.size();
+    for (const char separator : kPlyComponents)
+      at = std::min(at, find(std::string(kColorAttribute) + separator + "0"));
     if (at == properties_.size()) return false;
     take_numbers(at);
     for (const char* name : kColorNames[0])
@@ -108,9 +109,9 @@ class Choosing {
   /// A property, and those behind it that are further components.
   void take_numbers(std::size_t first) {
     const std::string_view name = properties_[first].name;
-    const std::string start = std::string(1, kPlyComponent) + "0";
     std::size_t count = 1;
-    if (name.size() > start.size() && name.ends_with(start)) {
+    if (name.size() > 2 && name.back() == '0' &&
+        kPlyComponents.find(name[name.size() - 2]) != kPlyComponents.npos) {
       std::string next(name);
       while (first + count < properties_.size() && free_[first + count]) {
         next.back() = static_cast<char>('0' + count);
@@ -121,7 +122,7 @@ class Choosing {
     const bool is_vector = count > 1 && count <= 4;
     if (!is_vector) count = 1;
     const std::size_t attribute =
-        add(is_vector ? name.substr(0, name.size() - start.size()) : name, static_cast<std::uint32_t>(count));
+        add(is_vector ? name.substr(0, name.size() - 2) : name, static_cast<std::uint32_t>(count));
     if (attribute == kNone) return;
     for (std::size_t k = 0; k < count; ++k)
       take(first + k, attribute, static_cast<std::uint32_t>(k), PlyMeaning::number);

@@ -4,13 +4,14 @@
 ///
 /// Colours are `red green blue`, `diffuse_red ...` or `r g b`, and `alpha` or `a` with them, encoded by the
 /// sRGB curve: programs for scans copy them from photographs, and Blender and three.js encode floats so, too.
-/// Whole numbers count 255ths, those of 16 bits without sign 65535ths. Beside them `color.0 color.1 color.2`,
-/// and `color.3`, are the same in linear floats: what write_ply adds where bytes would round.
+/// Whole numbers count 255ths, those of 16 bits without sign 65535ths. Beside them `color_0 color_1 color_2`,
+/// and `color_3`, are the same in linear floats: what write_ply adds where bytes would round.
 
 #include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/mesh.h"
@@ -71,7 +72,9 @@ struct PlyExtra {
 std::vector<PlyExtra> choose_attributes(const PlyElement& element, std::span<const int> used,
                                         AttributeDomain domain, std::vector<MeshAttribute>& attributes);
 
-/// Between the name of an attribute of several components and the number of one: "flow.0", "flow.1".
-inline constexpr char kPlyComponent = '.';
+/// What stands between the name of an attribute of several components and the number of one, as in "flow_0",
+/// "flow_1". The first is written; NumPy's reader of text, which meshio uses, drops other signs than letters,
+/// digits and this one from names. Older files of Oktett have the second.
+inline constexpr std::string_view kPlyComponents = "_.";
 
 }  // namespace oktett

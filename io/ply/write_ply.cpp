@@ -98,7 +98,7 @@ class PlyWriting {
       if (!forms_[n].as_floats) continue;
       for (std::uint32_t k = 0; k < a.components; ++k) {
         out_.text("property float ").text(property_name(a));
-        if (a.components > 1) out_.text(std::string(1, kPlyComponent) + std::to_string(k));
+        if (a.components > 1) out_.text(std::string(1, kPlyComponents.front()) + std::to_string(k));
         out_.text("\n");
       }
     }

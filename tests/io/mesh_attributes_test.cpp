@@ -181,6 +181,35 @@ TEST(PlyAttributes, FacesHaveColoursToo) {
   EXPECT_EQ(values(both, "face_color"), (std::vector<float>{1, 0, 0, 1, 0, 0, 0, 1, 0}));
 }
 
+TEST(PlyAttributes, NumberedPropertiesAreTheComponentsOfOne) {
+  const PlyFiles files;
+  const auto names = [&](const std::vector<std::string>& properties) {
+    std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    std::string values, all;
+    for (const std::string& name : properties) {
+      head += "property float " + name + "\n";
+      values += std::string(" ") + name.back();
+    }
+    head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const char* place : {"0 0 0", "1 0 0", "0 1 0"}) head += place + values + "\n";
+    for (const MeshAttribute& a : files.parse_bytes(head + "3 0 1 2\n").mesh.attributes) {
+      all += a.name + ":" + std::to_string(a.components) + " ";
+      for (std::uint32_t k = 0; k < a.components && a.components > 1; ++k)
+        EXPECT_EQ(a.value(2, k), static_cast<float>(k)) << a.name;
+    }
+    return all;
+  };
+  EXPECT_EQ(names({"flow_0", "flow_1", "flow_2"}), "flow:3 ");
+  EXPECT_EQ(names({"flow.0", "flow.1", "flow.2"}), "flow:3 ");
+  EXPECT_EQ(names({"color_0", "color_1", "color_2", "red_2"}), "color:3 red_2:1 ");
+  // Neither in order nor alike, and more than four.
+  EXPECT_EQ(names({"flow_1", "flow_0"}), "flow_1:1 flow_0:1 ");
+  EXPECT_EQ(names({"flow_0", "flow.1"}), "flow_0:1 flow.1:1 ");
+  EXPECT_EQ(names({"_0", "_1"}), "_0:1 _1:1 ");
+  EXPECT_EQ(names({"a_0", "a_1", "a_2", "a_3", "a_4"}), "a_0:1 a_1:1 a_2:1 a_3:1 a_4:1 ");
+}
+
 TEST(PlyAttributes, OddOnesAreNoErrors) {
   const PlyFiles files;
   const std::string start =
@@ -489,6 +518,13 @@ TEST_F(Convert, KeepsAttributesOfRandomMeshes) {
     const MeshFile file = random_mesh(random, false);
     for (const bool ascii : {false, true}) {
       EXPECT_EQ(write_ply(files.dir.file("a.ply"), file, ascii), Losses{});
+      // Some readers drop other signs from names, and then find none.
+      const std::string text = file_content(files.dir.file("a.ply"));
+      for (std::size_t at = 0; (at = text.find("\nproperty ", at)) < text.find("end_header"); ++at) {
+        const std::string line = text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+        EXPECT_EQ(line.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789 "), std::string::npos)
+            << line;
+      }
       const MeshFile read = load("a.ply");
       EXPECT_TRUE(read.warnings.empty());
       expect_same_mesh(read.mesh, file.mesh);
